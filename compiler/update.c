@@ -2,8 +2,9 @@
  * update.c: compiles an edited text of a scene, and finds what is different.
  *
  * Two scenes have the same kernels if these are made of the same nodes, apart from numbers of the
- * frame and of tables, and if all else that decides about their text is equal.  Some constants never
- * get into the text.  So scenes whose nodes differ are compared by their text as well.
+ * frame, and if all else that decides about their text is equal.  Some constants never get into the
+ * text, and tables of crowds do not, but what is derived from them may.  So scenes whose nodes or
+ * tables differ are compared by their text as well.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -99,17 +100,12 @@ static bool same_grid(const Grid *a, const Grid *b)
            same_lists(a, b, cells);
 }
 
-/* Rows and grids are data of kernels; how many columns there are is in their text. */
-static Likeness compare_tables(const Crowd *a, const Crowd *b)
+static bool same_table(const Crowd *a, const Crowd *b)
 {
-    if (a->columns != b->columns)
-        return DIFFERENT;
     const size_t numbers = (size_t)a->rows * a->columns;
-    return a->rows == b->rows &&
-                   memcmp(a->numbers, b->numbers, numbers * sizeof *a->numbers) == 0 &&
-                   same_grid(&a->grid, &b->grid)
-               ? EQUAL
-               : ALIKE_BUT_NUMBERS;
+    return a->rows == b->rows && a->columns == b->columns &&
+           memcmp(a->numbers, b->numbers, numbers * sizeof *a->numbers) == 0 &&
+           same_grid(&a->grid, &b->grid);
 }
 
 static bool same_function(const CrowdFunction *a, const CrowdFunction *b)
@@ -123,15 +119,14 @@ static bool same_function(const CrowdFunction *a, const CrowdFunction *b)
 }
 
 /* Their bodies are compared with the graph. */
-static Likeness compare_crowds(const Crowds *a, const Crowds *b)
+static bool same_crowds(const Crowds *a, const Crowds *b)
 {
-    Likeness found = equal_if(table_count(a) == table_count(b) &&
-                              function_count(a) == function_count(b));
-    for (size_t i = 0; found != DIFFERENT && i < function_count(a); i++)
-        found = equal_if(same_function(&a->functions.items[i], &b->functions.items[i]));
-    for (size_t i = 0; found != DIFFERENT && i < table_count(a); i++)
-        found = least(found, compare_tables(&a->tables.items[i], &b->tables.items[i]));
-    return found;
+    bool same = table_count(a) == table_count(b) && function_count(a) == function_count(b);
+    for (size_t i = 0; same && i < function_count(a); i++)
+        same = same_function(&a->functions.items[i], &b->functions.items[i]);
+    for (size_t i = 0; same && i < table_count(a); i++)
+        same = same_table(&a->tables.items[i], &b->tables.items[i]);
+    return same;
 }
 
 /* ---- what decides about kernels beside the graph ---- */
@@ -151,7 +146,7 @@ static bool same_methods(const KrsProgram *a, const KrsProgram *b)
            a->scene_parts == b->scene_parts && a->expensive == b->expensive;
 }
 
-/* Whether shaders treat the boxes alike. */
+/* Whether shaders treat the boxes alike; corners are numbers of the frame. */
 static bool same_kinds_of_boxes(const KrsScene *a, const KrsScene *b)
 {
     bool same = true;
@@ -160,15 +155,6 @@ static bool same_kinds_of_boxes(const KrsScene *a, const KrsScene *b)
         same = same && box_is_empty(*x) == box_is_empty(*y) &&
                box_is_finite(*x) == box_is_finite(*y);
     }
-    return same;
-}
-
-/* Corners are numbers of the frame, or literals, which tables may change and no node of the graph. */
-static bool same_literal_boxes(const KrsScene *a, const KrsScene *b)
-{
-    bool same = true;
-    for (size_t i = 0; i < a->component_count && !a->module.box_nodes.around; i++)
-        same = same && memcmp(&a->module.boxes[i], &b->module.boxes[i], sizeof(Box)) == 0;
     return same;
 }
 
@@ -259,8 +245,7 @@ static Likeness compare_kernels(Comparison *c)
     if (!same_facts(c->a, c->b))
         return DIFFERENT;
     Likeness found = compare_graphs(c, true, ROOTS_SURFACE, ROOT_KINDS - 1);
-    found          = least(found, compare_crowds(c->a->graph->crowds, c->b->graph->crowds));
-    found          = least(found, equal_if(same_literal_boxes(c->a, c->b)));
+    found          = least(found, equal_if(same_crowds(c->a->graph->crowds, c->b->graph->crowds)));
     return found != DIFFERENT || !same_texts(c) ? found : ALIKE_BUT_NUMBERS;
 }
 
