@@ -194,7 +194,7 @@ void shader_create(Bench *bench, Shader *shader, const char *text, const char *n
     *shader         = (Shader){0};
 
     double start = clock_ms();
-    if (spirv_compile(text, name, false, &words, &count, &log) != KRS_OK)
+    if (spirv_compile(text, name, &words, &count, &log) != KRS_OK)
         fail("%s does not compile: %s", name, log ? log : "out of memory");
     double compiled = clock_ms();
     if (!layout_create(gpu, shader) || !set_create(gpu, shader, buffer) ||

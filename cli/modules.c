@@ -53,7 +53,7 @@ static KrsStatus compile_kernel(const Options *options, const KrsScene *scene, c
     }
     SpirvModule module = {.file  = file,
                           .entry = arena_copy_text(options->arena, file, strlen(file) - 5)};
-    KrsStatus   status = spirv_compile(text, file, true, &module.words, &module.word_count, &log);
+    KrsStatus   status = spirv_compile(text, file, &module.words, &module.word_count, &log);
     if (status == KRS_OK)
         array_push(options->arena, modules, module);
     else if (status == KRS_OUT_OF_MEMORY)

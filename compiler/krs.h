@@ -242,7 +242,8 @@ typedef struct KrsComponent {
     uint32_t    levels;          /* number of reflections of its outermost sequence, or 0 */
     double      instances;       /* number of kernels with all their copies */
     uint32_t    inversions;      /* maps that invert, in its outermost sequence or `.transform` */
-    double      flops;           /* multiply-adds to evaluate its distance at a point */
+    double      flops;           /* multiply-adds to evaluate its distance at a point; its share
+                                    where many turns of a loop are evaluated together */
 } KrsComponent;
 
 size_t krs_component_count(const KrsScene *scene);

@@ -13,8 +13,8 @@
 
 enum { MOST_OPERATIONS = 20000, MOST_GLSL_BYTES = 1500000 };
 
-static const char fewer_shapes[] =
-    "fewer shapes, reflections or copies; `.repeat` with a margin in its cells needs one copy only";
+static const char fewer_shapes[] = "fewer shapes, reflections or copies; parts of a union that "
+                                   "differ in constants alone count once";
 
 /* ---- operations ---- */
 

@@ -11,7 +11,7 @@ typedef uint32_t Texel[2];
 
 /* Where the parts of a table are, in texels. */
 typedef struct Place {
-    size_t row, cell, list;
+    size_t row, copy, cell, list;
 } Place;
 
 static size_t cell_count(const Grid *grid)
@@ -23,10 +23,11 @@ static size_t cell_count(const Grid *grid)
 static Place place_table(const Crowd *table, TableSizes *next)
 {
     size_t cells   = cell_count(&table->grid);
-    size_t entries = table->grid.first[cells];
-    Place  place   = {next->rows, next->cells, next->cells + cells + 1};
-    next->rows += table->rows * row_texels(table);
-    next->cells = place.list + (entries + 1) / 2;
+    size_t entries = table->grid.first[cells], texels = row_texels(table);
+    Place  place = {next->rows, next->rows + table->rows * texels, next->cells,
+                    next->cells + cells + 1};
+    next->rows   = place.copy + entries * texels;
+    next->cells  = place.list + (entries + 1) / 2;
     return place;
 }
 
@@ -85,7 +86,7 @@ static void put_header(const Grid *grid, Place place, Texel *header)
     put_floats(header[5], center[2], half[0]);
     put_floats(header[6], half[1], half[2]);
     header[7][0] = (uint32_t)place.row;
-    header[7][1] = (uint32_t)place.list;
+    header[7][1] = (uint32_t)place.copy;
 }
 
 static void put_grid(const Grid *grid, Texel *records, Texel *lists)
@@ -111,6 +112,14 @@ static void put_rows(const Crowd *table, float (*rows)[4])
             rows[r * texels + c / 4][c % 4] = (float)table->numbers[r * table->columns + c];
 }
 
+/* The rows of all members of the lists, in the order of the lists. */
+static void put_copies(const Crowd *table, const float (*rows)[4], float (*copies)[4])
+{
+    const size_t texels = row_texels(table), entries = table->grid.first[cell_count(&table->grid)];
+    for (size_t i = 0; i < entries; i++)
+        memcpy(copies + i * texels, rows + table->grid.members[i] * texels, texels * sizeof *rows);
+}
+
 void tables_pack(const Crowds *crowds, float (*rows)[4], uint32_t (*cells)[2])
 {
     TableSizes next = after_headers(crowds);
@@ -120,5 +129,6 @@ void tables_pack(const Crowds *crowds, float (*rows)[4], uint32_t (*cells)[2])
         put_header(&table->grid, place, cells + GRID_HEADER * t);
         put_grid(&table->grid, cells + place.cell, cells + place.list);
         put_rows(table, rows + place.row);
+        put_copies(table, (const float(*)[4])(rows + place.row), rows + place.copy);
     }
 }

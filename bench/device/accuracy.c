@@ -253,7 +253,7 @@ static void run(Gpu *gpu, const Operation *operation)
         give_up(operation->glsl, "no memory");
     write_kernel(operation, out);
     fclose(out);
-    if (spirv_compile(text, operation->glsl, false, &code.words, &words, &log) != KRS_OK)
+    if (spirv_compile(text, operation->glsl, &code.words, &words, &log) != KRS_OK)
         give_up(operation->glsl, log ? log : "no memory");
     code.bytes = 4 * words;
     if (!kernel_load(gpu, &kernel, &code, layout, &ms) || !gpu_begin(gpu))

@@ -41,22 +41,6 @@ void alike_forget(Alike *alike)
 
 static bool is_number(GraphType type) { return type <= TYPE_VEC4; }
 
-/* Operands that say how an operation works, not where: exponents and counts. */
-static bool is_structure(Op op, int operand)
-{
-    switch (op) {
-    case OP_pow: return operand == 1;
-    case OP_cell: return operand >= 2;
-    case OP_cell_polar: return operand == 1;
-    case OP_smin_stairs: return operand == 3;
-    case OP_julia:
-    case OP_julia_trap: return operand >= 2;
-    case OP_mandelbulb:
-    case OP_mandelbulb_trap: return operand >= 1;
-    default: return false;
-    }
-}
-
 static bool is_operation(const Expr *e) { return e->time == TIME_POINT && e->operand_count > 0; }
 
 /* What a node is where `user` has it as an operand; user NULL: it is a root. */
@@ -69,7 +53,7 @@ static int use_kind(const Alike *alike, const Expr *user, int operand, Node node
         return USE_NODE;
     bool number = is_number((GraphType)e->type) || (!user && e->type == TYPE_UINT);
     number      = number && alike->notes.items[node].known;
-    return number && !(user && is_structure((Op)user->op, operand)) ? USE_SLOT : USE_SAME;
+    return number && !(user && op_has_setting((Op)user->op, operand)) ? USE_SLOT : USE_SAME;
 }
 
 /* ---- notes ---- */

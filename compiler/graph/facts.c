@@ -121,13 +121,29 @@ static bool push_operands(NodeStack *rest, const Graph *graph, Node node, Arena 
     return rest->count > before;
 }
 
-/* Expressions grow from one another, and each is asked for.  So the graph keeps what is found. */
-Fact graph_frame_fact(const Graph *graph, Node node, Arena *scratch)
+/* In place of the fact of a node that depends on parameters: their ranges may change. */
+static Fact varies;
+
+/* Finds the fact of a node whose operands have theirs. */
+static void keep_fact(const Graph *graph, Node node)
 {
     const Analysis analysis = {.graph = graph, .frame = true};
-    FrameFacts    *found    = graph->frame_facts;
-    NodeStack      rest     = {0};
-    assert(graph->items[node].time != TIME_POINT);
+    const Expr    *e        = &graph->items[node];
+    Fact         **facts    = graph->frame_facts->items;
+    bool           fixed    = e->op != OP_PARAMETER;
+    for (uint32_t k = 0; k < e->operand_count; k++)
+        fixed = fixed && facts[e->operands[k]] != &varies;
+    facts[node] = fixed ? arena_new(graph->arena, Fact) : &varies;
+    if (fixed)
+        *facts[node] = node_fact(&analysis, node, (Box){0});
+}
+
+/* Expressions grow from one another, and each is asked for.  So the graph keeps what is found of
+   those that depend on no parameter.  NULL: this one does. */
+static const Fact *kept_fact(const Graph *graph, Node node, Arena *scratch)
+{
+    FrameFacts *found = graph->frame_facts;
+    NodeStack   rest  = {0};
     while (found->count <= node)
         found->items = arena_grow(graph->arena, found->items, found->count, &found->count,
                                   sizeof(Fact *));
@@ -136,13 +152,23 @@ Fact graph_frame_fact(const Graph *graph, Node node, Arena *scratch)
         Node next = rest.items[rest.count - 1];
         if (!found->items[next] && push_operands(&rest, graph, next, scratch))
             continue;
-        if (!found->items[next]) {
-            found->items[next]  = arena_new(graph->arena, Fact);
-            *found->items[next] = node_fact(&analysis, next, (Box){0});
-        }
+        if (!found->items[next])
+            keep_fact(graph, next);
         rest.count--;
     }
-    return *found->items[node];
+    return found->items[node] != &varies ? found->items[node] : NULL;
+}
+
+Fact graph_frame_fact(const Graph *graph, Node node, Arena *scratch)
+{
+    assert(graph->items[node].time != TIME_POINT);
+    const Fact *kept = kept_fact(graph, node, scratch);
+    if (kept)
+        return *kept;
+    Analysis analysis = {.graph = graph, .tape = tape_new(graph, &node, 1, scratch)};
+    analysis.facts    = arena_new_array(scratch, Fact, analysis.tape.count);
+    analysis_run(&analysis, (Box){0}, 0, analysis.tape.frame_count);
+    return *analysis_fact(&analysis, node);
 }
 
 RangeTask range_task(const Graph *graph, const Node *roots, size_t count, Arena *arena)

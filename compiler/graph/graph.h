@@ -45,8 +45,12 @@ typedef enum OpPromises {
     STAYS_FINITE     = 1,
     COMMUTES         = 2,
     BUILDS           = 4,
-    READS_TABLES     = 8
+    READS_TABLES     = 8,
+    FIRST_SETTING    = 16 /* and three more: operand k is a setting, FIRST_SETTING << k */
 } OpPromises;
+
+/* All operands from this one on are settings. */
+#define SETTINGS_FROM(operand) (((1 << MAX_OPERANDS) - (1 << (operand))) * FIRST_SETTING)
 
 typedef struct NodeValue {
     double v[4]; /* booleans 0 or 1; UINT exact */
@@ -75,7 +79,8 @@ typedef struct GraphSlot {
     uint32_t hash, number; /* node + 1; 0 is free */
 } GraphSlot;
 
-/* Facts of nodes that do not depend on the point, as far as somebody has asked (facts.c). */
+/* Facts of nodes that depend neither on the point nor on parameters, as far as somebody has asked
+   (facts.c). */
 typedef struct FrameFacts {
     struct Fact **items; /* by node; NULL: not found yet */
     size_t        count;
@@ -159,6 +164,8 @@ bool graph_is_constant(const Graph *graph, Node node);
 /* The row's GLSL, operands $a..$d; NULL for leaves and OP_COMPONENT. */
 const char *op_glsl(Op op);
 bool        op_promises(Op op, OpPromises what);
+/* Whether the operand says how it works, not where: an exponent or a count. */
+bool op_has_setting(Op op, int operand);
 /* What an operation costs, in multiply-adds of one component, as measured on lavapipe. */
 double op_cost(Op op, GraphType type, const GraphType *operands);
 

@@ -16,13 +16,16 @@
 
 #include "compiler/base/far.h"
 
-/* Most cells and entries: few members may have more cells each, so that they may form a curve. */
+/* Most cells and entries: few members may have more cells each, so that they may form a curve, and
+   more entries, so that blends that reach far have short lists. */
 enum {
     CELLS_PER_MEMBER   = 4,
     SPARE_CELLS        = 8192,
     MOST_OF_A_MEMBER   = 64, /* cells, even so */
-    ENTRIES_PER_MEMBER = 32,
-    SPARE_ENTRIES      = 4096
+    ENTRIES_PER_MEMBER = 8,
+    SPARE_ENTRIES      = 4096,
+    MANY_ENTRIES       = 1 << 22, /* rows of one texel then take 64 MB */
+    ENTRIES_OF_FEW     = 256      /* for each of few members */
 };
 
 #define MARGIN_IN_CELLS 0.25    /* beyond what the caller gives */
@@ -194,7 +197,8 @@ static double count_entries(const Builder *b)
 /* In the end there is one cell, which has as many entries as there are boxes. */
 static void choose_cells(Builder *b)
 {
-    double most = (double)ENTRIES_PER_MEMBER * b->present + SPARE_ENTRIES;
+    double few  = fmin((double)ENTRIES_OF_FEW * b->present, MANY_ENTRIES);
+    double most = fmax((double)ENTRIES_PER_MEMBER * b->present, few) + SPARE_ENTRIES;
     double side = least_side(b);
     for (place_cells(b, side); count_entries(b) > most; place_cells(b, side))
         side *= GROWTH;

@@ -130,6 +130,8 @@ void graph_release(Graph *graph, GraphMark mark)
             *slot_find(graph, e, expr_hash(e)) = (GraphSlot){0};
         }
     graph->count = mark.count;
+    for (size_t i = mark.count; i < graph->frame_facts->count; i++)
+        graph->frame_facts->items[i] = NULL;
     if (graph->slot_count != mark.slot_count)
         slots_fill(graph);
     graph_keep(graph);

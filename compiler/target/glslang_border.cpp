@@ -47,26 +47,22 @@ static const size_t MOST_WORDS = 1 << 17;
 /* Inlines all functions, and removes variables that only copy values.  Otherwise drivers do both at
    every start, and copy a body once for each call above it.  This takes 5 % more time when a kernel
    is compiled, and saves 20 % of each later start.  Results are the same but for the last digit,
-   which a driver may round differently.
-
-   There are few passes, since each takes as long as the driver's for the same words.  The last one
-   removes dead functions as well, in less time than a pass of its own.  Without `names` all passes
-   are faster. */
-static bool inline_calls(std::vector<uint32_t> &words, bool names)
+   which a driver may round differently. */
+static bool inline_calls(std::vector<uint32_t> &words)
 {
     spvtools::Optimizer        optimizer(SPV_ENV_VULKAN_1_1);
     spvtools::OptimizerOptions options;
     options.set_run_validator(false); /* spirv.c validates the result */
-    if (!names)
-        optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
-    optimizer.RegisterPass(spvtools::CreateMergeReturnPass())
+    optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+        .RegisterPass(spvtools::CreateMergeReturnPass())
         .RegisterPass(spvtools::CreateInlineExhaustivePass())
+        .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+        .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
         .RegisterPass(spvtools::CreateAggressiveDCEPass());
     return optimizer.Run(words.data(), words.size(), &words, options);
 }
 
-static BorderResult compile(const char *glsl, bool names, uint32_t **words, size_t *word_count,
-                            char **log)
+static BorderResult compile(const char *glsl, uint32_t **words, size_t *word_count, char **log)
 {
     glslang_input_t input         = {};
     input.language                = GLSLANG_SOURCE_GLSL;
@@ -101,7 +97,7 @@ static BorderResult compile(const char *glsl, bool names, uint32_t **words, size
 
     std::vector<uint32_t> made(glslang_program_SPIRV_get_size(work.program));
     glslang_program_SPIRV_get(work.program, made.data());
-    if (made.size() <= MOST_WORDS && !inline_calls(made, names))
+    if (made.size() <= MOST_WORDS && !inline_calls(made))
         return refuse("its functions cannot be inlined", log);
     *words = static_cast<uint32_t *>(malloc(made.size() * sizeof **words));
     if (!*words)
@@ -124,12 +120,10 @@ template <typename Work> static BorderResult guarded(Work work, char **log)
     }
 }
 
-BorderResult border_compile(const char *glsl, bool names, uint32_t **words, size_t *word_count,
-                            char **log)
+BorderResult border_compile(const char *glsl, uint32_t **words, size_t *word_count, char **log)
 {
     *words              = nullptr;
-    BorderResult result = guarded([=] { return compile(glsl, names, words, word_count, log); },
-                                  log);
+    BorderResult result = guarded([=] { return compile(glsl, words, word_count, log); }, log);
     if (result != BORDER_OK)
         glslang::ReleaseGlobalLock();
     return result;
@@ -145,7 +139,7 @@ static BorderResult start(bool *started, char **log)
     size_t            count;
     *started            = true; /* in case of an exception: then glslang has to be stopped */
     *started            = glslang_initialize_process() != 0;
-    BorderResult result = *started ? compile(first, false, &words, &count, log) : BORDER_NO_MEMORY;
+    BorderResult result = *started ? compile(first, &words, &count, log) : BORDER_NO_MEMORY;
     free(words);
     return result;
 }

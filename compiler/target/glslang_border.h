@@ -5,7 +5,6 @@
 #ifndef KRS_GLSLANG_BORDER_H
 #define KRS_GLSLANG_BORDER_H
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -18,8 +17,7 @@ typedef enum BorderResult { BORDER_OK, BORDER_REFUSED, BORDER_NO_MEMORY } Border
 /* Compiles a GLSL compute shader to SPIR-V for Vulkan 1.1.  On BORDER_OK *words is malloc'ed; on
    BORDER_REFUSED *log is malloc'ed or, if memory ran out, NULL.  After BORDER_NO_MEMORY glslang
    must be stopped and started again, while no other thread compiles. */
-BorderResult border_compile(const char *glsl, bool names, uint32_t **words, size_t *word_count,
-                            char **log);
+BorderResult border_compile(const char *glsl, uint32_t **words, size_t *word_count, char **log);
 /* Start and stop glslang, before and after all calls of border_compile.  A start that failed needs
    no stop. */
 BorderResult border_start(void);

@@ -110,14 +110,14 @@ static KrsStatus status_of(BorderResult result, const char *entry, const char *t
                                       : KRS_OUT_OF_MEMORY;
 }
 
-KrsStatus spirv_compile(const char *glsl, const char *entry, bool names, uint32_t **words,
-                        size_t *word_count, char **log)
+KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, size_t *word_count,
+                        char **log)
 {
     char        *refusal = NULL;
     BorderResult result  = begin_use();
     *words               = NULL;
     if (result == BORDER_OK) {
-        result = border_compile(glsl, names, words, word_count, &refusal);
+        result = border_compile(glsl, words, word_count, &refusal);
         end_use(result);
     }
     KrsStatus status = status_of(result, entry, "glslang", refusal, log);

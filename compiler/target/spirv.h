@@ -7,11 +7,11 @@
 #include "compiler/krs.h"
 
 /* Compiles GLSL to SPIR-V by glslang, and validates the result.  `entry` names the compute shader
-   in messages.  `names`: the module keeps the names of the text, for who reads it.  On KRS_OK *words is malloc'ed, and the caller frees it.  KRS_INTERNAL: glslang or
+   in messages.  On KRS_OK *words is malloc'ed, and the caller frees it.  KRS_INTERNAL: glslang or
    the validator refused it, which is a bug of krs; *log, malloc'ed, has their message.
    Thread-safe. */
-KrsStatus spirv_compile(const char *glsl, const char *entry, bool names, uint32_t **words,
-                        size_t *word_count, char **log);
+KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, size_t *word_count,
+                        char **log);
 /* SPIR-V as assembly text, malloc'ed; NULL if it is no SPIR-V, or without memory. */
 char *spirv_disassemble(const uint32_t *words, size_t word_count);
 /* Must be called before and after every spirv_compile.  Pairs may nest, and may be called in

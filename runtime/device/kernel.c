@@ -48,8 +48,7 @@ static void *compile(void *user)
     KernelBuild *build = user;
     size_t       count = 0;
     const double start = ms_of(CLOCK_THREAD_CPUTIME_ID);
-    build->status      = spirv_compile(build->text, build->file, false, &build->made, &count,
-                                       &build->log);
+    build->status      = spirv_compile(build->text, build->file, &build->made, &count, &build->log);
     build->bytes       = count * sizeof *build->made;
     build->ms += ms_of(CLOCK_THREAD_CPUTIME_ID) - start;
     return NULL;
@@ -73,8 +72,8 @@ static CacheKey make_key(const KernelSource *source, const char *text)
     uint64_t           variant = s ? krs_variant_hash(&s->variant, s->wanted, s->wanted_count) : 0;
     char               maker[192];
     snprintf(maker, sizeof maker,
-             "%s: krs %s, glslang %s, SPIRV-Tools %s, inlined without names, variant %016" PRIx64,
-             source->file, KRS_VERSION, spirv_glslang_version(), spirv_tools_version(), variant);
+             "%s: krs %s, glslang %s, SPIRV-Tools %s, inlined, variant %016" PRIx64, source->file,
+             KRS_VERSION, spirv_glslang_version(), spirv_tools_version(), variant);
     return cache_key(maker, text, strlen(text));
 }
 

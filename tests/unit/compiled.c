@@ -276,7 +276,7 @@ static void *compile_a_few_times(void *user)
         size_t    count;
         char     *log = NULL;
         spirv_start();
-        *done = *done && spirv_compile(small_text, "test", false, &words, &count, &log) == KRS_OK &&
+        *done = *done && spirv_compile(small_text, "test", &words, &count, &log) == KRS_OK &&
                 count > 5 && words[0] == 0x07230203;
         free(words);
         free(log);

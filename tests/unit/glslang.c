@@ -71,7 +71,7 @@ static void *compile(void *user)
     allocations      = 0;
     lasting          = call->lasting;
     allocations_left = call->left;
-    call->status     = spirv_compile(text, "test.comp", false, &words, &count, &log);
+    call->status     = spirv_compile(text, "test.comp", &words, &count, &log);
     allocations_left = -1;
     call->made       = allocations;
     call->right      = words && count == expected_count &&
@@ -86,8 +86,7 @@ static int compile_once(void **state)
     char *log;
     (void)state;
     alarm(240); /* a lock that stays locked */
-    return spirv_compile(text, "test.comp", false, &expected, &expected_count, &log) == KRS_OK ? 0
-                                                                                               : -1;
+    return spirv_compile(text, "test.comp", &expected, &expected_count, &log) == KRS_OK ? 0 : -1;
 }
 
 static int forget(void **state)

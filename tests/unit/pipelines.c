@@ -122,7 +122,7 @@ static void pipelines_are_kept(void **state)
     if (!pretend_to_open(&gpu))
         skip();
     spirv_start();
-    assert_int_equal(spirv_compile(small_text, "test", false, &words, &count, &log), KRS_OK);
+    assert_int_equal(spirv_compile(small_text, "test", &words, &count, &log), KRS_OK);
     spirv_stop();
 
     assert_int_equal(run_on(&gpu, NULL, 0), 0);

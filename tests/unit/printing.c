@@ -155,7 +155,7 @@ static void compile_text(const char *text, const KernelScene *of, const char *pa
     fputs("}\n", out);
     fclose(out);
     uint32_t *words = NULL;
-    if (spirv_compile(kernel, path, false, &words, &count, &log) != KRS_OK)
+    if (spirv_compile(kernel, path, &words, &count, &log) != KRS_OK)
         fail_msg("%s: %s\n%s", path, log ? log : "no memory", kernel);
     free(words);
     free(log);
