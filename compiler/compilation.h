@@ -28,12 +28,12 @@ typedef enum PassId {
 
 /* Results of a run other than the compiled scene. */
 typedef struct Request {
-    PassId   after;   /* the pass to dump; PASS_COUNT: none */
-    PassId   end;     /* the pass before which the run ends; PASS_COUNT: none */
-    char   **dump;    /* where the dump goes, unless NULL */
-    Inspect *inspect; /* called with the elaborated scene, unless NULL */
-    void    *user;    /* passed to `inspect` */
-    bool     apart;   /* parts that are alike stay apart: no crowds */
+    PassId   after;       /* the pass to dump; PASS_COUNT: none */
+    PassId   end;         /* the pass before which the run ends; PASS_COUNT: none */
+    char   **dump;        /* where the dump goes, unless NULL */
+    Inspect *inspect;     /* called with the elaborated scene, unless NULL */
+    void    *user;        /* passed to `inspect` */
+    uint32_t least_crowd; /* members of a crowd (lower/crowd.h); 0: LEAST_CROWD */
 } Request;
 
 /* Which optional roots are lowered, besides the surface and the march of each component.  `lower`

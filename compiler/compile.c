@@ -264,9 +264,9 @@ KrsStatus inspect_elaborated(const char *text, size_t length, const KrsOptions *
     return status;
 }
 
-KrsStatus compile_apart(const char *text, size_t length, const KrsOptions *options,
-                        KrsScene **scene)
+KrsStatus compile_with_crowds(const char *text, size_t length, uint32_t least,
+                              const KrsOptions *options, KrsScene **scene)
 {
-    Request request = {.after = PASS_COUNT, .end = PASS_COUNT, .apart = true};
+    Request request = {.after = PASS_COUNT, .end = PASS_COUNT, .least_crowd = least};
     return load_and_compile(text, length, "scene.krs", options, &request, scene);
 }

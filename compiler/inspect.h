@@ -1,6 +1,6 @@
 /*
  * inspect.h: access to the elaborated scene with its shapes, which a compiled scene has no longer, and
- * to a scene without crowds.
+ * to scenes with fewer or more crowds.
  */
 #ifndef KRS_INSPECT_H
 #define KRS_INSPECT_H
@@ -27,9 +27,9 @@ KrsStatus inspect_file(const char *path, const KrsOptions *options, Inspect *ins
 KrsStatus inspect_elaborated(const char *text, size_t length, const KrsOptions *options,
                              Inspect *inspect, void *user);
 
-/* Compiles a text as krs_compile_text does, but parts that are alike stay apart, however many they
-   are: what crowds (graph/crowd.h) are held against. */
-KrsStatus compile_apart(const char *text, size_t length, const KrsOptions *options,
-                        KrsScene **scene);
+/* Compiles a text as krs_compile_text does, but parts that are alike are a crowd from this number of
+   members on; UINT32_MAX: they stay apart.  So tests hold crowds against parts apart. */
+KrsStatus compile_with_crowds(const char *text, size_t length, uint32_t least,
+                              const KrsOptions *options, KrsScene **scene);
 
 #endif

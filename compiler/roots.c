@@ -172,12 +172,17 @@ static bool any_thin_sheets(const Scene *s)
     return found;
 }
 
+static uint32_t least_crowd(const Compilation *c)
+{
+    return c->request->least_crowd ? c->request->least_crowd : LEAST_CROWD;
+}
+
 KrsStatus pass_lower(Compilation *c)
 {
     const Scene   *s      = &c->elaborated;
     Roots         *roots  = &c->scene->roots;
     Additions     *more   = &c->additions;
-    LoweredCrowds *crowds = c->request->apart ? NULL : lowered_crowds_new(s->graph, &c->work);
+    LoweredCrowds *crowds = lowered_crowds_new(s->graph, &c->work, least_crowd(c));
     allocate_roots(c);
     if (!lower_components(c, s->graph, crowds))
         return KRS_BAD_SCENE;

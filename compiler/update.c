@@ -103,7 +103,7 @@ static bool same_grid(const Grid *a, const Grid *b)
 static bool same_table(const Crowd *a, const Crowd *b)
 {
     const size_t numbers = (size_t)a->rows * a->columns;
-    return a->rows == b->rows && a->columns == b->columns &&
+    return a->rows == b->rows && a->columns == b->columns && a->stretch == b->stretch &&
            memcmp(a->numbers, b->numbers, numbers * sizeof *a->numbers) == 0 &&
            same_grid(&a->grid, &b->grid);
 }
@@ -111,7 +111,8 @@ static bool same_table(const Crowd *a, const Crowd *b)
 static bool same_function(const CrowdFunction *a, const CrowdFunction *b)
 {
     bool same = a->crowd == b->crowd && a->type == b->type && a->clear == b->clear &&
-                a->state_count == b->state_count && a->first_body == b->first_body;
+                a->state_count == b->state_count && a->distance == b->distance &&
+                a->first_body == b->first_body;
     for (uint32_t i = 0; same && i < a->state_count; i++)
         same = a->states[i].type == b->states[i].type &&
                memcmp(a->states[i].first, b->states[i].first, sizeof a->states[i].first) == 0;

@@ -32,15 +32,17 @@ struct LoweredCrowds {
     Arena       *arena;
     Alike       *alike;
     PartLeaves   leaves;
-    uint32_t     made; /* joints with crowds */
+    uint32_t     least; /* members of a crowd */
+    uint32_t     made;  /* joints with crowds */
     JointCrowds *joints[BUCKETS];
 };
 
-LoweredCrowds *lowered_crowds_new(Graph *graph, Arena *arena)
+LoweredCrowds *lowered_crowds_new(Graph *graph, Arena *arena, uint32_t least)
 {
     LoweredCrowds *crowds = arena_new(arena, LoweredCrowds);
     crowds->graph         = graph;
     crowds->arena         = arena;
+    crowds->least         = least;
     return crowds;
 }
 
@@ -146,7 +148,7 @@ static uint32_t rank(const Finder *finder, uint64_t hash)
 
 static bool is_frequent(const Finder *finder, uint64_t hash)
 {
-    return hash != 0 && rank(finder, hash + 1) - rank(finder, hash) >= LEAST_CROWD;
+    return hash != 0 && rank(finder, hash + 1) - rank(finder, hash) >= finder->crowds->least;
 }
 
 /* ---- groups ---- */
@@ -242,7 +244,7 @@ static double for_bounds(const Finder *finder, const CrowdGroup *group)
 static bool make_crowd(const Finder *finder, CrowdGroup *group, const GroupJoin *join,
                        const Box *boxes)
 {
-    if (group->members.count < LEAST_CROWD || !group_find_columns(group, join) ||
+    if (group->members.count < finder->crowds->least || !group_find_columns(group, join) ||
         !group_has_functions(group, join))
         return false;
     double factor = for_bounds(finder, group);
@@ -331,7 +333,7 @@ static JointCrowds *find_joint(Lowering *l, const CrowdJoin *join, LowerContext 
 Lowered lower_crowds(Lowering *l, CrowdJoin *join, LowerContext context)
 {
     Lowered all = lowered_nothing;
-    if (!l->crowds || join->count < LEAST_CROWD || join->joint->sheets || l->overflow)
+    if (!l->crowds || join->count < l->crowds->least || join->joint->sheets || l->overflow)
         return all;
     if (!l->crowds->alike) {
         l->crowds->alike  = alike_new(l->graph, l->crowds->arena);

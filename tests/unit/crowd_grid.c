@@ -225,7 +225,7 @@ static const char *grid_is_wrong(const Grid *grid, const Case *of, Random *rando
         if (!wrong)
             wrong = list_is_wrong(grid, of, point);
         double side = isfinite(grid->size) ? grid->size : 1;
-        if (!wrong)
+        if (!wrong && i % 4 == 0)
             wrong = near_is_wrong(grid, of, point, side * random_between(random, 0, i % 10));
     }
     return wrong;

@@ -209,7 +209,7 @@ static void compile_text(Bench *b, const char *text)
                 "    data[i] = vec4(s.normal, s.roughness + s.distance + krs_distance(p) +\n"
                 "                   krs_distance_lod(p, 0.1));\n}\n",
                 text);
-    if (spirv_compile(shader.bytes, "crowds", false, &words, &count, &log) != KRS_OK)
+    if (spirv_compile(shader.bytes, "crowds", &words, &count, &log) != KRS_OK)
         fail_msg("%s\n%s", log, shader.bytes);
     free(words);
     free(log);
