@@ -12,7 +12,7 @@ typedef uint32_t Texel[2];
 
 /* Where the parts of a table are, in texels. */
 typedef struct Place {
-    size_t row, cell, list;
+    size_t row, copy, cell, list;
 } Place;
 
 static size_t cell_count(const Grid *grid)
@@ -24,10 +24,11 @@ static size_t cell_count(const Grid *grid)
 static Place place_table(const Crowd *table, TableSizes *next)
 {
     size_t cells   = cell_count(&table->grid);
-    size_t entries = table->grid.first[cells];
-    Place  place   = {next->rows, next->cells, next->cells + cells + 1};
-    next->rows += table->rows * row_texels(table);
-    next->cells = place.list + (entries + 1) / 2;
+    size_t entries = table->grid.first[cells], texels = row_texels(table);
+    Place  place = {next->rows, next->rows + table->rows * texels, next->cells,
+                    next->cells + cells + 1};
+    next->rows   = place.copy + entries * texels;
+    next->cells  = place.list + (entries + 1) / 2;
     return place;
 }
 
@@ -86,7 +87,7 @@ static void put_header(const Grid *grid, Place place, Texel *header)
     put_floats(header[5], center[2], half[0]);
     put_floats(header[6], half[1], half[2]);
     header[7][0] = (uint32_t)place.row;
-    header[7][1] = (uint32_t)place.list;
+    header[7][1] = (uint32_t)place.copy;
 }
 
 static void put_grid(const Grid *grid, Texel *records, Texel *lists)
@@ -124,12 +125,22 @@ static void put_rows(const Crowds *crowds, const Crowd *table, const NodeValue *
     }
 }
 
+/* The rows of all members of the lists, in the order of the lists. */
+static void put_copies(const Crowd *table, const float (*rows)[4], float (*copies)[4])
+{
+    const size_t texels = row_texels(table), entries = table->grid.first[cell_count(&table->grid)];
+    for (size_t i = 0; i < entries; i++)
+        memcpy(copies + i * texels, rows + table->grid.members[i] * texels, texels * sizeof *rows);
+}
+
 void tables_pack_rows(const Crowds *crowds, const NodeValue *values, float (*rows)[4])
 {
     TableSizes next = after_headers(crowds);
     for (size_t t = 0; t < crowds->tables.count; t++) {
         const Crowd *table = &crowds->tables.items[t];
-        put_rows(crowds, table, values, rows + place_table(table, &next).row);
+        Place        place = place_table(table, &next);
+        put_rows(crowds, table, values, rows + place.row);
+        put_copies(table, (const float(*)[4])(rows + place.row), rows + place.copy);
     }
 }
 

@@ -4,7 +4,8 @@
  * Both are arrays of texels, of four floats or two words.  Those of all tables are in the same two.
  *
  * In `rows`, each row of a table begins at a texel: column c of row r is number c % 4 of texel
- * first + r * row_texels + c / 4.
+ * first + r * row_texels + c / 4.  Behind the rows are copies of them in the order of the lists, which
+ * loops read one after another without looking for members.
  *
  * In `cells`, header t of GRID_HEADER texels is that of table t; floats are there as their bits:
  *     low x, low y
@@ -14,9 +15,9 @@
  *     center x, center y    (of Grid.inner; the half sides are rounded up)
  *     center z, half x
  *     half y, half z
- *     texel of row 0 in `rows`, texel of the lists
+ *     texel of row 0 in `rows`, texel of the first copy
  * Each cell is a texel: where its list begins, counted in members, and its clearance.  One more says
- * where the last list ends.  The lists have two members a texel.  A grid of one infinite cell has 1 / size
+ * where the last list ends.  Behind them are the lists, two members a texel.  A grid of one infinite cell has 1 / size
  * 0, so that all points are in cell 0.
  */
 #ifndef KRS_TABLES_H

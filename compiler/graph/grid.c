@@ -22,9 +22,9 @@ enum {
     CELLS_PER_MEMBER   = 4,
     SPARE_CELLS        = 8192,
     MOST_OF_A_MEMBER   = 64, /* cells, even so */
-    ENTRIES_PER_MEMBER = 32,
+    ENTRIES_PER_MEMBER = 8,
     SPARE_ENTRIES      = 4096,
-    MANY_ENTRIES       = 1 << 22, /* of 16 MB: so many may be spent on */
+    MANY_ENTRIES       = 1 << 22, /* rows of one texel then take 64 MB */
     ENTRIES_OF_FEW     = 256      /* for each of few members */
 };
 

@@ -107,11 +107,13 @@ static const char *find_texel(const Emitter *e, uint32_t crowd, uint32_t texel, 
 
 static const char *load_texel(Emitter *e, uint32_t crowd, uint32_t texel, Node member)
 {
-    uint32_t columns = e->graph->crowds->tables.items[crowd].columns;
-    RowTexel loaded  = {crowd, texel, member, numbered(e, "row", e->next++)};
-    Text     text    = {.arena = e->scratch};
-    emit_call(e, "krs_row", TYPE_UINT, 4);
-    text_format(&text, "krs_row(%s, %uu, %uu, %s)", emit_bare(e, e->text[member]),
+    uint32_t    columns = e->graph->crowds->tables.items[crowd].columns;
+    RowTexel    loaded  = {crowd, texel, member, numbered(e, "row", e->next++)};
+    Text        text    = {.arena = e->scratch};
+    bool        listed  = e->graph->items[member].op == OP_MEMBER; /* of the loop at hand */
+    const char *name    = listed ? "krs_listed_row" : "krs_row";
+    emit_call(e, name, TYPE_UINT, 4);
+    text_format(&text, "%s(%s, %uu, %uu, %s)", name, listed ? "i" : emit_bare(e, e->text[member]),
                 (unsigned)(columns + 3) / 4, (unsigned)texel, table_name(e, crowd));
     emit_local(e, TYPE_VEC4, loaded.name, text.bytes);
     array_push(e->scratch, &e->row_texels, loaded);
@@ -192,6 +194,18 @@ static void emit_next_states(Emitter *e, const CrowdFunction *function, const No
                   one ? emit_bare(e, e->text[bodies[i]]) : numbered(e, "next", i));
 }
 
+/* Moves the lines behind a place of the text to the right. */
+static void indent_lines(Emitter *e, size_t from)
+{
+    const char *lines = arena_copy_text(e->scratch, e->out->bytes + from, e->out->length - from);
+    e->out->length    = from;
+    for (size_t length; *lines; lines += length) {
+        length = strcspn(lines, "\n") + 1;
+        text_add(e->out, "    ");
+        text_add_bytes(e->out, lines, length);
+    }
+}
+
 static void emit_function_of_crowd(Emitter *e, uint32_t id)
 {
     const CrowdFunction *function = &e->graph->crowds->functions.items[id];
@@ -204,8 +218,10 @@ static void emit_function_of_crowd(Emitter *e, uint32_t id)
     text_format(e->out, "%s\n{\n", phrase_text(e, PHRASE_FUNCTION, head));
     emit_first_states(e, function);
     emit_phrase(e, PHRASE_EACH_LISTED, (Operands){table});
+    const size_t body = e->out->length;
     emit_body(e, bodies, function->state_count);
     emit_next_states(e, function, bodies);
+    indent_lines(e, body);
     text_format(e->out, "    }\n    return %s;\n}\n\n",
                 function->clear ? "min(state0, nearby.clearance)" : "state0");
 }

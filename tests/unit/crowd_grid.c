@@ -163,7 +163,7 @@ static const char *totals_are_wrong(const Grid *grid, const Case *of)
         return "the longest list has another length";
     if (cells > fmin(6.0 * of->count + 9000, 70.0 * of->count))
         return "there are too many cells";
-    if (grid->first[cells] > fmax(32.0 * of->count, fmin(256.0 * of->count, 1 << 22)) + 4096)
+    if (grid->first[cells] > fmax(8.0 * of->count, fmin(256.0 * of->count, 1 << 22)) + 4096)
         return "there are too many entries";
     return NULL;
 }

@@ -58,7 +58,7 @@ static Packed pack(Bench *bench)
     memset(packed.rows, 0xff, (packed.sizes.rows + 1) * sizeof *packed.rows);
     for (size_t i = 0; i <= packed.sizes.cells; i++)
         packed.cells[i][0] = packed.cells[i][1] = UNTOUCHED;
-    tables_pack(&packed.crowds, packed.rows, packed.cells);
+    tables_pack(&packed.crowds, NULL, packed.rows, packed.cells);
     return packed;
 }
 
@@ -75,12 +75,20 @@ static void numbers_are_read_back(void **state)
     size_t needed = 0;
     for (int t = 0; t < TABLES; t++) {
         const Crowd *table = &packed.crowds.tables.items[t];
+        const Grid  *grid  = &table->grid;
         uint32_t     row_0 = packed.cells[8 * t + 7][0], texels = (table->columns + 3) / 4;
+        uint32_t     copy_0 = packed.cells[8 * t + 7][1];
+        uint32_t     listed = grid->first[grid->cells[0] * grid->cells[1] * grid->cells[2]];
         for (uint32_t r = 0; r < table->rows; r++)
             for (uint32_t c = 0; c < table->columns; c++)
                 assert_true(packed.rows[row_0 + r * texels + c / 4][c % 4] ==
                             (float)table->numbers[r * table->columns + c]);
-        needed += (size_t)table->rows * texels;
+        assert_int_equal(copy_0, row_0 + table->rows * texels);
+        for (uint32_t i = 0; i < listed; i++)
+            assert_memory_equal(packed.rows[copy_0 + i * texels],
+                                packed.rows[row_0 + grid->members[i] * texels],
+                                texels * sizeof *packed.rows);
+        needed += ((size_t)table->rows + listed) * texels;
     }
     assert_int_equal(packed.sizes.rows, needed);
     assert_true(isnan(packed.rows[packed.sizes.rows][0]));
@@ -95,11 +103,10 @@ static void grids_are_read_back(void **state)
         const Grid *grid       = &packed.crowds.tables.items[t].grid;
         uint32_t(*header)[2]   = packed.cells + 8 * t;
         const uint32_t cells[] = {header[2][0], header[2][1], header[3][0]};
-        uint32_t       first = header[3][1], lists = header[7][1];
-        size_t         count = (size_t)cells[0] * cells[1] * cells[2];
+        uint32_t       first   = header[3][1];
+        size_t         count = (size_t)cells[0] * cells[1] * cells[2], lists = first + count + 1;
         assert_memory_equal(cells, grid->cells, sizeof cells);
         assert_int_equal(first, next);
-        assert_int_equal(lists, next + count + 1);
         for (size_t c = 0; c < count; c++) {
             uint32_t from = packed.cells[first + c][0], to = packed.cells[first + c + 1][0];
             assert_true(float_of(packed.cells[first + c][1]) == grid->clearance[c]);

@@ -34,7 +34,8 @@ KrsNear krs_near(vec3 p, KrsTable table)
 // The member at a place of the lists, of which two are in a texel.
 uint krs_listed(uint i, KrsTable table)
 {
-    uvec2 two = texelFetch(krs_cells, int(table.lists + i / 2u)).xy;
+    uvec3 n = table.cells;
+    uvec2 two = texelFetch(krs_cells, int(table.records + n.x * n.y * n.z + 1u + i / 2u)).xy;
     return (i & 1u) == 0u ? two.x : two.y;
 }
 
@@ -42,4 +43,10 @@ uint krs_listed(uint i, KrsTable table)
 vec4 krs_row(uint member, uint texels, uint texel, KrsTable table)
 {
     return texelFetch(krs_rows, int(table.rows + member * texels + texel));
+}
+
+// The same of the member at a place of the lists: kernels read these copies one after another.
+vec4 krs_listed_row(uint i, uint texels, uint texel, KrsTable table)
+{
+    return texelFetch(krs_rows, int(table.copies + i * texels + texel));
 }

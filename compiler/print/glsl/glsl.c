@@ -67,15 +67,15 @@ static const char *const phrases[PHRASE_COUNT] = {
     [PHRASE_TABLES] =
         "layout(set = 0, binding = 1) uniform samplerBuffer krs_rows;\n"
         "layout(set = 0, binding = 2) uniform usamplerBuffer krs_cells;\n\n"
-        "// A table: its grid, the box of what it has, and texels where its cells, rows and\n"
-        "// lists begin.\n"
+        "// A table: its grid, the box of what it has, and texels where its cells, its rows and\n"
+        "// their copies in the order of the lists begin.\n"
         "struct KrsTable {\n"
         "    vec3 low;\n"
         "    float cells_per_length;\n"
         "    uvec3 cells;\n"
         "    uint records;\n"
         "    vec3 centre, half_sides;\n"
-        "    uint rows, lists;\n"
+        "    uint rows, copies;\n"
         "};\n\n"
         "// The list of members that are near a point, and how far others are at least.\n"
         "struct KrsNear {\n"
@@ -84,7 +84,7 @@ static const char *const phrases[PHRASE_COUNT] = {
         "};\n\n",
     [PHRASE_EACH_LISTED] = "    KrsNear nearby = krs_near(p, $a);\n"
                            "    for (uint i = nearby.first; i < nearby.end; i++) {\n"
-                           "    uint member = krs_listed(i, $a);\n",
+                           "        uint member = krs_listed(i, $a);\n",
 
     [PHRASE_NEAREST_GRADIENT] = "    vec4 nearest = vec4(0.0, 0.0, 0.0, " NOWHERE_TEXT
                                 "), other;\n",
