@@ -3,11 +3,13 @@
  *
  * Two scenes have the same kernels if these are made of the same nodes, apart from numbers of the
  * frame, and if all else that decides about their text is equal.  Some constants never get into the
- * text.  So scenes whose nodes differ are compared by their text as well.
+ * text, and tables of crowds do not, but what is derived from them may.  So scenes whose nodes or
+ * tables differ are compared by their text as well.
  */
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/graph/crowd.h"
 #include "compiler/program.h"
 
 /* What two parts of scenes have in common, the least first. */
@@ -42,6 +44,9 @@ static RootList collect_roots(const KrsScene *scene, bool of_kernels, RootKind f
         for (size_t i = 0; i < range.count && view != of_kernels; i++)
             array_push(arena, &list, range.items[i]);
     }
+    const Crowds *crowds = scene->graph->crowds;
+    for (size_t i = 0; of_kernels && crowds && i < crowds->frame_numbers.count; i++)
+        array_push(arena, &list, crowds->frame_numbers.items[i]);
     return list;
 }
 
@@ -73,6 +78,66 @@ static Likeness compare_graphs(Comparison *c, bool of_kernels, RootKind first, R
     for (size_t i = 0; i < a.count && found != DIFFERENT; i++)
         found = least(found, equal_if(tape_index(&x, a.items[i]) == tape_index(&y, b.items[i])));
     return found;
+}
+
+/* ---- crowds ---- */
+
+static size_t table_count(const Crowds *crowds) { return crowds ? crowds->tables.count : 0; }
+
+static size_t function_count(const Crowds *crowds) { return crowds ? crowds->functions.count : 0; }
+
+static bool same_lists(const Grid *a, const Grid *b, size_t cells)
+{
+    const size_t entries = a->first[cells]; /* none where all boxes are empty */
+    return memcmp(a->first, b->first, (cells + 1) * sizeof *a->first) == 0 &&
+           (entries == 0 || memcmp(a->members, b->members, entries * sizeof *a->members) == 0);
+}
+
+static bool same_grid(const Grid *a, const Grid *b)
+{
+    const size_t cells = (size_t)a->cells[0] * a->cells[1] * a->cells[2];
+    return memcmp(&a->inner, &b->inner, sizeof a->inner) == 0 &&
+           memcmp(a->low, b->low, sizeof a->low) == 0 && a->size == b->size &&
+           memcmp(a->cells, b->cells, sizeof a->cells) == 0 &&
+           memcmp(a->clearance, b->clearance, cells * sizeof *a->clearance) == 0 &&
+           same_lists(a, b, cells);
+}
+
+/* Their nodes are compared with the graph. */
+static bool same_frame_columns(const Crowd *a, const Crowd *b)
+{
+    if (!a->frame_columns || !b->frame_columns)
+        return a->frame_columns == b->frame_columns;
+    return memcmp(a->frame_columns, b->frame_columns, a->columns * sizeof *a->frame_columns) == 0;
+}
+
+static bool same_table(const Crowd *a, const Crowd *b)
+{
+    const size_t numbers = (size_t)a->rows * a->columns;
+    return a->rows == b->rows && a->columns == b->columns && same_frame_columns(a, b) &&
+           memcmp(a->numbers, b->numbers, numbers * sizeof *a->numbers) == 0 &&
+           same_grid(&a->grid, &b->grid);
+}
+
+static bool same_function(const CrowdFunction *a, const CrowdFunction *b)
+{
+    bool same = a->crowd == b->crowd && a->type == b->type && a->clear == b->clear &&
+                a->state_count == b->state_count && a->first_body == b->first_body;
+    for (uint32_t i = 0; same && i < a->state_count; i++)
+        same = a->states[i].type == b->states[i].type &&
+               memcmp(a->states[i].first, b->states[i].first, sizeof a->states[i].first) == 0;
+    return same;
+}
+
+/* Their bodies are compared with the graph. */
+static bool same_crowds(const Crowds *a, const Crowds *b)
+{
+    bool same = table_count(a) == table_count(b) && function_count(a) == function_count(b);
+    for (size_t i = 0; same && i < function_count(a); i++)
+        same = same_function(&a->functions.items[i], &b->functions.items[i]);
+    for (size_t i = 0; same && i < table_count(a); i++)
+        same = same_table(&a->tables.items[i], &b->tables.items[i]);
+    return same;
 }
 
 /* ---- what decides about kernels beside the graph ---- */
@@ -191,6 +256,7 @@ static Likeness compare_kernels(Comparison *c)
     if (!same_facts(c->a, c->b))
         return DIFFERENT;
     Likeness found = compare_graphs(c, true, ROOTS_SURFACE, ROOT_KINDS - 1);
+    found          = least(found, equal_if(same_crowds(c->a->graph->crowds, c->b->graph->crowds)));
     return found != DIFFERENT || !same_texts(c) ? found : ALIKE_BUT_NUMBERS;
 }
 

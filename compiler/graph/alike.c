@@ -41,22 +41,6 @@ void alike_forget(Alike *alike, size_t first)
 
 static bool is_number(GraphType type) { return type <= TYPE_VEC4; }
 
-/* Operands that say how an operation works, not where: exponents and counts. */
-static bool is_structure(Op op, int operand)
-{
-    switch (op) {
-    case OP_pow: return operand == 1;
-    case OP_cell: return operand >= 2;
-    case OP_cell_polar: return operand == 1;
-    case OP_smin_stairs: return operand == 3;
-    case OP_julia:
-    case OP_julia_trap: return operand >= 2;
-    case OP_mandelbulb:
-    case OP_mandelbulb_trap: return operand >= 1;
-    default: return false;
-    }
-}
-
 static bool is_operation(const Expr *e) { return e->time == TIME_POINT && e->operand_count > 0; }
 
 /* What a node is where `user` has it as an operand; user NULL: it is a root. */
@@ -70,7 +54,7 @@ static int use_kind(const Alike *alike, const Expr *user, int operand, Node node
     bool known  = alike->notes.items[node].known;
     bool number = (is_number((GraphType)e->type) && (known || e->time == TIME_FRAME)) ||
                   (!user && e->type == TYPE_UINT && known);
-    return number && !(user && is_structure((Op)user->op, operand)) ? USE_SLOT : USE_SAME;
+    return number && !(user && op_has_setting((Op)user->op, operand)) ? USE_SLOT : USE_SAME;
 }
 
 /* ---- notes ---- */
@@ -303,7 +287,7 @@ static SlotContent content_of(const Alike *alike, Node node)
     }
     for (uint32_t k = 0; k < elements; k++) {
         Node            element = element_node(alike->graph, node, k);
-        const NodeNote *own     = element < alike->notes.count ? &alike->notes.items[element] : NULL;
+        const NodeNote *own = element < alike->notes.count ? &alike->notes.items[element] : NULL;
         if (own && own->known)
             content.numbers[k] = own->value.v[0];
         else
@@ -320,8 +304,7 @@ static bool match_use(const Alike *alike, const Template *template, TemplateUse 
     if (use.kind == USE_SAME)
         return same_node(alike, use.index, node);
     if (use.kind == USE_SLOT) {
-        if (alike->graph->items[node].type !=
-            alike->graph->items[template->slots[use.index]].type)
+        if (alike->graph->items[node].type != alike->graph->items[template->slots[use.index]].type)
             return false;
         contents[use.index] = content_of(alike, node);
         return true;
@@ -346,7 +329,8 @@ static bool match_node(const Alike *alike, const Template *template, uint32_t in
     return true;
 }
 
-bool template_match(Alike *alike, const Template *template, const Node *roots, SlotContent *contents)
+bool template_match(Alike *alike, const Template *template, const Node *roots,
+                    SlotContent *contents)
 {
     note_all(alike);
     for (uint32_t i = 0; i < template->node_count; i++)

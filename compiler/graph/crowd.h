@@ -36,8 +36,8 @@ typedef struct Crowd {
     double   *numbers;       /* rows x columns, row by row; 0 in columns of the frame */
     uint32_t *frame_columns; /* of each column: KNOWN_COLUMN, or where its nodes begin in
                                 Crowds.frame_numbers, one for each row; NULL: all are known */
-    Grid grid;               /* its members are the rows */
-    Span span;               /* of the join */
+    Grid      grid;          /* its members are the rows */
+    Span      span;          /* of the join */
 } Crowd;
 
 typedef struct CrowdState {

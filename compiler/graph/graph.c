@@ -49,6 +49,11 @@ static const OpPromises promises[OP_COUNT] = {
 
 bool op_promises(Op op, OpPromises what) { return (promises[op] & what) == what; }
 
+bool op_has_setting(Op op, int operand)
+{
+    return op_promises(op, (OpPromises)(FIRST_SETTING << operand));
+}
+
 const char *graph_op_name(Op op) { return op_info[op].name; }
 const char *op_glsl(Op op) { return op_info[op].glsl; }
 

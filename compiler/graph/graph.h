@@ -45,8 +45,12 @@ typedef enum OpPromises {
     STAYS_FINITE     = 1,
     COMMUTES         = 2,
     BUILDS           = 4,
-    READS_TABLES     = 8
+    READS_TABLES     = 8,
+    FIRST_SETTING    = 16 /* and three more: operand k is a setting, FIRST_SETTING << k */
 } OpPromises;
+
+/* All operands from this one on are settings. */
+#define SETTINGS_FROM(operand) (((1 << MAX_OPERANDS) - (1 << (operand))) * FIRST_SETTING)
 
 typedef struct NodeValue {
     double v[4]; /* booleans 0 or 1; UINT exact */
@@ -162,6 +166,8 @@ bool graph_is_constant(const Graph *graph, Node node);
 /* The row's GLSL, operands $a..$d; NULL for leaves and OP_COMPONENT. */
 const char *op_glsl(Op op);
 bool        op_promises(Op op, OpPromises what);
+/* Whether the operand says how it works, not where: an exponent or a count. */
+bool op_has_setting(Op op, int operand);
 /* What an operation costs, in multiply-adds of one component, as measured on lavapipe. */
 double op_cost(Op op, GraphType type, const GraphType *operands);
 

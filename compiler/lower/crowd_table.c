@@ -19,7 +19,8 @@ typedef struct Entry {
 
 static Entry entry_at(const CrowdGroup *group, size_t member, uint32_t slot, uint32_t element)
 {
-    const SlotContent *content = &group->contents.items[member * group->template->slot_count + slot];
+    const SlotContent *content =
+        &group->contents.items[member * group->template->slot_count + slot];
     return (Entry){content->numbers[element], content->nodes[element]};
 }
 
@@ -115,9 +116,8 @@ static void fill_known(const CrowdGroup *group, Crowd *table, uint32_t column)
 {
     const Column *source = &group->sources[column];
     for (uint32_t i = 0; i < table->rows; i++)
-        table->numbers[(size_t)i * table->columns + column] = entry_at(group, i, source->slot,
-                                                                       source->element)
-                                                                  .number;
+        table->numbers[(size_t)i * table->columns + column] =
+            entry_at(group, i, source->slot, source->element).number;
 }
 
 /* Some members may have known numbers there. */

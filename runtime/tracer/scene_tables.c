@@ -91,9 +91,9 @@ static bool upload_rows(KrsRendering *rendering, const void *rows, size_t bytes)
 /* Rows are those of the frame, unless they are so already. */
 static bool renew_rows(KrsRendering *rendering, const KrsFrame *frame)
 {
-    Gpu   *gpu       = &rendering->renderer->gpu;
-    size_t texels    = rendering->program->table_rows;
-    float(*rows)[4]  = gpu_alloc(gpu, texels, sizeof *rows, "set the " TABLES);
+    Gpu   *gpu        = &rendering->renderer->gpu;
+    size_t texels     = rendering->program->table_rows;
+    float(*rows)[4]   = gpu_alloc(gpu, texels, sizeof *rows, "set the " TABLES);
     float(*before)[4] = rendering->frame_rows;
     if (!rows)
         return false;

@@ -37,18 +37,18 @@ static int start(void **state)
 {
     (void)state;
     arena = scratch = (Arena){.memory = &memory};
-    now = height    = 0;
-    sources         = (Sources){.arena = &arena};
-    diags           = (Diags){.arena = &arena, .sources = &sources};
-    parameters      = (Parameters){0};
-    slopes          = (FrameSlopes){0};
-    randomness      = (Random){7};
-    builder         = (ShapeBuilder){.arena      = &arena,
-                                     .scratch    = &scratch,
-                                     .diags      = &diags,
-                                     .graph      = graph_new(&arena),
-                                     .parameters = &parameters,
-                                     .slopes     = &slopes};
+    now = height = 0;
+    sources      = (Sources){.arena = &arena};
+    diags        = (Diags){.arena = &arena, .sources = &sources};
+    parameters   = (Parameters){0};
+    slopes       = (FrameSlopes){0};
+    randomness   = (Random){7};
+    builder      = (ShapeBuilder){.arena      = &arena,
+                                  .scratch    = &scratch,
+                                  .diags      = &diags,
+                                  .graph      = graph_new(&arena),
+                                  .parameters = &parameters,
+                                  .slopes     = &slopes};
     return 0;
 }
 
@@ -349,7 +349,7 @@ static void many_parts_need_few_nodes(void **state)
    numbers are known. */
 static const Shape *moving_part(bool of_parameter)
 {
-    Graph *g = builder.graph;
+    Graph *g    = builder.graph;
     Node   time = graph_parameter(g, 0, TYPE_FLOAT), up = graph_parameter(g, 1, TYPE_FLOAT);
     Node   angle = graph_op2(g, OP_add, time, graph_number(g, between(0, 6)));
     Node   sine = graph_op1(g, OP_sin, angle), cosine = graph_op1(g, OP_cos, angle);
@@ -357,28 +357,28 @@ static const Shape *moving_part(bool of_parameter)
     Node   left = graph_op1(g, OP_neg, sine);
     Node   y    = graph_op2(g, OP_add, sine, graph_number(g, between(-2, 2)));
     double x = between(-3, 3), z = between(-3, 3);
-    Map    map = {.scale = graph_number(g, between(0.5, 1.5)),
-                  .rows  = {graph_op3(g, OP_vec3, cosine, sine, zero),
-                            graph_op3(g, OP_vec3, left, cosine, zero),
-                            graph_op3(g, OP_vec3, zero, zero, one)},
-                  .shift = graph_op3(g, OP_vec3, graph_number(g, x),
-                                     of_parameter ? graph_op2(g, OP_mul, y, up) : y,
-                                     graph_number(g, z)),
-                  .pole  = NODE_NONE};
+    Map    map = {
+           .scale = graph_number(g, between(0.5, 1.5)),
+           .rows  = {graph_op3(g, OP_vec3, cosine, sine, zero),
+                     graph_op3(g, OP_vec3, left, cosine, zero), graph_op3(g, OP_vec3, zero, zero, one)},
+           .shift = graph_op3(g, OP_vec3, graph_number(g, x),
+                           of_parameter ? graph_op2(g, OP_mul, y, up) : y, graph_number(g, z)),
+           .pole  = NODE_NONE};
     Node      bright   = graph_op2(g, OP_mul, sine, sine);
     Material *material = arena_new(&arena, Material);
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     material->name = NODE_NONE;
 #include "compiler/shape/surface.def"
-    material->name  = "moving";
-    material->color = graph_op3(g, OP_vec3, bright, graph_number(g, between(0, 1)), bright);
+    material->name     = "moving";
+    material->color    = graph_op3(g, OP_vec3, bright, graph_number(g, between(0, 1)), bright);
     const Shape *shape = ring(between(0.1, 0.3), between(0.02, 0.08));
-    return make_paint(&builder, make_transform(&builder, shape, &map, no_place), material, no_place);
+    return make_paint(&builder, make_transform(&builder, shape, &map, no_place), material,
+                      no_place);
 }
 
 static const Shape *moving_union(void)
 {
-    const Shape **parts = arena_new_array(&arena, const Shape *, PARTS);
+    const Shape  **parts = arena_new_array(&arena, const Shape *, PARTS);
     GraphParameter range = {{0}, {1}};
     array_push(&arena, &builder.graph->parameters, range);
     for (int i = 0; i < PARTS; i++)
@@ -407,9 +407,9 @@ static void moving_parts(void **state)
 static void moving_parts_are_simplified(void **state)
 {
     (void)state;
-    const Shape *all    = moving_union();
-    Seen         apart  = lower(all, NULL);
-    Seen         crowd  = lower(all, lowered_crowds_new(builder.graph, &arena)), simple = crowd;
+    const Shape *all   = moving_union();
+    Seen         apart = lower(all, NULL);
+    Seen         crowd = lower(all, lowered_crowds_new(builder.graph, &arena)), simple = crowd;
     Graph       *before = builder.graph;
     Graph       *after  = graph_simplify(before, simple.roots, ROOT_COUNT, &arena);
     simple.tape         = tape_new(after, simple.roots, ROOT_COUNT, &arena);
@@ -441,8 +441,7 @@ static void infinite_numbers_are_found(void **state)
         Node after = graph_op2(g, OP_sub, time, graph_number(g, i));
         Node zero  = graph_number(g, 0);
         Map  map   = {.scale = graph_number(g, 1),
-                      .rows  = {graph_vec3(g, 1, 0, 0), graph_vec3(g, 0, 1, 0),
-                                graph_vec3(g, 0, 0, 1)},
+                      .rows = {graph_vec3(g, 1, 0, 0), graph_vec3(g, 0, 1, 0), graph_vec3(g, 0, 0, 1)},
                       .shift = graph_op3(g, OP_vec3, zero,
                                          graph_op2(g, OP_div, graph_number(g, 1), after), zero),
                       .pole  = NODE_NONE};

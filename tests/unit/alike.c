@@ -33,7 +33,7 @@ static void numbers_come_out(void **state)
     Node      first[] = {ball(b->graph, b->point, 1, 2, 3, 4), graph_vec3(b->graph, 1, 0, 0)};
     Template *t       = template_new(alike, first, 2, &b->arena);
     assert_int_equal(t->slot_count, 3);
-    Node      second[] = {ball(b->graph, b->point, 5, 5, 5, 5), graph_vec3(b->graph, 5, 5, 5)};
+    Node        second[] = {ball(b->graph, b->point, 5, 5, 5, 5), graph_vec3(b->graph, 5, 5, 5)};
     SlotContent found[3], of_first[3];
     assert_true(alike_hash(alike, second, 2) == t->hash);
     assert_true(template_match(alike, t, second, found));
@@ -50,11 +50,11 @@ static void numbers_come_out(void **state)
 /* With its own numbers a copy is the member itself. */
 static void a_copy_is_the_member(void **state)
 {
-    Bench    *b        = *state;
-    Alike    *alike    = alike_new(b->graph, &b->arena);
-    Node      first[]  = {ball(b->graph, b->point, 1, 2, 3, 4), NODE_NONE};
-    Template *t        = template_new(alike, first, 2, &b->arena);
-    Node      second[] = {ball(b->graph, b->point, 7, 8, 9, 6), NODE_NONE};
+    Bench      *b        = *state;
+    Alike      *alike    = alike_new(b->graph, &b->arena);
+    Node        first[]  = {ball(b->graph, b->point, 1, 2, 3, 4), NODE_NONE};
+    Template   *t        = template_new(alike, first, 2, &b->arena);
+    Node        second[] = {ball(b->graph, b->point, 7, 8, 9, 6), NODE_NONE};
     SlotContent found[2];
     Node        slots[2], roots[2];
     assert_true(template_match(alike, t, second, found));
@@ -72,8 +72,8 @@ static void a_copy_is_the_member(void **state)
 
 static bool is_alike(Bench *b, Node first, Node second)
 {
-    Alike    *alike = alike_new(b->graph, &b->arena);
-    Template *t     = template_new(alike, &first, 1, &b->arena);
+    Alike      *alike = alike_new(b->graph, &b->arena);
+    Template   *t     = template_new(alike, &first, 1, &b->arena);
     SlotContent found[16];
     assert_true(t->slot_count <= 16);
     bool matches = template_match(alike, t, &second, found);
@@ -181,8 +181,7 @@ static void some_nodes_stay(void **state)
     graph_release_but(g, mark, kept, 2, &b->arena);
     assert_int_equal(kept[0], half);
     assert_int_equal(g->count, count + 4); /* 0.5, 9, the sum and its sine */
-    assert_int_equal(kept[1],
-                     graph_op1(g, OP_sin, graph_op2(g, OP_add, b->x, graph_number(g, 9))));
+    assert_int_equal(kept[1], graph_op1(g, OP_sin, graph_op2(g, OP_add, b->x, graph_number(g, 9))));
     assert_int_equal(g->count, count + 4);
     graph_validate(g, "release");
 }

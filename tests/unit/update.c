@@ -106,8 +106,8 @@ static void print_kernels(const KrsScene *scene, bool card, char *to, size_t cap
 {
     const KrsVariant  variant  = {.values = true, .many_threads = card};
     const KrsFunction wanted[] = {card ? KRS_FUNCTION_DISTANCE_LOD : KRS_FUNCTION_DISTANCE,
-                                  KRS_FUNCTION_SURFACE};
-    char  *text   = krs_scene_text(scene, &variant, wanted, 2, NULL);
+                                  KRS_FUNCTION_SURFACE, KRS_FUNCTION_SCENE_PART_BOX};
+    char  *text   = krs_scene_text(scene, &variant, wanted, 3, NULL);
     size_t length = 0;
     assert_non_null(text);
     for (const char *from = text; *from && length + 1 < capacity;) {
@@ -216,6 +216,67 @@ static void auto_takes_numbers_out_with_the_first_edit(void **state)
     krs_scene_free(first);
     krs_scene_free(scene);
     krs_scene_free(literal);
+}
+
+/* ---- crowds ---- */
+
+/* A crowd of 100 balls, of which one is lifted; and a block that is far away. */
+#define CROWD                                                                               \
+    "let lift = 0.2; let radius = 0.3;"                                                     \
+    "show union([sphere(radius).move([i % 10, if i == 55 then lift else 0, floor(i / 10)])" \
+    " for i in 0..100]).paint(#ff8000);"                                                    \
+    "show box([1, 9, 1]).move([0, 0, -9]); camera { eye: [4, 3, 15] }"
+
+typedef struct CrowdEdit {
+    const char *what, *from, *to;
+    KrsChange   with_literals, with_slots;
+} CrowdEdit;
+
+static const CrowdEdit crowd_edits[] = {
+    {"nothing", "", "", KRS_CHANGE_NOTHING, KRS_CHANGE_NOTHING},
+    {"a comment", "show", "// balls\n show", KRS_CHANGE_NOTHING, KRS_CHANGE_NOTHING},
+    {"one moves aside", "[i % 10,", "[if i == 55 then 5.1 else i % 10,", KRS_CHANGE_VALUES,
+     KRS_CHANGE_VALUES},
+    {"one grows the box", "0.2", "0.3", KRS_CHANGE_STRUCTURE, KRS_CHANGE_VALUES},
+    {"one is left out", "0..100", "0..99", KRS_CHANGE_VALUES, KRS_CHANGE_VALUES},
+    {"some grow the box", "0..100", "0..112", KRS_CHANGE_STRUCTURE, KRS_CHANGE_VALUES},
+    {"all have another size", "0.3", "0.31", KRS_CHANGE_STRUCTURE, KRS_CHANGE_VALUES},
+    {"each has its size", "sphere(radius)", "sphere(radius + 0.001 * i)", KRS_CHANGE_STRUCTURE,
+     KRS_CHANGE_STRUCTURE},
+    {"too few for a crowd", "0..100", "50..60", KRS_CHANGE_STRUCTURE, KRS_CHANGE_STRUCTURE},
+    {"other parts", "sphere(radius)", "box([radius, 0.1, 0.2])", KRS_CHANGE_STRUCTURE,
+     KRS_CHANGE_STRUCTURE},
+};
+
+static void assert_crowd_edit(const CrowdEdit *edit, KrsSpecialize specialize)
+{
+    KrsChanges      changes, back;
+    const bool      slots    = specialize == KRS_SPECIALIZE_STRUCTURE;
+    const KrsChange expected = slots ? edit->with_slots : edit->with_literals;
+    const char     *text     = edited(CROWD, edit->from, edit->to);
+    KrsScene       *scene    = compile(CROWD, specialize);
+    KrsScene       *updated  = update(scene, text, &changes);
+    KrsScene       *alone    = compile(text, specialize);
+    KrsScene       *undone   = update(updated, CROWD, &back);
+    assert_true(krs_table_rows(scene) > 0);
+    if (changes.kind != expected || back.kind != expected)
+        fail_msg("%s: %d, and back %d", edit->what, changes.kind, back.kind);
+    assert_int_equal(same_kernels(scene, updated), expected != KRS_CHANGE_STRUCTURE);
+    assert_same_scene(updated, alone);
+    assert_same_scene(undone, scene);
+    krs_scene_free(undone);
+    krs_scene_free(alone);
+    krs_scene_free(updated);
+    krs_scene_free(scene);
+}
+
+static void tables_are_values(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof crowd_edits / sizeof *crowd_edits; i++) {
+        assert_crowd_edit(&crowd_edits[i], KRS_SPECIALIZE_NUMBERS);
+        assert_crowd_edit(&crowd_edits[i], KRS_SPECIALIZE_STRUCTURE);
+    }
 }
 
 /* ---- mistakes, and what is kept of the first compilation ---- */
@@ -372,6 +433,7 @@ int main(void)
         cmocka_unit_test(changes_are_told),
         cmocka_unit_test(literals_are_structure),
         cmocka_unit_test(auto_takes_numbers_out_with_the_first_edit),
+        cmocka_unit_test(tables_are_values),
         cmocka_unit_test(mistakes_leave_the_scene),
         cmocka_unit_test(used_files_are_read_again),
         cmocka_unit_test(memory_may_run_out),
