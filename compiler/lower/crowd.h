@@ -7,7 +7,7 @@
 #include "compiler/lower/context.h"
 
 /* Fewer parts that are alike stay apart: a loop over a list costs as much as some. */
-enum { LEAST_CROWD = 16 };
+enum { LEAST_CROWD = 64 };
 
 /* The crowds of a scene, by the joints that they are parts of.  All lowerings of a joint use the
    same. */

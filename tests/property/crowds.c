@@ -35,12 +35,12 @@ static void differences(void **state)
 static void intersections(void **state)
 {
     (void)state;
-    const Shape *parts[32];
-    for (int i = 0; i < 32; i++) {
+    const Shape *parts[96];
+    for (int i = 0; i < 96; i++) {
         double x = between(-1, 1), y = between(-1, 1), z = between(-1, 1);
         parts[i] = painted(placed(ball(between(2, 2.5)), x, y, z, 0.5, 1.5));
     }
-    assert_same(make_joint(&builder, SHAPE_INTERSECTION, parts, 32, blend_sharp, no_place), 3.5);
+    assert_same(make_joint(&builder, SHAPE_INTERSECTION, parts, 96, blend_sharp, no_place), 3.5);
 }
 
 static void below_maps(void **state)
@@ -120,7 +120,7 @@ static void many_parts_need_few_nodes(void **state)
 
 /* ---- blends ---- */
 
-enum { CHAIN = 60 };
+enum { CHAIN = 72 };
 
 /* Balls in a row: each changes how the next ones join.  They are alike, so they are one crowd. */
 static const Shape *chain(BlendKind kind, double width, double step)

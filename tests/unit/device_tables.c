@@ -43,7 +43,7 @@ typedef struct Stage {
 /* A scene whose tables have numbers of the frame, instead of tables that are added. */
 static const char moving[] = "param height = 0.5 in [0, 2];\n"
                              "show union([sphere(0.2).move([i, height * sin(time + i), 0]) "
-                             "for i in 0..40]);" CAMERA;
+                             "for i in 0..80]);" CAMERA;
 
 /* Two tables for a scene that reads none. */
 static void add_tables(Bench *bench, Stage *stage, uint32_t rows)
@@ -169,7 +169,7 @@ enum { MOVING_POINTS = 400 };
 static double moving_distance(const float p[3], double time, double height)
 {
     double nearest = HUGE_VAL;
-    for (int i = 0; i < 40; i++) {
+    for (int i = 0; i < 80; i++) {
         double y = height * sin(time + i);
         nearest  = fmin(nearest, hypot(hypot(p[0] - i, p[1] - y), (double)p[2]) - 0.2);
     }
@@ -180,7 +180,7 @@ static double moving_distance(const float p[3], double time, double height)
 static void points_near(Bench *bench, double time, double height, float points[][3])
 {
     for (int n = 0; n < MOVING_POINTS; n++) {
-        int    i = n % 40;
+        int    i = n % 80;
         double y = height * sin(time + i), centre[3] = {i, y, 0};
         for (int k = 0; k < 3; k++)
             points[n][k] = (float)(centre[k] + random_between(&bench->random, -0.2, 0.2));
@@ -237,7 +237,7 @@ static void pictures_are_those_of_the_frame(void **state)
     for (int i = 0; i < 2; i++) {
         char text[512];
         snprintf(text, sizeof text,
-                 "show union([sphere(0.2).move([i, 0.5 * sin(%s + i), 0]) for i in 0..40]);" CAMERA,
+                 "show union([sphere(0.2).move([i, 0.5 * sin(%s + i), 0]) for i in 0..80]);" CAMERA,
                  still[i]);
         Stage       other = open_scene(text, 0);
         KrsPicture *pictures[2];

@@ -55,9 +55,9 @@ static void note_error(void *user, const KrsDiagnostic *diagnostic)
 static KrsStatus count_shapes(void *user, const Inspected *what)
 {
     Use *use        = user;
-    use->components = what->scene->components.count;
+    use->components = what->scene->shown.count;
     for (size_t i = 0; i < use->components; i++)
-        use->shapes += what->scene->components.items[i].shape->tree_shapes;
+        use->shapes += what->scene->shown.items[i].shape->tree_shapes;
     return KRS_OK;
 }
 

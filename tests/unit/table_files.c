@@ -24,9 +24,9 @@ static char *command; /* the path of krs */
 
 static const char parts[] =
     "param height = 1 in [0.5, 2];"
-    "show union([sphere(0.1 + 0.001 * i).move([i, 0, 0]) for i in 0..50])"
+    "show union([sphere(0.1 + 0.001 * i).move([i, 0, 0]) for i in 0..150])"
     ".move([0, height, 0]);"
-    "for i in 0..60 { show box([0.2, 0.3, 0.2 + 0.01 * i]).move([i, 0, 3]); }";
+    "for i in 0..160 { show box([0.2, 0.3, 0.2 + 0.01 * i]).move([i, 0, 3]); }";
 
 /* ---- files ---- */
 
@@ -99,7 +99,7 @@ static void files_have_the_tables(void **state)
     assert_int_equal(krs_compile_file("parts.krs", NULL, &scene), KRS_OK);
     assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
     size_t row_count = krs_table_rows(scene), cell_count = krs_table_cells(scene);
-    assert_true(row_count >= 110 && cell_count > 16);
+    assert_true(row_count >= 310 && cell_count > 16);
     float(*rows)[4]     = calloc(row_count, sizeof *rows);
     uint32_t(*cells)[2] = calloc(cell_count, sizeof *cells);
     krs_frame_tables(frame, rows, cells);
@@ -113,7 +113,7 @@ static void files_have_the_tables(void **state)
              "\"texels\": %zu, \"file\": \"parts.cells.bin\"}]",
              row_count, cell_count, row_count, cell_count);
     assert_in_description(wanted);
-    snprintf(wanted, sizeof wanted, "\"tables\": {\"kinds\": 2, \"rows\": 110, \"bytes\": %zu}",
+    snprintf(wanted, sizeof wanted, "\"tables\": {\"kinds\": 2, \"rows\": 310, \"bytes\": %zu}",
              row_count * sizeof *rows + cell_count * sizeof *cells);
     assert_in_description(wanted);
     free(rows);
