@@ -72,6 +72,7 @@ typedef struct KrsProgram {
     uint32_t      expensive;         /* components that cost enough for a group of their own */
     size_t        table_rows;        /* texels of the tables (krs_frame_tables); 0: none */
     size_t        table_cells;
+    bool          rows_vary; /* rows depend on parameters or the time (krs_frame_rows) */
     size_t        table_count, table_members; /* tables, and the rows of all of them */
     const double *pass_ms;           /* time of each pass (krs_pass, compile.h), in milliseconds */
     double        front_ms, glsl_ms; /* time of all passes before `emit`, and of `emit` */
@@ -107,6 +108,8 @@ bool krs_needs_rebase(double coordinate, double pixel);
 /* Slots of the values that depend on the origin of camera-relative points, computed in double
    precision: camera_relative_slots vec4s. */
 void krs_frame_rebase(KrsFrame *frame, const double rebase_origin[3], float (*block)[4]);
+/* The rows of krs_frame_tables alone; for programs whose rows vary. */
+void krs_frame_rows(const KrsFrame *frame, float (*rows)[4]);
 /* The caller's zones (center, radius), for the slots behind the parameter block.  Returns how many.
    In a variant with room for more the others must have a radius far below 0. */
 size_t krs_frame_zones(const KrsFrame *frame, float (*zones)[4]);

@@ -263,8 +263,18 @@ void krs_frame_parameters(const KrsFrame *frame, float (*block)[4])
 
 void krs_frame_tables(const KrsFrame *frame, float (*rows)[4], uint32_t (*cells)[2])
 {
-    if (frame->scene->program.table_cells > 0)
-        tables_pack(frame->scene->graph->crowds, rows, cells);
+    const KrsScene *scene = frame->scene;
+    if (scene->program.table_cells == 0)
+        return;
+    tape_run_frame(&scene->rows, frame->parameters, frame->values);
+    tables_pack(scene->graph->crowds, frame->values, rows, cells);
+}
+
+void krs_frame_rows(const KrsFrame *frame, float (*rows)[4])
+{
+    const KrsScene *scene = frame->scene;
+    tape_run_frame(&scene->rows, frame->parameters, frame->values);
+    tables_pack_rows(scene->graph->crowds, frame->values, rows);
 }
 
 void frame_copy(const KrsFrame *frame, Node node, double to[3])

@@ -182,7 +182,7 @@ void   krs_frame_values(const KrsFrame *frame, float (*block)[4]);
  * The texel buffers of that GLSL: numbers of parts that are alike but for numbers, and which of them
  * are near a point.  `rows` needs krs_table_rows texels, for krs_rows (RGBA32F), and `cells` needs
  * krs_table_cells, for krs_cells (RG32UI).  Both are 0 for scenes without such parts, whose GLSL
- * has neither buffer.
+ * has neither buffer.  Rows may depend on the parameters and the time, cells do not.
  */
 size_t krs_table_rows(const KrsScene *scene);
 size_t krs_table_cells(const KrsScene *scene);

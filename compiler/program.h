@@ -154,6 +154,7 @@ struct KrsScene {
     Tape           turned;   /* if there are sheets: gradients of all components */
     Tape           surface;  /* all roots of all components, and zones */
     Tape           view;     /* cameras, lights and sky */
+    Tape           rows;     /* numbers of tables that depend on the frame */
 };
 
 /* A frame: values of the parameters, and memory for the values of all nodes. */

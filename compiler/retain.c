@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "compiler/compilation.h"
+#include "compiler/graph/crowd.h"
 
 static const char *retain_text(Compilation *c, const char *text)
 {
@@ -151,6 +152,11 @@ static void retain_tapes(Compilation *c)
     }
     scene->surface = tape_of(scene, roots_from(roots, ROOTS_SURFACE, ROOTS_ZONE), arena);
     scene->view    = tape_of(scene, roots_from(roots, ROOTS_CAMERA, ROOTS_SKY), arena);
+
+    const Crowds *crowds = scene->graph->crowds;
+    if (crowds)
+        scene->rows = tape_new(scene->graph, crowds->frame_numbers.items,
+                               crowds->frame_numbers.count, arena);
 }
 
 /* What an update of the scene is compiled with. */

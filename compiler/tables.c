@@ -3,6 +3,7 @@
  */
 #include "compiler/tables.h"
 
+#include <float.h>
 #include <string.h>
 
 #include "compiler/base/far.h"
@@ -103,13 +104,25 @@ static void put_grid(const Grid *grid, Texel *records, Texel *lists)
         lists[entries / 2][1] = 0;
 }
 
-static void put_rows(const Crowd *table, float (*rows)[4])
+/* As other values of the frame are: what single precision does not have is the largest number that it
+   has. */
+static float to_single(double number)
+{
+    return (float)(number > FLT_MAX ? FLT_MAX : number < -FLT_MAX ? -FLT_MAX : number);
+}
+
+static void put_rows(const Crowds *crowds, const Crowd *table, const NodeValue *values,
+                     float (*rows)[4])
 {
     size_t texels = row_texels(table);
     memset(rows, 0, table->rows * texels * sizeof *rows);
-    for (size_t r = 0; r < table->rows; r++)
-        for (size_t c = 0; c < table->columns; c++)
-            rows[r * texels + c / 4][c % 4] = (float)table->numbers[r * table->columns + c];
+    for (uint32_t c = 0; c < table->columns; c++) {
+        const Node   *nodes   = column_nodes(crowds, table, c);
+        const double *numbers = table->numbers + c;
+        for (size_t r = 0; r < table->rows; r++)
+            rows[r * texels + c / 4][c % 4] = to_single(nodes ? values[nodes[r]].v[0]
+                                                              : numbers[r * table->columns]);
+    }
 }
 
 /* The rows of all members of the lists, in the order of the lists. */
@@ -120,7 +133,19 @@ static void put_copies(const Crowd *table, const float (*rows)[4], float (*copie
         memcpy(copies + i * texels, rows + table->grid.members[i] * texels, texels * sizeof *rows);
 }
 
-void tables_pack(const Crowds *crowds, float (*rows)[4], uint32_t (*cells)[2])
+void tables_pack_rows(const Crowds *crowds, const NodeValue *values, float (*rows)[4])
+{
+    TableSizes next = after_headers(crowds);
+    for (size_t t = 0; t < crowds->tables.count; t++) {
+        const Crowd *table = &crowds->tables.items[t];
+        Place        place = place_table(table, &next);
+        put_rows(crowds, table, values, rows + place.row);
+        put_copies(table, (const float(*)[4])(rows + place.row), rows + place.copy);
+    }
+}
+
+void tables_pack(const Crowds *crowds, const NodeValue *values, float (*rows)[4],
+                 uint32_t (*cells)[2])
 {
     TableSizes next = after_headers(crowds);
     for (size_t t = 0; t < crowds->tables.count; t++) {
@@ -128,7 +153,6 @@ void tables_pack(const Crowds *crowds, float (*rows)[4], uint32_t (*cells)[2])
         Place        place = place_table(table, &next);
         put_header(&table->grid, place, cells + GRID_HEADER * t);
         put_grid(&table->grid, cells + place.cell, cells + place.list);
-        put_rows(table, rows + place.row);
-        put_copies(table, (const float(*)[4])(rows + place.row), rows + place.copy);
     }
+    tables_pack_rows(crowds, values, rows);
 }

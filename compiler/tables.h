@@ -36,7 +36,11 @@ static inline size_t row_texels(const Crowd *table) { return (table->columns + 3
 
 /* 0 when there are no tables; `crowds` may be NULL. */
 TableSizes tables_measure(const Crowds *crowds);
-/* Fills arrays of these sizes. */
-void tables_pack(const Crowds *crowds, float (*rows)[4], uint32_t (*cells)[2]);
+/* Fills arrays of these sizes; `values` of nodes has the numbers of the frame, and may be NULL where
+   there are none. */
+void tables_pack(const Crowds *crowds, const NodeValue *values, float (*rows)[4],
+                 uint32_t (*cells)[2]);
+/* Fills the rows alone, which may differ between frames. */
+void tables_pack_rows(const Crowds *crowds, const NodeValue *values, float (*rows)[4]);
 
 #endif

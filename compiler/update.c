@@ -44,6 +44,9 @@ static RootList collect_roots(const KrsScene *scene, bool of_kernels, RootKind f
         for (size_t i = 0; i < range.count && view != of_kernels; i++)
             array_push(arena, &list, range.items[i]);
     }
+    const Crowds *crowds = scene->graph->crowds;
+    for (size_t i = 0; of_kernels && crowds && i < crowds->frame_numbers.count; i++)
+        array_push(arena, &list, crowds->frame_numbers.items[i]);
     return list;
 }
 
@@ -100,10 +103,19 @@ static bool same_grid(const Grid *a, const Grid *b)
            same_lists(a, b, cells);
 }
 
+/* Their nodes are compared with the graph. */
+static bool same_frame_columns(const Crowd *a, const Crowd *b)
+{
+    if (!a->frame_columns || !b->frame_columns)
+        return a->frame_columns == b->frame_columns;
+    return memcmp(a->frame_columns, b->frame_columns, a->columns * sizeof *a->frame_columns) == 0;
+}
+
 static bool same_table(const Crowd *a, const Crowd *b)
 {
     const size_t numbers = (size_t)a->rows * a->columns;
     return a->rows == b->rows && a->columns == b->columns && a->stretch == b->stretch &&
+           same_frame_columns(a, b) &&
            memcmp(a->numbers, b->numbers, numbers * sizeof *a->numbers) == 0 &&
            same_grid(&a->grid, &b->grid);
 }

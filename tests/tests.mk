@@ -15,13 +15,13 @@ ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c prod
                device_answers.c rooms.c shadow_stage.c shadow_truth.c twigs.c)
 UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c queried.c \
                cache_folder.c compiled_files.c crowd_scene.c)
-PROPERTY_SHARED := $(addprefix tests/property/, garden.c op_trial.c reach_crowd.c)
+PROPERTY_SHARED := $(addprefix tests/property/, crowd_parts.c garden.c op_trial.c reach_crowd.c)
 UNIT        := texts front diagnostics shape parts passes display devices tracer film rendering methods schedules writer \
                image_files memory validate search refute frame query zones cache cache_limits \
                compiled pipelines per_component stencils glslang loader drivers grid crowd_grid crowds \
                crowd_kernels crowd_pictures tables device_tables table_files printing printers answers alike update edits
 PROPERTY    := ops noise graph simplify facts derive series zeros local along rebase slope \
-               parity reach reach_trees crowds crowds_apart
+               parity reach reach_trees crowds crowds_apart moving_crowds
 ORACLES     := self primitives krs_expand trees maps moebius moebius_images operators \
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
@@ -41,7 +41,8 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/diagnostics unit/s
                unit/zones unit/printers unit/alike unit/update property/ops property/noise property/graph property/simplify \
                property/facts property/derive property/series property/zeros property/local \
                property/along property/rebase property/slope property/parity property/reach \
-               property/reach_trees property/crowds property/crowds_apart oracle/primitives oracle/krs_expand oracle/bounds \
+               property/reach_trees property/crowds property/crowds_apart property/moving_crowds oracle/primitives \
+               oracle/krs_expand oracle/bounds \
                oracle/maps oracle/moebius oracle/moebius_images oracle/operators oracle/moving \
                oracle/fractals oracle/metasurfaces oracle/normals fuzz/sentences)
 SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/editors.sh \

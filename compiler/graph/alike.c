@@ -31,10 +31,10 @@ Alike *alike_new(Graph *graph, Arena *arena)
     return alike;
 }
 
-void alike_forget(Alike *alike)
+void alike_forget(Alike *alike, size_t first)
 {
-    if (alike->notes.count > alike->graph->count)
-        alike->notes.count = alike->graph->count;
+    if (alike->notes.count > first)
+        alike->notes.count = first;
 }
 
 /* ---- what operands are ---- */
@@ -51,8 +51,9 @@ static int use_kind(const Alike *alike, const Expr *user, int operand, Node node
     const Expr *e = &alike->graph->items[node];
     if (is_operation(e))
         return USE_NODE;
-    bool number = is_number((GraphType)e->type) || (!user && e->type == TYPE_UINT);
-    number      = number && alike->notes.items[node].known;
+    bool known  = alike->notes.items[node].known;
+    bool number = (is_number((GraphType)e->type) && (known || e->time == TIME_FRAME)) ||
+                  (!user && e->type == TYPE_UINT && known);
     return number && !(user && op_has_setting((Op)user->op, operand)) ? USE_SLOT : USE_SAME;
 }
 
@@ -266,17 +267,47 @@ static bool same_node(const Alike *alike, Node a, Node b)
            !memcmp(&x->value, &y->value, sizeof x->value);
 }
 
+/* The number, or node of the frame, that is an element of a node. */
+static Node element_node(Graph *graph, Node node, uint32_t element)
+{
+    const Expr *e = &graph->items[node];
+    if (op_promises((Op)e->op, BUILDS))
+        return e->operands[e->operand_count > 1 ? element : 0];
+    return graph_component(graph, node, element);
+}
+
+static SlotContent content_of(const Alike *alike, Node node)
+{
+    const NodeNote *note     = &alike->notes.items[node];
+    const uint32_t  elements = alike->graph->items[node].type;
+    SlotContent     content  = {.nodes = {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE}};
+    if (note->known) {
+        memcpy(content.numbers, note->value.v, sizeof content.numbers);
+        return content;
+    }
+    for (uint32_t k = 0; k < elements; k++) {
+        Node            element = element_node(alike->graph, node, k);
+        const NodeNote *own = element < alike->notes.count ? &alike->notes.items[element] : NULL;
+        if (own && own->known)
+            content.numbers[k] = own->value.v[0];
+        else
+            content.nodes[k] = element;
+    }
+    return content;
+}
+
 static bool match_use(const Alike *alike, const Template *template, TemplateUse use,
-                      const Expr *user, int operand, Node node, NodeValue *numbers)
+                      const Expr *user, int operand, Node node, SlotContent *contents)
 {
     if (use_kind(alike, user, operand, node) != (int)use.kind)
         return false;
     if (use.kind == USE_SAME)
         return same_node(alike, use.index, node);
     if (use.kind == USE_SLOT) {
-        numbers[use.index] = alike->notes.items[node].value;
-        return alike->graph->items[node].type ==
-               alike->graph->items[template->slots[use.index]].type;
+        if (alike->graph->items[node].type != alike->graph->items[template->slots[use.index]].type)
+            return false;
+        contents[use.index] = content_of(alike, node);
+        return true;
     }
     Node *image = &template->images[use.index];
     if (*image == NODE_NONE)
@@ -285,7 +316,7 @@ static bool match_use(const Alike *alike, const Template *template, TemplateUse 
 }
 
 static bool match_node(const Alike *alike, const Template *template, uint32_t index,
-                       NodeValue *numbers)
+                       SlotContent *contents)
 {
     const TemplateNode *made = &template->nodes[index];
     const Expr         *mine = &alike->graph->items[made->node];
@@ -293,21 +324,22 @@ static bool match_node(const Alike *alike, const Template *template, uint32_t in
     if (e->op != mine->op || e->type != mine->type || e->index != mine->index)
         return false;
     for (int i = 0; i < e->operand_count; i++)
-        if (!match_use(alike, template, made->uses[i], e, i, e->operands[i], numbers))
+        if (!match_use(alike, template, made->uses[i], e, i, e->operands[i], contents))
             return false;
     return true;
 }
 
-bool template_match(Alike *alike, const Template *template, const Node *roots, NodeValue *numbers)
+bool template_match(Alike *alike, const Template *template, const Node *roots,
+                    SlotContent *contents)
 {
     note_all(alike);
     for (uint32_t i = 0; i < template->node_count; i++)
         template->images[i] = NODE_NONE;
     for (uint32_t i = 0; i < template->root_count; i++)
-        if (!match_use(alike, template, template->roots[i], NULL, 0, roots[i], numbers))
+        if (!match_use(alike, template, template->roots[i], NULL, 0, roots[i], contents))
             return false;
     for (uint32_t i = template->node_count; i-- > 0;)
-        if (!match_node(alike, template, i, numbers))
+        if (!match_node(alike, template, i, contents))
             return false;
     return true;
 }

@@ -2,11 +2,10 @@
  * alike.h: expressions that are alike but for numbers.
  *
  * A template is made of the expressions of one member.  A member is alike if its expressions have
- * the same operations on the same leaves.  Numbers that are known now may differ where what depends
- * on the point uses them.  Each such use, an operand of an operation, is a slot.  Slots belong to
- * uses and not to nodes, since equal numbers are one node by chance.  What depends on the frame is
- * the same node in both, and so are truth values and integers.  Numbers that decide how long a loop
- * runs are equal.
+ * the same operations on the same leaves.  Numbers that are known now, or in each frame, may differ
+ * where what depends on the point uses them.  Each such use, an operand of an operation, is a slot.
+ * Slots belong to uses and not to nodes, since equal numbers are one node by chance.  Truth values
+ * and integers are the same in both.  Numbers that decide how long a loop runs are equal.
  */
 #ifndef KRS_ALIKE_H
 #define KRS_ALIKE_H
@@ -17,13 +16,13 @@
 typedef struct Alike Alike;
 
 Alike *alike_new(Graph *graph, Arena *arena);
-/* Nodes were dropped (graph_release): others may take their places. */
-void alike_forget(Alike *alike);
+/* Nodes from this one on were dropped (graph_release): others may take their places. */
+void alike_forget(Alike *alike, size_t first);
 
 /* What an operand of a node of a template is, or one of its roots. */
 typedef struct TemplateUse {
     enum {
-        USE_SAME, /* the node `index` of the graph, a leaf or of the frame; or NODE_NONE */
+        USE_SAME, /* the node `index` of the graph, a leaf or known in each frame; or NODE_NONE */
         USE_NODE, /* nodes[index] of the template */
         USE_SLOT  /* slots[index] */
     } kind;
@@ -47,12 +46,19 @@ typedef struct Template {
     Node        *images; /* of each node, that of the member; template_match's own */
 } Template;
 
+/* What is in a slot, by elements. */
+typedef struct SlotContent {
+    double numbers[4];
+    Node   nodes[4]; /* FLOAT, where the number is one of the frame; NODE_NONE: it is known */
+} SlotContent;
+
 /* Alike expressions have equal hashes.  Roots may be NODE_NONE. */
 uint64_t  alike_hash(Alike *alike, const Node *roots, uint32_t count);
 Template *template_new(Alike *alike, const Node *roots, uint32_t count, Arena *arena);
-/* Whether as many roots are alike.  What is in their slots goes to `numbers`, slot_count of
-   them. */
-bool template_match(Alike *alike, const Template *template, const Node *roots, NodeValue *numbers);
+/* Whether as many roots are alike.  What is in their slots goes to `contents`, slot_count of them;
+   for its elements nodes may be made. */
+bool template_match(Alike *alike, const Template *template, const Node *roots,
+                    SlotContent *contents);
 
 /* Leaves that are replaced in a copy. */
 typedef struct LeafPair {

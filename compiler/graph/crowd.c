@@ -44,26 +44,34 @@ static void *copy_items(Arena *arena, const void *items, size_t count, size_t si
 Node *roots_with_bodies(const Graph *graph, const Node *roots, size_t root_count, size_t *count,
                         Arena *arena)
 {
-    size_t bodies = graph->crowds ? graph->crowds->bodies.count : 0;
-    Node  *all    = arena_new_array(arena, Node, root_count + bodies + 1);
+    const Crowds *crowds  = graph->crowds;
+    size_t        bodies  = crowds ? crowds->bodies.count : 0;
+    size_t        numbers = crowds ? crowds->frame_numbers.count : 0;
+    *count                = root_count + bodies + numbers;
+    Node *all             = arena_new_array(arena, Node, *count + 1);
     for (size_t i = 0; i < root_count; i++)
         all[i] = roots[i];
     for (size_t i = 0; i < bodies; i++)
-        all[root_count + i] = graph->crowds->bodies.items[i];
-    *count = root_count + bodies;
+        all[root_count + i] = crowds->bodies.items[i];
+    for (size_t i = 0; i < numbers; i++)
+        all[root_count + bodies + i] = crowds->frame_numbers.items[i];
     return all;
 }
 
-/* The copy has tables and functions in common; whoever adds some grows it first, since it is full. */
-static Crowds *crowds_with_bodies(const Crowds *crowds, const Node *bodies, Arena *arena)
+/* The copy has tables and functions in common; whoever adds some grows it first, since it is full.
+   `nodes` are bodies, then frame numbers. */
+static Crowds *crowds_with_nodes(const Crowds *crowds, const Node *nodes, Arena *arena)
 {
-    Crowds *copy             = arena_new(arena, Crowds);
-    *copy                    = *crowds;
-    copy->arena              = arena;
-    copy->tables.capacity    = copy->tables.count;
-    copy->functions.capacity = copy->functions.count;
-    copy->bodies.capacity    = copy->bodies.count;
-    copy->bodies.items       = COPY_ITEMS(arena, bodies, copy->bodies.count);
+    Crowds *copy                 = arena_new(arena, Crowds);
+    *copy                        = *crowds;
+    copy->arena                  = arena;
+    copy->tables.capacity        = copy->tables.count;
+    copy->functions.capacity     = copy->functions.count;
+    copy->bodies.capacity        = copy->bodies.count;
+    copy->bodies.items           = COPY_ITEMS(arena, nodes, copy->bodies.count);
+    copy->frame_numbers.capacity = copy->frame_numbers.count;
+    copy->frame_numbers.items    = COPY_ITEMS(arena, nodes + copy->bodies.count,
+                                              copy->frame_numbers.count);
     return copy;
 }
 
@@ -72,14 +80,16 @@ void hand_on_crowds(Graph *to, const Graph *from, const Node *all, Node *roots, 
     for (size_t i = 0; i < root_count; i++)
         roots[i] = all[i];
     if (from->crowds)
-        to->crowds = crowds_with_bodies(from->crowds, all + root_count, to->arena);
+        to->crowds = crowds_with_nodes(from->crowds, all + root_count, to->arena);
 }
 
 static void keep_table(Crowd *table, Arena *arena)
 {
-    Grid  *grid     = &table->grid;
-    size_t cells    = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
-    table->numbers  = COPY_ITEMS(arena, table->numbers, (size_t)table->rows * table->columns);
+    Grid  *grid    = &table->grid;
+    size_t cells   = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
+    table->numbers = COPY_ITEMS(arena, table->numbers, (size_t)table->rows * table->columns);
+    if (table->frame_columns)
+        table->frame_columns = COPY_ITEMS(arena, table->frame_columns, table->columns);
     grid->members   = COPY_ITEMS(arena, grid->members, grid->first[cells]);
     grid->first     = COPY_ITEMS(arena, grid->first, cells + 1);
     grid->clearance = COPY_ITEMS(arena, grid->clearance, cells);
@@ -91,11 +101,22 @@ void crowds_keep(Crowds *crowds, Arena *arena)
     crowds->tables.items    = COPY_ITEMS(arena, crowds->tables.items, crowds->tables.count);
     crowds->functions.items = COPY_ITEMS(arena, crowds->functions.items, crowds->functions.count);
     crowds->bodies.items    = COPY_ITEMS(arena, crowds->bodies.items, crowds->bodies.count);
-    crowds->tables.capacity = crowds->tables.count;
-    crowds->functions.capacity = crowds->functions.count;
-    crowds->bodies.capacity    = crowds->bodies.count;
+    crowds->frame_numbers.items    = COPY_ITEMS(arena, crowds->frame_numbers.items,
+                                                crowds->frame_numbers.count);
+    crowds->tables.capacity        = crowds->tables.count;
+    crowds->functions.capacity     = crowds->functions.count;
+    crowds->bodies.capacity        = crowds->bodies.count;
+    crowds->frame_numbers.capacity = crowds->frame_numbers.count;
     for (size_t i = 0; i < crowds->tables.count; i++)
         keep_table(&crowds->tables.items[i], arena);
+}
+
+const Node *column_nodes(const Crowds *crowds, const Crowd *table, uint32_t column)
+{
+    assert(column < table->columns);
+    if (!table->frame_columns || table->frame_columns[column] == KNOWN_COLUMN)
+        return NULL;
+    return crowds->frame_numbers.items + table->frame_columns[column];
 }
 
 /* ---- nodes ---- */

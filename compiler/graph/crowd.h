@@ -2,6 +2,8 @@
  * crowd.h: crowds: parts that are alike but for numbers, as one body and a table of numbers.
  *
  * A table has a row for each part, its member, and a grid, which knows which members are near a point.
+ * A column holds numbers that are known now, or nodes of the frame, which are FLOAT: its numbers are
+ * then found anew for each frame.
  * A crowd function is a loop over the members that are near.  It keeps states, which begin as
  * constants.  For each member every state becomes what its body says; all change at once.  The result is
  * the last value of the first state.
@@ -16,9 +18,9 @@
  * the same table, and share the values[] of a tape: each run finds all that it needs anew.  A body may
  * call functions with smaller numbers, if they are of other tables.
  *
- * Each graph has a Crowds of its own, whose bodies are nodes of that graph.  A pass that makes a graph
- * of a graph copies the bodies beside its roots (roots_with_bodies); tables and functions are
- * shared.  A function knows its bodies by their index, so that passes may renumber nodes.
+ * Each graph has a Crowds of its own, whose bodies and frame numbers are nodes of that graph.  A pass
+ * that makes a graph of a graph copies them beside its roots (roots_with_bodies); tables and
+ * functions are shared.  These know their nodes by an index, so that passes may renumber nodes.
  */
 #ifndef KRS_CROWD_H
 #define KRS_CROWD_H
@@ -28,13 +30,18 @@
 
 enum { MOST_CROWD_STATES = 8, MOST_TABLE_COLUMNS = 64, NO_DISTANCE = MOST_CROWD_STATES };
 
+/* A column whose numbers are known. */
+#define KNOWN_COLUMN UINT32_MAX
+
 /* A table. */
 typedef struct Crowd {
-    uint32_t rows, columns;
-    double  *numbers; /* rows x columns, row by row */
-    Grid     grid;    /* its members are the rows */
-    double   stretch; /* the distance of a member, times this, is at least that to its box */
-    Span     span;    /* of the join */
+    uint32_t  rows, columns;
+    double   *numbers;       /* rows x columns, row by row; 0 in columns of the frame */
+    uint32_t *frame_columns; /* of each column: KNOWN_COLUMN, or where its nodes begin in
+                                Crowds.frame_numbers, one for each row; NULL: all are known */
+    Grid      grid;          /* its members are the rows */
+    double    stretch;       /* the distance of a member, times this, is at least that to its box */
+    Span      span;          /* of the join */
 } Crowd;
 
 typedef struct CrowdState {
@@ -67,7 +74,7 @@ typedef struct Crowds {
     struct {
         Node  *items;
         size_t count, capacity;
-    } bodies;
+    } bodies, frame_numbers;
 } Crowds;
 
 /* Those of a graph, which are made when there are none. */
@@ -75,14 +82,17 @@ Crowds *graph_crowds(Graph *graph);
 /* Adds a function, whose member first_body is set here, with a body for each of its states.  Returns its
    number. */
 uint32_t graph_add_crowd_function(Graph *graph, CrowdFunction function, const Node *bodies);
-/* For a pass that makes a graph: the roots, and behind them the bodies of the graph. */
+/* For a pass that makes a graph: the roots, and behind them the bodies and frame numbers of the
+   graph. */
 Node *roots_with_bodies(const Graph *graph, const Node *roots, size_t root_count, size_t *count,
                         Arena *arena);
 /* When the pass has made `to` of `from`, and all these nodes are of `to`: copies the roots back, and
-   gives `to` the crowds of `from` with its own bodies. */
+   gives `to` the crowds of `from` with its own bodies and frame numbers. */
 void hand_on_crowds(Graph *to, const Graph *from, const Node *all, Node *roots, size_t root_count);
 /* Copies tables and functions into an arena as well, when that of the original is to be freed. */
 void crowds_keep(Crowds *crowds, Arena *arena);
+/* The nodes of a column, one for each row; NULL: its numbers are known. */
+const Node *column_nodes(const Crowds *crowds, const Crowd *table, uint32_t column);
 
 /* ---- Leaves and calls; `crowd` is the index of the table, `function` that of the function ---- */
 

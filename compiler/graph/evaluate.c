@@ -114,6 +114,18 @@ bool node_value_is_finite(const Graph *graph, Node node, const NodeValue *values
     return true;
 }
 
+/* Of the frame's numbers that OP_row may read. */
+static Node column_infinite(const Graph *graph, const Expr *row, const NodeValue *values)
+{
+    uint32_t     id    = (uint32_t)graph->items[row->operands[0]].number[0];
+    const Crowd *table = &graph->crowds->tables.items[row_crowd(id)];
+    const Node  *nodes = column_nodes(graph->crowds, table, row_column(id));
+    for (uint32_t i = 0; nodes && i < table->rows; i++)
+        if (!node_value_is_finite(graph, nodes[i], values))
+            return nodes[i];
+    return NODE_NONE;
+}
+
 static Node functions_frame_infinite(const Tape *tape, const NodeValue *values)
 {
     Node found = NODE_NONE;
@@ -130,6 +142,9 @@ Node tape_frame_infinite(const Tape *tape, const NodeValue *values)
             if (tape->graph->items[e->operands[k]].time != TIME_POINT &&
                 !node_value_is_finite(tape->graph, e->operands[k], values))
                 return e->operands[k];
+        Node found = e->op == OP_row ? column_infinite(tape->graph, e, values) : NODE_NONE;
+        if (found != NODE_NONE)
+            return found;
     }
     return functions_frame_infinite(tape, values);
 }
@@ -143,7 +158,10 @@ static NodeValue read_table(const Graph *graph, const Expr *e, const NodeValue *
 {
     uint32_t     column = whole(&values[e->operands[0]]), member = whole(&values[e->operands[1]]);
     const Crowd *table = &graph->crowds->tables.items[row_crowd(column)];
+    const Node  *nodes = column_nodes(graph->crowds, table, row_column(column));
     assert(member < table->rows);
+    if (nodes)
+        return values[nodes[member]];
     return number(table->numbers[(size_t)member * table->columns + row_column(column)]);
 }
 

@@ -123,6 +123,8 @@ typedef struct GraphMark {
 GraphMark graph_mark(Graph *graph);
 void      graph_release(Graph *graph, GraphMark mark);
 void      graph_keep(Graph *graph); /* drops the last mark, not the nodes */
+/* Releases all nodes but what these need; they are renumbered in place. */
+void graph_release_but(Graph *graph, GraphMark mark, Node *kept, size_t count, Arena *scratch);
 
 /* Leaves. */
 Node graph_constant(Graph *graph, GraphType type, const double *numbers);

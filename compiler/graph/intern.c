@@ -136,3 +136,67 @@ void graph_release(Graph *graph, GraphMark mark)
         slots_fill(graph);
     graph_keep(graph);
 }
+
+/* Nodes since a mark, apart from the graph. */
+typedef struct SavedNodes {
+    size_t first, count;
+    Expr  *items;
+    bool  *needed;
+    Node  *copies;
+} SavedNodes;
+
+static SavedNodes save_needed(const Graph *graph, size_t first, const Node *kept, size_t count,
+                              Arena *scratch)
+{
+    SavedNodes saved = {.first = first, .count = graph->count - first};
+    saved.items      = arena_new_array(scratch, Expr, saved.count + 1);
+    saved.needed     = arena_new_array(scratch, bool, saved.count + 1);
+    saved.copies     = arena_new_array(scratch, Node, saved.count + 1);
+    for (size_t i = 0; i < count; i++)
+        if (kept[i] >= first)
+            saved.needed[kept[i] - first] = true;
+    for (size_t i = saved.count; i-- > 0;) {
+        const Expr *e  = &graph->items[first + i];
+        saved.items[i] = *e;
+        for (int k = 0; saved.needed[i] && k < e->operand_count; k++)
+            if (e->operands[k] >= first)
+                saved.needed[e->operands[k] - first] = true;
+    }
+    return saved;
+}
+
+static Node saved_copy(const SavedNodes *saved, Node node)
+{
+    return node < saved->first ? node : saved->copies[node - saved->first];
+}
+
+static void restore_needed(Graph *graph, const SavedNodes *saved)
+{
+    Span here = graph->here;
+    for (size_t i = 0; i < saved->count; i++) {
+        Expr e = saved->items[i];
+        if (!saved->needed[i])
+            continue;
+        for (int k = 0; k < e.operand_count; k++)
+            e.operands[k] = saved_copy(saved, e.operands[k]);
+        graph->here      = e.span;
+        saved->copies[i] = node_intern(graph, e);
+    }
+    graph->here = here;
+}
+
+void graph_release_but(Graph *graph, GraphMark mark, Node *kept, size_t count, Arena *scratch)
+{
+    bool any = false;
+    for (size_t i = 0; i < count; i++)
+        any = any || kept[i] >= mark.count;
+    if (!any) {
+        graph_release(graph, mark);
+        return;
+    }
+    SavedNodes saved = save_needed(graph, mark.count, kept, count, scratch);
+    graph_release(graph, mark);
+    restore_needed(graph, &saved);
+    for (size_t i = 0; i < count; i++)
+        kept[i] = saved_copy(&saved, kept[i]);
+}

@@ -49,6 +49,16 @@ static int compare_nodes(const void *a, const void *b)
     return (*(const Node *)a > *(const Node *)b) - (*(const Node *)a < *(const Node *)b);
 }
 
+/* The frame's numbers in the column that OP_row reads. */
+static void add_column(NodeSet *set, const Graph *graph, const Expr *row, Arena *arena)
+{
+    uint32_t     id    = (uint32_t)graph->items[row->operands[0]].number[0];
+    const Crowd *table = &graph->crowds->tables.items[row_crowd(id)];
+    const Node  *nodes = column_nodes(graph->crowds, table, row_column(id));
+    for (uint32_t i = 0; nodes && i < table->rows; i++)
+        set_add(set, nodes[i], arena);
+}
+
 /* What the roots need, ascending. */
 static NodeSet find_needed(const Graph *graph, const Node *roots, size_t root_count, Arena *arena)
 {
@@ -59,6 +69,8 @@ static NodeSet find_needed(const Graph *graph, const Node *roots, size_t root_co
         const Expr *e = &graph->items[set.nodes[i]];
         for (int k = 0; k < e->operand_count; k++)
             set_add(&set, e->operands[k], arena);
+        if (e->op == OP_row && graph->crowds)
+            add_column(&set, graph, e, arena);
     }
     if (set.count)
         qsort(set.nodes, set.count, sizeof *set.nodes, compare_nodes);

@@ -60,8 +60,8 @@ typedef struct Finder {
         CrowdGroup *items;
         size_t      count, capacity;
     } groups;
-    NodeValue *numbers; /* space for those of a part */
-    uint32_t   number_count;
+    SlotContent *contents; /* space for those of a part */
+    uint32_t     content_count;
 } Finder;
 
 /* The context of parts.  Whether there is a level, an instance and a smoothing is as outside. */
@@ -95,16 +95,41 @@ static bool lower_part(const Finder *finder, uint32_t part, Node roots[PART_ROOT
     return lowered.distance != NODE_NONE && !l.overflow;
 }
 
-/* Drops what a part was lowered to, unless crowds of its own parts need it. */
-static void drop_part(const Finder *finder, GraphMark mark, uint32_t made)
+/* The nodes of the frame in the first `slots` slots. */
+static Node *frame_nodes(const Finder *finder, uint32_t slots, size_t *count)
+{
+    Node *nodes = arena_new_array(finder->outer->scratch, Node, 4 * (size_t)slots + 1);
+    *count      = 0;
+    for (uint32_t i = 0; i < slots; i++)
+        for (int k = 0; k < 4; k++)
+            if (finder->contents[i].nodes[k] != NODE_NONE)
+                nodes[(*count)++] = finder->contents[i].nodes[k];
+    return nodes;
+}
+
+/* They have been renumbered. */
+static void set_frame_nodes(const Finder *finder, uint32_t slots, const Node *nodes)
+{
+    for (uint32_t i = 0; i < slots; i++)
+        for (int k = 0; k < 4; k++)
+            if (finder->contents[i].nodes[k] != NODE_NONE)
+                finder->contents[i].nodes[k] = *nodes++;
+}
+
+/* Drops what a part was lowered to, unless crowds of its own parts need it.  What the first `slots`
+   slots have stays. */
+static void drop_part(const Finder *finder, GraphMark mark, uint32_t made, uint32_t slots)
 {
     Graph *g = finder->outer->graph;
+    size_t count;
     if (finder->crowds->made != made) {
         graph_keep(g);
         return;
     }
-    graph_release(g, mark);
-    alike_forget(finder->crowds->alike);
+    Node *nodes = frame_nodes(finder, slots, &count);
+    graph_release_but(g, mark, nodes, count, finder->outer->scratch);
+    alike_forget(finder->crowds->alike, mark.count);
+    set_frame_nodes(finder, slots, nodes);
 }
 
 /* ---- by hashes ---- */
@@ -126,7 +151,7 @@ static void hash_parts(Finder *finder)
         GraphMark mark = graph_mark(finder->outer->graph);
         if (lower_part(finder, i, roots))
             finder->hashes[i] = alike_hash(finder->crowds->alike, roots, PART_ROOTS) | 1;
-        drop_part(finder, mark, made);
+        drop_part(finder, mark, made, 0);
         finder->sorted[i] = finder->hashes[i];
     }
     qsort(finder->sorted, count, sizeof *finder->sorted, compare_hashes);
@@ -158,16 +183,17 @@ static void add_member(Finder *finder, CrowdGroup *group, uint32_t part)
     Arena *scratch = finder->outer->scratch;
     array_push(scratch, &group->members, part);
     for (uint32_t i = 0; i < group->template->slot_count; i++)
-        array_push(scratch, &group->numbers, finder->numbers[i]);
+        array_push(scratch, &group->contents, finder->contents[i]);
 }
 
 static bool matches(Finder *finder, const Template *template, const Node *roots)
 {
-    if (finder->number_count < template->slot_count) {
-        finder->number_count = template->slot_count;
-        finder->numbers = arena_new_array(finder->outer->scratch, NodeValue, template->slot_count);
+    if (finder->content_count < template->slot_count) {
+        finder->content_count = template->slot_count;
+        finder->contents      = arena_new_array(finder->outer->scratch, SlotContent,
+                                                template->slot_count);
     }
-    return template_match(finder->crowds->alike, template, roots, finder->numbers);
+    return template_match(finder->crowds->alike, template, roots, finder->contents);
 }
 
 static CrowdGroup *find_group(Finder *finder, const Node *roots)
@@ -204,7 +230,7 @@ static void group_parts(Finder *finder)
         bool        there = lower_part(finder, i, roots);
         CrowdGroup *group = there ? find_group(finder, roots) : NULL;
         if (group || !there)
-            drop_part(finder, mark, made);
+            drop_part(finder, mark, made, group ? group->template->slot_count : 0);
         else {
             graph_keep(g);
             group = new_group(finder, roots);

@@ -26,9 +26,9 @@ typedef struct CrowdGroup {
         size_t    count, capacity;
     } members;
     struct {
-        NodeValue *items; /* slot_count of each member */
-        size_t     count, capacity;
-    } numbers;
+        SlotContent *items; /* slot_count of each member */
+        size_t       count, capacity;
+    } contents;
     bool     *varies;  /* of each slot: it differs between members */
     uint32_t *columns; /* of each slot 4: of its elements the column, or NO_COLUMN: equal in all */
     struct Column *sources; /* of each column, the element that it has */

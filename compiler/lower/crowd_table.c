@@ -11,10 +11,20 @@ static uint32_t elements(const Graph *graph, Node slot)
     return type <= TYPE_VEC4 ? (uint32_t)type : 1;
 }
 
-static double number_at(const CrowdGroup *group, size_t member, uint32_t slot, uint32_t element)
+/* A number in the table, or the node of the frame that it is. */
+typedef struct Entry {
+    double number;
+    Node   node; /* NODE_NONE: the number is known */
+} Entry;
+
+static Entry entry_at(const CrowdGroup *group, size_t member, uint32_t slot, uint32_t element)
 {
-    return group->numbers.items[member * group->template->slot_count + slot].v[element];
+    const SlotContent *content =
+        &group->contents.items[member * group->template->slot_count + slot];
+    return (Entry){content->numbers[element], content->nodes[element]};
 }
+
+static bool entries_equal(Entry a, Entry b) { return a.number == b.number && a.node == b.node; }
 
 /* ---- columns ---- */
 
@@ -26,9 +36,9 @@ typedef struct Column {
 
 static bool differs(const CrowdGroup *group, uint32_t slot, uint32_t element)
 {
-    double first = number_at(group, 0, slot, element);
+    Entry first = entry_at(group, 0, slot, element);
     for (size_t i = 1; i < group->members.count; i++)
-        if (number_at(group, i, slot, element) != first)
+        if (!entries_equal(entry_at(group, i, slot, element), first))
             return true;
     return false;
 }
@@ -37,10 +47,10 @@ static uint64_t column_hash(const CrowdGroup *group, uint32_t slot, uint32_t ele
 {
     uint64_t hash = 0;
     for (size_t i = 0; i < group->members.count; i++) {
-        double   number = number_at(group, i, slot, element);
+        Entry    entry = entry_at(group, i, slot, element);
         uint64_t bits;
-        memcpy(&bits, &number, sizeof bits);
-        hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
+        memcpy(&bits, &entry.number, sizeof bits);
+        hash = (hash ^ bits ^ entry.node) * 0x9e3779b97f4a7c15u;
         hash ^= hash >> 29;
     }
     return hash;
@@ -51,7 +61,8 @@ static bool columns_equal(const CrowdGroup *group, const Column *a, const Column
     if (a->hash != b->hash)
         return false;
     for (size_t i = 0; i < group->members.count; i++)
-        if (number_at(group, i, a->slot, a->element) != number_at(group, i, b->slot, b->element))
+        if (!entries_equal(entry_at(group, i, a->slot, a->element),
+                           entry_at(group, i, b->slot, b->element)))
             return false;
     return true;
 }
@@ -93,17 +104,53 @@ bool group_find_columns(CrowdGroup *group, const GroupJoin *join)
 
 /* ---- the table ---- */
 
+static bool is_of_frame(const CrowdGroup *group, const Column *column)
+{
+    for (size_t i = 0; i < group->members.count; i++)
+        if (entry_at(group, i, column->slot, column->element).node != NODE_NONE)
+            return true;
+    return false;
+}
+
+static void fill_known(const CrowdGroup *group, Crowd *table, uint32_t column)
+{
+    const Column *source = &group->sources[column];
+    for (uint32_t i = 0; i < table->rows; i++)
+        table->numbers[(size_t)i * table->columns + column] =
+            entry_at(group, i, source->slot, source->element).number;
+}
+
+/* Some members may have known numbers there. */
+static void fill_of_frame(const CrowdGroup *group, Graph *graph, Crowd *table, uint32_t column)
+{
+    Crowds       *crowds = graph->crowds;
+    const Column *source = &group->sources[column];
+    if (!table->frame_columns) {
+        table->frame_columns = arena_new_array(crowds->arena, uint32_t, table->columns);
+        for (uint32_t k = 0; k < table->columns; k++)
+            table->frame_columns[k] = KNOWN_COLUMN;
+    }
+    table->frame_columns[column] = (uint32_t)crowds->frame_numbers.count;
+    for (uint32_t i = 0; i < table->rows; i++) {
+        Entry entry = entry_at(group, i, source->slot, source->element);
+        Node  node  = entry.node == NODE_NONE ? graph_number(graph, entry.number) : entry.node;
+        array_push(crowds->arena, &crowds->frame_numbers, node);
+    }
+}
+
 void group_make_table(CrowdGroup *group, const GroupJoin *join, const Box *boxes, double reach,
                       double margin, Crowd table)
 {
     Crowds  *crowds = graph_crowds(join->graph);
     uint32_t rows = (uint32_t)group->members.count, columns = group->column_count;
-    table.rows = rows, table.columns = columns;
+    table.rows    = rows;
+    table.columns = columns;
     table.numbers = arena_new_array(crowds->arena, double, (size_t)rows *columns + 1);
-    for (uint32_t i = 0; i < rows; i++)
-        for (uint32_t k = 0; k < columns; k++)
-            table.numbers[(size_t)i * columns + k] = number_at(group, i, group->sources[k].slot,
-                                                               group->sources[k].element);
+    for (uint32_t k = 0; k < columns; k++)
+        if (is_of_frame(group, &group->sources[k]))
+            fill_of_frame(group, join->graph, &table, k);
+        else
+            fill_known(group, &table, k);
     Box *own = arena_new_array(join->scratch, Box, rows);
     for (uint32_t i = 0; i < rows; i++)
         own[i] = boxes[group->members.items[i]];

@@ -5,6 +5,7 @@
  */
 #include <string.h>
 
+#include "compiler/graph/crowd.h"
 #include "compiler/print/emitter.h"
 
 _Static_assert((int)KRS_STEP_DIRECTIONAL == (int)ALONG_DIRECTIONAL &&
@@ -218,6 +219,18 @@ static void emit_functions(Emitter *e)
         emit_call(e, sines[i], TYPE_FLOAT, 1);
 }
 
+static void emit_about_tables(Emitter *e)
+{
+    bool vary = e->graph->crowds->frame_numbers.count > 0;
+    text_add(e->out,
+             "// Parts that are alike are rows of krs_rows, a texel buffer of format RGBA32F.\n"
+             "// krs_cells, of format RG32UI, says which of them are near a point.  ");
+    text_add(e->out, vary ? "Rows are\n// found for each frame: krs_frame_tables in krs.h.\n"
+                          : "Both are\n// equal in all frames: krs_frame_tables in krs.h.\n");
+    text_add(e->out,
+             "// Far from all of them krs_distance may be less than the distance, never more.\n");
+}
+
 /* What is in the parameter block. */
 static void emit_block(Emitter *e)
 {
@@ -239,11 +252,7 @@ static void emit_block(Emitter *e)
     if (v->zones > 0)
         text_format(e->out, "// The last %u hold zones: center and radius.\n", v->zones);
     if (emit_reads_tables(e))
-        text_add(e->out,
-                 "// Parts that are alike are rows of krs_rows, a texel buffer of format RGBA32F.\n"
-                 "// krs_cells, of format RG32UI, says which of them are near a point.  Both are\n"
-                 "// equal in all frames: krs_frame_tables in krs.h.  Far from all of them\n"
-                 "// krs_distance may be less than the distance, never more.\n");
+        emit_about_tables(e);
     emit_phrase(e, PHRASE_PARAMETER_BLOCK, (Operands){emit_count(e, slots + v->zones)});
     if (emit_reads_zones(e))
         emit_phrase(e, PHRASE_ZONES, (Operands){emit_count(e, v->zones)});

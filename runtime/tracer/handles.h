@@ -108,7 +108,8 @@ struct KrsRendering {
     Buffer           parameters, frame, control;
     Buffer           table_rows, table_cells; /* krs_frame_tables; none where there are no tables */
     bool             has_tables;              /* they are on the device */
-    Buffer           inputs;                  /* lights, then the rays of a list */
+    float (*frame_rows)[4]; /* rows that vary, as they are on the device; NULL: not there yet */
+    Buffer inputs;          /* lights, then the rays of a list */
     /* The control block that kernels use, copied from and to `control`; none where kernels use
        `control` itself. */
     Buffer   device_control;

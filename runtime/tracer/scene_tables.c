@@ -4,6 +4,8 @@
  */
 #include "runtime/tracer/scene_tables.h"
 
+#include <string.h>
+
 #include "runtime/tracer/layouts.h"
 
 #define TABLES "tables of the scene"
@@ -49,30 +51,66 @@ void scene_tables_bind(KrsRendering *rendering)
                                : layouts_idle_table(rendering->renderer, binding));
 }
 
-static bool copy(Gpu *gpu, const Buffer *rows, const Buffer *cells, const KrsRendering *to)
+static bool copy(Gpu *gpu, const Buffer *from, const Buffer *to)
 {
     double ms = 0;
     if (!gpu_begin(gpu))
         return false;
-    vkCmdCopyBuffer(gpu->commands, rows->buffer, to->table_rows.buffer, 1,
-                    &(VkBufferCopy){0, 0, rows->size});
-    vkCmdCopyBuffer(gpu->commands, cells->buffer, to->table_cells.buffer, 1,
-                    &(VkBufferCopy){0, 0, cells->size});
+    vkCmdCopyBuffer(gpu->commands, from->buffer, to->buffer, 1, &(VkBufferCopy){0, 0, from->size});
     return gpu_finish(gpu, &ms);
 }
 
-bool scene_tables_upload(KrsRendering *rendering, const KrsFrame *frame)
+static bool upload_all(KrsRendering *rendering, const KrsFrame *frame)
 {
     Gpu   *gpu  = &rendering->renderer->gpu;
     Buffer rows = {0}, cells = {0};
-    if (rendering->has_tables || rendering->program->table_cells == 0)
-        return true;
     if (buffer_create(gpu, &rows, rendering->table_rows.size, SHARED, TABLES) &&
         buffer_create(gpu, &cells, rendering->table_cells.size, SHARED, TABLES)) {
         krs_frame_tables(frame, rows.bytes, cells.bytes);
-        rendering->has_tables = copy(gpu, &rows, &cells, rendering);
+        rendering->has_tables = copy(gpu, &rows, &rendering->table_rows) &&
+                                copy(gpu, &cells, &rendering->table_cells);
     }
     buffer_destroy(gpu, &rows);
     buffer_destroy(gpu, &cells);
     return rendering->has_tables;
+}
+
+static bool upload_rows(KrsRendering *rendering, const void *rows, size_t bytes)
+{
+    Gpu   *gpu    = &rendering->renderer->gpu;
+    Buffer staged = {0};
+    bool   done   = buffer_create(gpu, &staged, rendering->table_rows.size, SHARED, TABLES);
+    if (done) {
+        memcpy(staged.bytes, rows, bytes);
+        done = copy(gpu, &staged, &rendering->table_rows);
+    }
+    buffer_destroy(gpu, &staged);
+    return done;
+}
+
+/* Rows are those of the frame, unless they are so already. */
+static bool renew_rows(KrsRendering *rendering, const KrsFrame *frame)
+{
+    Gpu   *gpu        = &rendering->renderer->gpu;
+    size_t texels     = rendering->program->table_rows;
+    float(*rows)[4]   = gpu_alloc(gpu, texels, sizeof *rows, "set the " TABLES);
+    float(*before)[4] = rendering->frame_rows;
+    if (!rows)
+        return false;
+    krs_frame_rows(frame, rows);
+    bool same = before && memcmp(before, rows, texels * sizeof *rows) == 0;
+    bool done = same || upload_rows(rendering, rows, texels * sizeof *rows);
+    gpu_release(gpu, done ? before : rows);
+    if (done)
+        rendering->frame_rows = rows;
+    return done;
+}
+
+bool scene_tables_upload(KrsRendering *rendering, const KrsFrame *frame)
+{
+    if (rendering->program->table_cells == 0)
+        return true;
+    if (!rendering->has_tables && !upload_all(rendering, frame))
+        return false;
+    return !rendering->program->rows_vary || renew_rows(rendering, frame);
 }

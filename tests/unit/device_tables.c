@@ -1,6 +1,6 @@
 /*
  * device_tables.c: the tables of a scene are on the device, word for word as krs_frame_tables gives
- * them, when a picture or a query has begun; a device that cannot read so many texels says so.  All of
+ * them for the frame, when a picture or a query has begun; a device that cannot read so many texels says so.  All of
  * it under the validation layers.
  */
 #include <setjmp.h>
@@ -13,10 +13,13 @@
 
 #include <cmocka.h>
 
+#include <math.h>
+
 #include "compiler/program.h"
 #include "compiler/tables.h"
 #include "runtime/device/gpu.h"
 #include "runtime/tracer/handles.h"
+#include "tests/support/agreement.h"
 #include "tests/support/bench.h"
 #include "tests/support/device.h"
 
@@ -34,6 +37,13 @@ typedef struct Stage {
     KrsFrame    *frame;
     Crowds      *crowds;
 } Stage;
+
+#define CAMERA "camera { eye: [20, 0, 3], target: [20, 0, 0] }"
+
+/* A scene whose tables have numbers of the frame, instead of tables that are added. */
+static const char moving[] = "param height = 0.5 in [0, 2];\n"
+                             "show union([sphere(0.2).move([i, height * sin(time + i), 0]) "
+                             "for i in 0..80]);" CAMERA;
 
 /* Two tables for a scene that reads none. */
 static void add_tables(Bench *bench, Stage *stage, uint32_t rows)
@@ -61,9 +71,8 @@ static void add_tables(Bench *bench, Stage *stage, uint32_t rows)
     stage->scene->program.table_cells = sizes.cells;
 }
 
-static Stage open_stage(Bench *bench, uint32_t rows, unsigned pretence)
+static Stage open_scene(const char *text, unsigned pretence)
 {
-    static const char  text[]  = "show sphere(1);";
     KrsRendererOptions options = {.device     = tested_device(),
                                   .validation = true,
                                   .complaint  = note_complaint,
@@ -72,8 +81,14 @@ static Stage open_stage(Bench *bench, uint32_t rows, unsigned pretence)
     if (krs_renderer_new(&options, &stage.renderer) != KRS_OK)
         fail_msg("%s", krs_renderer_message(stage.renderer));
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &stage.scene), KRS_OK);
-    add_tables(bench, &stage, rows);
     assert_int_equal(krs_frame_new(stage.scene, &stage.frame), KRS_OK);
+    return stage;
+}
+
+static Stage open_stage(Bench *bench, uint32_t rows, unsigned pretence)
+{
+    Stage stage = open_scene("show sphere(1);", pretence);
+    add_tables(bench, &stage, rows);
     return stage;
 }
 
@@ -148,6 +163,102 @@ static void a_picture_brings_tables(void **state)
     close_stage(&stage);
 }
 
+enum { MOVING_POINTS = 400 };
+
+/* The distance of balls as the scene's formula has it. */
+static double moving_distance(const float p[3], double time, double height)
+{
+    double nearest = HUGE_VAL;
+    for (int i = 0; i < 80; i++) {
+        double y = height * sin(time + i);
+        nearest  = fmin(nearest, hypot(hypot(p[0] - i, p[1] - y), (double)p[2]) - 0.2);
+    }
+    return nearest;
+}
+
+/* Points about balls that are there in this frame. */
+static void points_near(Bench *bench, double time, double height, float points[][3])
+{
+    for (int n = 0; n < MOVING_POINTS; n++) {
+        int    i = n % 80;
+        double y = height * sin(time + i), centre[3] = {i, y, 0};
+        for (int k = 0; k < 3; k++)
+            points[n][k] = (float)(centre[k] + random_between(&bench->random, -0.2, 0.2));
+    }
+}
+
+static void assert_frame_is_seen(Bench *bench, const Stage *stage, KrsRendering *rendering,
+                                 double time, double height)
+{
+    static float points[MOVING_POINTS][3], found[MOVING_POINTS];
+    points_near(bench, time, height, points);
+    assert_int_equal(
+        krs_sample(rendering, stage->frame, (const float(*)[3])points, MOVING_POINTS, found, NULL),
+        KRS_OK);
+    assert_true(device_has_tables(stage, rendering));
+    for (int n = 0; n < MOVING_POINTS; n++) {
+        double wanted = moving_distance(points[n], time, height);
+        assert_true(wanted > 0.15 || fabs((double)found[n] - wanted) < 1e-5);
+    }
+}
+
+static void rows_are_those_of_the_frame(void **state)
+{
+    static const double frames[][2] = {{0, 0.5}, {0, 0.5},   {1.5, 0.5},
+                                       {1.5, 2}, {-8, 1.25}, {0, 0.5}};
+    Bench              *bench       = *state;
+    Stage               stage       = open_scene(moving, 0);
+    KrsRendering       *rendering;
+    assert_true(stage.scene->program.rows_vary);
+    assert_int_equal(krs_rendering_new(stage.renderer, stage.scene, &rendering), KRS_OK);
+    for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
+        bool same = i > 0 && frames[i][0] == frames[i - 1][0] && frames[i][1] == frames[i - 1][1];
+        assert_int_equal(krs_frame_set_time(stage.frame, frames[i][0]), KRS_OK);
+        assert_int_equal(krs_frame_set(stage.frame, "height", &frames[i][1], 1), KRS_OK);
+        assert_true(i == 0 || device_has_tables(&stage, rendering) == same);
+        assert_frame_is_seen(bench, &stage, rendering, frames[i][0], frames[i][1]);
+    }
+    assert_int_equal(krs_rendering_update(rendering, stage.scene), KRS_OK);
+    assert_frame_is_seen(bench, &stage, rendering, 0, 0.5);
+    krs_rendering_free(rendering);
+    close_stage(&stage);
+}
+
+/* A picture of a frame is that of a scene without time, whose numbers are those of the frame. */
+static void pictures_are_those_of_the_frame(void **state)
+{
+    (void)state;
+    static const char *const still[] = {"-1", "2.5"};
+    static const double      times[] = {-1, 2.5};
+    KrsRenderOptions         options = {.width = 192, .height = 96, .planes = AGREEMENT_PLANES};
+    Stage                    stage   = open_scene(moving, 0);
+    KrsRendering            *rendering;
+    assert_int_equal(krs_rendering_new(stage.renderer, stage.scene, &rendering), KRS_OK);
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 "show union([sphere(0.2).move([i, 0.5 * sin(%s + i), 0]) for i in 0..80]);" CAMERA,
+                 still[i]);
+        Stage       other = open_scene(text, 0);
+        KrsPicture *pictures[2];
+        assert_false(other.scene->program.rows_vary);
+        assert_int_equal(krs_frame_set_time(stage.frame, times[i]), KRS_OK);
+        assert_int_equal(krs_render(rendering, stage.frame, &options, &pictures[0]), KRS_OK);
+        KrsRendering *of_other;
+        assert_int_equal(krs_rendering_new(other.renderer, other.scene, &of_other), KRS_OK);
+        assert_int_equal(krs_render(of_other, other.frame, &options, &pictures[1]), KRS_OK);
+        Agreement agreement = agreement_of(pictures[0], pictures[1], 1);
+        assert_true(agreement.solid > agreement.pixels / 50);
+        assert_int_equal(agreement_faults(&agreement), 0);
+        krs_picture_free(pictures[0]);
+        krs_picture_free(pictures[1]);
+        krs_rendering_free(of_other);
+        close_stage(&other);
+    }
+    krs_rendering_free(rendering);
+    close_stage(&stage);
+}
+
 static void too_many_texels_are_refused(void **state)
 {
     Stage         stage = open_stage(*state, 20000, KRS_PRETEND_LEAST_LIMITS);
@@ -166,6 +277,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(a_query_brings_tables, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(a_picture_brings_tables, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(rows_are_those_of_the_frame, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(pictures_are_those_of_the_frame, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(too_many_texels_are_refused, bench_start, bench_stop),
     };
     return cmocka_run_group_tests_name("tables on a device", tests, NULL, NULL);

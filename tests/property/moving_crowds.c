@@ -1,0 +1,139 @@
+/*
+ * moving_crowds.c: crowds whose members differ in numbers of the frame: in each frame they are what
+ * each part, lowered for itself, makes of it.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "tests/property/crowd_parts.h"
+
+/* Its place, its turn and its colour depend on the time, or on the parameter as well; some of its
+   numbers are known. */
+static const Shape *moving_part(bool of_parameter)
+{
+    Graph *g    = builder.graph;
+    Node   time = graph_parameter(g, 0, TYPE_FLOAT), up = graph_parameter(g, 1, TYPE_FLOAT);
+    Node   angle = graph_op2(g, OP_add, time, graph_number(g, between(0, 6)));
+    Node   sine = graph_op1(g, OP_sin, angle), cosine = graph_op1(g, OP_cos, angle);
+    Node   zero = graph_number(g, 0), one = graph_number(g, 1);
+    Node   left = graph_op1(g, OP_neg, sine);
+    Node   y    = graph_op2(g, OP_add, sine, graph_number(g, between(-2, 2)));
+    double x = between(-3, 3), z = between(-3, 3);
+    Map    map = {
+           .scale = graph_number(g, between(0.5, 1.5)),
+           .rows  = {graph_op3(g, OP_vec3, cosine, sine, zero),
+                     graph_op3(g, OP_vec3, left, cosine, zero), graph_op3(g, OP_vec3, zero, zero, one)},
+           .shift = graph_op3(g, OP_vec3, graph_number(g, x),
+                           of_parameter ? graph_op2(g, OP_mul, y, up) : y, graph_number(g, z)),
+           .pole  = NODE_NONE};
+    Node      bright   = graph_op2(g, OP_mul, sine, sine);
+    Material *material = arena_new(&arena, Material);
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    material->name = NODE_NONE;
+#include "compiler/shape/surface.def"
+    material->name     = "moving";
+    material->color    = graph_op3(g, OP_vec3, bright, graph_number(g, between(0, 1)), bright);
+    const Shape *shape = ring(between(0.1, 0.3), between(0.02, 0.08));
+    return make_paint(&builder, make_transform(&builder, shape, &map, no_place), material,
+                      no_place);
+}
+
+static const Shape *moving_union(void)
+{
+    const Shape  **parts = arena_new_array(&arena, const Shape *, PARTS);
+    GraphParameter range = {{0}, {1}};
+    array_push(&arena, &builder.graph->parameters, range);
+    for (int i = 0; i < PARTS; i++)
+        parts[i] = moving_part(i % 2);
+    return make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
+}
+
+/* Those that the parameter raises have other operations, but not at points: all are one crowd. */
+static void moving_parts(void **state)
+{
+    (void)state;
+    const Shape   *all    = moving_union();
+    LoweredCrowds *crowds = lowered_crowds_new(builder.graph, &arena, LEAST);
+    Seen           apart = lower(all, NULL), crowd = lower(all, crowds);
+    assert_int_equal(builder.graph->crowds->tables.count, 1);
+    assert_int_equal(builder.graph->crowds->tables.items[0].rows, PARTS);
+    assert_true(crowd.tape.count < apart.tape.count);
+    for (int i = 0; i < 6; i++) {
+        now    = i == 0 ? 0 : between(-20, 20);
+        height = i == 0 ? 1 : between(0, 1);
+        assert_right(compare_lowered(all, apart, crowd, 3.5));
+    }
+}
+
+/* A pass that makes a graph takes the frame's numbers along. */
+static void moving_parts_are_simplified(void **state)
+{
+    (void)state;
+    const Shape *all   = moving_union();
+    Seen         apart = lower(all, NULL);
+    Seen   crowd = lower(all, lowered_crowds_new(builder.graph, &arena, LEAST)), simple = crowd;
+    Graph *before = builder.graph;
+    Graph *after  = graph_simplify(before, simple.roots, ROOT_COUNT, &arena);
+    simple.tape   = tape_new(after, simple.roots, ROOT_COUNT, &arena);
+    now           = 2.5;
+    height        = 0.75;
+    prepare(&apart);
+    builder.graph = after;
+    prepare(&simple);
+    int near = 0;
+    for (int i = 0; i < POINTS; i++) {
+        double p[3];
+        random_vector(&randomness, 3.5, p);
+        double wanted = look(&apart, p), is = look(&simple, p);
+        assert_true(is <= wanted + 1e-12);
+        near += wanted * all->slope < clearance_at(p);
+        assert_true(wanted * all->slope >= clearance_at(p) || fabs(is - wanted) <= 1e-12);
+    }
+    assert_true(near > POINTS / 20);
+}
+
+/* An infinite number of the frame is found, and is told from those before. */
+static void infinite_numbers_are_found(void **state)
+{
+    (void)state;
+    const Shape *parts[PARTS];
+    Graph       *g    = builder.graph;
+    Node         time = graph_parameter(g, 0, TYPE_FLOAT);
+    for (int i = 0; i < PARTS; i++) {
+        Node after = graph_op2(g, OP_sub, time, graph_number(g, i));
+        Node zero  = graph_number(g, 0);
+        Map  map   = {.scale = graph_number(g, 1),
+                      .rows = {graph_vec3(g, 1, 0, 0), graph_vec3(g, 0, 1, 0), graph_vec3(g, 0, 0, 1)},
+                      .shift = graph_op3(g, OP_vec3, zero,
+                                         graph_op2(g, OP_div, graph_number(g, 1), after), zero),
+                      .pole  = NODE_NONE};
+        parts[i]   = make_transform(&builder, ball(0.2), &map, no_place);
+    }
+    const Shape *all   = make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
+    Seen         crowd = lower(all, lowered_crowds_new(g, &arena, LEAST));
+    assert_int_equal(g->crowds->tables.count, 1);
+    now = 0.5;
+    prepare(&crowd);
+    assert_true(tape_frame_infinite(&crowd.tape, crowd.values) == NODE_NONE);
+    now = 7;
+    prepare(&crowd);
+    Node found = tape_frame_infinite(&crowd.tape, crowd.values);
+    assert_true(found != NODE_NONE && !isfinite(crowd.values[found].v[0]));
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, start, finish)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(moving_parts),
+        TEST(moving_parts_are_simplified),
+        TEST(infinite_numbers_are_found),
+    };
+    return cmocka_run_group_tests_name("moving crowds", tests, NULL, NULL);
+}
