@@ -134,6 +134,8 @@ static void keep_fact(const Graph *graph, Node node)
     for (uint32_t k = 0; k < e->operand_count; k++)
         fixed = fixed && facts[e->operands[k]] != &varies;
     facts[node] = fixed ? arena_new(graph->arena, Fact) : &varies;
+    if (graph->frame_facts->used <= node)
+        graph->frame_facts->used = node + 1;
     if (fixed)
         *facts[node] = node_fact(&analysis, node, (Box){0});
 }

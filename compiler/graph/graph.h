@@ -82,8 +82,8 @@ typedef struct GraphSlot {
 /* Facts of nodes that depend neither on the point nor on parameters, as far as somebody has asked
    (facts.c). */
 typedef struct FrameFacts {
-    struct Fact **items; /* by node; NULL: not found yet */
-    size_t        count;
+    struct Fact **items;       /* by node; NULL: not found yet */
+    size_t        count, used; /* behind `used` none is found */
 } FrameFacts;
 
 typedef struct Graph {

@@ -102,6 +102,13 @@ GraphMark graph_mark(Graph *graph)
     return (GraphMark){graph->count, graph->slot_count, graph->respanned.count};
 }
 
+/* Numbers of nodes that are dropped are given to others. */
+static void facts_forget(FrameFacts *facts, size_t first)
+{
+    for (; facts->used > first; facts->used--)
+        facts->items[facts->used - 1] = NULL;
+}
+
 void graph_keep(Graph *graph)
 {
     if (--graph->marks == 0)
@@ -130,8 +137,7 @@ void graph_release(Graph *graph, GraphMark mark)
             *slot_find(graph, e, expr_hash(e)) = (GraphSlot){0};
         }
     graph->count = mark.count;
-    for (size_t i = mark.count; i < graph->frame_facts->count; i++)
-        graph->frame_facts->items[i] = NULL;
+    facts_forget(graph->frame_facts, mark.count);
     if (graph->slot_count != mark.slot_count)
         slots_fill(graph);
     graph_keep(graph);
