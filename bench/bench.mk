@@ -71,6 +71,11 @@ $(B)/bench/parts/parts: $(B)/bench/parts/parts.o $(B)/libkrs.a
 bench-parts: $(B)/bench/parts/parts
 	@$(B)/bench/parts/parts
 
+# Scenes of many parts, beside POV-Ray (bench/README.md).
+bench-large: deps
+	@$(MAKE) --no-print-directory $(B)/krs
+	@bench/large/large.sh $(B)/krs
+
 # For `make test`.
 SCRIPTS += tests/bench.sh
 test-programs: $(B)/bench/bench
@@ -79,4 +84,4 @@ clang-objects: $(BENCH:%.c=$(B)/%.o) $(STAGE) $(MINIFY) \
                $(B)/bench/normals/normals.o $(ALGEBRAIC:%=$(B)/%) $(DEVICES) \
                $(B)/bench/registers/registers.o $(B)/bench/parts/parts.o
 .PHONY: bench bench-quick minify iterations inverted bench-normals bench-algebraic check-device \
-        bench-registers bench-parts
+        bench-registers bench-parts bench-large
