@@ -89,7 +89,7 @@ static void march_to_surface(Validation *v)
     for (size_t i = 0; i < BATCH; i++)
         random_direction(&v->random, directions[i]);
     for (int step = 0; step < MARCH_STEPS; step++) {
-        krs_distance(v->frame, (const double(*)[3])v->points, BATCH, distances);
+        krs_distance_bound(v->frame, (const double(*)[3])v->points, BATCH, distances);
         for (size_t i = 1; i < BATCH; i += 2) {
             double advance = 0.9 * distances[i]; /* arrives nearly, from either side */
             if (fabs(advance) > 1e-3 * v->size && isfinite(advance))
@@ -193,7 +193,7 @@ static void measure_estimates(Validation *v, const KrsHit *hits, bool straight)
         for (size_t i = 0; i < BATCH; i++)
             for (int axis = 0; axis < 3; axis++)
                 points[i][axis] = hits[i].point[axis] + lengths[i] * directions[i][axis];
-        krs_distance(v->frame, (const double(*)[3])points, BATCH, found);
+        krs_distance_bound(v->frame, (const double(*)[3])points, BATCH, found);
         for (size_t i = 0; i < BATCH; i++) {
             if (!going[i])
                 continue;
@@ -235,7 +235,7 @@ static KrsStatus try_balls(Validation *v)
                 choose_inside(v, &hits[i], probe, inside[i]);
             else
                 memcpy(inside[i], v->points[i], sizeof inside[i]);
-        krs_distance(v->frame, (const double(*)[3])inside, BATCH, found);
+        krs_distance_bound(v->frame, (const double(*)[3])inside, BATCH, found);
         for (size_t i = 0; i < BATCH; i++) {
             if (!is_worth_trying(v, hits[i].distance) || is_estimate(v, &hits[i]))
                 continue;
@@ -247,6 +247,25 @@ static KrsStatus try_balls(Validation *v)
     measure_estimates(v, hits, true);
     measure_estimates(v, hits, false);
     return v->reached > ALL_OF_THE_WAY ? report_estimate(v) : KRS_OK;
+}
+
+/* Whether kernels may have found a distance in a cell that is a little aside, as they compute in
+   single precision. */
+static bool is_of_cell_aside(Validation *v, const double point[3], double answered,
+                             double tolerance)
+{
+    enum { CORNERS = 8 };
+    const double aside = 0.1 * tolerance;
+    double       around[CORNERS][3], bounds[CORNERS], least = INFINITY, most = -INFINITY;
+    for (int i = 0; i < CORNERS; i++)
+        for (int axis = 0; axis < 3; axis++)
+            around[i][axis] = point[axis] + (i >> axis & 1 ? aside : -aside);
+    krs_distance_bound(v->frame, (const double(*)[3])around, CORNERS, bounds);
+    for (int i = 0; i < CORNERS; i++) {
+        least = fmin(least, bounds[i]);
+        most  = fmax(most, bounds[i]);
+    }
+    return answered >= least - tolerance && answered <= most + tolerance;
 }
 
 /* Both sides are asked about the same float positions. */
@@ -263,7 +282,7 @@ static KrsStatus try_device(Validation *v, KrsRenderer *renderer, KrsRendering *
         say("%s", krs_renderer_message(renderer));
         return status;
     }
-    krs_distance(v->frame, (const double(*)[3])rounded, BATCH, expected);
+    krs_distance_bound(v->frame, (const double(*)[3])rounded, BATCH, expected);
     for (size_t i = 0; i < BATCH; i++) {
         double tolerance  = TOLERANCE_OF_SCALE * v->size + TOLERANCE_OF_VALUE * fabs(expected[i]);
         double difference = fabs(answered[i] - expected[i]) / tolerance;
@@ -271,6 +290,8 @@ static KrsStatus try_device(Validation *v, KrsRenderer *renderer, KrsRendering *
             v->difference = fmax(v->difference, isfinite(difference) ? difference : 0);
             continue;
         }
+        if (is_of_cell_aside(v, rounded[i], answered[i], tolerance))
+            continue;
         printf("%s: refuted: the device finds the distance %.9g", v->path, answered[i]);
         print_point(" at", rounded[i]);
         fputs(", double precision ", stdout);

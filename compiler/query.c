@@ -34,13 +34,14 @@ static double zone_depth(const KrsFrame *frame, const double point[3])
     return depth;
 }
 
-/* The least distance of all components, cut by the zones.  *nearest is the number from 1 of that
-   component, whether or not a zone cuts it. */
-static double distance_at(KrsFrame *frame, const double point[3], uint32_t *nearest)
+/* The least distance of all components by a tape of them, cut by the zones.  *nearest is the number
+   from 1 of that component, whether or not a zone cuts it. */
+static double distance_by(KrsFrame *frame, const Tape *tape, const double point[3],
+                          uint32_t *nearest)
 {
     const KrsScene *scene = frame->scene;
     double          least = INFINITY;
-    tape_run_point(&scene->distance, point, frame->values);
+    tape_run_point(tape, point, frame->values);
     for (size_t i = 0; i < scene->component_count; i++) {
         double distance = frame->values[distance_root(&scene->roots, i)].v[0];
         if (distance < least || i == 0) {
@@ -50,6 +51,11 @@ static double distance_at(KrsFrame *frame, const double point[3], uint32_t *near
     }
     double depth = zone_depth(frame, point);
     return least < depth ? depth : least;
+}
+
+static double distance_at(KrsFrame *frame, const double point[3], uint32_t *nearest)
+{
+    return distance_by(frame, &frame->scene->distance, point, nearest);
 }
 
 /* Far from surfaces, short steps cost less than exact ones. */
@@ -86,6 +92,20 @@ static double clearance_at(KrsFrame *frame, const double point[3])
     for (size_t i = 0; i < roots.count; i++)
         least = fmin(least, frame->values[roots.items[i]].v[0]);
     return fmax(least, zone_depth(frame, point));
+}
+
+KrsStatus krs_distance_bound(KrsFrame *frame, const double (*points)[3], size_t count,
+                             double *distances)
+{
+    uint32_t nearest = 0;
+    Tape     bound   = frame->scene->distance;
+    bound.by_cells   = true;
+    if (!are_finite(points, count))
+        return KRS_BAD_ARGUMENT;
+    frame_refresh(frame);
+    for (size_t i = 0; i < count; i++)
+        distances[i] = distance_by(frame, &bound, points[i], &nearest);
+    return KRS_OK;
 }
 
 KrsStatus krs_distance(KrsFrame *frame, const double (*points)[3], size_t count, double *distances)

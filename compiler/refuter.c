@@ -8,12 +8,15 @@
 
 bool is_wrapper(const Shape *shape) { return !shape_info[shape->kind].own; }
 
+/* Most nodes of a shape that is searched: a search keeps much of each. */
+enum { MOST_SEARCHED = 100000 };
+
 static Lowering lowering_of(Refuter *r, LoweredShapes *lowered_shapes)
 {
     return (Lowering){.graph          = r->graph,
                       .scratch        = r->in->scratch,
                       .lowered_shapes = lowered_shapes,
-                      .most           = r->graph->count + MOST_LOWERED};
+                      .most           = r->graph->count + MOST_SEARCHED};
 }
 
 Node lower_alone(Refuter *r, const Shape *shape, bool lipschitz, LoweredShapes *lowered_shapes)

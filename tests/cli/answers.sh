@@ -101,18 +101,18 @@ result $? "info as JSON"
 cat >many.krs <<'EOS'
 let ball = sphere(1);
 show ball;
-for i in 0..60 { show sphere(0.1).move([2 + 0.3 * i, 0, 0]); }
-show union([box([0.1, 0.2, 0.3 + 0.01 * i]).move([2 + 0.3 * i, 2, 0]) for i in 0..40]);
+for i in 0..80 { show sphere(0.1).move([2 + 0.3 * i, 0, 0]); }
+show union([box([0.1, 0.2, 0.3 + 0.01 * i]).move([2 + 0.3 * i, 2, 0]) for i in 0..90]);
 EOS
 run info many.krs
-[ "$status" -eq 0 ] && grep -q '^tables: 2 kinds, 100 rows, [1-9][0-9]* kB$' out
+[ "$status" -eq 0 ] && grep -q '^tables: 2 kinds, 170 rows, [1-9][0-9]* kB$' out
 result $? "info counts the kinds of parts that are alike, and their rows"
 grep -q '^component 51$' out && ! grep -q '^component 52$' out &&
-    grep -q '^components 52 to 61: 10 more of this loop$' out && grep -q '^component 62$' out
+    grep -q '^components 52 to 81: 30 more of this loop$' out && grep -q '^component 82$' out
 result $? "of a loop info shows the first 50 components"
 run info --json many.krs
-[ "$status" -eq 0 ] && is_json <out && grep -q '"tables": {"kinds": 2, "rows": 100, "bytes": ' out &&
-    grep -q '"name": "component 61"' out
+[ "$status" -eq 0 ] && is_json <out && grep -q '"tables": {"kinds": 2, "rows": 170, "bytes": ' out &&
+    grep -q '"name": "component 81"' out
 result $? "its JSON has the tables and all components"
 # Slopes that are found for each frame: who has them, in which slot, and what is a frame without.
 cat >wave.krs <<'EOS'

@@ -43,6 +43,13 @@ KrsStatus krs_distance(KrsFrame *frame, const double (*points)[3], size_t count,
     return KRS_OK;
 }
 
+/* There is no crowd. */
+KrsStatus krs_distance_bound(KrsFrame *frame, const double (*points)[3], size_t count,
+                             double *distances)
+{
+    return krs_distance(frame, points, count, distances);
+}
+
 KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits)
 {
     (void)frame;
