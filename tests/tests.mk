@@ -74,7 +74,7 @@ $(B)/tests/%: $(B)/tests/%.o $(LINKED)
 $(B)/tests/unit/table_files: | $(B)/krs
 # In no archive: system calls that can fail are for those two alone.
 $(B)/tests/unit/writer $(B)/tests/unit/image_files: $(B)/tests/unit/file_faults.o
-.SECONDARY:
+.PRECIOUS: $(B)/%.o
 
 # Pictures under every option, bit for bit as they were: for changes that should not be seen.
 golden: all $(B)/tests/golden/pictures
