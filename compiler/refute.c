@@ -226,12 +226,14 @@ static KrsStatus try_all(Refuter *r, bool whole, Finding *finding)
     for (size_t i = r->suspects.count; i-- > 0 && !r->stopped;) {
         if (is_whole(r, i) != whole || is_wrapper(r->suspects.items[i].shape))
             continue;
-        GraphMark mark = graph_mark(
-            r->graph); /* of thousands of shapes the nodes would be too many */
+        /* Of thousands of shapes the nodes would be too many. */
+        GraphMark mark = graph_mark(r->graph);
         if (try_shape(r, i, r->total / 2 / count, finding) ||
             try_claims(r, i, r->total / 8 / count, finding) ||
-            (whole && try_steps(r, i, r->total / 8 / count, finding)))
-            return graph_keep(r->graph), conclude(r, finding);
+            (whole && try_steps(r, i, r->total / 8 / count, finding))) {
+            graph_keep(r->graph);
+            return conclude(r, finding);
+        }
         graph_release(r->graph, mark);
     }
     return r->stopped ? KRS_INTERRUPTED : KRS_OK;
