@@ -55,8 +55,10 @@ for program in "$@"; do
     */*) command=$program ;;
     *) command=./$program ;;
     esac
+    begun=$(date +%s)
     timeout -k 5 "$seconds" "$command" >"$output" 2>&1 </dev/null
     status=$?
+    took=$(($(date +%s) - begun))
     skipped=$(grep -cE '^(not )?ok.*# SKIP' "$output") # cmocka says `not ok` of those
     passed=$(grep '^ok' "$output" | grep -cv '# SKIP')
     failed=$(grep '^not ok' "$output" | grep -cv '# SKIP')
@@ -69,7 +71,7 @@ for program in "$@"; do
         echo "==== $program: $failed failed${why:+ ($why)}"
         cat "$output"
     else
-        echo "     $program: $passed passed$(skips "$skipped")"
+        echo "     $program: $passed passed$(skips "$skipped") in $took s"
     fi
     total_passed=$((total_passed + passed))
     total_failed=$((total_failed + failed))

@@ -256,8 +256,10 @@ static void emit_block(Emitter *e)
     emit_phrase(e, PHRASE_PARAMETER_BLOCK, (Operands){emit_count(e, slots + v->zones)});
     if (emit_reads_zones(e))
         emit_phrase(e, PHRASE_ZONES, (Operands){emit_count(e, v->zones)});
-    if (emit_reads_tables(e))
+    if (emit_reads_tables(e)) {
+        emit_phrase(e, v->buffers ? PHRASE_BUFFER_TABLES : PHRASE_TEXEL_TABLES, (Operands){0});
         emit_phrase(e, PHRASE_TABLES, (Operands){0});
+    }
 }
 
 /* Promised functions, which may then be called in any order. */
@@ -307,7 +309,7 @@ uint64_t krs_variant_hash(const KrsVariant *variant, const KrsFunction *wanted, 
 {
     const uint64_t numbers[] = {variant->zones,  variant->march_group,     variant->step,
                                 variant->planes, variant->camera_relative, variant->many_threads,
-                                variant->values, variant->shares};
+                                variant->values, variant->shares,          variant->buffers};
     uint64_t       set = 0, h = 0xcbf29ce484222325u; /* FNV-1a */
     for (size_t i = 0; i < count; i++)
         set |= (uint64_t)1 << wanted[i];

@@ -11,11 +11,26 @@
 
 #include "runtime/device/instance.h"
 
+/* Where fewer texels than that can be read, buffers are: the lowest band of the widest picture has
+   so many (band.c). */
+#define LEAST_TEXELS (1u << 22)
+
+bool devices_read_texels(const VkPhysicalDeviceLimits *limits)
+{
+    return limits->maxTexelBufferElements >= LEAST_TEXELS;
+}
+
+static uint32_t needed_buffers(const VkPhysicalDeviceLimits *limits)
+{
+    return STORAGE_BUFFERS + (devices_read_texels(limits) ? 0 : STORAGE_BUFFERS_FOR_TEXELS);
+}
+
 /* Whether the device has what all kernels need. */
 static bool is_capable(const VkPhysicalDeviceProperties *properties)
 {
+    const VkPhysicalDeviceLimits *limits = &properties->limits;
     return properties->apiVersion >= VK_API_VERSION_1_1 &&
-           properties->limits.maxPerStageDescriptorStorageBuffers >= STORAGE_BUFFERS;
+           limits->maxPerStageDescriptorStorageBuffers >= needed_buffers(limits);
 }
 
 /* The first queue family with compute, and how many bits its clock has; false when there is
@@ -146,11 +161,12 @@ static void refuse_devices(Gpu *gpu, const VkPhysicalDevice *devices, uint32_t c
         KrsDevice                  device = gpu_describe(devices[i]);
         vkGetPhysicalDeviceProperties(devices[i], &properties);
         uint32_t buffers = properties.limits.maxPerStageDescriptorStorageBuffers;
-        if (!wanted(&device, i, words) || buffers >= STORAGE_BUFFERS)
+        uint32_t needed  = needed_buffers(&properties.limits);
+        if (!wanted(&device, i, words) || buffers >= needed)
             continue;
         gpu_refuse(gpu, KRS_NO_DEVICE,
-                   "the device `%s` gives a kernel %u storage buffers, and krs needs %d",
-                   device.name, buffers, STORAGE_BUFFERS);
+                   "the device `%s` gives a kernel %u storage buffers, and krs needs %u",
+                   device.name, buffers, needed);
         return;
     }
     if (words && *words)

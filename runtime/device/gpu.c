@@ -3,14 +3,12 @@
  */
 #include "runtime/device/gpu.h"
 
+#include "runtime/device/devices.h"
 #include "runtime/device/instance.h"
 #include "runtime/device/pipelines.h"
 #include "runtime/device/resources.h"
 #include "runtime/device/shared_kernels.h"
 
-/* Where fewer texels than that can be read, buffers are: the lowest band of the widest picture has
-   so many (band.c). */
-#define LEAST_TEXELS (1u << 22)
 /* What every device must have at least (Vulkan, table 53). */
 #define LEAST_TEXEL_LIMIT (1u << 16)
 #define LEAST_RANGE_LIMIT (1u << 27)
@@ -32,7 +30,7 @@ static void read_properties(Gpu *gpu, unsigned pretence)
         limits->maxStorageBufferRange  = LEAST_RANGE_LIMIT;
     }
     gpu->pretends_card = pretence & KRS_PRETEND_CARD;
-    gpu->texels        = limits->maxTexelBufferElements >= LEAST_TEXELS;
+    gpu->texels        = devices_read_texels(limits);
     bool shuffles      = subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT &&
                     subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
     const VkSubgroupFeatureFlags sums = VK_SUBGROUP_FEATURE_BASIC_BIT |

@@ -12,9 +12,9 @@
 #include "runtime/device/cache.h"
 #include "runtime/krs_vulkan.h"
 
-/* What a stage of a kernel binds of storage buffers (layouts.h); devices may have four and no more,
-   but those of desktops have 16 and more. */
-enum { STORAGE_BUFFERS = 8 };
+/* What a stage of a kernel binds of storage buffers (layouts.h), and how many more in place of
+   texels; devices may have four and no more, but those of desktops have 16 and more. */
+enum { STORAGE_BUFFERS = 8, STORAGE_BUFFERS_FOR_TEXELS = 2 };
 
 typedef struct SharedKernel SharedKernel; /* shared_kernels.h */
 

@@ -17,7 +17,6 @@ static const struct {
     [FOUR_NUMBERS] = {VK_FORMAT_R32G32B32A32_UINT, 16},
     [FOUR_FLOATS]  = {VK_FORMAT_R32G32B32A32_SFLOAT, 16},
 };
-/* Whatever the device: what the compiler prints reads texels. */
 static const TexelKind texels_of_scene[SCENE_BINDINGS] = {
     [ROWS_BINDING]  = FOUR_FLOATS,
     [CELLS_BINDING] = TWO_NUMBERS,
@@ -29,6 +28,7 @@ static const TexelKind texels_of[FRAME_BINDINGS] = {
 };
 
 static_assert((int)BUFFER_BINDINGS <= (int)STORAGE_BUFFERS, "devices are asked for so many");
+static_assert((int)TABLE_BINDINGS <= (int)STORAGE_BUFFERS_FOR_TEXELS, "and for so many more");
 
 static VkDescriptorType type_of(uint32_t binding)
 {
@@ -37,10 +37,11 @@ static VkDescriptorType type_of(uint32_t binding)
                                     : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
-static VkDescriptorType type_of_scene(uint32_t binding)
+static VkDescriptorType type_of_scene(const Gpu *gpu, uint32_t binding)
 {
-    return texels_of_scene[binding] ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
-                                    : VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    return !texels_of_scene[binding] ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+           : gpu->texels             ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
+                                     : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
 static bool is_bound(const Gpu *gpu, uint32_t binding)
@@ -79,7 +80,7 @@ static bool set_layouts_create(KrsRenderer *renderer)
     Gpu                         *gpu = &renderer->gpu;
     VkDescriptorSetLayoutBinding scene[SCENE_BINDINGS], frame[FRAME_BINDINGS];
     for (uint32_t i = 0; i < SCENE_BINDINGS; i++)
-        scene[i] = layout_binding(i, type_of_scene(i), true);
+        scene[i] = layout_binding(i, type_of_scene(gpu, i), true);
     for (uint32_t i = 0; i < FRAME_BINDINGS; i++)
         frame[i] = layout_binding(i, type_of(i), is_bound(gpu, i));
     return set_layout_create(gpu, scene, SCENE_BINDINGS, &renderer->scene_layout) &&
@@ -120,7 +121,8 @@ bool layouts_view_texels(Gpu *gpu, uint32_t binding, Buffer *buffer, const char 
 bool layouts_view_table(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name)
 {
     TexelKind kind = texels_of_scene[binding];
-    return buffer_view(gpu, buffer, texel_kinds[kind].format, texel_kinds[kind].bytes, name);
+    return !gpu->texels ||
+           buffer_view(gpu, buffer, texel_kinds[kind].format, texel_kinds[kind].bytes, name);
 }
 
 static void bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, VkDescriptorType type,
@@ -148,7 +150,7 @@ void layouts_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer 
 
 void layouts_bind_scene(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer)
 {
-    bind(gpu, set, binding, type_of_scene(binding), buffer);
+    bind(gpu, set, binding, type_of_scene(gpu, binding), buffer);
 }
 
 const Buffer *layouts_idle_table(const KrsRenderer *renderer, uint32_t binding)
@@ -190,7 +192,7 @@ static bool idle_create(KrsRenderer *renderer)
                 .pPoolSizes =
                     (VkDescriptorPoolSize[]){
                         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2},
-                        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BUFFER_BINDINGS},
+                        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BUFFER_BINDINGS + TABLE_BINDINGS},
                         {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, TEXEL_BINDINGS + TABLE_BINDINGS},
                     },
             },

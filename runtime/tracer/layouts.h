@@ -15,7 +15,7 @@ enum {
     ROWS_BINDING,
     CELLS_BINDING,
     SCENE_BINDINGS,
-    TABLE_BINDINGS = SCENE_BINDINGS - ROWS_BINDING
+    TABLE_BINDINGS = SCENE_BINDINGS - ROWS_BINDING /* texels, or storage buffers without them */
 };
 
 /* How many bindings of the frame's set (blocks.h) are texels, and how many are storage buffers: all
@@ -36,7 +36,7 @@ bool layouts_view_texels(Gpu *gpu, uint32_t binding, Buffer *buffer, const char 
 /* Points a binding of a frame's set at a buffer.  It does nothing for texels on devices that read none. */
 void layouts_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer);
 
-/* The same for a scene's set, on all devices. */
+/* The same for a scene's set. */
 bool layouts_view_table(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name);
 void layouts_bind_scene(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer);
 /* What a scene without tables binds in their place. */

@@ -28,20 +28,21 @@ static bool sets_create(KrsRendering *rendering)
     Gpu        *gpu     = &rendering->renderer->gpu;
     const char *attempt = "prepare the scene";
     TRY(gpu, attempt,
-        vkCreateDescriptorPool(gpu->device,
-                               &(VkDescriptorPoolCreateInfo){
-                                   .sType         = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                   .maxSets       = 3,
-                                   .poolSizeCount = 3,
-                                   .pPoolSizes =
-                                       (VkDescriptorPoolSize[]){
-                                           {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 3},
-                                           {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * BUFFER_BINDINGS},
-                                           {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
-                                            2 * TEXEL_BINDINGS + TABLE_BINDINGS},
-                                       },
-                               },
-                               NULL, &rendering->pool));
+        vkCreateDescriptorPool(
+            gpu->device,
+            &(VkDescriptorPoolCreateInfo){
+                .sType         = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                .maxSets       = 3,
+                .poolSizeCount = 3,
+                .pPoolSizes =
+                    (VkDescriptorPoolSize[]){
+                        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 3},
+                        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * BUFFER_BINDINGS + TABLE_BINDINGS},
+                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
+                         2 * TEXEL_BINDINGS + TABLE_BINDINGS},
+                    },
+            },
+            NULL, &rendering->pool));
     VkDescriptorSet sets[3];
     TRY(gpu, attempt,
         vkAllocateDescriptorSets(

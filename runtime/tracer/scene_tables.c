@@ -12,18 +12,25 @@
 
 enum { ROW_BYTES = 4 * sizeof(float), CELL_BYTES = 2 * sizeof(uint32_t) };
 
+static VkDeviceSize most_texels(const Gpu *gpu, uint32_t texel_bytes)
+{
+    const VkPhysicalDeviceLimits *limits = &gpu->properties.limits;
+    return gpu->texels ? limits->maxTexelBufferElements
+                       : limits->maxStorageBufferRange / texel_bytes;
+}
+
 /* One of the two buffers, which holds so many texels. */
 static bool table_create(KrsRendering *rendering, uint32_t binding, Buffer *buffer, size_t texels,
                          uint32_t texel_bytes)
 {
     Gpu         *gpu   = &rendering->renderer->gpu;
     VkDeviceSize bytes = buffer_texel_bytes((VkDeviceSize)texels * texel_bytes);
-    uint32_t     most  = gpu->properties.limits.maxTexelBufferElements;
+    VkDeviceSize most  = most_texels(gpu, texel_bytes);
     if (bytes / texel_bytes > most) {
         gpu_refuse(gpu, KRS_NO_DEVICE,
                    "the device has no room for the " TABLES
-                   ": they are %zu texels, and it reads %u",
-                   texels, most);
+                   ": they have %zu texels, and it reads %llu",
+                   texels, (unsigned long long)most);
         return false;
     }
     return buffer_create(gpu, buffer, bytes, ON_DEVICE, TABLES) &&

@@ -98,6 +98,7 @@ static KernelVariant begin_variant(const KrsRendering *rendering, KrsTrace trace
                      .camera_relative = camera_relative,
                      .many_threads    = rendering->renderer->early_outs && !camera_relative,
                      .values          = rendering_value_slots(rendering) > 0,
+                     .buffers         = !gpu->texels,
     };
     define(&to, "#define TRACE %du\n#define REFILL %d\n", (int)(by_ray ? KRS_TRACE_PLAIN : trace),
            schedule == KRS_SCHEDULE_REFILL ? (int)gpu->refill_lanes : 0);

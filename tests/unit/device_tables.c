@@ -1,7 +1,8 @@
 /*
  * device_tables.c: the tables of a scene are on the device, word for word as krs_frame_tables gives
- * them for the frame, when a picture or a query has begun; a device that cannot read so many texels says so.  All of
- * it under the validation layers.
+ * them for the frame, when a picture or a query has begun.  They are texels, or storage buffers where
+ * the device reads too few texels; a device that has no room for them says so.  All of it under the
+ * validation layers.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -202,14 +203,14 @@ static void assert_frame_is_seen(Bench *bench, const Stage *stage, KrsRendering 
     }
 }
 
-static void rows_are_those_of_the_frame(void **state)
+static void rows_are_those_of_the_frame(Bench *bench, unsigned pretence)
 {
     static const double frames[][2] = {{0, 0.5}, {0, 0.5},   {1.5, 0.5},
                                        {1.5, 2}, {-8, 1.25}, {0, 0.5}};
-    Bench              *bench       = *state;
-    Stage               stage       = open_scene(moving, 0);
+    Stage               stage       = open_scene(moving, pretence);
     KrsRendering       *rendering;
     assert_true(stage.scene->program.rows_vary);
+    assert_int_equal(stage.renderer->gpu.texels, pretence == 0);
     assert_int_equal(krs_rendering_new(stage.renderer, stage.scene, &rendering), KRS_OK);
     for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
         bool same = i > 0 && frames[i][0] == frames[i - 1][0] && frames[i][1] == frames[i - 1][1];
@@ -222,6 +223,16 @@ static void rows_are_those_of_the_frame(void **state)
     assert_frame_is_seen(bench, &stage, rendering, 0, 0.5);
     krs_rendering_free(rendering);
     close_stage(&stage);
+}
+
+static void rows_of_texels_are_those_of_the_frame(void **state)
+{
+    rows_are_those_of_the_frame(*state, 0);
+}
+
+static void rows_of_buffers_are_those_of_the_frame(void **state)
+{
+    rows_are_those_of_the_frame(*state, KRS_PRETEND_LEAST_LIMITS);
 }
 
 /* A picture of a frame is that of a scene without time, whose numbers are those of the frame. */
@@ -259,17 +270,37 @@ static void pictures_are_those_of_the_frame(void **state)
     close_stage(&stage);
 }
 
-static void too_many_texels_are_refused(void **state)
+/* A device with room for as much as the tables have, or for less. */
+static void compare_with_room(Bench *bench, unsigned pretence, bool enough)
 {
-    Stage         stage = open_stage(*state, 20000, KRS_PRETEND_LEAST_LIMITS);
-    KrsRendering *rendering;
-    assert_true(krs_table_cells(stage.scene) > 65536);
-    assert_int_equal(krs_rendering_new(stage.renderer, stage.scene, &rendering), KRS_NO_DEVICE);
-    assert_null(rendering);
-    const char *message = krs_renderer_message(stage.renderer);
-    if (!strstr(message, "no room for the tables of the scene"))
-        fail_msg("%s", message);
+    Stage                   stage  = open_stage(bench, 2000, pretence);
+    VkPhysicalDeviceLimits *limits = &stage.renderer->gpu.properties.limits;
+    size_t                  rows   = krs_table_rows(stage.scene) * 16;
+    size_t                  cells  = krs_table_cells(stage.scene) * 8;
+    size_t                  page = 4096, most = (rows > cells ? rows : cells) + 2 * page;
+    KrsRendering           *rendering;
+    assert_true(rows > 64 * page && rows / 16 < cells / 8);
+    limits->maxStorageBufferRange  = (uint32_t)(enough ? most : most - 4 * page);
+    limits->maxTexelBufferElements = (uint32_t)(cells / 8 + 2 * page / 8 - (enough ? 0 : page / 2));
+    if (enough) {
+        assert_int_equal(krs_rendering_new(stage.renderer, stage.scene, &rendering), KRS_OK);
+        krs_rendering_free(rendering);
+    } else {
+        assert_int_equal(krs_rendering_new(stage.renderer, stage.scene, &rendering), KRS_NO_DEVICE);
+        assert_null(rendering);
+        const char *message = krs_renderer_message(stage.renderer);
+        if (!strstr(message, "no room for the tables of the scene"))
+            fail_msg("%s", message);
+    }
     close_stage(&stage);
+}
+
+static void too_large_tables_are_refused(void **state)
+{
+    compare_with_room(*state, 0, true);
+    compare_with_room(*state, 0, false);
+    compare_with_room(*state, KRS_PRETEND_LEAST_LIMITS, true);
+    compare_with_room(*state, KRS_PRETEND_LEAST_LIMITS, false);
 }
 
 int main(void)
@@ -277,9 +308,12 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(a_query_brings_tables, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(a_picture_brings_tables, bench_start, bench_stop),
-        cmocka_unit_test_setup_teardown(rows_are_those_of_the_frame, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(rows_of_texels_are_those_of_the_frame, bench_start,
+                                        bench_stop),
+        cmocka_unit_test_setup_teardown(rows_of_buffers_are_those_of_the_frame, bench_start,
+                                        bench_stop),
         cmocka_unit_test_setup_teardown(pictures_are_those_of_the_frame, bench_start, bench_stop),
-        cmocka_unit_test_setup_teardown(too_many_texels_are_refused, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(too_large_tables_are_refused, bench_start, bench_stop),
     };
     return cmocka_run_group_tests_name("tables on a device", tests, NULL, NULL);
 }

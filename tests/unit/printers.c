@@ -113,6 +113,8 @@ static const char *const phrases[PHRASE_COUNT] = {
     [PHRASE_READ_ZONES]       = "    read_zones($a, $b);\n",
     [PHRASE_CUT]              = "fn krs_cut(p: vec3f, uncut: f32) -> f32\n{\n    var d = uncut;\n",
     [PHRASE_CUT_ZONES]        = "    d = zone_depth(p, d, $a);\n",
+    [PHRASE_TEXEL_TABLES]     = "texel tables;\n",
+    [PHRASE_BUFFER_TABLES]    = "buffer tables;\n",
     [PHRASE_TABLES]           = "tables;\n",
     [PHRASE_EACH_LISTED]      = "    each_listed(p, $a) {\n",
     [PHRASE_NEAREST_GRADIENT] = "    var nearest: vec4f; var other: vec4f;\n",

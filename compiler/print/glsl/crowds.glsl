@@ -9,7 +9,7 @@ KrsTable krs_read_table(uint table)
 {
     uvec2 texels[8];
     for (int i = 0; i < 8; i++)
-        texels[i] = texelFetch(krs_cells, 8 * int(table) + i).xy;
+        texels[i] = krs_cell_texel(8u * table + uint(i));
     return KrsTable(uintBitsToFloat(uvec3(texels[0], texels[1].x)), uintBitsToFloat(texels[1].y),
                     uvec3(texels[2], texels[3].x), texels[3].y,
                     uintBitsToFloat(uvec3(texels[4], texels[5].x)),
@@ -24,9 +24,9 @@ KrsNear krs_near(vec3 p, KrsTable table)
     bool inside = all(bvec2(all(greaterThanEqual(place, vec3(0.0))),
                             all(lessThan(place, vec3(table.cells)))));
     uvec3 cell = uvec3(mix(vec3(0.0), place, bvec3(inside)));
-    int record = int(table.records + cell.x + table.cells.x * (cell.y + table.cells.y * cell.z));
-    uvec2 first = texelFetch(krs_cells, record).xy;
-    uint end = texelFetch(krs_cells, record + 1).x;
+    uint record = table.records + cell.x + table.cells.x * (cell.y + table.cells.y * cell.z);
+    uvec2 first = krs_cell_texel(record);
+    uint end = krs_cell_texel(record + 1u).x;
     float wall = length(max(abs(p - table.centre) - table.half_sides, 0.0));
     return KrsNear(first.x, inside ? end : first.x, inside ? uintBitsToFloat(first.y) : wall);
 }
@@ -35,18 +35,18 @@ KrsNear krs_near(vec3 p, KrsTable table)
 uint krs_listed(uint i, KrsTable table)
 {
     uvec3 n = table.cells;
-    uvec2 two = texelFetch(krs_cells, int(table.records + n.x * n.y * n.z + 1u + i / 2u)).xy;
+    uvec2 two = krs_cell_texel(table.records + n.x * n.y * n.z + 1u + i / 2u);
     return (i & 1u) == 0u ? two.x : two.y;
 }
 
 // Four numbers of a member, whose row has so many texels.
 vec4 krs_row(uint member, uint texels, uint texel, KrsTable table)
 {
-    return texelFetch(krs_rows, int(table.rows + member * texels + texel));
+    return krs_row_texel(table.rows + member * texels + texel);
 }
 
 // The same of the member at a place of the lists: kernels read these copies one after another.
 vec4 krs_listed_row(uint i, uint texels, uint texel, KrsTable table)
 {
-    return texelFetch(krs_rows, int(table.copies + i * texels + texel));
+    return krs_row_texel(table.copies + i * texels + texel);
 }

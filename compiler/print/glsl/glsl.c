@@ -64,9 +64,17 @@ static const char *const phrases[PHRASE_COUNT] = {
     [PHRASE_CUT_ZONES]       = "    for (int i = 0; i < $a; i++)\n"
                                "        d = max(d, krs_zones[i].w - length(p - krs_zones[i].xyz));\n",
 
-    [PHRASE_TABLES] =
+    [PHRASE_TEXEL_TABLES] =
         "layout(set = 0, binding = 1) uniform samplerBuffer krs_rows;\n"
         "layout(set = 0, binding = 2) uniform usamplerBuffer krs_cells;\n\n"
+        "vec4 krs_row_texel(uint i) { return texelFetch(krs_rows, int(i)); }\n"
+        "uvec2 krs_cell_texel(uint i) { return texelFetch(krs_cells, int(i)).xy; }\n\n",
+    [PHRASE_BUFFER_TABLES] =
+        "layout(std430, set = 0, binding = 1) readonly buffer KrsRows { vec4 krs_rows[]; };\n"
+        "layout(std430, set = 0, binding = 2) readonly buffer KrsCells { uvec2 krs_cells[]; };\n\n"
+        "vec4 krs_row_texel(uint i) { return krs_rows[i]; }\n"
+        "uvec2 krs_cell_texel(uint i) { return krs_cells[i]; }\n\n",
+    [PHRASE_TABLES] =
         "// A table: its grid, the box of what it has, and texels where its cells, its rows and\n"
         "// their copies in the order of the lists begin.\n"
         "struct KrsTable {\n"
