@@ -45,10 +45,14 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/diagnostics unit/s
                oracle/krs_expand oracle/bounds \
                oracle/maps oracle/moebius oracle/moebius_images oracle/operators oracle/moving \
                oracle/fractals oracle/metasurfaces oracle/normals fuzz/sentences)
-SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/editors.sh \
-               tests/lint.sh tests/errors.sh tests/golden.sh tests/examples.sh tests/library.sh \
-               tests/docs.sh tests/extend/extend.sh \
-               $(sort $(filter-out tests/cli/common.sh, $(wildcard tests/cli/*.sh)))
+# What uses one core and no device: as many at once as there are cores.
+SINGLE      := $(SANITIZED) $(addprefix tests/oracle/, self trees combinations deform deform_bounds \
+               chains fields surfaces rays)
+SINGLE_SCRIPTS := $(addprefix tests/, cli/scale.sh lint.sh errors.sh errors-sanitized.sh layers.sh \
+               grammar.sh editors.sh golden.sh library.sh docs.sh)
+# These run one after the other.
+SCRIPTS     := tests/run_selftest.sh tests/examples.sh tests/extend/extend.sh $(sort $(filter-out \
+               tests/cli/common.sh $(SINGLE_SCRIPTS), $(wildcard tests/cli/*.sh))) tests/fuzz/fuzz.sh
 
 ARCHIVE      = rm -f $@ && $(AR) rcs $@ $^
 $(B)/tests/support/support.a: $(SUPPORT:%.c=$(B)/%.o)
@@ -116,8 +120,9 @@ test: deps
 	@$(MAKE) --no-print-directory -j$(JOBS) all test-programs clang-check fuzzers
 	@$(MAKE) --no-print-directory -j$(JOBS) sanitize
 	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=300 \
-	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") $(PROGRAMS:%=$(B)/%) $(SCRIPTS) \
-	    $(SANITIZED:%=$(B)/asan/%) tests/errors-sanitized.sh tests/fuzz/fuzz.sh \
+	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") \
+	    JOBS=$(JOBS) $(SINGLE_SCRIPTS) $(SANITIZED:%=$(B)/asan/%) $(SINGLE:%=$(B)/%) \
+	    JOBS=1 $(addprefix $(B)/,$(filter-out $(SINGLE),$(PROGRAMS))) $(SCRIPTS) \
 	    $(if $(DEVICE),$(DRIVERS:%=$(B)/%),KRS_DEVICE=swiftshader $(SECOND:%=$(B)/%))
 .PHONY: test golden test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers \
         fuzz-programs lint format bless
