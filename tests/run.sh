@@ -1,6 +1,6 @@
 #!/bin/sh
-# run.sh [KRS_DEVICE=DEVICE] PROGRAM...: runs test programs and scripts, and counts what they say
-# in TAP.
+# run.sh [KRS_DEVICE=DEVICE] [JOBS=COUNT] PROGRAM...: runs test programs and scripts, and counts what
+# they say in TAP.
 #
 # A line that begins with `ok` is a test that passed, `not ok` one that failed; one with `# SKIP`
 # was skipped.  A program that dies, takes longer than KRS_TEST_SECONDS (120), says nothing, says
@@ -10,14 +10,15 @@
 #
 # KRS_DEVICE is the Vulkan device of the tests, in the words of `krs --device`; none: the one that
 # krs takes by itself.  As a word of its own between the programs it holds for those that follow.
+#
+# As such a word, JOBS is how many of those that follow run at once; none: one after the other.
 set -u
 . "$(dirname "$0")/support/drivers.sh"
 
 seconds=${KRS_TEST_SECONDS:-120}
 folder=$(mktemp -d) || exit 1
-output=$folder/output
 trap 'rm -rf "$folder"' EXIT
-trap 'exit 130' INT TERM
+trap 'wait; exit 130' INT TERM
 export CMOCKA_MESSAGE_OUTPUT=TAP
 
 # The command keeps shaders in a folder of the tests; the driver goes on using the user's.
@@ -43,40 +44,77 @@ skips() { # how many
     [ "$1" -eq 0 ] || echo ", $1 skipped"
 }
 
-total_passed=0 total_failed=0 total_skipped=0
-for program in "$@"; do
-    case $program in
-    KRS_DEVICE=*)
-        export KRS_DEVICE="${program#*=}"
-        add_driver_of "$KRS_DEVICE" || exit 1
-        echo "     on $KRS_DEVICE:"
-        continue
-        ;;
-    */*) command=$program ;;
-    *) command=./$program ;;
+# Runs a program, says how it ended, and notes the counts of its tests.
+test_program() { # program, where its output goes
+    case $1 in
+    */*) command=$1 ;;
+    *) command=./$1 ;;
     esac
     begun=$(date +%s)
-    timeout -k 5 "$seconds" "$command" >"$output" 2>&1 </dev/null
+    timeout -k 5 "$seconds" "$command" >"$2" 2>&1 </dev/null
     status=$?
     took=$(($(date +%s) - begun))
-    skipped=$(grep -cE '^(not )?ok.*# SKIP' "$output") # cmocka says `not ok` of those
-    passed=$(grep '^ok' "$output" | grep -cv '# SKIP')
-    failed=$(grep '^not ok' "$output" | grep -cv '# SKIP')
-    planned=$(sed -n 's/^1\.\.\([0-9][0-9]*\).*/\1/p' "$output" |
+    skipped=$(grep -cE '^(not )?ok.*# SKIP' "$2") # cmocka says `not ok` of those
+    passed=$(grep '^ok' "$2" | grep -cv '# SKIP')
+    failed=$(grep '^not ok' "$2" | grep -cv '# SKIP')
+    planned=$(sed -n 's/^1\.\.\([0-9][0-9]*\).*/\1/p' "$2" |
         awk '{ sum += $1 } END { print sum + 0 }')
     why=$(complaint "$status" $((passed + skipped)) "$failed" "$planned")
     [ -n "$why" ] && failed=$((failed + 1))
 
     if [ "$failed" -gt 0 ]; then
-        echo "==== $program: $failed failed${why:+ ($why)}"
-        cat "$output"
+        { echo "==== $1: $failed failed${why:+ ($why)}"; cat "$2"; } >"$2.said"
     else
-        echo "     $program: $passed passed$(skips "$skipped") in $took s"
+        echo "     $1: $passed passed$(skips "$skipped") in $took s" >"$2.said"
     fi
+    cat "$2.said"
+    echo "$passed $failed $skipped" >>"$counts"
+}
+
+# From now on so many at once.  Who wants to run takes a line of descriptor 3, and puts it back.
+set_jobs() { # how many
+    wait
+    jobs=$1
+    rm -f "$folder/places"
+    mkfifo "$folder/places"
+    exec 3<>"$folder/places"
+    yes "" | head -n "$jobs" >&3
+}
+
+jobs=1 started=0 counts=$folder/counts
+: >"$counts"
+for program in "$@"; do
+    case $program in
+    KRS_DEVICE=*)
+        wait
+        export KRS_DEVICE="${program#*=}"
+        add_driver_of "$KRS_DEVICE" || exit 1
+        echo "     on $KRS_DEVICE:"
+        continue
+        ;;
+    JOBS=*)
+        set_jobs "${program#*=}"
+        continue
+        ;;
+    esac
+    started=$((started + 1))
+    if [ "$jobs" -eq 1 ]; then
+        test_program "$program" "$folder/$started"
+    else
+        read -r _ <&3
+        { test_program "$program" "$folder/$started"; echo >&3; } &
+    fi
+done
+wait
+
+total_passed=0 total_failed=0 total_skipped=0
+while read -r passed failed skipped; do
     total_passed=$((total_passed + passed))
     total_failed=$((total_failed + failed))
     total_skipped=$((total_skipped + skipped))
-done
+    started=$((started - 1))
+done <"$counts"
+total_failed=$((total_failed + started)) # those of which nothing is known
 
 echo "$total_passed passed, $total_failed failed$(skips "$total_skipped")"
 [ "$total_failed" -eq 0 ]

@@ -75,8 +75,26 @@ case ${VK_ADD_DRIVER_FILES:-} in
 *) echo 'not ok 1 - a' ;;
 esac
 END
+# Each waits for the other.
+program meeting <<'END'
+if mkdir met 2>/dev/null; then until [ -e met/other ]; do sleep 0.1; done; else touch met/other; fi
+echo 'ok 1 - a'
+END
+# Counts itself among those that run, three at most.
+program one_of_three <<'END'
+touch "running.$$"
+sleep 0.3
+set -- running.*
+if [ $# -le 3 ]; then echo 'ok 1 - a'; else echo 'not ok 1 - a'; fi
+rm "running.$$"
+END
+program alone <<'END'
+sleep 0.1
+set -- running.*
+if [ -e "$1" ]; then echo 'not ok 1 - a'; else echo 'ok 1 - a'; fi
+END
 
-echo 1..20
+echo 1..25
 expect 'tests that pass' '2 passed, 0 failed' 0 good
 expect 'results are added up' '4 passed, 0 failed' 0 good ./good
 expect 'a test that fails' '1 passed, 1 failed' 1 failing
@@ -99,3 +117,12 @@ expect 'a device for what follows' '1 passed, 1 failed' 1 on_a_card 'KRS_DEVICE=
 expect 'a driver that only tests know' '1 passed, 1 failed' 1 on_swiftshader \
     KRS_DEVICE=SwiftShader on_swiftshader
 expect 'a driver for an index' '0 passed, 1 failed' 1 KRS_DEVICE=0 on_swiftshader
+expect 'programs side by side' '2 passed, 0 failed' 0 JOBS=2 meeting meeting
+expect 'no more at once than wanted' '9 passed, 0 failed' 0 JOBS=3 one_of_three one_of_three \
+    one_of_three one_of_three one_of_three one_of_three one_of_three one_of_three one_of_three
+expect 'failures among programs side by side' '4 passed, 4 failed, 1 skipped' 1 JOBS=3 failing \
+    crashing good crashing_later skipping_all
+expect 'one after the other again' '3 passed, 0 failed' 0 JOBS=3 one_of_three one_of_three JOBS=1 \
+    alone
+expect 'no device before its programs' '3 passed, 0 failed' 0 JOBS=3 one_of_three one_of_three \
+    'KRS_DEVICE=Card of mine' on_a_card

@@ -45,10 +45,14 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/diagnostics unit/s
                oracle/krs_expand oracle/bounds \
                oracle/maps oracle/moebius oracle/moebius_images oracle/operators oracle/moving \
                oracle/fractals oracle/metasurfaces oracle/normals fuzz/sentences)
-SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/editors.sh \
-               tests/lint.sh tests/errors.sh tests/golden.sh tests/examples.sh tests/library.sh \
-               tests/docs.sh tests/extend/extend.sh \
-               $(sort $(filter-out tests/cli/common.sh, $(wildcard tests/cli/*.sh)))
+# Beside programs, the longest first; those after them measure time, or count what others may change.
+BESIDE      := $(addprefix tests/, examples.sh extend/extend.sh cli/scale.sh errors-sanitized.sh lint.sh \
+               errors.sh layers.sh grammar.sh editors.sh golden.sh library.sh docs.sh)
+SCRIPTS     := tests/run_selftest.sh $(sort $(filter-out tests/cli/common.sh $(BESIDE), \
+               $(wildcard tests/cli/*.sh))) tests/fuzz/fuzz.sh
+# So many programs run at once: most use one core, as they compile kernels.  A device that is asked
+# for is left to one.
+TEST_JOBS   ?= $(if $(DEVICE)$(filter 1,$(JOBS)),1,2)
 
 ARCHIVE      = rm -f $@ && $(AR) rcs $@ $^
 $(B)/tests/support/support.a: $(SUPPORT:%.c=$(B)/%.o)
@@ -116,8 +120,9 @@ test: deps
 	@$(MAKE) --no-print-directory -j$(JOBS) all test-programs clang-check fuzzers
 	@$(MAKE) --no-print-directory -j$(JOBS) sanitize
 	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=300 \
-	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") $(PROGRAMS:%=$(B)/%) $(SCRIPTS) \
-	    $(SANITIZED:%=$(B)/asan/%) tests/errors-sanitized.sh tests/fuzz/fuzz.sh \
+	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") \
+	    JOBS=$(TEST_JOBS) $(BESIDE) $(PROGRAMS:%=$(B)/%) $(SANITIZED:%=$(B)/asan/%) \
+	    JOBS=1 $(SCRIPTS) JOBS=$(TEST_JOBS) \
 	    $(if $(DEVICE),$(DRIVERS:%=$(B)/%),KRS_DEVICE=swiftshader $(SECOND:%=$(B)/%))
 .PHONY: test golden test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers \
         fuzz-programs lint format bless

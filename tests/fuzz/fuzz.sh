@@ -22,22 +22,29 @@ else
 fi
 rm -f "$corpus"/found/*
 
-fuzz() { # harness, seconds
+fuzz() { # harness, seconds; what it says goes to a file
     cp -r "$corpus/seeds" "$corpus/$1"
+    mkdir "$corpus/found/$1"
     if "$build/fuzz/tests/fuzz/$1" -max_total_time="$2" -timeout=20 -rss_limit_mb=4096 \
-        -max_len=4096 -artifact_prefix="$corpus/found/" "$corpus/$1" >"$corpus/log" 2>&1; then
-        runs=$(sed -n 's/^Done \([0-9]*\) runs.*/\1/p' "$corpus/log")
+        -max_len=4096 -artifact_prefix="$corpus/found/$1/" "$corpus/$1" >"$corpus/$1.log" 2>&1; then
+        runs=$(sed -n 's/^Done \([0-9]*\) runs.*/\1/p' "$corpus/$1.log")
         echo "ok - $1: $runs runs without a finding"
         return
     fi
-    tail -40 "$corpus/log"
-    for found in "$corpus"/found/*; do
+    tail -40 "$corpus/$1.log"
+    for found in "$corpus/found/$1"/*; do
         [ -e "$found" ] && { echo "# $found:"; od -c "$found" | head -60; }
     done
     echo "not ok - $1 has no finding"
-    failed=1
 }
+# Side by side: each uses one core.
 half=$((${FUZZ_SECONDS:-30} / 2))
-fuzz front_fuzz $half
-fuzz scene_fuzz $half
+for harness in front_fuzz scene_fuzz; do
+    fuzz $harness $half >"$corpus/$harness.said" &
+done
+wait
+for harness in front_fuzz scene_fuzz; do
+    cat "$corpus/$harness.said"
+    grep -q '^ok' "$corpus/$harness.said" || failed=1
+done
 exit $failed

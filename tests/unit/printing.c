@@ -68,13 +68,17 @@ static bool read_name(const char *line, char name[LONGEST_NAME])
     return true;
 }
 
-/* Lines that declare the name. */
+/* Lines that declare the name; of all lines only those are read that have it. */
 static int count_declarations(const char *text, const char *name)
 {
     char other[LONGEST_NAME];
     int  count = 0;
-    for (const char *line = text; *line; line += strcspn(line, "\n"), line += *line == '\n')
+    for (const char *at = text; (at = strstr(at, name)); at += strcspn(at, "\n")) {
+        const char *line = at;
+        while (line > text && line[-1] != '\n')
+            line--;
         count += read_name(line, other) && strcmp(name, other) == 0;
+    }
     return count;
 }
 
