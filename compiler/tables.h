@@ -32,8 +32,6 @@ typedef struct TableSizes {
     size_t rows, cells;
 } TableSizes;
 
-static inline size_t row_texels(const Crowd *table) { return (table->columns + 3) / 4; }
-
 /* 0 when there are no tables; `crowds` may be NULL. */
 TableSizes tables_measure(const Crowds *crowds);
 /* Fills arrays of these sizes; `values` of nodes has the numbers of the frame, and may be NULL where

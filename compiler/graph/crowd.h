@@ -44,6 +44,9 @@ typedef struct Crowd {
     Span      span;          /* of the join */
 } Crowd;
 
+/* How many texels, of four numbers each, a row has for kernels. */
+static inline size_t row_texels(const Crowd *table) { return (table->columns + 3) / 4; }
+
 typedef struct CrowdState {
     GraphType type;
     double    first[4];

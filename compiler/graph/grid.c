@@ -17,20 +17,23 @@
 #include "compiler/base/far.h"
 
 /* Most cells and entries: few members may have more cells each, so that they may form a curve, and
-   more entries, so that blends that reach far have short lists. */
+   more entries, so that blends that reach far have short lists.  A loop over a list is most of a
+   frame, so they are as short as memory allows. */
 enum {
     CELLS_PER_MEMBER   = 4,
+    CELLS_OF_FEW       = 16, /* for each of few members */
+    MANY_CELLS         = 1 << 20,
     SPARE_CELLS        = 8192,
     MOST_OF_A_MEMBER   = 64, /* cells, even so */
     ENTRIES_PER_MEMBER = 8,
     SPARE_ENTRIES      = 4096,
-    MANY_ENTRIES       = 1 << 22, /* rows of one texel then take 64 MB */
-    ENTRIES_OF_FEW     = 256      /* for each of few members */
+    MANY_TEXELS        = 1 << 23, /* of all entries of few members: 128 MB */
+    ENTRIES_OF_FEW     = 1024     /* for each of few members */
 };
 
 #define MARGIN_IN_CELLS 0.25    /* beyond what the caller gives */
 #define RING_IN_CELLS   0.5     /* how far beyond the margin boxes are measured */
-#define GROWTH          1.26    /* of the side: twice the volume */
+#define GROWTH          1.08    /* of the side: a quarter more volume */
 #define SMALLEST_SIDE   1e-12   /* of a cell */
 #define FLOAT_MISSES    0x1p-21 /* several roundings in single precision, of coordinates */
 #define ROUNDED_DOWN    (1 - 0x1p-22)
@@ -41,6 +44,7 @@ typedef struct Builder {
     uint32_t   count, present; /* boxes; those that are not empty */
     double     reach, margin;
     double     given_margin;
+    uint32_t   texels; /* of an entry */
     double     pad[3];
     double     listed, seen; /* boxes up to this distance are in the list, or are measured */
     float     *nearest;      /* of each cell: the square of the distance to the nearest box that is
@@ -148,7 +152,8 @@ static double placed_cells(const Grid *grid)
 /* The least side with few enough cells. */
 static double least_side(Builder *b)
 {
-    double most    = fmin((double)CELLS_PER_MEMBER * b->present + SPARE_CELLS,
+    double few     = fmin((double)CELLS_OF_FEW * b->present, MANY_CELLS);
+    double most    = fmin(fmax((double)CELLS_PER_MEMBER * b->present, few) + SPARE_CELLS,
                           (double)MOST_OF_A_MEMBER * b->present);
     double longest = 0;
     for (int k = 0; k < 3; k++) {
@@ -197,7 +202,7 @@ static double count_entries(const Builder *b)
 /* In the end there is one cell, which has as many entries as there are boxes. */
 static void choose_cells(Builder *b)
 {
-    double few  = fmin((double)ENTRIES_OF_FEW * b->present, MANY_ENTRIES);
+    double few  = fmin((double)ENTRIES_OF_FEW * b->present, (double)MANY_TEXELS / b->texels);
     double most = fmax((double)ENTRIES_PER_MEMBER * b->present, few) + SPARE_ENTRIES;
     double side = least_side(b);
     for (place_cells(b, side); count_entries(b) > most; place_cells(b, side))
@@ -385,15 +390,16 @@ static void find_clearances(const Builder *b, Arena *arena)
 }
 
 void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
-                Arena *arena, Arena *scratch)
+                uint32_t texels, Arena *arena, Arena *scratch)
 {
-    assert(count > 0);
+    assert(count > 0 && texels > 0);
     *grid     = (Grid){0};
     Builder b = {.grid         = grid,
                  .boxes        = boxes,
                  .count        = count,
                  .reach        = reach,
                  .given_margin = margin,
+                 .texels       = texels,
                  .scratch      = scratch};
     for (uint32_t i = 0; i < count; i++)
         b.present += !box_is_empty(&boxes[i]);

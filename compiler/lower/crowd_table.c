@@ -154,7 +154,9 @@ void group_make_table(CrowdGroup *group, const GroupJoin *join, const Box *boxes
     Box *own = arena_new_array(join->scratch, Box, rows);
     for (uint32_t i = 0; i < rows; i++)
         own[i] = boxes[group->members.items[i]];
-    grid_build(&table.grid, own, rows, reach, margin, crowds->arena, join->scratch);
+    uint32_t texels = (uint32_t)row_texels(&table);
+    grid_build(&table.grid, own, rows, reach, margin, texels > 0 ? texels : 1, crowds->arena,
+               join->scratch);
     group->crowd = (uint32_t)crowds->tables.count;
     array_push(crowds->arena, &crowds->tables, table);
 }

@@ -193,7 +193,7 @@ static Difference compare_blend(const Shape *shape, bool without_reach)
     for (uint32_t i = 0; i < CHAIN; i++)
         boxes[i] = shape->children[i]->box;
     if (without_reach)
-        grid_build(&crowds->tables.items[0].grid, boxes, CHAIN, 0, 0, &arena, &scratch);
+        grid_build(&crowds->tables.items[0].grid, boxes, CHAIN, 0, 0, 1, &arena, &scratch);
     return compare_in_order(shape, parts, &crowd);
 }
 

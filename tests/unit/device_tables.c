@@ -62,7 +62,7 @@ static void add_tables(Bench *bench, Stage *stage, uint32_t rows)
                 double at        = random_between(&bench->random, -20, 20);
                 boxes[r].axis[k] = (Range){at, at + 0.1};
             }
-        grid_build(&table.grid, boxes, rows, 0, 0, &bench->arena, &bench->arena);
+        grid_build(&table.grid, boxes, rows, 0, 0, 1, &bench->arena, &bench->arena);
         array_push(&bench->arena, &stage->crowds->tables, table);
     }
     Graph     *graph                  = (Graph *)(uintptr_t)stage->scene->graph;

@@ -31,7 +31,7 @@ static void make_table(Bench *bench, Crowd *table, uint32_t rows, uint32_t colum
     table->numbers = arena_new_array(&bench->arena, double, (size_t)rows *columns + 1);
     for (uint32_t i = 0; i < rows * columns; i++)
         table->numbers[i] = random_between(&bench->random, -1e3, 1e3);
-    grid_build(&table->grid, boxes, rows, 0.1, 0, &bench->arena, &bench->arena);
+    grid_build(&table->grid, boxes, rows, 0.1, 0, 1, &bench->arena, &bench->arena);
 }
 
 typedef struct Packed {
@@ -135,7 +135,7 @@ static void places_of_grids_are_read_back(void **state)
         const float half[]   = {float_of(header[5][1]), float_of(header[6][0]),
                                 float_of(header[6][1])};
         bool        infinite = t == TABLES - 1;
-        assert_true(float_of(header[1][1]) == (infinite ? 0 : 1 / grid->size));
+        assert_true(float_of(header[1][1]) == (float)(infinite ? 0 : 1 / grid->size));
         for (int k = 0; k < 3; k++) {
             assert_true(low[k] == grid->low[k]);
             if (infinite) {
