@@ -44,6 +44,8 @@ const Choice tone_map_choices[] = {
 const Choice specialize_choices[] = {
     {"numbers", "as literals: the fastest frames"},
     {"structure", "in the parameter block: an edit of a number compiles nothing"},
+    {"auto", "as numbers at first, as structure from the first edit on that the cache knows of; as "
+             "numbers for many samples; compile and dump see no edits, so as numbers"},
     LAST};
 const Choice early_outs_choices[]  = {{"default", ""}, {"on", ""}, {"off", ""}, LAST};
 const Choice on_off_choices[]      = {{"on", ""}, {"off", ""}, LAST};

@@ -46,7 +46,16 @@ const char *scene_name(Arena *arena, const char *path);
 /* Says what a status means after a call of the library that has no words of its own. */
 KrsStatus say_status(KrsStatus status, const char *path);
 
-/* devices.c: opens the device that --device asks for.  On KRS_OK the caller owns *renderer,
+/* specialize.c, for --specialize auto: compiles the scene again with its numbers in the parameter
+   block if that is better for what is to be rendered, which has so many samples in all.  NULL: its
+   literals are. */
+KrsScene *specialize_edited(const Options *options, const KrsScene *literals, double samples);
+
+/* devices.c */
+
+/* Where compiled shaders are kept; NULL: nowhere. */
+const char *cache_folder(const Options *options);
+/* Opens the device that --device asks for.  On KRS_OK the caller owns *renderer,
    else it is NULL and the user knows why. */
 KrsStatus open_renderer(const Options *options, KrsRenderer **renderer);
 

@@ -74,9 +74,9 @@ KrsStatus command_devices(Options *options)
     return KRS_OK;
 }
 
-/* Where compiled shaders are kept; NULL: nowhere.  As the XDG Base Directory Specification has
-   it, a folder that is not absolute is as good as none. */
-static const char *cache_folder(const Options *options)
+/* As the XDG Base Directory Specification has it, a folder that is not absolute is as good as
+   none. */
+const char *cache_folder(const Options *options)
 {
     if (options->cache)
         return strcmp(options->cache, "off") == 0 ? NULL : options->cache;

@@ -23,6 +23,7 @@ typedef struct Render {
     KrsRenderer     *renderer;
     KrsRendering    *rendering;
     KrsRenderOptions how;
+    uint32_t         samples; /* of a pixel, also where `how` leaves it to the scene */
     Progress         progress;
 } Render;
 
@@ -226,11 +227,12 @@ static KrsStatus choose_how(Render *render)
     bool exr = false;
     for (size_t i = 0; i < render->output_count; i++)
         exr = exr || file_form(render->outputs[i]) == FORM_EXR;
-    how->camera   = camera;
-    how->seed     = options->seed;
-    how->planes   = picture_planes(options, exr);
-    how->progress = show_progress;
-    how->user     = render;
+    render->samples = samples;
+    how->camera     = camera;
+    how->seed       = options->seed;
+    how->planes     = picture_planes(options, exr);
+    how->progress   = show_progress;
+    how->user       = render;
     return KRS_OK;
 }
 
@@ -384,6 +386,34 @@ static KrsStatus render_frame(Render *render, uint32_t frame)
     return status;
 }
 
+/* Samples of all pixels in all frames. */
+static double count_samples(const Render *render)
+{
+    const Options          *options = render->options;
+    const KrsRenderOptions *how     = &render->how;
+    const KrsWindow        *crop    = &how->crop;
+    const double            pixels  = crop->width > 0 ? (double)crop->width * crop->height
+                                                      : (double)how->width * how->height;
+    const double            frames  = (double)options->last_frame - options->first_frame + 1;
+    return pixels * frames * render->samples;
+}
+
+/* The scene has literals so far. */
+static KrsStatus specialize(Render *render)
+{
+    const Options *options = render->options;
+    KrsScene      *edited  = NULL;
+    if (options->specialize == KRS_SPECIALIZE_AUTO)
+        edited = specialize_edited(options, render->scene, count_samples(render));
+    if (!edited)
+        return KRS_OK;
+    krs_frame_free(render->frame);
+    krs_scene_free(render->scene);
+    render->frame = NULL;
+    render->scene = edited;
+    return scene_frame(options, edited, &render->frame);
+}
+
 static KrsStatus make_ready(Render *render)
 {
     const Options *options = render->options;
@@ -392,6 +422,8 @@ static KrsStatus make_ready(Render *render)
         status = scene_frame(options, render->scene, &render->frame);
     if (status == KRS_OK)
         status = choose_how(render);
+    if (status == KRS_OK)
+        status = specialize(render);
     if (status == KRS_OK)
         status = open_renderer(options, &render->renderer);
     if (status != KRS_OK)

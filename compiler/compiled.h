@@ -85,6 +85,9 @@ const KrsProgram *krs_scene_program(const KrsScene *scene);
    is no memory.  The program must have what a function needs, such as planes. */
 char *krs_scene_text(const KrsScene *scene, const KrsVariant *variant, const KrsFunction *wanted,
                      size_t count, const KrsAllocator *allocator);
+/* The GLSL of all functions that the scene has, without comments: scenes whose shaders are equal
+   have the same.  Memory is as of krs_scene_text. */
+char *krs_scene_plain_text(const KrsScene *scene, const KrsAllocator *allocator);
 /* The functions that `krs compile` writes; returns how many.  They are krs_distance, krs_surface
    and, for devices with many threads, krs_distance_lod.  krs_gradient is added if the program has
    gradients, and krs_along if it has sheets. */

@@ -182,6 +182,10 @@ KrsStatus frame_raycast(KrsFrame *frame, const double (*origins)[3], const doubl
                         size_t count, double farthest, double tolerance, KrsHit *hits);
 void      scene_free(KrsScene *scene);
 
+/* The GLSL of all functions that the scene has in a variant, without comments, so that it says
+   nothing of names and lines. */
+char *scene_plain_text(const KrsScene *scene, const KrsVariant *variant, Arena *arena);
+
 /* Evaluates the nodes that depend on parameters only, unless their values are up to date. */
 void frame_refresh(KrsFrame *frame);
 /* A value of the frame, used by points or the view, that is not finite; NODE_NONE: there is

@@ -193,55 +193,10 @@ static bool same_facts(const KrsScene *a, const KrsScene *b)
 
 /* ---- texts ---- */
 
-/* All functions that a scene has in a variant. */
-static size_t known_functions(const KrsScene *scene, const KrsVariant *variant,
-                              KrsFunction wanted[KRS_FUNCTION_COUNT])
-{
-    const KrsProgram *program = &scene->program;
-    size_t            count   = 0;
-    wanted[count++]           = KRS_FUNCTION_DISTANCE;
-    wanted[count++]           = KRS_FUNCTION_SURFACE;
-    wanted[count++]           = KRS_FUNCTION_SCENE_PART_DISTANCE;
-    wanted[count++]           = KRS_FUNCTION_SCENE_PART_BOX;
-    if (program->planes) {
-        wanted[count++] = KRS_FUNCTION_PLANE_T;
-        wanted[count++] = KRS_FUNCTION_PLANE_COSINE;
-    }
-    if (variant->many_threads)
-        wanted[count++] = KRS_FUNCTION_DISTANCE_LOD;
-    if (program->gradients && !variant->camera_relative)
-        wanted[count++] = KRS_FUNCTION_GRADIENT;
-    if (program->along && !variant->camera_relative)
-        wanted[count++] = KRS_FUNCTION_ALONG;
-    return count;
-}
-
-/* Takes out comments, which name lines of the scene. */
-static void strip_comments(char *text)
-{
-    char *to = text;
-    for (const char *from = text; *from;) {
-        if (from[0] == '/' && from[1] == '/')
-            from += strcspn(from, "\n");
-        else
-            *to++ = *from++;
-    }
-    *to = '\0';
-}
-
-static char *print_variant(Comparison *c, const KrsScene *scene, const KrsVariant *variant)
-{
-    KrsFunction wanted[KRS_FUNCTION_COUNT];
-    size_t      count = known_functions(scene, variant, wanted);
-    Text        text  = {.arena = &c->arena};
-    module_print(&scene->module, variant, wanted, count, &glsl_printer, &text);
-    strip_comments(text.bytes);
-    return text.bytes;
-}
-
 static bool same_text(Comparison *c, const KrsVariant *variant)
 {
-    return strcmp(print_variant(c, c->a, variant), print_variant(c, c->b, variant)) == 0;
+    return strcmp(scene_plain_text(c->a, variant, &c->arena),
+                  scene_plain_text(c->b, variant, &c->arena)) == 0;
 }
 
 /* Whether kernels of the same facts have the same text. */

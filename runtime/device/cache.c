@@ -26,7 +26,10 @@ enum {
 };
 
 static const char *const endings[CACHE_KIND_COUNT] = {
-    [CACHE_SPIRV] = ".spirv", [CACHE_PIPELINES] = ".pipelines"};
+    [CACHE_SPIRV]     = ".spirv",
+    [CACHE_PIPELINES] = ".pipelines",
+    [CACHE_STRUCTURE] = ".structure",
+};
 static const char temporary_prefix[] = ".krs-cache-";
 
 /* In the byte order of the machine: foreign numbers do not match.  No padding. */

@@ -23,7 +23,12 @@
 enum { CACHE_FILES = 4096, CACHE_ENTRY_BYTES = 16 << 20 /* a longer one is not kept */ };
 
 /* What an entry is; a file is called by its key and one of these. */
-typedef enum CacheKind { CACHE_SPIRV, CACHE_PIPELINES, CACHE_KIND_COUNT } CacheKind;
+typedef enum CacheKind {
+    CACHE_SPIRV,
+    CACHE_PIPELINES,
+    CACHE_STRUCTURE, /* whether scenes of a structure are edited; it is compiled from nothing */
+    CACHE_KIND_COUNT
+} CacheKind;
 
 /* Of one thread at a time; zero is a cache that keeps nothing. */
 typedef struct Cache {
