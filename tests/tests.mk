@@ -45,7 +45,8 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/diagnostics unit/s
                oracle/krs_expand oracle/bounds \
                oracle/maps oracle/moebius oracle/moebius_images oracle/operators oracle/moving \
                oracle/fractals oracle/metasurfaces oracle/normals fuzz/sentences)
-# Beside programs, the longest first; those after them measure time, or count what others may change.
+# Scripts that run beside programs, the longest first.  SCRIPTS run alone: they measure time, or count
+# what others may change.
 BESIDE      := $(addprefix tests/, examples.sh extend/extend.sh cli/scale.sh errors-sanitized.sh lint.sh \
                errors.sh layers.sh grammar.sh editors.sh golden.sh library.sh docs.sh)
 SCRIPTS     := tests/run_selftest.sh $(sort $(filter-out tests/cli/common.sh $(BESIDE), \
