@@ -1,6 +1,6 @@
 #!/bin/sh
 # pictures.sh BUILD [NAME...]: renders examples to docs/pictures/, small enough for a page: with
-# 32 steps a channel, or 256 colours where that takes more than 400,000 bytes, dithered by
+# 64 steps a channel, or 256 colours where that takes more than 500,000 bytes, dithered by
 # ImageMagick, which nothing else here needs.  Without a name all.
 build=$1
 shift
@@ -12,8 +12,8 @@ for name in "$@"; do
     scene=$(ls examples/??-"$name".krs) || exit 1
     picture=docs/pictures/$name.png
     "$build/krs" render "$scene" --quiet --size 960x540 --samples 16 -o "$work/$name.png" &&
-        convert "$work/$name.png" -strip -ordered-dither o8x8,32 "$picture" || exit 1
-    if [ "$(wc -c <"$picture")" -gt 400000 ]; then
+        convert "$work/$name.png" -strip -ordered-dither o8x8,64 "$picture" || exit 1
+    if [ "$(wc -c <"$picture")" -gt 500000 ]; then
         convert "$work/$name.png" -strip -dither Riemersma -colors 256 "$picture" || exit 1
     fi
     echo "$picture"
