@@ -26,7 +26,7 @@ DEVICE  ?= $(KRS_DEVICE)
 JOBS    ?= $(shell nproc)
 
 # Sources in the order of the pipeline: reading down this list is reading the program.
-BASE     := $(addprefix compiler/base/, arena.c text.c source.c beneath.c loader.c diag.c diag_text.c)
+BASE     := $(addprefix compiler/base/, arena.c parallel.c text.c source.c beneath.c loader.c diag.c diag_text.c)
 FRONT    := $(addprefix compiler/front/, lexer.c lex_literals.c syntax.c parser.c parse_expression.c \
                 parse_declaration.c parse.c names.c files.c)
 GRAPH    := $(addprefix compiler/graph/, intern.c alike.c graph.c crowd.c build.c substitute.c extract.c derive_rules.c \

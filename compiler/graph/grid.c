@@ -1,5 +1,6 @@
 /*
  * grid.c: a grid of cubic cells over boxes, in time that is linear in boxes, cells and list entries.
+ * Each processor fills a slab of cells along z; lists do not depend on how many there are.
  *
  * Cells are as small as their number and the length of all lists together allow.  The distance from
  * a cell to the nearest box that it does not list is measured for boxes around the corner.  Farther
@@ -15,6 +16,7 @@
 #include <float.h>
 
 #include "compiler/base/far.h"
+#include "compiler/base/parallel.h"
 
 /* Most cells and entries: few members may have more cells each, so that they may form a curve, and
    more entries, so that blends that reach far have short lists.  A loop over a list is most of a
@@ -221,14 +223,33 @@ static double gap_along(const Builder *b, const Box *box, int axis, uint32_t cel
     return gap > 0 ? gap : 0;
 }
 
-/* Visits cells around a box.  First their lists are counted, in first[]; when there are members,
-   they are filled, and first[] moves on. */
-static void visit_cells(const Builder *b, uint32_t member)
+/* Cells [low, high) along z, of which one processor fills the lists. */
+typedef struct Slab {
+    uint32_t low, high;
+} Slab;
+
+static Slab slab_of_part(const Grid *grid, size_t part, size_t parts)
+{
+    return (Slab){(uint32_t)part_begin(grid->cells[2], part, parts),
+                  (uint32_t)part_begin(grid->cells[2], part + 1, parts)};
+}
+
+static Cover cover_in_slab(Cover cover, Slab slab)
+{
+    cover.first[2] = cover.first[2] > slab.low ? cover.first[2] : slab.low;
+    cover.last[2]  = cover.last[2] < slab.high ? cover.last[2] : slab.high - 1;
+    return cover;
+}
+
+/* Visits cells of a slab around a box.  First their lists are counted, in first[]; when there are
+   members, they are filled, and first[] moves on. */
+static void visit_cells(const Builder *b, uint32_t member, Slab slab)
 {
     const Grid *grid   = b->grid;
     const Box  *box    = &b->boxes[member];
     double      listed = b->listed * b->listed;
     Cover       cover  = cover_box(b, box, grid->members ? b->listed : b->seen);
+    cover              = cover_in_slab(cover, slab);
     for (uint32_t z = cover.first[2]; z <= cover.last[2]; z++) {
         double gap_z = gap_along(b, box, 2, z);
         for (uint32_t y = cover.first[1]; y <= cover.last[1]; y++) {
@@ -248,11 +269,14 @@ static void visit_cells(const Builder *b, uint32_t member)
     }
 }
 
-static void visit_all(const Builder *b)
+/* The lists of a slab. */
+static void visit_all(void *task, size_t part, size_t parts)
 {
-    for (uint32_t i = 0; i < b->count; i++)
+    const Builder *b    = task;
+    Slab           slab = slab_of_part(b->grid, part, parts);
+    for (uint32_t i = 0; i < b->count && slab.low < slab.high; i++)
         if (!box_is_empty(&b->boxes[i]))
-            visit_cells(b, i);
+            visit_cells(b, i, slab);
 }
 
 static void fill_lists(Builder *b, Arena *arena)
@@ -263,7 +287,7 @@ static void fill_lists(Builder *b, Arena *arena)
     b->nearest   = arena_new_array(b->scratch, float, cells);
     for (size_t c = 0; c < cells; c++)
         b->nearest[c] = HUGE_VALF;
-    visit_all(b);
+    run_in_parallel(visit_all, b);
 
     /* From lengths to where lists begin. */
     uint32_t entries = 0;
@@ -275,7 +299,7 @@ static void fill_lists(Builder *b, Arena *arena)
         entries += length;
     }
     grid->members = arena_new_array(arena, uint32_t, entries + 1);
-    visit_all(b);
+    run_in_parallel(visit_all, b);
 
     /* Each first[] is now where the next list begins. */
     for (size_t c = cells; c > 0; c--)
@@ -325,23 +349,49 @@ static void transform_line(double *values, size_t count, size_t stride, const Pa
     }
 }
 
-static void transform(const Grid *grid, double *values, Arena *scratch)
+/* The transform of all cells, an axis at a time; each processor has lines of its own. */
+typedef struct Transform {
+    const Builder *builder;
+    double        *values;
+    Parabolas      lowest; /* of all processors, `longest` each */
+    size_t         longest;
+} Transform;
+
+static Parabolas parabolas_of_part(const Transform *t, size_t part)
 {
-    size_t    x = grid->cells[0], y = grid->cells[1], z = grid->cells[2];
-    size_t    longest = x > y ? (x > z ? x : z) : (y > z ? y : z);
-    Parabolas lowest  = {arena_new_array(scratch, double, longest),
-                         arena_new_array(scratch, double, longest),
-                         arena_new_array(scratch, size_t, longest)};
-    for (size_t line = 0; line < y * z; line++)
-        transform_line(values + line * x, x, 1, &lowest);
-    for (size_t line = 0; line < x * z; line++)
-        transform_line(values + line / x * x * y + line % x, y, x, &lowest);
-    for (size_t line = 0; line < x * y; line++)
-        transform_line(values + line, z, x * y, &lowest);
+    size_t first = part * t->longest;
+    return (Parabolas){t->lowest.value + first, t->lowest.begin + first, t->lowest.center + first};
+}
+
+static void transform_across(void *task, size_t part, size_t parts)
+{
+    const Transform *t      = task;
+    const Grid      *grid   = t->builder->grid;
+    Parabolas        lowest = parabolas_of_part(t, part);
+    size_t           x = grid->cells[0], y = grid->cells[1], z = grid->cells[2];
+    for (size_t plane = part_begin(z, part, parts); plane < part_begin(z, part + 1, parts);
+         plane++) {
+        double *values = t->values + plane * x * y;
+        for (size_t line = 0; line < y; line++)
+            transform_line(values + line * x, x, 1, &lowest);
+        for (size_t line = 0; line < x; line++)
+            transform_line(values + line, y, x, &lowest);
+    }
+}
+
+static void transform_along(void *task, size_t part, size_t parts)
+{
+    const Transform *t      = task;
+    const Grid      *grid   = t->builder->grid;
+    Parabolas        lowest = parabolas_of_part(t, part);
+    size_t           plane  = (size_t)grid->cells[0] * grid->cells[1];
+    size_t           end    = part_begin(plane, part + 1, parts);
+    for (size_t line = part_begin(plane, part, parts); line < end; line++)
+        transform_line(t->values + line, grid->cells[2], plane, &lowest);
 }
 
 /* 0 in cells that touch a cell with a part of this box. */
-static void mark_box(const Builder *b, const Box *box, double *squares)
+static void mark_box(const Builder *b, const Box *box, double *squares, Slab slab)
 {
     const Grid *grid  = b->grid;
     Cover       cover = cover_box(b, box, 0);
@@ -349,25 +399,44 @@ static void mark_box(const Builder *b, const Box *box, double *squares)
         cover.first[k] -= cover.first[k] > 0;
         cover.last[k] += cover.last[k] + 1 < grid->cells[k];
     }
+    cover = cover_in_slab(cover, slab);
     for (uint32_t z = cover.first[2]; z <= cover.last[2]; z++)
         for (uint32_t y = cover.first[1]; y <= cover.last[1]; y++)
             for (uint32_t x = cover.first[0]; x <= cover.last[0]; x++)
                 squares[((size_t)z * grid->cells[1] + y) * grid->cells[0] + x] = 0;
 }
 
+static void mark_all(void *task, size_t part, size_t parts)
+{
+    const Transform *t    = task;
+    const Builder   *b    = t->builder;
+    Slab             slab = slab_of_part(b->grid, part, parts);
+    for (uint32_t i = 0; i < b->count && slab.low < slab.high; i++)
+        if (!box_is_empty(&b->boxes[i]))
+            mark_box(b, &b->boxes[i], t->values, slab);
+}
+
 /* Squares of lower bounds on the distance between a cell and the nearest box, in cells.  The walls
    of cells i and k are |i - k| - 1 cells apart: as far as centers when one of them touches. */
 static double *cells_to_boxes(const Builder *b)
 {
-    size_t  cells   = cell_count(b->grid);
-    double *squares = arena_new_array(b->scratch, double, cells);
+    const uint32_t *along   = b->grid->cells;
+    size_t          cells   = cell_count(b->grid);
+    size_t          longest = along[0] > along[1] ? along[0] : along[1];
+    longest                 = longest > along[2] ? longest : along[2];
+    size_t    room          = longest * MOST_PARTS;
+    Transform t             = {.builder = b,
+                               .values  = arena_new_array(b->scratch, double, cells),
+                               .lowest  = {arena_new_array(b->scratch, double, room),
+                                           arena_new_array(b->scratch, double, room),
+                                           arena_new_array(b->scratch, size_t, room)},
+                               .longest = longest};
     for (size_t c = 0; c < cells; c++)
-        squares[c] = HUGE_VAL;
-    for (uint32_t i = 0; i < b->count; i++)
-        if (!box_is_empty(&b->boxes[i]))
-            mark_box(b, &b->boxes[i], squares);
-    transform(b->grid, squares, b->scratch);
-    return squares;
+        t.values[c] = HUGE_VAL;
+    run_in_parallel(mark_all, &t);
+    run_in_parallel(transform_across, &t);
+    run_in_parallel(transform_along, &t);
+    return t.values;
 }
 
 /* ---- Clearance ---- */

@@ -69,6 +69,7 @@ typedef struct Emitter {
     const char      **given;   /* names of nodes that the function need not compute */
     uint8_t          *mark;    /* for walks, zero between them */
     const char      **frame;   /* names of the globals that krs_prepare sets */
+    bool             *slot_is_read; /* in krs_prepare: whether a local has the slot's numbers */
     uint8_t          *feeds_mirror; /* whether a mirror (OP_fold) uses it */
     const char      **excess; /* of mirrors in a row: the name of how far beyond it the point is */
     uint32_t          next;   /* number of the next local name */

@@ -26,10 +26,25 @@ static size_t emit_globals(Emitter *e, const Node *roots, size_t count, Node *se
     return globals;
 }
 
+/* Components of a slot.  A local gets all four numbers before the first of them is used: drivers
+   compare each read with all reads before it, so fewer reads are compiled sooner. */
+static const char *component_text(Emitter *e, uint32_t slot, uint32_t first, uint32_t width)
+{
+    Text name = {.arena = e->scratch};
+    text_format(&name, "krs_slot%u", slot);
+    if (!e->slot_is_read[slot])
+        emit_phrase(e, PHRASE_LOCAL,
+                    (Operands){e->printer->types[TYPE_VEC4], name.bytes, emit_slot(e, slot, 0, 4)});
+    e->slot_is_read[slot] = true;
+    if (width < 4)
+        text_format(&name, ".%.*s", (int)width, &"xyzw"[first]);
+    return name.bytes;
+}
+
 static const char *number_text(Emitter *e, const FrameValue *value, uint32_t k)
 {
     return value->at[k] == NO_PLACE ? emit_number(e, value->constant[k])
-                                    : emit_slot(e, value->at[k] / 4, value->at[k] % 4, 1);
+                                    : component_text(e, value->at[k] / 4, value->at[k] % 4, 1);
 }
 
 /* What the host has found, out of its slots. */
@@ -48,7 +63,7 @@ static const char *found_text(Emitter *e, const FrameValue *value)
     else if (type == TYPE_UINT)
         return phrase_text(e, PHRASE_BITS, (Operands){number_text(e, value, 0)});
     else if (together && value->at[0] / 4 == value->at[last] / 4)
-        return emit_slot(e, value->at[0] / 4, value->at[0] % 4, value->width);
+        return component_text(e, value->at[0] / 4, value->at[0] % 4, value->width);
     else if (type == TYPE_FLOAT)
         return number_text(e, value, 0);
     else {
@@ -66,7 +81,7 @@ static const char *read_text(Emitter *e, const FrameValues *values, Node n)
     if (e->place[n])
         return found_text(e, &values->items[e->place[n] - 1]);
     if (expr->op == OP_COMPONENT && frame_value_is_given(e->graph, n))
-        return emit_slot(e, e->graph->items[expr->operands[0]].index, expr->index, 1);
+        return component_text(e, e->graph->items[expr->operands[0]].index, expr->index, 1);
     for (uint32_t k = 0; k < expr->operand_count; k++) /* a leaf has none */
         e->text[expr->operands[k]] = read_text(e, values, expr->operands[k]);
     return emit_expression(e, expr);
@@ -75,6 +90,7 @@ static const char *read_text(Emitter *e, const FrameValues *values, Node n)
 /* The globals from the parameter block, in which the host has put them. */
 static void emit_reads(Emitter *e, const Node *set, size_t globals, const FrameValues *values)
 {
+    e->slot_is_read = arena_new_array(e->scratch, bool, emit_slot_count(e));
     memset(e->place, 0, e->graph->count * sizeof *e->place);
     for (size_t i = 0; i < values->count; i++)
         e->place[values->items[i].node] = (uint32_t)i + 1;

@@ -9,7 +9,6 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 #include <cmocka.h>
 
@@ -17,6 +16,7 @@
 #include "compiler/base/vec.h"
 #include "compiler/graph/grid.h"
 #include "tests/support/bench.h"
+#include "tests/support/processors.h"
 
 enum { MOST_BOXES = 4000, POINTS = 1000 };
 
@@ -425,14 +425,35 @@ static void long_entries_are_fewer(void **state)
     }
 }
 
-/* ---- Numbers to look at ---- */
-
-static double seconds(void)
+static bool grids_are_equal(const Grid *a, const Grid *b)
 {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+    size_t cells = (size_t)a->cells[0] * a->cells[1] * a->cells[2];
+    return memcmp(a->cells, b->cells, sizeof a->cells) == 0 &&
+           memcmp(a->first, b->first, (cells + 1) * sizeof *a->first) == 0 &&
+           memcmp(a->clearance, b->clearance, cells * sizeof *a->clearance) == 0 &&
+           memcmp(a->members, b->members, a->first[cells] * sizeof *a->members) == 0;
 }
+
+/* One processor builds the same grid as all together. */
+static void processors_share_the_work(void **state)
+{
+    Bench     *bench = *state;
+    static Box boxes[MOST_BOXES];
+    cpu_set_t  all;
+    for (Kind kind = 0; kind < KINDS; kind++) {
+        Grid alone, together;
+        make_boxes(&bench->random, kind, boxes, MOST_BOXES);
+        assert_int_equal(use_one_processor(&all), 0);
+        grid_build(&alone, boxes, MOST_BOXES, 0.1, 0.2, 1, &bench->arena, &bench->arena);
+        assert_int_equal(use_processors(&all), 0);
+        grid_build(&together, boxes, MOST_BOXES, 0.1, 0.2, 1, &bench->arena, &bench->arena);
+        assert_true(grids_are_equal(&alone, &together));
+        together.clearance[0] *= 2;
+        assert_false(grids_are_equal(&alone, &together));
+    }
+}
+
+/* ---- Numbers to look at ---- */
 
 /* Lists stay short, however many there are, unless boxes overlap. */
 static void lists_of_many(void **state)
@@ -451,14 +472,12 @@ static void lists_of_many(void **state)
         Arena scratch = {.memory = &bench->memory};
         Grid  grid;
         make_boxes(&bench->random, many[i].kind, boxes, count);
-        double start = seconds();
         grid_build(&grid, boxes, count, 0, 0, 1, &bench->arena, &scratch);
-        double took = seconds() - start;
         arena_free(&scratch);
         size_t cells = (size_t)grid.cells[0] * grid.cells[1] * grid.cells[2];
-        printf("# %s: %.0f ms, %u x %u x %u cells, %.1f entries each, %u longest\n", many[i].name,
-               1000 * took, grid.cells[0], grid.cells[1], grid.cells[2],
-               (double)grid.first[cells] / count, grid.most_listed);
+        printf("# %s: %u x %u x %u cells, %.1f entries each, %u longest\n", many[i].name,
+               grid.cells[0], grid.cells[1], grid.cells[2], (double)grid.first[cells] / count,
+               grid.most_listed);
         assert_true(grid.most_listed <= many[i].longest);
     }
 }
@@ -474,6 +493,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(infinite_boxes_have_one_cell, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(the_checker_can_fail, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(long_entries_are_fewer, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(processors_share_the_work, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(lists_of_many, bench_start, bench_stop),
     };
     return cmocka_run_group_tests_name("grids of crowds", tests, NULL, NULL);

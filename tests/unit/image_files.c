@@ -13,13 +13,13 @@
 #include <errno.h>
 #include <math.h>
 #include <png.h>
-#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "runtime/writer/exr.h"
 #include "runtime/writer/png.h"
+#include "tests/support/processors.h"
 #include "tests/unit/file_faults.h"
 
 /* ---- half precision ---- */
@@ -221,17 +221,11 @@ static void workers_are_not_seen(void **state)
     (void)state;
     Sample   *sample = sample_new();
     char     *alone = malloc(SIZE), *together = malloc(SIZE);
-    cpu_set_t all, one;
-    int       processor = 0;
+    cpu_set_t all;
     assert_true(alone && together);
-    assert_int_equal(sched_getaffinity(0, sizeof all, &all), 0);
-    while (!CPU_ISSET(processor, &all))
-        processor++;
-    CPU_ZERO(&one);
-    CPU_SET(processor, &one);
-    assert_int_equal(sched_setaffinity(0, sizeof one, &one), 0);
+    assert_int_equal(use_one_processor(&all), 0);
     assert_int_equal(write_sample(sample, EXR, "alone.exr"), KRS_OK);
-    assert_int_equal(sched_setaffinity(0, sizeof all, &all), 0);
+    assert_int_equal(use_processors(&all), 0);
     size_t length = read_file("alone.exr", alone, SIZE);
     for (int i = 0; i < 20; i++) {
         assert_int_equal(write_sample(sample, EXR, "together.exr"), KRS_OK);
