@@ -4,11 +4,13 @@
 # usage: bench/large/large.sh KRS [COUNTS] [TURNS]
 #
 # Balls of one size are spread evenly in a cube, as sharp union and, for krs alone, as a blended one.
-# Both programs get the same centres, camera and light.  Printed in Markdown, medians of TURNS runs:
+# Both programs get the same centres, camera and light, and write a PNG file.  Printed in Markdown,
+# medians of TURNS runs:
 #   first    the whole process, nothing cached: a picture of 640x360, seconds
 #   frame    CPU seconds of all threads for a picture of 1280x720, without what a picture of 16x9
 #            costs; one light, no shadows
-#   lit      the same with shadows and, in krs, occlusion
+#   EXR      the same, written as EXR file with positions, normals, colours and numbers of what is seen
+#   lit      as frame, with shadows and, in krs, occlusion
 #   edit     the whole process after an edit of one number, warm: a picture of 640x360, seconds
 #   MB       the most that was resident
 set -u
@@ -61,7 +63,7 @@ timed() { # name, command...
 
 of_krs() { # name, scene, size, options...
     name=$1 scene=$2 size=$3 && shift 3
-    timed "$name" "$krs" render "$scene" --size "$size" --samples 1 --quiet -o "$work/krs.exr" "$@"
+    timed "$name" "$krs" render "$scene" --size "$size" --samples 1 --quiet "$@"
 }
 
 of_pov() { # name, scene, width, height
@@ -80,8 +82,9 @@ difference() { # name, name of what is taken off: of CPU seconds
 }
 
 row() { # program, count, kind, lit
-    printf '| %s | %s | %s | %.2f | %s | %s | %s | %.0f |\n' "$2" "$3" "$1" "$(median first 2)" \
-        "$(difference frame small)" "$(difference lit small)" "$4" "$(median first 4)"
+    printf '| %s | %s | %s | %.2f | %s | %s | %s | %s | %.0f |\n' "$2" "$3" "$1" "$(median first 2)" \
+        "$(difference frame small)" "$(difference exr small)" "$(difference lit small)" "$4" \
+        "$(median first 4)"
 }
 
 measure_krs() { # count, kind, blend
@@ -92,13 +95,14 @@ measure_krs() { # count, kind, blend
     : >"$work/runs"
     for _ in $(seq "$turns"); do
         rm -rf "$work/cache"
-        of_krs first "$work/plain.krs" 640x360 --occlusion off
-        of_krs edit "$work/edited.krs" 640x360 --occlusion off --specialize structure
-        of_krs edited "$work/plain.krs" 640x360 --occlusion off --specialize structure
-        of_krs warm "$work/lit.krs" 640x360
-        of_krs small "$work/plain.krs" 16x9 --occlusion off
-        of_krs frame "$work/plain.krs" 1280x720 --occlusion off
-        of_krs lit "$work/lit.krs" 1280x720
+        of_krs first "$work/plain.krs" 640x360 --occlusion off -o "$work/krs.png"
+        of_krs edit "$work/edited.krs" 640x360 --occlusion off -o "$work/krs.png" --specialize structure
+        of_krs edited "$work/plain.krs" 640x360 --occlusion off -o "$work/krs.png" --specialize structure
+        of_krs warm "$work/lit.krs" 640x360 -o "$work/krs.png"
+        of_krs small "$work/plain.krs" 16x9 --occlusion off -o "$work/krs.png"
+        of_krs frame "$work/plain.krs" 1280x720 --occlusion off -o "$work/krs.png"
+        of_krs exr "$work/plain.krs" 1280x720 --occlusion off -o "$work/krs.exr"
+        of_krs lit "$work/lit.krs" 1280x720 -o "$work/krs.png"
     done
     row krs "$1" "$2" "$(median edited 2)"
 }
@@ -121,8 +125,8 @@ echo "# Scenes of many parts"
 echo
 echo "Seconds, medians of $turns runs. \`bench/large/large.sh\` says what the columns are."
 echo
-echo "| parts | joint | program | first | frame, CPU | lit, CPU | edit | MB |"
-echo "| --- | --- | --- | --- | --- | --- | --- | --- |"
+echo "| parts | joint | program | first | frame, CPU | EXR, CPU | lit, CPU | edit | MB |"
+echo "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
 for count in $counts; do
     measure_krs "$count" sharp ""
     measure_krs "$count" blended ", blend: $(awk -v r="$(radius "$count")" 'BEGIN { print r / 2 }')"
