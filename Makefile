@@ -39,7 +39,7 @@ LOWER    := $(addprefix compiler/lower/, context.c box_distance.c surface.c join
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
 EVAL     := $(addprefix compiler/eval/, scope.c expression.c arithmetic.c arguments.c builtins.c lists.c \
                 random.c functions.c csg.c fractal.c declare.c claims.c empty.c methods.c properties.c \
-                material.c view.c palette.c statements.c shown.c)
+                material.c view.c palette.c statements.c shown.c studio.c)
 PRINT    := $(addprefix compiler/print/, frame_values.c lines.c signatures.c helpers.c mirrors.c statements.c \
                 prepare.c crowds.c distances.c shared.c surfaces.c boxes.c early_outs.c march.c \
                 module_print.c) \

@@ -54,6 +54,7 @@ KrsOptions scene_options(DiagnosticSink *sink, const char *path)
                         .specialize   = options->specialize,
                         .gradients    = options->how.normals == KRS_NORMALS_ANALYTIC,
                         .memory_limit = options->limits.memory,
+                        .studio       = options->command == COMMAND_RENDER && !options->no_studio,
                         .root         = scene_root(options, path)};
 }
 

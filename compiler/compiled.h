@@ -19,6 +19,13 @@ typedef struct KrsSky {
     double zenith[3], horizon[3], ground[3]; /* linear radiance */
 } KrsSky;
 
+/* Fog takes the part density * exp(-fall * (y - base)) of the light away on a unit of length, and
+   adds its color instead.  Without fog the density is 0. */
+typedef struct KrsFog {
+    double color[3]; /* linear radiance */
+    double density, fall, base;
+} KrsFog;
+
 /* The properties of the `image` block; 0 or NULL where one is not given. */
 typedef struct KrsImage {
     uint32_t    width, height, samples;
@@ -32,6 +39,7 @@ typedef struct KrsImage {
 typedef struct KrsView {
     KrsCamera       camera;
     KrsSky          sky;
+    KrsFog          fog;
     KrsImage        image;
     size_t          light_count;
     const KrsLight *lights; /* lives as long as the frame, until the next krs_frame_view */

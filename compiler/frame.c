@@ -342,6 +342,10 @@ KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view)
     frame_copy(frame, sky->zenith, view->sky.zenith);
     frame_copy(frame, sky->horizon, view->sky.horizon);
     frame_copy(frame, sky->ground, view->sky.ground);
+    frame_copy(frame, sky->fog_color, view->fog.color);
+    view->fog.density = frame->values[sky->fog_density].v[0];
+    view->fog.fall    = frame->values[sky->fog_fall].v[0];
+    view->fog.base    = frame->values[sky->fog_base].v[0];
     for (size_t i = 0; i < scene->light_count; i++)
         view_light(frame, i, &frame->lights[i]);
     view->image = krs_scene_image(scene);

@@ -79,6 +79,8 @@ typedef struct KrsOptions {
     KrsSpecialize          specialize;
     bool                   gradients; /* compile derivatives too: for KRS_NORMALS_ANALYTIC,
                                             and as krs_gradient in the GLSL */
+    bool studio; /* a bounded scene without lights and sky gets some, and a floor, whose component
+                    is the last and named `floor`; for pictures */
     /* Only files in this folder, and below it, are read; others are E0504, also behind symbolic
        links.  That includes the scene itself in krs_compile_file.  With krs_compile_text, `name`
        must be in the folder for `use` to work.  NULL: all files may be read. */
@@ -111,7 +113,7 @@ typedef struct KrsChanges {
     bool      parameters; /* their number, names, order, components, defaults or ranges */
     bool      components; /* their number or names */
     bool      cameras;    /* their number, names or properties */
-    bool      lights;     /* lights or sky */
+    bool      lights;     /* lights, sky or fog */
     bool      image;      /* the `image` block */
 } KrsChanges;
 

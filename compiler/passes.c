@@ -85,8 +85,9 @@ static bool hoists(const Compilation *c)
 
 KrsStatus pass_elaborate(Compilation *c)
 {
-    Graph *graph         = graph_new(&c->work);
-    c->elaborated        = (Scene){.graph = graph, .zenith = NODE_NONE, .zone = NODE_NONE};
+    Graph *graph  = graph_new(&c->work);
+    c->elaborated = (Scene){
+        .graph = graph, .zenith = NODE_NONE, .zone = NODE_NONE, .fog = {.color = NODE_NONE}};
     ShapeBuilder builder = {.arena      = &c->work,
                             .scratch    = &c->scratch,
                             .diags      = &c->diags,
@@ -100,6 +101,7 @@ KrsStatus pass_elaborate(Compilation *c)
                             .sources = &c->sources,
                             .graph   = graph,
                             .scene   = &c->elaborated,
+                            .studio  = c->options->studio,
                             .hoists  = hoists(c)};
     elaborate(&e, &c->files);
     return c->diags.errors ? KRS_BAD_SCENE : KRS_OK;

@@ -20,7 +20,7 @@ typedef enum RootKind {
     ROOTS_ZONE,    /* the depth in the zones; none if there are no zones */
     ROOTS_CAMERA,  /* CameraRoots of each camera */
     ROOTS_LIGHT,   /* LightRoots of each light */
-    ROOTS_SKY,     /* SkyRoots */
+    ROOTS_SKY,     /* SkyRoots, with fog */
     /* The kinds from here on are for the march, gradients and slopes only. */
     ROOTS_GUARDED,         /* for each component: lower_guarded */
     ROOTS_ALONG,           /* for each method, for each component: lower_along */
@@ -39,6 +39,7 @@ typedef struct LightRoots {
 } LightRoots;
 typedef struct SkyRoots {
     Node zenith, horizon, ground;
+    Node fog_color, fog_density, fog_fall, fog_base;
 } SkyRoots;
 typedef struct PlaneRoots {
     Node step, cosine; /* length of the ray up to the plane; dot product of normal and direction */

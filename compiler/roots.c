@@ -51,7 +51,7 @@ static bool lower_components(Compilation *c, Graph *g, LoweredCrowds *crowds)
     return true;
 }
 
-/* Copies the nodes of zones, cameras, lights and the sky, which elaboration has made. */
+/* Copies the nodes of zones, cameras, lights, the sky and fog, which elaboration has made. */
 static void gather_view(const Scene *s, const Roots *roots)
 {
     if (s->zone_count > 0)
@@ -65,7 +65,9 @@ static void gather_view(const Scene *s, const Roots *roots)
         const SceneLight *light = &s->lights.items[i];
         *light_roots(roots, i)  = (LightRoots){light->vector, light->color, light->softness};
     }
-    *sky_roots(roots) = (SkyRoots){s->zenith, s->horizon, s->ground};
+    const SceneFog *fog = &s->fog;
+    *sky_roots(roots)   = (SkyRoots){s->zenith,    s->horizon, s->ground, fog->color,
+                                     fog->density, fog->fall,  fog->base};
 }
 
 static void lower_marches(Compilation *c, Graph *g, LoweredCrowds *crowds)

@@ -86,6 +86,7 @@ typedef struct Elaboration {
         size_t         count, capacity;
     } checked;
     BuiltinName builtins[MOST_BUILTIN_NAMES]; /* names looked up so far, by their addresses */
+    bool        studio; /* a scene without lights and sky gets those of the library, and a floor */
     bool        hoists; /* numbers of the scene's own text are not those of the shaders' text */
     uint32_t    number_count; /* of such numbers so far */
     uint64_t    steps;        /* of evaluation, so far */
@@ -349,6 +350,10 @@ Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *s
 /* A material, or a colour that becomes one; NULL: reported. */
 const Material *to_material(Elaboration *e, Value value, const Syntax *syntax);
 
+/* ---- studio.c ---- */
+/* Adds lights, a sky and a floor to a scene that has none. */
+void run_studio(Elaboration *e, const Files *files);
+
 /* ---- view.c: cameras, lights, sky, image, zones ---- */
 /* Adds a camera, a light or a zone to the scene, or sets its sky or image. */
 void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax);
@@ -356,6 +361,8 @@ void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax
 void complete_view(Elaboration *e);
 
 /* ---- statements.c ---- */
+/* Runs the statements of a file. */
+void run_file(Elaboration *e, Scope *scope);
 /* The shape of a `krs` block. */
 Value elaborate_krs(Elaboration *e, const Environment *env, const Syntax *syntax);
 

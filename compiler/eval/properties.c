@@ -1,7 +1,7 @@
 /*
  * properties.c: the properties that blocks of a scene may have, and their values.
  *
- * Blocks are materials, cameras, lights, the sky, the image and zones.
+ * Blocks are materials, cameras, lights, the sky, fog, the image and zones.
  */
 #include "compiler/eval/elaborate.h"
 
@@ -43,6 +43,10 @@ static const struct BlockProperty {
     {SYNTAX_SKY, "sun", false},
     {SYNTAX_SKY, "image", true},
     {SYNTAX_SKY, "rotation", true},
+    {SYNTAX_FOG, "color", false},
+    {SYNTAX_FOG, "density", false},
+    {SYNTAX_FOG, "height", false},
+    {SYNTAX_FOG, "base", false},
     {SYNTAX_IMAGE, "size", false},
     {SYNTAX_IMAGE, "samples", false},
     {SYNTAX_IMAGE, "integrator", false},
@@ -64,6 +68,7 @@ const char *block_name(SyntaxKind kind)
     case SYNTAX_CAMERA: return "a camera";
     case SYNTAX_LIGHT: return "a light";
     case SYNTAX_SKY: return "the sky";
+    case SYNTAX_FOG: return "the fog";
     case SYNTAX_ZONE: return "a zone";
     default: return "the image";
     }

@@ -331,6 +331,7 @@ static void run_statement(Elaboration *e, Environment *env, const Syntax *syntax
     case SYNTAX_CAMERA:
     case SYNTAX_LIGHT:
     case SYNTAX_SKY:
+    case SYNTAX_FOG:
     case SYNTAX_IMAGE:
     case SYNTAX_ZONE: elaborate_view(e, env, syntax); break;
     default: break; /* errors of the parser */
@@ -386,7 +387,7 @@ Value elaborate_krs(Elaboration *e, const Environment *env, const Syntax *syntax
 
 /* ---- the file ---- */
 
-static void run_file(Elaboration *e, Scope *scope)
+void run_file(Elaboration *e, Scope *scope)
 {
     Environment env = scope->environment;
     for (uint32_t i = 0; i < scope->file->count && !is_stopped(e); i++) {
@@ -426,6 +427,8 @@ void elaborate(Elaboration *e, const Files *files)
     for (size_t i = 0; i < e->scopes.count; i++)
         run_params(e, e->scopes.items[i]);
     run_file(e, scope);
+    if (e->studio)
+        run_studio(e, files);
     gather_shown(e);
     e->scene->box = box_empty;
     for (size_t i = 0; i < e->scene->components.count; i++)

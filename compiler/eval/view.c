@@ -1,11 +1,11 @@
 /*
- * view.c: cameras, lights, sky, image and zones, and defaults for those that a scene leaves out.
+ * view.c: cameras, lights, sky, fog, image and zones, and defaults for those that a scene leaves out.
  */
 #include "compiler/eval/elaborate.h"
 
 #include <math.h>
 
-/* ---- cameras, lights, sky, image ---- */
+/* ---- cameras, lights, sky, fog, image ---- */
 
 static const double ORIGIN[3] = {0, 0, 0}, UP[3] = {0, 1, 0}, WHITE[3] = {1, 1, 1};
 
@@ -81,6 +81,34 @@ static void set_sky(Elaboration *e, const Environment *env, const Syntax *syntax
         type_error(e, sun, evaluate(e, env, sun), "the name of a light");
 }
 
+/* 1 over the height, unless that is 0: then the fog is as dense everywhere. */
+static Node fog_fall(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Node          height = number_property(e, env, syntax, "height", 0);
+    const Syntax *given  = find_property(syntax, "height");
+    if (!given)
+        return height;
+    check_positive(e, height, given, "the height of the fog");
+    return graph_op2(e->graph, OP_div, graph_number(e->graph, 1), height);
+}
+
+/* Its color is that of the horizon, unless given. */
+static void set_fog(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    static const double grey[3] = {0.56, 0.6, 0.66};
+    const Syntax       *dense   = find_property(syntax, "density");
+    SceneFog           *fog     = &e->scene->fog;
+    fog->color                  = vector_property(e, env, syntax, "color", grey);
+    fog->density                = number_property(e, env, syntax, "density", 0.05);
+    fog->fall                   = fog_fall(e, env, syntax);
+    fog->base                   = number_property(e, env, syntax, "base", 0);
+    if (dense && node_range(e->builder, fog->density, 0).low < 0) {
+        Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, dense->span,
+                              "the density of the fog must not be negative");
+        diag->help = "0 is no fog; 0.05 leaves a third of the light of what is 20 away";
+    }
+}
+
 static void set_size(Elaboration *e, const Syntax *size, Value value)
 {
     Node node = value.type == VALUE_LIST ? value_node(e, value) : NODE_NONE;
@@ -143,7 +171,7 @@ static void add_zone(Elaboration *e, const Environment *env, const Syntax *synta
     scene->zone_count++;
 }
 
-/* A scene has one sky, one image, and one camera without a name. */
+/* A scene has one sky, one fog, one image, and one camera without a name. */
 static void check_single(Elaboration *e, const Syntax *syntax)
 {
     if (syntax->kind == SYNTAX_LIGHT || syntax->kind == SYNTAX_ZONE || syntax->name)
@@ -169,6 +197,7 @@ void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax
     case SYNTAX_CAMERA: add_camera(e, env, syntax); break;
     case SYNTAX_LIGHT: add_light(e, env, syntax); break;
     case SYNTAX_SKY: set_sky(e, env, syntax); break;
+    case SYNTAX_FOG: set_fog(e, env, syntax); break;
     case SYNTAX_ZONE: add_zone(e, env, syntax); break;
     default: set_image(e, env, syntax); break;
     }
@@ -218,4 +247,8 @@ void complete_view(Elaboration *e)
         default_sun(e);
     if (e->scene->zenith == NODE_NONE)
         set_sky(e, NULL, &silent);
+    if (e->scene->fog.color == NODE_NONE) {
+        set_fog(e, NULL, &silent);
+        e->scene->fog.density = graph_number(e->graph, 0);
+    }
 }

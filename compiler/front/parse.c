@@ -146,6 +146,7 @@ static Syntax *parse_block_statement(Parser *p)
     case TOKEN_CAMERA:
     case TOKEN_LIGHT:
     case TOKEN_SKY:
+    case TOKEN_FOG:
     case TOKEN_IMAGE:
     case TOKEN_ZONE: return parse_surroundings(p);
     case TOKEN_SHOW: return parse_show(p);
@@ -289,6 +290,7 @@ static Syntax *parse_statement(Parser *p)
     case TOKEN_CAMERA:
     case TOKEN_LIGHT:
     case TOKEN_SKY:
+    case TOKEN_FOG:
     case TOKEN_IMAGE:
     case TOKEN_ZONE: return parse_surroundings(p);
     case TOKEN_SHOW: return parse_show(p);

@@ -194,6 +194,13 @@ static Syntax *parse_sky(Parser *p)
                                      "for example `sky { zenith: #5b87c5, horizon: #dfe9f2 }`");
 }
 
+/* fog = "fog" properties ; */
+static Syntax *parse_fog(Parser *p)
+{
+    return parse_block_of_properties(p, SYNTAX_FOG, false, "`{` and the properties of the fog",
+                                     "for example `fog { color: #dfe9f2, density: 0.05 }`");
+}
+
 /* image = "image" properties ; */
 static Syntax *parse_image(Parser *p)
 {
@@ -208,13 +215,14 @@ static Syntax *parse_zone(Parser *p)
                                      "for example `zone { center: [0, 1, 0], radius: 0.5 }`");
 }
 
-/* surroundings = camera | light | sky | image | zone ; */
+/* surroundings = camera | light | sky | fog | image | zone ; */
 Syntax *parse_surroundings(Parser *p)
 {
     switch (kind_here(p)) {
     case TOKEN_CAMERA: return parse_camera(p);
     case TOKEN_LIGHT: return parse_light(p);
     case TOKEN_SKY: return parse_sky(p);
+    case TOKEN_FOG: return parse_fog(p);
     case TOKEN_ZONE: return parse_zone(p);
     default: return parse_image(p);
     }

@@ -106,6 +106,6 @@ Syntax *parse_def(Parser *p);
 Syntax *parse_param(Parser *p);
 Syntax *parse_shape(Parser *p);
 Syntax *parse_material(Parser *p);
-Syntax *parse_surroundings(Parser *p); /* a camera, light, sky, image or zone */
+Syntax *parse_surroundings(Parser *p); /* a camera, light, sky, fog, image or zone */
 
 #endif

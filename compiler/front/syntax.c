@@ -36,6 +36,7 @@ const char *syntax_kind_name(SyntaxKind kind)
         [SYNTAX_CAMERA]        = "camera",
         [SYNTAX_LIGHT]         = "light",
         [SYNTAX_SKY]           = "sky",
+        [SYNTAX_FOG]           = "fog",
         [SYNTAX_IMAGE]         = "image",
         [SYNTAX_ZONE]          = "zone",
         [SYNTAX_PROPERTY]      = "property",

@@ -35,6 +35,11 @@ typedef struct SceneImage {
     double      exposure, error;
 } SceneImage;
 
+/* Fog; its color is NODE_NONE where there is none. */
+typedef struct SceneFog {
+    Node color, density, fall, base; /* fall: 1 / height, 0 where the fog is even */
+} SceneFog;
+
 typedef struct Scene {
     Graph *graph;
     struct {
@@ -57,6 +62,7 @@ typedef struct Scene {
         size_t      count, capacity;
     } lights;
     Node       zenith, horizon, ground;
+    SceneFog   fog;
     Node       zone; /* the depth of OP_POINT in zones, negative outside; NODE_NONE without any */
     size_t     zone_count;
     SceneImage image;

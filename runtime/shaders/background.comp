@@ -12,6 +12,8 @@
 #include "light.glsl"
 #include "results.glsl"
 
+const float FARTHEST = 1e30; // the sky is behind all fog
+
 Light sun;
 float sky; // 1: the sky is added; 0: the sun alone
 bool  keeps_counts;
@@ -71,8 +73,10 @@ vec3 find_radiance(uvec2 pixel)
     vec3  origin, direction;
     float base, slope;
     find_ray(vec2(work.corner + pixel) + work.offset, origin, direction, base, slope);
-    return finite_or_black(sky * sky_radiance(direction) +
-                           sun_radiance(direction, sun.vector, sun.color, sun.softness));
+    vec3 radiance = sky * sky_radiance(direction) +
+                    sun_radiance(direction, sun.vector, sun.color, sun.softness);
+    float left = let_through(origin.y, direction.y, FARTHEST);
+    return finite_or_black(through_fog(radiance, left, sky > 0.0));
 }
 
 // A bit for each pixel of a quarter that is in the band; `corner` is the quarter's first pixel.

@@ -1,5 +1,5 @@
 /*
- * light.glsl: the sky, and how a surface reflects light.
+ * light.glsl: the sky, fog, and how a surface reflects light.
  */
 
 // Radiance of the sky: the horizon's colour fades to the zenith's above and the ground's below.
@@ -25,6 +25,23 @@ vec3 sun_radiance(vec3 direction, vec3 toward_sun, vec3 color, float diameter)
     float disc = 1.0 - smoothstep(0.4 * diameter, 0.6 * diameter, angle);
     float glow = 0.12 * exp2(-24.0 * angle) + 0.03 * exp2(-5.0 * angle);
     return diameter > 0.0 ? color * (2.0 * disc + glow) : vec3(0.0);
+}
+
+// The part of light that fog lets through from t along a ray.  The fog is denser the lower it is:
+// its density is integrated along the ray.
+float let_through(float origin_height, float rise, float t)
+{
+    float steepness = frame.fog_level.x * rise, change = steepness * t;
+    float along = abs(change) > 1e-3 ? (1.0 - exp(-max(change, -80.0))) / steepness
+                                     : t * (1.0 - 0.5 * change);
+    float base = exp(min(frame.fog_level.x * (frame.fog_level.y - origin_height), 80.0));
+    return frame.fog.w > 0.0 ? exp(-min(frame.fog.w * base * along, 80.0)) : 1.0;
+}
+
+// Light that comes through fog, with what the fog itself scatters to the eye.
+vec3 through_fog(vec3 radiance, float left, bool adds_fog)
+{
+    return radiance * left + (adds_fog ? frame.fog.rgb * (1.0 - left) : vec3(0.0));
 }
 
 // Reflectance times cosine: Lambert below a GGX coat (Smith's masking, Schlick's Fresnel).

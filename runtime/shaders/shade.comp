@@ -155,6 +155,9 @@ void do_item(uint number)
         next = lights[2];
         i++;
     } while (i < end);
+    float t = find_end(index).t;
+    float left = let_through(hit.position.y - t * hit.direction.y, hit.direction.y, t);
+    radiance.rgb = through_fog(radiance.rgb, left, control.light == 0u);
     vec4 sum = find_color(index) + vec4(finite_or_black(radiance.rgb), radiance.a);
     store_results(index, rows, sum, hit, coat, surface);
 }

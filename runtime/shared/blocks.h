@@ -57,6 +57,8 @@ struct Frame {
     vec4  forward;   /* unit */
     vec4  low, high; /* a box around the scene */
     vec4  zenith, horizon, ground;
+    vec4  fog;        /* its color, its density at its base */
+    vec4  fog_level;  /* how fast it falls with the height, height of its base, 0, 0 */
     vec2  size;       /* of the picture in pixels */
     float pixel_base; /* a pixel at distance t is base + slope t wide */
     float pixel_slope;
@@ -91,7 +93,7 @@ struct PointWork {
 
 #ifdef __STDC_VERSION__
 typedef struct Frame FrameBlock;
-static_assert(sizeof(FrameBlock) == 176, "std140");
+static_assert(sizeof(FrameBlock) == 208, "std140");
 typedef struct Work WorkBlock;
 static_assert(sizeof(WorkBlock) == 40, "std430");
 typedef struct NextDispatch NextDispatchBlock;

@@ -108,6 +108,7 @@ static bool prepare_frame_block(Job *job)
         low[i]  = program->low[i] - job->rebase_origin[i];
         high[i] = program->high[i] - job->rebase_origin[i];
     }
+    view.fog.base -= job->rebase_origin[1];
     if (!view_prepare(&view, low, high, job->options.width, job->options.height, &job->frame))
         return job_refuse(job, "the camera sees nothing: its eye is at its target, or its angle or"
                                " height is not one");

@@ -224,6 +224,10 @@ bool view_prepare(const KrsView *view, const double low[3], const double high[3]
     to_floats(view->sky.zenith, block->zenith);
     to_floats(view->sky.horizon, block->horizon);
     to_floats(view->sky.ground, block->ground);
+    to_floats(view->fog.color, block->fog);
+    block->fog[3]       = (float)view->fog.density;
+    block->fog_level[0] = (float)view->fog.fall;
+    block->fog_level[1] = (float)view->fog.base;
 
     block->pixel_base  = (float)view_pixel(camera, height, 0);
     block->pixel_slope = (float)(view_pixel(camera, height, 1) - view_pixel(camera, height, 0));

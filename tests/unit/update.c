@@ -83,6 +83,7 @@ static const Edit edits[] = {
     {"another light", "light", "light { direction: [0, 1, 0] } light", KRS_CHANGE_VALUES, 0, 0, 0,
      1, 0},
     {"a sky", "light", "sky { zenith: #8090ff } light", KRS_CHANGE_VALUES, 0, 0, 0, 1, 0},
+    {"fog", "light", "fog { density: 0.1 } light", KRS_CHANGE_VALUES, 0, 0, 0, 1, 0},
     {"a picture", "light", "image { size: [64, 48] } light", KRS_CHANGE_VALUES, 0, 0, 0, 0, 1},
     {"another parameter", "let", "param s = 1; let", KRS_CHANGE_STRUCTURE, 1, 0, 0, 0, 0},
     {"another shape", "box([2, 1, 1])", "cylinder(0.5, 2)", KRS_CHANGE_STRUCTURE, 0, 0, 0, 0, 0},
