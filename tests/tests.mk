@@ -47,7 +47,7 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/diagnostics unit/s
                oracle/fractals oracle/metasurfaces oracle/normals fuzz/sentences)
 # Scripts that run beside programs, the longest first.  SCRIPTS run alone: they measure time, or count
 # what others may change.
-BESIDE      := $(addprefix tests/, examples.sh extend/extend.sh cli/scale.sh errors-sanitized.sh lint.sh \
+BESIDE      := $(addprefix tests/, examples.sh tutorial.sh extend/extend.sh cli/scale.sh errors-sanitized.sh lint.sh \
                errors.sh layers.sh grammar.sh editors.sh golden.sh library.sh docs.sh)
 SCRIPTS     := tests/run_selftest.sh $(sort $(filter-out tests/cli/common.sh $(BESIDE), \
                $(wildcard tests/cli/*.sh))) tests/fuzz/fuzz.sh

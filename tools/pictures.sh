@@ -6,7 +6,7 @@ build=$1
 shift
 cd "$(dirname "$0")/.." || exit 1
 [ $# -gt 0 ] || set -- gear machined-part school rock temple grove reef palm olive fern fractals \
-    lamps inversion cabinet sextic lattice town bath
+    lamps inversion cabinet sextic lattice town bath lighthouse
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 for name in "$@"; do
     scene=$(ls examples/??-"$name".krs) || exit 1

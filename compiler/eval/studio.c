@@ -1,7 +1,8 @@
 /*
  * studio.c: lights, walls and a floor (compiler/library/studio.krs) for a scene that names neither
- * lights nor a sky.  Only bounded scenes get them, and only if no camera can be below the floor.
+ * lights nor a sky nor fog.  Only bounded scenes get them, and only if no camera can be below the floor.
  */
+#include <math.h>
 #include <string.h>
 
 #include "compiler/eval/elaborate.h"
@@ -54,9 +55,11 @@ void run_studio(Elaboration *e, const Files *files)
     Scope *scope = find_studio(e, files);
     Box    box;
     if (!scope || e->diags->errors > 0 || scene->lights.count > 0 || scene->zenith != NODE_NONE ||
-        !box_of_scene(scene, &box) || !cameras_are_above(e, box.axis[1].low))
+        scene->fog.color != NODE_NONE || !box_of_scene(scene, &box) ||
+        !cameras_are_above(e, box.axis[1].low))
         return;
     set_number(scope, "_bottom", box.axis[1].low);
+    set_number(scope, "_size", fmax(box_diagonal(box), 1e-9));
     run_file(e, scope);
     scene->components.items[scene->components.count - 1].name = "floor";
 }
