@@ -39,7 +39,7 @@ LOWER    := $(addprefix compiler/lower/, context.c box_distance.c surface.c join
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
 EVAL     := $(addprefix compiler/eval/, scope.c expression.c arithmetic.c arguments.c builtins.c lists.c \
                 random.c functions.c csg.c fractal.c declare.c claims.c empty.c methods.c properties.c \
-                material.c view.c palette.c statements.c shown.c studio.c)
+                material.c view.c palette.c statements.c shown.c studio.c hull.c)
 PRINT    := $(addprefix compiler/print/, frame_values.c lines.c signatures.c helpers.c mirrors.c statements.c \
                 prepare.c crowds.c distances.c shared.c surfaces.c boxes.c early_outs.c march.c \
                 module_print.c) \
@@ -67,7 +67,7 @@ EXAMPLES := $(sort $(wildcard examples/*.krs))
 STYLE    := -std=c17 -D_GNU_SOURCE -Wall -Wextra -Wpedantic -Wshadow -Werror -I. -MMD -MP -pthread
 LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLCompiler -lSPIRV \
             -lSPVRemapper -lglslang-default-resource-limits -lSPIRV-Tools-opt -lSPIRV-Tools \
-            -lOpenEXRCore-3_1 -lpng -lxxhash -lvulkan -lstdc++ -lm -pthread
+            -lOpenEXRCore-3_1 -lpng -lxxhash -lqhull_r -lvulkan -lstdc++ -lm -pthread
 
 COMPILER := $(BASE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \

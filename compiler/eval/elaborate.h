@@ -211,7 +211,8 @@ const Shape *want_shape(Elaboration *e, const Call *call, uint32_t index);
 /* The node of a number or a vector. */
 Node want_numeric(Elaboration *e, const Call *call, uint32_t index);
 /* A number that is known at compile time; *number stays what it is when nothing was given. */
-bool want_constant(Elaboration *e, const Call *call, uint32_t index, double *number);
+const List *want_list(Elaboration *e, const Call *call, uint32_t index);
+bool        want_constant(Elaboration *e, const Call *call, uint32_t index, double *number);
 /* True or false, known at compile time; *flag stays what it is when nothing was given. */
 bool want_flag(Elaboration *e, const Call *call, uint32_t index, bool *flag);
 /* The parameter "plane": its unit normal and offset. */
@@ -276,6 +277,9 @@ size_t builtin_names(const char **names, size_t capacity);
 /* ---- lists.c ---- */
 BuiltinFunction builtin_sum, builtin_product, builtin_any, builtin_all, builtin_least,
     builtin_greatest, builtin_len, builtin_range;
+
+/* ---- hull.c ---- */
+BuiltinFunction builtin_hull_triangles;
 
 /* ---- random.c ---- */
 BuiltinFunction builtin_random, builtin_random_direction, builtin_noise, builtin_fbm;

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-static const List *list_argument(Elaboration *e, const Call *call, uint32_t index)
+const List *want_list(Elaboration *e, const Call *call, uint32_t index)
 {
     const Argument *argument = &call->arguments[index];
     if (argument->value.type == VALUE_LIST)
@@ -56,7 +56,7 @@ static Value reduce_list(Elaboration *e, Call *call, Op op, Value empty)
             components[i] = value_of_node(e, graph_component(e->graph, vector, i));
         return reduce(e, op, components, type, call->syntax);
     }
-    const List *list = list_argument(e, call, 0);
+    const List *list = want_list(e, call, 0);
     if (!list)
         return value_error();
     return list->count ? reduce(e, op, list->items, list->count, call->syntax) : empty;
@@ -114,7 +114,7 @@ Value builtin_len(Elaboration *e, Call *call)
     if (value.type == VALUE_EXPRESSION && e->graph->items[value.node].type <= TYPE_VEC4 &&
         e->graph->items[value.node].type >= TYPE_VEC2)
         return value_number(e->graph->items[value.node].type);
-    const List *list = list_argument(e, call, 0);
+    const List *list = want_list(e, call, 0);
     return list ? value_number((double)list->count) : value_error();
 }
 

@@ -128,6 +128,7 @@ static void primitives_agree(void **context)
         "ellipsoid([1, 0.5, 0.7])",
         "link(0.6, 0.4, 0.12)",
         "octahedron(1)",
+        "hull(radius: 0.1)",
         "tetrahedron(1)",
         "dodecahedron(0.9)",
         "icosahedron(0.9)",

@@ -25,6 +25,7 @@ const Family families[] = {
     {"ellipsoid", "ellipsoid([0.8, 0.5, 0.3])"},
     {"link", "link(0.5, 0.4, 0.12)"},
     {"octahedron", "octahedron(0.8)"},
+    {"hull", "hull(radius: 0.1)"},
     {"tetrahedron", "tetrahedron(0.9)"},
     {"dodecahedron", "dodecahedron(0.8)"},
     {"icosahedron", "icosahedron(0.8)"},

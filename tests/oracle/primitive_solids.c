@@ -187,6 +187,19 @@ static void make_tetrahedron(Solid *s)
     hull_close(&s->hull);
 }
 
+/* On each half of each axis a point, and two more. */
+static void make_irregular(Solid *s)
+{
+    const double *a = s->a;
+    for (int i = 0; i < 6; i++) {
+        double out = i & 1 ? -a[i] : a[i];
+        hull_add(&s->hull, i / 2 == 0 ? out : 0, i / 2 == 1 ? out : 0, i / 2 == 2 ? out : 0);
+    }
+    hull_add(&s->hull, a[6], a[7], a[8]);
+    hull_add(&s->hull, -a[9], a[10], -a[11]);
+    hull_close(&s->hull);
+}
+
 /* (0, a, b) with all signs, and what comes of it by turning x to y to z. */
 static void add_cyclic(Hull *hull, double a, double b)
 {
@@ -386,6 +399,13 @@ const Primitive solid_primitives[SOLIDS] = {
     {"tetrahedron", "tetrahedron($a)", make_tetrahedron, HULL, true, {SIZE}},
     {"dodecahedron", "dodecahedron($a)", make_dodecahedron, HULL, true, {SIZE}},
     {"icosahedron", "icosahedron($a)", make_icosahedron, HULL, true, {SIZE}},
+    {"hull",
+     "hull([[$a, 0, 0], [-$b, 0, 0], [0, $c, 0], [0, -$d, 0], [0, 0, $e], [0, 0, -$f],"
+     " [$g, $h, $i], [-$j, $k, -$l]])",
+     make_irregular,
+     HULL,
+     true,
+     {SIZE, SIZE, SIZE, SIZE, SIZE, SIZE, SIZE, SIZE, SIZE, SIZE, SIZE, SIZE}},
     {"hexagonal prism", "prism(6, $b, $c)", make_prism, HULL, true, {{6, 6}, SIZE, SIZE}},
     {"triangular prism", "prism(3, $b, $c)", make_prism, HULL, true, {{3, 3}, SIZE, SIZE}},
     {"heptagonal prism", "prism(7, $b, $c)", make_prism, HULL, true, {{7, 7}, SIZE, SIZE}},
