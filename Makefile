@@ -28,7 +28,7 @@ JOBS    ?= $(shell nproc)
 # Sources in the order of the pipeline: reading down this list is reading the program.
 BASE     := $(addprefix compiler/base/, arena.c parallel.c text.c source.c beneath.c loader.c diag.c diag_text.c)
 FRONT    := $(addprefix compiler/front/, lexer.c lex_literals.c syntax.c parser.c parse_expression.c \
-                parse_declaration.c parse.c names.c files.c)
+                parse_declaration.c parse.c synonyms.c names.c files.c)
 GRAPH    := $(addprefix compiler/graph/, intern.c alike.c graph.c crowd.c build.c substitute.c extract.c derive_rules.c \
                 derive_blends.c derive.c series.c zeros.c local_terms.c local_curves.c local.c rebase.c \
                 simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c \
@@ -37,7 +37,7 @@ SHAPE    := $(addprefix compiler/shape/, box.c reach.c cover.c map.c moebius.c b
 LOWER    := $(addprefix compiler/lower/, context.c box_distance.c surface.c join.c crowd_table.c crowd_functions.c crowd.c normal.c map_chain.c \
                 guards.c ray_images.c ray_step.c lower.c)
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
-EVAL     := $(addprefix compiler/eval/, scope.c expression.c arithmetic.c arguments.c builtins.c lists.c \
+EVAL     := $(addprefix compiler/eval/, scope.c expression.c arithmetic.c reports.c arguments.c builtins.c lists.c \
                 random.c functions.c csg.c fractal.c declare.c claims.c empty.c methods.c properties.c \
                 material.c view.c palette.c statements.c shown.c studio.c hull.c)
 PRINT    := $(addprefix compiler/print/, frame_values.c lines.c signatures.c helpers.c mirrors.c statements.c \

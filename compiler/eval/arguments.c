@@ -8,166 +8,6 @@
 
 static const double ORIGIN[3] = {0, 0, 0};
 
-/* ---- reports ---- */
-
-/* The top-level definition that a name refers to, as far as its file tells. */
-static const Definition *definition_of(const Elaboration *e, const Syntax *name)
-{
-    for (size_t i = 0; i < e->scopes.count; i++) {
-        const Scope *scope = e->scopes.items[i];
-        if (scope->file && scope->file->span.source == name->span.source)
-            return scope_find(scope, name->name);
-    }
-    return NULL;
-}
-
-/* The first name in an expression whose value is later than compile time. */
-static const Syntax *find_late_name(const Elaboration *e, const Syntax *syntax)
-{
-    if (syntax->kind == SYNTAX_NAME) {
-        const Definition *definition = definition_of(e, syntax);
-        return definition && value_time(e, definition->value) != TIME_COMPILE ? syntax : NULL;
-    }
-    const Syntax *found = NULL;
-    for (uint32_t i = 0; !found && i < syntax->count; i++)
-        found = find_late_name(e, syntax->children[i]);
-    return found;
-}
-
-void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax)
-{
-    enum { LONGEST_CHAIN = 8 };
-    bool late = diag->code == DIAG_NOT_COMPILE_TIME || diag->code == DIAG_NOT_FRAME_TIME;
-    if (syntax && late)
-        syntax = find_late_name(e, syntax);
-    for (int i = 0; i < LONGEST_CHAIN && syntax && syntax->kind == SYNTAX_NAME; i++) {
-        const Definition *definition = definition_of(e, syntax);
-        if (!definition || !definition->syntax)
-            return;
-        diag_secondary(e->diags, diag, definition->syntax->name_span,
-                       diag_text(e->diags, "`%s` is defined here", syntax->name));
-        /* The chain of definitions, down to the `param` that began it. */
-        bool on = late && definition->syntax->kind == SYNTAX_LET;
-        syntax  = on ? find_late_name(e, definition->syntax->children[0]) : NULL;
-    }
-}
-
-void type_error(Elaboration *e, const Syntax *syntax, Value found, const char *wanted)
-{
-    if (found.type == VALUE_ERROR)
-        return;
-    const char *name = value_type_name(e, found);
-    Diag       *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span, "expected %s, found %s",
-                                wanted, name);
-    diag->label      = diag_text(e->diags, "this is %s", name);
-    point_at_definition(e, diag, syntax);
-}
-
-void constant_error(Elaboration *e, const Syntax *syntax, const char *message)
-{
-    Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, syntax->span, "%s", message);
-    diag->label = "this depends on a `param`, on `time` or on a coordinate";
-    point_at_definition(e, diag, syntax);
-}
-
-void point_error(Elaboration *e, const Syntax *syntax, const char *what)
-{
-    Diag *diag  = diag_add(e->diags, DIAG_NOT_FRAME_TIME, syntax->span,
-                           "%s may not depend on the point", what);
-    diag->label = "this depends on `x`, `y`, `z` or `p`";
-    point_at_definition(e, diag, syntax);
-}
-
-void not_supported(Elaboration *e, Span span, const char *what)
-{
-    Diag *diag  = diag_add(e->diags, DIAG_NOT_SUPPORTED, span,
-                           "this version of krs does not have %s", what);
-    diag->label = "not in this version";
-}
-
-const char *signature(Elaboration *e, const char *name, const char *const *parameters,
-                      uint32_t count)
-{
-    Text text = {.arena = e->diags->arena};
-    text_format(&text, "%s(", name);
-    for (uint32_t i = 0; i < count; i++)
-        text_format(&text, "%s%s", i ? ", " : "", parameters[i]);
-    text_add(&text, ")");
-    return text.bytes;
-}
-
-void note_names(Elaboration *e, Diag *diag, const char *what, const char *const *names,
-                size_t count)
-{
-    Text text = {.arena = e->diags->arena};
-    text_format(&text, "%s:", what);
-    for (size_t i = 0; i < count; i++)
-        text_format(&text, "%s %s", i ? "," : "", names[i]);
-    diag_note(e->diags, diag, text.bytes);
-}
-
-void unknown_parameter(Elaboration *e, const Syntax *argument, const char *name,
-                       const char *const *parameters, uint32_t count)
-{
-    Diag *diag        = diag_add(e->diags, DIAG_UNKNOWN_PARAMETER, argument->name_span,
-                                 "`%s` has no parameter `%s`", name, argument->name);
-    diag->label       = "unknown parameter";
-    diag->replacement = nearest_name(argument->name, parameters, count);
-    if (diag->replacement)
-        diag->help = "a parameter with a similar name exists";
-    diag_note(e->diags, diag, signature(e, name, parameters, count));
-}
-
-/* "a", "b" and "c" */
-static const char *listed_names(Elaboration *e, const Choices *names)
-{
-    Text list = {.arena = e->diags->arena};
-    for (uint32_t i = 0; i < names->count; i++) {
-        const char *join = i == 0 ? "" : i + 1 < names->count ? ", " : " and ";
-        text_format(&list, "%s\"%s\"", join, names->items[i]);
-    }
-    return list.bytes;
-}
-
-bool want_name(Elaboration *e, const Argument *argument, const Choices *names, uint32_t *chosen)
-{
-    *chosen = 0;
-    if (!argument->syntax)
-        return true;
-    if (argument->value.type != VALUE_STRING) {
-        type_error(e, argument->syntax, argument->value, names->wanted);
-        return false;
-    }
-    const char *name = argument->value.string;
-    for (; *chosen < names->count; ++*chosen)
-        if (strcmp(names->items[*chosen], name) == 0)
-            return true;
-    Diag       *diag = diag_add(e->diags, DIAG_BAD_VALUE, argument->syntax->span,
-                                "no %s is called \"%s\"", names->noun, name);
-    const char *near = nearest_name(name, names->items, names->count);
-    diag->label      = names->unknown;
-    if (near)
-        diag->replacement = diag_text(e->diags, "\"%s\"", near);
-    diag->help = diag_text(e->diags, "there are %s%s", listed_names(e, names), names->more);
-    return false;
-}
-
-Diag *too_many_arguments(Elaboration *e, const Syntax *argument, const char *name, uint32_t count)
-{
-    Diag *diag  = diag_add(e->diags, DIAG_TOO_MANY_ARGUMENTS, argument->span,
-                           "`%s` takes %u argument%s", name, count, count == 1 ? "" : "s");
-    diag->label = "one too many";
-    return diag;
-}
-
-Diag *missing_argument(Elaboration *e, const Syntax *call, const char *name, const char *parameter)
-{
-    Diag *diag  = diag_add(e->diags, DIAG_MISSING_ARGUMENT, call->span,
-                           "`%s` needs an argument `%s`", name, parameter);
-    diag->label = "not given here";
-    return diag;
-}
-
 /* ---- checks ---- */
 
 /*
@@ -416,8 +256,8 @@ static uint32_t split_parameters(const char *parameters, ParameterWord *words)
 }
 
 /* The parameter that a named argument is for; UINT32_MAX: reported. */
-static uint32_t find_word(Elaboration *e, const Syntax *argument, const char *name,
-                          const ParameterWord *words, uint32_t count)
+static uint32_t find_word(Elaboration *e, const Syntax *call, const Syntax *argument,
+                          const char *name, const ParameterWord *words, uint32_t count)
 {
     const char *names[MAX_PARAMETERS];
     for (uint32_t i = 0; i < count; i++)
@@ -426,7 +266,7 @@ static uint32_t find_word(Elaboration *e, const Syntax *argument, const char *na
             return i;
     for (uint32_t i = 0; i < count; i++)
         names[i] = arena_copy_text(e->diags->arena, words[i].text, words[i].length);
-    unknown_parameter(e, argument, name, names, count);
+    unknown_parameter(e, call, argument, name, names, count);
     return UINT32_MAX;
 }
 
@@ -468,7 +308,7 @@ bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_s
         Value    value = evaluate(e, env, argument->children[0]);
         uint32_t slot  = next;
         if (argument->name) {
-            slot = find_word(e, argument, name, words, count);
+            slot = find_word(e, call_syntax, argument, name, words, count);
             if (slot == UINT32_MAX) {
                 good = false;
                 continue;
@@ -478,17 +318,16 @@ bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_s
             good                           = good && value.type != VALUE_ERROR;
             continue;
         } else if (next++ >= count) {
-            too_many_arguments(e, argument, name, count);
-            good = false;
-            continue;
+            explain_usage(e, too_many_arguments(e, argument, name, count), call_syntax, name);
+            return false;
         }
         good = store(e, &call->arguments[slot], argument, value, name) &&
                value.type != VALUE_ERROR && good;
     }
     for (uint32_t i = 0; good && i < count; i++)
         if (!call->arguments[i].syntax && !words[i].optional && !words[i].variadic) {
-            missing_argument(e, call_syntax, name,
-                             diag_text(e->diags, "%.*s", (int)words[i].length, words[i].text));
+            const char *missing = diag_text(e->diags, "%.*s", (int)words[i].length, words[i].text);
+            explain_usage(e, missing_argument(e, call_syntax, name, missing), call_syntax, name);
             good = false;
         }
     return good;

@@ -14,6 +14,7 @@
 #include "compiler/eval/value.h"
 #include "compiler/family/family.h"
 #include "compiler/front/files.h"
+#include "compiler/front/synonyms.h"
 #include "compiler/shape/scene.h"
 #include "compiler/shape/slope.h"
 
@@ -240,8 +241,10 @@ bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_s
 /* Report; the strings of `parameters` must live as long as the diagnostics. */
 Diag *too_many_arguments(Elaboration *e, const Syntax *argument, const char *name, uint32_t count);
 Diag *missing_argument(Elaboration *e, const Syntax *call, const char *name, const char *parameter);
-void  unknown_parameter(Elaboration *e, const Syntax *argument, const char *name,
-                        const char *const *parameters, uint32_t count);
+void unknown_parameter(Elaboration *e, const Syntax *call, const Syntax *argument, const char *name,
+                       const char *const *parameters, uint32_t count);
+/* Adds how a function or method of the language is called, where synonyms.def has that. */
+void explain_usage(Elaboration *e, Diag *diag, const Syntax *call, const char *name);
 /* Adds a note with the names that would be right: "its properties: eye, target". */
 void note_names(Elaboration *e, Diag *diag, const char *what, const char *const *names,
                 size_t count);
@@ -326,8 +329,9 @@ Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax);
 Value method_color_by(Elaboration *e, const Shape *shape, Call *call);
 
 /* ---- properties.c: blocks with properties, and values of those ---- */
-/* Reports properties that a block of this kind may not have, and those that are given twice. */
-void check_block(Elaboration *e, const Syntax *block);
+/* Reports properties that a block of this kind may not have, and those that are given twice.  False:
+   one of the first. */
+bool check_block(Elaboration *e, const Syntax *block);
 /* "a camera", for messages. */
 const char *block_name(SyntaxKind kind);
 /* The value of `name:` in a block of properties, or NULL. */

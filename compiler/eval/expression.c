@@ -259,6 +259,8 @@ static Value evaluate_call(Elaboration *e, const Environment *env, const Syntax 
     Diag *diag  = diag_add(e->diags, DIAG_NOT_CALLABLE, syntax->children[0]->span,
                            "%s cannot be called", value_type_name(e, callee));
     diag->label = "neither a function nor a shape declaration";
+    if (callee.type == VALUE_MAP)
+        diag->help = form_help(e->diags, FORM_CALLED_MAP);
     point_at_definition(e, diag, syntax->children[0]);
     return value_error();
 }

@@ -29,14 +29,23 @@ static void note_signature(Elaboration *e, Diag *diag, const Syntax *definition)
     diag_note(e->diags, diag, signature(e, definition->name, names, parameter_count(definition)));
 }
 
+/* Says how a function of the library is called; how others are, only their author knows. */
+static void explain_library(Elaboration *e, Diag *diag, const Syntax *call,
+                            const Syntax *definition)
+{
+    if (e->sources->items[definition->span.source].library)
+        explain_usage(e, diag, call, definition->name);
+}
+
 /* The parameter that a named argument is for; UINT32_MAX: reported. */
-static uint32_t find_parameter(Elaboration *e, const Syntax *definition, const Syntax *argument)
+static uint32_t find_parameter(Elaboration *e, const Syntax *call, const Syntax *definition,
+                               const Syntax *argument)
 {
     uint32_t count = parameter_count(definition);
     for (uint32_t i = 0; i < count; i++)
         if (definition->children[i]->name == argument->name)
             return i;
-    unknown_parameter(e, argument, definition->name, parameter_names(e, definition), count);
+    unknown_parameter(e, call, argument, definition->name, parameter_names(e, definition), count);
     return UINT32_MAX;
 }
 
@@ -50,7 +59,7 @@ static bool gather_arguments(Elaboration *e, const Environment *env, const Synta
         const Syntax *argument = call->children[i];
         if (argument->kind != SYNTAX_ARGUMENT)
             return false;
-        uint32_t slot  = argument->name ? find_parameter(e, definition, argument) : next++;
+        uint32_t slot  = argument->name ? find_parameter(e, call, definition, argument) : next++;
         Value    value = evaluate(e, env, argument->children[0]);
         if (slot == UINT32_MAX) {
             good = false;
@@ -59,6 +68,7 @@ static bool gather_arguments(Elaboration *e, const Environment *env, const Synta
         if (slot >= count) {
             Diag *diag = too_many_arguments(e, argument, definition->name, count);
             note_signature(e, diag, definition);
+            explain_library(e, diag, call, definition);
             return false;
         }
         if (origins[slot]) {
@@ -77,7 +87,8 @@ static bool gather_arguments(Elaboration *e, const Environment *env, const Synta
 
 /* The default of a shape's parameter shows what it must be: a number or a vector, how long. */
 static bool fits_default(Elaboration *e, const Environment *env, const Function *function,
-                         const Syntax *parameter, Value value, const Syntax *origin)
+                         const Syntax *call, const Syntax *parameter, Value value,
+                         const Syntax *origin)
 {
     if (function->syntax->kind != SYNTAX_SHAPE || parameter->count == 0)
         return true;
@@ -90,6 +101,7 @@ static bool fits_default(Elaboration *e, const Environment *env, const Function 
                                  value_type_name(e, usual), found);
     diag->label       = diag_text(e->diags, "this is %s", found);
     note_signature(e, diag, function->syntax);
+    explain_library(e, diag, call, function->syntax);
     point_at_definition(e, diag, origin);
     return false;
 }
@@ -162,7 +174,7 @@ static bool bind_parameters(Elaboration *e, const Function *function, const Valu
         Value         value;
         if (origins[i]) {
             value = values[i];
-            if (!fits_default(e, env, function, parameter, value, origins[i]))
+            if (!fits_default(e, env, function, call, parameter, value, origins[i]))
                 return false;
         } else if (parameter->count)
             value = evaluate(e, env, parameter->children[0]);

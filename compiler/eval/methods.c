@@ -386,16 +386,18 @@ static Value unknown_method(Elaboration *e, const Syntax *syntax, Value receiver
     const char *type = value_type_name(e, receiver);
     Diag *diag = diag_add(e->diags, DIAG_UNKNOWN_METHOD, syntax->name_span, "%s has no method `%s`",
                           type, syntax->name);
-    diag->label = "unknown method";
-    if (receiver.type == VALUE_SHAPE)
+    diag->label    = "unknown method";
+    bool explained = receiver.type == VALUE_SHAPE &&
+                     explain_word(e->diags, diag, SYNONYM_METHOD, syntax->name, "");
+    if (receiver.type == VALUE_SHAPE && !explained)
         diag->replacement = nearest_name(syntax->name, names, count);
-    if (diag->replacement)
+    if (diag->replacement && !explained)
         diag->help = "a method with a similar name exists";
     diag_secondary(e->diags, diag, syntax->children[0]->span,
                    diag_text(e->diags, "this is %s", type));
     if (receiver.type == VALUE_FUNCTION)
         diag->help = "call it first: write parentheses after the name";
-    else if (receiver.type == VALUE_SHAPE && !diag->replacement)
+    else if (receiver.type == VALUE_SHAPE && !diag->replacement && !explained)
         note_names(e, diag, "its methods", names, count);
     else if (receiver.type == VALUE_MAP)
         note_names(e, diag, "its methods", of_maps, 1);

@@ -81,11 +81,14 @@ static void unknown_property(Elaboration *e, const Syntax *block, const Syntax *
     for (size_t i = 0; i < BLOCK_PROPERTY_COUNT; i++)
         if (block_properties[i].block == block->kind && !block_properties[i].later)
             names[count++] = block_properties[i].name;
-    Diag *diag        = diag_add(e->diags, DIAG_UNKNOWN_PROPERTY, property->name_span,
-                                 "%s has no property `%s`", block_name(block->kind), property->name);
-    diag->label       = "unknown property";
-    diag->replacement = nearest_name(property->name, names, count);
-    if (diag->replacement)
+    Diag *diag            = diag_add(e->diags, DIAG_UNKNOWN_PROPERTY, property->name_span,
+                                     "%s has no property `%s`", block_name(block->kind), property->name);
+    diag->label           = "unknown property";
+    const char *owner     = strchr(block_name(block->kind), ' ') + 1; /* without the article */
+    bool        explained = explain_word(e->diags, diag, SYNONYM_PROPERTY, property->name, owner);
+    if (!explained)
+        diag->replacement = nearest_name(property->name, names, count);
+    if (diag->replacement && !explained)
         diag->help = "a property with a similar name exists";
     note_names(e, diag, "its properties", names, count);
 }
@@ -107,12 +110,15 @@ static bool check_property(Elaboration *e, const Syntax *block, const Syntax *pr
     return false;
 }
 
-void check_block(Elaboration *e, const Syntax *block)
+bool check_block(Elaboration *e, const Syntax *block)
 {
+    bool known = true;
     for (uint32_t i = 0; i < block->count; i++) {
         const Syntax *property = block->children[i];
-        if (property->kind != SYNTAX_PROPERTY || !check_property(e, block, property))
+        if (property->kind != SYNTAX_PROPERTY || !check_property(e, block, property)) {
+            known = false;
             continue;
+        }
         for (uint32_t k = 0; k < i; k++)
             if (block->children[k]->kind == SYNTAX_PROPERTY &&
                 block->children[k]->name == property->name) {
@@ -122,6 +128,7 @@ void check_block(Elaboration *e, const Syntax *block)
                 break;
             }
     }
+    return known;
 }
 
 const Syntax *find_property(const Syntax *block, const char *name)

@@ -191,11 +191,14 @@ static void check_single(Elaboration *e, const Syntax *syntax)
 
 void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    check_block(e, syntax);
+    bool known = check_block(e, syntax);
     check_single(e, syntax);
     switch (syntax->kind) {
     case SYNTAX_CAMERA: add_camera(e, env, syntax); break;
-    case SYNTAX_LIGHT: add_light(e, env, syntax); break;
+    case SYNTAX_LIGHT:
+        if (known) /* else what seems to be missing may have another name */
+            add_light(e, env, syntax);
+        break;
     case SYNTAX_SKY: set_sky(e, env, syntax); break;
     case SYNTAX_FOG: set_fog(e, env, syntax); break;
     case SYNTAX_ZONE: add_zone(e, env, syntax); break;

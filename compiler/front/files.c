@@ -9,6 +9,7 @@
 #include "compiler/base/embedded.h"
 #include "compiler/front/names.h"
 #include "compiler/front/parse.h"
+#include "compiler/front/synonyms.h"
 
 enum { MOST_TOTAL_BYTES = 64 << 20, MOST_FILES = 1024 };
 
@@ -107,6 +108,8 @@ static void refuse_used(Files *files, const Syntax *use, const char *path, const
                       : diag_add(files->diags, DIAG_CANNOT_READ, use->name_span,
                                  "cannot read `%s`: %s", path, text->reason);
     diag->label = "used here";
+    if (!text->outside)
+        explain_file(files->diags, diag, path);
 }
 
 /* Adds a used file; NULL if it cannot be read, which is then reported. */

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/front/synonyms.h"
+
 /* ---- numbers and colours ---- */
 
 static void skip_digits(Lexer *lexer)
@@ -137,6 +139,31 @@ static const char *six_digits(Lexer *lexer, uint32_t start)
     return diag_text(lexer->diags, "#%c%c%c%c%c%c", d[0], d[0], d[1], d[1], d[2], d[2]);
 }
 
+static void bad_colour(Lexer *lexer, uint32_t start)
+{
+    const char *instead = six_digits(lexer, start);
+    if (instead)
+        bad_number(lexer, start, "a colour has six digits, not three",
+                   "each digit is written twice", instead);
+    else
+        bad_number(lexer, start, "a colour has six hexadecimal digits", "for example `#c8553d`",
+                   NULL);
+}
+
+/* Reports a directive of another language, as in `#include`; false: it is none. */
+static bool lex_directive(Lexer *lexer, uint32_t start)
+{
+    int         length = (int)(lexer->at - start);
+    const char *text   = diag_text(lexer->diags, "%.*s", length, lexer->text + start);
+    if (!is_synonym(SYNONYM_DIRECTIVE, text + 1))
+        return false;
+    Diag *diag    = report_from(lexer, DIAG_UNEXPECTED_TOKEN, start, "", NULL);
+    diag->message = diag_text(lexer->diags, "`%s` is not part of the language", text);
+    explain_word(lexer->diags, diag, SYNONYM_DIRECTIVE, text + 1, "");
+    add_token(lexer, TOKEN_ERROR, start);
+    return true;
+}
+
 void lex_colour(Lexer *lexer)
 {
     uint32_t start = lexer->at++;
@@ -144,9 +171,10 @@ void lex_colour(Lexer *lexer)
         lexer->at++;
     const char *digits = lexer->text + start + 1;
     bool        good   = lexer->at - start == 7 && strspn(digits, "0123456789abcdefABCDEF") >= 6;
+    if (!good && lex_directive(lexer, start))
+        return;
     if (!good)
-        bad_number(lexer, start, "a colour has six hexadecimal digits", "for example `#c8553d`",
-                   six_digits(lexer, start));
+        bad_colour(lexer, start);
     unsigned long rgb                          = good ? strtoul(digits, NULL, 16) : 0;
     add_token(lexer, TOKEN_COLOUR, start)->rgb = (uint32_t)rgb;
 }

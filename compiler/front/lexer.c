@@ -9,6 +9,8 @@
 
 #include <string.h>
 
+#include "compiler/front/synonyms.h"
+
 /* ---- rows of token.def ---- */
 
 typedef enum TokenClass {
@@ -298,6 +300,8 @@ static void lex_stray(Lexer *lexer)
         help = "save the file as UTF-8";
     else if (lexer->text[start] == '?')
         help = "to choose between two values write `if a < b then a else b`";
+    else if (lexer->text[start] == '$')
+        help = form_help(lexer->diags, FORM_DOLLAR);
     report_from(lexer, DIAG_STRAY_BYTES, start,
                 utf8 ? "characters that mean nothing here" : "bytes that are not UTF-8", help);
     add_token(lexer, TOKEN_ERROR, start);

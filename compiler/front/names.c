@@ -9,6 +9,8 @@
 
 #include <string.h>
 
+#include "compiler/front/synonyms.h"
+
 /* A top-level definition: a vertex of the graph whose edges are needs. */
 typedef struct CheckedDefinition {
     const Syntax *syntax;
@@ -172,8 +174,9 @@ static void report_unknown(Checker *c, NameSlot *slot, Span span)
     Diag *diag     = diag_add(c->diags, DIAG_UNKNOWN_NAME, span, "the name `%s` is not defined",
                               slot->name);
     diag->label    = "unknown name";
-    if (!diags_full(c->diags))
-        diag->replacement = suggest(c, slot->name);
+    if (diags_full(c->diags) || explain_name(c->diags, diag, slot->name))
+        return;
+    diag->replacement = suggest(c, slot->name);
     if (diag->replacement)
         diag->help = "a name that is similar exists";
 }

@@ -7,6 +7,7 @@
 #include "compiler/front/parse.h"
 
 #include "compiler/front/parser.h"
+#include "compiler/front/synonyms.h"
 
 /* ---- statements of a word and an expression ---- */
 
@@ -136,6 +137,15 @@ static Syntax *parse_for(Parser *p) { return parse_loop(p, &scene_rules); }
 /* if = "if" expression block [ "else" ( if | block ) ] ; */
 static Syntax *parse_if(Parser *p) { return parse_choice(p, &scene_rules); }
 
+static Syntax *no_block_statement(Parser *p)
+{
+    const Token *token = token_here(p);
+    Diag        *diag  = expected(p, "`let`, `show`, `for`, `if` or `}` in a block");
+    if (token->kind == TOKEN_NAME)
+        explain_word(p->diags, diag, SYNONYM_STATEMENT, token->name, "");
+    return error_node(p);
+}
+
 /* block_statement = let | def | shape | surroundings | show | for | if ; */
 static Syntax *parse_block_statement(Parser *p)
 {
@@ -152,7 +162,7 @@ static Syntax *parse_block_statement(Parser *p)
     case TOKEN_SHOW: return parse_show(p);
     case TOKEN_FOR: return parse_for(p);
     case TOKEN_IF: return parse_if(p);
-    default: expected(p, "`let`, `show`, `for`, `if` or `}` in a block"); return error_node(p);
+    default: return no_block_statement(p);
     }
 }
 
@@ -245,6 +255,12 @@ static Syntax *stray_brace(Parser *p)
     return error;
 }
 
+/* Whether a token behind a name begins a change of its value, as in `a += 1`. */
+static bool is_change(TokenKind kind)
+{
+    return kind == TOKEN_PLUS || kind == TOKEN_MINUS || kind == TOKEN_STAR || kind == TOKEN_SLASH;
+}
+
 static Syntax *no_statement(Parser *p)
 {
     static const char *const words[] = {"let",    "def",   "param", "shape", "material",
@@ -260,9 +276,16 @@ static Syntax *no_statement(Parser *p)
         help = "to put a shape into the picture write `show` in front of it";
     else if (kind_here(p) == TOKEN_NAME)
         meant = nearest_name(token->name, words, sizeof words / sizeof *words);
+    bool  shape       = kind_after(p) == TOKEN_LEFT_BRACE;
+    bool  changed     = is_change(kind_after(p));
     Diag *diag        = expected(p, "a statement");
     diag->help        = meant ? "did you mean" : help;
     diag->replacement = meant;
+    if (token->kind == TOKEN_NAME &&
+        !explain_word(p->diags, diag, SYNONYM_STATEMENT, token->name, "") && !meant)
+        diag->help = changed ? form_help(p->diags, FORM_CHANGE)
+                     : shape ? form_help(p->diags, FORM_BRACES)
+                             : help;
     return error_node(p);
 }
 

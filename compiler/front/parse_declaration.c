@@ -5,23 +5,53 @@
  * compares them.
  */
 #include "compiler/front/parser.h"
+#include "compiler/front/synonyms.h"
 
 /* ---- definitions ---- */
 
-/* let = "let" NAME "=" expression ";" ; */
-Syntax *parse_let(Parser *p)
+/* The index of a `[` that begins a range whose `in` is missing, as in `1 [0, 2]`: behind a number, and
+   with a comma, which no index has.  0: there is none in the value that begins here. */
+static size_t find_bare_range(const Parser *p)
 {
-    Span   start = token_here(p)->span;
-    size_t first = begin_children(p);
-    accept(p, TOKEN_LET); /* it may be missing: see parse_forgotten_let */
-    const Token *name = expect_name(p, "of a `let`");
-    expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` after the name of a `let`");
+    size_t   found = 0;
+    uint32_t depth = 0;
+    for (size_t at = p->here.at; at < p->count; at++) {
+        TokenKind kind = p->tokens[at].kind;
+        depth += kind == TOKEN_LEFT_PAREN || kind == TOKEN_LEFT_BRACKET;
+        if (kind == TOKEN_LEFT_BRACKET && depth == 1 && p->tokens[at - 1].kind == TOKEN_NUMBER)
+            found = at;
+        if (kind == TOKEN_COMMA && depth == 1 && found)
+            return found;
+        if (kind == TOKEN_SEMICOLON || kind == TOKEN_LEFT_BRACE ||
+            (depth == 0 && (kind == TOKEN_COMMA || kind == TOKEN_RIGHT_PAREN)))
+            return 0;
+        depth -= depth > 0 && (kind == TOKEN_RIGHT_PAREN || kind == TOKEN_RIGHT_BRACKET);
+        if (depth == 0)
+            found = 0;
+    }
+    return 0;
+}
+
+/* Parses the range of a parameter, if there is one; that its `in` is missing is reported. */
+static void read_limits(Parser *p)
+{
+    if (kind_here(p) == TOKEN_LEFT_BRACKET && p->here.at == p->bare_range) {
+        Diag *diag        = report_at(p, DIAG_UNEXPECTED_TOKEN, token_here(p)->span,
+                                      "`in` is missing before a range");
+        diag->help        = form_help(p->diags, FORM_RANGE_OF_PARAM);
+        diag->replacement = "in [";
+        add_child(p, parse_expression(p));
+    } else if (accept(p, TOKEN_IN))
+        add_child(p, parse_expression(p));
+}
+
+/* Parses the default of a parameter and its range, if there is one.  That its `in` is missing is
+   reported. */
+static void read_default(Parser *p)
+{
+    p->bare_range = find_bare_range(p);
     add_child(p, parse_expression(p));
-    if (kind_here(p) == TOKEN_IN)
-        expected(p, "`;` after a `let`")->help =
-            "`let a = 1 in ...` is an expression, and a statement cannot be one";
-    expect_semicolon(p, "a `let`");
-    return finish_named(p, SYNTAX_LET, start, first, name);
+    read_limits(p);
 }
 
 /* parameter = NAME [ "=" expression [ "in" expression ] ] ; */
@@ -32,9 +62,7 @@ static Syntax *parse_parameter(Parser *p)
     const Token *name  = expect_name(p, "of a parameter");
     if (kind_here(p) == TOKEN_ASSIGN || kind_here(p) == TOKEN_COLON) {
         expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` before the default of a parameter");
-        add_child(p, parse_expression(p));
-        if (accept(p, TOKEN_IN))
-            add_child(p, parse_expression(p));
+        read_default(p);
     }
     return finish_named(p, SYNTAX_PARAMETER, start, first, name);
 }
@@ -53,19 +81,54 @@ static void parse_parameters(Parser *p, const char *what, const char *example)
     expect_closer(p, TOKEN_RIGHT_PAREN, opener, "`,` or `)` after a parameter");
 }
 
+/* What follows the name of a function. */
+static Syntax *finish_def(Parser *p, Span start, size_t first, const Token *name)
+{
+    parse_parameters(p, "`(` after the name of a function",
+                     "for example `def ball(r = 1) = sphere(r);`; without parameters write `let`");
+    if (kind_here(p) == TOKEN_LEFT_BRACE)
+        expected(p, "`=` before the value of a function")->help = form_help(p->diags,
+                                                                            FORM_DEF_BODY);
+    expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` before the value of a function");
+    add_child(p, parse_expression(p));
+    expect_semicolon(p, "a `def`");
+    return finish_named(p, SYNTAX_DEF, start, first, name);
+}
+
 /* def = "def" NAME parameters "=" expression ";" ; */
 Syntax *parse_def(Parser *p)
 {
     Span   start = token_here(p)->span;
     size_t first = begin_children(p);
     advance(p);
-    const Token *name = expect_name(p, "of a function");
-    parse_parameters(p, "`(` after the name of a function",
-                     "for example `def ball(r = 1) = sphere(r);`; without parameters write `let`");
-    expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` before the value of a function");
+    return finish_def(p, start, first, expect_name(p, "of a function"));
+}
+
+/* Parses `let f(x) = ...;` as a `def`, after reporting that it is one. */
+static Syntax *mend_function(Parser *p, Span start, size_t first, const Token *name)
+{
+    Diag *diag = report_at(p, DIAG_UNEXPECTED_TOKEN, start, "a function is defined by `def`");
+    diag->help = form_help(p->diags, FORM_LET_FUNCTION);
+    diag->replacement = "def";
+    return finish_def(p, start, first, name);
+}
+
+/* let = "let" NAME "=" expression ";" ; */
+Syntax *parse_let(Parser *p)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    accept(p, TOKEN_LET); /* it may be missing: see parse_forgotten_let */
+    const Token *name = expect_name(p, "of a `let`");
+    if (name && kind_here(p) == TOKEN_LEFT_PAREN)
+        return mend_function(p, start, first, name);
+    expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` after the name of a `let`");
     add_child(p, parse_expression(p));
-    expect_semicolon(p, "a `def`");
-    return finish_named(p, SYNTAX_DEF, start, first, name);
+    if (kind_here(p) == TOKEN_IN)
+        expected(p, "`;` after a `let`")->help =
+            "`let a = 1 in ...` is an expression, and a statement cannot be one";
+    expect_semicolon(p, "a `let`");
+    return finish_named(p, SYNTAX_LET, start, first, name);
 }
 
 /* param = "param" NAME "=" expression [ "in" expression ] ";" ; */
@@ -76,9 +139,7 @@ Syntax *parse_param(Parser *p)
     advance(p);
     const Token *name = expect_name(p, "of a `param`");
     expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` after the name of a `param`");
-    add_child(p, parse_expression(p));
-    if (accept(p, TOKEN_IN))
-        add_child(p, parse_expression(p));
+    read_default(p);
     expect_semicolon(p, "a `param`");
     return finish_named(p, SYNTAX_PARAM, start, first, name);
 }
@@ -94,6 +155,11 @@ static Syntax *parse_property(Parser *p)
     Span         start = token_here(p)->span;
     size_t       first = begin_children(p);
     const Token *name  = parse_label(p);
+    if (name && kind_here(p) == TOKEN_LESS) {
+        expected(p, "`:` after the name of a property")->help = form_help(p->diags,
+                                                                          FORM_PROPERTY_COLON);
+        p->abandoned = true; /* the commas of the vector separate no properties */
+    }
     expect_or_mend(p, TOKEN_COLON, TOKEN_ASSIGN, "`:` after the name of a property");
     add_child(p, parse_expression(p));
     return finish_named(p, SYNTAX_PROPERTY, start, first, name);

@@ -5,6 +5,7 @@
  * compares them.
  */
 #include "compiler/front/parser.h"
+#include "compiler/front/synonyms.h"
 
 /* ---- expressions that begin with a keyword ---- */
 
@@ -320,7 +321,11 @@ static Syntax *parse_postfix(Parser *p)
         switch (kind_here(p)) {
         case TOKEN_LEFT_PAREN: node = parse_call(p, node); break;
         case TOKEN_DOT: node = parse_method(p, node); break;
-        case TOKEN_LEFT_BRACKET: node = parse_index(p, node); break;
+        case TOKEN_LEFT_BRACKET:
+            if (p->here.at == p->bare_range)
+                return node;
+            node = parse_index(p, node);
+            break;
         default: return node;
         }
     }
@@ -379,6 +384,8 @@ static Syntax *parse_list(Parser *p)
             what = "`for`, `if` or `]` in a list comprehension";
             break;
         }
+        if (kind_here(p) == TOKEN_COLON)
+            expected(p, what)->help = form_help(p->diags, FORM_COLON_RANGE);
         if (!accept(p, TOKEN_COMMA))
             break;
     }
@@ -429,6 +436,10 @@ static Syntax *no_expression(Parser *p)
         diag->help = "a positive number has no sign";
     else if (found == TOKEN_LEFT_BRACE)
         diag->help = "lists have brackets `[1, 2]`; a reflection sequence begins with `krs {`";
+    else if (found == TOKEN_LESS)
+        diag->help = form_help(p->diags, FORM_ANGLE_VECTOR);
+    else if (found == TOKEN_GREATER)
+        diag->help = form_help(p->diags, FORM_PIPE);
     else if (found == TOKEN_DOT_DOT)
         diag->help = "a range has both ends, as in `0..5`";
     else if (keyword)

@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#include "compiler/front/synonyms.h"
+
 /* ---- tokens ---- */
 
 static TokenKind kind_at(const Parser *p, size_t at)
@@ -124,6 +126,15 @@ static const char *describe(Parser *p, const Token *token)
     return token_kind_text(token->kind);
 }
 
+/* Explains what follows a call in other languages: the shapes that it is for. */
+static void explain_call(Parser *p, Diag *diag, TokenKind found)
+{
+    if (found == TOKEN_LEFT_BRACE)
+        diag->help = form_help(p->diags, FORM_BLOCK_OF_CALL);
+    else if (found == TOKEN_NAME)
+        diag->help = form_help(p->diags, FORM_SHAPE_BEHIND);
+}
+
 static void fail(Parser *p) { p->failed = true; }
 
 Diag *expected(Parser *p, const char *what)
@@ -138,6 +149,8 @@ Diag *expected(Parser *p, const char *what)
         bool unit        = found->kind == TOKEN_NAME && strcmp(found->name, "deg") == 0;
         if (unit && p->here.at > 0 && token_before(p)->kind == TOKEN_NUMBER)
             diag->help = "`deg` touches its number: `30deg`";
+        else if (p->here.at > 0 && token_before(p)->kind == TOKEN_RIGHT_PAREN)
+            explain_call(p, diag, found->kind);
     }
     fail(p);
     return diag;

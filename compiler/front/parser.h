@@ -29,9 +29,10 @@ typedef struct Parser {
     Arena       *arena;
     Level        here; /* of the current token, the next one to be read */
     bool         failed;
-    bool         abandoned; /* nested too deeply: recovery is at the next top-level statement */
-    uint32_t     depth;     /* of nesting */
-    size_t       unclosed;  /* index of the token before which an unclosed bracket was reported */
+    bool         abandoned;  /* nested too deeply: recovery is at the next top-level statement */
+    uint32_t     depth;      /* of nesting */
+    size_t       bare_range; /* index of the `[` of a range that lacks its `in`; 0: none */
+    size_t       unclosed;   /* index of the token before which an unclosed bracket was reported */
     struct {
         Syntax **items;
         size_t   count, capacity;
