@@ -96,10 +96,16 @@ static void print_component(const KrsComponent *component, size_t number)
 static void print_parameter(const KrsParameter *parameter)
 {
     printf("param %s = ", parameter->name);
-    print_vector(parameter->value, parameter->components);
+    const char *unit  = parameter->degrees ? "deg" : "";
+    double      scale = parameter->degrees ? 180 / M_PI : 1;
+    if (parameter->degrees && parameter->components == 1)
+        printf("%.6gdeg", scale * parameter->value[0]);
+    else
+        print_vector(parameter->value, parameter->components);
     for (uint32_t i = 0; i < parameter->components; i++)
         if (isfinite(parameter->low[i]) || isfinite(parameter->high[i]))
-            printf(" in [%.6g, %.6g]", parameter->low[i], parameter->high[i]);
+            printf(" in [%.6g%s, %.6g%s]", scale * parameter->low[i], unit,
+                   scale * parameter->high[i], unit);
     putchar('\n');
 }
 

@@ -163,6 +163,24 @@ static KrsStatus say_unknown_parameter(const Options *options, const KrsScene *s
     return say_usage(options, "the scene has no param `%s`; `krs info` lists what it has", name);
 }
 
+/* "1.5", or "90deg" where the scene says so. */
+static void add_value(Text *text, double value, bool degrees)
+{
+    text_format(text, degrees ? "%.6gdeg" : "%.6g", degrees ? value * 180 / M_PI : value);
+}
+
+static KrsStatus say_outside(const Options *options, const KrsParameter *parameter, size_t index,
+                             double value)
+{
+    Text range = {.arena = options->arena}, found = {.arena = options->arena};
+    add_value(&range, parameter->low[index], parameter->degrees);
+    text_add(&range, " to ");
+    add_value(&range, parameter->high[index], parameter->degrees);
+    add_value(&found, value, parameter->degrees);
+    return say_usage(options, "param `%s` goes from %s; %s is outside", parameter->name,
+                     range.bytes, found.bytes);
+}
+
 /* Why krs_frame_set refused a setting. */
 static KrsStatus say_refused_setting(const Options *options, const KrsScene *scene,
                                      const KrsFrame *frame, const Setting *setting)
@@ -180,8 +198,7 @@ static KrsStatus say_refused_setting(const Options *options, const KrsScene *sce
                          setting->count);
     for (size_t i = 0; i < setting->count; i++)
         if (!(setting->values[i] >= parameter.low[i] && setting->values[i] <= parameter.high[i]))
-            return say_usage(options, "param `%s` goes from %g to %g; %g is outside", setting->name,
-                             parameter.low[i], parameter.high[i], setting->values[i]);
+            return say_outside(options, &parameter, i, setting->values[i]);
     const char *place = krs_frame_unbounded(frame);
     if (place)
         return say_usage(options,

@@ -139,6 +139,7 @@ typedef struct KrsParameter {
     uint32_t    components;      /* 1 for a number, 2..4 for a vector or colour */
     double      value[4];        /* the default */
     double      low[4], high[4]; /* the permitted range; may be infinite */
+    int         degrees;         /* the text gives its default or range in degrees */
 } KrsParameter;
 
 size_t krs_parameter_count(const KrsScene *scene);

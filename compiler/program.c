@@ -37,7 +37,8 @@ KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *param
     if (index >= scene->parameter_count)
         return KRS_BAD_ARGUMENT;
     const Parameter *from = &scene->parameters[index];
-    *parameter            = (KrsParameter){.name = from->name, .components = from->components};
+    *parameter            = (KrsParameter){
+                   .name = from->name, .components = from->components, .degrees = from->degrees};
     memcpy(parameter->value, from->value, sizeof parameter->value);
     memcpy(parameter->low, from->low, sizeof parameter->low);
     memcpy(parameter->high, from->high, sizeof parameter->high);

@@ -259,6 +259,19 @@ void not_supported(Elaboration *e, Span span, const char *what);
 /* "torus(major, minor)", for notes. */
 const char *signature(Elaboration *e, const char *name, const char *const *parameters,
                       uint32_t count);
+/* ---- units.c ---- */
+/* Whether a number in an expression has `deg` behind it. */
+bool written_in_degrees(const Elaboration *e, const Syntax *syntax);
+/* "1.5", or "90deg". */
+void add_number(Text *text, double number, bool degrees);
+/* "90deg" for the literal 90 of a scene; NULL: it is none, or in degrees already. */
+const char *degrees_instead(Elaboration *e, const Syntax *syntax);
+/* Warns of an angle that is written as a number above one turn. */
+void warn_of_turns(Elaboration *e, const Syntax *syntax, Value value);
+/* Warns of a constant colour above 1; `help` says what else could be meant. */
+void warn_of_bright_colour(Elaboration *e, const Syntax *syntax, Value value, const char *help);
+
+/* ---- reports.c ---- */
 /* If `syntax` is a top-level name, marks where it was defined as a second place of `diag`. */
 void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax);
 

@@ -3,6 +3,8 @@
  */
 #include "compiler/eval/elaborate.h"
 
+#include <string.h>
+
 enum { MOST_CALLS = 1000 };
 
 static uint32_t parameter_count(const Syntax *definition)
@@ -125,15 +127,15 @@ static bool parameter_range(Elaboration *e, const Environment *env, const Syntax
     return false;
 }
 
-/* "18", or "from 0 to 18" of what is known in frames only. */
-static const char *range_text(Elaboration *e, Range range)
+/* "18", or "from 0deg to 18deg" of what is known in frames only. */
+static const char *range_text(Elaboration *e, Range range, bool degrees)
 {
     Text text = {.arena = e->diags->arena};
     text_add(&text, range.low < range.high ? "from " : "");
-    text_number(&text, range.low);
+    add_number(&text, range.low, degrees);
     text_add(&text, range.low < range.high ? " to " : "");
     if (range.low < range.high)
-        text_number(&text, range.high);
+        add_number(&text, range.high, degrees);
     return text.bytes;
 }
 
@@ -154,13 +156,24 @@ static bool fits_range(Elaboration *e, const Environment *env, const Function *f
                                        : node_range(e->builder, value_node(e, value), 0);
     if (range.low <= found.low && found.high <= range.high)
         return true;
+    bool  degrees = written_in_degrees(e, parameter), also = written_in_degrees(e, origin);
     Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, origin->span, "`%s` of `%s` must be %s",
-                           parameter->name, function->name, range_text(e, range));
-    diag->label = diag_text(e->diags, found.low < found.high ? "this can be %s" : "this is %s",
-                            range_text(e, found));
+                           parameter->name, function->name, range_text(e, range, degrees));
+    diag->label = diag_text(e->diags, "this %s %s%s", found.low < found.high ? "can be" : "is",
+                            range_text(e, found, also), degrees && !also ? " radians" : "");
+    if (degrees && (diag->replacement = degrees_instead(e, origin)))
+        diag->help = "degrees have their unit behind the number";
     note_signature(e, diag, function->syntax);
     point_at_definition(e, diag, origin);
     return false;
+}
+
+/* A parameter is an angle by its name, or by a default in degrees. */
+static void warn_of_wrong_unit(Elaboration *e, const Syntax *parameter, Value value,
+                               const Syntax *origin)
+{
+    if (strcmp(parameter->name, "angle") == 0 || written_in_degrees(e, parameter))
+        warn_of_turns(e, origin, value);
 }
 
 /* Binds given values and defaults; a default, and a range, sees the parameters before it. */
@@ -187,6 +200,8 @@ static bool bind_parameters(Elaboration *e, const Function *function, const Valu
             !fits_range(e, env, function, parameter, value,
                         origins[i] ? origins[i] : parameter->children[0]))
             return false;
+        if (origins[i])
+            warn_of_wrong_unit(e, parameter, value, origins[i]);
         *env = bind(e, env, parameter->name, value);
     }
     return true;
@@ -313,10 +328,13 @@ static Value call_builtin(Elaboration *e, const Environment *env, const Syntax *
     Value     values[MAX_OPERANDS];
     GraphType types[MAX_OPERANDS];
     uint32_t  arity = 0;
+    bool      angle = builtin->op == OP_sin || builtin->op == OP_cos || builtin->op == OP_tan;
     for (; call.arguments[arity].syntax; arity++) {
         values[arity] = call.arguments[arity].value;
-        Node node     = value_node(e, values[arity]);
-        types[arity]  = node == NODE_NONE ? TYPE_UINT : e->graph->items[node].type;
+        if (angle)
+            warn_of_turns(e, call.arguments[arity].syntax, values[arity]);
+        Node node    = value_node(e, values[arity]);
+        types[arity] = node == NODE_NONE ? TYPE_UINT : e->graph->items[node].type;
         if (types[arity] > TYPE_VEC4) {
             type_error(e, call.arguments[arity].syntax, values[arity], "a number or a vector");
             return value_error();

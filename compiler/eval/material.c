@@ -6,13 +6,15 @@
 
 /* A number or a colour that may depend on the point; *property stays when it is not given. */
 static void material_property(Elaboration *e, const Environment *env, const Syntax *block,
-                              const char *name, GraphType type, Node *property)
+                              const char *name, GraphType type, bool limited, Node *property)
 {
     const Syntax *syntax = find_property(block, name);
     if (!syntax)
         return;
     Value value = evaluate(e, env, syntax);
     Node  node  = value_node(e, value);
+    if (limited && type == TYPE_VEC3)
+        warn_of_bright_colour(e, syntax, value, "what a surface sends out itself is `emission`");
     if (node != NODE_NONE && type == TYPE_VEC3 && e->graph->items[node].type == TYPE_FLOAT)
         node = graph_op3(e->graph, OP_vec3, node, node, node);
     if (node != NODE_NONE && e->graph->items[node].type == type)
@@ -38,7 +40,7 @@ Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *s
     bool      outer    = e->in_material;
     e->in_material     = true;
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
-    material_property(e, env, syntax, #name, TYPE_##type, &material->name);
+    material_property(e, env, syntax, #name, TYPE_##type, (high) <= 1, &material->name);
 #include "compiler/shape/surface.def"
     e->in_material = outer;
     return (Value){.type = VALUE_MATERIAL, .material = material};
@@ -53,6 +55,7 @@ const Material *to_material(Elaboration *e, Value value, const Syntax *syntax)
     if (color != NODE_NONE && e->graph->items[color].type == TYPE_VEC3) {
         Material *material = material_new(e, "colour");
         material->color    = color;
+        warn_of_bright_colour(e, syntax, value, "a surface reflects at most what it gets");
         return material;
     }
     type_error(e, syntax, value, "a material or a colour");

@@ -43,6 +43,13 @@ static uint32_t named_colors(Elaboration *e, const Argument *argument, Node *col
     return STOPS;
 }
 
+/* Where an element of a list is written, or all of the list. */
+static const Syntax *stop_syntax(const Syntax *written, const List *list, size_t index)
+{
+    bool elements = written->kind == SYNTAX_LIST && written->count == list->count;
+    return elements ? written->children[index] : written;
+}
+
 /* The colours of a list of them; 0: reported. */
 static uint32_t listed_colors(Elaboration *e, const Argument *argument, Node *colors)
 {
@@ -52,6 +59,9 @@ static uint32_t listed_colors(Elaboration *e, const Argument *argument, Node *co
         right     = value_size(e, list->items[i]) == 3;
         colors[i] = right ? value_node(e, list->items[i]) : NODE_NONE;
     }
+    for (size_t i = 0; right && i < list->count; i++)
+        warn_of_bright_colour(e, stop_syntax(argument->syntax, list, i), list->items[i],
+                              "a surface reflects at most what it gets");
     if (right)
         return (uint32_t)list->count;
     type_error(e, argument->syntax, argument->value,

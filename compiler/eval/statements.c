@@ -97,10 +97,12 @@ static bool param_range(Elaboration *e, const Environment *env, const Syntax *sy
 
 static Value define_param(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    Parameter parameter = {.name = syntax->name};
+    Parameter parameter = {.name = syntax->name, .degrees = written_in_degrees(e, syntax)};
     Value     value     = evaluate(e, env, syntax->children[0]);
     if (value.type == VALUE_ERROR)
         return value;
+    if (strcmp(syntax->name, "angle") == 0)
+        warn_of_turns(e, syntax->children[0], value);
     parameter.components = constants_of(e, value, syntax->children[0], parameter.value);
     if (!parameter.components || !param_range(e, env, syntax, &parameter))
         return value_error();

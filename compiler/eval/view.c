@@ -25,9 +25,12 @@ static void add_camera(Elaboration *e, const Environment *env, const Syntax *syn
     const Syntax *fov  = find_property(syntax, "fov");
     Range         span = node_range(e->builder, camera.fov, 0);
     if (fov && (span.low <= 0 || span.high >= 3.14159)) {
-        Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, fov->span,
-                              "`fov` must lie between 0 and 180 degrees");
-        diag->help = "angles are radians unless they end in `deg`: write `40deg`";
+        Diag *diag        = diag_add(e->diags, DIAG_BAD_VALUE, fov->span,
+                                     "`fov` must lie between 0 and 180 degrees");
+        diag->help        = "angles are radians unless they end in `deg`";
+        diag->replacement = degrees_instead(e, fov);
+        if (!diag->replacement)
+            diag->help = "angles are radians unless they end in `deg`, as in `40deg`";
     }
     const Syntax *height = find_property(syntax, "height");
     if (height)
@@ -36,6 +39,17 @@ static void add_camera(Elaboration *e, const Environment *env, const Syntax *syn
     const Syntax *target = find_property(syntax, "target");
     check_direction(e, same, target ? target : syntax, "the view of a camera, from eye to target,");
     array_push(e->arena, &e->scene->cameras, camera);
+}
+
+/* Of numbers that seem to be in another unit. */
+static void warn_of_light(Elaboration *e, const Environment *env, const Syntax *light)
+{
+    const Syntax *color = find_property(light, "color"), *angle = find_property(light, "softness");
+    if (color)
+        warn_of_bright_colour(e, color, evaluate(e, env, color),
+                              "how bright a light is, is its `intensity`");
+    if (angle)
+        warn_of_turns(e, angle, evaluate(e, env, angle));
 }
 
 static void add_light(Elaboration *e, const Environment *env, const Syntax *syntax)
@@ -56,6 +70,7 @@ static void add_light(Elaboration *e, const Environment *env, const Syntax *synt
     Node intensity = number_property(e, env, syntax, "intensity", 1);
     light.color    = graph_op2(e->graph, OP_scale, color, intensity);
     light.softness = number_property(e, env, syntax, position ? "radius" : "softness", 0);
+    warn_of_light(e, env, syntax);
     if (direction)
         check_direction(e, light.vector, direction, "the direction of a light");
     const Syntax *shadow = find_property(syntax, "shadow");

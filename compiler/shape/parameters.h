@@ -14,6 +14,7 @@ typedef struct Parameter {
     const char *name;
     uint32_t    slot, components;
     double      value[4], low[4], high[4];
+    bool        degrees; /* its default or range is written so */
 } Parameter;
 
 typedef struct Parameters {

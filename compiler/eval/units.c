@@ -1,0 +1,105 @@
+/*
+ * units.c: numbers that seem to be in another unit than the language's: angles in degrees without
+ * `deg`, colours that go up to 255.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "compiler/eval/elaborate.h"
+
+/* ---- angles ---- */
+
+bool written_in_degrees(const Elaboration *e, const Syntax *syntax)
+{
+    bool found = false;
+    if (syntax->kind == SYNTAX_NUMBER) {
+        const char *text = e->sources->items[syntax->span.source].text;
+        for (uint32_t at = syntax->span.start; at + 3 <= syntax->span.end; at++)
+            found = found || memcmp(text + at, "deg", 3) == 0;
+    }
+    for (uint32_t i = 0; i < syntax->count && !found; i++)
+        found = written_in_degrees(e, syntax->children[i]);
+    return found;
+}
+
+void add_number(Text *text, double number, bool degrees)
+{
+    /* Of conversions to radians and back the last digits are noise. */
+    if (degrees)
+        text_format(text, "%.12gdeg", number * 180 / M_PI);
+    else
+        text_number(text, number);
+}
+
+/* Whether an expression is a number as such, perhaps with a minus. */
+static bool is_literal(const Syntax *syntax)
+{
+    if (syntax->kind == SYNTAX_UNARY && syntax->op == TOKEN_MINUS)
+        syntax = syntax->children[0];
+    return syntax->kind == SYNTAX_NUMBER;
+}
+
+const char *degrees_instead(Elaboration *e, const Syntax *syntax)
+{
+    const Source *source = &e->sources->items[syntax->span.source];
+    if (source->library || !is_literal(syntax) || written_in_degrees(e, syntax))
+        return NULL;
+    int length = (int)(syntax->span.end - syntax->span.start);
+    return diag_text(e->diags, "%.*sdeg", length, source->text + syntax->span.start);
+}
+
+void warn_of_turns(Elaboration *e, const Syntax *syntax, Value value)
+{
+    if (value.type != VALUE_NUMBER || fabs(value.number) <= 2 * M_PI + 1e-9)
+        return;
+    const char *instead = degrees_instead(e, syntax);
+    if (!instead)
+        return;
+    Diag *diag        = diag_add(e->diags, DIAG_MANY_TURNS, syntax->span,
+                                 "an angle of %g radians, which are %.3g turns", value.number,
+                                 fabs(value.number) / (2 * M_PI));
+    diag->label       = "angles are radians";
+    diag->help        = "degrees have their unit behind the number";
+    diag->replacement = instead;
+}
+
+/* ---- colours ---- */
+
+/* "#ff8000" for [255, 128, 0]: whole numbers up to 255 are the bytes of a colour; else NULL. */
+static const char *bytes_instead(Elaboration *e, const double color[3])
+{
+    for (int i = 0; i < 3; i++)
+        if (color[i] != floor(color[i]) || color[i] < 0 || color[i] > 255)
+            return NULL;
+    return diag_text(e->diags, "#%02x%02x%02x", (unsigned)color[0], (unsigned)color[1],
+                     (unsigned)color[2]);
+}
+
+/* The largest part of a colour is at least this if it counts bytes; lights may be a little above 1. */
+enum { LEAST_BYTE = 16 };
+
+void warn_of_bright_colour(Elaboration *e, const Syntax *syntax, Value value, const char *help)
+{
+    double color[3], most = 0;
+    if (value.type != VALUE_LIST || value.list->count != 3 ||
+        e->sources->items[syntax->span.source].library)
+        return;
+    for (int i = 0; i < 3; i++) {
+        if (value.list->items[i].type != VALUE_NUMBER)
+            return;
+        color[i] = value.list->items[i].number;
+        most     = fmax(most, color[i]);
+    }
+    if (most <= 1)
+        return;
+    Diag *diag        = diag_add(e->diags, DIAG_BRIGHT_COLOUR, syntax->span,
+                                 "a colour of %g, but the parts of a colour go from 0 to 1", most);
+    diag->label       = "this is brighter than white";
+    diag->help        = help;
+    const char *bytes = most >= LEAST_BYTE ? bytes_instead(e, color) : NULL;
+    if (bytes)
+        diag->help = diag_text(e->diags, "a colour of bytes has `#` and six digits: `%s`", bytes);
+    if (syntax->kind == SYNTAX_LIST)
+        diag->replacement = bytes;
+    point_at_definition(e, diag, syntax);
+}
