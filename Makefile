@@ -47,7 +47,7 @@ PRINT    := $(addprefix compiler/print/, frame_values.c lines.c signatures.c hel
 TARGET   := compiler/target/spirv.c
 BORDER   := compiler/target/glslang_border.cpp
 API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c retain.c tables.c facts.c \
-                march_groups.c make_module.c program.c scene_text.c framing.c frame.c query.c \
+                march_groups.c make_module.c program.c scene_text.c framing.c look.c frame.c query.c \
                 update.c search_pairs.c search_targets.c search_starts.c search.c refuter.c \
                 refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer integrators film display writer))))

@@ -19,6 +19,7 @@ typedef struct Component {
 /* Numbers and vectors here are frame-time nodes. */
 typedef struct SceneCamera {
     const char *name; /* or NULL */
+    Span        span; /* of its `eye`, or else of all of it */
     Node        eye, target, up, fov, height;
     uint32_t    projection;
     bool        standing_in; /* for a scene that has no camera: framing.c finds eye and target */

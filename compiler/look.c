@@ -1,0 +1,204 @@
+/*
+ * look.c: warns of components that no camera has in its picture, and of cameras inside of a solid.
+ *
+ * Only what holds for all parameters and times is said of components: their boxes do, and cameras
+ * that move are left out.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "compiler/base/vec.h"
+#include "compiler/compilation.h"
+
+/* Components that are looked up by their place at most: those of a short loop have the same one. */
+enum { MOST_LOOKED_UP = 100 };
+
+/* What a camera has in its picture: the points q with dot(normal, q) <= offset for all planes. */
+typedef struct Pyramid {
+    bool   everything;
+    int    planes;
+    double normals[5][3], offsets[5];
+} Pyramid;
+
+static void add_plane(Pyramid *pyramid, const double normal[3], const double point[3])
+{
+    const int at = pyramid->planes++;
+    memcpy(pyramid->normals[at], normal, sizeof pyramid->normals[at]);
+    pyramid->offsets[at] = dot3(normal, point);
+}
+
+/* Width by height.  The size of a picture may be given when it is rendered: then it may be wider. */
+static double widest_aspect(const KrsImage *image)
+{
+    return image->width ? (double)image->width / image->height : 4;
+}
+
+/* The two planes at the ends of a picture along one of its axes. */
+static void add_ends(Pyramid *pyramid, const KrsCamera *camera, const double forward[3],
+                     const double axis[3], double half)
+{
+    for (int side = -1; side <= 1; side += 2) {
+        double normal[3], point[3];
+        for (int k = 0; k < 3; k++) {
+            bool flat = camera->projection == KRS_ORTHOGRAPHIC;
+            normal[k] = side * axis[k] - (flat ? 0 : half * forward[k]);
+            point[k]  = camera->eye[k] + (flat ? side * half * axis[k] : 0);
+        }
+        add_plane(pyramid, normal, point);
+    }
+}
+
+static Pyramid pyramid_of(const KrsCamera *camera, double aspect)
+{
+    Pyramid pyramid = {.everything = camera->projection == KRS_PANORAMA};
+    double  forward[3], right[3], up[3], backward[3];
+    for (int k = 0; k < 3; k++)
+        forward[k] = camera->target[k] - camera->eye[k];
+    cross3(forward, camera->up, right);
+    if (pyramid.everything || !normalize3(forward) || !normalize3(right)) {
+        pyramid.everything = true;
+        return pyramid;
+    }
+    cross3(right, forward, up);
+    bool   flat = camera->projection == KRS_ORTHOGRAPHIC;
+    double half = flat ? 0.5 * camera->height : tan(0.5 * camera->fov);
+    for (int k = 0; k < 3; k++)
+        backward[k] = -forward[k];
+    add_plane(&pyramid, backward, camera->eye);
+    add_ends(&pyramid, camera, forward, right, half * aspect);
+    add_ends(&pyramid, camera, forward, up, half);
+    return pyramid;
+}
+
+/* Whether all of a box is beyond one of the planes. */
+static bool is_outside(const Pyramid *pyramid, Box box)
+{
+    for (int i = 0; i < pyramid->planes; i++) {
+        double nearest = 0;
+        for (int k = 0; k < 3; k++) {
+            double n = pyramid->normals[i][k];
+            if (n != 0)
+                nearest += n > 0 ? n * box.axis[k].low : n * box.axis[k].high;
+        }
+        if (nearest > pyramid->offsets[i])
+            return true;
+    }
+    return false;
+}
+
+static bool camera_moves(const Graph *graph, const SceneCamera *camera)
+{
+    return !graph_is_constant(graph, camera->eye) || !graph_is_constant(graph, camera->target) ||
+           !graph_is_constant(graph, camera->up) || !graph_is_constant(graph, camera->fov) ||
+           !graph_is_constant(graph, camera->height);
+}
+
+/* The pictures of all cameras; 0: one of them moves, or frames all there is. */
+static size_t find_pyramids(const Compilation *c, KrsFrame *frame, Pyramid *pyramids)
+{
+    KrsView view;
+    size_t  count = c->elaborated.cameras.count;
+    for (size_t i = 0; i < count; i++) {
+        const SceneCamera *camera = &c->elaborated.cameras.items[i];
+        if (camera->standing_in || camera_moves(c->elaborated.graph, camera) ||
+            frame_view(frame, i, &view) != KRS_OK)
+            return 0;
+        pyramids[i] = pyramid_of(&view.camera, widest_aspect(&view.image));
+    }
+    return count;
+}
+
+static bool is_in_view(const Pyramid *pyramids, size_t count, Box box)
+{
+    bool in_view = count == 0 || box_is_empty(box);
+    for (size_t i = 0; i < count && !in_view; i++)
+        in_view = pyramids[i].everything || !is_outside(&pyramids[i], box);
+    return in_view;
+}
+
+/* Whether another component of the same `show`, in a loop, is in view. */
+static bool is_partly_in_view(const Scene *scene, const Pyramid *pyramids, size_t count, Span span)
+{
+    for (size_t i = 0; i < scene->components.count; i++) {
+        const Component *other = &scene->components.items[i];
+        if (other->span.source == span.source && other->span.start == span.start &&
+            is_in_view(pyramids, count, other->shape->box))
+            return true;
+    }
+    return false;
+}
+
+static void warn_of_unseen(Compilation *c, const Pyramid *pyramids, size_t count)
+{
+    const Scene *scene     = &c->elaborated;
+    size_t       looked_up = 0;
+    for (size_t i = 0; i < scene->components.count && looked_up < MOST_LOOKED_UP; i++) {
+        const Component *component = &scene->components.items[i];
+        if (is_in_view(pyramids, count, component->shape->box))
+            continue;
+        looked_up++;
+        if (is_partly_in_view(scene, pyramids, count, component->span))
+            continue;
+        Diag *diag  = diag_add(&c->diags, DIAG_OUT_OF_VIEW, component->span,
+                               "`%s` is in the picture of no camera", component->name);
+        diag->label = "all of this is outside of every view";
+        diag->help =
+            "look at it, or leave out the `camera`: then one is placed that sees everything";
+    }
+}
+
+static const Component *component_of(const Scene *scene, size_t shown)
+{
+    size_t i = 0;
+    while (i + 1 < scene->components.count &&
+           shown >= scene->components.items[i].first + scene->components.items[i].count)
+        i++;
+    return &scene->components.items[i];
+}
+
+static void warn_of_inside(Compilation *c, KrsFrame *frame)
+{
+    for (size_t i = 0; i < c->elaborated.cameras.count; i++) {
+        const SceneCamera *camera = &c->elaborated.cameras.items[i];
+        KrsView            view;
+        KrsHit             hit;
+        double             distance;
+        const double(*eye)[3] = (const double(*)[3])view.camera.eye;
+        if (camera->standing_in || frame_view(frame, i, &view) != KRS_OK ||
+            krs_distance(frame, eye, 1, &distance) != KRS_OK || !(distance < 0) ||
+            krs_probe(frame, eye, 1, &hit) != KRS_OK || hit.component == 0)
+            continue;
+        const Component *around = component_of(&c->elaborated, hit.component - 1);
+        Diag            *diag   = diag_add(&c->diags, DIAG_CAMERA_INSIDE, camera->span,
+                                           "the camera is inside of `%s`", around->name);
+        diag->label             = camera_moves(c->elaborated.graph, camera)
+                                      ? "here, at time 0 and the defaults of the parameters"
+                                      : "so only the inside of a solid is seen";
+        diag->help              = "move `eye` out of it, or cut a `zone` around the camera";
+        diag_secondary(&c->diags, diag, around->span, "this solid");
+    }
+}
+
+KrsStatus pass_look(Compilation *c)
+{
+    Pyramid  *pyramids = arena_new_array(&c->scratch, Pyramid, c->elaborated.cameras.count + 1);
+    KrsFrame *frame;
+    KrsStatus status = frame_new(c->scene, &frame);
+    if (status != KRS_OK)
+        return status;
+    warn_of_unseen(c, pyramids, find_pyramids(c, frame, pyramids));
+    warn_of_inside(c, frame);
+    frame_free(frame);
+    return KRS_OK;
+}
+
+void print_look(Compilation *c, Text *out)
+{
+    size_t before = out->length;
+    for (size_t i = 0; i < c->diags.count; i++)
+        if (c->diags.items[i]->code == DIAG_OUT_OF_VIEW ||
+            c->diags.items[i]->code == DIAG_CAMERA_INSIDE)
+            text_format(out, "%s\n", c->diags.items[i]->message);
+    if (out->length == before)
+        text_add(out, "all cameras are free, and see all components\n");
+}
