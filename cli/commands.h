@@ -20,7 +20,7 @@
    else it is NULL and the user knows why. */
 KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene);
 /* KRS_OK, or KRS_IO_ERROR and words: the file is missing, a folder, or not ours to read. */
-KrsStatus scene_readable(const char *path);
+KrsStatus scene_readable(const Options *options, const char *path);
 /* KRS_OK, or wrong usage and words: `output` is the file that is read, by whatever name. */
 KrsStatus check_scene_not_overwritten(const Options *options, const char *output);
 

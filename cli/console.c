@@ -11,9 +11,26 @@
 #include <time.h>
 #include <unistd.h>
 
+void console_clear(void)
+{
+    if (isatty(STDERR_FILENO))
+        fputs("\r\033[K", stderr);
+}
+
+void console_doing(const Options *options, const char *what)
+{
+    if (options->quiet || !isatty(STDERR_FILENO))
+        return;
+    console_clear();
+    if (what)
+        fprintf(stderr, "%s ...", what);
+    fflush(stderr);
+}
+
 static void say_words(const char *format, va_list words)
 {
     fflush(stdout); /* keeps the order of the two streams on a terminal */
+    console_clear();
     fputs("krs: ", stderr);
     vfprintf(stderr, format, words);
     fputc('\n', stderr);
@@ -94,7 +111,7 @@ static void draw_bar(const Progress *progress)
     memset(bar, ' ', WIDTH);
     memset(bar, '#', (size_t)filled);
     bar[WIDTH] = '\0';
-    fprintf(stderr, "\r[%s] %3d%%", bar, progress->percent);
+    fprintf(stderr, "\r[%s] %3d%%\033[K", bar, progress->percent);
     if (progress->frames > 1)
         fprintf(stderr, " frame %zu of %zu", progress->frame + 1, progress->frames);
 }

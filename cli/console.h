@@ -14,6 +14,10 @@ void say(const char *format, ...) __attribute__((format(printf, 1, 2)));
 KrsStatus say_usage(const Options *options, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
+/* Empties the line of a terminal that shows what is being done. */
+void console_clear(void);
+/* On a terminal: what is being done, until a line is printed, or this is called with NULL. */
+void console_doing(const Options *options, const char *what);
 /* Whether colours are wanted on standard error. */
 bool console_color(const Options *options);
 

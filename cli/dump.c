@@ -37,7 +37,7 @@ KrsStatus command_dump(Options *options)
     const char *path = options->files.items[0];
     if (strcmp(options->after, "spirv") == 0)
         return dump_spirv(options, path);
-    KrsStatus status = scene_readable(path);
+    KrsStatus status = scene_readable(options, path);
     if (status != KRS_OK)
         return status;
     char          *text = NULL;

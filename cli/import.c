@@ -23,9 +23,9 @@ static const struct {
 } forms[] = {{".jsurf", import_jsurf}, {".vm", import_tape}};
 enum { FORMS = sizeof forms / sizeof *forms };
 
-static KrsStatus read_all(Import *import)
+static KrsStatus read_all(const Options *options, Import *import)
 {
-    KrsStatus status = scene_readable(import->path);
+    KrsStatus status = scene_readable(options, import->path);
     if (status != KRS_OK)
         return status;
     Text  text = {.arena = import->arena};
@@ -72,7 +72,7 @@ KrsStatus command_import(Options *options)
     for (size_t i = 0; ending && i < FORMS; i++) {
         if (strcmp(ending, forms[i].ending) != 0)
             continue;
-        KrsStatus status = read_all(&import);
+        KrsStatus status = read_all(options, &import);
         if (status != KRS_OK)
             return status;
         return forms[i].import(&import) ? write_scene(options, &import.scene) : KRS_BAD_SCENE;

@@ -35,7 +35,7 @@ static void print_bound(const KrsBound *bound, size_t number)
         printf("  %s:%u:%u", bound->source, bound->line, bound->column);
     printf("  %s", bound->rule);
     if (bound->slope > 1 + 1e-9)
-        printf("; slope %.4g", bound->slope);
+        printf("; slope %.4g, divided out at the end", bound->slope);
     if (is_box(bound)) {
         fputs("; box ", stdout);
         print_vector(bound->low, 3);
@@ -78,7 +78,7 @@ static void print_component(const KrsComponent *component, size_t number)
     fputs(" to ", stdout);
     print_vector(component->high, 3);
     fputs("\n    slope      ", stdout);
-    printf("%.6g", component->slope);
+    printf("%.6g%s", component->slope, component->slope > 1 + 1e-9 ? ", divided out" : "");
     puts(component->exact       ? " (the distance is exact, by claim)"
          : component->per_frame ? " (the distance is a bound, derived for each frame: at first)"
          : component->estimate  ? " (the distance is an estimate: `krs validate` measures it)"

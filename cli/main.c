@@ -18,6 +18,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/help.h"
+#include "cli/input.h"
 #include "cli/parse_options.h"
 #include "cli/supervise.h"
 
@@ -113,7 +114,8 @@ static int run(Options *options, int argc, char **argv)
         help_print_command(options->command, stdout);
         return console_finish();
     }
-    return supervise(options, work_with_memory);
+    status = input_open(options);
+    return status == KRS_OK ? supervise(options, work_with_memory) : (int)status;
 }
 
 static int map_exit(const Options *options, int status)

@@ -81,6 +81,9 @@ typedef struct Limits {
     uint64_t pixels, samples;
 } Limits;
 
+/* The path of standard output, which `-o -` is. */
+#define STANDARD_OUTPUT "/dev/stdout"
+
 typedef struct Options {
     CommandId command;
     int       argc; /* the whole command line, for a report of a crash */
@@ -110,6 +113,9 @@ typedef struct Options {
 #define DEFAULT(type, name, value)                                        type name;
 #define OPTION(id, letter, name, argument, commands, member, value, help) member
 #include "cli/options.def"
+
+    const char *input; /* the scene that standard input has, or NULL */
+    size_t      input_length;
 
     Arena *arena; /* for whatever a command needs until the process ends */
 } Options;

@@ -13,8 +13,11 @@
 #include "cli/values.h"
 #include "compiler/base/text.h"
 
+/* `-` is standard output. */
 static bool add_output(Options *options, const char *file)
 {
+    if (strcmp(file, "-") == 0)
+        file = STANDARD_OUTPUT;
     array_push(options->arena, &options->outputs, file);
     return true;
 }

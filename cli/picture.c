@@ -41,6 +41,8 @@ FileForm file_form(const char *path)
     const char *dot = strrchr(path, '.');
     if (dot && strcasecmp(dot, ".exr") == 0)
         return FORM_EXR;
+    if (strcmp(path, STANDARD_OUTPUT) == 0)
+        return FORM_PNG;
     return dot && strcasecmp(dot, ".png") == 0 ? FORM_PNG : FORM_UNKNOWN;
 }
 

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/commands.h"
 #include "cli/console.h"
@@ -72,12 +73,36 @@ static void choose_outputs(Render *render)
     render->output_count   = options->outputs.count;
     if (render->output_count > 0)
         return;
-    Text text = {.arena = options->arena};
-    text_format(&text, "%s%s.exr", scene_name(options->arena, options->files.items[0]),
-                options->animated ? "-%04d" : "");
-    render->outputs      = arena_new(options->arena, const char *);
-    render->outputs[0]   = text.bytes;
-    render->output_count = 1;
+    static const char *const endings[] = {".exr", ".png"};
+    enum { DEFAULT_OUTPUTS = 2 };
+    render->outputs = arena_new_array(options->arena, const char *, DEFAULT_OUTPUTS);
+    for (; render->output_count < DEFAULT_OUTPUTS; render->output_count++) {
+        Text text = {.arena = options->arena};
+        text_format(&text, "%s%s%s", scene_name(options->arena, options->files.items[0]),
+                    options->animated ? "-%04d" : "", endings[render->output_count]);
+        render->outputs[render->output_count] = text.bytes;
+    }
+}
+
+/* "wrote `a.exr` and `a.png`"; of an animation once for all frames. */
+static void say_written(const Render *render)
+{
+    const Options *options = render->options;
+    Text           names   = {.arena = options->arena};
+    if (options->quiet)
+        return;
+    for (size_t i = 0; i < render->output_count; i++)
+        text_format(&names, "%s`%s`",
+                    i == 0                         ? ""
+                    : i + 1 < render->output_count ? ", "
+                                                   : " and ",
+                    render->outputs[i]);
+    if (strcmp(render->outputs[0], STANDARD_OUTPUT) == 0)
+        return; /* who reads it knows */
+    if (options->animated)
+        say("wrote frames %u to %u to %s", options->first_frame, options->last_frame, names.bytes);
+    else
+        say("wrote %s", names.bytes);
 }
 
 /* Whether two outputs are one file in some frame.  Names that differ in the number's width only are
@@ -103,6 +128,9 @@ static KrsStatus check_name(const Render *render, size_t index)
     size_t         length;
     if (file_form(path) == FORM_UNKNOWN)
         return say_usage(options, "the output `%s` ends in neither .exr nor .png", path);
+    if (strcmp(path, STANDARD_OUTPUT) == 0 && (options->stats != STATS_NONE || isatty(1)))
+        return say_usage(options, "the picture would go to %s; write it to a file",
+                         isatty(1) ? "the terminal" : "where --stats goes");
     if (options->animated && !find_pattern(path, &width, &length))
         return say_usage(options, "with --frames, `%s` needs a place for the number: %%04d", path);
     if (options->animated && has_two_patterns(path))
@@ -135,14 +163,15 @@ static KrsStatus check_outputs(const Render *render)
 static KrsStatus say_unknown_camera(const Options *options, const char *const *names, size_t count)
 {
     const char *nearest = nearest_name(options->camera, names, count);
-    if (nearest)
-        return say_usage(options, "the scene has no camera `%s`; did you mean `%s`?",
-                         options->camera, nearest);
-    Text known = {.arena = options->arena};
+    Text        known   = {.arena = options->arena};
     for (size_t i = 0; i < count; i++)
         text_format(&known, "%s`%s`", i ? ", " : "", names[i]);
+    if (nearest)
+        return say_usage(options, "the scene has no camera `%s`; did you mean `%s`?%s%s",
+                         options->camera, nearest, count > 1 ? " It has " : "",
+                         count > 1 ? known.bytes : "");
     return say_usage(options, "the scene has no camera `%s`; it has %s", options->camera,
-                     count ? known.bytes : "none with a name");
+                     count ? known.bytes : "none with a name; give it one: `camera side { ... }`");
 }
 
 static KrsStatus find_camera(const Options *options, const KrsScene *scene, size_t *camera)
@@ -429,7 +458,9 @@ static KrsStatus make_ready(Render *render)
     if (status != KRS_OK)
         return status;
     stage_enter(STAGE_SHADERS);
+    console_doing(options, "compiling the shaders");
     status = krs_rendering_new(render->renderer, render->scene, &render->rendering);
+    console_doing(options, NULL);
     if (status != KRS_OK)
         say("%s", krs_renderer_message(render->renderer));
     return status;
@@ -451,6 +482,8 @@ KrsStatus command_render(Options *options)
         status                 = render_frame(render, frame);
     }
     progress_end(&render->progress);
+    if (status == KRS_OK)
+        say_written(render);
     krs_rendering_free(render->rendering);
     krs_renderer_free(render->renderer);
     krs_frame_free(render->frame);

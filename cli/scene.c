@@ -10,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/input.h"
 #include "cli/supervise.h"
 
 /* "error[E0203]: message" of the first line; the rest is drawn in ASCII and stays plain. */
@@ -25,6 +26,7 @@ static void print_diagnostic(void *user, const KrsDiagnostic *diagnostic)
     DiagnosticSink *sink = user;
     if (sink->options->quiet && !diagnostic->error)
         return;
+    console_clear();
     sink->errors += diagnostic->error;
     sink->warnings += !diagnostic->error;
     if (sink->options->json_diagnostics)
@@ -55,7 +57,9 @@ KrsOptions scene_options(DiagnosticSink *sink, const char *path)
                         .gradients    = options->how.normals == KRS_NORMALS_ANALYTIC,
                         .memory_limit = options->limits.memory,
                         .studio       = options->command == COMMAND_RENDER && !options->no_studio,
-                        .root         = scene_root(options, path)};
+                        .root         = scene_root(options, path),
+                        .text         = is_input(options, path) ? options->input : NULL,
+                        .text_length  = options->input_length};
 }
 
 void scene_print_counts(const DiagnosticSink *sink)
@@ -70,8 +74,10 @@ void scene_print_counts(const DiagnosticSink *sink)
     fputc('\n', stderr);
 }
 
-KrsStatus scene_readable(const char *path)
+KrsStatus scene_readable(const Options *options, const char *path)
 {
+    if (is_input(options, path))
+        return KRS_OK;
     struct stat info;
     int         file     = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     bool        readable = file >= 0 && fstat(file, &info) == 0;
@@ -100,11 +106,9 @@ KrsStatus say_status(KrsStatus status, const char *path)
 {
     if (status == KRS_OUT_OF_MEMORY)
         say("out of memory with `%s`", path);
-    else if (status == KRS_IO_ERROR)
-        say("cannot read `%s`", path);
     else if (status == KRS_INTERNAL)
         say("`%s` brought out a bug of krs", path);
-    return status; /* a wrong scene has been told about in diagnostics */
+    return status; /* diagnostics have told of a wrong scene, or one that cannot be read */
 }
 
 static long long file_size(const char *path)
@@ -115,20 +119,26 @@ static long long file_size(const char *path)
 
 void scene_enter_compile(const char *path)
 {
-    stage_size("`%s` has %lld bytes, and may use more", path, file_size(path));
+    struct stat about;
+    if (stat(path, &about) == 0 && S_ISFIFO(about.st_mode))
+        stage_size("`%s` is a pipe, and who writes to it has not ended", path);
+    else
+        stage_size("`%s` has %lld bytes, and may use more", path, file_size(path));
     stage_enter(STAGE_COMPILE);
 }
 
 KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene)
 {
     *scene           = NULL;
-    KrsStatus status = scene_readable(path);
+    KrsStatus status = scene_readable(options, path);
     if (status != KRS_OK)
         return status;
     scene_enter_compile(path);
     DiagnosticSink sink = {.options = options};
     KrsOptions     with = scene_options(&sink, path);
-    status              = krs_compile_file(path, &with, scene);
+    console_doing(options, "compiling the scene");
+    status = krs_compile_file(path, &with, scene);
+    console_doing(options, NULL);
     scene_print_counts(&sink);
     if (status == KRS_OK)
         stage_size("`%s` makes %zu bytes of distance code in %zu components", path,
@@ -142,6 +152,8 @@ const char *scene_name(Arena *arena, const char *path)
     const char *slash  = strrchr(path, '/');
     const char *name   = slash ? slash + 1 : path;
     size_t      length = strlen(name);
+    if (strcmp(path, "<stdin>") == 0)
+        return "stdin";
     if (length > 4 && strcmp(name + length - 4, ".krs") == 0)
         length -= 4;
     return arena_copy_text(arena, name, length);

@@ -121,15 +121,17 @@ bool read_setting(Options *options, const char *word)
         return false;
     setting.name      = arena_copy_text(options->arena, word, (size_t)(equals - word));
     const char *value = equals + 1;
-    bool        done;
+    bool        done  = false;
     if (*value == '#') {
         done = read_color(value, &setting);
     } else if (*value == '[') {
         done = read_vector(value, &setting);
     } else {
-        setting.count = 1;
-        done          = read_parameter_number(value, &value, &setting.values[0]) && *value == '\0';
+        const char *end = value;
+        setting.count   = 1;
+        done            = read_parameter_number(value, &end, &setting.values[0]) && *end == '\0';
     }
+    done = done || read_expression(options->arena, value, &setting);
     if (done)
         array_push(options->arena, &options->settings, setting);
     return done;

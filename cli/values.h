@@ -18,10 +18,14 @@ bool read_number(const char *word, double low, double high, double *value);
 bool read_size(const char *word, KrsRenderOptions *how); /* "640x480" */
 bool read_crop(const char *word, KrsWindow *crop);       /* "X,Y,WIDTH,HEIGHT" */
 bool read_frames(Options *options, const char *word);    /* "1..24" */
-bool read_setting(Options *options, const char *word);   /* "r=0.5", "at=[1,2,3]", "c=#rrggbb" */
-bool read_zone(Options *options, const char *word);      /* "X,Y,Z,R", of which there is room */
-bool read_exit_map(Options *options, const char *word);  /* "71=33,75=99" */
-bool read_limits(const char *word, Limits *limits);      /* "time=10,memory=1G" */
-bool read_aovs(const char *word, uint32_t *aovs);        /* "all", "none", "Z,N" */
+bool read_setting(Options *options, const char *word);
+/* An expression of the language without names of the scene: names of colours, `2 * pi`, `1, 2, 3`.  Its
+   mistake is said. */
+bool read_expression(Arena *arena, const char *text,
+                     Setting *setting);                 /* "r=0.5", "at=[1,2,3]", "c=#rrggbb" */
+bool read_zone(Options *options, const char *word);     /* "X,Y,Z,R", of which there is room */
+bool read_exit_map(Options *options, const char *word); /* "71=33,75=99" */
+bool read_limits(const char *word, Limits *limits);     /* "time=10,memory=1G" */
+bool read_aovs(const char *word, uint32_t *aovs);       /* "all", "none", "Z,N" */
 
 #endif

@@ -32,6 +32,7 @@ static void add_derived(Listing *l, const Shape *shape, Text *rule)
                     box_text(l, shape->region));
     else
         text_format(rule, "slope %.4g%s by norms over all space", shape->derived, when);
+    text_add(rule, shape->derived > 1 ? ", divided out" : "");
 }
 
 static const char *primitive_rule(Listing *l, const Shape *shape)
@@ -42,7 +43,8 @@ static const char *primitive_rule(Listing *l, const Shape *shape)
     else if (shape->exact)
         text_add(&rule, "exact, by claim");
     else if (shape->claimed)
-        text_format(&rule, "slope %.4g, by claim", shape->derived);
+        text_format(&rule, "slope %.4g, by claim%s", shape->derived,
+                    shape->derived > 1 ? ", divided out" : "");
     else if (shape->degree > 0)
         text_format(&rule, "polynomial of degree %u, by its series in balls", shape->degree);
     else if (shape->trapped)
@@ -65,7 +67,8 @@ static const char *rule_of(Listing *l, const Shape *shape)
                     blend_info[shape->blend.kind].slope);
     if (shape_info[shape->kind].divided)
         text_format(&rule, ", of factor %.4g %s", shape->derived,
-                    shape->per_frame ? "at first, derived for each frame" : "at most");
+                    shape->per_frame ? "at first, derived for each frame, divided out"
+                                     : "at most, divided out");
     return rule.bytes;
 }
 

@@ -209,6 +209,8 @@ static KrsStatus load_and_compile(const char *text, size_t length, const char *n
                                         .loader  = &loader,
                                         .name    = name,
                                         .loaded  = {.text = text, .length = length}};
+    if (!text && options->text)
+        c.loaded = (Loaded){.text = options->text, .length = options->text_length};
     if (loader_open(&loader, options->root, name))
         status = compile(&c, scene);
     loader_close(&loader);

@@ -84,7 +84,10 @@ typedef struct KrsOptions {
     /* Only files in this folder, and below it, are read; others are E0504, also behind symbolic
        links.  That includes the scene itself in krs_compile_file.  With krs_compile_text, `name`
        must be in the folder for `use` to work.  NULL: all files may be read. */
-    const char      *root;
+    const char *root;
+    /* The text of the scene, where krs_compile_file has only its name; NULL: it is read. */
+    const char      *text;
+    size_t           text_length;
     KrsLoadCallback *load;      /* supplies the files that are used; NULL: they are read */
     void            *load_user; /* handed to `load` */
 } KrsOptions;

@@ -7,6 +7,7 @@
  */
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "compiler/compilation.h"
 #include "compiler/graph/crowd.h"
@@ -27,6 +28,49 @@ static size_t count_operations(Compilation *c, const Node *roots, size_t count)
     return result;
 }
 
+/* The primitive with most operations in a tree, of the first few. */
+typedef struct Heaviest {
+    const Shape *shape;
+    size_t       operations, looked_at;
+} Heaviest;
+
+static void find_heaviest(Compilation *c, const Shape *shape, Heaviest *heaviest)
+{
+    enum { MOST_LOOKED_AT = 200 };
+    if (++heaviest->looked_at > MOST_LOOKED_AT)
+        return;
+    if (shape->kind == SHAPE_PRIMITIVE && shape->distance != NODE_NONE) {
+        Tape   tape       = tape_new(c->elaborated.graph, &shape->distance, 1, &c->scratch);
+        size_t operations = tape_operations(&tape);
+        arena_free(&c->scratch);
+        if (operations > heaviest->operations) {
+            heaviest->operations = operations;
+            heaviest->shape      = shape;
+        }
+    }
+    for (uint32_t i = 0; i < shape->child_count; i++)
+        find_heaviest(c, shape->children[i], heaviest);
+}
+
+/* Names a single shape that is most of a component that is too large. */
+static void blame_heaviest(Compilation *c, Diag *diag, const Component *component)
+{
+    Heaviest heaviest = {0};
+    find_heaviest(c, component->shape, &heaviest);
+    if (heaviest.operations < MOST_OPERATIONS / 2)
+        return;
+    const Shape *shape = heaviest.shape;
+    diag_secondary(
+        &c->diags, diag, shape->span,
+        diag_text(&c->diags, "this `%s` has %zu of them", shape->name, heaviest.operations));
+    diag->help =
+        strcmp(shape->name, "polygon") == 0
+            ? "each corner of a polygon counts: leave out those that nobody sees, or cut the "
+              "outline into pieces and join them by `|`"
+            : "make this shape of smaller ones, joined by `|`: where they are far, they are "
+              "skipped";
+}
+
 void refuse_component(Compilation *c, size_t component, size_t operations)
 {
     const Component *shown = &c->elaborated.components.items[component];
@@ -36,6 +80,7 @@ void refuse_component(Compilation *c, size_t component, size_t operations)
                                          shown->name, operations)
                              : diag_text(&c->diags, "`%s` alone needs more", shown->name);
     diag->help  = fewer_shapes;
+    blame_heaviest(c, diag, shown);
 }
 
 static void refuse_zones(Compilation *c, size_t operations)

@@ -25,8 +25,11 @@ KrsStatus pass_load(Compilation *c)
     if (c->loaded.outside)
         return refuse_scene(c, DIAG_OUTSIDE_ROOT,
                             "the scene is outside of the folder that scenes may read from");
-    if (!c->loaded.text)
+    if (!c->loaded.text) {
+        const char *reason = c->loaded.reason ? c->loaded.reason : "unknown";
+        refuse_scene(c, DIAG_CANNOT_READ, diag_text(&c->diags, "cannot be read: %s", reason));
         return KRS_IO_ERROR;
+    }
     if (c->loaded.length > MOST_SOURCE_BYTES)
         return refuse_scene(c, DIAG_LIMIT, "the file is longer than 16 MiB");
     files_load(&c->files, c->name, c->loaded.text, c->loaded.length);

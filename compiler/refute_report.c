@@ -157,8 +157,12 @@ void report_finding(Refuter *r, const Finding *whole, const Finding *finding)
     if (finding->witness.fault == FAULT_OUTSIDE && shape->kind == SHAPE_PRIMITIVE)
         diag->help = "make its `within` larger";
     else if (claim)
-        diag->help = shape->exact ? "leave `exact` out: the compiler then derives a safe slope"
-                                  : "leave `slope` out: the compiler then derives one";
+        diag->help =
+            shape->exact
+                ? "claim a `slope` in place of `exact`, above what was found here; or leave "
+                  "out both where the compiler can derive one"
+                : "claim a larger `slope`, above what was found here; or leave it out where "
+                  "the compiler can derive one";
     else if (shape->estimate)
         diag->help = "nothing is proven of an estimate, but none was ever found to be too long: "
                      "please report it";

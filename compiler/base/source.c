@@ -142,7 +142,7 @@ char *source_read_open(int fd, size_t *length, const char **reason)
         size_t count = fread(text + *length, 1, capacity - *length, file);
         *length += count;
         if (count == 0) {
-            *reason = ferror(file) ? "an error while reading" : NULL;
+            *reason = ferror(file) ? strerror(errno) : NULL;
             break;
         }
     }

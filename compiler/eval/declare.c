@@ -151,13 +151,14 @@ static void warn_if_empty(Elaboration *e, const Shape *shape)
 /* ---- slopes ---- */
 
 static void report_steep(Elaboration *e, const Syntax *declaration, const Syntax *distance,
-                         Span blame)
+                         Blame blame)
 {
-    Span  span  = blame.source ? blame : distance->span;
+    Span  span  = blame.span.source ? blame.span : distance->span;
     Diag *diag  = diag_add(e->diags, DIAG_STEEP, span, "the slope of `%s` has no bound",
                            declaration->name);
     diag->label = "this can change arbitrarily fast";
     diag_secondary(e->diags, diag, distance->span, "the distance is this expression");
+    explain_steep(e->builder, diag, blame);
     diag->help = "give the shape a bounded `within`, or keep this part away from divisions by "
                  "zero and jumps";
 }
@@ -212,7 +213,7 @@ static bool settle_slope(Elaboration *e, const Environment *env, const Syntax *d
 {
     const Syntax *distance = find_property(declaration, "distance");
     double        slope;
-    Span          blame;
+    Blame         blame;
     shape->declared = shape->distance;
     if (!slope_property(e, env, declaration, &slope))
         return false;

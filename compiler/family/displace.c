@@ -50,13 +50,14 @@ static void report_large_bump(ShapeBuilder *builder, Span formula_span)
                   "it a range, or take what grows as the `amplitude`";
 }
 
-static void report_bump(ShapeBuilder *builder, Span formula_span, Span blame)
+static void report_bump(ShapeBuilder *builder, Span formula_span, Blame blame)
 {
-    Diag *diag  = diag_add(builder->diags, DIAG_STEEP, blame.source ? blame : formula_span,
-                           "the slope of this displacement has no bound");
+    Diag *diag = diag_add(builder->diags, DIAG_STEEP, blame.span.source ? blame.span : formula_span,
+                          "the slope of this displacement has no bound");
     diag->label = "this can change arbitrarily fast";
-    diag->help  = "keep it in limits with `clamp`, cut the shape with `.within`, and give a "
-                  "`param` in it a range";
+    explain_steep(builder, diag, blame);
+    diag->help = "keep it in limits with `clamp`, cut the shape with `.within`, and give a "
+                 "`param` in it a range";
 }
 
 /* The slope of the formula everywhere or, failing that, where the displaced surface can be.  False:

@@ -19,7 +19,7 @@ void claim_slope(ShapeBuilder *builder, Shape *primitive, double slope);
 /* The same, by a slope that is derived over all space or, where that has no bound, over the box; the
    distance outside of that is then brought out from the nearest point in it (field.c).  False:
    there is no bound, and *blame is what changes too fast. */
-bool         derive_slope(ShapeBuilder *builder, Shape *primitive, Span distance, Span *blame);
+bool         derive_slope(ShapeBuilder *builder, Shape *primitive, Span distance, Blame *blame);
 const Shape *make_empty(ShapeBuilder *builder, Span span);
 
 /* ---- shapes from shapes ---- */

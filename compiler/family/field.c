@@ -309,10 +309,11 @@ bool check_bounded(ShapeBuilder *builder, const Shape *shape)
     if (isfinite(shape->slope))
         return true;
     const Shape *field = find_unbounded(shape);
-    Span         span  = field->blame.source ? field->blame : field->span;
+    Span         span  = field->blame.span.source ? field->blame.span : field->span;
     Diag *diag  = diag_add(builder->diags, DIAG_STEEP, span, "the slope of a field has no bound");
     diag->label = "this can change arbitrarily fast";
     diag_secondary(builder->diags, diag, field->span, "in this field");
+    explain_steep(builder, diag, field->blame);
     diag->help = box_is_finite(field->region)
                      ? "keep this part away from divisions by zero and jumps"
                      : "cut it to a region: `.within(box([4, 4, 4]))`; or keep this part away "

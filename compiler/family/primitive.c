@@ -26,7 +26,7 @@ void claim_slope(ShapeBuilder *builder, Shape *primitive, double slope)
     primitive->distance = divide_by_slope(builder->graph, primitive->declared, slope);
 }
 
-bool derive_slope(ShapeBuilder *builder, Shape *primitive, Span distance, Span *blame)
+bool derive_slope(ShapeBuilder *builder, Shape *primitive, Span distance, Blame *blame)
 {
     Box       regions[2] = {box_infinite, primitive->box};
     int       count      = box_is_finite(primitive->box) ? 2 : 1;

@@ -15,6 +15,12 @@
 typedef struct Shape Shape;
 typedef struct Map   Map;
 
+/* What an expression owes it to that its slope has no bound: a place of the text, and an operation. */
+typedef struct Blame {
+    Span span;
+    Op   op;
+} Blame;
+
 /* The material of a surface: a member for each property (surface.def).  Numbers are nodes, colours
    linear VEC3 nodes; NODE_NONE leaves what it was painted with before. */
 typedef struct Material {
@@ -151,7 +157,7 @@ struct Shape {
                          they take the surface, at most */
     uint32_t degree;  /* of a formula that is a polynomial, else 0, */
     ZeroBox  zeros;   /* and where that may be 0 */
-    Span     blame;   /* what a field without a bound owes that to */
+    Blame    blame;   /* what a field without a bound owes that to */
     bool     fields;  /* in the tree is a field whose bound follows from a region */
     Node     distance, bound, uv, trap;
     const struct Shape *without_uv; /* a primitive in the tree that has none, or NULL */

@@ -63,9 +63,62 @@ static void try_values(const Parameters *parameters, Graph *plain, int trial)
     }
 }
 
+/* What an operation is steep by, and what has a bound instead. */
+static const struct {
+    Op          op;
+    const char *why;
+} steep_operations[] = {
+    {OP_asin,
+     "`asin` is infinitely steep at -1 and 1; `asin(0.99 * sin(a))` is a zigzag that is not"},
+    {OP_acos,
+     "`acos` is infinitely steep at -1 and 1; `acos(0.99 * cos(a))` is a zigzag that is not"},
+    {OP_atan2,
+     "an angle changes arbitrarily fast near its axis, where it also jumps; `.repeat_polar` and "
+     "`.twist` go about an axis, and `2 * c ^ 2 - 1` is the "
+     "cosine of twice the angle, with `c = clamp(x / max(length([x, z]), 0.2), -1, 1)`"},
+    {OP_div,
+     "a quotient grows without limit where the divisor is near 0; `a / max(b, 0.1)` does not"},
+    {OP_sqrt, "a root is infinitely steep at 0; `sqrt(max(a, 0.01))` is not"},
+    {OP_inversesqrt, "this grows without limit near 0; `inversesqrt(max(a, 0.01))` does not"},
+    {OP_pow, "a power below 1 is infinitely steep at 0; `pow(max(a, 0.01), b)` is not"},
+    {OP_log, "a logarithm falls without limit near 0; `log(max(a, 0.1))` does not"},
+    {OP_log2, "a logarithm falls without limit near 0; `log2(max(a, 0.1))` does not"},
+    {OP_tan, "`tan` has poles; `sin` has none"},
+    {OP_floor, "this jumps at whole numbers; `smoothstep` goes from one value to another"},
+    {OP_ceil, "this jumps at whole numbers; `smoothstep` goes from one value to another"},
+    {OP_round, "this jumps between whole numbers; `smoothstep` goes from one value to another"},
+    {OP_fract, "this jumps at whole numbers; `.repeat` makes copies of a shape"},
+    {OP_mod, "a remainder jumps; `.repeat` makes copies of a shape"},
+    {OP_step, "a step jumps; `smoothstep` goes from 0 to 1 within a width"},
+    {OP_sign, "a sign jumps at 0; `clamp(10 * a, -1, 1)` does not"},
+    {OP_select,
+     "a choice jumps from one value to the other; `mix(a, b, smoothstep(-0.1, 0.1, x))` does "
+     "not"},
+};
+
+void explain_steep(ShapeBuilder *builder, Diag *diag, Blame blame)
+{
+    for (size_t i = 0; i < sizeof steep_operations / sizeof *steep_operations; i++)
+        if (steep_operations[i].op == blame.op)
+            diag_note(builder->diags, diag, steep_operations[i].why);
+}
+
+/* Of equal expressions the first place is known, which may be in the library: then `otherwise` is
+   blamed, which is the author's. */
+static Blame blame_of(ShapeBuilder *builder, const Graph *plain, Node node, Span otherwise)
+{
+    if (node == NODE_NONE)
+        return (Blame){.op = OP_COUNT};
+    const Source *sources = builder->diags->sources->items;
+    Blame         blame   = {plain->items[node].span, plain->items[node].op};
+    if (sources[blame.span.source].library && !sources[otherwise.source].library)
+        blame.span = otherwise;
+    return blame;
+}
+
 /* Whether frames have a slope over a region; `found` gets the first one, or whom to blame. */
 static bool bounded_in_frames(ShapeBuilder *builder, const Graph *plain, Node root, Box region,
-                              Steepness *found)
+                              Span span, Steepness *found)
 {
     Graph tried            = *plain;
     tried.parameters.items = arena_new_array(builder->scratch, GraphParameter,
@@ -79,7 +132,7 @@ static bool bounded_in_frames(ShapeBuilder *builder, const Graph *plain, Node ro
                                    builder->scratch);
         if (isfinite(found->bound) && (trial > 0 || isfinite(frame_slope_upward(found->bound))))
             continue;
-        found->blame = plain->items[blame].span;
+        found->blame = blame_of(builder, plain, blame, span);
         found->bound = HUGE_VAL;
         return false;
     }
@@ -128,14 +181,14 @@ bool find_slope(ShapeBuilder *builder, Node formula, const Box *regions, int cou
         found->region = regions[i];
         found->bound  = graph_slope(plain, root, regions[i], NULL,
                                    box_is_finite(regions[i]) ? CELLS : 1, &blame, builder->scratch);
-        found->blame  = blame == NODE_NONE ? (Span){0, 0, 0} : plain->items[blame].span;
+        found->blame  = blame_of(builder, plain, blame, span);
         if (isfinite(found->bound))
             return true;
     }
     bool frames = needs_the_endless(plain, root, builder->scratch);
     for (int i = 0; frames && i < count; i++) {
         found->region = regions[i];
-        if (bounded_in_frames(builder, plain, root, regions[i], found)) {
+        if (bounded_in_frames(builder, plain, root, regions[i], span, found)) {
             found->slot = frame_slot(builder, formula, regions[i], span);
             return true;
         }

@@ -10,12 +10,14 @@ typedef struct Steepness {
     double bound;  /* of all frames; with a slot, of the first: time 0, defaults */
     Node   slot;   /* the slope in the frame; NODE_NONE: the bound is a constant */
     Box    region; /* over which; infinite: all space */
-    Span   blame;  /* of what changes fastest */
+    Blame  blame;  /* what changes fastest */
 } Steepness;
 /* Over the first of these regions where the slope of an expression has a bound; false: it has none.
    `span` is its place. */
 bool find_slope(ShapeBuilder *builder, Node formula, const Box *regions, int count, Span span,
                 Steepness *found);
+/* Says in a diagnostic why an operation has no bound on its slope, and what to write instead. */
+void explain_steep(ShapeBuilder *builder, Diag *diag, Blame blame);
 Node steepness_node(Graph *graph, const Steepness *slope);
 /* What grows so fast, made safe. */
 Node divide_by_steepness(Graph *graph, Node distance, const Steepness *slope);

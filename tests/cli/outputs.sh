@@ -2,15 +2,29 @@
 # outputs.sh: an output appears whole or not at all, and says why not.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 34
+plan 40
 small="--size 16x12 --quiet"
 
 # shellcheck disable=SC2086 # the options are separate words
 picture() { run render ball.krs $small "$@"; }
 
 picture
-[ "$status" -eq 0 ] && [ -s ball.exr ] && no_temporaries
-result $? "the default output is SCENE.exr in the current folder"
+[ "$status" -eq 0 ] && [ -s ball.exr ] && [ -s ball.png ] && no_temporaries
+result $? "the default outputs are SCENE.exr and SCENE.png in the current folder"
+run render ball.krs --size 16x12
+said 0 "krs: wrote \`ball.exr\` and \`ball.png\`" "what was written is said"
+run render ball.krs --size 16x12 --frames 1..2 -o 'f%d.png'
+said 0 "krs: wrote frames 1 to 2 to \`f%d.png\`" "what was written of an animation is said"
+picture -o same.png
+"$krs" render - --size 16x12 --quiet -o - <ball.krs 2>err | cmp -s - same.png
+result $? "- is standard input and output"
+"$krs" render ball.krs --size 16x12 --quiet -o - >redirected.png 2>err
+cmp -s redirected.png same.png
+result $? "- in a file"
+"$krs" render - --size 16x12 --quiet <ball.krs >out 2>err && cmp -s stdin.png same.png
+result $? "the default outputs of standard input"
+picture -o - --stats json
+said 2 "the picture would go to where --stats goes" "a picture and statistics on standard output"
 picture -o a.exr -o a.png
 [ "$status" -eq 0 ] && [ -s a.exr ] && [ -s a.png ] && [ ! -s out ]
 result $? "several outputs"

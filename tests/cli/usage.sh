@@ -2,7 +2,7 @@
 # usage.sh: command lines that are wrong, and the pages of help.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 54
+plan 62
 
 run
 said 2 "no command is given" "no command"
@@ -80,6 +80,28 @@ run query ball.krs --set radius=60deg
 result $? "an angle in degrees"
 run query ball.krs --set radius=60degs
 said 2 "--set wants" "an angle with a misspelt unit"
+cat >tinted.krs <<'END'
+param tint = [0.1, 0.2, 0.3];
+param turn = 30deg in [0deg, 90deg];
+camera low { eye: [5, 0, 0] }
+camera high { eye: [0, 5, 1] }
+show box([1, 2, 3]).rotate([0, 1, 0], turn).paint(tint);
+END
+# What a value is, the picture says.
+for setting in 'tint=tomato [1, 0.1' 'tint=1,0.5,0.25 [1, 0.5, 0.25]' 'turn=2*pi/8 0.785398' \
+    'tint=mix(black,white,0.5) [0.5, 0.5, 0.5]'; do
+    run render tinted.krs --size 8x8 --quiet --set "${setting%% *}" -o tinted.exr
+    [ "$status" -eq 0 ] && strings tinted.exr | grep -qF -- "=${setting#* }"
+    result $? "--set ${setting%% *}"
+done
+run query tinted.krs --set tint=orng
+said 2 "\`orng\` in --set tint: the name \`orng\` is not defined" "a value with a mistake"
+run query tinted.krs --set turn=2
+said 2 "param \`turn\` goes from 0deg to 90deg; 114.592deg is outside" "a range in degrees"
+run render tinted.krs --camera hihg
+said 2 "did you mean \`high\`? It has \`low\`, \`high\`" "the cameras that there are"
+run query --set turn=1 - 
+said 2 "standard input has the questions" "questions and scene on standard input"
 run --exit-map
 said 2 "there is no command" "an option without a command"
 
