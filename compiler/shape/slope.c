@@ -109,8 +109,10 @@ static Blame blame_of(ShapeBuilder *builder, const Graph *plain, Node node, Span
 {
     if (node == NODE_NONE)
         return (Blame){.op = OP_COUNT};
+    Blame blame = {plain->items[node].span, plain->items[node].op};
+    if (blame.span.source == 0 || otherwise.source == 0)
+        return blame;
     const Source *sources = builder->diags->sources->items;
-    Blame         blame   = {plain->items[node].span, plain->items[node].op};
     if (sources[blame.span.source].library && !sources[otherwise.source].library)
         blame.span = otherwise;
     return blame;

@@ -289,7 +289,7 @@ static void a_slope_that_is_derived(void **state)
     Graph *g     = builder.graph;
     Node   steep = graph_op2(g, OP_mul, graph_component(g, point(), 0), graph_number(g, 3));
     Shape *shape = primitive_new(&builder, "wall", steep, box_infinite, NOWHERE);
-    Span   blame;
+    Blame  blame;
     assert_true(derive_slope(&builder, shape, NOWHERE, &blame));
     assert_float_equal(shape->derived, 3, 1e-12);
     Distance lowered = lower(shape);
