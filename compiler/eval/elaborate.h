@@ -249,7 +249,7 @@ void explain_usage(Elaboration *e, Diag *diag, const Syntax *call, const char *n
 void note_names(Elaboration *e, Diag *diag, const char *what, const char *const *names,
                 size_t count);
 /* A value of another type than `wanted` ("a number"); silent for VALUE_ERROR. */
-void type_error(Elaboration *e, const Syntax *syntax, Value found, const char *wanted);
+Diag *type_error(Elaboration *e, const Syntax *syntax, Value found, const char *wanted);
 /* A value that must be known at compile time, and is not. */
 void constant_error(Elaboration *e, const Syntax *syntax, const char *message);
 /* A value that must be the same at every point, and is not; `what` names it. */

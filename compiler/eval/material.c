@@ -4,6 +4,14 @@
 #include "compiler/eval/elaborate.h"
 #include "compiler/lower/lower.h"
 
+/* Reports a value that is no colour; names of colours in quotes are a habit. */
+static void not_a_colour(Elaboration *e, const Syntax *syntax, Value value, const char *wanted)
+{
+    Diag *diag = type_error(e, syntax, value, wanted);
+    if (value.type == VALUE_STRING)
+        diag->help = form_help(e->diags, FORM_QUOTED_COLOUR);
+}
+
 /* A number or a colour that may depend on the point; *property stays when it is not given. */
 static void material_property(Elaboration *e, const Environment *env, const Syntax *block,
                               const char *name, GraphType type, bool limited, Node *property)
@@ -19,8 +27,10 @@ static void material_property(Elaboration *e, const Environment *env, const Synt
         node = graph_op3(e->graph, OP_vec3, node, node, node);
     if (node != NODE_NONE && e->graph->items[node].type == type)
         *property = node;
+    else if (type == TYPE_VEC3)
+        not_a_colour(e, syntax, value, "a colour");
     else
-        type_error(e, syntax, value, type == TYPE_VEC3 ? "a colour" : "a number");
+        type_error(e, syntax, value, "a number");
 }
 
 static Material *material_new(Elaboration *e, const char *name)
@@ -58,6 +68,6 @@ const Material *to_material(Elaboration *e, Value value, const Syntax *syntax)
         warn_of_bright_colour(e, syntax, value, "a surface reflects at most what it gets");
         return material;
     }
-    type_error(e, syntax, value, "a material or a colour");
+    not_a_colour(e, syntax, value, "a material or a colour");
     return NULL;
 }

@@ -47,15 +47,16 @@ void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax)
     }
 }
 
-void type_error(Elaboration *e, const Syntax *syntax, Value found, const char *wanted)
+Diag *type_error(Elaboration *e, const Syntax *syntax, Value found, const char *wanted)
 {
     if (found.type == VALUE_ERROR)
-        return;
+        return &e->diags->scrap;
     const char *name = value_type_name(e, found);
     Diag       *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span, "expected %s, found %s",
                                 wanted, name);
     diag->label      = diag_text(e->diags, "this is %s", name);
     point_at_definition(e, diag, syntax);
+    return diag;
 }
 
 void constant_error(Elaboration *e, const Syntax *syntax, const char *message)

@@ -93,7 +93,10 @@ static double read_unit(Lexer *lexer, uint32_t start, double number)
         return number / 180 * M_PI;
     if (length > 0)
         bad_number(lexer, unit, "letters that do not belong to a number",
-                   "the only unit is `deg`, as in `30deg`; a million is `1e6`", NULL);
+                   lexer->text[unit] == 'x' && number == 0
+                       ? form_help(lexer->diags, FORM_HEXADECIMAL)
+                       : "the only unit is `deg`, as in `30deg`; a million is `1e6`",
+                   NULL);
     else if (peek(lexer, 0) == '.' && is_digit(peek(lexer, 1))) {
         lexer->at++;
         skip_digits(lexer);

@@ -402,6 +402,9 @@ static Syntax *parse_parentheses(Parser *p)
     enter(p);
     advance(p);
     Syntax *inside = parse_expression(p);
+    if (kind_here(p) == TOKEN_COMMA || kind_here(p) == TOKEN_NUMBER)
+        expected(p, "an operator or `)`")->help = form_help(
+            p->diags, kind_here(p) == TOKEN_COMMA ? FORM_ROUND_VECTOR : FORM_LISP_CALL);
     expect_closer(p, TOKEN_RIGHT_PAREN, opener, "an operator or `)`");
     leave(p);
     if (!p->failed) /* so that the span of a call or an operator begins at the parenthesis */

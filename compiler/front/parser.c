@@ -131,7 +131,8 @@ static void explain_call(Parser *p, Diag *diag, TokenKind found)
 {
     if (found == TOKEN_LEFT_BRACE)
         diag->help = form_help(p->diags, FORM_BLOCK_OF_CALL);
-    else if (found == TOKEN_NAME)
+    else if (found == TOKEN_NAME &&
+             !explain_word(p->diags, diag, SYNONYM_STATEMENT, token_here(p)->name, ""))
         diag->help = form_help(p->diags, FORM_SHAPE_BEHIND);
 }
 
