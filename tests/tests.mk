@@ -35,7 +35,7 @@ SECOND      := $(DRIVERS) $(addprefix tests/, unit/devices unit/tracer unit/rend
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
-SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/diagnostics unit/shape unit/parts unit/passes unit/display \
+SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/synonyms unit/diagnostics unit/shape unit/parts unit/passes unit/display \
                unit/writer unit/image_files unit/validate unit/loader unit/grid unit/crowd_grid unit/crowds unit/tables unit/search \
                unit/refute unit/memory unit/cache unit/cache_limits unit/frame unit/query \
                unit/zones unit/printers unit/alike unit/update property/ops property/noise property/graph property/simplify \
