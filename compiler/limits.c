@@ -80,7 +80,8 @@ void refuse_component(Compilation *c, size_t component, size_t operations)
                                          shown->name, operations)
                              : diag_text(&c->diags, "`%s` alone needs more", shown->name);
     diag->help  = fewer_shapes;
-    blame_heaviest(c, diag, shown);
+    if (operations > 0) /* else lowering has ended early, and `scratch` is in use */
+        blame_heaviest(c, diag, shown);
 }
 
 static void refuse_zones(Compilation *c, size_t operations)
