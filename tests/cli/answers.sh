@@ -137,7 +137,7 @@ result $? "compile says in which slot of the GLSL it is"
     ! grep -q '#\|krs_parameter\[3\]\.' compiled/wave.glsl
 result $? "the GLSL has no directives, and asks for no more slots than that"
 run compile --frame-values on --early-outs off wave.krs -o compiled
-[ "$status" -eq 0 ] && grep -q 'krs_parameter\[3\].x' compiled/wave.glsl &&
+[ "$status" -eq 0 ] && grep -q 'krs_slot3 = krs_parameter\[3\];' compiled/wave.glsl &&
     grep -q 'vec4 krs_parameter\[4\]' compiled/wave.glsl &&
     ! grep -q 'krs_distance_lod' compiled/wave.glsl
 result $? "values of the frame are read from further slots where that is asked for"

@@ -34,7 +34,7 @@ grep -q -- '--deadline SECONDS allows it longer' err && ! grep -q bug err
 result $? "how to give it more time is said, and that it is a bug is not"
 KRS_TEST_CRASH=shaders:hang "$krs" render --quiet --deadline 2 ball.krs -o a.exr >out 2>err
 status=$?
-said 1 "bytes of distance code in 1 components; --deadline" "compiling shaders that does not end"
+said 1 "bytes of distance code in 2 components; --deadline" "compiling shaders that does not end"
 KRS_TEST_CRASH=device:hang "$krs" render --quiet --deadline 2 ball.krs -o a.exr >out 2>err
 status=$?
 said 70 "gave up starting the device after 2 seconds without progress" "a device that does not start"
