@@ -32,10 +32,12 @@ static ArenaBlock *block_new(Memory *memory, size_t bytes)
     size_t size = bytes + HEADER_BYTES;
     if (memory->limit != 0 && (memory->used > memory->limit || size > memory->limit - memory->used))
         out_of_memory(memory);
-    ArenaBlock *block = memory->allocate ? memory->allocate(memory->user, size) : malloc(size);
+    /* Of a block from the system that was never used calloc touches nothing. */
+    ArenaBlock *block = memory->allocate ? memory->allocate(memory->user, size) : calloc(1, size);
     if (!block)
         out_of_memory(memory);
-    memset(block, 0, size);
+    if (memory->allocate)
+        memset(block, 0, size);
     block->size = size;
     memory->used += size;
     return block;
@@ -121,6 +123,35 @@ void arena_free(Arena *arena)
     }
     arena->next = NULL;
     arena->left = 0;
+}
+
+ArenaMark arena_mark(const Arena *arena)
+{
+    return (ArenaMark){arena->newest, arena->newest ? arena->newest->older : NULL, arena->next,
+                       arena->left};
+}
+
+static void free_until(Memory *memory, ArenaBlock **newest, const ArenaBlock *last)
+{
+    while (*newest != last) {
+        ArenaBlock *block = *newest;
+        *newest           = block->older;
+        block_free(memory, block);
+    }
+}
+
+/* Large objects are listed behind the block that was the newest one. */
+void arena_rewind(Arena *arena, ArenaMark mark)
+{
+    bool   same = arena->newest == mark.newest;
+    size_t used = same ? (size_t)(arena->next - mark.next) : mark.left;
+    free_until(arena->memory, &arena->newest, mark.newest);
+    if (mark.newest)
+        free_until(arena->memory, &mark.newest->older, mark.behind);
+    if (used > 0)
+        memset(mark.next, 0, used);
+    arena->next = mark.next;
+    arena->left = mark.left;
 }
 
 /* An object of this size has a block of its own.  The newest block stays: objects may follow. */

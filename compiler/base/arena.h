@@ -39,6 +39,15 @@ void *arena_alloc(Arena *arena, size_t count, size_t size);
 /* Frees all blocks; the arena can be used again. */
 void arena_free(Arena *arena);
 
+/* What was allocated since a mark can be freed again.  Marks are rewound in the reverse order. */
+typedef struct ArenaMark {
+    struct ArenaBlock *newest, *behind;
+    char              *next;
+    size_t             left;
+} ArenaMark;
+ArenaMark arena_mark(const Arena *arena);
+void      arena_rewind(Arena *arena, ArenaMark mark);
+
 /* A copy of length bytes, with a NUL behind them. */
 char *arena_copy_text(Arena *arena, const char *bytes, size_t length);
 

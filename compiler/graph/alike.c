@@ -9,11 +9,14 @@
 #include <math.h>
 #include <string.h>
 
+/* There is one for each node of the graph, and mostly the value stands in the node. */
 typedef struct NodeNote {
-    uint64_t  hash;
-    NodeValue value;
-    bool      known; /* its value is a finite number that is known now */
+    uint64_t hash;
+    uint32_t value; /* IN_NODE, or where in `values`: it is a finite number that is known now; or
+                       UNKNOWN */
 } NodeNote;
+
+enum { UNKNOWN, IN_NODE, FIRST_VALUE };
 
 struct Alike {
     Graph *graph;
@@ -22,6 +25,10 @@ struct Alike {
         NodeNote *items;
         size_t    count, capacity;
     } notes; /* of the first nodes of the graph */
+    struct {
+        NodeValue *items;
+        size_t     count, capacity;
+    } values;
 };
 
 Alike *alike_new(Graph *graph, Arena *arena)
@@ -33,8 +40,26 @@ Alike *alike_new(Graph *graph, Arena *arena)
 
 void alike_forget(Alike *alike, size_t first)
 {
-    if (alike->notes.count > first)
-        alike->notes.count = first;
+    while (alike->notes.count > first) {
+        uint32_t value = alike->notes.items[--alike->notes.count].value;
+        if (value >= FIRST_VALUE)
+            alike->values.count = value - FIRST_VALUE;
+    }
+}
+
+static bool is_known(const Alike *alike, Node node)
+{
+    return alike->notes.items[node].value != UNKNOWN;
+}
+
+static NodeValue known_value(const Alike *alike, Node node)
+{
+    uint32_t  value = alike->notes.items[node].value;
+    NodeValue number;
+    if (value >= FIRST_VALUE)
+        return alike->values.items[value - FIRST_VALUE];
+    memcpy(number.v, alike->graph->items[node].number, sizeof number.v);
+    return number;
 }
 
 /* ---- what operands are ---- */
@@ -51,7 +76,7 @@ static int use_kind(const Alike *alike, const Expr *user, int operand, Node node
     const Expr *e = &alike->graph->items[node];
     if (is_operation(e))
         return USE_NODE;
-    bool known  = alike->notes.items[node].known;
+    bool known  = is_known(alike, node);
     bool number = (is_number((GraphType)e->type) && (known || e->time == TIME_FRAME)) ||
                   (!user && e->type == TYPE_UINT && known);
     return number && !(user && op_has_setting((Op)user->op, operand)) ? USE_SLOT : USE_SAME;
@@ -81,11 +106,11 @@ static uint64_t hash_use(const Alike *alike, const Expr *user, int operand, Node
 {
     if (node == NODE_NONE)
         return NODE_NONE;
-    const NodeNote *note = &alike->notes.items[node];
-    bool            slot = !user || is_operation(user);
+    bool slot = !user || is_operation(user);
     if (slot && use_kind(alike, user, operand, node) == USE_SLOT)
         return alike->graph->items[node].type;
-    return note->known ? hash_value(note->value) : note->hash;
+    return is_known(alike, node) ? hash_value(known_value(alike, node))
+                                 : alike->notes.items[node].hash;
 }
 
 static uint64_t hash_expression(const Alike *alike, const Expr *e)
@@ -96,38 +121,47 @@ static uint64_t hash_expression(const Alike *alike, const Expr *e)
     return hash;
 }
 
-static void note_value(const Alike *alike, const Expr *e, NodeNote *note)
+static bool is_finite(const Expr *e, const double *value)
+{
+    for (int i = 0; i < (is_number((GraphType)e->type) ? e->type : 1); i++)
+        if (!isfinite(value[i]))
+            return false;
+    return true;
+}
+
+/* The value of an operation on what is known; UNKNOWN: it is not. */
+static uint32_t note_value(Alike *alike, const Expr *e)
 {
     GraphType types[MAX_OPERANDS]    = {0};
     NodeValue operands[MAX_OPERANDS] = {0};
-    if (e->op == OP_CONSTANT || e->op == OP_HOISTED)
-        memcpy(note->value.v, e->number, sizeof note->value.v);
-    else if (e->operand_count == 0)
-        return;
     for (int i = 0; i < e->operand_count; i++) {
-        const NodeNote *operand = &alike->notes.items[e->operands[i]];
-        if (!operand->known)
-            return;
+        if (!is_known(alike, e->operands[i]))
+            return UNKNOWN;
         types[i]    = alike->graph->items[e->operands[i]].type;
-        operands[i] = operand->value;
+        operands[i] = known_value(alike, e->operands[i]);
     }
-    if (e->operand_count > 0)
-        note->value = op_evaluate((Op)e->op, (GraphType)e->type, e->index, types, operands);
-    note->known = true;
-    for (int i = 0; i < (is_number((GraphType)e->type) ? e->type : 1); i++)
-        note->known = note->known && isfinite(note->value.v[i]);
+    NodeValue value = op_evaluate((Op)e->op, (GraphType)e->type, e->index, types, operands);
+    if (!is_finite(e, value.v))
+        return UNKNOWN;
+    array_push_large(alike->arena, &alike->values, value);
+    return FIRST_VALUE + (uint32_t)alike->values.count - 1;
+}
+
+static uint32_t find_value(Alike *alike, const Expr *e)
+{
+    if (e->op == OP_CONSTANT || e->op == OP_HOISTED)
+        return is_finite(e, e->number) ? IN_NODE : UNKNOWN;
+    return e->operand_count == 0 || is_operation(e) ? UNKNOWN : note_value(alike, e);
 }
 
 static void note_all(Alike *alike)
 {
     for (size_t n = alike->notes.count; n < alike->graph->count; n++) {
         const Expr *e    = &alike->graph->items[n];
-        NodeNote    note = {0};
-        if (!is_operation(e))
-            note_value(alike, e, &note);
-        if (!note.known)
+        NodeNote    note = {.value = find_value(alike, e)};
+        if (note.value == UNKNOWN)
             note.hash = hash_expression(alike, e);
-        array_push(alike->arena, &alike->notes, note);
+        array_push_large(alike->arena, &alike->notes, note);
     }
 }
 
@@ -154,6 +188,10 @@ typedef struct TemplateMaker {
         Node  *items;
         size_t count, capacity;
     } slots;
+    struct {
+        GraphType *items;
+        size_t     count, capacity;
+    } slot_types;
     /* Nodes whose operands are not all made yet; and of those made, where they are: by hashing. */
     struct {
         Node  *items;
@@ -187,6 +225,8 @@ static TemplateUse make_use(TemplateMaker *maker, const Expr *user, int operand,
     case USE_NODE: return (TemplateUse){USE_NODE, maker->places[place_of(maker, node)] - 1};
     case USE_SLOT:
         array_push(maker->arena, &maker->slots, node);
+        array_push(maker->arena, &maker->slot_types,
+                   (GraphType)maker->alike->graph->items[node].type);
         return (TemplateUse){USE_SLOT, (uint32_t)maker->slots.count - 1};
     default: return (TemplateUse){USE_SAME, node};
     }
@@ -213,7 +253,7 @@ static void make_node(TemplateMaker *maker, Node node)
     if (maker->places[place])
         return;
     const Expr  *e    = &maker->alike->graph->items[node];
-    TemplateNode made = {.node = node};
+    TemplateNode made = {.node = node, .op = e->op, .type = e->type, .index = e->index};
     for (int i = 0; i < MAX_OPERANDS; i++)
         made.uses[i] = i < e->operand_count ? make_use(maker, e, i, e->operands[i])
                                             : (TemplateUse){USE_SAME, NODE_NONE};
@@ -251,20 +291,53 @@ Template *template_new(Alike *alike, const Node *roots, uint32_t count, Arena *a
     template->nodes      = maker.nodes.items;
     template->node_count = (uint32_t)maker.nodes.count;
     template->slots      = maker.slots.items;
+    template->slot_types = maker.slot_types.items;
     template->slot_count = (uint32_t)maker.slots.count;
     template->images     = arena_new_array(arena, Node, maker.nodes.count);
     return template;
 }
 
+static bool detach_use(Alike *alike, Template *template, TemplateUse *use, size_t first,
+                       Arena *arena)
+{
+    if (use->kind != USE_SAME || use->index < first || use->index == NODE_NONE)
+        return true;
+    if (!is_known(alike, use->index))
+        return false;
+    TemplateKnown known = {(GraphType)alike->graph->items[use->index].type,
+                           known_value(alike, use->index)};
+    array_push(arena, &template->known, known);
+    *use = (TemplateUse){USE_KNOWN, (uint32_t)template->known.count - 1};
+    return true;
+}
+
+bool template_detach(Alike *alike, Template *template, size_t first, Arena *arena)
+{
+    bool good = true;
+    for (uint32_t i = 0; good && i < template->root_count; i++)
+        good = detach_use(alike, template, &template->roots[i], first, arena);
+    for (uint32_t i = 0; i < template->node_count; i++)
+        for (int k = 0; good && k < MAX_OPERANDS; k++)
+            good = detach_use(alike, template, &template->nodes[i].uses[k], first, arena);
+    return good;
+}
+
 /* ---- matching ---- */
+
+static bool has_value(const Alike *alike, Node node, GraphType type, NodeValue value)
+{
+    if (node == NODE_NONE || !is_known(alike, node) || alike->graph->items[node].type != type)
+        return false;
+    NodeValue own = known_value(alike, node);
+    return !memcmp(&own, &value, sizeof own);
+}
 
 static bool same_node(const Alike *alike, Node a, Node b)
 {
     if (a == b || a == NODE_NONE || b == NODE_NONE)
         return a == b;
-    const NodeNote *x = &alike->notes.items[a], *y = &alike->notes.items[b];
-    return x->known && y->known && alike->graph->items[a].type == alike->graph->items[b].type &&
-           !memcmp(&x->value, &y->value, sizeof x->value);
+    return is_known(alike, a) &&
+           has_value(alike, b, (GraphType)alike->graph->items[a].type, known_value(alike, a));
 }
 
 /* The number, or node of the frame, that is an element of a node. */
@@ -278,18 +351,17 @@ static Node element_node(Graph *graph, Node node, uint32_t element)
 
 static SlotContent content_of(const Alike *alike, Node node)
 {
-    const NodeNote *note     = &alike->notes.items[node];
-    const uint32_t  elements = alike->graph->items[node].type;
-    SlotContent     content  = {.nodes = {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE}};
-    if (note->known) {
-        memcpy(content.numbers, note->value.v, sizeof content.numbers);
+    const uint32_t elements = alike->graph->items[node].type;
+    SlotContent    content  = {.nodes = {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE}};
+    if (is_known(alike, node)) {
+        NodeValue value = known_value(alike, node);
+        memcpy(content.numbers, value.v, sizeof content.numbers);
         return content;
     }
     for (uint32_t k = 0; k < elements; k++) {
-        Node            element = element_node(alike->graph, node, k);
-        const NodeNote *own = element < alike->notes.count ? &alike->notes.items[element] : NULL;
-        if (own && own->known)
-            content.numbers[k] = own->value.v[0];
+        Node element = element_node(alike->graph, node, k);
+        if (element < alike->notes.count && is_known(alike, element))
+            content.numbers[k] = known_value(alike, element).v[0];
         else
             content.nodes[k] = element;
     }
@@ -299,12 +371,17 @@ static SlotContent content_of(const Alike *alike, Node node)
 static bool match_use(const Alike *alike, const Template *template, TemplateUse use,
                       const Expr *user, int operand, Node node, SlotContent *contents)
 {
-    if (use_kind(alike, user, operand, node) != (int)use.kind)
+    int kind = use_kind(alike, user, operand, node);
+    if (use.kind == USE_KNOWN) {
+        const TemplateKnown *known = &template->known.items[use.index];
+        return kind == USE_SAME && has_value(alike, node, known->type, known->value);
+    }
+    if (kind != (int)use.kind)
         return false;
     if (use.kind == USE_SAME)
         return same_node(alike, use.index, node);
     if (use.kind == USE_SLOT) {
-        if (alike->graph->items[node].type != alike->graph->items[template->slots[use.index]].type)
+        if (alike->graph->items[node].type != template->slot_types[use.index])
             return false;
         contents[use.index] = content_of(alike, node);
         return true;
@@ -319,9 +396,8 @@ static bool match_node(const Alike *alike, const Template *template, uint32_t in
                        SlotContent *contents)
 {
     const TemplateNode *made = &template->nodes[index];
-    const Expr         *mine = &alike->graph->items[made->node];
     const Expr         *e    = &alike->graph->items[template->images[index]];
-    if (e->op != mine->op || e->type != mine->type || e->index != mine->index)
+    if (e->op != made->op || e->type != made->type || e->index != made->index)
         return false;
     for (int i = 0; i < e->operand_count; i++)
         if (!match_use(alike, template, made->uses[i], e, i, e->operands[i], contents))
@@ -342,110 +418,4 @@ bool template_match(Alike *alike, const Template *template, const Node *roots,
         if (!match_node(alike, template, i, contents))
             return false;
     return true;
-}
-
-/* ---- copies ---- */
-
-/* The nodes that the wanted roots need. */
-static bool *needed_nodes(const Template *template, const bool *wanted, Arena *scratch)
-{
-    bool *needed = arena_new_array(scratch, bool, template->node_count + 1);
-    for (uint32_t i = 0; i < template->root_count; i++)
-        if (wanted[i] && template->roots[i].kind == USE_NODE)
-            needed[template->roots[i].index] = true;
-    for (uint32_t i = template->node_count; i-- > 0;)
-        for (int k = 0; needed[i] && k < MAX_OPERANDS; k++)
-            if (template->nodes[i].uses[k].kind == USE_NODE)
-                needed[template->nodes[i].uses[k].index] = true;
-    return needed;
-}
-
-typedef struct TemplateCopy {
-    const Template *template;
-    const Node     *slots;
-    const LeafPair *pairs;
-    uint32_t        pair_count;
-    Node           *copies;
-} TemplateCopy;
-
-static Node copy_use(const TemplateCopy *copy, TemplateUse use)
-{
-    if (use.kind == USE_NODE)
-        return copy->copies[use.index];
-    if (use.kind == USE_SLOT)
-        return copy->slots[use.index];
-    for (uint32_t i = 0; i < copy->pair_count; i++)
-        if (copy->pairs[i].leaf == use.index)
-            return copy->pairs[i].by;
-    return use.index;
-}
-
-static Node copy_node(Graph *graph, const TemplateCopy *copy, const TemplateNode *made)
-{
-    Expr e = graph->items[made->node]; /* the graph grows meanwhile */
-    for (int i = 0; i < e.operand_count; i++)
-        e.operands[i] = copy_use(copy, made->uses[i]);
-    graph->here = e.span;
-    return e.op == OP_COMPONENT ? graph_component(graph, e.operands[0], e.index)
-                                : graph_op(graph, (Op)e.op, e.operands);
-}
-
-void template_copy(Graph *graph, const Template *template, const Node *slots, const LeafPair *pairs,
-                   uint32_t pair_count, const bool *wanted, Node *roots, Arena *scratch)
-{
-    Span         here   = graph->here;
-    const bool  *needed = needed_nodes(template, wanted, scratch);
-    TemplateCopy copy   = {template, slots, pairs, pair_count,
-                           arena_new_array(scratch, Node, template->node_count + 1)};
-    for (uint32_t i = 0; i < template->node_count; i++)
-        if (needed[i])
-            copy.copies[i] = copy_node(graph, &copy, &template->nodes[i]);
-    for (uint32_t i = 0; i < template->root_count; i++)
-        roots[i] = wanted[i] ? copy_use(&copy, template->roots[i]) : NODE_NONE;
-    graph->here = here;
-}
-
-/* ---- what roots need ---- */
-
-typedef void VisitUse(void *user, TemplateUse use);
-
-static void visit_uses(const Template *template, const bool *wanted, VisitUse *visit, void *user,
-                       Arena *scratch)
-{
-    const bool *needed = needed_nodes(template, wanted, scratch);
-    for (uint32_t i = 0; i < template->root_count; i++)
-        if (wanted[i])
-            visit(user, template->roots[i]);
-    for (uint32_t i = 0; i < template->node_count; i++)
-        for (int k = 0; needed[i] && k < MAX_OPERANDS; k++)
-            visit(user, template->nodes[i].uses[k]);
-}
-
-typedef struct LeafSearch {
-    Node leaf;
-    bool found;
-} LeafSearch;
-
-static void visit_leaf(void *user, TemplateUse use)
-{
-    LeafSearch *search = user;
-    search->found      = search->found || (use.kind == USE_SAME && use.index == search->leaf);
-}
-
-bool template_needs(const Template *template, Node leaf, const bool *wanted, Arena *scratch)
-{
-    LeafSearch search = {leaf, false};
-    visit_uses(template, wanted, visit_leaf, &search, scratch);
-    return search.found;
-}
-
-static void visit_slot(void *user, TemplateUse use)
-{
-    if (use.kind == USE_SLOT)
-        ((bool *)user)[use.index] = true;
-}
-
-void template_slots_of(const Template *template, const bool *wanted, bool *needed, Arena *scratch)
-{
-    visit_uses(template, wanted, visit_slot, needed, scratch);
 }

@@ -24,15 +24,24 @@ typedef struct TemplateUse {
     enum {
         USE_SAME, /* the node `index` of the graph, a leaf or known in each frame; or NODE_NONE */
         USE_NODE, /* nodes[index] of the template */
-        USE_SLOT  /* slots[index] */
+        USE_SLOT, /* slots[index] */
+        USE_KNOWN /* known[index]; of a template that is detached */
     } kind;
     uint32_t index;
 } TemplateUse;
 
 typedef struct TemplateNode {
     Node        node;
+    uint8_t     op, type;
+    uint32_t    index;
     TemplateUse uses[MAX_OPERANDS];
 } TemplateNode;
+
+/* A number, a count or a truth value that is the same in all members. */
+typedef struct TemplateKnown {
+    GraphType type;
+    NodeValue value;
+} TemplateKnown;
 
 typedef struct Template {
     uint64_t      hash;
@@ -40,10 +49,15 @@ typedef struct Template {
     uint32_t      node_count;
     const Node  *slots; /* what the member of the template has there: FLOAT or a vector, and where a
                             root is a number also UINT */
+    GraphType   *slot_types;
     uint32_t     slot_count;
     TemplateUse *roots;
     uint32_t     root_count;
     Node        *images; /* of each node, that of the member; template_match's own */
+    struct {
+        TemplateKnown *items;
+        size_t         count, capacity;
+    } known;
 } Template;
 
 /* What is in a slot, by elements. */
@@ -55,6 +69,9 @@ typedef struct SlotContent {
 /* Alike expressions have equal hashes.  Roots may be NODE_NONE. */
 uint64_t  alike_hash(Alike *alike, const Node *roots, uint32_t count);
 Template *template_new(Alike *alike, const Node *roots, uint32_t count, Arena *arena);
+/* Makes a template independent of nodes from this one on, which may be dropped then: it serves
+   template_match alone.  False: it cannot be. */
+bool template_detach(Alike *alike, Template *template, size_t first, Arena *arena);
 /* Whether as many roots are alike.  What is in their slots goes to `contents`, slot_count of them;
    for its elements nodes may be made. */
 bool template_match(Alike *alike, const Template *template, const Node *roots,

@@ -6,7 +6,7 @@
 
 #include "compiler/graph/alike.h"
 #include "compiler/graph/crowd.h"
-#include "compiler/lower/context.h"
+#include "compiler/lower/crowd.h"
 
 /* The expressions of a part: its distance, and a node for each row of surface.def. */
 enum { PART_DISTANCE, PART_SURFACE, PART_ROOTS = 1 + sizeof(Surface) / sizeof(Node) };
@@ -18,6 +18,21 @@ typedef struct PartLeaves {
 
 PartLeaves part_leaves(Graph *graph);
 
+/* What members have in one element of a slot, as lists.  They are empty as long as all members have
+   what the first one has; that of nodes also as long as all numbers are known. */
+typedef struct SlotElement {
+    double number; /* of the first */
+    Node   node;   /* NODE_NONE: it is known */
+    struct {
+        double *items;
+        size_t  count, capacity;
+    } numbers;
+    struct {
+        Node  *items;
+        size_t count, capacity;
+    } nodes;
+} SlotElement;
+
 /* Parts that are alike. */
 typedef struct CrowdGroup {
     Template *template;
@@ -25,10 +40,7 @@ typedef struct CrowdGroup {
         uint32_t *items; /* of the members, ascending: their places in the joint */
         size_t    count, capacity;
     } members;
-    struct {
-        SlotContent *items; /* slot_count of each member */
-        size_t       count, capacity;
-    } contents;
+    SlotElement *elements; /* of each slot 4 */
     bool     *varies;  /* of each slot: it differs between members */
     uint32_t *columns; /* of each slot 4: of its elements the column, or NO_COLUMN: equal in all */
     struct Column *sources; /* of each column, the element that it has */
@@ -50,7 +62,30 @@ typedef struct GroupJoin {
     bool       complement;
 } GroupJoin;
 
-/* crowd_table.c: finds what varies and its columns; false: there would be too many. */
+/* crowd_find.c: what is searched for parts that are alike. */
+typedef struct PartFinder {
+    const Lowering  *outer; /* of the joint */
+    const CrowdJoin *join;
+    LowerContext     context;  /* of the parts */
+    bool             operands; /* their distances are used away from the surface */
+    Alike           *alike;
+    uint32_t         least; /* members of a group */
+    const uint32_t  *made;  /* joints with crowds, so far: LoweredCrowds */
+} PartFinder;
+
+typedef struct CrowdGroups {
+    CrowdGroup *items;
+    size_t      count, capacity;
+} CrowdGroups;
+
+/* What is needed later is made in the arena.  Groups may be smaller than asked for. */
+CrowdGroups find_groups(const PartFinder *finder, Arena *arena);
+
+/* crowd_table.c: an empty group of what is like the template. */
+CrowdGroup group_new(Template *template, Arena *arena);
+/* Adds a part, with what is in its slots. */
+void group_add(CrowdGroup *group, uint32_t part, const SlotContent *contents, Arena *scratch);
+/* Finds what varies and its columns; false: there would be too many. */
 bool group_find_columns(CrowdGroup *group, const GroupJoin *join);
 /* Makes the table, of which `stretch` and `span` are set.  `boxes` are of all parts of the joint. */
 void group_make_table(CrowdGroup *group, const GroupJoin *join, const Box *boxes, double reach,

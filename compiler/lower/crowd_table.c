@@ -5,9 +5,9 @@
 
 #include "compiler/lower/crowd_group.h"
 
-static uint32_t elements(const Graph *graph, Node slot)
+static uint32_t elements(const CrowdGroup *group, uint32_t slot)
 {
-    GraphType type = (GraphType)graph->items[slot].type;
+    GraphType type = group->template->slot_types[slot];
     return type <= TYPE_VEC4 ? (uint32_t)type : 1;
 }
 
@@ -17,14 +17,57 @@ typedef struct Entry {
     Node   node; /* NODE_NONE: the number is known */
 } Entry;
 
+static SlotElement *element_at(const CrowdGroup *group, uint32_t slot, uint32_t element)
+{
+    return &group->elements[4 * slot + element];
+}
+
 static Entry entry_at(const CrowdGroup *group, size_t member, uint32_t slot, uint32_t element)
 {
-    const SlotContent *content =
-        &group->contents.items[member * group->template->slot_count + slot];
-    return (Entry){content->numbers[element], content->nodes[element]};
+    const SlotElement *all = element_at(group, slot, element);
+    return (Entry){all->numbers.count > 0 ? all->numbers.items[member] : all->number,
+                   all->nodes.count > 0 ? all->nodes.items[member] : all->node};
 }
 
 static bool entries_equal(Entry a, Entry b) { return a.number == b.number && a.node == b.node; }
+
+/* ---- members ---- */
+
+CrowdGroup group_new(Template *template, Arena *arena)
+{
+    CrowdGroup group = {.template = template, .distance = NO_FUNCTION, .nearest = NO_FUNCTION};
+    for (uint32_t i = 0; i < PART_ROOTS; i++)
+        group.properties[i] = NO_FUNCTION;
+    group.elements = arena_new_array(arena, SlotElement, 4 * (size_t)template->slot_count + 1);
+    return group;
+}
+
+/* Of those before there are lists if some differ. */
+static void add_entry(SlotElement *all, size_t before, Entry entry, Arena *scratch)
+{
+    if (before == 0) {
+        all->number = entry.number;
+        all->node   = entry.node;
+    } else if (all->numbers.count > 0 || !entries_equal(entry, (Entry){all->number, all->node})) {
+        bool of_frame = all->nodes.count > 0 || entry.node != NODE_NONE || all->node != NODE_NONE;
+        while (all->numbers.count < before)
+            array_push_large(scratch, &all->numbers, all->number);
+        array_push_large(scratch, &all->numbers, entry.number);
+        while (of_frame && all->nodes.count < before)
+            array_push_large(scratch, &all->nodes, all->node);
+        if (of_frame)
+            array_push_large(scratch, &all->nodes, entry.node);
+    }
+}
+
+void group_add(CrowdGroup *group, uint32_t part, const SlotContent *contents, Arena *scratch)
+{
+    for (uint32_t i = 0; i < group->template->slot_count; i++)
+        for (uint32_t k = 0; k < elements(group, i); k++)
+            add_entry(element_at(group, i, k), group->members.count,
+                      (Entry){contents[i].numbers[k], contents[i].nodes[k]}, scratch);
+    array_push_large(scratch, &group->members, part);
+}
 
 /* ---- columns ---- */
 
@@ -36,11 +79,7 @@ typedef struct Column {
 
 static bool differs(const CrowdGroup *group, uint32_t slot, uint32_t element)
 {
-    Entry first = entry_at(group, 0, slot, element);
-    for (size_t i = 1; i < group->members.count; i++)
-        if (!entries_equal(entry_at(group, i, slot, element), first))
-            return true;
-    return false;
+    return element_at(group, slot, element)->numbers.count > 0;
 }
 
 static uint64_t column_hash(const CrowdGroup *group, uint32_t slot, uint32_t element)
@@ -89,7 +128,7 @@ bool group_find_columns(CrowdGroup *group, const GroupJoin *join)
     group->sources      = arena_new_array(join->scratch, Column, MOST_TABLE_COLUMNS);
     group->column_count = 0;
     for (uint32_t i = 0; i < slots; i++)
-        for (uint32_t k = 0; k < elements(join->graph, group->template->slots[i]); k++) {
+        for (uint32_t k = 0; k < elements(group, i); k++) {
             uint32_t *column = &group->columns[4 * i + k];
             *column          = NO_COLUMN;
             if (!differs(group, i, k))
@@ -106,10 +145,7 @@ bool group_find_columns(CrowdGroup *group, const GroupJoin *join)
 
 static bool is_of_frame(const CrowdGroup *group, const Column *column)
 {
-    for (size_t i = 0; i < group->members.count; i++)
-        if (entry_at(group, i, column->slot, column->element).node != NODE_NONE)
-            return true;
-    return false;
+    return element_at(group, column->slot, column->element)->nodes.count > 0;
 }
 
 static void fill_known(const CrowdGroup *group, Crowd *table, uint32_t column)
@@ -179,7 +215,7 @@ static Node slot_node(const CrowdGroup *group, Graph *graph, Node member, uint32
     GraphType       type      = (GraphType)graph->items[first].type;
     if (!group->varies[slot])
         return first;
-    for (uint32_t i = 0; i < elements(graph, first); i++)
+    for (uint32_t i = 0; i < elements(group, slot); i++)
         parts[i] = slot_element(group, graph, member, slot, i);
     if (type == TYPE_UINT)
         return graph_op1(graph, OP_to_uint, parts[0]);
