@@ -112,11 +112,19 @@ uint32_t value_numbers(Value value, double numbers[4])
         return 0;
     for (size_t i = 0; i < value.list->count; i++) {
         const Value *item = &value.list->items[i];
-        if (item->type != VALUE_NUMBER || item->number_id || !isfinite(item->number))
+        if (item->type != VALUE_NUMBER || !isfinite(item->number))
             return 0;
         numbers[i] = item->number + 0.0; /* -0 and 0 are one constant */
     }
     return (uint32_t)value.list->count;
+}
+
+static bool any_authored(const List *list)
+{
+    for (size_t i = 0; i < list->count; i++)
+        if (list->items[i].number_id)
+            return true;
+    return false;
 }
 
 Node value_node(Elaboration *e, Value value)
@@ -133,7 +141,7 @@ Node value_node(Elaboration *e, Value value)
     }
     double   numbers[4];
     uint32_t length = value_numbers(value, numbers);
-    if (length)
+    if (length && !any_authored(value.list))
         return graph_constant(g, (GraphType)length, numbers);
     length = vector_length(e, value);
     if (!length)
@@ -192,14 +200,14 @@ static Value map_elements(Elaboration *e, Op op, const Value *arguments, uint32_
     return value_list(e, items, length);
 }
 
-/* The common case, which makes no node: an operation on numbers that are known now.  False: some are
-   not, or the result is not finite. */
+/* The common case, which makes no node: an operation on numbers that are known now, though the author
+   may change them.  False: some are not, or the result is not finite. */
 static bool fold_op(Op op, const Value *arguments, uint32_t count, double *result)
 {
     GraphType types[MAX_OPERANDS]    = {0};
     NodeValue operands[MAX_OPERANDS] = {0};
     for (uint32_t i = 0; i < count; i++) {
-        if (arguments[i].type != VALUE_NUMBER || arguments[i].number_id)
+        if (arguments[i].type != VALUE_NUMBER)
             return false;
         types[i]         = TYPE_FLOAT;
         operands[i].v[0] = arguments[i].number + 0.0; /* -0 and 0 are one constant */
@@ -213,7 +221,7 @@ Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count
 {
     double number;
     if (fold_op(op, arguments, count, &number))
-        return value_number(number);
+        return value_from(e, value_number(number), arguments, count);
     uint32_t length = 0;
     bool     whole  = false; /* some operand is a vector known only as a node */
     for (uint32_t i = 0; i < count; i++) {

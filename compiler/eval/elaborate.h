@@ -158,7 +158,7 @@ Value value_list(Elaboration *e, Value *items, size_t count);
 Value value_vector(Elaboration *e, const double *numbers, uint32_t count);
 /* 1 for a number, 2 to 4 for a vector, 0 for anything else. */
 uint32_t value_size(const Elaboration *e, Value value);
-/* How many elements a vector has, all of them finite numbers that no author may change; else 0. */
+/* How many elements a vector has, all of them finite numbers that are known now; else 0. */
 uint32_t value_numbers(Value value, double numbers[4]);
 /* "a number", "a vector of 3", "a shape": for messages. */
 const char *value_type_name(Elaboration *e, Value value);

@@ -233,6 +233,19 @@ bool graph_is_constant(const Graph *graph, Node node)
     return graph->items[node].op == OP_CONSTANT || graph->items[node].op == OP_HOISTED;
 }
 
+bool graph_known_component(const Graph *graph, Node node, uint32_t component, double *number)
+{
+    if (op_promises((Op)graph->items[node].op, BUILDS)) {
+        const Expr *e = &graph->items[node];
+        node          = e->operands[e->operand_count > 1 ? component : 0];
+        component     = 0;
+    }
+    if (!graph_is_constant(graph, node))
+        return false;
+    *number = graph->items[node].number[component];
+    return true;
+}
+
 /* ---- operations ---- */
 
 /* The constant that e is when all its operands are; NODE_NONE when it is not a finite one. */

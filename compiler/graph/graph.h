@@ -162,6 +162,8 @@ GraphType graph_op_type(Op op, const GraphType *operands, uint32_t count);
 const char *graph_op_name(Op op);
 /* Whether its value, `number`, is known now: OP_CONSTANT or OP_HOISTED. */
 bool graph_is_constant(const Graph *graph, Node node);
+/* Whether a component is such a number, which may be one of those that a vector is built of. */
+bool graph_known_component(const Graph *graph, Node node, uint32_t component, double *number);
 
 /* The row's GLSL, operands $a..$d; NULL for leaves and OP_COMPONENT. */
 const char *op_glsl(Op op);

@@ -21,14 +21,16 @@ static uint64_t hash_word(uint64_t hash, uint64_t word)
     return hash ^ (hash >> 32);
 }
 
+/* An expression has operands or numbers, or neither. */
 static uint32_t expr_hash(const Expr *e)
 {
-    uint64_t hash = hash_word(e->op, e->type);
-    hash          = hash_word(hash, e->index);
-    for (int i = 0; i < MAX_OPERANDS; i++) {
+    uint64_t hash  = hash_word(e->op | (uint64_t)e->type << 8, e->index);
+    int      count = e->op == OP_CONSTANT || e->op == OP_HOISTED ? MAX_OPERANDS : 0;
+    for (int i = 0; i < e->operand_count; i++)
+        hash = hash_word(hash, e->operands[i]);
+    for (int i = 0; i < count; i++) {
         uint64_t bits;
         memcpy(&bits, &e->number[i], sizeof bits);
-        hash = hash_word(hash, e->operands[i]);
         hash = hash_word(hash, bits);
     }
     return (uint32_t)(hash >> 16);

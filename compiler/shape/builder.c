@@ -32,9 +32,9 @@ const Blend blend_sharp = {.width = NODE_NONE, .steps = NODE_NONE};
 
 Range node_range(ShapeBuilder *builder, Node node, uint32_t component)
 {
-    const Expr *expr = &builder->graph->items[node];
-    if (expr->op == OP_CONSTANT)
-        return range_of(expr->number[component]);
+    double number;
+    if (graph_known_component(builder->graph, node, component, &number))
+        return range_of(number);
     Range range = graph_frame_fact(builder->graph, node, builder->scratch).value[component];
     arena_free(builder->scratch);
     return range;

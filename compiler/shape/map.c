@@ -240,8 +240,26 @@ const Map *map_product(ShapeBuilder *builder, const Map *f, const Map *g)
     return prepend(builder, f, f->first ? map_product(builder, f->first, g) : g);
 }
 
+static bool is_unit_axis(const Graph *graph, Node row, int axis)
+{
+    const double *entries = graph->items[row].number;
+    return is_known(graph, row) && entries[0] == (axis == 0) && entries[1] == (axis == 1) &&
+           entries[2] == (axis == 2);
+}
+
+static bool turns_nothing(const Graph *graph, const Node rows[3])
+{
+    return is_unit_axis(graph, rows[0], 0) && is_unit_axis(graph, rows[1], 1) &&
+           is_unit_axis(graph, rows[2], 2);
+}
+
 void transpose_rows(Graph *graph, const Node rows[3], Node transposed[3])
 {
+    if (turns_nothing(graph, rows)) {
+        for (int i = 0; i < 3; i++)
+            transposed[i] = rows[i];
+        return;
+    }
     for (uint32_t i = 0; i < 3; i++) {
         Node x        = graph_component(graph, rows[0], i);
         Node y        = graph_component(graph, rows[1], i);
