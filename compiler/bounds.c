@@ -10,15 +10,23 @@
 #include <string.h>
 
 typedef struct Listing {
-    Arena         *arena;
-    const Sources *sources;
-    KrsBounds     *list;
-    const Shape  **shapes; /* of the entries */
+    Arena           *arena, *scratch;
+    const Sources   *sources;
+    const KrsBounds *before; /* of another tree, whose texts may be the same; or NULL */
+    struct {
+        KrsBound *items;
+        size_t    count, capacity;
+    } entries;
+    struct {
+        const Shape **items;
+        size_t        count, capacity;
+    } shapes; /* of the entries */
+    size_t more;
 } Listing;
 
 static const char *box_text(Listing *l, Box box)
 {
-    Text text = {.arena = l->arena};
+    Text text = {.arena = l->scratch};
     text_format(&text, "[%.4g, %.4g, %.4g] to [%.4g, %.4g, %.4g]", box.axis[0].low, box.axis[1].low,
                 box.axis[2].low, box.axis[0].high, box.axis[1].high, box.axis[2].high);
     return text.bytes;
@@ -27,9 +35,9 @@ static const char *box_text(Listing *l, Box box)
 static void add_derived(Listing *l, const Shape *shape, Text *rule)
 {
     const char *when = shape->per_frame ? " at first, derived for each frame" : " derived";
-    if (box_is_finite(shape->region))
+    if (box_is_finite(shape->field->region))
         text_format(rule, "slope %.4g%s by intervals over %s", shape->derived, when,
-                    box_text(l, shape->region));
+                    box_text(l, shape->field->region));
     else
         text_format(rule, "slope %.4g%s by norms over all space", shape->derived, when);
     text_add(rule, shape->derived > 1 ? ", divided out" : "");
@@ -37,7 +45,7 @@ static void add_derived(Listing *l, const Shape *shape, Text *rule)
 
 static const char *primitive_rule(Listing *l, const Shape *shape)
 {
-    Text rule = {.arena = l->arena};
+    Text rule = {.arena = l->scratch};
     if (shape->estimate)
         text_add(&rule, "an estimate: measured, not proven");
     else if (shape->exact)
@@ -45,8 +53,8 @@ static const char *primitive_rule(Listing *l, const Shape *shape)
     else if (shape->claimed)
         text_format(&rule, "slope %.4g, by claim%s", shape->derived,
                     shape->derived > 1 ? ", divided out" : "");
-    else if (shape->degree > 0)
-        text_format(&rule, "polynomial of degree %u, by its series in balls", shape->degree);
+    else if (shape->field->degree > 0)
+        text_format(&rule, "polynomial of degree %u, by its series in balls", shape->field->degree);
     else if (shape->trapped)
         text_add(&rule, "a ball around an escaped iterate, stepped back");
     else
@@ -60,7 +68,7 @@ static const char *rule_of(Listing *l, const Shape *shape)
 {
     if (shape->kind == SHAPE_PRIMITIVE)
         return primitive_rule(l, shape);
-    Text rule = {.arena = l->arena};
+    Text rule = {.arena = l->scratch};
     text_add(&rule, shape_info[shape->kind].rule);
     if (shape->blend.width != NODE_NONE)
         text_format(&rule, ", %s blend of factor %.4g", blend_info[shape->blend.kind].spelling,
@@ -90,23 +98,33 @@ static bool are_alike(const Shape *a, const Shape *b)
 /* The number, from 1, of the entry that a shape has already; 0: none. */
 static size_t entry_of(const Listing *l, const Shape *shape)
 {
-    for (size_t i = 0; i < l->list->count; i++)
-        if (l->shapes[i] == shape)
+    for (size_t i = 0; i < l->shapes.count; i++)
+        if (l->shapes.items[i] == shape)
             return i + 1;
     return 0;
 }
 
+/* A text that stays.  In trees of one loop most are the same. */
+static const char *lasting(Listing *l, const char *text, const char *before)
+{
+    return before && !strcmp(text, before) ? before : arena_copy_text(l->arena, text, strlen(text));
+}
+
 static void fill_entry(Listing *l, const Shape *shape, KrsBound *entry)
 {
-    const Source *source = &l->sources->items[shape->span.source];
-    entry->name          = arena_copy_text(l->arena, shape->name, strlen(shape->name));
-    entry->source        = arena_copy_text(l->arena, source->name, strlen(source->name));
-    entry->rule          = rule_of(l, shape);
-    entry->slope         = shape->slope;
-    entry->exact         = shape->exact;
-    entry->estimate      = shape->estimate;
-    entry->levels        = shape->levels;
-    entry->instances     = shape->instances;
+    static const KrsBound none   = {.name = NULL};
+    const Source         *source = &l->sources->items[shape->span.source];
+    size_t                number = l->entries.count;
+    const KrsBound *before = l->before && number < l->before->count ? &l->before->items[number]
+                                                                    : &none;
+    entry->name            = lasting(l, shape->name, before->name);
+    entry->source          = lasting(l, source->name, before->source);
+    entry->rule            = lasting(l, rule_of(l, shape), before->rule);
+    entry->slope           = shape->slope;
+    entry->exact           = shape->exact;
+    entry->estimate        = shape->estimate;
+    entry->levels          = shape->levels;
+    entry->instances       = shape->instances;
     if (shape->span.source) {
         Position position = source_position(source, shape->span.start);
         entry->line       = position.line;
@@ -120,16 +138,15 @@ static void fill_entry(Listing *l, const Shape *shape, KrsBound *entry)
 
 static void list_shape(Listing *l, const Shape *shape, uint32_t depth, uint32_t alike)
 {
-    KrsBounds *list = l->list;
-    if (list->count == KRS_MOST_BOUNDS) {
-        list->more++;
+    if (l->entries.count == KRS_MOST_BOUNDS) {
+        l->more++;
         return;
     }
-    size_t    same           = entry_of(l, shape);
-    KrsBound *entry          = &list->items[list->count];
-    l->shapes[list->count++] = shape;
-    *entry                   = (KrsBound){.depth = depth, .alike = alike, .same = same};
-    fill_entry(l, shape, entry);
+    size_t   same  = entry_of(l, shape);
+    KrsBound entry = {.depth = depth, .alike = alike, .same = same};
+    fill_entry(l, shape, &entry);
+    array_push(l->scratch, &l->entries, entry);
+    array_push(l->scratch, &l->shapes, shape);
     for (uint32_t i = 0; i < shape->child_count && !same;) {
         uint32_t next = i + 1;
         while (next < shape->child_count && are_alike(shape->children[i], shape->children[next]))
@@ -139,14 +156,12 @@ static void list_shape(Listing *l, const Shape *shape, uint32_t depth, uint32_t 
     }
 }
 
-void bounds_of(const Shape *shape, const Sources *sources, KrsBounds *list, Arena *arena,
-               Arena *scratch)
+KrsBounds bounds_of(const Shape *shape, const Sources *sources, const KrsBounds *before,
+                    Arena *arena, Arena *scratch)
 {
-    KrsBound     *items  = arena_new_array(scratch, KrsBound, KRS_MOST_BOUNDS);
-    const Shape **shapes = arena_new_array(scratch, const Shape *, KRS_MOST_BOUNDS);
-    Listing       l      = {arena, sources, list, shapes};
-    *list                = (KrsBounds){.items = items};
+    Listing l = {.arena = arena, .scratch = scratch, .sources = sources, .before = before};
     list_shape(&l, shape, 0, 0);
-    list->items = arena_new_array(arena, KrsBound, list->count);
-    memcpy(list->items, items, list->count * sizeof *items);
+    KrsBounds list = {arena_new_array(arena, KrsBound, l.entries.count), l.entries.count, l.more};
+    memcpy(list.items, l.entries.items, l.entries.count * sizeof *list.items);
+    return list;
 }

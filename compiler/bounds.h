@@ -15,8 +15,8 @@ typedef struct KrsBounds {
     size_t    more; /* that there was no room for */
 } KrsBounds;
 
-/* The list of one tree, in `arena`. */
-void bounds_of(const Shape *shape, const Sources *sources, KrsBounds *list, Arena *arena,
-               Arena *scratch);
+/* The list of one tree, in `arena`; it may share texts with the list of the tree before, or NULL. */
+KrsBounds bounds_of(const Shape *shape, const Sources *sources, const KrsBounds *before,
+                    Arena *arena, Arena *scratch);
 
 #endif

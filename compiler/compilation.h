@@ -47,11 +47,12 @@ typedef struct Additions {
 } Additions;
 
 /* There are three lifetimes of memory.  scene->arena lives as long as the scene.  `work` has the
-   sources, diagnostics and the elaborated scene until the end of the run; `syntax` is apart, for
-   trees and tokens.  `scratch` is freed after each pass. */
+   sources, diagnostics and the elaborated scene until the end of the run.  `syntax` is apart, for
+   trees and tokens, and `values` for what these are evaluated to: both are needed until there is a
+   scene, and by whoever inspects that.  `scratch` is freed after each pass. */
 struct Compilation {
     KrsScene         *scene;
-    Arena             work, syntax, scratch;
+    Arena             work, syntax, values, scratch;
     const Request    *request;
     const KrsOptions *options;
     const Loader     *loader;

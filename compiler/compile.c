@@ -154,18 +154,18 @@ static KrsScene *scene_new(const KrsOptions *options)
 /* Prepares the arenas of a run, and all that uses them. */
 static void begin(Compilation *c)
 {
-    c->work = c->syntax = c->scratch = (Arena){.memory = &c->scene->memory};
-    c->sources                       = (Sources){.arena = &c->work};
-    c->names                         = (Names){.arena = &c->work};
-    c->diags                         = (Diags){.arena = &c->work, .sources = &c->sources};
-    c->dump                          = (Text){.arena = &c->work};
-    c->files                         = (Files){.arena   = &c->work,
-                                               .trees   = &c->syntax,
-                                               .scratch = &c->scratch,
-                                               .diags   = &c->diags,
-                                               .names   = &c->names,
-                                               .sources = &c->sources,
-                                               .loader  = c->loader};
+    c->work = c->syntax = c->values = c->scratch = (Arena){.memory = &c->scene->memory};
+    c->sources                                   = (Sources){.arena = &c->work};
+    c->names                                     = (Names){.arena = &c->work};
+    c->diags = (Diags){.arena = &c->work, .sources = &c->sources};
+    c->dump  = (Text){.arena = &c->work};
+    c->files = (Files){.arena   = &c->work,
+                       .trees   = &c->syntax,
+                       .scratch = &c->scratch,
+                       .diags   = &c->diags,
+                       .names   = &c->names,
+                       .sources = &c->sources,
+                       .loader  = c->loader};
 }
 
 static void end(Compilation *c)
@@ -173,6 +173,7 @@ static void end(Compilation *c)
     free(c->loaded.owned);
     arena_free(&c->work);
     arena_free(&c->syntax);
+    arena_free(&c->values);
     arena_free(&c->scratch);
     c->scene->memory.exhausted = NULL;
 }

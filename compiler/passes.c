@@ -99,6 +99,7 @@ KrsStatus pass_elaborate(Compilation *c)
                             .slopes     = &c->elaborated.slopes};
     Elaboration  e       = {.builder = &builder,
                             .arena   = &c->work,
+                            .values  = &c->values,
                             .scratch = &c->scratch,
                             .diags   = &c->diags,
                             .sources = &c->sources,
@@ -107,6 +108,10 @@ KrsStatus pass_elaborate(Compilation *c)
                             .studio  = c->options->studio,
                             .hoists  = hoists(c)};
     elaborate(&e, &c->files);
+    if (!c->request->inspect) {
+        arena_free(&c->syntax);
+        arena_free(&c->values);
+    }
     return c->diags.errors ? KRS_BAD_SCENE : KRS_OK;
 }
 

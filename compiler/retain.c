@@ -37,7 +37,8 @@ static void retain_components(Compilation *c)
             to->low[k]  = from->shape->box.axis[k].low;
             to->high[k] = from->shape->box.axis[k].high;
         }
-        bounds_of(from->shape, &c->sources, &scene->bounds[i], &scene->arena, &c->scratch);
+        scene->bounds[i] = bounds_of(from->shape, &c->sources, i ? &scene->bounds[i - 1] : NULL,
+                                     &scene->arena, &c->scratch);
         arena_free(&c->scratch);
     }
 }

@@ -184,7 +184,8 @@ KrsStatus pass_lower(Compilation *c)
     const Scene   *s      = &c->elaborated;
     Roots         *roots  = &c->scene->roots;
     Additions     *more   = &c->additions;
-    LoweredCrowds *crowds = lowered_crowds_new(s->graph, &c->work, least_crowd(c));
+    LoweredCrowds *crowds = lowered_crowds_new(s->graph, &c->work, &c->scene->arena,
+                                               least_crowd(c));
     allocate_roots(c);
     if (!lower_components(c, s->graph, crowds))
         return KRS_BAD_SCENE;

@@ -16,10 +16,17 @@
 
 /* ---- building ---- */
 
+/* Most texts are added to once, and stay as short as that. */
 static void text_reserve(Text *text, size_t more)
 {
-    while (text->capacity - text->length <= more)
-        text->bytes = arena_grow(text->arena, text->bytes, text->length, &text->capacity, 1);
+    size_t needed = text->length + more + 1, larger = 2 * text->capacity;
+    if (needed <= text->capacity)
+        return;
+    text->capacity = needed > larger ? needed : larger;
+    char *bytes    = arena_alloc(text->arena, text->capacity, 1);
+    if (text->length > 0)
+        memcpy(bytes, text->bytes, text->length);
+    text->bytes = bytes;
 }
 
 void text_add_bytes(Text *text, const char *bytes, size_t length)
@@ -35,17 +42,17 @@ void text_add(Text *text, const char *string) { text_add_bytes(text, string, str
 
 void text_format_list(Text *text, const char *format, va_list arguments)
 {
-    enum { USUAL_LENGTH = 80 };
+    char    usual[128];
     va_list again;
     va_copy(again, arguments);
-    text_reserve(text, USUAL_LENGTH);
-    size_t space  = text->capacity - text->length;
-    int    length = vsnprintf(text->bytes + text->length, space, format, arguments);
-    if (length >= 0 && (size_t)length >= space) {
+    int length = vsnprintf(usual, sizeof usual, format, arguments);
+    if (length >= 0 && (size_t)length < sizeof usual)
+        text_add_bytes(text, usual, (size_t)length);
+    else if (length >= 0) {
         text_reserve(text, (size_t)length);
         vsnprintf(text->bytes + text->length, (size_t)length + 1, format, again);
+        text->length += (size_t)length;
     }
-    text->length += length > 0 ? (size_t)length : 0;
     va_end(again);
 }
 

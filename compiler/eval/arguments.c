@@ -30,7 +30,7 @@ bool check_finite(Elaboration *e, Node node, const Syntax *syntax)
     if (g->items[node].type > TYPE_VEC4 || is_known_finite(g, node))
         return true;
     size_t          count = g->parameters.count;
-    GraphParameter *copy  = arena_new_array(e->arena, GraphParameter, count);
+    GraphParameter *copy  = arena_new_array(e->values, GraphParameter, count);
     memcpy(copy, g->parameters.items, count * sizeof *copy);
     for (size_t i = 0; i < e->scene->parameters.count; i++) {
         const Parameter *parameter = &e->scene->parameters.items[i];
@@ -311,7 +311,7 @@ bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_s
     bool          good = true;
     *call              = (Call){.syntax = call_syntax, .name = name};
     if (has_rest(words, count))
-        call->rest = arena_new_array(e->arena, Argument, call_syntax->count);
+        call->rest = arena_new_array(e->values, Argument, call_syntax->count);
     for (uint32_t i = first; i < call_syntax->count; i++) {
         const Syntax *argument = call_syntax->children[i];
         if (argument->kind != SYNTAX_ARGUMENT)

@@ -25,7 +25,7 @@ Value value_of_node(Elaboration *e, Node node)
 
 Value value_list(Elaboration *e, Value *items, size_t count)
 {
-    List *list = arena_new(e->arena, List);
+    List *list = arena_new(e->values, List);
     *list      = (List){count, items, TIME_COMPILE, 0};
     for (size_t i = 0; i < count; i++) {
         BindingTime time = value_time(e, items[i]);
@@ -38,7 +38,7 @@ Value value_list(Elaboration *e, Value *items, size_t count)
 
 Value value_vector(Elaboration *e, const double *numbers, uint32_t count)
 {
-    Value *items = arena_new_array(e->arena, Value, count);
+    Value *items = arena_new_array(e->values, Value, count);
     for (uint32_t i = 0; i < count; i++)
         items[i] = value_number(numbers[i]);
     return value_list(e, items, count);
@@ -187,7 +187,7 @@ static Value not_finite(Elaboration *e, const Syntax *syntax, bool by_zero)
 static Value map_elements(Elaboration *e, Op op, const Value *arguments, uint32_t count,
                           uint32_t length, const Syntax *origin)
 {
-    Value *items = arena_new_array(e->arena, Value, length);
+    Value *items = arena_new_array(e->values, Value, length);
     for (uint32_t k = 0; k < length; k++) {
         Value elements[MAX_OPERANDS];
         for (uint32_t i = 0; i < count; i++)
@@ -294,7 +294,7 @@ static Value arithmetic(Elaboration *e, const Syntax *syntax, Value a, Value b)
         return value_of_node(e, graph_power(e->graph, a.node, exponent));
     }
     if (syntax->op == TOKEN_CARET && b.type == VALUE_NUMBER && a.type == VALUE_LIST) {
-        Value *items = arena_new_array(e->arena, Value, n);
+        Value *items = arena_new_array(e->values, Value, n);
         for (uint32_t i = 0; i < n; i++) {
             items[i] = arithmetic(e, syntax, a.list->items[i], b);
             if (items[i].type == VALUE_ERROR)

@@ -73,14 +73,14 @@ static bool collect_shapes(Elaboration *e, const Call *call, Value value, const 
         type_error(e, origin, value, "shapes");
         return false;
     }
-    array_push_large(e->arena, shapes, value);
+    array_push_large(e->values, shapes, value);
     return true;
 }
 
 /* These shapes, if they are all solids or all figures; NULL: reported. */
 static const Shape **joinable_shapes(Elaboration *e, const Call *call, const Values *values)
 {
-    const Shape **shapes = arena_new_array(e->arena, const Shape *, values->count + 1);
+    const Shape **shapes = arena_new_array(e->values, const Shape *, values->count + 1);
     for (size_t i = 0; i < values->count; i++) {
         shapes[i] = values->items[i].shape;
         if (shapes[i]->figure != shapes[0]->figure) {

@@ -252,6 +252,16 @@ const Shape *declared_core(Elaboration *e, const Shape *shape, Node rounding)
     return NULL;
 }
 
+static const struct Declaration *declaration_new(Elaboration *e, const Function *function,
+                                                 const Environment *env)
+{
+    struct Declaration *known = arena_new(e->arena, struct Declaration);
+    *known = (struct Declaration){function->syntax, find_property(function->syntax, "core"), *env};
+    known->names = known->core ? keep_names(e, env, function->closure)
+                               : (Environment){NULL, env->scope};
+    return known;
+}
+
 Value declare_instance(Elaboration *e, const Function *function, const Environment *env, Span span)
 {
     const Syntax *declaration = function->syntax;
@@ -265,16 +275,14 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
     if (first && !check_properties(e, declaration))
         return value_error();
 
-    Shape *shape  = shape_new(e->builder, SHAPE_PRIMITIVE, function->name, span, NULL, 0);
-    Span   caller = e->graph->here;
-    struct Declaration *known = arena_new(e->arena, struct Declaration);
-    *known = (struct Declaration){declaration, find_property(declaration, "core"), *env};
-    shape->declaration = known;
+    Shape *shape       = shape_new(e->builder, SHAPE_PRIMITIVE, function->name, span, NULL, 0);
+    Span   caller      = e->graph->here;
+    shape->declaration = declaration_new(e, function, env);
     if (!read_properties(e, env, declaration, shape) ||
         !settle_slope(e, env, declaration, first, shape))
         return value_error();
     arena_free(e->scratch);
-    if (first && known->core && !try_core(e, shape))
+    if (first && shape->declaration->core && !try_core(e, shape))
         return value_error();
     if (shape->plane_normal != NODE_NONE && !is_of_library(e, shape))
         array_push(e->arena, &e->scene->half_spaces, shape);

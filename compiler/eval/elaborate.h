@@ -66,7 +66,9 @@ enum { MOST_BUILTIN_NAMES = 512 };
 
 typedef struct Elaboration {
     ShapeBuilder *builder; /* with the arenas, diagnostics and graph that stand here as well */
-    Arena        *arena;   /* values, shapes and the scene */
+    Arena        *arena;   /* shapes and the scene */
+    Arena        *values;  /* values and bindings of names, until they are forgotten */
+    uint64_t      kept;    /* how often something began to refer to them for good */
     Arena        *scratch;
     Diags        *diags;
     Sources      *sources;
@@ -135,6 +137,18 @@ Environment bind(Elaboration *e, const Environment *env, const char *name, Value
 bool check_shape_count(Elaboration *e, const List *list, Span span);
 /* The value of a top-level definition, evaluated when it is first needed, at `use`. */
 Value run_definition(Elaboration *e, Definition *definition, Span use);
+
+/* ---- forget.c: what is needed while one element or one turn of a loop is evaluated ---- */
+typedef struct EvaluationMark {
+    ArenaMark values;
+    uint64_t  kept;
+} EvaluationMark;
+EvaluationMark evaluation_mark(const Elaboration *e);
+/* Frees the values and bindings made since, but for this value, which may be NULL; not if something
+   refers to them. */
+void evaluation_forget(Elaboration *e, EvaluationMark mark, Value *result);
+/* The names that `inner` adds to `outer`, so that they stay. */
+Environment keep_names(Elaboration *e, const Environment *inner, const Environment *outer);
 
 /* ---- arithmetic.c ---- */
 /* The operator `syntax->op` on values; types that it does not go with are reported. */

@@ -39,7 +39,7 @@ bool check_shape_count(Elaboration *e, const List *list, Span span)
 
 Environment bind(Elaboration *e, const Environment *env, const char *name, Value value)
 {
-    Binding *binding = arena_new(e->arena, Binding);
+    Binding *binding = arena_new(e->values, Binding);
     *binding         = (Binding){name, value, env->locals};
     return (Environment){binding, env->scope};
 }
@@ -65,11 +65,14 @@ static Value evaluate_name(Elaboration *e, const Environment *env, const Syntax 
 
 static Value evaluate_list(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    Value *items = arena_new_array(e->arena, Value, syntax->count);
+    Value *items = arena_new_array(e->values, Value, syntax->count);
     bool   wrong = false;
     for (uint32_t i = 0; i < syntax->count; i++) {
-        items[i] = evaluate(e, env, syntax->children[i]);
-        wrong    = wrong || items[i].type == VALUE_ERROR;
+        EvaluationMark mark = evaluation_mark(e);
+        items[i]            = evaluate(e, env, syntax->children[i]);
+        wrong               = wrong || items[i].type == VALUE_ERROR;
+        if (syntax->count > 4) /* not a vector */
+            evaluation_forget(e, mark, &items[i]);
     }
     return wrong ? value_error() : value_list(e, items, syntax->count);
 }
@@ -139,6 +142,7 @@ typedef struct Comprehension {
     const Syntax      *syntax;
     uint32_t           clause;
     Values            *result;
+    EvaluationMark     mark; /* before the innermost name was bound */
 } Comprehension;
 
 static bool run_clause(Elaboration *e, const Comprehension *c);
@@ -147,8 +151,9 @@ static bool comprehend_each(Elaboration *e, Value element, void *user)
 {
     const Comprehension *outer  = user;
     const Syntax        *clause = outer->syntax->children[outer->clause];
-    Environment          env    = bind(e, outer->env, clause->name, element);
     Comprehension        inner  = *outer;
+    inner.mark                  = evaluation_mark(e);
+    Environment env             = bind(e, outer->env, clause->name, element);
     inner.env                   = &env;
     inner.clause++;
     return run_clause(e, &inner);
@@ -160,11 +165,12 @@ static bool run_clause(Elaboration *e, const Comprehension *c)
         Value value = evaluate(e, c->env, c->syntax->children[0]);
         if (value.type == VALUE_ERROR)
             return false;
+        evaluation_forget(e, c->mark, &value);
         if (c->result->count >= MOST_ELEMENTS) {
             limit_reached(e, c->syntax->span, "a list of more than 4 million elements");
             return false;
         }
-        array_push_large(e->arena, c->result, value);
+        array_push_large(e->values, c->result, value);
         return true;
     }
     const Syntax *clause = c->syntax->children[c->clause];
@@ -174,7 +180,10 @@ static bool run_clause(Elaboration *e, const Comprehension *c)
     if (condition.type == VALUE_BOOLEAN) {
         Comprehension next = *c;
         next.clause++;
-        return !condition.boolean || run_clause(e, &next);
+        if (condition.boolean)
+            return run_clause(e, &next);
+        evaluation_forget(e, c->mark, NULL);
+        return true;
     }
     type_error(e, clause->children[0], condition, "a truth value that is known at compile time");
     return false;
@@ -183,7 +192,7 @@ static bool run_clause(Elaboration *e, const Comprehension *c)
 static Value evaluate_comprehension(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     Values        result = {0};
-    Comprehension c      = {env, syntax, 1, &result};
+    Comprehension c      = {env, syntax, 1, &result, evaluation_mark(e)};
     if (!run_clause(e, &c))
         return value_error();
     return value_list(e, result.items, result.count);
@@ -192,7 +201,7 @@ static Value evaluate_comprehension(Elaboration *e, const Environment *env, cons
 static bool push_element(Elaboration *e, Value element, void *user)
 {
     Values *result = user;
-    array_push_large(e->arena, result, element);
+    array_push_large(e->values, result, element);
     return true;
 }
 
@@ -293,7 +302,7 @@ static Value written_number(Elaboration *e, double number, const Syntax *syntax)
 
 static Value written_colour(Elaboration *e, const Syntax *syntax)
 {
-    Value *items = arena_new_array(e->arena, Value, 3);
+    Value *items = arena_new_array(e->values, Value, 3);
     for (int i = 0; i < 3; i++)
         items[i] = written_number(e, syntax->number[i], syntax);
     return value_list(e, items, 3);

@@ -358,8 +358,8 @@ Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax
     const Syntax  *few_origins[FEW] = {0};
     uint32_t       count            = parameter_count(function->syntax);
     bool           few              = count <= FEW; /* need no memory that stays */
-    Value         *values           = few ? few_values : arena_new_array(e->arena, Value, count);
-    const Syntax **origins = few ? few_origins : arena_new_array(e->arena, const Syntax *, count);
+    Value         *values           = few ? few_values : arena_new_array(e->values, Value, count);
+    const Syntax **origins = few ? few_origins : arena_new_array(e->values, const Syntax *, count);
     if (!gather_arguments(e, env, syntax, function->syntax, values, origins))
         return value_error();
     if (function->syntax->kind == SYNTAX_SHAPE &&

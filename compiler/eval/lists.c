@@ -99,7 +99,7 @@ static Value extreme(Elaboration *e, Call *call, Op op)
         }
         return reduce_list(e, call, op, value_error());
     }
-    Value *values = arena_new_array(e->arena, Value, call->rest_count);
+    Value *values = arena_new_array(e->values, Value, call->rest_count);
     for (uint32_t i = 0; i < call->rest_count; i++)
         values[i] = call->rest[i].value;
     return reduce(e, op, values, call->rest_count, call->syntax);
@@ -138,7 +138,7 @@ Value builtin_range(Elaboration *e, Call *call)
         return value_error();
     }
     size_t size  = count > 0 ? (size_t)count : 0;
-    Value *items = arena_new_array(e->arena, Value, size + 1);
+    Value *items = arena_new_array(e->values, Value, size + 1);
     for (size_t i = 0; i < size; i++)
         items[i] = value_number(from + (double)i * by);
     return value_list(e, items, size);

@@ -53,7 +53,7 @@ Value builtin_random_direction(Elaboration *e, Call *call)
         stream += 2;
     } while (s >= 1);
     double root  = 2 * sqrt(1 - s);
-    Value *items = arena_new_array(e->arena, Value, 3);
+    Value *items = arena_new_array(e->values, Value, 3);
     items[0]     = value_authored(e, value_number(a * root));
     items[1]     = value_authored(e, value_number(1 - 2 * s));
     items[2]     = value_authored(e, value_number(b * root));

@@ -23,9 +23,9 @@ typedef struct Sequence {
 
 static Value function_value(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    Environment *closure = arena_new(e->arena, Environment);
+    Environment *closure = arena_new(e->values, Environment);
     *closure             = *env;
-    Function *function   = arena_new(e->arena, Function);
+    Function *function   = arena_new(e->values, Function);
     *function            = (Function){.name = syntax->name, .syntax = syntax, .closure = closure};
     return (Value){.type = VALUE_FUNCTION, .function = function};
 }
@@ -128,7 +128,8 @@ Value run_definition(Elaboration *e, Definition *definition, Span use)
         diag_secondary(e->diags, diag, use, "needed here");
         return value_error();
     }
-    definition->state    = DEFINITION_RUNNING;
+    definition->state = DEFINITION_RUNNING;
+    e->kept++;
     const Syntax *syntax = definition->syntax;
     Environment  *env    = &definition->scope->environment;
     Span          caller = e->graph->here;
@@ -300,9 +301,11 @@ static void run_block(Elaboration *e, const Environment *env, const Syntax *bloc
 
 static bool run_turn(Elaboration *e, Value element, void *user)
 {
-    const Loop *loop = user;
-    Environment env  = bind(e, loop->env, loop->syntax->name, element);
+    const Loop    *loop = user;
+    EvaluationMark mark = evaluation_mark(e);
+    Environment    env  = bind(e, loop->env, loop->syntax->name, element);
     run_block(e, &env, loop->syntax->children[1], loop->sequence);
+    evaluation_forget(e, mark, NULL);
     return !is_stopped(e) && !(loop->sequence && loop->sequence->wrong);
 }
 
@@ -406,7 +409,11 @@ void run_file(Elaboration *e, Scope *scope)
             break;
         }
         case SYNTAX_USE: break;
-        default: run_statement(e, &env, syntax, NULL); break;
+        default: {
+            EvaluationMark mark = evaluation_mark(e);
+            run_statement(e, &env, syntax, NULL);
+            evaluation_forget(e, mark, NULL);
+        }
         }
     }
 }

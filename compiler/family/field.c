@@ -109,13 +109,14 @@ static Node near_zeros(ShapeBuilder *builder, Node distance, ZeroBox zeros)
 
 static void settle_polynomial(ShapeBuilder *builder, Shape *shape, const Series *series)
 {
-    Node distance   = series_distance(builder->graph, series);
-    shape->degree   = series->degree;
-    shape->zeros    = graph_zero_box(builder->graph, shape->formula, builder->scratch);
-    shape->distance = near_zeros(builder, distance, shape->zeros);
-    shape->fields   = !box_is_finite(shape->zeros.box);
-    if (shape->zeros.sign > 0)
-        shape->box = shape->zeros.box;
+    Node        distance = series_distance(builder->graph, series);
+    FieldFacts *field    = own_field_facts(builder, shape);
+    field->degree        = series->degree;
+    field->zeros         = graph_zero_box(builder->graph, shape->formula, builder->scratch);
+    shape->distance      = near_zeros(builder, distance, field->zeros);
+    shape->fields        = !box_is_finite(field->zeros.box);
+    if (field->zeros.sign > 0)
+        shape->box = field->zeros.box;
 }
 
 Node extend_from_region(ShapeBuilder *builder, Node formula, const Steepness *slope)
@@ -128,13 +129,14 @@ Node extend_from_region(ShapeBuilder *builder, Node formula, const Steepness *sl
 /* Finds the slope over a region, which may be all space; infinite when there is no bound. */
 static void settle(ShapeBuilder *builder, Shape *shape, Box box, bool uniform)
 {
-    Steepness slope;
-    bool      bounded = find_slope(builder, shape->formula, &box, 1, shape->span, &slope);
-    shape->derived    = slope.bound;
-    shape->region     = box;
-    shape->blame      = slope.blame;
-    shape->slope      = bounded ? 1 : slope.bound;
-    shape->per_frame  = slope.slot != NODE_NONE;
+    Steepness   slope;
+    bool        bounded = find_slope(builder, shape->formula, &box, 1, shape->span, &slope);
+    FieldFacts *field   = own_field_facts(builder, shape);
+    field->region       = box;
+    field->blame        = slope.blame;
+    shape->derived      = slope.bound;
+    shape->slope        = bounded ? 1 : slope.bound;
+    shape->per_frame    = slope.slot != NODE_NONE;
     if (!bounded)
         return;
     shape->distance = extend_from_region(builder, shape->formula, &slope);
@@ -180,11 +182,12 @@ const Shape *make_field(ShapeBuilder *builder, Node formula, bool algebraic, Spa
                                   NULL, 0);
     if (!depends_on_point(builder, formula))
         return refuse_constant(builder, shape);
-    shape->box = shape->region = box_infinite;
-    shape->exact               = false;
-    shape->formula             = formula;
-    shape->fields              = true;
-    Node point                 = graph_leaf(builder->graph, OP_POINT);
+    own_field_facts(builder, shape)->region = box_infinite;
+    shape->box                              = box_infinite;
+    shape->exact                            = false;
+    shape->formula                          = formula;
+    shape->fields                           = true;
+    Node point                              = graph_leaf(builder->graph, OP_POINT);
     if (graph_ball_series(builder->graph, formula, point, &series, &fault, builder->scratch)) {
         if (series_is_constant(builder->graph, &series))
             return refuse_constant(builder, shape);
@@ -204,9 +207,10 @@ const Shape *make_field(ShapeBuilder *builder, Node formula, bool algebraic, Spa
    there is none to more than is in the region, and as steep. */
 static void restrict_polynomial(ShapeBuilder *builder, Shape *restricted, Box box)
 {
-    restricted->region   = box_grow(box, 1e-3 * box_diagonal(box));
-    restricted->fields   = false;
-    restricted->distance = at_nearest(builder, restricted->distance, restricted->region);
+    Box region                                   = box_grow(box, 1e-3 * box_diagonal(box));
+    own_field_facts(builder, restricted)->region = region;
+    restricted->fields                           = false;
+    restricted->distance = at_nearest(builder, restricted->distance, region);
 }
 
 static const Shape *restrict_primitive(ShapeBuilder *builder, const Shape *shape, Box box,
@@ -217,7 +221,7 @@ static const Shape *restrict_primitive(ShapeBuilder *builder, const Shape *shape
     Shape *restricted = arena_new(builder->arena, Shape);
     *restricted       = *shape;
     restricted->bound = NODE_NONE;
-    if (shape->degree > 0) {
+    if (shape->field->degree > 0) {
         restrict_polynomial(builder, restricted, box);
         return restricted;
     }
@@ -309,12 +313,12 @@ bool check_bounded(ShapeBuilder *builder, const Shape *shape)
     if (isfinite(shape->slope))
         return true;
     const Shape *field = find_unbounded(shape);
-    Span         span  = field->blame.span.source ? field->blame.span : field->span;
+    Span         span  = field->field->blame.span.source ? field->field->blame.span : field->span;
     Diag *diag  = diag_add(builder->diags, DIAG_STEEP, span, "the slope of a field has no bound");
     diag->label = "this can change arbitrarily fast";
     diag_secondary(builder->diags, diag, field->span, "in this field");
-    explain_steep(builder, diag, field->blame);
-    diag->help = box_is_finite(field->region)
+    explain_steep(builder, diag, field->field->blame);
+    diag->help = box_is_finite(field->field->region)
                      ? "keep this part away from divisions by zero and jumps"
                      : "cut it to a region: `.within(box([4, 4, 4]))`; or keep this part away "
                        "from divisions by zero and jumps";

@@ -35,10 +35,10 @@ bool derive_slope(ShapeBuilder *builder, Shape *primitive, Span distance, Blame 
     *blame            = slope.blame;
     if (!bounded)
         return false;
-    primitive->derived   = slope.bound;
-    primitive->region    = slope.region;
-    primitive->per_frame = slope.slot != NODE_NONE;
-    primitive->distance  = extend_from_region(builder, primitive->declared, &slope);
+    primitive->derived                          = slope.bound;
+    own_field_facts(builder, primitive)->region = slope.region;
+    primitive->per_frame                        = slope.slot != NODE_NONE;
+    primitive->distance = extend_from_region(builder, primitive->declared, &slope);
     return true;
 }
 

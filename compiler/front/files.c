@@ -31,6 +31,9 @@ static void lex_file(Files *files, File *file)
 static void parse_file(Files *files, File *file)
 {
     file->syntax = parse(&file->tokens, files->diags, files->trees);
+    arena_release(files->trees, file->tokens.items,
+                  file->tokens.capacity * sizeof *file->tokens.items);
+    file->tokens = (Tokens){0};
 }
 
 /* "folder/used.krs" for a `use "used.krs"` in "folder/file.krs". */

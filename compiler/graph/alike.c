@@ -307,7 +307,7 @@ static bool detach_use(Alike *alike, Template *template, TemplateUse *use, size_
     TemplateKnown known = {(GraphType)alike->graph->items[use->index].type,
                            known_value(alike, use->index)};
     array_push(arena, &template->known, known);
-    *use = (TemplateUse){USE_KNOWN, (uint32_t)template->known.count - 1};
+    *use = (TemplateUse){USE_KNOWN, (uint32_t) template->known.count - 1};
     return true;
 }
 

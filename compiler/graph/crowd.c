@@ -85,8 +85,11 @@ void hand_on_crowds(Graph *to, const Graph *from, const Node *all, Node *roots, 
 
 static void keep_table(Crowd *table, Arena *arena)
 {
-    Grid  *grid    = &table->grid;
-    size_t cells   = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
+    Grid  *grid  = &table->grid;
+    size_t cells = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
+    if (table->arena == arena)
+        return;
+    table->arena   = arena;
     table->numbers = COPY_ITEMS(arena, table->numbers, (size_t)table->rows * table->columns);
     if (table->frame_columns)
         table->frame_columns = COPY_ITEMS(arena, table->frame_columns, table->columns);

@@ -35,6 +35,7 @@ enum { MOST_CROWD_STATES = 8, MOST_TABLE_COLUMNS = 64, NO_DISTANCE = MOST_CROWD_
 
 /* A table. */
 typedef struct Crowd {
+    Arena    *arena; /* of its numbers and its grid */
     uint32_t  rows, columns;
     double   *numbers;       /* rows x columns, row by row; 0 in columns of the frame */
     uint32_t *frame_columns; /* of each column: KNOWN_COLUMN, or where its nodes begin in

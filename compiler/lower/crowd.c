@@ -25,7 +25,7 @@ enum { BUCKETS = 256 };
 
 struct LoweredCrowds {
     Graph       *graph;
-    Arena       *arena;
+    Arena       *arena, *tables;
     Alike       *alike;
     PartLeaves   leaves;
     uint32_t     least; /* members of a crowd */
@@ -33,11 +33,12 @@ struct LoweredCrowds {
     JointCrowds *joints[BUCKETS];
 };
 
-LoweredCrowds *lowered_crowds_new(Graph *graph, Arena *arena, uint32_t least)
+LoweredCrowds *lowered_crowds_new(Graph *graph, Arena *arena, Arena *tables, uint32_t least)
 {
     LoweredCrowds *crowds = arena_new(arena, LoweredCrowds);
     crowds->graph         = graph;
     crowds->arena         = arena;
+    crowds->tables        = tables;
     crowds->least         = least;
     return crowds;
 }
@@ -107,12 +108,12 @@ static Box *boxes_of(const CrowdJoin *join, Arena *scratch)
 static void make_crowds(const PartFinder *finder, const GroupJoin *join, JointCrowds *made,
                         Arena *arena)
 {
-    CrowdGroups groups  = find_groups(finder, arena);
-    uint32_t   count    = finder->join->count;
-    bool      *in_crowd = arena_new_array(join->scratch, bool, count);
-    const Box *boxes    = boxes_of(finder->join, join->scratch);
-    made->groups        = arena_new_array(arena, CrowdGroup, groups.count + 1);
-    made->rest          = arena_new_array(arena, const Shape *, count);
+    CrowdGroups groups   = find_groups(finder, arena);
+    uint32_t    count    = finder->join->count;
+    bool       *in_crowd = arena_new_array(join->scratch, bool, count);
+    const Box  *boxes    = boxes_of(finder->join, join->scratch);
+    made->groups         = arena_new_array(arena, CrowdGroup, groups.count + 1);
+    made->rest           = arena_new_array(arena, const Shape *, count);
     for (size_t i = 0; i < groups.count; i++) {
         CrowdGroup *group = &groups.items[i];
         if (!make_crowd(finder, group, join, boxes))
@@ -130,8 +131,8 @@ static void make_crowds(const PartFinder *finder, const GroupJoin *join, JointCr
 
 static GroupJoin group_join(const Lowering *l, const CrowdJoin *join)
 {
-    return (GroupJoin){l->graph, l->scratch, l->crowds->leaves, join->joint->blend,
-                       join->complement};
+    return (GroupJoin){l->graph,          l->scratch,         l->crowds->tables,
+                       l->crowds->leaves, join->joint->blend, join->complement};
 }
 
 /* Whether the crowds of a joint in one context serve in another.  Surfaces need to know whether

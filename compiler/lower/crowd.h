@@ -10,9 +10,9 @@
 enum { LEAST_CROWD = 64 };
 
 /* The crowds of a scene, by the joints that they are parts of.  All lowerings of a joint use the
-   same.  `least` is LEAST_CROWD, but in tests. */
+   same.  What tables have is made in an arena of its own.  `least` is LEAST_CROWD, but in tests. */
 typedef struct LoweredCrowds LoweredCrowds;
-LoweredCrowds               *lowered_crowds_new(Graph *graph, Arena *arena, uint32_t least);
+LoweredCrowds *lowered_crowds_new(Graph *graph, Arena *arena, Arena *tables, uint32_t least);
 
 /* What a joint joins, which is sharp or a blend: its parts or their complements. */
 typedef struct CrowdJoin {

@@ -144,8 +144,8 @@ static void add_candidate(Search *search, uint64_t hash, const Node *roots, size
     Alike *alike = search->finder->alike;
     if (search->candidate_count == MOST_CANDIDATES)
         return;
-    Candidate *candidate = &search->candidates[search->candidate_count++];
-    *candidate           = (Candidate){.hash = hash, .again = true};
+    Candidate *candidate          = &search->candidates[search->candidate_count++];
+    *candidate                    = (Candidate){.hash = hash, .again = true};
     *candidate_slot(search, hash) = (uint16_t)search->candidate_count;
     if (search->graph->count - first > MOST_CANDIDATE_NODES)
         return;

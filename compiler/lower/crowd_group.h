@@ -41,7 +41,7 @@ typedef struct CrowdGroup {
         size_t    count, capacity;
     } members;
     SlotElement *elements; /* of each slot 4 */
-    bool     *varies;  /* of each slot: it differs between members */
+    bool        *varies;   /* of each slot: it differs between members */
     uint32_t *columns; /* of each slot 4: of its elements the column, or NO_COLUMN: equal in all */
     struct Column *sources; /* of each column, the element that it has */
     uint32_t       column_count;
@@ -57,6 +57,7 @@ typedef struct CrowdGroup {
 typedef struct GroupJoin {
     Graph     *graph;
     Arena     *scratch;
+    Arena     *tables; /* for what tables have */
     PartLeaves leaves;
     Blend      blend;
     bool       complement;

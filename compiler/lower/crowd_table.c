@@ -38,7 +38,7 @@ CrowdGroup group_new(Template *template, Arena *arena)
     CrowdGroup group = {.template = template, .distance = NO_FUNCTION, .nearest = NO_FUNCTION};
     for (uint32_t i = 0; i < PART_ROOTS; i++)
         group.properties[i] = NO_FUNCTION;
-    group.elements = arena_new_array(arena, SlotElement, 4 * (size_t)template->slot_count + 1);
+    group.elements = arena_new_array(arena, SlotElement, 4 * (size_t) template->slot_count + 1);
     return group;
 }
 
@@ -162,7 +162,7 @@ static void fill_of_frame(const CrowdGroup *group, Graph *graph, Crowd *table, u
     Crowds       *crowds = graph->crowds;
     const Column *source = &group->sources[column];
     if (!table->frame_columns) {
-        table->frame_columns = arena_new_array(crowds->arena, uint32_t, table->columns);
+        table->frame_columns = arena_new_array(table->arena, uint32_t, table->columns);
         for (uint32_t k = 0; k < table->columns; k++)
             table->frame_columns[k] = KNOWN_COLUMN;
     }
@@ -179,9 +179,10 @@ void group_make_table(CrowdGroup *group, const GroupJoin *join, const Box *boxes
 {
     Crowds  *crowds = graph_crowds(join->graph);
     uint32_t rows = (uint32_t)group->members.count, columns = group->column_count;
+    table.arena   = join->tables;
     table.rows    = rows;
     table.columns = columns;
-    table.numbers = arena_new_array(crowds->arena, double, (size_t)rows *columns + 1);
+    table.numbers = arena_new_array(table.arena, double, (size_t)rows *columns + 1);
     for (uint32_t k = 0; k < columns; k++)
         if (is_of_frame(group, &group->sources[k]))
             fill_of_frame(group, join->graph, &table, k);
@@ -191,7 +192,7 @@ void group_make_table(CrowdGroup *group, const GroupJoin *join, const Box *boxes
     for (uint32_t i = 0; i < rows; i++)
         own[i] = boxes[group->members.items[i]];
     uint32_t texels = (uint32_t)row_texels(&table);
-    grid_build(&table.grid, own, rows, reach, margin, texels > 0 ? texels : 1, crowds->arena,
+    grid_build(&table.grid, own, rows, reach, margin, texels > 0 ? texels : 1, table.arena,
                join->scratch);
     group->crowd = (uint32_t)crowds->tables.count;
     array_push(crowds->arena, &crowds->tables, table);

@@ -173,14 +173,15 @@ static Node along_boxed(Lowering *l, const Shape *shape, Ray ray)
     Graph      *g = l->graph;
     Series      s;
     SeriesFault fault;
-    Node        enter, leave, side = graph_number(g, shape->zeros.sign);
-    clip_ray(l, shape->zeros.box, ray, &enter, &leave);
-    Node origin = entrance(l, shape->zeros.box, ray, enter);
+    Node        enter, leave, side = graph_number(g, shape->field->zeros.sign);
+    clip_ray(l, shape->field->zeros.box, ray, &enter, &leave);
+    Node origin = entrance(l, shape->field->zeros.box, ray, enter);
     if (!graph_line_series(g, shape->formula, origin, ray.direction, &s, &fault, l->scratch))
         return NODE_NONE;
     Node step   = add(g, along_series(l, &s), mul(g, side, enter));
     Node misses = graph_op2(g, OP_less, leave, enter);
-    return graph_op3(g, OP_select, misses, graph_number(g, NOWHERE * shape->zeros.sign), step);
+    return graph_op3(g, OP_select, misses, graph_number(g, NOWHERE * shape->field->zeros.sign),
+                     step);
 }
 
 /* For a polynomial that is intersected with a region.  Outside of the region the result is 0, since
@@ -190,7 +191,7 @@ static Node along_cut(Lowering *l, const Shape *shape, Ray ray)
     Graph      *g = l->graph;
     Series      s;
     SeriesFault fault;
-    Node        origin = clamp_to(l, ray.point, shape->region);
+    Node        origin = clamp_to(l, ray.point, shape->field->region);
     if (!graph_line_series(g, shape->formula, origin, ray.direction, &s, &fault, l->scratch))
         return NODE_NONE;
     Node offset  = sub(g, ray.point, origin);
@@ -202,9 +203,9 @@ static Node along_polynomial(Lowering *l, const Shape *shape, Ray ray)
 {
     Series      s;
     SeriesFault fault;
-    if (box_is_finite(shape->region))
+    if (box_is_finite(shape->field->region))
         return along_cut(l, shape, ray);
-    if (shape->zeros.sign != 0)
+    if (shape->field->zeros.sign != 0)
         return along_boxed(l, shape, ray);
     return graph_line_series(l->graph, shape->formula, ray.point, ray.direction, &s, &fault,
                              l->scratch)
@@ -383,7 +384,7 @@ static bool reaches_none(const Shape *shape)
 
 static bool reaches_formula(const Shape *shape)
 {
-    return shape->formula != NODE_NONE && shape->degree > 0;
+    return shape->formula != NODE_NONE && shape->field->degree > 0;
 }
 
 static bool reaches_sheet(const Shape *shape) { return shape->sheet; }

@@ -109,6 +109,8 @@ static void count_tree(ShapeBuilder *builder, Shape *shape)
     }
 }
 
+static const FieldFacts nothing_known = {.degree = 0};
+
 Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span span,
                  const Shape *const *children, uint32_t count)
 {
@@ -124,6 +126,7 @@ Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span s
     shape->derived     = 1;
     shape->exact       = true;
     shape->blend       = blend_sharp;
+    shape->field       = &nothing_known;
     shape->distance = shape->bound = shape->uv = shape->trap = NODE_NONE;
     shape->formula = shape->declared = NODE_NONE;
     shape->plane_normal = shape->plane_offset = NODE_NONE;
@@ -135,6 +138,14 @@ Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span s
     count_tree(builder, shape);
     builder->nodes_before = builder->graph->count;
     return shape;
+}
+
+FieldFacts *own_field_facts(ShapeBuilder *builder, Shape *shape)
+{
+    FieldFacts *own = arena_new(builder->arena, FieldFacts);
+    *own            = *shape->field;
+    shape->field    = own;
+    return own;
 }
 
 Shape *shape_around(ShapeBuilder *builder, ShapeKind kind, const char *name, const Shape *shape,

@@ -28,6 +28,8 @@ Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span s
 /* The same with one child. */
 Shape *shape_around(ShapeBuilder *builder, ShapeKind kind, const char *name, const Shape *child,
                     Span span);
+/* What is known of its formula, to be changed: no other shape has the same. */
+FieldFacts *own_field_facts(ShapeBuilder *builder, Shape *shape);
 
 /* Ranges of frame-time nodes over all values of the parameters. */
 Range node_range(ShapeBuilder *builder, Node node, uint32_t component);

@@ -113,6 +113,14 @@ typedef struct LevelBound {
     Ball ball; /* may be the tighter of the two */
 } LevelBound;
 
+/* What is known of the formula of a field, or of a primitive whose slope was derived. */
+typedef struct FieldFacts {
+    Box      region; /* over which its slope was derived; infinite: over all space */
+    uint32_t degree; /* of a formula that is a polynomial, else 0, */
+    ZeroBox  zeros;  /* and where that may be 0 */
+    Blame    blame;  /* what a field without a bound owes that to */
+} FieldFacts;
+
 /* Each is about a quarter turn. */
 enum { MOST_BEND_SEGMENTS = 16 };
 
@@ -139,45 +147,42 @@ struct Shape {
     bool     exact;   /* the distance outside is the true one */
     bool     curved_child; /* shape_is_curved of a child */
     bool     claimed;      /* PRIMITIVE: its slope is claimed, not derived */
-    Box      region;    /* PRIMITIVE: over which its slope was derived; infinite: over all space */
     bool     estimate;  /* nothing is proven of the distance: a primitive in it is measured only */
     bool     per_frame; /* in the tree is a slope that is found anew for each frame (FrameSlope) */
     bool     trapped;   /* in the tree is a fractal: `orbit_trap` means something */
     bool     figure;    /* a plane figure in x and y */
     bool     sheet;  /* SHELL: has no thickness where rays can go from root to root (rays_pass) */
     bool     sheets; /* in the tree are some */
+    bool     fields; /* in the tree is a field whose bound follows from a region */
+    bool     smooth; /* mirrors in the tree are smooth */
     double   instances;  /* copies of kernels that reflections make; 1 without a sequence */
     uint32_t levels;     /* reflections of the outermost sequence in it */
     uint32_t inversions; /* maps of that sequence that invert, or of `.transform` on the way */
 
     /* PRIMITIVE, in its own coordinates; bound, uv and trap (VEC2) may be NODE_NONE. */
-    Node     formula; /* of a field, algebraic surface (field.c) or DISPLACE, else NODE_NONE */
-    double   overlap; /* BEND: by how much the segments reach beyond their ends */
-    double   reach;   /* DISPLACE: largest size of the formula in the box; OFFSET, SHELL: how far
+    Node   formula;  /* of a field, algebraic surface (field.c) or DISPLACE, else NODE_NONE */
+    Node   declared; /* where a declaration made it: its `distance` as it is written */
+    double overlap;  /* BEND: by how much the segments reach beyond their ends */
+    double reach;    /* DISPLACE: largest size of the formula in the box; OFFSET, SHELL: how far
                          they take the surface, at most */
-    uint32_t degree;  /* of a formula that is a polynomial, else 0, */
-    ZeroBox  zeros;   /* and where that may be 0 */
-    Blame    blame;   /* what a field without a bound owes that to */
-    bool     fields;  /* in the tree is a field whose bound follows from a region */
-    Node     distance, bound, uv, trap;
+    const FieldFacts   *field; /* zeros where there is nothing to know; never NULL */
+    Node                distance, bound, uv, trap;
     const struct Shape *without_uv; /* a primitive in the tree that has none, or NULL */
-    bool                smooth;     /* mirrors in the tree are smooth */
     Node                values[2];  /* see ShapeKind; NODE_NONE where there are fewer */
     Map                 map;        /* without `first`; of kinds that have none its scale is
                                        NODE_NONE */
     Blend               blend;      /* of joints */
     FalloffKind         falloff;    /* META */
     uint32_t            cells[3];   /* REPEAT: copies per axis, 0 for endless */
+    uint32_t            stage_count;
 
     Node plane_normal, plane_offset; /* PRIMITIVE that is a half-space, else NODE_NONE */
     /* PRIMITIVE that a declaration of the language made: what the evaluator knows of it, and
        shapes do not; else NULL. */
     const struct Declaration *declaration;
-    Node                      declared; /* of such a primitive: its `distance` as it is written */
     const struct Shape  *rounded; /* OFFSET that .round made of a core: what is rounded; or NULL */
     const Material      *material;
     const SequenceStage *stages;
-    uint32_t             stage_count;
     const LevelBound    *bounds; /* of the stages, for all values of the parameters */
 };
 

@@ -206,7 +206,7 @@ void assert_right(Difference found)
 
 void assert_same(const Shape *shape, double side)
 {
-    LoweredCrowds *crowds = lowered_crowds_new(builder.graph, &arena, LEAST);
+    LoweredCrowds *crowds = lowered_crowds_new(builder.graph, &arena, &arena, LEAST);
     Seen           apart = lower(shape, NULL), crowd = lower(shape, crowds);
     assert_true(builder.graph->crowds->tables.count > 0);
     assert_right(compare_lowered(shape, apart, crowd, side));

@@ -48,7 +48,7 @@ static void below_maps(void **state)
     (void)state;
     const Shape  **parts  = random_parts(PARTS, true);
     const Shape   *all    = make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
-    LoweredCrowds *crowds = lowered_crowds_new(builder.graph, &arena, LEAST);
+    LoweredCrowds *crowds = lowered_crowds_new(builder.graph, &arena, &arena, LEAST);
     const Shape   *moved  = placed(all, 1, 2, 3, 1, 2);
     Seen           apart = lower(moved, NULL), crowd = lower(moved, crowds);
     prepare(&apart);
@@ -70,7 +70,7 @@ static void below_offsets(void **state)
     Node          more  = graph_number(builder.graph, 0.4);
     const Shape  *grown = make_offset(&builder, all, more, no_place);
     Seen          apart = lower(grown, NULL);
-    Seen          crowd = lower(grown, lowered_crowds_new(builder.graph, &arena, LEAST));
+    Seen          crowd = lower(grown, lowered_crowds_new(builder.graph, &arena, &arena, LEAST));
     prepare(&apart);
     prepare(&crowd);
     int inside = 0;
@@ -90,7 +90,7 @@ static void lowered_again(void **state)
     (void)state;
     const Shape  **parts  = random_parts(PARTS, true);
     const Shape   *all    = make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
-    LoweredCrowds *crowds = lowered_crowds_new(builder.graph, &arena, LEAST);
+    LoweredCrowds *crowds = lowered_crowds_new(builder.graph, &arena, &arena, LEAST);
     Seen           first  = lower(all, crowds);
     size_t         functions = builder.graph->crowds->functions.count, count = builder.graph->count;
     Seen           second = lower(all, crowds);
@@ -112,7 +112,7 @@ static void many_parts_need_few_nodes(void **state)
         const Shape **parts = random_parts(count, true);
         const Shape  *all = make_joint(&builder, SHAPE_UNION, parts, count, blend_sharp, no_place);
         size_t        before = builder.graph->count;
-        lower(all, lowered_crowds_new(builder.graph, &arena, LEAST));
+        lower(all, lowered_crowds_new(builder.graph, &arena, &arena, LEAST));
         made[more] = builder.graph->count - before;
     }
     assert_true(made[0] > 0 && made[1] < 2 * made[0]);
@@ -181,7 +181,7 @@ static Difference compare_in_order(const Shape *shape, const Seen *parts, const 
 static Difference compare_blend(const Shape *shape, bool without_reach)
 {
     static Seen parts[CHAIN];
-    Seen        crowd  = lower(shape, lowered_crowds_new(builder.graph, &arena, LEAST));
+    Seen        crowd  = lower(shape, lowered_crowds_new(builder.graph, &arena, &arena, LEAST));
     Crowds     *crowds = builder.graph->crowds;
     assert_int_equal(crowds->tables.count, 1);
     for (uint32_t i = 0; i < shape->child_count; i++)

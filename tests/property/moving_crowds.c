@@ -58,7 +58,7 @@ static void moving_parts(void **state)
 {
     (void)state;
     const Shape   *all    = moving_union();
-    LoweredCrowds *crowds = lowered_crowds_new(builder.graph, &arena, LEAST);
+    LoweredCrowds *crowds = lowered_crowds_new(builder.graph, &arena, &arena, LEAST);
     Seen           apart = lower(all, NULL), crowd = lower(all, crowds);
     assert_int_equal(builder.graph->crowds->tables.count, 1);
     assert_int_equal(builder.graph->crowds->tables.items[0].rows, PARTS);
@@ -76,12 +76,13 @@ static void moving_parts_are_simplified(void **state)
     (void)state;
     const Shape *all   = moving_union();
     Seen         apart = lower(all, NULL);
-    Seen   crowd = lower(all, lowered_crowds_new(builder.graph, &arena, LEAST)), simple = crowd;
-    Graph *before = builder.graph;
-    Graph *after  = graph_simplify(before, simple.roots, ROOT_COUNT, &arena);
-    simple.tape   = tape_new(after, simple.roots, ROOT_COUNT, &arena);
-    now           = 2.5;
-    height        = 0.75;
+    Seen         crowd = lower(all, lowered_crowds_new(builder.graph, &arena, &arena, LEAST)),
+         simple        = crowd;
+    Graph *before      = builder.graph;
+    Graph *after       = graph_simplify(before, simple.roots, ROOT_COUNT, &arena);
+    simple.tape        = tape_new(after, simple.roots, ROOT_COUNT, &arena);
+    now                = 2.5;
+    height             = 0.75;
     prepare(&apart);
     builder.graph = after;
     prepare(&simple);
@@ -115,7 +116,7 @@ static void infinite_numbers_are_found(void **state)
         parts[i]   = make_transform(&builder, ball(0.2), &map, no_place);
     }
     const Shape *all   = make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
-    Seen         crowd = lower(all, lowered_crowds_new(g, &arena, LEAST));
+    Seen         crowd = lower(all, lowered_crowds_new(g, &arena, &arena, LEAST));
     assert_int_equal(g->crowds->tables.count, 1);
     now = 0.5;
     prepare(&crowd);
