@@ -53,7 +53,7 @@ void gather_shown(Elaboration *e)
             component.shape = join_turns(e, &scene->shown.items[i], turns);
             component.count = turns;
         }
-        array_push(e->arena, &scene->components, component);
+        array_push_large(e->arena, &scene->components, component);
         i += component.count;
     }
 }

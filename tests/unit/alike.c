@@ -133,6 +133,51 @@ static void numbers_of_the_frame(void **state)
     assert_true(is_alike(b, power, power));
 }
 
+/* A detached template finds the same numbers when its nodes are gone and others stand there. */
+static void a_detached_template_needs_no_nodes(void **state)
+{
+    Bench      *b     = *state;
+    Graph      *g     = b->graph;
+    Alike      *alike = alike_new(g, &b->arena);
+    SlotContent found[3];
+    GraphMark   mark  = graph_mark(g);
+    Node        count = graph_uint(g, 7), other;
+    Node        roots[2];
+    roots[0]    = ball(g, b->point, 1, 2, 3, 4);
+    roots[1]    = graph_op2(g, OP_pow, b->x, graph_number(g, 3.5));
+    Template *t = template_new(alike, roots, 2, &b->arena);
+    assert_true(template_detach(alike, t, mark.count, &b->arena));
+    graph_release(g, mark);
+    alike_forget(alike, mark.count);
+    other    = graph_number(g, 11); /* where another node stood */
+    roots[1] = graph_op2(g, OP_pow, b->x, graph_number(g, 3.5));
+    roots[0] = ball(g, b->point, 5, 6, 7, 8);
+    assert_true(other <= count);
+    assert_true(alike_hash(alike, roots, 2) == t->hash);
+    assert_true(template_match(alike, t, roots, found));
+    double sum = 0;
+    for (uint32_t i = 0; i < t->slot_count; i++)
+        for (uint32_t k = 0; k < (uint32_t)t->slot_types[i]; k++)
+            sum += found[i].numbers[k];
+    assert_true(sum == 5 + 6 + 7 + 8);
+    roots[1] = graph_op2(g, OP_pow, b->x, graph_number(g, 2.5)); /* exponents are structure */
+    assert_false(template_match(alike, t, roots, found));
+}
+
+/* A leaf of the frame that is no number cannot be found again without its node. */
+static void what_cannot_be_detached(void **state)
+{
+    Bench    *b     = *state;
+    Graph    *g     = b->graph;
+    Alike    *alike = alike_new(g, &b->arena);
+    size_t    first = g->count;
+    Node      time  = graph_parameter(g, 0, TYPE_FLOAT);
+    Node      late  = graph_op2(g, OP_less, graph_number(g, 3), time);
+    Node      root  = graph_op3(g, OP_select, late, b->x, graph_op1(g, OP_neg, b->x));
+    Template *t     = template_new(alike, &root, 1, &b->arena);
+    assert_false(template_detach(alike, t, first, &b->arena));
+}
+
 /* One node of the template that would have two images. */
 static void shared_nodes_stay_shared(void **state)
 {
@@ -206,11 +251,12 @@ static void dropped_places_go(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(numbers_come_out),     TEST(a_copy_is_the_member),
-        TEST(structure_stays),      TEST(numbers_of_the_text),
-        TEST(numbers_of_the_frame), TEST(shared_nodes_stay_shared),
-        TEST(some_nodes_stay),      TEST(dropped_nodes_leave_nothing),
-        TEST(dropped_places_go),
+        TEST(numbers_come_out),        TEST(a_copy_is_the_member),
+        TEST(structure_stays),         TEST(numbers_of_the_text),
+        TEST(numbers_of_the_frame),    TEST(shared_nodes_stay_shared),
+        TEST(some_nodes_stay),         TEST(dropped_nodes_leave_nothing),
+        TEST(dropped_places_go),       TEST(a_detached_template_needs_no_nodes),
+        TEST(what_cannot_be_detached),
     };
     return cmocka_run_group_tests_name("alike", tests, NULL, NULL);
 }

@@ -40,6 +40,39 @@ static void arena_counts_and_limits(void **state)
     assert_int_equal(memory.used, 0);
 }
 
+/* Small and large objects after a mark go; those before it stay, and what follows is zero again. */
+static void arena_goes_back_to_a_mark(void **state)
+{
+    (void)state;
+    enum { SMALL = 100, LARGE = 3 * LARGEST_BLOCK_BYTES };
+    static const char zeros[SMALL];
+    Memory            memory = {0};
+    Arena             arena  = {.memory = &memory};
+    for (int before = 0; before < 400; before++) {
+        ArenaMark outer = arena_mark(&arena);
+        char     *kept  = memset(arena_alloc(&arena, SMALL, 1), 1, SMALL);
+        ArenaMark mark  = arena_mark(&arena);
+        size_t    used  = memory.used;
+        for (int turn = 0; turn < 3; turn++) {
+            for (int i = 0; i < before; i++) {
+                char *object = arena_alloc(&arena, SMALL, 1);
+                assert_memory_equal(object, zeros, SMALL);
+                memset(object, 2, SMALL);
+            }
+            if (before % 7 == turn)
+                memset(arena_alloc(&arena, LARGE, 1), 3, LARGE);
+            arena_rewind(&arena, mark);
+            assert_int_equal(memory.used, used);
+        }
+        for (int k = 0; k < SMALL; k++)
+            assert_int_equal(kept[k], 1);
+        if (before % 2)
+            arena_rewind(&arena, outer);
+    }
+    arena_free(&arena);
+    assert_int_equal(memory.used, 0);
+}
+
 static void arena_refuses_products_that_overflow(void **state)
 {
     (void)state;
@@ -194,6 +227,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(arena_counts_and_limits),
+        cmocka_unit_test(arena_goes_back_to_a_mark),
         cmocka_unit_test(arena_refuses_products_that_overflow),
         cmocka_unit_test(numbers_are_short_and_exact),
         cmocka_unit_test(json_is_escaped),
