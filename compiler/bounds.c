@@ -12,10 +12,10 @@
 typedef struct Listing {
     Arena           *arena, *scratch;
     const Sources   *sources;
-    const KrsBounds *before; /* of another tree, whose texts may be the same; or NULL */
+    const KrsBounds *before; /* of another tree, whose entries may say the same; or NULL */
     struct {
-        KrsBound *items;
-        size_t    count, capacity;
+        BoundEntry *items;
+        size_t      count, capacity;
     } entries;
     struct {
         const Shape **items;
@@ -104,36 +104,61 @@ static size_t entry_of(const Listing *l, const Shape *shape)
     return 0;
 }
 
-/* A text that stays.  In trees of one loop most are the same. */
-static const char *lasting(Listing *l, const char *text, const char *before)
+static bool say_the_same(const KrsBound *a, const KrsBound *b)
 {
-    return before && !strcmp(text, before) ? before : arena_copy_text(l->arena, text, strlen(text));
+    return a->depth == b->depth && a->line == b->line && a->column == b->column &&
+           a->slope == b->slope && a->exact == b->exact && a->estimate == b->estimate &&
+           a->levels == b->levels && a->instances == b->instances && a->alike == b->alike &&
+           a->same == b->same && !strcmp(a->name, b->name) && !strcmp(a->source, b->source) &&
+           !strcmp(a->rule, b->rule);
 }
 
-static void fill_entry(Listing *l, const Shape *shape, KrsBound *entry)
+static const char *copy_text(Listing *l, const char *text)
 {
-    static const KrsBound none   = {.name = NULL};
-    const Source         *source = &l->sources->items[shape->span.source];
-    size_t                number = l->entries.count;
-    const KrsBound *before = l->before && number < l->before->count ? &l->before->items[number]
-                                                                    : &none;
-    entry->name            = lasting(l, shape->name, before->name);
-    entry->source          = lasting(l, source->name, before->source);
-    entry->rule            = lasting(l, rule_of(l, shape), before->rule);
-    entry->slope           = shape->slope;
-    entry->exact           = shape->exact;
-    entry->estimate        = shape->estimate;
-    entry->levels          = shape->levels;
-    entry->instances       = shape->instances;
+    return arena_copy_text(l->arena, text, strlen(text));
+}
+
+/* What is said of the next entry, where it stays. */
+static const KrsBound *lasting(Listing *l, const KrsBound *about)
+{
+    size_t number = l->entries.count;
+    if (l->before && number < l->before->count &&
+        say_the_same(l->before->items[number].about, about))
+        return l->before->items[number].about;
+    KrsBound *copy = arena_new(l->arena, KrsBound);
+    *copy          = *about;
+    copy->name     = copy_text(l, about->name);
+    copy->source   = copy_text(l, about->source);
+    copy->rule     = copy_text(l, about->rule);
+    return copy;
+}
+
+static BoundEntry entry_for(Listing *l, const Shape *shape, uint32_t depth, uint32_t alike,
+                            size_t same)
+{
+    const Source *source = &l->sources->items[shape->span.source];
+    KrsBound      about  = {.depth     = depth,
+                            .alike     = alike,
+                            .same      = same,
+                            .name      = shape->name,
+                            .source    = source->name,
+                            .rule      = rule_of(l, shape),
+                            .slope     = shape->slope,
+                            .exact     = shape->exact,
+                            .estimate  = shape->estimate,
+                            .levels    = shape->levels,
+                            .instances = shape->instances};
     if (shape->span.source) {
         Position position = source_position(source, shape->span.start);
-        entry->line       = position.line;
-        entry->column     = position.column;
+        about.line        = position.line;
+        about.column      = position.column;
     }
+    BoundEntry entry = {.about = lasting(l, &about)};
     for (int i = 0; i < 3; i++) {
-        entry->low[i]  = shape->box.axis[i].low;
-        entry->high[i] = shape->box.axis[i].high;
+        entry.low[i]  = shape->box.axis[i].low;
+        entry.high[i] = shape->box.axis[i].high;
     }
+    return entry;
 }
 
 static void list_shape(Listing *l, const Shape *shape, uint32_t depth, uint32_t alike)
@@ -142,9 +167,8 @@ static void list_shape(Listing *l, const Shape *shape, uint32_t depth, uint32_t 
         l->more++;
         return;
     }
-    size_t   same  = entry_of(l, shape);
-    KrsBound entry = {.depth = depth, .alike = alike, .same = same};
-    fill_entry(l, shape, &entry);
+    size_t     same  = entry_of(l, shape);
+    BoundEntry entry = entry_for(l, shape, depth, alike, same);
     array_push(l->scratch, &l->entries, entry);
     array_push(l->scratch, &l->shapes, shape);
     for (uint32_t i = 0; i < shape->child_count && !same;) {
@@ -161,7 +185,7 @@ KrsBounds bounds_of(const Shape *shape, const Sources *sources, const KrsBounds 
 {
     Listing l = {.arena = arena, .scratch = scratch, .sources = sources, .before = before};
     list_shape(&l, shape, 0, 0);
-    KrsBounds list = {arena_new_array(arena, KrsBound, l.entries.count), l.entries.count, l.more};
+    KrsBounds list = {arena_new_array(arena, BoundEntry, l.entries.count), l.entries.count, l.more};
     memcpy(list.items, l.entries.items, l.entries.count * sizeof *list.items);
     return list;
 }

@@ -9,13 +9,19 @@
 
 enum { KRS_MOST_BOUNDS = 256 }; /* of one component */
 
+/* An entry of a list.  In the trees of one loop most say the same, but for the box. */
+typedef struct BoundEntry {
+    const KrsBound *about; /* all but the box */
+    double          low[3], high[3];
+} BoundEntry;
+
 typedef struct KrsBounds {
-    KrsBound *items;
-    size_t    count;
-    size_t    more; /* that there was no room for */
+    BoundEntry *items;
+    size_t      count;
+    size_t      more; /* that there was no room for */
 } KrsBounds;
 
-/* The list of one tree, in `arena`; it may share texts with the list of the tree before, or NULL. */
+/* The list of one tree, in `arena`; it may share entries with the list of the tree before, or NULL. */
 KrsBounds bounds_of(const Shape *shape, const Sources *sources, const KrsBounds *before,
                     Arena *arena, Arena *scratch);
 

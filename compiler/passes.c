@@ -108,6 +108,7 @@ KrsStatus pass_elaborate(Compilation *c)
                             .studio  = c->options->studio,
                             .hoists  = hoists(c)};
     elaborate(&e, &c->files);
+    graph_drop_older(graph);
     if (!c->request->inspect) {
         arena_free(&c->syntax);
         arena_free(&c->values);

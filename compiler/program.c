@@ -70,7 +70,10 @@ KrsStatus krs_bound(const KrsScene *scene, size_t component, size_t index, KrsBo
 {
     if (index >= krs_bound_count(scene, component, NULL))
         return KRS_BAD_ARGUMENT;
-    *bound = scene->bounds[component].items[index];
+    const BoundEntry *entry = &scene->bounds[component].items[index];
+    *bound                  = *entry->about;
+    memcpy(bound->low, entry->low, sizeof bound->low);
+    memcpy(bound->high, entry->high, sizeof bound->high);
     return KRS_OK;
 }
 

@@ -30,7 +30,7 @@ static size_t count_turns(const Component *components, size_t count)
 /* The union of turns, in which each knows its number. */
 static const Shape *join_turns(Elaboration *e, const Component *turns, size_t count)
 {
-    const Shape **shapes = arena_new_array(e->arena, const Shape *, count);
+    const Shape **shapes = arena_new_array(e->values, const Shape *, count);
     for (size_t i = 0; i < count; i++) {
         Shape *shape = arena_new(e->arena, Shape);
         *shape       = *turns[i].shape;

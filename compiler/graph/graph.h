@@ -112,6 +112,8 @@ Graph *graph_new(Arena *arena);
 
 /* intern.c: the node of an expression, new if there is none; its operands and time are right. */
 Node node_intern(Graph *graph, Expr e);
+/* Frees what the graph keeps for those who refer to an Expr by its address: nobody does. */
+void graph_drop_older(Graph *graph);
 
 /*
  * The nodes made since a mark can be dropped again: the graph is then as it was.  Marks are released or kept

@@ -63,12 +63,18 @@ static void slots_grow(Graph *graph)
     arena_release(graph->arena, old, count * sizeof *old);
 }
 
+void graph_drop_older(Graph *graph)
+{
+    arena_release(graph->arena, graph->older, graph->capacity / 2 * sizeof *graph->items);
+    graph->older = NULL;
+}
+
 /* An old array stays until the next one is full, since functions refer to nodes while they make a
    few more. */
 static void add_item(Graph *graph, Expr e)
 {
     if (graph->count == graph->capacity) {
-        arena_release(graph->arena, graph->older, graph->capacity / 2 * sizeof e);
+        graph_drop_older(graph);
         graph->older = graph->items;
     }
     array_push(graph->arena, graph, e);

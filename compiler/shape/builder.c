@@ -109,17 +109,18 @@ static void count_tree(ShapeBuilder *builder, Shape *shape)
     }
 }
 
+static const Shape     *no_parts[1];
 static const FieldFacts nothing_known = {.degree = 0};
 
 Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span span,
                  const Shape *const *children, uint32_t count)
 {
     assert(shape_info[kind].parts == SEVERAL || (uint32_t)shape_info[kind].parts == count);
-    Shape *shape       = arena_new(builder->arena, Shape);
-    shape->kind        = kind;
-    shape->name        = name;
-    shape->span        = span;
-    shape->children    = arena_new_array(builder->arena, const Shape *, count + 1);
+    Shape *shape    = arena_new(builder->arena, Shape);
+    shape->kind     = kind;
+    shape->name     = name;
+    shape->span     = span;
+    shape->children = count > 0 ? arena_new_array(builder->arena, const Shape *, count) : no_parts;
     shape->child_count = count;
     shape->box         = count == 1 ? children[0]->box : box_empty;
     shape->slope       = 1;
