@@ -10,15 +10,6 @@ static const double ORIGIN[3] = {0, 0, 0};
 
 /* ---- checks ---- */
 
-static bool is_known_finite(const Graph *graph, Node node)
-{
-    double number;
-    bool   finite = true;
-    for (uint32_t k = 0; finite && k < graph->items[node].type; k++)
-        finite = graph_known_component(graph, node, k, &number) && isfinite(number);
-    return finite;
-}
-
 /*
  * Ranges are those of the parameters, but a parameter without one counts with its default, and
  * time with a long animation: what is infinite then divides by zero somewhere, or overflows.
@@ -27,7 +18,7 @@ bool check_finite(Elaboration *e, Node node, const Syntax *syntax)
 {
     enum { LONGEST_SECONDS = 1000000 };
     Graph *g = e->graph;
-    if (g->items[node].type > TYPE_VEC4 || is_known_finite(g, node))
+    if (g->items[node].type > TYPE_VEC4 || graph_known_finite(g, node))
         return true;
     size_t          count = g->parameters.count;
     GraphParameter *copy  = arena_new_array(e->values, GraphParameter, count);

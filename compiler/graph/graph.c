@@ -246,6 +246,15 @@ bool graph_known_component(const Graph *graph, Node node, uint32_t component, do
     return true;
 }
 
+bool graph_known_finite(const Graph *graph, Node node)
+{
+    double number;
+    bool   finite = true;
+    for (uint32_t k = 0; finite && k < components(graph->items[node].type); k++)
+        finite = graph_known_component(graph, node, k, &number) && isfinite(number);
+    return finite;
+}
+
 /* ---- operations ---- */
 
 /* The constant that e is when all its operands are; NODE_NONE when it is not a finite one. */

@@ -166,6 +166,8 @@ const char *graph_op_name(Op op);
 bool graph_is_constant(const Graph *graph, Node node);
 /* Whether a component is such a number, which may be one of those that a vector is built of. */
 bool graph_known_component(const Graph *graph, Node node, uint32_t component, double *number);
+/* Whether all are known, and finite. */
+bool graph_known_finite(const Graph *graph, Node node);
 
 /* The row's GLSL, operands $a..$d; NULL for leaves and OP_COMPONENT. */
 const char *op_glsl(Op op);

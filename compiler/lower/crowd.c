@@ -78,7 +78,7 @@ static double blended_reach(const CrowdGroup *group, const GroupJoin *join)
 static double for_bounds(const PartFinder *finder, const CrowdGroup *group)
 {
     for (size_t i = 0; i < group->members.count; i++)
-        if (!finder->join->parts[group->members.items[i]]->exact)
+        if (!finder->parts[group->members.items[i]]->exact)
             return sqrt(3);
     return 1;
 }
@@ -92,16 +92,16 @@ static bool make_crowd(const PartFinder *finder, CrowdGroup *group, const GroupJ
     double factor = for_bounds(finder, group);
     double reach  = factor * blended_reach(group, join);
     double margin = isfinite(reach) ? factor * finder->context.reach : HUGE_VAL;
-    Crowd  table  = {.stretch = factor, .span = finder->join->joint->span};
+    Crowd  table  = {.stretch = factor, .span = join->span};
     group_make_table(group, join, boxes, isfinite(reach) ? reach : 0, margin, table);
     return true;
 }
 
-static Box *boxes_of(const CrowdJoin *join, Arena *scratch)
+static Box *boxes_of(const PartFinder *finder, const GroupJoin *join)
 {
-    Box *boxes = arena_new_array(scratch, Box, join->count);
-    for (uint32_t i = 0; i < join->count; i++)
-        boxes[i] = join->complement ? box_infinite : join->parts[i]->box;
+    Box *boxes = arena_new_array(join->scratch, Box, finder->count);
+    for (uint32_t i = 0; i < finder->count; i++)
+        boxes[i] = join->complement ? box_infinite : finder->parts[i]->box;
     return boxes;
 }
 
@@ -109,9 +109,9 @@ static void make_crowds(const PartFinder *finder, const GroupJoin *join, JointCr
                         Arena *arena)
 {
     CrowdGroups groups   = find_groups(finder, arena);
-    uint32_t    count    = finder->join->count;
+    uint32_t    count    = finder->count;
     bool       *in_crowd = arena_new_array(join->scratch, bool, count);
-    const Box  *boxes    = boxes_of(finder->join, join->scratch);
+    const Box  *boxes    = boxes_of(finder, join);
     made->groups         = arena_new_array(arena, CrowdGroup, groups.count + 1);
     made->rest           = arena_new_array(arena, const Shape *, count);
     for (size_t i = 0; i < groups.count; i++) {
@@ -124,15 +124,15 @@ static void make_crowds(const PartFinder *finder, const GroupJoin *join, JointCr
     }
     for (uint32_t i = 0; i < count; i++)
         if (!in_crowd[i])
-            made->rest[made->rest_count++] = finder->join->parts[i];
+            made->rest[made->rest_count++] = finder->parts[i];
 }
 
 /* ---- joints ---- */
 
 static GroupJoin group_join(const Lowering *l, const CrowdJoin *join)
 {
-    return (GroupJoin){l->graph,          l->scratch,         l->crowds->tables,
-                       l->crowds->leaves, join->joint->blend, join->complement};
+    return (GroupJoin){l->graph,           l->scratch,       l->crowds->tables, l->crowds->leaves,
+                       join->joint->blend, join->complement, join->joint->span};
 }
 
 /* Whether the crowds of a joint in one context serve in another.  Surfaces need to know whether
@@ -156,7 +156,8 @@ static JointCrowds *find_joint(Lowering *l, const CrowdJoin *join, LowerContext 
             return made;
     bool         sharp   = join->joint->blend.width == NODE_NONE;
     PartFinder   finder  = {.outer    = l,
-                            .join     = join,
+                            .parts    = join->parts,
+                            .count    = join->count,
                             .context  = parts,
                             .operands = !sharp || context.reach > 0,
                             .alike    = crowds->alike,

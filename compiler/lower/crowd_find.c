@@ -58,7 +58,7 @@ static PartMark part_mark(const Search *search)
 static bool lower_part(const PartFinder *finder, uint32_t part, Node roots[PART_ROOTS])
 {
     const Lowering *outer   = finder->outer;
-    const Shape    *shape   = finder->join->parts[part];
+    const Shape    *shape   = finder->parts[part];
     Lowering        l       = {.graph    = outer->graph,
                                .scratch  = outer->scratch,
                                .surfaces = true,
@@ -205,7 +205,7 @@ static int compare_hashes(const void *a, const void *b)
 /* How many hashes are less. */
 static uint32_t rank(const Search *search, uint64_t hash)
 {
-    uint32_t low = 0, high = search->finder->join->count;
+    uint32_t low = 0, high = search->finder->count;
     while (low < high) {
         uint32_t middle = low + (high - low) / 2;
         if (search->sorted[middle] < hash)
@@ -276,7 +276,7 @@ static void group_candidate(Search *search, const Candidate *candidate)
 CrowdGroups find_groups(const PartFinder *finder, Arena *arena)
 {
     Arena   *scratch = finder->outer->scratch;
-    uint32_t count   = finder->join->count;
+    uint32_t count   = finder->count;
     Search  *search  = arena_new(scratch, Search);
     *search          = (Search){.finder     = finder,
                                 .graph      = finder->outer->graph,

@@ -6,7 +6,7 @@
 
 #include "compiler/graph/alike.h"
 #include "compiler/graph/crowd.h"
-#include "compiler/lower/crowd.h"
+#include "compiler/lower/context.h"
 
 /* The expressions of a part: its distance, and a node for each row of surface.def. */
 enum { PART_DISTANCE, PART_SURFACE, PART_ROOTS = 1 + sizeof(Surface) / sizeof(Node) };
@@ -61,17 +61,19 @@ typedef struct GroupJoin {
     PartLeaves leaves;
     Blend      blend;
     bool       complement;
+    Span       span; /* of the joint */
 } GroupJoin;
 
 /* crowd_find.c: what is searched for parts that are alike. */
 typedef struct PartFinder {
-    const Lowering  *outer; /* of the joint */
-    const CrowdJoin *join;
-    LowerContext     context;  /* of the parts */
-    bool             operands; /* their distances are used away from the surface */
-    Alike           *alike;
-    uint32_t         least; /* members of a group */
-    const uint32_t  *made;  /* joints with crowds, so far: LoweredCrowds */
+    const Lowering     *outer; /* of the joint */
+    const Shape *const *parts;
+    uint32_t            count;
+    LowerContext        context;  /* of the parts */
+    bool                operands; /* their distances are used away from the surface */
+    Alike              *alike;
+    uint32_t            least; /* members of a group */
+    const uint32_t     *made;  /* joints with crowds, so far */
 } PartFinder;
 
 typedef struct CrowdGroups {
