@@ -1,9 +1,10 @@
 /*
  * arena.h: memory that is freed all at once.
  *
- * The compiler has three arenas, one for each lifetime (compilation.h).  Single objects are never
- * freed.  Memory is zeroed.  When it runs out, longjmp returns to the function of the library that
- * the user called.  That function reports it, so no caller in between checks for NULL.
+ * The compiler has an arena for each lifetime (compilation.h).  Single objects are not freed, but
+ * for large ones, and for all since a mark.  Memory is zeroed.  When it runs out, longjmp returns to
+ * the function of the library that the user called.  That function reports it, so no caller in
+ * between checks for NULL.
  */
 #ifndef KRS_ARENA_H
 #define KRS_ARENA_H
