@@ -35,7 +35,7 @@ static bool read_point(Value value, coordT *point)
 
 static Value point_value(Elaboration *e, const coordT *point)
 {
-    Value *numbers = arena_new_array(e->arena, Value, 3);
+    Value *numbers = arena_new_array(e->values, Value, 3);
     for (int k = 0; k < 3; k++)
         numbers[k] = value_number(point[k]);
     return value_list(e, numbers, 3);
@@ -56,7 +56,7 @@ static bool faces_outwards(coordT *const corners[3], const coordT *normal)
 /* The three corners of a facet, counterclockwise as seen from outside. */
 static Value triangle_value(Elaboration *e, const facetT *facet)
 {
-    Value  *corners = arena_new_array(e->arena, Value, 3);
+    Value  *corners = arena_new_array(e->values, Value, 3);
     coordT *found[3];
     for (int k = 0; k < 3; k++)
         found[k] = SETelemt_(facet->vertices, k, vertexT)->point;
@@ -70,7 +70,8 @@ static Value triangles_of(Elaboration *e, const qhT *qh)
 {
     Values triangles = {0};
     for (const facetT *facet = qh->facet_list; facet && facet->next; facet = facet->next)
-        array_push(e->arena, &triangles, triangle_value(e, facet)); /* the last one is a sentinel */
+        array_push(e->values, &triangles,
+                   triangle_value(e, facet)); /* the last one is a sentinel */
     return value_list(e, triangles.items, triangles.count);
 }
 
