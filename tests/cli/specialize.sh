@@ -9,6 +9,7 @@ export XDG_CACHE_HOME="$work/caches"
 # The scene; the radius of its sphere is what is edited.
 scene() { # radius, what is behind the sphere
     printf '// A scene.\ncamera { eye: [0, 0, %s], target: [0, 0, 0] }\n' "${eye:-5}"
+    printf 'light { direction: [-0.5, 1, 0.6], intensity: 2.5, softness: 1deg }\n'
     printf 'show sphere(%s)%s;\n' "$1" "${2:-}"
 }
 picture() { # how, the output, options
