@@ -76,10 +76,13 @@ uint32_t value_size(const Elaboration *e, Value value)
     return is_scalar(e, value) ? 1 : vector_length(e, value);
 }
 
-static bool is_declaration(Value function)
+static const char *function_type_name(const Function *function)
 {
-    const Syntax *syntax = function.function->syntax;
-    return syntax && syntax->kind == SYNTAX_SHAPE;
+    switch (function->syntax ? function->syntax->kind : SYNTAX_DEF) {
+    case SYNTAX_SHAPE: return "a shape declaration";
+    case SYNTAX_MATERIAL: return "a material with parameters";
+    default: return "a function";
+    }
 }
 
 const char *value_type_name(Elaboration *e, Value value)
@@ -89,7 +92,7 @@ const char *value_type_name(Elaboration *e, Value value)
     case VALUE_NUMBER: return "a number";
     case VALUE_BOOLEAN: return "a truth value";
     case VALUE_STRING: return "a string";
-    case VALUE_FUNCTION: return is_declaration(value) ? "a shape declaration" : "a function";
+    case VALUE_FUNCTION: return function_type_name(value.function);
     case VALUE_SHAPE: return "a shape";
     case VALUE_MAP: return "a map of space";
     case VALUE_MATERIAL: return "a material";

@@ -349,6 +349,12 @@ bool check_core(Elaboration *e, const Shape *shape, const Shape *core, Node roun
 /* Warns of a component, shown at `span`, that is known to be empty. */
 void warn_if_nothing_is_left(Elaboration *e, const Shape *shape, const char *name, Span span);
 
+/* ---- components.c ---- */
+/* Whether `value.name` has the letters of components behind a vector: `v.x`, `c.rgb`. */
+bool is_component(const Elaboration *e, Value value, const Syntax *syntax);
+/* A number, or a vector of as many components as the name has letters. */
+Value value_components(Elaboration *e, const Syntax *syntax, Value vector);
+
 /* ---- methods.c ---- */
 Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax);
 

@@ -1,5 +1,5 @@
 /*
- * functions.c: calls of functions and of shape declarations written in the language.
+ * functions.c: calls of functions, of shape declarations and of materials with parameters.
  */
 #include "compiler/eval/elaborate.h"
 
@@ -291,7 +291,18 @@ static void blame_caller(Elaboration *e, size_t first, const Syntax *syntax,
     e->diags->count = retained;
 }
 
-/* The body of a function, or the shape that a declaration makes, for arguments in order. */
+/* The value of a body whose parameters `env` binds. */
+static Value call_body(Elaboration *e, const Function *function, const Environment *env, Span span)
+{
+    const Syntax *syntax = function->syntax;
+    switch (syntax->kind) {
+    case SYNTAX_SHAPE: return declare_instance(e, function, env, span);
+    case SYNTAX_MATERIAL: return elaborate_material(e, env, syntax);
+    default: return evaluate(e, env, syntax->children[syntax->count - 1]);
+    }
+}
+
+/* What a function, shape declaration or material gives for arguments in order. */
 static Value call_values(Elaboration *e, const Function *function, const Value *values,
                          const Syntax *const *origins, const Syntax *syntax)
 {
@@ -306,12 +317,8 @@ static Value call_values(Elaboration *e, const Function *function, const Value *
     size_t      said   = e->diags->count;
     Value       result = value_error();
     e->calls++;
-    if (bind_parameters(e, function, values, origins, syntax, &env)) {
-        if (function->syntax->kind == SYNTAX_SHAPE)
-            result = declare_instance(e, function, &env, syntax->span);
-        else
-            result = evaluate(e, &env, function->syntax->children[function->syntax->count - 1]);
-    }
+    if (bind_parameters(e, function, values, origins, syntax, &env))
+        result = call_body(e, function, &env, syntax->span);
     e->calls--;
     blame_caller(e, said, syntax, function, values, origins);
     return result;

@@ -10,6 +10,22 @@ typedef Value Method(Elaboration *e, const Shape *shape, Call *call);
 
 static const double ORIGIN[3] = {0, 0, 0};
 
+/* A vector of three.  Figures take two as well: `otherwise` is the third. */
+static Node want_extent(Elaboration *e, const Shape *shape, const Call *call, double otherwise)
+{
+    Value value = call->arguments[0].value;
+    Call  whole = *call;
+    if (shape->figure && value_size(e, value) == 2) {
+        Node flat                = value_node(e, value);
+        Node third               = graph_number(e->graph, otherwise);
+        Node one                 = graph_component(e->graph, flat, 0);
+        Node two                 = graph_component(e->graph, flat, 1);
+        Node node                = graph_op3(e->graph, OP_vec3, one, two, third);
+        whole.arguments[0].value = value_of_node(e, node);
+    }
+    return want_vector(e, &whole, 0, ORIGIN);
+}
+
 /* The shape after a map; NULL, whose reason has been reported, is VALUE_ERROR. */
 static Value moved(Elaboration *e, const Shape *shape, const Map *map, const Call *call)
 {
@@ -19,12 +35,35 @@ static Value moved(Elaboration *e, const Shape *shape, const Map *map, const Cal
 
 static Value method_move(Elaboration *e, const Shape *shape, Call *call)
 {
-    return moved(e, shape, want_translation(e, call), call);
+    Node by = want_extent(e, shape, call, 0);
+    return by == NODE_NONE ? value_error()
+                           : moved(e, shape, map_translation(e->builder, by), call);
+}
+
+/* Figures turn in their plane: a number alone is the angle, about z. */
+static void give_axis(Elaboration *e, Call *call)
+{
+    static const double TOWARDS[3] = {0, 0, 1};
+    Argument           *axis = &call->arguments[0], *angle = &call->arguments[1];
+    if (!angle->syntax && axis->syntax && value_size(e, axis->value) == 1) {
+        *angle       = *axis;
+        axis->syntax = NULL;
+    }
+    if (angle->syntax && !axis->syntax)
+        *axis = (Argument){value_vector(e, TOWARDS, 3), call->syntax};
 }
 
 static Value method_rotate(Elaboration *e, const Shape *shape, Call *call)
 {
-    return moved(e, shape, want_rotation(e, call), call);
+    if (shape->figure)
+        give_axis(e, call);
+    if (is_given(call, 0) && is_given(call, 1))
+        return moved(e, shape, want_rotation(e, call), call);
+    Diag *diag = missing_argument(e, call->syntax, "rotate",
+                                  shape->figure || is_given(call, 0) ? "angle" : "axis");
+    diag->help = shape->figure ? "a figure turns in its plane: `.rotate(30deg)`"
+                               : "a solid turns about an axis: `.rotate([0, 1, 0], 30deg)`";
+    return value_error();
 }
 
 static Value method_scale(Elaboration *e, const Shape *shape, Call *call)
@@ -32,7 +71,7 @@ static Value method_scale(Elaboration *e, const Shape *shape, Call *call)
     const Argument *by = &call->arguments[0];
     if (value_size(e, by->value) == 1)
         return moved(e, shape, want_scaling(e, call), call);
-    Node factors = want_vector(e, call, 0, ORIGIN);
+    Node factors = want_extent(e, shape, call, 1);
     if (factors == NODE_NONE)
         return value_error();
     for (uint32_t i = 0; i < 3; i++)
@@ -401,6 +440,8 @@ static Value unknown_method(Elaboration *e, const Syntax *syntax, Value receiver
         note_names(e, diag, "its methods", names, count);
     else if (receiver.type == VALUE_MAP)
         note_names(e, diag, "its methods", of_maps, 1);
+    else if (value_size(e, receiver) >= 2)
+        diag->help = "components of a vector are `x y z w` or `r g b a`, as in `v.xz`";
     return value_error();
 }
 
@@ -411,6 +452,8 @@ Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax)
         return receiver;
     if (receiver.type == VALUE_MAP && strcmp(syntax->name, "inverse") == 0 && syntax->count == 1)
         return value_map(map_inverse(e->builder, receiver.map));
+    if (is_component(e, receiver, syntax))
+        return value_components(e, syntax, receiver);
     for (size_t i = 0; receiver.type == VALUE_SHAPE && i < METHOD_COUNT; i++) {
         Call call;
         if (strcmp(methods[i].name, syntax->name) != 0)

@@ -136,7 +136,10 @@ Value run_definition(Elaboration *e, Definition *definition, Span use)
     switch (syntax->kind) {
     case SYNTAX_LET: definition->value = evaluate(e, env, syntax->children[0]); break;
     case SYNTAX_PARAM: definition->value = define_param(e, env, syntax); break;
-    case SYNTAX_MATERIAL: definition->value = elaborate_material(e, env, syntax); break;
+    case SYNTAX_MATERIAL:
+        definition->value = syntax_is_function(syntax) ? function_value(e, env, syntax)
+                                                       : elaborate_material(e, env, syntax);
+        break;
     case SYNTAX_DEF:
     case SYNTAX_SHAPE: definition->value = function_value(e, env, syntax); break;
     default: definition->value = value_number(0); break; /* cameras, lights: names */

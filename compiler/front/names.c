@@ -240,7 +240,7 @@ static void check_properties(Checker *c, const Syntax *syntax)
     leave_scope(c);
 }
 
-/* A function or shape.  A default sees the parameters before it, the body sees all of them. */
+/* A function, shape or material.  A default sees the parameters before it, the body sees all of them. */
 static void walk_function(Checker *c, const Syntax *syntax)
 {
     enter_scope(c);
@@ -275,7 +275,8 @@ static void walk(Checker *c, const Syntax *syntax)
     case SYNTAX_KRS:
     case SYNTAX_BLOCK: walk_block(c, syntax); break;
     case SYNTAX_DEF:
-    case SYNTAX_SHAPE: walk_function(c, syntax); break;
+    case SYNTAX_SHAPE:
+    case SYNTAX_MATERIAL: walk_function(c, syntax); break;
     case SYNTAX_LET_IN:
     case SYNTAX_FOR:
         walk(c, syntax->children[0]);
@@ -284,7 +285,6 @@ static void walk(Checker *c, const Syntax *syntax)
         walk(c, syntax->children[1]);
         leave_scope(c);
         break;
-    case SYNTAX_MATERIAL:
     case SYNTAX_CAMERA:
     case SYNTAX_LIGHT:
     case SYNTAX_SKY:
@@ -300,10 +300,10 @@ static void walk(Checker *c, const Syntax *syntax)
 
 /* ---- circles ---- */
 
-/* A function or shape may call itself; other definitions may not need their own value. */
+/* What is called may call itself; other definitions may not need their own value. */
 static bool may_need_itself(const CheckedDefinition *definition)
 {
-    return definition->syntax->kind == SYNTAX_DEF || definition->syntax->kind == SYNTAX_SHAPE;
+    return syntax_is_function(definition->syntax);
 }
 
 typedef struct DefinitionStack {

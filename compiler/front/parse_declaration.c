@@ -215,16 +215,21 @@ Syntax *parse_shape(Parser *p)
     return finish_named(p, SYNTAX_SHAPE, start, first, name);
 }
 
-/* material = "material" NAME properties ; */
+/* material = "material" NAME [ parameters ] properties ; */
 Syntax *parse_material(Parser *p)
 {
     Span   start = token_here(p)->span;
     size_t first = begin_children(p);
     advance(p);
-    const Token *name = expect_name(p, "of a material");
+    const Token *name  = expect_name(p, "of a material");
+    bool         calls = kind_here(p) == TOKEN_LEFT_PAREN;
+    if (calls)
+        parse_parameters(p, "`(` after the name of a material", NULL);
     parse_properties(p, "`{` and the properties of the material",
                      "for example `material clay { color: #c8553d, roughness: 0.6 }`");
-    return finish_named(p, SYNTAX_MATERIAL, start, first, name);
+    Syntax *material    = finish_named(p, SYNTAX_MATERIAL, start, first, name);
+    material->number[0] = calls;
+    return material;
 }
 
 /* Parses a keyword, a name where one is permitted, and properties. */

@@ -92,6 +92,12 @@ void syntax_print(const Syntax *syntax, const Sources *sources, Text *out)
     print_level(syntax, sources, 0, out);
 }
 
+bool syntax_is_function(const Syntax *syntax)
+{
+    return syntax->kind == SYNTAX_DEF || syntax->kind == SYNTAX_SHAPE ||
+           (syntax->kind == SYNTAX_MATERIAL && syntax->number[0] != 0);
+}
+
 bool syntax_defines(const Syntax *syntax)
 {
     switch (syntax->kind) {

@@ -41,7 +41,7 @@ typedef enum SyntaxKind {
     SYNTAX_PARAMETER,    /* name   [0] default, [1] range (any expression); no [1], or no child */
     SYNTAX_PARAM,        /* name   [0] default, [1] range (any expression), or no [1] */
     SYNTAX_SHAPE,        /* name   PARAMETER..., PROPERTY...; doc */
-    SYNTAX_MATERIAL,     /* name   PROPERTY... */
+    SYNTAX_MATERIAL,     /* name   PARAMETER..., PROPERTY...; number[0] is 1 if it has a list of parameters */
     SYNTAX_CAMERA,       /* name?  PROPERTY... */
     SYNTAX_LIGHT,        /* name?  PROPERTY... */
     SYNTAX_SKY,          /* -      PROPERTY... */
@@ -78,6 +78,9 @@ enum { SYNTAX_MOST_LEVELS = 1000 };
 
 /* "comprehension", for dumps. */
 const char *syntax_kind_name(SyntaxKind kind);
+
+/* Whether a definition is called: a `def`, a shape, a material with a list of parameters. */
+bool syntax_is_function(const Syntax *syntax);
 
 /* Whether a statement gives its name a meaning in the whole file. */
 bool syntax_defines(const Syntax *syntax);
