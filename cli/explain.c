@@ -28,7 +28,7 @@ KrsStatus command_explain(Options *options)
     if (!info)
         return say_usage(options, "there is no diagnostic `%s`; `krs explain` lists them",
                          options->files.items[0]);
-    printf("%s[%s]: %s\n\n%s", info->severity == DIAG_ERROR ? "error" : "warning", info->code,
-           info->title, info->explanation);
+    printf("%s[%s]: %s\n\n%s", diag_severity((DiagCode)(info - diag_info)), info->code, info->title,
+           info->explanation);
     return KRS_OK;
 }

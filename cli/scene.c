@@ -17,8 +17,9 @@
 static void print_colored(const KrsDiagnostic *diagnostic)
 {
     size_t head = strcspn(diagnostic->text, ":\n"), line = strcspn(diagnostic->text, "\n");
-    fprintf(stderr, "\033[1;%dm%.*s\033[0;1m%.*s\033[0m%s", diagnostic->error ? 31 : 33, (int)head,
-            diagnostic->text, (int)(line - head), diagnostic->text + head, diagnostic->text + line);
+    int    color = diagnostic->error ? 31 : diagnostic->note ? 36 : 33;
+    fprintf(stderr, "\033[1;%dm%.*s\033[0;1m%.*s\033[0m%s", color, (int)head, diagnostic->text,
+            (int)(line - head), diagnostic->text + head, diagnostic->text + line);
 }
 
 static void print_diagnostic(void *user, const KrsDiagnostic *diagnostic)
@@ -28,7 +29,7 @@ static void print_diagnostic(void *user, const KrsDiagnostic *diagnostic)
         return;
     console_clear();
     sink->errors += diagnostic->error;
-    sink->warnings += !diagnostic->error;
+    sink->warnings += !diagnostic->error && !diagnostic->note;
     if (sink->options->json_diagnostics)
         fprintf(stderr, "%s\n", diagnostic->json);
     else if (console_color(sink->options))

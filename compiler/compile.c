@@ -99,14 +99,16 @@ static void report_one(const Diags *diags, const Diag *diag, const KrsOptions *o
     Text          text = {.arena = arena}, json = {.arena = arena};
     diag_print_one(diags, diag, false, &text);
     diag_json_one(diags, diag, &json);
-    KrsDiagnostic public = {.error   = diag_info[diag->code].severity == DIAG_ERROR,
-                            .code    = diag_info[diag->code].code,
-                            .message = diag->message,
-                            .source  = source->name,
-                            .line    = position.line,
-                            .column  = position.column,
-                            .text    = text.bytes,
-                            .json    = json.bytes};
+    DiagSeverity severity = diag_info[diag->code].severity;
+    KrsDiagnostic public  = {.error   = severity == DIAG_ERROR,
+                             .note    = severity == DIAG_NOTE,
+                             .code    = diag_info[diag->code].code,
+                             .message = diag->message,
+                             .source  = source->name,
+                             .line    = position.line,
+                             .column  = position.column,
+                             .text    = text.bytes,
+                             .json    = json.bytes};
     options->diagnostic(options->user, &public);
 }
 

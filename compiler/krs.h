@@ -38,8 +38,8 @@ typedef struct KrsFrame KrsFrame;
 /* One diagnostic, as text ready to print and as one JSON object (field names of the Language
    Server Protocol).  The strings live until the callback returns. */
 typedef struct KrsDiagnostic {
-    bool        error; /* else a warning */
-    const char *code;  /* "E0312" */
+    bool        error, note; /* neither: a warning */
+    const char *code;        /* "E0312" */
     const char *message;
     const char *source;       /* name of the text it is about */
     uint32_t    line, column; /* from 1 */

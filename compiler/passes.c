@@ -103,6 +103,7 @@ KrsStatus pass_elaborate(Compilation *c)
                             .scratch = &c->scratch,
                             .diags   = &c->diags,
                             .sources = &c->sources,
+                            .names   = c->files.names,
                             .graph   = graph,
                             .scene   = &c->elaborated,
                             .studio  = c->options->studio,

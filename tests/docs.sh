@@ -134,7 +134,7 @@ grep -ho -e '[` ]--[a-z][a-z-]*' $pages | tr -d '` ' | sort -u |
     grep -vxF -f "$work/options" >"$work/said"
 none "every option that a page names exists"
 # shellcheck disable=SC2086
-grep -ho '\<[EW][0-9]\{4\}\>' $pages | sort -u | while read -r code; do
+grep -ho '\<[EWN][0-9]\{4\}\>' $pages | sort -u | while read -r code; do
     grep -q "^DIAG($code," compiler/base/diag.def || echo "$code"
 done >"$work/said"
 none "every diagnostic that a page names exists"

@@ -24,13 +24,13 @@ for scene in tests/errors/*.krs; do
         "$krs" check --color never ${root:+--root "$root"} "$scene" >"$got" 2>&1
         status=$?
     fi
-    case $scene in */W*) wanted=0 ;; *) wanted=1 ;; esac
+    case $scene in */[WN]*) wanted=0 ;; *) wanted=1 ;; esac
     if [ "${1:-}" = --bless ]; then cp "$got" "${scene%.krs}.err"; fi
 
     passed=yes
     [ $status -eq $wanted ] || { echo "# $scene: status $status, expected $wanted"; passed=no; }
     if ! diff "${scene%.krs}.err" "$got"; then passed=no; fi
-    marks=$(grep -n '//~ ' "$scene" | sed 's/^\([0-9]*\):.*\/\/~ \([EW][0-9]*\).*/\1 \2/')
+    marks=$(grep -n '//~ ' "$scene" | sed 's/^\([0-9]*\):.*\/\/~ \([EWN][0-9]*\).*/\1 \2/')
     while read -r line code; do
         [ -z "$line" ] && continue
         if ! grep -A1 "\[$code\]" "$got" | grep -q -- "--> $scene:$line:"; then
@@ -44,7 +44,7 @@ EOF
 done
 
 # Every code of the table has a scene.
-sed -n 's/^DIAG(\([EW][0-9]*\),.*/\1/p' compiler/base/diag.def >"$got"
+sed -n 's/^DIAG(\([EWN][0-9]*\),.*/\1/p' compiler/base/diag.def >"$got"
 while read -r code; do
     found=no
     for scene in tests/errors/"$code"-*.krs; do

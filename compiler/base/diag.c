@@ -7,6 +7,7 @@
 
 #define SEVERITY_ERROR   DIAG_ERROR
 #define SEVERITY_WARNING DIAG_WARNING
+#define SEVERITY_NOTE    DIAG_NOTE
 
 const DiagInfo diag_info[DIAG_CODE_COUNT] = {
 #define DIAG(code, severity, name, title, explanation) \
@@ -22,6 +23,15 @@ const DiagInfo *diag_find(const char *code)
             return &diag_info[i];
     return NULL;
 }
+
+const char *diag_severity(DiagCode code)
+{
+    static const char *const names[] = {
+        [DIAG_ERROR] = "error", [DIAG_WARNING] = "warning", [DIAG_NOTE] = "note"};
+    return names[diag_info[code].severity];
+}
+
+static bool is_note(const Diag *diag) { return diag_info[diag->code].severity == DIAG_NOTE; }
 
 /* ---- collecting ---- */
 
@@ -45,9 +55,10 @@ bool diags_full(const Diags *diags) { return diags->errors > MOST_DIAGS; }
 
 static Diag *diag_new(Diags *diags, DiagCode code, Span span)
 {
-    bool repeat = is_repeat(diags, code, span), retained = false;
-    if (!repeat) {
-        size_t *count = diag_info[code].severity == DIAG_ERROR ? &diags->errors : &diags->warnings;
+    DiagSeverity severity = diag_info[code].severity;
+    bool         retained = severity == DIAG_NOTE;
+    if (!retained && !is_repeat(diags, code, span)) {
+        size_t *count = severity == DIAG_ERROR ? &diags->errors : &diags->warnings;
         retained      = ++*count <= MOST_DIAGS;
     }
     Diag *diag = retained ? arena_new(diags->arena, Diag) : &diags->scrap;
@@ -98,6 +109,8 @@ void diag_secondary(Diags *diags, Diag *diag, Span span, const char *label)
 
 static bool comes_after(const Diag *a, const Diag *b)
 {
+    if (is_note(a) || is_note(b))
+        return !is_note(a);
     if (a->span.source != b->span.source)
         return a->span.source > b->span.source;
     if (a->span.start != b->span.start)
@@ -105,7 +118,7 @@ static bool comes_after(const Diag *a, const Diag *b)
     return a->span.end > b->span.end;
 }
 
-/* Insertion sort: there are at most 40 diagnostics, and those at one place must keep their
+/* Insertion sort: there are some 40 diagnostics and 100 notes at most, and those at one place must keep their
    order. */
 void diags_sort(Diags *diags)
 {
@@ -201,7 +214,7 @@ void diag_json_one(const Diags *diags, const Diag *diag, Text *out)
     text_add(out, "{");
     json_location(diags, diag->span, out);
     text_format(out, ",\"severity\":%d,\"code\":\"%s\",\"source\":\"krs\",\"message\":",
-                info->severity == DIAG_ERROR ? 1 : 2, info->code);
+                (int)info->severity + 1, info->code);
     text_json(out, diag->message);
     json_related(diags, diag, out);
     json_data(diag, out);

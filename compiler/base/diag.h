@@ -1,5 +1,5 @@
 /*
- * diag.h: diagnostics: errors and warnings for the author of a scene.
+ * diag.h: diagnostics: errors, warnings and notes for the author of a scene.
  *
  * Diagnostics are collected, not printed.  Each has a code (a row of diag.def) and a location, and
  * may have a label, notes and help.  Messages start with a lower-case letter and do not end with
@@ -11,7 +11,7 @@
 #include "compiler/base/source.h"
 #include "compiler/base/text.h"
 
-typedef enum DiagSeverity { DIAG_ERROR, DIAG_WARNING } DiagSeverity;
+typedef enum DiagSeverity { DIAG_ERROR, DIAG_WARNING, DIAG_NOTE } DiagSeverity;
 
 typedef enum DiagCode {
 #define DIAG(code, severity, name, title, explanation) DIAG_##name,
@@ -61,11 +61,11 @@ typedef struct Diags {
     Diag           scrap;            /* takes a diagnostic that is not stored */
 } Diags;
 
-enum { MOST_DIAGS = 20 }; /* errors that are stored at most; as many warnings */
+enum { MOST_DIAGS = 20 }; /* errors that are stored at most; as many warnings.  All notes are */
 
 /* Adds a diagnostic, whose members behind `message` the caller may set.  Never NULL: a diagnostic
    that is not stored goes to `scrap`.  These are all after the first MOST_DIAGS, which are counted,
-   and repeats of a code at one span, which are not. */
+   and repeats of a code at one span, which are not.  Notes may repeat. */
 Diag *diag_add(Diags *diags, DiagCode code, Span span, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 /* Text formatted into the arena of the diagnostics, for labels and help. */
@@ -76,7 +76,8 @@ void        diag_secondary(Diags *diags, Diag *diag, Span span, const char *labe
 /* Whether further errors would not be stored, so that a pass may stop looking for them. */
 bool diags_full(const Diags *diags);
 
-/* Sorts by source, in the order in which sources were read, then by position. */
+/* Sorts by source, in the order in which sources were read, then by position.  Notes come first, in
+   their own order. */
 void diags_sort(Diags *diags);
 
 /* Writes all diagnostics as in language.md, "What an error looks like".  The last line has their
@@ -88,6 +89,8 @@ void diags_print_json(const Diags *diags, Text *out);
 void diag_print_one(const Diags *diags, const Diag *diag, bool color, Text *out);
 void diag_json_one(const Diags *diags, const Diag *diag, Text *out);
 
+/* "error", "warning", "note". */
+const char *diag_severity(DiagCode code);
 /* The row of "E0203", or NULL. */
 const DiagInfo *diag_find(const char *code);
 

@@ -30,7 +30,8 @@ typedef struct Mark {
 typedef struct Excerpt {
     const Diags *diags;
     Text        *out;
-    bool         color, error;
+    bool         color;
+    DiagCode     code;
     int          gutter; /* columns of the largest line number */
     struct {
         Mark  *items;
@@ -138,7 +139,9 @@ static void paint(const Excerpt *excerpt, const char *code)
 
 static void paint_severity(const Excerpt *excerpt)
 {
-    paint(excerpt, excerpt->error ? "1;31" : "1;33");
+    static const char *const colors[] = {
+        [DIAG_ERROR] = "1;31", [DIAG_WARNING] = "1;33", [DIAG_NOTE] = "1;36"};
+    paint(excerpt, colors[diag_info[excerpt->code].severity]);
 }
 
 static void paint_frame(const Excerpt *excerpt) { paint(excerpt, "1;34"); }
@@ -328,8 +331,7 @@ static void draw_help(const Excerpt *excerpt, const Diag *diag)
 static void draw_title(const Excerpt *excerpt, const Diag *diag)
 {
     paint_severity(excerpt);
-    text_add(excerpt->out, excerpt->error ? "error" : "warning");
-    text_format(excerpt->out, "[%s]", diag_info[diag->code].code);
+    text_format(excerpt->out, "%s[%s]", diag_severity(diag->code), diag_info[diag->code].code);
     paint_nothing(excerpt);
     paint(excerpt, "1");
     text_add(excerpt->out, ": ");
@@ -341,7 +343,7 @@ static void draw_title(const Excerpt *excerpt, const Diag *diag)
 void diag_print_one(const Diags *diags, const Diag *diag, bool color, Text *out)
 {
     Excerpt excerpt = {.diags = diags, .out = out, .color = color, .gutter = 1};
-    excerpt.error   = diag_info[diag->code].severity == DIAG_ERROR;
+    excerpt.code    = diag->code;
     add_mark(&excerpt, diag->span, diag->label, true);
     for (size_t i = 0; i < diag->secondary.count; i++)
         add_mark(&excerpt, diag->secondary.items[i].span, diag->secondary.items[i].label, false);

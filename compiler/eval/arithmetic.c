@@ -343,6 +343,8 @@ static Value mismatch(Elaboration *e, const Syntax *syntax, Value a, Value b)
         diag->help = "to join shapes write `a | b`";
     else if (a.type == VALUE_SHAPE && is_scalar(e, b) && syntax->op == TOKEN_STAR)
         diag->help = "to scale a shape write `.scale(2)`";
+    else if ((a.type == VALUE_STRING || b.type == VALUE_STRING) && syntax->op == TOKEN_PLUS)
+        diag->help = "to join texts write `str(a, b)`";
     return value_error();
 }
 

@@ -72,6 +72,7 @@ typedef struct Elaboration {
     Arena        *scratch;
     Diags        *diags;
     Sources      *sources;
+    Names        *names; /* equal strings have equal addresses */
     Graph        *graph;
     Scene        *scene;
     Scope        *library; /* sees the files of the library */
@@ -93,6 +94,7 @@ typedef struct Elaboration {
     bool        hoists; /* numbers of the scene's own text are not those of the shaders' text */
     uint32_t    number_count; /* of such numbers so far */
     uint64_t    steps;        /* of evaluation, so far */
+    uint32_t    printed;      /* notes by `print`, so far */
     uint32_t    depth, calls; /* how deep expressions and calls are nested now */
     Node        rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
     bool        in_material;  /* level, instance, u, v and normal have a meaning */
@@ -360,6 +362,13 @@ Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax);
 
 /* ---- palette.c ---- */
 Value method_color_by(Elaboration *e, const Shape *shape, Call *call);
+
+/* ---- remarks.c: `print`, `assert`, strings ---- */
+/* Prints, or reports a condition that does not hold: then false. */
+bool run_remark(Elaboration *e, const Environment *env, const Syntax *syntax);
+/* A string like those that are written. */
+Value           value_string(Elaboration *e, const char *bytes, size_t length);
+BuiltinFunction builtin_str;
 
 /* ---- properties.c: blocks with properties, and values of those ---- */
 /* Reports properties that a block of this kind may not have, and those that are given twice.  False:

@@ -152,6 +152,12 @@ static bool fits_range(Elaboration *e, const Environment *env, const Function *f
         type_error(e, origin, value, "a number");
         return false;
     }
+    if (value_time(e, value) == TIME_POINT) {
+        point_error(e, origin,
+                    diag_text(e->diags, "`%s` of `%s`, which has a range,", parameter->name,
+                              function->name));
+        return false;
+    }
     found = value.type == VALUE_NUMBER ? (Range){value.number, value.number}
                                        : node_range(e->builder, value_node(e, value), 0);
     if (range.low <= found.low && found.high <= range.high)
@@ -291,6 +297,17 @@ static void blame_caller(Elaboration *e, size_t first, const Syntax *syntax,
     e->diags->count = retained;
 }
 
+/* What a function asserts is about how it is called. */
+static void mark_call(Elaboration *e, size_t first, const Syntax *syntax, const char *name)
+{
+    for (size_t i = first; i < e->diags->count; i++) {
+        Diag *diag = e->diags->items[i];
+        if (diag->code == DIAG_ASSERTION && diag->secondary.count == 0)
+            diag_secondary(e->diags, diag, syntax->span,
+                           diag_text(e->diags, "in this call of `%s`", name));
+    }
+}
+
 /* The value of a body whose parameters `env` binds. */
 static Value call_body(Elaboration *e, const Function *function, const Environment *env, Span span)
 {
@@ -320,6 +337,7 @@ static Value call_values(Elaboration *e, const Function *function, const Value *
     if (bind_parameters(e, function, values, origins, syntax, &env))
         result = call_body(e, function, &env, syntax->span);
     e->calls--;
+    mark_call(e, said, syntax, function->name);
     blame_caller(e, said, syntax, function, values, origins);
     return result;
 }

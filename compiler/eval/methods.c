@@ -36,8 +36,7 @@ static Value moved(Elaboration *e, const Shape *shape, const Map *map, const Cal
 static Value method_move(Elaboration *e, const Shape *shape, Call *call)
 {
     Node by = want_extent(e, shape, call, 0);
-    return by == NODE_NONE ? value_error()
-                           : moved(e, shape, map_translation(e->builder, by), call);
+    return by == NODE_NONE ? value_error() : moved(e, shape, map_translation(e->builder, by), call);
 }
 
 /* Figures turn in their plane: a number alone is the angle, about z. */

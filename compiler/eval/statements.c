@@ -330,6 +330,10 @@ static void run_statement(Elaboration *e, Environment *env, const Syntax *syntax
             sequence->wrong = true;
         break;
     case SYNTAX_IF_STATEMENT: run_if(e, env, syntax, sequence); break;
+    case SYNTAX_REMARK:
+        if (!run_remark(e, env, syntax) && sequence)
+            sequence->wrong = true;
+        break;
     case SYNTAX_SHOW:
         show_one(e, evaluate(e, env, syntax->children[0]), syntax->children[0]);
         break;
@@ -421,6 +425,14 @@ void run_file(Elaboration *e, Scope *scope)
     }
 }
 
+/* What used files say of themselves; their other statements are for whoever shows them. */
+static void run_remarks(Elaboration *e, const Scope *scope)
+{
+    for (uint32_t i = 0; scope->file && i < scope->file->count; i++)
+        if (scope->file->children[i]->kind == SYNTAX_REMARK)
+            run_remark(e, &scope->environment, scope->file->children[i]);
+}
+
 /* Parameters get their slots in the order of the text, whoever needs them first. */
 static void run_params(Elaboration *e, Scope *scope)
 {
@@ -438,6 +450,8 @@ void elaborate(Elaboration *e, const Files *files)
     Scope *scope = e->scopes.items[0];
     for (size_t i = 0; i < e->scopes.count; i++)
         run_params(e, e->scopes.items[i]);
+    for (size_t i = 1; i < e->scopes.count; i++)
+        run_remarks(e, e->scopes.items[i]);
     run_file(e, scope);
     if (e->studio)
         run_studio(e, files);

@@ -36,6 +36,14 @@ static Syntax *parse_use(Parser *p)
     return finish_named(p, SYNTAX_USE, start, first, path);
 }
 
+/* remark_statement = remark ";" ; */
+static Syntax *parse_remark_statement(Parser *p)
+{
+    Syntax *remark = parse_remark(p);
+    expect_semicolon(p, "a `print` or `assert`");
+    return remark;
+}
+
 /* Skips a `;` behind a closing brace, a habit from other languages, with a warning. */
 static bool skip_needless_semicolon(Parser *p)
 {
@@ -146,7 +154,7 @@ static Syntax *no_block_statement(Parser *p)
     return error_node(p);
 }
 
-/* block_statement = let | def | shape | surroundings | show | for | if ; */
+/* block_statement = let | def | shape | surroundings | show | remark_statement | for | if ; */
 static Syntax *parse_block_statement(Parser *p)
 {
     switch (kind_here(p)) {
@@ -160,6 +168,8 @@ static Syntax *parse_block_statement(Parser *p)
     case TOKEN_IMAGE:
     case TOKEN_ZONE: return parse_surroundings(p);
     case TOKEN_SHOW: return parse_show(p);
+    case TOKEN_PRINT:
+    case TOKEN_ASSERT: return parse_remark_statement(p);
     case TOKEN_FOR: return parse_for(p);
     case TOKEN_IF: return parse_if(p);
     default: return no_block_statement(p);
@@ -199,7 +209,7 @@ static Syntax *parse_reflect(Parser *p) { return parse_simple(p, SYNTAX_REFLECT,
 /* mobius = "mobius" expression ";" ; */
 static Syntax *parse_mobius(Parser *p) { return parse_simple(p, SYNTAX_MOBIUS, "a `mobius`"); }
 
-/* krs_statement = kernel | reflect | mobius | let | krs_for | krs_if ; */
+/* krs_statement = kernel | reflect | mobius | let | remark_statement | krs_for | krs_if ; */
 static Syntax *parse_krs_statement(Parser *p)
 {
     if (is_word_here(p, "kernel"))
@@ -210,6 +220,8 @@ static Syntax *parse_krs_statement(Parser *p)
         return parse_mobius(p);
     switch (kind_here(p)) {
     case TOKEN_LET: return parse_let(p);
+    case TOKEN_PRINT:
+    case TOKEN_ASSERT: return parse_remark_statement(p);
     case TOKEN_FOR: return parse_krs_for(p);
     case TOKEN_IF: return parse_krs_if(p);
     default: {
@@ -301,7 +313,7 @@ static Syntax *parse_definition(Parser *p)
     }
 }
 
-/* statement = definition | surroundings | show | use | for | if ; */
+/* statement = definition | surroundings | show | use | remark_statement | for | if ; */
 static Syntax *parse_statement(Parser *p)
 {
     switch (kind_here(p)) {
@@ -318,6 +330,8 @@ static Syntax *parse_statement(Parser *p)
     case TOKEN_ZONE: return parse_surroundings(p);
     case TOKEN_SHOW: return parse_show(p);
     case TOKEN_USE: return parse_use(p);
+    case TOKEN_PRINT:
+    case TOKEN_ASSERT: return parse_remark_statement(p);
     case TOKEN_FOR: return parse_for(p);
     case TOKEN_IF: return parse_if(p);
     case TOKEN_RIGHT_BRACE: return stray_brace(p);

@@ -26,6 +26,20 @@ static Syntax *parse_let_in(Parser *p)
     return finish_named(p, SYNTAX_LET_IN, start, first, name);
 }
 
+/* remark_in = remark "in" expression ; */
+static Syntax *parse_remark_in(Parser *p)
+{
+    enter(p);
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    add_child(p, parse_remark(p));
+    expect(p, TOKEN_IN, "`in` after a `print` or `assert` within an expression",
+           "for example `assert(r > 0, \"a radius\") in sphere(r)`");
+    add_child(p, parse_expression(p));
+    leave(p);
+    return finish(p, SYNTAX_REMARK_IN, start, first, NULL);
+}
+
 /* if_then_else = "if" expression "then" expression "else" expression ; */
 static Syntax *parse_if_then_else(Parser *p)
 {
@@ -207,11 +221,13 @@ static Syntax *parse_or(Parser *p)
     return parse_left(p, parse_and, TOKEN_OR, TOKEN_OR, TOKEN_OR);
 }
 
-/* expression = let_in | if_then_else | or ; */
+/* expression = let_in | remark_in | if_then_else | or ; */
 Syntax *parse_expression(Parser *p)
 {
     switch (kind_here(p)) {
     case TOKEN_LET: return parse_let_in(p);
+    case TOKEN_PRINT:
+    case TOKEN_ASSERT: return parse_remark_in(p);
     case TOKEN_IF: return parse_if_then_else(p);
     default: return parse_or(p);
     }
@@ -275,6 +291,21 @@ static void parse_arguments(Parser *p)
     }
     expect_closer(p, TOKEN_RIGHT_PAREN, opener, "`,` or `)` after an argument");
     leave(p);
+}
+
+/* remark = ( "print" | "assert" ) arguments ; */
+Syntax *parse_remark(Parser *p)
+{
+    Span         start = token_here(p)->span;
+    size_t       first = begin_children(p);
+    const Token *word  = advance(p);
+    if (kind_here(p) == TOKEN_LEFT_PAREN)
+        parse_arguments(p);
+    else
+        expected(p, "`(`")->help = "for example `print(\"the radius is\", r);`";
+    Syntax *remark = finish(p, SYNTAX_REMARK, start, first, NULL);
+    remark->op     = word->kind;
+    return remark;
 }
 
 /* call = arguments ; */
@@ -433,7 +464,7 @@ static Syntax *no_expression(Parser *p)
     TokenKind found   = kind_here(p);
     bool      keyword = token_is_statement_word(found) && !begins_declaration(p);
     Diag     *diag    = expected(p, "an expression");
-    if (found == TOKEN_IF || found == TOKEN_LET || found == TOKEN_NOT)
+    if (found == TOKEN_IF || found == TOKEN_NOT || may_be_within_expression(found))
         diag->help = "put it in parentheses, as in `1 + (if a < b then a else b)`";
     else if (found == TOKEN_PLUS)
         diag->help = "a positive number has no sign";

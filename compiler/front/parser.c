@@ -73,12 +73,18 @@ static bool begins_line(const Parser *p)
     return memchr(p->text + end, '\n', token_here(p)->span.start - end) != NULL;
 }
 
+bool may_be_within_expression(TokenKind kind)
+{
+    return kind == TOKEN_LET || kind == TOKEN_PRINT || kind == TOKEN_ASSERT;
+}
+
 bool begins_declaration(const Parser *p)
 {
     TokenKind kind = token_here(p)->kind, before = token_before(p)->kind;
     bool      free = before == TOKEN_SEMICOLON || before == TOKEN_RIGHT_BRACE || begins_line(p);
-    return token_is_statement_word(kind) && kind != TOKEN_LET && kind != TOKEN_KRS && free &&
-           kind_at(p, p->here.at + 1) != TOKEN_COLON && before != TOKEN_DOT;
+    bool      statement = token_is_statement_word(kind) && !may_be_within_expression(kind);
+    return statement && kind != TOKEN_KRS && free && kind_at(p, p->here.at + 1) != TOKEN_COLON &&
+           before != TOKEN_DOT;
 }
 
 /* Whether a brace is closed anywhere.  This reads up to the end of the file, but only after a
@@ -278,14 +284,14 @@ bool block_is_left(const Parser *p, size_t opener, BlockKind kind)
     return (kind == KRS_BLOCK || !fits) && !brace_is_closed(p, opener);
 }
 
-/* Whether recovery may end here, because a statement begins.  `let`, `for` and `if` may also begin
-   parts of expressions.  So they must begin a line, outside of brackets opened after `start`. */
+/* Whether recovery may end here, because a statement begins.  Words like `let` may also begin parts
+   of expressions.  So they must begin a line, outside of brackets opened after `start`. */
 static bool may_resume(const Parser *p, Level start)
 {
     TokenKind kind = token_here(p)->kind;
     if (begins_declaration(p))
         return begins_line(p) || p->here.braces <= start.braces;
-    bool flexible = kind == TOKEN_LET || kind == TOKEN_FOR || kind == TOKEN_IF;
+    bool flexible = may_be_within_expression(kind) || kind == TOKEN_FOR || kind == TOKEN_IF;
     return flexible && begins_line(p) && p->here.brackets <= start.brackets;
 }
 

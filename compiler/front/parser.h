@@ -59,6 +59,8 @@ bool is_label(const Parser *p);
 bool is_word_here(const Parser *p, const char *word);
 /* Whether the current token begins a statement that cannot be part of an expression. */
 bool begins_declaration(const Parser *p);
+/* Whether a word begins statements and parts of expressions: `let`, `print`, `assert`. */
+bool may_be_within_expression(TokenKind kind);
 
 /* ---- errors ---- */
 /* Reports a mistake without failing; after a failure it is not stored. */
@@ -102,6 +104,7 @@ Syntax *error_node(Parser *p);
 /* ---- rules that other files use ---- */
 Syntax *parse_expression(Parser *p);
 Syntax *parse_krs(Parser *p);
+Syntax *parse_remark(Parser *p);
 Syntax *parse_let(Parser *p);
 Syntax *parse_def(Parser *p);
 Syntax *parse_param(Parser *p);

@@ -21,6 +21,7 @@ const char *syntax_kind_name(SyntaxKind kind)
         [SYNTAX_BINARY]        = "binary",
         [SYNTAX_IF]            = "if then else",
         [SYNTAX_LET_IN]        = "let in",
+        [SYNTAX_REMARK_IN]     = "remark in",
         [SYNTAX_CALL]          = "call",
         [SYNTAX_METHOD]        = "method",
         [SYNTAX_ARGUMENT]      = "argument",
@@ -41,6 +42,7 @@ const char *syntax_kind_name(SyntaxKind kind)
         [SYNTAX_ZONE]          = "zone",
         [SYNTAX_PROPERTY]      = "property",
         [SYNTAX_SHOW]          = "show",
+        [SYNTAX_REMARK]        = "remark",
         [SYNTAX_USE]           = "use",
         [SYNTAX_FOR]           = "for",
         [SYNTAX_IF_STATEMENT]  = "if",
@@ -64,6 +66,7 @@ static void print_content(const Syntax *syntax, Text *out)
         text_add(out, " ");
         text_json(out, syntax->name);
         return;
+    case SYNTAX_REMARK:
     case SYNTAX_UNARY:
     case SYNTAX_BINARY: text_format(out, " %s", token_kind_text(syntax->op)); break;
     default: break;

@@ -29,19 +29,20 @@ typedef enum SyntaxKind {
     SYNTAX_BINARY,        /* -      [0] left, [1] right; op; name_span is the operator's */
     SYNTAX_IF,            /* -      [0] condition, [1] then, [2] else */
     SYNTAX_LET_IN,        /* name   [0] value, [1] body */
+    SYNTAX_REMARK_IN,     /* -      [0] REMARK, [1] body */
     SYNTAX_CALL,          /* -      [0] callee, [1..] ARGUMENT */
     SYNTAX_METHOD,        /* name   [0] receiver, [1..] ARGUMENT; parentheses may be missing */
     SYNTAX_ARGUMENT,      /* name?  [0] value; name NULL when positional */
     SYNTAX_INDEX,         /* -      [0] list, [1] index */
-    SYNTAX_KRS,           /* -      statements: KERNEL REFLECT MOBIUS LET FOR IF_STATEMENT */
+    SYNTAX_KRS,           /* -      statements: KERNEL REFLECT MOBIUS LET REMARK FOR IF_STATEMENT */
     /* statements */
-    SYNTAX_BLOCK,        /* -      statements (of a `for` or `if`, and of the whole file) */
-    SYNTAX_LET,          /* name   [0] value */
-    SYNTAX_DEF,          /* name   [0..n-2] PARAMETER, [n-1] body; doc */
-    SYNTAX_PARAMETER,    /* name   [0] default, [1] range (any expression); no [1], or no child */
-    SYNTAX_PARAM,        /* name   [0] default, [1] range (any expression), or no [1] */
-    SYNTAX_SHAPE,        /* name   PARAMETER..., PROPERTY...; doc */
-    SYNTAX_MATERIAL,     /* name   PARAMETER..., PROPERTY...; number[0] is 1 if it has a list of parameters */
+    SYNTAX_BLOCK,     /* -      statements (of a `for` or `if`, and of the whole file) */
+    SYNTAX_LET,       /* name   [0] value */
+    SYNTAX_DEF,       /* name   [0..n-2] PARAMETER, [n-1] body; doc */
+    SYNTAX_PARAMETER, /* name   [0] default, [1] range (any expression); no [1], or no child */
+    SYNTAX_PARAM,     /* name   [0] default, [1] range (any expression), or no [1] */
+    SYNTAX_SHAPE,     /* name   PARAMETER..., PROPERTY...; doc */
+    SYNTAX_MATERIAL, /* name   PARAMETER..., PROPERTY...; number[0] is 1 if it has a list of parameters */
     SYNTAX_CAMERA,       /* name?  PROPERTY... */
     SYNTAX_LIGHT,        /* name?  PROPERTY... */
     SYNTAX_SKY,          /* -      PROPERTY... */
@@ -50,6 +51,7 @@ typedef enum SyntaxKind {
     SYNTAX_ZONE,         /* -      PROPERTY... */
     SYNTAX_PROPERTY,     /* name   [0] value */
     SYNTAX_SHOW,         /* -      [0] value */
+    SYNTAX_REMARK,       /* -      ARGUMENT...; op is TOKEN_PRINT or TOKEN_ASSERT */
     SYNTAX_USE,          /* path   none; the name is the path */
     SYNTAX_FOR,          /* name   [0] the list, [1] BLOCK */
     SYNTAX_IF_STATEMENT, /* -      [0] condition, [1] BLOCK, [2] BLOCK, IF_STATEMENT, or none */

@@ -175,7 +175,7 @@ run explain e0101
 [ "$status" -eq 0 ] && cmp -s upper out
 result $? "a code in small letters, too"
 run explain
-[ "$status" -eq 0 ] && [ "$(grep -c '^[EW][0-9][0-9][0-9][0-9]  ' out)" -eq "$(wc -l <out)" ]
+[ "$status" -eq 0 ] && [ "$(grep -c '^[EWN][0-9][0-9][0-9][0-9]  ' out)" -eq "$(wc -l <out)" ]
 result $? "all diagnostics are listed"
 run validate --points 4000 ball.krs
 [ "$status" -eq 0 ] && grep -q 'balls are empty; .* agrees' out &&

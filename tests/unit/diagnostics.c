@@ -193,8 +193,8 @@ static void codes_are_found(void **state)
     assert_ptr_equal(diag_find("E0312"), &diag_info[DIAG_NEEDS_PLANE]);
     assert_null(diag_find("E9999"));
     for (size_t i = 0; i < DIAG_CODE_COUNT; i++) {
-        bool error = diag_info[i].code[0] == 'E';
-        assert_int_equal(diag_info[i].severity, error ? DIAG_ERROR : DIAG_WARNING);
+        static const char letters[] = {[DIAG_ERROR] = 'E', [DIAG_WARNING] = 'W', [DIAG_NOTE] = 'N'};
+        assert_int_equal(diag_info[i].code[0], letters[diag_info[i].severity]);
     }
 }
 
