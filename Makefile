@@ -37,7 +37,7 @@ SHAPE    := $(addprefix compiler/shape/, box.c reach.c cover.c map.c moebius.c b
 LOWER    := $(addprefix compiler/lower/, context.c box_distance.c surface.c join.c crowd_table.c crowd_functions.c crowd_find.c crowd.c normal.c map_chain.c \
                 guards.c ray_images.c ray_step.c lower.c)
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
-EVAL     := $(addprefix compiler/eval/, scope.c forget.c expression.c arithmetic.c reports.c units.c arguments.c components.c builtins.c lists.c \
+EVAL     := $(addprefix compiler/eval/, scope.c forget.c expression.c arithmetic.c reports.c units.c arguments.c components.c records.c data.c csv.c json.c builtins.c lists.c \
                 random.c functions.c csg.c fractal.c declare.c claims.c empty.c methods.c properties.c \
                 material.c view.c palette.c remarks.c statements.c shown.c studio.c hull.c)
 PRINT    := $(addprefix compiler/print/, frame_values.c lines.c signatures.c helpers.c mirrors.c statements.c \

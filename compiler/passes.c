@@ -103,12 +103,12 @@ KrsStatus pass_elaborate(Compilation *c)
                             .scratch = &c->scratch,
                             .diags   = &c->diags,
                             .sources = &c->sources,
-                            .names   = c->files.names,
+                            .files   = &c->files,
                             .graph   = graph,
                             .scene   = &c->elaborated,
                             .studio  = c->options->studio,
                             .hoists  = hoists(c)};
-    elaborate(&e, &c->files);
+    elaborate(&e);
     graph_drop_older(graph);
     if (!c->request->inspect) {
         arena_free(&c->syntax);

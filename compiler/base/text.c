@@ -98,6 +98,32 @@ void text_number(Text *text, double number)
     add_with_point(text, printed);
 }
 
+/* strtod gets the digits and an exponent, but no decimal point: which character that is depends on
+   the locale. */
+double text_decimal(Text *scratch, const char *bytes, size_t length)
+{
+    const long most     = 100000000; /* exceeds the number of digits in any file */
+    long       exponent = 0;
+    bool       fraction = false; /* the digits are behind the decimal point */
+    scratch->length     = 0;
+    for (size_t i = 0; i < length; i++) {
+        char c = bytes[i];
+        if (c == 'e' || c == 'E') {
+            long written = strtol(bytes + i + 1, NULL, 10);
+            exponent += written > most ? most : written < -most ? -most : written;
+            break;
+        }
+        if (c >= '0' && c <= '9') {
+            text_add_bytes(scratch, &c, 1);
+            exponent -= fraction;
+        }
+        fraction = fraction || c == '.';
+    }
+    if (exponent != 0)
+        text_format(scratch, "e%ld", exponent);
+    return strtod(scratch->bytes, NULL);
+}
+
 /* ---- JSON ---- */
 
 /* The length of a UTF-8 character by its first byte, or 0. */

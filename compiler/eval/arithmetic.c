@@ -92,6 +92,7 @@ const char *value_type_name(Elaboration *e, Value value)
     case VALUE_NUMBER: return "a number";
     case VALUE_BOOLEAN: return "a truth value";
     case VALUE_STRING: return "a string";
+    case VALUE_RECORD: return "a record";
     case VALUE_FUNCTION: return function_type_name(value.function);
     case VALUE_SHAPE: return "a shape";
     case VALUE_MAP: return "a map of space";

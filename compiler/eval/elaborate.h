@@ -72,7 +72,7 @@ typedef struct Elaboration {
     Arena        *scratch;
     Diags        *diags;
     Sources      *sources;
-    Names        *names; /* equal strings have equal addresses */
+    Files        *files; /* with the names that equal strings share, and data that is read */
     Graph        *graph;
     Scene        *scene;
     Scope        *library; /* sees the files of the library */
@@ -110,13 +110,13 @@ struct Declaration {
 /* Whether a limit was reached: everything is an error from here, silently. */
 static inline bool is_stopped(const Elaboration *e) { return e->builder->stopped; }
 
-/* Evaluates the first of the files, whose names have been checked, into e->scene; e->scene is
+/* Evaluates the first of e->files, whose names have been checked, into e->scene; e->scene is
    complete unless e->diags has errors. */
-void elaborate(Elaboration *e, const Files *files);
+void elaborate(Elaboration *e);
 
 /* ---- scope.c ---- */
-/* Makes e->scopes of the files, and e->library of those that every scene sees. */
-void scopes_make(Elaboration *e, const Files *files);
+/* Makes e->scopes of e->files, and e->library of those that every scene sees. */
+void scopes_make(Elaboration *e);
 /* A definition of the file or of the files that it uses, or NULL. */
 Definition *scope_find(const Scope *scope, const char *name);
 
@@ -127,6 +127,8 @@ static const double MOST_EXTENT = 1e12;
 /* ---- expression.c ---- */
 /* Of one list. */
 enum { MOST_ELEMENTS = 4 * 1000 * 1000 };
+/* Counts steps of evaluation; false when a limit is reached (reported once). */
+bool count_steps(Elaboration *e, uint64_t count, Span span);
 /* VALUE_ERROR: a mistake was found, and has been reported. */
 Value evaluate(Elaboration *e, const Environment *env, const Syntax *syntax);
 /* A list's elements in turn: of a SYNTAX_RANGE without making the list.  False: reported. */
@@ -356,6 +358,14 @@ void warn_if_nothing_is_left(Elaboration *e, const Shape *shape, const char *nam
 bool is_component(const Elaboration *e, Value value, const Syntax *syntax);
 /* A number, or a vector of as many components as the name has letters. */
 Value value_components(Elaboration *e, const Syntax *syntax, Value vector);
+
+/* ---- records.c ---- */
+Value value_record(Elaboration *e, const Value *names, const Value *values, size_t count);
+/* What stands under a name, which is written at `span`. */
+Value record_member(Elaboration *e, const Record *record, const char *name, Span span);
+
+/* ---- data.c: files of data ---- */
+BuiltinFunction builtin_read_csv, builtin_read_json;
 
 /* ---- methods.c ---- */
 Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax);

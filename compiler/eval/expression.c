@@ -19,10 +19,10 @@ static Value limit_reached(Elaboration *e, Span span, const char *message)
     return value_error();
 }
 
-/* Counts a step of evaluation; false when a limit is reached (reported once). */
-static bool step(Elaboration *e, Span span)
+bool count_steps(Elaboration *e, uint64_t count, Span span)
 {
-    if (!is_stopped(e) && ++e->steps > MOST_STEPS)
+    e->steps += count;
+    if (!is_stopped(e) && e->steps > MOST_STEPS)
         limit_reached(e, span, "the scene takes more than 200 million steps to elaborate");
     if (!is_stopped(e) && e->graph->count - e->builder->nodes_before > MOST_NODES)
         limit_reached(e, span, "the expressions of a shape have more than 500,000 operations");
@@ -113,7 +113,7 @@ static bool each_of_range(Elaboration *e, const Environment *env, const Syntax *
         return false;
     }
     for (uint32_t i = 0; from + i < to; i++)
-        if (!step(e, syntax->span) || !each(e, value_number(from + i), user))
+        if (!count_steps(e, 1, syntax->span) || !each(e, value_number(from + i), user))
             return false;
     return true;
 }
@@ -131,7 +131,7 @@ bool evaluate_each(Elaboration *e, const Environment *env, const Syntax *syntax,
         return false;
     }
     for (size_t i = 0; i < value.list->count; i++)
-        if (!step(e, syntax->span) || !each(e, value.list->items[i], user))
+        if (!count_steps(e, 1, syntax->span) || !each(e, value.list->items[i], user))
             return false;
     return true;
 }
@@ -229,10 +229,23 @@ static Value evaluate_if(Elaboration *e, const Environment *env, const Syntax *s
     return value_select(e, syntax, condition, yes, no);
 }
 
+static Value index_record(Elaboration *e, const Environment *env, const Syntax *syntax,
+                          const Record *record)
+{
+    const Syntax *index = syntax->children[1];
+    Value         name  = evaluate(e, env, index);
+    if (name.type == VALUE_STRING)
+        return record_member(e, record, name.string, index->span);
+    type_error(e, index, name, "the name of a member, a string");
+    return value_error();
+}
+
 static Value evaluate_index(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     Value  list = evaluate(e, env, syntax->children[0]);
     double index;
+    if (list.type == VALUE_RECORD)
+        return index_record(e, env, syntax, list.record);
     if (list.type == VALUE_ERROR ||
         !constant_number(e, env, syntax->children[1], "an index", &index))
         return value_error();
@@ -340,7 +353,7 @@ static Value evaluate_inner(Elaboration *e, const Environment *env, const Syntax
 
 Value evaluate(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    if (!step(e, syntax->span))
+    if (!count_steps(e, 1, syntax->span))
         return value_error();
     if (e->depth >= MOST_DEPTH)
         return limit_reached(e, syntax->span,

@@ -451,6 +451,8 @@ Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax)
         return receiver;
     if (receiver.type == VALUE_MAP && strcmp(syntax->name, "inverse") == 0 && syntax->count == 1)
         return value_map(map_inverse(e->builder, receiver.map));
+    if (receiver.type == VALUE_RECORD && syntax->count == 1)
+        return record_member(e, receiver.record, syntax->name, syntax->name_span);
     if (is_component(e, receiver, syntax))
         return value_components(e, syntax, receiver);
     for (size_t i = 0; receiver.type == VALUE_SHAPE && i < METHOD_COUNT; i++) {

@@ -58,6 +58,20 @@ static void add_string(Text *text, const char *string, bool quoted)
         text_add(text, string);
 }
 
+static void add_value(Elaboration *e, Text *text, Value value, bool quoted, size_t most);
+
+static void add_record(Elaboration *e, Text *text, const Record *record, size_t most)
+{
+    text_add(text, "{");
+    for (size_t i = 0; i < record->count && text->length <= most; i++) {
+        text_add(text, i ? ", " : "");
+        text_json(text, record->names[i].string);
+        text_add(text, ": ");
+        add_value(e, text, record->values[i], true, most);
+    }
+    text_add(text, "}");
+}
+
 /* Adds a value; nothing more once the text is longer than `most`. */
 static void add_value(Elaboration *e, Text *text, Value value, bool quoted, size_t most)
 {
@@ -69,6 +83,7 @@ static void add_value(Elaboration *e, Text *text, Value value, bool quoted, size
     case VALUE_STRING: add_string(text, value.string, quoted); break;
     case VALUE_EXPRESSION: add_range(e, text, value); break;
     case VALUE_SHAPE: add_shape(text, value.shape); break;
+    case VALUE_RECORD: add_record(e, text, value.record, most); break;
     case VALUE_LIST:
         text_add(text, "[");
         for (size_t i = 0; i < value.list->count && text->length <= most; i++) {
@@ -110,7 +125,7 @@ Value builtin_str(Elaboration *e, Call *call)
 
 Value value_string(Elaboration *e, const char *bytes, size_t length)
 {
-    return (Value){.type = VALUE_STRING, .string = name_intern(e->names, bytes, length)};
+    return (Value){.type = VALUE_STRING, .string = name_intern(e->files->names, bytes, length)};
 }
 
 /* ---- remarks ---- */

@@ -58,9 +58,10 @@ static Scope *scope_new(Elaboration *e, const Syntax *file)
     return scope;
 }
 
-void scopes_make(Elaboration *e, const Files *files)
+void scopes_make(Elaboration *e)
 {
-    e->library = scope_new(e, NULL);
+    const Files *files = e->files;
+    e->library         = scope_new(e, NULL);
     for (size_t i = 0; i < files->count; i++) {
         Scope *scope = scope_new(e, files->items[i]->syntax);
         define_all(e, scope);

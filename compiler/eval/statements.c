@@ -443,10 +443,10 @@ static void run_params(Elaboration *e, Scope *scope)
     }
 }
 
-void elaborate(Elaboration *e, const Files *files)
+void elaborate(Elaboration *e)
 {
     e->rounding = NODE_NONE;
-    scopes_make(e, files);
+    scopes_make(e);
     Scope *scope = e->scopes.items[0];
     for (size_t i = 0; i < e->scopes.count; i++)
         run_params(e, e->scopes.items[i]);
@@ -454,7 +454,7 @@ void elaborate(Elaboration *e, const Files *files)
         run_remarks(e, e->scopes.items[i]);
     run_file(e, scope);
     if (e->studio)
-        run_studio(e, files);
+        run_studio(e, e->files);
     gather_shown(e);
     e->scene->box = box_empty;
     for (size_t i = 0; i < e->scene->components.count; i++)

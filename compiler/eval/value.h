@@ -17,7 +17,8 @@ typedef enum ValueType {
     VALUE_BOOLEAN,
     VALUE_EXPRESSION, /* a number, vector or truth value that is not known at compile time */
     VALUE_STRING,
-    VALUE_LIST, /* 2 to 4 numbers are a vector; 3 also a colour */
+    VALUE_RECORD, /* values with names, from JSON */
+    VALUE_LIST,   /* 2 to 4 numbers are a vector; 3 also a colour */
     VALUE_FUNCTION,
     VALUE_SHAPE,
     VALUE_MAP,
@@ -26,6 +27,7 @@ typedef enum ValueType {
 
 typedef struct Value    Value;
 typedef struct List     List;
+typedef struct Record   Record;
 typedef struct Function Function;
 
 /* A `def`, a shape declaration, or a built-in function, with the names it can see. */
@@ -46,6 +48,7 @@ struct Value {
         Node            node;
         const char     *string;
         const List     *list;
+        const Record   *record;
         const Function *function;
         const Shape    *shape;
         const Map      *map;
@@ -60,6 +63,11 @@ struct List {
     BindingTime time;  /* the latest of its elements' */
     size_t      total; /* of elements, those of lists in it counted as often as they occur;
                           SIZE_MAX: that or more */
+};
+
+struct Record {
+    size_t       count;
+    const Value *names, *values; /* names are strings */
 };
 
 /* A list that grows. */

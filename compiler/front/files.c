@@ -103,16 +103,29 @@ static const char *read_library(const char *path, size_t *length)
     return NULL;
 }
 
-static void refuse_used(Files *files, const Syntax *use, const char *path, const Loaded *text)
+static void refuse(Files *files, Span place, const char *path, const Loaded *text,
+                   const char *label)
 {
     Diag *diag  = text->outside
-                      ? diag_add(files->diags, DIAG_OUTSIDE_ROOT, use->name_span,
+                      ? diag_add(files->diags, DIAG_OUTSIDE_ROOT, place,
                                  "`%s` is outside of the folder that scenes may read from", path)
-                      : diag_add(files->diags, DIAG_CANNOT_READ, use->name_span,
-                                 "cannot read `%s`: %s", path, text->reason);
-    diag->label = "used here";
+                      : diag_add(files->diags, DIAG_CANNOT_READ, place, "cannot read `%s`: %s", path,
+                                 text->reason);
+    diag->label = label;
     if (!text->outside)
         explain_file(files->diags, diag, path);
+}
+
+/* Whether one more text may be added; false: reported. */
+static bool check_length(Files *files, size_t length, Span place)
+{
+    files->bytes += length;
+    if (length <= MOST_SOURCE_BYTES && files->bytes <= MOST_TOTAL_BYTES &&
+        files->count + files->data.count < MOST_FILES)
+        return true;
+    diag_add(files->diags, DIAG_LIMIT, place,
+             "too much text: a file may have 16 MiB, all together 64 MiB in 1,024 files");
+    return false;
 }
 
 /* Adds a used file; NULL if it cannot be read, which is then reported. */
@@ -125,18 +138,13 @@ static File *load_text(Files *files, const Syntax *use, const char *path)
     else
         text = loader_read(files->loader, path);
     if (!text.text) {
-        refuse_used(files, use, path, &text);
+        refuse(files, use->name_span, path, &text, "used here");
         return NULL;
     }
-    files->bytes += text.length;
-    if (text.length <= MOST_SOURCE_BYTES && files->bytes <= MOST_TOTAL_BYTES &&
-        files->count < MOST_FILES) {
+    if (check_length(files, text.length, use->name_span)) {
         bool     library = names_library(use);
         uint32_t source  = source_add(files->sources, path, text.text, text.length, library);
         file             = add_file(files, resolve_path(files, "", path), source, false);
-    } else {
-        diag_add(files->diags, DIAG_LIMIT, use->name_span,
-                 "too much text: a file may have 16 MiB, all together 64 MiB in 1,024 files");
     }
     free(text.owned);
     return file;
@@ -191,6 +199,41 @@ static void load_all_used(Files *files, File *file)
 }
 
 void files_load_used(Files *files) { load_all_used(files, files->items[0]); }
+
+/* ---- data ---- */
+
+static const char *path_of(const Files *files, uint32_t source)
+{
+    for (size_t i = 0; i < files->count; i++)
+        if (files->items[i]->source == source)
+            return files->items[i]->path;
+    return "";
+}
+
+/* 0: reported. */
+static uint32_t read_data(Files *files, const char *path, Span place)
+{
+    Loaded   text   = loader_read(files->loader, path);
+    uint32_t source = 0;
+    if (!text.text)
+        refuse(files, place, path, &text, "read here");
+    else if (check_length(files, text.length, place))
+        source = source_add(files->sources, path, text.text, text.length, false);
+    free(text.owned);
+    return source;
+}
+
+/* A file is read once, also one that cannot be read. */
+uint32_t files_load_data(Files *files, uint32_t from, const char *name, Span place)
+{
+    const char *path = resolve_path(files, path_of(files, from), name);
+    for (size_t i = 0; i < files->data.count; i++)
+        if (strcmp(files->data.items[i].path, path) == 0)
+            return files->data.items[i].source;
+    DataFile file = {path, read_data(files, path, place)};
+    array_push(files->arena, &files->data, file);
+    return file.source;
+}
 
 /* ---- names ---- */
 

@@ -26,6 +26,12 @@ typedef struct File {
     } used; /* in the order of its `use` statements; there are no cycles */
 } File;
 
+/* A file that is no scene. */
+typedef struct DataFile {
+    const char *path;
+    uint32_t    source;
+} DataFile;
+
 /* All files: first the scene's own, then those of the library that every scene sees, then the used
    ones in the order in which they were read. */
 typedef struct Files {
@@ -38,7 +44,11 @@ typedef struct Files {
     Diags        *diags;
     Names        *names;
     Sources      *sources;
-    const Loader *loader; /* reads the files that `use` statements name */
+    const Loader *loader; /* reads the files that a scene names */
+    struct {
+        DataFile *items;
+        size_t    count, capacity;
+    } data; /* that was read */
 } Files;
 
 /* Adds the scene, whose text is given, and the files of the library. */
@@ -48,6 +58,9 @@ void files_lex(Files *files);
 void files_parse(Files *files);
 /* Reads the files that the scene uses, directly or through others.  Mistakes are reported. */
 void files_load_used(Files *files);
+/* The number of the source with the text of a file that source `from` reads, named at `place`; 0: it
+   cannot be read, which is reported. */
+uint32_t files_load_data(Files *files, uint32_t from, const char *name, Span place);
 /* Checks the names of each file (names.h); those in `builtin` need no definition. */
 void files_check_names(Files *files, const char *const *builtin, size_t count);
 

@@ -17,33 +17,6 @@ static void skip_digits(Lexer *lexer)
         lexer->at++;
 }
 
-/* The value of a decimal number.  strtod gets its digits and an exponent, but no decimal point:
-   which character that is depends on the locale. */
-static double read_decimal(Lexer *lexer, uint32_t start)
-{
-    Text      *digits   = &lexer->scratch;
-    const long most     = 100000000; /* exceeds the number of digits in any file */
-    long       exponent = 0;
-    bool       fraction = false; /* the digits are behind the decimal point */
-    digits->length      = 0;
-    for (uint32_t i = start; i < lexer->at; i++) {
-        char c = lexer->text[i];
-        if (c == 'e') {
-            long written = strtol(lexer->text + i + 1, NULL, 10);
-            exponent += written > most ? most : written < -most ? -most : written;
-            break;
-        }
-        if (is_digit(c)) {
-            text_add_bytes(digits, &c, 1);
-            exponent -= fraction;
-        }
-        fraction = fraction || c == '.';
-    }
-    if (exponent != 0)
-        text_format(digits, "e%ld", exponent);
-    return strtod(digits->bytes, NULL);
-}
-
 static void bad_number(Lexer *lexer, uint32_t start, const char *message, const char *help,
                        const char *instead)
 {
@@ -105,6 +78,11 @@ static double read_unit(Lexer *lexer, uint32_t start, double number)
     return number;
 }
 
+static double decimal(Lexer *lexer, uint32_t start)
+{
+    return text_decimal(&lexer->scratch, lexer->text + start, lexer->at - start);
+}
+
 void lex_number(Lexer *lexer)
 {
     uint32_t start  = lexer->at;
@@ -118,7 +96,7 @@ void lex_number(Lexer *lexer)
     } else {
         skip_digits(lexer);
         if (skip_fraction(lexer, start))
-            number = read_unit(lexer, start, read_decimal(lexer, start));
+            number = read_unit(lexer, start, decimal(lexer, start));
     }
     while (is_word(peek(lexer, 0))) /* there are letters left after a mistake only */
         lexer->at++;

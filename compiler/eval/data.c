@@ -1,0 +1,158 @@
+/*
+ * data.c: `read_csv` and `read_json`, and what both have in common.
+ */
+#include "compiler/eval/data.h"
+
+#include <math.h>
+#include <string.h>
+
+static bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/* ---- mistakes ---- */
+
+Diag *data_error(DataText *data, uint32_t start, uint32_t end, const char *message)
+{
+    Diags *diags = data->e->diags;
+    Diag  *diag  = diag_add(diags, DIAG_BAD_DATA, (Span){data->source, start, end}, "%s", message);
+    diag_secondary(diags, diag, data->call->span, "read here");
+    return diag;
+}
+
+bool data_push(DataText *data, Values *values, Value value)
+{
+    if (++data->values > MOST_ELEMENTS) {
+        Diag *diag  = diag_add(data->e->diags, DIAG_LIMIT, data->call->span,
+                               "a file of more than 4 million values");
+        diag->label = "read here";
+        return false;
+    }
+    array_push_large(data->e->arena, values, value);
+    return true;
+}
+
+/* ---- numbers and strings ---- */
+
+static uint32_t skip_digits(const DataText *data, uint32_t at)
+{
+    while (is_digit(data->text[at]))
+        at++;
+    return at;
+}
+
+/* Where an exponent that begins at a place ends; the same place without one. */
+static uint32_t skip_exponent(const DataText *data, uint32_t at)
+{
+    uint32_t sign = data->text[at] == 'e' || data->text[at] == 'E' ? at + 1 : at;
+    if (sign == at)
+        return at;
+    uint32_t digits = sign + (data->text[sign] == '-' || data->text[sign] == '+');
+    uint32_t end    = skip_digits(data, digits);
+    return end > digits ? end : at;
+}
+
+uint32_t data_number_length(const DataText *data, uint32_t start, bool strict)
+{
+    const char *text  = data->text;
+    uint32_t    whole = start + (text[start] == '-' || (!strict && text[start] == '+'));
+    uint32_t    end   = skip_digits(data, whole);
+    uint32_t    count = end - whole, behind = 0;
+    if (strict && count > 1 && text[whole] == '0')
+        return 0;
+    if (text[end] == '.') {
+        uint32_t last = skip_digits(data, end + 1);
+        behind        = last - end - 1;
+        if (behind > 0 || !strict)
+            end = last;
+    }
+    if (strict ? count == 0 : count + behind == 0)
+        return 0;
+    return skip_exponent(data, end) - start;
+}
+
+Value data_number(DataText *data, uint32_t start, uint32_t end)
+{
+    bool     minus = data->text[start] == '-', sign = minus || data->text[start] == '+';
+    uint32_t first  = start + sign;
+    double   number = text_decimal(&data->scratch, data->text + first, end - first);
+    if (isinf(number)) {
+        data_error(data, start, end, "a number that is too large")->help =
+            "the largest is about 1.8e308";
+        return value_error();
+    }
+    return value_authored(data->e, value_number(minus ? -number : number));
+}
+
+Value data_string(DataText *data, uint32_t start, uint32_t end)
+{
+    const Text *text = &data->scratch;
+    uint32_t    character;
+    for (size_t i = 0, used; i < text->length; i += used) {
+        used = text_character(text->bytes + i, text->length - i, &character);
+        if (used > 0 && character != 0)
+            continue;
+        data_error(data, start, end,
+                   used ? "a text with a character 0" : "a text that is not UTF-8");
+        return value_error();
+    }
+    return value_string(data->e, text->bytes, text->length);
+}
+
+/* ---- calls ---- */
+
+/* Opens the file that the first argument names; false: reported. */
+static bool open_data(Elaboration *e, const Call *call, DataText *data)
+{
+    static const char mark[] = "\xEF\xBB\xBF"; /* that some programs begin UTF-8 with */
+    const Argument   *path   = &call->arguments[0];
+    if (path->value.type != VALUE_STRING) {
+        type_error(e, path->syntax, path->value, "the name of a file, a string");
+        return false;
+    }
+    uint32_t from   = call->syntax->span.source;
+    uint32_t source = files_load_data(e->files, from, path->value.string, path->syntax->span);
+    if (!source)
+        return false;
+    const Source *file = &e->sources->items[source];
+    *data        = (DataText){.e = e, .call = call->syntax, .text = file->text, .source = source};
+    data->length = file->length;
+    data->scratch.arena = e->scratch;
+    data->at            = strncmp(file->text, mark, 3) == 0 ? 3 : 0;
+    return count_steps(e, file->length, call->syntax->span);
+}
+
+Value builtin_read_json(Elaboration *e, Call *call)
+{
+    DataText data;
+    return open_data(e, call, &data) ? read_json_text(&data) : value_error();
+}
+
+/* One character, a comma unless given; 0: reported. */
+static char separator_argument(Elaboration *e, const Call *call)
+{
+    const Argument *argument = &call->arguments[2];
+    if (!argument->syntax)
+        return ',';
+    Value value = argument->value;
+    if (value.type == VALUE_STRING && strlen(value.string) == 1 &&
+        !strchr("\"\n\r.+-", value.string[0]) && !is_digit(value.string[0]))
+        return value.string[0];
+    if (value.type == VALUE_STRING) {
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, argument->syntax->span,
+                               "this cannot stand between cells");
+        diag->label = "one character is needed, such as `\",\"`, `\";\"` or `\"\\t\"`";
+    } else
+        type_error(e, argument->syntax, value, "a string");
+    return 0;
+}
+
+Value builtin_read_csv(Elaboration *e, Call *call)
+{
+    DataText data;
+    uint32_t skip;
+    if (!want_count(e, call, 1, 0, MOST_ELEMENTS, 0, &skip))
+        return value_error();
+    char separator = separator_argument(e, call);
+    if (!separator || !open_data(e, call, &data))
+        return value_error();
+    return read_csv_text(&data, separator, skip);
+}
