@@ -330,6 +330,9 @@ BuiltinFunction builtin_julia, builtin_mandelbulb;
 Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax,
                     const Function *function);
 
+/* The same with one value for the first parameter; `call` is where that happens. */
+Value call_with(Elaboration *e, const Function *function, Value first, const Syntax *call);
+
 /* ---- declare.c: shapes declared in the language ---- */
 /* The shape of a declaration whose parameters `env` binds; `span` is the call. */
 Value declare_instance(Elaboration *e, const Function *function, const Environment *env, Span span);
@@ -369,6 +372,16 @@ BuiltinFunction builtin_read_csv, builtin_read_json;
 
 /* ---- methods.c ---- */
 Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax);
+
+/* Reports a number or vector of which some part can be negative. */
+bool check_not_negative(Elaboration *e, Node node, const Syntax *syntax, const char *what);
+
+/* ---- cells.c ---- */
+/* The period of a lattice and its counts, 0 for endless; false: reported. */
+bool want_lattice(Elaboration *e, const Call *call, Node *period, uint32_t cells[3]);
+/* `.repeat` of a function that makes the shape of a cell. */
+Value repeat_function(Elaboration *e, const Environment *env, const Syntax *syntax,
+                      const Function *function);
 
 /* ---- palette.c ---- */
 Value method_color_by(Elaboration *e, const Shape *shape, Call *call);

@@ -392,3 +392,13 @@ Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax
         return value_error();
     return call_values(e, function, values, origins, syntax);
 }
+
+Value call_with(Elaboration *e, const Function *function, Value first, const Syntax *call)
+{
+    uint32_t       count   = parameter_count(function->syntax);
+    Value         *values  = arena_new_array(e->arena, Value, count);
+    const Syntax **origins = arena_new_array(e->arena, const Syntax *, count);
+    values[0]              = first;
+    origins[0]             = call;
+    return call_values(e, function, values, origins, call);
+}

@@ -107,8 +107,7 @@ static Value method_transform(Elaboration *e, const Shape *shape, Call *call)
     return moved(e, shape, map->value.map, call);
 }
 
-/* Reports a number or vector of which some part can be negative. */
-static bool check_not_negative(Elaboration *e, Node node, const Syntax *syntax, const char *what)
+bool check_not_negative(Elaboration *e, Node node, const Syntax *syntax, const char *what)
 {
     for (uint32_t i = 0; i < e->graph->items[node].type; i++) {
         Range range = node_range(e->builder, node, i);
@@ -125,46 +124,13 @@ static bool check_not_negative(Elaboration *e, Node node, const Syntax *syntax, 
     return true;
 }
 
-/* Copies per axis: a number for all, or a vector; 0 is endless. */
-static bool cell_counts(Elaboration *e, const Call *call, uint32_t cells[3])
-{
-    const Argument *count = &call->arguments[1];
-    cells[0] = cells[1] = cells[2] = 0;
-    if (!count->syntax)
-        return true;
-    if (count->value.type != VALUE_LIST || count->value.list->count != 3) {
-        if (!want_count(e, call, 1, 1, 1000000, 1, &cells[0]))
-            return false;
-        cells[1] = cells[2] = cells[0];
-        return true;
-    }
-    for (uint32_t i = 0; i < 3; i++) {
-        Call one               = *call;
-        one.arguments[1].value = count->value.list->items[i];
-        if (!want_count(e, &one, 1, 1, 1000000, 1, &cells[i]))
-            return false;
-    }
-    return true;
-}
-
 static Value method_repeat(Elaboration *e, const Shape *shape, Call *call)
 {
-    uint32_t        cells[3];
-    const Argument *period = &call->arguments[0];
-    Node            node;
-    if (period->value.type == VALUE_LIST || (period->value.type == VALUE_EXPRESSION &&
-                                             e->graph->items[period->value.node].type == TYPE_VEC3))
-        node = want_vector(e, call, 0, ORIGIN);
-    else {
-        Node number = want_number(e, call, 0, 1);
-        node        = number;
-        if (number != NODE_NONE)
-            node = graph_op3(e->graph, OP_vec3, number, number, number);
-    }
-    if (node == NODE_NONE || !cell_counts(e, call, cells) ||
-        !check_not_negative(e, node, period->syntax, "a period"))
+    uint32_t cells[3];
+    Node     period;
+    if (!want_lattice(e, call, &period, cells))
         return value_error();
-    return value_shape(make_repeat(e->builder, shape, node, cells, call->syntax->span));
+    return value_shape(make_repeat(e->builder, shape, period, cells, call->syntax->span));
 }
 
 static Value method_repeat_polar(Elaboration *e, const Shape *shape, Call *call)
@@ -451,6 +417,8 @@ Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax)
         return receiver;
     if (receiver.type == VALUE_MAP && strcmp(syntax->name, "inverse") == 0 && syntax->count == 1)
         return value_map(map_inverse(e->builder, receiver.map));
+    if (receiver.type == VALUE_FUNCTION && strcmp(syntax->name, "repeat") == 0)
+        return repeat_function(e, env, syntax, receiver.function);
     if (receiver.type == VALUE_RECORD && syntax->count == 1)
         return record_member(e, receiver.record, syntax->name, syntax->name_span);
     if (is_component(e, receiver, syntax))

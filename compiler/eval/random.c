@@ -31,21 +31,80 @@ static double unit_random(double seed, uint64_t stream)
     return (double)(hash_number(seed, stream) >> 11) * 0x1p-53;
 }
 
+/*
+ * Seeds that are vectors, or not known when the scene is compiled, are cells of a lattice: their
+ * nearest whole numbers count, from -2^23 to 2^23.  Such numbers are hashed by integers alone, so
+ * that devices find the same.
+ */
+static bool is_cell(const Elaboration *e, Value seed)
+{
+    return value_size(e, seed) > 0 && seed.type != VALUE_NUMBER;
+}
+
+static Node id_of_cell(Graph *g, Node cell, uint32_t stream)
+{
+    const double MIDDLE = 8388608, LAST = 16777215;
+    Node         id = graph_uint(g, stream);
+    for (uint32_t i = 0; i < g->items[cell].type; i++) {
+        Node whole   = graph_op1(g, OP_round, graph_component(g, cell, i));
+        Node shifted = graph_op2(g, OP_add, whole, graph_number(g, MIDDLE));
+        Node limited = graph_op3(g, OP_clamp, shifted, graph_number(g, 0), graph_number(g, LAST));
+        Node number  = graph_op1(g, OP_to_uint, limited);
+        id           = graph_op2(g, OP_join_id, id, number);
+    }
+    return id;
+}
+
+static Node random_of_cell(Elaboration *e, const Call *call, uint32_t stream)
+{
+    e->graph->here = call->syntax->span;
+    Node cell      = value_node(e, call->arguments[0].value);
+    return graph_op1(e->graph, OP_id_unit, id_of_cell(e->graph, cell, stream));
+}
+
 Value builtin_random(Elaboration *e, Call *call)
 {
-    double seed = 0;
-    return want_constant(e, call, 0, &seed) ? value_authored(e, value_number(unit_random(seed, 0)))
-                                            : value_error();
+    double   seed = 0;
+    uint32_t stream;
+    if (!want_count(e, call, 1, 0, 1000000, 0, &stream))
+        return value_error();
+    if (is_cell(e, call->arguments[0].value))
+        return value_authored(e, value_of_node(e, random_of_cell(e, call, 2 * stream)));
+    if (!want_constant(e, call, 0, &seed))
+        return value_error();
+    uint64_t apart = stream ? stream + (UINT64_C(1) << 32) : 0; /* from random_direction's, too */
+    return value_authored(e, value_number(unit_random(seed, apart)));
+}
+
+/* As far up as evenly, and as far round (Archimedes: the sphere has the area of the cylinder). */
+static Value direction_of_cell(Elaboration *e, const Call *call, uint32_t stream)
+{
+    Graph *g     = e->graph;
+    Node   up    = random_of_cell(e, call, 2 * stream);
+    Node   round = random_of_cell(e, call, 2 * stream + 1);
+    Node   one = graph_number(g, 1), two = graph_number(g, 2);
+    Node   angle  = graph_op2(g, OP_mul, round, graph_number(g, 2 * M_PI));
+    Node   height = graph_op2(g, OP_sub, one, graph_op2(g, OP_mul, two, up));
+    Node   square = graph_op2(g, OP_sub, one, graph_op2(g, OP_mul, height, height));
+    Node   across = graph_op1(g, OP_sqrt, graph_op2(g, OP_max, square, graph_number(g, 0)));
+    Node   x      = graph_op2(g, OP_mul, across, graph_op1(g, OP_cos, angle));
+    Node   z      = graph_op2(g, OP_mul, across, graph_op1(g, OP_sin, angle));
+    return value_of_node(e, graph_op3(g, OP_vec3, x, height, z));
 }
 
 /* Marsaglia (1972): a point of the unit disc gives a point of the sphere by products and roots
    only, which every machine computes alike. */
 Value builtin_random_direction(Elaboration *e, Call *call)
 {
-    double seed = 0, a, b, s;
+    double   seed = 0, a, b, s;
+    uint32_t apart;
+    if (!want_count(e, call, 1, 0, 1000000, 0, &apart))
+        return value_error();
+    if (is_cell(e, call->arguments[0].value))
+        return direction_of_cell(e, call, apart);
     if (!want_constant(e, call, 0, &seed))
         return value_error();
-    uint64_t stream = 1;
+    uint64_t stream = 1 + ((uint64_t)apart << 32);
     do {
         a = 2 * unit_random(seed, stream) - 1;
         b = 2 * unit_random(seed, stream + 1) - 1;

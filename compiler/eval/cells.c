@@ -1,0 +1,146 @@
+/*
+ * cells.c: repetition: of a shape in all cells alike, and of a function that gets its cell.
+ */
+#include "compiler/eval/elaborate.h"
+
+#include <string.h>
+
+/* ---- the lattice ---- */
+
+/* Copies per axis: a number for all, or a vector; 0 is endless. */
+static bool cell_counts(Elaboration *e, const Call *call, uint32_t cells[3])
+{
+    const Argument *count = &call->arguments[1];
+    cells[0] = cells[1] = cells[2] = 0;
+    if (!count->syntax)
+        return true;
+    if (count->value.type != VALUE_LIST || count->value.list->count != 3) {
+        if (!want_count(e, call, 1, 1, 1000000, 1, &cells[0]))
+            return false;
+        cells[1] = cells[2] = cells[0];
+        return true;
+    }
+    for (uint32_t i = 0; i < 3; i++) {
+        Call one               = *call;
+        one.arguments[1].value = count->value.list->items[i];
+        if (!want_count(e, &one, 1, 1, 1000000, 1, &cells[i]))
+            return false;
+    }
+    return true;
+}
+
+bool want_lattice(Elaboration *e, const Call *call, Node *period, uint32_t cells[3])
+{
+    static const double ORIGIN[3] = {0, 0, 0};
+    const Argument     *argument  = &call->arguments[0];
+    bool                vector    = value_size(e, argument->value) >= 2;
+    if (vector)
+        *period = want_vector(e, call, 0, ORIGIN);
+    else {
+        Node number = want_number(e, call, 0, 1);
+        *period     = number == NODE_NONE ? number
+                                          : graph_op3(e->graph, OP_vec3, number, number, number);
+    }
+    return *period != NODE_NONE && cell_counts(e, call, cells) &&
+           check_not_negative(e, *period, argument->syntax, "a period");
+}
+
+/* ---- a function in each cell ---- */
+
+typedef struct Cells {
+    const Call     *call;
+    const Function *function;
+    Node            period;
+    uint32_t        counts[3]; /* 1: an axis that does not repeat */
+    Values          shapes;
+} Cells;
+
+/* The shape of a cell, in its middle; false: reported. */
+static bool shape_of_cell(Elaboration *e, const Cells *cells, Value cell, Value *shape)
+{
+    *shape = call_with(e, cells->function, cell, cells->call->syntax);
+    if (shape->type != VALUE_SHAPE)
+        type_error(e, cells->call->syntax->children[0], *shape, "a function that makes a shape");
+    return shape->type == VALUE_SHAPE;
+}
+
+/* From the middle of all cells to that of one. */
+static Node place_of_cell(Elaboration *e, const Cells *cells, const double index[3])
+{
+    double steps[3];
+    for (int i = 0; i < 3; i++)
+        steps[i] = index[i] - 0.5 * (cells->counts[i] - 1);
+    Node by = graph_constant(e->graph, TYPE_VEC3, steps);
+    return graph_op2(e->graph, OP_mul, by, cells->period);
+}
+
+static bool add_cell(Elaboration *e, Cells *cells, const double index[3])
+{
+    Value shape;
+    Span  span = cells->call->syntax->span;
+    if (!count_steps(e, 1, span) || !shape_of_cell(e, cells, value_vector(e, index, 3), &shape))
+        return false;
+    const Map *map = map_translation(e->builder, place_of_cell(e, cells, index));
+    shape          = value_shape(make_transform(e->builder, shape.shape, map, span));
+    array_push_large(e->arena, &cells->shapes, shape);
+    return shape.type == VALUE_SHAPE;
+}
+
+static bool add_cells(Elaboration *e, Cells *cells)
+{
+    double index[3];
+    for (index[2] = 0; index[2] < cells->counts[2]; index[2]++)
+        for (index[1] = 0; index[1] < cells->counts[1]; index[1]++)
+            for (index[0] = 0; index[0] < cells->counts[0]; index[0]++)
+                if (!add_cell(e, cells, index))
+                    return false;
+    return true;
+}
+
+/* All cells together. */
+static Value union_of_cells(Elaboration *e, Cells *cells)
+{
+    double total = 1;
+    for (int i = 0; i < 3; i++)
+        total *= cells->counts[i];
+    if (total > MOST_ELEMENTS) {
+        Diag *diag  = diag_add(e->diags, DIAG_LIMIT, cells->call->syntax->span,
+                               "%.0f cells, each with a shape of its own", total);
+        diag->label = "4 million are possible";
+        return value_error();
+    }
+    if (!add_cells(e, cells))
+        return value_error();
+    Value    list = value_list(e, cells->shapes.items, cells->shapes.count);
+    Argument all  = {list, cells->call->syntax};
+    Call     join = {
+            .syntax = cells->call->syntax, .name = cells->call->name, .rest = &all, .rest_count = 1};
+    return builtin_union(e, &join);
+}
+
+static bool check_takes_cell(Elaboration *e, const Syntax *syntax, const Function *function)
+{
+    if (function->syntax && function->syntax->count > 0 &&
+        function->syntax->children[0]->kind == SYNTAX_PARAMETER)
+        return true;
+    Diag *diag  = diag_add(e->diags, DIAG_TOO_MANY_ARGUMENTS, syntax->children[0]->span,
+                           "`%s` cannot take a cell", function->name);
+    diag->label = function->syntax ? "this has no parameter" : "this is a built-in function";
+    diag->help  = "what repeats with variation is a function of its cell: `def house(cell) = ...;`";
+    return false;
+}
+
+Value repeat_function(Elaboration *e, const Environment *env, const Syntax *syntax,
+                      const Function *function)
+{
+    Call  call;
+    Cells cells = {.call = &call, .function = function};
+    if (!bind_arguments(e, env, syntax, 1, "repeat", "period count=", &call) ||
+        !want_lattice(e, &call, &cells.period, cells.counts) ||
+        !check_takes_cell(e, syntax, function))
+        return value_error();
+    for (uint32_t i = 0; i < 3; i++)
+        if (node_range(e->builder, cells.period, i).high <= 0)
+            cells.counts[i] = 1;
+    return union_of_cells(e, &cells);
+}
