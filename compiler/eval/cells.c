@@ -2,12 +2,11 @@
  * cells.c: repetition: of a shape in all cells alike, and of a function that gets its cell.
  */
 #include "compiler/eval/elaborate.h"
-
-#include <string.h>
+#include "compiler/family/vary.h"
 
 /* ---- the lattice ---- */
 
-/* Copies per axis: a number for all, or a vector; 0 is endless. */
+/* Copies per axis: a number for all, or a vector, in which 0 is endless. */
 static bool cell_counts(Elaboration *e, const Call *call, uint32_t cells[3])
 {
     const Argument *count = &call->arguments[1];
@@ -23,7 +22,7 @@ static bool cell_counts(Elaboration *e, const Call *call, uint32_t cells[3])
     for (uint32_t i = 0; i < 3; i++) {
         Call one               = *call;
         one.arguments[1].value = count->value.list->items[i];
-        if (!want_count(e, &one, 1, 1, 1000000, 1, &cells[i]))
+        if (!want_count(e, &one, 1, 0, 1000000, 1, &cells[i]))
             return false;
     }
     return true;
@@ -118,6 +117,61 @@ static Value union_of_cells(Elaboration *e, Cells *cells)
     return builtin_union(e, &join);
 }
 
+/* ---- one function for all cells, where they have no end ---- */
+
+/* A parameter that no author sets: the numbers of a cell, in their range. */
+static Node cell_leaf(Elaboration *e, const uint32_t counts[3])
+{
+    GraphParameter range = {{0}, {0}};
+    for (int i = 0; i < 3; i++) {
+        range.low[i]  = counts[i] ? 0 : -MOST_CELL_NUMBER;
+        range.high[i] = counts[i] ? counts[i] - 1 : MOST_CELL_NUMBER;
+    }
+    uint32_t slot = (uint32_t)e->graph->parameters.count;
+    array_push(e->arena, &e->graph->parameters, range);
+    return graph_parameter(e->graph, slot, TYPE_VEC3);
+}
+
+/* A slope of the frame would be that of one cell. */
+static bool check_slopes(Elaboration *e, const Cells *cells, size_t first, Node leaf)
+{
+    const FrameSlopes *slopes = &e->scene->slopes;
+    for (size_t i = first; i < slopes->count; i++) {
+        if (!depends_on_leaf(e->graph, slopes->items[i].formula, leaf, e->scratch))
+            continue;
+        Diag *diag  = diag_add(e->diags, DIAG_STEEP, cells->call->syntax->span,
+                               "a slope that depends on the time and on the cell");
+        diag->label = "the cells have no end, and so no steepest one";
+        diag_secondary(e->diags, diag, slopes->items[i].span, "this expression has it");
+        diag->help = "give the repetition a count, or the `param` a range";
+        return false;
+    }
+    return true;
+}
+
+/* What the author cannot do there is done with a count. */
+static void explain_count(Elaboration *e, size_t first)
+{
+    for (size_t i = first; i < e->diags->count; i++)
+        if (e->diags->items[i]->code == DIAG_NOT_COMPILE_TIME)
+            e->diags->items[i]->help = "cells without end are made at once, so that only numbers "
+                                       "may differ; with a count, each is made by itself";
+}
+
+static Value endless_cells(Elaboration *e, const Cells *cells)
+{
+    Value  shape;
+    size_t said   = e->diags->count;
+    size_t slopes = e->scene->slopes.count;
+    Node   leaf   = cell_leaf(e, cells->counts);
+    bool   made = shape_of_cell(e, cells, (Value){.type = VALUE_EXPRESSION, .node = leaf}, &shape);
+    explain_count(e, said);
+    if (!made || !check_slopes(e, cells, slopes, leaf))
+        return value_error();
+    return value_shape(make_repeat(e->builder, shape.shape, cells->period, cells->counts, leaf,
+                                   cells->call->syntax->span));
+}
+
 static bool check_takes_cell(Elaboration *e, const Syntax *syntax, const Function *function)
 {
     if (function->syntax && function->syntax->count > 0 &&
@@ -139,8 +193,11 @@ Value repeat_function(Elaboration *e, const Environment *env, const Syntax *synt
         !want_lattice(e, &call, &cells.period, cells.counts) ||
         !check_takes_cell(e, syntax, function))
         return value_error();
-    for (uint32_t i = 0; i < 3; i++)
+    bool endless = false;
+    for (uint32_t i = 0; i < 3; i++) {
         if (node_range(e->builder, cells.period, i).high <= 0)
             cells.counts[i] = 1;
-    return union_of_cells(e, &cells);
+        endless = endless || cells.counts[i] == 0;
+    }
+    return endless ? endless_cells(e, &cells) : union_of_cells(e, &cells);
 }

@@ -130,7 +130,8 @@ static Value method_repeat(Elaboration *e, const Shape *shape, Call *call)
     Node     period;
     if (!want_lattice(e, call, &period, cells))
         return value_error();
-    return value_shape(make_repeat(e->builder, shape, period, cells, call->syntax->span));
+    return value_shape(
+        make_repeat(e->builder, shape, period, cells, NODE_NONE, call->syntax->span));
 }
 
 static Value method_repeat_polar(Elaboration *e, const Shape *shape, Call *call)

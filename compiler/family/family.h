@@ -39,9 +39,13 @@ const Shape *make_sheet(ShapeBuilder *builder, const Shape *shape, Node thicknes
 const Shape *make_elongate(ShapeBuilder *builder, const Shape *shape, Node half, Span span);
 const Shape *make_extrude(ShapeBuilder *builder, const Shape *figure, Node height, Span span);
 const Shape *make_revolve(ShapeBuilder *builder, const Shape *figure, Node offset, Span span);
-/* NULL: the shape does not fit its cell, which is reported. */
+/* Whole numbers of cells without end are from -2^23 to 2^23; beyond, all are called like the last. */
+static const double MOST_CELL_NUMBER = 8388608;
+/* The shape may depend on its cell: on a VEC3 parameter of its own, `cell`, whose range is that of the
+   numbers of cells, from 0 on axes with a count; else `cell` is NODE_NONE.  NULL: the shape does not
+   fit its cell, which is reported. */
 const Shape *make_repeat(ShapeBuilder *builder, const Shape *shape, Node period,
-                         const uint32_t cells[3], Span span);
+                         const uint32_t cells[3], Node cell, Span span);
 const Shape *make_repeat_polar(ShapeBuilder *builder, const Shape *shape, uint32_t count,
                                Span span);
 const Shape *make_mirror(ShapeBuilder *builder, const Shape *shape, Node normal, Node offset,

@@ -3,6 +3,7 @@
  */
 #include "compiler/base/far.h"
 #include "compiler/family/family.h"
+#include "compiler/family/vary.h"
 
 #include <math.h>
 
@@ -14,12 +15,13 @@
 /* ---- how it is made ---- */
 
 const Shape *make_repeat(ShapeBuilder *builder, const Shape *shape, Node period,
-                         const uint32_t cells[3], Span span)
+                         const uint32_t cells[3], Node cell, Span span)
 {
     if (box_is_empty(shape->box))
         return shape;
     Shape *repeat     = shape_around(builder, SHAPE_REPEAT, "repeat", shape, span);
     repeat->values[0] = period;
+    repeat->values[1] = cell;
     repeat->exact     = false; /* walls of cells are bounds */
     for (uint32_t i = 0; i < 3; i++) {
         Range range      = node_range(builder, period, i);
@@ -97,13 +99,15 @@ static bool is_symmetric(Lowering *l, const Shape *content, Node mapped, uint32_
  *              continuous, but it is a bound only: not where a blend or an offset lies above.
  *   NEIGHBOURS else: the copy on the nearer side is evaluated as well, which is exact
  *              (math.md, section 4, "repetition").
+ * Content that varies is no mirror image of its neighbours.  The farther of two may be larger, and
+ * so the nearer one: its box, around the content of any cell, limits the distance (needs_limit).
  */
 typedef enum CellRule { SYMMETRIC, WALLS, NEIGHBOURS } CellRule;
 
 static CellRule choose_cell_rule(Lowering *l, const Shape *content, Node mapped, uint32_t axis,
-                                 double margin, double size, LowerContext context)
+                                 double margin, double size, bool varies, LowerContext context)
 {
-    if (is_symmetric(l, content, mapped, axis))
+    if (!varies && is_symmetric(l, content, mapped, axis))
         return SYMMETRIC;
     return margin >= 0.05 * size && !context.lipschitz ? WALLS : NEIGHBOURS;
 }
@@ -166,14 +170,13 @@ static Node in_cell(Graph *g, const Lattice *cells, Node *number)
 
 /* Coordinate within the neighbour cell on the side where the point is; the same cell again
    where there is no neighbour. */
-static Node in_neighbour(Graph *g, const Lattice *cells, Node local, Node number)
+static Node in_neighbour(Graph *g, const Lattice *cells, Node local, Node number, Node *next)
 {
     Node zero = graph_number(g, 0), one = graph_number(g, 1), minus = graph_number(g, -1);
     Node left  = graph_op2(g, OP_less, local, zero);
     Node side  = graph_op3(g, OP_select, left, minus, one);
-    Node next  = graph_op2(g, OP_add, number, side);
-    next       = within_lattice(g, cells, next);
-    Node start = graph_op2(g, OP_mul, next, cells->period);
+    *next      = within_lattice(g, cells, graph_op2(g, OP_add, number, side));
+    Node start = graph_op2(g, OP_mul, *next, cells->period);
     return graph_op2(g, OP_sub, cells->shifted, start);
 }
 
@@ -208,6 +211,32 @@ static bool needs_limit(const Shape *content, LowerContext context)
     return context.lipschitz && !content->exact;
 }
 
+/* What a cell is called: whole numbers from 0 on an axis with a count, in the range of the leaf.
+   NODE_NONE: nobody asks. */
+static Node cell_number(Graph *g, const Shape *shape, const Lattice *cells, Node number)
+{
+    if (shape->values[1] == NODE_NONE)
+        return NODE_NONE;
+    if (!cells->repeats)
+        return graph_number(g, 0);
+    if (cells->low != NODE_NONE)
+        return graph_op2(g, OP_sub, number, cells->low);
+    Node end = graph_number(g, MOST_CELL_NUMBER), start = graph_number(g, -MOST_CELL_NUMBER);
+    return graph_op3(g, OP_clamp, number, start, end);
+}
+
+/* On one axis: where the point is in its own cell and in the neighbour's, and what these are
+   called. */
+typedef struct CellAxis {
+    Node own, other, own_number, other_number;
+    bool neighbour; /* counts */
+} CellAxis;
+
+/* Bounds by the walls and by what is not looked at; NODE_NONE: there is none. */
+typedef struct CellBounds {
+    Node walls, limit;
+} CellBounds;
+
 static Node limit_in_cell(Graph *g, const Lattice *cells, Range content, Node local)
 {
     Node half   = graph_number(g, fmax(-content.low, content.high));
@@ -236,61 +265,71 @@ static Lowered cut_to_limit(Lowering *l, const Shape *shape, LowerContext contex
 /* The copy in the point's own cell, joined with those in the neighbour cells that count: at
    most one on each axis, so the cells of a corner. */
 static Lowered join_neighbours(Lowering *l, const Shape *shape, LowerContext context,
-                               const Node own[3], const Node other[3], const bool neighbour[3])
+                               const CellAxis axes[3])
 {
-    Lowered result = lowered_nothing;
+    Graph  *g       = l->graph;
+    bool    operand = needs_limit(shape->children[0], context);
+    Lowered result  = lowered_nothing;
     for (uint32_t corner = 0; corner < 8; corner++) {
-        Node coordinates[3];
+        Node coordinates[3], numbers[3];
         bool exists = true;
         for (uint32_t i = 0; i < 3; i++) {
             bool across    = corner >> i & 1;
-            exists         = exists && (!across || neighbour[i]);
-            coordinates[i] = across ? other[i] : own[i];
+            exists         = exists && (!across || axes[i].neighbour);
+            coordinates[i] = across ? axes[i].other : axes[i].own;
+            numbers[i]     = across ? axes[i].other_number : axes[i].own_number;
         }
         if (!exists)
             continue;
-        const Shape *content = shape->children[0];
-        LowerContext there   = context_at(context, graph_op(l->graph, OP_vec3, coordinates));
-        Lowered      copy    = needs_limit(content, context) ? lower_operand(l, content, there)
-                                                             : lower_shape(l, content, there);
-        result               = join_two(l, blend_sharp, result, copy);
+        LowerContext there = context_at(context, graph_op(g, OP_vec3, coordinates));
+        bool         named = shape->values[1] != NODE_NONE;
+        Node         cell  = named ? graph_op(g, OP_vec3, numbers) : NODE_NONE;
+        Lowered      copy  = lower_in_cell(l, shape, there, cell, operand);
+        result             = join_two(l, blend_sharp, result, copy);
     }
     return result;
 }
 
+static CellAxis lower_axis(Lowering *l, const Shape *shape, LowerContext context, uint32_t i,
+                           bool varies, CellBounds *bounds)
+{
+    Graph       *g       = l->graph;
+    const Shape *content = shape->children[0];
+    Lattice      cells   = lattice_of(l, shape, context, i);
+    CellAxis     axis    = {.own = cells.shifted};
+    Node         number  = NODE_NONE, next;
+    if (cells.repeats)
+        axis.own = in_cell(g, &cells, &number);
+    axis.own_number = cell_number(g, shape, &cells, number);
+    if (!cells.repeats)
+        return axis;
+    CellRule rule  = choose_cell_rule(l, content, graph_leaf(g, OP_POINT), i, cells.margin,
+                                      cells.least_period, varies, context);
+    axis.neighbour = rule == NEIGHBOURS;
+    if (axis.neighbour) {
+        axis.other        = in_neighbour(g, &cells, axis.own, number, &next);
+        axis.other_number = cell_number(g, shape, &cells, next);
+    }
+    if (axis.neighbour && (varies || needs_limit(content, context)))
+        bounds->limit = nearer_of(g, bounds->limit,
+                                  limit_in_cell(g, &cells, content->box.axis[i], axis.own));
+    if (rule == WALLS)
+        bounds->walls = nearer_of(g, bounds->walls, wall_distance(g, &cells, axis.own, number));
+    return axis;
+}
+
 Lowered lower_repeat(Lowering *l, const Shape *shape, LowerContext context)
 {
-    Graph *g = l->graph;
-    Node   own[3], other[3], walls = NODE_NONE, limit = NODE_NONE;
-    bool   neighbour[3];
-    Node   plain = graph_leaf(g, OP_POINT);
-    for (uint32_t i = 0; i < 3; i++) {
-        Lattice cells = lattice_of(l, shape, context, i);
-        own[i] = other[i] = cells.shifted;
-        neighbour[i]      = false;
-        if (!cells.repeats)
-            continue;
-        Node number;
-        own[i]        = in_cell(g, &cells, &number);
-        CellRule rule = choose_cell_rule(l, shape->children[0], plain, i, cells.margin,
-                                         cells.least_period, context);
-        neighbour[i]  = rule == NEIGHBOURS;
-        if (neighbour[i])
-            other[i] = in_neighbour(g, &cells, own[i], number);
-        if (neighbour[i] && needs_limit(shape->children[0], context)) {
-            Range content = shape->children[0]->box.axis[i];
-            limit         = nearer_of(g, limit, limit_in_cell(g, &cells, content, own[i]));
-        }
-        if (rule == WALLS) {
-            Node wall = wall_distance(g, &cells, own[i], number);
-            walls     = walls == NODE_NONE ? wall : graph_op2(g, OP_min, walls, wall);
-        }
-    }
-    Lowered result = join_neighbours(l, shape, context, own, other, neighbour);
-    result         = cut_to_limit(l, shape, context, result, limit);
-    if (walls == NODE_NONE || result.distance == NODE_NONE)
+    CellBounds bounds = {NODE_NONE, NODE_NONE};
+    CellAxis   axes[3];
+    bool       varies = content_varies(l, shape);
+    for (uint32_t i = 0; i < 3; i++)
+        axes[i] = lower_axis(l, shape, context, i, varies, &bounds);
+    Lowered result = join_neighbours(l, shape, context, axes);
+    result         = cut_to_limit(l, shape, context, result, bounds.limit);
+    if (bounds.walls == NODE_NONE || result.distance == NODE_NONE)
         return result;
-    result.distance = graph_op2(g, OP_min, result.distance, walls);
+    result.distance = graph_op2(l->graph, OP_min, result.distance, bounds.walls);
     return outside_of_box(l, shape, context, result);
 }
 
@@ -418,7 +457,7 @@ Lowered lower_repeat_polar(Lowering *l, const Shape *shape, LowerContext context
     Lowered  result = lower_in_sector(l, shape, context, &sector, local);
     Node     mapped = turn_about_y(g, graph_leaf(g, OP_POINT), -sector.angle);
     double   width  = hypot(centre[0], centre[2]) * sin(sector.half);
-    CellRule rule   = choose_cell_rule(l, content, mapped, 2, sector.margin, width, context);
+    CellRule rule   = choose_cell_rule(l, content, mapped, 2, sector.margin, width, false, context);
     if (rule == SYMMETRIC || result.distance == NODE_NONE)
         return result;
     if (rule == NEIGHBOURS) {

@@ -185,6 +185,8 @@ typedef struct Substitution {
 /* Of the point alone. */
 Substitution substitute_point(Node point);
 Node         graph_substitute(Graph *graph, Node root, Substitution with, Arena *scratch);
+/* A copy with one leaf replaced by a node of its type. */
+Node graph_replace_leaf(Graph *graph, Node root, Node leaf, Node by, Arena *scratch);
 
 /* A copy of all that `roots` need, in a graph of its own with the same parameters; the roots are
    renumbered in place.  The work grows with what they need, not with the graph. */

@@ -38,17 +38,35 @@ static Node substitute_operands(Graph *graph, Expr e, Node node, const Tape *tap
                                 : graph_op(graph, e.op, e.operands);
 }
 
-Node graph_substitute(Graph *graph, Node root, Substitution with, Arena *scratch)
+/* Copies what a tape has; copies of leaves are given. */
+static void copy_operations(Graph *graph, const Tape *tape, Node *copies)
 {
-    Span  here   = graph->here;
-    Tape  tape   = tape_new(graph, &root, 1, scratch);
-    Node *copies = arena_new_array(scratch, Node, tape.count);
-    for (size_t i = 0; i < tape.count; i++) {
-        Node node = tape.nodes[i];
-        Expr e    = graph->items[node];
-        copies[i] = e.operand_count ? substitute_operands(graph, e, node, &tape, copies)
-                                    : substitute_leaf(&e, node, with);
+    Span here = graph->here;
+    for (size_t i = 0; i < tape->count; i++) {
+        Expr e = graph->items[tape->nodes[i]];
+        if (e.operand_count)
+            copies[i] = substitute_operands(graph, e, tape->nodes[i], tape, copies);
     }
     graph->here = here;
+}
+
+Node graph_substitute(Graph *graph, Node root, Substitution with, Arena *scratch)
+{
+    Tape  tape   = tape_new(graph, &root, 1, scratch);
+    Node *copies = arena_new_array(scratch, Node, tape.count);
+    for (size_t i = 0; i < tape.count; i++)
+        if (graph->items[tape.nodes[i]].operand_count == 0)
+            copies[i] = substitute_leaf(&graph->items[tape.nodes[i]], tape.nodes[i], with);
+    copy_operations(graph, &tape, copies);
+    return copies[tape_index(&tape, root)];
+}
+
+Node graph_replace_leaf(Graph *graph, Node root, Node leaf, Node by, Arena *scratch)
+{
+    Tape  tape   = tape_new(graph, &root, 1, scratch);
+    Node *copies = arena_new_array(scratch, Node, tape.count);
+    for (size_t i = 0; i < tape.count; i++)
+        copies[i] = tape.nodes[i] == leaf ? by : tape.nodes[i];
+    copy_operations(graph, &tape, copies);
     return copies[tape_index(&tape, root)];
 }
