@@ -349,21 +349,6 @@ static Value mismatch(Elaboration *e, const Syntax *syntax, Value a, Value b)
     return value_error();
 }
 
-static Value join_shapes(Elaboration *e, const Syntax *syntax, const Shape *a, const Shape *b)
-{
-    ShapeKind kind = syntax->op == TOKEN_BAR         ? SHAPE_UNION
-                     : syntax->op == TOKEN_AMPERSAND ? SHAPE_INTERSECTION
-                                                     : SHAPE_DIFFERENCE;
-    if (a->figure != b->figure && a->kind != SHAPE_EMPTY && b->kind != SHAPE_EMPTY) {
-        Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->name_span,
-                              "a plane figure and a solid cannot be joined");
-        diag->help = "make the figure solid with `.extrude(height)` or `.revolve()`";
-        return value_error();
-    }
-    const Shape *shapes[] = {a, b};
-    return value_shape(make_joint(e->builder, kind, shapes, 2, blend_sharp, syntax->span));
-}
-
 static bool compare_numbers(TokenKind op, double a, double b)
 {
     switch (op) {
@@ -470,6 +455,8 @@ Value value_select(Elaboration *e, const Syntax *syntax, Value condition, Value 
 {
     if (yes.type == VALUE_ERROR || no.type == VALUE_ERROR)
         return value_error();
+    if (yes.type == VALUE_SHAPE && no.type == VALUE_SHAPE)
+        return choose_shape(e, syntax, condition, yes.shape, no.shape);
     Node a = value_node(e, yes), b = value_node(e, no);
     if (a == NODE_NONE || b == NODE_NONE) {
         const char *other   = value_type_name(e, a == NODE_NONE ? yes : no);

@@ -1,5 +1,5 @@
 /*
- * csg.c: the built-in functions that make one shape of several.
+ * csg.c: operators and built-in functions that make one shape of several.
  */
 #include "compiler/eval/elaborate.h"
 
@@ -110,6 +110,43 @@ static Value join(Elaboration *e, const Call *call, ShapeKind kind, const Values
     uint32_t count = (uint32_t)values->count;
     return value_shape(make_joint(e->builder, kind, shapes, count, blend, call->syntax->span));
 }
+
+/* ---- two shapes ---- */
+
+static bool can_be_joined(Elaboration *e, const Shape *a, const Shape *b, Span span)
+{
+    if (a->figure == b->figure || a->kind == SHAPE_EMPTY || b->kind == SHAPE_EMPTY)
+        return true;
+    Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, span,
+                          "a plane figure and a solid cannot be joined");
+    diag->help = "make the figure solid with `.extrude(height)` or `.revolve()`";
+    return false;
+}
+
+Value join_shapes(Elaboration *e, const Syntax *syntax, const Shape *a, const Shape *b)
+{
+    ShapeKind kind = syntax->op == TOKEN_BAR         ? SHAPE_UNION
+                     : syntax->op == TOKEN_AMPERSAND ? SHAPE_INTERSECTION
+                                                     : SHAPE_DIFFERENCE;
+    if (!can_be_joined(e, a, b, syntax->name_span))
+        return value_error();
+    const Shape *shapes[] = {a, b};
+    return value_shape(make_joint(e->builder, kind, shapes, 2, blend_sharp, syntax->span));
+}
+
+Value choose_shape(Elaboration *e, const Syntax *syntax, Value condition, const Shape *yes,
+                   const Shape *no)
+{
+    if (value_time(e, condition) == TIME_POINT) {
+        point_error(e, syntax->children[0], "what chooses a shape");
+        return value_error();
+    }
+    if (!can_be_joined(e, yes, no, syntax->span))
+        return value_error();
+    return value_shape(make_choice(e->builder, condition.node, yes, no, syntax->span));
+}
+
+/* ---- functions ---- */
 
 static Value join_rest(Elaboration *e, Call *call, ShapeKind kind)
 {

@@ -319,6 +319,10 @@ BuiltinFunction builtin_hull_triangles;
 BuiltinFunction builtin_random, builtin_random_direction, builtin_noise, builtin_fbm;
 
 /* ---- csg.c ---- */
+/* `a | b`, `a & b` and `a - b` of shapes; `if` on a condition that frames know. */
+Value join_shapes(Elaboration *e, const Syntax *syntax, const Shape *a, const Shape *b);
+Value choose_shape(Elaboration *e, const Syntax *syntax, Value condition, const Shape *yes,
+                   const Shape *no);
 BuiltinFunction builtin_union, builtin_intersection, builtin_difference, builtin_xor, builtin_morph,
     builtin_meta;
 

@@ -29,6 +29,9 @@ const Shape *make_stretch(ShapeBuilder *builder, const Shape *shape, Node factor
 const Shape *make_joint(ShapeBuilder *builder, ShapeKind kind, const Shape *const *shapes,
                         uint32_t count, Blend blend, Span span);
 const Shape *make_morph(ShapeBuilder *builder, const Shape *a, const Shape *b, Node t, Span span);
+/* The condition is a truth value that does not depend on the point. */
+const Shape *make_choice(ShapeBuilder *builder, Node condition, const Shape *yes, const Shape *no,
+                         Span span);
 const Shape *make_offset(ShapeBuilder *builder, const Shape *shape, Node radius, Span span);
 /* `shape` with round edges: its core, grown. */
 const Shape *make_rounded(ShapeBuilder *builder, const Shape *shape, const Shape *core, Node radius,

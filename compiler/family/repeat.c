@@ -37,7 +37,10 @@ const Shape *make_repeat(ShapeBuilder *builder, const Shape *shape, Node period,
                                     "its cell from %.4g to %.4g",
                                    is.low, is.high, "xyz"[i], -0.5 * range.low, 0.5 * range.low);
             diag->label = "does not fit its cell";
-            diag->help  = "use a larger period, or a smaller shape that is centred in its cell";
+            diag->help  = cell == NODE_NONE
+                              ? "use a larger period, or a smaller shape that is centred in its cell"
+                              : "this is around what any cell can have; use a larger period, or let "
+                                "less differ";
             return NULL;
         }
         double reach        = cells[i] ? 0.5 * (cells[i] - 1) * range.high : INFINITY;

@@ -43,6 +43,11 @@ static double turned(Vec p, Cell c)
     return bar(vec(k * p.x - s * p.z, p.y, s * p.x + k * p.z), vec(0.4, 0.1, 0.05));
 }
 
+static double one_of_two(Vec p, Cell c)
+{
+    return wave(c) < 0.5 ? ball(p, 0.4) : bar(p, vec(0.15, 0.3, 0.1));
+}
+
 /* Three balls in a row, of the size of the cell. */
 static double rows(Vec p, Cell c)
 {
@@ -142,6 +147,15 @@ static const Solid solids[] = {
      ON_XZ,
      0,
      0.3,
+     false},
+    {"one of two",
+     WAVE "def part(cell) = if wave(cell) < 0.5 then sphere(0.4) else box([0.3, 0.6, 0.2]);\n"
+          "show part.repeat([0.9, 0, 0.9]);",
+     one_of_two,
+     {0.9, 0, 0.9},
+     ON_XZ,
+     0,
+     0.045,
      false},
     {"counted on one axis",
      BALLS "show part.repeat([1, 0, 1], [4, 1, 0]);",
@@ -285,7 +299,9 @@ static void cells_are_alike(void **state)
 {
     (void)state;
     static const char part[] =
-        "def part(c) = box([0.3 + 0.3 * random(c), 0.5, 0.3]).rotate([0, 1, 0], random(c, 1))\n"
+        "def part(c) = if random(c, 3) < 0.3 then sphere(0.4 * random(c)).paint([random(c), 0, "
+        "0])\n"
+        "    else box([0.3 + 0.3 * random(c), 0.5, 0.3]).rotate([0, 1, 0], random(c, 1))\n"
         "    .paint([random(c, 2), 0.5 + 0.5 * random_direction(c).z, random([c.x, c.z])]);\n";
     Product endless = product_format("%sshow part.repeat([1, 0, 1]);", part);
     Product counted = product_format("%sdef shifted(c) = part(c - [4, 0, 4]);\n"
@@ -308,6 +324,30 @@ static void cells_are_alike(void **state)
     assert_true(hits > 50);
     product_free(&endless);
     product_free(&counted);
+}
+
+/* A choice of the frame is one shape or the other, in distance and colour. */
+static void choices_of_frames(void **state)
+{
+    (void)state;
+    Product             product  = product_compile("param big = 0.2 in [0, 1];\n"
+                                                                "show if big > 0.5 then sphere(1).paint([1, 0, 0])\n"
+                                                                "else if big > 0.1 then box([1, 2, 1]).paint([0, 1, 0])\n"
+                                                                "else union([]);");
+    static const double values[] = {0.8, 0.2, 0};
+    Random              random   = {5};
+    for (int i = 0; i < 300; i++) {
+        double value = values[i % 3];
+        Vec    p     = random_in_cube(&random, 3);
+        assert_int_equal(krs_frame_set(product.frame, "big", &value, 1), KRS_OK);
+        KrsHit is     = product_probe(&product, p);
+        double wanted = i % 3 == 0 ? ball(p, 1) : bar(p, vec(0.5, 1, 0.5));
+        if (i % 3 == 2)
+            assert_true(is.distance > 1e6);
+        else
+            assert_true(fabs(is.distance - wanted) < 1e-12 && is.color[i % 3] == 1);
+    }
+    product_free(&product);
 }
 
 /* What only looks different is as cheap as what does not, and right. */
@@ -336,7 +376,7 @@ int main(void)
         CMUnitTestFunction test;
     } kinds[] = {{"are safe", is_safe}, {"are a union", is_the_union}};
     enum { KINDS = sizeof kinds / sizeof *kinds };
-    struct CMUnitTest tests[KINDS * SOLIDS + 2];
+    struct CMUnitTest tests[KINDS * SOLIDS + 3];
     static char       names[KINDS * SOLIDS][64];
     for (size_t i = 0; i < KINDS * SOLIDS; i++) {
         const Solid *solid = &solids[i / KINDS];
@@ -346,5 +386,6 @@ int main(void)
     }
     tests[KINDS * SOLIDS]     = (struct CMUnitTest)cmocka_unit_test(cells_are_alike);
     tests[KINDS * SOLIDS + 1] = (struct CMUnitTest)cmocka_unit_test(colors_of_cells);
-    return _cmocka_run_group_tests("cells", tests, KINDS * SOLIDS + 2, NULL, NULL);
+    tests[KINDS * SOLIDS + 2] = (struct CMUnitTest)cmocka_unit_test(choices_of_frames);
+    return _cmocka_run_group_tests("cells", tests, KINDS * SOLIDS + 3, NULL, NULL);
 }
