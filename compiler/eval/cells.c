@@ -1,6 +1,9 @@
 /*
  * cells.c: repetition: of a shape in all cells alike, and of a function that gets its cell.
  */
+#include <math.h>
+#include <string.h>
+
 #include "compiler/eval/elaborate.h"
 #include "compiler/family/vary.h"
 
@@ -96,6 +99,14 @@ static bool add_cells(Elaboration *e, Cells *cells)
     return true;
 }
 
+static Value join_cells(Elaboration *e, const Cells *cells)
+{
+    const Syntax *syntax = cells->call->syntax;
+    Argument      all    = {value_list(e, cells->shapes.items, cells->shapes.count), syntax};
+    Call join = {.syntax = syntax, .name = cells->call->name, .rest = &all, .rest_count = 1};
+    return builtin_union(e, &join);
+}
+
 /* All cells together. */
 static Value union_of_cells(Elaboration *e, Cells *cells)
 {
@@ -108,13 +119,38 @@ static Value union_of_cells(Elaboration *e, Cells *cells)
         diag->label = "4 million are possible";
         return value_error();
     }
-    if (!add_cells(e, cells))
+    return add_cells(e, cells) ? join_cells(e, cells) : value_error();
+}
+
+/* ---- a function in each sector ---- */
+
+/* One copy, turned to its sector; false: reported. */
+static bool add_sector(Elaboration *e, Cells *cells, Node axis, uint32_t index, uint32_t count)
+{
+    Value shape;
+    Span  span = cells->call->syntax->span;
+    if (!count_steps(e, 1, span) || !shape_of_cell(e, cells, value_number(index), &shape))
+        return false;
+    Node       angle = graph_number(e->graph, 2 * M_PI * index / count);
+    const Map *map   = map_rotation(e->builder, axis, angle);
+    shape            = value_shape(make_transform(e->builder, shape.shape, map, span));
+    array_push_large(e->arena, &cells->shapes, shape);
+    return shape.type == VALUE_SHAPE;
+}
+
+static Value union_of_sectors(Elaboration *e, Cells *cells)
+{
+    static const double UP[3] = {0, 1, 0};
+    const Call         *call  = cells->call;
+    uint32_t            count;
+    Node                axis = want_vector(e, call, 1, UP);
+    if (!want_count(e, call, 0, 1, 100000, 1, &count) || axis == NODE_NONE ||
+        (is_given(call, 1) && !check_direction(e, axis, call->arguments[1].syntax, "an axis")))
         return value_error();
-    Value    list = value_list(e, cells->shapes.items, cells->shapes.count);
-    Argument all  = {list, cells->call->syntax};
-    Call     join = {
-            .syntax = cells->call->syntax, .name = cells->call->name, .rest = &all, .rest_count = 1};
-    return builtin_union(e, &join);
+    for (uint32_t i = 0; i < count; i++)
+        if (!add_sector(e, cells, axis, i, count))
+            return value_error();
+    return join_cells(e, cells);
 }
 
 /* ---- one function for all cells, where they have no end ---- */
@@ -184,20 +220,33 @@ static bool check_takes_cell(Elaboration *e, const Syntax *syntax, const Functio
     return false;
 }
 
-Value repeat_function(Elaboration *e, const Environment *env, const Syntax *syntax,
-                      const Function *function)
+static Value repeat_in_lattice(Elaboration *e, Cells *cells)
 {
-    Call  call;
-    Cells cells = {.call = &call, .function = function};
-    if (!bind_arguments(e, env, syntax, 1, "repeat", "period count=", &call) ||
-        !want_lattice(e, &call, &cells.period, cells.counts) ||
-        !check_takes_cell(e, syntax, function))
+    if (!want_lattice(e, cells->call, &cells->period, cells->counts))
         return value_error();
     bool endless = false;
     for (uint32_t i = 0; i < 3; i++) {
-        if (node_range(e->builder, cells.period, i).high <= 0)
-            cells.counts[i] = 1;
-        endless = endless || cells.counts[i] == 0;
+        if (node_range(e->builder, cells->period, i).high <= 0)
+            cells->counts[i] = 1;
+        endless = endless || cells->counts[i] == 0;
     }
-    return endless ? endless_cells(e, &cells) : union_of_cells(e, &cells);
+    return endless ? endless_cells(e, cells) : union_of_cells(e, cells);
+}
+
+bool repeats_functions(const char *method)
+{
+    return strcmp(method, "repeat") == 0 || strcmp(method, "repeat_polar") == 0;
+}
+
+Value repeat_function(Elaboration *e, const Environment *env, const Syntax *syntax,
+                      const Function *function)
+{
+    Call        call;
+    Cells       cells      = {.call = &call, .function = function};
+    bool        polar      = strcmp(syntax->name, "repeat_polar") == 0;
+    const char *parameters = polar ? "n axis=" : "period count=";
+    if (!check_takes_cell(e, syntax, function) ||
+        !bind_arguments(e, env, syntax, 1, syntax->name, parameters, &call))
+        return value_error();
+    return polar ? union_of_sectors(e, &cells) : repeat_in_lattice(e, &cells);
 }

@@ -383,7 +383,9 @@ bool check_not_negative(Elaboration *e, Node node, const Syntax *syntax, const c
 /* ---- cells.c ---- */
 /* The period of a lattice and its counts, 0 for endless; false: reported. */
 bool want_lattice(Elaboration *e, const Call *call, Node *period, uint32_t cells[3]);
-/* `.repeat` of a function that makes the shape of a cell. */
+/* Whether functions have this method: `.repeat` and `.repeat_polar` of one that makes the shape of a
+   cell. */
+bool  repeats_functions(const char *method);
 Value repeat_function(Elaboration *e, const Environment *env, const Syntax *syntax,
                       const Function *function);
 

@@ -418,7 +418,7 @@ Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax)
         return receiver;
     if (receiver.type == VALUE_MAP && strcmp(syntax->name, "inverse") == 0 && syntax->count == 1)
         return value_map(map_inverse(e->builder, receiver.map));
-    if (receiver.type == VALUE_FUNCTION && strcmp(syntax->name, "repeat") == 0)
+    if (receiver.type == VALUE_FUNCTION && repeats_functions(syntax->name))
         return repeat_function(e, env, syntax, receiver.function);
     if (receiver.type == VALUE_RECORD && syntax->count == 1)
         return record_member(e, receiver.record, syntax->name, syntax->name_span);

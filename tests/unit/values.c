@@ -128,6 +128,15 @@ static const struct {
     {"data",
      "let d = read_json(\"../a/data.json\"); show box(d.sizes).move([d[\"big one\"].x, 0, 0]);",
      "show box([1, 2, 0.5]).move([-4, 0, 0]);"},
+    {"cells that are counted",
+     "def part(cell) = sphere(0.1 + 0.1 * dot(cell, [1, 3, 9])); show part.repeat([4, 2, 0], [3, "
+     "2, 5]);",
+     "show union([sphere(0.1 + 0.1 * (i + 3 * j)).move([4 * (i - 1), 2 * (j - 0.5), 0]) for j in "
+     "0..2 for i in 0..3]);"},
+    {"sectors",
+     "def part(i) = sphere(0.1 * (i + 1)).move([2, 0, 0]); show part.repeat_polar(5, [1, 0, 0]);",
+     "show union([sphere(0.1 * (i + 1)).move([2, 0, 0]).rotate([1, 0, 0], tau * i / 5) for i in "
+     "0..5]);"},
     {"truth and nothing",
      "let l = read_json(\"data.json\")[\"big one\"].list; show sphere(if l[1] then 2 + len(l[0]) "
      "else 1);",
