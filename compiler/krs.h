@@ -57,7 +57,7 @@ typedef struct KrsAllocator {
     void *user;
 } KrsAllocator;
 
-/* Supplies the text of a file that a scene uses; NULL: there is no such file.  `path` is the
+/* Supplies the text of a file that a scene uses, or reads as data; NULL: there is no such file.  `path` is the
    path that diagnostics show.  It begins with the scene's folder, if the scene's name does.  The
    text must stay valid until the next call, or until compiling has ended. */
 typedef const char *KrsLoadCallback(void *user, const char *path, size_t *length);

@@ -291,6 +291,27 @@ static void parts_of_files(void **state)
     }
 }
 
+/* Nor with other bytes in it. */
+static void changed_files(void **state)
+{
+    (void)state;
+    static Heard heard;
+    Random       random = {11};
+    char         changed[sizeof DATA + sizeof TABLE];
+    for (int i = 0; i < 400; i++) {
+        KrsScene *scene;
+        snprintf(changed, sizeof changed, "%s%s", i % 2 ? DATA : TABLE, i % 4 < 2 ? "" : TABLE);
+        for (int k = 0; k < 3; k++)
+            changed[random_below(&random, (int)strlen(changed))] = (char)random_bits(&random);
+        heard.json = heard.csv = changed;
+        compile(
+            "let c = read_csv(\"table.csv\"); let d = read_json(\"data.json\"); show sphere(1);",
+            &heard, &scene);
+        krs_scene_free(scene);
+        assert_true(heard.count <= 2);
+    }
+}
+
 /* Deep, and wide: limits are reported, and soon. */
 static void limits_of_files(void **state)
 {
@@ -315,7 +336,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(two_ways_are_the_same),  cmocka_unit_test(notes_come_in_their_order),
         cmocka_unit_test(numbers_are_read_right), cmocka_unit_test(bad_files_are_refused),
-        cmocka_unit_test(parts_of_files),         cmocka_unit_test(limits_of_files),
+        cmocka_unit_test(parts_of_files),         cmocka_unit_test(changed_files),
+        cmocka_unit_test(limits_of_files),
     };
     return cmocka_run_group_tests_name("values", tests, NULL, NULL);
 }
