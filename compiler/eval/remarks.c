@@ -4,6 +4,7 @@
 #include "compiler/eval/elaborate.h"
 
 #include <math.h>
+#include <string.h>
 
 enum {
     MOST_PRINTED = 100, /* notes of one scene */
@@ -185,11 +186,10 @@ static bool run_assert(Elaboration *e, const Environment *env, const Call *call)
 
 bool run_remark(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    bool        print      = syntax->op == TOKEN_PRINT;
-    const char *name       = print ? "print" : "assert";
+    bool        print      = strcmp(syntax->name, "print") == 0;
     const char *parameters = print ? "values..." : "condition message...";
     Call        call;
-    if (!bind_arguments(e, env, syntax, 0, name, parameters, &call))
+    if (!bind_arguments(e, env, syntax, 0, syntax->name, parameters, &call))
         return false;
     if (!print)
         return run_assert(e, env, &call);

@@ -157,6 +157,8 @@ static Syntax *no_block_statement(Parser *p)
 /* block_statement = let | def | shape | surroundings | show | remark_statement | for | if ; */
 static Syntax *parse_block_statement(Parser *p)
 {
+    if (at_remark(p))
+        return parse_remark_statement(p);
     switch (kind_here(p)) {
     case TOKEN_LET: return parse_let(p);
     case TOKEN_DEF: return parse_def(p);
@@ -168,8 +170,6 @@ static Syntax *parse_block_statement(Parser *p)
     case TOKEN_IMAGE:
     case TOKEN_ZONE: return parse_surroundings(p);
     case TOKEN_SHOW: return parse_show(p);
-    case TOKEN_PRINT:
-    case TOKEN_ASSERT: return parse_remark_statement(p);
     case TOKEN_FOR: return parse_for(p);
     case TOKEN_IF: return parse_if(p);
     default: return no_block_statement(p);
@@ -218,10 +218,10 @@ static Syntax *parse_krs_statement(Parser *p)
         return parse_reflect(p);
     if (is_word_here(p, "mobius"))
         return parse_mobius(p);
+    if (at_remark(p))
+        return parse_remark_statement(p);
     switch (kind_here(p)) {
     case TOKEN_LET: return parse_let(p);
-    case TOKEN_PRINT:
-    case TOKEN_ASSERT: return parse_remark_statement(p);
     case TOKEN_FOR: return parse_krs_for(p);
     case TOKEN_IF: return parse_krs_if(p);
     default: {
@@ -316,6 +316,8 @@ static Syntax *parse_definition(Parser *p)
 /* statement = definition | surroundings | show | use | remark_statement | for | if ; */
 static Syntax *parse_statement(Parser *p)
 {
+    if (at_remark(p))
+        return parse_remark_statement(p);
     switch (kind_here(p)) {
     case TOKEN_LET:
     case TOKEN_DEF:
@@ -330,8 +332,6 @@ static Syntax *parse_statement(Parser *p)
     case TOKEN_ZONE: return parse_surroundings(p);
     case TOKEN_SHOW: return parse_show(p);
     case TOKEN_USE: return parse_use(p);
-    case TOKEN_PRINT:
-    case TOKEN_ASSERT: return parse_remark_statement(p);
     case TOKEN_FOR: return parse_for(p);
     case TOKEN_IF: return parse_if(p);
     case TOKEN_RIGHT_BRACE: return stray_brace(p);

@@ -70,9 +70,13 @@ static Syntax *parse_parameter(Parser *p)
 /* parameters = "(" [ parameter { "," parameter } [ "," ] ] ")" ; */
 static void parse_parameters(Parser *p, const char *what, const char *example)
 {
-    size_t opener = p->here.at;
+    size_t       opener = p->here.at;
+    const Token *name   = token_before(p);
     if (!expect(p, TOKEN_LEFT_PAREN, what, example))
         return;
+    if (name->kind == TOKEN_NAME && names_remark(name->name))
+        report_at(p, DIAG_UNEXPECTED_TOKEN, name->span, "`print(` and `assert(` have a meaning")
+            ->help = "choose another name for what is called";
     while (!p->failed && kind_here(p) != TOKEN_RIGHT_PAREN) {
         add_child(p, parse_parameter(p));
         if (!accept(p, TOKEN_COMMA))

@@ -224,10 +224,10 @@ static Syntax *parse_or(Parser *p)
 /* expression = let_in | remark_in | if_then_else | or ; */
 Syntax *parse_expression(Parser *p)
 {
+    if (at_remark(p))
+        return parse_remark_in(p);
     switch (kind_here(p)) {
     case TOKEN_LET: return parse_let_in(p);
-    case TOKEN_PRINT:
-    case TOKEN_ASSERT: return parse_remark_in(p);
     case TOKEN_IF: return parse_if_then_else(p);
     default: return parse_or(p);
     }
@@ -299,13 +299,8 @@ Syntax *parse_remark(Parser *p)
     Span         start = token_here(p)->span;
     size_t       first = begin_children(p);
     const Token *word  = advance(p);
-    if (kind_here(p) == TOKEN_LEFT_PAREN)
-        parse_arguments(p);
-    else
-        expected(p, "`(`")->help = "for example `print(\"the radius is\", r);`";
-    Syntax *remark = finish(p, SYNTAX_REMARK, start, first, NULL);
-    remark->op     = word->kind;
-    return remark;
+    parse_arguments(p);
+    return finish(p, SYNTAX_REMARK, start, first, word);
 }
 
 /* call = arguments ; */
@@ -464,7 +459,7 @@ static Syntax *no_expression(Parser *p)
     TokenKind found   = kind_here(p);
     bool      keyword = token_is_statement_word(found) && !begins_declaration(p);
     Diag     *diag    = expected(p, "an expression");
-    if (found == TOKEN_IF || found == TOKEN_NOT || may_be_within_expression(found))
+    if (found == TOKEN_IF || found == TOKEN_LET || found == TOKEN_NOT)
         diag->help = "put it in parentheses, as in `1 + (if a < b then a else b)`";
     else if (found == TOKEN_PLUS)
         diag->help = "a positive number has no sign";

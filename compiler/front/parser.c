@@ -64,6 +64,17 @@ bool is_word_here(const Parser *p, const char *word)
     return kind_here(p) == TOKEN_NAME && strcmp(token_here(p)->name, word) == 0;
 }
 
+bool names_remark(const char *name)
+{
+    return strcmp(name, "print") == 0 || strcmp(name, "assert") == 0;
+}
+
+bool at_remark(const Parser *p)
+{
+    return kind_here(p) == TOKEN_NAME && names_remark(token_here(p)->name) &&
+           kind_after(p) == TOKEN_LEFT_PAREN;
+}
+
 /* Whether the current token is the first on its line. */
 static bool begins_line(const Parser *p)
 {
@@ -73,18 +84,12 @@ static bool begins_line(const Parser *p)
     return memchr(p->text + end, '\n', token_here(p)->span.start - end) != NULL;
 }
 
-bool may_be_within_expression(TokenKind kind)
-{
-    return kind == TOKEN_LET || kind == TOKEN_PRINT || kind == TOKEN_ASSERT;
-}
-
 bool begins_declaration(const Parser *p)
 {
     TokenKind kind = token_here(p)->kind, before = token_before(p)->kind;
     bool      free = before == TOKEN_SEMICOLON || before == TOKEN_RIGHT_BRACE || begins_line(p);
-    bool      statement = token_is_statement_word(kind) && !may_be_within_expression(kind);
-    return statement && kind != TOKEN_KRS && free && kind_at(p, p->here.at + 1) != TOKEN_COLON &&
-           before != TOKEN_DOT;
+    return token_is_statement_word(kind) && kind != TOKEN_LET && kind != TOKEN_KRS && free &&
+           kind_at(p, p->here.at + 1) != TOKEN_COLON && before != TOKEN_DOT;
 }
 
 /* Whether a brace is closed anywhere.  This reads up to the end of the file, but only after a
@@ -284,14 +289,14 @@ bool block_is_left(const Parser *p, size_t opener, BlockKind kind)
     return (kind == KRS_BLOCK || !fits) && !brace_is_closed(p, opener);
 }
 
-/* Whether recovery may end here, because a statement begins.  Words like `let` may also begin parts
-   of expressions.  So they must begin a line, outside of brackets opened after `start`. */
+/* Whether recovery may end here, because a statement begins.  `let`, `for` and `if` may also begin
+   parts of expressions.  So they must begin a line, outside of brackets opened after `start`. */
 static bool may_resume(const Parser *p, Level start)
 {
     TokenKind kind = token_here(p)->kind;
     if (begins_declaration(p))
         return begins_line(p) || p->here.braces <= start.braces;
-    bool flexible = may_be_within_expression(kind) || kind == TOKEN_FOR || kind == TOKEN_IF;
+    bool flexible = kind == TOKEN_LET || kind == TOKEN_FOR || kind == TOKEN_IF;
     return flexible && begins_line(p) && p->here.brackets <= start.brackets;
 }
 

@@ -57,10 +57,11 @@ bool         accept(Parser *p, TokenKind kind);
    statements elsewhere. */
 bool is_label(const Parser *p);
 bool is_word_here(const Parser *p, const char *word);
+/* Whether `print(` or `assert(` is next; without a parenthesis these are names. */
+bool at_remark(const Parser *p);
+bool names_remark(const char *name);
 /* Whether the current token begins a statement that cannot be part of an expression. */
 bool begins_declaration(const Parser *p);
-/* Whether a word begins statements and parts of expressions: `let`, `print`, `assert`. */
-bool may_be_within_expression(TokenKind kind);
 
 /* ---- errors ---- */
 /* Reports a mistake without failing; after a failure it is not stored. */

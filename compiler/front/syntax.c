@@ -66,7 +66,6 @@ static void print_content(const Syntax *syntax, Text *out)
         text_add(out, " ");
         text_json(out, syntax->name);
         return;
-    case SYNTAX_REMARK:
     case SYNTAX_UNARY:
     case SYNTAX_BINARY: text_format(out, " %s", token_kind_text(syntax->op)); break;
     default: break;

@@ -51,7 +51,7 @@ typedef enum SyntaxKind {
     SYNTAX_ZONE,         /* -      PROPERTY... */
     SYNTAX_PROPERTY,     /* name   [0] value */
     SYNTAX_SHOW,         /* -      [0] value */
-    SYNTAX_REMARK,       /* -      ARGUMENT...; op is TOKEN_PRINT or TOKEN_ASSERT */
+    SYNTAX_REMARK,       /* word   ARGUMENT...; the name is `print` or `assert` */
     SYNTAX_USE,          /* path   none; the name is the path */
     SYNTAX_FOR,          /* name   [0] the list, [1] BLOCK */
     SYNTAX_IF_STATEMENT, /* -      [0] condition, [1] BLOCK, [2] BLOCK, IF_STATEMENT, or none */

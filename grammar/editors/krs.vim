@@ -7,13 +7,15 @@ if exists("b:current_syntax")
     finish
 endif
 
-syntax keyword krsStatement let def param shape material camera light sky fog image zone show use krs print assert
+syntax keyword krsStatement let def param shape material camera light sky fog image zone show use krs
 syntax keyword krsControl for if then else in
 syntax keyword krsOperatorWord and or not
 syntax keyword krsConstant true false
 
 " Words that begin a statement only within `krs { ... }`.
 syntax match krsStage "\v(^|[{};])\s*\zs(kernel|reflect|mobius)>"
+" These are names, too, unless a parenthesis follows.
+syntax match krsStage "\v<(print|assert)>\ze\("
 " Names of properties and arguments, and methods, whatever word they are.
 syntax match krsLabel "\v<\h\w*\ze\s*:"
 syntax match krsMethod "\v\.\s*\zs\h\w*"
