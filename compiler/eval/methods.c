@@ -60,8 +60,10 @@ static Value method_rotate(Elaboration *e, const Shape *shape, Call *call)
         return moved(e, shape, want_rotation(e, call), call);
     Diag *diag = missing_argument(e, call->syntax, "rotate",
                                   shape->figure || is_given(call, 0) ? "angle" : "axis");
-    diag->help = shape->figure ? "a figure turns in its plane: `.rotate(30deg)`"
-                               : "a solid turns about an axis: `.rotate([0, 1, 0], 30deg)`";
+    if (shape->figure)
+        diag->help = "a figure turns in its plane: `.rotate(30deg)`";
+    else
+        explain_usage(e, diag, call->syntax, "rotate");
     return value_error();
 }
 
