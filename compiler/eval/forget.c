@@ -26,6 +26,7 @@ static bool stands_alone(Value value)
     case VALUE_MAP:
     case VALUE_MATERIAL: return true;
     case VALUE_LIST:
+    case VALUE_RECORD:
     case VALUE_FUNCTION: break;
     }
     return false;
