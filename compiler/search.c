@@ -8,6 +8,7 @@
 
 #include "compiler/base/splitmix.h"
 #include "compiler/base/vec.h"
+#include "compiler/graph/crowd.h"
 #include "compiler/search_pairs.h"
 #include "compiler/search_starts.h"
 #include "compiler/search_targets.h"
@@ -82,6 +83,20 @@ static void choose_around(Search *search)
     search->size = box_diagonal(search->around);
 }
 
+/* On the host a crowd function looks at more members than those of one cell: from afar, at about as many
+   as a circle of that many dots has at its edge. */
+static double node_cost(const Tape *tape, Node node)
+{
+    const Expr *e     = &tape->graph->items[node];
+    double      flops = tape_node_flops(tape, node);
+    if (!is_call((Op)e->op))
+        return flops;
+    const Crowds *crowds   = tape->graph->crowds;
+    uint32_t      function = (uint32_t)tape->graph->items[e->operands[0]].number[0];
+    uint32_t      rows     = crowds->tables.items[crowds->functions.items[function].crowd].rows;
+    return flops * (1 + 4 * sqrt(rows));
+}
+
 bool search_new(Search *search, const Graph *graph, Node distance, Node side, Box box, Arena *arena)
 {
     *search = (Search){.distance = distance, .side = side, .box = box, .aim = {1}, .cost = 1};
@@ -92,7 +107,7 @@ bool search_new(Search *search, const Graph *graph, Node distance, Node side, Bo
     for (size_t i = search->tape.frame_count; i < search->tape.count; i++) {
         const Expr *e = &graph->items[search->tape.nodes[i]];
         add_targets(search, arena, graph, e);
-        search->cost += 1 + (uint64_t)tape_node_flops(&search->tape, search->tape.nodes[i]);
+        search->cost += 1 + (uint64_t)node_cost(&search->tape, search->tape.nodes[i]);
         for (int k = 0; k < e->operand_count; k++) {
             const Expr *of = &graph->items[e->operands[k]];
             if (of->type == TYPE_VEC3 && of->time != TIME_POINT)

@@ -10,8 +10,9 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const property_names[] = {"distance", "bound", "exact",  "slope", "within",
-                                             "uv",       "plane", "figure", "core",  "example"};
+static const char *const property_names[] = {"distance", "bound",   "exact",  "slope",
+                                             "within",   "uv",      "plane",  "figure",
+                                             "core",     "outline", "example"};
 enum { PROPERTY_COUNT = sizeof property_names / sizeof *property_names };
 
 static bool check_properties(Elaboration *e, const Syntax *declaration)
@@ -188,6 +189,47 @@ static bool uv_property(Elaboration *e, const Environment *env, const Syntax *de
     return shape->uv != NODE_NONE;
 }
 
+/* ---- outlines ---- */
+
+/* Fewer corners are a formula: a loop over a list costs as much as some. */
+enum { LEAST_CORNERS = 64 };
+
+/* A corner that is known now. */
+static bool known_corner(Value value, double corner[2])
+{
+    if (value.type != VALUE_LIST || value.list->count != 2)
+        return false;
+    for (size_t k = 0; k < 2; k++) {
+        if (value.list->items[k].type != VALUE_NUMBER)
+            return false;
+        corner[k] = value.list->items[k].number;
+    }
+    return true;
+}
+
+/* `outline`: the corners of a polygon.  Where they are many and known now, its distance comes from a
+   table, not from the property `distance`.  False: they are not. */
+static bool outline_property(Elaboration *e, const Environment *env, const Syntax *declaration,
+                             Path *path)
+{
+    const Syntax *syntax = find_property(declaration, "outline");
+    Value         points = syntax ? evaluate(e, env, syntax) : value_error();
+    if (points.type != VALUE_LIST || points.list->count < LEAST_CORNERS)
+        return false;
+    for (size_t i = 0; i < points.list->count; i++) {
+        double corner[2];
+        if (!known_corner(points.list->items[i], corner))
+            return false;
+        if (i == 0)
+            path_move(path, corner);
+        path_line(path, corner);
+    }
+    path_close(path);
+    return true;
+}
+
+/* ---- properties ---- */
+
 /* What the shape is, out of its properties. */
 static bool read_properties(Elaboration *e, const Environment *env, const Syntax *declaration,
                             Shape *shape)
@@ -271,6 +313,10 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
         diag->help = "add `distance: ...`, an expression of x, y, z that is negative inside";
         return value_error();
     }
+    Path path = {.arena = e->arena};
+    if (outline_property(e, env, declaration, &path))
+        return value_shape(
+            make_outline(e->builder, function->name, &path.curves, FILL_EVEN_ODD, span));
     bool first = needs_check(e, declaration);
     if (first && !check_properties(e, declaration))
         return value_error();

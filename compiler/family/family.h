@@ -7,6 +7,8 @@
 #ifndef KRS_FAMILY_H
 #define KRS_FAMILY_H
 
+#include "compiler/lower/context.h"
+#include "compiler/outline/outline.h"
 #include "compiler/shape/map.h"
 #include "compiler/shape/slope.h"
 
@@ -21,6 +23,13 @@ void claim_slope(ShapeBuilder *builder, Shape *primitive, double slope);
    there is no bound, and *blame is what changes too fast. */
 bool         derive_slope(ShapeBuilder *builder, Shape *primitive, Span distance, Blame *blame);
 const Shape *make_empty(ShapeBuilder *builder, Span span);
+
+/* ---- outline.c: plane figures that contours fill ---- */
+/* NULL: reported. */
+const Shape *make_outline(ShapeBuilder *builder, const char *name, const Curves *curves,
+                          FillRule rule, Span span);
+/* Its distance, as far as the context needs that. */
+Node lower_outline_distance(Lowering *l, const Shape *shape, LowerContext context);
 
 /* ---- shapes from shapes ---- */
 /* NULL: an inversion of something endless, which is reported. */

@@ -91,6 +91,8 @@ static void keep_table(Crowd *table, Arena *arena)
         return;
     table->arena   = arena;
     table->numbers = COPY_ITEMS(arena, table->numbers, (size_t)table->rows * table->columns);
+    if (table->boxes)
+        table->boxes = COPY_ITEMS(arena, table->boxes, table->rows);
     if (table->frame_columns)
         table->frame_columns = COPY_ITEMS(arena, table->frame_columns, table->columns);
     grid->members   = COPY_ITEMS(arena, grid->members, grid->first[cells]);

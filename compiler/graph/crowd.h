@@ -41,6 +41,7 @@ typedef struct Crowd {
     uint32_t *frame_columns; /* of each column: KNOWN_COLUMN, or where its nodes begin in
                                 Crowds.frame_numbers, one for each row; NULL: all are known */
     Grid      grid;          /* its members are the rows */
+    Box      *boxes;         /* of members of which only the nearest counts; NULL: not known */
     double    stretch;       /* the distance of a member, times this, is at least that to its box */
     Span      span;          /* of the join */
 } Crowd;
@@ -54,9 +55,11 @@ typedef struct CrowdState {
 } CrowdState;
 
 typedef struct CrowdFunction {
-    uint32_t   crowd; /* index of the table */
-    GraphType  type;  /* of the result */
-    bool       clear; /* the result is at most the clearance: it is a distance */
+    uint32_t   crowd;  /* index of the table */
+    GraphType  type;   /* of the result */
+    bool       clear;  /* the result is at most the clearance: it is a distance */
+    bool       either; /* it is at most as far from 0 as the clearance, which has a sign: where no
+                          member is in a cell, that of all points in it */
     CrowdState states[MOST_CROWD_STATES];
     uint32_t   state_count;
     uint32_t   distance;   /* the state that is a distance; NO_DISTANCE: there is none */

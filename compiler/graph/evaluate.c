@@ -204,17 +204,32 @@ static void loop_over(Loop *loop, uint32_t member)
         loop->states[k] = loop->values[loop->bodies[k]];
 }
 
-static void loop_over_near(Loop *loop, double radius)
+/* What is farther than this cannot be nearer than what is found. */
+static double how_far(const Loop *loop)
+{
+    double distance = loop->states[loop->function->distance].v[0];
+    return (loop->function->either ? fabs(distance) : distance) * loop->table->stretch;
+}
+
+/* Whether a member may be nearer than what is found. */
+static bool may_count(const Loop *loop, uint32_t member)
+{
+    const Box *boxes = loop->table->boxes;
+    return !boxes || distance_to_box(&boxes[member], loop->in.point) <= how_far(loop);
+}
+
+static void loop_over_near(Loop *loop, double radius, double clear)
 {
     NearMembers near;
     uint32_t    rows = loop->table->rows;
     begin_loop(loop);
     for (near.first = 0; near.first < rows; near.first += near.count) {
         near.count = rows - near.first < NEAR_AT_ONCE ? rows - near.first : NEAR_AT_ONCE;
-        grid_near(&loop->table->grid, loop->in.point, radius, &near);
+        grid_near(&loop->table->grid, loop->in.point, radius, clear, &near);
         for (uint32_t word = 0; word < (near.count + 63) / 64; word++)
             for (uint64_t bits = near.bits[word]; bits; bits &= bits - 1)
-                loop_over(loop, near.first + 64 * word + lowest_bit(bits));
+                if (may_count(loop, near.first + 64 * word + lowest_bit(bits)))
+                    loop_over(loop, near.first + 64 * word + lowest_bit(bits));
     }
 }
 
@@ -224,13 +239,21 @@ static void loop_to_the_nearest(Loop *loop, double clearance)
 {
     const Grid   *grid     = &loop->table->grid;
     const double *distance = loop->states[loop->function->distance].v;
-    double        radius = clearance, more = grid->size;
-    while (*distance * loop->table->stretch > radius && radius < NOWHERE &&
+    double        radius = fabs(clearance), more = grid->size;
+    double        clear = loop->function->either ? radius * (1 - 0x1p-20) : 0;
+    while (how_far(loop) > radius && radius < NOWHERE &&
            !grid_is_within(grid, loop->in.point, radius)) {
-        radius = *distance < NOWHERE ? *distance * loop->table->stretch : radius + more;
+        radius = fabs(*distance) < NOWHERE ? how_far(loop) : radius + more;
         more *= 2;
-        loop_over_near(loop, radius);
+        loop_over_near(loop, radius, clear);
     }
+}
+
+static double cleared(const CrowdFunction *function, double distance, double clearance)
+{
+    if (function->either)
+        return fabs(distance) < fabs(clearance) ? distance : clearance;
+    return fmin(distance, clearance);
 }
 
 static NodeValue run_loop(Loop *loop)
@@ -244,7 +267,7 @@ static NodeValue run_loop(Loop *loop)
     if (loop->function->distance != NO_DISTANCE && !loop->in.by_cells)
         loop_to_the_nearest(loop, clearance);
     else if (loop->function->clear)
-        return number(fmin(loop->states[0].v[0], clearance));
+        return number(cleared(loop->function, loop->states[0].v[0], clearance));
     return loop->states[0];
 }
 

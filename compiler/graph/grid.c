@@ -4,8 +4,7 @@
  *
  * Cells are as small as their number and the length of all lists together allow.  The distance from
  * a cell to the nearest box that it does not list is measured for boxes around the corner.  Farther
- * ones are bounded by a distance transform of the cells that have boxes (Felzenszwalb and
- * Huttenlocher, "Distance transforms of sampled functions", 2012).
+ * ones are bounded by a distance transform of the cells that have boxes.
  *
  * Kernels find the cell of a point in single precision, and may find a neighbour of it.  So boxes are
  * taken to be larger by what single precision can miss: the pad.
@@ -17,6 +16,7 @@
 
 #include "compiler/base/far.h"
 #include "compiler/base/parallel.h"
+#include "compiler/graph/squares.h"
 
 /* Most cells and entries: few members may have more cells each, so that they may form a curve, and
    more entries, so that blends that reach far have short lists.  A loop over a list is most of a
@@ -36,22 +36,27 @@ enum {
 #define MARGIN_IN_CELLS 0.25    /* beyond what the caller gives */
 #define RING_IN_CELLS   0.5     /* how far beyond the margin boxes are measured */
 #define GROWTH          1.08    /* of the side: a quarter more volume */
+#define FLAT_IN_CELLS   1.75    /* how far away what decides in a cell of a flat grid may be */
 #define SMALLEST_SIDE   1e-12   /* of a cell */
 #define FLOAT_MISSES    0x1p-21 /* several roundings in single precision, of coordinates */
 #define ROUNDED_DOWN    (1 - 0x1p-22)
 
 typedef struct Builder {
-    Grid      *grid;
-    const Box *boxes;
-    uint32_t   count, present; /* boxes; those that are not empty */
-    double     reach, margin;
-    double     given_margin;
-    uint32_t   texels; /* of an entry */
-    double     pad[3];
-    double     listed, seen; /* boxes up to this distance are in the list, or are measured */
-    float     *nearest;      /* of each cell: the square of the distance to the nearest box that is
+    Grid       *grid;
+    const Box  *boxes;
+    uint32_t    count, present; /* boxes; those that are not empty */
+    double      reach, margin;
+    double      given_margin;
+    uint32_t    texels; /* of an entry */
+    double      pad[3];
+    double      listed, seen; /* boxes up to this distance are in the list, or are measured */
+    float      *nearest;      /* of each cell: the square of the distance to the nearest box that is
                                 seen and not listed */
-    Arena     *scratch;
+    GridMembers flat;         /* of a flat grid */
+    double      half;         /* and half the diagonal of its cells, */
+    float      *centers;   /* and of each cell the distance from its center to the nearest member */
+    bool        measuring; /* these distances */
+    Arena      *scratch;
 } Builder;
 
 /* Cells from first to last along each axis. */
@@ -127,6 +132,16 @@ static void find_inner(Builder *b)
     }
 }
 
+/* One layer of cells around the plane. */
+static void place_flat(Builder *b)
+{
+    Grid *grid     = b->grid;
+    grid->low[2]   = (float)(-0.5 * grid->size);
+    grid->cells[2] = 1;
+    b->half        = M_SQRT1_2 * grid->size + b->pad[0] + b->pad[1];
+    b->seen        = fmax(b->seen, FLAT_IN_CELLS * grid->size + b->pad[0] + b->pad[1]);
+}
+
 /* Cells of this side around `inner` and a margin.  Corners are single precision numbers, and so is
    1 / side, as kernels have them. */
 static void place_cells(Builder *b, double side)
@@ -144,6 +159,8 @@ static void place_cells(Builder *b, double side)
         double along   = ceil((axis.high + edge - grid->low[k]) / grid->size);
         grid->cells[k] = (uint32_t)fmin(fmax(along, 1), UINT32_MAX);
     }
+    if (b->flat.distance)
+        place_flat(b);
 }
 
 static double placed_cells(const Grid *grid)
@@ -192,7 +209,8 @@ static double count_entries(const Builder *b)
     for (uint32_t i = 0; i < b->count; i++) {
         if (box_is_empty(&b->boxes[i]))
             continue;
-        Cover  cover = cover_box(b, &b->boxes[i], b->listed);
+        double far   = b->flat.distance ? fmax(b->listed, b->grid->size) : b->listed;
+        Cover  cover = cover_box(b, &b->boxes[i], far);
         double cells = 1;
         for (int k = 0; k < 3; k++)
             cells *= (double)(cover.last[k] - cover.first[k]) + 1;
@@ -223,22 +241,35 @@ static double gap_along(const Builder *b, const Box *box, int axis, uint32_t cel
     return gap > 0 ? gap : 0;
 }
 
-/* Cells [low, high) along z, of which one processor fills the lists. */
+/* Cells [low, high) along an axis, of which one processor fills the lists. */
 typedef struct Slab {
+    int      axis; /* z, or y in a flat grid */
     uint32_t low, high;
 } Slab;
 
-static Slab slab_of_part(const Grid *grid, size_t part, size_t parts)
+static Slab slab_of_part(const Builder *b, size_t part, size_t parts)
 {
-    return (Slab){(uint32_t)part_begin(grid->cells[2], part, parts),
-                  (uint32_t)part_begin(grid->cells[2], part + 1, parts)};
+    int      axis  = b->flat.distance ? 1 : 2;
+    uint32_t cells = b->grid->cells[axis];
+    return (Slab){axis, (uint32_t)part_begin(cells, part, parts),
+                  (uint32_t)part_begin(cells, part + 1, parts)};
 }
 
 static Cover cover_in_slab(Cover cover, Slab slab)
 {
-    cover.first[2] = cover.first[2] > slab.low ? cover.first[2] : slab.low;
-    cover.last[2]  = cover.last[2] < slab.high ? cover.last[2] : slab.high - 1;
+    uint32_t *first = &cover.first[slab.axis], *last = &cover.last[slab.axis];
+    *first = *first > slab.low ? *first : slab.low;
+    *last  = *last < slab.high ? *last : slab.high - 1;
     return cover;
+}
+
+/* Adds a member to the list of a cell, or counts it. */
+static void put_in_list(Grid *grid, size_t cell, uint32_t member)
+{
+    if (grid->members)
+        grid->members[grid->first[cell]++] = member;
+    else
+        grid->first[cell]++;
 }
 
 /* Visits cells of a slab around a box.  First their lists are counted, in first[]; when there are
@@ -260,11 +291,42 @@ static void visit_cells(const Builder *b, uint32_t member, Slab slab)
                 if (apart > listed) {
                     if (apart < b->nearest[row + x])
                         b->nearest[row + x] = (float)apart;
-                } else if (grid->members)
-                    grid->members[grid->first[row + x]++] = member;
-                else
-                    grid->first[row + x]++;
+                } else
+                    put_in_list(b->grid, row + x, member);
             }
+        }
+    }
+}
+
+/* What is true of the center of a cell is true of all of it but for half of the diagonal. */
+static void visit_flat_cell(const Builder *b, uint32_t member, size_t cell, const double center[2],
+                            double gap)
+{
+    float *nearest = &b->centers[cell];
+    double away    = b->flat.distance(b->flat.members, member, center);
+    double least   = fmax(away - b->half, gap);
+    if (b->measuring)
+        *nearest = fminf(*nearest, (float)(away * (1 - FLOAT_MISSES)));
+    else if (least <= b->listed ||
+             (*nearest <= b->half &&
+              away <= (double)*nearest * (1 + 4 * FLOAT_MISSES) + 2 * b->half))
+        put_in_list(b->grid, cell, member);
+    else
+        b->nearest[cell] = fminf(b->nearest[cell], (float)(least * least));
+}
+
+static void visit_flat_cells(const Builder *b, uint32_t member, Slab slab)
+{
+    const Grid *grid  = b->grid;
+    const Box  *box   = &b->boxes[member];
+    Cover       cover = cover_in_slab(cover_box(b, box, b->seen), slab);
+    for (uint32_t y = cover.first[1]; y <= cover.last[1]; y++) {
+        double gap_y = gap_along(b, box, 1, y);
+        for (uint32_t x = cover.first[0]; x <= cover.last[0]; x++) {
+            double center[2] = {grid->low[0] + (x + 0.5) * grid->size,
+                                grid->low[1] + (y + 0.5) * grid->size};
+            visit_flat_cell(b, member, (size_t)y * grid->cells[0] + x, center,
+                            hypot(gap_along(b, box, 0, x), gap_y));
         }
     }
 }
@@ -273,10 +335,25 @@ static void visit_cells(const Builder *b, uint32_t member, Slab slab)
 static void visit_all(void *task, size_t part, size_t parts)
 {
     const Builder *b    = task;
-    Slab           slab = slab_of_part(b->grid, part, parts);
+    Slab           slab = slab_of_part(b, part, parts);
     for (uint32_t i = 0; i < b->count && slab.low < slab.high; i++)
-        if (!box_is_empty(&b->boxes[i]))
+        if (box_is_empty(&b->boxes[i]))
+            continue;
+        else if (b->flat.distance)
+            visit_flat_cells(b, i, slab);
+        else
             visit_cells(b, i, slab);
+}
+
+static void measure_centers(Builder *b)
+{
+    size_t cells = cell_count(b->grid);
+    b->centers   = arena_new_array(b->scratch, float, cells);
+    for (size_t c = 0; c < cells; c++)
+        b->centers[c] = HUGE_VALF;
+    b->measuring = true;
+    run_in_parallel(visit_all, b);
+    b->measuring = false;
 }
 
 static void fill_lists(Builder *b, Arena *arena)
@@ -287,6 +364,8 @@ static void fill_lists(Builder *b, Arena *arena)
     b->nearest   = arena_new_array(b->scratch, float, cells);
     for (size_t c = 0; c < cells; c++)
         b->nearest[c] = HUGE_VALF;
+    if (b->flat.distance)
+        measure_centers(b);
     run_in_parallel(visit_all, b);
 
     /* From lengths to where lists begin. */
@@ -309,87 +388,6 @@ static void fill_lists(Builder *b, Arena *arena)
 
 /* ---- Distances in cells to the nearest cell with a box ---- */
 
-/* The least of parabolas: value[i] becomes the least value[k] + (i - k)^2 of any k. */
-typedef struct Parabolas {
-    double *value, *begin; /* of each parabola: its least value; where it begins to be the lowest */
-    size_t *center;
-} Parabolas;
-
-/* Where the lower of two parabolas changes, the second one centered to the right. */
-static double parabolas_cross(double value, size_t center, double other, size_t right)
-{
-    double a = (double)center, b = (double)right;
-    return (other - value + b * b - a * a) / (2 * (b - a));
-}
-
-static void transform_line(double *values, size_t count, size_t stride, const Parabolas *lowest)
-{
-    size_t used = 0;
-    for (size_t i = 0; i < count; i++) {
-        double value = values[i * stride], begin = -HUGE_VAL;
-        if (value == HUGE_VAL)
-            continue;
-        while (used > 0) {
-            begin = parabolas_cross(lowest->value[used - 1], lowest->center[used - 1], value, i);
-            if (begin > lowest->begin[used - 1])
-                break;
-            used--;
-            begin = -HUGE_VAL;
-        }
-        lowest->value[used]  = value;
-        lowest->center[used] = i;
-        lowest->begin[used]  = begin;
-        used++;
-    }
-    for (size_t i = 0, at = 0; i < count && used > 0; i++) {
-        while (at + 1 < used && lowest->begin[at + 1] < (double)i)
-            at++;
-        double away        = (double)i - (double)lowest->center[at];
-        values[i * stride] = lowest->value[at] + away * away;
-    }
-}
-
-/* The transform of all cells, an axis at a time; each processor has lines of its own. */
-typedef struct Transform {
-    const Builder *builder;
-    double        *values;
-    Parabolas      lowest; /* of all processors, `longest` each */
-    size_t         longest;
-} Transform;
-
-static Parabolas parabolas_of_part(const Transform *t, size_t part)
-{
-    size_t first = part * t->longest;
-    return (Parabolas){t->lowest.value + first, t->lowest.begin + first, t->lowest.center + first};
-}
-
-static void transform_across(void *task, size_t part, size_t parts)
-{
-    const Transform *t      = task;
-    const Grid      *grid   = t->builder->grid;
-    Parabolas        lowest = parabolas_of_part(t, part);
-    size_t           x = grid->cells[0], y = grid->cells[1], z = grid->cells[2];
-    for (size_t plane = part_begin(z, part, parts); plane < part_begin(z, part + 1, parts);
-         plane++) {
-        double *values = t->values + plane * x * y;
-        for (size_t line = 0; line < y; line++)
-            transform_line(values + line * x, x, 1, &lowest);
-        for (size_t line = 0; line < x; line++)
-            transform_line(values + line, y, x, &lowest);
-    }
-}
-
-static void transform_along(void *task, size_t part, size_t parts)
-{
-    const Transform *t      = task;
-    const Grid      *grid   = t->builder->grid;
-    Parabolas        lowest = parabolas_of_part(t, part);
-    size_t           plane  = (size_t)grid->cells[0] * grid->cells[1];
-    size_t           end    = part_begin(plane, part + 1, parts);
-    for (size_t line = part_begin(plane, part, parts); line < end; line++)
-        transform_line(t->values + line, grid->cells[2], plane, &lowest);
-}
-
 /* 0 in cells that touch a cell with a part of this box. */
 static void mark_box(const Builder *b, const Box *box, double *squares, Slab slab)
 {
@@ -406,37 +404,33 @@ static void mark_box(const Builder *b, const Box *box, double *squares, Slab sla
                 squares[((size_t)z * grid->cells[1] + y) * grid->cells[0] + x] = 0;
 }
 
+/* Of all boxes. */
+typedef struct Marking {
+    const Builder *builder;
+    double        *squares;
+} Marking;
+
 static void mark_all(void *task, size_t part, size_t parts)
 {
-    const Transform *t    = task;
-    const Builder   *b    = t->builder;
-    Slab             slab = slab_of_part(b->grid, part, parts);
+    const Marking *marking = task;
+    const Builder *b       = marking->builder;
+    Slab           slab    = slab_of_part(b, part, parts);
     for (uint32_t i = 0; i < b->count && slab.low < slab.high; i++)
         if (!box_is_empty(&b->boxes[i]))
-            mark_box(b, &b->boxes[i], t->values, slab);
+            mark_box(b, &b->boxes[i], marking->squares, slab);
 }
 
 /* Squares of lower bounds on the distance between a cell and the nearest box, in cells.  The walls
    of cells i and k are |i - k| - 1 cells apart: as far as centers when one of them touches. */
 static double *cells_to_boxes(const Builder *b)
 {
-    const uint32_t *along   = b->grid->cells;
-    size_t          cells   = cell_count(b->grid);
-    size_t          longest = along[0] > along[1] ? along[0] : along[1];
-    longest                 = longest > along[2] ? longest : along[2];
-    size_t    room          = longest * MOST_PARTS;
-    Transform t             = {.builder = b,
-                               .values  = arena_new_array(b->scratch, double, cells),
-                               .lowest  = {arena_new_array(b->scratch, double, room),
-                                           arena_new_array(b->scratch, double, room),
-                                           arena_new_array(b->scratch, size_t, room)},
-                               .longest = longest};
+    size_t  cells   = cell_count(b->grid);
+    Marking marking = {b, arena_new_array(b->scratch, double, cells)};
     for (size_t c = 0; c < cells; c++)
-        t.values[c] = HUGE_VAL;
-    run_in_parallel(mark_all, &t);
-    run_in_parallel(transform_across, &t);
-    run_in_parallel(transform_along, &t);
-    return t.values;
+        marking.squares[c] = HUGE_VAL;
+    run_in_parallel(mark_all, &marking);
+    squares_transform(b->grid->cells, marking.squares, b->scratch);
+    return marking.squares;
 }
 
 /* ---- Clearance ---- */
@@ -452,17 +446,32 @@ static void find_clearances(const Builder *b, Arena *arena)
     for (size_t c = 0; c < cells; c++) {
         double seen = fmin(sqrt((double)b->nearest[c]) * ROUNDED_DOWN, b->seen);
         double far  = fmax(seen, sqrt(squares[c]) * grid->size);
-        bool   all  = grid->first[c + 1] - grid->first[c] == b->present;
+        bool   all  = grid->first[c + 1] - grid->first[c] == b->present ||
+                   (b->flat.distance && (double)b->centers[c] <= b->half);
 
         grid->clearance[c] = all ? (float)NOWHERE : rounded_down(fmax(far - b->reach, b->margin));
     }
+}
+
+static void build(Builder *b, Arena *arena)
+{
+    *b->grid = (Grid){0};
+    for (uint32_t i = 0; i < b->count; i++)
+        b->present += !box_is_empty(&b->boxes[i]);
+    if (b->present == 0 || !all_are_bounded(b)) {
+        one_cell(b, arena);
+        return;
+    }
+    find_inner(b);
+    choose_cells(b);
+    fill_lists(b, arena);
+    find_clearances(b, arena);
 }
 
 void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
                 uint32_t texels, Arena *arena, Arena *scratch)
 {
     assert(count > 0 && texels > 0);
-    *grid     = (Grid){0};
     Builder b = {.grid         = grid,
                  .boxes        = boxes,
                  .count        = count,
@@ -470,14 +479,19 @@ void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, doub
                  .given_margin = margin,
                  .texels       = texels,
                  .scratch      = scratch};
-    for (uint32_t i = 0; i < count; i++)
-        b.present += !box_is_empty(&boxes[i]);
-    if (b.present == 0 || !all_are_bounded(&b)) {
-        one_cell(&b, arena);
-        return;
-    }
-    find_inner(&b);
-    choose_cells(&b);
-    fill_lists(&b, arena);
-    find_clearances(&b, arena);
+    build(&b, arena);
+}
+
+void grid_build_flat(Grid *grid, const Box *boxes, uint32_t count, double margin, uint32_t texels,
+                     GridMembers members, Arena *arena, Arena *scratch)
+{
+    assert(count > 0 && texels > 0);
+    Builder b = {.grid         = grid,
+                 .boxes        = boxes,
+                 .count        = count,
+                 .given_margin = margin,
+                 .texels       = texels,
+                 .flat         = members,
+                 .scratch      = scratch};
+    build(&b, arena);
 }

@@ -20,7 +20,8 @@ typedef struct Grid {
     double    low[3], size; /* the corner of the first cell; the side of a cell */
     uint32_t  cells[3];     /* along each axis; x runs fastest, then y */
     uint32_t *first;        /* of each cell, where its list begins; one more: where the last ends */
-    float    *clearance;    /* of each cell, above 0; rounded down */
+    float    *clearance;    /* of each cell, above 0; rounded down.  A sign may be given to it: see
+                               CrowdFunction.either */
     uint32_t *members;      /* the lists, ascending */
     uint32_t  most_listed;  /* the length of the longest list */
 } Grid;
@@ -35,6 +36,20 @@ typedef struct Grid {
 void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
                 uint32_t texels, Arena *arena, Arena *scratch);
 
+/* Members in the plane z = 0, of which the nearest one decides. */
+typedef struct GridMembers {
+    double (*distance)(const void *members, uint32_t member, const double point[2]);
+    const void *members;
+} GridMembers;
+
+/*
+ * The same for members in that plane, with one layer of cells.  Where something is so near to a cell
+ * that it may be in it, the list has all members that are nearest anywhere in the cell; its clearance
+ * is NOWHERE.  So no member is in a cell with another clearance.
+ */
+void grid_build_flat(Grid *grid, const Box *boxes, uint32_t count, double margin, uint32_t texels,
+                     GridMembers members, Arena *arena, Arena *scratch);
+
 /*
  * The list for a point, of *count members.  No other member is nearer than *clearance, after all that
  * `reach` allows for.  Outside of the grid the list is empty, and the clearance is the distance to
@@ -42,6 +57,9 @@ void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, doub
  */
 const uint32_t *grid_find(const Grid *grid, const double point[3], uint32_t *count,
                           double *clearance);
+
+/* How far a point is from a box. */
+double distance_to_box(const Box *box, const double point[3]);
 
 /* Which of `count` members from number `first` on are near a point: bit i % 64 of bits[i / 64] is that
    of member first + i. */
@@ -52,8 +70,10 @@ typedef struct NearMembers {
 } NearMembers;
 
 /* Sets the bits of all whose box is nearer than radius + `reach`, and some that are farther: the lists
-   of all cells that meet the ball.  `first` and `count` are set before. */
-void grid_near(const Grid *grid, const double point[3], double radius, NearMembers *near);
+   of all cells that meet the ball, but for those that are in a ball of the radius `clear`, which no
+   member meets.  `first` and `count` are set before. */
+void grid_near(const Grid *grid, const double point[3], double radius, double clear,
+               NearMembers *near);
 /* Whether all cells are in the ball, so that no member is left out. */
 bool grid_is_within(const Grid *grid, const double point[3], double radius);
 

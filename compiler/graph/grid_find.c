@@ -21,7 +21,7 @@ static double outside(double low, double high, double coordinate)
 
 /* ---- the list of a cell ---- */
 
-static double distance_to_box(const Box *box, const double point[3])
+double distance_to_box(const Box *box, const double point[3])
 {
     double square = 0;
     for (int k = 0; k < 3; k++) {
@@ -79,16 +79,28 @@ static void add_list(const Grid *grid, size_t cell, NearMembers *near)
         near->bits[(*list - near->first) / 64] |= (uint64_t)1 << (*list - near->first) % 64;
 }
 
-/* The cells of a row along x that are not farther than `away` along it. */
-static void add_row(const Grid *grid, size_t row, double x, double away, NearMembers *near)
+/* How far the far side of a cell is from a point along an axis. */
+static double far_side(const Grid *grid, int axis, uint32_t cell, double coordinate)
+{
+    double low = grid->low[axis] + cell * grid->size;
+    return fmax(coordinate - low, low + grid->size - coordinate);
+}
+
+/* The cells of a row along x that are not farther than `away` along it, and not all within `clear`. */
+static void add_row(const Grid *grid, size_t row, double x, double away, double clear,
+                    NearMembers *near)
 {
     uint32_t last = grid_cell_along(grid, 0, x + away);
     for (uint32_t cell = grid_cell_along(grid, 0, x - away); cell <= last; cell++)
-        add_list(grid, row + cell, near);
+        if (far_side(grid, 0, cell, x) > clear)
+            add_list(grid, row + cell, near);
 }
 
+static double root_or_nothing(double square) { return square > 0 ? sqrt(square) : -1; }
+
 /* A part of a cell's side that rounding may miss is less than boxes are larger in the lists. */
-void grid_near(const Grid *grid, const double point[3], double radius, NearMembers *near)
+void grid_near(const Grid *grid, const double point[3], double radius, double clear,
+               NearMembers *near)
 {
     uint32_t first[3], last[3];
     memset(near->bits, 0, (near->count + 63) / 64 * sizeof near->bits[0]);
@@ -97,13 +109,15 @@ void grid_near(const Grid *grid, const double point[3], double radius, NearMembe
         last[k]  = grid_cell_along(grid, k, point[k] + radius);
     }
     for (uint32_t z = first[2]; z <= last[2]; z++) {
-        double away_z = outside_cell(grid, 2, z, point[2]);
+        double away_z = outside_cell(grid, 2, z, point[2]), far_z = far_side(grid, 2, z, point[2]);
         for (uint32_t y = first[1]; y <= last[1]; y++) {
             double away_y = outside_cell(grid, 1, y, point[1]);
+            double far_y  = far_side(grid, 1, y, point[1]);
+            double within = root_or_nothing(clear * clear - far_y * far_y - far_z * far_z);
             double left   = radius * radius - away_y * away_y - away_z * away_z;
             size_t row    = ((size_t)z * grid->cells[1] + y) * grid->cells[0];
             if (left >= 0)
-                add_row(grid, row, point[0], sqrt(left), near);
+                add_row(grid, row, point[0], sqrt(left), within, near);
         }
     }
 }

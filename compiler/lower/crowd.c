@@ -29,7 +29,7 @@ struct LoweredCrowds {
     Alike       *alike;
     PartLeaves   leaves;
     uint32_t     least; /* members of a crowd */
-    uint32_t     made;  /* joints with crowds */
+    uint32_t     made;  /* joints with crowds, and functions of outlines */
     JointCrowds *joints[BUCKETS];
 };
 
@@ -42,6 +42,8 @@ LoweredCrowds *lowered_crowds_new(Graph *graph, Arena *arena, Arena *tables, uin
     crowds->least         = least;
     return crowds;
 }
+
+void lowered_crowds_made(LoweredCrowds *crowds) { crowds->made++; }
 
 /* The context of parts.  Whether there is a level, an instance and a smoothing is as outside. */
 static LowerContext context_of_parts(const PartLeaves *leaves, LowerContext outer)

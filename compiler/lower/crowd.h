@@ -14,6 +14,9 @@ enum { LEAST_CROWD = 64 };
 typedef struct LoweredCrowds LoweredCrowds;
 LoweredCrowds *lowered_crowds_new(Graph *graph, Arena *arena, Arena *tables, uint32_t least);
 
+/* Says that the graph's nodes are needed for something else than the shape that is lowered. */
+void lowered_crowds_made(LoweredCrowds *crowds);
+
 /* What a joint joins, which is sharp or a blend: its parts or their complements. */
 typedef struct CrowdJoin {
     const Shape        *joint;

@@ -223,7 +223,9 @@ static void emit_function_of_crowd(Emitter *e, uint32_t id)
     emit_next_states(e, function, bodies);
     indent_lines(e, body);
     text_format(e->out, "    }\n    return %s;\n}\n\n",
-                function->clear ? "min(state0, nearby.clearance)" : "state0");
+                function->either ? "abs(state0) < abs(nearby.clearance) ? state0 : nearby.clearance"
+                : function->clear ? "min(state0, nearby.clearance)"
+                                  : "state0");
 }
 
 void emit_crowds(Emitter *e)

@@ -16,10 +16,14 @@ typedef struct ShapeBuilder {
     Arena            *scratch; /* free to use, and to free */
     Diags            *diags;
     Graph            *graph;
-    const Parameters *parameters;   /* those that numbers may depend on */
-    FrameSlopes      *slopes;       /* gets those that no constant bounds */
-    size_t            nodes_before; /* of the graph, when a shape was last made */
-    bool              stopped;      /* a limit was reached, and reported: nothing more is */
+    const Parameters *parameters; /* those that numbers may depend on */
+    FrameSlopes      *slopes;     /* gets those that no constant bounds */
+    struct {
+        struct OutlineShape **items;
+        size_t                count, capacity;
+    } outlines;          /* all that were made */
+    size_t nodes_before; /* of the graph, when a shape was last made */
+    bool   stopped;      /* a limit was reached, and reported: nothing more is */
 } ShapeBuilder;
 
 /* A shape with these children, and what most kinds take over from them. */

@@ -176,6 +176,7 @@ struct Shape {
     uint32_t            cells[3];   /* REPEAT: copies per axis, 0 for endless */
     uint32_t            stage_count;
 
+    struct OutlineShape *outline;    /* PRIMITIVE that contours fill (lower/outline.h), else NULL */
     Node plane_normal, plane_offset; /* PRIMITIVE that is a half-space, else NODE_NONE */
     /* PRIMITIVE that a declaration of the language made: what the evaluator knows of it, and
        shapes do not; else NULL. */

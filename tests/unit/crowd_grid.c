@@ -162,7 +162,7 @@ static const char *near_is_wrong(const Grid *grid, const Case *of, const double 
     for (uint32_t part = 0; part < 2; part++) {
         uint32_t    half = of->count / 2;
         NearMembers near = {.first = part * half, .count = part ? of->count - half : half};
-        grid_near(grid, point, radius, &near);
+        grid_near(grid, point, radius, 0, &near);
         for (uint32_t i = 0; i < near.count; i++) {
             const Box *box = &of->boxes[near.first + i];
             bool       is  = near.bits[i / 64] >> i % 64 & 1;

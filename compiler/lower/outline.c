@@ -1,0 +1,210 @@
+/*
+ * outline.c: the body of an outline's function, its table and its grid.
+ */
+#include "compiler/lower/outline.h"
+
+#include <math.h>
+
+#include "compiler/base/far.h"
+#include "compiler/graph/build.h"
+
+/* ---- the body ---- */
+
+/* A member in the body of the function. */
+typedef struct Row {
+    Graph   *graph;
+    uint32_t crowd;
+    Node     member, point;
+} Row;
+
+static Node number_of(const Row *row, uint32_t column)
+{
+    return graph_row(row->graph, row->crowd, column, row->member);
+}
+
+static Node vector_of(const Row *row, uint32_t column)
+{
+    Node x = number_of(row, column), y = number_of(row, column + 1);
+    return graph_op2(row->graph, OP_vec2, x, y);
+}
+
+static Node unit_clamp(Graph *g, Node t)
+{
+    return graph_op3(g, OP_clamp, t, graph_number(g, 0), graph_number(g, 1));
+}
+
+/* a b' - a' b */
+static Node cross_of(Graph *g, Node a, Node b)
+{
+    Node first  = mul(g, graph_component(g, a, 0), graph_component(g, b, 1));
+    Node second = mul(g, graph_component(g, a, 1), graph_component(g, b, 0));
+    return sub(g, first, second);
+}
+
+/* What the nearest point is `away` from the point at hand, and how the curve goes on there: the side
+   that this is on.  At an end that is the side of the corner's bisector. */
+static Node signed_length(const Row *row, Node t, Node away, Node tangent, Node side)
+{
+    Graph *g     = row->graph;
+    Node   first = number_of(row, COLUMN_FIRST_CORNER), last = number_of(row, COLUMN_LAST_CORNER);
+    Node   zero = graph_number(g, 0), one = graph_number(g, 1);
+    Node   at_last  = graph_op2(g, OP_less_equal, one, t);
+    Node   at_first = graph_op2(g, OP_less_equal, t, zero);
+    Node   corner   = graph_op3(g, OP_select, at_last, last, zero);
+    corner          = graph_op3(g, OP_select, at_first, first, corner);
+    Node along      = mul(g, corner, graph_op2(g, OP_dot, tangent, away));
+    Node across     = times(g, cross_of(g, tangent, away), side);
+    Node inside     = graph_op2(g, OP_less, along, across);
+    Node length     = graph_op1(g, OP_length, away);
+    Node negative   = neg(g, length);
+    length          = graph_op3(g, OP_select, inside, negative, length);
+    return sub(g, length, number_of(row, COLUMN_LEAN));
+}
+
+static Node line_distance(const Row *row)
+{
+    Graph *g     = row->graph;
+    Node   way   = vector_of(row, COLUMN_WAY);
+    Node   away  = sub(g, row->point, vector_of(row, COLUMN_START));
+    Node   along = graph_op2(g, OP_dot, way, away), square = graph_op2(g, OP_dot, way, way);
+    Node   t = unit_clamp(g, over(g, along, square));
+    away     = sub(g, away, mul(g, way, t));
+    return signed_length(row, t, away, way, graph_number(g, 1));
+}
+
+/* Newton's method from t = 1 for f3 t^3 + f2 t^2 + f1 t + f0, which is convex there.  Where it falls,
+   what is nearest is at t = 0. */
+static Node largest_root(Graph *g, const Node f[4])
+{
+    Node t = graph_number(g, 1), slope2 = add(g, f[2], f[2]);
+    Node slope3 = mul(g, f[3], graph_number(g, 3));
+    for (int i = 0; i < OUTLINE_STEPS; i++) {
+        Node value = add(g, times(g, f[3], t), f[2]);
+        value      = add(g, times(g, value, t), f[1]);
+        value      = add(g, times(g, value, t), f[0]);
+        Node slope = add(g, times(g, slope3, t), slope2);
+        slope      = add(g, times(g, slope, t), f[1]);
+        slope      = at_least(g, slope, 1e-30);
+        t          = unit_clamp(g, sub(g, t, over(g, value, slope)));
+    }
+    return t;
+}
+
+static Node curve_distance(const Row *row)
+{
+    Graph *g    = row->graph;
+    Node   away = sub(g, row->point, vector_of(row, COLUMN_START));
+    Node   way = vector_of(row, COLUMN_WAY), bend = vector_of(row, COLUMN_BEND);
+    Node   way_bend = number_of(row, COLUMN_WAY_BEND), f[4];
+    Node   square   = graph_op2(g, OP_dot, way, way);
+    f[3]            = number_of(row, COLUMN_BEND_BEND);
+    f[2]            = mul(g, way_bend, graph_number(g, 3));
+    f[1]            = sub(g, add(g, square, square), graph_op2(g, OP_dot, away, bend));
+    f[0]            = neg(g, graph_op2(g, OP_dot, away, way));
+    Node t          = largest_root(g, f);
+    /* The nearest point is there or at t = 0. */
+    Node twice   = add(g, way, way);
+    Node there   = sub(g, away, mul(g, add(g, twice, mul(g, bend, t)), t));
+    Node before  = graph_op2(g, OP_dot, away, away);
+    Node behind  = graph_op2(g, OP_dot, there, there);
+    Node begins  = graph_op2(g, OP_less_equal, before, behind);
+    t            = graph_op3(g, OP_select, begins, graph_number(g, 0), t);
+    Node nearest = graph_op3(g, OP_select, begins, away, there);
+    Node tangent = add(g, way, mul(g, bend, t));
+    return signed_length(row, t, nearest, tangent, number_of(row, COLUMN_SIDE));
+}
+
+/* What is nearer to 0. */
+static Node nearer(Graph *g, Node state, Node distance)
+{
+    Node size = graph_op1(g, OP_abs, distance), least = graph_op1(g, OP_abs, state);
+    Node less = graph_op2(g, OP_less, size, least);
+    return graph_op3(g, OP_select, less, distance, state);
+}
+
+static uint32_t add_function(Graph *g, const OutlineShape *shape, uint32_t crowd)
+{
+    uint32_t id    = (uint32_t)graph_crowds(g)->functions.count;
+    Node     state = graph_state(g, TYPE_FLOAT, id, 0);
+    Node     point = graph_crowd_leaf(g, OP_CROWD_POINT, crowd);
+    Node     x = graph_component(g, point, 0), y = graph_component(g, point, 1);
+    Row      row = {g, crowd, graph_crowd_leaf(g, OP_MEMBER, crowd), graph_op2(g, OP_vec2, x, y)};
+    Node body = shape->members.columns == LINE_COLUMNS ? line_distance(&row) : curve_distance(&row);
+    body      = nearer(g, state, body);
+    CrowdFunction function = {.crowd       = crowd,
+                              .type        = TYPE_FLOAT,
+                              .clear       = true,
+                              .either      = true,
+                              .states      = {{TYPE_FLOAT, {NOWHERE}}},
+                              .state_count = 1};
+    return graph_add_crowd_function(g, function, &body);
+}
+
+/* ---- the table ---- */
+
+static double distance_to_piece(const void *members, uint32_t member, const double point[2])
+{
+    const OutlineMembers *all = members;
+    return fabs(piece_distance(&all->pieces[member], point));
+}
+
+/* Around the control points. */
+static Box box_of(const Curve *curve)
+{
+    Box box = {{{0, 0}, {0, 0}, {0, 0}}};
+    for (int k = 0; k < 2; k++) {
+        double low = fmin(curve->from[k], curve->to[k]), high = fmax(curve->from[k], curve->to[k]);
+        box.axis[k] = (Range){fmin(low, curve->via[k]), fmax(high, curve->via[k])};
+    }
+    return box;
+}
+
+/* The sign of clearances in cells that no member is in. */
+static void mark_inside(Grid *grid, const Outline *outline, Arena *scratch)
+{
+    const uint32_t *count  = grid->cells;
+    double          low[2] = {grid->low[0] + 0.5 * grid->size, grid->low[1] + 0.5 * grid->size};
+    size_t          cells  = (size_t)count[0] * count[1];
+    bool           *inside = arena_new_array(scratch, bool, cells);
+    if (isinf(grid->size))
+        return;
+    outline_fill(outline, low, grid->size, count, inside, scratch);
+    for (size_t i = 0; i < cells; i++)
+        if (inside[i] && (double)grid->clearance[i] < 0.5 * NOWHERE)
+            grid->clearance[i] = -grid->clearance[i];
+}
+
+static uint32_t add_table(Graph *g, const OutlineShape *shape, double margin, Arena *scratch)
+{
+    const OutlineMembers *members = &shape->members;
+    Crowds               *crowds  = graph_crowds(g);
+    Crowd                 table   = {.rows    = members->count,
+                                     .columns = members->columns,
+                                     .numbers = members->numbers,
+                                     .boxes   = arena_new_array(crowds->arena, Box, members->count),
+                                     .stretch = 1,
+                                     .span    = shape->span};
+    for (uint32_t i = 0; i < members->count; i++)
+        table.boxes[i] = box_of(&members->pieces[i].curve);
+    GridMembers near = {distance_to_piece, members};
+    grid_build_flat(&table.grid, table.boxes, table.rows, margin, (uint32_t)row_texels(&table),
+                    near, crowds->arena, scratch);
+    mark_inside(&table.grid, &shape->outline, scratch);
+    array_push(crowds->arena, &crowds->tables, table);
+    return (uint32_t)crowds->tables.count - 1;
+}
+
+Node outline_distance(Graph *graph, OutlineShape *shape, double margin, Node point, bool *is_new,
+                      Arena *scratch)
+{
+    size_t i = 0;
+    while (i < shape->functions.count && shape->functions.items[i].margin != margin)
+        i++;
+    *is_new = i == shape->functions.count;
+    if (*is_new) {
+        uint32_t        crowd    = add_table(graph, shape, margin, scratch);
+        OutlineFunction function = {margin, add_function(graph, shape, crowd)};
+        array_push(graph->arena, &shape->functions, function);
+    }
+    return graph_crowd(graph, OP_crowd_distance, shape->functions.items[i].function, point);
+}

@@ -1,0 +1,53 @@
+/*
+ * edges.h: the curves of contours, cut where they meet: the steps of outline_make.
+ */
+#ifndef KRS_EDGES_H
+#define KRS_EDGES_H
+
+#include "compiler/outline/knots.h"
+#include "compiler/outline/outline.h"
+
+/* A curve between two knots, along which neither coordinate turns back. */
+typedef struct Edge {
+    Curve    curve;
+    uint32_t from, to;
+    int      weight; /* how many times contours go along it, less how many times back */
+} Edge;
+
+typedef struct Edges {
+    Edge  *items;
+    size_t count, capacity;
+} Edges;
+
+/* Contours may have so many edges, and where they cross so many cuts. */
+enum { MOST_EDGES = 400000 };
+
+/* Everything at hand while an outline is made; all of it is scratch. */
+typedef struct Making {
+    Arena *arena;
+    Knots  knots;
+    Edges  edges;
+    double fault_at[2];
+} Making;
+
+/* An edge between the knots at its ends, unless they are one. */
+void add_edge(Making *making, const Curve *curve, int weight);
+/* edge_cuts.c: cuts edges where they meet others, so that they share knots only. */
+OutlineFault cut_edges(Making *making);
+/* edge_sides.c: whether there is inside on the left and on the right of each edge. */
+typedef struct Sides {
+    bool left, right;
+} Sides;
+Sides *edge_sides(const Making *making, FillRule rule);
+
+static inline double cross2(const double a[2], const double b[2])
+{
+    return a[0] * b[1] - a[1] * b[0];
+}
+
+static inline double dot2(const double a[2], const double b[2])
+{
+    return a[0] * b[0] + a[1] * b[1];
+}
+
+#endif

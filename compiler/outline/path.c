@@ -1,0 +1,194 @@
+/*
+ * path.c: contours in the plane, and what is asked of one curve.
+ */
+#include "compiler/outline/path.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MOST_QUADRATICS = 64 /* of a cubic curve */ };
+
+Curve line_between(const double from[2], const double to[2])
+{
+    Curve line = {.straight = true};
+    for (int k = 0; k < 2; k++) {
+        line.from[k] = from[k];
+        line.via[k]  = 0.5 * (from[k] + to[k]);
+        line.to[k]   = to[k];
+    }
+    return line;
+}
+
+/* ---- drawing ---- */
+
+static bool is_same(const double a[2], const double b[2]) { return a[0] == b[0] && a[1] == b[1]; }
+
+static void add_curve(Path *path, const Curve *curve)
+{
+    array_push(path->arena, &path->curves, *curve);
+    memcpy(path->at, curve->to, sizeof path->at);
+}
+
+void path_line(Path *path, const double to[2])
+{
+    if (is_same(path->at, to))
+        return;
+    Curve line = line_between(path->at, to);
+    add_curve(path, &line);
+}
+
+void path_close(Path *path) { path_line(path, path->start); }
+
+void path_move(Path *path, const double to[2])
+{
+    path_close(path);
+    memcpy(path->start, to, sizeof path->start);
+    memcpy(path->at, to, sizeof path->at);
+}
+
+static double cross_of(const double a[2], const double b[2]) { return a[0] * b[1] - a[1] * b[0]; }
+
+/* Curves whose points are on one line are drawn as lines, to where they turn back and from there. */
+void path_quadratic(Path *path, const double via[2], const double to[2])
+{
+    Curve  curve = {.straight = false};
+    double chord[2], way[2];
+    memcpy(curve.from, path->at, sizeof curve.from);
+    memcpy(curve.via, via, sizeof curve.via);
+    memcpy(curve.to, to, sizeof curve.to);
+    for (int k = 0; k < 2; k++) {
+        chord[k] = to[k] - curve.from[k];
+        way[k]   = via[k] - curve.from[k];
+    }
+    double size = fmax(hypot(chord[0], chord[1]), hypot(way[0], way[1]));
+    if (fabs(cross_of(chord, way)) > 1e-9 * size * size) {
+        add_curve(path, &curve);
+        return;
+    }
+    double bend[2] = {curve.from[0] - 2 * via[0] + to[0], curve.from[1] - 2 * via[1] + to[1]};
+    double square  = bend[0] * bend[0] + bend[1] * bend[1], turn[2];
+    double t       = square > 0 ? (way[0] * bend[0] + way[1] * bend[1]) / -square : 0;
+    if (t > 0 && t < 1) {
+        curve_point(&curve, t, turn);
+        path_line(path, turn);
+    }
+    path_line(path, to);
+}
+
+/* A cubic curve leaves the quadratic one with the same ends, and a control point in the middle, by
+   at most sqrt(3) / 36 of its third difference.  A part of 1 / n has 1 / n^3 of that; its control
+   points are old + slope / n and end - next / n. */
+void path_cubic(Path *path, const double first[2], const double second[2], const double to[2])
+{
+    double from[2] = {path->at[0], path->at[1]}, third[2];
+    for (int k = 0; k < 2; k++)
+        third[k] = to[k] - 3 * second[k] + 3 * first[k] - from[k];
+    double away   = sqrt(3) / 36 * hypot(third[0], third[1]);
+    double parts  = ceil(cbrt(away / path->tolerance));
+    int    count  = parts > 1 ? (int)fmin(parts, MOST_QUADRATICS) : 1;
+    double old[2] = {from[0], from[1]}, slope[2];
+    for (int k = 0; k < 2; k++)
+        slope[k] = first[k] - from[k];
+    for (int i = 1; i <= count; i++) {
+        double t = (double)i / count, u = 1 - t, end[2], next[2], via[2];
+        for (int k = 0; k < 2; k++) {
+            end[k] = u * u * u * from[k] + 3 * u * u * t * first[k] + 3 * u * t * t * second[k] +
+                     t * t * t * to[k];
+            next[k] = u * u * (first[k] - from[k]) + 2 * u * t * (second[k] - first[k]) +
+                      t * t * (to[k] - second[k]);
+            via[k] = 0.5 * (old[k] + end[k]) + 0.75 * (slope[k] - next[k]) / count;
+        }
+        path_quadratic(path, via, i < count ? end : to);
+        memcpy(old, end, sizeof old);
+        memcpy(slope, next, sizeof slope);
+    }
+}
+
+/* ---- one curve ---- */
+
+void curve_point(const Curve *curve, double t, double point[2])
+{
+    double u = 1 - t;
+    for (int k = 0; k < 2; k++)
+        point[k] = curve->straight
+                       ? u * curve->from[k] + t * curve->to[k]
+                       : u * u * curve->from[k] + 2 * u * t * curve->via[k] + t * t * curve->to[k];
+}
+
+void curve_tangent(const Curve *curve, double t, double tangent[2])
+{
+    for (int k = 0; k < 2; k++)
+        tangent[k] = curve->straight ? 0.5 * (curve->to[k] - curve->from[k])
+                                     : (1 - t) * (curve->via[k] - curve->from[k]) +
+                                           t * (curve->to[k] - curve->via[k]);
+}
+
+Curve curve_part(const Curve *curve, double t, double u)
+{
+    double from[2], to[2], tangent[2];
+    curve_point(curve, t, from);
+    curve_point(curve, u, to);
+    Curve part = line_between(from, to);
+    if (curve->straight)
+        return part;
+    curve_tangent(curve, t, tangent);
+    part.straight = false;
+    for (int k = 0; k < 2; k++)
+        part.via[k] = from[k] + (u - t) * tangent[k];
+    return part;
+}
+
+static double square_to(const Curve *curve, double t, const double point[2])
+{
+    double at[2];
+    curve_point(curve, t, at);
+    return (at[0] - point[0]) * (at[0] - point[0]) + (at[1] - point[1]) * (at[1] - point[1]);
+}
+
+/* The curve is a + 2 b t + c t^2.  Half of the derivative of the squared distance is concave before
+   the parabola's apex and convex behind it.  So Newton's method, begun at the first end where that
+   falls and at the last end where it rises, goes to the outermost root there. */
+static double newton_root(const double f[4], double t)
+{
+    for (int i = 0; i < 60; i++) {
+        double value = ((f[3] * t + f[2]) * t + f[1]) * t + f[0];
+        double slope = (3 * f[3] * t + 2 * f[2]) * t + f[1];
+        if (value == 0 || slope <= 0)
+            break;
+        double next = t - value / slope;
+        if (fabs(next - t) < 1e-15)
+            return next;
+        t = next;
+    }
+    return t;
+}
+
+static double clamp_unit(double t) { return t < 0 ? 0 : t > 1 ? 1 : t; }
+
+double curve_nearest(const Curve *curve, const double point[2])
+{
+    double q[2], b[2], c[2], bb = 0, bc = 0, cc = 0, qb = 0, qc = 0;
+    for (int k = 0; k < 2; k++) {
+        q[k] = curve->from[k] - point[k];
+        b[k] = curve->straight ? 0.5 * (curve->to[k] - curve->from[k])
+                               : curve->via[k] - curve->from[k];
+        c[k] = curve->straight ? 0 : curve->from[k] - 2 * curve->via[k] + curve->to[k];
+        bb += b[k] * b[k], bc += b[k] * c[k], cc += c[k] * c[k];
+        qb += q[k] * b[k], qc += q[k] * c[k];
+    }
+    double f[4] = {qb, 2 * bb + qc, 3 * bc, cc};
+    if (cc == 0)
+        return bb > 0 ? clamp_unit(-qb / (2 * bb)) : 0;
+    double apex = -bc / cc, at_end = f[0] + f[1] + f[2] + f[3];
+    double tried[4] = {0, 1, apex > 0 && qb < 0 ? clamp_unit(newton_root(f, 0)) : 0,
+                       apex < 1 && at_end > 0 ? clamp_unit(newton_root(f, 1)) : 1};
+    double best = 0, least = HUGE_VAL;
+    for (int i = 0; i < 4; i++) {
+        double square = square_to(curve, tried[i], point);
+        if (square < least) {
+            least = square;
+            best  = tried[i];
+        }
+    }
+    return best;
+}

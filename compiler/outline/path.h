@@ -1,0 +1,49 @@
+/*
+ * path.h: contours in the plane, as they are drawn: lines, quadratic and cubic Bezier curves.
+ *
+ * Cubic curves become quadratic ones that leave them by no more than a tolerance.
+ */
+#ifndef KRS_PATH_H
+#define KRS_PATH_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "compiler/base/arena.h"
+
+/* (1 - t)^2 from + 2 (1 - t) t via + t^2 to, 0 <= t <= 1; of a line `via` is its middle. */
+typedef struct Curve {
+    double from[2], via[2], to[2];
+    bool   straight;
+} Curve;
+
+typedef struct Curves {
+    Curve *items;
+    size_t count, capacity;
+} Curves;
+
+typedef struct Path {
+    Arena *arena;
+    Curves curves;
+    double start[2], at[2]; /* of the contour at hand */
+    double tolerance;       /* of cubic curves */
+} Path;
+
+/* Each begins where the one before ended.  Contours end where they began: what is left open when
+   the next begins is closed by a line. */
+void path_move(Path *path, const double to[2]);
+void path_line(Path *path, const double to[2]);
+void path_quadratic(Path *path, const double via[2], const double to[2]);
+void path_cubic(Path *path, const double first[2], const double second[2], const double to[2]);
+void path_close(Path *path);
+
+Curve line_between(const double from[2], const double to[2]);
+/* The point and half of the derivative at t. */
+void curve_point(const Curve *curve, double t, double point[2]);
+void curve_tangent(const Curve *curve, double t, double tangent[2]);
+/* The part with parameters from t to u. */
+Curve curve_part(const Curve *curve, double t, double u);
+/* The nearest point's parameter. */
+double curve_nearest(const Curve *curve, const double point[2]);
+
+#endif
