@@ -106,6 +106,7 @@ KrsStatus pass_elaborate(Compilation *c)
                             .files   = &c->files,
                             .graph   = graph,
                             .scene   = &c->elaborated,
+                            .loader  = c->loader,
                             .studio  = c->options->studio,
                             .hoists  = hoists(c)};
     elaborate(&e);

@@ -2,7 +2,8 @@
 # deps.sh: installs the Debian packages that building and testing need and that are missing.
 # Says what it does; uses sudo when it is not run by root; does nothing when nothing is missing.
 packages="g++ glslang-dev glslang-tools spirv-tools libvulkan-dev mesa-vulkan-drivers
-          vulkan-validationlayers libopenexr-dev libpng-dev libxxhash-dev libqhull-dev libcmocka-dev clang-14
+          vulkan-validationlayers libopenexr-dev libpng-dev libxxhash-dev libqhull-dev libfreetype-dev
+          libharfbuzz-dev libfontconfig-dev libexpat1-dev fonts-dejavu-core libcmocka-dev clang-14
           clang-format-14 libclang-rt-14-dev shellcheck strace openexr patch pkgconf
           chromium-common"
 

@@ -11,6 +11,7 @@
 #ifndef KRS_ELABORATE_H
 #define KRS_ELABORATE_H
 
+#include "compiler/base/loader.h"
 #include "compiler/eval/value.h"
 #include "compiler/family/family.h"
 #include "compiler/front/files.h"
@@ -64,6 +65,13 @@ typedef struct BuiltinName {
 
 enum { MOST_BUILTIN_NAMES = 512 };
 
+/* What a file has that scenes name in an argument. */
+typedef struct FileBytes {
+    const char          *path;
+    const unsigned char *bytes;
+    size_t               length;
+} FileBytes;
+
 typedef struct Elaboration {
     ShapeBuilder *builder; /* with the arenas, diagnostics and graph that stand here as well */
     Arena        *arena;   /* shapes and the scene */
@@ -89,15 +97,20 @@ typedef struct Elaboration {
         const Syntax **items;
         size_t         count, capacity;
     } checked;
-    BuiltinName builtins[MOST_BUILTIN_NAMES]; /* names looked up so far, by their addresses */
-    bool        studio; /* a scene without lights and sky gets those of the library, and a floor */
-    bool        hoists; /* numbers of the scene's own text are not those of the shaders' text */
-    uint32_t    number_count; /* of such numbers so far */
-    uint64_t    steps;        /* of evaluation, so far */
-    uint32_t    printed;      /* notes by `print`, so far */
-    uint32_t    depth, calls; /* how deep expressions and calls are nested now */
-    Node        rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
-    bool        in_material;  /* level, instance, u, v and normal have a meaning */
+    struct {
+        FileBytes *items;
+        size_t     count, capacity;
+    } read; /* files, bytes of which are no text */
+    const Loader *loader;
+    BuiltinName   builtins[MOST_BUILTIN_NAMES]; /* names looked up so far, by their addresses */
+    bool     studio; /* a scene without lights and sky gets those of the library, and a floor */
+    bool     hoists; /* numbers of the scene's own text are not those of the shaders' text */
+    uint32_t number_count; /* of such numbers so far */
+    uint64_t steps;        /* of evaluation, so far */
+    uint32_t printed;      /* notes by `print`, so far */
+    uint32_t depth, calls; /* how deep expressions and calls are nested now */
+    Node     rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
+    bool     in_material;  /* level, instance, u, v and normal have a meaning */
 } Elaboration;
 
 /* What a shape knows of the declaration that made it. */
@@ -328,6 +341,16 @@ BuiltinFunction builtin_union, builtin_intersection, builtin_difference, builtin
 
 /* ---- fractal.c ---- */
 BuiltinFunction builtin_julia, builtin_mandelbulb;
+
+/* ---- files.c ---- */
+/* Reads a file that an argument names, relative to the file that has the call; false: reported.  It is
+   read once. */
+bool read_beside(Elaboration *e, const Argument *argument, const char *path, FileBytes *bytes);
+/* A file of the system, which scenes cannot name; false: it cannot be read. */
+bool read_system_file(Elaboration *e, const char *path, FileBytes *bytes);
+
+/* ---- text.c ---- */
+BuiltinFunction builtin_text;
 
 /* ---- functions.c ---- */
 /* Calls a function, or makes the shape of a declaration; `syntax` is the call. */

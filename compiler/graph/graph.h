@@ -191,6 +191,8 @@ Node graph_replace_leaf(Graph *graph, Node root, Node leaf, Node by, Arena *scra
 /* A copy of all that `roots` need, in a graph of its own with the same parameters; the roots are
    renumbered in place.  The work grows with what they need, not with the graph. */
 Graph *graph_extract(const Graph *graph, Node *roots, size_t root_count, Arena *arena);
+/* The same with all functions of crowds, so that it can be evaluated. */
+Graph *graph_extract_with_crowds(const Graph *graph, Node *roots, size_t root_count, Arena *arena);
 
 /* Algebraic simplification of everything `roots` need, into a new graph (same parameters):
    the roots are renumbered in place.  Rules keep values: x+0, x*1, x*0 (x finite), --x,

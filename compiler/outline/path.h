@@ -37,6 +37,9 @@ void path_quadratic(Path *path, const double via[2], const double to[2]);
 void path_cubic(Path *path, const double first[2], const double second[2], const double to[2]);
 void path_close(Path *path);
 
+/* Copies all that is drawn in another path, whose arena may then be freed. */
+void path_take(Path *path, const Path *other);
+
 Curve line_between(const double from[2], const double to[2]);
 /* The point and half of the derivative at t. */
 void curve_point(const Curve *curve, double t, double point[2]);

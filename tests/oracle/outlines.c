@@ -6,12 +6,15 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
 
 #include "compiler/graph/evaluate.h"
 #include "compiler/lower/outline.h"
+#include "compiler/outline/letters.h"
 #include "compiler/program.h"
 #include "compiler/tables.h"
 #include "runtime/krs_vulkan.h"
@@ -158,6 +161,24 @@ static void draw_cubics(Path *path, Random *random)
     path_close(path);
 }
 
+/* Letters of a font, some of which touch. */
+static void draw_letters(Path *path, Random *random)
+{
+    FoundFont            found;
+    static unsigned char bytes[4 << 20];
+    Lettering            lettering = {.size = 0.8, .spacing = -0.1, .align = ALIGN_CENTER};
+    uint32_t             missing;
+    (void)random;
+    assert_int_equal(font_find(NULL, &found), FONT_FOUND);
+    FILE *file = fopen(found.path, "rb");
+    assert_non_null(file);
+    Font font = {bytes, fread(bytes, 1, sizeof bytes, file), found.face};
+    assert_true(letters_draw(path, &font, "R&g\n8Ww", &lettering, &missing));
+    assert_int_equal(missing, 0);
+    fclose(file);
+    free(found.path);
+}
+
 static const Figure figures[] = {
     {"scribble", FILL_EVEN_ODD, draw_scribble, true},
     {"scribble of turns", FILL_NONZERO, draw_scribble, true},
@@ -170,6 +191,7 @@ static const Figure figures[] = {
     {"tiles in turn", FILL_EVEN_ODD, draw_tiles, true},
     {"needles", FILL_EVEN_ODD, draw_needles, true},
     {"wheel", FILL_EVEN_ODD, draw_wheel, true},
+    {"letters", FILL_NONZERO, draw_letters, false},
     {"cubics", FILL_EVEN_ODD, draw_cubics, false},
 };
 enum { FIGURES = sizeof figures / sizeof *figures };
@@ -351,11 +373,11 @@ static void kernels(void **state)
 {
     static Truth       truth;
     static Stage       stage;
-    static const int   shown[] = {2, 6, 9, 10};
+    static const int   shown[] = {2, 6, 9, 10, 11};
     Bench             *bench   = *state;
     KrsRendererOptions options = {.device = tested_device()};
     assert_int_equal(krs_renderer_new(&options, &stage.renderer), KRS_OK);
-    for (int f = 0; f < 4; f++) {
+    for (int f = 0; f < 5; f++) {
         const Figure *figure = &figures[shown[f]];
         OutlineShape *shape  = make_figure(bench, figure, &truth);
         Judge         judge  = {0};

@@ -1,0 +1,88 @@
+/*
+ * files.c: files that arguments of functions name.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "compiler/eval/elaborate.h"
+
+enum { MOST_FILE_BYTES = 64 << 20 };
+
+/* "folder/file.ttf" for a name in a call in "folder/scene.krs". */
+static const char *path_beside(Elaboration *e, const Syntax *syntax, const char *name)
+{
+    const char *from  = e->sources->items[syntax->span.source].name;
+    const char *slash = name[0] == '/' ? NULL : strrchr(from, '/');
+    Text        path  = {.arena = e->arena};
+    text_add_bytes(&path, from, slash ? (size_t)(slash - from + 1) : 0);
+    text_add(&path, name);
+    path_simplify(path.bytes);
+    return path.bytes;
+}
+
+static void refuse_file(Elaboration *e, const Syntax *syntax, const char *path,
+                        const Loaded *loaded)
+{
+    Diag *diag  = loaded->outside
+                      ? diag_add(e->diags, DIAG_OUTSIDE_ROOT, syntax->span,
+                                 "`%s` is outside of the folder that scenes may read from", path)
+                      : diag_add(e->diags, DIAG_CANNOT_READ, syntax->span, "cannot read `%s`: %s",
+                                 path, loaded->reason);
+    diag->label = "named here";
+}
+
+static bool is_too_large(Elaboration *e, const Syntax *syntax, size_t length)
+{
+    if (length <= MOST_FILE_BYTES)
+        return false;
+    diag_add(e->diags, DIAG_LIMIT, syntax->span, "too large a file: 64 MiB are possible");
+    return true;
+}
+
+static bool find_read(const Elaboration *e, const char *path, FileBytes *bytes)
+{
+    for (size_t i = 0; i < e->read.count; i++)
+        if (strcmp(e->read.items[i].path, path) == 0) {
+            *bytes = e->read.items[i];
+            return true;
+        }
+    return false;
+}
+
+static void keep_bytes(Elaboration *e, const char *path, const Loaded *loaded, FileBytes *bytes)
+{
+    const char *copy = arena_copy_text(e->arena, loaded->text, loaded->length);
+    bytes->path      = arena_copy_text(e->arena, path, strlen(path));
+    bytes->bytes     = (const unsigned char *)copy;
+    bytes->length    = loaded->length;
+    array_push(e->arena, &e->read, *bytes);
+}
+
+bool read_beside(Elaboration *e, const Argument *argument, const char *name, FileBytes *bytes)
+{
+    const char *path = path_beside(e, argument->syntax, name);
+    if (find_read(e, path, bytes))
+        return true;
+    Loaded loaded = loader_read(e->loader, path);
+    if (!loaded.text) {
+        refuse_file(e, argument->syntax, path, &loaded);
+        return false;
+    }
+    bool large = is_too_large(e, argument->syntax, loaded.length);
+    if (!large)
+        keep_bytes(e, path, &loaded, bytes);
+    free(loaded.owned);
+    return !large;
+}
+
+bool read_system_file(Elaboration *e, const char *path, FileBytes *bytes)
+{
+    const Loader system = {.root = -1};
+    if (find_read(e, path, bytes))
+        return true;
+    Loaded loaded = loader_read(&system, path);
+    if (loaded.text && loaded.length <= MOST_FILE_BYTES)
+        keep_bytes(e, path, &loaded, bytes);
+    free(loaded.owned);
+    return bytes->bytes != NULL;
+}
