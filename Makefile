@@ -29,7 +29,8 @@ JOBS    ?= $(shell nproc)
 BASE     := $(addprefix compiler/base/, arena.c parallel.c text.c source.c beneath.c loader.c diag.c diag_text.c)
 FRONT    := $(addprefix compiler/front/, lexer.c lex_literals.c syntax.c parser.c parse_expression.c \
                 parse_declaration.c parse.c synonyms.c names.c files.c)
-OUTLINE  := $(addprefix compiler/outline/, path.c knots.c edge_cuts.c edge_sides.c resolve.c members.c letters.c)
+OUTLINE  := $(addprefix compiler/outline/, path.c knots.c edge_cuts.c edge_sides.c resolve.c members.c letters.c \
+                svg_shapes.c svg.c)
 GRAPH    := $(addprefix compiler/graph/, intern.c alike.c alike_copy.c graph.c crowd.c build.c substitute.c extract.c derive_rules.c \
                 derive_blends.c derive.c series.c zeros.c local_terms.c local_curves.c local.c rebase.c \
                 simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c \
@@ -39,7 +40,7 @@ LOWER    := $(addprefix compiler/lower/, context.c box_distance.c surface.c join
                 outline.c guards.c ray_images.c ray_step.c lower.c)
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
 EVAL     := $(addprefix compiler/eval/, scope.c forget.c expression.c arithmetic.c reports.c units.c arguments.c components.c records.c data.c csv.c json.c builtins.c lists.c \
-                random.c files.c text.c functions.c csg.c fractal.c declare.c claims.c empty.c cells.c methods.c properties.c \
+                random.c files.c text.c drawing.c functions.c csg.c fractal.c declare.c claims.c empty.c cells.c methods.c properties.c \
                 material.c view.c palette.c remarks.c statements.c shown.c studio.c hull.c)
 PRINT    := $(addprefix compiler/print/, frame_values.c lines.c signatures.c helpers.c mirrors.c statements.c \
                 prepare.c crowds.c distances.c shared.c surfaces.c boxes.c early_outs.c march.c \
@@ -68,8 +69,8 @@ EXAMPLES := $(sort $(wildcard examples/*.krs))
 STYLE    := -std=c17 -D_GNU_SOURCE -Wall -Wextra -Wpedantic -Wshadow -Werror -I. -MMD -MP -pthread
 LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLCompiler -lSPIRV \
             -lSPVRemapper -lglslang-default-resource-limits -lSPIRV-Tools-opt -lSPIRV-Tools \
-            -lharfbuzz -lfreetype -lfontconfig -lOpenEXRCore-3_1 -lpng -lxxhash -lqhull_r -lvulkan -lstdc++ \
-            -lm -pthread
+            -lharfbuzz -lfreetype -lfontconfig -lexpat -lOpenEXRCore-3_1 -lpng -lxxhash -lqhull_r -lvulkan \
+            -lstdc++ -lm -pthread
 
 COMPILER := $(BASE) $(OUTLINE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \

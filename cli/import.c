@@ -12,6 +12,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/import_jsurf.h"
+#include "cli/import_svg.h"
 #include "cli/import_tape.h"
 #include "cli/supervise.h"
 
@@ -20,7 +21,7 @@ enum { MOST_BYTES = 16 << 20 };
 static const struct {
     const char *ending;
     bool (*import)(Import *import);
-} forms[] = {{".jsurf", import_jsurf}, {".vm", import_tape}};
+} forms[] = {{".jsurf", import_jsurf}, {".vm", import_tape}, {".svg", import_svg}};
 enum { FORMS = sizeof forms / sizeof *forms };
 
 static KrsStatus read_all(const Options *options, Import *import)
@@ -69,6 +70,7 @@ KrsStatus command_import(Options *options)
     const char *ending = strrchr(path, '.'), *slash = strrchr(path, '/');
     Import      import = {.path = path, .name = slash ? slash + 1 : path, .arena = options->arena};
     import.scene.arena = options->arena;
+    import.output      = options->outputs.count > 0 ? options->outputs.items[0] : NULL;
     for (size_t i = 0; ending && i < FORMS; i++) {
         if (strcmp(ending, forms[i].ending) != 0)
             continue;
@@ -77,5 +79,5 @@ KrsStatus command_import(Options *options)
             return status;
         return forms[i].import(&import) ? write_scene(options, &import.scene) : KRS_BAD_SCENE;
     }
-    return say_usage(options, "`%s` ends in neither .jsurf nor .vm", path);
+    return say_usage(options, "`%s` ends in none of .jsurf, .vm and .svg", path);
 }

@@ -13,6 +13,7 @@ typedef struct Import {
     const char *name;  /* the same without folders, for a comment in the scene */
     const char *bytes; /* all of it, without a NUL but for the one behind it */
     size_t      length;
+    const char *output; /* the file of the scene; NULL: standard output */
     Arena      *arena;
     Text        scene; /* what came of it */
 } Import;

@@ -26,7 +26,7 @@ ORACLES     := self primitives krs_expand trees maps moebius moebius_images oper
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
                touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling \
-               occlusion underestimates bounds stencils light sides steep scales agree far sheets ray_lists specialize outlines
+               occlusion underestimates bounds stencils light sides steep scales agree far sheets ray_lists specialize outlines drawings
 FUZZ        := sentences
 # On SwiftShader, unless another device is tested: what shows that drivers agree.
 DRIVERS     := tests/oracle/drivers
@@ -44,7 +44,7 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/synonyms unit/diag
                property/reach_trees property/crowds property/crowds_apart property/moving_crowds oracle/primitives \
                oracle/krs_expand oracle/bounds \
                oracle/cells oracle/maps oracle/moebius oracle/moebius_images oracle/operators oracle/moving \
-               oracle/fractals oracle/metasurfaces oracle/normals fuzz/sentences)
+               oracle/fractals oracle/metasurfaces oracle/normals oracle/drawings fuzz/sentences)
 # Scripts that run beside programs, the longest first.  SCRIPTS run alone: they measure time, or count
 # what others may change.
 BESIDE      := $(addprefix tests/, examples.sh tutorial.sh extend/extend.sh cli/scale.sh errors-sanitized.sh lint.sh \
@@ -103,7 +103,7 @@ fuzz-programs: $(HARNESSES:%=$(B)/tests/fuzz/%)
 $(HARNESSES:%=$(B)/tests/fuzz/%): $(B)/tests/fuzz/%: $(B)/tests/fuzz/%.o \
                                     $(FUZZED:%.c=$(B)/%.o) $(B)/library_files.o \
                                     $(B)/helper_files.o
-	@$(CC) $(CFLAGS) -fsanitize=fuzzer -o $@ $^ -lharfbuzz -lfreetype -lfontconfig -lm
+	@$(CC) $(CFLAGS) -fsanitize=fuzzer -o $@ $^ -lharfbuzz -lfreetype -lfontconfig -lexpat -lm
 fuzzers:
 	@$(MAKE) --no-print-directory fuzz-programs B=$(B)/fuzz CC=$(CLANG) \
 	    CFLAGS='-g -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined'

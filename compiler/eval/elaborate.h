@@ -352,6 +352,9 @@ bool read_system_file(Elaboration *e, const char *path, FileBytes *bytes);
 /* ---- text.c ---- */
 BuiltinFunction builtin_text;
 
+/* ---- drawing.c ---- */
+BuiltinFunction builtin_svg;
+
 /* ---- functions.c ---- */
 /* Calls a function, or makes the shape of a declaration; `syntax` is the call. */
 Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax,

@@ -3,7 +3,7 @@
 # with the line that is wrong; no file, whatever is in it, ends in a crash.
 # shellcheck source-path=SCRIPTDIR disable=SC2016
 . "$(dirname "$0")/common.sh"
-plan 44
+plan 49
 
 cat >ball.vm <<'END'
 # a ball of radius 0.75 with its upper half cut away, and a line that does not count
@@ -133,7 +133,7 @@ refused a.jsurf "surface_equation=$nested" '1: the equation is more than 60 deep
     "parentheses without end"
 
 run import ball.krs
-said 2 "ends in neither .jsurf nor .vm" "a file of another kind"
+said 2 "ends in none of .jsurf, .vm and .svg" "a file of another kind"
 run import missing.vm
 said 74 "cannot read \`missing.vm\`" "a missing file"
 run import ball.vm -o nowhere/ball.krs
@@ -141,6 +141,29 @@ said 73 "nowhere/ball.krs" "an output that cannot be created"
 printf '_0 var-x\0\n' >nul.vm
 run import nul.vm
 said 1 "not a text" "a NUL byte"
+
+# A disc of radius 1, since the longer side of the view becomes 4.
+mkdir -p drawings scenes
+cat >drawings/disc.svg <<'END'
+<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 100">
+  <circle cx="100" cy="50" r="50" fill="red"/>
+</svg>
+END
+run import drawings/disc.svg -o drawings/disc.krs
+[ "$status" -eq 0 ] && grep -q 'svg("disc.svg", size: 4)' drawings/disc.krs
+result $? "a drawing is named as seen from the scene beside it"
+run import drawings/disc.svg -o scenes/disc.krs
+[ "$status" -eq 0 ] && run check scenes/disc.krs && [ "$status" -eq 0 ]
+result $? "a drawing in another folder"
+run import drawings/disc.svg -o disc.krs
+run info disc.krs
+grep -q 'bounds \[-1, -1, -0.1\] to \[1, 1, 0.1\]' out
+result $? "a drawing has its place and size"
+printf 'show svg("disc.svg")[0].extrude(1);' >confined.krs
+cp drawings/disc.svg .
+run check --root scenes confined.krs
+[ "$status" -ne 0 ]
+result $? "a drawing outside of the root is not read"
 
 # Damaged files: the exit status is 0 or 1, and what is written is understood or refused in turn.
 damaged() { # file, ending
@@ -162,6 +185,7 @@ damaged() { # file, ending
 }
 damaged ball.vm vm
 damaged torus.jsurf jsurf
+damaged disc.svg svg
 head -c 65536 /dev/urandom | tr -d '\0' >noise.vm
 cp noise.vm noise.jsurf
 run import noise.vm

@@ -1,0 +1,11 @@
+/*
+ * import_svg.h: drawings, .svg.
+ */
+#ifndef KRS_IMPORT_SVG_H
+#define KRS_IMPORT_SVG_H
+
+#include "cli/import_text.h"
+
+bool import_svg(Import *import);
+
+#endif

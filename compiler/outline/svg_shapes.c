@@ -1,0 +1,371 @@
+/*
+ * svg_shapes.c: numbers, transforms, and the data of paths, as SVG 1.1 has them.
+ */
+#include "compiler/outline/svg_shapes.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- numbers ---- */
+
+static void skip_blanks(const char **text)
+{
+    while (**text && (isspace((unsigned char)**text) || **text == ','))
+        ++*text;
+}
+
+/* Not what else strtod knows: hexadecimal numbers, infinities. */
+bool svg_number(const char **text, double *number)
+{
+    char *end;
+    skip_blanks(text);
+    const char *digits = *text + (**text == '-' || **text == '+');
+    if (!isdigit((unsigned char)digits[digits[0] == '.']) ||
+        (digits[0] == '0' && (digits[1] | 32) == 'x'))
+        return false;
+    *number = strtod(*text, &end);
+    *text   = end;
+    return isfinite(*number);
+}
+
+int svg_numbers(const char *text, double *numbers, int most)
+{
+    int count = 0;
+    while (count < most && svg_number(&text, &numbers[count]))
+        count++;
+    return count;
+}
+
+/* A flag of an arc is one digit, and needs nothing behind it. */
+static bool next_flag(const char **text, double *flag)
+{
+    skip_blanks(text);
+    if (**text != '0' && **text != '1')
+        return false;
+    *flag = *(*text)++ - '0';
+    return true;
+}
+
+/* ---- transforms ---- */
+
+SvgMap svg_product(const SvgMap *outer, const SvgMap *inner)
+{
+    const double *a = outer->m, *b = inner->m;
+    return (SvgMap){{a[0] * b[0] + a[2] * b[1], a[1] * b[0] + a[3] * b[1],
+                     a[0] * b[2] + a[2] * b[3], a[1] * b[2] + a[3] * b[3],
+                     a[0] * b[4] + a[2] * b[5] + a[4], a[1] * b[4] + a[3] * b[5] + a[5]}};
+}
+
+static SvgMap rotation(double degrees, double x, double y)
+{
+    double c = cos(degrees * M_PI / 180), s = sin(degrees * M_PI / 180);
+    return (SvgMap){{c, s, -s, c, x - c * x + s * y, y - s * x - c * y}};
+}
+
+static bool named_map(const char *name, size_t length, const double *n, int count, SvgMap *map)
+{
+#define NAMED(word) (length == strlen(word) && strncmp(name, word, length) == 0)
+    if (NAMED("matrix") && count == 6)
+        memcpy(map->m, n, sizeof map->m);
+    else if (NAMED("translate") && count >= 1)
+        *map = (SvgMap){{1, 0, 0, 1, n[0], count > 1 ? n[1] : 0}};
+    else if (NAMED("scale") && count >= 1)
+        *map = (SvgMap){{n[0], 0, 0, count > 1 ? n[1] : n[0], 0, 0}};
+    else if (NAMED("rotate") && count >= 1)
+        *map = rotation(n[0], count > 2 ? n[1] : 0, count > 2 ? n[2] : 0);
+    else if (NAMED("skewX") && count == 1)
+        *map = (SvgMap){{1, 0, tan(n[0] * M_PI / 180), 1, 0, 0}};
+    else if (NAMED("skewY") && count == 1)
+        *map = (SvgMap){{1, tan(n[0] * M_PI / 180), 0, 1, 0, 0}};
+    else
+        return false;
+    return true;
+#undef NAMED
+}
+
+bool svg_transform(const char *text, SvgMap *map)
+{
+    *map = (SvgMap){{1, 0, 0, 1, 0, 0}};
+    for (skip_blanks(&text); *text; skip_blanks(&text)) {
+        size_t      length = strcspn(text, "( \t\r\n");
+        const char *name = text, *open = strchr(text, '(');
+        double      numbers[6];
+        SvgMap      next;
+        const char *close = open ? strchr(open, ')') : NULL;
+        if (!close || !named_map(name, length, numbers, svg_numbers(open + 1, numbers, 6), &next))
+            return false;
+        *map = svg_product(map, &next);
+        text = close + 1;
+    }
+    return true;
+}
+
+/* ---- drawing behind the map ---- */
+
+static void mapped(const SvgPen *pen, const double p[2], double q[2])
+{
+    const double *m = pen->map.m;
+    q[0]            = m[0] * p[0] + m[2] * p[1] + m[4];
+    q[1]            = m[1] * p[0] + m[3] * p[1] + m[5];
+}
+
+static void pen_move(SvgPen *pen, const double to[2])
+{
+    double q[2];
+    mapped(pen, to, q);
+    path_move(&pen->path, q);
+}
+
+static void pen_line(SvgPen *pen, const double to[2])
+{
+    double q[2];
+    mapped(pen, to, q);
+    path_line(&pen->path, q);
+}
+
+static void pen_quadratic(SvgPen *pen, const double via[2], const double to[2])
+{
+    double p[2], q[2];
+    mapped(pen, via, p);
+    mapped(pen, to, q);
+    path_quadratic(&pen->path, p, q);
+}
+
+static void pen_cubic(SvgPen *pen, const double first[2], const double second[2],
+                      const double to[2])
+{
+    double p[2], q[2], r[2];
+    mapped(pen, first, p);
+    mapped(pen, second, q);
+    mapped(pen, to, r);
+    path_cubic(&pen->path, p, q, r);
+}
+
+/* ---- arcs ---- */
+
+/* An arc of an ellipse: center, radii, how it is turned; from one angle on, by another. */
+typedef struct Arc {
+    double center[2], radii[2], turn, from, by;
+} Arc;
+
+static void arc_place(const Arc *arc, double x, double y, double p[2])
+{
+    double c = cos(arc->turn), s = sin(arc->turn);
+    p[0] = arc->center[0] + c * arc->radii[0] * x - s * arc->radii[1] * y;
+    p[1] = arc->center[1] + s * arc->radii[0] * x + c * arc->radii[1] * y;
+}
+
+/* Pieces of 22.5 degrees at most: a cubic curve leaves such an arc by a 10-millionth of its radius. */
+static void draw_arc(SvgPen *pen, const Arc *arc, const double *end)
+{
+    int    count = (int)fmax(ceil(fabs(arc->by) / (M_PI / 8) - 1e-9), 1);
+    double step = arc->by / count, pull = 4.0 / 3 * tan(step / 4);
+    for (int i = 0; i < count; i++) {
+        double a = arc->from + i * step, b = a + step, first[2], second[2], to[2];
+        arc_place(arc, cos(a) - pull * sin(a), sin(a) + pull * cos(a), first);
+        arc_place(arc, cos(b) + pull * sin(b), sin(b) - pull * cos(b), second);
+        arc_place(arc, cos(b), sin(b), to);
+        pen_cubic(pen, first, second, end && i + 1 == count ? end : to);
+    }
+}
+
+/* SVG 1.1, F.6.5 and F.6.6: the arc from one point to another. */
+static void draw_arc_between(SvgPen *pen, const double from[2], const double n[7])
+{
+    double rx = fabs(n[0]), ry = fabs(n[1]), turn = n[2] * M_PI / 180, c = cos(turn), s = sin(turn);
+    double dx = 0.5 * (from[0] - n[5]), dy = 0.5 * (from[1] - n[6]);
+    double x = c * dx + s * dy, y = c * dy - s * dx;
+    if (!(rx > 0 && ry > 0)) {
+        pen_line(pen, n + 5);
+        return;
+    }
+    double apart = x * x / (rx * rx) + y * y / (ry * ry), grown = apart > 1 ? sqrt(apart) : 1;
+    if (apart == 0)
+        return;
+    rx *= grown, ry *= grown;
+    double side = sqrt(fmax(grown * grown / apart - 1, 0)) * (n[3] == n[4] ? -1 : 1);
+    double u = side * rx * y / ry, v = -side * ry * x / rx;
+    Arc    arc    = {.radii = {rx, ry}, .turn = turn};
+    arc.center[0] = c * u - s * v + 0.5 * (from[0] + n[5]);
+    arc.center[1] = s * u + c * v + 0.5 * (from[1] + n[6]);
+    arc.from      = atan2((y - v) / ry, (x - u) / rx);
+    arc.by        = atan2((-y - v) / ry, (-x - u) / rx) - arc.from;
+    if (n[4] != 0 && arc.by < 0)
+        arc.by += 2 * M_PI;
+    if (n[4] == 0 && arc.by > 0)
+        arc.by -= 2 * M_PI;
+    draw_arc(pen, &arc, n + 5);
+}
+
+/* ---- the data of paths ---- */
+
+typedef struct PathReader {
+    SvgPen     *pen;
+    const char *text;
+    double      at[2], start[2], control[2]; /* the last control point, which S and T mirror */
+    char        before;                      /* the letter of what was drawn last, in capitals */
+} PathReader;
+
+/* How many numbers stand behind a letter, and how many of them, from which on, are coordinates. */
+static int numbers_of(char letter)
+{
+    static const char letters[] = "MLHVCSQTAZ";
+    static const int  counts[]  = {2, 2, 1, 1, 6, 4, 4, 2, 7, 0};
+    const char       *found     = strchr(letters, letter);
+    return letter && found ? counts[found - letters] : -1;
+}
+
+static bool read_numbers(PathReader *reader, char letter, int count, double *n)
+{
+    for (int i = 0; i < count; i++) {
+        bool flag = letter == 'A' && (i == 3 || i == 4);
+        if (!(flag ? next_flag(&reader->text, &n[i]) : svg_number(&reader->text, &n[i])))
+            return false;
+    }
+    return true;
+}
+
+static void make_absolute(const PathReader *reader, char letter, int count, double *n)
+{
+    if (letter == 'H' || letter == 'V')
+        n[0] += reader->at[letter == 'V'];
+    else
+        for (int i = letter == 'A' ? 5 : 0; i < count; i++)
+            n[i] += reader->at[letter == 'A' ? i - 5 : i % 2];
+}
+
+/* The last control point, mirrored in the current point, if the last piece was of such a kind. */
+static void mirrored(const PathReader *reader, const char *kinds, double p[2])
+{
+    bool mirrors = reader->before && strchr(kinds, reader->before);
+    for (int k = 0; k < 2; k++)
+        p[k] = mirrors ? 2 * reader->at[k] - reader->control[k] : reader->at[k];
+}
+
+static void draw_piece(PathReader *reader, char letter, double *n, int count)
+{
+    SvgPen *pen   = reader->pen;
+    double  to[2] = {reader->at[0], reader->at[1]};
+    if (letter == 'H' || letter == 'V')
+        to[letter == 'V'] = n[0];
+    else if (letter == 'Z')
+        memcpy(to, reader->start, sizeof to);
+    else
+        memcpy(to, n + count - 2, sizeof to);
+    memcpy(reader->control, to, sizeof to);
+    switch (letter) {
+    case 'M':
+        pen_move(pen, to);
+        memcpy(reader->start, to, sizeof to);
+        break;
+    case 'C':
+        pen_cubic(pen, n, n + 2, to);
+        memcpy(reader->control, n + 2, sizeof to);
+        break;
+    case 'Q':
+        pen_quadratic(pen, n, to);
+        memcpy(reader->control, n, sizeof to);
+        break;
+    case 'A': draw_arc_between(pen, reader->at, n); break;
+    default: pen_line(pen, to); break;
+    }
+    memcpy(reader->at, to, sizeof to);
+    reader->before = letter;
+}
+
+/* S and T begin with a control point that the piece before tells: so they are C and Q. */
+static void draw_smooth(PathReader *reader, char letter, double *n)
+{
+    double all[6], p[2];
+    mirrored(reader, letter == 'S' ? "CS" : "QT", p);
+    memcpy(all, p, sizeof p);
+    memcpy(all + 2, n, (letter == 'S' ? 4 : 2) * sizeof *n);
+    draw_piece(reader, letter == 'S' ? 'C' : 'Q', all, letter == 'S' ? 6 : 4);
+}
+
+/* All pieces behind one letter.  What follows the first point of M are lines. */
+static bool draw_letter(PathReader *reader, char letter)
+{
+    bool   relative = islower((unsigned char)letter);
+    char   capital  = (char)toupper((unsigned char)letter);
+    int    count    = numbers_of(capital);
+    double n[7];
+    if (count < 0)
+        return false;
+    do {
+        if (!read_numbers(reader, capital, count, n))
+            return false;
+        if (relative)
+            make_absolute(reader, capital, count, n);
+        if (capital == 'S' || capital == 'T')
+            draw_smooth(reader, capital, n);
+        else
+            draw_piece(reader, capital, n, count);
+        capital = capital == 'M' ? 'L' : capital;
+        skip_blanks(&reader->text);
+    } while (count > 0 && *reader->text && !isalpha((unsigned char)*reader->text));
+    return true;
+}
+
+bool svg_path(SvgPen *pen, const char *text)
+{
+    PathReader reader = {.pen = pen, .text = text};
+    bool       good   = true;
+    skip_blanks(&reader.text);
+    good = *reader.text == '\0' || (*reader.text | 32) == 'm';
+    while (good && *reader.text) {
+        char letter = *reader.text++;
+        good        = draw_letter(&reader, letter);
+        skip_blanks(&reader.text);
+    }
+    path_close(&pen->path);
+    return good;
+}
+
+/* ---- basic shapes ---- */
+
+void svg_ellipse(SvgPen *pen, const double center[2], const double radii[2])
+{
+    Arc    arc = {.center = {center[0], center[1]}, .radii = {radii[0], radii[1]}, .by = 2 * M_PI};
+    double start[2] = {center[0] + radii[0], center[1]};
+    pen_move(pen, start);
+    draw_arc(pen, &arc, start);
+    path_close(&pen->path);
+}
+
+void svg_rectangle(SvgPen *pen, const double corner[2], const double size[2], const double radii[2])
+{
+    double rx = fmin(radii[0], 0.5 * size[0]), ry = fmin(radii[1], 0.5 * size[1]);
+    double x[2] = {corner[0] + rx, corner[0] + size[0] - rx};
+    double y[2] = {corner[1] + ry, corner[1] + size[1] - ry};
+    for (int i = 0; i < 4; i++) { /* from the right side around, y downwards */
+        bool   left = i == 1 || i == 2, top = i >= 2;
+        Arc    arc = {{x[!left], y[!top]}, {rx, ry}, 0, i * M_PI_2, M_PI_2};
+        double begin[2];
+        arc_place(&arc, cos(arc.from), sin(arc.from), begin);
+        if (i == 0)
+            pen_move(pen, begin);
+        else
+            pen_line(pen, begin);
+        if (rx > 0 && ry > 0)
+            draw_arc(pen, &arc, NULL);
+    }
+    path_close(&pen->path);
+}
+
+bool svg_polygon(SvgPen *pen, const char *points)
+{
+    double p[2];
+    for (bool first = true; svg_number(&points, &p[0]); first = false) {
+        if (!svg_number(&points, &p[1]))
+            return false;
+        if (first)
+            pen_move(pen, p);
+        else
+            pen_line(pen, p);
+    }
+    path_close(&pen->path);
+    return true;
+}

@@ -1,0 +1,36 @@
+/*
+ * svg_shapes.h: numbers and shapes of SVG, which have a form of their own.
+ */
+#ifndef KRS_SVG_SHAPES_H
+#define KRS_SVG_SHAPES_H
+
+#include "compiler/outline/path.h"
+
+/* x' = m[0] x + m[2] y + m[4], y' = m[1] x + m[3] y + m[5] */
+typedef struct SvgMap {
+    double m[6];
+} SvgMap;
+
+/* A path that is drawn behind a map. */
+typedef struct SvgPen {
+    Path   path;
+    SvgMap map;
+} SvgPen;
+
+/* The next number of a list, whose elements are apart by blanks or a comma; false: there is none. */
+bool svg_number(const char **text, double *number);
+/* As many numbers as there are, at most `most`. */
+int svg_numbers(const char *text, double *numbers, int most);
+/* First `inner`, then `outer`. */
+SvgMap svg_product(const SvgMap *outer, const SvgMap *inner);
+/* The attribute `transform`; false: it means nothing. */
+bool svg_transform(const char *text, SvgMap *map);
+
+/* The attribute `d` of a path; false: from some place on it means nothing. */
+bool svg_path(SvgPen *pen, const char *text);
+void svg_rectangle(SvgPen *pen, const double corner[2], const double size[2],
+                   const double radii[2]);
+void svg_ellipse(SvgPen *pen, const double center[2], const double radii[2]);
+bool svg_polygon(SvgPen *pen, const char *points);
+
+#endif
