@@ -103,7 +103,7 @@ fuzz-programs: $(HARNESSES:%=$(B)/tests/fuzz/%)
 $(HARNESSES:%=$(B)/tests/fuzz/%): $(B)/tests/fuzz/%: $(B)/tests/fuzz/%.o \
                                     $(FUZZED:%.c=$(B)/%.o) $(B)/library_files.o \
                                     $(B)/helper_files.o
-	@$(CC) $(CFLAGS) -fsanitize=fuzzer -o $@ $^ -lharfbuzz -lfreetype -lfontconfig -lexpat -lm
+	@$(CC) $(CFLAGS) -fsanitize=fuzzer -o $@ $^ -lharfbuzz -lfreetype -lfontconfig -lexpat -lqhull_r -lm
 fuzzers:
 	@$(MAKE) --no-print-directory fuzz-programs B=$(B)/fuzz CC=$(CLANG) \
 	    CFLAGS='-g -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined'
