@@ -65,8 +65,8 @@ static void blame_heaviest(Compilation *c, Diag *diag, const Component *componen
         diag_text(&c->diags, "this `%s` has %zu of them", shape->name, heaviest.operations));
     diag->help =
         strcmp(shape->name, "polygon") == 0
-            ? "each corner of a polygon counts: leave out those that nobody sees, or cut the "
-              "outline into pieces and join them by `|`"
+            ? "corners that depend on a `param` or on `time` count one by one, and known ones "
+              "hardly at all: let the `param` move or scale the whole polygon"
             : "make this shape of smaller ones, joined by `|`: where they are far, they are "
               "skipped";
 }
