@@ -132,6 +132,12 @@ static void make_arc_capsule(Solid *s)
                s->a[9]);
 }
 
+static void make_bezier_capsule(Solid *s)
+{
+    make_sweep(s, curve_bezier(argument_vec(s, 0), argument_vec(s, 3), argument_vec(s, 6)), s->a[9],
+               s->a[9]);
+}
+
 /* Both sides of a chain link are upright, its plane is that of x and y. */
 static void make_link(Solid *s)
 {
@@ -434,4 +440,19 @@ const Primitive solid_primitives[SOLIDS] = {
      convex_surface,
      false,
      {SIZE, SIZE, SIZE, {2, 12}}},
+    {"bezier capsule",
+     "bezier_capsule([$a, $b, $c], [$d, $e, $f], [$g, $h, $i], $j)",
+     make_bezier_capsule,
+     SWEEP,
+     true,
+     {PLACE,
+      {-0.9, -0.5},
+      PLACE,
+      PLACE,
+      {-0.2, 0.2},
+      PLACE,
+      PLACE,
+      {0.5, 0.9},
+      PLACE,
+      {0.05, 0.2}}},
 };
