@@ -355,6 +355,10 @@ BuiltinFunction builtin_text;
 /* ---- drawing.c ---- */
 BuiltinFunction builtin_svg;
 
+/* ---- measure.c ---- */
+Value method_at(Elaboration *e, const Shape *shape, Call *call);
+Value method_bounds(Elaboration *e, const Shape *shape, Call *call);
+
 /* ---- functions.c ---- */
 /* Calls a function, or makes the shape of a declaration; `syntax` is the call. */
 Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax,

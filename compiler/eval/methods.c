@@ -363,13 +363,6 @@ static Value method_displace(Elaboration *e, const Shape *shape, Call *call)
                                      formula->syntax->span, &asked));
 }
 
-static Value method_not_supported(Elaboration *e, const Shape *shape, Call *call)
-{
-    (void)shape;
-    not_supported(e, call->syntax->name_span, diag_text(e->diags, "`.%s`", call->name));
-    return value_error();
-}
-
 /* ---- dispatch ---- */
 
 static const struct {
@@ -388,8 +381,7 @@ static Value unknown_method(Elaboration *e, const Syntax *syntax, Value receiver
     const char              *names[METHOD_COUNT];
     size_t                   count = 0;
     for (size_t i = 0; i < METHOD_COUNT; i++)
-        if (methods[i].method != method_not_supported)
-            names[count++] = methods[i].name;
+        names[count++] = methods[i].name;
     const char *type = value_type_name(e, receiver);
     Diag *diag = diag_add(e->diags, DIAG_UNKNOWN_METHOD, syntax->name_span, "%s has no method `%s`",
                           type, syntax->name);
