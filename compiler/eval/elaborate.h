@@ -356,7 +356,7 @@ BuiltinFunction builtin_text;
 BuiltinFunction builtin_svg;
 
 /* ---- measure.c ---- */
-Value method_at(Elaboration *e, const Shape *shape, Call *call);
+Value method_distance(Elaboration *e, const Shape *shape, Call *call);
 Value method_bounds(Elaboration *e, const Shape *shape, Call *call);
 
 /* ---- functions.c ---- */

@@ -27,20 +27,20 @@ static Node want_place(Elaboration *e, const Shape *shape, const Call *call)
 }
 
 /* The distance may be put to any use, so it is one of slope 1. */
-Value method_at(Elaboration *e, const Shape *shape, Call *call)
+Value method_distance(Elaboration *e, const Shape *shape, Call *call)
 {
     Node   point  = want_place(e, shape, call);
     size_t errors = e->diags->errors;
     if (point == NODE_NONE || !check_bounded(e->builder, shape))
         return value_error();
-    check_lipschitz(e->builder, shape, "`.at`", call->syntax->span);
+    check_lipschitz(e->builder, shape, "`.distance`", call->syntax->span);
     if (e->diags->errors > errors)
         return value_error();
     Lowering l = {.graph = e->graph, .scratch = e->scratch, .most = e->graph->count + MOST_LOWERED};
     Lowered  all = lower_shape(&l, shape, context_new(point, true));
     if (l.overflow || all.distance == NODE_NONE) {
         Diag *diag  = diag_add(e->diags, DIAG_LIMIT, call->syntax->span, "%s",
-                              l.overflow ? "this shape is too large for `.at`"
+                              l.overflow ? "this shape is too large for `.distance`"
                                           : "an empty shape has no distance");
         diag->label = "in this call";
         return value_error();

@@ -261,10 +261,11 @@ const Method methods[] = {
      "; mobius invert([-0.3, -2.4, 0.2], 1.6) * rotate([0, 1, 0], 0.5);"
      " reflect plane([1, 0, 0], 0.1); }",
      undo_mobius, 0, false, INVERTS},
-    /* Figures only, or not there yet. */
+    /* Of figures only, or no shapes. */
     {"extrude", NULL, NULL, NULL, 0, false, ""},
     {"revolve", NULL, NULL, NULL, 0, false, ""},
-    {"sweep", NULL, NULL, NULL, 0, false, ""},
+    {"distance", NULL, NULL, NULL, 0, false, ""},
+    {"bounds", NULL, NULL, NULL, 0, false, ""},
 };
 const size_t method_count = sizeof methods / sizeof *methods;
 

@@ -271,16 +271,16 @@ static void closed_sweeps_fit(void **state)
     }
 }
 
-/* `.at` is the distance, or a bound of slope 1, and `.bounds` the corners of a box. */
+/* `.distance` is the distance, or a bound of slope 1, and `.bounds` the corners of a box. */
 static void shapes_tell_of_themselves(void **state)
 {
     (void)state;
     static const char *const pairs[][2] = {
         {"show box([1, 0.6, 0.8]).move([0.2, 0, 0]);",
-         "shape moved(b = box()) { distance: b.at(p - [0.2, 0, 0]), slope: 1 }\n"
+         "shape moved(b = box()) { distance: b.distance(p - [0.2, 0, 0]), slope: 1 }\n"
          "show moved(box([1, 0.6, 0.8]));"},
         {"show star(5, 1, 0.4).extrude(0.5);",
-         "shape tall(f = circle()) { distance: let d = [f.at([x, y]), abs(z) - 0.25] in"
+         "shape tall(f = circle()) { distance: let d = [f.distance([x, y]), abs(z) - 0.25] in"
          " length(max(d, 0)) + min(max(d), 0), slope: 1, within: let b = f.bounds() in"
          " [[b[0][0], b[0][1], -0.25], [b[1][0], b[1][1], 0.25]] }\nshow tall(star(5, 1, 0.4));"}};
     Random random = {9};
