@@ -7,6 +7,7 @@
  */
 #include <string.h>
 
+#include "cli/import_file.h"
 #include "cli/help.h"
 #include "compiler/base/diag.h"
 
@@ -23,7 +24,7 @@ static bool may_repeat(const OptionInfo *option) { return strstr(option->help, "
 static const char *find_endings(CommandId command)
 {
     if (command == COMMAND_IMPORT)
-        return ".jsurf .vm";
+        return import_endings();
     return command_table[command].files == 0 ? "" : ".krs";
 }
 

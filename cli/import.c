@@ -2,8 +2,7 @@
  * import.c: `krs import`: a file of another program in, the text of a scene out.
  *
  * The text is for people to go on with: it keeps the names and factors of the file and says in
- * comments what the file left open.  Nothing is guessed from the contents: the ending of the
- * name says what a file is.
+ * comments what the file left open.
  */
 #include <errno.h>
 #include <stdio.h>
@@ -11,18 +10,10 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
-#include "cli/import_jsurf.h"
-#include "cli/import_svg.h"
-#include "cli/import_tape.h"
+#include "cli/import_file.h"
 #include "cli/supervise.h"
 
 enum { MOST_BYTES = 16 << 20 };
-
-static const struct {
-    const char *ending;
-    bool (*import)(Import *import);
-} forms[] = {{".jsurf", import_jsurf}, {".vm", import_tape}, {".svg", import_svg}};
-enum { FORMS = sizeof forms / sizeof *forms };
 
 static KrsStatus read_all(const Options *options, Import *import)
 {
@@ -67,17 +58,17 @@ static KrsStatus write_scene(const Options *options, const Text *scene)
 KrsStatus command_import(Options *options)
 {
     const char *path   = options->files.items[0];
-    const char *ending = strrchr(path, '.'), *slash = strrchr(path, '/');
+    const char *slash  = strrchr(path, '/');
     Import      import = {.path = path, .name = slash ? slash + 1 : path, .arena = options->arena};
-    import.scene.arena = options->arena;
     import.output      = options->outputs.count > 0 ? options->outputs.items[0] : NULL;
-    for (size_t i = 0; ending && i < FORMS; i++) {
-        if (strcmp(ending, forms[i].ending) != 0)
-            continue;
-        KrsStatus status = read_all(options, &import);
-        if (status != KRS_OK)
-            return status;
-        return forms[i].import(&import) ? write_scene(options, &import.scene) : KRS_BAD_SCENE;
-    }
-    return say_usage(options, "`%s` ends in none of .jsurf, .vm and .svg", path);
+    if (!import_knows(path))
+        return say_usage(options, "`%s` ends in none of %s", path, import_endings());
+    KrsStatus status = read_all(options, &import);
+    if (status != KRS_OK)
+        return status;
+    stage_enter(STAGE_COMPILE);
+    status = import_file(&import);
+    if (status == KRS_BAD_SCENE && import.refusal.length > 0)
+        say("%s", import.refusal.bytes);
+    return status == KRS_OK ? write_scene(options, &import.scene) : say_status(status, path);
 }

@@ -226,6 +226,7 @@ bool jsurf_write_parameters(const JsurfSurface *surface)
         double               value;
         if (!jsurf_numbers(surface, property->key, &value, 1))
             return false;
+        import_mark(surface->import, property->line);
         text_add(scene, "param ");
         add_parameter_name(scene, property->key + strlen("surface_parameter_"));
         text_add(scene, " = ");

@@ -74,8 +74,7 @@ static double space_factor(const Space *space)
 
 static bool refuse_space(const JsurfSurface *surface, const char *key, const char *why)
 {
-    const JsurfProperty *property = jsurf_property(surface, key);
-    return import_refuse(surface->import, property ? property->line : 1, "`%s` %s", key, why);
+    return import_refuse(surface->import, jsurf_line(surface, key), "`%s` %s", key, why);
 }
 
 /* A turn, without its inverse's need of division. */
@@ -184,6 +183,7 @@ static bool write_camera(const JsurfSurface *surface, const Space *camera)
         target[i] = eye[i] - surface->scale * backward[i] * distance;
     }
     Text *scene = &surface->import->scene;
+    import_mark(surface->import, type ? type->line : 1);
     text_add(scene, "camera {\n    eye: ");
     add_point(scene, eye, surface->scale);
     text_add(scene, ",\n    target: ");
@@ -222,6 +222,7 @@ static bool write_light(const JsurfSurface *surface, const Space *camera, int nu
     for (int i = 0; i < 3; i++)
         eye[i] *= size;
     Text *scene = &surface->import->scene;
+    import_mark(surface->import, status->line);
     text_add(scene, "light { position: ");
     add_point(scene, eye, distance);
     text_format(scene, ", color: %s, intensity: %.4g }\n", color,
@@ -246,9 +247,9 @@ static bool write_view(const JsurfSurface *surface, const Space *camera)
     else
         text_format(scene, "if equation > 0 then %s else %s", front, back);
     text_format(scene, ",\n    roughness: %.2f\n}\n", sqrt(2 / (fmax(shininess, 0) + 2)));
-    text_format(scene,
-                "show algebraic(equation == 0).within(sphere(%.7g), open: true)"
-                ".paint(sides);\n\n",
+    import_mark(surface->import, jsurf_line(surface, "surface_equation"));
+    text_format(scene, "show %s.within(sphere(%.7g), open: true).paint(sides);\n\n",
+                surface->import->as_field ? "field(equation)" : "algebraic(equation == 0)",
                 surface->scale);
     if (!write_camera(surface, camera))
         return false;
@@ -270,9 +271,9 @@ bool import_jsurf(Import *import)
     text_format(&import->scene, "// From %s.\n\n", import->name);
     if (!jsurf_write_parameters(&surface))
         return false;
-    text_format(&import->scene,
-                "// Without `open: true` it is a solid, below 0.\nlet equation =\n"
-                "    %s;\n",
-                equation.bytes);
+    text_format(&import->scene, "// %sWithout `open: true` it is a solid, below 0.\n",
+                import->as_field ? "No polynomial.  " : "");
+    import_mark(import, jsurf_line(&surface, "surface_equation"));
+    text_format(&import->scene, "let equation =\n    %s;\n", equation.bytes);
     return write_view(&surface, &camera);
 }

@@ -111,6 +111,12 @@ const JsurfProperty *jsurf_property(const JsurfSurface *surface, const char *key
     return NULL;
 }
 
+unsigned jsurf_line(const JsurfSurface *surface, const char *key)
+{
+    const JsurfProperty *property = jsurf_property(surface, key);
+    return property ? property->line : 1;
+}
+
 bool jsurf_numbers(const JsurfSurface *surface, const char *key, double *numbers, int count)
 {
     const double         MOST     = 1e6;

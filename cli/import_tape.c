@@ -63,6 +63,7 @@ typedef struct Instruction {
     double           number;                    /* of `const` */
     bool             counts, varies;            /* for the result; with the point */
     size_t           ordinal;                   /* among those that are written, from 1 */
+    unsigned         line;
 } Instruction;
 
 /* Which step a name stands for at the moment; names are interned. */
@@ -179,7 +180,7 @@ static bool read_line(ImportedTape *tape, const char *at)
     if (tape->instructions.count == MOST_LINES)
         return import_refuse(tape->import, tape->line, "more than %d operations", MOST_LINES);
     Word        word        = next_word(&at);
-    Instruction instruction = {.operation = find_operation(word)};
+    Instruction instruction = {.operation = find_operation(word), .line = tape->line};
     if (word.length == 0)
         return import_refuse(tape->import, tape->line,
                              "a line is a name, an operation and its arguments: `_2 add _0 _1`");
@@ -239,6 +240,7 @@ static void write_name(const ImportedTape *tape, size_t index)
 static void write_instruction(const ImportedTape *tape, const Instruction *instruction)
 {
     Text *text = &tape->import->scene;
+    import_mark(tape->import, instruction->line);
     text_format(text, "let n%zu = ", instruction->ordinal);
     for (const char *at = instruction->operation->text; *at != '\0'; at++) {
         if (*at == '$')
@@ -267,6 +269,7 @@ static void write_tape(ImportedTape *tape)
         instruction->ordinal = ++ordinal;
         write_instruction(tape, instruction);
     }
+    import_mark(tape->import, tape->instructions.items[last].line);
     text_add(text, "\n// A tape has no bounds; this is what its viewers show unless asked.\n"
                    "show field(");
     write_name(tape, last);

@@ -3,20 +3,80 @@
  */
 #include "cli/import_text.h"
 
-#include "cli/console.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
-bool import_refuse(const Import *import, unsigned line, const char *format, ...)
+enum { MOST_NOTES = 100 };
+
+/* What a file says moves no cursor, and ends no comment. */
+static const char *harmless(Arena *arena, const char *format, va_list arguments)
 {
-    Text    words = {.arena = import->arena};
+    Text words = {.arena = arena};
+    text_format_list(&words, format, arguments);
+    for (char *at = words.bytes; *at != '\0'; at++)
+        if ((unsigned char)*at < ' ' || *at == 0x7f)
+            *at = '?';
+    return words.bytes;
+}
+
+bool import_refuse(Import *import, unsigned line, const char *format, ...)
+{
     va_list arguments;
     va_start(arguments, format);
-    text_format_list(&words, format, arguments);
+    if (import->refusal.length == 0)
+        text_format(&import->refusal, "%s:%u: %s", import->path, line,
+                    harmless(import->arena, format, arguments));
     va_end(arguments);
-    for (char *at = words.bytes; *at != '\0'; at++)
-        if ((unsigned char)*at < ' ' || *at == 0x7f) /* what a file says moves no cursor */
-            *at = '?';
-    say("%s:%u: %s", import->path, line, words.bytes);
     return false;
+}
+
+void import_note(Import *import, unsigned line, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    ImportNote note = {harmless(import->arena, format, arguments), line};
+    va_end(arguments);
+    if (import->notes.count >= MOST_NOTES - 1)
+        note.words = "more is left out than can be listed";
+    for (size_t i = 0; i < import->notes.count; i++)
+        if (strcmp(import->notes.items[i].words, note.words) == 0)
+            return;
+    if (import->notes.count < MOST_NOTES)
+        array_push(import->arena, &import->notes, note);
+}
+
+void import_write_head(Import *import)
+{
+    text_format(&import->scene, "// From %s.\n", import->name);
+    for (size_t i = 0; i < import->notes.count; i++)
+        text_format(&import->scene, "// Line %u: %s.\n", import->notes.items[i].line,
+                    import->notes.items[i].words);
+    text_add(&import->scene, "\n");
+}
+
+void import_mark(Import *import, unsigned line)
+{
+    ImportMark mark = {import->scene.length, line};
+    array_push(import->arena, &import->marks, mark);
+}
+
+unsigned import_origin(const Import *import, unsigned scene_line)
+{
+    size_t offset = 0;
+    for (unsigned line = 1; line < scene_line && offset < import->scene.length; offset++)
+        line += import->scene.bytes[offset] == '\n';
+    unsigned origin = 1;
+    for (size_t i = 0; i < import->marks.count && import->marks.items[i].offset <= offset; i++)
+        origin = import->marks.items[i].line;
+    return origin;
+}
+
+double import_rounded(double number)
+{
+    char digits[32];
+    snprintf(digits, sizeof digits, "%.12g", number);
+    return strtod(digits, NULL);
 }
 
 void import_add_number(Text *text, double number)

@@ -8,6 +8,18 @@
 
 #include "compiler/base/text.h"
 
+/* From here on, the text of the scene comes from this line of the file. */
+typedef struct ImportMark {
+    size_t   offset;
+    unsigned line;
+} ImportMark;
+
+/* What is left out of the scene without harm, and said in it. */
+typedef struct ImportNote {
+    const char *words;
+    unsigned    line;
+} ImportNote;
+
 typedef struct Import {
     const char *path;  /* of the file, for words about it */
     const char *name;  /* the same without folders, for a comment in the scene */
@@ -15,13 +27,36 @@ typedef struct Import {
     size_t      length;
     const char *output; /* the file of the scene; NULL: standard output */
     Arena      *arena;
-    Text        scene; /* what came of it */
+    bool        as_field; /* an equation is no polynomial */
+    Text        scene;    /* what came of it */
+    struct {
+        ImportMark *items;
+        size_t      count, capacity;
+    } marks;
+    struct {
+        ImportNote *items;
+        size_t      count, capacity;
+    } notes;
+    Text refusal; /* "path:line: " and why there is no scene; empty when there is one */
 } Import;
 
-/* "krs: path:line: " and the words; returns false. */
-bool import_refuse(const Import *import, unsigned line, const char *format, ...)
+/* Notes "path:line: " and the words, unless something was refused before; returns false. */
+bool import_refuse(Import *import, unsigned line, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Notes what the scene leaves out; the same words count once. */
+void import_note(Import *import, unsigned line, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* "From FILE." and the notes, as comments. */
+void import_write_head(Import *import);
+
+/* What is added to the scene now comes from this line. */
+void import_mark(Import *import, unsigned line);
+/* The line of the file that a line of the scene comes from, from 1. */
+unsigned import_origin(const Import *import, unsigned scene_line);
+
+/* As an import has computed it: without the noise behind twelve digits. */
+double import_rounded(double number);
 /* A number as the language writes it; NaN and infinities have no such form. */
 void import_add_number(Text *text, double number);
 void import_add_vector(Text *text, const double *numbers, int count);

@@ -26,7 +26,8 @@ ORACLES     := self primitives krs_expand trees maps moebius moebius_images oper
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
                touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling \
-               occlusion curves sweeps underestimates bounds stencils light sides steep scales agree far sheets ray_lists specialize outlines drawings
+               occlusion curves sweeps underestimates bounds stencils light sides steep scales agree far sheets ray_lists specialize outlines drawings \
+               imports imports_csg imports_pov
 FUZZ        := sentences
 # On SwiftShader, unless another device is tested: what shows that drivers agree.
 DRIVERS     := tests/oracle/drivers
@@ -44,7 +45,8 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/synonyms unit/diag
                property/reach_trees property/crowds property/crowds_apart property/moving_crowds oracle/primitives \
                oracle/krs_expand oracle/bounds \
                oracle/cells oracle/maps oracle/moebius oracle/moebius_images oracle/operators oracle/moving \
-               oracle/fractals oracle/metasurfaces oracle/normals oracle/drawings fuzz/sentences)
+               oracle/fractals oracle/metasurfaces oracle/normals oracle/drawings oracle/imports \
+               oracle/imports_csg oracle/imports_pov fuzz/sentences)
 # Scripts that run beside programs, the longest first.  SCRIPTS run alone: they measure time, or count
 # what others may change.
 BESIDE      := $(addprefix tests/, examples.sh tutorial.sh extend/extend.sh cli/scale.sh errors-sanitized.sh lint.sh \
@@ -74,6 +76,11 @@ $(B)/tests/unit/%: $(B)/tests/unit/%.o $(B)/tests/unit/unit.a $(LINKED)
 $(B)/tests/property/%: $(B)/tests/property/%.o $(B)/tests/property/property.a $(LINKED)
 	@$(LINK)
 $(B)/tests/%: $(B)/tests/%.o $(LINKED)
+	@$(LINK)
+# Who reads files of other programs belongs to the command, not to the library.
+IMPORTS     := imports imports_csg imports_pov
+$(IMPORTS:%=$(B)/tests/oracle/%): $(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/imported.o \
+        $(patsubst %.c,$(B)/%.o,$(wildcard cli/import_*.c)) $(LINKED)
 	@$(LINK)
 # It runs the command.
 $(B)/tests/unit/table_files: | $(B)/krs

@@ -3,7 +3,7 @@
 # with the line that is wrong; no file, whatever is in it, ends in a crash.
 # shellcheck source-path=SCRIPTDIR disable=SC2016
 . "$(dirname "$0")/common.sh"
-plan 49
+plan 55
 
 cat >ball.vm <<'END'
 # a ball of radius 0.75 with its upper half cut away, and a line that does not count
@@ -133,7 +133,7 @@ refused a.jsurf "surface_equation=$nested" '1: the equation is more than 60 deep
     "parentheses without end"
 
 run import ball.krs
-said 2 "ends in none of .jsurf, .vm and .svg" "a file of another kind"
+said 2 "ends in none of .jsurf .vm .csg .pov .svg" "a file of another kind"
 run import missing.vm
 said 74 "cannot read \`missing.vm\`" "a missing file"
 run import ball.vm -o nowhere/ball.krs
@@ -164,6 +164,24 @@ cp drawings/disc.svg .
 run check --root scenes confined.krs
 [ "$status" -ne 0 ]
 result $? "a drawing outside of the root is not read"
+
+# Trees of OpenSCAD and scenes of POV-Ray; tests/oracle/imports_*.c look at what is in them.
+printf 'difference() {\n cube(size = 2);\n sphere(r = 1);\n}\n' >cut.csg
+run import cut.csg -o cut.krs
+[ "$status" -eq 0 ] && grep -q '^let cube_1 = box(\[2, 2, 2\]).move(\[1, 1, 1\]); // line 2$' cut.krs
+result $? "a tree of OpenSCAD, a line for each part"
+run check cut.krs
+[ "$status" -eq 0 ] && [ ! -s err ]
+result $? "is a scene without a mistake"
+printf '#declare Ball = sphere { 2*z, 1 }\nobject { Ball pigment { rgb x } }\n' >ball.pov
+run import ball.pov -o ball_of_pov.krs
+[ "$status" -eq 0 ] && grep -q '^let Ball = sphere(1).move(\[0, 0, -2\]); // line 1$' ball_of_pov.krs
+result $? "a scene of POV-Ray, with its names"
+run check ball_of_pov.krs
+[ "$status" -eq 0 ] && [ ! -s err ]
+result $? "is a scene without a mistake, too"
+refused a.csg 'cube();\ntext();\n' '2: `text` is not translated' "a text of OpenSCAD"
+refused a.pov 'sphere { 0, 1 }\nblob { }\n' '2: `blob` is not translated' "a blob of POV-Ray"
 
 # Damaged files: the exit status is 0 or 1, and what is written is understood or refused in turn.
 damaged() { # file, ending

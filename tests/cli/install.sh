@@ -90,7 +90,7 @@ done
 [ -z "$missing" ] && [ -s options ]
 result $? "zsh and fish have each command and each option$missing"
 grep -qF ':(neutral aces none)' $zsh && grep -qF "tone-map -x -a 'neutral aces none'" $fish &&
-    grep -qF '_files -g "*.jsurf *.vm"' $zsh && grep -qF '(__fish_complete_suffix .vm)' $fish &&
+    grep -qF '_files -g "*.jsurf *.vm ' $zsh && grep -qF '(__fish_complete_suffix .vm)' $fish &&
     grep -q '1:code:(.*E0203' $zsh && grep -q "from explain' -a '.*E0203" $fish
 result $? "and values, files and codes"
 if command -v zsh >/dev/null; then

@@ -1,0 +1,91 @@
+/*
+ * import_file.c: chooses who reads a file, and compiles what came of it.
+ *
+ * Nothing is guessed from the contents: the ending of the name says what a file is.  What does not
+ * compile is no scene, so it is refused here, in the words of the compiler, with the file's line.
+ */
+#include "cli/import_file.h"
+
+#include <string.h>
+
+#include "cli/import_csg.h"
+#include "cli/import_jsurf.h"
+#include "cli/import_pov.h"
+#include "cli/import_svg.h"
+#include "cli/import_tape.h"
+
+static const struct {
+    const char *ending;
+    bool (*import)(Import *import);
+} forms[] = {
+#define IMPORT_FORM(ending, import) {ending, import},
+#include "cli/import_forms.def"
+};
+enum { FORMS = sizeof forms / sizeof *forms };
+
+static int find_form(const char *path)
+{
+    const char *ending = strrchr(path, '.');
+    for (int i = 0; ending && i < FORMS; i++)
+        if (strcmp(ending, forms[i].ending) == 0)
+            return i;
+    return -1;
+}
+
+const char *import_endings(void)
+{
+#define IMPORT_FORM(ending, import) " " ending
+    static const char list[] =
+#include "cli/import_forms.def"
+        ;
+    return list + 1;
+}
+
+bool import_knows(const char *path) { return find_form(path) >= 0; }
+
+typedef struct FirstError {
+    Import *import;
+    bool    found, no_polynomial;
+} FirstError;
+
+static void note_error(void *user, const KrsDiagnostic *diagnostic)
+{
+    FirstError *first = user;
+    if (!diagnostic->error || first->found)
+        return;
+    first->found         = true;
+    first->no_polynomial = strcmp(diagnostic->code, "E0410") == 0;
+    if (first->no_polynomial && !first->import->as_field)
+        return; /* a field may do */
+    import_refuse(first->import, import_origin(first->import, diagnostic->line),
+                  "what this becomes is no scene: %s (%s)", diagnostic->message, diagnostic->code);
+}
+
+static KrsStatus translate(Import *import, FirstError *first)
+{
+    *first              = (FirstError){.import = import};
+    import->scene       = (Text){.arena = import->arena};
+    import->marks.count = import->notes.count = 0;
+    if (!forms[find_form(import->path)].import(import))
+        return KRS_BAD_SCENE;
+    KrsOptions options = {.diagnostic = note_error, .user = first};
+    KrsScene  *scene;
+    /* Files that it names are sought from where it will stand. */
+    const char *name   = import->output ? import->output : "scene.krs";
+    KrsStatus   status = krs_compile_text(import->scene.bytes, import->scene.length, name, &options,
+                                          &scene);
+    krs_scene_free(scene);
+    return status;
+}
+
+KrsStatus import_file(Import *import)
+{
+    FirstError first;
+    import->refusal  = (Text){.arena = import->arena};
+    KrsStatus status = translate(import, &first);
+    if (status == KRS_BAD_SCENE && first.no_polynomial) {
+        import->as_field = true;
+        status           = translate(import, &first);
+    }
+    return status;
+}

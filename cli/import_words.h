@@ -1,0 +1,46 @@
+/*
+ * import_words.h: the words of files that describe scenes as programs do: names, numbers, strings
+ * and signs, with comments as in C.
+ */
+#ifndef KRS_IMPORT_WORDS_H
+#define KRS_IMPORT_WORDS_H
+
+#include "cli/import_text.h"
+
+typedef enum ImportWordKind {
+    IMPORT_WORD_END, /* also after a refusal */
+    IMPORT_WORD_NUMBER,
+    IMPORT_WORD_NAME, /* may begin with `$` */
+    IMPORT_WORD_STRING,
+    IMPORT_WORD_SIGN
+} ImportWordKind;
+
+typedef struct ImportWord {
+    ImportWordKind kind;
+    const char    *text; /* of a string, what is between its quotes */
+    double         number;
+    unsigned       line;
+} ImportWord;
+
+typedef struct WordReader {
+    Import     *import;
+    const char *at;
+    unsigned    line;
+    bool        nested; /* comments may contain comments */
+    ImportWord  word;   /* the next one */
+} WordReader;
+
+/* The first word of the file is then the next one. */
+void words_start(WordReader *reader, Import *import, bool nested);
+void words_advance(WordReader *reader);
+
+/* Whether the next word is this name or sign. */
+bool word_is(const WordReader *reader, const char *text);
+/* Goes on if it is. */
+bool word_accept(WordReader *reader, const char *text);
+/* Refuses the file if it is not. */
+bool word_expect(WordReader *reader, const char *text);
+/* "there should be WHAT, not ..."; returns false. */
+bool word_refuse(WordReader *reader, const char *what);
+
+#endif
