@@ -37,7 +37,7 @@ GRAPH    := $(addprefix compiler/graph/, intern.c alike.c alike_copy.c graph.c c
                 regions.c squares.c grid.c grid_find.c fractal.c op_values.c tape.c evaluate.c print.c)
 SHAPE    := $(addprefix compiler/shape/, box.c reach.c cover.c map.c moebius.c builder.c slope.c print.c)
 LOWER    := $(addprefix compiler/lower/, context.c box_distance.c surface.c join.c crowd_table.c crowd_functions.c crowd_find.c crowd.c normal.c map_chain.c \
-                outline.c guards.c ray_images.c ray_step.c lower.c)
+                outline.c sphere_fold.c guards.c ray_images.c ray_step.c lower.c)
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
 EVAL     := $(addprefix compiler/eval/, scope.c forget.c expression.c arithmetic.c reports.c units.c arguments.c components.c records.c data.c csv.c json.c builtins.c lists.c \
                 random.c files.c text.c drawing.c functions.c csg.c fractal.c declare.c claims.c empty.c cells.c measure.c methods.c properties.c \

@@ -22,7 +22,7 @@ UNIT        := texts front synonyms look diagnostics shape parts passes display 
                crowd_kernels crowd_pictures tables device_tables table_files printing printers answers alike update edits values
 PROPERTY    := ops noise graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees crowds crowds_apart moving_crowds
-ORACLES     := self primitives krs_expand trees maps moebius moebius_images operators cells \
+ORACLES     := self primitives krs_expand folds trees maps moebius moebius_images operators cells \
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
                touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling \
@@ -43,7 +43,7 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/synonyms unit/diag
                property/facts property/derive property/series property/zeros property/local \
                property/along property/rebase property/slope property/parity property/reach \
                property/reach_trees property/crowds property/crowds_apart property/moving_crowds oracle/primitives \
-               oracle/krs_expand oracle/bounds \
+               oracle/krs_expand oracle/folds oracle/bounds \
                oracle/cells oracle/maps oracle/moebius oracle/moebius_images oracle/operators oracle/moving \
                oracle/fractals oracle/metasurfaces oracle/normals oracle/drawings oracle/imports \
                oracle/imports_csg oracle/imports_pov fuzz/sentences)

@@ -72,6 +72,17 @@ static void claim_plane(Graph *g, ShapeClaims *claims, const Shape *shape)
               shape->distance);
 }
 
+/* The ball about the origin, where its radius is not negative. */
+static void claim_ball(Graph *g, ShapeClaims *claims, const Shape *shape)
+{
+    Node point  = graph_leaf(g, OP_POINT);
+    Node height = graph_op1(g, OP_length, point);
+    height      = graph_op2(g, OP_sub, height, shape->ball_radius);
+    Node depth = graph_op1(g, OP_neg, height), inside = graph_op1(g, OP_neg, shape->distance);
+    add_claim(claims, shape, "ball", "it is solid outside of the ball", height, inside);
+    add_claim(claims, shape, "ball", "it is empty inside of the ball", depth, shape->distance);
+}
+
 /* The distance of a shape where an offset is above it. */
 static Node offset_distance(Graph *g, const Shape *shape, Arena *scratch)
 {
@@ -109,6 +120,8 @@ ShapeClaims claims_of(Graph *graph, const Shape *shape, Arena *scratch)
         claim_figure(graph, &claims, shape, scratch);
     if (shape->plane_normal != NODE_NONE)
         claim_plane(graph, &claims, shape);
+    if (shape->ball_radius != NODE_NONE)
+        claim_ball(graph, &claims, shape);
     if (shape->bound != NODE_NONE) {
         Node inside = graph_op1(graph, OP_neg, shape->distance);
         add_claim(&claims, shape, "bound", "it is above 0 inside of the shape", shape->bound,

@@ -10,9 +10,9 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const property_names[] = {"distance", "bound",   "exact",  "slope",
-                                             "within",   "uv",      "plane",  "figure",
-                                             "core",     "outline", "example"};
+static const char *const property_names[] = {"distance", "bound", "exact",   "slope",
+                                             "within",   "uv",    "plane",   "ball",
+                                             "figure",   "core",  "outline", "example"};
 enum { PROPERTY_COUNT = sizeof property_names / sizeof *property_names };
 
 static bool check_properties(Elaboration *e, const Syntax *declaration)
@@ -137,6 +137,22 @@ static bool plane_property(Elaboration *e, const Environment *env, const Syntax 
     return false;
 }
 
+/* `ball`: a radius.  The box follows from it, unless there is a `within`. */
+static bool ball_property(Elaboration *e, const Environment *env, const Syntax *declaration,
+                          Shape *shape)
+{
+    const Syntax *syntax = find_property(declaration, "ball");
+    if (!syntax)
+        return true;
+    shape->ball_radius = to_number(e, evaluate(e, env, syntax), syntax, "the radius of a ball");
+    if (shape->ball_radius == NODE_NONE)
+        return false;
+    double radius = node_range(e->builder, shape->ball_radius, 0).high;
+    for (uint32_t i = 0; i < 3 && !find_property(declaration, "within"); i++)
+        shape->box.axis[i] = (Range){-radius, radius};
+    return true;
+}
+
 /* A size of 0 or less leaves nothing to see, or a surface without an inside. */
 static void warn_if_empty(Elaboration *e, const Shape *shape)
 {
@@ -242,6 +258,7 @@ static bool read_properties(Elaboration *e, const Environment *env, const Syntax
         shape->bound = field_property(e, env, bound);
     bool good = within_property(e, env, declaration, &shape->box) &&
                 plane_property(e, env, declaration, shape) &&
+                ball_property(e, env, declaration, shape) &&
                 uv_property(e, env, declaration, shape) && shape->distance != NODE_NONE &&
                 (!bound || shape->bound != NODE_NONE);
     if (good)

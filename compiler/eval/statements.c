@@ -237,14 +237,26 @@ static void add_kernel(Elaboration *e, const Environment *env, const Syntax *syn
         type_error(e, syntax->children[0], value, "a shape");
 }
 
+/* False: neither a plane nor a sphere. */
+static bool read_mirror(Elaboration *e, const Shape *shape, SequenceStage *stage)
+{
+    if (shape_plane(e->builder, shape, &stage->normal, &stage->offset))
+        return true;
+    stage->kind = SEQUENCE_SPHERE;
+    return shape_ball(e->builder, shape, &stage->centre, &stage->radius);
+}
+
 static void add_mirror(Elaboration *e, const Environment *env, const Syntax *syntax,
                        Sequence *sequence)
 {
     const Syntax *argument = syntax->children[0];
     Value         value    = evaluate(e, env, argument);
     SequenceStage stage    = {.kind = SEQUENCE_REFLECT, .span = syntax->span};
-    if (value.type == VALUE_SHAPE &&
-        shape_plane(e->builder, value.shape, &stage.normal, &stage.offset)) {
+    bool          shape    = value.type == VALUE_SHAPE;
+    if (shape && read_mirror(e, value.shape, &stage)) {
+        sequence->wrong = sequence->wrong ||
+                          (stage.kind == SEQUENCE_SPHERE &&
+                           !check_positive(e, stage.radius, argument, "the radius of a mirror"));
         array_push(e->arena, &sequence->stages, stage);
         return;
     }
@@ -253,11 +265,11 @@ static void add_mirror(Elaboration *e, const Environment *env, const Syntax *syn
         return;
     const char *type = value_type_name(e, value);
     Diag       *diag = diag_add(e->diags, DIAG_NEEDS_PLANE, argument->span,
-                                "`reflect` needs a plane, found %s", type);
+                                "`reflect` needs a plane or a sphere, found %s", type);
     diag->label      = diag_text(e->diags, "this is %s", type);
-    if (value.type == VALUE_SHAPE)
-        diag->help = "planes are written `plane(normal: [1, 0, 0], offset: 2)`; for an inversion "
-                     "in a sphere there is `mobius invert(center: [0, 0, 0], radius: 2);`";
+    if (shape)
+        diag->help = "planes are written `plane(normal: [1, 0, 0], offset: 2)`, spheres "
+                     "`sphere(2).move([1, 0, 0])`; they may be moved, turned and scaled evenly";
     point_at_definition(e, diag, argument);
 }
 

@@ -74,6 +74,8 @@ const Shape *make_krs(ShapeBuilder *builder, const SequenceStage *stages, uint32
                       const Shape *const *kernels, uint32_t kernel_count, Span span);
 /* Unit normal and offset of a shape that is a plane, also a moved, turned or scaled one. */
 bool shape_plane(ShapeBuilder *builder, const Shape *shape, Node *normal, Node *offset);
+/* Centre and radius of a shape that is a ball, also a moved, turned or scaled one. */
+bool shape_ball(ShapeBuilder *builder, const Shape *shape, Node *centre, Node *radius);
 
 /* Of shapes that fade by a falloff with this reach: where the sum is at least the level. */
 const Shape *make_meta(ShapeBuilder *builder, const Shape *const *shapes, uint32_t count,

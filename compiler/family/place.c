@@ -126,6 +126,23 @@ bool shape_plane(ShapeBuilder *builder, const Shape *shape, Node *normal, Node *
     return true;
 }
 
+bool shape_ball(ShapeBuilder *builder, const Shape *shape, Node *centre, Node *radius)
+{
+    Graph *g = builder->graph;
+    if (shape->kind == SHAPE_PAINT)
+        return shape_ball(builder, shape->children[0], centre, radius);
+    if (shape->kind == SHAPE_PRIMITIVE && shape->ball_radius != NODE_NONE) {
+        *centre = graph_vec3(g, 0, 0, 0);
+        *radius = shape->ball_radius;
+        return true;
+    }
+    if (shape->kind != SHAPE_TRANSFORM || !shape_ball(builder, shape->children[0], centre, radius))
+        return false;
+    *centre = map_apply(builder, &shape->map, *centre);
+    *radius = graph_op2(g, OP_mul, *radius, shape->map.scale);
+    return true;
+}
+
 /* ---- how it is lowered ---- */
 
 Lowered lower_transform(Lowering *l, const Shape *shape, LowerContext context)

@@ -9,13 +9,15 @@
 
 #include "compiler/lower/guards.h"
 #include "compiler/lower/join.h"
+#include "compiler/lower/sphere_fold.h"
 
 enum { MOST_HEAP_MIRRORS = 31 };
 
-/* The state between two stages of a sequence, from the last to the first. */
+/* The state between two stages of a sequence, from the last to the first.  Distances behind a mirror
+   that is a sphere come out of it together.  So what is behind is a part with a state of its own. */
 typedef struct SequenceState {
     const Shape *krs;
-    LowerContext context; /* of the sequence */
+    LowerContext context; /* of the sequence, or behind the last sphere */
     MapChain     chain;
     NormalPath   path;
     Node         id;
@@ -26,17 +28,46 @@ typedef struct SequenceState {
     Node         distance; /* and of the others, each no nearer than its hulls */
     GuardSite   *guard_sites;
     uint32_t     guard_site_count;
+
+    struct SequenceState *outer; /* in front of the last sphere; NULL: there is none */
+    SphereFold            fold;  /* by that sphere */
+    Node                  unit;  /* `unit` of the lowering in front of it */
 } SequenceState;
+
+/* Before the first `count` stages, up to the next sphere among them. */
+static SequenceState *state_new(Lowering *l, const Shape *krs, LowerContext context, uint32_t count)
+{
+    SequenceState *state = arena_new(l->scratch, SequenceState);
+    uint32_t       run   = 0;
+    while (run < count && krs->stages[count - 1 - run].kind != SEQUENCE_SPHERE)
+        run++;
+    *state = (SequenceState){.krs         = krs,
+                             .context     = context,
+                             .chain       = map_chain_new(l->graph, context.point),
+                             .path        = normal_path(l, context, 2 * run + 2),
+                             .id          = graph_uint(l->graph, 1),
+                             .level       = krs->levels,
+                             .result      = lowered_nothing,
+                             .pole_bounds = {NODE_NONE, {.radius = HUGE_VAL}},
+                             .inside      = NODE_NONE,
+                             .distance    = NODE_NONE,
+                             .guard_sites = arena_new_array(l->scratch, GuardSite, run + 2)};
+    return state;
+}
+
+/* The next bit of the instance: whether a mirror is passed. */
+static void push_bit(Lowering *l, SequenceState *state, Node behind)
+{
+    Op next   = state->krs->levels <= MOST_HEAP_MIRRORS ? OP_push_id : OP_hash_id;
+    state->id = graph_op2(l->graph, next, state->id, behind);
+}
 
 static void take_mirror(Lowering *l, SequenceState *state, const SequenceStage *stage)
 {
     Graph *g     = l->graph;
     Node   point = state->chain.point;
-    if (l->surfaces) {
-        Op   next   = state->krs->levels <= MOST_HEAP_MIRRORS ? OP_push_id : OP_hash_id;
-        Node behind = graph_op3(g, OP_front, point, stage->normal, stage->offset);
-        state->id   = graph_op2(g, next, state->id, behind);
-    }
+    if (l->surfaces)
+        push_bit(l, state, graph_op3(g, OP_front, point, stage->normal, stage->offset));
     normal_fold(l, &state->path, point, stage->normal, stage->offset);
     pole_bounds_fold(l, &state->pole_bounds, stage->normal, stage->offset);
     state->chain.point = graph_op3(g, OP_fold, point, stage->normal, stage->offset);
@@ -77,6 +108,18 @@ static void prepare_fold(Lowering *l, const SequenceState *state, const Sequence
         graph_op3(l->graph, OP_fold, state->chain.point, next->normal, next->offset);
 }
 
+/* A kernel, or what is behind a sphere, joins with those so far. */
+static void join_kernel(Lowering *l, SequenceState *state, Lowered kernel)
+{
+    kernel = map_chain_out(l, &state->chain, kernel);
+    normal_kernel(l, &state->path, state->result, kernel);
+    state->result = join_two(l, blend_sharp, state->result, kernel);
+    state->inside = nearer_of(l->graph, state->inside, kernel.distance);
+}
+
+/* How far from the surface distances must be right behind a map that inverts. */
+static double reach_behind_inversion(double reach) { return reach > 0 ? HUGE_VAL : 0; }
+
 static void take_kernel(Lowering *l, SequenceState *state, const Shape *shape)
 {
     Graph       *g     = l->graph;
@@ -89,51 +132,79 @@ static void take_kernel(Lowering *l, SequenceState *state, const Shape *shape)
                                : state->id;
     }
     bool whole     = state->chain.shrink == NODE_NONE;
-    inner.reach    = whole             ? reach_behind(g, inner.reach, state->chain.scale)
-                     : inner.reach > 0 ? HUGE_VAL
-                                       : 0;
+    inner.reach    = whole ? reach_behind(g, inner.reach, state->chain.scale)
+                           : reach_behind_inversion(inner.reach);
     Node    unit   = enter_map_chain(l, &state->chain);
     Lowered kernel = lower_shape(l, shape, inner);
     l->unit        = unit;
-    kernel         = map_chain_out(l, &state->chain, kernel);
-    normal_kernel(l, &state->path, state->result, kernel);
-    state->result = join_two(l, blend_sharp, state->result, kernel);
-    state->inside = nearer_of(g, state->inside, kernel.distance);
+    join_kernel(l, state, kernel);
+}
+
+/* Folds the point by the mirror of a stage; returns the state behind it. */
+static SequenceState *enter_sphere(Lowering *l, SequenceState *state, uint32_t index)
+{
+    const Shape         *krs   = state->krs;
+    const SequenceStage *stage = &krs->stages[index];
+    Ball                 ball  = index ? krs->bounds[index - 1].ball : (Ball){.radius = HUGE_VAL};
+    Node                 point = state->chain.point;
+    SphereFold           fold  = sphere_fold_at(l->graph, stage, point, ball);
+    if (l->surfaces)
+        push_bit(l, state, sphere_front(l->graph, stage, point));
+    normal_sphere(l, &state->path, stage, point, &fold);
+    LowerContext context  = context_behind(&state->path, state->context, fold.point);
+    context.reach         = reach_behind_inversion(context.reach);
+    SequenceState *behind = state_new(l, krs, context, index);
+    behind->id            = state->id;
+    behind->level         = state->level - 1;
+    behind->outer         = state;
+    behind->fold          = fold;
+    behind->unit          = enter_map_chain(l, &state->chain);
+    if (l->guarded)
+        enter_scale(l, graph_op2(l->graph, OP_div, graph_number(l->graph, 1), fold.sigma));
+    return behind;
+}
+
+/* What the stages of a state make of the kernels that they have met. */
+static Lowered end_state(Lowering *l, SequenceState *state)
+{
+    Lowered result        = state->result;
+    result.surface.normal = normal_out(l, &state->path, result.surface.normal);
+    leave_hull(l, state);
+    if (state->pole_bounds.distance != NODE_NONE)
+        result.distance = state->distance;
+    result.distance = guard_at_sites(l, state->guard_sites, state->guard_site_count,
+                                     result.distance);
+    return result;
+}
+
+/* Returns the state in front of the last sphere, with what is behind it. */
+static SequenceState *leave_sphere(Lowering *l, SequenceState *state)
+{
+    Lowered behind = end_state(l, state);
+    l->unit        = state->unit;
+    join_kernel(l, state->outer, sphere_fold_out(l, &state->fold, behind));
+    return state->outer;
 }
 
 Lowered lower_krs(Lowering *l, const Shape *shape, LowerContext context)
 {
-    uint32_t      count = shape->stage_count;
-    SequenceState state = {.krs         = shape,
-                           .context     = context,
-                           .chain       = map_chain_new(l->graph, context.point),
-                           .path        = normal_path(l, context, 2 * count),
-                           .id          = graph_uint(l->graph, 1),
-                           .level       = shape->levels,
-                           .result      = lowered_nothing,
-                           .pole_bounds = {NODE_NONE, {.radius = HUGE_VAL}},
-                           .inside      = NODE_NONE,
-                           .distance    = NODE_NONE,
-                           .guard_sites = arena_new_array(l->scratch, GuardSite, count + 1)};
-    for (uint32_t i = count; i-- > 0;) {
+    SequenceState *state = state_new(l, shape, context, shape->stage_count);
+    for (uint32_t i = shape->stage_count; i-- > 0;) {
         const SequenceStage *stage = &shape->stages[i];
         if (may_guard(l, shape, i, context))
-            state.guard_sites[state.guard_site_count++] = (GuardSite){
-                &shape->bounds[i], state.chain, state.result.distance};
+            state->guard_sites[state->guard_site_count++] = (GuardSite){
+                &shape->bounds[i], state->chain, state->result.distance};
         switch (stage->kind) {
-        case SEQUENCE_REFLECT: take_mirror(l, &state, stage); break;
-        case SEQUENCE_MAP: take_map(l, &state, stage, i ? &shape->bounds[i - 1] : NULL); break;
+        case SEQUENCE_REFLECT: take_mirror(l, state, stage); break;
+        case SEQUENCE_SPHERE: state = enter_sphere(l, state, i); break;
+        case SEQUENCE_MAP: take_map(l, state, stage, i ? &shape->bounds[i - 1] : NULL); break;
         case SEQUENCE_KERNEL:
-            prepare_fold(l, &state, i ? stage - 1 : NULL);
-            take_kernel(l, &state, shape->children[stage->kernel]);
+            prepare_fold(l, state, i ? stage - 1 : NULL);
+            take_kernel(l, state, shape->children[stage->kernel]);
             break;
         }
     }
-    Lowered result        = state.result;
-    result.surface.normal = normal_out(l, &state.path, result.surface.normal);
-    leave_hull(l, &state);
-    if (state.pole_bounds.distance != NODE_NONE)
-        result.distance = state.distance;
-    result.distance = guard_at_sites(l, state.guard_sites, state.guard_site_count, result.distance);
-    return result;
+    while (state->outer)
+        state = leave_sphere(l, state);
+    return end_state(l, state);
 }

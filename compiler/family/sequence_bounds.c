@@ -44,7 +44,7 @@ static bool read_stage(ShapeBuilder *builder, const Shape *krs, const SequenceSt
     return known;
 }
 
-/* Of a sequence with maps that invert: balls all the way (cover.h). */
+/* Of a sequence with spheres or maps that invert: balls all the way (cover.h). */
 static Box bound_inverted(ShapeBuilder *builder, const Shape *krs, LevelBound *bounds)
 {
     Cover cover = {0};
@@ -63,6 +63,12 @@ static Box bound_inverted(ShapeBuilder *builder, const Shape *krs, LevelBound *b
             for (uint32_t k = 0; k < 3; k++)
                 u[k] = node_range(builder, stage->normal, k);
             cover_fold(builder->arena, &cover, u, node_range(builder, stage->offset, 0));
+        } else if (stage->kind == SEQUENCE_SPHERE) {
+            Range centre[3];
+            for (uint32_t k = 0; k < 3; k++)
+                centre[k] = node_range(builder, stage->centre, k);
+            cover_fold_sphere(builder->arena, &cover, centre,
+                              node_range(builder, stage->radius, 0));
         } else {
             MapRange map = map_range(builder, &stage->map);
             cover_map(&cover, &map);
@@ -150,20 +156,22 @@ const Shape *make_krs(ShapeBuilder *builder, const SequenceStage *stages, uint32
     krs->exact       = false;
     krs->instances   = 0;
     krs->levels      = 0;
+    bool spheres     = false;
     for (uint32_t i = 0; i < stage_count; i++) {
         if (stages[i].kind == SEQUENCE_KERNEL)
             krs->instances += kernels[stages[i].kernel]->instances;
-        else if (stages[i].kind == SEQUENCE_REFLECT) {
+        else if (stages[i].kind != SEQUENCE_MAP) {
             krs->instances *= 2;
             krs->levels++;
         }
+        spheres = spheres || stages[i].kind == SEQUENCE_SPHERE;
     }
     krs->inversions = count_inversions(krs);
     if (krs->inversions && !check_kernels(builder, krs))
         return NULL;
     LevelBound *bounds = arena_new_array(builder->arena, LevelBound, stage_count + 1);
     krs->bounds        = bounds;
-    krs->box           = krs->inversions ? bound_inverted(builder, krs, bounds)
-                                         : bound_sequence(builder, krs, bounds);
+    krs->box           = krs->inversions || spheres ? bound_inverted(builder, krs, bounds)
+                                                    : bound_sequence(builder, krs, bounds);
     return krs;
 }

@@ -151,21 +151,33 @@ void normal_flip(Lowering *l, NormalPath *path, Node axis)
     add_step(path, (NormalStep){.kind = NORMAL_MIRROR, .axis = axis, .amount = whole});
 }
 
-void normal_fold(Lowering *l, NormalPath *path, Node point, Node axis, Node offset)
+void normal_mirror(Lowering *l, NormalPath *path, Node axis, Node height, Node front)
 {
-    Graph *g = l->graph;
-    if (!l->surfaces)
-        return;
+    Graph       *g    = l->graph;
     LowerContext bare = path->innermost;
     bare.smoothing    = NODE_NONE;
-    Node       along  = graph_op2(g, OP_dot, axis, point);
-    Node       height = graph_op2(g, OP_sub, along, offset);
-    Node       front  = graph_op3(g, OP_front, point, axis, offset);
     Node       hard   = mirrored_amount(g, bare, height, front);
     NormalStep step   = {.kind = NORMAL_MIRROR, .axis = axis};
     step.amount       = mirrored_amount(g, path->innermost, height, front);
     add_step(path, step);
     path->innermost.normal = mirrored(g, path->innermost.normal, axis, hard);
+}
+
+void normal_fold(Lowering *l, NormalPath *path, Node point, Node axis, Node offset)
+{
+    Graph *g = l->graph;
+    if (!l->surfaces)
+        return;
+    Node along  = graph_op2(g, OP_dot, axis, point);
+    Node height = graph_op2(g, OP_sub, along, offset);
+    Node front  = graph_op3(g, OP_front, point, axis, offset);
+    normal_mirror(l, path, axis, height, front);
+}
+
+void normal_stretch_evenly(Lowering *l, NormalPath *path, Node stretch)
+{
+    if (l->surfaces)
+        path->innermost = place_stretched(l->graph, path->innermost, stretch);
 }
 
 void normal_kernel(Lowering *l, NormalPath *path, Lowered outer, Lowered kernel)

@@ -33,6 +33,11 @@ void normal_stretch(Lowering *l, NormalPath *path, Node factors, Node least);
 void normal_flip(Lowering *l, NormalPath *path, Node axis);
 /* Adds OP_fold at a point: a mirror, which is smooth where the context has a smoothing. */
 void normal_fold(Lowering *l, NormalPath *path, Node point, Node axis, Node offset);
+/* Adds a mirror of any kind.  `axis` is a unit vector at right angles to it, `height` how far the
+   point is beyond it, and `front` whether it is. */
+void normal_mirror(Lowering *l, NormalPath *path, Node axis, Node height, Node front);
+/* Lengths behind this are 1 / stretch of those before it. */
+void normal_stretch_evenly(Lowering *l, NormalPath *path, Node stretch);
 /* Adds a kernel that was lowered here; `outer` is the union of the kernels before it. */
 void normal_kernel(Lowering *l, NormalPath *path, Lowered outer, Lowered kernel);
 /* Maps a normal back to the space where the path began.  It is the normal of the nearest kernel of

@@ -267,6 +267,7 @@ static Node image_krs(Lowering *l, const Shape *shape, RayImage image)
         Node                 found = NODE_NONE;
         switch (stage->kind) {
         case SEQUENCE_REFLECT: image_mirror(l, &image, stage->normal, stage->offset); break;
+        case SEQUENCE_SPHERE: break; /* reaches_in_stages */
         case SEQUENCE_KERNEL: found = image_shape(l, shape->children[stage->kernel], image); break;
         case SEQUENCE_MAP:
             if (map->pole != NODE_NONE)
@@ -328,12 +329,18 @@ static bool reaches_in_sharp_parts(const Shape *shape)
     return shape->blend.width == NODE_NONE && reaches_in_parts(shape);
 }
 
+/* A sphere that is a mirror has no image of a ray: what is in front of it and what is behind it are
+   each other's images.  There the distance serves. */
 static bool reaches_in_stages(const Shape *shape)
 {
-    for (uint32_t i = 0; i < shape->stage_count; i++)
-        if (shape->stages[i].kind == SEQUENCE_MAP && shape->stages[i].map.pole != NODE_NONE)
-            return true;
-    return reaches_in_parts(shape);
+    bool inverts = reaches_in_parts(shape);
+    for (uint32_t i = 0; i < shape->stage_count; i++) {
+        const SequenceStage *stage = &shape->stages[i];
+        if (stage->kind == SEQUENCE_SPHERE)
+            return false;
+        inverts = inverts || (stage->kind == SEQUENCE_MAP && stage->map.pole != NODE_NONE);
+    }
+    return inverts;
 }
 
 /* ---- kinds ---- */

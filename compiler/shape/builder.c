@@ -130,7 +130,7 @@ Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span s
     shape->field       = &nothing_known;
     shape->distance = shape->bound = shape->uv = shape->trap = NODE_NONE;
     shape->formula = shape->declared = NODE_NONE;
-    shape->plane_normal = shape->plane_offset = NODE_NONE;
+    shape->plane_normal = shape->plane_offset = shape->ball_radius = NODE_NONE;
     shape->values[0] = shape->values[1] = shape->map.scale = NODE_NONE;
     for (uint32_t i = 0; i < count; i++) {
         shape->children[i] = children[i];

@@ -308,3 +308,47 @@ void cover_fold(Arena *arena, Cover *cover, const Range u[3], Range w)
         array_push(arena, cover, images.items[i]);
     merge(arena, cover);
 }
+
+/* ---- mirrors that are spheres ---- */
+
+static MapRange inversion_in(const Range centre[3], Range radius)
+{
+    MapRange map = {.inverts = true, .scale = range_square(radius)};
+    for (int i = 0; i < 3; i++) {
+        map.pole[i] = map.shift[i] = centre[i];
+        for (int j = 0; j < 3; j++)
+            map.rows[i][j] = range_of(i == j);
+    }
+    return map;
+}
+
+/* Whether nothing of a cell is outside of a sphere. */
+static bool is_swallowed(CoverCell cell, const double centre[3], double radius)
+{
+    double offset[3];
+    for (int i = 0; i < 3; i++)
+        offset[i] = cell.ball.centre[i] - centre[i];
+    return !cell.outside && sqrt(dot3(offset, offset)) + cell.ball.radius <= radius;
+}
+
+void cover_fold_sphere(Arena *arena, Cover *cover, const Range centre[3], Range radius)
+{
+    MapRange  inversion = inversion_in(centre, radius);
+    CoverCell sphere    = cell_about(centre, radius.high, false);
+    Cover     images    = {0};
+    size_t    retained  = 0;
+    double    about[3], leave = middle_of(centre, about);
+    for (size_t i = 0; i < cover->count; i++) {
+        CoverCell cell = cover->items[i];
+        if (is_swallowed(cell, about, radius.low - leave))
+            continue;
+        cover->items[retained++] = cell;
+        CoverCell image          = map_cell(cell, &inversion);
+        bool      smaller        = !image.outside && image.ball.radius < sphere.ball.radius;
+        array_push(arena, &images, smaller || sphere.outside ? image : sphere);
+    }
+    cover->count = retained;
+    for (size_t i = 0; i < images.count; i++)
+        array_push(arena, cover, images.items[i]);
+    merge(arena, cover);
+}

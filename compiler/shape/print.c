@@ -95,10 +95,11 @@ static void print_shape(const Scene *scene, const Sources *sources, const Shape 
         if (stage->kind == SEQUENCE_MAP)
             print_map(scene, &stage->map, out);
         else {
-            text_add(out, "reflect ");
-            print_node(scene, stage->normal, out);
+            bool sphere = stage->kind == SEQUENCE_SPHERE;
+            text_add(out, sphere ? "reflect sphere " : "reflect ");
+            print_node(scene, sphere ? stage->centre : stage->normal, out);
             text_add(out, " ");
-            print_node(scene, stage->offset, out);
+            print_node(scene, sphere ? stage->radius : stage->offset, out);
         }
         text_add(out, "\n");
     }

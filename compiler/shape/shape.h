@@ -100,9 +100,10 @@ extern const Blend blend_sharp;
 
 /* One statement of a `krs` block. */
 typedef struct SequenceStage {
-    enum { SEQUENCE_KERNEL, SEQUENCE_REFLECT, SEQUENCE_MAP } kind;
+    enum { SEQUENCE_KERNEL, SEQUENCE_REFLECT, SEQUENCE_SPHERE, SEQUENCE_MAP } kind;
     uint32_t kernel;         /* KERNEL: index of the child */
-    Node     normal, offset; /* REFLECT: unit normal and offset */
+    Node     normal, offset; /* REFLECT: unit normal and offset of a plane */
+    Node     centre, radius; /* SPHERE: of a mirror that is a sphere */
     Map      map;            /* MAP, without `first` */
     Span     span;
 } SequenceStage;
@@ -178,6 +179,7 @@ struct Shape {
 
     struct OutlineShape *outline;    /* PRIMITIVE that contours fill (lower/outline.h), else NULL */
     Node plane_normal, plane_offset; /* PRIMITIVE that is a half-space, else NODE_NONE */
+    Node ball_radius;                /* PRIMITIVE that is a ball about the origin, else NODE_NONE */
     /* PRIMITIVE that a declaration of the language made: what the evaluator knows of it, and
        shapes do not; else NULL. */
     const struct Declaration *declaration;
