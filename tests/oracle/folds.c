@@ -237,7 +237,7 @@ static Product compile_set(const Set *set, bool moving)
 /* ---- what is asked ---- */
 
 typedef struct Tally {
-    int    outside, careless, near, named;
+    int    outside, careless, near, hits;
     double tightness, nearness; /* sums of distance over the true one: of all, next to a surface */
 } Tally;
 
@@ -284,6 +284,34 @@ static void check_surface(const Product *product, const Set *set, Random *random
         fail_msg("the normal is off by %.3g", acos(vec_dot(normal, u)));
 }
 
+/* A ray ends on a ball, and no later than in the first one that it meets. */
+static void check_ray(const Product *product, const Set *set, Random *random, Tally *tally)
+{
+    const double tolerance = 1e-6;
+    const Image *nearest, *image = &set->images[random_below(random, set->balls)];
+    Vec          origin    = vec_scale(6, random_unit(random));
+    Vec          target    = vec_add(image->centre, vec_scale(image->radius, random_unit(random)));
+    Vec          direction = vec_unit(vec_sub(target, origin));
+    double       first     = HUGE_VAL;
+    if (set_distance(set, origin, &nearest) < tolerance)
+        return;
+    for (int i = 0; i < set->balls; i++) {
+        Vec    z     = vec_sub(set->images[i].centre, origin);
+        double along = vec_dot(z, direction), r = set->images[i].radius;
+        double chord = r * r - vec_dot(z, z) + along * along;
+        if (along > 0 && chord > 1e-8) /* else it grazes the ball */
+            first = fmin(first, along - sqrt(chord));
+    }
+    if (first == HUGE_VAL)
+        return;
+    KrsHit hit = product_raycast(product, origin, direction, first + 1, tolerance);
+    if (!hit.hit || hit.t > first + 2 * tolerance)
+        fail_msg("the ray ends at %.12g, behind %.12g", hit.hit ? hit.t : HUGE_VAL, first);
+    if (set_distance(set, vec_add(origin, vec_scale(hit.t, direction)), &nearest) > 1e-5)
+        fail_msg("the ray ends at %.12g, before %.12g", hit.t, first);
+    tally->hits++;
+}
+
 static void check_box(const Product *product, const Set *set)
 {
     KrsComponent component;
@@ -320,12 +348,15 @@ static void folds(void **state)
             check_point(&product, &set, set.steps[i].vector, &tally);
         for (int i = 0; i < 40; i++)
             check_surface(&product, &set, &random, &tally);
+        for (int i = 0; i < 20; i++)
+            check_ray(&product, &set, &random, &tally);
         product_free(&product);
     }
     print_message("# %s: %d points outside, mean %.2f of the true distance, %d refute the bound "
-                  "without care; %d next to a surface, mean %.3f\n",
+                  "without care; %d next to a surface, mean %.3f; %d hits\n",
                   flavour->name, tally.outside, tally.tightness / tally.outside, tally.careless,
-                  tally.near, tally.nearness / tally.near);
+                  tally.near, tally.nearness / tally.near, tally.hits);
+    assert_true(tally.hits > 10 * flavour->sets);
     assert_true(tally.near > 10 * flavour->sets);
     assert_true(tally.tightness > 0.3 * tally.outside);
     assert_true(tally.nearness > 0.99 * tally.near);
