@@ -42,8 +42,8 @@ const Shape *make_paint(ShapeBuilder *builder, const Shape *shape, const Materia
     if (!shape->trapped && material_needs(builder, material, OP_TRAP)) {
         Diag *diag  = diag_add(builder->diags, DIAG_OUT_OF_PLACE, span,
                                "`orbit_trap` has no meaning on `%s`", shape->name);
-        diag->label = "this needs a fractal";
-        diag->help  = "`julia` and `mandelbulb` are fractals";
+        diag->label = "this needs a fractal or a sequence";
+        diag->help  = "`julia` and `mandelbulb` are fractals, `krs` blocks with mirrors sequences";
         diag_secondary(builder->diags, diag, shape->span, "none in this shape");
         return NULL;
     }

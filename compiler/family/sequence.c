@@ -22,7 +22,9 @@ typedef struct SequenceState {
     NormalPath   path;
     Node         id;
     uint32_t     level;
-    Lowered      result; /* of the kernels so far */
+    Node         nearest, nearest_at; /* least distance of the folded point from the origin, and the
+                                         share of the mirrors passed before it */
+    Lowered      result;              /* of the kernels so far */
     PoleBounds   pole_bounds;
     Node         inside;   /* distance of the kernels within the last hull, */
     Node         distance; /* and of the others, each no nearer than its hulls */
@@ -47,12 +49,33 @@ static SequenceState *state_new(Lowering *l, const Shape *krs, LowerContext cont
                              .path        = normal_path(l, context, 2 * run + 2),
                              .id          = graph_uint(l->graph, 1),
                              .level       = krs->levels,
+                             .nearest     = NODE_NONE,
+                             .nearest_at  = NODE_NONE,
                              .result      = lowered_nothing,
                              .pole_bounds = {NODE_NONE, {.radius = HUGE_VAL}},
                              .inside      = NODE_NONE,
                              .distance    = NODE_NONE,
                              .guard_sites = arena_new_array(l->scratch, GuardSite, run + 2)};
     return state;
+}
+
+/* What `orbit_trap` and `orbit_step` are for the kernels that come next. */
+static void watch_orbit(Lowering *l, SequenceState *state)
+{
+    Graph *g       = l->graph;
+    double mirrors = state->krs->levels, passed = mirrors - state->level;
+    if (!l->surfaces || mirrors == 0)
+        return;
+    Node length = graph_op1(g, OP_length, state->chain.point);
+    Node share  = graph_number(g, passed / mirrors);
+    if (state->nearest == NODE_NONE) {
+        state->nearest    = length;
+        state->nearest_at = share;
+        return;
+    }
+    Node nearer       = graph_op2(g, OP_less, length, state->nearest);
+    state->nearest_at = graph_op3(g, OP_select, nearer, share, state->nearest_at);
+    state->nearest    = graph_op2(g, OP_min, length, state->nearest);
 }
 
 /* The next bit of the instance: whether a mirror is passed. */
@@ -72,6 +95,7 @@ static void take_mirror(Lowering *l, SequenceState *state, const SequenceStage *
     pole_bounds_fold(l, &state->pole_bounds, stage->normal, stage->offset);
     state->chain.point = graph_op3(g, OP_fold, point, stage->normal, stage->offset);
     state->level--;
+    watch_orbit(l, state);
 }
 
 /* The kernels since the last hull: max(hull, min(a, b)), where nothing waits for what is inside of
@@ -137,6 +161,8 @@ static void take_kernel(Lowering *l, SequenceState *state, const Shape *shape)
     Node    unit   = enter_map_chain(l, &state->chain);
     Lowered kernel = lower_shape(l, shape, inner);
     l->unit        = unit;
+    if (state->nearest != NODE_NONE && kernel.surface.trap == NODE_NONE)
+        kernel.surface.trap = graph_op2(g, OP_vec2, state->nearest, state->nearest_at);
     join_kernel(l, state, kernel);
 }
 
@@ -156,11 +182,14 @@ static SequenceState *enter_sphere(Lowering *l, SequenceState *state, uint32_t i
     SequenceState *behind = state_new(l, krs, context, index);
     behind->id            = state->id;
     behind->level         = state->level - 1;
+    behind->nearest       = state->nearest;
+    behind->nearest_at    = state->nearest_at;
     behind->outer         = state;
     behind->fold          = fold;
     behind->unit          = enter_map_chain(l, &state->chain);
     if (l->guarded)
         enter_scale(l, graph_op2(l->graph, OP_div, graph_number(l->graph, 1), fold.sigma));
+    watch_orbit(l, behind);
     return behind;
 }
 
@@ -189,6 +218,7 @@ static SequenceState *leave_sphere(Lowering *l, SequenceState *state)
 Lowered lower_krs(Lowering *l, const Shape *shape, LowerContext context)
 {
     SequenceState *state = state_new(l, shape, context, shape->stage_count);
+    watch_orbit(l, state);
     for (uint32_t i = shape->stage_count; i-- > 0;) {
         const SequenceStage *stage = &shape->stages[i];
         if (may_guard(l, shape, i, context))

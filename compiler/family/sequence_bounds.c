@@ -166,6 +166,7 @@ const Shape *make_krs(ShapeBuilder *builder, const SequenceStage *stages, uint32
         }
         spheres = spheres || stages[i].kind == SEQUENCE_SPHERE;
     }
+    krs->trapped    = krs->trapped || krs->levels > 0;
     krs->inversions = count_inversions(krs);
     if (krs->inversions && !check_kernels(builder, krs))
         return NULL;

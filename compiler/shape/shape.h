@@ -150,7 +150,7 @@ struct Shape {
     bool     claimed;      /* PRIMITIVE: its slope is claimed, not derived */
     bool     estimate;  /* nothing is proven of the distance: a primitive in it is measured only */
     bool     per_frame; /* in the tree is a slope that is found anew for each frame (FrameSlope) */
-    bool     trapped;   /* in the tree is a fractal: `orbit_trap` means something */
+    bool     trapped;   /* in the tree is a fractal or a mirror: `orbit_trap` means something */
     bool     figure;    /* a plane figure in x and y */
     bool     sheet;  /* SHELL: has no thickness where rays can go from root to root (rays_pass) */
     bool     sheets; /* in the tree are some */

@@ -21,6 +21,7 @@ typedef struct Image {
     Vec      centre;
     double   radius;
     uint32_t level, passed, bits;
+    int      kernel; /* number of its step */
 } Image;
 
 typedef struct Step {
@@ -104,7 +105,8 @@ static bool take_step(Set *set, Step step)
     if (!left)
         return false;
     if (step.kind == KERNEL)
-        set->images[set->balls++] = (Image){step.vector, step.number, (uint32_t)set->mirrors, 0, 0};
+        set->images[set->balls++] = (Image){step.vector, step.number, (uint32_t)set->mirrors,
+                                            0,           0,           set->count};
     else if (step.kind == PLANE || step.kind == SPHERE)
         mirror_set(set, &step);
     else
@@ -149,6 +151,32 @@ static double careless_bound(const Set *set, int count, Vec p)
         return careless_bound(set, count - 1, p);
     double d = careless_bound(set, count - 1, invert_point(step, p));
     return d / (r * r / (q * q) + fabs(d) / q);
+}
+
+/* The least distance of a point from the origin on its way back to a kernel, and after how many
+   mirrors. */
+static double orbit_trap(const Set *set, int kernel, Vec p, int *step)
+{
+    double least  = vec_length(p);
+    int    passed = 0;
+    *step         = 0;
+    for (int i = set->count; i-- > kernel + 1;) {
+        const Step *s = &set->steps[i];
+        if (s->kind == SHIFT)
+            p = vec_sub(p, s->vector);
+        if (s->kind == INVERT || (s->kind == SPHERE && in_front(s, p) < 0))
+            p = invert_point(s, p);
+        if (s->kind == PLANE && in_front(s, p) < 0)
+            p = vec_add(p, vec_scale(2 * in_front(s, p), s->vector));
+        if (s->kind != PLANE && s->kind != SPHERE)
+            continue;
+        passed++;
+        if (vec_length(p) < least) {
+            least = vec_length(p);
+            *step = passed;
+        }
+    }
+    return least;
 }
 
 /* ---- random sets ---- */
@@ -204,7 +232,7 @@ static Product compile_set(const Set *set, bool moving)
     for (int i = 0; i < set->count && moving; i++)
         scene_write(&text, "param r%d = %.17g in [%.17g, %.17g];\n", i, set->steps[i].number,
                     set->steps[i].number - 0.1, set->steps[i].number + 0.3);
-    scene_write(&text, "show krs {\n");
+    scene_write(&text, "material orbit { emission: [orbit_trap, orbit_step, 0] }\nshow krs {\n");
     for (int i = 0; i < set->count; i++) {
         const Step *step = &set->steps[i];
         Vec         v    = step->vector;
@@ -230,7 +258,7 @@ static Product compile_set(const Set *set, bool moving)
             break;
         }
     }
-    scene_write(&text, "};\n");
+    scene_write(&text, set->mirrors ? "}.paint(orbit);\n" : "};\n");
     return product_compile(text.bytes);
 }
 
@@ -279,6 +307,12 @@ static void check_surface(const Product *product, const Set *set, Random *random
     if (hit.level != image->level || hit.instance != id)
         fail_msg("level %u, instance %u should be %u, %u", hit.level, hit.instance, image->level,
                  id);
+    int    step;
+    double trap = orbit_trap(set, image->kernel, p, &step);
+    if (set->mirrors && fabs(hit.emission[0] - trap) > 1e-9 * (1 + trap))
+        fail_msg("orbit_trap is %.12g, not %.12g", hit.emission[0], trap);
+    if (set->mirrors && fabs(hit.emission[1] - (double)step / set->mirrors) > 1e-9)
+        fail_msg("orbit_step is %.12g, not %d of %d", hit.emission[1], step, set->mirrors);
     Vec normal = vec(hit.normal[0], hit.normal[1], hit.normal[2]);
     if (image->radius > 0.01 && !(vec_dot(normal, u) > 0.999)) /* it is a difference */
         fail_msg("the normal is off by %.3g", acos(vec_dot(normal, u)));
