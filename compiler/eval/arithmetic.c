@@ -361,6 +361,19 @@ static bool compare_numbers(TokenKind op, double a, double b)
     }
 }
 
+/* A comparison of numbers that kernels read: it is structure, and so decided now, where all that the
+   numbers may be has the same answer. */
+static bool is_decided(Elaboration *e, Op op, Node left, Node right, bool *answer)
+{
+    const Expr *items = e->graph->items;
+    if (!e->hoists || items[left].time == TIME_POINT || items[right].time == TIME_POINT)
+        return false;
+    Range a = node_range(e->builder, left, 0), b = node_range(e->builder, right, 0);
+    bool below = a.high<b.low, above = a.low> b.high;
+    *answer    = op == OP_not_equal || ((op == OP_less || op == OP_less_equal) && below);
+    return below || above;
+}
+
 static Value compare(Elaboration *e, const Syntax *syntax, Value a, Value b)
 {
     bool equality = syntax->op == TOKEN_EQUAL_EQUAL || syntax->op == TOKEN_NOT_EQUAL;
@@ -376,9 +389,12 @@ static Value compare(Elaboration *e, const Syntax *syntax, Value a, Value b)
         [TOKEN_EQUAL_EQUAL] = OP_equal, [TOKEN_NOT_EQUAL] = OP_not_equal};
     if (a.type == VALUE_NUMBER && b.type == VALUE_NUMBER) /* what is known now is decided now */
         return value_boolean(compare_numbers(syntax->op, a.number, b.number));
-    bool swap      = syntax->op == TOKEN_GREATER || syntax->op == TOKEN_GREATER_EQUAL;
-    Node left      = value_node(e, swap ? b : a);
-    Node right     = value_node(e, swap ? a : b);
+    bool swap  = syntax->op == TOKEN_GREATER || syntax->op == TOKEN_GREATER_EQUAL;
+    Node left  = value_node(e, swap ? b : a);
+    Node right = value_node(e, swap ? a : b);
+    bool answer;
+    if (is_decided(e, ops[syntax->op], left, right, &answer))
+        return value_boolean(answer);
     e->graph->here = syntax->span;
     return value_of_node(e, graph_op2(e->graph, ops[syntax->op], left, right));
 }

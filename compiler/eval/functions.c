@@ -109,6 +109,20 @@ static bool fits_default(Elaboration *e, const Environment *env, const Function 
 }
 
 /* The range of a parameter, two numbers; false: reported. */
+/* An end of a range is a number now; where kernels read numbers, the end of what they all allow. */
+static bool range_end(Elaboration *e, Value value, bool high, double *end)
+{
+    if (value.type == VALUE_NUMBER) {
+        *end = value.number;
+        return true;
+    }
+    if (!e->hoists || value_size(e, value) != 1 || value_time(e, value) == TIME_POINT)
+        return false;
+    Range may = node_range(e->builder, value_node(e, value), 0);
+    *end      = high ? may.low : may.high;
+    return true;
+}
+
 static bool parameter_range(Elaboration *e, const Environment *env, const Syntax *parameter,
                             Range *range)
 {
@@ -117,10 +131,9 @@ static bool parameter_range(Elaboration *e, const Environment *env, const Syntax
     if (value.type == VALUE_ERROR)
         return false;
     if (value.type == VALUE_LIST && value.list->count == 2 &&
-        value.list->items[0].type == VALUE_NUMBER && value.list->items[1].type == VALUE_NUMBER) {
-        *range = (Range){value.list->items[0].number, value.list->items[1].number};
+        range_end(e, value.list->items[0], false, &range->low) &&
+        range_end(e, value.list->items[1], true, &range->high))
         return true;
-    }
     Diag *diag  = diag_add(e->diags, DIAG_RANGE_OF_PARAM, syntax->span,
                            "the range of `%s` is not two numbers", parameter->name);
     diag->label = "[low, high], known at compile time";
