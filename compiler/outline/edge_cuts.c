@@ -324,7 +324,7 @@ OutlineFault cut_edges(Making *making)
         size_t first = next;
         while (next < cutter.cuts.count && cuts[next].edge == i)
             next++;
-        cut_edge(making, &old.items[i], cuts + first, next - first);
+        cut_edge(making, &old.items[i], cuts ? cuts + first : cuts, next - first);
     }
     return making->edges.count > MOST_EDGES ? OUTLINE_TOO_MANY : OUTLINE_GOOD;
 }
