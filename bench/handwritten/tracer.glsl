@@ -17,8 +17,9 @@ layout(push_constant) uniform Zero { int zero; };
 
 const float PI = 3.14159265358979;
 
-const struct Sky { vec4 zenith, horizon, ground; } frame =
-    Sky(vec4(ZENITH, 0.0), vec4(HORIZON, 0.0), vec4(GROUND, 0.0));
+// The scenes have no fog.
+const struct Surroundings { vec4 zenith, horizon, ground, fog; vec2 fog_level; } frame =
+    Surroundings(vec4(ZENITH, 0.0), vec4(HORIZON, 0.0), vec4(GROUND, 0.0), vec4(0.0), vec2(0.0));
 
 #include "light.glsl"
 
