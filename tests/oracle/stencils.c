@@ -185,7 +185,7 @@ static void agrees_with_differences(const char *text)
     if (getenv("KRS_TELL"))
         fprintf(stderr, "%zu hit, %zu told, %zu wrong, worst %g: %.60s\n", hit, seen, wrong, worst,
                 text);
-    if (seen * 5 < hit * 4 || hit < 200 || wrong * 500 > seen)
+    if (seen * 5 < hit * 4 || hit < 100 || wrong * 500 > seen)
         fail_msg("%zu hit, %zu told, %zu wrong, worst %g: %s", hit, seen, wrong, worst, text);
 }
 
