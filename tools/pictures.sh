@@ -6,7 +6,8 @@ build=$1
 shift
 cd "$(dirname "$0")/.." || exit 1
 [ $# -gt 0 ] || set -- gear machined-part school rock temple grove reef palm olive fern fractals \
-    lamps inversion cabinet sextic lattice town bath lighthouse
+    lamps inversion cabinet sextic lattice town bath lighthouse \
+    chess snow-globe gasket city sign logo bolt rope mug
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 for name in "$@"; do
     scene=$(ls examples/??-"$name".krs) || exit 1
