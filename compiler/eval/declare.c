@@ -10,9 +10,9 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const property_names[] = {"distance", "bound", "exact",   "slope",
-                                             "within",   "uv",    "plane",   "ball",
-                                             "figure",   "core",  "outline", "example"};
+static const char *const property_names[] = {"distance", "bound", "exact",  "slope",  "within",
+                                             "uv",       "plane", "ball",   "figure", "core",
+                                             "outline",  "hull",  "example"};
 enum { PROPERTY_COUNT = sizeof property_names / sizeof *property_names };
 
 static bool check_properties(Elaboration *e, const Syntax *declaration)
@@ -311,13 +311,19 @@ const Shape *declared_core(Elaboration *e, const Shape *shape, Node rounding)
     return NULL;
 }
 
+Value declared_hull(Elaboration *e, const Shape *shape)
+{
+    return evaluate(e, &shape->declaration->names, shape->declaration->hull);
+}
+
 static const struct Declaration *declaration_new(Elaboration *e, const Function *function,
                                                  const Environment *env)
 {
     struct Declaration *known = arena_new(e->arena, struct Declaration);
-    *known = (struct Declaration){function->syntax, find_property(function->syntax, "core"), *env};
-    known->names = known->core ? keep_names(e, env, function->closure)
-                               : (Environment){NULL, env->scope};
+    *known       = (struct Declaration){function->syntax, find_property(function->syntax, "core"),
+                                        find_property(function->syntax, "hull"), *env};
+    known->names = known->core || known->hull ? keep_names(e, env, function->closure)
+                                              : (Environment){NULL, env->scope};
     return known;
 }
 

@@ -117,7 +117,8 @@ typedef struct Elaboration {
 struct Declaration {
     const Syntax *syntax;
     const Syntax *core;  /* what .round(r) grows by r, using `rounding`; or NULL */
-    Environment   names; /* what that expression sees */
+    const Syntax *hull;  /* the balls and rims whose convex hull is its own; or NULL */
+    Environment   names; /* what these expressions see */
 };
 
 /* Whether a limit was reached: everything is an error from here, silently. */
@@ -326,7 +327,8 @@ BuiltinFunction builtin_sum, builtin_product, builtin_any, builtin_all, builtin_
     builtin_greatest, builtin_len, builtin_range;
 
 /* ---- hull.c ---- */
-BuiltinFunction builtin_hull_triangles;
+BuiltinFunction builtin_hull, builtin_hull_triangles;
+Value           method_hull(Elaboration *e, const Shape *shape, Call *call);
 
 /* ---- random.c ---- */
 BuiltinFunction builtin_random, builtin_random_direction, builtin_noise, builtin_fbm;
@@ -366,6 +368,8 @@ Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax
 
 /* The same with one value for the first parameter; `call` is where that happens. */
 Value call_with(Elaboration *e, const Function *function, Value first, const Syntax *call);
+/* The same of a function of the library that scenes do not see. */
+Value call_library(Elaboration *e, const char *name, Value first, const Syntax *call);
 
 /* ---- declare.c: shapes declared in the language ---- */
 /* The shape of a declaration whose parameters `env` binds; `span` is the call. */
@@ -376,6 +380,8 @@ bool needs_check(Elaboration *e, const Syntax *syntax);
 
 /* What `core` is for this `rounding`; NULL: reported. */
 const Shape *declared_core(Elaboration *e, const Shape *shape, Node rounding);
+/* The value of `hull`. */
+Value declared_hull(Elaboration *e, const Shape *shape);
 
 /* ---- claims.c: what declarations claim ---- */
 /* The library's claims hold for all sizes: tests search them, and compiling does not wait. */
@@ -385,6 +391,8 @@ bool is_of_library(const Elaboration *e, const Shape *shape);
 bool check_claims(Elaboration *e, const Shape *shape, double slope);
 /* The same of the `core` of a declared shape, for this `rounding`. */
 bool check_core(Elaboration *e, const Shape *shape, const Shape *core, Node rounding);
+/* That nothing of a declared shape is outside of this hull. */
+bool check_hull(Elaboration *e, const Shape *shape, const Shape *hull);
 
 /* ---- empty.c ---- */
 /* Warns of a component, shown at `span`, that is known to be empty. */

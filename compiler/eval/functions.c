@@ -415,3 +415,17 @@ Value call_with(Elaboration *e, const Function *function, Value first, const Syn
     origins[0]             = call;
     return call_values(e, function, values, origins, call);
 }
+
+Value call_library(Elaboration *e, const char *name, Value first, const Syntax *call)
+{
+    Definition *found = NULL;
+    for (size_t i = 0; !found && i < e->library->used.count; i++) {
+        const Scope *scope = e->library->used.items[i];
+        for (size_t k = 0; !found && k < scope->definitions.count; k++)
+            if (strcmp(scope->definitions.items[k]->name, name) == 0)
+                found = scope->definitions.items[k];
+    }
+    Value function = found ? run_definition(e, found, call->span) : value_error();
+    return function.type == VALUE_FUNCTION ? call_with(e, function.function, first, call)
+                                           : value_error();
+}

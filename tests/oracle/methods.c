@@ -25,7 +25,9 @@ const Family families[] = {
     {"ellipsoid", "ellipsoid([0.8, 0.5, 0.3])"},
     {"link", "link(0.5, 0.4, 0.12)"},
     {"octahedron", "octahedron(0.8)"},
-    {"hull", "hull(radius: 0.1)"},
+    {"hull of points", "hull([[0, 1, 0], [-1, 0, -0.6], [1, 0, -0.6], [0, 0, 1.2]], 0.1)"},
+    {"hull of balls",
+     "hull(sphere(0.5), sphere(0.2).move([0.7, 0, 0]), sphere(0.1).move([0, 0.8, 0.3]))"},
     {"tetrahedron", "tetrahedron(0.9)"},
     {"dodecahedron", "dodecahedron(0.8)"},
     {"icosahedron", "icosahedron(0.8)"},
@@ -266,6 +268,7 @@ const Method methods[] = {
     {"revolve", NULL, NULL, NULL, 0, false, ""},
     {"distance", NULL, NULL, NULL, 0, false, ""},
     {"bounds", NULL, NULL, NULL, 0, false, ""},
+    {"hull", NULL, NULL, NULL, 0, false, ""}, /* tests/oracle/hulls.c */
 };
 const size_t method_count = sizeof methods / sizeof *methods;
 

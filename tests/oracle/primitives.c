@@ -171,11 +171,10 @@ static void tapered_arcs(void **state)
 
 /* All names of the language reference, with nothing said about their sizes. */
 static const char *const solids[] = {
-    "sphere",  "box",        "cylinder",       "cone",         "capped_cone",
-    "capsule", "round_cone", "arc_capsule",    "torus",        "ellipsoid",
-    "link",    "octahedron", "tetrahedron",    "dodecahedron", "icosahedron",
-    "prism",   "pyramid",    "wedge",          "plane",        "half_space",
-    "convex",  "hull",       "bezier_capsule", "helix",        "thread",
+    "sphere",      "box",          "cylinder",    "cone",           "capped_cone", "capsule",
+    "round_cone",  "arc_capsule",  "torus",       "ellipsoid",      "link",        "octahedron",
+    "tetrahedron", "dodecahedron", "icosahedron", "prism",          "pyramid",     "wedge",
+    "plane",       "half_space",   "convex",      "bezier_capsule", "helix",       "thread",
 };
 
 static const char *const figures[] = {"circle", "rectangle", "polygon", "regular",

@@ -1,0 +1,107 @@
+/*
+ * hull_triangles.c: convex hulls of points, by Qhull (Barber, Dobkin and Huhdanpaa, "The Quickhull algorithm
+ * for convex hulls", 1996).
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <libqhull_r/qhull_ra.h>
+
+#include "compiler/base/vec.h"
+#include "compiler/eval/elaborate.h"
+
+enum { MOST_POINTS = 4096 };
+
+static Value refuse(Elaboration *e, const Call *call, const char *what)
+{
+    Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[0].syntax->span, "%s", what);
+    diag->help = "give points such as `[[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]`";
+    return value_error();
+}
+
+/* A point, three numbers that are known now. */
+static bool read_point(Value value, coordT *point)
+{
+    if (value.type != VALUE_LIST || value.list->count != 3)
+        return false;
+    for (int k = 0; k < 3; k++) {
+        if (value.list->items[k].type != VALUE_NUMBER || !isfinite(value.list->items[k].number))
+            return false;
+        point[k] = value.list->items[k].number;
+    }
+    return true;
+}
+
+static Value point_value(Elaboration *e, const coordT *point)
+{
+    Value *numbers = arena_new_array(e->values, Value, 3);
+    for (int k = 0; k < 3; k++)
+        numbers[k] = value_number(point[k]);
+    return value_list(e, numbers, 3);
+}
+
+/* Whether the corners are counterclockwise as seen from where the normal points. */
+static bool faces_outwards(coordT *const corners[3], const coordT *normal)
+{
+    double first[3], second[3], across[3];
+    for (int k = 0; k < 3; k++) {
+        first[k]  = corners[1][k] - corners[0][k];
+        second[k] = corners[2][k] - corners[0][k];
+    }
+    cross3(first, second, across);
+    return dot3(across, normal) > 0;
+}
+
+/* The three corners of a facet, counterclockwise as seen from outside. */
+static Value triangle_value(Elaboration *e, const facetT *facet)
+{
+    Value  *corners = arena_new_array(e->values, Value, 3);
+    coordT *found[3];
+    for (int k = 0; k < 3; k++)
+        found[k] = SETelemt_(facet->vertices, k, vertexT)->point;
+    bool outwards = faces_outwards(found, facet->normal);
+    for (int k = 0; k < 3; k++)
+        corners[k] = point_value(e, found[outwards ? k : 2 - k]);
+    return value_list(e, corners, 3);
+}
+
+static Value triangles_of(Elaboration *e, const qhT *qh)
+{
+    Values triangles = {0};
+    for (const facetT *facet = qh->facet_list; facet && facet->next; facet = facet->next)
+        array_push(e->values, &triangles,
+                   triangle_value(e, facet)); /* the last one is a sentinel */
+    return value_list(e, triangles.items, triangles.count);
+}
+
+Value builtin_hull_triangles(Elaboration *e, Call *call)
+{
+    const List *points = want_list(e, call, 0);
+    if (!points)
+        return value_error();
+    if (points->count < 4 || points->count > MOST_POINTS)
+        return refuse(e, call, "a hull has from 4 to 4096 points");
+    coordT *numbers = arena_new_array(e->scratch, coordT, 3 * points->count);
+    for (size_t i = 0; i < points->count; i++)
+        if (!read_point(points->items[i], numbers + 3 * i))
+            return refuse(e, call, "a point of a hull is three numbers, known at compile time");
+
+    qhT   state, *qh = &state;
+    FILE *silent = fopen("/dev/null", "w"); /* what it says of mistakes */
+    Value result;
+    FILE *said      = silent ? silent : stderr;
+    char  command[] = "qhull Qt"; /* faces are triangles */
+    qh_zero(qh, said);
+    int status = qh_new_qhull(qh, 3, (int)points->count, numbers, False, command, said, said);
+    if (status == 0)
+        result = triangles_of(e, qh);
+    else
+        result = refuse(e, call, "these points lie in a plane, or nearly so");
+    int current, total;
+    qh_freeqhull(qh, !qh_ALL);
+    qh_memfreeshort(qh, &current, &total);
+    if (silent)
+        fclose(silent);
+    return result;
+}
