@@ -40,7 +40,7 @@ LOWER    := $(addprefix compiler/lower/, context.c box_distance.c surface.c join
                 outline.c sphere_fold.c guards.c ray_images.c ray_step.c lower.c)
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
 EVAL     := $(addprefix compiler/eval/, scope.c forget.c expression.c arithmetic.c reports.c units.c arguments.c components.c records.c data.c csv.c json.c builtins.c lists.c \
-                random.c files.c text.c drawing.c functions.c csg.c fractal.c declare.c claim_pairs.c claims.c empty.c cells.c measure.c methods.c properties.c \
+                random.c files.c text.c drawing.c functions.c csg.c fractal.c declare.c extremes.c claim_pairs.c claims.c empty.c cells.c measure.c methods.c properties.c \
                 material.c view.c palette.c remarks.c statements.c shown.c studio.c hull.c hull_parts.c \
                 hull_supports.c hull_triangles.c)
 PRINT    := $(addprefix compiler/print/, frame_values.c lines.c signatures.c helpers.c mirrors.c statements.c \

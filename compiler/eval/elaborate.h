@@ -330,6 +330,9 @@ BuiltinFunction builtin_sum, builtin_product, builtin_any, builtin_all, builtin_
 BuiltinFunction builtin_hull, builtin_hull_triangles;
 Value           method_hull(Elaboration *e, const Shape *shape, Call *call);
 
+/* ---- extremes.c ---- */
+BuiltinFunction builtin_extremes;
+
 /* ---- random.c ---- */
 BuiltinFunction builtin_random, builtin_random_direction, builtin_noise, builtin_fbm;
 

@@ -26,17 +26,23 @@ static Node want_place(Elaboration *e, const Shape *shape, const Call *call)
     return graph_op3(g, OP_vec3, x, y, graph_number(g, 0));
 }
 
-/* The distance may be put to any use, so it is one of slope 1. */
+/* The distance may be put to any use, so it is one of slope 1.  `reach: 0` says that it is used near the
+   surface alone: then it may be less farther away, and jump there. */
 Value method_distance(Elaboration *e, const Shape *shape, Call *call)
 {
     Node   point  = want_place(e, shape, call);
     size_t errors = e->diags->errors;
-    if (point == NODE_NONE || !check_bounded(e->builder, shape))
+    double reach  = HUGE_VAL;
+    if (point == NODE_NONE || !want_constant(e, call, 1, &reach) ||
+        !check_bounded(e->builder, shape))
         return value_error();
     check_lipschitz(e->builder, shape, "`.distance`", call->syntax->span);
     if (e->diags->errors > errors)
         return value_error();
-    Lowering l = {.graph = e->graph, .scratch = e->scratch, .most = e->graph->count + MOST_LOWERED};
+    Lowering l   = {.graph   = e->graph,
+                    .scratch = e->scratch,
+                    .far     = reach > 0,
+                    .most    = e->graph->count + MOST_LOWERED};
     Lowered  all = lower_shape(&l, shape, context_new(point, true));
     if (l.overflow || all.distance == NODE_NONE) {
         Diag *diag  = diag_add(e->diags, DIAG_LIMIT, call->syntax->span, "%s",

@@ -98,7 +98,7 @@ Node lower_outline_distance(Lowering *l, const Shape *shape, LowerContext contex
     bool is_new;
     Node distance = outline_distance(l->graph, shape->outline, context.reach, context.point,
                                      &is_new, l->scratch);
-    if (is_new)
+    if (is_new && l->crowds)
         lowered_crowds_made(l->crowds);
     return distance;
 }

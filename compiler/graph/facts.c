@@ -193,6 +193,11 @@ Range range_task_value(const RangeTask *task, Node node)
     return task->facts[tape_index(&task->tape, node)].value[0];
 }
 
+double range_task_slope(const RangeTask *task, Node node)
+{
+    return task->facts[tape_index(&task->tape, node)].slope;
+}
+
 /* ---- the slope of an expression, over cells of a box ---- */
 
 /* Parts of the box in a heap, the steepest first. */

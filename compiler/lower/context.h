@@ -45,6 +45,7 @@ typedef struct Lowering {
     bool                  surfaces; /* lower the surface too, not the distance alone */
     AlongMethod           method;   /* for ray_step.c and ray_images.c */
     bool                  thin;     /* rays_pass for all shapes above: sheets have no thickness */
+    bool                  far;      /* without crowds: distances to outlines are right everywhere */
     bool                  guarded;  /* skip levels of sequences that are far away (guards.c) */
     Node                  unit;     /* guarded: length, outside of all shapes, of 1 in this space */
     size_t                most;     /* nodes that the graph may have */
