@@ -26,7 +26,7 @@ ORACLES     := self primitives krs_expand folds trees maps moebius moebius_image
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
                touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling \
-               occlusion curves sweeps hulls lofts underestimates bounds stencils light sides steep scales agree far sheets ray_lists specialize outlines drawings \
+               occlusion curves sweeps hulls lofts places underestimates bounds stencils light sides steep scales agree far sheets ray_lists specialize outlines drawings \
                imports imports_csg imports_pov
 FUZZ        := sentences
 # On SwiftShader, unless another device is tested: what shows that drivers agree.

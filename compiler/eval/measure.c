@@ -52,7 +52,7 @@ Value method_distance(Elaboration *e, const Shape *shape, Call *call)
         return value_error();
     }
     Node distance = divide_by_slope(e->graph, all.distance, shape->slope);
-    return (Value){.type = VALUE_EXPRESSION, .node = distance};
+    return value_of_node(e, distance);
 }
 
 Value method_bounds(Elaboration *e, const Shape *shape, Call *call)
