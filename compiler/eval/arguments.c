@@ -213,7 +213,7 @@ const Map *want_rotation(Elaboration *e, const Call *call)
 {
     Node axis = want_vector(e, call, 0, ORIGIN), angle = want_number(e, call, 1, 0);
     if (is_given(call, 1))
-        warn_of_turns(e, call->arguments[1].syntax, call->arguments[1].value);
+        warn_of_angle(e, call->arguments[1].syntax, call->arguments[1].value);
     if (axis == NODE_NONE || angle == NODE_NONE ||
         !check_direction(e, axis, call->arguments[0].syntax, "the axis of a rotation"))
         return NULL;

@@ -300,10 +300,14 @@ void add_number(Text *text, double number, bool degrees);
 const char *degrees_instead(Elaboration *e, const Syntax *syntax);
 /* Warns of an angle that is written as a number above one turn. */
 void warn_of_turns(Elaboration *e, const Syntax *syntax, Value value);
+/* The same of what turns something: also where names, or numbers times a name, seem to be degrees. */
+void warn_of_angle(Elaboration *e, const Syntax *syntax, Value value);
 /* Warns of a constant colour above 1; `help` says what else could be meant. */
 void warn_of_bright_colour(Elaboration *e, const Syntax *syntax, Value value, const char *help);
 
 /* ---- reports.c ---- */
+/* The top-level definition that a name refers to, as far as its file tells; or NULL. */
+const Definition *definition_of(const Elaboration *e, const Syntax *name);
 /* If `syntax` is a top-level name, marks where it was defined as a second place of `diag`. */
 void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax);
 

@@ -192,7 +192,7 @@ static void warn_of_wrong_unit(Elaboration *e, const Syntax *parameter, Value va
                                const Syntax *origin)
 {
     if (strcmp(parameter->name, "angle") == 0 || written_in_degrees(e, parameter))
-        warn_of_turns(e, origin, value);
+        warn_of_angle(e, origin, value);
 }
 
 /* Binds given values and defaults; a default, and a range, sees the parameters before it. */

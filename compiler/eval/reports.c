@@ -5,8 +5,7 @@
 
 #include <string.h>
 
-/* The top-level definition that a name refers to, as far as its file tells. */
-static const Definition *definition_of(const Elaboration *e, const Syntax *name)
+const Definition *definition_of(const Elaboration *e, const Syntax *name)
 {
     for (size_t i = 0; i < e->scopes.count; i++) {
         const Scope *scope = e->scopes.items[i];

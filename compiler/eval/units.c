@@ -63,6 +63,61 @@ void warn_of_turns(Elaboration *e, const Syntax *syntax, Value value)
     diag->replacement = instead;
 }
 
+/* Whether it is a number of degrees that people write: 10 or more, and 360 or 15 go with it. */
+static bool looks_like_degrees(double number)
+{
+    number = fabs(number);
+    return number >= 10 && (fmod(number, 15) == 0 || fmod(360, number) == 0);
+}
+
+/* The literal by which an expression of names, numbers and + - * / counts degrees; NULL: none, or
+   something else is in it, as a function or a unit.  Names are followed `depth` times. */
+static const Syntax *degrees_in(const Elaboration *e, const Syntax *syntax, int depth, bool *else_)
+{
+    const Syntax     *found = NULL;
+    const Definition *definition;
+    switch (syntax->kind) {
+    case SYNTAX_NUMBER:
+        *else_ = *else_ || written_in_degrees(e, syntax);
+        return looks_like_degrees(syntax->number[0]) ? syntax : NULL;
+    case SYNTAX_NAME:
+        definition = definition_of(e, syntax);
+        if (definition && definition->syntax && definition->syntax->kind == SYNTAX_LET && depth > 0)
+            return degrees_in(e, definition->syntax->children[0], depth - 1, else_);
+        return NULL;
+    case SYNTAX_UNARY:
+    case SYNTAX_BINARY:
+        for (uint32_t i = 0; i < syntax->count; i++) {
+            const Syntax *part = degrees_in(e, syntax->children[i], depth, else_);
+            found              = found ? found : part;
+        }
+        return found;
+    default: *else_ = true; return NULL;
+    }
+}
+
+void warn_of_angle(Elaboration *e, const Syntax *syntax, Value value)
+{
+    enum { DEEPEST_CHAIN = 4 };
+    bool          more = false, large = value.type == VALUE_NUMBER && fabs(value.number) >= 10;
+    const Syntax *literal = NULL;
+    warn_of_turns(e, syntax, value);
+    if (!large || is_literal(syntax) || e->sources->items[syntax->span.source].library)
+        return;
+    /* What has pi or degrees in it is no multiple of a half. */
+    if (fmod(value.number, 0.5) == 0)
+        literal = degrees_in(e, syntax, DEEPEST_CHAIN, &more);
+    if (!literal || more)
+        return;
+    Diag *diag  = diag_add(e->diags, DIAG_MANY_TURNS, syntax->span,
+                           "an angle of %g radians, which are %.3g turns", value.number,
+                           fabs(value.number) / (2 * M_PI));
+    diag->label = "angles are radians";
+    diag->help  = diag_text(e->diags, "degrees have their unit behind the number: `%gdeg`",
+                            literal->number[0]);
+    point_at_definition(e, diag, syntax);
+}
+
 /* ---- colours ---- */
 
 /* "#ff8000" for [255, 128, 0]: whole numbers up to 255 are the bytes of a colour; else NULL. */
