@@ -10,8 +10,8 @@ typedef struct Choice {
 } Choice;
 
 /* The last has no name. */
-extern const Choice trace_choices[], schedule_choices[], components_choices[], normals_choices[],
-    shadows_choices[], specialize_choices[], early_outs_choices[], plane_choices[],
+extern const Choice integrator_choices[], trace_choices[], schedule_choices[], components_choices[],
+    normals_choices[], shadows_choices[], specialize_choices[], early_outs_choices[], plane_choices[],
     tone_map_choices[], pass_choices[], on_off_choices[], on_choices[], when_choices[],
     diagnostics_choices[], json_choices[];
 

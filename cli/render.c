@@ -232,11 +232,6 @@ static KrsStatus choose_how(Render *render)
         status = krs_frame_view(render->frame, camera, &view);
     if (status != KRS_OK)
         return status;
-    const char *integrator = view.image.integrator;
-    if (integrator && strcmp(integrator, "preview") != 0 && !options->quiet)
-        say("the scene asks for the integrator `%s`, which is not in this version; it is rendered "
-            "by preview",
-            integrator);
     KrsRenderOptions *how     = &render->how;
     const uint32_t    asked   = options->how.samples;
     const uint32_t    samples = first_of(asked, view.image.samples, KRS_DEFAULT_SAMPLES);

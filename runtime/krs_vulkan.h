@@ -157,13 +157,14 @@ typedef bool KrsProgressCallback(void *user, double done);
 
 /* What there is to choose from has its rows, with what they mean, in choices.def. */
 
-/* How light is found: KRS_INTEGRATOR_PREVIEW. */
+/* How light is found: KRS_INTEGRATOR_PREVIEW and so on. */
 typedef enum KrsIntegrator {
+    KRS_INTEGRATOR_DEFAULT, /* as the scene says, or preview */
 #define KRS_INTEGRATOR(id, name, about) KRS_INTEGRATOR_##id,
 #include "runtime/choices.def"
     KRS_INTEGRATOR_COUNT
 } KrsIntegrator;
-extern const char *const krs_integrator_names[KRS_INTEGRATOR_COUNT]; /* "preview" */
+extern const char *const krs_integrator_names[KRS_INTEGRATOR_COUNT]; /* "default", "preview", ... */
 
 /* How rays advance: KRS_TRACE_DEFAULT, KRS_TRACE_PLAIN and so on. */
 typedef enum KrsTrace {
@@ -217,6 +218,8 @@ extern const char *const krs_shadows_names[KRS_SHADOWS_COUNT];
 #define KRS_MOST_SIDE       16384 /* pixels along a side of a picture */
 #define KRS_MOST_SAMPLES    65536
 #define KRS_MOST_ERROR      1000
+#define KRS_DEFAULT_BOUNCES 10
+#define KRS_MOST_BOUNCES    1000
 
 /* Zero asks for the defaults. */
 typedef struct KrsRenderOptions {
@@ -225,6 +228,7 @@ typedef struct KrsRenderOptions {
     uint32_t      samples;       /* rays per pixel; 0: likewise */
     size_t        camera;        /* its number */
     KrsIntegrator integrator;
+    uint32_t      bounces; /* of a path, at most; 0: 10 */
     uint64_t      seed;  /* of the samples' positions; the first stays at the centre of the pixel */
     double        error; /* permitted distance from the surface, pixels; 0: likewise */
     uint32_t      planes;        /* bits of KrsPlane; 0: all */

@@ -19,6 +19,7 @@
 #include "runtime/tracer/view.h"
 
 static IntegratorPlan *const integrators[KRS_INTEGRATOR_COUNT] = {
+    NULL, /* the default is replaced before (settings.c) */
 #define KRS_INTEGRATOR(id, name, about) name##_plan,
 #include "runtime/choices.def"
 };
@@ -216,7 +217,7 @@ static bool make_room(Job *job, const Plan *plan, KrsFilm *film)
         if (!held_store(rendering))
             return false;
         rendering->held = (HeldBand){0};
-        film->rows      = band_allocate(rendering, &job->cover, plan->halo);
+        film->rows      = band_allocate(rendering, &job->cover, plan->halo, plan->has_paths);
     }
     const size_t rays = job->rays ? rendering->band.pixels : 0;
     return film->rows > 0 && rendering_set_lights(rendering, job->view.lights,
@@ -309,7 +310,8 @@ static void finish(const KrsFilm *film, KrsPicture *picture)
     const Gpu          *gpu       = &rendering->renderer->gpu;
     const KrsWindow    *window    = &film->options.crop;
     const double        flops     = rendering->program->flops;
-    const double        primary   = stats->phase_ms[KRS_PHASE_PRIMARY];
+    const double        marching = stats->phase_ms[KRS_PHASE_PRIMARY] +
+                            stats->phase_ms[KRS_PHASE_BOUNCES];
     stats->spirv_ms               = rendering->spirv_ms;
     stats->pipeline_ms            = rendering->pipeline_ms;
     stats->kernels                = gpu->kernels_made;
@@ -319,7 +321,7 @@ static void finish(const KrsFilm *film, KrsPicture *picture)
     stats->rays                 = (uint64_t)film->samples * window->width * window->height;
     stats->evaluations_per_ray  = (double)stats->evaluations / (double)stats->rays;
     stats->flops_per_evaluation = flops;
-    stats->gflops = primary > 0 ? (double)stats->evaluations * flops / primary / 1e6 : 0;
+    stats->gflops = marching > 0 ? (double)stats->evaluations * flops / marching / 1e6 : 0;
     stats->peak_memory_bytes += gpu->memory_peak;
     memcpy(stats->device, gpu->properties.deviceName, sizeof stats->device);
     picture_divide(picture, film->samples);

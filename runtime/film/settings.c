@@ -3,6 +3,8 @@
  */
 #include "runtime/film/settings.h"
 
+#include <string.h>
+
 #include "runtime/tracer/methods.h"
 
 #define MOST_STEPS 16384
@@ -22,6 +24,15 @@ static bool refuse(KrsRendering *rendering, const char *words)
 static uint32_t first_nonzero(uint32_t asked, uint32_t scene, uint32_t otherwise)
 {
     return asked ? asked : scene ? scene : otherwise;
+}
+
+/* As the scene says, or preview. */
+static KrsIntegrator find_integrator(const char *name)
+{
+    for (int i = 1; name && i < KRS_INTEGRATOR_COUNT; i++)
+        if (strcmp(name, krs_integrator_names[i]) == 0)
+            return (KrsIntegrator)i;
+    return KRS_INTEGRATOR_PREVIEW;
 }
 
 /* Checks the choices of choices.def, and replaces defaults among them. */
@@ -51,12 +62,15 @@ static void put_defaults(const KrsImage *image, KrsRenderOptions *o)
     o->width         = first_nonzero(o->width, image->width, KRS_DEFAULT_WIDTH);
     o->height        = first_nonzero(o->height, image->height, KRS_DEFAULT_HEIGHT);
     o->samples       = first_nonzero(o->samples, image->samples, KRS_DEFAULT_SAMPLES);
+    o->bounces       = first_nonzero(o->bounces, 0, KRS_DEFAULT_BOUNCES);
     o->planes        = first_nonzero(o->planes, 0, KRS_PLANE_ALL);
     o->most_steps    = first_nonzero(o->most_steps, 0, MOST_STEPS);
     o->steps_at_once = first_nonzero(o->steps_at_once, 0,
                                      o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
     o->error    = o->error != 0 ? o->error : image->error != 0 ? image->error : KRS_DEFAULT_ERROR;
     o->slice_ms = o->slice_ms != 0 ? o->slice_ms : 50;
+    if (o->integrator == KRS_INTEGRATOR_DEFAULT)
+        o->integrator = find_integrator(image->integrator);
     if (o->crop.width == 0)
         o->crop = (KrsWindow){0, 0, o->width, o->height};
 }
@@ -70,6 +84,8 @@ static bool check(KrsRendering *rendering, const KrsRenderOptions *o)
         return refuse(rendering, "the crop is not inside of the picture");
     if (o->samples > KRS_MOST_SAMPLES)
         return refuse(rendering, "there are at most 65536 samples per pixel");
+    if (o->bounces > KRS_MOST_BOUNCES)
+        return refuse(rendering, "a path has at most 1000 bounces");
     if (!(o->error > 0) || !(o->error <= KRS_MOST_ERROR))
         return refuse(rendering, "the permitted error must be above 0 and at most 1000 pixels");
     if (!(o->slice_ms > 0) || o->most_steps > MOST_STEPS || o->steps_at_once > MOST_STEPS_AT_ONCE)

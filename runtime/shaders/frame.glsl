@@ -48,7 +48,7 @@ uvec2 load_end(uint index) { return ends[index]; }
 vec4  load_hit_row(uint number) { return hits[number]; }
 #else
 layout(std430, set = 1, binding = HITS_BINDING) writeonly buffer Hits { vec4 hits[]; };
-// The lights, and the rays of a list behind them, two texels each.  The other texels are those of
+// A table of albedos; then lights, and the rays of a list behind them, two texels each.  The other texels are those of
 // the buffers above (layouts.c).
 layout(set = 1, binding = INPUT_TEXELS_BINDING) uniform usamplerBuffer input_texels;
 layout(set = 1, binding = END_TEXELS_BINDING) uniform usamplerBuffer end_texels;
@@ -79,8 +79,8 @@ void load_frame()
 
 Light find_light(uint number)
 {
-    vec4  vector = uintBitsToFloat(load_input(2u * number));
-    uvec4 color = load_input(2u * number + 1u);
+    vec4  vector = uintBitsToFloat(load_input(ALBEDO_ROWS + 2u * number));
+    uvec4 color = load_input(ALBEDO_ROWS + 2u * number + 1u);
     return Light(vector.xyz, vector.w, uintBitsToFloat(color.xyz), color.w);
 }
 
@@ -94,6 +94,19 @@ void store_lighting(uint which, uint slot, float number)
 {
     hit_numbers[4u * (HIT_ROWS * slot + LIGHTING) + which] = number;
 }
+
+uint count_tiles()
+{
+    uvec2 tiles = (work.extent + 7u) / 8u;
+    return tiles.x * tiles.y;
+}
+
+// Where the rows of a pixel's path begin; hits have rows for whole tiles.
+uint path_at(uint index) { return HIT_ROWS * 64u * count_tiles() + PATH_ROWS * index; }
+
+vec4 load_path(uint row, uint index) { return load_hit_row(path_at(index) + row); }
+
+void store_path(uint row, uint index, vec4 numbers) { hits[path_at(index) + row] = numbers; }
 
 // From the lowest bit on: state, side, unresolved, march group; then the steps.
 uint pack_ray(RayEnd ray)
@@ -126,8 +139,20 @@ void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float b
 {
     uvec2 pixel = min(uvec2(image_point) - work.corner, work.extent - 1u);
     uint  number = control.lights + LIGHTS_AT_ONCE + pixel.y * work.extent.x + pixel.x;
-    vec4  start = uintBitsToFloat(load_input(2u * number));
-    vec4  ahead = uintBitsToFloat(load_input(2u * number + 1u));
+    vec4  start = uintBitsToFloat(load_input(ALBEDO_ROWS + 2u * number));
+    vec4  ahead = uintBitsToFloat(load_input(ALBEDO_ROWS + 2u * number + 1u));
+    origin = start.xyz;
+    base = start.w;
+    direction = ahead.xyz;
+    slope = ahead.w;
+}
+#elif defined(PATH_RAYS) // the ray of the path that the point's pixel follows
+void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float base,
+              out float slope)
+{
+    uvec2 pixel = min(uvec2(image_point - work.offset + 0.5) - work.corner, work.extent - 1u);
+    uint  index = pixel.y * work.extent.x + pixel.x;
+    vec4  start = load_path(PATH_ORIGIN, index), ahead = load_path(PATH_DIRECTION, index);
     origin = start.xyz;
     base = start.w;
     direction = ahead.xyz;

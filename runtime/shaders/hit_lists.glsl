@@ -27,22 +27,16 @@ uint find_listed(uint number) { return texelFetch(pixel_list_texels, int(number)
 
 uint band_pixels() { return work.extent.x * work.extent.y; }
 
-uint band_tiles()
-{
-    uvec2 tiles = (work.extent + 7u) / 8u;
-    return tiles.x * tiles.y;
-}
-
 // Indices of words behind the lists of pixels: of a slot (shared.glsl), and of a quarter.  Tiles
 // may reach beyond the band, so there are more slots than pixels.
 uint shared_at(uint list, uint slot)
 {
-    return LIST_SHARED * band_pixels() + 64u * band_tiles() * list + slot;
+    return LIST_SHARED * band_pixels() + 64u * count_tiles() * list + slot;
 }
 
 uint quarter_at(uint list, uint number)
 {
-    return shared_at(SHARED_LISTS, 0u) + 4u * band_tiles() * list + number;
+    return shared_at(SHARED_LISTS, 0u) + 4u * count_tiles() * list + number;
 }
 
 // The pixel of a slot, counted in the band.

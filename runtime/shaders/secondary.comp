@@ -20,6 +20,9 @@
 #include "hit_lists.glsl"
 #include "shared.glsl"
 #include "samples.glsl"
+#ifdef PATH_RAYS
+#include "results.glsl"
+#endif
 
 const uint MOST_STEPS = 1024u;
 // How many pixels above the surface rays start, where it is even and where it is not.  Rays for
@@ -153,6 +156,38 @@ void aim_over_hemisphere(vec3 normal)
     begin_ray(normal, point.x * right + point.y * up + rise * normal);
 }
 
+#ifdef PATH_RAYS
+vec3 added; // by the light if it is visible
+
+// Where the path was scattered; its ray has gone on.
+HitPoint hit_of_path(uint slot)
+{
+    vec4 surface = load_path(PATH_SURFACE, index_of(pixel_of(slot)));
+    return HitPoint(slot, surface.xyz, vec3(0.0), abs(surface.w), ROUNDING * largest(surface.xyz),
+                    sign(surface.w), 0u);
+}
+
+// Aims at the light that the path has chosen.  A light behind the surface is seen from there.
+void aim_as_chosen(vec3 normal)
+{
+    uint index = index_of(pixel_of(hit.slot));
+    vec4 chosen = load_path(PATH_LIGHT, index);
+    vec3 toward = load_path(PATH_TOWARD, index).xyz;
+    float behind = dot(normal, toward) < 0.0 ? -1.0 : 1.0;
+    hit.side *= behind;
+    lift = lift_in_pixels * hit.width + 4.0 * hit.rounding;
+    start = hit.position + behind * lift * normal;
+    end = min(chosen.w, frame.farthest);
+    added = chosen.rgb;
+    below_horizon = !(largest(added) > 0.0);
+    begin_ray(behind * normal, toward);
+    if (chosen.w == 0.0) { // a light without shadows
+        blocked = false;
+        step_limit = 0u;
+    }
+}
+#endif
+
 void exchange_item(uint number) {}
 
 void begin_group(uint first)
@@ -168,16 +203,24 @@ void begin_item(uint number, bool saved)
 {
     uint listed = find_listed(control.reading + number);
     bool exists = !is_cone || has_cone(listed);
+#ifdef PATH_RAYS
+    hit = hit_of_path(listed);
+#else
     hit = hit_point_of_slot(!exists ? 0u : is_cone ? cone_of_quarter(listed) : listed);
+#endif
     spread = margin = 0.0;
     below_horizon = false;
     vec4 facing_and_evenness = load_hit(FACING, hit.slot);
     vec3 normal = facing_and_evenness.xyz;
     lift_in_pixels = mix(LIFT, LIFT_OF_EVEN, smoothstep(UNEVEN, EVEN, facing_and_evenness.w));
+#ifdef PATH_RAYS
+    aim_as_chosen(normal);
+#else
     if (control.phase == RAYS_OVER_HEMISPHERE)
         aim_over_hemisphere(normal);
     else
         aim_at_light(normal);
+#endif
     blocked = blocked || !exists;
     step_limit = exists ? step_limit : 0u;
     t = 0.0;
@@ -286,6 +329,11 @@ void end_item()
         return;
     }
     unresolved += step_limit > 0u ? 1u : 0u;
+#ifdef PATH_RAYS
+    if (!blocked && !below_horizon)
+        add_light(index_of(pixel_of(hit.slot)), added);
+    return;
+#endif
     float visible = blocked || below_horizon ? 0.0 : 1.0;
     uint  code = below_horizon ? BELOW_HORIZON : blocked ? code_of_width(find_penumbra()) : LIT;
     if (control.phase == RAYS_OVER_HEMISPHERE) {

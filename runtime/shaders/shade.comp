@@ -10,6 +10,7 @@
 #include "hit_lists.glsl"
 #include "light.glsl"
 #include "results.glsl"
+#include "planes.glsl"
 
 const float EVEN = 0.98;              // less comes from detail, not from curvature
 const float LEAST_NORMAL_REACH = 0.5; // the reach without filtering (normal_reach in job.c)
@@ -91,33 +92,6 @@ vec3 ambient(Coat coat, float openness)
     return scattered + mirrored * openness;
 }
 
-// Stores the results of a pixel, one wanted row after the other.  Without the loop lavapipe would
-// take as long for unwanted rows as for wanted ones.
-void store_results(uint index, uint rows, vec4 color, HitPoint hit, Coat coat, KrsSurface surface)
-{
-    vec3  difference = hit.position - frame.eye;
-    float along = dot(difference, frame.forward.xyz);
-    float depth = control.projection == PANORAMA ? length(difference) : along;
-#ifdef LISTED_RAYS
-    depth = find_end(index).t;
-#endif
-    uvec3 normal = floatBitsToUint(hit.side * coat.normal);
-    do { // do-while, as in pixels.glsl
-        uint  row = uint(findLSB(rows));
-        uvec4 numbers = floatBitsToUint(color);
-        if (row == ROW_POSITIONS)
-            numbers = floatBitsToUint(vec4(hit.position, depth));
-        if (row == ROW_NORMALS)
-            numbers = uvec4(normal, surface.component);
-        if (row == ROW_ALBEDOS)
-            numbers = uvec4(floatBitsToUint(coat.color), surface.level);
-        if (row == ROW_COUNTS)
-            numbers = uvec4(surface.instance, hit.steps, 0u, 0u);
-        results[row * band_pixels() + index] = numbers;
-        rows &= rows - 1u;
-    } while (rows != 0u);
-}
-
 uint  rows;       // wanted rows of results
 Light lights[LIGHTS_AT_ONCE]; // each lane fetches them once
 
@@ -159,7 +133,7 @@ void do_item(uint number)
     float left = let_through(hit.position.y - t * hit.direction.y, hit.direction.y, t);
     radiance.rgb = through_fog(radiance.rgb, left, control.light == 0u);
     vec4 sum = find_color(index) + vec4(finite_or_black(radiance.rgb), radiance.a);
-    store_results(index, rows, sum, hit, coat, surface);
+    store_planes(index, rows, sum, hit, hit.side * coat.normal, coat.color, surface);
 }
 
 #include "pixels.glsl"

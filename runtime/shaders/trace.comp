@@ -336,6 +336,11 @@ void begin_item(uint number, bool saved)
     uvec2 cell = item_tile - (large ? first_32 : first_8);
     uint  beam = large ? end_of_32(cell) : small ? end_of_4(cell, quarter) : end_of_8(cell);
     begin_march(is_ray ? index : beam, max(range.x, item_start), is_ray);
+#ifdef PATH_RAYS // it begins at a surface, so its first distance is too small to tell the side
+    march.side = load_path(PATH_TOWARD, index).w;
+    width = march.side < 0.0 ? inside_width() : width;
+    march.state = march.side == 0.0 ? STATE_MISS : march.state;
+#endif
 #ifdef PACKED
     begin_scene_parts(is_ray);
 #endif

@@ -186,6 +186,10 @@ CONSTANT(BACKGROUND_SUN, 1); /* the disc of one more light, without the sky */
 CONSTANT(RAYS_CONES, 0);
 CONSTANT(RAYS_TO_LIGHT, 1);
 CONSTANT(RAYS_OVER_HEMISPHERE, 2);
+CONSTANT(RAYS_AS_CHOSEN, 3); /* to the lights that paths have chosen */
+/* phase, of scatter.comp */
+CONSTANT(PATHS_GO_ON, 0);
+CONSTANT(PATHS_END, 1);
 /* phase, of shadow.comp */
 CONSTANT(SHADOW_NEAR, 0);
 CONSTANT(SHADOW_WIDE, 1);
@@ -219,6 +223,21 @@ CONSTANT(STATE_REFINING, 3);
 CONSTANT(FACING, 0);
 CONSTANT(LIGHTING, 1);
 CONSTANT(HIT_ROWS, 2);
+
+/* The rows of a path, behind those of all hits (frame.glsl).  PATH_ORIGIN: where its ray begins, and
+   the width there.  PATH_DIRECTION: unit, and the growth of the width.  PATH_WEIGHT: the part of
+   the light from there that reaches the eye, and the probability density of the direction; 0: it
+   is the camera's.  PATH_LIGHT: what a light adds if nothing is in between, and its distance.
+   PATH_TOWARD: the direction to that light, and the side on which the ray begins: 1 outside of all
+   solids, -1 inside of one, 0: the path has ended.  PATH_SURFACE: where the path was scattered last,
+   and the width there; negative: from inside. */
+CONSTANT(PATH_ORIGIN, 0);
+CONSTANT(PATH_DIRECTION, 1);
+CONSTANT(PATH_WEIGHT, 2);
+CONSTANT(PATH_LIGHT, 3);
+CONSTANT(PATH_TOWARD, 4);
+CONSTANT(PATH_SURFACE, 5);
+CONSTANT(PATH_ROWS, 6);
 
 /* Lists of pixels (hit_lists.glsl), each with room for all pixels of the band.  LIST_OF_MARCH_GROUP
    is the first of GROUP_LISTS lists. */
@@ -254,6 +273,9 @@ struct Light {
     vec3  color;
     uint  kind; /* the bits below */
 };
+/* Before the lights is albedo_table.def: ALBEDO_SIDE * ALBEDO_SIDE rows. */
+CONSTANT(ALBEDO_SIDE, 16);
+CONSTANT(ALBEDO_ROWS, 256);
 CONSTANT(LIGHT_POSITIONAL, 1);
 CONSTANT(LIGHT_CASTS_SHADOWS, 2);
 
@@ -269,7 +291,7 @@ struct ListedRay {
 #ifdef __STDC_VERSION__
 enum { RESULT_NUMBERS = 4, RESULT_BYTES = 4 * RESULT_NUMBERS, DEPTH_NUMBER = 3 };
 /* Of packed values, and of those in rows, the host needs the size only. */
-enum { END_BYTES = 8, HIT_BYTES = 16 * HIT_ROWS, MARCH_BYTES = 32 };
+enum { END_BYTES = 8, HIT_BYTES = 16 * HIT_ROWS, PATH_BYTES = 16 * PATH_ROWS, MARCH_BYTES = 32 };
 typedef struct Light LightBlock;
 static_assert(sizeof(LightBlock) == 32, "std430");
 typedef struct ListedRay ListedRayBlock;

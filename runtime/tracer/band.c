@@ -33,12 +33,13 @@ static VkDeviceSize most_beams(uint64_t pixels)
     return 2 * (pixels / TILE + 2 * KRS_MOST_SIDE / TILE);
 }
 
-static bool band_create(KrsRendering *rendering, uint64_t pixels)
+static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths)
 {
     Gpu               *gpu           = &rendering->renderer->gpu;
     Band              *band          = &rendering->band;
     const bool         read_in_place = gpu_is_cpu(gpu); /* the host reads the device's buffer */
     const Where        shared        = read_in_place ? SHARED : ON_DEVICE;
+    const VkDeviceSize hit     = HIT_BYTES + (paths ? PATH_BYTES : 0);
     const VkDeviceSize results = pixels * RESULT_ROWS * RESULT_BYTES, beams = most_beams(pixels);
     const struct {
         Buffer      *buffer;
@@ -49,7 +50,7 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels)
     } wanted[] = {
         {&band->ends, ENDS_BINDING, END_TEXELS_BINDING, (pixels + beams) * END_BYTES, ON_DEVICE,
          "rays"},
-        {&band->hits, HITS_BINDING, HIT_TEXELS_BINDING, pixels * HIT_BYTES, ON_DEVICE, "hits"},
+        {&band->hits, HITS_BINDING, HIT_TEXELS_BINDING, pixels * hit, ON_DEVICE, "hits"},
         {&band->results, RESULTS_BINDING, RESULT_TEXELS_BINDING, results, shared, "pixels"},
         {&band->queue, QUEUE_BINDING, PIXEL_LIST_TEXELS_BINDING, 2 * pixels * MARCH_BYTES,
          ON_DEVICE, "queue of rays"},
@@ -57,7 +58,7 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels)
         {&band->tiles, TILES_BINDING, 0, beams * sizeof(uint32_t), ON_DEVICE, "tiles"},
         {&band->fetched, 0, 0, read_in_place ? 0 : results, SHARED, "pixels to read"},
     };
-    if (band->pixels >= pixels)
+    if (band->pixels >= pixels && (band->has_paths || !paths))
         return true;
     band_destroy(gpu, band);
     for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
@@ -77,7 +78,8 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels)
         if (wanted[i].texels)
             rendering_bind(rendering, rendering->band_set, wanted[i].texels, buffer);
     }
-    band->pixels = pixels;
+    band->pixels    = pixels;
+    band->has_paths = paths;
     return true;
 }
 
@@ -92,35 +94,36 @@ static uint32_t rows_within(uint32_t width, uint64_t pixels)
 }
 
 /* Bytes of all buffers of a band for a pixel, about. */
-#define BAND_BYTES (END_BYTES + HIT_BYTES + 2 * RESULT_ROWS * RESULT_BYTES + 2 * MARCH_BYTES + 4)
+#define BAND_BYTES(hit) (END_BYTES + (hit) + 2 * RESULT_ROWS * RESULT_BYTES + 2 * MARCH_BYTES + 4)
 
 /* The most pixels that a band may have on this device.  All of its buffers must fit into the
    device's memory, and none may be longer than kernels can read. */
-static uint64_t most_pixels(const Gpu *gpu)
+static uint64_t most_pixels(const Gpu *gpu, bool paths)
 {
+    const uint64_t                hit      = HIT_BYTES + (paths ? PATH_BYTES : 0);
     const uint64_t                usual    = gpu_is_cpu(gpu) ? BAND_PIXELS_CPU : BAND_PIXELS;
     const VkPhysicalDeviceLimits *limits   = &gpu->properties.limits;
     const uint64_t                slack    = buffer_texel_bytes(1); /* what rounding adds at most */
     const uint64_t                in_range = (limits->maxStorageBufferRange - slack) /
-                              (RESULT_ROWS * RESULT_BYTES);
+                              (hit > RESULT_ROWS * RESULT_BYTES ? hit : RESULT_ROWS * RESULT_BYTES);
     const uint64_t in_texels = (limits->maxTexelBufferElements - slack / sizeof(uint32_t)) /
                                (2 * MARCH_BYTES / sizeof(uint32_t));
-    const uint64_t in_memory = gpu_memory(gpu) / PART_OF_MEMORY / BAND_BYTES;
+    const uint64_t in_memory = gpu_memory(gpu) / PART_OF_MEMORY / BAND_BYTES(hit);
     uint64_t       most      = in_range < in_memory ? in_range : in_memory;
     most                     = gpu->texels && in_texels < most ? in_texels : most;
     most                     = most < usual ? most : usual;
     return most > BAND_PIXELS_MIN ? most : BAND_PIXELS_MIN;
 }
 
-uint32_t band_allocate(KrsRendering *rendering, const KrsWindow *cover, uint32_t halo)
+uint32_t band_allocate(KrsRendering *rendering, const KrsWindow *cover, uint32_t halo, bool paths)
 {
     Gpu           *gpu    = &rendering->renderer->gpu;
     const uint64_t across = round_to_tiles(cover->width) + 2 * halo;
-    for (uint64_t pixels = most_pixels(gpu); pixels >= BAND_PIXELS_MIN; pixels /= 2) {
+    for (uint64_t pixels = most_pixels(gpu, paths); pixels >= BAND_PIXELS_MIN; pixels /= 2) {
         uint32_t rows = rows_within((uint32_t)across, pixels);
         rows          = rows > 2 * halo + TILE ? rows - 2 * halo : TILE;
         rows          = rows < cover->height ? rows : cover->height;
-        if (band_create(rendering, (round_to_tiles(rows) + 2 * halo) * across)) {
+        if (band_create(rendering, (round_to_tiles(rows) + 2 * halo) * across, paths)) {
             renderer_clear(rendering->renderer);
             return rows;
         }

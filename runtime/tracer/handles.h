@@ -26,6 +26,7 @@ typedef enum RayKind {
     RAYS_OF_CAMERAS,   /* perspective or orthographic */
     RAYS_OF_PANORAMAS, /* and all other cameras of a scene with a panorama */
     RAYS_OF_LISTS,     /* given by the caller */
+    RAYS_OF_PATHS,     /* from where a path was scattered */
     RAY_KINDS
 } RayKind;
 
@@ -48,6 +49,7 @@ struct KrsRenderer {
     VkPipelineLayout      layout;       /* shared by all kernels */
     /* Those for RAYS_OF_CAMERAS are made at once, the others when they are needed. */
     Kernel pixels[RAY_KINDS][PIXEL_KERNELS];
+    Kernel escapes[RAY_KINDS];    /* escape.comp, made when paths are traced */
     Kernel next_dispatch;         /* on graphics cards only (dispatch.c) */
     double spirv_ms, pipeline_ms; /* the time to make these kernels */
     /* For warm-up: sets in which a kernel finds no items, and the buffers of zeros that they
@@ -60,6 +62,7 @@ struct KrsRenderer {
 /* The buffers that hold a band of the picture. */
 typedef struct Band {
     uint64_t pixels; /* the most that fit; 0: there are no buffers */
+    bool     has_paths; /* there are rows for the path of each */
     Buffer   ends, hits, results, queue, taken, tiles;
     /* A copy of the results for the host; none where the host reads `results` directly. */
     Buffer fetched;

@@ -127,6 +127,29 @@ Kernel *rendering_point_query(KrsRendering *rendering)
     return find_kernel(rendering, "point_query.comp", variant_of_point_query(rendering));
 }
 
+/* ---- paths ---- */
+
+/* Methods that try balls work outside of solids only, and from a start that is far from surfaces. */
+static KrsTrace trace_of_paths(KrsTrace trace)
+{
+    return trace >= KRS_TRACE_DIRECTIONAL ? KRS_TRACE_AUTO : trace;
+}
+
+bool rendering_paths(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+                     KrsNormals normals, PathKernels *kernels)
+{
+    const RayKind  rays  = rendering->rays;
+    const bool     roots = rendering_has_roots(rendering, trace);
+    const uint32_t group = rendering_knows_planes(rendering) ? MARCH_WITHOUT_PLANES : 0;
+    rendering->rays      = RAYS_OF_PATHS;
+    kernels->march   = rendering_trace(rendering, trace_of_paths(trace), schedule, group);
+    kernels->normals = rendering_normals_kernel(rendering, normals, 0);
+    kernels->scatter = find_kernel(rendering, "scatter.comp", variant_of_scatter(rendering));
+    kernels->shadows = rendering_secondary(rendering, schedule, roots);
+    rendering->rays  = rays;
+    return kernels->march && kernels->normals && kernels->scatter && kernels->shadows;
+}
+
 /* ---- kernels that are made at the same time ---- */
 
 typedef struct Requests {
@@ -238,9 +261,11 @@ size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelStats *kern
 {
     const KrsRenderer *renderer = rendering->renderer;
     KernelListing      listing  = {&renderer->gpu, kernels, capacity, 0};
-    for (int kind = 0; kind < RAY_KINDS; kind++)
+    for (int kind = 0; kind < RAY_KINDS; kind++) {
         for (int i = 0; i < PIXEL_KERNELS; i++)
             list_kernel(&listing, &renderer->pixels[kind][i]);
+        list_kernel(&listing, &renderer->escapes[kind]);
+    }
     list_kernel(&listing, &renderer->next_dispatch);
     for (const KernelEntry *entry = rendering->kernels.first; entry; entry = entry->next)
         list_kernel(&listing, &entry->kernel);

@@ -25,6 +25,13 @@ Kernel *rendering_shade(KrsRendering *rendering);
 Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule);
 Kernel *rendering_point_query(KrsRendering *rendering);
 
+/* The kernels of the rays of paths, whatever the rays of the frame are. */
+typedef struct PathKernels {
+    Kernel *march, *normals, *scatter, *shadows;
+} PathKernels;
+bool rendering_paths(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+                     KrsNormals normals, PathKernels *kernels);
+
 /* Makes the kernels for a purpose, pictures with default options or queries, unless they exist. */
 bool kernels_create(KrsRendering *rendering, KrsPurpose purpose);
 void kernels_destroy(Gpu *gpu, KernelMap *map);

@@ -128,7 +128,7 @@ static void swap_queues(ControlBlock *control, const WorkBlock *work)
 static bool run_rays(Job *job, const March *march, const WorkBlock *work, Items items,
                      LaneBudget budget)
 {
-    Dispatch dispatch = dispatch_of(job, KRS_PHASE_PRIMARY, march->rays, work, items, budget);
+    Dispatch dispatch = dispatch_of(job, march->phase, march->rays, work, items, budget);
     return dispatch_run(job, &dispatch);
 }
 

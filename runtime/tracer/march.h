@@ -10,6 +10,7 @@
 typedef struct March {
     Kernel     *rays, *beams; /* beams: NULL without beams */
     KrsSchedule schedule;
+    KrsPhase    phase; /* to which the time of its rays is added */
     double      flops; /* operations for one distance */
     bool        boxed; /* rays are clipped to [low, high], else to the scene's box */
     double      low[3], high[3];

@@ -9,6 +9,7 @@ const char *const krs_phase_names[KRS_PHASE_COUNT] = {
 };
 
 const char *const krs_integrator_names[KRS_INTEGRATOR_COUNT] = {
+    "default",
 #define KRS_INTEGRATOR(id, name, about) #name,
 #include "runtime/choices.def"
 };

@@ -41,7 +41,13 @@ void plan_add_march(Plan *plan, const March *march, float weight)
 {
     March *added = &plan->marches[plan->march_count++];
     *added       = *march;
-    plan_add(plan, (Pass){PASS_MARCH, KRS_PHASE_PRIMARY, weight, .march = added});
+    plan_add(plan, (Pass){PASS_MARCH, march->phase, weight, .march = added});
+}
+
+void plan_add_march_again(Plan *plan, float weight)
+{
+    const March *march = &plan->marches[plan->march_count - 1];
+    plan_add(plan, (Pass){PASS_MARCH, march->phase, weight, .march = march});
 }
 
 void plan_free(Plan *plan) { gpu_release(plan->gpu, plan->passes); }

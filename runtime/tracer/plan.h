@@ -48,9 +48,10 @@ typedef struct Plan {
     Pass    *passes;
     size_t   count, room;
     double   weight; /* of all passes together */
-    March    marches[1 + KRS_MOST_MARCH_GROUPS];
+    March    marches[2 + KRS_MOST_MARCH_GROUPS]; /* of primary rays, and of those of paths */
     size_t   march_count;
     uint32_t halo;           /* pixels on each side of a band that are traced as well */
+    bool     has_paths;      /* each pixel follows a path */
     bool     by_march_group; /* pixels are listed by the group of components that they hit */
     bool     failed;         /* memory ran out, which is noted */
 } Plan;
@@ -58,6 +59,8 @@ typedef struct Plan {
 void plan_add(Plan *plan, Pass pass);
 /* Adds a march and its pass. */
 void plan_add_march(Plan *plan, const March *march, float weight);
+/* Adds a pass of the march that was added last. */
+void plan_add_march_again(Plan *plan, float weight);
 void plan_free(Plan *plan);
 /* Runs all passes for ray `index` of every pixel of the band, and adds its light to the results.
    `progress_done` and `progress_share` of the job are those of this run, and are changed. */

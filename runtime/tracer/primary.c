@@ -56,6 +56,7 @@ static bool march_of_group(Job *job, uint32_t group, bool first, March *march)
     *march                   = (March){.rays     = kernel,
                                        .beams    = job_has_beams(job) ? kernel : NULL,
                                        .schedule = schedule,
+                                       .phase    = KRS_PHASE_PRIMARY,
                                        .flops    = own->flops,
                                        .boxed    = true,
                                        .windowed = !first || !rendering_knows_planes(r)};
@@ -64,9 +65,11 @@ static bool march_of_group(Job *job, uint32_t group, bool first, March *march)
     return kernel != NULL;
 }
 
-/* Finds the kernel of normals for all components. */
+/* Finds the kernel of normals for all components, if they are wanted. */
 static bool find_normals(Job *job, Primary *primary)
 {
+    if (!primary)
+        return true;
     primary->normals = rendering_normals_kernel(job->rendering, job->options.normals, 0);
     return primary->normals != NULL;
 }
@@ -83,30 +86,33 @@ static bool add_planes(Job *job, Primary *primary)
     return group->normals != NULL;
 }
 
+/* Finds the kernel of normals for a march group. */
+static bool find_own_normals(Job *job, uint32_t march_group, OwnGroup *group)
+{
+    *group = (OwnGroup){march_group, rendering_normals_kernel(
+                                         job->rendering, job->options.normals, march_group)};
+    return group->normals != NULL;
+}
+
 static bool add_groups(Job *job, Plan *plan, float weight, Primary *primary)
 {
     uint32_t     groups[KRS_MOST_MARCH_GROUPS];
     const size_t count       = sort_groups(job, groups);
-    const bool   own_normals = job->options.normals != KRS_NORMALS_ANALYTIC;
+    const bool   own_normals = primary && job->options.normals != KRS_NORMALS_ANALYTIC;
     for (size_t i = 0; i < count; i++) {
-        March     march;
-        OwnGroup *group = &primary->groups[i];
-        *group          = (OwnGroup){.march_group = groups[i]};
+        March march;
         if (!march_of_group(job, groups[i], i == 0, &march))
             return false;
         plan_add_march(plan, &march, weight / (float)count);
-        if (own_normals)
-            group->normals = rendering_normals_kernel(job->rendering, job->options.normals,
-                                                      groups[i]);
-        if (own_normals && !group->normals)
+        if (own_normals && !find_own_normals(job, groups[i], &primary->groups[i]))
             return false;
     }
-    primary->group_count = own_normals ? count : 0;
+    if (own_normals)
+        primary->group_count = count;
     return own_normals ? add_planes(job, primary) : find_normals(job, primary);
 }
 
-/* Clips rays to the box around all components but planes, which rays intersect without a march. */
-static void clip_to_rest(const Job *job, March *march)
+void primary_clip_to_rest(const Job *job, March *march)
 {
     const KrsProgram *program = job->rendering->program;
     march->boxed              = true;
@@ -124,12 +130,14 @@ static bool add_whole(Job *job, Plan *plan, float weight)
     const bool outside = job->begins_outside, planes = rendering_knows_planes(r) && outside;
     const bool packed = outside && rendering_marches_packed(r, options->components, options->trace);
     const uint32_t group = packed ? MARCH_PACKED : planes ? MARCH_WITHOUT_PLANES : 0;
-    March          march = {.schedule = options->schedule, .flops = r->program->flops};
+    March          march = {.schedule = options->schedule,
+                            .phase    = KRS_PHASE_PRIMARY,
+                            .flops    = r->program->flops};
     march.rays           = rendering_trace(r, options->trace, options->schedule, group);
     if (job_has_beams(job))
         march.beams = rendering_beams(r, options->trace, options->schedule, group);
     if (planes)
-        clip_to_rest(job, &march);
+        primary_clip_to_rest(job, &march);
     plan_add_march(plan, &march, weight);
     return march.rays && (march.beams || !job_has_beams(job));
 }
@@ -137,9 +145,10 @@ static bool add_whole(Job *job, Plan *plan, float weight)
 bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary)
 {
     KrsRendering *r          = job->rendering;
-    *primary                 = (Primary){0};
     const bool per_component = job->begins_outside &&
                                rendering_marches_per_component(r, job->options.components);
+    if (primary)
+        *primary = (Primary){0};
     /* Methods that try balls work outside of solids only. */
     if (job->options.trace >= KRS_TRACE_BINARY && !job->begins_outside)
         job->options.trace = KRS_TRACE_PLAIN;

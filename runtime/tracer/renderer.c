@@ -19,6 +19,14 @@ KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
     return gpu_list(&gpu, devices, capacity, count) ? KRS_OK : gpu.status;
 }
 
+/* Defines of kernels without a scene: without texels, and with them. */
+static const char *const ray_defines[RAY_KINDS][2] = {
+    [RAYS_OF_CAMERAS]   = {NO_TEXELS, NULL},
+    [RAYS_OF_PANORAMAS] = {PANORAMIC NO_TEXELS, PANORAMIC},
+    [RAYS_OF_LISTS]     = {LISTED_RAYS NO_TEXELS, LISTED_RAYS},
+    [RAYS_OF_PATHS]     = {PATH_RAYS NO_TEXELS, PATH_RAYS},
+};
+
 static void request_pixels(KrsRenderer *renderer, RayKind kind, KernelRequest *requests)
 {
     static const char *const files[PIXEL_KERNELS] = {
@@ -26,15 +34,10 @@ static void request_pixels(KrsRenderer *renderer, RayKind kind, KernelRequest *r
         [PIXELS_PENUMBRAE] = "penumbrae.comp",   [PIXELS_SHADOW] = "shadow.comp",
         [PIXELS_OCCLUSION] = "occlusion.comp",
     };
-    static const char *const defines[RAY_KINDS][2] = {
-        [RAYS_OF_CAMERAS]   = {NO_TEXELS, NULL},
-        [RAYS_OF_PANORAMAS] = {PANORAMIC NO_TEXELS, PANORAMIC},
-        [RAYS_OF_LISTS]     = {LISTED_RAYS NO_TEXELS, LISTED_RAYS},
-    };
     for (int i = 0; i < PIXEL_KERNELS; i++)
         requests[i] = (KernelRequest){
             &renderer->pixels[kind][i],
-            {.file = files[i], .defines = defines[kind][renderer->gpu.texels]}};
+            {.file = files[i], .defines = ray_defines[kind][renderer->gpu.texels]}};
 }
 
 KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
@@ -71,6 +74,8 @@ void krs_renderer_free(KrsRenderer *renderer)
         for (int kind = 0; kind < RAY_KINDS; kind++)
             for (int i = 0; i < PIXEL_KERNELS; i++)
                 kernel_destroy(gpu, &renderer->pixels[kind][i]);
+        for (int kind = 0; kind < RAY_KINDS; kind++)
+            kernel_destroy(gpu, &renderer->escapes[kind]);
         kernel_destroy(gpu, &renderer->next_dispatch);
         layouts_destroy(renderer);
     }
@@ -106,4 +111,19 @@ bool renderer_create_pixels(KrsRenderer *renderer, RayKind kind, double *spirv_m
     request_pixels(renderer, kind, requests);
     return renderer->pixels[kind][0].pipeline ||
            kernels_make(renderer, VK_NULL_HANDLE, requests, PIXEL_KERNELS, spirv_ms, pipeline_ms);
+}
+
+bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
+                             double *pipeline_ms)
+{
+    const RayKind kinds[2] = {kind, RAYS_OF_PATHS};
+    KernelRequest requests[2];
+    size_t        count = 0;
+    for (int i = 0; i < 2; i++)
+        if (!renderer->escapes[kinds[i]].pipeline)
+            requests[count++] = (KernelRequest){
+                &renderer->escapes[kinds[i]],
+                {.file = "escape.comp", .defines = ray_defines[kinds[i]][renderer->gpu.texels]}};
+    return count == 0 ||
+           kernels_make(renderer, VK_NULL_HANDLE, requests, count, spirv_ms, pipeline_ms);
 }

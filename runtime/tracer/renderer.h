@@ -10,6 +10,9 @@
    takes. */
 bool renderer_create_pixels(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
                             double *pipeline_ms);
+/* Likewise the kernels of escape.comp for a kind of primary rays, and for paths. */
+bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
+                             double *pipeline_ms);
 /* Clears the status and the message of the last failure. */
 void renderer_clear(KrsRenderer *renderer);
 

@@ -239,13 +239,26 @@ void krs_rendering_free(KrsRendering *rendering)
     gpu_release(gpu, rendering);
 }
 
+/* Numbers of albedo_table.def, before the lights. */
+static const float albedos[ALBEDO_ROWS][RESULT_NUMBERS] = {
+#define KRS_ALBEDO(mirrored, at_the_edge, sheen) {mirrored, at_the_edge, sheen, 0},
+#include "runtime/shared/albedo_table.def"
+#undef KRS_ALBEDO
+};
+
+static LightBlock *lights_of(const KrsRendering *rendering)
+{
+    return (LightBlock *)((char *)rendering->inputs.bytes + sizeof albedos);
+}
+
 /* Makes room for lights, and for listed rays behind them.  Kernels load several lights at a time,
    also beyond the last one. */
 static bool make_room(KrsRendering *rendering, size_t lights, size_t rays)
 {
     Gpu         *gpu    = &rendering->renderer->gpu;
     Buffer      *buffer = &rendering->inputs;
-    VkDeviceSize bytes  = buffer_texel_bytes((lights + LIGHTS_AT_ONCE) * sizeof(LightBlock) +
+    VkDeviceSize bytes  = buffer_texel_bytes(sizeof albedos +
+                                             (lights + LIGHTS_AT_ONCE) * sizeof(LightBlock) +
                                              rays * sizeof(ListedRayBlock));
     if (buffer->size >= bytes)
         return true;
@@ -253,6 +266,7 @@ static bool make_room(KrsRendering *rendering, size_t lights, size_t rays)
     if (!buffer_create(gpu, buffer, bytes, UPLOADED, "lights and rays") ||
         !layouts_view_texels(gpu, INPUT_TEXELS_BINDING, buffer, "lights and rays"))
         return false;
+    memcpy(buffer->bytes, albedos, sizeof albedos);
     rendering_bind(rendering, rendering->band_set,
                    gpu->texels ? INPUT_TEXELS_BINDING : INPUT_ROWS_BINDING, buffer);
     return true;
@@ -263,7 +277,7 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
 {
     if (!make_room(rendering, count, rays))
         return false;
-    LightBlock *blocks = rendering->inputs.bytes;
+    LightBlock *blocks = lights_of(rendering);
     for (size_t i = 0; i < count; i++) {
         const KrsLight *light = &lights[i];
         blocks[i].kind        = (light->positional ? LIGHT_POSITIONAL : 0) |
@@ -280,7 +294,7 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
 
 ListedRayBlock *rendering_listed_rays(KrsRendering *rendering, size_t lights)
 {
-    return (ListedRayBlock *)((LightBlock *)rendering->inputs.bytes + lights + LIGHTS_AT_ONCE);
+    return (ListedRayBlock *)(lights_of(rendering) + lights + LIGHTS_AT_ONCE);
 }
 
 /* Chooses kernels with room for `count` zones: 1, 2, 4, 8 or 16.  Kernels that exist and have more

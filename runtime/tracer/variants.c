@@ -88,6 +88,7 @@ static KernelVariant begin_variant(const KrsRendering *rendering, KrsTrace trace
         [RAYS_OF_CAMERAS]   = "",
         [RAYS_OF_PANORAMAS] = PANORAMIC,
         [RAYS_OF_LISTS]     = LISTED_RAYS,
+        [RAYS_OF_PATHS]     = PATH_RAYS,
     };
     const Gpu    *gpu             = &rendering->renderer->gpu;
     bool          camera_relative = rendering->camera_relative;
@@ -198,6 +199,16 @@ KernelVariant variant_of_shade(const KrsRendering *rendering)
     return to;
 }
 
+/* The random directions of paths need sines. */
+KernelVariant variant_of_scatter(const KrsRendering *rendering)
+{
+    KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    want(&to, KRS_FUNCTION_SURFACE);
+    want(&to, KRS_FUNCTION_SINES);
+    define_choices(&to);
+    return to;
+}
+
 KernelVariant variant_of_query(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule)
 {
     KernelVariant to = begin_variant(rendering, trace, schedule);
@@ -240,6 +251,7 @@ KernelVariant variant_for_any(const KrsScene *scene, const char *file, const Krs
         {"normals.comp", false, {KRS_FUNCTION_DISTANCE}, 1},
         {"secondary.comp", false, {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_SINES}, 2},
         {"shade.comp", false, {KRS_FUNCTION_SURFACE}, 1},
+        {"scatter.comp", false, {KRS_FUNCTION_SURFACE, KRS_FUNCTION_SINES}, 2},
         {"point_query.comp", false, {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_SURFACE}, 2},
     };
     KernelVariant to = {.scene = {.variant = *variant}};

@@ -18,6 +18,8 @@ typedef struct KernelVariant {
 #define PANORAMIC "#define PANORAMIC\n"
 /* Rays come from a list (frame.glsl). */
 #define LISTED_RAYS "#define LISTED_RAYS\n"
+/* Rays are those of paths that have begun (frame.glsl). */
+#define PATH_RAYS "#define PATH_RAYS\n"
 
 /* The variants of the kernels of kernels.h, with the same arguments. */
 KernelVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
@@ -26,6 +28,7 @@ KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals norma
 KernelVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace,
                                    KrsSchedule schedule);
 KernelVariant variant_of_shade(const KrsRendering *rendering);
+KernelVariant variant_of_scatter(const KrsRendering *rendering);
 KernelVariant variant_of_query(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule);
 KernelVariant variant_of_point_query(const KrsRendering *rendering);
 /* The source of a kernel.  It points into the variant, which must live as long. */

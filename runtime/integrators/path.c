@@ -1,0 +1,98 @@
+/*
+ * path.c: integrators that follow random paths of light, from the eye to its sources.
+ *
+ * Each sample of a pixel follows one path.  At each surface it asks one light what it adds
+ * (secondary.comp), and goes on in a direction from which much of the light comes
+ * (scatter.comp).  What its rays meet before surfaces is added where they end (escape.comp).  All
+ * paths take a step together: each pass is over those that are left.
+ */
+#include "runtime/integrators/integrators.h"
+#include "runtime/tracer/kernels.h"
+#include "runtime/tracer/methods.h"
+#include "runtime/tracer/primary.h"
+#include "runtime/tracer/renderer.h"
+
+/* The fractions of the time that passes take, about. */
+#define WEIGHT_PRIMARY 0.3f
+#define WEIGHT_BOUNCES 0.7f
+
+typedef struct Paths {
+    Job        *job;
+    Plan       *plan;
+    PathKernels kernels;
+    uint32_t    bounces;
+    float       weight; /* of the passes of a bounce */
+} Paths;
+
+static void add_items(const Paths *paths, KrsPhase phase, const Kernel *kernel, ListId in,
+                      ListId out, PassConstants constants)
+{
+    plan_add(paths->plan, (Pass){.kind      = PASS_ITEMS,
+                                 .phase     = phase,
+                                 .weight    = 0.1f * paths->weight,
+                                 .kernel    = kernel,
+                                 .in        = in,
+                                 .out       = out,
+                                 .constants = constants});
+}
+
+/* Adds what happens where the rays of paths end: at surface `number`, from 0, or at none. */
+static void add_surface(const Paths *paths, uint32_t number)
+{
+    const KrsRenderer *renderer  = paths->job->rendering->renderer;
+    const RayKind      rays      = number == 0 ? paths->job->rendering->rays : RAYS_OF_PATHS;
+    const bool         ends      = number == paths->bounces;
+    PassConstants      constants = {ends ? PATHS_END : PATHS_GO_ON, .value = number};
+    add_items(paths, KRS_PHASE_RESOLVE, &renderer->escapes[rays], LIST_OF_BAND, LIST_ALL,
+              (PassConstants){0});
+    add_items(paths, KRS_PHASE_NORMALS, paths->kernels.normals, LIST_ALL, NO_LIST,
+              (PassConstants){0});
+    add_items(paths, KRS_PHASE_SHADING, paths->kernels.scatter, LIST_ALL, NO_LIST, constants);
+    if (!ends && paths->job->view.light_count > 0)
+        plan_add(paths->plan, (Pass){.kind      = PASS_RAYS,
+                                     .phase     = KRS_PHASE_SHADOWS,
+                                     .weight    = 0.3f * paths->weight,
+                                     .kernel    = paths->kernels.shadows,
+                                     .in        = LIST_ALL,
+                                     .out       = NO_LIST,
+                                     .constants = {RAYS_AS_CHOSEN}});
+}
+
+/* The march of rays that surfaces have scattered, which may begin anywhere. */
+static March march_of_paths(const Paths *paths)
+{
+    const KrsRendering *r     = paths->job->rendering;
+    March               march = {.rays     = paths->kernels.march,
+                                 .schedule = paths->job->options.schedule,
+                                 .phase    = KRS_PHASE_BOUNCES,
+                                 .flops    = r->program->flops};
+    if (rendering_knows_planes(r))
+        primary_clip_to_rest(paths->job, &march);
+    return march;
+}
+
+static bool add_paths(Job *job, Plan *plan, uint32_t bounces)
+{
+    const KrsRenderOptions *o       = &job->options;
+    KrsRendering           *r       = job->rendering;
+    Paths                   paths   = {.job = job, .plan = plan, .bounces = bounces};
+    paths.weight                    = WEIGHT_BOUNCES / (float)(bounces + 1);
+    plan->has_paths                 = true;
+    if (!primary_add_marches(job, plan, WEIGHT_PRIMARY, NULL) ||
+        !renderer_create_escapes(r->renderer, r->rays, &r->spirv_ms, &r->pipeline_ms) ||
+        !rendering_paths(r, o->trace, o->schedule, o->normals, &paths.kernels))
+        return false;
+    const March march = march_of_paths(&paths);
+    for (uint32_t number = 0; number <= bounces; number++) {
+        add_surface(&paths, number);
+        if (number == 0 && bounces > 0)
+            plan_add_march(plan, &march, 0.4f * paths.weight);
+        else if (number < bounces)
+            plan_add_march_again(plan, 0.4f * paths.weight);
+    }
+    return !plan->failed;
+}
+
+bool direct_plan(Job *job, Plan *plan) { return add_paths(job, plan, 1); }
+
+bool path_plan(Job *job, Plan *plan) { return add_paths(job, plan, job->options.bounces); }

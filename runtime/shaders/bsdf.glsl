@@ -1,0 +1,258 @@
+/*
+ * bsdf.glsl: how a surface scatters light: by a coat, sheen, a mirror of microfacets, a body that is
+ * diffuse, and glass.
+ *
+ * Directions are in the frame of the surface: z is its normal, on the side of the ray.  A layer
+ * lets through to those below what it does not reflect, so no light appears, and none is lost where
+ * nothing absorbs it.  Microfacets follow GGX, with the masking of Smith (Walter et al. 2007, Heitz
+ * 2014), and are sampled by their visible normals (Heitz 2018, Dupuy and Benyoub 2023).  What
+ * bounces more than once between them is added as Turquin did (2019), by a table of the share that
+ * bounces once.  Sheen is that of Estevez and Kulla (2017).
+ */
+
+// The least width of a lobe; at most so much a mirror blurs.
+const float LEAST_ALPHA = 1e-3;
+const float COAT_HEAD_ON = 0.04; // reflectance of a coat with an index of refraction of 1.5
+const float LEAST_SHEEN_ROUGHNESS = 0.3;
+
+struct Bsdf {
+    vec3  color;
+    float metallic, alpha;
+    float head_on, grazing;   // reflectance of the body's mirror, where it is no metal
+    float eta;                // index of refraction on the far side, relative to this one
+    float glass;              // share of the body that is glass, and no metal
+    float coat, coat_alpha;
+    vec3  sheen;
+    float sheen_alpha;
+    // What follows depends on the eye.
+    vec3  eye;                // unit, towards it
+    float sheen_scale;        // keeps sheen from reflecting more than all
+    float under_sheen, under_coat; // what comes through
+    float more_of_coat, more_of_body; // light that bounces more than once
+    vec3  more_of_metal;
+    float diffuse;            // what comes through the mirror
+    vec4  shares;             // probabilities of sampling coat, mirror, glass, and the diffuse
+};
+
+vec3 load_albedo(uint number) { return uintBitsToFloat(load_input(number).xyz); }
+
+// Light that microfacets reflect: all, the part by Schlick's factor, and sheen.
+vec3 find_albedo(float cosine, float roughness)
+{
+    vec2  at = clamp(vec2(sqrt(cosine), roughness), 0.0, 1.0) * float(ALBEDO_SIDE - 1u);
+    uvec2 cell = min(uvec2(at), uvec2(ALBEDO_SIDE - 2u));
+    vec2  part = at - vec2(cell);
+    uint  low = cell.y * ALBEDO_SIDE + cell.x, high = low + ALBEDO_SIDE;
+    return mix(mix(load_albedo(low), load_albedo(low + 1u), part.x),
+               mix(load_albedo(high), load_albedo(high + 1u), part.x), part.y);
+}
+
+float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }
+
+// ---- microfacets ----
+
+float square(float x) { return x * x; }
+
+// Smith's function: how much of the microfacets is hidden from a direction.
+float find_hidden(vec3 direction, float alpha)
+{
+    float tangent = dot(direction.xy, direction.xy) / max(square(direction.z), 1e-12);
+    return 0.5 * (sqrt(1.0 + alpha * alpha * tangent) - 1.0);
+}
+
+// GGX: the density of microfacets with a normal.
+float find_density(vec3 normal, float alpha)
+{
+    float across = dot(normal.xy, normal.xy) / (alpha * alpha) + normal.z * normal.z;
+    return 1.0 / (PI * alpha * alpha * across * across);
+}
+
+// The density of normals that are visible from the eye, in solid angle.
+float find_visible(vec3 eye, vec3 normal, float alpha)
+{
+    return find_density(normal, alpha) * max(dot(eye, normal), 0.0) /
+           (eye.z * (1.0 + find_hidden(eye, alpha)));
+}
+
+vec3 sample_visible(vec3 eye, float alpha, vec2 square)
+{
+    vec3  tall = normalize(vec3(alpha * eye.xy, eye.z));
+    float angle = 2.0 * PI * square.x;
+    float z = (1.0 - square.y) * (1.0 + tall.z) - tall.z;
+    float ring = sqrt(clamp(1.0 - z * z, 0.0, 1.0));
+    vec3  cap = vec3(ring * krs_cos(angle), ring * krs_sin(angle), z) + tall;
+    return normalize(vec3(alpha * cap.xy, max(cap.z, 1e-6)));
+}
+
+float schlick(float cosine)
+{
+    float left = clamp(1.0 - cosine, 0.0, 1.0), twice = left * left;
+    return twice * twice * left;
+}
+
+// The reflectance of a boundary between two media.
+float fresnel(float cosine, float eta)
+{
+    float beyond = 1.0 - (1.0 - cosine * cosine) / (eta * eta);
+    float through = sqrt(max(beyond, 0.0));
+    float across = (cosine - eta * through) / (cosine + eta * through);
+    float along = (eta * cosine - through) / (eta * cosine + through);
+    return beyond > 0.0 ? 0.5 * (across * across + along * along) : 1.0;
+}
+
+// Reflected light times the cosine, of microfacets that mirror all, and its probability.
+vec2 mirror(vec3 eye, vec3 light, float alpha, out float cosine)
+{
+    vec3 sum = eye + light;
+    vec3 halfway = sum / max(length(sum), 1e-12);
+    cosine = clamp(dot(eye, halfway), 0.0, 1.0);
+    float density = find_density(halfway, alpha) / (4.0 * eye.z);
+    float hidden = find_hidden(eye, alpha);
+    return light.z > 0.0
+               ? density * vec2(1.0 / (1.0 + hidden + find_hidden(light, alpha)), 1.0 / (1.0 + hidden))
+               : vec2(0.0);
+}
+
+// ---- glass ----
+
+// The density of light that visible microfacets mirror, or refract, into a direction.
+float glass_density(Bsdf bsdf, vec3 light, bool refracts)
+{
+    vec3  sum = refracts ? bsdf.eye + bsdf.eta * light : bsdf.eye + light;
+    float size = max(length(sum), 1e-12);
+    vec3  normal = sum / (sum.z < 0.0 ? -size : size);
+    float to_eye = dot(bsdf.eye, normal), to_light = dot(light, normal);
+    float gap = to_eye + bsdf.eta * to_light;
+    float spread = refracts ? square(bsdf.eta) * abs(to_light) / max(gap * gap, 1e-12)
+                            : 0.25 / max(to_eye, 1e-6);
+    float mirrors = fresnel(clamp(to_eye, 0.0, 1.0), bsdf.eta);
+    bool  meets = to_eye > 0.0 && (to_light < 0.0) == refracts;
+    float density = find_visible(bsdf.eye, normal, bsdf.alpha) * spread;
+    return meets ? density * (refracts ? 1.0 - mirrors : mirrors) : 0.0;
+}
+
+// The density of light that glass sends into a direction.  What a microfacet mirrors or refracts to
+// the wrong side of the surface is sent to the right one, upside down.  So all light leaves, as if
+// it went on between microfacets.
+float glass_towards(Bsdf bsdf, vec3 light)
+{
+    vec3 upside_down = vec3(light.xy, -light.z);
+    bool refracts = light.z < 0.0;
+    return glass_density(bsdf, light, refracts) + glass_density(bsdf, upside_down, refracts);
+}
+
+vec3 sample_glass(Bsdf bsdf, vec2 square_point, float choice)
+{
+    vec3  normal = sample_visible(bsdf.eye, bsdf.alpha, square_point);
+    float cosine = clamp(dot(bsdf.eye, normal), 0.0, 1.0);
+    float beyond = max(1.0 - (1.0 - cosine * cosine) / square(bsdf.eta), 0.0);
+    bool  mirrors = choice < fresnel(cosine, bsdf.eta);
+    vec3  light = mirrors ? 2.0 * cosine * normal - bsdf.eye
+                          : (cosine / bsdf.eta - sqrt(beyond)) * normal - bsdf.eye / bsdf.eta;
+    light.z = mirrors ? abs(light.z) : -abs(light.z);
+    return normalize(light);
+}
+
+// ---- sheen ----
+
+float sheen_towards(Bsdf bsdf, vec3 light)
+{
+    vec3  halfway = normalize(bsdf.eye + light);
+    float sine = sqrt(max(1.0 - square(halfway.z), 1e-12));
+    float density = (2.0 + 1.0 / bsdf.sheen_alpha) * pow(sine, 1.0 / bsdf.sheen_alpha) / (2.0 * PI);
+    float seen = 0.25 / (light.z + bsdf.eye.z - light.z * bsdf.eye.z);
+    return bsdf.sheen_scale * density * seen * light.z;
+}
+
+// ---- all of it ----
+
+// `entering`: the ray comes from outside.  The eye's direction may lie below the horizon by
+// rounding.
+Bsdf make_bsdf(KrsSurface surface, bool entering, vec3 eye)
+{
+    Bsdf bsdf;
+    bsdf.eye = normalize(vec3(eye.xy, max(abs(eye.z), 1e-3)));
+    bsdf.color = surface.color;
+    bsdf.metallic = surface.metallic;
+    bsdf.alpha = max(square(surface.roughness), LEAST_ALPHA);
+    bsdf.coat = entering ? surface.coat : 0.0;
+    bsdf.coat_alpha = max(square(surface.coat_roughness), LEAST_ALPHA);
+    bsdf.sheen = entering ? surface.sheen : vec3(0.0);
+    float ior = max(surface.ior, 1.001);
+    bsdf.eta = entering ? ior : 1.0 / ior;
+    bsdf.head_on = surface.specular * square((ior - 1.0) / (ior + 1.0));
+    bsdf.grazing = surface.specular;
+    bsdf.glass = (1.0 - surface.metallic) * surface.transmission;
+
+    float fuzz = max(surface.sheen_roughness, LEAST_SHEEN_ROUGHNESS);
+    bsdf.sheen_alpha = square(fuzz);
+    float fuzzy = find_albedo(bsdf.eye.z, fuzz).z;
+    bsdf.sheen_scale = 1.0 / max(fuzzy, 1.0);
+    bsdf.under_sheen = 1.0 - max(max(bsdf.sheen.r, bsdf.sheen.g), bsdf.sheen.b) * min(fuzzy, 1.0);
+
+    vec2 all = find_albedo(bsdf.eye.z, surface.coat_roughness).xy;
+    bsdf.more_of_coat = 1.0 + COAT_HEAD_ON * (1.0 - all.x) / all.x;
+    float coated = bsdf.coat * bsdf.more_of_coat * (COAT_HEAD_ON * (all.x - all.y) + all.y);
+    bsdf.under_coat = bsdf.under_sheen * (1.0 - coated);
+
+    all = find_albedo(bsdf.eye.z, surface.roughness).xy;
+    float lost = (1.0 - all.x) / all.x;
+    bsdf.more_of_body = 1.0 + bsdf.head_on * lost;
+    bsdf.more_of_metal = 1.0 + bsdf.color * lost;
+    float mirrored = bsdf.more_of_body * (bsdf.head_on * (all.x - all.y) + bsdf.grazing * all.y);
+    bsdf.diffuse = 1.0 - mirrored;
+
+    float body = (1.0 - bsdf.metallic) * (1.0 - surface.transmission);
+    vec3  metal = bsdf.metallic * bsdf.more_of_metal * (bsdf.color * (all.x - all.y) + all.y);
+    vec4  shares;
+    shares.x = bsdf.under_sheen * coated;
+    shares.y = bsdf.under_coat * (luminance(metal) + body * mirrored);
+    shares.z = bsdf.under_coat * bsdf.glass;
+    shares.w = luminance(bsdf.sheen) * min(fuzzy, 1.0) +
+               bsdf.under_coat * body * bsdf.diffuse * max(luminance(bsdf.color), 0.05);
+    bsdf.shares = shares / max(dot(shares, vec4(1.0)), 1e-6);
+    return bsdf;
+}
+
+// Light from a direction that goes to the eye, times the cosine; and the probability density of
+// sampling that direction.
+vec4 scatter(Bsdf bsdf, vec3 light)
+{
+    float glass = bsdf.glass * glass_towards(bsdf, light);
+    vec3  sum = bsdf.under_coat * glass * (light.z < 0.0 ? bsdf.color : vec3(1.0));
+    float density = bsdf.glass > 0.0 ? bsdf.shares.z * glass / bsdf.glass : 0.0;
+    if (light.z > 0.0) {
+        float facing;
+        vec2  coat = mirror(bsdf.eye, light, bsdf.coat_alpha, facing);
+        float edge = COAT_HEAD_ON + (1.0 - COAT_HEAD_ON) * schlick(facing);
+        sum += bsdf.under_sheen * bsdf.coat * bsdf.more_of_coat * edge * coat.x;
+        vec2  all = mirror(bsdf.eye, light, bsdf.alpha, facing);
+        float body = (1.0 - bsdf.metallic) - bsdf.glass;
+        vec3  metal = bsdf.color + (1.0 - bsdf.color) * schlick(facing);
+        edge = bsdf.head_on + (bsdf.grazing - bsdf.head_on) * schlick(facing);
+        sum += bsdf.under_coat * all.x *
+               (bsdf.metallic * bsdf.more_of_metal * metal + body * bsdf.more_of_body * edge);
+        sum += bsdf.under_coat * body * bsdf.diffuse * bsdf.color * (light.z / PI);
+        sum += bsdf.sheen * sheen_towards(bsdf, light);
+        density += bsdf.shares.x * coat.y + bsdf.shares.y * all.y + bsdf.shares.w * light.z / PI;
+    }
+    return vec4(sum, density);
+}
+
+// A direction that light comes from, by the density of `scatter`.
+vec3 sample_direction(Bsdf bsdf, vec2 square_point, float choice)
+{
+    vec4 below = bsdf.shares;
+    below.y += below.x;
+    below.z += below.y;
+    if (choice >= below.z) {
+        float angle = 2.0 * PI * square_point.x, ring = sqrt(square_point.y);
+        return vec3(ring * krs_cos(angle), ring * krs_sin(angle),
+                    sqrt(max(1.0 - square_point.y, 0.0)));
+    }
+    if (choice >= below.y)
+        return sample_glass(bsdf, square_point, (choice - below.y) / bsdf.shares.z);
+    float alpha = choice < below.x ? bsdf.coat_alpha : bsdf.alpha;
+    vec3  normal = sample_visible(bsdf.eye, alpha, square_point);
+    return 2.0 * dot(bsdf.eye, normal) * normal - bsdf.eye;
+}

@@ -1,0 +1,136 @@
+#version 440
+#extension GL_GOOGLE_include_directive : enable
+/*
+ * escape.comp: what the rays of paths find before they hit a surface: lights, and the sky behind
+ * everything.  Paths that hit nothing end.  The pixels of all others are listed.
+ *
+ * PATH_RAYS: the rays of paths that have begun.  Else these are rays of a camera, and paths begin.
+ *
+ * An item is a quarter of a tile of 8x8 pixels.
+ */
+#include "frame.glsl"
+#include "hit_lists.glsl"
+#include "results.glsl"
+#include "sines.glsl"
+#include "light.glsl"
+
+float square(float x) { return x * x; }
+float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }
+
+#include "lights.glsl"
+
+const float FARTHEST = 1e30; // the sky is behind all fog
+
+// What a path is when its ray ends.
+struct Path {
+    vec3  origin, direction, weight;
+    float density;
+};
+
+// The part of a light that counts where rays find it as well as points of it are chosen, so that
+// both together count once (Veach 1997, the power heuristic).
+float share_of_rays(float by_rays, float by_lights)
+{
+    return by_rays > 0.0 ? 1.0 / (1.0 + square(by_lights / by_rays)) : 1.0;
+}
+
+// The light of all sources that a path's ray meets before it ends.
+vec3 find_sources(Path path, float end)
+{
+    vec3  sum = vec3(0.0);
+    bool  from_camera = path.density == 0.0;
+    float all = from_camera ? 1.0 : sum_importance(path.origin);
+    for (uint i = 0u; i < control.lights; i++) {
+        Light light = find_light(i);
+        float density;
+        vec3  radiance = find_radiance_of(light, path.origin, path.direction, end, density);
+        float chance = find_importance(light, path.origin) / max(all, 1e-30);
+        float share = share_of_rays(path.density, chance * density);
+        bool  shows = !from_camera || (light.kind & LIGHT_POSITIONAL) == 0u;
+        sum += shows && density > 0.0 ? share * radiance : vec3(0.0);
+    }
+    return sum;
+}
+
+void begin_group() {}
+
+Path load(uvec2 pixel, uint index, out float base, out float slope)
+{
+    Path path;
+    find_ray(vec2(work.corner + pixel) + work.offset, path.origin, path.direction, base, slope);
+#ifdef PATH_RAYS
+    vec4 weight = load_path(PATH_WEIGHT, index);
+    path.weight = weight.xyz;
+    path.density = weight.w;
+#else
+    path.weight = vec3(1.0);
+    path.density = 0.0;
+#endif
+    return path;
+}
+
+// Begins or ends a path whose ray has ended.  Returns whether it hits a surface.
+bool follow(uvec2 pixel, uint index, inout uint unresolved)
+{
+    float base, slope;
+    RayEnd ray = find_end(index);
+    Path  path = load(pixel, index, base, slope);
+    bool  hits = ray.state == STATE_HIT;
+#ifdef PATH_RAYS
+    bool alive = load_path(PATH_TOWARD, index).w != 0.0;
+#else
+    bool alive = true;
+    store_path(PATH_ORIGIN, index, vec4(path.origin, base));
+    store_path(PATH_DIRECTION, index, vec4(path.direction, slope));
+    store_path(PATH_WEIGHT, index, vec4(path.weight, path.density));
+#endif
+    if (!alive)
+        return false;
+    unresolved += ray.unresolved ? 1u : 0u;
+    bool lost = ray.unresolved && path.density > 0.0;
+    vec3 found = find_sources(path, hits ? ray.t : INFINITE);
+    if (!hits) {
+        vec3  behind = found + sky_radiance(path.direction);
+        float left = let_through(path.origin.y, path.direction.y, FARTHEST);
+        found = lost ? vec3(0.0) : through_fog(behind, left, true);
+    }
+    add_light(index, finite_or_black(path.weight * found));
+    store_path(PATH_TOWARD, index, vec4(0.0, 0.0, 0.0, hits ? ray.side : 0.0));
+    return hits;
+}
+
+// A bit for each pixel of a quarter that is in the band; `corner` is the quarter's first pixel.
+uint find_existing(uvec2 corner)
+{
+    uvec2 size = min(max(work.extent, corner) - corner, uvec2(4u));
+    return ((1u << size.x) - 1u) * (0x1111u & (1u << 4u * size.y) - 1u);
+}
+
+// Indices in the list are reserved for all pixels of a quarter at once (background.comp).
+void list_hits(uint first, uint hits)
+{
+    uint at = hits != 0u ? atomicAdd(counts.hit_count, bitCount(hits)) : 0u;
+    for (; hits != 0u; hits &= hits - 1u)
+        pixel_lists[at++] = slot_of_bit(first, hits & ~hits + 1u);
+}
+
+void do_item(uint quarter)
+{
+    uint  first = slot_of_quarter(quarter), hits = 0u, unresolved = 0u;
+    uvec2 corner = pixel_of(first);
+    for (uint left = find_existing(corner); left != 0u; left &= left - 1u) {
+        uint  number = uint(findLSB(left));
+        uvec2 pixel = corner + uvec2(number & 3u, number >> 2u);
+        uint  index = index_of(pixel);
+        hits |= uint(follow(pixel, index, unresolved)) << number;
+#ifndef PATH_RAYS
+        if (control.first_ray != 0u && is_wanted(ROW_COUNTS))
+            results[ROW_COUNTS * band_pixels() + index] = uvec4(0u, find_end(index).steps, 0u, 0u);
+#endif
+    }
+    if (unresolved != 0u)
+        atomicAdd(counts.unresolved, unresolved);
+    list_hits(first, hits);
+}
+
+#include "pixels.glsl"

@@ -1,0 +1,119 @@
+/*
+ * lights.glsl: lights as sources of a size: paths choose a point on one, and rays may find one.
+ *
+ * A path chooses one of all lights, by the light that each would send if it were visible.
+ */
+
+// A point of a light, seen from a place.
+struct LightPoint {
+    vec3  toward;   // unit
+    float end;      // its distance; 0: nothing casts a shadow
+    vec3  light;    // over the probability density of the point
+    float density;  // in solid angle; 0: rays cannot find the light
+};
+
+// Where 1 - cos is small it is not found by a difference.
+float gap_of_sine(float sine_squared)
+{
+    return sine_squared / (1.0 + sqrt(max(1.0 - sine_squared, 0.0)));
+}
+
+// The disc, or sphere, of a light as seen from a place: 1 less the cosine of its radius.
+float find_gap(Light light, float distance_squared)
+{
+    if ((light.kind & LIGHT_POSITIONAL) != 0u)
+        return gap_of_sine(min(square(light.softness) / distance_squared, 1.0));
+    float radius = 0.5 * clamp(light.softness, 0.0, 3.0);
+    return gap_of_sine(square(krs_sin(radius)));
+}
+
+bool has_size(Light light)
+{
+    return light.softness > 0.0 && (light.kind & LIGHT_CASTS_SHADOWS) != 0u;
+}
+
+// Irradiance from a light at a place that faces it.
+vec3 find_irradiance(Light light, vec3 place)
+{
+    vec3 toward = light.vector - place;
+    bool positional = (light.kind & LIGHT_POSITIONAL) != 0u;
+    return light.color / (positional ? max(dot(toward, toward), 1e-12) : 1.0);
+}
+
+// How often a path chooses this light, relative to others.
+float find_importance(Light light, vec3 place) { return luminance(find_irradiance(light, place)); }
+
+float sum_importance(vec3 place)
+{
+    float sum = 0.0;
+    for (uint i = 0u; i < control.lights; i++)
+        sum += find_importance(find_light(i), place);
+    return sum;
+}
+
+// Two directions at right angles to a third (Duff et al. 2017).
+void find_frame(vec3 axis, out vec3 right, out vec3 up)
+{
+    float side = axis.z < 0.0 ? -1.0 : 1.0;
+    float a = -1.0 / (side + axis.z), b = axis.x * axis.y * a;
+    right = vec3(1.0 + side * axis.x * axis.x * a, side * b, -side * axis.x);
+    up = vec3(b, side + axis.y * axis.y * a, -axis.y);
+}
+
+// The mean radiance of a light's disc: its irradiance over the solid angle, weighted by the cosine
+// from the middle.
+vec3 disc_radiance(Light light, vec3 place, float gap)
+{
+    float sine_squared = gap * (2.0 - gap);
+    return find_irradiance(light, place) / (PI * max(sine_squared, 1e-20));
+}
+
+// A point of a light, evenly over its solid angle.  `chance` is that of having chosen this light.
+LightPoint sample_light(Light light, vec3 place, float chance, vec2 square_point)
+{
+    LightPoint point;
+    bool  positional = (light.kind & LIGHT_POSITIONAL) != 0u;
+    vec3  center = positional ? light.vector - place : light.vector;
+    float center_squared = max(dot(center, center), 1e-12), center_distance = sqrt(center_squared);
+    vec3  axis = center / center_distance, right, up;
+    bool  sized = has_size(light);
+    float gap = find_gap(light, center_squared) * (sized ? square_point.y : 0.0);
+    float ring = sqrt(gap * (2.0 - gap)), angle = 2.0 * PI * square_point.x;
+    find_frame(axis, right, up);
+    point.toward = normalize(ring * (krs_cos(angle) * right + krs_sin(angle) * up) +
+                             (1.0 - gap) * axis);
+    float whole = find_gap(light, center_squared);
+    point.density = sized ? chance / (2.0 * PI * whole) : 0.0;
+    point.light = sized ? disc_radiance(light, place, whole) * (2.0 * PI * whole / chance)
+                        : find_irradiance(light, place) / chance;
+    float reach = center_distance * (1.0 - gap);
+    float before = sqrt(max(square(light.softness) - center_squared * gap * (2.0 - gap), 0.0));
+    float end = sized ? max(reach - before, 0.0) : center_distance;
+    point.end = !positional ? INFINITE : end;
+    if ((light.kind & LIGHT_CASTS_SHADOWS) == 0u)
+        point.end = 0.0;
+    return point;
+}
+
+// The radiance of a light that a ray meets before `end`; 0 where it passes.
+vec3 find_radiance_of(Light light, vec3 origin, vec3 direction, float end, out float density)
+{
+    bool  positional = (light.kind & LIGHT_POSITIONAL) != 0u;
+    vec3  center = positional ? light.vector - origin : light.vector;
+    float along = dot(center, direction), center_squared = max(dot(center, center), 1e-12);
+    vec3  across = center - along * direction;
+    float radius_squared = square(light.softness), reach = along;
+    bool  meets;
+    float gap = find_gap(light, center_squared);
+    if (positional) {
+        reach = along - sqrt(max(radius_squared - dot(across, across), 0.0));
+        meets = dot(across, across) < radius_squared && along > 0.0 &&
+                center_squared > radius_squared && reach < end;
+    } else {
+        vec3 apart = direction - light.vector; // |apart|^2 = 2 (1 - cosine)
+        meets = 0.5 * dot(apart, apart) < gap && end >= frame.farthest;
+    }
+    meets = meets && has_size(light);
+    density = meets ? 1.0 / (2.0 * PI * gap) : 0.0;
+    return meets ? disc_radiance(light, origin, gap) : vec3(0.0);
+}

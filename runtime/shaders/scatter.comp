@@ -1,0 +1,165 @@
+#version 440
+#extension GL_GOOGLE_include_directive : enable
+/*
+ * scatter.comp: what paths do at the surfaces that they hit.
+ *
+ * A path adds the light that the surface emits.  It chooses a point of a light, and what this adds
+ * if it is visible (secondary.comp).  And it goes on in a direction from which much of the light
+ * comes that the surface scatters to the eye.  Paths whose light counts little end early, and the
+ * others count more for it (Russian roulette).
+ */
+#include "scene.glsl"
+#include "frame.glsl"
+#include "hit_lists.glsl"
+#include "results.glsl"
+#include "planes.glsl"
+#include "light.glsl"
+#include "path_samples.glsl"
+#include "bsdf.glsl"
+#include "lights.glsl"
+
+const uint CHOICES = 3u;      // points of the unit square for each surface of a path
+const uint FIRST_ROULETTE = 3u;
+// How much the width of a ray grows where rough surfaces scatter it, relative to a camera's.
+const float MOST_SPREAD = 3.0;
+
+// The number of the choice at surface `control.value` of a path.
+vec2 choose(uvec2 pixel, uint choice)
+{
+    return sample_choice(work.corner + pixel, control.ray, CHOICES * control.value + choice,
+                         control.seed);
+}
+
+// A number within its limits; NaN becomes the lower one.
+float within(float number, float low, float high) { return number > low ? min(number, high) : low; }
+
+vec3 within(vec3 numbers, float low, float high)
+{
+    return mix(vec3(low), min(numbers, high), greaterThan(numbers, vec3(low)));
+}
+
+KrsSurface within_limits(KrsSurface surface)
+{
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    surface.name = within(surface.name, low, high);
+#include "compiler/shape/surface.def"
+    return surface;
+}
+
+struct Axes {
+    vec3 right, up, normal;
+};
+
+Axes find_axes(vec3 normal)
+{
+    Axes axes;
+    axes.normal = normal;
+    find_frame(normal, axes.right, axes.up);
+    return axes;
+}
+
+vec3 into(Axes axes, vec3 v)
+{
+    return vec3(dot(v, axes.right), dot(v, axes.up), dot(v, axes.normal));
+}
+
+vec3 out_of(Axes axes, vec3 v) { return v.x * axes.right + v.y * axes.up + v.z * axes.normal; }
+
+// The normal on the side of the ray.  Where a material turns it too far, the surface's own is taken.
+vec3 find_normal(HitPoint hit, KrsSurface surface, vec3 facing)
+{
+    vec3  normal = hit.side * surface.normal;
+    float size = length(normal);
+    bool  usable = size > 0.0 && dot(normal, hit.direction) < 0.0 && dot(normal, facing) > 0.0;
+    return usable ? normal / size : facing;
+}
+
+uint rows;
+
+void begin_group()
+{
+    krs_prepare();
+    rows = control.first_ray != 0u && control.value == 0u ? control.rows : 0u;
+}
+
+// Chooses a point of a light, and what it adds if it is visible.  Returns the direction to it.
+vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec3 facing,
+                  vec3 weight)
+{
+    float all = sum_importance(hit.position), left = choose(pixel, 2u).x * all;
+    uint  number = 0u;
+    float importance = 0.0;
+    for (uint i = 0u; i < control.lights; i++) {
+        float own = find_importance(find_light(i), hit.position);
+        bool  chosen = left >= 0.0 && own > 0.0;
+        number = chosen ? i : number;
+        importance = chosen ? own : importance;
+        left -= own;
+    }
+    LightPoint point = sample_light(find_light(number), hit.position, importance / max(all, 1e-30),
+                                    choose(pixel, 1u));
+    vec3 light = into(axes, point.toward);
+    vec4 scattered = scatter(bsdf, light);
+    // Both methods together count once (escape.comp).
+    float share = point.density > 0.0 ? 1.0 / (1.0 + square(scattered.w / point.density)) : 1.0;
+    bool  sees = dot(point.toward, facing) * light.z > 0.0 && all > 0.0;
+    vec3  added = sees ? weight * scattered.rgb * point.light * share : vec3(0.0);
+    store_path(PATH_LIGHT, index, vec4(finite_or_black(added), point.end));
+    return point.toward;
+}
+
+// Sends the path on, or ends it.  Returns the side on which its ray begins; 0: it ends.
+float go_on(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 facing, vec3 weight,
+            float roughness)
+{
+    vec2  chosen = choose(pixel, 2u);
+    vec3  light = sample_direction(bsdf, choose(pixel, 0u), chosen.y);
+    vec4  scattered = scatter(bsdf, light);
+    vec3  direction = normalize(out_of(axes, light));
+    weight *= scattered.rgb / max(scattered.w, 1e-30);
+    bool  goes_on = dot(direction, facing.xyz) * light.z > 0.0 && scattered.w > 0.0 &&
+                    largest(weight) > 0.0 && largest(weight) < 1e30;
+    if (control.value >= FIRST_ROULETTE) {
+        float chance = min(largest(weight), 0.95);
+        goes_on = goes_on && sample_choice(work.corner + pixel, control.ray,
+                                           0x10000u + control.value, control.seed).x < chance;
+        weight /= max(chance, 1e-30);
+    }
+    float side = light.z < 0.0 ? -1.0 : 1.0; // of the surface, relative to the ray's
+    float lift = 0.5 * hit.width + 4.0 * hit.rounding;
+    float spread = load_path(PATH_DIRECTION, index).w;
+    spread = max(spread, min(1.0 + 2.0 * roughness, MOST_SPREAD) * frame.pixel_slope);
+    store_path(PATH_ORIGIN, index, vec4(hit.position + side * lift * facing.xyz, hit.width));
+    store_path(PATH_DIRECTION, index, vec4(direction, spread));
+    store_path(PATH_WEIGHT, index, vec4(weight, scattered.w));
+    return goes_on ? side * hit.side : 0.0;
+}
+
+void do_item(uint number)
+{
+    HitPoint   hit = find_hit_point(number);
+    vec4       facing = load_hit(FACING, hit.slot);
+    KrsSurface surface = within_limits(
+        krs_surface(hit.position, hit.side * facing.xyz, 0.5 * hit.width));
+    uvec2 pixel = pixel_of(hit.slot);
+    uint  index = index_of(pixel);
+    float t = find_end(index).t;
+    vec3  origin = load_path(PATH_ORIGIN, index).xyz, weight = load_path(PATH_WEIGHT, index).xyz;
+    weight *= hit.side < 0.0 ? exp(-surface.absorption * t) : vec3(1.0);
+    float left = let_through(origin.y, hit.direction.y, t);
+    vec3  radiance = weight * through_fog(surface.emission, left, true);
+    weight *= left;
+    vec3 normal = find_normal(hit, surface, facing.xyz);
+    vec4 sum = find_color(index) + vec4(finite_or_black(radiance), control.value == 0u ? 1.0 : 0.0);
+    store_planes(index, rows | 1u << ROW_COLORS, sum, hit, hit.side * normal, surface.color, surface);
+    if (control.phase == PATHS_END)
+        return;
+    Axes axes = find_axes(normal);
+    Bsdf   bsdf = make_bsdf(surface, hit.side > 0.0, into(axes, -hit.direction));
+    vec3  toward = choose_light(pixel, index, hit, bsdf, axes, facing.xyz, weight);
+    float side = go_on(pixel, index, hit, bsdf, axes, facing, weight, surface.roughness);
+    store_path(PATH_TOWARD, index, vec4(toward, side));
+    store_path(PATH_SURFACE, index, vec4(hit.position, hit.side * hit.width));
+}
+
+#include "pixels.glsl"
