@@ -43,11 +43,12 @@ static void add_surface(const Paths *paths, uint32_t number)
     const RayKind      rays      = number == 0 ? paths->job->rendering->rays : RAYS_OF_PATHS;
     const bool         ends      = number == paths->bounces;
     PassConstants      constants = {ends ? PATHS_END : PATHS_GO_ON, .value = number};
-    add_items(paths, KRS_PHASE_RESOLVE, &renderer->escapes[rays], LIST_OF_BAND, LIST_ALL,
-              (PassConstants){0});
+    add_items(paths, KRS_PHASE_RESOLVE, &renderer->escapes[rays],
+              number == 0 ? LIST_OF_BAND : LIST_OF_PATHS, LIST_ALL, (PassConstants){0});
     add_items(paths, KRS_PHASE_NORMALS, paths->kernels.normals, LIST_ALL, NO_LIST,
               (PassConstants){0});
-    add_items(paths, KRS_PHASE_SHADING, paths->kernels.scatter, LIST_ALL, NO_LIST, constants);
+    add_items(paths, KRS_PHASE_SHADING, paths->kernels.scatter, LIST_ALL, LIST_OF_PATHS,
+              constants);
     if (!ends && paths->job->view.light_count > 0)
         plan_add(paths->plan, (Pass){.kind      = PASS_RAYS,
                                      .phase     = KRS_PHASE_SHADOWS,
@@ -65,6 +66,7 @@ static March march_of_paths(const Paths *paths)
     March               march = {.rays     = paths->kernels.march,
                                  .schedule = paths->job->options.schedule,
                                  .phase    = KRS_PHASE_BOUNCES,
+                                 .of_paths = true,
                                  .flops    = r->program->flops};
     if (rendering_knows_planes(r))
         primary_clip_to_rest(paths->job, &march);

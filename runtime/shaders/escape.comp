@@ -6,7 +6,7 @@
  *
  * PATH_RAYS: the rays of paths that have begun.  Else these are rays of a camera, and paths begin.
  *
- * An item is a quarter of a tile of 8x8 pixels.
+ * An item is a pixel whose path goes on, or a quarter of a tile of 8x8 pixels.
  */
 #include "frame.glsl"
 #include "hit_lists.glsl"
@@ -76,16 +76,11 @@ bool follow(uvec2 pixel, uint index, inout uint unresolved)
     RayEnd ray = find_end(index);
     Path  path = load(pixel, index, base, slope);
     bool  hits = ray.state == STATE_HIT;
-#ifdef PATH_RAYS
-    bool alive = load_path(PATH_TOWARD, index).w != 0.0;
-#else
-    bool alive = true;
+#ifndef PATH_RAYS
     store_path(PATH_ORIGIN, index, vec4(path.origin, base));
     store_path(PATH_DIRECTION, index, vec4(path.direction, slope));
     store_path(PATH_WEIGHT, index, vec4(path.weight, path.density));
 #endif
-    if (!alive)
-        return false;
     unresolved += ray.unresolved ? 1u : 0u;
     bool lost = ray.unresolved && path.density > 0.0;
     vec3 found = find_sources(path, hits ? ray.t : INFINITE);
@@ -114,6 +109,17 @@ void list_hits(uint first, uint hits)
         pixel_lists[at++] = slot_of_bit(first, hits & ~hits + 1u);
 }
 
+#ifdef PATH_RAYS
+void do_item(uint number)
+{
+    uint slot = tiles[number], unresolved = 0u;
+    uvec2 pixel = pixel_of(slot);
+    if (follow(pixel, index_of(pixel), unresolved))
+        pixel_lists[atomicAdd(counts.hit_count, 1u)] = slot;
+    if (unresolved != 0u)
+        atomicAdd(counts.unresolved, unresolved);
+}
+#else
 void do_item(uint quarter)
 {
     uint  first = slot_of_quarter(quarter), hits = 0u, unresolved = 0u;
@@ -123,14 +129,13 @@ void do_item(uint quarter)
         uvec2 pixel = corner + uvec2(number & 3u, number >> 2u);
         uint  index = index_of(pixel);
         hits |= uint(follow(pixel, index, unresolved)) << number;
-#ifndef PATH_RAYS
         if (control.first_ray != 0u && is_wanted(ROW_COUNTS))
             results[ROW_COUNTS * band_pixels() + index] = uvec4(0u, find_end(index).steps, 0u, 0u);
-#endif
     }
     if (unresolved != 0u)
         atomicAdd(counts.unresolved, unresolved);
     list_hits(first, hits);
 }
+#endif
 
 #include "pixels.glsl"

@@ -36,7 +36,8 @@ layout(std430, set = 1, binding = ENDS_BINDING) buffer Ends { uvec2 ends[]; };
 layout(std430, set = 1, binding = HITS_BINDING) writeonly buffer HitNumbers {
     float hit_numbers[];
 };
-// Tiles of 8x8 pixels whose beams find something: only their pixels have rays.
+// Tiles of 8x8 pixels whose beams find something: only their pixels have rays.  Later the slots of
+// pixels whose paths go on.
 layout(std430, set = 1, binding = TILES_BINDING) buffer Tiles { uint tiles[]; };
 #ifdef NO_TEXELS // the device reads too few texels: buffers are read instead
 layout(std430, set = 1, binding = HITS_BINDING) buffer Hits { vec4 hits[]; };
@@ -99,6 +100,13 @@ uint count_tiles()
 {
     uvec2 tiles = (work.extent + 7u) / 8u;
     return tiles.x * tiles.y;
+}
+
+// The pixel of a slot (hit_lists.glsl), counted in the band.
+uvec2 pixel_of(uint slot)
+{
+    uvec2 tile = find_cell(slot / 64u, (work.extent.x + 7u) / 8u);
+    return 8u * tile + uvec2(slot & 7u, slot >> 3u & 7u);
 }
 
 // Where the rows of a pixel's path begin; hits have rows for whole tiles.

@@ -39,13 +39,6 @@ uint quarter_at(uint list, uint number)
     return shared_at(SHARED_LISTS, 0u) + 4u * count_tiles() * list + number;
 }
 
-// The pixel of a slot, counted in the band.
-uvec2 pixel_of(uint slot)
-{
-    uvec2 tile = find_cell(slot / 64u, (work.extent.x + 7u) / 8u);
-    return 8u * tile + uvec2(slot & 7u, slot >> 3u & 7u);
-}
-
 // The index of a pixel of the band, counted row by row.
 uint index_of(uvec2 pixel) { return pixel.y * work.extent.x + pixel.x; }
 

@@ -159,6 +159,8 @@ void do_item(uint number)
     vec3  toward = choose_light(pixel, index, hit, bsdf, axes, facing.xyz, weight);
     float side = go_on(pixel, index, hit, bsdf, axes, facing, weight, surface.roughness);
     store_path(PATH_TOWARD, index, vec4(toward, side));
+    if (side != 0.0)
+        tiles[atomicAdd(counts.tiles, 1u)] = hit.slot;
     store_path(PATH_SURFACE, index, vec4(hit.position, hit.side * hit.width));
 }
 

@@ -194,7 +194,9 @@ void begin_group(uint first)
 
 void exchange_item(uint number)
 {
-#if REFILL
+#if defined(PATH_RAYS) // a list has their pixels
+    TileStart found = TileStart(uvec2(0u), vec4(0.0));
+#elif REFILL
     uint at = tile_of_item(number) - first_tile, lane = at % uint(REFILL);
     bool low = at < uint(REFILL);
     uint low_tile = subgroupShuffle(kept_tiles.x, lane);
@@ -297,6 +299,10 @@ void begin_item(uint number, bool saved)
     uvec2 half_tile = uvec2(quarter & 1u, quarter >> 1u);
     uvec2 pixel = 8u * item_tile + 4u * half_tile + uvec2(number & 3u, number >> 2u & 3u);
     uvec2 local = pixel - work.corner;
+#ifdef PATH_RAYS
+    local = pixel_of(saved ? 0u : tiles[number]);
+    pixel = work.corner + local;
+#endif
     uint  index = local.y * work.extent.x + local.x;
     tile_index = tile_of_item(number) - first_tile;
     exists = !is_ray || local.x < work.extent.x && local.y < work.extent.y;
@@ -339,7 +345,6 @@ void begin_item(uint number, bool saved)
 #ifdef PATH_RAYS // it begins at a surface, so its first distance is too small to tell the side
     march.side = load_path(PATH_TOWARD, index).w;
     width = march.side < 0.0 ? inside_width() : width;
-    march.state = march.side == 0.0 ? STATE_MISS : march.state;
 #endif
 #ifdef PACKED
     begin_scene_parts(is_ray);

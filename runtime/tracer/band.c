@@ -55,7 +55,8 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths)
         {&band->queue, QUEUE_BINDING, PIXEL_LIST_TEXELS_BINDING, 2 * pixels * MARCH_BYTES,
          ON_DEVICE, "queue of rays"},
         {&band->taken, TAKEN_BINDING, 0, beams * sizeof(uint32_t), ON_DEVICE, "shares of groups"},
-        {&band->tiles, TILES_BINDING, 0, beams * sizeof(uint32_t), ON_DEVICE, "tiles"},
+        {&band->tiles, TILES_BINDING, 0, (paths ? pixels : beams) * sizeof(uint32_t), ON_DEVICE,
+         "tiles"},
         {&band->fetched, 0, 0, read_in_place ? 0 : results, SHARED, "pixels to read"},
     };
     if (band->pixels >= pixels && (band->has_paths || !paths))

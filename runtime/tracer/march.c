@@ -21,9 +21,11 @@ bool march_clear(Job *job)
 }
 
 /* The pixels that need rays: those of the listed tiles, or all pixels of the band. */
-static Items pixels_of_rays(const Job *job, const WorkBlock *work)
+static Items pixels_of_rays(const Job *job, const March *march, const WorkBlock *work)
 {
     const ControlBlock *control = job->rendering->control.bytes;
+    if (march->of_paths)
+        return ITEMS_COUNTED(1, tiles);
     return control->listed ? ITEMS_COUNTED(TILE * TILE, tiles)
                            : ITEMS_KNOWN(tiles_of_band(work) * TILE * TILE);
 }
@@ -140,7 +142,7 @@ static bool run_rays(Job *job, const March *march, const WorkBlock *work, Items 
 static bool trace_in_chain(Job *job, const March *march, const WorkBlock *work, LaneBudget budget)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    Items         items   = pixels_of_rays(job, work);
+    Items         items   = pixels_of_rays(job, march, work);
     do {
         for (int pass = 0; pass <= PASSES_AT_ONCE; pass++) {
             if (!run_rays(job, march, work, items, budget))
@@ -161,7 +163,7 @@ static bool trace(Job *job, const March *march, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
     LaneBudget    budget  = lane_budget(job);
-    Items         items   = pixels_of_rays(job, work);
+    Items         items   = pixels_of_rays(job, march, work);
     control->phase        = TRACE_RAYS;
     control->source       = ITEMS_FRESH;
     control->queued = control->writing = 0;

@@ -14,6 +14,7 @@ typedef struct March {
     double      flops; /* operations for one distance */
     bool        boxed; /* rays are clipped to [low, high], else to the scene's box */
     double      low[3], high[3];
+    bool        of_paths; /* rays of the listed pixels, from where their paths are */
     bool        windowed; /* only pixels whose rays may meet the box are marched */
 } March;
 

@@ -63,6 +63,7 @@ static uint32_t counter_of(ListId list)
     case LIST_REMAINING: return WORD_OF(remaining);
     case LIST_WIDE: return WORD_OF(wide);
     case LIST_OF_QUARTERS: return WORD_OF(quarters);
+    case LIST_OF_PATHS: return WORD_OF(tiles);
     case LIST_OF_BAND:
     case NO_LIST: return 0;
     default: return WORD_OF(of_march_group) + (list - LIST_OF_MARCH_GROUP);
