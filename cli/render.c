@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/choices.h"
 #include "cli/console.h"
 #include "cli/picture.h"
 #include "cli/supervise.h"
@@ -221,6 +222,15 @@ static uint32_t first_of(uint32_t asked, uint32_t scene, uint32_t otherwise)
     return asked ? asked : scene ? scene : otherwise;
 }
 
+/* As asked for, or as the scene says, or preview. */
+static KrsIntegrator find_integrator(KrsIntegrator asked, const char *scene)
+{
+    if (asked != KRS_INTEGRATOR_DEFAULT)
+        return asked;
+    const int found = scene ? find_choice(scene, integrator_choices) : -1;
+    return found > 0 ? (KrsIntegrator)found : KRS_INTEGRATOR_PREVIEW;
+}
+
 /* Size, crop and what else the options and the scene's image block say together. */
 static KrsStatus choose_how(Render *render)
 {
@@ -255,6 +265,7 @@ static KrsStatus choose_how(Render *render)
     how->camera     = camera;
     how->seed       = options->seed;
     how->planes     = picture_planes(options, exr);
+    how->integrator = find_integrator(how->integrator, view.image.integrator);
     how->progress   = show_progress;
     how->user       = render;
     return KRS_OK;
@@ -438,6 +449,11 @@ static KrsStatus specialize(Render *render)
     return scene_frame(options, edited, &render->frame);
 }
 
+static KrsPurpose purpose_of(const Render *render)
+{
+    return render->how.integrator == KRS_INTEGRATOR_PREVIEW ? KRS_FOR_PICTURES : KRS_FOR_PATHS;
+}
+
 static KrsStatus make_ready(Render *render)
 {
     const Options *options = render->options;
@@ -454,7 +470,8 @@ static KrsStatus make_ready(Render *render)
         return status;
     stage_enter(STAGE_SHADERS);
     console_doing(options, "compiling the shaders");
-    status = krs_rendering_new(render->renderer, render->scene, &render->rendering);
+    status = krs_rendering_new_for(render->renderer, render->scene, purpose_of(render),
+                                   &render->rendering);
     console_doing(options, NULL);
     if (status != KRS_OK)
         say("%s", krs_renderer_message(render->renderer));

@@ -135,14 +135,19 @@ static KrsTrace trace_of_paths(KrsTrace trace)
     return trace >= KRS_TRACE_DIRECTIONAL ? KRS_TRACE_AUTO : trace;
 }
 
+static uint32_t group_of_paths(const KrsRendering *rendering)
+{
+    return rendering_knows_planes(rendering) ? MARCH_WITHOUT_PLANES : 0;
+}
+
 bool rendering_paths(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
                      KrsNormals normals, PathKernels *kernels)
 {
-    const RayKind  rays  = rendering->rays;
-    const bool     roots = rendering_has_roots(rendering, trace);
-    const uint32_t group = rendering_knows_planes(rendering) ? MARCH_WITHOUT_PLANES : 0;
-    rendering->rays      = RAYS_OF_PATHS;
-    kernels->march   = rendering_trace(rendering, trace_of_paths(trace), schedule, group);
+    const RayKind rays  = rendering->rays;
+    const bool    roots = rendering_has_roots(rendering, trace);
+    rendering->rays     = RAYS_OF_PATHS;
+    kernels->march   = rendering_trace(rendering, trace_of_paths(trace), schedule,
+                                       group_of_paths(rendering));
     kernels->normals = rendering_normals_kernel(rendering, normals, 0);
     kernels->scatter = find_kernel(rendering, "scatter.comp", variant_of_scatter(rendering));
     kernels->shadows = rendering_secondary(rendering, schedule, roots);
@@ -154,7 +159,7 @@ bool rendering_paths(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedu
 
 typedef struct Requests {
     KrsRendering *rendering;
-    KernelRequest items[5 + 2 * KRS_MOST_MARCH_GROUPS];
+    KernelRequest items[7 + 2 * KRS_MOST_MARCH_GROUPS];
     size_t        count;
     bool          failed; /* the failure is noted */
 } Requests;
@@ -188,7 +193,8 @@ static void request_marches(Requests *requests, KrsTrace trace, KrsSchedule sche
         KrsSchedule own = schedule_of_kernel(
             rendering_schedule_of_march_group(rendering, KRS_SCHEDULE_DEFAULT, march_group));
         request(requests, "trace.comp", variant_of_trace(rendering, trace, own, march_group));
-        request(requests, "normals.comp", variant_of_normals(rendering, usual, march_group));
+        if (rendering->purpose == KRS_FOR_PICTURES)
+            request(requests, "normals.comp", variant_of_normals(rendering, usual, march_group));
     }
 }
 
@@ -207,6 +213,23 @@ static void request_pictures(Requests *requests, KrsTrace trace, KrsSchedule sch
     request_marches(requests, trace, schedule);
 }
 
+static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedule)
+{
+    KrsRendering *rendering = requests->rendering;
+    const RayKind rays      = rendering->rays;
+    request_marches(requests, trace, schedule);
+    rendering->rays = RAYS_OF_PATHS;
+    request(requests, "trace.comp",
+            variant_of_trace(rendering, trace_of_paths(trace), schedule,
+                             group_of_paths(rendering)));
+    request(requests, "normals.comp",
+            variant_of_normals(rendering, rendering_normals(rendering, KRS_NORMALS_DEFAULT), 0));
+    request(requests, "scatter.comp", variant_of_scatter(rendering));
+    request(requests, "secondary.comp",
+            variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace)));
+    rendering->rays = rays;
+}
+
 bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
 {
     KrsTrace    trace    = KRS_TRACE_DEFAULT;
@@ -215,6 +238,8 @@ bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
     rendering_choose(rendering, &trace, &schedule);
     if (purpose == KRS_FOR_PICTURES) {
         request_pictures(&requests, trace, schedule_of_kernel(schedule));
+    } else if (purpose == KRS_FOR_PATHS) {
+        request_paths(&requests, trace, schedule_of_kernel(schedule));
     } else {
         request(&requests, "query.comp", variant_of_questions(rendering, schedule));
         request(&requests, "point_query.comp", variant_of_point_query(rendering));

@@ -362,7 +362,7 @@ bool rendering_set_rays(KrsRendering *rendering, RayKind kind)
     rendering->rays = kind;
     return renderer_create_pixels(rendering->renderer, kind, &rendering->spirv_ms,
                                   &rendering->pipeline_ms) &&
-           kernels_create(rendering, KRS_FOR_PICTURES);
+           kernels_create(rendering, rendering->purpose);
 }
 
 uint32_t rendering_spread(const KrsRendering *rendering, uint32_t count)
