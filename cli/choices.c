@@ -11,11 +11,10 @@
         NULL, NULL \
     }
 
-const Choice integrator_choices[] = {
-    {"default", "as the scene says, or preview"},
+const Choice integrator_choices[] = {{"default", "as the scene says, or preview"},
 #define KRS_INTEGRATOR(id, name, about) {#name, about},
 #include "runtime/choices.def"
-    LAST};
+                                     LAST};
 const Choice trace_choices[] = {
 #define KRS_TRACE(id, name, about) {name, about},
 #include "runtime/choices.def"

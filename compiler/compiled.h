@@ -29,7 +29,8 @@ typedef struct KrsFog {
 /* The properties of the `image` block; 0 or NULL where one is not given. */
 typedef struct KrsImage {
     uint32_t    width, height, samples;
-    const char *integrator; /* "preview", "direct", or NULL */
+    uint32_t    bounces;    /* of a path, at most */
+    const char *integrator; /* "preview", "direct", "path", or NULL */
     double      exposure;   /* in stops; 0 changes nothing */
     const char *tone_map;   /* or NULL */
     double      error;      /* permitted distance from the surface in pixels; 0: the default */

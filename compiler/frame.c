@@ -326,8 +326,8 @@ static void view_light(const KrsFrame *frame, size_t index, KrsLight *light)
 KrsImage krs_scene_image(const KrsScene *scene)
 {
     const SceneImage *image = &scene->image;
-    return (KrsImage){image->width,    image->height,   image->samples, image->integrator,
-                      image->exposure, image->tone_map, image->error};
+    return (KrsImage){image->width,      image->height,   image->samples,  image->bounces,
+                      image->integrator, image->exposure, image->tone_map, image->error};
 }
 
 KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view)

@@ -281,8 +281,9 @@ static bool same_lights(const KrsScene *a, const KrsScene *b)
 static bool same_image(const SceneImage *a, const SceneImage *b)
 {
     return a->width == b->width && a->height == b->height && a->samples == b->samples &&
-           same_name(a->integrator, b->integrator) && same_name(a->tone_map, b->tone_map) &&
-           a->exposure == b->exposure && a->error == b->error;
+           a->bounces == b->bounces && same_name(a->integrator, b->integrator) &&
+           same_name(a->tone_map, b->tone_map) && a->exposure == b->exposure &&
+           a->error == b->error;
 }
 
 /* ---- all together ---- */

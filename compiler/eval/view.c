@@ -154,9 +154,10 @@ static void set_image(Elaboration *e, const Environment *env, const Syntax *synt
     if (size)
         set_size(e, size, evaluate(e, env, size));
     image->samples    = (uint32_t)constant_property(e, env, syntax, "samples", 1, 65536, 0);
+    image->bounces    = (uint32_t)constant_property(e, env, syntax, "bounces", 1, 1000, 0);
     image->exposure   = constant_property(e, env, syntax, "exposure", -20, 20, 0);
     image->error      = constant_property(e, env, syntax, "error", 0.001, 1, 0);
-    image->integrator = word_property(e, env, syntax, "integrator", integrators, 3, 2);
+    image->integrator = word_property(e, env, syntax, "integrator", integrators, 3, 0);
     image->tone_map   = word_property(e, env, syntax, "tone_map", tone_maps, 3, 0);
 }
 

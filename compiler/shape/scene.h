@@ -31,7 +31,7 @@ typedef struct SceneLight {
 } SceneLight;
 
 typedef struct SceneImage {
-    uint32_t    width, height, samples;
+    uint32_t    width, height, samples, bounces;
     const char *integrator, *tone_map;
     double      exposure, error;
 } SceneImage;

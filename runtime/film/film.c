@@ -310,12 +310,11 @@ static void finish(const KrsFilm *film, KrsPicture *picture)
     const Gpu          *gpu       = &rendering->renderer->gpu;
     const KrsWindow    *window    = &film->options.crop;
     const double        flops     = rendering->program->flops;
-    const double        marching = stats->phase_ms[KRS_PHASE_PRIMARY] +
-                            stats->phase_ms[KRS_PHASE_BOUNCES];
-    stats->spirv_ms               = rendering->spirv_ms;
-    stats->pipeline_ms            = rendering->pipeline_ms;
-    stats->kernels                = gpu->kernels_made;
-    stats->device_time            = gpu->times != VK_NULL_HANDLE;
+    const double marching = stats->phase_ms[KRS_PHASE_PRIMARY] + stats->phase_ms[KRS_PHASE_BOUNCES];
+    stats->spirv_ms       = rendering->spirv_ms;
+    stats->pipeline_ms    = rendering->pipeline_ms;
+    stats->kernels        = gpu->kernels_made;
+    stats->device_time    = gpu->times != VK_NULL_HANDLE;
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         stats->total_ms += stats->phase_ms[phase];
     stats->rays                 = (uint64_t)film->samples * window->width * window->height;

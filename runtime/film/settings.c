@@ -62,7 +62,7 @@ static void put_defaults(const KrsImage *image, KrsRenderOptions *o)
     o->width         = first_nonzero(o->width, image->width, KRS_DEFAULT_WIDTH);
     o->height        = first_nonzero(o->height, image->height, KRS_DEFAULT_HEIGHT);
     o->samples       = first_nonzero(o->samples, image->samples, KRS_DEFAULT_SAMPLES);
-    o->bounces       = first_nonzero(o->bounces, 0, KRS_DEFAULT_BOUNCES);
+    o->bounces       = first_nonzero(o->bounces, image->bounces, KRS_DEFAULT_BOUNCES);
     o->planes        = first_nonzero(o->planes, 0, KRS_PLANE_ALL);
     o->most_steps    = first_nonzero(o->most_steps, 0, MOST_STEPS);
     o->steps_at_once = first_nonzero(o->steps_at_once, 0,

@@ -42,13 +42,12 @@ static void add_surface(const Paths *paths, uint32_t number)
     const KrsRenderer *renderer  = paths->job->rendering->renderer;
     const RayKind      rays      = number == 0 ? paths->job->rendering->rays : RAYS_OF_PATHS;
     const bool         ends      = number == paths->bounces;
-    PassConstants      constants = {ends ? PATHS_END : PATHS_GO_ON, .value = number};
+    PassConstants      constants = {.phase = ends ? PATHS_END : PATHS_GO_ON, .value = number};
     add_items(paths, KRS_PHASE_RESOLVE, &renderer->escapes[rays],
               number == 0 ? LIST_OF_BAND : LIST_OF_PATHS, LIST_ALL, (PassConstants){0});
     add_items(paths, KRS_PHASE_NORMALS, paths->kernels.normals, LIST_ALL, NO_LIST,
               (PassConstants){0});
-    add_items(paths, KRS_PHASE_SHADING, paths->kernels.scatter, LIST_ALL, LIST_OF_PATHS,
-              constants);
+    add_items(paths, KRS_PHASE_SHADING, paths->kernels.scatter, LIST_ALL, LIST_OF_PATHS, constants);
     if (!ends && paths->job->view.light_count > 0)
         plan_add(paths->plan, (Pass){.kind      = PASS_RAYS,
                                      .phase     = KRS_PHASE_SHADOWS,
@@ -56,7 +55,7 @@ static void add_surface(const Paths *paths, uint32_t number)
                                      .kernel    = paths->kernels.shadows,
                                      .in        = LIST_ALL,
                                      .out       = NO_LIST,
-                                     .constants = {RAYS_AS_CHOSEN}});
+                                     .constants = {.phase = RAYS_AS_CHOSEN}});
 }
 
 /* The march of rays that surfaces have scattered, which may begin anywhere. */
@@ -75,11 +74,11 @@ static March march_of_paths(const Paths *paths)
 
 static bool add_paths(Job *job, Plan *plan, uint32_t bounces)
 {
-    const KrsRenderOptions *o       = &job->options;
-    KrsRendering           *r       = job->rendering;
-    Paths                   paths   = {.job = job, .plan = plan, .bounces = bounces};
-    paths.weight                    = WEIGHT_BOUNCES / (float)(bounces + 1);
-    plan->has_paths                 = true;
+    const KrsRenderOptions *o     = &job->options;
+    KrsRendering           *r     = job->rendering;
+    Paths                   paths = {.job = job, .plan = plan, .bounces = bounces};
+    paths.weight                  = WEIGHT_BOUNCES / (float)(bounces + 1);
+    plan->has_paths               = true;
     if (!primary_add_marches(job, plan, WEIGHT_PRIMARY, NULL) ||
         !renderer_create_escapes(r->renderer, r->rays, &r->spirv_ms, &r->pipeline_ms) ||
         !rendering_paths(r, o->trace, o->schedule, o->normals, &paths.kernels))

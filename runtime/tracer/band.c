@@ -39,7 +39,7 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths)
     Band              *band          = &rendering->band;
     const bool         read_in_place = gpu_is_cpu(gpu); /* the host reads the device's buffer */
     const Where        shared        = read_in_place ? SHARED : ON_DEVICE;
-    const VkDeviceSize hit     = HIT_BYTES + (paths ? PATH_BYTES : 0);
+    const VkDeviceSize hit           = HIT_BYTES + (paths ? PATH_BYTES : 0);
     const VkDeviceSize results = pixels * RESULT_ROWS * RESULT_BYTES, beams = most_beams(pixels);
     const struct {
         Buffer      *buffer;

@@ -61,7 +61,7 @@ struct KrsRenderer {
 
 /* The buffers that hold a band of the picture. */
 typedef struct Band {
-    uint64_t pixels; /* the most that fit; 0: there are no buffers */
+    uint64_t pixels;    /* the most that fit; 0: there are no buffers */
     bool     has_paths; /* there are rows for the path of each */
     Buffer   ends, hits, results, queue, taken, tiles;
     /* A copy of the results for the host; none where the host reads `results` directly. */

@@ -146,12 +146,12 @@ bool rendering_paths(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedu
     const RayKind rays  = rendering->rays;
     const bool    roots = rendering_has_roots(rendering, trace);
     rendering->rays     = RAYS_OF_PATHS;
-    kernels->march   = rendering_trace(rendering, trace_of_paths(trace), schedule,
-                                       group_of_paths(rendering));
-    kernels->normals = rendering_normals_kernel(rendering, normals, 0);
-    kernels->scatter = find_kernel(rendering, "scatter.comp", variant_of_scatter(rendering));
-    kernels->shadows = rendering_secondary(rendering, schedule, roots);
-    rendering->rays  = rays;
+    kernels->march      = rendering_trace(rendering, trace_of_paths(trace), schedule,
+                                          group_of_paths(rendering));
+    kernels->normals    = rendering_normals_kernel(rendering, normals, 0);
+    kernels->scatter    = find_kernel(rendering, "scatter.comp", variant_of_scatter(rendering));
+    kernels->shadows    = rendering_secondary(rendering, schedule, roots);
+    rendering->rays     = rays;
     return kernels->march && kernels->normals && kernels->scatter && kernels->shadows;
 }
 
@@ -219,9 +219,9 @@ static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedu
     const RayKind rays      = rendering->rays;
     request_marches(requests, trace, schedule);
     rendering->rays = RAYS_OF_PATHS;
-    request(requests, "trace.comp",
-            variant_of_trace(rendering, trace_of_paths(trace), schedule,
-                             group_of_paths(rendering)));
+    request(
+        requests, "trace.comp",
+        variant_of_trace(rendering, trace_of_paths(trace), schedule, group_of_paths(rendering)));
     request(requests, "normals.comp",
             variant_of_normals(rendering, rendering_normals(rendering, KRS_NORMALS_DEFAULT), 0));
     request(requests, "scatter.comp", variant_of_scatter(rendering));

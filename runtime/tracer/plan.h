@@ -48,7 +48,7 @@ typedef struct Plan {
     Gpu     *gpu; /* whose allocator the passes come from */
     Pass    *passes;
     size_t   count, room;
-    double   weight; /* of all passes together */
+    double   weight;                             /* of all passes together */
     March    marches[2 + KRS_MOST_MARCH_GROUPS]; /* of primary rays, and of those of paths */
     size_t   march_count;
     uint32_t halo;           /* pixels on each side of a band that are traced as well */

@@ -89,8 +89,8 @@ static bool add_planes(Job *job, Primary *primary)
 /* Finds the kernel of normals for a march group. */
 static bool find_own_normals(Job *job, uint32_t march_group, OwnGroup *group)
 {
-    *group = (OwnGroup){march_group, rendering_normals_kernel(
-                                         job->rendering, job->options.normals, march_group)};
+    *group = (OwnGroup){
+        march_group, rendering_normals_kernel(job->rendering, job->options.normals, march_group)};
     return group->normals != NULL;
 }
 
@@ -130,10 +130,9 @@ static bool add_whole(Job *job, Plan *plan, float weight)
     const bool outside = job->begins_outside, planes = rendering_knows_planes(r) && outside;
     const bool packed = outside && rendering_marches_packed(r, options->components, options->trace);
     const uint32_t group = packed ? MARCH_PACKED : planes ? MARCH_WITHOUT_PLANES : 0;
-    March          march = {.schedule = options->schedule,
-                            .phase    = KRS_PHASE_PRIMARY,
-                            .flops    = r->program->flops};
-    march.rays           = rendering_trace(r, options->trace, options->schedule, group);
+    March          march = {
+                 .schedule = options->schedule, .phase = KRS_PHASE_PRIMARY, .flops = r->program->flops};
+    march.rays = rendering_trace(r, options->trace, options->schedule, group);
     if (job_has_beams(job))
         march.beams = rendering_beams(r, options->trace, options->schedule, group);
     if (planes)
@@ -144,8 +143,8 @@ static bool add_whole(Job *job, Plan *plan, float weight)
 
 bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary)
 {
-    KrsRendering *r          = job->rendering;
-    const bool per_component = job->begins_outside &&
+    KrsRendering *r             = job->rendering;
+    const bool    per_component = job->begins_outside &&
                                rendering_marches_per_component(r, job->options.components);
     if (primary)
         *primary = (Primary){0};

@@ -7,6 +7,14 @@ struct KrsSurface {
     float roughness;
     float metallic;
     vec3  emission;
+    float specular;
+    float ior;
+    float transmission;
+    vec3  absorption;
+    float coat;
+    float coat_roughness;
+    vec3  sheen;
+    float sheen_roughness;
     uint  component;
     uint  level;
     uint  instance;
@@ -155,7 +163,7 @@ KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
     bool b2 = s0 < s1;
     float t3 = mix(0.0, 2.0, b2);
     uint n4 = b2 ? n0 : n1;
-    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 1u, uint(t3), n4, normal);
+    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 1u, uint(t3), n4, normal);
 }
 
 float krs_distance(vec3 p)
