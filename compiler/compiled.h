@@ -13,6 +13,13 @@ typedef struct KrsLight {
     double color[3];   /* linear, already times intensity */
     double softness;   /* directional: angular diameter, radians; positional: radius */
     bool   shadow;
+    /* Of a rectangle or a spot, else 0: unit vectors in which it shines, to its right, and up. */
+    double axis[3], right[3], up[3];
+    bool   rectangle; /* it shines from a rectangle, to one side */
+    double size[2];   /* whose sides are these */
+    bool   spot;      /* it shines within a cone alone */
+    double angle;     /* of the cone, radians from side to side */
+    double edge;      /* the part of it over which the light fades, 0 to 1 */
 } KrsLight;
 
 typedef struct KrsSky {

@@ -35,7 +35,7 @@ typedef struct CameraRoots {
     Node eye, target, up, fov, height;
 } CameraRoots;
 typedef struct LightRoots {
-    Node vector, color, softness;
+    Node vector, color, softness, target, angle, edge, size;
 } LightRoots;
 typedef struct SkyRoots {
     Node zenith, horizon, ground;

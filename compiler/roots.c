@@ -63,7 +63,9 @@ static void gather_view(const Scene *s, const Roots *roots)
     }
     for (size_t i = 0; i < s->lights.count; i++) {
         const SceneLight *light = &s->lights.items[i];
-        *light_roots(roots, i)  = (LightRoots){light->vector, light->color, light->softness};
+        *light_roots(roots, i)  = (LightRoots){light->vector, light->color, light->softness,
+                                               light->target, light->angle, light->edge,
+                                               light->size};
     }
     const SceneFog *fog = &s->fog;
     *sky_roots(roots)   = (SkyRoots){s->zenith,    s->horizon, s->ground, fog->color,

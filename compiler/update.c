@@ -274,7 +274,9 @@ static bool same_lights(const KrsScene *a, const KrsScene *b)
     bool same = a->light_count == b->light_count;
     for (size_t i = 0; same && i < a->light_count; i++)
         same = a->lights[i].positional == b->lights[i].positional &&
-               a->lights[i].shadow == b->lights[i].shadow;
+               a->lights[i].shadow == b->lights[i].shadow &&
+               a->lights[i].rectangle == b->lights[i].rectangle &&
+               a->lights[i].spot == b->lights[i].spot;
     return same;
 }
 

@@ -17,6 +17,7 @@ static const struct BlockProperty {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     {SYNTAX_MATERIAL, #name, false},
 #include "compiler/shape/surface.def"
+    /* clang-format off: a row for each */
     {SYNTAX_CAMERA, "eye", false},        {SYNTAX_CAMERA, "target", false},
     {SYNTAX_CAMERA, "up", false},         {SYNTAX_CAMERA, "fov", false},
     {SYNTAX_CAMERA, "projection", false}, {SYNTAX_CAMERA, "height", false},
@@ -25,17 +26,20 @@ static const struct BlockProperty {
     {SYNTAX_LIGHT, "position", false},    {SYNTAX_LIGHT, "color", false},
     {SYNTAX_LIGHT, "intensity", false},   {SYNTAX_LIGHT, "softness", false},
     {SYNTAX_LIGHT, "radius", false},      {SYNTAX_LIGHT, "shadow", false},
-    {SYNTAX_LIGHT, "size", true},         {SYNTAX_SKY, "zenith", false},
-    {SYNTAX_SKY, "horizon", false},       {SYNTAX_SKY, "ground", false},
-    {SYNTAX_SKY, "sun", false},           {SYNTAX_SKY, "image", true},
-    {SYNTAX_SKY, "rotation", true},       {SYNTAX_FOG, "color", false},
-    {SYNTAX_FOG, "density", false},       {SYNTAX_FOG, "height", false},
-    {SYNTAX_FOG, "base", false},          {SYNTAX_IMAGE, "size", false},
-    {SYNTAX_IMAGE, "samples", false},     {SYNTAX_IMAGE, "integrator", false},
-    {SYNTAX_IMAGE, "exposure", false},    {SYNTAX_IMAGE, "tone_map", false},
-    {SYNTAX_IMAGE, "error", false},       {SYNTAX_IMAGE, "frames", true},
-    {SYNTAX_IMAGE, "rate", true},         {SYNTAX_IMAGE, "bounces", false},
-    {SYNTAX_ZONE, "center", false},       {SYNTAX_ZONE, "radius", false},
+    {SYNTAX_LIGHT, "size", false},        {SYNTAX_LIGHT, "target", false},
+    {SYNTAX_LIGHT, "angle", false},       {SYNTAX_LIGHT, "edge", false},
+    {SYNTAX_SKY, "zenith", false},        {SYNTAX_SKY, "horizon", false},
+    {SYNTAX_SKY, "ground", false},        {SYNTAX_SKY, "sun", false},
+    {SYNTAX_SKY, "image", true},          {SYNTAX_SKY, "rotation", true},
+    {SYNTAX_FOG, "color", false},         {SYNTAX_FOG, "density", false},
+    {SYNTAX_FOG, "height", false},        {SYNTAX_FOG, "base", false},
+    {SYNTAX_IMAGE, "size", false},        {SYNTAX_IMAGE, "samples", false},
+    {SYNTAX_IMAGE, "integrator", false},  {SYNTAX_IMAGE, "exposure", false},
+    {SYNTAX_IMAGE, "tone_map", false},    {SYNTAX_IMAGE, "error", false},
+    {SYNTAX_IMAGE, "frames", true},       {SYNTAX_IMAGE, "rate", true},
+    {SYNTAX_IMAGE, "bounces", false},     {SYNTAX_ZONE, "center", false},
+    {SYNTAX_ZONE, "radius", false},
+    /* clang-format on */
 };
 enum { BLOCK_PROPERTY_COUNT = sizeof block_properties / sizeof *block_properties };
 

@@ -53,6 +53,53 @@ static void warn_of_light(Elaboration *e, const Environment *env, const Syntax *
         warn_of_turns(e, angle, evaluate(e, env, angle));
 }
 
+/* The sides of a light that is a rectangle. */
+static Node light_size(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    const Syntax *size  = find_property(syntax, "size");
+    Value         value = size ? evaluate(e, env, size) : (Value){.type = VALUE_ERROR};
+    Node          sides[2];
+    bool          good = value.type == VALUE_LIST && value.list->count == 2;
+    for (int i = 0; good && i < 2; i++) {
+        good     = value_size(e, value.list->items[i]) == 1;
+        sides[i] = good ? value_node(e, value.list->items[i]) : NODE_NONE;
+        good     = good && node_range(e->builder, sides[i], 0).low >= 0;
+    }
+    if (good)
+        return graph_op3(e->graph, OP_vec3, sides[0], sides[1], graph_number(e->graph, 0));
+    if (value.type != VALUE_ERROR) {
+        Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, size->span,
+                              "`size` of a light must be two lengths that are not negative");
+        diag->help = "for example `size: [2, 1]`: how wide and how high it is";
+    }
+    return graph_constant(e->graph, TYPE_VEC3, ORIGIN);
+}
+
+/* What a light has that shines to one side. */
+static void aim_light(Elaboration *e, const Environment *env, const Syntax *syntax,
+                      SceneLight *light)
+{
+    static const char *const own[] = {"target", "size", "angle", "edge"};
+    const Syntax            *angle = find_property(syntax, "angle");
+    light->rectangle               = find_property(syntax, "size") != NULL;
+    light->spot                    = angle != NULL;
+    light->target                  = vector_property(e, env, syntax, "target", ORIGIN);
+    light->angle                   = number_property(e, env, syntax, "angle", 0);
+    light->edge                    = number_property(e, env, syntax, "edge", 0.2);
+    light->size                    = light_size(e, env, syntax);
+    if (angle)
+        warn_of_turns(e, angle, evaluate(e, env, angle));
+    for (size_t i = 0; !light->positional && i < sizeof own / sizeof *own; i++) {
+        const Syntax *given = find_property(syntax, own[i]);
+        if (!given)
+            continue;
+        Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, given->span,
+                              "a light of a `direction` has no `%s`", own[i]);
+        diag->help =
+            "a light at a `position` has: `light lamp { position: [0, 3, 0], angle: 40deg }`";
+    }
+}
+
 static void add_light(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     const Syntax *direction = find_property(syntax, "direction");
@@ -72,6 +119,7 @@ static void add_light(Elaboration *e, const Environment *env, const Syntax *synt
     light.color    = graph_op2(e->graph, OP_scale, color, intensity);
     light.softness = number_property(e, env, syntax, position ? "radius" : "softness", 0);
     warn_of_light(e, env, syntax);
+    aim_light(e, env, syntax, &light);
     if (direction)
         check_direction(e, light.vector, direction, "the direction of a light");
     const Syntax *shadow = find_property(syntax, "shadow");
@@ -254,7 +302,11 @@ static void default_sun(Elaboration *e)
     SceneLight sun = {.shadow   = true,
                       .vector   = graph_vec3(e->graph, -0.5, 1, 0.6),
                       .color    = graph_vec3(e->graph, 2.9, 2.75, 2.5),
-                      .softness = graph_number(e->graph, 0.02)};
+                      .softness = graph_number(e->graph, 0.02),
+                      .target   = graph_constant(e->graph, TYPE_VEC3, ORIGIN),
+                      .angle    = graph_number(e->graph, 0),
+                      .edge     = graph_number(e->graph, 0),
+                      .size     = graph_constant(e->graph, TYPE_VEC3, ORIGIN)};
     array_push(e->arena, &e->scene->lights, sun);
 }
 

@@ -27,7 +27,10 @@ typedef struct SceneCamera {
 
 typedef struct SceneLight {
     bool positional, shadow;
+    bool rectangle, spot;
     Node vector, color, softness;
+    Node target, angle, edge; /* of a spot: the whole angle, and the part of it that fades */
+    Node size;                /* of a rectangle */
 } SceneLight;
 
 typedef struct SceneImage {

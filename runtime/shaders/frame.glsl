@@ -49,7 +49,7 @@ uvec2 load_end(uint index) { return ends[index]; }
 vec4  load_hit_row(uint number) { return hits[number]; }
 #else
 layout(std430, set = 1, binding = HITS_BINDING) writeonly buffer Hits { vec4 hits[]; };
-// A table of albedos; then lights, and the rays of a list behind them, two texels each.  The other texels are those of
+// A table of albedos; then lights, and behind them the rays of a list, two texels each.  The other texels are those of
 // the buffers above (layouts.c).
 layout(set = 1, binding = INPUT_TEXELS_BINDING) uniform usamplerBuffer input_texels;
 layout(set = 1, binding = END_TEXELS_BINDING) uniform usamplerBuffer end_texels;
@@ -80,9 +80,23 @@ void load_frame()
 
 Light find_light(uint number)
 {
-    vec4  vector = uintBitsToFloat(load_input(ALBEDO_ROWS + 2u * number));
-    uvec4 color = load_input(ALBEDO_ROWS + 2u * number + 1u);
-    return Light(vector.xyz, vector.w, uintBitsToFloat(color.xyz), color.w);
+    uint  row = ALBEDO_ROWS + LIGHT_ROWS * number;
+    vec4  vector = uintBitsToFloat(load_input(row));
+    uvec4 color = load_input(row + 1u);
+    vec4  right = uintBitsToFloat(load_input(row + 2u));
+    vec4  up = uintBitsToFloat(load_input(row + 3u));
+    return Light(vector.xyz, vector.w, uintBitsToFloat(color.xyz), color.w, right.xyz, right.w,
+                 up.xyz, up.w);
+}
+
+// The part of its light that a light sends into a direction: 1, unless it shines to one side.
+float find_share(Light light, vec3 direction)
+{
+    bool  rectangle = (light.kind & LIGHT_RECTANGLE) != 0u, spot = (light.kind & LIGHT_SPOT) != 0u;
+    vec3  axis = cross(light.right, light.up);
+    float cosine = dot(axis, direction) * inversesqrt(max(dot(axis, axis), 1e-30));
+    float share = rectangle ? max(cosine, 0.0) : 1.0;
+    return spot ? share * smoothstep(light.outer, light.inner + 1e-6, cosine) : share;
 }
 
 // A row of the hit in a slot (hit_lists.glsl).
@@ -146,9 +160,9 @@ void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float b
               out float slope)
 {
     uvec2 pixel = min(uvec2(image_point) - work.corner, work.extent - 1u);
-    uint  number = control.lights + LIGHTS_AT_ONCE + pixel.y * work.extent.x + pixel.x;
-    vec4  start = uintBitsToFloat(load_input(ALBEDO_ROWS + 2u * number));
-    vec4  ahead = uintBitsToFloat(load_input(ALBEDO_ROWS + 2u * number + 1u));
+    uint  number = pixel.y * work.extent.x + pixel.x;
+    uint  row = ALBEDO_ROWS + LIGHT_ROWS * (control.lights + LIGHTS_AT_ONCE) + 2u * number;
+    vec4  start = uintBitsToFloat(load_input(row)), ahead = uintBitsToFloat(load_input(row + 1u));
     origin = start.xyz;
     base = start.w;
     direction = ahead.xyz;

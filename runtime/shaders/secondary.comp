@@ -134,6 +134,12 @@ void aim_at_light(vec3 normal)
         vec3 right, up;
         vec2 point = radius * sample_disc(1u + control.light);
         find_frame(axis, right, up);
+        if ((light.kind & LIGHT_RECTANGLE) != 0u) {
+            uvec2 pixel = work.corner + pixel_of(hit.slot);
+            point = 2.0 * sample_square(pixel, control.ray, 1u + control.light, control.seed) - 1.0;
+            right = light.right;
+            up = light.up;
+        }
         toward += point.x * right + point.y * up;
         light_distance = length(toward);
         end = positional ? light_distance : end;

@@ -71,7 +71,7 @@ vec3 direct_light(Light light, HitPoint hit, Coat coat, vec3 facing, float visib
         vec3  difference = light.vector - hit.position;
         float square = max(dot(difference, difference), 1e-12);
         toward = difference * inversesqrt(square);
-        color /= square;
+        color *= find_share(light, -toward) / square;
     }
     // Rays do not test lights without shadows, but a surface that faces away from one is dark.
     if ((light.kind & LIGHT_CASTS_SHADOWS) == 0u)

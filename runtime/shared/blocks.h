@@ -271,8 +271,15 @@ struct Light {
     vec3  vector;   /* direction towards the light (unit), or its position */
     float softness; /* angular diameter in radians, or radius */
     vec3  color;
-    uint  kind; /* the bits below */
+    uint  kind;  /* the bits below */
+    vec3  right; /* of a light that shines to one side: half its width; of a spot a unit vector */
+    float inner; /* of a spot: the cosine within which it has its full light, */
+    vec3  up;    /* likewise half its height; the cross product of both is where it shines */
+    float outer; /* and the one outside of which it has none */
 };
+CONSTANT(LIGHT_ROWS, 4);
+CONSTANT(LIGHT_RECTANGLE, 4);
+CONSTANT(LIGHT_SPOT, 8);
 /* Before the lights is albedo_table.def: ALBEDO_SIDE * ALBEDO_SIDE rows. */
 CONSTANT(ALBEDO_SIDE, 16);
 CONSTANT(ALBEDO_ROWS, 256);
@@ -293,7 +300,7 @@ enum { RESULT_NUMBERS = 4, RESULT_BYTES = 4 * RESULT_NUMBERS, DEPTH_NUMBER = 3 }
 /* Of packed values, and of those in rows, the host needs the size only. */
 enum { END_BYTES = 8, HIT_BYTES = 16 * HIT_ROWS, PATH_BYTES = 16 * PATH_ROWS, MARCH_BYTES = 32 };
 typedef struct Light LightBlock;
-static_assert(sizeof(LightBlock) == 32, "std430");
+static_assert(sizeof(LightBlock) == 16 * LIGHT_ROWS, "std430");
 typedef struct ListedRay ListedRayBlock;
 static_assert(sizeof(ListedRayBlock) == 32, "std430");
 #endif

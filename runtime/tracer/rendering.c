@@ -272,6 +272,22 @@ static bool make_room(KrsRendering *rendering, size_t lights, size_t rays)
     return true;
 }
 
+static void aim_light(const KrsLight *light, LightBlock *block)
+{
+    for (int k = 0; k < 3; k++) {
+        block->right[k] = (float)(light->right[k] * (light->rectangle ? 0.5 * light->size[0] : 1));
+        block->up[k]    = (float)(light->up[k] * (light->rectangle ? 0.5 * light->size[1] : 1));
+    }
+    block->outer = (float)cos(0.5 * light->angle);
+    block->inner = (float)cos(0.5 * light->angle * (1 - light->edge));
+}
+
+/* The radius of a disc as large as a rectangle. */
+static double radius_of(const KrsLight *light)
+{
+    return light->rectangle ? sqrt(light->size[0] * light->size[1] / M_PI) : light->softness;
+}
+
 bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count,
                           const double rebase_origin[3], size_t rays)
 {
@@ -280,9 +296,11 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
     LightBlock *blocks = lights_of(rendering);
     for (size_t i = 0; i < count; i++) {
         const KrsLight *light = &lights[i];
-        blocks[i].kind        = (light->positional ? LIGHT_POSITIONAL : 0) |
-                         (light->shadow ? LIGHT_CASTS_SHADOWS : 0);
-        blocks[i].softness = (float)light->softness;
+        aim_light(light, &blocks[i]);
+        blocks[i].kind = (light->positional ? LIGHT_POSITIONAL : 0) |
+                         (light->shadow ? LIGHT_CASTS_SHADOWS : 0) |
+                         (light->rectangle ? LIGHT_RECTANGLE : 0) | (light->spot ? LIGHT_SPOT : 0);
+        blocks[i].softness = (float)radius_of(light);
         for (int k = 0; k < 3; k++) {
             blocks[i].vector[k] = (float)(light->vector[k] -
                                           (light->positional ? rebase_origin[k] : 0));
