@@ -43,6 +43,14 @@ static Material *material_new(Elaboration *e, const char *name)
     return material;
 }
 
+/* Whether previews may have to follow a ray that this material mirrors or refracts (mirrors.glsl). */
+static bool sends_rays(Elaboration *e, const Material *material)
+{
+    const bool metal = node_range(e->builder, material->metallic, 0).high > 0;
+    return node_range(e->builder, material->transmission, 0).high > 0 ||
+           node_range(e->builder, material->roughness, 0).low < (metal ? 0.3 : 0.12);
+}
+
 Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     check_block(e, syntax);
@@ -52,7 +60,8 @@ Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *s
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     material_property(e, env, syntax, #name, TYPE_##type, (high) <= 1, &material->name);
 #include "compiler/shape/surface.def"
-    e->in_material = outer;
+    e->in_material    = outer;
+    e->scene->mirrors = e->scene->mirrors || sends_rays(e, material);
     return (Value){.type = VALUE_MATERIAL, .material = material};
 }
 

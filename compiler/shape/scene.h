@@ -69,6 +69,7 @@ typedef struct Scene {
     SceneFog   fog;
     Node       zone; /* the depth of OP_POINT in zones, negative outside; NODE_NONE without any */
     size_t     zone_count;
+    bool       mirrors; /* a material is smooth enough to show images, or lets light through */
     SceneImage image;
     Box        box; /* around all components */
 } Scene;

@@ -58,20 +58,6 @@ static void add_surface(const Paths *paths, uint32_t number)
                                      .constants = {.phase = RAYS_AS_CHOSEN}});
 }
 
-/* The march of rays that surfaces have scattered, which may begin anywhere. */
-static March march_of_paths(const Paths *paths)
-{
-    const KrsRendering *r     = paths->job->rendering;
-    March               march = {.rays     = paths->kernels.march,
-                                 .schedule = paths->job->options.schedule,
-                                 .phase    = KRS_PHASE_BOUNCES,
-                                 .of_paths = true,
-                                 .flops    = r->program->flops};
-    if (rendering_knows_planes(r))
-        primary_clip_to_rest(paths->job, &march);
-    return march;
-}
-
 static bool add_paths(Job *job, Plan *plan, uint32_t bounces)
 {
     const KrsRenderOptions *o     = &job->options;
@@ -81,9 +67,9 @@ static bool add_paths(Job *job, Plan *plan, uint32_t bounces)
     plan->has_paths               = true;
     if (!primary_add_marches(job, plan, WEIGHT_PRIMARY, NULL) ||
         !renderer_create_escapes(r->renderer, r->rays, &r->spirv_ms, &r->pipeline_ms) ||
-        !rendering_paths(r, o->trace, o->schedule, o->normals, &paths.kernels))
+        !rendering_paths(r, o->trace, o->schedule, o->normals, KRS_FOR_PATHS, &paths.kernels))
         return false;
-    const March march = march_of_paths(&paths);
+    const March march = primary_march_of_paths(job, paths.kernels.march);
     for (uint32_t number = 0; number <= bounces; number++) {
         add_surface(&paths, number);
         if (number == 0 && bounces > 0)

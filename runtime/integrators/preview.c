@@ -4,11 +4,15 @@
  *
  * Rays for occlusion and shadows start at the hits of primary rays.  Neighbouring pixels share what
  * these rays find (shared.glsl).
+ *
+ * What smooth surfaces mirror, and what glass lets through, is followed for a few surfaces: one ray
+ * goes on from each (mirrors.glsl).  There light is the same, less what is occluded.
  */
 #include "runtime/integrators/integrators.h"
 #include "runtime/tracer/kernels.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/primary.h"
+#include "runtime/tracer/renderer.h"
 
 /* The fractions of the time that passes take, about. */
 #define WEIGHT_MARCH      0.5f
@@ -16,6 +20,9 @@
 #define WEIGHT_NORMALS    0.1f
 #define WEIGHT_OCCLUSION  0.1f
 #define WEIGHT_LIGHTS     0.28f
+#define WEIGHT_MIRRORS    0.3f /* where there are any */
+
+#define MIRRORED_SURFACES 6 /* that a ray is followed to: into glass, out, and what is behind */
 
 typedef struct Preview {
     Job    *job;
@@ -27,17 +34,24 @@ typedef struct Preview {
 
 /* ---- passes ---- */
 
-/* Adds a pass of a kernel without a scene over a list; `out`: the list that it writes. */
-static void add_pixels(Preview *p, KrsPhase phase, PixelKernel kernel, ListId in, ListId out,
-                       PassConstants constants, float weight)
+/* Adds a pass of a kernel over a list; `out`: the list that it writes. */
+static void add_items(Preview *p, KrsPhase phase, const Kernel *kernel, ListId in, ListId out,
+                      PassConstants constants, float weight)
 {
     plan_add(p->plan, (Pass){.kind      = PASS_ITEMS,
                              .phase     = phase,
                              .weight    = weight,
-                             .kernel    = job_pixel_kernel(p->job, kernel),
+                             .kernel    = kernel,
                              .in        = in,
                              .out       = out,
                              .constants = constants});
+}
+
+/* The same by a kernel without a scene. */
+static void add_pixels(Preview *p, KrsPhase phase, PixelKernel kernel, ListId in, ListId out,
+                       PassConstants constants, float weight)
+{
+    add_items(p, phase, job_pixel_kernel(p->job, kernel), in, out, constants, weight);
 }
 
 /* Adds a pass of rays from the hits of a list; `clears_shared`: no word of shared.glsl is known
@@ -159,10 +173,64 @@ static void add_lights(Preview *p, const Kernel *shade)
                                  .weight    = 0.2f * each,
                                  .kernel    = shade,
                                  .in        = LIST_ALL,
-                                 .out       = NO_LIST,
+                                 .out       = p->plan->has_paths ? LIST_OF_PATHS : NO_LIST,
                                  .constants = {.light = first}});
         first += LIGHTS_AT_ONCE;
     } while (first < count);
+}
+
+/* ---- mirrors and glass ---- */
+
+/* Adds the light of the surfaces that rays have been followed to.  `ends`: no ray goes on. */
+static void add_mirrored_lights(Preview *p, const PathKernels *kernels, bool ends, float weight)
+{
+    const KrsView *view  = &p->job->view;
+    const uint32_t count = (uint32_t)view->light_count;
+    uint32_t       first = 0;
+    do {
+        for (uint32_t i = 0; i < LIGHTS_AT_ONCE && first + i < count; i++)
+            if (view->lights[first + i].shadow)
+                plan_add(p->plan, (Pass){.kind      = PASS_RAYS,
+                                         .phase     = KRS_PHASE_BOUNCES,
+                                         .weight    = weight,
+                                         .kernel    = kernels->shadows,
+                                         .in        = LIST_ALL,
+                                         .out       = NO_LIST,
+                                         .constants = {.phase = RAYS_TO_LIGHT,
+                                                       .light = first + i,
+                                                       .value = VALUE_VISIBLE + i}});
+        add_items(p, KRS_PHASE_BOUNCES, kernels->scatter, LIST_ALL, LIST_OF_PATHS,
+                  (PassConstants){.phase = ends ? PATHS_END : PATHS_GO_ON, .light = first}, weight);
+        first += LIGHTS_AT_ONCE;
+    } while (first < count);
+}
+
+/* Adds the passes that follow rays from the surfaces that are shaded, one after the other. */
+static bool add_mirrors(Preview *p)
+{
+    Job                    *job    = p->job;
+    KrsRendering           *r      = job->rendering;
+    const KrsRenderOptions *o      = &job->options;
+    const Kernel           *escape = &r->renderer->escapes[RAYS_OF_PATHS];
+    const float             each   = WEIGHT_MIRRORS / MIRRORED_SURFACES;
+    const float             weight = 0.2f * each;
+    PathKernels             kernels;
+    if (!renderer_create_escapes(r->renderer, RAYS_OF_PATHS, &r->spirv_ms, &r->pipeline_ms) ||
+        !rendering_paths(r, o->trace, o->schedule, o->normals, KRS_FOR_PICTURES, &kernels))
+        return false;
+    const March march = primary_march_of_paths(job, kernels.march);
+    for (int i = 0; i < MIRRORED_SURFACES; i++) {
+        if (i == 0)
+            plan_add_march(p->plan, &march, 0.4f * each);
+        else
+            plan_add_march_again(p->plan, 0.4f * each);
+        add_items(p, KRS_PHASE_BOUNCES, escape, LIST_OF_PATHS, LIST_ALL,
+                  (PassConstants){.phase = ESCAPE_TO_SKY}, weight);
+        add_items(p, KRS_PHASE_BOUNCES, kernels.normals, LIST_ALL, NO_LIST, (PassConstants){0},
+                  weight);
+        add_mirrored_lights(p, &kernels, i + 1 == MIRRORED_SURFACES, weight);
+    }
+    return true;
 }
 
 /* ---- the plan ---- */
@@ -195,6 +263,7 @@ bool preview_plan(Job *job, Plan *plan)
     p.filters_shadows = !options->no_upsampling && options->shadows == KRS_SHADOWS_SOFT;
     bool shares       = !options->no_occlusion || (p.filters_shadows && needs_secondary(job));
     plan->halo        = shares ? TILE : 0;
+    plan->has_paths   = job->rendering->program->mirrors;
     if (!primary_add_marches(job, plan, WEIGHT_MARCH, &primary) || !find_secondary(&p))
         return false;
     const Kernel *shade = rendering_shade(job->rendering);
@@ -202,5 +271,5 @@ bool preview_plan(Job *job, Plan *plan)
     primary_add_normals(plan, WEIGHT_NORMALS, &primary);
     add_occlusion(&p);
     add_lights(&p, shade);
-    return shade && !plan->failed;
+    return shade && (!plan->has_paths || add_mirrors(&p)) && !plan->failed;
 }

@@ -10,6 +10,8 @@
  * bounces once.  Sheen is that of Estevez and Kulla (2017).
  */
 
+#include "optics.glsl"
+
 // The least width of a lobe; at most so much a mirror blurs.
 const float LEAST_ALPHA = 1e-3;
 const float COAT_HEAD_ON = 0.04; // reflectance of a coat with an index of refraction of 1.5
@@ -47,11 +49,7 @@ vec3 find_albedo(float cosine, float roughness)
                mix(load_albedo(high), load_albedo(high + 1u), part.x), part.y);
 }
 
-float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }
-
 // ---- microfacets ----
-
-float square(float x) { return x * x; }
 
 // Smith's function: how much of the microfacets is hidden from a direction.
 float find_hidden(vec3 direction, float alpha)
@@ -88,16 +86,6 @@ float schlick(float cosine)
 {
     float left = clamp(1.0 - cosine, 0.0, 1.0), twice = left * left;
     return twice * twice * left;
-}
-
-// The reflectance of a boundary between two media.
-float fresnel(float cosine, float eta)
-{
-    float beyond = 1.0 - (1.0 - cosine * cosine) / (eta * eta);
-    float through = sqrt(max(beyond, 0.0));
-    float across = (cosine - eta * through) / (cosine + eta * through);
-    float along = (eta * cosine - through) / (eta * cosine + through);
-    return beyond > 0.0 ? 0.5 * (across * across + along * along) : 1.0;
 }
 
 // Reflected light times the cosine, of microfacets that mirror all, and its probability.

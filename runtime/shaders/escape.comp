@@ -14,9 +14,7 @@
 #include "sines.glsl"
 #include "light.glsl"
 
-float square(float x) { return x * x; }
-float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }
-
+#include "optics.glsl"
 #include "lights.glsl"
 
 const float FARTHEST = 1e30; // the sky is behind all fog
@@ -83,7 +81,9 @@ bool follow(uvec2 pixel, uint index, inout uint unresolved)
 #endif
     unresolved += ray.unresolved ? 1u : 0u;
     bool lost = ray.unresolved && path.density > 0.0;
-    vec3 found = find_sources(path, hits ? ray.t : INFINITE);
+    vec3 found = vec3(0.0);
+    if (control.phase == ESCAPE_TO_LIGHTS)
+        found = find_sources(path, hits ? ray.t : INFINITE);
     if (!hits) {
         vec3  behind = found + sky_radiance(path.direction);
         float left = let_through(path.origin.y, path.direction.y, FARTHEST);

@@ -69,14 +69,20 @@ vec3 reflected(vec3 normal, vec3 toward_eye, vec3 toward_light, vec3 color, floa
     return (scattered + mirrored * lobe * masked) * light;
 }
 
-// The sky mirrored by the coat: a fit of the split-sum integral (Karis 2014).
-vec3 sky_reflected(vec3 normal, vec3 toward_eye, vec3 color, float roughness, float metallic)
+// The part of light from around that the coat mirrors: a fit of the split-sum integral (Karis 2014).
+vec3 find_mirrored(vec3 normal, vec3 toward_eye, vec3 color, float roughness, float metallic)
 {
     float eye = clamp(dot(normal, toward_eye), 0.0, 1.0);
     vec4  r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
     float a = min(r.x * r.x, exp2(-9.28 * eye)) * r.x + r.y;
     vec2  fit = vec2(-1.04, 1.04) * a + r.zw;
+    return mix(vec3(0.04), color, metallic) * fit.x + fit.y;
+}
+
+// The sky mirrored by the coat.
+vec3 sky_reflected(vec3 normal, vec3 toward_eye, vec3 color, float roughness, float metallic)
+{
     vec3  bounced = reflect(-toward_eye, normal);
     vec3  seen = mix(sky_radiance(bounced), sky_light(normal), roughness);
-    return seen * (mix(vec3(0.04), color, metallic) * fit.x + fit.y);
+    return seen * find_mirrored(normal, toward_eye, color, roughness, metallic);
 }

@@ -202,6 +202,9 @@ void begin_group(uint first)
     light = find_light(control.light);
     positional = (light.kind & LIGHT_POSITIONAL) != 0u;
     radius = light_radius(light);
+#ifdef PATH_RAYS // one sample has no noise
+    radius = control.rays > 1u ? radius : 0.0;
+#endif
     is_cone = control.phase == RAYS_CONES;
 }
 
@@ -210,7 +213,7 @@ void begin_item(uint number, bool saved)
     uint listed = find_listed(control.reading + number);
     bool exists = !is_cone || has_cone(listed);
 #ifdef PATH_RAYS
-    hit = hit_of_path(listed);
+    hit = control.phase == RAYS_AS_CHOSEN ? hit_of_path(listed) : hit_point_of_slot(listed);
 #else
     hit = hit_point_of_slot(!exists ? 0u : is_cone ? cone_of_quarter(listed) : listed);
 #endif
@@ -220,7 +223,10 @@ void begin_item(uint number, bool saved)
     vec3 normal = facing_and_evenness.xyz;
     lift_in_pixels = mix(LIFT, LIFT_OF_EVEN, smoothstep(UNEVEN, EVEN, facing_and_evenness.w));
 #ifdef PATH_RAYS
-    aim_as_chosen(normal);
+    if (control.phase == RAYS_AS_CHOSEN)
+        aim_as_chosen(normal);
+    else
+        aim_at_light(normal);
 #else
     if (control.phase == RAYS_OVER_HEMISPHERE)
         aim_over_hemisphere(normal);
@@ -336,9 +342,11 @@ void end_item()
     }
     unresolved += step_limit > 0u ? 1u : 0u;
 #ifdef PATH_RAYS
-    if (!blocked && !below_horizon)
-        add_light(index_of(pixel_of(hit.slot)), added);
-    return;
+    if (control.phase == RAYS_AS_CHOSEN) {
+        if (!blocked && !below_horizon)
+            add_light(index_of(pixel_of(hit.slot)), added);
+        return;
+    }
 #endif
     float visible = blocked || below_horizon ? 0.0 : 1.0;
     uint  code = below_horizon ? BELOW_HORIZON : blocked ? code_of_width(find_penumbra()) : LIT;

@@ -4,6 +4,9 @@
  * shade.comp: finds the material of each hit, and the light that it sends along its ray.  That is
  * emitted light, light of the sky, and that of LIGHTS_AT_ONCE lights.  All of it is added to the
  * pixel.
+ *
+ * MIRRORS: what smooth surfaces mirror is found by rays, and glass lets them through.  With PATH_RAYS
+ * these are their hits.
  */
 #include "scene.glsl"
 #include "frame.glsl"
@@ -11,6 +14,9 @@
 #include "light.glsl"
 #include "results.glsl"
 #include "planes.glsl"
+#ifdef MIRRORS
+#include "mirrors.glsl"
+#endif
 
 const float EVEN = 0.98;              // less comes from detail, not from curvature
 const float LEAST_NORMAL_REACH = 0.5; // the reach without filtering (normal_reach in job.c)
@@ -25,6 +31,7 @@ struct Coat {
     float mean_length;   // length of this mean
     float roughness, metallic;
     vec3  toward_eye;
+    float traced; // the part of what it mirrors that a ray finds
 };
 
 // Clamps numbers to [0, most]; NaN becomes 0.
@@ -56,8 +63,13 @@ Coat find_coat(HitPoint hit, KrsSurface surface, float evenness)
     vec3  mean = mean_normal(hit.side * surface.normal, mean_length, -hit.direction);
     vec4  coat = saturate(vec4(surface.color, surface.roughness), 1.0);
     float size = length(mean);
+    float traced = 0.0;
+#ifdef MIRRORS // glass scatters nothing
+    coat.rgb *= 1.0 - find_glass(surface);
+    traced = find_traced(surface);
+#endif
     return Coat(coat.rgb, mean / max(size, 1e-6), min(size, 1.0), roughen(coat.a, mean_length),
-                saturate(vec4(surface.metallic), 1.0).x, -hit.direction);
+                saturate(vec4(surface.metallic), 1.0).x, -hit.direction, traced);
 }
 
 // Scattered light is in proportion to the cosine, and so to the mean of the normals, which is
@@ -89,8 +101,24 @@ vec3 ambient(Coat coat, float openness)
                      sky_light(coat.mean_length * coat.normal) * bounce;
     vec3 mirrored = sky_reflected(coat.normal, coat.toward_eye, coat.color, coat.roughness,
                                   coat.metallic);
-    return scattered + mirrored * openness;
+    return scattered + mirrored * openness * (1.0 - coat.traced);
 }
+
+#ifdef MIRRORS
+// Follows what the surface mirrors or lets through.  `weight` is that of the ray that hit it.
+void send_on(HitPoint hit, uint index, KrsSurface surface, Coat coat, vec3 facing, vec3 weight)
+{
+    // The coat has no colour where there is glass, which is found by Fresnel's formulas.
+    vec3 mirrored = find_mirrored(coat.normal, coat.toward_eye, coat.color, coat.roughness,
+                                  coat.metallic);
+    Onward onward = find_onward(hit, surface, coat.normal, mirrored);
+    float spread = frame.pixel_slope;
+#ifdef PATH_RAYS
+    spread = load_path(PATH_DIRECTION, index).w;
+#endif
+    follow_onward(hit, index, onward, facing, weight * onward.part, spread);
+}
+#endif
 
 uint  rows;       // wanted rows of results
 Light lights[LIGHTS_AT_ONCE]; // each lane fetches them once
@@ -112,9 +140,16 @@ void do_item(uint number)
     uint       index = index_of(pixel_of(hit.slot));
     Coat       coat = find_coat(hit, surface, facing.w);
     vec4       radiance = vec4(0.0);
+    vec3       weight = vec3(1.0);
+    float      openness = control.no_occlusion != 0u ? 1.0 : lighting.x;
+#ifdef PATH_RAYS
+    openness = 1.0;
+    weight = load_path(PATH_WEIGHT, index).xyz;
+    weight *= hit.side < 0.0 ? exp(-max(surface.absorption, 0.0) * find_end(index).t) : vec3(1.0);
+#endif
     if (control.light == 0u) {
         radiance.rgb = saturate(vec4(surface.emission, 0.0), BRIGHTEST).rgb +
-                       ambient(coat, control.no_occlusion != 0u ? 1.0 : lighting.x);
+                       ambient(coat, openness);
         radiance.a = 1.0;
     }
     uint end = min(control.light + LIGHTS_AT_ONCE, control.lights);
@@ -129,9 +164,20 @@ void do_item(uint number)
         next = lights[2];
         i++;
     } while (i < end);
+#ifdef MIRRORS // glass mirrors no light to those inside of it
+    radiance.rgb *= hit.side < 0.0 ? 1.0 - find_glass(surface) : 1.0;
+#endif
     float t = find_end(index).t;
     float left = let_through(hit.position.y - t * hit.direction.y, hit.direction.y, t);
-    radiance.rgb = through_fog(radiance.rgb, left, control.light == 0u);
+    radiance.rgb = weight * through_fog(radiance.rgb, left, control.light == 0u);
+#ifdef MIRRORS
+    if (control.phase == PATHS_GO_ON && control.light + LIGHTS_AT_ONCE >= control.lights)
+        send_on(hit, index, surface, coat, facing.xyz, weight * left);
+#endif
+#ifdef PATH_RAYS
+    add_light(index, finite_or_black(radiance.rgb));
+    return;
+#endif
     vec4 sum = find_color(index) + vec4(finite_or_black(radiance.rgb), radiance.a);
     store_planes(index, rows, sum, hit, hit.side * coat.normal, coat.color, surface);
 }

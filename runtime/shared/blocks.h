@@ -187,7 +187,10 @@ CONSTANT(RAYS_CONES, 0);
 CONSTANT(RAYS_TO_LIGHT, 1);
 CONSTANT(RAYS_OVER_HEMISPHERE, 2);
 CONSTANT(RAYS_AS_CHOSEN, 3); /* to the lights that paths have chosen */
-/* phase, of scatter.comp */
+/* phase, of escape.comp */
+CONSTANT(ESCAPE_TO_LIGHTS, 0);
+CONSTANT(ESCAPE_TO_SKY, 1); /* surfaces have shown what mirrors lights, as in previews */
+/* phase, of scatter.comp, and of shade.comp with MIRRORS */
 CONSTANT(PATHS_GO_ON, 0);
 CONSTANT(PATHS_END, 1);
 /* phase, of shadow.comp */

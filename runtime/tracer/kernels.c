@@ -141,7 +141,7 @@ static uint32_t group_of_paths(const KrsRendering *rendering)
 }
 
 bool rendering_paths(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
-                     KrsNormals normals, PathKernels *kernels)
+                     KrsNormals normals, KrsPurpose purpose, PathKernels *kernels)
 {
     const RayKind rays  = rendering->rays;
     const bool    roots = rendering_has_roots(rendering, trace);
@@ -149,7 +149,9 @@ bool rendering_paths(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedu
     kernels->march      = rendering_trace(rendering, trace_of_paths(trace), schedule,
                                           group_of_paths(rendering));
     kernels->normals    = rendering_normals_kernel(rendering, normals, 0);
-    kernels->scatter    = find_kernel(rendering, "scatter.comp", variant_of_scatter(rendering));
+    kernels->scatter    = purpose == KRS_FOR_PATHS
+                              ? find_kernel(rendering, "scatter.comp", variant_of_scatter(rendering))
+                              : rendering_shade(rendering);
     kernels->shadows    = rendering_secondary(rendering, schedule, roots);
     rendering->rays     = rays;
     return kernels->march && kernels->normals && kernels->scatter && kernels->shadows;
@@ -159,7 +161,7 @@ bool rendering_paths(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedu
 
 typedef struct Requests {
     KrsRendering *rendering;
-    KernelRequest items[7 + 2 * KRS_MOST_MARCH_GROUPS];
+    KernelRequest items[9 + 2 * KRS_MOST_MARCH_GROUPS];
     size_t        count;
     bool          failed; /* the failure is noted */
 } Requests;
@@ -198,6 +200,26 @@ static void request_marches(Requests *requests, KrsTrace trace, KrsSchedule sche
     }
 }
 
+/* Requests the kernels of the rays of paths. */
+static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedule)
+{
+    KrsRendering *rendering = requests->rendering;
+    const RayKind rays      = rendering->rays;
+    rendering->rays         = RAYS_OF_PATHS;
+    request(
+        requests, "trace.comp",
+        variant_of_trace(rendering, trace_of_paths(trace), schedule, group_of_paths(rendering)));
+    request(requests, "normals.comp",
+            variant_of_normals(rendering, rendering_normals(rendering, KRS_NORMALS_DEFAULT), 0));
+    if (rendering->purpose == KRS_FOR_PATHS)
+        request(requests, "scatter.comp", variant_of_scatter(rendering));
+    else
+        request(requests, "shade.comp", variant_of_shade(rendering));
+    request(requests, "secondary.comp",
+            variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace)));
+    rendering->rays = rays;
+}
+
 static void request_pictures(Requests *requests, KrsTrace trace, KrsSchedule schedule)
 {
     KrsRendering *rendering = requests->rendering;
@@ -211,23 +233,8 @@ static void request_pictures(Requests *requests, KrsTrace trace, KrsSchedule sch
     request(requests, "secondary.comp",
             variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace)));
     request_marches(requests, trace, schedule);
-}
-
-static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedule)
-{
-    KrsRendering *rendering = requests->rendering;
-    const RayKind rays      = rendering->rays;
-    request_marches(requests, trace, schedule);
-    rendering->rays = RAYS_OF_PATHS;
-    request(
-        requests, "trace.comp",
-        variant_of_trace(rendering, trace_of_paths(trace), schedule, group_of_paths(rendering)));
-    request(requests, "normals.comp",
-            variant_of_normals(rendering, rendering_normals(rendering, KRS_NORMALS_DEFAULT), 0));
-    request(requests, "scatter.comp", variant_of_scatter(rendering));
-    request(requests, "secondary.comp",
-            variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace)));
-    rendering->rays = rays;
+    if (rendering->program->mirrors)
+        request_paths(requests, trace, schedule);
 }
 
 bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
@@ -239,6 +246,7 @@ bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
     if (purpose == KRS_FOR_PICTURES) {
         request_pictures(&requests, trace, schedule_of_kernel(schedule));
     } else if (purpose == KRS_FOR_PATHS) {
+        request_marches(&requests, trace, schedule_of_kernel(schedule));
         request_paths(&requests, trace, schedule_of_kernel(schedule));
     } else {
         request(&requests, "query.comp", variant_of_questions(rendering, schedule));

@@ -27,10 +27,11 @@ Kernel *rendering_point_query(KrsRendering *rendering);
 
 /* The kernels of the rays of paths, whatever the rays of the frame are. */
 typedef struct PathKernels {
-    Kernel *march, *normals, *scatter, *shadows;
+    Kernel *march, *normals, *shadows;
+    Kernel *scatter; /* scatter.comp, or for previews shade.comp */
 } PathKernels;
 bool rendering_paths(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
-                     KrsNormals normals, PathKernels *kernels);
+                     KrsNormals normals, KrsPurpose purpose, PathKernels *kernels);
 
 /* Makes the kernels for a purpose, pictures with default options or queries, unless they exist. */
 bool kernels_create(KrsRendering *rendering, KrsPurpose purpose);

@@ -112,7 +112,8 @@ static bool add_groups(Job *job, Plan *plan, float weight, Primary *primary)
     return own_normals ? add_planes(job, primary) : find_normals(job, primary);
 }
 
-void primary_clip_to_rest(const Job *job, March *march)
+/* Clips rays to the box around all components but planes, which rays intersect without a march. */
+static void clip_to_rest(const Job *job, March *march)
 {
     const KrsProgram *program = job->rendering->program;
     march->boxed              = true;
@@ -136,9 +137,21 @@ static bool add_whole(Job *job, Plan *plan, float weight)
     if (job_has_beams(job))
         march.beams = rendering_beams(r, options->trace, options->schedule, group);
     if (planes)
-        primary_clip_to_rest(job, &march);
+        clip_to_rest(job, &march);
     plan_add_march(plan, &march, weight);
     return march.rays && (march.beams || !job_has_beams(job));
+}
+
+March primary_march_of_paths(const Job *job, Kernel *kernel)
+{
+    March march = {.rays     = kernel,
+                   .schedule = job->options.schedule,
+                   .phase    = KRS_PHASE_BOUNCES,
+                   .of_paths = true,
+                   .flops    = job->rendering->program->flops};
+    if (rendering_knows_planes(job->rendering))
+        clip_to_rest(job, &march);
+    return march;
 }
 
 bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary)

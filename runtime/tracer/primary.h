@@ -22,9 +22,8 @@ typedef struct Primary {
 /* Adds the passes that march, and fills in *primary unless it is NULL: then no normals are wanted.
    False with the failure noted. */
 bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary);
-/* Clips the rays of a march to the box around all components but planes, which rays intersect without
-   a march. */
-void primary_clip_to_rest(const Job *job, March *march);
+/* The march of rays that surfaces have sent on, which may begin anywhere, by this kernel. */
+March primary_march_of_paths(const Job *job, Kernel *kernel);
 /* Adds the passes that find normals.  The pass that lists the hits must be added before. */
 void primary_add_normals(Plan *plan, float weight, const Primary *primary);
 

@@ -120,7 +120,7 @@ bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_
     KernelRequest requests[2];
     size_t        count = 0;
     for (int i = 0; i < 2; i++)
-        if (!renderer->escapes[kinds[i]].pipeline)
+        if (!renderer->escapes[kinds[i]].pipeline && (i == 0 || kind != RAYS_OF_PATHS))
             requests[count++] = (KernelRequest){
                 &renderer->escapes[kinds[i]],
                 {.file = "escape.comp", .defines = ray_defines[kinds[i]][renderer->gpu.texels]}};

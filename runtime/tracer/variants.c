@@ -195,6 +195,8 @@ KernelVariant variant_of_shade(const KrsRendering *rendering)
     KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     want_rays(&to, rendering);
     want(&to, KRS_FUNCTION_SURFACE);
+    if (rendering->program->mirrors)
+        define(&to, "#define MIRRORS\n");
     define_choices(&to);
     return to;
 }

@@ -1,0 +1,60 @@
+/*
+ * mirrors.glsl: how previews follow what a smooth surface mirrors, and what glass lets through.
+ *
+ * One ray goes on from a surface: through glass, else back from a mirror.  So one sample has no
+ * noise.  Where glass lets a ray through, what it mirrors is the sky alone.
+ */
+#include "optics.glsl"
+
+// Roughnesses below which a ray finds what a surface mirrors, and above which it is the sky alone:
+// of metals, and of others.
+const vec2 SMOOTH_METAL = vec2(0.15, 0.3), SMOOTH_BODY = vec2(0.06, 0.12);
+const float LEAST_WEIGHT = 0.004; // rays that count less are not followed
+
+float find_glass(KrsSurface surface)
+{
+    return clamp(surface.transmission, 0.0, 1.0) * (1.0 - clamp(surface.metallic, 0.0, 1.0));
+}
+
+// The part of what a surface mirrors that a ray finds.
+float find_traced(KrsSurface surface)
+{
+    vec2 limits = mix(SMOOTH_BODY, SMOOTH_METAL, clamp(surface.metallic, 0.0, 1.0));
+    return find_glass(surface) > 0.0 ? 0.0 : 1.0 - smoothstep(limits.x, limits.y, surface.roughness);
+}
+
+// The ray that goes on, and the part of its light that the surface sends back.
+struct Onward {
+    vec3  direction, part;
+    float side; // on which it begins, relative to that of the ray: -1 behind the surface
+};
+
+Onward find_onward(HitPoint hit, KrsSurface surface, vec3 normal, vec3 mirrored)
+{
+    Onward onward;
+    float ior = clamp(surface.ior, 1.0001, 4.0), eta = hit.side > 0.0 ? ior : 1.0 / ior;
+    float glass = find_glass(surface);
+    float back = fresnel(clamp(-dot(hit.direction, normal), 0.0, 1.0), eta);
+    bool  refracts = glass > 0.0 && back < 1.0;
+    onward.direction = refracts ? refract(hit.direction, normal, 1.0 / eta)
+                                : reflect(hit.direction, normal);
+    onward.part = refracts      ? glass * (1.0 - back) * clamp(surface.color, 0.0, 1.0)
+                  : glass > 0.0 ? vec3(glass)
+                                : find_traced(surface) * mirrored;
+    onward.side = refracts ? -1.0 : 1.0;
+    return onward;
+}
+
+// Stores the path that goes on, and lists it.
+void follow_onward(HitPoint hit, uint index, Onward onward, vec3 facing, vec3 weight, float spread)
+{
+    float lift = 0.5 * hit.width + 4.0 * hit.rounding;
+    if (largest(weight) < LEAST_WEIGHT || dot(onward.direction, facing) * onward.side <= 0.0)
+        return;
+    store_path(PATH_ORIGIN, index,
+               vec4(hit.position + onward.side * lift * facing, hit.width));
+    store_path(PATH_DIRECTION, index, vec4(normalize(onward.direction), spread));
+    store_path(PATH_WEIGHT, index, vec4(min(weight, 1e30), 1.0));
+    store_path(PATH_TOWARD, index, vec4(0.0, 0.0, 0.0, onward.side * hit.side));
+    tiles[atomicAdd(counts.tiles, 1u)] = hit.slot;
+}

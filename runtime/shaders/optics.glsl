@@ -1,0 +1,16 @@
+/*
+ * optics.glsl: what kernels share that know of light.
+ */
+float square(float x) { return x * x; }
+
+float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }
+
+// The reflectance of a boundary between two media.
+float fresnel(float cosine, float eta)
+{
+    float beyond = 1.0 - (1.0 - cosine * cosine) / (eta * eta);
+    float through = sqrt(max(beyond, 0.0));
+    float across = (cosine - eta * through) / (cosine + eta * through);
+    float along = (eta * cosine - through) / (eta * cosine + through);
+    return beyond > 0.0 ? 0.5 * (across * across + along * along) : 1.0;
+}
