@@ -24,6 +24,8 @@ void main()
     bool runs = words[STOPPED_WORD] == 0u;
     if (runs && next.resets != 0u)
         words[next.counter] = 0u;
+    if (runs && next.clears != 0u)
+        words[next.clears] = 0u;
     words[ITEMS_WORD] = items;
     words[GROUPS_WORD] = runs ? groups : 0u;
     words[GROUPS_WORD + 1u] = 1u;

@@ -84,6 +84,7 @@ struct NextDispatch {
     uint in_group; /* items of a workgroup */
     uint most;     /* most workgroups that may run at once */
     uint number;   /* number of the dispatch in its chain, from 1 */
+    uint clears;   /* a counter to set to 0; 0: none */
 };
 
 /* push_constant of point_query.comp. */
@@ -97,7 +98,7 @@ static_assert(sizeof(FrameBlock) == 208, "std140");
 typedef struct Work WorkBlock;
 static_assert(sizeof(WorkBlock) == 40, "std430");
 typedef struct NextDispatch NextDispatchBlock;
-static_assert(sizeof(NextDispatchBlock) == 24, "std430");
+static_assert(sizeof(NextDispatchBlock) == 28, "std430");
 typedef struct PointWork PointWorkBlock;
 static_assert(sizeof(PointWorkBlock) == 8, "std430");
 #endif

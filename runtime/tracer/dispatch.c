@@ -53,7 +53,7 @@ static bool report(Job *job, double within_phase)
 
 static bool has_scene(const Job *job, const Kernel *kernel)
 {
-    bool is_pixels = false;
+    bool is_pixels = kernel == &job->rendering->renderer->clear_shared;
     for (int i = 0; i < PIXEL_KERNELS; i++)
         is_pixels = is_pixels || kernel == job_pixel_kernel(job, (PixelKernel)i);
     return !is_pixels;
@@ -188,18 +188,17 @@ static void record(Job *job, uint32_t i)
     const Dispatch         *dispatch = &job->chain.list[i];
     const Items            *items    = &dispatch->items;
     VkBuffer                control  = rendering_control(r)->buffer;
-    const NextDispatchBlock next     = {
-            items->counter, items->each, items->resets, dispatch->in_group, most_groups(job, dispatch),
-            i + 1};
-    WorkBlock work = dispatch->work;
-    work.first     = 0;
-    work.groups    = UINT32_MAX; /* all groups, in their order */
-    work.stride    = 1;
-    if (dispatch->clears)
-        vkCmdFillBuffer(job->gpu->commands, control, dispatch->clears * sizeof(uint32_t),
-                        sizeof(uint32_t), 0);
-    if (dispatch->clears_shared)
-        record_unshared(job, &work);
+    const NextDispatchBlock next     = {items->counter,
+                                        items->each,
+                                        items->resets,
+                                        dispatch->in_group,
+                                        most_groups(job, dispatch),
+                                        i + 1,
+                                        dispatch->clears};
+    WorkBlock               work     = dispatch->work;
+    work.first                       = 0;
+    work.groups                      = UINT32_MAX; /* all groups, in their order */
+    work.stride                      = 1;
     vkCmdUpdateBuffer(job->gpu->commands, control, 0, offsetof(ControlBlock, queued),
                       &dispatch->control);
     gpu_barrier(job->gpu);
@@ -275,15 +274,40 @@ bool dispatch_finish(Job *job)
     return true;
 }
 
-bool dispatch_run(Job *job, const Dispatch *dispatch)
+static bool add_to_chain(Job *job, const Dispatch *dispatch)
 {
     Chain *chain = &job->chain;
-    if (!dispatch_chains(job))
-        return run_in_slices(job, dispatch);
     if (chain->count == MOST_CHAINED && !dispatch_finish(job))
         return false;
     chain->list[chain->count++] = *dispatch;
     return true;
+}
+
+/* The dispatch that clears in a chain what neighbours share, before another one. */
+static Dispatch clearing_before(const Job *job, const Dispatch *dispatch)
+{
+    Dispatch         clearing = *dispatch;
+    const LaneBudget budget   = pixel_budget(job);
+    clearing.kernel           = &job->rendering->renderer->clear_shared;
+    clearing.items            = ITEMS_KNOWN(tiles_of_band(&dispatch->work) * QUARTERS_OF_TILE);
+    clearing.in_group         = budget.lanes * budget.items_per_lane;
+    clearing.control.items_per_lane = budget.items_per_lane;
+    clearing.clears                 = 0;
+    return clearing;
+}
+
+bool dispatch_run(Job *job, const Dispatch *dispatch)
+{
+    if (!dispatch_chains(job))
+        return run_in_slices(job, dispatch);
+    Dispatch chained      = *dispatch;
+    chained.clears_shared = false;
+    if (dispatch->clears_shared) {
+        const Dispatch clearing = clearing_before(job, &chained);
+        if (!add_to_chain(job, &clearing))
+            return false;
+    }
+    return add_to_chain(job, &chained);
 }
 
 bool dispatch_together(Job *job, const Dispatch *dispatches, size_t count)

@@ -50,7 +50,8 @@ struct KrsRenderer {
     /* Those for RAYS_OF_CAMERAS are made at once, the others when they are needed. */
     Kernel pixels[RAY_KINDS][PIXEL_KERNELS];
     Kernel escapes[RAY_KINDS];    /* escape.comp, made when paths are traced */
-    Kernel next_dispatch;         /* on graphics cards only (dispatch.c) */
+    Kernel next_dispatch;         /* on graphics cards only (dispatch.c), */
+    Kernel clear_shared;          /* and likewise */
     double spirv_ms, pipeline_ms; /* the time to make these kernels */
     /* For warm-up: sets in which a kernel finds no items, and the buffers of zeros that they
        bind. */

@@ -54,10 +54,13 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
                                                                    : early_outs == KRS_EARLY_OUTS_ON;
     spirv_start();
     renderer->compiler_started               = true;
-    KernelRequest kernels[PIXEL_KERNELS + 1] = {
-        [PIXEL_KERNELS] = {&renderer->next_dispatch, {.file = "next_dispatch.comp"}}};
+    KernelRequest kernels[PIXEL_KERNELS + 2] = {
+        [PIXEL_KERNELS]     = {&renderer->next_dispatch, {.file = "next_dispatch.comp"}},
+        [PIXEL_KERNELS + 1] = {&renderer->clear_shared,
+                               {.file    = "clear_shared.comp",
+                                .defines = ray_defines[RAYS_OF_CAMERAS][renderer->gpu.texels]}}};
     request_pixels(renderer, RAYS_OF_CAMERAS, kernels);
-    const size_t count = PIXEL_KERNELS + (gpu_is_cpu(&renderer->gpu) ? 0 : 1);
+    const size_t count = PIXEL_KERNELS + (gpu_is_cpu(&renderer->gpu) ? 0 : 2);
     if (!layouts_create(renderer) || !kernels_make(renderer, VK_NULL_HANDLE, kernels, count,
                                                    &renderer->spirv_ms, &renderer->pipeline_ms))
         return renderer->gpu.status;
@@ -77,6 +80,7 @@ void krs_renderer_free(KrsRenderer *renderer)
         for (int kind = 0; kind < RAY_KINDS; kind++)
             kernel_destroy(gpu, &renderer->escapes[kind]);
         kernel_destroy(gpu, &renderer->next_dispatch);
+        kernel_destroy(gpu, &renderer->clear_shared);
         layouts_destroy(renderer);
     }
     gpu_close(gpu);

@@ -194,6 +194,14 @@ static const Case cases[] = {
       .trace         = KRS_TRACE_PLAIN,
       .no_beams      = true,
       .schedule      = KRS_SCHEDULE_QUEUE}},
+    /* What later dispatches of a chain clear must be there when the host goes on before them. */
+    {"chains of several lights that stop",
+     "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
+     "light { direction: [-1, 2, 1], intensity: 3, softness: 1deg }"
+     "light { direction: [2, 1, 0], softness: 2deg } light { position: [1, 3, 2], intensity: 8 }"
+     "show sphere(1).move([0, 1, 0]); show box([0.9, 0.9, 0.9]).move([2, 0.5, 0.2]);"
+     "show plane([0, 1, 0], 0);",
+     {.width = 200, .height = 130, .samples = 4, .slice_ms = 1e-3, .schedule = KRS_SCHEDULE_QUEUE}},
     {"components by themselves",
      "def tree(seed) = krs { kernel capsule([0, 0, 0], [0, 0.3, 0], 0.04).move([0, 0.4, 0]);"
      "    for i in 0..6 { reflect plane(random_direction(seed + i), 0.12 * i + 0.05);"
