@@ -227,7 +227,8 @@ vec4 scatter(Bsdf bsdf, vec3 light)
     return vec4(sum, density);
 }
 
-// A direction that light comes from, by the density of `scatter`.
+// A direction that light comes from, by the density of `scatter`; 0 where microfacets mirror below
+// the surface.  If that were a direction, glass would count it as well.
 vec3 sample_direction(Bsdf bsdf, vec2 square_point, float choice)
 {
     vec4 below = bsdf.shares;
@@ -242,5 +243,6 @@ vec3 sample_direction(Bsdf bsdf, vec2 square_point, float choice)
         return sample_glass(bsdf, square_point, (choice - below.y) / bsdf.shares.z);
     float alpha = choice < below.x ? bsdf.coat_alpha : bsdf.alpha;
     vec3  normal = sample_visible(bsdf.eye, alpha, square_point);
-    return 2.0 * dot(bsdf.eye, normal) * normal - bsdf.eye;
+    vec3  light = 2.0 * dot(bsdf.eye, normal) * normal - bsdf.eye;
+    return light.z > 0.0 ? light : vec3(0.0);
 }

@@ -115,7 +115,7 @@ float go_on(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 fa
     vec2  chosen = choose(pixel, 2u);
     vec3  light = sample_direction(bsdf, choose(pixel, 0u), chosen.y);
     vec4  scattered = scatter(bsdf, light);
-    vec3  direction = normalize(out_of(axes, light));
+    vec3  direction = out_of(axes, light) / max(length(light), 1e-6);
     weight *= scattered.rgb / max(scattered.w, 1e-30);
     bool  goes_on = dot(direction, facing.xyz) * light.z > 0.0 && scattered.w > 0.0 &&
                     largest(weight) > 0.0 && largest(weight) < 1e30;
