@@ -135,6 +135,18 @@ float go_on(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 fa
     return goes_on ? side * hit.side : 0.0;
 }
 
+// How long a path's ray has been inside of a solid.  It began somewhat beyond the surface, but the
+// camera's did not; where it leaves a surface nearly along it, no more is added than this cosine
+// says.
+const float LEAST_COSINE = 0.25;
+float find_way(uint index, HitPoint hit, vec3 origin, float t)
+{
+    vec3  lifted = origin - load_path(PATH_SURFACE, index).xyz;
+    float height = length(lifted);
+    float ahead = max(dot(lifted, hit.direction), LEAST_COSINE * height);
+    return control.value == 0u ? t : t + height * height / max(ahead, 1e-30);
+}
+
 void do_item(uint number)
 {
     HitPoint   hit = find_hit_point(number);
@@ -145,7 +157,7 @@ void do_item(uint number)
     uint  index = index_of(pixel);
     float t = find_end(index).t;
     vec3  origin = load_path(PATH_ORIGIN, index).xyz, weight = load_path(PATH_WEIGHT, index).xyz;
-    weight *= hit.side < 0.0 ? exp(-surface.absorption * t) : vec3(1.0);
+    weight *= hit.side < 0.0 ? exp(-surface.absorption * find_way(index, hit, origin, t)) : vec3(1.0);
     float left = let_through(origin.y, hit.direction.y, t);
     vec3  radiance = weight * through_fog(surface.emission, left, true);
     weight *= left;
