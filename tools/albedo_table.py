@@ -3,12 +3,13 @@
 
 How much light microfacets reflect, where they mirror all of it: means over the visible normals of
 GGX (Heitz 2018) with the masking of Smith, and over the sheen of Estevez and Kulla (2017).
-tests/oracle/bsdf.c integrates over the hemisphere instead, and compares.
+tests/oracle/albedo.c integrates over all normals instead, and compares.
 """
 import math
 
 SIDE = 16
-POINTS = 96
+POINTS = 192
+LEAST_SHEEN = 0.3  # the least roughness of sheen, as in bsdf.glsl
 
 
 def lambda_of(cosine, alpha):
@@ -24,7 +25,7 @@ def mirrored(cosine, alpha):
     tall = (alpha * eye[0] / length, eye[1] / length)
     whole = edge = 0.0
     for i in range(POINTS):
-        phi = 2 * math.pi * (i + 0.5) / POINTS
+        phi = math.pi * (i + 0.5) / POINTS  # the other half is the same
         for k in range(POINTS):
             z = (1 - (k + 0.5) / POINTS) * (1 + tall[1]) - tall[1]
             ring = math.sqrt(max(1 - z * z, 0))
@@ -47,7 +48,7 @@ def sheen(cosine, alpha):
     eye = (math.sqrt(1 - cosine * cosine), cosine)
     total = 0.0
     for i in range(POINTS):
-        phi = 2 * math.pi * (i + 0.5) / POINTS
+        phi = math.pi * (i + 0.5) / POINTS  # the other half is the same
         for k in range(POINTS):
             z = (k + 0.5) / POINTS
             ring = math.sqrt(1 - z * z)
@@ -66,14 +67,15 @@ def main():
  * tools/albedo_table.py writes this file.  KRS_ALBEDO: the reflected share of GGX; the part of it
  * that Schlick's factor (1 - cosine)^5 weights; and the share of sheen, which may be above 1.
  * Columns are the square roots of cosines, rows are roughnesses, both from 0 to 1 in ALBEDO_SIDE
- * steps.
+ * steps.  Those of sheen begin at LEAST_SHEEN_ROUGHNESS (bsdf.glsl).
  */""")
     for row in range(SIDE):
         roughness = row / (SIDE - 1)
         for column in range(SIDE):
             cosine = min(max((column / (SIDE - 1)) ** 2, 1e-3), 0.999999)
             alpha = max(roughness * roughness, 1e-3)
-            numbers = mirrored(cosine, alpha) + (sheen(cosine, max(roughness, 0.3) ** 2),)
+            fuzz = LEAST_SHEEN + (1 - LEAST_SHEEN) * roughness
+            numbers = mirrored(cosine, alpha) + (sheen(cosine, fuzz * fuzz),)
             print("KRS_ALBEDO(%.5f, %.5f, %.5f)" % numbers)
 
 

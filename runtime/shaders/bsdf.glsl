@@ -38,7 +38,8 @@ struct Bsdf {
 
 vec3 load_albedo(uint number) { return uintBitsToFloat(load_input(number).xyz); }
 
-// Light that microfacets reflect: all, the part by Schlick's factor, and sheen.
+// Light that microfacets reflect: all, the part by Schlick's factor, and sheen, whose rows begin at
+// its least roughness.
 vec3 find_albedo(float cosine, float roughness)
 {
     vec2  at = clamp(vec2(sqrt(cosine), roughness), 0.0, 1.0) * float(ALBEDO_SIDE - 1u);
@@ -174,7 +175,8 @@ Bsdf make_bsdf(KrsSurface surface, bool entering, vec3 eye)
 
     float fuzz = max(surface.sheen_roughness, LEAST_SHEEN_ROUGHNESS);
     bsdf.sheen_alpha = square(fuzz);
-    float fuzzy = find_albedo(bsdf.eye.z, fuzz).z;
+    float row = (fuzz - LEAST_SHEEN_ROUGHNESS) / (1.0 - LEAST_SHEEN_ROUGHNESS);
+    float fuzzy = find_albedo(bsdf.eye.z, row).z;
     bsdf.sheen_scale = 1.0 / max(fuzzy, 1.0);
     bsdf.under_sheen = 1.0 - max(max(bsdf.sheen.r, bsdf.sheen.g), bsdf.sheen.b) * min(fuzzy, 1.0);
 
