@@ -12,7 +12,7 @@ SUPPORT     := $(addprefix tests/support/, agreement.c bench.c crowd_texts.c dev
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c \
                formulas.c montecarlo.c quaternions.c chain.c chain_random.c map_chain.c \
                deformed.c methods.c primitive_solids.c primitive_figures.c random_scene.c \
-               device_answers.c outline_truth.c rooms.c shadow_stage.c shadow_truth.c twigs.c)
+               device_answers.c outline_truth.c path_stage.c rooms.c shadow_stage.c shadow_truth.c twigs.c)
 UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c queried.c \
                cache_folder.c compiled_files.c crowd_scene.c)
 PROPERTY_SHARED := $(addprefix tests/property/, crowd_parts.c garden.c op_trial.c reach_crowd.c)
@@ -25,7 +25,7 @@ PROPERTY    := ops noise graph simplify facts derive series zeros local along re
 ORACLES     := self primitives krs_expand folds trees maps moebius moebius_images operators cells \
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
-               touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling \
+               albedo furnace paths cornell touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling \
                occlusion curves sweeps hulls lofts places underestimates bounds stencils light sides steep scales agree far sheets ray_lists specialize outlines drawings \
                imports imports_csg imports_pov
 FUZZ        := sentences

@@ -1,0 +1,244 @@
+/*
+ * furnace.c: a ball of many materials, below a sky and a sun.
+ *
+ * In a white furnace, where light comes from all sides alike, a ball that absorbs nothing is not
+ * seen: each of its pixels has the light of the sky.  Light that is lost, or appears, between
+ * microfacets, below a coat or sheen, or as glass and body are mixed, shows at once.
+ *
+ * A sun is found by rays that happen to meet it, and by choosing points of it; how much each of
+ * both counts depends on the probability of each direction.  A far ball that emits is found by
+ * rays alone.  Where probabilities are wrong, the same light differs.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "compiler/compile.h"
+#include "tests/oracle/path_stage.h"
+#include "tests/support/renderer.h"
+
+/* The sun, and the radius at distance 1000 of a ball that looks as large.  The ball emits what the
+   sun's disc does: its irradiance over pi sin(60deg)^2. */
+#define IRRADIANCE 3.0
+#define BALL       866.0254
+#define NO_BALL    0.1
+
+static const char furnace[] =
+    "param rough = 0.5 in [0, 1]; param metal = 0 in [0, 1]; param glass = 0 in [0, 1];\n"
+    "param lacquer = 0 in [0, 1]; param lacquer_rough = 0 in [0, 1];\n"
+    "param fuzz = 0 in [0, 1]; param fuzz_rough = 0.5 in [0, 1];\n"
+    "param index = 1.5 in [1, 4]; param mirrors = 1 in [0, 1]; param shade = [1, 1, 1];\n"
+    "camera { eye: [0, 0, 5], projection: \"orthographic\", height: 2 }\n"
+    "param day = 1 in [0, 1]; param bright = 0 in [0, 100]; param size = 0.1 in [0.1, 900];\n"
+    "sky { zenith: [day, day, day], horizon: [day, day, day], ground: [day, day, day] }\n"
+    "light sun { direction: [0.6, 0.64, 0.48], intensity: bright, softness: 120deg }\n"
+    "material lamp { color: black, specular: 0, emission: 1.2732395 }\n"
+    "show sphere(size).move([600, 640, 480]).paint(lamp);\n"
+    "material m { color: shade, roughness: rough, metallic: metal, transmission: glass,\n"
+    "             coat: lacquer, coat_roughness: lacquer_rough, sheen: [fuzz, fuzz, fuzz],\n"
+    "             sheen_roughness: fuzz_rough, ior: index, specular: mirrors }\n"
+    "show sphere(1).paint(m);\n";
+
+enum { MOST_NUMBERS = 8 };
+
+/* A white material: numbers of the scene's parameters. */
+typedef struct White {
+    const char *name;
+    struct {
+        const char *parameter;
+        double      number;
+    } numbers[MOST_NUMBERS];
+} White;
+
+static const White whites[] = {
+    {"a metal", {{"metal", 1}}},
+    {"half a metal", {{"metal", 0.5}}},
+    {"a dielectric", {{"metal", 0}}},
+    {"a dense dielectric", {{"index", 2.5}}},
+    {"Lambert's", {{"mirrors", 0}}},
+    {"glass", {{"glass", 1}}},
+    {"dense glass", {{"glass", 1}, {"index", 2.5}}},
+    {"half glass", {{"glass", 0.5}}},
+    {"half a metal, half glass", {{"metal", 0.5}, {"glass", 1}}},
+    {"coated", {{"lacquer", 1}}},
+    {"roughly coated", {{"lacquer", 1}, {"lacquer_rough", 0.7}}},
+    {"a coated metal", {{"lacquer", 1}, {"metal", 1}, {"lacquer_rough", 0.3}}},
+    {"coated glass", {{"lacquer", 1}, {"glass", 1}, {"lacquer_rough", 0.5}}},
+    {"cloth", {{"fuzz", 1}, {"fuzz_rough", 0.5}}},
+    {"smooth cloth", {{"fuzz", 1}, {"fuzz_rough", 0}}},
+    {"rough cloth", {{"fuzz", 1}, {"fuzz_rough", 1}}},
+    {"half cloth", {{"fuzz", 0.5}, {"fuzz_rough", 0.8}}},
+    {"all at once",
+     {{"metal", 0.3},
+      {"glass", 0.4},
+      {"lacquer", 0.6},
+      {"lacquer_rough", 0.4},
+      {"fuzz", 0.5},
+      {"fuzz_rough", 0.7}}},
+};
+enum { WHITES = sizeof whites / sizeof *whites };
+
+static const char *const parameters[] = {"rough", "metal",      "glass", "lacquer", "lacquer_rough",
+                                         "fuzz",  "fuzz_rough", "index", "mirrors"};
+
+static PathStage stage;
+
+static int open_furnace(void **state)
+{
+    if (renderer_open(state) != 0)
+        return 1;
+    stage = path_stage_open(furnace);
+    return 0;
+}
+
+static int close_furnace(void **state)
+{
+    path_stage_close(&stage);
+    return renderer_close(state);
+}
+
+static void paint(const White *white, double roughness)
+{
+    static const double usual[] = {0, 0, 0, 0, 0, 0, 0.5, 1.5, 1};
+    for (size_t i = 0; i < sizeof usual / sizeof *usual; i++)
+        path_stage_set(&stage, parameters[i], usual[i]);
+    path_stage_set(&stage, "rough", roughness);
+    for (size_t i = 0; i < MOST_NUMBERS && white->numbers[i].parameter; i++)
+        path_stage_set(&stage, white->numbers[i].parameter, white->numbers[i].number);
+}
+
+/* The part of the light that may be lost or appear, beside noise. */
+#define MOST_LOST 0.01
+
+/* Only glass lets paths go on within the ball. */
+static bool has_glass(const White *white)
+{
+    bool found = false;
+    for (size_t i = 0; i < MOST_NUMBERS && white->numbers[i].parameter; i++)
+        found = found || strcmp(white->numbers[i].parameter, "glass") == 0;
+    return found;
+}
+
+static Estimate look(const White *white)
+{
+    return path_stage_estimate(&stage,
+                               (KrsRenderOptions){.width      = 64,
+                                                  .height     = 64,
+                                                  .samples    = 1,
+                                                  .bounces    = has_glass(white) ? 64 : 2,
+                                                  .planes     = KRS_PLANE_COLOR,
+                                                  .integrator = KRS_INTEGRATOR_PATH},
+                               everywhere, 6);
+}
+
+static void white_is_not_seen(void **state)
+{
+    (void)state;
+    size_t wrong = 0;
+    for (size_t i = 0; i < WHITES; i++)
+        for (int k = 0; k <= 3; k++) {
+            const double roughness = k / 3.0;
+            char         name[100];
+            snprintf(name, sizeof name, "%s, roughness %.2f", whites[i].name, roughness);
+            paint(&whites[i], roughness);
+            wrong += !must_be_near(look(&whites[i]), 1, MOST_LOST, name);
+        }
+    assert_int_equal(wrong, 0);
+}
+
+/* Five hundredths that are absorbed are more than what may be wrong. */
+static void gray_is_seen(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < WHITES; i++) {
+        paint(&whites[i], 0);
+        path_stage_set_all(&stage, "shade", 0.95, 0.95, 0.95);
+        if (is_near(look(&whites[i]), 1, MOST_LOST))
+            fail_msg("%s is taken for white", whites[i].name);
+        path_stage_set_all(&stage, "shade", 1, 1, 1);
+    }
+}
+
+/* ---- A sun, and a ball that looks the same ---- */
+
+/* What is seen by one of them: a parameter has a number instead of the usual one. */
+static Estimate look_by(const White *white, const char *parameter, double number, double usual)
+{
+    path_stage_set(&stage, parameter, number);
+    Estimate found = look(white);
+    path_stage_set(&stage, parameter, usual);
+    return found;
+}
+
+/* Whether a sun and the ball look the same, and a sun would not that is too bright by a tenth; by
+   three tenths where glass makes more noise. */
+static bool is_found_either_way(const White *white)
+{
+    const double too_much = has_glass(white) ? 1.3 : 1.1;
+    Estimate     chosen   = look_by(white, "bright", IRRADIANCE, 0);
+    Estimate     met      = look_by(white, "size", BALL, NO_BALL);
+    Estimate     both     = {.mean = chosen.mean, .error = hypot(chosen.error, met.error)};
+    Estimate     brighter = {.mean  = too_much * chosen.mean,
+                             .error = hypot(too_much * chosen.error, met.error)};
+    if (is_near(brighter, met.mean, MOST_LOST))
+        fail_msg("%s: a sun that is too bright is not seen", white->name);
+    return must_be_near(both, met.mean, MOST_LOST, white->name);
+}
+
+static void light_is_found_either_way(void **state)
+{
+    (void)state;
+    size_t wrong = 0;
+    path_stage_set(&stage, "day", 0);
+    for (size_t i = 0; i < WHITES; i++) {
+        paint(&whites[i], 0.5);
+        wrong += !is_found_either_way(&whites[i]);
+    }
+    path_stage_set(&stage, "day", 1);
+    assert_int_equal(wrong, 0);
+}
+
+/* ---- Light that bounces nowhere ---- */
+
+/* A ball that no light goes through has no place that sees another one. */
+static void nothing_bounces_from_a_ball(void **state)
+{
+    (void)state;
+    path_stage_set(&stage, "bright", IRRADIANCE);
+    for (size_t i = 0; i < WHITES; i++) {
+        KrsRenderOptions options = {.width = 40, .height = 40, .samples = 3};
+        KrsPicture      *pictures[2];
+        paint(&whites[i], 0.4);
+        for (int k = 0; k < 2; k++) {
+            options.integrator = k ? KRS_INTEGRATOR_PATH : KRS_INTEGRATOR_DIRECT;
+            pictures[k]        = path_stage_render(&stage, &options);
+        }
+        bool same = memcmp(pictures[0]->color, pictures[1]->color, 40 * 40 * 4 * sizeof(float)) ==
+                    0;
+        if (same == has_glass(&whites[i]))
+            fail_msg("%s: direct and path are%s the same", whites[i].name, same ? "" : " not");
+        krs_picture_free(pictures[0]);
+        krs_picture_free(pictures[1]);
+    }
+    path_stage_set(&stage, "bright", 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(white_is_not_seen),
+        cmocka_unit_test(gray_is_seen),
+        cmocka_unit_test(light_is_found_either_way),
+        cmocka_unit_test(nothing_bounces_from_a_ball),
+    };
+    spirv_start(); /* held for all, so that the shader compiler is not started anew */
+    int failed = cmocka_run_group_tests_name("furnace", tests, open_furnace, close_furnace);
+    spirv_stop();
+    return failed;
+}

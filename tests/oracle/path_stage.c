@@ -1,0 +1,98 @@
+/*
+ * path_stage.c: scenes lit by random paths, and the means of their pictures.
+ */
+#include "tests/oracle/path_stage.h"
+
+#include <math.h>
+
+#include "tests/support/renderer.h"
+
+const Region everywhere = {0, 0, 1, 1};
+
+PathStage path_stage_open(const char *text)
+{
+    PathStage stage = {.product = product_compile(text)};
+    if (krs_rendering_new(renderer, stage.product.scene, &stage.rendering) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(renderer));
+    return stage;
+}
+
+void path_stage_close(PathStage *stage)
+{
+    krs_rendering_free(stage->rendering);
+    product_free(&stage->product);
+}
+
+void path_stage_set(PathStage *stage, const char *name, double number)
+{
+    assert_int_equal(krs_frame_set(stage->product.frame, name, &number, 1), KRS_OK);
+}
+
+void path_stage_set_all(PathStage *stage, const char *name, double x, double y, double z)
+{
+    assert_int_equal(krs_frame_set(stage->product.frame, name, (double[]){x, y, z}, 3), KRS_OK);
+}
+
+KrsPicture *path_stage_render(const PathStage *stage, const KrsRenderOptions *options)
+{
+    KrsPicture *picture;
+    if (krs_render(stage->rendering, stage->product.frame, options, &picture) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(renderer));
+    assert_int_equal(picture->stats.unresolved, 0);
+    return picture;
+}
+
+void estimate_add(Estimate *estimate, double number)
+{
+    double before = estimate->mean;
+    estimate->count++;
+    estimate->mean += (number - before) / estimate->count;
+    estimate->squares += (number - before) * (number - estimate->mean);
+    if (estimate->count > 1)
+        estimate->error = sqrt(estimate->squares / (estimate->count - 1) / estimate->count);
+}
+
+double mean_of_region(const KrsPicture *picture, Region region, int channel)
+{
+    double   sum   = 0;
+    unsigned count = 0;
+    for (unsigned y = (unsigned)(region.top * picture->height);
+         y < (unsigned)(region.bottom * picture->height); y++)
+        for (unsigned x = (unsigned)(region.left * picture->width);
+             x < (unsigned)(region.right * picture->width); x++) {
+            const float *color = &picture->color[4 * (y * picture->width + x)];
+            if (color[3] == 1) {
+                sum += (double)color[channel];
+                count++;
+            }
+        }
+    assert_true(count > 0);
+    return sum / count;
+}
+
+Estimate path_stage_estimate(const PathStage *stage, KrsRenderOptions options, Region region,
+                             int pictures)
+{
+    Estimate estimate = {0};
+    for (int i = 0; i < pictures; i++) {
+        options.seed        = (uint64_t)i + 1;
+        KrsPicture *picture = path_stage_render(stage, &options);
+        estimate_add(&estimate, mean_of_region(picture, region, 1));
+        krs_picture_free(picture);
+    }
+    return estimate;
+}
+
+bool is_near(Estimate found, double expected, double part)
+{
+    return fabs(found.mean - expected) <= SIGMAS * found.error + part * fabs(expected);
+}
+
+bool must_be_near(Estimate found, double expected, double part, const char *what)
+{
+    bool good = is_near(found, expected, part);
+    if (!good)
+        print_message("# %s: %.5f +- %.5f instead of %.5f\n", what, found.mean, found.error,
+                      expected);
+    return good;
+}

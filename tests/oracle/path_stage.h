@@ -1,0 +1,54 @@
+/*
+ * path_stage.h: scenes lit by random paths, and the means of their pictures with the error that
+ * chance leaves.
+ */
+#ifndef ORACLE_PATH_STAGE_H
+#define ORACLE_PATH_STAGE_H
+
+#include "runtime/krs_vulkan.h"
+#include "tests/oracle/product.h"
+
+/* A scene on the renderer of the tests. */
+typedef struct PathStage {
+    Product       product;
+    KrsRendering *rendering;
+} PathStage;
+
+PathStage path_stage_open(const char *text);
+void      path_stage_close(PathStage *stage);
+void      path_stage_set(PathStage *stage, const char *name, double number);
+void      path_stage_set_all(PathStage *stage, const char *name, double x, double y, double z);
+
+/* A picture, which the caller frees. */
+KrsPicture *path_stage_render(const PathStage *stage, const KrsRenderOptions *options);
+
+/* The mean of independent numbers, and its standard error. */
+typedef struct Estimate {
+    double mean, error;
+    int    count;   /* of the numbers */
+    double squares; /* sum of squares of what they differ from their mean */
+} Estimate;
+
+void estimate_add(Estimate *estimate, double number);
+
+/* Places of a picture, in parts of its sides. */
+typedef struct Region {
+    double left, top, right, bottom;
+} Region;
+extern const Region everywhere;
+
+/* The mean of a channel over those pixels of a region that show something. */
+double mean_of_region(const KrsPicture *picture, Region region, int channel);
+
+/* The mean green of a region, by that many pictures of different seeds. */
+Estimate path_stage_estimate(const PathStage *stage, KrsRenderOptions options, Region region,
+                             int pictures);
+
+/* Whether a mean is what is expected, but for SIGMAS of its errors and a part of it.  Errors that
+   are found from few pictures are uncertain themselves, so there are more sigmas than usual. */
+#define SIGMAS 5
+bool is_near(Estimate found, double expected, double part);
+/* The same; tells if it is not. */
+bool must_be_near(Estimate found, double expected, double part, const char *what);
+
+#endif

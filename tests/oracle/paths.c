@@ -1,0 +1,278 @@
+/*
+ * paths.c: integrators that follow paths, held against closed forms: what glass lets through and
+ * absorbs, where it bends light to, and how much light sources send to a floor.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
+#include "compiler/compile.h"
+#include "tests/oracle/path_stage.h"
+#include "tests/support/renderer.h"
+
+#define DEGREE (M_PI / 180)
+
+/* ---- A slab of glass ---- */
+
+/* The camera looks up through a slab from y = -1/2 to 1/2, at a sky of 1; the ground is black.  A
+   board that emits 1 fills the half of the plane y = BOARD with x < `edge`. */
+#define BOARD 3.0
+#define HIGH  1.0 /* the picture */
+static const char slab[] =
+    "param angle = 0 in [0, 1.5]; param index = 1.5 in [1, 4]; param loss = 0 in [0, 9];\n"
+    "param edge = -100 in [-100, 9]; param day = 1 in [0, 1];\n"
+    "camera { eye: [-5 * sin(angle), -5 * cos(angle), 0], up: [0, 0, 1],\n"
+    "         projection: \"orthographic\", height: 1 }\n"
+    "sky { zenith: [day, day, day], horizon: [day, day, day], ground: black }\n"
+    "light none { direction: [0, 1, 0], color: black }\n"
+    "material glass { color: [1, 1, 1], transmission: 1, roughness: 0, ior: index,\n"
+    "                 absorption: [loss, loss, loss] }\n"
+    "material board { color: black, specular: 0, emission: [1, 1, 1] }\n"
+    "show box([60, 1, 60]).paint(glass);\n"
+    "show box([60, 1, 60]).move([edge - 30, 3.5, 0]).paint(board);\n";
+
+static const KrsRenderOptions through = {.width      = 96,
+                                         .height     = 96,
+                                         .samples    = 1,
+                                         .bounces    = 32,
+                                         .planes     = KRS_PLANE_COLOR,
+                                         .integrator = KRS_INTEGRATOR_PATH};
+
+/* What a boundary reflects of light that meets it at this angle, by its index of refraction. */
+static double fresnel(double angle, double index, double *beyond)
+{
+    *beyond       = asin(sin(angle) / index);
+    double across = (cos(angle) - index * cos(*beyond)) / (cos(angle) + index * cos(*beyond));
+    double along  = (index * cos(angle) - cos(*beyond)) / (index * cos(angle) + cos(*beyond));
+    return 0.5 * (across * across + along * along);
+}
+
+/* What a slab of thickness 1 lets through: each way through it leaves `kept`. */
+static double let_through(double angle, double index, double loss)
+{
+    double beyond, mirrored = fresnel(angle, index, &beyond), kept = exp(-loss / cos(beyond));
+    return (1 - mirrored) * (1 - mirrored) * kept / (1 - mirrored * mirrored * kept * kept);
+}
+
+static Estimate look_through(PathStage *stage, double angle, double index, double loss)
+{
+    path_stage_set(stage, "angle", angle);
+    path_stage_set(stage, "index", index);
+    path_stage_set(stage, "loss", loss);
+    return path_stage_estimate(stage, through, everywhere, 6);
+}
+
+/* What refracts less counts as this. */
+#define LEAST_INDEX 1.001
+
+static const double angles[] = {0, 25 * DEGREE, 45 * DEGREE, 60 * DEGREE, 70 * DEGREE};
+enum { ANGLES = sizeof angles / sizeof *angles };
+
+static void slabs_let_light_through(void **state)
+{
+    (void)state;
+    static const struct {
+        double index, loss;
+    } slabs[]       = {{LEAST_INDEX, 0},   {1.5, 0},         {2.4, 0},
+                       {LEAST_INDEX, 0.7}, {LEAST_INDEX, 3}, {1.5, 1.5}};
+    PathStage stage = path_stage_open(slab);
+    size_t    wrong = 0;
+    for (size_t i = 0; i < sizeof slabs / sizeof *slabs; i++)
+        for (size_t k = 0; k < ANGLES; k++) {
+            char     name[100];
+            Estimate found = look_through(&stage, angles[k], slabs[i].index, slabs[i].loss);
+            double   right = let_through(angles[k], slabs[i].index, slabs[i].loss);
+            snprintf(name, sizeof name, "at %.0f degrees, index %g, absorption %g",
+                     angles[k] / DEGREE, slabs[i].index, slabs[i].loss);
+            wrong += !must_be_near(found, right, 0.002, name);
+            assert_false(is_near(
+                found, let_through(angles[k], slabs[i].index + 0.1, slabs[i].loss + 0.1), 0.002));
+        }
+    path_stage_close(&stage);
+    assert_int_equal(wrong, 0);
+}
+
+/* The part of the picture that the board fills, seen through a slab of this index, or through none:
+   rays that are mirrored within the slab 2 k times leave it farther to the side. */
+static double seen_of_board(double angle, double index, double edge)
+{
+    double beyond, mirrored = fresnel(angle, index, &beyond), sum = 0;
+    double weight = (1 - mirrored) * (1 - mirrored);
+    for (int k = 0; k < 20; k++, weight *= mirrored * mirrored) {
+        /* Where the ray through the middle of the picture enters, and meets the board's plane. */
+        double enters = -tan(angle) * 0.5;
+        double meets  = enters + (1 + 2 * k) * tan(beyond) + (BOARD - 0.5) * tan(angle);
+        double right  = (edge - meets) * cos(angle); /* of the edge, from the middle */
+        sum += weight * fmin(fmax(right / HIGH + 0.5, 0), 1);
+    }
+    return sum;
+}
+
+/* Rays begin half a pixel below a surface, so what they see is displaced by about as much. */
+#define HALF_A_PIXEL (0.5 / 96 / 0.27)
+
+/* The edge is near where the middle of the picture would see it without the slab. */
+static void slabs_displace_what_is_behind(void **state)
+{
+    (void)state;
+    PathStage stage = path_stage_open(slab);
+    size_t    wrong = 0;
+    path_stage_set(&stage, "day", 0);
+    for (size_t k = 0; k < ANGLES; k++) {
+        double edge = BOARD * tan(angles[k]) - 0.2;
+        char   name[100];
+        path_stage_set(&stage, "edge", edge);
+        Estimate found = look_through(&stage, angles[k], 1.5, 0);
+        double   right = seen_of_board(angles[k], 1.5, edge);
+        snprintf(name, sizeof name, "an edge at %.0f degrees", angles[k] / DEGREE);
+        wrong += !must_be_near(found, right, HALF_A_PIXEL, name);
+        if (k > 0) /* a ray that meets the slab head on is not bent */
+            assert_false(is_near(found, seen_of_board(angles[k], 1.3, edge), HALF_A_PIXEL));
+    }
+    path_stage_close(&stage);
+    assert_int_equal(wrong, 0);
+}
+
+/* ---- Lights over a floor ---- */
+
+/* The camera looks at a small part of the floor around the origin, from the height that is given as
+   an angle from the zenith.  Lights that are not asked for are black. */
+static const char lit_floor[] =
+    "param angle = 1.05 in [0, 1.5]; param shade = [1, 1, 1]; param rough = 0.5 in [0, 1];\n"
+    "param metal = 0 in [0, 1]; param mirrors = 0 in [0, 1];\n"
+    "param toward = [0, 1, 0]; param wide = 0 in [0, 2]; param bright = 0 in [0, 99];\n"
+    "param at = [0, 3, 0]; param radius = 0 in [0, 2]; param power = 0 in [0, 99];\n"
+    "param ball = [0, -9, 0]; param size = 0.1 in [0.1, 2];\n"
+    "camera { eye: [5 * sin(angle), 5 * cos(angle), 0], up: [0, 0, 1],\n"
+    "         projection: \"orthographic\", height: 0.05 }\n"
+    "sky { zenith: black, horizon: black, ground: black }\n"
+    "light sun { direction: toward, softness: wide, intensity: bright }\n"
+    "light lamp { position: at, radius: radius, intensity: power }\n"
+    "material m { color: shade, roughness: rough, metallic: metal, specular: mirrors }\n"
+    "material glowing { color: black, specular: 0, emission: [2, 2, 2] }\n"
+    "show plane([0, 1, 0], 0).paint(m);\n"
+    "show sphere(size).move(ball).paint(glowing);\n";
+
+static const KrsRenderOptions onto_floor = {.width      = 32,
+                                            .height     = 32,
+                                            .samples    = 16,
+                                            .planes     = KRS_PLANE_COLOR,
+                                            .integrator = KRS_INTEGRATOR_DIRECT};
+
+static Estimate look_at_floor(const PathStage *stage)
+{
+    return path_stage_estimate(stage, onto_floor, everywhere, 6);
+}
+
+/* Whether that is what is expected, but for a part of it; a tenth more would not be. */
+static bool is_right(Estimate found, double expected, double part, const char *what)
+{
+    if (is_near(found, 1.1 * expected, part))
+        fail_msg("%s: a tenth too much is not seen", what);
+    return must_be_near(found, expected, part, what);
+}
+
+static void set_direction(PathStage *stage, const char *name, double angle, double length)
+{
+    path_stage_set_all(stage, name, -length * sin(angle), length * cos(angle), 0);
+}
+
+/* A body that is diffuse alone reflects color / pi of the irradiance.  Without a size there is no
+   noise. */
+static bool sun_without_a_size(PathStage *stage, double angle)
+{
+    char name[100];
+    snprintf(name, sizeof name, "a sun at %.0f degrees", angle / DEGREE);
+    set_direction(stage, "toward", angle, 1);
+    path_stage_set(stage, "bright", 3);
+    path_stage_set_all(stage, "shade", 0.7, 0.7, 0.7);
+    Estimate found = look_at_floor(stage);
+    path_stage_set(stage, "bright", 0);
+    path_stage_set_all(stage, "shade", 1, 1, 1);
+    return is_right(found, 0.7 * 3 * cos(angle) / M_PI, 1e-5, name);
+}
+
+/* The irradiance below a ball does not depend on its size: that of the whole light in its middle. */
+static bool lamp_with_a_radius(PathStage *stage, double angle, double radius)
+{
+    const double distance = 2, irradiance = 5 * cos(angle) / (distance * distance);
+    char         name[100];
+    snprintf(name, sizeof name, "a lamp at %.0f degrees, radius %g", angle / DEGREE, radius);
+    set_direction(stage, "at", angle, distance);
+    path_stage_set(stage, "radius", radius);
+    path_stage_set(stage, "power", 5);
+    Estimate found = look_at_floor(stage);
+    path_stage_set(stage, "power", 0);
+    return is_right(found, irradiance / M_PI, 0.003, name);
+}
+
+/* A ball of radiance L sends pi L (r / d)^2 cos. */
+static bool ball_that_emits(PathStage *stage, double angle, double radius)
+{
+    const double distance = 2, share = radius * radius / (distance * distance);
+    char         name[100];
+    snprintf(name, sizeof name, "a ball at %.0f degrees, radius %g", angle / DEGREE, radius);
+    set_direction(stage, "ball", angle, distance);
+    path_stage_set(stage, "size", radius);
+    Estimate found = look_at_floor(stage);
+    set_direction(stage, "ball", M_PI, 9);
+    return is_right(found, 2 * share * cos(angle), 0.003, name);
+}
+
+/* A smooth metal shows the disc of the sun, whose radiance is E / (pi sin^2). */
+static bool mirrored_sun(PathStage *stage, double angle, double wide)
+{
+    char         name[100];
+    const double sine = sin(0.5 * wide);
+    snprintf(name, sizeof name, "a mirrored sun at %.0f degrees, %.0f wide", angle / DEGREE,
+             wide / DEGREE);
+    path_stage_set(stage, "angle", angle);
+    path_stage_set(stage, "metal", 1);
+    path_stage_set(stage, "rough", 0);
+    set_direction(stage, "toward", angle, 1);
+    path_stage_set(stage, "wide", wide);
+    path_stage_set(stage, "bright", 3);
+    Estimate found = look_at_floor(stage);
+    path_stage_set(stage, "bright", 0);
+    path_stage_set(stage, "metal", 0);
+    path_stage_set(stage, "angle", 1.05);
+    return is_right(found, 3 / (M_PI * sine * sine), 0.003, name);
+}
+
+static void lights_light_a_floor(void **state)
+{
+    (void)state;
+    PathStage stage = path_stage_open(lit_floor);
+    size_t    wrong = 0;
+    for (size_t k = 0; k < ANGLES; k++)
+        wrong += !sun_without_a_size(&stage, angles[k]);
+    for (size_t k = 0; k < 3; k++) {
+        wrong += !lamp_with_a_radius(&stage, angles[k], 0);
+        wrong += !lamp_with_a_radius(&stage, angles[k], 0.2);
+        wrong += !lamp_with_a_radius(&stage, angles[k], 1.2);
+        wrong += !ball_that_emits(&stage, angles[k], 0.7);
+        wrong += !ball_that_emits(&stage, angles[k], 1.2);
+        wrong += !mirrored_sun(&stage, angles[k], 10 * DEGREE);
+        wrong += !mirrored_sun(&stage, angles[k], 40 * DEGREE);
+    }
+    path_stage_close(&stage);
+    assert_int_equal(wrong, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slabs_let_light_through),
+        cmocka_unit_test(slabs_displace_what_is_behind),
+        cmocka_unit_test(lights_light_a_floor),
+    };
+    spirv_start(); /* held for all, so that the shader compiler is not started anew */
+    int failed = cmocka_run_group_tests_name("paths", tests, renderer_open, renderer_close);
+    spirv_stop();
+    return failed;
+}
