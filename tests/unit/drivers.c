@@ -163,6 +163,19 @@ static const Case cases[] = {
      "camera { eye: [0.1, 0.2, 0.3], projection: \"panorama\" }"
      "show box([4, 3, 5]) - sphere(0.8).move([1.5, 0, 0.2]);",
      {.width = 120, .height = 60, .schedule = KRS_SCHEDULE_REFILL}},
+    {"paths",
+     "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
+     "light sun { direction: [1, 2, 1], softness: 8deg, intensity: 2 }"
+     "light lamp { position: [-1.5, 2.5, 1], radius: 0.3, intensity: 3 }"
+     "material glass { color: white, transmission: 1, roughness: 0.2, absorption: [1, 0.2, 2] }"
+     "show sphere(0.8).move([0, 0.8, 0]).paint(glass); show plane([0, 1, 0], 0);"
+     "show torus(0.5, 0.2).move([1.3, 0.2, 0.6]);",
+     {.width      = 70,
+      .height     = 50,
+      .samples    = 2,
+      .bounces    = 5,
+      .integrator = KRS_INTEGRATOR_PATH,
+      .schedule   = KRS_SCHEDULE_QUEUE}},
     {"few steps",
      "camera { eye: [3, 4, 7], fov: 0.6 }"
      "show torus(0.5, 0.15).repeat([1.4, 0.9, 1.4], [5, 3, 5]);",

@@ -108,26 +108,43 @@ void close_scene(Scene *scene)
     krs_scene_free(scene->scene);
 }
 
-int open_scenes(void **state)
+static int tell_failure(KrsStatus status)
 {
-    (void)state;
-    KrsRendererOptions options = {
-        .device = tested_device(), .validation = true, .complaint = note_complaint};
-    KrsStatus status = krs_renderer_new(&options, &watched_renderer);
-    for (int i = 0; i < SCENES && status == KRS_OK; i++)
-        status = open_scene(&traced_scenes[i]);
     if (status != KRS_OK && watched_renderer)
         fprintf(stderr, "status %d: %s\n", (int)status, krs_renderer_message(watched_renderer));
     return status != KRS_OK;
 }
 
-int close_scenes(void **state)
+int open_watched(void **state)
 {
     (void)state;
-    for (int i = 0; i < SCENES; i++)
-        close_scene(&traced_scenes[i]);
+    KrsRendererOptions options = {
+        .device = tested_device(), .validation = true, .complaint = note_complaint};
+    return tell_failure(krs_renderer_new(&options, &watched_renderer));
+}
+
+int close_watched(void **state)
+{
+    (void)state;
     krs_renderer_free(watched_renderer);
     return 0;
+}
+
+int open_scenes(void **state)
+{
+    KrsStatus status = KRS_OK;
+    if (open_watched(state) != 0)
+        return 1;
+    for (int i = 0; i < SCENES && status == KRS_OK; i++)
+        status = open_scene(&traced_scenes[i]);
+    return tell_failure(status);
+}
+
+int close_scenes(void **state)
+{
+    for (int i = 0; i < SCENES; i++)
+        close_scene(&traced_scenes[i]);
+    return close_watched(state);
 }
 
 int hear_layers(void **state)

@@ -34,7 +34,9 @@ bool      is_spared(const Scene *scene, KrsTrace trace);
 KrsStatus open_scene(Scene *scene);
 void      close_scene(Scene *scene);
 
-/* For cmocka's groups: the renderer and all scenes. */
+/* For cmocka's groups: the renderer; the same with all scenes. */
+int open_watched(void **state);
+int close_watched(void **state);
 int open_scenes(void **state);
 int close_scenes(void **state);
 /* After every test. */

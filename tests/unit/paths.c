@@ -1,0 +1,221 @@
+/*
+ * paths.c: how the work on paths is dealt out to the device is not seen in pictures: schedules,
+ * crops, bands and slices do not change a bit of any plane.  All of it under the validation layers.
+ * And which integrator takes them, and how often they bounce.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "compiler/compile.h"
+#include "tests/unit/traced_scenes.h"
+
+/* All kinds of materials and lights, a plane, and a solid in which paths bounce. */
+static Scene still = {
+    .name = "glass and metal",
+    .fov  = 0.7,
+    .text = "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }\n"
+            "light sun { direction: [1, 2, 1], softness: 8deg, intensity: 2 }\n"
+            "light lamp { position: [-1.5, 2.5, 1], radius: 0.3, intensity: 3 }\n"
+            "light point { position: [2, 3, 0], intensity: 2 }\n"
+            "material glass { color: white, transmission: 1, roughness: 0.2, absorption: [1, 0.2, "
+            "2] }\n"
+            "material metal { color: gold, metallic: 1, roughness: 0.3, coat: 0.5 }\n"
+            "material cloth { color: navy, sheen: [0.5, 0.5, 0.6], emission: [0, 0.1, 0] }\n"
+            "show sphere(0.8).move([0, 0.8, 0]).paint(glass);\n"
+            "show box([0.9, 1.4, 0.9]).move([-1.4, 0.7, -0.6]).paint(metal);\n"
+            "show torus(0.5, 0.2).move([1.3, 0.2, 0.6]).paint(cloth);\n"
+            "show plane([0, 1, 0], 0);\n"};
+
+static KrsRenderOptions usual(void)
+{
+    return (KrsRenderOptions){.width      = SMALL_WIDTH,
+                              .height     = SMALL_HEIGHT,
+                              .samples    = 2,
+                              .bounces    = 6,
+                              .integrator = KRS_INTEGRATOR_PATH,
+                              .schedule   = KRS_SCHEDULE_PIXEL};
+}
+
+static int open_still(void **state) { return open_watched(state) || open_scene(&still) != KRS_OK; }
+
+static int close_still(void **state)
+{
+    close_scene(&still);
+    return close_watched(state);
+}
+
+static void schedules_are_not_seen(void **state)
+{
+    (void)state;
+    KrsRenderOptions options = usual();
+    KrsPicture      *whole   = render_scene(&still, options);
+    size_t           wrong   = 0;
+    for (KrsSchedule schedule = 0; schedule < KRS_SCHEDULE_COUNT; schedule++) {
+        options.schedule = schedule;
+        wrong += !is_part_of(&still, whole, render_scene(&still, options), words(&options));
+    }
+    assert_int_equal(wrong, 0);
+    krs_picture_free(whole);
+}
+
+static void crops_are_not_seen(void **state)
+{
+    (void)state;
+    static const KrsWindow crops[] = {
+        {33, 17, 41, 30}, {1, 2, 7, 5}, {51, 31, 49, 39}, {0, 69, 100, 1}, {99, 0, 1, 70}};
+    KrsRenderOptions options = usual();
+    size_t           wrong   = 0;
+    for (KrsSchedule schedule = 1; schedule < KRS_SCHEDULE_COUNT; schedule++) {
+        options.schedule  = schedule;
+        options.crop      = (KrsWindow){0};
+        KrsPicture *whole = render_scene(&still, options);
+        for (size_t i = 0; i < sizeof crops / sizeof crops[0]; i++) {
+            options.crop = crops[i];
+            wrong += !is_part_of(&still, whole, render_scene(&still, options), words(&options));
+        }
+        krs_picture_free(whole);
+    }
+    assert_int_equal(wrong, 0);
+}
+
+static void slices_are_not_seen(void **state)
+{
+    (void)state;
+    static const struct {
+        uint32_t  steps_at_once;
+        double    slice_ms;
+        KrsWindow crop; /* the shortest slices take long */
+    } slices[]   = {{3, 1e6, {0}}, {8192, 1e6, {0}}, {512, 1e-3, {40, 30, 20, 20}}};
+    size_t wrong = 0;
+    for (KrsSchedule schedule = 1; schedule < KRS_SCHEDULE_COUNT; schedule++) {
+        KrsRenderOptions options = usual();
+        options.schedule         = schedule;
+        KrsPicture *whole        = render_scene(&still, options);
+        for (size_t i = 0; i < sizeof slices / sizeof slices[0]; i++) {
+            options.steps_at_once = slices[i].steps_at_once;
+            options.slice_ms      = slices[i].slice_ms;
+            options.crop          = slices[i].crop;
+            wrong += !is_part_of(&still, whole, render_scene(&still, options), words(&options));
+        }
+        krs_picture_free(whole);
+    }
+    assert_int_equal(wrong, 0);
+}
+
+/* A picture too large for one band, and parts of it that are in other bands when alone. */
+static void bands_are_not_seen(void **state)
+{
+    (void)state;
+    static const KrsWindow crops[] = {{0, 400, 1000, 30}, {3, 500, 900, 9}, {490, 0, 13, 600}};
+    KrsRenderOptions       options = {
+              .width = 1000, .height = 600, .bounces = 2, .integrator = KRS_INTEGRATOR_PATH};
+    KrsPicture *whole = render_scene(&still, options);
+    size_t      wrong = 0;
+    for (size_t i = 0; i < sizeof crops / sizeof crops[0]; i++) {
+        options.crop = crops[i];
+        wrong += !is_part_of(&still, whole, render_scene(&still, options), words(&options));
+    }
+    krs_picture_free(whole);
+    assert_int_equal(wrong, 0);
+}
+
+/* The comparison of planes sees a single bit. */
+static void a_flipped_bit_is_found(void **state)
+{
+    (void)state;
+    KrsRenderOptions options = usual();
+    KrsPicture      *whole   = render_scene(&still, options), *part;
+    uint32_t         bits;
+    options.crop = (KrsWindow){40, 30, 20, 20};
+    part         = render_scene(&still, options);
+    memcpy(&bits, &part->color[4 * 210], sizeof bits);
+    bits ^= 1;
+    memcpy(&part->color[4 * 210], &bits, sizeof bits);
+    assert_false(is_part_of(&still, whole, part, "a planted fault"));
+    krs_picture_free(whole);
+}
+
+/* ---- Choices ---- */
+
+static bool is_same(const Scene *scene, KrsRenderOptions a, KrsRenderOptions b)
+{
+    KrsPicture *left = render_scene(scene, a);
+    bool        same = is_part_of(scene, left, render_scene(scene, b), "a choice");
+    krs_picture_free(left);
+    return same;
+}
+
+/* Nothing that is asked for is preview; what a scene says holds where the caller says nothing. */
+static void integrators_are_chosen(void **state)
+{
+    (void)state;
+    Scene            path    = {.name = "by the scene",
+                                .text = "image { integrator: \"path\", samples: 2 }\n"
+                                                      "camera { eye: [0, 1, 4] }\n"
+                                                      "show sphere(1).move([0, 1, 0]); show plane([0, 1, 0], 0);"};
+    KrsRenderOptions nothing = {.width = 40, .height = 30, .samples = 2}, options = nothing;
+    assert_int_equal(open_scene(&path), KRS_OK);
+    for (KrsIntegrator i = 1; i < KRS_INTEGRATOR_COUNT; i++) {
+        options.integrator = i;
+        assert_int_equal(is_same(&still, nothing, options), i == KRS_INTEGRATOR_PREVIEW);
+        assert_int_equal(is_same(&path, nothing, options), i == KRS_INTEGRATOR_PATH);
+    }
+    close_scene(&path);
+}
+
+/* One bounce is what `direct` sees; ten are the default. */
+static void bounces_are_counted(void **state)
+{
+    (void)state;
+    KrsRenderOptions options = {.width      = 60,
+                                .height     = 40,
+                                .samples    = 2,
+                                .integrator = KRS_INTEGRATOR_PATH},
+                     other   = options;
+    other.bounces            = KRS_DEFAULT_BOUNCES;
+    assert_true(is_same(&still, options, other));
+    other.bounces = 2;
+    assert_false(is_same(&still, options, other));
+    options.integrator = KRS_INTEGRATOR_DIRECT;
+    assert_false(is_same(&still, options, other));
+    other.bounces = 1;
+    assert_true(is_same(&still, options, other));
+}
+
+static void wrong_choices_are_refused(void **state)
+{
+    (void)state;
+    const KrsRenderOptions wrong[] = {{.integrator = KRS_INTEGRATOR_COUNT},
+                                      {.bounces = KRS_MOST_BOUNCES + 1}};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        KrsPicture *picture;
+        assert_int_equal(krs_render(still.rendering, still.frame, &wrong[i], &picture),
+                         KRS_BAD_ARGUMENT);
+        assert_null(picture);
+        assert_true(strlen(krs_renderer_message(watched_renderer)) > 10);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_teardown(schedules_are_not_seen, hear_layers),
+        cmocka_unit_test_teardown(crops_are_not_seen, hear_layers),
+        cmocka_unit_test_teardown(slices_are_not_seen, hear_layers),
+        cmocka_unit_test_teardown(bands_are_not_seen, hear_layers),
+        cmocka_unit_test_teardown(a_flipped_bit_is_found, hear_layers),
+        cmocka_unit_test_teardown(integrators_are_chosen, hear_layers),
+        cmocka_unit_test_teardown(bounces_are_counted, hear_layers),
+        cmocka_unit_test_teardown(wrong_choices_are_refused, hear_layers),
+    };
+    spirv_start(); /* held for all, so that the shader compiler is not started anew */
+    int failed = cmocka_run_group_tests_name("paths", tests, open_still, close_still);
+    spirv_stop();
+    return failed;
+}
