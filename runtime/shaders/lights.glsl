@@ -112,7 +112,7 @@ vec3 find_radiance_of_rectangle(Light light, vec3 origin, vec3 direction, float 
                  has_size(light);
     float area = find_area(light);
     density = meets ? reach * reach / (cosine * area) : 0.0;
-    return meets ? light.color * find_share(light, direction) / (cosine * area) : vec3(0.0);
+    return meets ? light.color * find_share(light, -direction) / (cosine * area) : vec3(0.0);
 }
 
 // A point of a light, evenly over its solid angle.  `chance` is that of having chosen this light.
