@@ -152,6 +152,8 @@ static const char lit_floor[] =
     "         projection: \"orthographic\", height: 0.05 }\n"
     "sky { zenith: black, horizon: black, ground: black }\n"
     "light sun { direction: toward, softness: wide, intensity: bright }\n"
+    "param panel = 0 in [0, 99];\n"
+    "light rectangle { position: at, target: [0, 0, 0], size: [1.2, 0.8], intensity: panel }\n"
     "light lamp { position: at, radius: radius, intensity: power }\n"
     "material m { color: shade, roughness: rough, metallic: metal, specular: mirrors }\n"
     "material glowing { color: black, specular: 0, emission: [2, 2, 2] }\n"
@@ -244,6 +246,23 @@ static bool mirrored_sun(PathStage *stage, double angle, double wide)
     return is_right(found, 3 / (M_PI * sine * sine), 0.003, name);
 }
 
+/* A rectangle's radiance is its light over its area, also in a mirror. */
+static bool mirrored_rectangle(PathStage *stage, double angle)
+{
+    char name[100];
+    snprintf(name, sizeof name, "a mirrored rectangle at %.0f degrees", angle / DEGREE);
+    path_stage_set(stage, "angle", angle);
+    path_stage_set(stage, "metal", 1);
+    path_stage_set(stage, "rough", 0);
+    set_direction(stage, "at", angle, 2);
+    path_stage_set(stage, "panel", 5);
+    Estimate found = look_at_floor(stage);
+    path_stage_set(stage, "panel", 0);
+    path_stage_set(stage, "metal", 0);
+    path_stage_set(stage, "angle", 1.05);
+    return is_right(found, 5 / (1.2 * 0.8), 0.003, name);
+}
+
 static void lights_light_a_floor(void **state)
 {
     (void)state;
@@ -259,6 +278,7 @@ static void lights_light_a_floor(void **state)
         wrong += !ball_that_emits(&stage, angles[k], 1.2);
         wrong += !mirrored_sun(&stage, angles[k], 10 * DEGREE);
         wrong += !mirrored_sun(&stage, angles[k], 40 * DEGREE);
+        wrong += !mirrored_rectangle(&stage, angles[k]);
     }
     path_stage_close(&stage);
     assert_int_equal(wrong, 0);
