@@ -132,7 +132,9 @@ LightPoint sample_light(Light light, vec3 place, float chance, vec2 square_point
     point.toward = normalize(ring * (krs_cos(angle) * right + krs_sin(angle) * up) +
                              (1.0 - gap) * axis);
     float whole = find_gap(light, center_squared);
-    point.density = sized ? chance / (2.0 * PI * whole) : 0.0;
+    // A place inside of a lamp sees it by chosen points alone, as no ray meets it from there.
+    bool  inside = positional && center_squared <= square(light.softness);
+    point.density = sized && !inside ? chance / (2.0 * PI * whole) : 0.0;
     float share = find_share(light, -axis) / chance;
     point.light = sized ? disc_radiance(light, place, whole) * (2.0 * PI * whole * share)
                         : find_irradiance(light, place) * share;
