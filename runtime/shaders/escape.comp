@@ -85,9 +85,14 @@ bool follow(uvec2 pixel, uint index, inout uint unresolved)
     if (control.phase == ESCAPE_TO_LIGHTS)
         found = find_sources(path, hits ? ray.t : INFINITE);
     if (!hits) {
-        vec3  behind = found + sky_radiance(path.direction);
+        // Fog does not dim lights, but it hides the sun's disc as it hides the sky.
+        vec3  behind = sky_radiance(path.direction), light = found;
+        if (path.density == 0.0) {
+            behind += found;
+            light = vec3(0.0);
+        }
         float left = let_through(path.origin.y, path.direction.y, FARTHEST);
-        found = lost ? vec3(0.0) : through_fog(behind, left, true);
+        found = lost ? vec3(0.0) : through_fog(behind, left, true) + light;
     }
     add_light(index, finite_or_black(path.weight * found));
     store_path(PATH_TOWARD, index, vec4(0.0, 0.0, 0.0, hits ? ray.side : 0.0));
