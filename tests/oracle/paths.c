@@ -152,6 +152,7 @@ static const char lit_floor[] =
     "         projection: \"orthographic\", height: 0.05 }\n"
     "sky { zenith: black, horizon: black, ground: black }\n"
     "light sun { direction: toward, softness: wide, intensity: bright }\n"
+    "param haze = 0 in [0, 1]; fog { color: black, density: haze }\n"
     "param panel = 0 in [0, 99];\n"
     "light rectangle { position: at, target: [0, 0, 0], size: [1.2, 0.8], intensity: panel }\n"
     "light lamp { position: at, radius: radius, intensity: power }\n"
@@ -263,6 +264,40 @@ static bool mirrored_rectangle(PathStage *stage, double angle)
     return is_right(found, 5 / (1.2 * 0.8), 0.003, name);
 }
 
+/* Several lights together are their sum; also one that the floor is within, as a ball of light
+   around the lamp's middle. */
+static bool lights_together(PathStage *stage)
+{
+    const double sun = 3 * cos(0.5), around = 5 / 0.25 / M_PI;
+    set_direction(stage, "toward", 0.5, 1);
+    path_stage_set(stage, "wide", 0.3);
+    set_direction(stage, "at", 0, 0.5);
+    path_stage_set(stage, "radius", 0.8);
+    path_stage_set(stage, "power", 5);
+    Estimate lamp = look_at_floor(stage);
+    path_stage_set(stage, "bright", 3);
+    Estimate both = look_at_floor(stage);
+    path_stage_set(stage, "power", 0);
+    path_stage_set(stage, "bright", 0);
+    return is_right(lamp, around, 0.01, "a lamp around the floor") &&
+           is_right(both, around + sun / M_PI, 0.01, "a sun, and a lamp around the floor");
+}
+
+/* Fog hides what is behind it from the eye, and does not dim lights; whichever way a light is
+   found. */
+static bool lights_in_fog(PathStage *stage)
+{
+    const double density = 0.1;
+    path_stage_set(stage, "haze", density);
+    path_stage_set(stage, "power", 5);
+    path_stage_set(stage, "radius", 1.2);
+    set_direction(stage, "at", 0.4, 2);
+    Estimate found = look_at_floor(stage);
+    path_stage_set(stage, "power", 0);
+    path_stage_set(stage, "haze", 0);
+    return is_right(found, exp(-5 * density) * 5 * cos(0.4) / 4 / M_PI, 0.003, "a lamp in fog");
+}
+
 static void lights_light_a_floor(void **state)
 {
     (void)state;
@@ -280,6 +315,8 @@ static void lights_light_a_floor(void **state)
         wrong += !mirrored_sun(&stage, angles[k], 40 * DEGREE);
         wrong += !mirrored_rectangle(&stage, angles[k]);
     }
+    wrong += !lights_together(&stage);
+    wrong += !lights_in_fog(&stage);
     path_stage_close(&stage);
     assert_int_equal(wrong, 0);
 }
