@@ -11,6 +11,7 @@
 #include "compiler/base/far.h"
 #include "compiler/compilation.h"
 #include "compiler/graph/rebase.h"
+#include "compiler/graph/build.h"
 #include "compiler/graph/derive.h"
 #include "compiler/lower/crowd.h"
 
@@ -85,6 +86,16 @@ static void lower_marches(Compilation *c, Graph *g, LoweredCrowds *crowds)
         for (AlongMethod method = 0; method < ALONG_COUNT; method++)
             along_roots(roots, method)[i] = lower_along(g, shape, plain, method, crowds,
                                                         &c->scratch);
+    }
+}
+
+/* Rays go on inside of a half-space that lets light through, so it is marched like all else. */
+static void forget_planes_of_glass(Compilation *c, const Graph *g)
+{
+    for (size_t i = 0; i < c->elaborated.components.count; i++) {
+        Component *component = &c->elaborated.components.items[i];
+        if (!is_number(g, surface_roots(&c->scene->roots, i)[ROOT_transmission], 0))
+            component->plane_normal = component->plane_offset = NODE_NONE;
     }
 }
 
@@ -195,6 +206,7 @@ KrsStatus pass_lower(Compilation *c)
     more->camera_relative = !more->sheets && may_need_rebase(s, s->graph, roots, &c->scratch);
     gather_view(s, roots);
     lower_marches(c, s->graph, crowds);
+    forget_planes_of_glass(c, s->graph);
     lower_planes(c, s->graph);
     arena_free(&c->scratch);
     more->algebraic = is_algebraic(s, roots);
