@@ -138,6 +138,37 @@ static void slabs_displace_what_is_behind(void **state)
     assert_int_equal(wrong, 0);
 }
 
+/* ---- A half-space of glass ---- */
+
+/* Water without a bottom mirrors the sky by Fresnel's part; below it is dark.  The stone tempts the
+   march to end where the rest of the scene does. */
+static const char water[] =
+    "param angle = 0 in [0, 1.5];\n"
+    "camera { eye: [5 * sin(angle), 5 * cos(angle), 0], up: [0, 0, 1],\n"
+    "         projection: \"orthographic\", height: 0.5 }\n"
+    "sky { zenith: [1, 1, 1], horizon: [1, 1, 1], ground: black }\n"
+    "light none { direction: [0, 1, 0], color: black }\n"
+    "material water { color: [1, 1, 1], transmission: 1, roughness: 0, ior: 1.33 }\n"
+    "show plane([0, 1, 0], 0).paint(water);\n"
+    "show sphere(0.2).move([0, 0.3, 3]);\n";
+
+static void water_mirrors_the_sky(void **state)
+{
+    (void)state;
+    PathStage stage = path_stage_open(water);
+    size_t    wrong = 0;
+    for (size_t k = 0; k < ANGLES; k++) {
+        double beyond;
+        char   name[100];
+        snprintf(name, sizeof name, "water at %.0f degrees", angles[k] / DEGREE);
+        path_stage_set(&stage, "angle", angles[k]);
+        Estimate found = path_stage_estimate(&stage, through, everywhere, 6);
+        wrong += !must_be_near(found, fresnel(angles[k], 1.33, &beyond), 0.002, name);
+    }
+    path_stage_close(&stage);
+    assert_int_equal(wrong, 0);
+}
+
 /* ---- Lights over a floor ---- */
 
 /* The camera looks at a small part of the floor around the origin, from the height that is given as
@@ -326,6 +357,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slabs_let_light_through),
         cmocka_unit_test(slabs_displace_what_is_behind),
+        cmocka_unit_test(water_mirrors_the_sky),
         cmocka_unit_test(lights_light_a_floor),
     };
     spirv_start(); /* held for all, so that the shader compiler is not started anew */
