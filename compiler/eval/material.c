@@ -43,12 +43,19 @@ static Material *material_new(Elaboration *e, const char *name)
     return material;
 }
 
+/* The range of a property; at points it may be anything that pictures permit. */
+static Range property_range(Elaboration *e, Node property)
+{
+    const bool varies = e->graph->items[property].time == TIME_POINT;
+    return varies ? (Range){0, 1} : node_range(e->builder, property, 0);
+}
+
 /* Whether previews may have to follow a ray that this material mirrors or refracts (mirrors.glsl). */
 static bool sends_rays(Elaboration *e, const Material *material)
 {
-    const bool metal = node_range(e->builder, material->metallic, 0).high > 0;
-    return node_range(e->builder, material->transmission, 0).high > 0 ||
-           node_range(e->builder, material->roughness, 0).low < (metal ? 0.3 : 0.12);
+    const bool metal = property_range(e, material->metallic).high > 0;
+    return property_range(e, material->transmission).high > 0 ||
+           property_range(e, material->roughness).low < (metal ? 0.3 : 0.12);
 }
 
 Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *syntax)
