@@ -3,6 +3,7 @@
  * crops, bands and slices do not change a bit of any plane.  All of it under the validation layers.
  * And which integrator takes them, and how often they bounce.
  */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -141,6 +142,128 @@ static void a_flipped_bit_is_found(void **state)
     krs_picture_free(whole);
 }
 
+/* ---- Films ---- */
+
+static KrsFilm *new_film(const KrsRenderOptions *options)
+{
+    KrsFilm *film;
+    assert_int_equal(krs_film_new(still.rendering, options, &film), KRS_OK);
+    return film;
+}
+
+static KrsPicture *read_and_free(KrsFilm *film)
+{
+    KrsPicture *picture;
+    assert_int_equal(krs_film_read(film, 0, &picture), KRS_OK);
+    krs_film_free(film);
+    return picture;
+}
+
+static void portions_are_the_whole(void **state)
+{
+    (void)state;
+    KrsRenderOptions options = usual();
+    options.samples          = 3;
+    KrsPicture *whole        = render_scene(&still, options);
+    KrsFilm    *film         = new_film(&options);
+    assert_int_equal(krs_film_add(film, still.frame, NULL, 1), KRS_OK);
+    assert_int_equal(krs_film_add(film, still.frame, NULL, 2), KRS_OK);
+    assert_true(is_part_of(&still, whole, read_and_free(film), "two portions"));
+    krs_picture_free(whole);
+}
+
+/* Rays of a list that are those of a camera that looks along z; its rays are rounded otherwise, so
+   paths that meet an edge differ. */
+static void rays_of_lists_show_the_same(void **state)
+{
+    (void)state;
+    enum { SIDE = 64 };
+    static double    origins[SIDE * SIDE][3], directions[SIDE * SIDE][3];
+    const KrsCamera  camera  = {.projection = KRS_ORTHOGRAPHIC,
+                                .eye        = {0, 1, 8},
+                                .target     = {0, 1, 0},
+                                .up         = {0, 1, 0},
+                                .height     = 3};
+    KrsRenderOptions options = {
+        .width = SIDE, .height = SIDE, .samples = 1, .integrator = KRS_INTEGRATOR_PATH};
+    for (int k = 0; k < SIDE * SIDE; k++) {
+        origins[k][0]    = 3 * ((k % SIDE + 0.5) / SIDE - 0.5);
+        origins[k][1]    = 1 - 3 * ((k / SIDE + 0.5) / SIDE - 0.5);
+        origins[k][2]    = 8;
+        directions[k][2] = -1;
+    }
+    const KrsRays rays = {.origins    = (const double(*)[3])origins,
+                          .directions = (const double(*)[3])directions,
+                          .width      = 3.0 / SIDE};
+    KrsFilm      *seen = new_film(&options), *listed = new_film(&options);
+    assert_int_equal(krs_film_add(seen, still.frame, &camera, 1), KRS_OK);
+    assert_int_equal(krs_film_add_rays(listed, still.frame, &rays), KRS_OK);
+    KrsPicture *a = read_and_free(seen), *b = read_and_free(listed);
+    size_t      differ = 0;
+    for (size_t k = 0; k < SIDE * SIDE; k++)
+        differ += fabsf(a->color[4 * k] - b->color[4 * k]) > 1e-3f;
+    assert_in_range(differ, 0, SIDE * SIDE / 50);
+    krs_picture_free(a);
+    krs_picture_free(b);
+}
+
+/* ---- Interruption, and what is no number ---- */
+
+static bool count_down(void *user, double done)
+{
+    int *left = user;
+    assert_true(done >= 0 && done <= 1 + 1e-9);
+    return --*left >= 0;
+}
+
+/* Wherever it is interrupted, the next picture is whole. */
+static void interruption_is_heard(void **state)
+{
+    (void)state;
+    KrsRenderOptions options = usual();
+    KrsPicture      *whole   = render_scene(&still, options), *picture;
+    int              left;
+    options.progress = count_down;
+    options.user     = &left;
+    for (int calls = 0; calls < 40; calls += 5) {
+        left = calls;
+        assert_int_equal(krs_render(still.rendering, still.frame, &options, &picture),
+                         KRS_INTERRUPTED);
+        assert_null(picture);
+    }
+    left = 1 << 30;
+    assert_true(is_part_of(&still, whole, render_scene(&still, options), "an interruption"));
+    krs_picture_free(whole);
+}
+
+/* Properties that are infinite, or no numbers, give light all the same. */
+static void materials_give_numbers(void **state)
+{
+    (void)state;
+    Scene strange = {
+        .name = "strange materials",
+        .text = "param k = 0;\n"
+                "material m { color: [1 / (k * x), (k * x) / (k * y), sqrt(-1 - x * x)],\n"
+                "    roughness: (k * z) / (k * x), metallic: sqrt(x), ior: 1 / (k * y),\n"
+                "    transmission: log(y), absorption: x / k, coat: 1 / (k * z),\n"
+                "    coat_roughness: sqrt(y), sheen: x / k, sheen_roughness: log(x),\n"
+                "    specular: 1 / (k * x) }\n"
+                "material n { emission: [exp(1000 * y), sqrt(x), 1 / (k * x)] }\n"
+                "camera { eye: [0, 1, 6] }\n"
+                "light lamp { position: [2, 3, 2], radius: 0.5 }\n"
+                "show sphere(1).paint(m);\n"
+                "show sphere(0.5).paint(n).move([2, 0, 0]);\n"
+                "show plane([0, 1, 0], -1);\n"};
+    assert_int_equal(open_scene(&strange), KRS_OK);
+    KrsPicture *picture = render_scene(&strange, usual());
+    size_t      wrong   = 0;
+    for (size_t i = 0; i < (size_t)4 * SMALL_WIDTH * SMALL_HEIGHT; i++)
+        wrong += !(picture->color[i] >= 0 && picture->color[i] < 3e38f);
+    assert_int_equal(wrong, 0);
+    krs_picture_free(picture);
+    close_scene(&strange);
+}
+
 /* ---- Choices ---- */
 
 static bool is_same(const Scene *scene, KrsRenderOptions a, KrsRenderOptions b)
@@ -210,6 +333,10 @@ int main(void)
         cmocka_unit_test_teardown(slices_are_not_seen, hear_layers),
         cmocka_unit_test_teardown(bands_are_not_seen, hear_layers),
         cmocka_unit_test_teardown(a_flipped_bit_is_found, hear_layers),
+        cmocka_unit_test_teardown(portions_are_the_whole, hear_layers),
+        cmocka_unit_test_teardown(rays_of_lists_show_the_same, hear_layers),
+        cmocka_unit_test_teardown(interruption_is_heard, hear_layers),
+        cmocka_unit_test_teardown(materials_give_numbers, hear_layers),
         cmocka_unit_test_teardown(integrators_are_chosen, hear_layers),
         cmocka_unit_test_teardown(bounces_are_counted, hear_layers),
         cmocka_unit_test_teardown(wrong_choices_are_refused, hear_layers),
