@@ -39,7 +39,7 @@ static const char slab[] =
 static const KrsRenderOptions through = {.width      = 96,
                                          .height     = 96,
                                          .samples    = 1,
-                                         .bounces    = 32,
+                                         .bounces    = 12,
                                          .planes     = KRS_PLANE_COLOR,
                                          .integrator = KRS_INTEGRATOR_PATH};
 
