@@ -352,13 +352,65 @@ static void lights_light_a_floor(void **state)
     assert_int_equal(wrong, 0);
 }
 
+/* ---- Lights of all kinds together ---- */
+
+static const char lit_ball[] =
+    "param sun = 0 in [0, 9]; param lamp = 0 in [0, 9]; param panel = 0 in [0, 9];\n"
+    "param beam = 0 in [0, 9]; param point = 0 in [0, 9];\n"
+    "camera { eye: [3, 3, 5], target: [0, 0.5, 0], fov: 35deg }\n"
+    "sky { zenith: black, horizon: black, ground: black }\n"
+    "light a { direction: [1, 2, 1], softness: 20deg, intensity: sun }\n"
+    "light b { position: [-1.5, 2, 1], radius: 0.6, intensity: 3 * lamp }\n"
+    "light c { position: [1.5, 2, 1], target: [0, 0, 0], size: [1, 0.6], intensity: 3 * panel }\n"
+    "light d { position: [0, 3, 2], target: [0, 0, 0], angle: 40deg, radius: 0.3,\n"
+    "          intensity: 9 * beam }\n"
+    "light e { position: [0, 3, -2], intensity: 3 * point, color: tomato }\n"
+    "material m { color: [1, 1, 1], roughness: 0.4, metallic: 1 }\n"
+    "show sphere(0.6).move([0, 0.6, 0]).paint(m);\n"
+    "show plane([0, 1, 0], 0);\n";
+
+static Estimate look_at_ball(const PathStage *stage)
+{
+    const KrsRenderOptions options = {.width      = 64,
+                                      .height     = 48,
+                                      .samples    = 4,
+                                      .bounces    = 3,
+                                      .planes     = KRS_PLANE_COLOR,
+                                      .integrator = KRS_INTEGRATOR_PATH};
+    return path_stage_estimate(stage, options, everywhere, 6);
+}
+
+/* A path chooses one light at each surface.  Together they must be their sum, as each is found by
+   other chances alone than among others. */
+static void lights_add_up(void **state)
+{
+    (void)state;
+    static const char *const lights[] = {"sun", "lamp", "panel", "beam", "point"};
+    enum { LIGHTS = sizeof lights / sizeof *lights };
+    PathStage stage = path_stage_open(lit_ball);
+    Estimate  sum   = {0}, all;
+    for (int i = 0; i < LIGHTS; i++) {
+        path_stage_set(&stage, lights[i], 1);
+        Estimate own = look_at_ball(&stage);
+        path_stage_set(&stage, lights[i], 0);
+        sum.mean += own.mean;
+        sum.error = hypot(sum.error, own.error);
+    }
+    for (int i = 0; i < LIGHTS; i++)
+        path_stage_set(&stage, lights[i], 1);
+    all       = look_at_ball(&stage);
+    all.error = hypot(all.error, sum.error);
+    path_stage_close(&stage);
+    assert_true(must_be_near(all, sum.mean, 0.003, "all lights"));
+    assert_false(is_near(all, 1.05 * sum.mean, 0.003));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slabs_let_light_through),
-        cmocka_unit_test(slabs_displace_what_is_behind),
-        cmocka_unit_test(water_mirrors_the_sky),
-        cmocka_unit_test(lights_light_a_floor),
+        cmocka_unit_test(slabs_let_light_through), cmocka_unit_test(slabs_displace_what_is_behind),
+        cmocka_unit_test(water_mirrors_the_sky),   cmocka_unit_test(lights_light_a_floor),
+        cmocka_unit_test(lights_add_up),
     };
     spirv_start(); /* held for all, so that the shader compiler is not started anew */
     int failed = cmocka_run_group_tests_name("paths", tests, renderer_open, renderer_close);
