@@ -264,6 +264,33 @@ static void materials_give_numbers(void **state)
     close_scene(&strange);
 }
 
+/* ---- Updates ---- */
+
+/* A rendering that is taken over to another scene shows what a new one does. */
+static void updates_are_followed(void **state)
+{
+    (void)state;
+    static const char form[] = "camera { eye: [0, 1, 6] }\n"
+                               "light lamp { position: [2, 3, 2], radius: 0.5, intensity: 5 }\n"
+                               "material m { color: %s, transmission: %g, roughness: 0.1 }\n"
+                               "show sphere(1).paint(m); show plane([0, 1, 0], -1);\n";
+    char              texts[2][400];
+    snprintf(texts[0], sizeof texts[0], form, "white", 1.0);
+    snprintf(texts[1], sizeof texts[1], form, "tomato", 0.0);
+    Scene before = {.name = "before", .text = texts[0]},
+          after  = {.name = "after", .text = texts[1]};
+    assert_int_equal(open_scene(&before), KRS_OK);
+    assert_int_equal(open_scene(&after), KRS_OK);
+    krs_picture_free(render_scene(&before, usual()));
+    assert_int_equal(krs_rendering_update(before.rendering, after.scene), KRS_OK);
+    KrsPicture *fresh   = render_scene(&after, usual());
+    Scene       updated = {.name = "updated", .rendering = before.rendering, .frame = after.frame};
+    assert_true(is_part_of(&after, fresh, render_scene(&updated, usual()), "an update"));
+    krs_picture_free(fresh);
+    close_scene(&before);
+    close_scene(&after);
+}
+
 /* ---- Choices ---- */
 
 static bool is_same(const Scene *scene, KrsRenderOptions a, KrsRenderOptions b)
@@ -337,6 +364,7 @@ int main(void)
         cmocka_unit_test_teardown(rays_of_lists_show_the_same, hear_layers),
         cmocka_unit_test_teardown(interruption_is_heard, hear_layers),
         cmocka_unit_test_teardown(materials_give_numbers, hear_layers),
+        cmocka_unit_test_teardown(updates_are_followed, hear_layers),
         cmocka_unit_test_teardown(integrators_are_chosen, hear_layers),
         cmocka_unit_test_teardown(bounces_are_counted, hear_layers),
         cmocka_unit_test_teardown(wrong_choices_are_refused, hear_layers),
