@@ -179,7 +179,8 @@ void do_item(uint number)
     return;
 #endif
     vec4 sum = find_color(index) + vec4(finite_or_black(radiance.rgb), radiance.a);
-    store_planes(index, rows, sum, hit, hit.side * coat.normal, coat.color, surface);
+    vec3 albedo = saturate(vec4(surface.color, 0.0), 1.0).rgb; // also where glass has no coat
+    store_planes(index, rows, sum, hit, hit.side * coat.normal, albedo, surface);
 }
 
 #include "pixels.glsl"
