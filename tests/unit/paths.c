@@ -319,6 +319,19 @@ static void integrators_are_chosen(void **state)
     close_scene(&path);
 }
 
+/* What is seen first does not depend on how light is found, but for the colour. */
+static void other_planes_are_the_same(void **state)
+{
+    (void)state;
+    KrsRenderOptions options = usual();
+    KrsPicture      *whole   = render_scene(&still, options);
+    options.integrator       = KRS_INTEGRATOR_PREVIEW;
+    KrsPicture *preview      = render_scene(&still, options);
+    memcpy(preview->color, whole->color, sizeof(float) * 4 * SMALL_WIDTH * SMALL_HEIGHT);
+    assert_true(is_part_of(&still, whole, preview, "preview"));
+    krs_picture_free(whole);
+}
+
 /* One bounce is what `direct` sees; ten are the default. */
 static void bounces_are_counted(void **state)
 {
@@ -366,6 +379,7 @@ int main(void)
         cmocka_unit_test_teardown(materials_give_numbers, hear_layers),
         cmocka_unit_test_teardown(updates_are_followed, hear_layers),
         cmocka_unit_test_teardown(integrators_are_chosen, hear_layers),
+        cmocka_unit_test_teardown(other_planes_are_the_same, hear_layers),
         cmocka_unit_test_teardown(bounces_are_counted, hear_layers),
         cmocka_unit_test_teardown(wrong_choices_are_refused, hear_layers),
     };
