@@ -26,25 +26,26 @@ DEVICE  ?= $(KRS_DEVICE)
 JOBS    ?= $(shell nproc)
 
 # Sources in the order of the pipeline: reading down this list is reading the program.
-BASE     := $(addprefix compiler/base/, arena.c parallel.c text.c source.c beneath.c loader.c diag.c diag_text.c)
+BASE     := $(addprefix compiler/base/, arena.c half.c parallel.c text.c source.c beneath.c loader.c diag.c diag_text.c)
 FRONT    := $(addprefix compiler/front/, lexer.c lex_literals.c syntax.c parser.c parse_expression.c \
                 parse_declaration.c parse.c synonyms.c names.c files.c)
 OUTLINE  := $(addprefix compiler/outline/, path.c knots.c edge_cuts.c edge_sides.c resolve.c members.c letters.c \
                 svg_shapes.c svg.c)
+IMAGE    := $(addprefix compiler/image/, png.c exr.c image.c)
 GRAPH    := $(addprefix compiler/graph/, intern.c alike.c alike_copy.c graph.c crowd.c build.c substitute.c extract.c derive_rules.c \
                 derive_blends.c derive.c series.c zeros.c local_terms.c local_curves.c local.c rebase.c \
-                simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c \
+                simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c texture.c \
                 regions.c squares.c grid.c grid_find.c fractal.c op_values.c tape.c evaluate.c print.c)
 SHAPE    := $(addprefix compiler/shape/, box.c reach.c cover.c map.c moebius.c builder.c slope.c print.c)
-LOWER    := $(addprefix compiler/lower/, context.c box_distance.c surface.c join.c crowd_table.c crowd_functions.c crowd_find.c crowd.c normal.c map_chain.c \
+LOWER    := $(addprefix compiler/lower/, footprint.c context.c box_distance.c surface.c join.c crowd_table.c crowd_functions.c crowd_find.c crowd.c normal.c map_chain.c \
                 outline.c sphere_fold.c guards.c ray_images.c ray_step.c lower.c)
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
 EVAL     := $(addprefix compiler/eval/, scope.c forget.c expression.c arithmetic.c reports.c units.c arguments.c components.c records.c data.c csv.c json.c builtins.c lists.c \
-                random.c files.c text.c drawing.c functions.c csg.c fractal.c declare.c extremes.c claim_pairs.c claims.c empty.c cells.c measure.c methods.c properties.c \
+                random.c files.c text.c drawing.c texture.c functions.c csg.c fractal.c declare.c extremes.c claim_pairs.c claims.c empty.c cells.c measure.c methods.c properties.c \
                 material.c view.c palette.c remarks.c statements.c shown.c studio.c hull.c hull_parts.c \
                 hull_supports.c hull_triangles.c)
 PRINT    := $(addprefix compiler/print/, frame_values.c lines.c signatures.c helpers.c mirrors.c statements.c \
-                prepare.c crowds.c distances.c shared.c surfaces.c boxes.c early_outs.c march.c \
+                prepare.c crowds.c textures.c distances.c shared.c surfaces.c boxes.c early_outs.c march.c \
                 module_print.c) \
             $(sort $(wildcard compiler/print/*/*.c))
 TARGET   := compiler/target/spirv.c
@@ -73,7 +74,7 @@ LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLC
             -lharfbuzz -lfreetype -lfontconfig -lexpat -lOpenEXRCore-3_1 -lpng -lxxhash -lqhull_r -lvulkan \
             -lstdc++ -lm -pthread
 
-COMPILER := $(BASE) $(OUTLINE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API)
+COMPILER := $(BASE) $(IMAGE) $(OUTLINE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
             $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o
 

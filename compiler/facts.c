@@ -90,13 +90,25 @@ static void find_tables(Compilation *c)
 {
     KrsProgram   *program = &c->scene->program;
     const Crowds *crowds  = c->scene->graph->crowds;
-    TableSizes    sizes   = tables_measure(crowds);
+    TableSizes    sizes   = tables_measure(crowds, c->scene->graph->textures);
     program->table_rows   = sizes.rows;
     program->table_cells  = sizes.cells;
     program->rows_vary    = crowds && crowds->frame_numbers.count > 0;
     program->table_count  = crowds ? crowds->tables.count : 0;
     for (size_t t = 0; t < program->table_count; t++)
         program->table_members += crowds->tables.items[t].rows;
+}
+
+static void find_textures(Compilation *c)
+{
+    KrsProgram     *program  = &c->scene->program;
+    const Textures *textures = c->scene->graph->textures;
+    const Tape     *surface  = &c->scene->surface;
+    program->texture_count   = textures ? textures->list.count : 0;
+    for (size_t t = 0; t < program->texture_count; t++)
+        program->texture_texels += textures->list.items[t].texel_count;
+    for (size_t i = 0; i < surface->count; i++)
+        program->views = program->views || surface->graph->items[surface->nodes[i]].op == OP_VIEW;
 }
 
 /* ---- the pass ---- */
@@ -110,6 +122,7 @@ KrsStatus pass_facts(Compilation *c)
     find_additions(c);
     find_steps(c);
     find_tables(c);
+    find_textures(c);
     form_march_groups(c); /* needs boxes, costs and planes */
     c->scene->program.scene_parts = module_scene_part_count(c->scene->component_count);
     return KRS_OK;

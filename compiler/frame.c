@@ -267,7 +267,7 @@ void krs_frame_tables(const KrsFrame *frame, float (*rows)[4], uint32_t (*cells)
     if (scene->program.table_cells == 0)
         return;
     tape_run_frame(&scene->rows, frame->parameters, frame->values);
-    tables_pack(scene->graph->crowds, frame->values, rows, cells);
+    tables_pack(scene->graph->crowds, scene->graph->textures, frame->values, rows, cells);
 }
 
 void krs_frame_rows(const KrsFrame *frame, float (*rows)[4])

@@ -99,6 +99,7 @@ KrsStatus pass_elaborate(Compilation *c)
                             .slopes     = &c->elaborated.slopes};
     Elaboration  e       = {.builder = &builder,
                             .arena   = &c->work,
+                            .lasting = &c->scene->arena,
                             .values  = &c->values,
                             .scratch = &c->scratch,
                             .diags   = &c->diags,

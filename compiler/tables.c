@@ -1,5 +1,5 @@
 /*
- * tables.c: writes tables of crowds for kernels.
+ * tables.c: writes tables of crowds, and textures, for kernels.
  */
 #include "compiler/tables.h"
 
@@ -32,18 +32,28 @@ static Place place_table(const Crowd *table, TableSizes *next)
     return place;
 }
 
-static TableSizes after_headers(const Crowds *crowds)
+static size_t table_count(const Crowds *crowds) { return crowds ? crowds->tables.count : 0; }
+
+static size_t texture_count(const Textures *textures)
 {
-    return (TableSizes){0, GRID_HEADER * crowds->tables.count};
+    return textures ? textures->list.count : 0;
 }
 
-TableSizes tables_measure(const Crowds *crowds)
+static TableSizes after_headers(const Crowds *crowds, const Textures *textures)
 {
-    if (!crowds || crowds->tables.count == 0)
-        return (TableSizes){0};
-    TableSizes sizes = after_headers(crowds);
-    for (size_t t = 0; t < crowds->tables.count; t++)
+    return (TableSizes){0, GRID_HEADER * table_count(crowds) +
+                               TEXTURE_HEADER * texture_count(textures)};
+}
+
+TableSizes tables_measure(const Crowds *crowds, const Textures *textures)
+{
+    TableSizes sizes = after_headers(crowds, textures);
+    for (size_t t = 0; t < table_count(crowds); t++)
         place_table(&crowds->tables.items[t], &sizes);
+    for (size_t t = 0; t < texture_count(textures); t++)
+        sizes.cells += textures->list.items[t].texel_count;
+    if (sizes.cells > 0 && sizes.rows == 0)
+        sizes.rows = 1; /* no buffer is empty */
     return sizes;
 }
 
@@ -133,26 +143,63 @@ static void put_copies(const Crowd *table, const float (*rows)[4], float (*copie
         memcpy(copies + i * texels, rows + table->grid.members[i] * texels, texels * sizeof *rows);
 }
 
-void tables_pack_rows(const Crowds *crowds, const NodeValue *values, float (*rows)[4])
+/* Packs all rows; the sizes become those of all tables. */
+static TableSizes pack_rows(const Crowds *crowds, const Textures *textures,
+                            const NodeValue *values, float (*rows)[4])
 {
-    TableSizes next = after_headers(crowds);
-    for (size_t t = 0; t < crowds->tables.count; t++) {
+    TableSizes next = after_headers(crowds, textures);
+    for (size_t t = 0; t < table_count(crowds); t++) {
         const Crowd *table = &crowds->tables.items[t];
         Place        place = place_table(table, &next);
         put_rows(crowds, table, values, rows + place.row);
         put_copies(table, (const float(*)[4])(rows + place.row), rows + place.copy);
     }
+    return next;
 }
 
-void tables_pack(const Crowds *crowds, const NodeValue *values, float (*rows)[4],
-                 uint32_t (*cells)[2])
+void tables_pack_rows(const Crowds *crowds, const NodeValue *values, float (*rows)[4])
 {
-    TableSizes next = after_headers(crowds);
-    for (size_t t = 0; t < crowds->tables.count; t++) {
+    pack_rows(crowds, NULL, values, rows);
+}
+
+/* ---- textures ---- */
+
+static void put_texture(const Texture *texture, size_t first, Texel *header, Texel *texels)
+{
+    memset(header, 0, TEXTURE_HEADER * sizeof *header);
+    header[0][0] = texture->level_count;
+    header[0][1] = (uint32_t)texture->wrap + (texture->gray ? 4 : 0);
+    for (uint32_t i = 0; i < texture->level_count; i++) {
+        const TextureLevel *level = &texture->levels[i];
+        header[1 + i][0]          = (uint32_t)(first + level->first);
+        header[1 + i][1]          = level->width + (level->height << 16);
+    }
+    memcpy(texels, texture->texels, texture->texel_count * sizeof *texels);
+}
+
+static void pack_textures(const Crowds *crowds, const Textures *textures, size_t first,
+                          Texel *cells)
+{
+    Texel *header = cells + GRID_HEADER * table_count(crowds);
+    for (size_t t = 0; t < texture_count(textures); t++) {
+        const Texture *texture = &textures->list.items[t];
+        put_texture(texture, first, header, cells + first);
+        header += TEXTURE_HEADER;
+        first += texture->texel_count;
+    }
+}
+
+void tables_pack(const Crowds *crowds, const Textures *textures, const NodeValue *values,
+                 float (*rows)[4], uint32_t (*cells)[2])
+{
+    TableSizes next = after_headers(crowds, textures);
+    for (size_t t = 0; t < table_count(crowds); t++) {
         const Crowd *table = &crowds->tables.items[t];
         Place        place = place_table(table, &next);
         put_header(&table->grid, place, cells + GRID_HEADER * t);
         put_grid(&table->grid, cells + place.cell, cells + place.list);
     }
-    tables_pack_rows(crowds, values, rows);
+    pack_textures(crowds, textures, next.cells, cells);
+    if (pack_rows(crowds, textures, values, rows).rows == 0)
+        memset(rows, 0, sizeof *rows);
 }

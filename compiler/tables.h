@@ -1,5 +1,5 @@
 /*
- * tables.h: the tables of crowds, as kernels read them: rows of numbers, and grids.
+ * tables.h: the tables of crowds, as kernels read them: rows of numbers, and grids; and textures.
  *
  * Both are arrays of texels, of four floats or two words.  Those of all tables are in the same two.
  *
@@ -19,25 +19,29 @@
  * Each cell is a texel: where its list begins, counted in members, and its clearance.  One more says
  * where the last list ends.  Behind them are the lists, two members a texel.  A grid of one infinite cell has 1 / size
  * 0, so that all points are in cell 0.
+ *
+ * Behind the headers of tables are those of textures, of TEXTURE_HEADER texels:
+ *     count of levels, what is outside + 4 if it is gray
+ *     and for each level: its first texel, width + 65536 height
+ * Their texels are behind all else, as texture.h has them.
  */
 #ifndef KRS_TABLES_H
 #define KRS_TABLES_H
 
 #include "compiler/graph/crowd.h"
-
-enum { GRID_HEADER = 8 };
+#include "compiler/graph/texture.h"
 
 /* How many texels there are. */
 typedef struct TableSizes {
     size_t rows, cells;
 } TableSizes;
 
-/* 0 when there are no tables; `crowds` may be NULL. */
-TableSizes tables_measure(const Crowds *crowds);
+/* 0 when there are neither tables nor textures; both may be NULL. */
+TableSizes tables_measure(const Crowds *crowds, const Textures *textures);
 /* Fills arrays of these sizes; `values` of nodes has the numbers of the frame, and may be NULL where
    there are none. */
-void tables_pack(const Crowds *crowds, const NodeValue *values, float (*rows)[4],
-                 uint32_t (*cells)[2]);
+void tables_pack(const Crowds *crowds, const Textures *textures, const NodeValue *values,
+                 float (*rows)[4], uint32_t (*cells)[2]);
 /* Fills the rows alone, which may differ between frames. */
 void tables_pack_rows(const Crowds *crowds, const NodeValue *values, float (*rows)[4]);
 

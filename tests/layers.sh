@@ -6,7 +6,7 @@
 # Units (NAME.c with NAME.h) do not include each other in circles.
 set -u
 cd "$(dirname "$0")/.." || exit 1
-layers="compiler/base compiler/outline compiler/graph compiler/shape compiler/lower compiler/family compiler/front
+layers="compiler/base compiler/image compiler/outline compiler/graph compiler/shape compiler/lower compiler/family compiler/front
         compiler/eval compiler/print compiler/print/glsl compiler/target compiler
         runtime/device runtime/shared runtime/tracer runtime/integrators runtime/film runtime/display
         runtime/writer runtime cli"

@@ -97,6 +97,7 @@ const char *value_type_name(Elaboration *e, Value value)
     case VALUE_SHAPE: return "a shape";
     case VALUE_MAP: return "a map of space";
     case VALUE_MATERIAL: return "a material";
+    case VALUE_TEXTURE: return "a texture";
     case VALUE_EXPRESSION:
     case VALUE_LIST: break;
     }

@@ -164,13 +164,6 @@ static Value builtin_field(Elaboration *e, Call *call)
     Node formula = value_node(e, argument->value);
     return value_shape(make_field(e->builder, formula, false, call->syntax->span));
 }
-
-static Value builtin_not_supported(Elaboration *e, Call *call)
-{
-    not_supported(e, call->syntax->span, diag_text(e->diags, "`%s`", call->name));
-    return value_error();
-}
-
 /* ---- tables ---- */
 
 /* Operations of the graph without parameters are not called by scenes. */

@@ -72,6 +72,12 @@ typedef struct FileBytes {
     size_t               length;
 } FileBytes;
 
+/* What makes one texture differ from another. */
+typedef struct TextureKey {
+    const char *path;
+    uint32_t    wrap, space;
+} TextureKey;
+
 typedef struct Elaboration {
     ShapeBuilder *builder; /* with the arenas, diagnostics and graph that stand here as well */
     Arena        *arena;   /* shapes and the scene */
@@ -101,6 +107,11 @@ typedef struct Elaboration {
         FileBytes *items;
         size_t     count, capacity;
     } read; /* files, bytes of which are no text */
+    struct {
+        TextureKey *items;
+        size_t      count, capacity;
+    } textures;     /* in the order of Graph.textures */
+    Arena *lasting; /* of the compiled scene, for textures */
     const Loader *loader;
     BuiltinName   builtins[MOST_BUILTIN_NAMES]; /* names looked up so far, by their addresses */
     bool     studio; /* a scene without lights and sky gets those of the library, and a floor */
@@ -329,6 +340,12 @@ size_t builtin_names(const char **names, size_t capacity);
 /* ---- lists.c ---- */
 BuiltinFunction builtin_sum, builtin_product, builtin_any, builtin_all, builtin_least,
     builtin_greatest, builtin_len, builtin_range;
+
+/* ---- texture.c ---- */
+BuiltinFunction builtin_texture, builtin_footprint;
+/* `t(u, v)`, and `t.alpha(u, v)`, `t.size`. */
+Value call_texture(Elaboration *e, const Environment *env, const Syntax *syntax, uint32_t number);
+Value texture_method(Elaboration *e, const Environment *env, const Syntax *syntax, uint32_t number);
 
 /* ---- hull.c ---- */
 BuiltinFunction builtin_hull, builtin_hull_triangles;

@@ -278,6 +278,8 @@ static Value evaluate_call(Elaboration *e, const Environment *env, const Syntax 
         return callee;
     if (callee.type == VALUE_FUNCTION)
         return call_function(e, env, syntax, callee.function);
+    if (callee.type == VALUE_TEXTURE)
+        return call_texture(e, env, syntax, callee.texture);
     Diag *diag  = diag_add(e->diags, DIAG_NOT_CALLABLE, syntax->children[0]->span,
                            "%s cannot be called", value_type_name(e, callee));
     diag->label = "neither a function nor a shape declaration";

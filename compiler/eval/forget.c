@@ -24,7 +24,8 @@ static bool stands_alone(Value value)
     case VALUE_STRING:
     case VALUE_SHAPE:
     case VALUE_MAP:
-    case VALUE_MATERIAL: return true;
+    case VALUE_MATERIAL:
+    case VALUE_TEXTURE: return true;
     case VALUE_LIST:
     case VALUE_RECORD:
     case VALUE_FUNCTION: break;

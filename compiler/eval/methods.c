@@ -416,6 +416,8 @@ Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax)
         return repeat_function(e, env, syntax, receiver.function);
     if (receiver.type == VALUE_RECORD && syntax->count == 1)
         return record_member(e, receiver.record, syntax->name, syntax->name_span);
+    if (receiver.type == VALUE_TEXTURE)
+        return texture_method(e, env, syntax, receiver.texture);
     if (is_component(e, receiver, syntax))
         return value_components(e, syntax, receiver);
     for (size_t i = 0; receiver.type == VALUE_SHAPE && i < METHOD_COUNT; i++) {

@@ -22,7 +22,8 @@ typedef enum ValueType {
     VALUE_FUNCTION,
     VALUE_SHAPE,
     VALUE_MAP,
-    VALUE_MATERIAL
+    VALUE_MATERIAL,
+    VALUE_TEXTURE
 } ValueType;
 
 typedef struct Value    Value;
@@ -53,6 +54,7 @@ struct Value {
         const Shape    *shape;
         const Map      *map;
         const Material *material;
+        uint32_t        texture; /* its number in Graph.textures */
     };
 };
 

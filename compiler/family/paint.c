@@ -4,6 +4,7 @@
 #include "compiler/family/family.h"
 
 #include "compiler/graph/evaluate.h"
+#include "compiler/lower/footprint.h"
 #include "compiler/lower/normal.h"
 
 /* ---- how it is made ---- */
@@ -66,8 +67,10 @@ const Shape *make_paint(ShapeBuilder *builder, const Shape *shape, const Materia
 /* What a material leaves open stays. */
 static void paint_with(Lowering *l, Node *property, Node paint, Substitution with)
 {
-    if (paint != NODE_NONE)
-        *property = graph_substitute(l->graph, paint, with, l->scratch);
+    if (paint == NODE_NONE)
+        return;
+    Node painted = graph_substitute(l->graph, paint, with, l->scratch);
+    *property    = lower_footprints(l->graph, painted, l->scratch);
 }
 
 /* The outermost paint counts, as the last method of a chain does. */

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/srgb.h"
 #include "compiler/front/synonyms.h"
 
 /* ---- numbers and colours ---- */
@@ -103,13 +104,10 @@ void lex_number(Lexer *lexer)
     add_token(lexer, TOKEN_NUMBER, start)->number = number;
 }
 
-/* The transfer function of sRGB, IEC 61966-2-1. */
 void linear_from_srgb(uint32_t rgb, double linear[3])
 {
-    for (int i = 0; i < 3; i++) {
-        double value = (rgb >> (16 - 8 * i) & 255) / 255.0;
-        linear[i]    = value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
-    }
+    for (int i = 0; i < 3; i++)
+        linear[i] = linear_of_srgb((rgb >> (16 - 8 * i) & 255) / 255.0);
 }
 
 static const char *six_digits(Lexer *lexer, uint32_t start)

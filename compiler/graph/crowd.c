@@ -79,6 +79,7 @@ void hand_on_crowds(Graph *to, const Graph *from, const Node *all, Node *roots, 
 {
     for (size_t i = 0; i < root_count; i++)
         roots[i] = all[i];
+    to->textures = from->textures;
     if (from->crowds)
         to->crowds = crowds_with_nodes(from->crowds, all + root_count, to->arena);
 }

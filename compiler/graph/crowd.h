@@ -46,6 +46,8 @@ typedef struct Crowd {
     Span      span;          /* of the join */
 } Crowd;
 
+/* How many texels of krs_cells the header of a table has for kernels. */
+enum { GRID_HEADER = 8 };
 /* How many texels, of four numbers each, a row has for kernels. */
 static inline size_t row_texels(const Crowd *table) { return (table->columns + 3) / 4; }
 
@@ -94,7 +96,7 @@ uint32_t graph_add_crowd_function(Graph *graph, CrowdFunction function, const No
 Node *roots_with_bodies(const Graph *graph, const Node *roots, size_t root_count, size_t *count,
                         Arena *arena);
 /* When the pass has made `to` of `from`, and all these nodes are of `to`: copies the roots back, and
-   gives `to` the crowds of `from` with its own bodies and frame numbers. */
+   gives `to` the crowds of `from` with its own bodies and frame numbers, and its textures. */
 void hand_on_crowds(Graph *to, const Graph *from, const Node *all, Node *roots, size_t root_count);
 /* Copies tables and functions into an arena as well, when that of the original is to be freed. */
 void crowds_keep(Crowds *crowds, Arena *arena);

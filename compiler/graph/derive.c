@@ -46,7 +46,7 @@ static Node derive_along(Derivation *d, const Tape *tape, int axis, Node *made, 
             made[i] = zero_of(g, TYPE_FLOAT); /* conditions: between them nothing changes */
         else if (d->held && node < d->held_end && d->held[node])
             made[i] = zero_of(g, e.type);
-        else if (e.op == OP_POINT)
+        else if (e.op == OP_POINT || (d->partly && e.op == OP_CROWD_POINT))
             made[i] = graph_vec3(g, axis == 0, axis == 1, axis == 2);
         else if (e.time != TIME_POINT)
             made[i] = zero_of(g, e.type);
@@ -55,6 +55,8 @@ static Node derive_along(Derivation *d, const Tape *tape, int axis, Node *made, 
                 inner[k] = made[tape_index(tape, e.operands[k])];
             made[i] = e.operand_count ? derive_node(d, node, inner) : NODE_NONE;
         }
+        if (made[i] == NODE_NONE && d->partly)
+            made[i] = zero_of(g, e.type);
         if (made[i] == NODE_NONE) {
             *blame = node;
             return NODE_NONE;
@@ -109,4 +111,12 @@ Smoothness graph_gradient_of(Graph *graph, Node root, const Node *held, size_t h
     if (smoothness != DERIVED_NOT)
         *gradient = graph_op(graph, OP_vec3, partial);
     return smoothness;
+}
+
+Node graph_known_gradient(Graph *graph, Node root, Arena *scratch)
+{
+    Node       partial[3];
+    Derivation d = {.graph = graph, .partly = true};
+    derive(&d, root, partial, NULL, scratch);
+    return graph_op(graph, OP_vec3, partial);
 }

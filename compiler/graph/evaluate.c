@@ -12,6 +12,7 @@
 #include "compiler/base/far.h"
 #include "compiler/graph/crowd.h"
 #include "compiler/graph/op_values.h"
+#include "compiler/graph/texture.h"
 
 /* What leaves get their values from. */
 typedef struct Inputs {
@@ -165,6 +166,12 @@ static NodeValue read_table(const Graph *graph, const Expr *e, const NodeValue *
     return number(table->numbers[(size_t)member * table->columns + row_column(column)]);
 }
 
+static NodeValue read_texture(const Graph *graph, const Expr *e, const NodeValue *values)
+{
+    return texture_value(texture_of(graph, e), values[e->operands[0]].v,
+                         values[e->operands[1]].v[0]);
+}
+
 static uint32_t lowest_bit(uint64_t bits)
 {
     uint32_t bit = 0;
@@ -305,6 +312,8 @@ static void run_points(const Tape *tape, const Inputs *in, NodeValue *values)
             i += run_guard(tape, i, values);
         else if (e->op == OP_row)
             values[node] = read_table(tape->graph, e, values);
+        else if (is_texture(e->op))
+            values[node] = read_texture(tape->graph, e, values);
         else if (is_call(e->op))
             values[node] = run_call(tape, e, in, values);
         else

@@ -36,6 +36,7 @@ Graph *graph_extract(const Graph *graph, Node *roots, size_t root_count, Arena *
     Tape   tape            = tape_new(graph, roots, root_count, arena);
     Node  *copies          = arena_new_array(arena, Node, tape.count + 1);
     Graph *part            = graph_new(arena);
+    part->textures         = graph->textures;
     part->parameters.count = 0;
     for (size_t i = 0; i < graph->parameters.count; i++)
         array_push(arena, &part->parameters, graph->parameters.items[i]);

@@ -11,6 +11,7 @@
 
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/range.h"
+#include "compiler/graph/texture.h"
 
 static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
 
@@ -79,6 +80,8 @@ static Fact node_fact(const Analysis *analysis, Node node, Box box)
         types[i]    = analysis->graph->items[e->operands[i]].type;
         operands[i] = *analysis_fact(analysis, e->operands[i]);
     }
+    if (is_texture(e->op))
+        return texture_fact_of(analysis->graph, e, operands);
     /* Rules do not know that two operands are the same number; a square is not negative. */
     bool same = e->operand_count == 2 && e->operands[0] == e->operands[1];
     Op   op   = same && e->op == OP_mul ? OP_square : (Op)e->op;

@@ -98,7 +98,8 @@ typedef struct Graph {
         GraphParameter *items;
         size_t          count, capacity;
     } parameters;          /* [0] is time */
-    struct Crowds *crowds; /* crowd.h; NULL: there are none */
+    struct Crowds   *crowds;   /* crowd.h; NULL: there are none */
+    struct Textures *textures; /* texture.h; likewise */
     Span           here;   /* span given to nodes made now */
     struct {
         Node  *items;

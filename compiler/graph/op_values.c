@@ -299,9 +299,16 @@ static NodeValue evaluate_blend_weight(const NodeValue *o, uint32_t size)
     return number(a == b ? 0.5 : fmin(fmax(0.5 + 0.5 * (b - a) / k, 0), 1));
 }
 
+/* Where nobody looks there are no pixels. */
+static NodeValue evaluate_footprint(const NodeValue *o, uint32_t size)
+{
+    (void)o, (void)size;
+    return number(0);
+}
+
 /* ---- tables ---- */
 
-/* Only a tape knows the tables of its graph (evaluate.c). */
+/* Only a tape knows the tables and textures of its graph (evaluate.c). */
 static NodeValue evaluate_of_table(const NodeValue *o, uint32_t size)
 {
     (void)o, (void)size;

@@ -71,7 +71,7 @@ Fact fact_truth(const RuleInput *input, uint32_t count, bool always, bool never)
 /* rules_space.c */
 Rule fact_turn, fact_fold, fact_front, fact_cell, fact_cell_polar, fact_noise2, fact_noise3,
     fact_identity, fact_to_uint, fact_id_unit, fact_julia, fact_mandelbulb, fact_trap,
-    fact_of_table;
+    fact_of_table, fact_footprint;
 /* rules_blends.c */
 Rule fact_smin, fact_smin_endless, fact_smin_circular, fact_smin_chamfer, fact_smin_stairs,
     fact_blend_weight;

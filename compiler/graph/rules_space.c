@@ -191,6 +191,13 @@ Fact fact_of_table(const RuleInput *input)
     return fact;
 }
 
+/* Distances do not see pixels. */
+Fact fact_footprint(const RuleInput *input)
+{
+    (void)input;
+    return (Fact){0};
+}
+
 /* ---- fractals ---- */
 
 /* The value in the middle of the point's range, and how far from there the point can be; false

@@ -327,6 +327,9 @@ static Node simplify_smin(const Rewrite *s)
     return NODE_NONE;
 }
 
+/* What is left of it when materials have been lowered is of distances. */
+static Node simplify_footprint(const Rewrite *s) { return graph_number(s->graph, 0); }
+
 /* There is no rule. */
 static Node simplify_none(const Rewrite *s)
 {

@@ -61,6 +61,23 @@ Node graph_substitute(Graph *graph, Node root, Substitution with, Arena *scratch
     return copies[tape_index(&tape, root)];
 }
 
+Node graph_replace_nodes(Graph *graph, Node root, const Tape *tape, const Node *by, Arena *scratch)
+{
+    Span  here   = graph->here;
+    Node *copies = arena_new_array(scratch, Node, tape->count);
+    for (size_t i = 0; i < tape->count; i++) {
+        Expr e = graph->items[tape->nodes[i]];
+        if (by[i])
+            copies[i] = by[i] - 1;
+        else if (e.operand_count)
+            copies[i] = substitute_operands(graph, e, tape->nodes[i], tape, copies);
+        else
+            copies[i] = tape->nodes[i];
+    }
+    graph->here = here;
+    return copies[tape_index(tape, root)];
+}
+
 Node graph_replace_leaf(Graph *graph, Node root, Node leaf, Node by, Arena *scratch)
 {
     Tape  tape   = tape_new(graph, &root, 1, scratch);

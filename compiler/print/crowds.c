@@ -14,7 +14,8 @@
 static void note_node(Emitter *e, Node node)
 {
     const Expr *expr = &e->graph->items[node];
-    if (!op_promises((Op)expr->op, READS_TABLES))
+    emit_note_seen(e, expr);
+    if (expr->op != OP_row && !is_call((Op)expr->op))
         return;
     uint32_t id = (uint32_t)e->graph->items[expr->operands[0]].number[0];
     if (is_call((Op)expr->op))
@@ -39,11 +40,13 @@ static Node *bodies_of(const Emitter *e, const CrowdFunction *function)
 void emit_find_called(Emitter *e, NodeList *roots)
 {
     const Crowds *crowds = e->graph->crowds;
+    if (crowds) {
+        e->called      = arena_new_array(e->scratch, uint8_t, crowds->functions.count + 1);
+        e->reads_table = arena_new_array(e->scratch, bool, crowds->tables.count + 1);
+    }
+    note_roots(e, roots->items, roots->count);
     if (!crowds)
         return;
-    e->called      = arena_new_array(e->scratch, uint8_t, crowds->functions.count + 1);
-    e->reads_table = arena_new_array(e->scratch, bool, crowds->tables.count + 1);
-    note_roots(e, roots->items, roots->count);
     for (size_t id = crowds->functions.count; id-- > 0;) { /* those that it calls come before it */
         const CrowdFunction *function = &crowds->functions.items[id];
         if (!e->called[id])

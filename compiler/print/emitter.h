@@ -80,6 +80,8 @@ typedef struct Emitter {
     uint8_t          *called;  /* of each crowd function: how many operands calls have behind its
                                   number; 0: there is no call.  NULL: there are no crowds */
     bool             *reads_table; /* of each table */
+    bool             *reads_texture; /* of each texture */
+    bool              sees;          /* something needs the ray that sees the surface */
     struct {
         RowTexel *items;
         size_t    count, capacity;
@@ -216,6 +218,15 @@ void emit_crowds(Emitter *e);
 const char *emit_row(Emitter *e, const Expr *row);
 const char *emit_crowd_call(Emitter *e, const Expr *call);
 const char *emit_state(Emitter *e, const Expr *state);
+
+/* textures.c: textures, and the ray that sees a surface. */
+/* Notes what a node needs of the text besides its operands. */
+void emit_note_seen(Emitter *e, const Expr *expr);
+bool emit_reads_textures(const Emitter *e);
+/* Globals for textures and the ray, and in krs_prepare their values. */
+void        emit_texture_globals(Emitter *e);
+void        emit_texture_reads(Emitter *e);
+const char *emit_texture(Emitter *e, const Expr *texture);
 
 /* early_outs.c: krs_distance_lod. */
 void need_lod(Emitter *e);

@@ -219,6 +219,12 @@ static void emit_functions(Emitter *e)
         emit_call(e, sines[i], TYPE_FLOAT, 1);
 }
 
+static void emit_about_textures(Emitter *e)
+{
+    text_add(e->out, "// Textures are in krs_cells, a texel buffer of format RG32UI, and equal in all frames:\n"
+                     "// krs_frame_tables in krs.h.\n");
+}
+
 static void emit_about_tables(Emitter *e)
 {
     bool vary = e->graph->crowds->frame_numbers.count > 0;
@@ -253,13 +259,17 @@ static void emit_block(Emitter *e)
         text_format(e->out, "// The last %u hold zones: center and radius.\n", v->zones);
     if (emit_reads_tables(e))
         emit_about_tables(e);
+    if (emit_reads_textures(e))
+        emit_about_textures(e);
     emit_phrase(e, PHRASE_PARAMETER_BLOCK, (Operands){emit_count(e, slots + v->zones)});
     if (emit_reads_zones(e))
         emit_phrase(e, PHRASE_ZONES, (Operands){emit_count(e, v->zones)});
-    if (emit_reads_tables(e)) {
+    if (emit_reads_tables(e) || emit_reads_textures(e))
         emit_phrase(e, v->buffers ? PHRASE_BUFFER_TABLES : PHRASE_TEXEL_TABLES, (Operands){0});
+    if (emit_reads_tables(e))
         emit_phrase(e, PHRASE_TABLES, (Operands){0});
-    }
+    if (emit_reads_textures(e))
+        emit_phrase(e, PHRASE_TEXTURES, (Operands){0});
 }
 
 /* Promised functions, which may then be called in any order. */

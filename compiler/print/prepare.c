@@ -147,9 +147,12 @@ void emit_prepare(Emitter *e, const Node *roots, size_t count, const FrameValues
     size_t globals   = emit_globals(e, roots, count, set, is_global);
     bool   reads     = e->variant->camera_relative || (e->variant->values && values->slots > 0);
     emit_table_globals(e);
-    text_add(e->out, globals || emit_reads_tables(e) ? "\n" : "");
+    emit_texture_globals(e);
+    bool any = globals || emit_reads_tables(e) || emit_reads_textures(e) || e->sees;
+    text_add(e->out, any ? "\n" : "");
     emit_prepare_head(e);
     emit_table_reads(e);
+    emit_texture_reads(e);
     if (reads)
         emit_reads(e, set, globals, values);
     else

@@ -136,6 +136,9 @@ void do_item(uint number)
 {
     HitPoint      hit = find_hit_point(number);
     vec4       facing = load_hit(FACING, hit.slot), lighting = load_hit(LIGHTING, hit.slot);
+#ifdef KRS_VIEW // materials see how long the pixel is on the surface
+    krs_view = hit.direction;
+#endif
     KrsSurface surface = krs_surface(hit.position, hit.side * facing.xyz, 0.5 * hit.width);
     uint       index = index_of(pixel_of(hit.slot));
     Coat       coat = find_coat(hit, surface, facing.w);

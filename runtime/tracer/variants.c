@@ -55,6 +55,8 @@ static void define_choices(KernelVariant *to)
     for (size_t i = 0; i < sizeof choices / sizeof *choices; i++)
         if (wants(to, choices[i].function))
             define(to, "%s", choices[i].define);
+    if (wants(to, KRS_FUNCTION_SURFACE) && krs_scene_program(to->scene.scene)->views)
+        define(to, "#define KRS_VIEW\n"); /* the scene's text has krs_view */
     if (to->scene.variant.march_group > 0)
         define(to, "#define MARCH_GROUP %u\n", to->scene.variant.march_group);
     if (to->scene.variant.camera_relative)

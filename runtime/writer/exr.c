@@ -18,6 +18,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/half.h"
+
 enum {
     /* zlib's level.  Files of level 2 are 3 % larger than those of 4, in two thirds of the time.
        Files of level 4 are within 2 % of those of 9, in a quarter of the time. */
@@ -52,39 +54,6 @@ typedef struct Worker {
     bool                  begun;    /* the pipeline is set up */
     exr_encode_pipeline_t pipeline; /* keeps its buffers from chunk to chunk */
 } Worker;
-
-uint16_t half_from_float(float number)
-{
-    uint32_t bits;
-    memcpy(&bits, &number, sizeof bits);
-    uint16_t sign = (uint16_t)(bits >> 16 & 0x8000);
-    uint32_t size = bits & 0x7fffffff;
-    if (size > 0x7f800000)
-        return sign | 0x7e00; /* NaN, quiet */
-    if (size == 0x7f800000)
-        return sign | 0x7c00;
-    if (size >= 0x477ff000)
-        return sign | 0x7bff; /* would round to more than 65504 */
-    if (size < 0x33000001)
-        return sign; /* up to half of the smallest half, 2^-25, rounds to zero */
-
-    /* `kept` is the result, rounded down; `lost` is the rest, in fractions of `unit`. */
-    uint32_t kept, lost, unit;
-    if (size < 0x38800000) { /* the result is subnormal: the leading 1 becomes explicit */
-        uint32_t shift    = 126 - (size >> 23);
-        uint32_t fraction = (size & 0x7fffff) | 0x800000;
-        kept              = fraction >> shift;
-        unit              = 1u << shift;
-        lost              = fraction & (unit - 1);
-    } else {
-        kept = (size - 0x38000000) >> 13;
-        unit = 1u << 13;
-        lost = size & (unit - 1);
-    }
-    if (lost > unit / 2 || (lost == unit / 2 && (kept & 1)))
-        kept++;
-    return (uint16_t)(sign | kept);
-}
 
 static int64_t write_callback(exr_const_context_t context, void *user, const void *bytes,
                               uint64_t length, uint64_t offset, exr_stream_error_func_ptr_t fail)

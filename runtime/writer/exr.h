@@ -11,9 +11,4 @@
    make equal bytes. */
 bool exr_write(const Picture *picture, OutputFile *file, OutputError *error);
 
-/* The nearest half-precision number, ties to even.  Finite numbers beyond the largest half become
-   65504, that half.  So a very bright pixel does not become infinite, which no filter survives.
-   Infinities and NaN stay as they are. */
-uint16_t half_from_float(float number);
-
 #endif

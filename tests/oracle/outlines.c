@@ -355,7 +355,7 @@ static void sample_figure(Stage *stage, Bench *bench, OutlineShape *shape)
     Graph     *graph = (Graph *)(uintptr_t)stage->scene->graph;
     Node       root  = outline_distance(graph, shape, 0, graph_leaf(graph, OP_POINT), &is_new,
                                         &bench->arena);
-    TableSizes sizes = tables_measure(graph->crowds);
+    TableSizes sizes = tables_measure(graph->crowds, NULL);
     stage->scene->program.table_rows                      = sizes.rows;
     stage->scene->program.table_cells                     = sizes.cells;
     surface_roots(&stage->scene->roots, 0)[ROOT_DISTANCE] = root;

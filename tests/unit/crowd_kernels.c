@@ -43,7 +43,7 @@ static void open_stage(Stage *stage, Bench *bench)
     bench->graph                      = graph;
     bench->point                      = graph_leaf(graph, OP_POINT);
     stage->many                       = make_many(bench);
-    TableSizes sizes                  = tables_measure(graph->crowds);
+    TableSizes sizes                  = tables_measure(graph->crowds, NULL);
     stage->scene->program.table_rows  = sizes.rows;
     stage->scene->program.table_cells = sizes.cells;
     for (int i = 0; i < POINTS; i++)

@@ -66,7 +66,7 @@ static void add_tables(Bench *bench, Stage *stage, uint32_t rows)
         array_push(&bench->arena, &stage->crowds->tables, table);
     }
     Graph     *graph                  = (Graph *)(uintptr_t)stage->scene->graph;
-    TableSizes sizes                  = tables_measure(stage->crowds);
+    TableSizes sizes                  = tables_measure(stage->crowds, NULL);
     graph->crowds                     = stage->crowds;
     stage->scene->program.table_rows  = sizes.rows;
     stage->scene->program.table_cells = sizes.cells;

@@ -17,6 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/half.h"
 #include "runtime/writer/exr.h"
 #include "runtime/writer/png.h"
 #include "tests/support/processors.h"

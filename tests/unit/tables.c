@@ -52,13 +52,13 @@ static Packed pack(Bench *bench)
         make_table(bench, &table, shapes[t][0], shapes[t][1], t == TABLES - 1);
         array_push(&bench->arena, &packed.crowds.tables, table);
     }
-    packed.sizes = tables_measure(&packed.crowds);
+    packed.sizes = tables_measure(&packed.crowds, NULL);
     packed.rows  = arena_alloc(&bench->arena, packed.sizes.rows + 1, sizeof *packed.rows);
     packed.cells = arena_alloc(&bench->arena, packed.sizes.cells + 1, sizeof *packed.cells);
     memset(packed.rows, 0xff, (packed.sizes.rows + 1) * sizeof *packed.rows);
     for (size_t i = 0; i <= packed.sizes.cells; i++)
         packed.cells[i][0] = packed.cells[i][1] = UNTOUCHED;
-    tables_pack(&packed.crowds, NULL, packed.rows, packed.cells);
+    tables_pack(&packed.crowds, NULL, NULL, packed.rows, packed.cells);
     return packed;
 }
 
@@ -155,7 +155,7 @@ static void no_tables(void **state)
 {
     (void)state;
     Crowds     none  = {0};
-    TableSizes sizes = tables_measure(NULL), empty = tables_measure(&none);
+    TableSizes sizes = tables_measure(NULL, NULL), empty = tables_measure(&none, NULL);
     assert_true(sizes.rows == 0 && sizes.cells == 0 && empty.rows == 0 && empty.cells == 0);
 }
 

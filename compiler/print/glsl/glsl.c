@@ -90,6 +90,13 @@ static const char *const phrases[PHRASE_COUNT] = {
         "    uint first, end;\n"
         "    float clearance;\n"
         "};\n\n",
+    [PHRASE_TEXTURES] =
+        "// A texture: the texel that its list of levels begins at, how many there are, what is outside\n"
+        "// (0: the picture again, 1: its edge, 2: its mirror image), and whether it is gray.\n"
+        "struct KrsTexture {\n"
+        "    uint list, levels, wrap;\n"
+        "    bool gray;\n"
+        "};\n\n",
     [PHRASE_EACH_LISTED] = "    KrsNear nearby = krs_near(p, $a);\n"
                            "    for (uint i = nearby.first; i < nearby.end; i++) {\n"
                            "        uint member = krs_listed(i, $a);\n",

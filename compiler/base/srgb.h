@@ -1,0 +1,14 @@
+/*
+ * srgb.h: the transfer function of sRGB, IEC 61966-2-1.
+ */
+#ifndef KRS_SRGB_H
+#define KRS_SRGB_H
+
+#include <math.h>
+
+static inline double linear_of_srgb(double value)
+{
+    return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
+}
+
+#endif

@@ -1,0 +1,188 @@
+/*
+ * exr.c: reads OpenEXR files with OpenEXRCore, the C library underneath OpenEXR.
+ *
+ * The library has memory of its own, so the arena, which may leave by longjmp, is asked for memory
+ * only while no file is open: a first look finds the size, a second one reads the pixels.
+ */
+#include <OpenEXR/openexr.h>
+#include <string.h>
+
+#include "compiler/base/srgb.h"
+#include "compiler/image/image.h"
+
+typedef struct ExrReader {
+    Image               *image;
+    const unsigned char *bytes;
+    size_t               length;
+    exr_context_t        context;
+    exr_attr_box2i_t     window;
+    int32_t              lines; /* of a chunk */
+} ExrReader;
+
+static int64_t read_callback(exr_const_context_t context, void *user, void *to, uint64_t length,
+                             uint64_t offset, exr_stream_error_func_ptr_t fail)
+{
+    const ExrReader *reader = user;
+    (void)context, (void)fail;
+    if (offset >= reader->length)
+        return 0;
+    uint64_t left = reader->length - offset, count = length < left ? length : left;
+    memcpy(to, reader->bytes + offset, count);
+    return (int64_t)count;
+}
+
+static int64_t size_callback(exr_const_context_t context, void *user)
+{
+    (void)context;
+    return (int64_t)((const ExrReader *)user)->length;
+}
+
+static void ignore_message(exr_const_context_t context, exr_result_t code, const char *message)
+{
+    (void)context, (void)code, (void)message;
+}
+
+static bool exr_try(ExrReader *reader, exr_result_t result)
+{
+    return result == EXR_ERR_SUCCESS ||
+           image_fail(reader->image, exr_get_default_error_message(result));
+}
+
+static bool begin(ExrReader *reader)
+{
+    exr_context_initializer_t options = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    options.user_data                 = reader;
+    options.read_fn                   = read_callback;
+    options.size_fn                   = size_callback;
+    options.error_handler_fn          = ignore_message;
+    reader->context                   = NULL;
+    return exr_try(reader, exr_start_read(&reader->context, "texture", &options));
+}
+
+/* ---- channels ---- */
+
+/* Where a channel's samples go in a pixel; -1: nowhere. */
+static int place_of(bool gray, const char *name)
+{
+    static const char *const colors[] = {"R", "G", "B", "A"}, *const grays[] = {"Y", "A"};
+    for (int i = 0; i < (gray ? 2 : 4); i++)
+        if (strcmp(gray ? grays[i] : colors[i], name) == 0)
+            return i;
+    return -1;
+}
+
+/* Colours, or the gray, and alpha; other channels are left out. */
+static bool find_channels(ExrReader *reader)
+{
+    const exr_attr_chlist_t *channels;
+    bool                     red = false, gray = false;
+    if (!exr_try(reader, exr_get_channels(reader->context, 0, &channels)))
+        return false;
+    for (int i = 0; i < channels->num_channels; i++) {
+        const exr_attr_chlist_entry_t *channel = &channels->entries[i];
+        const char                    *name    = channel->name.str;
+        red                                    = red || place_of(false, name) >= 0;
+        gray                                   = gray || strcmp(name, "Y") == 0;
+        if (place_of(false, name) < 0 && place_of(true, name) < 0)
+            continue;
+        if (channel->x_sampling != 1 || channel->y_sampling != 1)
+            return image_fail(reader->image, "a channel has fewer samples than pixels");
+        if (channel->pixel_type == EXR_PIXEL_UINT)
+            return image_fail(reader->image, "a channel has whole numbers");
+    }
+    reader->image->gray = gray;
+    return red || gray ||
+           image_fail(reader->image, "it has neither the channels R, G, B nor the channel Y");
+}
+
+static bool read_header(ExrReader *reader)
+{
+    exr_storage_t storage;
+    if (!exr_try(reader, exr_get_storage(reader->context, 0, &storage)) ||
+        !exr_try(reader, exr_get_data_window(reader->context, 0, &reader->window)))
+        return false;
+    if (storage != EXR_STORAGE_SCANLINE)
+        return image_fail(reader->image, "it is not of scanlines: tiles and deep pixels are not read");
+    const exr_attr_box2i_t *window = &reader->window;
+    const int64_t width = (int64_t)window->max.x - window->min.x + 1;
+    const int64_t height = (int64_t)window->max.y - window->min.y + 1;
+    if (width < 1 || height < 1 || width > reader->image->most_side ||
+        height > reader->image->most_side)
+        return image_fail(reader->image, "it has too many pixels, or none");
+    reader->image->width  = (uint32_t)width;
+    reader->image->height = (uint32_t)height;
+    return find_channels(reader) &&
+           exr_try(reader, exr_get_scanlines_per_chunk(reader->context, 0, &reader->lines));
+}
+
+/* ---- pixels ---- */
+
+static void place_channels(const ExrReader *reader, exr_decode_pipeline_t *pipeline)
+{
+    const Image *image = reader->image;
+    const size_t pixel = image_channels(image) * sizeof(float);
+    const size_t first = (size_t)(pipeline->chunk.start_y - reader->window.min.y);
+    for (int c = 0; c < pipeline->channel_count; c++) {
+        exr_coding_channel_info_t *channel = &pipeline->channels[c];
+        int                        place   = place_of(image->gray, channel->channel_name);
+        float *row = image->samples + first * image->width * image_channels(image);
+        channel->decode_to_ptr     = place >= 0 ? (uint8_t *)(row + place) : NULL;
+        channel->user_pixel_stride = (int32_t)pixel;
+        channel->user_line_stride  = (int32_t)(pixel * image->width);
+        channel->user_data_type    = EXR_PIXEL_FLOAT;
+        channel->user_bytes_per_element = sizeof(float);
+    }
+}
+
+static bool read_chunk(ExrReader *reader, exr_decode_pipeline_t *pipeline, int y, bool first)
+{
+    exr_chunk_info_t chunk;
+    exr_context_t    context = reader->context;
+    if (!exr_try(reader, exr_read_scanline_chunk_info(context, 0, y, &chunk)) ||
+        !exr_try(reader, first ? exr_decoding_initialize(context, 0, &chunk, pipeline)
+                               : exr_decoding_update(context, 0, &chunk, pipeline)))
+        return false;
+    place_channels(reader, pipeline);
+    return (!first ||
+            exr_try(reader, exr_decoding_choose_default_routines(context, 0, pipeline))) &&
+           exr_try(reader, exr_decoding_run(context, 0, pipeline));
+}
+
+static bool read_pixels(ExrReader *reader)
+{
+    exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
+    bool                  good     = true;
+    for (int64_t y = reader->window.min.y; good && y <= reader->window.max.y; y += reader->lines)
+        good = read_chunk(reader, &pipeline, (int)y, y == reader->window.min.y);
+    exr_decoding_destroy(reader->context, &pipeline);
+    return good;
+}
+
+/* Opened again for each of the two looks. */
+static bool look(ExrReader *reader, bool (*at)(ExrReader *reader))
+{
+    bool good = begin(reader) && at(reader);
+    if (reader->context)
+        exr_finish(&reader->context);
+    return good;
+}
+
+static void make_linear(Image *image)
+{
+    const uint32_t channels = image_channels(image);
+    for (size_t i = 0; i < image_pixels(image); i++)
+        for (uint32_t k = 0; k + 1 < channels; k++) {
+            float *sample = &image->samples[i * channels + k];
+            *sample       = (float)linear_of_srgb(*sample);
+        }
+}
+
+bool image_read_exr(Image *image, const unsigned char *bytes, size_t length)
+{
+    ExrReader reader = {.image = image, .bytes = bytes, .length = length};
+    if (!look(&reader, read_header) || !image_make(image) || !look(&reader, read_pixels))
+        return false;
+    if (image->space == SPACE_SRGB)
+        make_linear(image);
+    return true;
+}

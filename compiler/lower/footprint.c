@@ -1,0 +1,85 @@
+/*
+ * footprint.c: how far what a material computes changes within a pixel.
+ *
+ * A pixel is a disc of radius r across the ray with the direction d.  The rays through it meet the
+ * surface, of normal n, in an ellipse.  A step s across the ray moves the point on the surface by
+ * s - d (s.n) / (d.n).  An expression with the gradient g changes by s.h then, where
+ *     h = g - n (g.d) / (d.n),
+ * and h is across the ray.  So from one side of the pixel to the other it changes by 2 r |h|.
+ *
+ * Where no ray is known, as of members of crowds, the surface is taken to be seen from its front.
+ */
+#include "compiler/lower/footprint.h"
+
+#include "compiler/graph/crowd.h"
+#include "compiler/graph/derive.h"
+#include "compiler/graph/evaluate.h"
+
+/* Nearer to grazing than this cosine, pixels are taken to be no longer. */
+static const double LEAST_COSINE_SQUARED = 1e-6;
+
+/* What is known of the pixel where an expression is evaluated. */
+typedef struct Pixel {
+    Node normal, view, radius;
+} Pixel;
+
+/* Bodies of crowds have leaves of their own. */
+static Pixel pixel_of(Graph *g, const Tape *tape)
+{
+    uint32_t crowd = UINT32_MAX;
+    for (size_t i = tape->frame_count; i < tape->count; i++)
+        if (is_of_crowd((Op)g->items[tape->nodes[i]].op))
+            crowd = g->items[tape->nodes[i]].index;
+    Pixel pixel = {NODE_NONE, NODE_NONE, NODE_NONE};
+    if (crowd == UINT32_MAX) {
+        pixel.normal = graph_leaf(g, OP_NORMAL);
+        pixel.view   = graph_leaf(g, OP_VIEW);
+        pixel.radius = graph_leaf(g, OP_FOOTPRINT);
+        return pixel;
+    }
+    pixel.normal = pixel.view = graph_crowd_leaf(g, OP_CROWD_NORMAL, crowd);
+    pixel.radius              = graph_crowd_leaf(g, OP_CROWD_FOOTPRINT, crowd);
+    return pixel;
+}
+
+/* The part of a gradient that steps across the ray see. */
+static Node seen_gradient(Graph *g, Pixel pixel, Node gradient)
+{
+    Node cosine = graph_op2(g, OP_dot, pixel.normal, pixel.view);
+    Node along  = graph_op2(g, OP_dot, gradient, pixel.view);
+    Node least  = graph_number(g, LEAST_COSINE_SQUARED);
+    Node square = graph_op2(g, OP_mul, cosine, cosine);
+    Node size   = graph_op2(g, OP_max, square, least);
+    Node share  = graph_op2(g, OP_div, graph_op2(g, OP_mul, along, cosine), size);
+    Node bent   = graph_op2(g, OP_scale, pixel.normal, share);
+    return graph_op2(g, OP_sub, gradient, bent);
+}
+
+static Node width_of(Graph *g, Node expression, Arena *scratch)
+{
+    Node  gradient = graph_known_gradient(g, expression, scratch);
+    Tape  tape     = tape_new(g, &expression, 1, scratch);
+    Pixel pixel    = pixel_of(g, &tape);
+    Node  seen     = seen_gradient(g, pixel, gradient);
+    Node  length   = graph_op1(g, OP_length, seen);
+    Node  width    = graph_op2(g, OP_add, pixel.radius, pixel.radius);
+    return graph_op2(g, OP_mul, width, length);
+}
+
+Node lower_footprints(Graph *graph, Node root, Arena *scratch)
+{
+    Tape  tape = tape_new(graph, &root, 1, scratch);
+    Node *by   = NULL;
+    Span  here = graph->here;
+    for (size_t i = 0; i < tape.count; i++) {
+        Expr e = graph->items[tape.nodes[i]];
+        if (e.op != OP_footprint)
+            continue;
+        graph->here = e.span;
+        if (!by)
+            by = arena_new_array(scratch, Node, tape.count);
+        by[i] = 1 + width_of(graph, e.operands[0], scratch);
+    }
+    graph->here = here;
+    return by ? graph_replace_nodes(graph, root, &tape, by, scratch) : root;
+}
