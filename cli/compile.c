@@ -107,6 +107,23 @@ static void add_tables_json(Text *json, const KrsScene *scene, const char *name)
     text_add(json, "]");
 }
 
+static void add_textures_json(Text *json, const KrsScene *scene)
+{
+    text_add(json, ", \"textures\": [");
+    for (size_t i = 0; i < krs_texture_count(scene); i++) {
+        KrsTexture texture;
+        krs_texture(scene, i, &texture);
+        text_add(json, i ? ", {\"file\": " : "{\"file\": ");
+        text_json(json, texture.file);
+        text_format(json, ", \"width\": %u, \"height\": %u, \"levels\": %u, ", texture.width,
+                    texture.height, texture.levels);
+        text_format(json, "\"texel\": \"%s\", \"buffer\": \"%s\", \"header\": %zu, \"first\": %zu}",
+                    texture.gray ? "RG32F" : "RGBA16F", cells_file.buffer, texture.header,
+                    texture.first);
+    }
+    text_add(json, "]");
+}
+
 /* ---- all files ---- */
 
 static KrsStatus write_description(const Options *options, const KrsScene *scene,
@@ -120,6 +137,7 @@ static KrsStatus write_description(const Options *options, const KrsScene *scene
     text_format(&json, ", \"parameter_slots\": %zu, \"value_slots\": %zu",
                 krs_parameter_slots(scene), krs_value_slots(scene));
     add_tables_json(&json, scene, name);
+    add_textures_json(&json, scene);
     text_add(&json, ", \"entries\": [");
     for (size_t i = 0; i < modules->count; i++) {
         text_add(&json, i == 0 ? "" : ", ");

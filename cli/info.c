@@ -141,6 +141,16 @@ static void print_tables(const KrsProgram *program)
            large ? bytes / 1e6 : ceil(bytes / 1e3), large ? "MB" : "kB");
 }
 
+static void print_textures(const KrsScene *scene)
+{
+    for (size_t i = 0; i < krs_texture_count(scene); i++) {
+        KrsTexture texture;
+        krs_texture(scene, i, &texture);
+        printf("texture %s: %u x %u texels, %s\n", texture.file, texture.width, texture.height,
+               texture.gray ? "gray" : "colours");
+    }
+}
+
 static void print_text(const KrsScene *scene)
 {
     const KrsProgram *program = krs_scene_program(scene);
@@ -162,6 +172,7 @@ static void print_text(const KrsScene *scene)
         printf("zones %zu\n", krs_zone_count(scene));
     if (program->table_count > 0)
         print_tables(program);
+    print_textures(scene);
     fputs("bounds ", stdout);
     print_vector(program->low, 3);
     fputs(" to ", stdout);

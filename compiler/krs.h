@@ -187,12 +187,25 @@ void   krs_frame_values(const KrsFrame *frame, float (*block)[4]);
 /*
  * The texel buffers of that GLSL: numbers of parts that are alike but for numbers, and which of them
  * are near a point.  `rows` needs krs_table_rows texels, for krs_rows (RGBA32F), and `cells` needs
- * krs_table_cells, for krs_cells (RG32UI).  Both are 0 for scenes without such parts, whose GLSL
- * has neither buffer.  Rows may depend on the parameters and the time, cells do not.
+ * krs_table_cells, for krs_cells (RG32UI), which has the textures as well.  Both are 0 for scenes
+ * without such parts and textures, whose GLSL has neither buffer.  Rows may depend on the parameters and the time, cells do not.
  */
 size_t krs_table_rows(const KrsScene *scene);
 size_t krs_table_cells(const KrsScene *scene);
 void   krs_frame_tables(const KrsFrame *frame, float (*rows)[4], uint32_t (*cells)[2]);
+/* A texture that the scene names.  Its texels are in `cells`, level after level, the rows of each from
+   the bottom upwards; a level has half the width and height of the one before, rounded down.  Those
+   of a gray texture are two floats, gray and alpha, those of others four halves, red, green, blue and
+   alpha.  KRS_BAD_ARGUMENT: there is none of this index. */
+typedef struct KrsTexture {
+    const char *file;
+    uint32_t    width, height, levels;
+    int         gray;
+    size_t      header; /* texel of its header, which the GLSL reads */
+    size_t      first;  /* first texel of its finest level */
+} KrsTexture;
+size_t    krs_texture_count(const KrsScene *scene);
+KrsStatus krs_texture(const KrsScene *scene, size_t index, KrsTexture *texture);
 /* A slope that is computed for each frame: its slot, and the location of its expression.
    KRS_BAD_ARGUMENT: there is none of this index. */
 typedef struct KrsFrameSlope {

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/tables.h"
+
 const KrsProgram *krs_scene_program(const KrsScene *scene) { return &scene->program; }
 
 bool krs_scene_is_panoramic(const KrsScene *scene)
@@ -30,6 +32,23 @@ size_t      krs_turns_end(const KrsScene *scene, size_t index) { return scene->t
 const char *krs_camera_name(const KrsScene *scene, size_t index)
 {
     return index < scene->camera_count ? scene->cameras[index].name : NULL;
+}
+
+size_t krs_texture_count(const KrsScene *scene) { return scene->program.texture_count; }
+
+KrsStatus krs_texture(const KrsScene *scene, size_t index, KrsTexture *texture)
+{
+    const Textures *all = scene->graph->textures;
+    if (index >= scene->program.texture_count)
+        return KRS_BAD_ARGUMENT;
+    const Texture *from = &all->list.items[index];
+    *texture            = (KrsTexture){.file   = from->name,
+                                       .width  = from->levels[0].width,
+                                       .height = from->levels[0].height,
+                                       .levels = from->level_count,
+                                       .gray   = from->gray};
+    tables_place_texture(scene->graph->crowds, all, index, &texture->header, &texture->first);
+    return KRS_OK;
 }
 
 KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *parameter)

@@ -177,15 +177,22 @@ static void put_texture(const Texture *texture, size_t first, Texel *header, Tex
     memcpy(texels, texture->texels, texture->texel_count * sizeof *texels);
 }
 
-static void pack_textures(const Crowds *crowds, const Textures *textures, size_t first,
-                          Texel *cells)
+/* Textures are in the order of their numbers, and the last of all. */
+void tables_place_texture(const Crowds *crowds, const Textures *textures, size_t index,
+                          size_t *header, size_t *first)
 {
-    Texel *header = cells + GRID_HEADER * table_count(crowds);
+    *header = GRID_HEADER * table_count(crowds) + TEXTURE_HEADER * index;
+    *first  = tables_measure(crowds, textures).cells;
+    for (size_t t = index; t < textures->list.count; t++)
+        *first -= textures->list.items[t].texel_count;
+}
+
+static void pack_textures(const Crowds *crowds, const Textures *textures, Texel *cells)
+{
     for (size_t t = 0; t < texture_count(textures); t++) {
-        const Texture *texture = &textures->list.items[t];
-        put_texture(texture, first, header, cells + first);
-        header += TEXTURE_HEADER;
-        first += texture->texel_count;
+        size_t header, first;
+        tables_place_texture(crowds, textures, t, &header, &first);
+        put_texture(&textures->list.items[t], first, cells + header, cells + first);
     }
 }
 
@@ -199,7 +206,7 @@ void tables_pack(const Crowds *crowds, const Textures *textures, const NodeValue
         put_header(&table->grid, place, cells + GRID_HEADER * t);
         put_grid(&table->grid, cells + place.cell, cells + place.list);
     }
-    pack_textures(crowds, textures, next.cells, cells);
+    pack_textures(crowds, textures, cells);
     if (pack_rows(crowds, textures, values, rows).rows == 0)
         memset(rows, 0, sizeof *rows);
 }

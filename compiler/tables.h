@@ -38,6 +38,9 @@ typedef struct TableSizes {
 
 /* 0 when there are neither tables nor textures; both may be NULL. */
 TableSizes tables_measure(const Crowds *crowds, const Textures *textures);
+/* Which texels of the cells the header of a texture and its finest level begin at. */
+void tables_place_texture(const Crowds *crowds, const Textures *textures, size_t index,
+                          size_t *header, size_t *first);
 /* Fills arrays of these sizes; `values` of nodes has the numbers of the frame, and may be NULL where
    there are none. */
 void tables_pack(const Crowds *crowds, const Textures *textures, const NodeValue *values,

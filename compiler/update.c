@@ -3,13 +3,14 @@
  *
  * Two scenes have the same kernels if these are made of the same nodes, apart from numbers of the
  * frame, and if all else that decides about their text is equal.  Some constants never get into the
- * text, and tables of crowds do not, but what is derived from them may.  So scenes whose nodes or
- * tables differ are compared by their text as well.
+ * text, and tables of crowds and textures do not, but what is derived from them may.  So scenes of
+ * which nodes, tables or textures differ are compared by their text as well.
  */
 #include <stdlib.h>
 #include <string.h>
 
 #include "compiler/graph/crowd.h"
+#include "compiler/graph/texture.h"
 #include "compiler/program.h"
 
 /* What two parts of scenes have in common, the least first. */
@@ -142,6 +143,23 @@ static bool same_crowds(const Crowds *a, const Crowds *b)
     return same;
 }
 
+static bool same_texture(const Texture *a, const Texture *b)
+{
+    return a->wrap == b->wrap && a->gray == b->gray && a->level_count == b->level_count &&
+           memcmp(&a->levels, &b->levels, sizeof a->levels) == 0 &&
+           memcmp(a->texels, b->texels, a->texel_count * sizeof *a->texels) == 0;
+}
+
+static size_t texture_count(const Textures *textures) { return textures ? textures->list.count : 0; }
+
+static bool same_textures(const Textures *a, const Textures *b)
+{
+    bool same = texture_count(a) == texture_count(b);
+    for (size_t i = 0; same && i < texture_count(a); i++)
+        same = same_texture(&a->list.items[i], &b->list.items[i]);
+    return same;
+}
+
 /* ---- what decides about kernels beside the graph ---- */
 
 static bool same_slots(const KrsProgram *a, const KrsProgram *b)
@@ -214,6 +232,7 @@ static Likeness compare_kernels(Comparison *c)
         return DIFFERENT;
     Likeness found = compare_graphs(c, true, ROOTS_SURFACE, ROOT_KINDS - 1);
     found          = least(found, equal_if(same_crowds(c->a->graph->crowds, c->b->graph->crowds)));
+    found = least(found, equal_if(same_textures(c->a->graph->textures, c->b->graph->textures)));
     return found != DIFFERENT || !same_texts(c) ? found : ALIKE_BUT_NUMBERS;
 }
 

@@ -155,11 +155,22 @@ char *source_read_open(int fd, size_t *length, const char **reason)
 }
 
 /* FNV-1a (Fowler, Noll, Vo). */
+/* FNV-1a */
+static const uint64_t FNV_START = 0xcbf29ce484222325u, FNV_PRIME = 0x100000001b3u;
+
+void sources_note_bytes(Sources *sources, const unsigned char *bytes, size_t length)
+{
+    uint64_t h = sources->pictures ? sources->pictures : FNV_START;
+    for (size_t i = 0; i < length; i++)
+        h = (h ^ bytes[i]) * FNV_PRIME;
+    sources->pictures = h;
+}
+
 void sources_hash(const Sources *sources, char hash[17])
 {
-    uint64_t h = 0xcbf29ce484222325u;
+    uint64_t h = FNV_START ^ sources->pictures;
     for (size_t i = 1; i < sources->count; i++)
         for (uint32_t k = 0; !sources->items[i].library && k < sources->items[i].length; k++)
-            h = (h ^ (uint8_t)sources->items[i].text[k]) * 0x100000001b3u;
+            h = (h ^ (uint8_t)sources->items[i].text[k]) * FNV_PRIME;
     snprintf(hash, 17, "%016llx", (unsigned long long)h);
 }

@@ -69,8 +69,10 @@ bool read_beside(Elaboration *e, const Argument *argument, const char *name, Fil
         return false;
     }
     bool large = is_too_large(e, argument->syntax, loaded.length);
-    if (!large)
+    if (!large) {
         keep_bytes(e, path, &loaded, bytes);
+        sources_note_bytes(e->sources, bytes->bytes, bytes->length);
+    }
     free(loaded.owned);
     return !large;
 }

@@ -62,6 +62,7 @@ static bool make_texture(Elaboration *e, const Argument *file, const FileBytes *
         Textures *all     = e->graph->textures;
         Texture   texture = texture_new(image.samples, image.width, image.height, image.gray,
                                         (TextureWrap)key->wrap, e->lasting, e->scratch);
+        texture.name = arena_copy_text(e->lasting, key->path, strlen(key->path));
         array_push(e->lasting, &all->list, texture);
         array_push(e->arena, &e->textures, *key);
     } else
