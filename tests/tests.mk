@@ -17,12 +17,12 @@ UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c
                cache_folder.c compiled_files.c crowd_scene.c)
 PROPERTY_SHARED := $(addprefix tests/property/, crowd_parts.c garden.c op_trial.c reach_crowd.c)
 UNIT        := texts front synonyms look diagnostics shape parts passes display devices tracer film rendering lights methods schedules paths writer \
-               image_files memory validate search refute frame query zones surroundings cache cache_limits \
+               image_files image_reading memory validate search refute frame query zones surroundings cache cache_limits \
                compiled pipelines per_component stencils glslang loader drivers grid crowd_grid crowds \
                crowd_kernels crowd_pictures tables device_tables table_files printing printers answers alike update edits values
-PROPERTY    := ops noise graph simplify facts derive series zeros local along rebase slope \
+PROPERTY    := ops noise textures graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees crowds crowds_apart moving_crowds
-ORACLES     := self primitives krs_expand folds trees maps moebius moebius_images operators cells \
+ORACLES     := self patterns primitives krs_expand folds trees maps moebius moebius_images operators cells \
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
                albedo furnace paths cornell touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling \
@@ -37,9 +37,9 @@ PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
 SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/synonyms unit/diagnostics unit/shape unit/parts unit/passes unit/display \
-               unit/writer unit/image_files unit/validate unit/loader unit/grid unit/crowd_grid unit/crowds unit/tables unit/search \
+               unit/writer unit/image_files unit/image_reading unit/validate unit/loader unit/grid unit/crowd_grid unit/crowds unit/tables unit/search \
                unit/refute unit/memory unit/cache unit/cache_limits unit/frame unit/query \
-               unit/zones unit/printers unit/alike unit/update unit/values property/ops property/noise property/graph property/simplify \
+               unit/zones unit/printers unit/alike unit/update unit/values property/ops property/noise property/textures property/graph property/simplify \
                property/facts property/derive property/series property/zeros property/local \
                property/along property/rebase property/slope property/parity property/reach \
                property/reach_trees property/crowds property/crowds_apart property/moving_crowds oracle/primitives \
@@ -110,7 +110,7 @@ fuzz-programs: $(HARNESSES:%=$(B)/tests/fuzz/%)
 $(HARNESSES:%=$(B)/tests/fuzz/%): $(B)/tests/fuzz/%: $(B)/tests/fuzz/%.o \
                                     $(FUZZED:%.c=$(B)/%.o) $(B)/library_files.o \
                                     $(B)/helper_files.o
-	@$(CC) $(CFLAGS) -fsanitize=fuzzer -o $@ $^ -lharfbuzz -lfreetype -lfontconfig -lexpat -lqhull_r -lm
+	@$(CC) $(CFLAGS) -fsanitize=fuzzer -o $@ $^ -lOpenEXRCore-3_1 -lpng -lharfbuzz -lfreetype -lfontconfig -lexpat -lqhull_r -lm
 fuzzers:
 	@$(MAKE) --no-print-directory fuzz-programs B=$(B)/fuzz CC=$(CLANG) \
 	    CFLAGS='-g -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined'

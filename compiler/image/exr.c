@@ -16,7 +16,8 @@ typedef struct ExrReader {
     size_t               length;
     exr_context_t        context;
     exr_attr_box2i_t     window;
-    int32_t              lines; /* of a chunk */
+    int32_t              lines;  /* of a chunk */
+    float               *planes; /* those of each channel */
 } ExrReader;
 
 static int64_t read_callback(exr_const_context_t context, void *user, void *to, uint64_t length,
@@ -117,20 +118,47 @@ static bool read_header(ExrReader *reader)
 
 /* ---- pixels ---- */
 
+/* Of a chunk, channel by channel: the library mixes channels up that it is to interleave, and fails
+   where it is to leave some out.  So what is not wanted goes into a plane behind the others. */
+static float *lines_of(const ExrReader *reader, int place)
+{
+    size_t plane = place >= 0 ? (size_t)place : image_channels(reader->image);
+    return reader->planes + plane * (size_t)reader->lines * reader->image->width;
+}
+
 static void place_channels(const ExrReader *reader, exr_decode_pipeline_t *pipeline)
 {
-    const Image *image = reader->image;
-    const size_t pixel = image_channels(image) * sizeof(float);
-    const size_t first = (size_t)(pipeline->chunk.start_y - reader->window.min.y);
     for (int c = 0; c < pipeline->channel_count; c++) {
         exr_coding_channel_info_t *channel = &pipeline->channels[c];
-        int                        place   = place_of(image->gray, channel->channel_name);
-        float *row = image->samples + first * image->width * image_channels(image);
-        channel->decode_to_ptr     = place >= 0 ? (uint8_t *)(row + place) : NULL;
-        channel->user_pixel_stride = (int32_t)pixel;
-        channel->user_line_stride  = (int32_t)(pixel * image->width);
-        channel->user_data_type    = EXR_PIXEL_FLOAT;
-        channel->user_bytes_per_element = sizeof(float);
+        int                        place   = place_of(reader->image->gray, channel->channel_name);
+        channel->decode_to_ptr             = (uint8_t *)lines_of(reader, place);
+        channel->user_pixel_stride         = sizeof(float);
+        channel->user_line_stride          = (int32_t)(sizeof(float) * reader->image->width);
+        if (channel->data_type != EXR_PIXEL_UINT)
+            channel->user_data_type = EXR_PIXEL_FLOAT;
+        channel->user_bytes_per_element    = sizeof(float);
+    }
+}
+
+static void take_channel(const ExrReader *reader, const exr_decode_pipeline_t *pipeline, int place)
+{
+    const Image   *image    = reader->image;
+    const uint32_t channels = image_channels(image);
+    const size_t   first    = (size_t)(pipeline->chunk.start_y - reader->window.min.y);
+    const size_t   left     = image->height - first;
+    const size_t   lines    = (size_t)reader->lines < left ? (size_t)reader->lines : left;
+    const size_t   count    = lines * image->width;
+    float         *to       = image->samples + first * image->width * channels + place;
+    for (size_t i = 0; i < count; i++)
+        to[i * channels] = lines_of(reader, place)[i];
+}
+
+static void take_chunk(const ExrReader *reader, const exr_decode_pipeline_t *pipeline)
+{
+    for (int c = 0; c < pipeline->channel_count; c++) {
+        int place = place_of(reader->image->gray, pipeline->channels[c].channel_name);
+        if (place >= 0)
+            take_channel(reader, pipeline, place);
     }
 }
 
@@ -143,9 +171,12 @@ static bool read_chunk(ExrReader *reader, exr_decode_pipeline_t *pipeline, int y
                                : exr_decoding_update(context, 0, &chunk, pipeline)))
         return false;
     place_channels(reader, pipeline);
-    return (!first ||
-            exr_try(reader, exr_decoding_choose_default_routines(context, 0, pipeline))) &&
-           exr_try(reader, exr_decoding_run(context, 0, pipeline));
+    if (first && !exr_try(reader, exr_decoding_choose_default_routines(context, 0, pipeline)))
+        return false;
+    if (!exr_try(reader, exr_decoding_run(context, 0, pipeline)))
+        return false;
+    take_chunk(reader, pipeline);
+    return true;
 }
 
 static bool read_pixels(ExrReader *reader)
@@ -180,7 +211,11 @@ static void make_linear(Image *image)
 bool image_read_exr(Image *image, const unsigned char *bytes, size_t length)
 {
     ExrReader reader = {.image = image, .bytes = bytes, .length = length};
-    if (!look(&reader, read_header) || !image_make(image) || !look(&reader, read_pixels))
+    if (!look(&reader, read_header) || !image_make(image))
+        return false;
+    size_t plane  = (size_t)reader.lines * image->width;
+    reader.planes = arena_new_array(image->arena, float, plane *(image_channels(image) + 1));
+    if (!look(&reader, read_pixels))
         return false;
     if (image->space == SPACE_SRGB)
         make_linear(image);
