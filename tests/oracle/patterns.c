@@ -309,12 +309,75 @@ static void devices_read_what_the_host_reads(void **state)
     }
 }
 
+/* ---- sequences ---- */
+
+/* Turned, mirrored twice and smaller: each ball has the texture as the first one has it. */
+static const char balls[] =
+    "let t = texture(\"gray.png\", space: \"linear\");\n"
+    "camera { eye: [0, 0, 9], target: [0, 0, 0], projection: \"orthographic\", height: 4 }\n"
+    "sky { zenith: black, horizon: black, ground: black }\n"
+    "material shown { color: black, emission: t(2 * u / tau, 3 * v / pi) }\n"
+    "show krs {\n"
+    "    kernel sphere(1);\n"
+    "    mobius translate([1, 0.8, 0]) * rotate([0, 1, 0], 0.4) * scale(0.7);\n"
+    "    reflect plane([-1, 0, 0], 0);\n"
+    "    reflect plane([0, -1, 0], 0);\n"
+    "}.paint(shown);\n";
+
+/* The point of the first ball that a point of the others is the image of. */
+static Vec in_kernel(Vec at)
+{
+    Vec    q = vec_scale(1 / 0.7, vec(fabs(at.x) - 1, fabs(at.y) - 0.8, at.z));
+    double c = cos(0.4), s = sin(0.4);
+    return vec(c * q.x - s * q.z, q.y, s * q.x + c * q.z);
+}
+
+static void kernels_carry_their_texture(void **state)
+{
+    (void)state;
+    write_picture();
+    Product product = product_compile(balls);
+    Random  random  = {5};
+    for (int i = 0; i < 500; i++) {
+        Vec around = vec_unit(vec(random_between(&random, -1, 1), random_between(&random, -1, 1),
+                                  random_between(&random, -1, 1)));
+        Vec middle = vec(i & 1 ? 1 : -1, i & 2 ? 0.8 : -0.8, 0);
+        Vec at     = vec_add(middle, vec_scale(0.7, around)), q = in_kernel(at);
+        double u = atan2(q.z, q.x), v = atan2(q.y, hypot(q.x, q.z));
+        KrsHit hit = product_probe(&product, at);
+        assert_true(fabs(hit.emission[0] - texture_at(2 * u / (2 * M_PI), 3 * v / M_PI)) < 1e-6);
+    }
+    product_free(&product);
+}
+
+/* What the footprint is behind mirrors, too: the picture is its own mirror image. */
+static void pictures_of_mirror_images_are_mirrored(void **state)
+{
+    (void)state;
+    write_picture();
+    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1};
+    KrsPicture      *picture = picture_of(balls, &options);
+    double           most    = 0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const float *left  = &picture->color[4 * (y * WIDTH + x)];
+            const float *right = &picture->color[4 * (y * WIDTH + WIDTH - 1 - x)];
+            assert_true(fabsf(left[0] - right[0]) < 1e-3F);
+            most = fmax(most, (double)left[0]);
+        }
+    krs_picture_free(picture);
+    assert_true(most > 0.2);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(pixels_show_the_mean_of_a_pattern, enter_folder,
                                         leave_folder),
         cmocka_unit_test_setup_teardown(devices_read_what_the_host_reads, enter_folder,
+                                        leave_folder),
+        cmocka_unit_test_setup_teardown(kernels_carry_their_texture, enter_folder, leave_folder),
+        cmocka_unit_test_setup_teardown(pictures_of_mirror_images_are_mirrored, enter_folder,
                                         leave_folder),
         cmocka_unit_test_setup_teardown(without_a_filter_there_is_moire, enter_folder,
                                         leave_folder),
