@@ -25,6 +25,11 @@
 
 enum { WIDTH = 96, HEIGHT = 64, RAYS = 20, SIDE = 32 };
 
+/* No light but what materials emit. */
+#define DARK                                               \
+    "sky { zenith: black, horizon: black, ground: black }\n" \
+    "light none { direction: [0, 1, 0], intensity: 0 }\n"
+
 /* ---- a picture to look up ---- */
 
 static unsigned char grays[SIDE][SIDE]; /* linear, rows from the top */
@@ -157,7 +162,7 @@ static Product scene_with(const char *const shown[3])
     SceneText text = {.length = 0};
     scene_write(&text, "use \"std/patterns.krs\";\n"
                        "let t = texture(\"gray.png\", space: \"linear\");\n"
-                       "sky { zenith: black, horizon: black, ground: black }\n");
+                       DARK);
     for (int i = 0; i < VIEWS; i++)
         scene_write(&text,
                     "camera view%d { eye: [%g, %g, %g], target: [%g, %g, %g], fov: 2 * atan(%g) }\n",
@@ -315,7 +320,7 @@ static void devices_read_what_the_host_reads(void **state)
 static const char balls[] =
     "let t = texture(\"gray.png\", space: \"linear\");\n"
     "camera { eye: [0, 0, 9], target: [0, 0, 0], projection: \"orthographic\", height: 4 }\n"
-    "sky { zenith: black, horizon: black, ground: black }\n"
+    DARK
     "material shown { color: black, emission: t(2 * u / tau, 3 * v / pi) }\n"
     "show krs {\n"
     "    kernel sphere(1);\n"
