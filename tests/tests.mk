@@ -22,7 +22,7 @@ UNIT        := texts front synonyms look diagnostics shape parts passes display 
                crowd_kernels crowd_pictures tables device_tables table_files printing printers answers alike update edits values
 PROPERTY    := ops noise textures graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees crowds crowds_apart moving_crowds
-ORACLES     := self patterns primitives krs_expand folds trees maps moebius moebius_images operators cells \
+ORACLES     := self patterns bumps primitives krs_expand folds trees maps moebius moebius_images operators cells \
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
                albedo furnace paths cornell touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling \

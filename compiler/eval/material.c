@@ -37,6 +37,7 @@ static Material *material_new(Elaboration *e, const char *name)
 {
     Material *material = arena_new(e->arena, Material);
     material->name     = name;
+    material->bump     = NODE_NONE;
 #define KRS_MATERIAL(property, type, otherwise, nothing, low, high, asked, blends) \
     material->property = root_otherwise(e->graph, ROOT_##property);
 #include "compiler/shape/surface.def"
@@ -67,6 +68,7 @@ Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *s
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     material_property(e, env, syntax, #name, TYPE_##type, (high) <= 1, &material->name);
 #include "compiler/shape/surface.def"
+    material_property(e, env, syntax, "bump", TYPE_FLOAT, false, &material->bump);
     e->in_material    = outer;
     e->scene->mirrors = e->scene->mirrors || sends_rays(e, material);
     return (Value){.type = VALUE_MATERIAL, .material = material};

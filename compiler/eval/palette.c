@@ -97,6 +97,7 @@ Value method_color_by(Elaboration *e, const Shape *shape, Call *call)
     Material *material = arena_new(e->arena, Material);
     Node      number   = value_node(e, field->value);
     material->name     = "palette";
+    material->bump     = NODE_NONE;
 #define KRS_MATERIAL(property, type, otherwise, nothing, low, high, asked, blends) \
     material->property = NODE_NONE;
 #include "compiler/shape/surface.def"

@@ -4,6 +4,7 @@
 #include "compiler/family/family.h"
 
 #include "compiler/graph/evaluate.h"
+#include "compiler/lower/bump.h"
 #include "compiler/lower/footprint.h"
 #include "compiler/lower/normal.h"
 
@@ -23,6 +24,7 @@ static bool material_needs(ShapeBuilder *builder, const Material *material, Op l
     const Node all[] = {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) material->name,
 #include "compiler/shape/surface.def"
+        material->bump,
     };
     Node   roots[sizeof all / sizeof *all];
     size_t count = 0;
@@ -59,6 +61,7 @@ const Shape *make_paint(ShapeBuilder *builder, const Shape *shape, const Materia
     }
     Shape *painted    = shape_around(builder, SHAPE_PAINT, "paint", shape, span);
     painted->material = material;
+    painted->smooth   = painted->smooth || material->bump != NODE_NONE;
     return painted;
 }
 
@@ -87,6 +90,11 @@ Lowered lower_paint(Lowering *l, const Shape *shape, LowerContext context)
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     paint_with(l, &result.surface.name, material->name, with);
 #include "compiler/shape/surface.def"
+    Node height = NODE_NONE;
+    paint_with(l, &height, material->bump, with);
+    if (height != NODE_NONE)
+        result.surface.normal = bumped_normal(l->graph, height, context.point, with.normal,
+                                              l->scratch);
     return result;
 }
 

@@ -110,7 +110,7 @@ Lowered lower_shape(Lowering *l, const Shape *shape, LowerContext context)
     l->thin        = thin && rays_pass(shape);
     Lowered result = rules[shape->kind].lower(l, shape, context);
     l->thin        = thin;
-    /* Only smooth mirrors change the normal. */
+    /* Only smooth mirrors and bumps change the normal. */
     if (result.distance != NODE_NONE && context.smoothing == NODE_NONE && !shape->smooth)
         result.surface.normal = context.normal;
     if (l->surfaces && shape->shown > 0)

@@ -18,25 +18,23 @@
 /* Nearer to grazing than this cosine, pixels are taken to be no longer. */
 static const double LEAST_COSINE_SQUARED = 1e-6;
 
-/* What is known of the pixel where an expression is evaluated. */
-typedef struct Pixel {
-    Node normal, view, radius;
-} Pixel;
-
 /* Bodies of crowds have leaves of their own. */
-static Pixel pixel_of(Graph *g, const Tape *tape)
+Pixel pixel_of(Graph *g, Node expression, Arena *scratch)
 {
     uint32_t crowd = UINT32_MAX;
-    for (size_t i = tape->frame_count; i < tape->count; i++)
-        if (is_of_crowd((Op)g->items[tape->nodes[i]].op))
-            crowd = g->items[tape->nodes[i]].index;
-    Pixel pixel = {NODE_NONE, NODE_NONE, NODE_NONE};
+    Tape     tape  = tape_new(g, &expression, 1, scratch);
+    for (size_t i = tape.frame_count; i < tape.count; i++)
+        if (g->items[tape.nodes[i]].op == OP_CROWD_POINT)
+            crowd = g->items[tape.nodes[i]].index;
+    Pixel pixel = {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE};
     if (crowd == UINT32_MAX) {
+        pixel.point  = graph_leaf(g, OP_POINT);
         pixel.normal = graph_leaf(g, OP_NORMAL);
         pixel.view   = graph_leaf(g, OP_VIEW);
         pixel.radius = graph_leaf(g, OP_FOOTPRINT);
         return pixel;
     }
+    pixel.point  = graph_crowd_leaf(g, OP_CROWD_POINT, crowd);
     pixel.normal = pixel.view = graph_crowd_leaf(g, OP_CROWD_NORMAL, crowd);
     pixel.radius              = graph_crowd_leaf(g, OP_CROWD_FOOTPRINT, crowd);
     return pixel;
@@ -58,8 +56,7 @@ static Node seen_gradient(Graph *g, Pixel pixel, Node gradient)
 static Node width_of(Graph *g, Node expression, Arena *scratch)
 {
     Node  gradient = graph_known_gradient(g, expression, scratch);
-    Tape  tape     = tape_new(g, &expression, 1, scratch);
-    Pixel pixel    = pixel_of(g, &tape);
+    Pixel pixel    = pixel_of(g, expression, scratch);
     Node  seen     = seen_gradient(g, pixel, gradient);
     Node  length   = graph_op1(g, OP_length, seen);
     Node  width    = graph_op2(g, OP_add, pixel.radius, pixel.radius);

@@ -15,7 +15,7 @@ typedef enum ComponentRoot {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) ROOT_##name,
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends)            ROOT_##name,
 #include "compiler/shape/surface.def"
-    ROOT_NORMAL, /* VEC3, unit: OP_NORMAL, unless smooth mirrors change it */
+    ROOT_NORMAL, /* VEC3, unit: OP_NORMAL, unless smooth mirrors or bumps change it */
     ROOT_COUNT
 } ComponentRoot;
 

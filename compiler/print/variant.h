@@ -43,7 +43,7 @@ typedef enum KrsFunction {
     /* KrsSurface krs_surface(vec3 p, vec3 normal, float footprint): what is at p: the component
        with the least distance.  It is given the unit gradient of krs_distance at p, and the radius
        of the pixel's cone there in world units (0 for a point).  The normal that it returns is the
-       one to light: unit, outwards, and the given one unless mirrors are smooth.
+       one to light: unit, outwards, and the given one unless mirrors are smooth or there are bumps.
 
        KrsSurface has float distance; properties of the material (shape/surface.def): vec3 color,
        float roughness and others; uint component, level, instance; vec3 normal. */

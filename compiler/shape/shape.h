@@ -27,6 +27,7 @@ typedef struct Material {
     const char *name;
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) Node name;
 #include "compiler/shape/surface.def"
+    Node bump; /* a height of the surface, as light sees it; or NODE_NONE */
 } Material;
 
 typedef enum ShapeKind {
@@ -155,7 +156,7 @@ struct Shape {
     bool     sheet;  /* SHELL: has no thickness where rays can go from root to root (rays_pass) */
     bool     sheets; /* in the tree are some */
     bool     fields; /* in the tree is a field whose bound follows from a region */
-    bool     smooth; /* mirrors in the tree are smooth */
+    bool     smooth; /* something in the tree turns normals: smooth mirrors, bumps */
     double   instances;  /* copies of kernels that reflections make; 1 without a sequence */
     uint32_t levels;     /* reflections of the outermost sequence in it */
     uint32_t inversions; /* maps of that sequence that invert, or of `.transform` on the way */
