@@ -34,7 +34,7 @@ OUTLINE  := $(addprefix compiler/outline/, path.c knots.c edge_cuts.c edge_sides
 IMAGE    := $(addprefix compiler/image/, png.c exr.c image.c)
 GRAPH    := $(addprefix compiler/graph/, intern.c alike.c alike_copy.c graph.c crowd.c build.c substitute.c extract.c derive_rules.c \
                 derive_blends.c derive.c series.c zeros.c local_terms.c local_curves.c local.c rebase.c \
-                simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c texture.c \
+                simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c texture.c texture_facts.c \
                 regions.c squares.c grid.c grid_find.c fractal.c op_values.c tape.c evaluate.c print.c)
 SHAPE    := $(addprefix compiler/shape/, box.c reach.c cover.c map.c moebius.c builder.c slope.c print.c)
 LOWER    := $(addprefix compiler/lower/, footprint.c bump.c context.c box_distance.c surface.c join.c crowd_table.c crowd_functions.c crowd_find.c crowd.c normal.c map_chain.c \

@@ -93,7 +93,7 @@ typedef struct KrsProgram {
     size_t        table_count, table_members; /* tables, and the rows of all of them */
     size_t        texture_count, texture_texels;
     bool          views;   /* krs_surface reads krs_view, the direction of the ray that sees it */
-    const double *pass_ms;           /* time of each pass (krs_pass, compile.h), in milliseconds */
+    const double *pass_ms; /* time of each pass (krs_pass, compile.h), in milliseconds */
     double        front_ms, glsl_ms; /* time of all passes before `emit`, and of `emit` */
 } KrsProgram;
 

@@ -144,8 +144,8 @@ static void put_copies(const Crowd *table, const float (*rows)[4], float (*copie
 }
 
 /* Packs all rows; the sizes become those of all tables. */
-static TableSizes pack_rows(const Crowds *crowds, const Textures *textures,
-                            const NodeValue *values, float (*rows)[4])
+static TableSizes pack_rows(const Crowds *crowds, const Textures *textures, const NodeValue *values,
+                            float (*rows)[4])
 {
     TableSizes next = after_headers(crowds, textures);
     for (size_t t = 0; t < table_count(crowds); t++) {

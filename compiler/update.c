@@ -150,7 +150,10 @@ static bool same_texture(const Texture *a, const Texture *b)
            memcmp(a->texels, b->texels, a->texel_count * sizeof *a->texels) == 0;
 }
 
-static size_t texture_count(const Textures *textures) { return textures ? textures->list.count : 0; }
+static size_t texture_count(const Textures *textures)
+{
+    return textures ? textures->list.count : 0;
+}
 
 static bool same_textures(const Textures *a, const Textures *b)
 {

@@ -38,7 +38,7 @@ for helpers in compiler/print/glsl/*.glsl; do
         printf '#version 440\nlayout(local_size_x = 1) in;\n'
         case $helpers in
         */cells.glsl) cat compiler/print/glsl/arcs.glsl compiler/print/glsl/sines.glsl ;;
-        */crowds.glsl) # what glsl.c declares where they are called
+        */crowds.glsl | */textures.glsl) # what glsl.c declares where they are called
             sed -n '/PHRASE_BUFFER_TABLES\]/,/PHRASE_TABLES\]/d;/PHRASE_TEXEL_TABLES\]/,/PHRASE_EACH_LISTED/{/PHRASE_/d;s/^[^"]*"//;s/\(\\n\)*",*$//;p;}' \
                 compiler/print/glsl/glsl.c ;;
         */differences.glsl) echo "float krs_distance_N(vec3 p) { return p.x; }" ;;

@@ -29,9 +29,9 @@ typedef struct Source {
 enum { SOURCE_BLOCK = 256 };
 
 typedef struct Sources {
-    Arena  *arena;
-    Source *items; /* items[0] is the empty source */
-    size_t  count, capacity;
+    Arena   *arena;
+    Source  *items; /* items[0] is the empty source */
+    size_t   count, capacity;
     uint64_t pictures; /* a hash of the files that were read and are no texts; 0: there are none */
 } Sources;
 

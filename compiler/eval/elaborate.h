@@ -110,8 +110,8 @@ typedef struct Elaboration {
     struct {
         TextureKey *items;
         size_t      count, capacity;
-    } textures;     /* in the order of Graph.textures */
-    Arena *lasting; /* of the compiled scene, for textures */
+    } textures;            /* in the order of Graph.textures */
+    Arena        *lasting; /* of the compiled scene, for textures */
     const Loader *loader;
     BuiltinName   builtins[MOST_BUILTIN_NAMES]; /* names looked up so far, by their addresses */
     bool     studio; /* a scene without lights and sky gets those of the library, and a floor */

@@ -62,7 +62,7 @@ static bool make_texture(Elaboration *e, const Argument *file, const FileBytes *
         Textures *all     = e->graph->textures;
         Texture   texture = texture_new(image.samples, image.width, image.height, image.gray,
                                         (TextureWrap)key->wrap, e->lasting, e->scratch);
-        texture.name = arena_copy_text(e->lasting, key->path, strlen(key->path));
+        texture.name      = arena_copy_text(e->lasting, key->path, strlen(key->path));
         array_push(e->lasting, &all->list, texture);
         array_push(e->arena, &e->textures, *key);
     } else
@@ -101,7 +101,7 @@ Value builtin_texture(Elaboration *e, Call *call)
 /* How far each component of a node changes within a pixel. */
 static Node footprint_of(Graph *g, Node node)
 {
-    const GraphType type  = (GraphType)g->items[node].type;
+    const GraphType type = (GraphType)g->items[node].type;
     Node            parts[4];
     static const Op build[] = {[TYPE_VEC2] = OP_vec2, [TYPE_VEC3] = OP_vec3, [TYPE_VEC4] = OP_vec4};
     for (uint32_t i = 0; i < (uint32_t)type; i++) {
@@ -149,8 +149,8 @@ static Node want_place(Elaboration *e, const Call *call)
     const Argument *u = &call->arguments[0], *v = &call->arguments[1];
     if (!v->syntax)
         return want_coordinate(e, u, 2, "two numbers, u and v, or a vector of both");
-    Node across = want_coordinate(e, u, 1, "a number, which `u` is");
-    Node up     = want_coordinate(e, v, 1, "a number, which `v` is");
+    Node across    = want_coordinate(e, u, 1, "a number, which `u` is");
+    Node up        = want_coordinate(e, v, 1, "a number, which `v` is");
     e->graph->here = call->syntax->span;
     return across == NODE_NONE || up == NODE_NONE ? NODE_NONE
                                                   : graph_op2(e->graph, OP_vec2, across, up);

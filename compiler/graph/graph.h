@@ -97,10 +97,10 @@ typedef struct Graph {
     struct {
         GraphParameter *items;
         size_t          count, capacity;
-    } parameters;          /* [0] is time */
+    } parameters;              /* [0] is time */
     struct Crowds   *crowds;   /* crowd.h; NULL: there are none */
     struct Textures *textures; /* texture.h; likewise */
-    Span           here;   /* span given to nodes made now */
+    Span             here;     /* span given to nodes made now */
     struct {
         Node  *items;
         size_t count, capacity;

@@ -10,9 +10,6 @@
 #include <string.h>
 
 #include "compiler/base/half.h"
-#include "compiler/graph/rules.h"
-
-enum { CHANNELS = 4 };
 
 /* ---- texels ---- */
 
@@ -51,7 +48,8 @@ static NodeValue unpack_texel(bool gray, const TexelBits bits)
         double level = float_of_bits(bits[0]);
         return (NodeValue){{level, level, level, float_of_bits(bits[1])}};
     }
-    return (NodeValue){{low_half(bits[0]), high_half(bits[0]), low_half(bits[1]), high_half(bits[1])}};
+    return (NodeValue){
+        {low_half(bits[0]), high_half(bits[0]), low_half(bits[1]), high_half(bits[1])}};
 }
 
 static NodeValue texel_at(const Texture *texture, uint32_t level, uint32_t x, uint32_t y)
@@ -88,8 +86,7 @@ typedef struct Cover {
 
 static Cover cover_of(uint32_t to, uint32_t count, uint32_t coarse)
 {
-    Cover cover = {.low  = (double)to * count / coarse,
-                   .high = (double)(to + 1) * count / coarse};
+    Cover cover = {.low = (double)to * count / coarse, .high = (double)(to + 1) * count / coarse};
     cover.first = (uint32_t)cover.low;
     cover.end   = (uint32_t)ceil(cover.high);
     return cover;
@@ -102,7 +99,7 @@ static double share(const Cover *cover, uint32_t i)
 
 static void put_mean(const Samples *fine, Cover across, Cover up, float *mean)
 {
-    double sum[CHANNELS] = {0}, area = 0;
+    double sum[TEXTURE_CHANNELS] = {0}, area = 0;
     for (uint32_t y = up.first; y < up.end; y++)
         for (uint32_t x = across.first; x < across.end; x++) {
             double weight = share(&across, x) * share(&up, y);
@@ -164,13 +161,13 @@ static void note_square(Texture *texture, const NodeValue corners[2][2])
     for (int i = 0; i < 2; i++)
         for (int j = 0; j < 2; j++) {
             double squares = 0;
-            for (int k = 0; k < CHANNELS; k++) {
-                double across       = fabs(corners[i][1].v[k] - corners[i][0].v[k]);
-                double up           = fabs(corners[1][j].v[k] - corners[0][j].v[k]);
-                double square       = pow(size->width * across, 2) + pow(size->height * up, 2);
-                texture->across[k]  = fmax(texture->across[k], across);
-                texture->up[k]      = fmax(texture->up[k], up);
-                squares            += square;
+            for (int k = 0; k < TEXTURE_CHANNELS; k++) {
+                double across      = fabs(corners[i][1].v[k] - corners[i][0].v[k]);
+                double up          = fabs(corners[1][j].v[k] - corners[0][j].v[k]);
+                double square      = pow(size->width * across, 2) + pow(size->height * up, 2);
+                texture->across[k] = fmax(texture->across[k], across);
+                texture->up[k]     = fmax(texture->up[k], up);
+                squares += square;
                 if (k == 0)
                     texture->slope_of_first = fmax(texture->slope_of_first, sqrt(square));
             }
@@ -180,7 +177,7 @@ static void note_square(Texture *texture, const NodeValue corners[2][2])
 
 static void note_range(Texture *texture, NodeValue texel)
 {
-    for (int k = 0; k < CHANNELS; k++) {
+    for (int k = 0; k < TEXTURE_CHANNELS; k++) {
         texture->range[k].low  = fmin(texture->range[k].low, texel.v[k]);
         texture->range[k].high = fmax(texture->range[k].high, texel.v[k]);
     }
@@ -189,15 +186,15 @@ static void note_range(Texture *texture, NodeValue texel)
 static void find_facts(Texture *texture)
 {
     const TextureLevel *size = &texture->levels[0];
-    for (int k = 0; k < CHANNELS; k++)
+    for (int k = 0; k < TEXTURE_CHANNELS; k++)
         texture->range[k] = (Range){HUGE_VAL, -HUGE_VAL};
     for (uint32_t y = 0; y < size->height; y++)
         for (uint32_t x = 0; x < size->width; x++) {
-            uint32_t  right = beside(texture->wrap, x, size->width);
-            uint32_t  above = beside(texture->wrap, y, size->height);
-            NodeValue corners[2][2] = {{texel_at(texture, 0, x, y), texel_at(texture, 0, right, y)},
-                                       {texel_at(texture, 0, x, above),
-                                        texel_at(texture, 0, right, above)}};
+            uint32_t  right         = beside(texture->wrap, x, size->width);
+            uint32_t  above         = beside(texture->wrap, y, size->height);
+            NodeValue corners[2][2] = {
+                {texel_at(texture, 0, x, y), texel_at(texture, 0, right, y)},
+                {texel_at(texture, 0, x, above), texel_at(texture, 0, right, above)}};
             note_range(texture, corners[0][0]);
             note_square(texture, (const NodeValue(*)[2])corners);
         }
@@ -219,7 +216,7 @@ Texture texture_new(const float *samples, uint32_t width, uint32_t height, bool 
                     TextureWrap wrap, Arena *arena, Arena *scratch)
 {
     Texture texture = {.wrap = wrap, .gray = gray};
-    Samples level   = upside_down(samples, width, height, gray ? 2 : CHANNELS, scratch);
+    Samples level   = upside_down(samples, width, height, gray ? 2 : TEXTURE_CHANNELS, scratch);
     place_levels(&texture, width, height);
     texture.texels = arena_new_array(arena, TexelBits, texture.texel_count);
     for (uint32_t i = 0; i < texture.level_count; i++) {
@@ -265,7 +262,7 @@ static Neighbours neighbours_of(TextureWrap wrap, double t, uint32_t count)
 
 static NodeValue mix_values(NodeValue a, NodeValue b, double share)
 {
-    for (int k = 0; k < CHANNELS; k++)
+    for (int k = 0; k < TEXTURE_CHANNELS; k++)
         a.v[k] = a.v[k] * (1 - share) + b.v[k] * share;
     return a;
 }
@@ -305,45 +302,6 @@ NodeValue texture_value(const Texture *texture, const double uv[2], double width
     if (level > fine)
         value = mix_values(value, level_value(texture, fine + 1, place), level - fine);
     return value;
-}
-
-/* ---- facts ---- */
-
-static Range either_sign(double size) { return (Range){-size, size}; }
-
-/* Room for the rounding of sums and products. */
-static double rounded_up(double bound) { return bound * (1 + 0x1p-48); }
-
-static Jet channel_jet(const Texture *texture, int channel, const Fact *uv)
-{
-    const TextureLevel *size = &texture->levels[0];
-    Range by_u = either_sign(rounded_up(size->width * texture->across[channel]));
-    Range by_v = either_sign(rounded_up(size->height * texture->up[channel]));
-    Jet   sum  = jet_add(jet_times(jet_of(uv, 0), by_u), jet_times(jet_of(uv, 1), by_v));
-    sum.value  = texture->range[channel];
-    return sum;
-}
-
-/* Coarser levels have the same range; of their slopes nothing is needed. */
-static Fact texture_fact(const Texture *texture, bool one, const Fact *uv, const Fact *width)
-{
-    Fact fact = fact_unknown(CHANNELS);
-    for (int k = 0; k < CHANNELS; k++)
-        fact.value[k] = texture->range[k];
-    if (!range_is_zero(width->value[0]))
-        return fact;
-    for (int k = 0; k < CHANNELS; k++)
-        fact_set(&fact, (uint32_t)k, channel_jet(texture, k, uv));
-    double slope = one ? texture->slope_of_first : texture->slope_of_all;
-    fact.slope   = product_upward(rounded_up(slope), uv->slope);
-    return fact;
-}
-
-Fact texture_fact_of(const Graph *graph, const Expr *e, const Fact *operands)
-{
-    bool           one     = e->op == OP_texture_gray;
-    const Texture *texture = texture_of(graph, e);
-    return fact_agreed(texture_fact(texture, one, &operands[0], &operands[1]), one ? 1 : CHANNELS);
 }
 
 /* ---- nodes ---- */

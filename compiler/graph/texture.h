@@ -15,14 +15,16 @@
 #ifndef KRS_TEXTURE_H
 #define KRS_TEXTURE_H
 
-#include "compiler/graph/facts.h"
 #include "compiler/graph/graph.h"
+#include "compiler/graph/range.h"
 
 /* What is outside of the picture: the picture again, its edge, or its mirror image. */
 typedef enum TextureWrap { WRAP_REPEAT, WRAP_CLAMP, WRAP_MIRROR, WRAP_COUNT } TextureWrap;
 
 typedef uint32_t TexelBits[2];
 
+/* Red, green, blue and alpha. */
+enum { TEXTURE_CHANNELS = 4 };
 enum { MOST_TEXTURE_LEVELS = 16, MOST_TEXTURE_SIDE = 1 << 15, MOST_TEXELS = 1 << 24 };
 
 /* How many texels of krs_cells the header of a texture has for kernels. */
@@ -43,8 +45,8 @@ typedef struct Texture {
     size_t       texel_count;
     /* Of level 0, for each channel: the range of its values, and the largest difference of texels
        side by side and one above the other. */
-    Range  range[4];
-    double across[4], up[4];
+    Range  range[TEXTURE_CHANNELS];
+    double across[TEXTURE_CHANNELS], up[TEXTURE_CHANNELS];
     /* The largest slope, for steps of a texel: of the first channel, and of all four together. */
     double slope_of_first, slope_of_all;
 } Texture;
@@ -67,11 +69,8 @@ Texture texture_new(const float *samples, uint32_t width, uint32_t height, bool 
 const Texture *texture_of(const Graph *graph, const Expr *e);
 /* The value at a place, for pixels of a width in texels of level 0. */
 NodeValue texture_value(const Texture *texture, const double uv[2], double width);
-/* The facts of such a node, from those of its operands. */
-Fact texture_fact_of(const Graph *graph, const Expr *e, const Fact *operands);
-
 /* Nodes: a VEC4, or the first channel of a gray texture as a FLOAT. */
-Node graph_texture(Graph *graph, Op op, uint32_t texture, Node uv, Node width);
+Node               graph_texture(Graph *graph, Op op, uint32_t texture, Node uv, Node width);
 static inline bool is_texture(Op op) { return op == OP_texture || op == OP_texture_gray; }
 
 #endif

@@ -103,10 +103,11 @@ static bool read_header(ExrReader *reader)
         !exr_try(reader, exr_get_data_window(reader->context, 0, &reader->window)))
         return false;
     if (storage != EXR_STORAGE_SCANLINE)
-        return image_fail(reader->image, "it is not of scanlines: tiles and deep pixels are not read");
+        return image_fail(reader->image,
+                          "it is not of scanlines: tiles and deep pixels are not read");
     const exr_attr_box2i_t *window = &reader->window;
-    const int64_t width = (int64_t)window->max.x - window->min.x + 1;
-    const int64_t height = (int64_t)window->max.y - window->min.y + 1;
+    const int64_t           width  = (int64_t)window->max.x - window->min.x + 1;
+    const int64_t           height = (int64_t)window->max.y - window->min.y + 1;
     if (width < 1 || height < 1 || width > reader->image->most_side ||
         height > reader->image->most_side)
         return image_fail(reader->image, "it has too many pixels, or none");
@@ -136,7 +137,7 @@ static void place_channels(const ExrReader *reader, exr_decode_pipeline_t *pipel
         channel->user_line_stride          = (int32_t)(sizeof(float) * reader->image->width);
         if (channel->data_type != EXR_PIXEL_UINT)
             channel->user_data_type = EXR_PIXEL_FLOAT;
-        channel->user_bytes_per_element    = sizeof(float);
+        channel->user_bytes_per_element = sizeof(float);
     }
 }
 

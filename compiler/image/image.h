@@ -23,9 +23,9 @@ typedef struct Image {
     uint32_t   most_side, most_pixels;
     uint32_t   width, height;
     bool       gray;
-    float     *samples; /* rows from the top; of a pixel gray and alpha, or red, green, blue and alpha.
+    float *samples; /* rows from the top; of a pixel gray and alpha, or red, green, blue and alpha.
                            Colours are linear, and multiplied by alpha; all are finite */
-    const char *fault;  /* why it cannot be read */
+    const char *fault; /* why it cannot be read */
 } Image;
 
 /* False: `fault` says why. */

@@ -30,13 +30,13 @@ static Node step_of(Graph *g, Pixel pixel)
 static void find_tangents(Graph *g, Node normal, Node tangents[2])
 {
     Node x = graph_component(g, normal, 0), half = graph_number(g, 0.6);
-    Node size     = graph_op1(g, OP_abs, x);
-    Node across   = graph_op2(g, OP_less, size, half);
-    Node along_x  = graph_vec3(g, 1, 0, 0), along_y = graph_vec3(g, 0, 1, 0);
-    Node axis     = graph_op3(g, OP_select, across, along_x, along_y);
-    Node tangent  = graph_op2(g, OP_cross, axis, normal);
-    tangents[0]   = graph_op1(g, OP_normalize, tangent);
-    tangents[1]   = graph_op2(g, OP_cross, normal, tangents[0]);
+    Node size    = graph_op1(g, OP_abs, x);
+    Node across  = graph_op2(g, OP_less, size, half);
+    Node along_x = graph_vec3(g, 1, 0, 0), along_y = graph_vec3(g, 0, 1, 0);
+    Node axis    = graph_op3(g, OP_select, across, along_x, along_y);
+    Node tangent = graph_op2(g, OP_cross, axis, normal);
+    tangents[0]  = graph_op1(g, OP_normalize, tangent);
+    tangents[1]  = graph_op2(g, OP_cross, normal, tangents[0]);
 }
 
 /* How much an expression changes from one side of the point to the other. */

@@ -79,7 +79,7 @@ typedef struct Emitter {
     Span              last;    /* the line that was commented last */
     uint8_t          *called;  /* of each crowd function: how many operands calls have behind its
                                   number; 0: there is no call.  NULL: there are no crowds */
-    bool             *reads_table; /* of each table */
+    bool             *reads_table;   /* of each table */
     bool             *reads_texture; /* of each texture */
     bool              sees;          /* something needs the ray that sees the surface */
     struct {

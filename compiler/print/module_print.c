@@ -221,8 +221,10 @@ static void emit_functions(Emitter *e)
 
 static void emit_about_textures(Emitter *e)
 {
-    text_add(e->out, "// Textures are in krs_cells, a texel buffer of format RG32UI, and equal in all frames:\n"
-                     "// krs_frame_tables in krs.h.\n");
+    text_add(
+        e->out,
+        "// Textures are in krs_cells, a texel buffer of format RG32UI, and equal in all frames:\n"
+        "// krs_frame_tables in krs.h.\n");
 }
 
 static void emit_about_tables(Emitter *e)

@@ -21,7 +21,7 @@
 enum { POINTS = 300 };
 
 /* A slab whose upper side is at y = 0, of which the wave is along x. */
-#define WAVY                                                            \
+#define WAVY                                                             \
     "material wavy { color: gray, bump: 0.1 * sin(3 * x) + 0.05 * z }\n" \
     "let slab = box([20, 2, 20]).move([0, -1, 0]).paint(wavy);\n"
 
@@ -53,7 +53,8 @@ static const Placed places[] = {
     {WAVY "show slab;\n", plain, 0},
     {WAVY "show slab.scale(2.5);\n", enlarged, 0},
     {WAVY "show slab.rotate([0, 0, 1], 0.7);\n", rotated, 0.7},
-    {WAVY "show krs { kernel slab.move([-1, 0, 0]); reflect plane([-1, 0, 0], 0); };\n", reflected, 0},
+    {WAVY "show krs { kernel slab.move([-1, 0, 0]); reflect plane([-1, 0, 0], 0); };\n", reflected,
+     0},
     {WAVY "show union([slab, sphere(0.5).move([0, 30, 0])], blend: 0.1);\n", plain, 0},
 };
 enum { PLACES = sizeof places / sizeof *places };
@@ -77,7 +78,7 @@ static void on_host(const Placed *placed, const Product *product)
     for (int i = 0; i < POINTS; i++) {
         Vec    at     = place_on(placed, &random);
         Vec    wanted = placed->normal(at), even = turned(vec(0, 1, 0), placed->turn);
-        KrsHit hit    = product_probe(product, at);
+        KrsHit hit = product_probe(product, at);
         assert_true(apart(hit.normal, even) < 1e-6);
         if (apart(hit.shading, wanted) > 1e-4)
             fail_msg("%s at %g: %g %g %g, not %g %g %g", placed->text, at.x, hit.shading[0],
@@ -96,13 +97,13 @@ static void on_device(const Placed *placed, const Product *product)
         points[i][0] = (float)at.x, points[i][1] = (float)at.y, points[i][2] = (float)at.z;
     }
     assert_int_equal(krs_rendering_new(renderer, product->scene, &rendering), KRS_OK);
-    assert_int_equal(krs_sample(rendering, product->frame, (const float(*)[3])points, POINTS, NULL,
-                                found),
-                     KRS_OK);
+    assert_int_equal(
+        krs_sample(rendering, product->frame, (const float(*)[3])points, POINTS, NULL, found),
+        KRS_OK);
     for (int i = 0; i < POINTS; i++) {
         const double normal[3] = {(double)found[i].normal[0], (double)found[i].normal[1],
                                   (double)found[i].normal[2]};
-        Vec at = vec((double)points[i][0], (double)points[i][1], (double)points[i][2]);
+        Vec          at = vec((double)points[i][0], (double)points[i][1], (double)points[i][2]);
         assert_true(apart(normal, placed->normal(at)) < 5e-3);
     }
     krs_rendering_free(rendering);

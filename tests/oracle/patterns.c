@@ -26,7 +26,7 @@
 enum { WIDTH = 96, HEIGHT = 64, RAYS = 20, SIDE = 32 };
 
 /* No light but what materials emit. */
-#define DARK                                               \
+#define DARK                                                 \
     "sky { zenith: black, horizon: black, ground: black }\n" \
     "light none { direction: [0, 1, 0], intensity: 0 }\n"
 
@@ -62,10 +62,7 @@ static double texture_at(double u, double v)
 
 /* ---- patterns, by their definitions ---- */
 
-static double checker_at(double u, double v)
-{
-    return fmod(fabs(floor(u) + floor(v)), 2) == 0;
-}
+static double checker_at(double u, double v) { return fmod(fabs(floor(u) + floor(v)), 2) == 0; }
 
 static double brick_at(double u, double v)
 {
@@ -91,16 +88,17 @@ static double vein_at(double u, double v)
 typedef struct Pattern {
     const char *text; /* of u and v in the plane, q = [u, v] */
     double (*at)(double u, double v);
-    double mean, most; /* how wrong it may be: in the mean, and anywhere */
-    double moire;      /* how wrong it is at least, in the mean, without a filter */
-    const char *sharp; /* the same without; NULL: there is no such text */
+    double      mean, most; /* how wrong it may be: in the mean, and anywhere */
+    double      moire;      /* how wrong it is at least, in the mean, without a filter */
+    const char *sharp;      /* the same without; NULL: there is no such text */
 } Pattern;
 
 static const Pattern patterns[] = {
     {"checker(q)", checker_at, 0.04, 0.5, 0.12,
      "if fract((floor(q.x) + floor(q.y)) / 2) == 0 then 1 else 0"},
     {"brick(q, [1, 0.5], 0.2)", brick_at, 0.04, 0.35, 0.2,
-     "let row = floor(q.y / 0.5) in let a = fract(q.x + 0.5 * (row % 2)) in let b = q.y - 0.5 * row in "
+     "let row = floor(q.y / 0.5) in let a = fract(q.x + 0.5 * (row % 2)) in let b = q.y - 0.5 * "
+     "row in "
      "if a > 0.1 and a < 0.9 and b > 0.1 and b < 0.4 then 1 else 0"},
     {"saw(q.y)", saw_at, 0.02, 0.15, 0.08, "fract(q.y)"},
     {"0.5 + 0.5 * wave(3 * q.x + 4 * q.y)", wave_at, 0.015, 0.2, 0.07,
@@ -161,14 +159,14 @@ static Product scene_with(const char *const shown[3])
 {
     SceneText text = {.length = 0};
     scene_write(&text, "use \"std/patterns.krs\";\n"
-                       "let t = texture(\"gray.png\", space: \"linear\");\n"
-                       DARK);
+                       "let t = texture(\"gray.png\", space: \"linear\");\n" DARK);
     for (int i = 0; i < VIEWS; i++)
-        scene_write(&text,
-                    "camera view%d { eye: [%g, %g, %g], target: [%g, %g, %g], fov: 2 * atan(%g) }\n",
-                    i, views[i].eye.x, views[i].eye.y, views[i].eye.z, views[i].target.x,
-                    views[i].target.y, views[i].target.z, views[i].height / 2);
-    scene_write(&text, "material shown { color: black, emission: let q = [x, z] in [%s, %s, %s] }\n",
+        scene_write(
+            &text, "camera view%d { eye: [%g, %g, %g], target: [%g, %g, %g], fov: 2 * atan(%g) }\n",
+            i, views[i].eye.x, views[i].eye.y, views[i].eye.z, views[i].target.x, views[i].target.y,
+            views[i].target.z, views[i].height / 2);
+    scene_write(&text,
+                "material shown { color: black, emission: let q = [x, z] in [%s, %s, %s] }\n",
                 shown[0], shown[1], shown[2]);
     scene_write(&text, "show plane([0, 1, 0], 0).paint(shown);\n");
     return product_compile(text.bytes);
@@ -227,8 +225,7 @@ static void show_all(bool sharp, int view_count, void (*judge)(const Pattern *pa
             KrsPicture *picture;
             assert_int_equal(krs_render(rendering, product.frame, &options, &picture), KRS_OK);
             for (int k = 0; k < 3; k++)
-                judge(&patterns[first + k],
-                      wrong_in(picture, k, &views[v], &patterns[first + k]));
+                judge(&patterns[first + k], wrong_in(picture, k, &views[v], &patterns[first + k]));
             krs_picture_free(picture);
         }
         krs_rendering_free(rendering);
@@ -262,18 +259,22 @@ static const char both_ways[] =
 
 static void write_color(void)
 {
-    static float        numbers[12 * 9][4];
-    Random              random = {3};
-    const char *const   names[] = {"R", "G", "B", "A"};
-    PictureChannel      channels[4];
-    OutputError         error;
+    static float      numbers[12 * 9][4];
+    Random            random  = {3};
+    const char *const names[] = {"R", "G", "B", "A"};
+    PictureChannel    channels[4];
+    OutputError       error;
     for (int i = 0; i < 12 * 9; i++)
         for (int k = 0; k < 4; k++)
             numbers[i][k] = (float)random_between(&random, 0, 1);
     for (int k = 0; k < 4; k++)
         channels[k] = (PictureChannel){names[k], SAMPLE_HALF, &numbers[0][k], 4};
-    Picture     picture = {.width = 12, .height = 9, .crop_width = 12, .crop_height = 9,
-                           .channels = channels, .channel_count = 4};
+    Picture     picture = {.width         = 12,
+                           .height        = 9,
+                           .crop_width    = 12,
+                           .crop_height   = 9,
+                           .channels      = channels,
+                           .channel_count = 4};
     OutputFile *output  = output_open("color.exr", NULL, &error);
     assert_true(exr_write(&picture, output, &error));
     assert_int_equal(output_commit(output), KRS_OK);
@@ -289,12 +290,12 @@ static void compare_at_points(const Product *product)
         for (int k = 0; k < 3; k++)
             points[i][k] = (float)random_between(&random, -2.5, 2.5);
     assert_int_equal(krs_rendering_new(renderer, product->scene, &rendering), KRS_OK);
-    assert_int_equal(krs_sample(rendering, product->frame, (const float(*)[3])points, POINTS, NULL,
-                                surfaces),
-                     KRS_OK);
+    assert_int_equal(
+        krs_sample(rendering, product->frame, (const float(*)[3])points, POINTS, NULL, surfaces),
+        KRS_OK);
     for (int i = 0; i < POINTS; i++) {
-        KrsHit hit = product_probe(product, vec((double)points[i][0], (double)points[i][1],
-                                                (double)points[i][2]));
+        KrsHit hit = product_probe(
+            product, vec((double)points[i][0], (double)points[i][1], (double)points[i][2]));
         for (int k = 0; k < 3; k++)
             assert_true(fabs(hit.color[k] - (double)surfaces[i].color[k]) < 2e-4);
     }
@@ -319,8 +320,7 @@ static void devices_read_what_the_host_reads(void **state)
 /* Turned, mirrored twice and smaller: each ball has the texture as the first one has it. */
 static const char balls[] =
     "let t = texture(\"gray.png\", space: \"linear\");\n"
-    "camera { eye: [0, 0, 9], target: [0, 0, 0], projection: \"orthographic\", height: 4 }\n"
-    DARK
+    "camera { eye: [0, 0, 9], target: [0, 0, 0], projection: \"orthographic\", height: 4 }\n" DARK
     "material shown { color: black, emission: t(2 * u / tau, 3 * v / pi) }\n"
     "show krs {\n"
     "    kernel sphere(1);\n"
@@ -344,10 +344,10 @@ static void kernels_carry_their_texture(void **state)
     Product product = product_compile(balls);
     Random  random  = {5};
     for (int i = 0; i < 500; i++) {
-        Vec around = vec_unit(vec(random_between(&random, -1, 1), random_between(&random, -1, 1),
-                                  random_between(&random, -1, 1)));
-        Vec middle = vec(i & 1 ? 1 : -1, i & 2 ? 0.8 : -0.8, 0);
-        Vec at     = vec_add(middle, vec_scale(0.7, around)), q = in_kernel(at);
+        Vec    around = vec_unit(vec(random_between(&random, -1, 1), random_between(&random, -1, 1),
+                                     random_between(&random, -1, 1)));
+        Vec    middle = vec(i & 1 ? 1 : -1, i & 2 ? 0.8 : -0.8, 0);
+        Vec    at = vec_add(middle, vec_scale(0.7, around)), q = in_kernel(at);
         double u = atan2(q.z, q.x), v = atan2(q.y, hypot(q.x, q.z));
         KrsHit hit = product_probe(&product, at);
         assert_true(fabs(hit.emission[0] - texture_at(2 * u / (2 * M_PI), 3 * v / M_PI)) < 1e-6);

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "compiler/graph/facts.h"
 #include "compiler/graph/texture.h"
 #include "tests/support/bench.h"
 
@@ -70,7 +71,8 @@ static double by_definition(TextureWrap wrap, double u, double v, int k)
     for (int j = (int)floor(y) - 2; j <= (int)floor(y) + 2; j++)
         for (int i = (int)floor(x) - 2; i <= (int)floor(x) + 2; i++)
             sum += tent(x - i - 0.5) * tent(y - j - 0.5) *
-                   texel(standing(wrap, i, (int)drawn.width), standing(wrap, j, (int)drawn.height), k);
+                   texel(standing(wrap, i, (int)drawn.width), standing(wrap, j, (int)drawn.height),
+                         k);
     return sum;
 }
 
@@ -163,7 +165,7 @@ static void widths_between_levels_mix_them(void **state)
     for (int i = 0; i < TRIALS; i++) {
         double uv[2] = {random_between(&bench->random, 0, 1), random_between(&bench->random, 0, 1)};
         double level = random_between(&bench->random, -1, 6), whole = floor(fmax(level, 0));
-        double share    = fmax(level, 0) - whole;
+        double share     = fmax(level, 0) - whole;
         NodeValue fine   = texture_value(&texture, uv, pow(2, whole));
         NodeValue coarse = texture_value(&texture, uv, pow(2, whole + 1));
         NodeValue value  = texture_value(&texture, uv, pow(2, level));
@@ -201,10 +203,10 @@ static double steepest_found(Bench *bench, const Texture *texture)
     const double step  = 1e-5;
     double       found = 0;
     for (int i = 0; i < 60000; i++) {
-        double    turn  = random_between(&bench->random, 0, 2 * M_PI);
-        double    uv[2] = {random_between(&bench->random, -0.5, 1.5),
-                           random_between(&bench->random, -0.5, 1.5)};
-        double    side[2] = {drawn.width, drawn.height};
+        double turn    = random_between(&bench->random, 0, 2 * M_PI);
+        double uv[2]   = {random_between(&bench->random, -0.5, 1.5),
+                          random_between(&bench->random, -0.5, 1.5)};
+        double side[2] = {drawn.width, drawn.height};
         for (int k = 0; k < 2 && i % 4; k++)
             uv[k] = (floor(uv[k] * side[k]) + 0.5) / side[k];
         double    to[2] = {uv[0] + step * cos(turn), uv[1] + step * sin(turn)};
@@ -268,8 +270,8 @@ static void values_stay_in_their_range(void **state)
     Node    node    = node_of(bench, &texture, 1);
     Fact    fact    = graph_facts(bench->graph, square, NULL, &bench->arena)[node];
     for (int i = 0; i < TRIALS; i++) {
-        double    uv[2] = {random_between(&bench->random, 0, 1), random_between(&bench->random, 0, 1)};
-        double    width = pow(2, random_between(&bench->random, -1, 6));
+        double uv[2] = {random_between(&bench->random, 0, 1), random_between(&bench->random, 0, 1)};
+        double width = pow(2, random_between(&bench->random, -1, 6));
         NodeValue value = texture_value(&texture, uv, width);
         for (int k = 0; k < 4; k++)
             assert_true(value.v[k] >= fact.value[k].low - 1e-12 &&

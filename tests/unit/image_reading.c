@@ -68,7 +68,7 @@ static const Form forms[] = {
     {PNG_COLOR_TYPE_PALETTE, 8, PNG_INTERLACE_NONE, false, false},
 };
 
-static uint32_t numbers[PIXELS * 4]; /* samples as the file has them */
+static uint32_t  numbers[PIXELS * 4]; /* samples as the file has them */
 static png_color palette[256];
 
 static int samples_of(const Form *form)
@@ -135,7 +135,7 @@ static double written(const Form *form, int pixel, int k)
     int    count = samples_of(form), colors = form->gray ? 1 : 3;
     double most = (1 << form->depth) - 1;
     if (form->type == PNG_COLOR_TYPE_PALETTE) {
-        const png_color *color = &palette[numbers[pixel]];
+        const png_color *color   = &palette[numbers[pixel]];
         const int        parts[] = {color->red, color->green, color->blue, 255};
         return parts[k] / 255.0;
     }
@@ -189,13 +189,13 @@ static void write_exr(const char *const *names, const SampleType *types, uint32_
             values[i][k] = (float)floor(random_between(&chance, -200, 1000)) / 16;
     for (uint32_t k = 0; k < count; k++)
         channels[k] = (PictureChannel){names[k], types[k], &values[0][k], 4};
-    Picture picture = {.width         = WIDTH,
-                       .height        = HEIGHT,
-                       .crop_width    = WIDTH,
-                       .crop_height   = HEIGHT,
-                       .channels      = channels,
-                       .channel_count = count};
-    OutputFile *output = output_open("a.exr", NULL, &error);
+    Picture     picture = {.width         = WIDTH,
+                           .height        = HEIGHT,
+                           .crop_width    = WIDTH,
+                           .crop_height   = HEIGHT,
+                           .channels      = channels,
+                           .channel_count = count};
+    OutputFile *output  = output_open("a.exr", NULL, &error);
     assert_non_null(output);
     assert_true(exr_write(&picture, output, &error));
     assert_int_equal(output_commit(output), KRS_OK);
@@ -290,7 +290,7 @@ static void what_is_no_picture_is_refused(void **state)
         assert_true(image.fault && *image.fault);
     }
     write_png(&forms[2]);
-    Image image = blank(SPACE_OF_FILE);
+    Image image       = blank(SPACE_OF_FILE);
     image.most_pixels = PIXELS - 1;
     assert_false(image_read(&image, file, length));
     image           = blank(SPACE_OF_FILE);

@@ -91,8 +91,9 @@ static const char *const phrases[PHRASE_COUNT] = {
         "    float clearance;\n"
         "};\n\n",
     [PHRASE_TEXTURES] =
-        "// A texture: the texel that its list of levels begins at, how many there are, what is outside\n"
-        "// (0: the picture again, 1: its edge, 2: its mirror image), and whether it is gray.\n"
+        "// A texture: the texel where its list of levels begins, how many there are, what is\n"
+        "// outside (0: the picture again, 1: its edge, 2: its mirror image), and whether it is\n"
+        "// gray.\n"
         "struct KrsTexture {\n"
         "    uint list, levels, wrap;\n"
         "    bool gray;\n"
