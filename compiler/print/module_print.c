@@ -266,8 +266,10 @@ static void emit_block(Emitter *e)
     emit_phrase(e, PHRASE_PARAMETER_BLOCK, (Operands){emit_count(e, slots + v->zones)});
     if (emit_reads_zones(e))
         emit_phrase(e, PHRASE_ZONES, (Operands){emit_count(e, v->zones)});
-    if (emit_reads_tables(e) || emit_reads_textures(e))
+    if (emit_reads_tables(e))
         emit_phrase(e, v->buffers ? PHRASE_BUFFER_TABLES : PHRASE_TEXEL_TABLES, (Operands){0});
+    else if (emit_reads_textures(e))
+        emit_phrase(e, v->buffers ? PHRASE_BUFFER_CELLS : PHRASE_TEXEL_CELLS, (Operands){0});
     if (emit_reads_tables(e))
         emit_phrase(e, PHRASE_TABLES, (Operands){0});
     if (emit_reads_textures(e))

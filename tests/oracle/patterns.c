@@ -34,9 +34,9 @@ enum { WIDTH = 96, HEIGHT = 64, RAYS = 20, SIDE = 32 };
 
 static unsigned char grays[SIDE][SIDE]; /* linear, rows from the top */
 
-static void write_picture(void)
+static void write_picture(uint64_t seed)
 {
-    Random    random = {7};
+    Random    random = {seed};
     png_image image  = {.version = PNG_IMAGE_VERSION, .width = SIDE, .height = SIDE};
     image.format     = PNG_FORMAT_GRAY;
     for (int y = 0; y < SIDE; y++)
@@ -210,7 +210,7 @@ static void has_moire(const Pattern *pattern, Wrong wrong)
 /* Shows all patterns, three at once, and hands on how wrong each is. */
 static void show_all(bool sharp, int view_count, void (*judge)(const Pattern *pattern, Wrong wrong))
 {
-    write_picture();
+    write_picture(7);
     for (int first = 0; first < PATTERNS; first += 3) {
         const char   *shown[3];
         KrsRendering *rendering;
@@ -306,13 +306,55 @@ static void devices_read_what_the_host_reads(void **state)
 {
     static const char *const wraps[] = {"repeat", "clamp", "mirror"};
     (void)state;
-    write_picture();
+    write_picture(7);
     write_color();
     for (int w = 0; w < 3; w++) {
         Product product = product_format(both_ways, wraps[w], wraps[2 - w]);
         compare_at_points(&product);
         product_free(&product);
     }
+}
+
+/* ---- other pictures ---- */
+
+static void color_is(KrsRendering *rendering, KrsFrame *frame, double wanted)
+{
+    KrsSurfacePoint found;
+    const float     point[1][3] = {{0.5f / SIDE, 0, 0.5f / SIDE}};
+    assert_int_equal(krs_sample(rendering, frame, point, 1, NULL, &found), KRS_OK);
+    assert_true(fabs((double)found.color[0] - wanted) < 1e-3);
+}
+
+/* Another picture of the same size is another number: no kernel is compiled. */
+static void an_edited_picture_is_read_again(void **state)
+{
+    static const char text[] = "let t = texture(\"gray.png\", space: \"linear\");"
+                               "camera { eye: [0, 2, 5] } show plane([0, 1, 0], 0).paint(t(x, z));";
+    KrsScene         *edited;
+    KrsChanges        changes;
+    KrsRendering     *rendering;
+    (void)state;
+    write_picture(7);
+    Product product = product_compile(text);
+    assert_int_equal(krs_rendering_new(renderer, product.scene, &rendering), KRS_OK);
+    color_is(rendering, product.frame, texel(0, 0));
+    assert_int_equal(krs_scene_update(product.scene, text, strlen(text), &edited, &changes),
+                     KRS_OK);
+    assert_int_equal(changes.kind, KRS_CHANGE_NOTHING);
+    krs_scene_free(edited);
+    double before = texel(0, 0);
+    write_picture(8);
+    assert_true(fabs(before - texel(0, 0)) > 0.1);
+    assert_int_equal(krs_scene_update(product.scene, text, strlen(text), &edited, &changes),
+                     KRS_OK);
+    assert_int_equal(changes.kind, KRS_CHANGE_VALUES);
+    assert_int_equal(krs_frame_update(product.frame, edited), KRS_OK);
+    assert_int_equal(krs_rendering_update(rendering, edited), KRS_OK);
+    color_is(rendering, product.frame, texel(0, 0));
+    krs_rendering_free(rendering);
+    krs_scene_free(product.scene);
+    product.scene = edited;
+    product_free(&product);
 }
 
 /* ---- sequences ---- */
@@ -340,7 +382,7 @@ static Vec in_kernel(Vec at)
 static void kernels_carry_their_texture(void **state)
 {
     (void)state;
-    write_picture();
+    write_picture(7);
     Product product = product_compile(balls);
     Random  random  = {5};
     for (int i = 0; i < 500; i++) {
@@ -359,7 +401,7 @@ static void kernels_carry_their_texture(void **state)
 static void pictures_of_mirror_images_are_mirrored(void **state)
 {
     (void)state;
-    write_picture();
+    write_picture(7);
     KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1};
     KrsPicture      *picture = picture_of(balls, &options);
     double           most    = 0;
@@ -380,6 +422,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(pixels_show_the_mean_of_a_pattern, enter_folder,
                                         leave_folder),
         cmocka_unit_test_setup_teardown(devices_read_what_the_host_reads, enter_folder,
+                                        leave_folder),
+        cmocka_unit_test_setup_teardown(an_edited_picture_is_read_again, enter_folder,
                                         leave_folder),
         cmocka_unit_test_setup_teardown(kernels_carry_their_texture, enter_folder, leave_folder),
         cmocka_unit_test_setup_teardown(pictures_of_mirror_images_are_mirrored, enter_folder,

@@ -100,6 +100,7 @@ const Shape *painted(const Shape *shape)
     material->name = NODE_NONE;
 #include "compiler/shape/surface.def"
     double red = between(0, 1), green = between(0, 1), blue = between(0, 1);
+    material->bump      = NODE_NONE;
     material->name      = "random";
     material->color     = graph_vec3(g, red, green, blue);
     material->roughness = graph_number(g, between(0, 1));

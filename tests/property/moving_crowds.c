@@ -36,6 +36,7 @@ static const Shape *moving_part(bool of_parameter)
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     material->name = NODE_NONE;
 #include "compiler/shape/surface.def"
+    material->bump     = NODE_NONE;
     material->name     = "moving";
     material->color    = graph_op3(g, OP_vec3, bright, graph_number(g, between(0, 1)), bright);
     const Shape *shape = ring(between(0.1, 0.3), between(0.02, 0.08));

@@ -75,7 +75,10 @@ static const EmbeddedFile helpers[] = {
              "fn krs_mirror_excess(p: vec3f, n: vec3f, w: f32) -> f32 {\n}\n\n"
              "fn krs_sin(a: f32) -> f32 {\n}\n\n"
              "fn krs_cos(a: f32) -> f32 {\n}\n\n"
-             "fn krs_tan(a: f32) -> f32 {\n}\n"},
+             "fn krs_tan(a: f32) -> f32 {\n}\n\n"
+             "fn krs_read_texture(header: u32) -> KrsTexture {\n}\n\n"
+             "fn krs_texture_sharp(uv: vec2f, read: KrsTexture) -> vec4f {\n}\n\n"
+             "fn krs_texture(uv: vec2f, width: f32, read: KrsTexture) -> vec4f {\n}\n"},
     {0},
 };
 
@@ -113,6 +116,9 @@ static const char *const phrases[PHRASE_COUNT] = {
     [PHRASE_READ_ZONES]       = "    read_zones($a, $b);\n",
     [PHRASE_CUT]              = "fn krs_cut(p: vec3f, uncut: f32) -> f32\n{\n    var d = uncut;\n",
     [PHRASE_CUT_ZONES]        = "    d = zone_depth(p, d, $a);\n",
+    [PHRASE_TEXEL_CELLS]      = "texel cells;\n",
+    [PHRASE_BUFFER_CELLS]     = "buffer cells;\n",
+    [PHRASE_TEXTURES]         = "textures;\n",
     [PHRASE_TEXEL_TABLES]     = "texel tables;\n",
     [PHRASE_BUFFER_TABLES]    = "buffer tables;\n",
     [PHRASE_TABLES]           = "tables;\n",

@@ -64,6 +64,12 @@ static const char *const phrases[PHRASE_COUNT] = {
     [PHRASE_CUT_ZONES]       = "    for (int i = 0; i < $a; i++)\n"
                                "        d = max(d, krs_zones[i].w - length(p - krs_zones[i].xyz));\n",
 
+    [PHRASE_TEXEL_CELLS] =
+        "layout(set = 0, binding = 2) uniform usamplerBuffer krs_cells;\n\n"
+        "uvec2 krs_cell_texel(uint i) { return texelFetch(krs_cells, int(i)).xy; }\n\n",
+    [PHRASE_BUFFER_CELLS] =
+        "layout(std430, set = 0, binding = 2) readonly buffer KrsCells { uvec2 krs_cells[]; };\n\n"
+        "uvec2 krs_cell_texel(uint i) { return krs_cells[i]; }\n\n",
     [PHRASE_TEXEL_TABLES] =
         "layout(set = 0, binding = 1) uniform samplerBuffer krs_rows;\n"
         "layout(set = 0, binding = 2) uniform usamplerBuffer krs_cells;\n\n"

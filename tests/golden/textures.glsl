@@ -1,0 +1,280 @@
+// Distance code of a scene; slot 0 holds the time, then one slot for each `param`.
+// Textures are in krs_cells, a texel buffer of format RG32UI, and equal in all frames:
+// krs_frame_tables in krs.h.
+layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[1]; };
+
+layout(set = 0, binding = 2) uniform usamplerBuffer krs_cells;
+
+uvec2 krs_cell_texel(uint i) { return texelFetch(krs_cells, int(i)).xy; }
+
+// A texture: the texel where its list of levels begins, how many there are, what is
+// outside (0: the picture again, 1: its edge, 2: its mirror image), and whether it is
+// gray.
+struct KrsTexture {
+    uint list, levels, wrap;
+    bool gray;
+};
+
+struct KrsSurface {
+    float distance;
+    vec3  color;
+    float roughness;
+    float metallic;
+    vec3  emission;
+    uint  component;
+    uint  level;
+    uint  instance;
+    vec3  normal;
+};
+
+// Everything that stays the same within a frame: call it first.
+void krs_prepare();
+
+// Never above the distance to the nearest surface; negative inside.
+float krs_distance(vec3 p);
+
+// To march by: never above the distance to the nearest surface, and not above 0
+// in the same places as krs_distance.  What is far for its size is not looked
+// at, nor what is smaller than the footprint.
+float krs_distance_lod(vec3 p, float footprint);
+
+// What is at p: the component with the least distance.  `normal` is the
+// gradient of krs_distance there, `footprint` the radius of a pixel, or 0.
+KrsSurface krs_surface(vec3 p, vec3 normal, float footprint);
+
+KrsTexture krs_read_texture(uint header)
+{
+    uvec2 texel = krs_cell_texel(header);
+    return KrsTexture(header + 1u, texel.x, texel.y & 3u, (texel.y & 4u) != 0u);
+}
+
+vec4 krs_texel(uint i, bool gray)
+{
+    uvec2 texel = krs_cell_texel(i);
+    vec4 color = vec4(unpackHalf2x16(texel.x), unpackHalf2x16(texel.y));
+    vec2 number = uintBitsToFloat(texel);
+    return mix(color, number.xxxy, bvec4(gray));
+}
+
+// Bilinear between four texels of a level.
+vec4 krs_texture_level(vec2 place, uint level, KrsTexture texture)
+{
+    uvec2 found = krs_cell_texel(texture.list + level);
+    uvec2 size = uvec2(found.y & 0xffffu, found.y >> 16);
+    vec2 at = place * vec2(size) - 0.5;
+    vec2 whole = floor(at), part = at - whole, end = vec2(size) - 1.0;
+    bool round = texture.wrap == 0u;
+    vec2 low = mix(max(whole, 0.0), end, bvec2(whole.x < 0.0 && round, whole.y < 0.0 && round));
+    vec2 high = mix(min(whole + 1.0, end), vec2(0.0),
+                    bvec2(whole.x >= end.x && round, whole.y >= end.y && round));
+    uvec2 a = min(uvec2(low), size - 1u), b = min(uvec2(high), size - 1u);
+    uint row = found.x + a.y * size.x, above = found.x + b.y * size.x;
+    vec4 below = mix(krs_texel(row + a.x, texture.gray), krs_texel(row + b.x, texture.gray), part.x);
+    vec4 over = mix(krs_texel(above + a.x, texture.gray), krs_texel(above + b.x, texture.gray),
+                    part.x);
+    return mix(below, over, part.y);
+}
+
+// A place in the picture that stands there, in [0, 1].
+vec2 krs_wrapped(vec2 uv, uint wrap)
+{
+    uv = clamp(uv, -1073741824.0, 1073741824.0);
+    vec2 mirrored = abs(uv - 2.0 * floor(0.5 * uv + 0.5));
+    vec2 other = mix(clamp(uv, 0.0, 1.0), mirrored, bvec2(wrap == 2u));
+    return mix(other, fract(uv), bvec2(wrap == 0u));
+}
+
+vec4 krs_texture_sharp(vec2 uv, KrsTexture texture)
+{
+    return krs_texture_level(krs_wrapped(uv, texture.wrap), 0u, texture);
+}
+
+float krs_atan_unit(float x)
+{
+    bool far = x > 0.414213562373;
+    float y = mix(x, (x - 1.0) / (x + 1.0), far);
+    float z = y * y;
+    float p = 8.05374449538e-2 * z - 1.38776856032e-1;
+    p = p * z + 1.99777106478e-1;
+    p = p * z - 3.33329491539e-1;
+    y += y * z * p;
+    return mix(y, 0.785398163397 + y, far);
+}
+
+float krs_atan2(float a, float b)
+{
+    float x = abs(b), y = abs(a), most = max(x, y);
+    float s = krs_atan_unit(mix(0.0, min(x, y) / most, most > 0.0));
+    s = mix(s, 1.57079632679 - s, y > x);
+    s = mix(s, 3.14159265359 - s, b < 0.0);
+    return mix(s, -s, a < 0.0);
+}
+
+// For pixels of a width in texels: the two levels whose texels are about as wide.
+vec4 krs_texture(vec2 uv, float width, KrsTexture texture)
+{
+    vec2 place = krs_wrapped(uv, texture.wrap);
+    float most = float(texture.levels - 1u);
+    width = mix(65536.0, max(width, 1.0), width < 65536.0); // also where it is no number
+    float level = min(log2(width), most), fine = floor(level);
+    vec4 first = krs_texture_level(place, uint(fine), texture);
+    vec4 second = krs_texture_level(place, uint(min(fine + 1.0, most)), texture);
+    return mix(first, second, level - fine);
+}
+
+float krs_inverse_length(float square)
+{
+    return mix(0.0, inversesqrt(square), square > 0.0);
+}
+
+vec3 krs_normalize(vec3 a) { return a * krs_inverse_length(dot(a, a)); }
+
+float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)
+{
+    return length(max(abs(p - center) - half_sides, 0.0));
+}
+
+KrsTexture krs_texture0;
+KrsTexture krs_texture1;
+// The direction of the ray that sees a surface, if it is set behind krs_prepare: pixels
+// are as long on the surface as that tells.
+vec3 krs_view;
+
+void krs_prepare()
+{
+    krs_texture0 = krs_read_texture(0u);
+    krs_texture1 = krs_read_texture(17u);
+    krs_view = vec3(0.0);
+}
+
+float krs_shared_1(vec3 p, out vec3 s0)
+{
+    // tests/golden/textures.krs:7
+    vec3 v0 = min(max(p, vec3((-1.0960784))), vec3(1.0960784));
+    float t1 = (length(v0) - 1.0) - (krs_texture_sharp(vec2(v0.x, v0.y), krs_texture1).x * 0.1);
+    float t2 = t1 * 0.5733904;
+    float t3 = length(vec2(length((p - v0)), max(t2, 0.0))) + min(t2, 0.0);
+    s0 = v0;
+    return t3;
+}
+
+float krs_distance_1(vec3 p)
+{
+    vec3 s0;
+    return krs_shared_1(p, s0);
+}
+
+float krs_distance_2(vec3 p)
+{
+    // library:solids.krs
+    float t0 = dot(p, vec3(0.0, 1.0, 0.0)) - (-1.0);
+    return t0;
+}
+
+float krs_distance_lod_1(vec3 p, float footprint)
+{
+    return krs_distance_1(p);
+}
+
+float krs_distance_lod_2(vec3 p, float footprint)
+{
+    return krs_distance_2(p);
+}
+
+KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
+{
+    vec3 s0;
+    float d = krs_shared_1(p, s0);
+    // library:solids.krs
+    vec2 v0 = vec2(s0.x, s0.z);
+    float t1 = length(v0);
+    // tests/golden/textures.krs:7
+    vec3 v2 = (vec3(1.0) - step(vec3(1.0960784), p)) * (vec3(1.0) - step(p, vec3((-1.0960784))));
+    vec3 v3 = v2 * vec3(1.0, 0.0, 0.0);
+    // library:solids.krs
+    float t4 = (s0.x * s0.x) + (s0.z * s0.z);
+    float t5 = s0.x / t4;
+    float t6 = (-s0.z) / t4;
+    float t7 = max(t1, 1e-30);
+    float t8 = (t1 * t1) + (s0.y * s0.y);
+    float t9 = t1 / t8;
+    float t10 = (-s0.y) / t8;
+    // tests/golden/textures.krs:7
+    vec3 v11 = v2 * vec3(0.0, 1.0, 0.0);
+    vec3 v12 = v2 * vec3(0.0, 0.0, 1.0);
+    vec3 v13 = vec3(((v3.z * t5) + (v3.x * t6)), ((t5 * v11.z) + (t6 * v11.x)), ((t5 * v12.z) + (t6 * v12.x)));
+    float t14 = dot(normal, krs_view);
+    float t15 = max((t14 * t14), 1e-06);
+    float t16 = length((v13 - (normal * ((t14 * dot(v13, krs_view)) / t15))));
+    float t17 = footprint + footprint;
+    vec3 v18 = vec3(((v3.y * t9) + ((dot(v0, vec2(v3.x, v3.z)) / t7) * t10)), ((t9 * v11.y) + (t10 * (dot(v0, vec2(v11.x, v11.z)) / t7))), ((t9 * v12.y) + (t10 * (dot(v0, vec2(v12.x, v12.z)) / t7))));
+    float t19 = length((v18 - (normal * ((t14 * dot(krs_view, v18)) / t15))));
+    vec2 v20 = vec2((t16 * t17), (t17 * t19)) * vec2(96.0, 288.0);
+    vec4 v21 = krs_texture(vec2(krs_atan2(s0.z, s0.x), krs_atan2(s0.y, t1)), max(v20.x, v20.y), krs_texture0);
+    vec3 v22 = vec3(v21.x, v21.y, v21.z) + vec3((1.0 - v21.w));
+    return KrsSurface(d, v22, 0.6, 0.0, vec3(0.0), 1u, uint(0.0), 1u, normal);
+}
+
+KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
+{
+    float d = krs_distance_2(p);
+    // tests/golden/textures.krs:7
+    float t0 = dot(normal, krs_view);
+    float t1 = max((t0 * t0), 1e-06);
+    float t2 = footprint + footprint;
+    // tests/golden/textures.krs:8
+    vec3 v3 = vec3(p.y, p.x, 0.0);
+    float t4 = length((v3 - (normal * ((t0 * dot(krs_view, v3)) / t1))));
+    float t5 = t2 * t4;
+    vec3 v6 = vec3(t5, t5, ((t5 * 0.7841395) + 0.2158605));
+    vec3 v7 = vec3(1.0, 0.0, 0.0) - (normal * ((t0 * dot(krs_view, vec3(1.0, 0.0, 0.0))) / t1));
+    vec3 v8 = vec3(0.0, 0.0, 1.0) - (normal * ((t0 * dot(krs_view, vec3(0.0, 0.0, 1.0))) / t1));
+    vec2 v9 = vec2((t2 * length(v7)), (t2 * length(v8))) * vec2(8.0, 4.0);
+    float t10 = max(v9.x, v9.y);
+    // tests/golden/textures.krs:9
+    float t11 = (length(p) + 1.0) * 0.0001;
+    float t12 = max(footprint, t11);
+    vec3 v13 = mix(vec3(0.0, 1.0, 0.0), vec3(1.0, 0.0, 0.0), bvec3(abs(normal.x) < 0.6));
+    vec3 v14 = krs_normalize(cross(v13, normal));
+    vec3 v15 = v14 * t12;
+    vec3 v16 = p + v15;
+    vec3 v17 = p - v15;
+    float t18 = (krs_texture(vec2(v16.x, v16.z), t10, krs_texture1).x * 0.01) - (krs_texture(vec2(v17.x, v17.z), t10, krs_texture1).x * 0.01);
+    vec3 v19 = v16 - v17;
+    vec3 v20 = cross(normal, v14) * t12;
+    vec3 v21 = p + v20;
+    vec3 v22 = p - v20;
+    float t23 = (krs_texture(vec2(v21.x, v21.z), t10, krs_texture1).x * 0.01) - (krs_texture(vec2(v22.x, v22.z), t10, krs_texture1).x * 0.01);
+    vec3 v24 = v21 - v22;
+    vec3 v25 = (normal - (v19 * (t18 / max(dot(v19, v19), 1e-30)))) - (v24 * (t23 / max(dot(v24, v24), 1e-30)));
+    vec3 v26 = krs_normalize(v25);
+    vec3 v27 = mix(krs_normalize(v26), normal, bvec3(dot(v26, v26) < 1e-08));
+    return KrsSurface(d, v6, 0.6, 0.0, vec3(0.0), 2u, uint(0.0), 1u, v27);
+}
+
+float krs_distance(vec3 p)
+{
+    float d = krs_distance_1(p);
+    d = min(d, krs_distance_2(p));
+    return d;
+}
+
+float krs_distance_lod(vec3 p, float footprint)
+{
+    float d = 1e30;
+    d = min(d, krs_distance_lod_2(p, footprint));
+    if (krs_box_distance(p, vec3(0.0), vec3(1.0960807)) < max(d, 1e-30))
+        d = min(d, krs_distance_lod_1(p, footprint));
+    return d;
+}
+
+KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)
+{
+    KrsSurface nearest = krs_surface_1(p, normal, footprint);
+    KrsSurface other;
+    other = krs_surface_2(p, normal, footprint);
+    if (other.distance < nearest.distance)
+        nearest = other;
+    return nearest;
+}
+
