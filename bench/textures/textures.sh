@@ -1,11 +1,12 @@
 #!/bin/sh
-# textures.sh KRS: what textures and patterns cost.  A scene is rendered with plain materials and with
-# others, one after the other, again and again; the least time of each counts.  `make bench-textures`.
+# textures.sh KRS: what textures and patterns cost on the processor (lavapipe).  A scene is rendered with
+# plain materials and with others, one after the other, again and again; the least time of each counts.
+# `make bench-textures`.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 krs=${1:-build/krs}
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
-times=${TIMES:-7} size=${SIZE:-1280x720}
+rounds=${ROUNDS:-3} size=${SIZE:-1280x720}
 
 # A scene whose surfaces have this material.
 write_scene() { # name, colour by the point q
@@ -34,38 +35,42 @@ marble|marble(q) * white
 wood|wood(q) * white
 cells|voronoi(q)'
 
-# Milliseconds of a frame's shading, and of all of it, on the device.
-measure() { # number
-    "$krs" render "$work/$1.krs" --size "$size" --samples 1 --stats json --quiet \
-        -o "$work/picture.exr" 2>/dev/null | tr ',{}' '\n\n\n' |
-        sed -n 's/^ *"\(shading\|total\)": *//p' | tr '\n' ' '
+# Milliseconds of processor time that a sample takes: what many take beyond few, so that all else, such as
+# compiling, does not count.
+used() { # number, samples
+    { times && "$krs" render "$work/$1.krs" --size "$size" --samples "$2" --quiet --device cpu \
+        -o "$work/picture.exr" 2>/dev/null && times; } | awk '
+        { split($1, user, "[ms]"); split($2, kernel, "[ms]") }
+        NR % 2 == 0 { now = 60000 * (user[1] + kernel[1]) + 1000 * (user[2] + kernel[2])
+                      if (NR == 2) before = now; else printf "%d", now - before }'
 }
+measure() { # number
+    few=$(used "$1" "$FEW") many=$(used "$1" "$MANY")
+    echo "$1 $(((many - few) * 10 / (MANY - FEW)))"
+}
+FEW=2 MANY=18
 
 count=0
 echo "$materials" >"$work/materials"
 while IFS='|' read -r _ colour; do
     count=$((count + 1))
     write_scene "$count" "$colour"
-    measure "$count" >/dev/null # compiles its kernels
+    used "$count" 1 >/dev/null # compiles its kernels
 done <"$work/materials"
 round=0
-while [ "$round" -lt "$times" ]; do
+while [ "$round" -lt "$rounds" ]; do
     round=$((round + 1)) number=0
     while [ "$number" -lt "$count" ]; do
         number=$((number + 1))
-        echo "$number $(measure "$number")" >>"$work/times"
+        measure "$number" >>"$work/times"
     done
 done
-# The least of each.  Only shading knows materials: what it takes longer is what a frame takes longer.
 sort -k1,1n -k2,2n "$work/times" | awk -v names="$work/materials" '
     BEGIN { while ((getline line <names) > 0) { split(line, part, "|"); name[++n] = part[1] } }
-    !($1 in shade) { shade[$1] = $2 }
-    !($1 in frame) || $3 < frame[$1] { frame[$1] = $3 }
+    !($1 in least) { least[$1] = $2 / 10 }
     END {
-        print "| material | shading, ms | frame, of the plain one |"
+        print "| material | CPU time of a sample, ms | of the plain one |"
         print "| --- | --- | --- |"
         for (i = 1; i <= n; i++)
-            printf "| %s | %.0f | %.2f |\n", name[i], shade[i],
-                   1 + (shade[i] - shade[1]) / frame[1]
-        printf "\nA frame of the plain one takes %.0f ms.\n", frame[1]
+            printf "| %s | %.0f | %.2f |\n", name[i], least[i], least[i] / least[1]
     }'

@@ -57,20 +57,20 @@ vec4 krs_texel(uint i, bool gray)
 }
 
 // Bilinear between four texels of a level.
-vec4 krs_texture_level(vec2 place, uint level, KrsTexture texture)
+vec4 krs_texture_level(vec2 place, uint level, KrsTexture picture)
 {
-    uvec2 found = krs_cell_texel(texture.list + level);
+    uvec2 found = krs_cell_texel(picture.list + level);
     uvec2 size = uvec2(found.y & 0xffffu, found.y >> 16);
     vec2 at = place * vec2(size) - 0.5;
     vec2 whole = floor(at), part = at - whole, end = vec2(size) - 1.0;
-    bool round = texture.wrap == 0u;
+    bool round = picture.wrap == 0u;
     vec2 low = mix(max(whole, 0.0), end, bvec2(whole.x < 0.0 && round, whole.y < 0.0 && round));
     vec2 high = mix(min(whole + 1.0, end), vec2(0.0),
                     bvec2(whole.x >= end.x && round, whole.y >= end.y && round));
     uvec2 a = min(uvec2(low), size - 1u), b = min(uvec2(high), size - 1u);
     uint row = found.x + a.y * size.x, above = found.x + b.y * size.x;
-    vec4 below = mix(krs_texel(row + a.x, texture.gray), krs_texel(row + b.x, texture.gray), part.x);
-    vec4 over = mix(krs_texel(above + a.x, texture.gray), krs_texel(above + b.x, texture.gray),
+    vec4 below = mix(krs_texel(row + a.x, picture.gray), krs_texel(row + b.x, picture.gray), part.x);
+    vec4 over = mix(krs_texel(above + a.x, picture.gray), krs_texel(above + b.x, picture.gray),
                     part.x);
     return mix(below, over, part.y);
 }
@@ -84,9 +84,9 @@ vec2 krs_wrapped(vec2 uv, uint wrap)
     return mix(other, fract(uv), bvec2(wrap == 0u));
 }
 
-vec4 krs_texture_sharp(vec2 uv, KrsTexture texture)
+vec4 krs_texture_sharp(vec2 uv, KrsTexture picture)
 {
-    return krs_texture_level(krs_wrapped(uv, texture.wrap), 0u, texture);
+    return krs_texture_level(krs_wrapped(uv, picture.wrap), 0u, picture);
 }
 
 float krs_atan_unit(float x)
@@ -111,14 +111,14 @@ float krs_atan2(float a, float b)
 }
 
 // For pixels of a width in texels: the two levels whose texels are about as wide.
-vec4 krs_texture(vec2 uv, float width, KrsTexture texture)
+vec4 krs_texture(vec2 uv, float width, KrsTexture picture)
 {
-    vec2 place = krs_wrapped(uv, texture.wrap);
-    float most = float(texture.levels - 1u);
+    vec2 place = krs_wrapped(uv, picture.wrap);
+    float most = float(picture.levels - 1u);
     width = mix(65536.0, max(width, 1.0), width < 65536.0); // also where it is no number
     float level = min(log2(width), most), fine = floor(level);
-    vec4 first = krs_texture_level(place, uint(fine), texture);
-    vec4 second = krs_texture_level(place, uint(min(fine + 1.0, most)), texture);
+    vec4 first = krs_texture_level(place, uint(fine), picture);
+    vec4 second = krs_texture_level(place, uint(min(fine + 1.0, most)), picture);
     return mix(first, second, level - fine);
 }
 
