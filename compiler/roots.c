@@ -10,8 +10,8 @@
 
 #include "compiler/base/far.h"
 #include "compiler/compilation.h"
-#include "compiler/graph/rebase.h"
 #include "compiler/graph/build.h"
+#include "compiler/graph/rebase.h"
 #include "compiler/graph/derive.h"
 #include "compiler/lower/crowd.h"
 

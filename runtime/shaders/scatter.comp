@@ -157,7 +157,8 @@ void do_item(uint number)
     uint  index = index_of(pixel);
     float t = find_end(index).t;
     vec3  origin = load_path(PATH_ORIGIN, index).xyz, weight = load_path(PATH_WEIGHT, index).xyz;
-    weight *= hit.side < 0.0 ? exp(-surface.absorption * find_way(index, hit, origin, t)) : vec3(1.0);
+    vec3  absorbed = surface.absorption * find_way(index, hit, origin, t);
+    weight *= hit.side < 0.0 ? exp(-absorbed) : vec3(1.0);
     float left = let_through(origin.y, hit.direction.y, t);
     vec3  radiance = weight * through_fog(surface.emission, left, true);
     weight *= left;
