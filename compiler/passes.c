@@ -97,19 +97,19 @@ KrsStatus pass_elaborate(Compilation *c)
                             .graph      = graph,
                             .parameters = &c->elaborated.parameters,
                             .slopes     = &c->elaborated.slopes};
-    Elaboration  e       = {.builder = &builder,
-                            .arena   = &c->work,
-                            .lasting = &c->scene->arena,
-                            .values  = &c->values,
-                            .scratch = &c->scratch,
-                            .diags   = &c->diags,
-                            .sources = &c->sources,
-                            .files   = &c->files,
-                            .graph   = graph,
-                            .scene   = &c->elaborated,
-                            .loader  = c->loader,
-                            .studio  = c->options->studio,
-                            .hoists  = hoists(c)};
+    Elaboration  e       = {.builder  = &builder,
+                            .arena    = &c->work,
+                            .values   = &c->values,
+                            .scratch  = &c->scratch,
+                            .diags    = &c->diags,
+                            .sources  = &c->sources,
+                            .files    = &c->files,
+                            .graph    = graph,
+                            .scene    = &c->elaborated,
+                            .loader   = c->loader,
+                            .studio   = c->options->studio,
+                            .hoists   = hoists(c),
+                            .textures = {.arena = &c->scene->arena}};
     elaborate(&e);
     graph_drop_older(graph);
     if (!c->request->inspect) {

@@ -12,6 +12,7 @@
 #define KRS_ELABORATE_H
 
 #include "compiler/base/loader.h"
+#include "compiler/eval/texture_keys.h"
 #include "compiler/eval/value.h"
 #include "compiler/family/family.h"
 #include "compiler/front/files.h"
@@ -72,12 +73,6 @@ typedef struct FileBytes {
     size_t               length;
 } FileBytes;
 
-/* What makes one texture differ from another. */
-typedef struct TextureKey {
-    const char *path;
-    uint32_t    wrap, space;
-} TextureKey;
-
 typedef struct Elaboration {
     ShapeBuilder *builder; /* with the arenas, diagnostics and graph that stand here as well */
     Arena        *arena;   /* shapes and the scene */
@@ -107,11 +102,7 @@ typedef struct Elaboration {
         FileBytes *items;
         size_t     count, capacity;
     } read; /* files, bytes of which are no text */
-    struct {
-        TextureKey *items;
-        size_t      count, capacity;
-    } textures;            /* in the order of Graph.textures */
-    Arena        *lasting; /* of the compiled scene, for textures */
+    TextureKeys   textures;
     const Loader *loader;
     BuiltinName   builtins[MOST_BUILTIN_NAMES]; /* names looked up so far, by their addresses */
     bool     studio; /* a scene without lights and sky gets those of the library, and a floor */
@@ -341,12 +332,6 @@ size_t builtin_names(const char **names, size_t capacity);
 BuiltinFunction builtin_sum, builtin_product, builtin_any, builtin_all, builtin_least,
     builtin_greatest, builtin_len, builtin_range;
 
-/* ---- texture.c ---- */
-BuiltinFunction builtin_texture, builtin_footprint;
-/* `t(u, v)`, and `t.alpha(u, v)`, `t.size`. */
-Value call_texture(Elaboration *e, const Environment *env, const Syntax *syntax, uint32_t number);
-Value texture_method(Elaboration *e, const Environment *env, const Syntax *syntax, uint32_t number);
-
 /* ---- hull.c ---- */
 BuiltinFunction builtin_hull, builtin_hull_triangles;
 Value           method_hull(Elaboration *e, const Shape *shape, Call *call);
@@ -378,8 +363,8 @@ bool read_system_file(Elaboration *e, const char *path, FileBytes *bytes);
 /* ---- text.c ---- */
 BuiltinFunction builtin_text;
 
-/* ---- drawing.c ---- */
-BuiltinFunction builtin_svg;
+/* ---- drawing.c, texture.c ---- */
+BuiltinFunction builtin_svg, builtin_texture, builtin_footprint;
 
 /* ---- measure.c ---- */
 Value method_distance(Elaboration *e, const Shape *shape, Call *call);

@@ -2,6 +2,7 @@
  * methods.c: what can be done to shapes and maps with a dot.
  */
 #include "compiler/eval/elaborate.h"
+#include "compiler/eval/texture.h"
 
 #include <math.h>
 #include <string.h>

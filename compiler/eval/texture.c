@@ -1,11 +1,11 @@
 /*
  * texture.c: `texture`, what its value does, and `footprint`.
  */
-#include "compiler/graph/texture.h"
+#include "compiler/eval/texture.h"
 
 #include <string.h>
 
-#include "compiler/eval/elaborate.h"
+#include "compiler/graph/texture.h"
 #include "compiler/image/image.h"
 
 /* ---- reading ---- */
@@ -61,9 +61,9 @@ static bool make_texture(Elaboration *e, const Argument *file, const FileBytes *
     if (read) {
         Textures *all     = e->graph->textures;
         Texture   texture = texture_new(image.samples, image.width, image.height, image.gray,
-                                        (TextureWrap)key->wrap, e->lasting, e->scratch);
-        texture.name      = arena_copy_text(e->lasting, key->path, strlen(key->path));
-        array_push(e->lasting, &all->list, texture);
+                                        (TextureWrap)key->wrap, e->textures.arena, e->scratch);
+        texture.name      = arena_copy_text(e->textures.arena, key->path, strlen(key->path));
+        array_push(e->textures.arena, &all->list, texture);
         array_push(e->arena, &e->textures, *key);
     } else
         fail_texture(e, file, bytes->path, image.fault);
@@ -87,7 +87,7 @@ Value builtin_texture(Elaboration *e, Call *call)
         return value_error();
     key.path = bytes.path;
     if (!e->graph->textures)
-        e->graph->textures = arena_new(e->lasting, Textures);
+        e->graph->textures = arena_new(e->textures.arena, Textures);
     if (!find_texture(e, &key, &number)) {
         number = (uint32_t)e->textures.count;
         if (!make_texture(e, file, &bytes, &key))
