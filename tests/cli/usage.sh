@@ -2,7 +2,7 @@
 # usage.sh: command lines that are wrong, and the pages of help.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 62
+plan 61
 
 run
 said 2 "no command is given" "no command"
@@ -61,8 +61,6 @@ run render ball.krs --camera sied
 said 2 "did you mean \`side\`?" "a misspelt camera"
 run render ball.krs --camera overhead
 said 2 "has no camera \`overhead\`; it has \`" "an unknown camera"
-run render ball.krs --integrator path
-said 2 "not in this version" "an integrator that is missing"
 run render ball.krs --integrator foo
 said 2 "--integrator wants preview" "an unknown integrator"
 run render ball.krs --resume
