@@ -4,12 +4,14 @@
 #include "compiler/eval/elaborate.h"
 #include "compiler/lower/lower.h"
 
-/* Reports a value that is no colour; names of colours in quotes are a habit. */
+/* Reports a value that is no colour; names of colours in quotes are a habit, as are textures alone. */
 static void not_a_colour(Elaboration *e, const Syntax *syntax, Value value, const char *wanted)
 {
     Diag *diag = type_error(e, syntax, value, wanted);
     if (value.type == VALUE_STRING)
         diag->help = form_help(e->diags, FORM_QUOTED_COLOUR);
+    if (value.type == VALUE_TEXTURE)
+        diag->help = "a texture has a colour at each place: `t(u, v)`, or `t(x, z)`";
 }
 
 /* A number or a colour that may depend on the point; *property stays when it is not given. */
