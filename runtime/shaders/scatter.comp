@@ -151,6 +151,9 @@ void do_item(uint number)
 {
     HitPoint   hit = find_hit_point(number);
     vec4       facing = load_hit(FACING, hit.slot);
+#ifdef KRS_VIEW // as in shade.comp
+    krs_view = hit.direction;
+#endif
     KrsSurface surface = within_limits(
         krs_surface(hit.position, hit.side * facing.xyz, 0.5 * hit.width));
     uvec2 pixel = pixel_of(hit.slot);

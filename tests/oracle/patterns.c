@@ -207,28 +207,44 @@ static void has_moire(const Pattern *pattern, Wrong wrong)
         fail_msg("%s is wrong by no more than %g", pattern->sharp, wrong.mean);
 }
 
+typedef void Judge(const Pattern *pattern, Wrong wrong);
+
+/* Three patterns, as a view shows them. */
+static void show_three(const Product *product, int view, KrsIntegrator integrator, int first,
+                       Judge *judge)
+{
+    KrsRenderOptions options = {.width      = WIDTH,
+                                .height     = HEIGHT,
+                                .samples    = 1,
+                                .camera     = (size_t)view,
+                                .integrator = integrator};
+    KrsRendering    *rendering;
+    KrsPicture      *picture;
+    assert_int_equal(krs_rendering_new(renderer, product->scene, &rendering), KRS_OK);
+    assert_int_equal(krs_render(rendering, product->frame, &options, &picture), KRS_OK);
+    for (int k = 0; k < 3; k++)
+        judge(&patterns[first + k], wrong_in(picture, k, &views[view], &patterns[first + k]));
+    krs_picture_free(picture);
+    krs_rendering_free(rendering);
+}
+
+static Product scene_of(int first, bool sharp)
+{
+    const char *shown[3];
+    for (int k = 0; k < 3; k++)
+        shown[k] = sharp && patterns[first + k].sharp ? patterns[first + k].sharp
+                                                      : patterns[first + k].text;
+    return scene_with(shown);
+}
+
 /* Shows all patterns, three at once, and hands on how wrong each is. */
-static void show_all(bool sharp, int view_count, void (*judge)(const Pattern *pattern, Wrong wrong))
+static void show_all(bool sharp, int view_count, Judge *judge)
 {
     write_picture(7);
     for (int first = 0; first < PATTERNS; first += 3) {
-        const char   *shown[3];
-        KrsRendering *rendering;
-        for (int k = 0; k < 3; k++)
-            shown[k] = sharp && patterns[first + k].sharp ? patterns[first + k].sharp
-                                                          : patterns[first + k].text;
-        Product product = scene_with(shown);
-        assert_int_equal(krs_rendering_new(renderer, product.scene, &rendering), KRS_OK);
-        for (int v = 0; v < view_count; v++) {
-            KrsRenderOptions options = {
-                .width = WIDTH, .height = HEIGHT, .samples = 1, .camera = (size_t)v};
-            KrsPicture *picture;
-            assert_int_equal(krs_render(rendering, product.frame, &options, &picture), KRS_OK);
-            for (int k = 0; k < 3; k++)
-                judge(&patterns[first + k], wrong_in(picture, k, &views[v], &patterns[first + k]));
-            krs_picture_free(picture);
-        }
-        krs_rendering_free(rendering);
+        Product product = scene_of(first, sharp);
+        for (int v = 0; v < view_count; v++)
+            show_three(&product, v, KRS_INTEGRATOR_PREVIEW, first, judge);
         product_free(&product);
     }
 }
@@ -237,6 +253,16 @@ static void pixels_show_the_mean_of_a_pattern(void **state)
 {
     (void)state;
     show_all(false, VIEWS, is_right);
+}
+
+/* Whatever the integrator is. */
+static void paths_show_the_mean_of_a_pattern(void **state)
+{
+    (void)state;
+    write_picture(7);
+    Product product = scene_of(0, false);
+    show_three(&product, 0, KRS_INTEGRATOR_PATH, 0, is_right);
+    product_free(&product);
 }
 
 /* What is not filtered is found to be wrong. */
@@ -420,6 +446,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(pixels_show_the_mean_of_a_pattern, enter_folder,
+                                        leave_folder),
+        cmocka_unit_test_setup_teardown(paths_show_the_mean_of_a_pattern, enter_folder,
                                         leave_folder),
         cmocka_unit_test_setup_teardown(devices_read_what_the_host_reads, enter_folder,
                                         leave_folder),
