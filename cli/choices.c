@@ -35,6 +35,10 @@ const Choice shadows_choices[] = {
 #define KRS_SHADOWS(id, name, about) {name, about},
 #include "runtime/choices.def"
     LAST};
+const Choice pixel_filter_choices[] = {
+#define KRS_PIXEL_FILTER(id, name, reach, integral, about) {name, about},
+#include "runtime/choices.def"
+    LAST};
 const Choice plane_choices[] = {
 #define KRS_PLANE(id, bit, aov, about, arrays) {aov, about},
 #include "runtime/planes.def"
@@ -45,6 +49,8 @@ const Choice tone_map_choices[] = {
 #include "runtime/display/tone_maps.def"
 #undef TONE_MAP
     LAST};
+const Choice stereo_choices[] = {
+    {"side-by-side", "the left eye's to the left"}, {"over-under", "the left eye's above"}, LAST};
 const Choice specialize_choices[] = {
     {"numbers", "as literals: the fastest frames"},
     {"structure", "in the parameter block: an edit of a number compiles nothing"},

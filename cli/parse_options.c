@@ -193,6 +193,16 @@ static KrsStatus check_together(Options *options)
     }
     if (options->command == COMMAND_COMPILE && options->outputs.count != 1)
         return say_usage(options, "compile needs one folder to write to: -o DIR");
+    if (options->stereo >= 0 && options->light_groups)
+        return say_usage(options, "--light-groups are of one picture; --stereo has two");
+    if (options->light_groups && options->how.most_radiance > 0)
+        return say_usage(options,
+                         "--light-groups add up to the picture; with --clamp-radiance they "
+                         "do not");
+    if (options->stereo >= 0 && (options->depth_in || options->plate))
+        return say_usage(options, "--depth-in and --plate are of one picture; --stereo has two");
+    if (options->stereo >= 0 && options->how.crop.width > 0)
+        return say_usage(options, "--crop is of one picture; --stereo has two");
     if (options->command == COMMAND_IMPORT && options->outputs.count > 1)
         return say_usage(options, "import writes one scene, not %zu", options->outputs.count);
     if (options->command == COMMAND_DUMP && !options->after)

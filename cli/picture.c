@@ -3,13 +3,17 @@
  */
 #include "cli/picture.h"
 
+#include <errno.h>
+#include <signal.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "cli/console.h"
+#include "cli/cryptomatte.h"
 #include "cli/supervise.h"
 #include "runtime/writer/exr.h"
 #include "runtime/writer/png.h"
@@ -32,8 +36,8 @@ static const PlaneArray plane_arrays[] = {
 #undef KRS_PLANE
 enum {
     PLANE_ARRAYS = sizeof plane_arrays / sizeof *plane_arrays,
-    CHANNELS     = 4 * PLANE_ARRAYS, /* at most */
-    TEXTS        = 8
+    CHANNELS     = 4 * PLANE_ARRAYS + MATTE_CHANNELS, /* at most */
+    TEXTS        = 8 + MATTE_TEXTS
 };
 
 FileForm file_form(const char *path)
@@ -154,27 +158,95 @@ static bool fill_png(const void *user, OutputFile *file, OutputError *error)
     return png_write(contents->picture, contents->rgb, file, error);
 }
 
-static KrsStatus write_exr(const Options *options, const KrsPicture *source, Picture *picture,
+/* Adds the channels and texts of mattes, whose values are for free() afterwards. */
+static bool add_mattes(const Options *options, const KrsPicture *source, const PictureNotes *notes,
+                       PictureChannel *channels, PictureText *texts, Picture *picture,
+                       float **values)
+{
+    Cryptomatte matte;
+    if (!source->mattes[0])
+        return true;
+    if (!cryptomatte_make(options->arena, source, notes->scene, &matte))
+        return false;
+    memcpy(channels + picture->channel_count, matte.channels, sizeof matte.channels);
+    memcpy(texts + picture->text_count, matte.texts, sizeof matte.texts);
+    picture->channel_count += MATTE_CHANNELS;
+    picture->text_count += MATTE_TEXTS;
+    *values = matte.values;
+    return true;
+}
+
+static KrsStatus write_exr(const Options *options, const KrsPicture *source,
+                           const PictureNotes *notes, PictureText *texts, Picture *picture,
                            const char *path)
 {
-    PictureChannel channels[CHANNELS];
-    PictureMatrix  to_camera, to_ndc;
+    const LightGroups *groups   = &notes->groups;
+    PictureChannel    *channels = arena_new_array(options->arena, PictureChannel,
+                                                  CHANNELS + groups->channel_count);
+    PictureMatrix      to_camera, to_ndc;
+    float             *values = NULL;
     memcpy(to_camera.m, source->world_to_camera, sizeof to_camera.m);
     memcpy(to_ndc.m, source->world_to_ndc, sizeof to_ndc.m);
     picture->channels        = channels;
     picture->channel_count   = collect_channels(options, source, channels);
-    picture->world_to_camera = &to_camera;
-    picture->world_to_ndc    = &to_ndc;
-    return write_output(path, fill_exr, picture);
+    picture->world_to_camera = options->stereo >= 0 ? NULL : &to_camera; /* there are two cameras */
+    picture->world_to_ndc    = options->stereo >= 0 ? NULL : &to_ndc;
+    for (size_t i = 0; i < groups->channel_count; i++)
+        channels[picture->channel_count++] = groups->channels[i];
+    if (!add_mattes(options, source, notes, channels, texts, picture, &values))
+        return say_status(KRS_OUT_OF_MEMORY, path);
+    KrsStatus status = write_output(path, fill_exr, picture);
+    free(values);
+    return status;
+}
+
+/* What is shown on a screen, for free(); NULL: out of memory. */
+static uint8_t *screen_pixels(const KrsPicture *source, const DisplayOptions *display,
+                              size_t *length)
+{
+    *length      = (size_t)source->window.width * source->window.height * 3;
+    uint8_t *rgb = malloc(*length);
+    if (rgb)
+        display_to_srgb8(source, display, rgb);
+    return rgb;
+}
+
+/* Who reads may stop early: an encoder that has enough, or that failed. */
+static KrsStatus write_bytes(const uint8_t *bytes, size_t length)
+{
+    for (size_t done = 0; done < length;) {
+        ssize_t wrote = write(STDOUT_FILENO, bytes + done, length - done);
+        if (*interrupted())
+            return KRS_INTERRUPTED;
+        if (wrote < 0 && errno != EINTR) {
+            say("cannot write to standard output: %s", strerror(errno));
+            return KRS_IO_ERROR;
+        }
+        done += wrote > 0 ? (size_t)wrote : 0;
+    }
+    return KRS_OK;
+}
+
+KrsStatus picture_write_raw(const KrsPicture *picture, const DisplayOptions *display)
+{
+    size_t   length;
+    uint8_t *rgb = screen_pixels(picture, display, &length);
+    if (!rgb)
+        return say_status(KRS_OUT_OF_MEMORY, "standard output");
+    stage_enter(STAGE_WRITE);
+    signal(SIGPIPE, SIG_IGN); /* then writing fails, which is told */
+    KrsStatus status = write_bytes(rgb, length);
+    free(rgb);
+    return status;
 }
 
 static KrsStatus write_png(const KrsPicture *source, const Picture *picture,
                            const DisplayOptions *display, const char *path)
 {
-    uint8_t *rgb = malloc((size_t)source->window.width * source->window.height * 3);
+    size_t   length;
+    uint8_t *rgb = screen_pixels(source, display, &length);
     if (!rgb)
         return say_status(KRS_OUT_OF_MEMORY, path);
-    display_to_srgb8(source, display, rgb);
     KrsStatus status = write_output(path, fill_png, &(PngContents){picture, rgb});
     free(rgb);
     return status;
@@ -192,6 +264,6 @@ KrsStatus picture_write(const Options *options, const KrsPicture *source, const 
                            .crop_height = source->window.height,
                            .texts       = texts,
                            .text_count  = collect_texts(options, source, notes, texts)};
-    return file_form(path) == FORM_EXR ? write_exr(options, source, &picture, path)
+    return file_form(path) == FORM_EXR ? write_exr(options, source, notes, texts, &picture, path)
                                        : write_png(source, &picture, &notes->display, path);
 }

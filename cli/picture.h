@@ -5,6 +5,7 @@
 #define KRS_CLI_PICTURE_H
 
 #include "cli/commands.h"
+#include "cli/light_groups.h"
 
 typedef enum FileForm { FORM_UNKNOWN, FORM_EXR, FORM_PNG } FileForm;
 
@@ -19,7 +20,11 @@ typedef struct PictureNotes {
     const KrsScene *scene;
     double          time;    /* of the scene */
     DisplayOptions  display; /* for PNG */
+    LightGroups     groups;  /* further channels for EXR, or none */
 } PictureNotes;
+
+/* Writes the pixels to standard output, as a PNG shows them: rows from the top, R G B, a byte each. */
+KrsStatus picture_write_raw(const KrsPicture *picture, const DisplayOptions *display);
 
 /* Writes the picture to a file in the form its name tells. */
 KrsStatus picture_write(const Options *options, const KrsPicture *picture,

@@ -13,7 +13,10 @@
 #include "cli/commands.h"
 #include "cli/choices.h"
 #include "cli/console.h"
+#include "cli/frame_paths.h"
 #include "cli/picture.h"
+#include "cli/read_exr.h"
+#include "cli/render_stats.h"
 #include "cli/supervise.h"
 
 typedef struct Render {
@@ -25,54 +28,18 @@ typedef struct Render {
     KrsRenderer     *renderer;
     KrsRendering    *rendering;
     KrsRenderOptions how;
-    uint32_t         samples; /* of a pixel, also where `how` leaves it to the scene */
-    Progress         progress;
+    float           *depth; /* of another renderer, for the frame at hand; NULL: none */
+    float (*plate)[4];
+    uint32_t samples; /* of a pixel, also where `how` leaves it to the scene */
+    Progress progress;
 } Render;
-
-/* Where the frame's number goes in the name of an output: "%d", "%04d".  NULL without one. */
-static const char *find_pattern(const char *path, int *width, size_t *length)
-{
-    for (const char *percent = path; (percent = strchr(percent, '%')); percent++) {
-        size_t digits = strspn(percent + 1, "0123456789");
-        if (digits <= 2 && percent[1 + digits] == 'd') {
-            *width  = atoi(percent + 1);
-            *length = digits + 2;
-            return percent;
-        }
-    }
-    return NULL;
-}
-
-/* Whether a name has places for several numbers, of which only one would be the frame's. */
-static bool has_two_patterns(const char *path)
-{
-    int         width;
-    size_t      length;
-    const char *first = find_pattern(path, &width, &length);
-    return first && find_pattern(first + length, &width, &length);
-}
-
-/* The name of an output for a frame; without --frames, names are taken as they are. */
-static const char *frame_path(const Options *options, const char *path, uint32_t frame)
-{
-    int         width   = 0;
-    size_t      length  = 0;
-    const char *pattern = options->animated ? find_pattern(path, &width, &length) : NULL;
-    if (!pattern)
-        return path;
-    Text text = {.arena = options->arena};
-    text_add_bytes(&text, path, (size_t)(pattern - path));
-    text_format(&text, "%0*u", width, frame);
-    text_add(&text, pattern + length);
-    return text.bytes;
-}
 
 static void choose_outputs(Render *render)
 {
     const Options *options = render->options;
     render->outputs        = options->outputs.items;
     render->output_count   = options->outputs.count;
-    if (render->output_count > 0)
+    if (render->output_count > 0 || options->raw)
         return;
     static const char *const endings[] = {".exr", ".png"};
     enum { DEFAULT_OUTPUTS = 2 };
@@ -90,7 +57,7 @@ static void say_written(const Render *render)
 {
     const Options *options = render->options;
     Text           names   = {.arena = options->arena};
-    if (options->quiet)
+    if (options->quiet || render->output_count == 0)
         return;
     for (size_t i = 0; i < render->output_count; i++)
         text_format(&names, "%s`%s`",
@@ -106,35 +73,18 @@ static void say_written(const Render *render)
         say("wrote %s", names.bytes);
 }
 
-/* Whether two outputs are one file in some frame.  Names that differ in the number's width only are
-   equal from some power of ten on. */
-static bool are_one_file(const Options *options, const char *a, const char *b)
-{
-    uint32_t first = options->first_frame, last = options->last_frame;
-    if (output_is_same(frame_path(options, a, first), frame_path(options, b, first)) ||
-        output_is_same(frame_path(options, a, last), frame_path(options, b, last)))
-        return true;
-    for (uint32_t frame = 10; frame < last; frame *= 10)
-        if (frame > first &&
-            output_is_same(frame_path(options, a, frame), frame_path(options, b, frame)))
-            return true;
-    return false;
-}
-
 static KrsStatus check_name(const Render *render, size_t index)
 {
     const Options *options = render->options;
     const char    *path    = render->outputs[index];
-    int            width;
-    size_t         length;
     if (file_form(path) == FORM_UNKNOWN)
         return say_usage(options, "the output `%s` ends in neither .exr nor .png", path);
     if (strcmp(path, STANDARD_OUTPUT) == 0 && (options->stats != STATS_NONE || isatty(1)))
         return say_usage(options, "the picture would go to %s; write it to a file",
                          isatty(1) ? "the terminal" : "where --stats goes");
-    if (options->animated && !find_pattern(path, &width, &length))
+    if (options->animated && frame_places(path) == 0)
         return say_usage(options, "with --frames, `%s` needs a place for the number: %%04d", path);
-    if (options->animated && has_two_patterns(path))
+    if (options->animated && frame_places(path) > 1)
         return say_usage(options, "`%s` has more than one place for the number of the frame", path);
     for (size_t other = 0; other < index; other++)
         if (are_one_file(options, render->outputs[other], path))
@@ -142,9 +92,28 @@ static KrsStatus check_name(const Render *render, size_t index)
     return KRS_OK;
 }
 
+/* Standard output may have one thing only. */
+static KrsStatus check_raw(const Options *options)
+{
+    if (!options->raw)
+        return KRS_OK;
+    if (options->stats != STATS_NONE || isatty(1))
+        return say_usage(options, "--raw would go to %s; pipe it to an encoder",
+                         isatty(1) ? "the terminal" : "where --stats goes");
+    if (options->skip_existing)
+        return say_usage(options, "--raw has all frames, so there is nothing to skip");
+    for (size_t i = 0; i < options->outputs.count; i++)
+        if (strcmp(options->outputs.items[i], STANDARD_OUTPUT) == 0)
+            return say_usage(options, "--raw and `-o -` both go to standard output");
+    return KRS_OK;
+}
+
 static KrsStatus check_outputs(const Render *render)
 {
     const Options *options = render->options;
+    KrsStatus      raw     = check_raw(options);
+    if (raw != KRS_OK)
+        return raw;
     for (size_t i = 0; i < render->output_count; i++) {
         const char *path = frame_path(options, render->outputs[i], options->first_frame);
         OutputError error;
@@ -261,124 +230,36 @@ static KrsStatus choose_how(Render *render)
     bool exr = false;
     for (size_t i = 0; i < render->output_count; i++)
         exr = exr || file_form(render->outputs[i]) == FORM_EXR;
-    render->samples = samples;
-    how->camera     = camera;
-    how->seed       = options->seed;
-    how->planes     = picture_planes(options, exr);
-    how->integrator = find_integrator(how->integrator, view.image.integrator);
-    how->progress   = show_progress;
-    how->user       = render;
+    render->samples    = samples;
+    how->camera        = camera;
+    how->seed          = options->seed;
+    how->frame_seconds = 1 / options->fps;
+    how->planes        = picture_planes(options, exr);
+    how->integrator    = find_integrator(how->integrator, view.image.integrator);
+    how->progress      = show_progress;
+    how->user          = render;
     return KRS_OK;
 }
 
-static void add_stats_json(Text *json, const KrsRenderStats *stats, const KrsProgram *program)
-{
-    text_format(json,
-                "\"compile\": {\"front\": %.3f, \"glsl\": %.3f, \"spirv\": %.3f, "
-                "\"pipeline\": %.3f, \"passes\": {",
-                program->front_ms, program->glsl_ms, stats->spirv_ms, stats->pipeline_ms);
-    for (size_t i = 0; krs_pass(i); i++)
-        text_format(json, "%s\"%s\": %.3f", i ? ", " : "", krs_pass(i)->name, program->pass_ms[i]);
-    text_add(json, "}}, \"render\": {");
-    for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
-        text_format(json, "\"%s\": %.3f, ", krs_phase_names[phase], stats->phase_ms[phase]);
-    text_format(json,
-                "\"total\": %.3f, \"wall\": %.3f}, \"device_time\": %s, \"rays\": %llu, "
-                "\"evaluations\": %llu, \"evaluations_per_ray\": {\"mean\": %.3f, "
-                "\"maximum\": %u}, \"flops_per_evaluation\": %.3f, \"gflops\": %.3f, "
-                "\"unresolved\": %llu, \"submissions\": %llu, \"device\": ",
-                stats->total_ms, stats->wall_ms, stats->device_time ? "true" : "false",
-                (unsigned long long)stats->rays, (unsigned long long)stats->evaluations,
-                stats->evaluations_per_ray, stats->most_evaluations_per_ray,
-                stats->flops_per_evaluation, stats->gflops, (unsigned long long)stats->unresolved,
-                (unsigned long long)stats->submissions);
-    text_json(json, stats->device);
-    text_format(json, ", \"peak_memory_bytes\": %llu",
-                (unsigned long long)stats->peak_memory_bytes);
-}
-
-/* The most kernels that statistics list: those of a picture are fewer. */
-enum { MOST_KERNELS = 64 };
-
-static size_t read_kernels(const KrsRendering *rendering, KrsKernelStats kernels[MOST_KERNELS])
-{
-    const size_t count = krs_rendering_kernels(rendering, kernels, MOST_KERNELS);
-    return count < MOST_KERNELS ? count : MOST_KERNELS;
-}
-
-static void add_kernels_json(Text *json, const KrsRendering *rendering)
-{
-    KrsKernelStats kernels[MOST_KERNELS];
-    const size_t   count = read_kernels(rendering, kernels);
-    text_add(json, ", \"kernels\": [");
-    for (size_t i = 0; i < count; i++)
-        text_format(json,
-                    "%s{\"name\": \"%s\", \"glsl_bytes\": %llu, \"spirv_ms\": %.3f, "
-                    "\"driver_ms\": %.3f, \"cached\": %s}",
-                    i ? ", " : "", kernels[i].name, (unsigned long long)kernels[i].glsl_bytes,
-                    kernels[i].spirv_ms, kernels[i].driver_ms,
-                    kernels[i].cached ? "true" : "false");
-    text_add(json, "]");
-}
-
-static void print_kernels(const KrsRendering *rendering)
-{
-    KrsKernelStats kernels[MOST_KERNELS];
-    const size_t   count    = read_kernels(rendering, kernels);
-    size_t         compiled = 0;
-    double         spirv_ms = 0, driver_ms = 0;
-    for (size_t i = 0; i < count; i++) {
-        compiled += !kernels[i].cached;
-        spirv_ms += kernels[i].spirv_ms;
-        driver_ms += kernels[i].driver_ms;
-    }
-    printf("kernels        %zu, %zu compiled; one after the other SPIR-V %.1f ms, driver %.1f ms\n",
-           count, compiled, spirv_ms, driver_ms);
-}
-
-static void print_stats(const KrsRenderStats *stats, const KrsProgram *program)
-{
-    printf("device         %s\n", stats->device);
-    printf("compile        front end %.1f ms, GLSL %.1f ms, SPIR-V %.1f ms, pipelines %.1f ms\n",
-           program->front_ms, program->glsl_ms, stats->spirv_ms, stats->pipeline_ms);
-    printf("render         %.1f ms%s, %.1f ms in all:", stats->total_ms,
-           stats->device_time ? " on the device" : "", stats->wall_ms);
-    for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
-        printf(" %s %.1f", krs_phase_names[phase], stats->phase_ms[phase]);
-    printf("\nrays           %llu, %llu evaluations, %.1f per ray, at most %u\n",
-           (unsigned long long)stats->rays, (unsigned long long)stats->evaluations,
-           stats->evaluations_per_ray, stats->most_evaluations_per_ray);
-    printf("arithmetic     %.0f flops per evaluation, %.2f Gflop/s\n", stats->flops_per_evaluation,
-           stats->gflops);
-    printf("unresolved     %llu\nsubmissions    %llu\npeak memory    %.1f MiB\n",
-           (unsigned long long)stats->unresolved, (unsigned long long)stats->submissions,
-           (double)stats->peak_memory_bytes / (1 << 20));
-}
-
-/* One object a frame, each on a line of its own. */
 static void show_stats(Render *render, const KrsRenderStats *stats, uint32_t frame)
 {
-    const Options    *options = render->options;
-    const KrsProgram *program = krs_scene_program(render->scene);
+    const Options *options = render->options;
     if (options->stats != STATS_NONE)
         progress_end(&render->progress);
-    if (options->stats == STATS_TEXT)
-        print_stats(stats, program);
-    if (options->stats == STATS_TEXT)
-        print_kernels(render->rendering);
-    if (options->stats != STATS_JSON)
-        return;
-    Text json = {.arena = options->arena};
-    text_add(&json, "{");
-    if (options->animated)
-        text_format(&json, "\"frame\": %u, ", frame);
-    add_stats_json(&json, stats, program);
-    add_kernels_json(&json, render->rendering);
-    text_add(&json, "}");
-    puts(json.bytes);
+    render_stats_show(options, render->rendering, krs_scene_program(render->scene), stats, frame);
 }
 
-static KrsStatus write_outputs(const Render *render, const KrsPicture *picture, double time,
+static KrsStatus render_groups(Render *render, const KrsPicture *picture, LightGroups *groups)
+{
+    KrsStatus status = light_groups_render(render->options->arena, render->rendering, render->frame,
+                                           render->scene, &render->how, picture, groups);
+    if (status != KRS_OK && status != KRS_INTERRUPTED)
+        say("%s", status == KRS_OUT_OF_MEMORY ? "out of memory for the groups of lights"
+                                              : krs_renderer_message(render->renderer));
+    return status;
+}
+
+static KrsStatus write_outputs(Render *render, const KrsPicture *picture, double time,
                                uint32_t frame)
 {
     const Options *options = render->options;
@@ -386,15 +267,66 @@ static KrsStatus write_outputs(const Render *render, const KrsPicture *picture, 
     KrsStatus      status  = krs_frame_view(render->frame, render->how.camera, &view);
     PictureNotes   notes   = {.scene = render->scene, .time = time};
     notes.display.exposure = isnan(options->exposure) ? view.image.exposure : options->exposure;
+    notes.display.white_balance = options->white_balance;
+    if (!(options->white_balance.kelvins > 0))
+        notes.display.white_balance = (WhiteBalance){view.image.white_balance[0],
+                                                     view.image.white_balance[1]};
     if (options->tone_map >= 0)
         notes.display.tone_map = options->tone_map;
     else if (view.image.tone_map)
         tone_map_find(view.image.tone_map,
                       &notes.display.tone_map); /* the compiler knows its name */
+    if (options->raw && status == KRS_OK)
+        status = picture_write_raw(picture, &notes.display);
+    if (options->light_groups && status == KRS_OK)
+        status = render_groups(render, picture, &notes.groups);
     for (size_t i = 0; i < render->output_count && status == KRS_OK; i++)
         status = picture_write(options, picture, &notes,
                                frame_path(options, render->outputs[i], frame));
+    free(notes.groups.values);
     return status;
+}
+
+/* Renders what each eye sees, and joins the two. */
+static KrsStatus render_eyes(Render *render, KrsPicture **picture)
+{
+    KrsPicture      *eyes[2] = {NULL, NULL};
+    KrsRenderOptions how     = render->how;
+    KrsStatus        status  = KRS_OK;
+    for (int i = 0; i < 2 && status == KRS_OK; i++) {
+        how.eye = i == 0 ? KRS_EYE_ON_LEFT : KRS_EYE_ON_RIGHT;
+        status  = krs_render(render->rendering, render->frame, &how, &eyes[i]);
+    }
+    if (status == KRS_OK)
+        status = krs_picture_join(eyes[0], eyes[1], render->options->stereo == 1, picture);
+    krs_picture_free(eyes[0]);
+    krs_picture_free(eyes[1]);
+    return status;
+}
+
+/* Reads what another renderer has made of the frame; free_others frees it. */
+static KrsStatus read_others(Render *render, uint32_t frame)
+{
+    const Options    *options = render->options;
+    KrsRenderOptions *how     = &render->how;
+    KrsStatus         status  = KRS_OK;
+    if (options->depth_in)
+        status = read_depth(options, frame_path(options, options->depth_in, frame), how->width,
+                            how->height, &render->depth);
+    if (status == KRS_OK && options->plate)
+        status = read_plate(options, frame_path(options, options->plate, frame), how->width,
+                            how->height, &render->plate);
+    how->depth = render->depth;
+    how->plate = (const float(*)[4])render->plate;
+    return status;
+}
+
+static void free_others(Render *render)
+{
+    free(render->depth);
+    free(render->plate);
+    render->depth = NULL;
+    render->plate = NULL;
 }
 
 static KrsStatus render_frame(Render *render, uint32_t frame)
@@ -405,16 +337,25 @@ static KrsStatus render_frame(Render *render, uint32_t frame)
     KrsStatus      status  = scene_set_time(options, render->frame, time);
     if (status != KRS_OK)
         return status;
+    status = read_others(render, frame);
+    if (status != KRS_OK) {
+        free_others(render);
+        return status;
+    }
     stage_enter(STAGE_RENDER);
     if (status == KRS_OK)
-        status = krs_render(render->rendering, render->frame, &render->how, &picture);
+        status = options->stereo >= 0
+                     ? render_eyes(render, &picture)
+                     : krs_render(render->rendering, render->frame, &render->how, &picture);
     if (status != KRS_OK) {
+        free_others(render);
         progress_end(&render->progress);
         if (status != KRS_INTERRUPTED)
             say("%s", krs_renderer_message(render->renderer));
         return status;
     }
     status = write_outputs(render, picture, time, frame);
+    free_others(render);
     if (status == KRS_OK)
         show_stats(render, &picture->stats, frame);
     krs_picture_free(picture);
@@ -478,6 +419,35 @@ static KrsStatus make_ready(Render *render)
     return status;
 }
 
+/* Whether all files of a frame are there already. */
+static bool is_there(const Render *render, uint32_t frame)
+{
+    bool there = render->output_count > 0;
+    for (size_t i = 0; i < render->output_count; i++)
+        there = there && access(frame_path(render->options, render->outputs[i], frame), F_OK) == 0;
+    return there;
+}
+
+/* Renders all frames but those that are there, if that is asked for. */
+static KrsStatus render_frames(Render *render)
+{
+    const Options *options = render->options;
+    KrsStatus      status  = KRS_OK;
+    uint32_t       skipped = 0;
+    for (uint32_t frame = options->first_frame; frame <= options->last_frame && status == KRS_OK;
+         frame++) {
+        render->progress.frame = frame - options->first_frame;
+        if (options->skip_existing && is_there(render, frame))
+            skipped++;
+        else
+            status = render_frame(render, frame);
+    }
+    progress_end(&render->progress);
+    if (skipped > 0 && !options->quiet)
+        say("left out %u frame%s whose files are there", skipped, skipped > 1 ? "s" : "");
+    return status;
+}
+
 KrsStatus command_render(Options *options)
 {
     Render *render  = arena_new(options->arena, Render);
@@ -488,11 +458,8 @@ KrsStatus command_render(Options *options)
         status = make_ready(render);
     progress_start(&render->progress, options,
                    (size_t)options->last_frame - options->first_frame + 1);
-    for (uint32_t frame = options->first_frame; frame <= options->last_frame && status == KRS_OK;
-         frame++) {
-        render->progress.frame = frame - options->first_frame;
-        status                 = render_frame(render, frame);
-    }
+    if (status == KRS_OK)
+        status = render_frames(render);
     progress_end(&render->progress);
     if (status == KRS_OK)
         say_written(render);

@@ -151,6 +151,14 @@ bool read_zone(Options *options, const char *word)
     return zone[3] >= 0;
 }
 
+bool read_white_balance(const char *word, WhiteBalance *balance)
+{
+    balance->tint = 0;
+    return read_number_prefix(word, &word, &balance->kelvins) && balance->kelvins >= 1500 &&
+           balance->kelvins <= 15000 &&
+           (*word == '\0' || (*word == ',' && read_number(word + 1, -150, 150, &balance->tint)));
+}
+
 /* The plane of which a part of a list is the name; 0: none is. */
 static uint32_t find_aov(const char *word, size_t length)
 {

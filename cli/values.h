@@ -26,6 +26,7 @@ bool read_expression(Arena *arena, const char *text,
 bool read_zone(Options *options, const char *word);     /* "X,Y,Z,R", of which there is room */
 bool read_exit_map(Options *options, const char *word); /* "71=33,75=99" */
 bool read_limits(const char *word, Limits *limits);     /* "time=10,memory=1G" */
-bool read_aovs(const char *word, uint32_t *aovs);       /* "all", "none", "Z,N" */
+bool read_white_balance(const char *word, WhiteBalance *balance); /* "5500", "5500,10" */
+bool read_aovs(const char *word, uint32_t *aovs);                 /* "all", "none", "Z,N" */
 
 #endif

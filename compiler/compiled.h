@@ -36,11 +36,13 @@ typedef struct KrsFog {
 /* The properties of the `image` block; 0 or NULL where one is not given. */
 typedef struct KrsImage {
     uint32_t    width, height, samples;
-    uint32_t    bounces;    /* of a path, at most */
-    const char *integrator; /* "preview", "direct", "path", or NULL */
-    double      exposure;   /* in stops; 0 changes nothing */
-    const char *tone_map;   /* or NULL */
-    double      error;      /* permitted distance from the surface in pixels; 0: the default */
+    uint32_t    bounces;      /* of a path, at most */
+    const char *integrator;   /* "preview", "direct", "path", or NULL */
+    double      exposure;     /* in stops; 0 changes nothing */
+    const char *tone_map;     /* or NULL */
+    double      error;        /* permitted distance from the surface in pixels; 0: the default */
+    const char *pixel_filter; /* or NULL */
+    double      white_balance[2]; /* the white of the light: kelvins, tint; 0: as it is */
 } KrsImage;
 
 /* Camera, light and image, which the host evaluates once per frame. */
@@ -115,6 +117,8 @@ size_t krs_promised_functions(const KrsScene *scene, bool many_threads,
                               KrsFunction promised[KRS_MOST_PROMISED]);
 /* Whether a camera of the scene is a panorama. */
 bool krs_scene_is_panoramic(const KrsScene *scene);
+/* Whether a camera of the scene may have an aperture or a shift. */
+bool krs_scene_has_lens(const KrsScene *scene);
 /* The index behind the last of the components that one `show` of a loop shows, from this one on; the
    next index where they are not one component of the shaders. */
 size_t krs_turns_end(const KrsScene *scene, size_t component);

@@ -178,6 +178,8 @@ KrsStatus krs_frame_set_time(KrsFrame *frame, double time)
     return isfinite(time) ? change_slot(frame, 0, &time, 1) : KRS_BAD_ARGUMENT;
 }
 
+double krs_frame_time(const KrsFrame *frame) { return frame->parameters[0].v[0]; }
+
 /* Whether a parameter of a frame has another value than its default. */
 static bool is_set(const KrsFrame *frame, const Parameter *parameter)
 {
@@ -301,6 +303,12 @@ static void view_camera(const KrsFrame *frame, size_t index, KrsCamera *camera)
     *camera                  = (KrsCamera){.projection = scene->cameras[index].projection,
                                            .fov        = frame->values[roots->fov].v[0],
                                            .height     = frame->values[roots->height].v[0]};
+    camera->aperture         = frame->values[roots->aperture].v[0];
+    camera->focus            = frame->values[roots->focus].v[0];
+    camera->blades           = scene->cameras[index].blades;
+    camera->eyes             = frame->values[roots->eyes].v[0];
+    memcpy(camera->shift, frame->values[roots->shift].v, sizeof camera->shift);
+    memcpy(camera->shutter, frame->values[roots->shutter].v, sizeof camera->shutter);
     frame_copy(frame, roots->eye, camera->eye);
     frame_copy(frame, roots->target, camera->target);
     frame_copy(frame, roots->up, camera->up);
@@ -350,8 +358,16 @@ static void view_light(const KrsFrame *frame, size_t index, KrsLight *light)
 KrsImage krs_scene_image(const KrsScene *scene)
 {
     const SceneImage *image = &scene->image;
-    return (KrsImage){image->width,      image->height,   image->samples,  image->bounces,
-                      image->integrator, image->exposure, image->tone_map, image->error};
+    return (KrsImage){.width         = image->width,
+                      .height        = image->height,
+                      .samples       = image->samples,
+                      .bounces       = image->bounces,
+                      .integrator    = image->integrator,
+                      .exposure      = image->exposure,
+                      .tone_map      = image->tone_map,
+                      .error         = image->error,
+                      .pixel_filter  = image->pixel_filter,
+                      .white_balance = {image->white_balance[0], image->white_balance[1]}};
 }
 
 KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view)

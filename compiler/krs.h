@@ -163,6 +163,7 @@ KrsStatus krs_frame_update(KrsFrame *frame, const KrsScene *scene);
    outside of its range or not finite, or a number of the scene would not be finite. */
 KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values, size_t count);
 KrsStatus krs_frame_set_time(KrsFrame *frame, double time);
+double    krs_frame_time(const KrsFrame *frame);
 /* The location ("scene.krs:3:14") of an expression whose slope has no bound for the last value or
    time, which was refused for that reason.  NULL if it was accepted, or refused for another one. */
 const char *krs_frame_unbounded(const KrsFrame *frame);
@@ -240,6 +241,14 @@ typedef struct KrsCamera {
     double        eye[3], target[3], up[3]; /* `up` is upright in the picture; of any length */
     double        fov;                      /* perspective: vertical angle, radians, below pi */
     double        height;                   /* orthographic: of the picture */
+    double        aperture; /* radius of the lens in world units; 0: a point, all is sharp */
+    double        focus;    /* length along the view up to what is sharp; 0: up to the target */
+    uint32_t      blades;   /* corners of the aperture, from 3 on; 0: it is round */
+    double shift[2];   /* of the lens: the picture moves by these parts of its width and height, to
+                          the right and upwards */
+    double shutter[2]; /* when it opens and closes, in frames after the frame's time; equal: no
+                          blur (KrsRenderOptions.frame_seconds) */
+    double eyes;       /* distance of two eyes, for stereo; 0: a 30th of that of the focus */
 } KrsCamera;
 
 /* The cameras that the scene declares or, if it has none, one that the compiler places.  The first
@@ -249,6 +258,11 @@ const char *krs_camera_name(const KrsScene *scene, size_t index);
 /* A camera at the frame's parameters and time.  KRS_BAD_ARGUMENT when there is none of that
    index. */
 KrsStatus krs_frame_camera(KrsFrame *frame, size_t index, KrsCamera *camera);
+
+/* The lights of the scene or, if it has none, one that the compiler places.  The name is NULL if the
+   light has none. */
+size_t      krs_light_count(const KrsScene *scene);
+const char *krs_light_name(const KrsScene *scene, size_t index);
 
 /* A component of the scene: what one `show` shows. */
 typedef struct KrsComponent {
@@ -268,6 +282,11 @@ typedef struct KrsComponent {
 size_t krs_component_count(const KrsScene *scene);
 /* Component `index`, from 0 in the order of the text; KRS_BAD_ARGUMENT when there is none. */
 KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *component);
+
+/* Names of the scene's materials, each once, for the numbers that answers and mattes have: from 1 on.
+   Plain colours are all "colour".  NULL where there is no such number: nothing is painted. */
+size_t      krs_material_count(const KrsScene *scene);
+const char *krs_material_name(const KrsScene *scene, size_t number);
 
 /* What is known of the distance of one shape of a component, in the shape's own space. */
 typedef struct KrsBound {
@@ -321,7 +340,7 @@ typedef struct KrsHit {
     /* A member for each row of surface.def: which part was hit, and its material.
        component: from 1; 0 where nothing is hit;
        level: number of mirrors that the instance comes through; instance: its number (docs/math.md,
-       section 1), a hash beyond 31 mirrors, 1 without a sequence; color[3] and emission[3]: linear
+       section 1), a hash beyond 31 mirrors, 1 without a sequence; material: the number of its name; color[3] and emission[3]: linear
        Rec.709; roughness; metallic.  All but the emission are limited as in pictures. */
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) uint32_t name;
 #include "compiler/shape/surface.def"

@@ -93,14 +93,14 @@ static bool camera_moves(const Graph *graph, const SceneCamera *camera)
            !graph_is_constant(graph, camera->height);
 }
 
-/* The pictures of all cameras; 0: one of them moves, or frames all there is. */
+/* The pictures of all cameras; 0: one of them moves, has a lens, or frames all there is. */
 static size_t find_pyramids(const Compilation *c, KrsFrame *frame, Pyramid *pyramids)
 {
     KrsView view;
     size_t  count = c->elaborated.cameras.count;
     for (size_t i = 0; i < count; i++) {
         const SceneCamera *camera = &c->elaborated.cameras.items[i];
-        if (camera->standing_in || camera_moves(c->elaborated.graph, camera) ||
+        if (camera->standing_in || camera->lens || camera_moves(c->elaborated.graph, camera) ||
             frame_view(frame, i, &view) != KRS_OK)
             return 0;
         pyramids[i] = pyramid_of(&view.camera, widest_aspect(&view.image));

@@ -17,7 +17,16 @@ bool krs_scene_is_panoramic(const KrsScene *scene)
         panoramic = panoramic || scene->cameras[i].projection == KRS_PANORAMA;
     return panoramic;
 }
+bool krs_scene_has_lens(const KrsScene *scene)
+{
+    bool lens = false;
+    for (size_t i = 0; i < scene->camera_count; i++)
+        lens = lens || scene->cameras[i].lens;
+    return lens;
+}
 size_t      krs_camera_count(const KrsScene *scene) { return scene->camera_count; }
+size_t      krs_material_count(const KrsScene *scene) { return scene->material_count; }
+size_t      krs_light_count(const KrsScene *scene) { return scene->light_count; }
 size_t      krs_zone_count(const KrsScene *scene) { return scene->zone_count; }
 const char *krs_scene_hash(const KrsScene *scene) { return scene->hash; }
 size_t      krs_parameter_count(const KrsScene *scene) { return scene->parameter_count; }
@@ -28,6 +37,16 @@ size_t      krs_table_cells(const KrsScene *scene) { return scene->program.table
 size_t      krs_frame_slope_count(const KrsScene *scene) { return scene->slope_count; }
 size_t      krs_component_count(const KrsScene *scene) { return scene->shown_count; }
 size_t      krs_turns_end(const KrsScene *scene, size_t index) { return scene->turns_end[index]; }
+
+const char *krs_material_name(const KrsScene *scene, size_t number)
+{
+    return number > 0 && number <= scene->material_count ? scene->materials[number - 1] : NULL;
+}
+
+const char *krs_light_name(const KrsScene *scene, size_t index)
+{
+    return index < scene->light_count ? scene->lights[index].name : NULL;
+}
 
 const char *krs_camera_name(const KrsScene *scene, size_t index)
 {

@@ -32,7 +32,7 @@ typedef enum RootKind {
 } RootKind;
 
 typedef struct CameraRoots {
-    Node eye, target, up, fov, height;
+    Node eye, target, up, fov, height, aperture, focus, shift, shutter, eyes;
 } CameraRoots;
 typedef struct LightRoots {
     Node vector, color, softness, target, angle, edge, size;
@@ -142,7 +142,9 @@ struct KrsScene {
     size_t         slope_count;
     Parameter     *parameters;
     size_t         parameter_count;
-    SceneCamera   *cameras; /* for their values use the roots, not the nodes in here */
+    size_t         material_count;
+    const char   **materials; /* names; the numbers of surfaces count from 1 */
+    SceneCamera   *cameras;   /* for their values use the roots, not the nodes in here */
     SceneLight    *lights;
     bool           framed; /* the scene has no camera, and framing.c has placed one: */
     double         framed_eye[3], framed_target[3];

@@ -106,13 +106,21 @@ static void retain_scene(Compilation *c)
         scene->cameras[i]      = s->cameras.items[i];
         scene->cameras[i].name = retain_text(c, s->cameras.items[i].name);
     }
+    scene->material_count = s->materials.count;
+    scene->materials      = arena_new_array(arena, const char *, s->materials.count + 1);
+    for (size_t i = 0; i < s->materials.count; i++)
+        scene->materials[i] = retain_text(c, s->materials.items[i]);
     scene->light_count = s->lights.count;
     scene->lights      = arena_new_array(arena, SceneLight, s->lights.count + 1);
-    memcpy(scene->lights, s->lights.items, s->lights.count * sizeof *scene->lights);
-    scene->zone_count       = s->zone_count;
-    scene->image            = s->image;
-    scene->image.integrator = retain_text(c, s->image.integrator);
-    scene->image.tone_map   = retain_text(c, s->image.tone_map);
+    for (size_t i = 0; i < s->lights.count; i++) {
+        scene->lights[i]      = s->lights.items[i];
+        scene->lights[i].name = retain_text(c, s->lights.items[i].name);
+    }
+    scene->zone_count         = s->zone_count;
+    scene->image              = s->image;
+    scene->image.integrator   = retain_text(c, s->image.integrator);
+    scene->image.tone_map     = retain_text(c, s->image.tone_map);
+    scene->image.pixel_filter = retain_text(c, s->image.pixel_filter);
 }
 
 /* A tape of one root of each component and, behind them, that of the zones. */

@@ -59,8 +59,9 @@ static void gather_view(const Scene *s, const Roots *roots)
         roots_of(roots, ROOTS_ZONE).items[0] = s->zone;
     for (size_t i = 0; i < s->cameras.count; i++) {
         const SceneCamera *camera = &s->cameras.items[i];
-        *camera_roots(roots, i)   = (CameraRoots){camera->eye, camera->target, camera->up,
-                                                  camera->fov, camera->height};
+        *camera_roots(roots, i)   = (CameraRoots){
+              camera->eye,      camera->target, camera->up,    camera->fov,     camera->height,
+              camera->aperture, camera->focus,  camera->shift, camera->shutter, camera->eyes};
     }
     for (size_t i = 0; i < s->lights.count; i++) {
         const SceneLight *light = &s->lights.items[i];

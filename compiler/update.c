@@ -206,8 +206,8 @@ static bool same_facts(const KrsScene *a, const KrsScene *b)
 {
     return a->component_count == b->component_count && a->zone_count == b->zone_count &&
            krs_scene_is_panoramic(a) == krs_scene_is_panoramic(b) &&
-           same_slots(&a->program, &b->program) && same_methods(&a->program, &b->program) &&
-           a->module.has_slopes == b->module.has_slopes &&
+           krs_scene_has_lens(a) == krs_scene_has_lens(b) && same_slots(&a->program, &b->program) &&
+           same_methods(&a->program, &b->program) && a->module.has_slopes == b->module.has_slopes &&
            !a->module.box_nodes.around == !b->module.box_nodes.around &&
            same_kinds_of_boxes(a, b) && same_groups(&a->module, &b->module);
 }
@@ -286,7 +286,8 @@ static bool same_cameras(const KrsScene *a, const KrsScene *b)
     bool same = a->camera_count == b->camera_count && a->framed == b->framed;
     for (size_t i = 0; same && i < a->camera_count; i++)
         same = same_name(a->cameras[i].name, b->cameras[i].name) &&
-               a->cameras[i].projection == b->cameras[i].projection;
+               a->cameras[i].projection == b->cameras[i].projection &&
+               a->cameras[i].blades == b->cameras[i].blades;
     return same && memcmp(a->framed_eye, b->framed_eye, sizeof a->framed_eye) == 0 &&
            memcmp(a->framed_target, b->framed_target, sizeof a->framed_target) == 0;
 }
@@ -295,7 +296,8 @@ static bool same_lights(const KrsScene *a, const KrsScene *b)
 {
     bool same = a->light_count == b->light_count;
     for (size_t i = 0; same && i < a->light_count; i++)
-        same = a->lights[i].positional == b->lights[i].positional &&
+        same = same_name(a->lights[i].name, b->lights[i].name) &&
+               a->lights[i].positional == b->lights[i].positional &&
                a->lights[i].shadow == b->lights[i].shadow &&
                a->lights[i].rectangle == b->lights[i].rectangle &&
                a->lights[i].spot == b->lights[i].spot;
@@ -306,8 +308,9 @@ static bool same_image(const SceneImage *a, const SceneImage *b)
 {
     return a->width == b->width && a->height == b->height && a->samples == b->samples &&
            a->bounces == b->bounces && same_name(a->integrator, b->integrator) &&
-           same_name(a->tone_map, b->tone_map) && a->exposure == b->exposure &&
-           a->error == b->error;
+           same_name(a->tone_map, b->tone_map) && same_name(a->pixel_filter, b->pixel_filter) &&
+           a->exposure == b->exposure && a->error == b->error &&
+           a->white_balance[0] == b->white_balance[0] && a->white_balance[1] == b->white_balance[1];
 }
 
 /* ---- all together ---- */

@@ -211,6 +211,17 @@ typedef enum KrsShadows {
 } KrsShadows;
 extern const char *const krs_shadows_names[KRS_SHADOWS_COUNT];
 
+/* How the rays of a pixel are weighed by their place: KRS_PIXEL_FILTER_BOX and so on. */
+typedef enum KrsPixelFilter {
+#define KRS_PIXEL_FILTER(id, name, reach, integral, about) KRS_PIXEL_FILTER_##id,
+#include "runtime/choices.def"
+    KRS_PIXEL_FILTER_COUNT
+} KrsPixelFilter;
+extern const char *const krs_pixel_filter_names[KRS_PIXEL_FILTER_COUNT];
+
+/* Which eye of a camera sees, for stereo; KrsCamera.eyes is their distance. */
+typedef enum KrsEye { KRS_EYE_OF_BOTH, KRS_EYE_ON_LEFT, KRS_EYE_ON_RIGHT } KrsEye;
+
 /* What is meant where neither the caller nor the scene says, and the most there may be. */
 #define KRS_DEFAULT_WIDTH   1280
 #define KRS_DEFAULT_HEIGHT  720
@@ -221,6 +232,7 @@ extern const char *const krs_shadows_names[KRS_SHADOWS_COUNT];
 #define KRS_MOST_ERROR      1000
 #define KRS_DEFAULT_BOUNCES 10
 #define KRS_MOST_BOUNCES    1000
+#define KRS_NO_LIGHT        UINT32_MAX
 
 /* Zero asks for the defaults. */
 typedef struct KrsRenderOptions {
@@ -228,24 +240,40 @@ typedef struct KrsRenderOptions {
     KrsWindow     crop;          /* width 0: everything */
     uint32_t      samples;       /* rays per pixel; 0: likewise */
     size_t        camera;        /* its number */
+    KrsEye        eye;
+    double        frame_seconds; /* between frames, for shutters; 0: they count as closed */
     KrsIntegrator integrator;
     uint32_t      bounces; /* of a path, at most; 0: 10 */
     uint64_t      seed;  /* of the samples' positions; the first stays at the centre of the pixel */
     double        error; /* permitted distance from the surface, pixels; 0: likewise */
-    uint32_t      planes;        /* bits of KrsPlane; 0: all */
-    uint32_t      most_steps;    /* of a primary ray; 0: 16384, which is also the most */
-    uint32_t      steps_at_once; /* of a primary ray in one dispatch; 0: 512; at most 8192 */
-    KrsTrace      trace;
-    KrsSchedule   schedule;
-    KrsShadows    shadows;
-    KrsComponents components;
-    KrsNormals    normals;
-    bool          no_beams;      /* rays of a tile do not share the marching of empty space */
-    bool          no_upsampling; /* neighbours do not share rays to lights, and such rays are sent
+    /* Light of a ray is clamped to this, by its largest component; 0: no limit.  Each pass is
+       clamped by itself: the light of three lamps, and every further sun. */
+    double most_radiance;
+    /* 0: all light.  A number from 1 on: that light alone, without sky and fog's color; KRS_NO_LIGHT: none.
+       What things emit is there in any case.  So pictures of lights, less the one without, add up. */
+    uint32_t light;
+    bool     mattes; /* count what the rays of each pixel hit: KrsPicture.mattes */
+    /* Of another renderer, a number and a colour for each pixel of the whole picture, from the top;
+       NULL: none.  Rays end at the depths, which are as those of the depth plane; what is not a number
+       is no limit.  What rays do not hit shows the plate: premultiplied light and alpha.  Both must
+       live as long as the film. */
+    const float *depth;
+    const float (*plate)[4];
+    uint32_t       planes;        /* bits of KrsPlane; 0: all */
+    uint32_t       most_steps;    /* of a primary ray; 0: 16384, which is also the most */
+    uint32_t       steps_at_once; /* of a primary ray in one dispatch; 0: 512; at most 8192 */
+    KrsTrace       trace;
+    KrsSchedule    schedule;
+    KrsShadows     shadows;
+    KrsComponents  components;
+    KrsNormals     normals;
+    KrsPixelFilter pixel_filter;  /* not of rays of a list, which stand where the caller has them */
+    bool           no_beams;      /* rays of a tile do not share the marching of empty space */
+    bool           no_upsampling; /* neighbours do not share rays to lights, and such rays are sent
                                     even where a light is proven to be visible */
-    bool          no_occlusion;  /* corners get as much light of the sky as open places */
-    bool          no_filter; /* detail finer than a pixel changes neither normals nor roughness */
-    double        slice_ms;  /* how long a dispatch should take; 0: 50 */
+    bool           no_occlusion;  /* corners get as much light of the sky as open places */
+    bool           no_filter; /* detail finer than a pixel changes neither normals nor roughness */
+    double         slice_ms;  /* how long a dispatch should take; 0: 50 */
     KrsProgressCallback *progress; /* may be NULL */
     void                *user;     /* handed to `progress` */
 } KrsRenderOptions;
@@ -270,11 +298,25 @@ typedef struct KrsRenderStats {
     double   flops_per_evaluation;
     double   gflops;            /* of the primary phase */
     uint64_t unresolved;        /* primary and shadow rays that ran out of steps */
+    uint64_t clamped;           /* rays whose light was clamped to most_radiance */
     uint64_t submissions;       /* of work to the device; the host waits for each */
     uint64_t kernels;           /* that the renderer has made since it was opened, for all scenes */
     uint64_t peak_memory_bytes; /* the most held at once on the device, and the picture */
     char     device[256];
 } KrsRenderStats;
+
+/* Rays of a pixel that hit a component, one of its instances, or a material. */
+typedef struct KrsMatte {
+    uint32_t part, instance; /* number of the component or material; of an instance, else 0 */
+    uint32_t rays;           /* 0: there is no more */
+} KrsMatte;
+typedef enum KrsMatteKind {
+    KRS_MATTE_COMPONENTS,
+    KRS_MATTE_INSTANCES,
+    KRS_MATTE_MATERIALS,
+    KRS_MATTE_COUNT
+} KrsMatteKind;
+#define KRS_MATTE_RANKS 6 /* of each pixel; what comes later is not counted */
 
 /*
  * A picture.  The planes hold the pixels of `window` only, row by row from the top, and
@@ -291,6 +333,10 @@ typedef struct KrsPicture {
 #include "runtime/planes.def"
 #undef KRS_ARRAY
 #undef KRS_PLANE
+    /* With KrsRenderOptions.mattes, KRS_MATTE_RANKS for each pixel, the most covered first; else
+       NULL.  The share of a pixel that one covers is its rays / samples. */
+    KrsMatte *mattes[KRS_MATTE_COUNT];
+    uint32_t  samples; /* rays of each pixel */
     /* Without a camera these change nothing.  For row vectors, v * M.  Camera space has x to the right, y up, z along the view axis.  NDC
        has x and y from -1 to 1; in perspective z goes from 0 at distance 0.001 to 1 at infinity.
        For a panorama NDC is camera space. */
@@ -306,6 +352,12 @@ typedef struct KrsPicture {
 KrsStatus krs_render(KrsRendering *rendering, KrsFrame *frame, const KrsRenderOptions *options,
                      KrsPicture **picture);
 void      krs_picture_free(KrsPicture *picture);
+
+/* Two pictures of the same size and planes as one: the second to the right of the first, or below
+   it.  Its statistics are the sums.  It has no camera, so its matrices change nothing.  On KRS_OK
+   the caller owns *joined.  KRS_BAD_ARGUMENT: they differ, or have a crop; KRS_OUT_OF_MEMORY. */
+KrsStatus krs_picture_join(const KrsPicture *first, const KrsPicture *second, bool below,
+                           KrsPicture **joined);
 
 /*
  * Films: pictures that grow.

@@ -16,6 +16,9 @@ for kernel in runtime/shaders/*.comp; do
     glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl -DSUBGROUPS \
         -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL with sums of subgroups" $?
+    glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl -DPANORAMIC -DLENS \
+        -o /dev/null "$kernel" >/dev/null
+    report "$kernel is valid GLSL with lenses" $?
 done
 # Emitted text is GLSL as it is pasted, without directives (every variant: tests/unit/texts.c); so is
 # every file of helpers.

@@ -70,14 +70,25 @@ Node to_number(Elaboration *e, Value value, const Syntax *syntax, const char *wh
     return NODE_NONE;
 }
 
-Node to_vector(Elaboration *e, Value value, const Syntax *syntax, const char *what)
+static Node to_components(Elaboration *e, Value value, GraphType type, const Syntax *syntax,
+                          const char *what)
 {
     Node node = value.type == VALUE_LIST || value.type == VALUE_EXPRESSION ? value_node(e, value)
                                                                            : NODE_NONE;
-    if (node != NODE_NONE && e->graph->items[node].type == TYPE_VEC3)
+    if (node != NODE_NONE && e->graph->items[node].type == type)
         return frame_time(e, node, syntax, what);
-    type_error(e, syntax, value, "a vector of 3");
+    type_error(e, syntax, value, type == TYPE_VEC2 ? "two numbers" : "a vector of 3");
     return NODE_NONE;
+}
+
+Node to_vector(Elaboration *e, Value value, const Syntax *syntax, const char *what)
+{
+    return to_components(e, value, TYPE_VEC3, syntax, what);
+}
+
+Node to_pair(Elaboration *e, Value value, const Syntax *syntax, const char *what)
+{
+    return to_components(e, value, TYPE_VEC2, syntax, what);
 }
 
 bool check_direction(Elaboration *e, Node vector, const Syntax *syntax, const char *what)

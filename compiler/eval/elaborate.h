@@ -259,6 +259,7 @@ const Map *want_scaling(Elaboration *e, const Call *call);
 /* The same for a value that stands anywhere; `what` names it: "`fov`", "this argument". */
 Node to_number(Elaboration *e, Value value, const Syntax *syntax, const char *what);
 Node to_vector(Elaboration *e, Value value, const Syntax *syntax, const char *what);
+Node to_pair(Elaboration *e, Value value, const Syntax *syntax, const char *what);
 bool is_given(const Call *call, uint32_t index);
 
 /* Reports a direction that is always the zero vector, or a size that can be 0 or less. */
@@ -480,7 +481,7 @@ const Material *to_material(Elaboration *e, Value value, const Syntax *syntax);
 /* Adds lights, a sky and a floor to a scene that has none. */
 void run_studio(Elaboration *e, const Files *files);
 
-/* ---- view.c: cameras, lights, sky, image, zones ---- */
+/* ---- view.c: lights, sky, image, zones; cameras by camera.c ---- */
 /* Adds a camera, a light or a zone to the scene, or sets its sky or image. */
 void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax);
 /* Adds what the scene leaves out: a camera, a sun, a sky. */

@@ -2,6 +2,9 @@
  * material.c: materials, and colours that stand for one.
  */
 #include "compiler/eval/elaborate.h"
+
+#include <string.h>
+
 #include "compiler/lower/lower.h"
 
 /* Reports a value that is no colour; names of colours in quotes are a habit, as are textures alone. */
@@ -35,11 +38,23 @@ static void material_property(Elaboration *e, const Environment *env, const Synt
         type_error(e, syntax, value, "a number");
 }
 
+/* Materials of one name are one: each call of a material with parameters makes another. */
+static uint32_t number_of_name(Elaboration *e, const char *name)
+{
+    Scene *scene = e->scene;
+    for (size_t i = scene->materials.count; i > 0; i--)
+        if (strcmp(scene->materials.items[i - 1], name) == 0)
+            return (uint32_t)i;
+    array_push(e->arena, &scene->materials, name);
+    return (uint32_t)scene->materials.count;
+}
+
 static Material *material_new(Elaboration *e, const char *name)
 {
     Material *material = arena_new(e->arena, Material);
     material->name     = name;
     material->bump     = NODE_NONE;
+    material->number   = number_of_name(e, name);
 #define KRS_MATERIAL(property, type, otherwise, nothing, low, high, asked, blends) \
     material->property = root_otherwise(e->graph, ROOT_##property);
 #include "compiler/shape/surface.def"

@@ -1,46 +1,13 @@
 /*
- * view.c: cameras, lights, sky, fog, image and zones, and defaults for those that a scene leaves out.
+ * view.c: lights, sky, fog, image and zones, and defaults for those that a scene leaves out.
  */
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/camera.h"
 
 #include <math.h>
 
-/* ---- cameras, lights, sky, fog, image ---- */
+/* ---- lights, sky, fog, image ---- */
 
 static const double ORIGIN[3] = {0, 0, 0}, UP[3] = {0, 1, 0}, WHITE[3] = {1, 1, 1};
-
-static void add_camera(Elaboration *e, const Environment *env, const Syntax *syntax)
-{
-    static const char *const projections[] = {"perspective", "orthographic", "panorama"};
-    static const double      eye[3]        = {4, 3, 6};
-    const Syntax            *stands        = find_property(syntax, "eye");
-    SceneCamera camera = {.name = syntax->name, .span = stands ? stands->span : syntax->span};
-    camera.eye         = position_property(e, env, syntax, "eye", eye);
-    camera.target      = position_property(e, env, syntax, "target", ORIGIN);
-    camera.up          = vector_property(e, env, syntax, "up", UP);
-    camera.fov         = number_property(e, env, syntax, "fov", 40 * M_PI / 180);
-    camera.height      = number_property(e, env, syntax, "height", 4);
-    const char *word   = word_property(e, env, syntax, "projection", projections, 3, 0);
-    while (word && projections[camera.projection] != word)
-        camera.projection++;
-    const Syntax *fov  = find_property(syntax, "fov");
-    Range         span = node_range(e->builder, camera.fov, 0);
-    if (fov && (span.low <= 0 || span.high >= 3.14159)) {
-        Diag *diag        = diag_add(e->diags, DIAG_BAD_VALUE, fov->span,
-                                     "`fov` must lie between 0 and 180 degrees");
-        diag->help        = "angles are radians unless they end in `deg`";
-        diag->replacement = degrees_instead(e, fov);
-        if (!diag->replacement)
-            diag->help = "angles are radians unless they end in `deg`, as in `40deg`";
-    }
-    const Syntax *height = find_property(syntax, "height");
-    if (height)
-        check_positive(e, camera.height, height, "the height of the picture");
-    Node          same   = graph_op2(e->graph, OP_sub, camera.eye, camera.target);
-    const Syntax *target = find_property(syntax, "target");
-    check_direction(e, same, target ? target : syntax, "the view of a camera, from eye to target,");
-    array_push(e->arena, &e->scene->cameras, camera);
-}
 
 /* Of numbers that seem to be in another unit. */
 static void warn_of_light(Elaboration *e, const Environment *env, const Syntax *light)
@@ -104,7 +71,7 @@ static void add_light(Elaboration *e, const Environment *env, const Syntax *synt
 {
     const Syntax *direction = find_property(syntax, "direction");
     const Syntax *position  = find_property(syntax, "position");
-    SceneLight    light     = {.positional = position != NULL, .shadow = true};
+    SceneLight    light = {.name = syntax->name, .positional = position != NULL, .shadow = true};
     if (!direction == !position) {
         Diag *diag = diag_add(e->diags, direction ? DIAG_TOO_MANY_ARGUMENTS : DIAG_MISSING_ARGUMENT,
                               syntax->name_span,
@@ -193,20 +160,46 @@ static void set_size(Elaboration *e, const Syntax *size, Value value)
     }
 }
 
+/* Kelvins, or a list of kelvins and tint; both are known at compile time. */
+static void set_white_balance(Elaboration *e, const Syntax *white, Value value)
+{
+    Value        alone = value;
+    const Value *given = value.type == VALUE_LIST ? value.list->items : &alone;
+    size_t       count = value.type == VALUE_LIST ? value.list->count : 1;
+    bool         good  = count == 1 || count == 2;
+    for (size_t i = 0; good && i < count; i++)
+        good = given[i].type == VALUE_NUMBER;
+    if (good && given[0].number >= 1500 && given[0].number <= 15000 &&
+        (count == 1 || fabs(given[1].number) <= 150)) {
+        e->scene->image.white_balance[0] = given[0].number;
+        e->scene->image.white_balance[1] = count == 2 ? given[1].number : 0;
+    } else if (value.type != VALUE_ERROR) {
+        Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, white->span,
+                              "`white_balance` must be a temperature from 1500 to 15000 kelvins, "
+                              "perhaps with a tint from -150 to 150");
+        diag->help = "for example `white_balance: 3200` for light bulbs, or `[3200, 10]`";
+    }
+}
+
 static void set_image(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     static const char *const integrators[] = {"preview", "direct", "path"};
-    static const char *const tone_maps[]   = {"neutral", "aces", "none"};
+    static const char *const tone_maps[]   = {"neutral", "aces", "agx", "none"};
+    static const char *const filters[]     = {"box", "gaussian", "blackman-harris"};
     SceneImage              *image         = &e->scene->image;
     const Syntax            *size          = find_property(syntax, "size");
     if (size)
         set_size(e, size, evaluate(e, env, size));
-    image->samples    = (uint32_t)constant_property(e, env, syntax, "samples", 1, 65536, 0);
-    image->bounces    = (uint32_t)constant_property(e, env, syntax, "bounces", 1, 1000, 0);
-    image->exposure   = constant_property(e, env, syntax, "exposure", -20, 20, 0);
-    image->error      = constant_property(e, env, syntax, "error", 0.001, 1, 0);
-    image->integrator = word_property(e, env, syntax, "integrator", integrators, 3, 0);
-    image->tone_map   = word_property(e, env, syntax, "tone_map", tone_maps, 3, 0);
+    image->samples      = (uint32_t)constant_property(e, env, syntax, "samples", 1, 65536, 0);
+    image->bounces      = (uint32_t)constant_property(e, env, syntax, "bounces", 1, 1000, 0);
+    image->exposure     = constant_property(e, env, syntax, "exposure", -20, 20, 0);
+    image->error        = constant_property(e, env, syntax, "error", 0.001, 1, 0);
+    image->integrator   = word_property(e, env, syntax, "integrator", integrators, 3, 0);
+    image->tone_map     = word_property(e, env, syntax, "tone_map", tone_maps, 4, 0);
+    image->pixel_filter = word_property(e, env, syntax, "pixel_filter", filters, 3, 0);
+    const Syntax *white = find_property(syntax, "white_balance");
+    if (white)
+        set_white_balance(e, white, evaluate(e, env, white));
 }
 
 /* How deep a point is in the deepest of all zones: what the distance must not be below. */
@@ -259,7 +252,7 @@ void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax
     bool known = check_block(e, syntax);
     check_single(e, syntax);
     switch (syntax->kind) {
-    case SYNTAX_CAMERA: add_camera(e, env, syntax); break;
+    case SYNTAX_CAMERA: elaborate_camera(e, env, syntax); break;
     case SYNTAX_LIGHT:
         if (known) /* else what seems to be missing may have another name */
             add_light(e, env, syntax);
@@ -294,6 +287,7 @@ static void default_camera(Elaboration *e)
                           .up          = graph_constant(e->graph, TYPE_VEC3, UP),
                           .fov         = graph_number(e->graph, fov),
                           .height      = graph_number(e->graph, 2 * radius)};
+    camera_without_lens(e, &camera);
     array_push(e->arena, &e->scene->cameras, camera);
 }
 

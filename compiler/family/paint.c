@@ -95,6 +95,8 @@ Lowered lower_paint(Lowering *l, const Shape *shape, LowerContext context)
     if (height != NODE_NONE)
         result.surface.normal = bumped_normal(l->graph, height, context.point, with.normal,
                                               l->scratch);
+    if (material->number > 0)
+        result.surface.material = graph_uint(l->graph, material->number);
     return result;
 }
 

@@ -21,22 +21,26 @@ typedef struct SceneCamera {
     const char *name; /* or NULL */
     Span        span; /* of its `eye`, or else of all of it */
     Node        eye, target, up, fov, height;
-    uint32_t    projection;
+    Node        aperture, focus, shift, shutter, eyes; /* as in KrsCamera */
+    uint32_t    projection, blades;
+    bool        lens;        /* it may have an aperture or a shift */
     bool        standing_in; /* for a scene that has no camera: framing.c finds eye and target */
 } SceneCamera;
 
 typedef struct SceneLight {
-    bool positional, shadow;
-    bool rectangle, spot;
-    Node vector, color, softness;
-    Node target, angle, edge; /* of a spot: the whole angle, and the part of it that fades */
-    Node size;                /* of a rectangle */
+    const char *name; /* or NULL */
+    bool        positional, shadow;
+    bool        rectangle, spot;
+    Node        vector, color, softness;
+    Node        target, angle, edge; /* of a spot: the whole angle, and the part of it that fades */
+    Node        size;                /* of a rectangle */
 } SceneLight;
 
 typedef struct SceneImage {
     uint32_t    width, height, samples, bounces;
-    const char *integrator, *tone_map;
+    const char *integrator, *tone_map, *pixel_filter;
     double      exposure, error;
+    double      white_balance[2]; /* kelvins, or 0, and tint */
 } SceneImage;
 
 /* Fog; its color is NODE_NONE where there is none. */
@@ -65,6 +69,10 @@ typedef struct Scene {
         SceneLight *items;
         size_t      count, capacity;
     } lights;
+    struct {
+        const char **items;
+        size_t       count, capacity;
+    } materials; /* their names, each once */
     Node       zenith, horizon, ground;
     SceneFog   fog;
     Node       zone; /* the depth of OP_POINT in zones, negative outside; NODE_NONE without any */

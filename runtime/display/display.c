@@ -73,6 +73,48 @@ static void apply_aces(const double color[3], double out[3])
     multiply(back, curved, out);
 }
 
+/* The curve of AgX over the logarithm of light; the sigmoid of the original has no simple powers. */
+static double agx_curve(double x)
+{
+    return -0.00232 +
+           x * (0.1191 + x * (0.4298 + x * (-6.868 + x * (31.96 + x * (-40.14 + x * 15.5)))));
+}
+
+/* Light is cut to 10 stops below middle grey (0.18) and 6.5 above. */
+static double agx_logarithm(double light)
+{
+    const double low = -12.47393, high = 4.026069;
+    double       stops = log2(most_of(light, 1e-10));
+    return (least_of(most_of(stops, low), high) - low) / (high - low);
+}
+
+/* The matrices go to Rec.2020 and to a narrower gamut within, and back to a wider one. */
+static void apply_agx(const double color[3], double out[3])
+{
+    static const double wide[3][3]   = {{0.6274039, 0.3292830, 0.0433131},
+                                        {0.0690973, 0.9195404, 0.0113623},
+                                        {0.0163914, 0.0880133, 0.8955953}};
+    static const double inset[3][3]  = {{0.856627153315983, 0.0951212405381588, 0.0482516061458583},
+                                        {0.137318972929847, 0.761241990602591, 0.101439036467562},
+                                        {0.11189821299995, 0.0767994186031903, 0.811302368396859}};
+    static const double outset[3][3] = {
+        {1.1271005818144368, -0.1106066430966032, -0.0164939387178346},
+        {-0.1413297634984383, 1.157823702216272, -0.0164939387178343},
+        {-0.1413297634984383, -0.1106066430966029, 1.2519364065950405}};
+    static const double narrow[3][3] = {{1.6604910, -0.5876411, -0.0728499},
+                                        {-0.1245505, 1.1328999, -0.0083494},
+                                        {-0.0181508, -0.1005789, 1.1187297}};
+    double              in_wide[3], curved[3], shown[3];
+    multiply(wide, color, in_wide);
+    multiply(inset, in_wide, curved);
+    for (int i = 0; i < 3; i++)
+        curved[i] = agx_curve(agx_logarithm(curved[i]));
+    multiply(outset, curved, shown);
+    for (int i = 0; i < 3; i++)
+        shown[i] = pow(most_of(shown[i], 0), 2.2);
+    multiply(narrow, shown, out);
+}
+
 static double clamp_unit(double value) { return value > 0 ? least_of(value, 1) : 0; }
 
 void tone_map_apply(ToneMap tone_map, const double color[3], double out[3])
@@ -85,6 +127,7 @@ void tone_map_apply(ToneMap tone_map, const double color[3], double out[3])
     switch (tone_map) {
     case TONE_NEUTRAL: apply_neutral(light, out); break;
     case TONE_ACES: apply_aces(light, out); break;
+    case TONE_AGX: apply_agx(light, out); break;
     default: memcpy(out, light, sizeof light);
     }
     for (int i = 0; i < 3; i++)
@@ -143,17 +186,21 @@ static double noise(double x, double y)
 
 void display_to_srgb8(const KrsPicture *picture, const DisplayOptions *options, uint8_t *rgb)
 {
-    const KrsWindow *window = &picture->window;
-    const double     gain   = exp2(options->exposure);
-    Encoding         encoding;
+    const KrsWindow  *window  = &picture->window;
+    const double      gain    = exp2(options->exposure);
+    const bool        tinted  = options->white_balance.kelvins > 0;
+    const ColorMatrix balance = white_balance_matrix(options->white_balance);
+    Encoding          encoding;
     encoding_fill(&encoding);
     for (uint32_t y = 0; y < window->height; y++)
         for (uint32_t x = 0; x < window->width; x++) {
             size_t       index    = (size_t)y * window->width + x;
             const float *from     = &picture->color[4 * index];
             const double light[3] = {gain * from[0], gain * from[1], gain * from[2]};
-            double       shown[3];
-            tone_map_apply(options->tone_map, light, shown);
+            double       white[3], shown[3];
+            if (tinted)
+                multiply(balance.m, light, white);
+            tone_map_apply(options->tone_map, tinted ? white : light, shown);
             for (int i = 0; i < 3; i++) {
                 /* The noise of each channel is shifted, so that greys are dithered more finely. */
                 double step        = noise(window->x + x + 47.0 * i, window->y + y + 17.0 * i);

@@ -4,6 +4,7 @@
 #ifndef KRS_DISPLAY_H
 #define KRS_DISPLAY_H
 
+#include "runtime/display/white_balance.h"
 #include "runtime/krs_vulkan.h"
 
 /* Curves from [0, infinity) to [0, 1]. */
@@ -13,11 +14,12 @@ typedef enum ToneMap {
 #undef TONE_MAP
     TONE_MAP_COUNT
 } ToneMap;
-extern const char *const tone_map_names[TONE_MAP_COUNT]; /* "neutral", "aces", "none" */
+extern const char *const tone_map_names[TONE_MAP_COUNT]; /* "neutral", "aces" and so on */
 
 typedef struct DisplayOptions {
-    ToneMap tone_map;
-    double  exposure; /* in stops */
+    ToneMap      tone_map;
+    double       exposure; /* in stops */
+    WhiteBalance white_balance;
 } DisplayOptions;
 
 /* False when no curve has that name. */

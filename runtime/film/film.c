@@ -12,6 +12,8 @@
 #include "runtime/tracer/band.h"
 #include "runtime/integrators/integrators.h"
 #include "runtime/film/held.h"
+#include "runtime/film/inputs.h"
+#include "runtime/film/mattes.h"
 #include "runtime/film/picture.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
@@ -41,7 +43,8 @@ KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options,
     KrsRenderOptions *o = &film->options;
     if (settings_complete(rendering, o, &film->asked_schedule))
         film->sums = picture_new(gpu, o->width, o->height, o->crop, o->planes | KRS_PLANE_COLOR);
-    if (!film->sums) {
+    if (!film->sums || (o->mattes && !mattes_new(gpu, film->sums))) {
+        krs_picture_free(film->sums);
         gpu_release(gpu, film);
         return gpu->status;
     }
@@ -69,7 +72,8 @@ void krs_film_clear(KrsFilm *film)
 {
     const uint64_t bytes = film->sums->stats.peak_memory_bytes;
     release_band(film);
-    film->samples     = 0;
+    film->samples = 0;
+    mattes_clear(film->sums);
     film->sums->stats = (KrsRenderStats){.peak_memory_bytes = bytes};
 }
 
@@ -121,35 +125,59 @@ static KrsWindow whole_tiles(const KrsRenderOptions *options)
     return cover;
 }
 
-/* Copies the listed rays of a band to the device, behind the lights. */
-static void upload_rays(const Job *job, const KrsWindow *traced)
-{
-    const KrsRays  *rays = job->rays;
-    ListedRayBlock *to   = rendering_listed_rays(job->rendering, job->view.light_count);
-    for (uint32_t y = traced->y; y < traced->y + traced->height; y++)
-        for (uint32_t x = traced->x; x < traced->x + traced->width; x++, to++) {
-            const size_t  pixel     = (size_t)y * job->options.width + x;
-            const double *direction = rays->directions[pixel];
-            const double  length    = hypot(hypot(direction[0], direction[1]), direction[2]);
-            for (int i = 0; i < 3; i++) {
-                to->origin[i]    = (float)(rays->origins[pixel][i] - job->rebase_origin[i]);
-                to->direction[i] = (float)(direction[i] / length);
-            }
-            to->width  = (float)rays->width;
-            to->spread = (float)rays->spread;
-        }
-}
-
 /* Adds the counters of the kernels to the statistics, and resets them. */
 static void take_counters(Job *job)
 {
     ControlBlock   *control = job->rendering->control.bytes;
     KrsRenderStats *stats   = job->stats;
     stats->unresolved += control->unresolved;
+    stats->clamped += control->clamped;
     stats->evaluations += control->evaluations;
     if (control->most_evaluations > stats->most_evaluations_per_ray)
         stats->most_evaluations_per_ray = control->most_evaluations;
     control->unresolved = control->evaluations = control->most_evaluations = 0;
+    control->clamped                                                       = 0;
+}
+
+/* Whether the first ray of each pixel, which goes through the middle of the lens, is not among the
+   samples.  With a few hundred of them it would be seen: as a sharp picture in the blurred one. */
+static bool spares_first(const Job *job)
+{
+    return !job->rays && job->view.camera.aperture > 0 && job->options.samples > 1;
+}
+
+/* Finds the planes other than colour by that ray. */
+static bool find_planes(Job *job, const Plan *plan, WorkBlock *work)
+{
+    if (job->first_rows == 1u << ROW_COLORS)
+        return true;
+    job->progress_share = 0;
+    if (!plan_run(job, plan, work, 0))
+        return false;
+    take_counters(job);
+    return held_clear(job->rendering, 1u << ROW_COLORS);
+}
+
+/* The planes of the first ray are copied to the film before others write to their rows. */
+static bool keep_planes(KrsRendering *rendering)
+{
+    if (rendering->held.has_planes && !held_store(rendering))
+        return false;
+    rendering->held.has_colors = true;
+    return true;
+}
+
+/* Traces ray `index` of each pixel, and adds it to what the buffers hold. */
+static bool add_ray(Job *job, const Plan *plan, WorkBlock *work, uint32_t index)
+{
+    KrsRendering *rendering = job->rendering;
+    const bool    mattes    = job->options.mattes;
+    if (mattes && index > 0 && !keep_planes(rendering))
+        return false;
+    if ((mattes && !held_clear(rendering, MATTE_ROWS)) || !plan_run(job, plan, work, index))
+        return false;
+    take_counters(job);
+    return !mattes || held_take_mattes(rendering);
 }
 
 /* Adds samples to the band that the buffers hold; `share` is its fraction of all progress. */
@@ -164,20 +192,25 @@ static bool add_to_band(Job *job, const Plan *plan, const KrsFilm *film, uint32_
                   .extent = {traced->width, traced->height},
     };
     *control = (ControlBlock){
-        .projection   = job->rays ? LISTED : (uint32_t)job->view.camera.projection,
-        .lights       = (uint32_t)job->view.light_count,
-        .seed         = (uint32_t)(job->options.seed ^ job->options.seed >> 32),
-        .rows         = picture_rows(film->sums),
-        .no_occlusion = job->options.no_occlusion,
+        .projection    = job->rays ? LISTED : (uint32_t)job->view.camera.projection,
+        .lights        = (uint32_t)job->view.light_count,
+        .seed          = (uint32_t)(job->options.seed ^ job->options.seed >> 32),
+        .no_occlusion  = job->options.no_occlusion,
+        .no_background = job->options.plate != NULL,
+        .most_radiance = job->options.most_radiance > 0 ? (float)job->options.most_radiance
+                                                        : INFINITY,
     };
-    if (job->rays)
-        upload_rays(job, traced);
+    job->later_rows = 1u << ROW_COLORS | (job->options.mattes ? MATTE_ROWS : 0);
+    job->first_rows = picture_rows(film->sums) | job->later_rows;
+    inputs_upload(job, traced);
+    const bool spares = spares_first(job);
+    if (spares && film->samples == 0 && !find_planes(job, plan, &work))
+        return false;
     for (uint32_t i = 0; i < samples; i++) {
         job->progress_share = share / samples;
         job->progress_done  = done + job->progress_share * i;
-        if (!plan_run(job, plan, &work, film->samples + i))
+        if (!add_ray(job, plan, &work, film->samples + i + spares))
             return false;
-        take_counters(job);
     }
     return true;
 }
@@ -191,8 +224,9 @@ static bool add_to_bands(Job *job, const Plan *plan, KrsFilm *film, uint32_t sam
         KrsWindow      band   = {cover->x, cover->y + from, cover->width, rows};
         const HeldBand wanted = {
             film, from, rows, with_halo(job, plan->halo, band), film->samples == 0, true};
-        job->progress_done = from / height;
-        if (!held_change(film, &wanted) || !add_to_band(job, plan, film, samples, rows / height))
+        job->progress_done = job->part_begun + job->part * from / height;
+        if (!held_change(film, &wanted) ||
+            !add_to_band(job, plan, film, samples, job->part * rows / height))
             return false;
     }
     return true;
@@ -219,9 +253,9 @@ static bool make_room(Job *job, const Plan *plan, KrsFilm *film)
         rendering->held = (HeldBand){0};
         film->rows      = band_allocate(rendering, &job->cover, plan->halo, plan->has_paths);
     }
-    const size_t rays = job->rays ? rendering->band.pixels : 0;
-    return film->rows > 0 && rendering_set_lights(rendering, job->view.lights,
-                                                  job->view.light_count, job->rebase_origin, rays);
+    return film->rows > 0 &&
+           rendering_set_lights(rendering, job->view.lights, job->view.light_count,
+                                job->options.light, job->rebase_origin, inputs_room(job));
 }
 
 /* Records what the film keeps of its first sample: the rebase origin and the matrices. */
@@ -247,45 +281,101 @@ static bool run(Job *job, const Plan *plan, KrsFilm *film, uint32_t samples)
     return good;
 }
 
-static KrsStatus add(KrsFilm *film, KrsFrame *frame, const KrsCamera *camera, const KrsRays *rays,
-                     uint32_t samples)
+/* What is added to a film by one call, or one moment of it. */
+typedef struct Addition {
+    KrsFrame        *frame;
+    const KrsCamera *camera; /* NULL: that of the options, or rays */
+    const KrsRays   *rays;
+    uint32_t         samples;
+    double           part_begun, part; /* of the progress of the call */
+} Addition;
+
+static KrsStatus add_moment(KrsFilm *film, const Addition *a)
 {
-    renderer_clear(film->rendering->renderer);
-    if (!follow_rendering(film))
-        return film->rendering->renderer->gpu.status;
     Job job = {.rendering      = film->rendering,
                .gpu            = &film->rendering->renderer->gpu,
                .options        = film->options,
                .asked_schedule = film->asked_schedule,
                .schedule       = film->options.schedule,
-               .rays           = rays,
+               .rays           = a->rays,
                .cover          = whole_tiles(&film->options),
+               .part_begun     = a->part_begun,
+               .part           = a->part,
                .stats          = &film->sums->stats};
-    if (samples == 0 || samples > KRS_MOST_SAMPLES - film->samples) {
-        job_refuse(&job, "a film has 1 to 65536 samples per pixel");
-        return job.gpu->status;
-    }
-    if (!job_read_frame(&job, frame, camera))
+    if (!job_read_frame(&job, a->frame, a->camera))
         return job.gpu->status;
     Plan plan = {.gpu = job.gpu};
-    bool good = integrators[job.options.integrator](&job, &plan) && run(&job, &plan, film, samples);
+    bool good = integrators[job.options.integrator](&job, &plan) &&
+                run(&job, &plan, film, a->samples);
     plan_free(&plan);
     if (!good) {
         krs_film_clear(film);
         return job.gpu->status;
     }
-    film->samples += samples;
+    film->samples += a->samples;
     return KRS_OK;
+}
+
+/* When the shutter opens and closes, in seconds after the frame's time; false: it makes no blur. */
+static bool find_shutter(const KrsFilm *film, const Addition *a, double seconds[2])
+{
+    KrsCamera camera = {0};
+    if (a->camera)
+        camera = *a->camera;
+    else if (a->rays || krs_frame_camera(a->frame, film->options.camera, &camera) != KRS_OK)
+        return false;
+    for (int i = 0; i < 2; i++)
+        seconds[i] = camera.shutter[i] * film->options.frame_seconds;
+    return seconds[1] > seconds[0];
+}
+
+/* Adds each sample at a time of its own while the shutter is open.  Its times are multiples of the
+   golden ratio, modulo 1, which fill it evenly; the first, whose planes are kept, is the middle. */
+static KrsStatus add_moments(KrsFilm *film, const Addition *a, const double shutter[2])
+{
+    const double golden = 0.61803398874989485, begin = krs_frame_time(a->frame);
+    KrsStatus    status = KRS_OK;
+    for (uint32_t i = 0; i < a->samples && status == KRS_OK; i++) {
+        double   part   = 0.5 + golden * film->samples;
+        Addition moment = *a;
+        part -= floor(part);
+        moment.samples    = 1;
+        moment.part       = 1.0 / a->samples;
+        moment.part_begun = moment.part * i;
+        status            = krs_frame_set_time(a->frame,
+                                               begin + shutter[0] + part * (shutter[1] - shutter[0]));
+        if (status == KRS_OK)
+            status = add_moment(film, &moment);
+        else
+            gpu_refuse(&film->rendering->renderer->gpu, status,
+                       "the scene is not finite while the shutter is open");
+    }
+    krs_frame_set_time(a->frame, begin);
+    return status;
+}
+
+static KrsStatus add(KrsFilm *film, const Addition *a)
+{
+    Gpu   *gpu = &film->rendering->renderer->gpu;
+    double shutter[2];
+    renderer_clear(film->rendering->renderer);
+    if (!follow_rendering(film))
+        return gpu->status;
+    if (a->samples == 0 || a->samples > KRS_MOST_SAMPLES - film->samples) {
+        gpu_refuse(gpu, KRS_BAD_ARGUMENT, "%s", "a film has 1 to 65536 samples per pixel");
+        return gpu->status;
+    }
+    return find_shutter(film, a, shutter) ? add_moments(film, a, shutter) : add_moment(film, a);
 }
 
 KrsStatus krs_film_add(KrsFilm *film, KrsFrame *frame, const KrsCamera *camera, uint32_t samples)
 {
-    return add(film, frame, camera, NULL, samples);
+    return add(film, &(Addition){frame, camera, NULL, samples, 0, 1});
 }
 
 KrsStatus krs_film_add_rays(KrsFilm *film, KrsFrame *frame, const KrsRays *rays)
 {
-    return add(film, frame, NULL, rays, 1);
+    return add(film, &(Addition){frame, NULL, rays, 1, 0, 1});
 }
 
 /* ---- reading ---- */
@@ -323,7 +413,10 @@ static void finish(const KrsFilm *film, KrsPicture *picture)
     stats->gflops = marching > 0 ? (double)stats->evaluations * flops / marching / 1e6 : 0;
     stats->peak_memory_bytes += gpu->memory_peak;
     memcpy(stats->device, gpu->properties.deviceName, sizeof stats->device);
+    picture->samples = film->samples;
     picture_divide(picture, film->samples);
+    picture_compose(picture, film->options.depth, film->options.plate);
+    mattes_sort(picture);
 }
 
 KrsStatus krs_film_read(KrsFilm *film, uint32_t planes, KrsPicture **picture)

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "runtime/film/mattes.h"
 #include "runtime/film/picture.h"
 
 /* Records copies of rows of results from one buffer to another: those whose bit ROW_... is set in
@@ -54,6 +55,11 @@ static bool clear_results(KrsRendering *rendering, uint32_t rows, VkDeviceSize r
             vkCmdFillBuffer(gpu->commands, rendering->band.results.buffer, row * row_bytes,
                             row_bytes, row == ROW_POSITIONS ? infinite : 0);
     return gpu_finish(gpu, &ms);
+}
+
+bool held_clear(KrsRendering *rendering, uint32_t rows)
+{
+    return clear_results(rendering, rows, row_bytes_of(&rendering->held));
 }
 
 /* Finds where row `y` of the picture begins, among the pixels of the band and of the film.  False
@@ -113,6 +119,24 @@ bool held_store(KrsRendering *rendering)
                             in_film, film->options.crop.width);
     }
     held->has_colors = held->has_planes = false;
+    return true;
+}
+
+bool held_take_mattes(KrsRendering *rendering)
+{
+    HeldBand    *held    = &rendering->held;
+    KrsFilm     *film    = held->film;
+    const float *results = fetch(rendering, MATTE_ROWS);
+    const size_t band    = (size_t)held->traced.height * held->traced.width;
+    uint32_t     y, end;
+    if (!results)
+        return false;
+    for (rows_of_held(film, held, &y, &end); y < end; y++) {
+        size_t in_band, in_film;
+        if (find_row(film, held, y, &in_band, &in_film))
+            mattes_take(film->sums, results + in_band * RESULT_NUMBERS, band, in_film,
+                        film->options.crop.width);
+    }
     return true;
 }
 

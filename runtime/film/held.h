@@ -23,4 +23,9 @@ bool held_store(KrsRendering *rendering);
 /* Makes the buffers hold a band of the film, with the samples that it has so far. */
 bool held_change(KrsFilm *film, const HeldBand *wanted);
 
+/* Makes some rows of the results in the buffers as they are without a hit: bits ROW_... of each. */
+bool held_clear(KrsRendering *rendering, uint32_t rows);
+/* Counts the rays in the buffers for the mattes of their film. */
+bool held_take_mattes(KrsRendering *rendering);
+
 #endif

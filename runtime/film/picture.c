@@ -3,7 +3,10 @@
  */
 #include "runtime/film/picture.h"
 
+#include "runtime/film/mattes.h"
+
 #include <assert.h>
+#include <math.h>
 #include <string.h>
 
 /* The arrays of all planes; all numbers have 32 bits. */
@@ -125,6 +128,18 @@ static size_t pixels_of(const KrsPicture *picture)
     return (size_t)picture->window.width * picture->window.height;
 }
 
+static bool copy_mattes(Gpu *gpu, const KrsPicture *from, KrsPicture *to)
+{
+    const size_t bytes = pixels_of(from) * KRS_MATTE_RANKS * sizeof(KrsMatte);
+    if (!from->mattes[0])
+        return true;
+    if (!mattes_new(gpu, to))
+        return false;
+    for (int kind = 0; kind < KRS_MATTE_COUNT; kind++)
+        memcpy(to->mattes[kind], from->mattes[kind], bytes);
+    return true;
+}
+
 KrsPicture *picture_copy(Gpu *gpu, const KrsPicture *picture, uint32_t wanted)
 {
     KrsPicture *copy = picture_new(gpu, picture->width, picture->height, picture->window, wanted);
@@ -132,6 +147,10 @@ KrsPicture *picture_copy(Gpu *gpu, const KrsPicture *picture, uint32_t wanted)
         return NULL;
     memcpy(copy->world_to_camera, picture->world_to_camera, sizeof copy->world_to_camera);
     memcpy(copy->world_to_ndc, picture->world_to_ndc, sizeof copy->world_to_ndc);
+    if (!copy_mattes(gpu, picture, copy)) {
+        krs_picture_free(copy);
+        return NULL;
+    }
     const uint64_t own_bytes = copy->stats.peak_memory_bytes;
     copy->stats              = picture->stats;
     copy->stats.peak_memory_bytes += own_bytes;
@@ -158,6 +177,104 @@ void picture_divide(KrsPicture *picture, uint32_t samples)
         picture->color[k] /= (float)samples;
 }
 
+void picture_compose(KrsPicture *picture, const float *depth, const float (*plate)[4])
+{
+    const KrsWindow *window = &picture->window;
+    for (size_t k = 0; k < pixels_of(picture); k++) {
+        size_t x = window->x + k % window->width, y = window->y + k / window->width;
+        size_t whole = y * picture->width + x;
+        float *color = picture->color ? &picture->color[4 * k] : NULL;
+        float  left  = color ? 1 - color[3] : 0;
+        for (int i = 0; plate && color && i < 4; i++)
+            color[i] += left * plate[whole][i];
+        if (depth && picture->depth && isinf(picture->depth[k]))
+            picture->depth[k] = depth[whole];
+    }
+}
+
+/* ---- two pictures as one ---- */
+
+static bool is_whole(const KrsPicture *picture)
+{
+    return picture->window.width == picture->width && picture->window.height == picture->height;
+}
+
+static bool can_join(const KrsPicture *a, const KrsPicture *b)
+{
+    bool same = is_whole(a) && is_whole(b) && a->width == b->width && a->height == b->height &&
+                a->samples == b->samples && !a->mattes[0] == !b->mattes[0];
+    for (int i = 0; i < PLANE_COUNT; i++)
+        same = same && !plane_get(a, i) == !plane_get(b, i);
+    return same;
+}
+
+static KrsRenderStats sum_of(const KrsRenderStats *a, const KrsRenderStats *b)
+{
+    KrsRenderStats sum = *a;
+    for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
+        sum.phase_ms[phase] += b->phase_ms[phase];
+    sum.total_ms += b->total_ms;
+    sum.wall_ms += b->wall_ms;
+    sum.rays += b->rays;
+    sum.evaluations += b->evaluations;
+    sum.evaluations_per_ray = (double)sum.evaluations / (double)sum.rays;
+    sum.unresolved += b->unresolved;
+    sum.clamped += b->clamped;
+    sum.submissions += b->submissions;
+    if (b->most_evaluations_per_ray > sum.most_evaluations_per_ray)
+        sum.most_evaluations_per_ray = b->most_evaluations_per_ray;
+    if (b->peak_memory_bytes > sum.peak_memory_bytes)
+        sum.peak_memory_bytes = b->peak_memory_bytes;
+    sum.gflops = 0.5 * (a->gflops + b->gflops);
+    return sum;
+}
+
+/* Copies an array, row by row, to where a picture begins in the joined one; NULL: there is none. */
+static void place_rows(const KrsPicture *from, const char *rows, KrsPicture *to, char *start,
+                       size_t bytes, size_t column, size_t row)
+{
+    for (size_t y = 0; rows && y < from->height; y++)
+        memcpy(start + ((row + y) * to->width + column) * bytes, rows + y * from->width * bytes,
+               from->width * bytes);
+}
+
+/* Copies all that a picture has to a place in the joined one. */
+static void place_picture(const KrsPicture *from, KrsPicture *to, size_t column, size_t row)
+{
+    for (int i = 0; i < PLANE_COUNT; i++)
+        place_rows(from, plane_get(from, i), to, plane_get(to, i), planes[i].bytes, column, row);
+    for (int kind = 0; kind < KRS_MATTE_COUNT; kind++)
+        place_rows(from, (const char *)from->mattes[kind], to, (char *)to->mattes[kind],
+                   KRS_MATTE_RANKS * sizeof(KrsMatte), column, row);
+}
+
+KrsStatus krs_picture_join(const KrsPicture *first, const KrsPicture *second, bool below,
+                           KrsPicture **joined)
+{
+    Gpu      allocating = {.allocator = first->allocator};
+    uint32_t wanted = 0, width = first->width * (below ? 1 : 2);
+    uint32_t height = first->height * (below ? 2 : 1);
+    *joined         = NULL;
+    if (!can_join(first, second))
+        return KRS_BAD_ARGUMENT;
+    for (int i = 0; i < PLANE_COUNT; i++)
+        wanted |= plane_get(first, i) ? planes[i].bit : 0;
+    *joined = picture_new(&allocating, width, height, (KrsWindow){0, 0, width, height}, wanted);
+    if (*joined && first->mattes[0] && !mattes_new(&allocating, *joined)) {
+        krs_picture_free(*joined);
+        *joined = NULL;
+    }
+    if (!*joined)
+        return KRS_OUT_OF_MEMORY;
+    (*joined)->samples = first->samples;
+    place_picture(first, *joined, 0, 0);
+    place_picture(second, *joined, below ? 0 : first->width, below ? first->height : 0);
+    for (int i = 0; i < 4; i++)
+        (*joined)->world_to_camera[i][i] = (*joined)->world_to_ndc[i][i] = 1;
+    (*joined)->stats = sum_of(&first->stats, &second->stats);
+    return KRS_OK;
+}
+
 void krs_picture_free(KrsPicture *picture)
 {
     if (!picture)
@@ -165,5 +282,7 @@ void krs_picture_free(KrsPicture *picture)
     Gpu allocating = {.allocator = picture->allocator};
     for (int i = 0; i < PLANE_COUNT; i++)
         gpu_release(&allocating, plane_get(picture, i));
+    for (int kind = 0; kind < KRS_MATTE_COUNT; kind++)
+        gpu_release(&allocating, picture->mattes[kind]);
     gpu_release(&allocating, picture);
 }

@@ -26,4 +26,8 @@ void picture_drop(KrsPicture *picture, uint32_t planes);
 /* Divides the colours, which are sums over `samples`, to get their means. */
 void picture_divide(KrsPicture *picture, uint32_t samples);
 
+/* Shows a plate behind the picture, and its depth where nothing is hit; both are of the whole
+   picture, or NULL. */
+void picture_compose(KrsPicture *picture, const float *depth, const float (*plate)[4]);
+
 #endif

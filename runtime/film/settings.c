@@ -42,9 +42,10 @@ static bool choose(KrsRendering *rendering, KrsRenderOptions *o, KrsSchedule *as
         (unsigned)o->shadows >= KRS_SHADOWS_COUNT ||
         (unsigned)o->components >= KRS_COMPONENTS_COUNT ||
         (unsigned)o->normals >= KRS_NORMALS_COUNT ||
+        (unsigned)o->pixel_filter >= KRS_PIXEL_FILTER_COUNT ||
         (unsigned)o->integrator >= KRS_INTEGRATOR_COUNT)
-        return refuse(rendering, "there is no such method, schedule, stencil, kind of shadow or "
-                                 "integrator");
+        return refuse(rendering, "there is no such method, schedule, stencil, kind of shadow, "
+                                 "filter or integrator");
     if (o->normals == KRS_NORMALS_ANALYTIC && !rendering->program->gradients)
         return refuse(rendering,
                       "analytic normals need a scene that was compiled with `gradients`");
@@ -57,6 +58,16 @@ static bool choose(KrsRendering *rendering, KrsRenderOptions *o, KrsSchedule *as
     return true;
 }
 
+/* The filter of the scene, whose names the compiler knows. */
+static KrsPixelFilter filter_of(const KrsImage *image)
+{
+    KrsPixelFilter filter = KRS_PIXEL_FILTER_BOX;
+    for (KrsPixelFilter i = filter; image->pixel_filter && i < KRS_PIXEL_FILTER_COUNT; i++)
+        if (strcmp(krs_pixel_filter_names[i], image->pixel_filter) == 0)
+            filter = i;
+    return filter;
+}
+
 static void put_defaults(const KrsImage *image, KrsRenderOptions *o)
 {
     o->width         = first_nonzero(o->width, image->width, KRS_DEFAULT_WIDTH);
@@ -67,7 +78,9 @@ static void put_defaults(const KrsImage *image, KrsRenderOptions *o)
     o->most_steps    = first_nonzero(o->most_steps, 0, MOST_STEPS);
     o->steps_at_once = first_nonzero(o->steps_at_once, 0,
                                      o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
-    o->error    = o->error != 0 ? o->error : image->error != 0 ? image->error : KRS_DEFAULT_ERROR;
+    o->error = o->error != 0 ? o->error : image->error != 0 ? image->error : KRS_DEFAULT_ERROR;
+    if (o->pixel_filter == KRS_PIXEL_FILTER_DEFAULT)
+        o->pixel_filter = filter_of(image);
     o->slice_ms = o->slice_ms != 0 ? o->slice_ms : 50;
     if (o->integrator == KRS_INTEGRATOR_DEFAULT)
         o->integrator = find_integrator(image->integrator);
@@ -88,6 +101,8 @@ static bool check(KrsRendering *rendering, const KrsRenderOptions *o)
         return refuse(rendering, "a path has at most 1000 bounces");
     if (!(o->error > 0) || !(o->error <= KRS_MOST_ERROR))
         return refuse(rendering, "the permitted error must be above 0 and at most 1000 pixels");
+    if (!(o->most_radiance >= 0))
+        return refuse(rendering, "the most radiance of a ray must be above 0");
     if (!(o->slice_ms > 0) || o->most_steps > MOST_STEPS || o->steps_at_once > MOST_STEPS_AT_ONCE)
         return refuse(rendering,
                       "slices must be longer than nothing, and rays have at most 16384 steps");

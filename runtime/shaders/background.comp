@@ -21,9 +21,9 @@ bool  keeps_counts;
 void begin_group()
 {
     sun = find_light(control.light);
-    if (control.light >= control.lights)
+    if (control.light >= control.lights || control.no_background != 0u)
         sun.softness = 0.0; // there is no sun
-    sky = control.phase == BACKGROUND_FIRST ? 1.0 : 0.0;
+    sky = control.phase == BACKGROUND_FIRST && control.no_background == 0u ? 1.0 : 0.0;
     keeps_counts = control.phase == BACKGROUND_FIRST && control.first_ray != 0u &&
                    is_wanted(ROW_COUNTS);
 }
@@ -89,7 +89,7 @@ uint find_existing(uvec2 corner)
 void do_item(uint quarter)
 {
     uvec2 corner = pixel_of(slot_of_quarter(quarter));
-    uint  exist = find_existing(corner), hits = 0u, unresolved = 0u, bit = 0u;
+    uint  exist = find_existing(corner), hits = 0u, unresolved = 0u, clamped = 0u, bit = 0u;
     do {
         uvec2 pixel = corner + uvec2(bit & 3u, bit >> 2u);
         uint  index = index_of(pixel);
@@ -98,8 +98,10 @@ void do_item(uint quarter)
         vec3  radiance = find_radiance(pixel);
         hits |= uint(ray.state == STATE_HIT) << bit;
         unresolved |= uint(ray.unresolved) << bit;
+        float factor = clamp_factor(radiance);
+        clamped += uint(exists && ray.state != STATE_HIT && factor < 1.0);
         if (exists && ray.state != STATE_HIT)
-            add_light(index, radiance);
+            add_light(index, factor * radiance);
         bit++;
     } while (bit < 16u);
     exist = control.phase == BACKGROUND_FIRST ? exist : 0u;
@@ -107,6 +109,8 @@ void do_item(uint quarter)
     hits &= exist;
     if (unresolved != 0u)
         atomicAdd(counts.unresolved, bitCount(unresolved));
+    if (clamped != 0u)
+        atomicAdd(counts.clamped, clamped);
     if (control.phase == BACKGROUND_FIRST) {
         pixel_lists[quarter_at(HITS_OF_QUARTERS, quarter)] = hits;
         pixel_lists[quarter_at(LIGHT_OF_QUARTERS, quarter)] = 0u; // it stays 0 where nothing is hit

@@ -93,8 +93,11 @@ bool follow(uvec2 pixel, uint index, inout uint unresolved)
         }
         float left = let_through(path.origin.y, path.direction.y, FARTHEST);
         found = lost ? vec3(0.0) : through_fog(behind, left, true) + light;
+#ifndef PATH_RAYS
+        found = control.no_background != 0u ? vec3(0.0) : found;
+#endif
     }
-    add_light(index, finite_or_black(path.weight * found));
+    add_light(index, clamped(finite_or_black(path.weight * found)));
     store_path(PATH_TOWARD, index, vec4(0.0, 0.0, 0.0, hits ? ray.side : 0.0));
     return hits;
 }

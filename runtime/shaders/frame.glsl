@@ -153,6 +153,41 @@ void find_tiles(uint side, out uvec2 first, out uvec2 count)
     count = (work.corner + work.extent - 1u) / side - first + 1u;
 }
 
+#ifdef LENS
+#include "samples.glsl"
+
+// Maps the unit square to a regular polygon with corners on the unit circle, with areas in
+// proportion.
+vec2 polygon_of_square(vec2 square, float corners)
+{
+    float place = corners * square.x, corner = floor(place), along = place - corner;
+    float first = 2.0 * PI * corner / corners, next = 2.0 * PI * (corner + 1.0) / corners;
+    return sqrt(square.y) * mix(vec2(krs_sin(first), krs_cos(first)),
+                                vec2(krs_sin(next), krs_cos(next)), along);
+}
+
+// The point of the lens that the ray through a point of the picture begins at, in parts of its
+// radius.  The first ray of each pixel goes through its middle.
+vec2 find_lens_point(vec2 image_point)
+{
+    vec2  pixel = floor(image_point - work.offset + 0.5);
+    vec2  square = sample_lens(uvec2(max(pixel, 0.0)), control.ray, control.seed);
+    vec2  point = frame.lens.w > 0.0 ? polygon_of_square(square, frame.lens.w)
+                                     : disc_of_square(square);
+    return control.first_ray != 0u ? vec2(0.0) : point;
+}
+
+// The ray from the lens, which meets the one through its middle, `straight`, where things are
+// sharp.
+void find_lens_ray(vec2 image_point, vec3 straight, inout vec3 origin, out vec3 ahead)
+{
+    vec2 point = find_lens_point(image_point) * frame.lens.xy;
+    vec3 beside = point.x * frame.right.xyz + point.y * frame.up.xyz;
+    origin += beside;
+    ahead = straight - frame.lens.z * beside;
+}
+#endif
+
 // The ray through a point of the picture, which is given in pixels from the top left corner.  At t
 // a pixel is base + slope t wide.
 #ifdef LISTED_RAYS // the ray of the point's pixel, in the list of the band
@@ -186,17 +221,27 @@ void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float b
 {
     vec2 plane = vec2(2.0 * image_point.x / frame.size.x - 1.0,
                       1.0 - 2.0 * image_point.y / frame.size.y);
+#ifdef LENS
+    plane += frame.shift.xy;
+#endif
     origin = frame.eye;
     base = frame.pixel_base;
     slope = frame.pixel_slope;
     if (control.projection == PERSPECTIVE) {
         vec3  straight = frame.forward.xyz + plane.x * frame.right.xyz + plane.y * frame.up.xyz;
+#ifdef LENS
+        find_lens_ray(image_point, straight, origin, straight);
+#endif
         float stretch = length(straight);
         direction = straight / stretch;
         slope /= stretch;
     } else {
         origin += plane.x * frame.right.xyz + plane.y * frame.up.xyz;
         direction = frame.forward.xyz;
+#ifdef LENS
+        find_lens_ray(image_point, direction, origin, direction);
+        direction = normalize(direction);
+#endif
     }
 #ifdef PANORAMIC
     if (control.projection == PANORAMA) {
@@ -205,6 +250,10 @@ void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float b
                       krs_sin(longitude) * frame.right.xyz;
         origin = frame.eye;
         direction = krs_cos(latitude) * level + krs_sin(latitude) * frame.up.xyz;
+#ifdef LENS // each column has its own eye, beside the way that it looks
+        origin += frame.shift.z * (krs_cos(longitude) * frame.right.xyz -
+                                   krs_sin(longitude) * frame.forward.xyz);
+#endif
     }
 #endif
 }

@@ -45,7 +45,7 @@ bool  derived;     // the normal is by derivatives
 // The unit vector from the hit back along its ray.
 vec3 find_backwards()
 {
-#if defined(LISTED_RAYS) || defined(PATH_RAYS)
+#if defined(LISTED_RAYS) || defined(PATH_RAYS) || defined(LENS)
     return -hit.direction;
 #else
     return control.projection == ORTHOGRAPHIC ? -frame.forward.xyz

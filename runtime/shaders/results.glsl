@@ -36,3 +36,20 @@ vec3 finite_or_black(vec3 radiance)
     bvec3 finite = bvec3(radiance.x < INFINITE, radiance.y < INFINITE, radiance.z < INFINITE);
     return mix(vec3(0.0), max(radiance, 0.0), finite);
 }
+
+// The factor by which light must be multiplied so that none of its components exceeds the limit of
+// a ray; 1 where none does.
+float clamp_factor(vec3 radiance)
+{
+    float most = max(max(radiance.r, radiance.g), radiance.b);
+    return most > control.most_radiance ? control.most_radiance / most : 1.0;
+}
+
+// The same light, within that limit; counts where it was beyond.
+vec3 clamped(vec3 radiance)
+{
+    float factor = clamp_factor(radiance);
+    if (factor < 1.0)
+        atomicAdd(counts.clamped, 1u);
+    return factor * radiance;
+}

@@ -13,6 +13,11 @@
  * in plan.c).  Both together fill the pixel and the square evenly.
  */
 
+#ifndef SAMPLES // frame.glsl may have it already
+#define SAMPLES
+
+const uint USE_OF_LENS = 0x6c656e73u; // no light has this number
+
 // The bits of a number of 16 bits, with a 0 before each.
 uint spread_bits(uint bits)
 {
@@ -41,8 +46,8 @@ uint hash_bits(uint bits)
     return bits >> 22u ^ bits;
 }
 
-// The point for ray `ray` of a pixel.  Points for different values of `use` are independent.
-vec2 sample_square(uvec2 pixel, uint ray, uint use, uint seed)
+// The bits of the point of a pixel.  Points for different values of `use` are independent.
+uvec2 sample_bits(uvec2 pixel, uint use, uint seed)
 {
     uint number = spread_bits(pixel.x) | spread_bits(pixel.y) << 1u;
     uint own = hash_bits(use + 977u * seed);
@@ -53,7 +58,21 @@ vec2 sample_square(uvec2 pixel, uint ray, uint use, uint seed)
     y ^= (y & 0x00ff00ffu) << 8u;
     y ^= (y & 0x0000ffffu) << 16u;
     y ^= hash_bits(own);
-    return fract(vec2(x >> 8u, y >> 8u) / 16777216.0 + vec2(0.6287067, 0.5385973) * float(ray));
+    return uvec2(x, y);
+}
+
+// The point for ray `ray` of a pixel.
+vec2 sample_square(uvec2 pixel, uint ray, uint use, uint seed)
+{
+    uvec2 bits = sample_bits(pixel, use, seed);
+    return fract(vec2(bits >> 8u) / 16777216.0 + vec2(0.6287067, 0.5385973) * float(ray));
+}
+
+// The same on the lens, by the two other steps of R4: fractions of 2^32.
+vec2 sample_lens(uvec2 pixel, uint ray, uint seed)
+{
+    uvec2 bits = sample_bits(pixel, USE_OF_LENS, seed) + uvec2(3679390609u, 3152041523u) * ray;
+    return vec2(bits >> 8u) / 16777216.0;
 }
 
 // Maps the unit square to the unit disc, with areas in proportion.
@@ -62,3 +81,4 @@ vec2 disc_of_square(vec2 square)
     float angle = 2.0 * PI * square.x;
     return sqrt(square.y) * vec2(krs_cos(angle), krs_sin(angle));
 }
+#endif

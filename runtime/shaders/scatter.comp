@@ -79,7 +79,7 @@ uint rows;
 void begin_group()
 {
     krs_prepare();
-    rows = control.first_ray != 0u && control.value == 0u ? control.rows : 0u;
+    rows = control.value == 0u ? control.rows : 0u;
 }
 
 // Chooses a point of a light, and what it adds if it is visible.  Returns the direction to it.
@@ -166,7 +166,8 @@ void do_item(uint number)
     vec3  radiance = weight * through_fog(surface.emission, left, true);
     weight *= left;
     vec3 normal = find_normal(hit, surface, facing.xyz);
-    vec4 sum = find_color(index) + vec4(finite_or_black(radiance), control.value == 0u ? 1.0 : 0.0);
+    radiance = clamped(finite_or_black(radiance));
+    vec4 sum = find_color(index) + vec4(radiance, control.value == 0u ? 1.0 : 0.0);
     store_planes(index, rows | 1u << ROW_COLORS, sum, hit, hit.side * normal, surface.color, surface);
     if (control.phase == PATHS_END)
         return;

@@ -344,7 +344,7 @@ void end_item()
 #ifdef PATH_RAYS
     if (control.phase == RAYS_AS_CHOSEN) {
         if (!blocked && !below_horizon)
-            add_light(index_of(pixel_of(hit.slot)), added);
+            add_light(index_of(pixel_of(hit.slot)), clamped(added));
         return;
     }
 #endif

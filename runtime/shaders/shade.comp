@@ -129,7 +129,7 @@ void begin_group()
     lights[0] = find_light(control.light);
     lights[1] = find_light(control.light + 1u);
     lights[2] = find_light(control.light + 2u);
-    rows = control.first_ray != 0u && control.light == 0u ? control.rows : 1u << ROW_COLORS;
+    rows = control.light == 0u ? control.rows : 1u << ROW_COLORS;
 }
 
 void do_item(uint number)
@@ -177,11 +177,12 @@ void do_item(uint number)
     if (control.phase == PATHS_GO_ON && control.light + LIGHTS_AT_ONCE >= control.lights)
         send_on(hit, index, surface, coat, facing.xyz, weight * left);
 #endif
+    vec3 added = clamped(finite_or_black(radiance.rgb));
 #ifdef PATH_RAYS
-    add_light(index, finite_or_black(radiance.rgb));
+    add_light(index, added);
     return;
 #endif
-    vec4 sum = find_color(index) + vec4(finite_or_black(radiance.rgb), radiance.a);
+    vec4 sum = find_color(index) + vec4(added, radiance.a);
     vec3 albedo = saturate(vec4(surface.color, 0.0), 1.0).rgb; // also where glass has no coat
     store_planes(index, rows, sum, hit, hit.side * coat.normal, albedo, surface);
 }

@@ -26,7 +26,7 @@ const float OPEN_CODES = 254.0;
 
 // The axis of a pixel, along its ray.  Where a unit vector would cost a root, the axis has length 1
 // along the view.
-#if defined(LISTED_RAYS) || defined(PATH_RAYS)
+#if defined(LISTED_RAYS) || defined(PATH_RAYS) || defined(LENS)
 void find_axis(vec2 image_point, out vec3 origin, out vec3 axis)
 {
     float base, slope;

@@ -316,7 +316,9 @@ void begin_item(uint number, bool saved)
     float side = large ? 32.0 : small ? 4.0 : 8.0;
     uvec2 tile = small ? 2u * item_tile + half_tile : item_tile;
     vec2  middle = side * (vec2(tile) + 0.5);
-    aim(is_ray ? vec2(pixel) + work.offset : middle);
+    // Filters that are wider than a pixel move all rays out of their pixels by the same offset.
+    vec2  outside = work.offset - clamp(work.offset, 0.0, 1.0);
+    aim(is_ray ? vec2(pixel) + work.offset : middle + outside);
     width = is_ray ? vec2(0.0) : find_width(side);
     shrinking = 1.0 / (1.0 + width.y);
     if (saved && march.side < 0.0)

@@ -66,6 +66,11 @@ struct Frame {
     float occlusion_reach; /* the longest ray for occlusion */
     uint  most_steps;
     float normal_reach; /* radius of the taps for a normal, in pixels */
+    /* With LENS: the radius of the lens in `right` and in `up`, 1 / the distance of what is sharp,
+       corners of the aperture; 0: it is round. */
+    vec4 lens;
+    vec4 shift; /* of the picture in half widths and half heights; how far the eye of a panorama is
+                   to the right, for stereo; 0 */
 };
 
 /* push_constant WorkBlock, std430. */
@@ -94,7 +99,7 @@ struct PointWork {
 
 #ifdef __STDC_VERSION__
 typedef struct Frame FrameBlock;
-static_assert(sizeof(FrameBlock) == 208, "std140");
+static_assert(sizeof(FrameBlock) == 240, "std140");
 typedef struct Work WorkBlock;
 static_assert(sizeof(WorkBlock) == 40, "std430");
 typedef struct NextDispatch NextDispatchBlock;
@@ -108,29 +113,32 @@ static_assert(sizeof(PointWorkBlock) == 8, "std430");
 /* What the host tells a kernel.  Values that decide branches are here, not among the constants of a
    dispatch.  For each set of constants that decides a branch lavapipe would compile the kernel
    again, and keep it. */
-#define CONTROL_MEMBERS                                                                          \
-    uint projection;     /* PERSPECTIVE and so on */                                             \
-    uint phase;          /* of the kernel, see below */                                          \
-    uint first_ray;      /* 1: this is the first ray of each pixel */                            \
-    uint light;          /* number of the light that a dispatch is about */                      \
-    uint lights;         /* number of all lights */                                              \
-    uint ray;            /* number of the ray within its pixel */                                \
-    uint seed;           /* of random numbers */                                                 \
-    uint starts_from;    /* rays start at 1: the ends of beams of tiles, 2: of their quarters */ \
-    uint listed;         /* 1: only listed tiles have rays */                                    \
-    uint source;         /* of the items: ITEMS_... */                                           \
-    uint items;          /* number of items */                                                   \
-    uint items_per_lane; /* at most */                                                           \
-    uint reading;        /* where the queue or list that is read begins */                       \
-    uint writing;        /* where the queue that is written begins */                            \
-    uint value;          /* VALUE_...: the number of LIGHTING that is computed */                \
-    uint rows;           /* wanted rows of results: bit ROW_... of each */                       \
-    uint by_march_group; /* 1: hits know their march group, and are listed by it */              \
-    uint no_occlusion;   /* 1: there is no occlusion */                                          \
-    uint window;         /* column | row << 16 of the first tile with a beam, in the band */     \
-    uint across;         /* tiles with beams in a row */                                         \
-    uint rays;           /* of each pixel */                                                     \
-    uint filters;        /* 1: neighbours share what their rays find (shared.glsl) */
+#define CONTROL_MEMBERS                                                                           \
+    uint  projection;     /* PERSPECTIVE and so on */                                             \
+    uint  phase;          /* of the kernel, see below */                                          \
+    uint  first_ray;      /* 1: this is the first ray of each pixel */                            \
+    uint  light;          /* number of the light that a dispatch is about */                      \
+    uint  lights;         /* number of all lights */                                              \
+    uint  ray;            /* number of the ray within its pixel */                                \
+    uint  seed;           /* of random numbers */                                                 \
+    uint  starts_from;    /* rays start at 1: the ends of beams of tiles, 2: of their quarters */ \
+    uint  listed;         /* 1: only listed tiles have rays */                                    \
+    uint  source;         /* of the items: ITEMS_... */                                           \
+    uint  items;          /* number of items */                                                   \
+    uint  items_per_lane; /* at most */                                                           \
+    uint  reading;        /* where the queue or list that is read begins */                       \
+    uint  writing;        /* where the queue that is written begins */                            \
+    uint  value;          /* VALUE_...: the number of LIGHTING that is computed */                \
+    uint  rows;           /* wanted rows of results: bit ROW_... of each */                       \
+    uint  by_march_group; /* 1: hits know their march group, and are listed by it */              \
+    uint  no_occlusion;   /* 1: there is no occlusion */                                          \
+    uint  window;         /* column | row << 16 of the first tile with a beam, in the band */     \
+    uint  across;         /* tiles with beams in a row */                                         \
+    uint  rays;           /* of each pixel */                                                     \
+    uint  filters;        /* 1: neighbours share what their rays find (shared.glsl) */            \
+    float most_radiance;  /* of a ray: more is clamped */                                         \
+    uint  no_background;  /* 1: where nothing is hit there is no light */                         \
+    uint  limits;         /* where depths of pixels begin in the inputs (limit.comp) */
 
 /* What the kernels count, and what next_dispatch.comp says of the next dispatch. */
 #define COUNTER_MEMBERS                                                                            \
@@ -147,7 +155,8 @@ static_assert(sizeof(PointWorkBlock) == 8, "std430");
     uint of_march_group[GROUP_LISTS]; /* pixels that hit something, by march group */              \
     uint groups[3];                   /* workgroups of the next dispatch */                        \
     uint stopped;                     /* the dispatch at which the chain stopped; 0: none */       \
-    uint ran[MOST_CHAINED];           /* workgroups that each dispatch had */
+    uint ran[MOST_CHAINED];           /* workgroups that each dispatch had */                      \
+    uint clamped;                     /* rays whose light was clamped */
 
 /* buffer ControlBlock, std430: the counters follow these members. */
 struct Control {
@@ -156,16 +165,16 @@ struct Control {
 
 /* Indices of some words of the control block, for next_dispatch.comp. */
 CONSTANT(ITEMS_WORD, 10);
-CONSTANT(GROUPS_WORD, 42);
-CONSTANT(STOPPED_WORD, 45);
-CONSTANT(RAN_WORD, 46);
+CONSTANT(GROUPS_WORD, 45);
+CONSTANT(STOPPED_WORD, 48);
+CONSTANT(RAN_WORD, 49);
 
 #ifdef __STDC_VERSION__
 typedef struct ControlBlock {
     CONTROL_MEMBERS
     COUNTER_MEMBERS
 } ControlBlock;
-static_assert(sizeof(ControlBlock) == (22 + 24 + MOST_CHAINED) * sizeof(uint32_t), "std430");
+static_assert(sizeof(ControlBlock) == (25 + 25 + MOST_CHAINED) * sizeof(uint32_t), "std430");
 static_assert(sizeof(struct Control) == offsetof(ControlBlock, queued), "the host's part");
 #endif
 

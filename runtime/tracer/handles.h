@@ -21,10 +21,12 @@ typedef enum PixelKernel {
     PIXEL_KERNELS
 } PixelKernel;
 
-/* Where the rays of pixels come from.  Each kind has its own kernels. */
+/* Where the rays of pixels come from.  Each kind has its own kernels.  Those of a kind of camera
+   serve the kinds of cameras before it as well. */
 typedef enum RayKind {
     RAYS_OF_CAMERAS,   /* perspective or orthographic */
     RAYS_OF_PANORAMAS, /* and all other cameras of a scene with a panorama */
+    RAYS_OF_LENSES,    /* cameras with an aperture, a shift or two eyes */
     RAYS_OF_LISTS,     /* given by the caller */
     RAYS_OF_PATHS,     /* from where a path was scattered */
     RAY_KINDS
@@ -49,6 +51,7 @@ struct KrsRenderer {
     VkPipelineLayout      layout;       /* shared by all kernels */
     /* Those for RAYS_OF_CAMERAS are made at once, the others when they are needed. */
     Kernel pixels[RAY_KINDS][PIXEL_KERNELS];
+    Kernel limits[RAY_KINDS];     /* limit.comp, made when it is needed */
     Kernel escapes[RAY_KINDS];    /* escape.comp, made when paths are traced */
     Kernel next_dispatch;         /* on graphics cards only (dispatch.c), */
     Kernel clear_shared;          /* and likewise */

@@ -32,6 +32,7 @@ bool job_has_beams(const Job *job)
 {
     const uint32_t least = MOST_BEAM_STEPS / 2;
     return !job->options.no_beams && !job->rays && job->view.camera.projection != KRS_PANORAMA &&
+           job->view.camera.aperture == 0 && /* else the rays of a tile do not meet in the eye */
            rendering_steps_within(job->rendering, least) == least;
 }
 
@@ -78,19 +79,19 @@ static bool begins_outside(const Job *job, KrsFrame *frame)
 {
     const KrsProgram *program   = job->rendering->program;
     const KrsCamera  *camera    = &job->view.camera;
-    double            clearance = 0;
+    double            clearance = 0, reach = camera->aperture + fabs(camera->eyes);
     if (job->rays)
         return false;
     if (camera->projection != KRS_ORTHOGRAPHIC)
         return krs_distance(frame, (const double(*)[3]) & camera->eye, 1, &clearance) == KRS_OK &&
-               clearance > 0;
+               clearance > reach;
     for (int corner = 0; corner < 8; corner++) {
         double ahead = 0;
         for (int i = 0; i < 3; i++) {
             double side = corner >> i & 1 ? program->high[i] : program->low[i];
             ahead += (side - camera->eye[i]) * (camera->target[i] - camera->eye[i]);
         }
-        if (!(ahead > 0))
+        if (!(ahead > 0)) /* a lens lies across the view */
             return false;
     }
     return true;
@@ -110,8 +111,8 @@ static bool prepare_frame_block(Job *job)
     }
     view.fog.base -= job->rebase_origin[1];
     if (!view_prepare(&view, low, high, job->options.width, job->options.height, &job->frame))
-        return job_refuse(job, "the camera sees nothing: its eye is at its target, or its angle or"
-                               " height is not one");
+        return job_refuse(job, "the camera sees nothing: its eye is at its target, its focus behind"
+                               " it, or its angle, height or aperture is not one");
     if (job->rays && job->rays->farthest > 0)
         job->frame.farthest = (float)fmin(job->rays->farthest, (double)job->frame.farthest);
     job->frame.error        = (float)job->options.error;
@@ -122,17 +123,35 @@ static bool prepare_frame_block(Job *job)
 
 static RayKind kind_of_rays(const Job *job)
 {
+    const KrsCamera *camera = &job->view.camera;
+    bool lens = camera->aperture > 0 || camera->shift[0] != 0 || camera->shift[1] != 0 ||
+                job->options.eye != KRS_EYE_OF_BOTH;
     return job->rays                                     ? RAYS_OF_LISTS
+           : lens                                        ? RAYS_OF_LENSES
            : job->view.camera.projection == KRS_PANORAMA ? RAYS_OF_PANORAMAS
                                                          : RAYS_OF_CAMERAS;
+}
+
+/* Where one light is asked for, the sky is black. */
+static bool choose_light(Job *job)
+{
+    const uint32_t light = job->options.light;
+    if (light != 0) {
+        job->view.sky = (KrsSky){.zenith = {0}};
+        memset(job->view.fog.color, 0, sizeof job->view.fog.color);
+    }
+    return light == KRS_NO_LIGHT || light <= job->view.light_count;
 }
 
 bool job_read_frame(Job *job, KrsFrame *frame, const KrsCamera *camera)
 {
     if (krs_frame_view(frame, camera || job->rays ? 0 : job->options.camera, &job->view) != KRS_OK)
         return job_refuse(job, "the scene has no such camera");
+    if (!choose_light(job))
+        return job_refuse(job, "the scene has no such light");
     if (camera)
         job->view.camera = *camera;
+    view_choose_eye(&job->view.camera, job->options.eye, job->options.width, job->options.height);
     if (job->rays && !view_of_rays(job->rays, (size_t)job->options.width * job->options.height,
                                    &job->view.camera))
         return job_refuse(job, "rays have finite origins, directions that are not 0, and a width "

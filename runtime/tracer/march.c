@@ -7,6 +7,7 @@
 
 #include "runtime/tracer/dispatch.h"
 #include "runtime/tracer/methods.h"
+#include "runtime/tracer/pixel_filter.h"
 #include "runtime/tracer/view.h"
 
 #define MOST_PASS_STEPS 2048 /* the steps of a pass double up to this */
@@ -198,7 +199,8 @@ static void choose_window(Job *job, const March *march)
     FrameBlock *frame = job->rendering->frame.bytes;
     if (march->boxed)
         view_place_box(&job->view, march->low, march->high, frame);
-    job->window = march->windowed ? view_window(frame, &job->view.camera)
+    job->window = march->windowed ? view_window(frame, &job->view.camera,
+                                                pixel_filter_reach(job->options.pixel_filter))
                                   : (KrsWindow){0, 0, job->options.width, job->options.height};
 }
 

@@ -9,6 +9,7 @@
 #include "runtime/tracer/dispatch.h"
 #include "runtime/tracer/march.h"
 #include "runtime/tracer/methods.h"
+#include "runtime/tracer/pixel_filter.h"
 
 /* ---- making a plan ---- */
 
@@ -169,8 +170,9 @@ static size_t count_together(const Plan *plan, size_t first)
 
 /* The position of ray `index` within its pixel.  Ray 0 goes through the centre.  The others follow
    the R2 sequence: multiples of the powers of the plastic number, modulo 1.  It fills the pixel
-   evenly, however many rays there are.  The seed moves all of them but ray 0. */
-static void place_ray(uint32_t index, uint64_t seed, float offset[2])
+   evenly, however many rays there are.  The seed moves all of them but ray 0.  The filter spreads
+   them by its weight. */
+static void place_ray(uint32_t index, uint64_t seed, KrsPixelFilter filter, float offset[2])
 {
     static const double increment[2] = {0.75487766624669276, 0.56984029099805327};
     for (int i = 0; i < 2; i++) {
@@ -180,8 +182,14 @@ static void place_ray(uint32_t index, uint64_t seed, float offset[2])
         hash ^= hash >> 31;
         double moved = seed && index ? (double)(hash >> 11) / 9007199254740992.0 : 0;
         double place = 0.5 + increment[i] * index + moved;
-        offset[i]    = (float)(place - floor(place));
+        offset[i]    = (float)pixel_filter_place(filter, place - floor(place));
     }
+}
+
+/* Rays of a list are those of their own pixels: there is nothing to place. */
+static KrsPixelFilter filter_of(const Job *job)
+{
+    return job->rays ? KRS_PIXEL_FILTER_BOX : job->options.pixel_filter;
 }
 
 /* Writes to the control block what all passes of this ray need, and empties the lists. */
@@ -191,6 +199,7 @@ static void begin_ray(Job *job, const Plan *plan, uint32_t index)
     control->ray            = index;
     control->rays           = job->options.samples;
     control->first_ray      = index == 0;
+    control->rows           = index == 0 ? job->first_rows : job->later_rows;
     control->by_march_group = plan->by_march_group;
     control->hit_count = control->sparse = control->quarters = 0;
     memset(control->of_march_group, 0, sizeof control->of_march_group);
@@ -200,7 +209,7 @@ bool plan_run(Job *job, const Plan *plan, WorkBlock *work, uint32_t index)
 {
     const double whole = job->progress_share, start = job->progress_done;
     double       done = 0;
-    place_ray(index, job->options.seed, work->offset);
+    place_ray(index, job->options.seed, filter_of(job), work->offset);
     begin_ray(job, plan, index);
     for (size_t i = 0, count; i < plan->count; i += count) {
         double weight = 0;

@@ -14,6 +14,7 @@
 
 #include "runtime/tracer/kernels.h"
 #include "runtime/tracer/methods.h"
+#include "runtime/tracer/renderer.h"
 
 /* The distance from the eye to the box of a group. */
 static double distance_to(const Job *job, const KrsMarchGroup *march_group)
@@ -154,6 +155,21 @@ March primary_march_of_paths(const Job *job, Kernel *kernel)
     return march;
 }
 
+/* Where the caller has depths, hits behind them are none. */
+static bool add_limit(Job *job, Plan *plan)
+{
+    KrsRendering *r = job->rendering;
+    if (!job->options.depth)
+        return true;
+    const Kernel *kernel = renderer_limit(r->renderer, r->rays, &r->spirv_ms, &r->pipeline_ms);
+    plan_add(plan, (Pass){.kind   = PASS_ITEMS,
+                          .phase  = KRS_PHASE_RESOLVE,
+                          .kernel = kernel,
+                          .in     = LIST_OF_BAND,
+                          .out    = NO_LIST});
+    return kernel != NULL;
+}
+
 bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary)
 {
     KrsRendering *r             = job->rendering;
@@ -166,8 +182,9 @@ bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary)
         job->options.trace = KRS_TRACE_PLAIN;
     if (per_component || job_has_beams(job))
         plan_add(plan, (Pass){.kind = PASS_CLEAR, .phase = KRS_PHASE_BEAMS});
-    return per_component ? add_groups(job, plan, weight, primary)
-                         : find_normals(job, primary) && add_whole(job, plan, weight);
+    bool added = per_component ? add_groups(job, plan, weight, primary)
+                               : find_normals(job, primary) && add_whole(job, plan, weight);
+    return added && add_limit(job, plan);
 }
 
 void primary_add_normals(Plan *plan, float weight, const Primary *primary)

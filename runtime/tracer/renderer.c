@@ -23,9 +23,18 @@ KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
 static const char *const ray_defines[RAY_KINDS][2] = {
     [RAYS_OF_CAMERAS]   = {NO_TEXELS, NULL},
     [RAYS_OF_PANORAMAS] = {PANORAMIC NO_TEXELS, PANORAMIC},
+    [RAYS_OF_LENSES]    = {LENS NO_TEXELS, LENS},
     [RAYS_OF_LISTS]     = {LISTED_RAYS NO_TEXELS, LISTED_RAYS},
     [RAYS_OF_PATHS]     = {PATH_RAYS NO_TEXELS, PATH_RAYS},
 };
+
+/* A kernel without a scene, for rays of a kind. */
+static KernelRequest request_kernel(KrsRenderer *renderer, Kernel *kernel, const char *file,
+                                    RayKind kind)
+{
+    return (KernelRequest){kernel,
+                           {.file = file, .defines = ray_defines[kind][renderer->gpu.texels]}};
+}
 
 static void request_pixels(KrsRenderer *renderer, RayKind kind, KernelRequest *requests)
 {
@@ -35,9 +44,7 @@ static void request_pixels(KrsRenderer *renderer, RayKind kind, KernelRequest *r
         [PIXELS_OCCLUSION] = "occlusion.comp",
     };
     for (int i = 0; i < PIXEL_KERNELS; i++)
-        requests[i] = (KernelRequest){
-            &renderer->pixels[kind][i],
-            {.file = files[i], .defines = ray_defines[kind][renderer->gpu.texels]}};
+        requests[i] = request_kernel(renderer, &renderer->pixels[kind][i], files[i], kind);
 }
 
 KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
@@ -74,11 +81,12 @@ void krs_renderer_free(KrsRenderer *renderer)
     Gpu *gpu = &renderer->gpu;
     if (gpu->device) {
         gpu_wait(gpu);
-        for (int kind = 0; kind < RAY_KINDS; kind++)
+        for (int kind = 0; kind < RAY_KINDS; kind++) {
             for (int i = 0; i < PIXEL_KERNELS; i++)
                 kernel_destroy(gpu, &renderer->pixels[kind][i]);
-        for (int kind = 0; kind < RAY_KINDS; kind++)
+            kernel_destroy(gpu, &renderer->limits[kind]);
             kernel_destroy(gpu, &renderer->escapes[kind]);
+        }
         kernel_destroy(gpu, &renderer->next_dispatch);
         kernel_destroy(gpu, &renderer->clear_shared);
         layouts_destroy(renderer);
@@ -130,4 +138,14 @@ bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_
                 {.file = "escape.comp", .defines = ray_defines[kinds[i]][renderer->gpu.texels]}};
     return count == 0 ||
            kernels_make(renderer, VK_NULL_HANDLE, requests, count, spirv_ms, pipeline_ms);
+}
+
+const Kernel *renderer_limit(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
+                             double *pipeline_ms)
+{
+    Kernel       *kernel  = &renderer->limits[kind];
+    KernelRequest request = request_kernel(renderer, kernel, "limit.comp", kind);
+    bool          made    = kernel->pipeline ||
+                kernels_make(renderer, VK_NULL_HANDLE, &request, 1, spirv_ms, pipeline_ms);
+    return made ? kernel : NULL;
 }

@@ -13,6 +13,9 @@ bool renderer_create_pixels(KrsRenderer *renderer, RayKind kind, double *spirv_m
 /* Likewise the kernels of escape.comp for a kind of primary rays, and for paths. */
 bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
                              double *pipeline_ms);
+/* The kernel that ends rays at given depths, for rays of a kind; NULL with the failure noted. */
+const Kernel *renderer_limit(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
+                             double *pipeline_ms);
 /* Clears the status and the message of the last failure. */
 void renderer_clear(KrsRenderer *renderer);
 

@@ -129,7 +129,9 @@ static void set_scene(KrsRendering *rendering, const KrsScene *scene)
 {
     rendering->scene      = scene;
     rendering->program    = krs_scene_program(scene);
-    rendering->scene_rays = krs_scene_is_panoramic(scene) ? RAYS_OF_PANORAMAS : RAYS_OF_CAMERAS;
+    rendering->scene_rays = krs_scene_has_lens(scene)       ? RAYS_OF_LENSES
+                            : krs_scene_is_panoramic(scene) ? RAYS_OF_PANORAMAS
+                                                            : RAYS_OF_CAMERAS;
     rendering->rays       = rendering->scene_rays;
 }
 
@@ -289,13 +291,14 @@ static double radius_of(const KrsLight *light)
 }
 
 bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count,
-                          const double rebase_origin[3], size_t rays)
+                          uint32_t only, const double rebase_origin[3], size_t rays)
 {
     if (!make_room(rendering, count, rays))
         return false;
     LightBlock *blocks = lights_of(rendering);
     for (size_t i = 0; i < count; i++) {
-        const KrsLight *light = &lights[i];
+        const KrsLight *light  = &lights[i];
+        const bool      shines = only == 0 || only == i + 1;
         aim_light(light, &blocks[i]);
         blocks[i].kind = (light->positional ? LIGHT_POSITIONAL : 0) |
                          (light->shadow ? LIGHT_CASTS_SHADOWS : 0) |
@@ -304,7 +307,7 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
         for (int k = 0; k < 3; k++) {
             blocks[i].vector[k] = (float)(light->vector[k] -
                                           (light->positional ? rebase_origin[k] : 0));
-            blocks[i].color[k]  = (float)light->color[k];
+            blocks[i].color[k]  = shines ? (float)light->color[k] : 0;
         }
     }
     return true;
@@ -375,7 +378,7 @@ bool rendering_rebase(KrsRendering *rendering, KrsFrame *frame, const double reb
 
 bool rendering_set_rays(KrsRendering *rendering, RayKind kind)
 {
-    if (kind == RAYS_OF_CAMERAS || kind == rendering->rays)
+    if (kind <= rendering->rays)
         return true;
     rendering->rays = kind;
     return renderer_create_pixels(rendering->renderer, kind, &rendering->spirv_ms,

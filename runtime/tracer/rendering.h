@@ -10,15 +10,15 @@
    for the scene's own cameras. */
 bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame);
 /* Chooses the kernels for rays of another kind; call it after rendering_set_parameters.  Kernels of
-   a scene with a panorama serve all of its cameras. */
+   a scene with a panorama or a lens serve all of its cameras. */
 bool rendering_set_rays(KrsRendering *rendering, RayKind kind);
 /* Makes points relative to this origin, and chooses the kernels for that; call it after
    rendering_set_parameters. */
 bool rendering_rebase(KrsRendering *rendering, KrsFrame *frame, const double rebase_origin[3]);
 /* Copies the lights of a frame to the device, relative to an origin, and makes room for `rays`
-   listed rays behind them. */
+   listed rays behind them.  `light` is as in KrsRenderOptions: others are black. */
 bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count,
-                          const double rebase_origin[3], size_t rays);
+                          uint32_t light, const double rebase_origin[3], size_t rays);
 /* The listed rays, which lie behind `lights` lights. */
 ListedRayBlock *rendering_listed_rays(KrsRendering *rendering, size_t lights);
 /* A stride that visits all numbers in [0, count), far apart each time.  Neighbouring workgroups

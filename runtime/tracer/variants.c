@@ -71,10 +71,10 @@ static void want_distance_to_march(KernelVariant *to)
     want(to, lod ? KRS_FUNCTION_DISTANCE_LOD : KRS_FUNCTION_DISTANCE);
 }
 
-/* The rays of panoramas need sines, in all kernels that include frame.glsl. */
+/* The rays of panoramas and lenses need sines, in all kernels that include frame.glsl. */
 static void want_rays(KernelVariant *to, const KrsRendering *rendering)
 {
-    if (rendering->rays == RAYS_OF_PANORAMAS)
+    if (rendering->rays == RAYS_OF_PANORAMAS || rendering->rays == RAYS_OF_LENSES)
         want(to, KRS_FUNCTION_SINES);
 }
 
@@ -87,10 +87,8 @@ static KernelVariant begin_variant(const KrsRendering *rendering, KrsTrace trace
                                    KrsSchedule schedule)
 {
     static const char *const ray_defines[RAY_KINDS] = {
-        [RAYS_OF_CAMERAS]   = "",
-        [RAYS_OF_PANORAMAS] = PANORAMIC,
-        [RAYS_OF_LISTS]     = LISTED_RAYS,
-        [RAYS_OF_PATHS]     = PATH_RAYS,
+        [RAYS_OF_CAMERAS] = "",        [RAYS_OF_PANORAMAS] = PANORAMIC, [RAYS_OF_LENSES] = LENS,
+        [RAYS_OF_LISTS] = LISTED_RAYS, [RAYS_OF_PATHS] = PATH_RAYS,
     };
     const Gpu    *gpu             = &rendering->renderer->gpu;
     bool          camera_relative = rendering->camera_relative;

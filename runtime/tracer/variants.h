@@ -16,6 +16,8 @@ typedef struct KernelVariant {
 #define NO_TEXELS "#define NO_TEXELS\n" /* see Gpu.texels */
 /* Only scenes with a panorama have kernels for its rays, which cost more. */
 #define PANORAMIC "#define PANORAMIC\n"
+/* Cameras have an aperture, a shift or two eyes. */
+#define LENS "#define PANORAMIC\n#define LENS\n"
 /* Rays come from a list (frame.glsl). */
 #define LISTED_RAYS "#define LISTED_RAYS\n"
 /* Rays are those of paths that have begun (frame.glsl). */

@@ -62,6 +62,9 @@ static bool camera_is_valid(const KrsCamera *camera)
     for (int i = 0; i < 3; i++)
         if (!isfinite(camera->eye[i]) || !isfinite(camera->target[i]) || !isfinite(camera->up[i]))
             return false;
+    if (!(camera->aperture >= 0) || !isfinite(camera->aperture) || !(camera->focus >= 0) ||
+        !isfinite(camera->shift[0]) || !isfinite(camera->shift[1]) || !isfinite(camera->eyes))
+        return false;
     if (camera->projection == KRS_PERSPECTIVE)
         return camera->fov > 0 && camera->fov < PI;
     if (camera->projection == KRS_ORTHOGRAPHIC)
@@ -140,12 +143,13 @@ static bool project(const FrameBlock *block, const double point[3], bool perspec
     return !perspective || ahead > 1e-3 * length;
 }
 
-KrsWindow view_window(const FrameBlock *block, const KrsCamera *camera)
+KrsWindow view_window(const FrameBlock *block, const KrsCamera *camera, double reach)
 {
     const double size[2] = {block->size[0], block->size[1]};
     double       low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
-    bool         known  = camera->projection != KRS_PANORAMA;
-    bool         widens = camera->projection == KRS_PERSPECTIVE;
+    bool         known = camera->projection != KRS_PANORAMA && camera->aperture == 0 &&
+                 camera->shift[0] == 0 && camera->shift[1] == 0;
+    bool widens = camera->projection == KRS_PERSPECTIVE;
     for (int corner = 0; corner < 8; corner++) {
         double point[3], image_point[2];
         for (int i = 0; i < 3; i++)
@@ -156,11 +160,12 @@ KrsWindow view_window(const FrameBlock *block, const KrsCamera *camera)
             high[i] = fmax(high[i], image_point[i]);
         }
     }
-    double from[2] = {0.5 * (1 + low[0]), 0.5 * (1 - high[1])};
-    double to[2]   = {0.5 * (1 + high[0]), 0.5 * (1 - low[1])};
-    for (int i = 0; i < 2; i++) { /* one pixel larger, for rounding */
-        from[i] = known ? fmin(fmax(floor(from[i] * size[i]) - 1, 0), size[i]) : 0;
-        to[i]   = known ? fmin(fmax(ceil(to[i] * size[i]) + 1, from[i]), size[i]) : size[i];
+    double       from[2] = {0.5 * (1 + low[0]), 0.5 * (1 - high[1])};
+    double       to[2]   = {0.5 * (1 + high[0]), 0.5 * (1 - low[1])};
+    const double margin  = 1 + ceil(reach - 0.5); /* a pixel for rounding, and what is beside it */
+    for (int i = 0; i < 2; i++) {
+        from[i] = known ? fmin(fmax(floor(from[i] * size[i]) - margin, 0), size[i]) : 0;
+        to[i]   = known ? fmin(fmax(ceil(to[i] * size[i]) + margin, from[i]), size[i]) : size[i];
     }
     return (KrsWindow){(uint32_t)from[0], (uint32_t)from[1], (uint32_t)(to[0] - from[0]),
                        (uint32_t)(to[1] - from[1])};
@@ -203,6 +208,52 @@ double view_pixel(const KrsCamera *camera, uint32_t height, double distance)
     return 2 * extent[1] / height * distance;
 }
 
+static double focus_of(const KrsCamera *camera, const Basis *basis)
+{
+    return camera->focus > 0 ? camera->focus : basis->distance;
+}
+
+double view_eyes(const KrsCamera *camera)
+{
+    Basis basis;
+    if (camera->eyes != 0 || !camera_basis(camera, &basis))
+        return camera->eyes;
+    return focus_of(camera, &basis) / 30;
+}
+
+void view_choose_eye(KrsCamera *camera, KrsEye eye, uint32_t width, uint32_t height)
+{
+    const double half = eye == KRS_EYE_OF_BOTH   ? 0
+                        : eye == KRS_EYE_ON_LEFT ? -0.5 * view_eyes(camera)
+                                                 : 0.5 * view_eyes(camera);
+    Basis        basis;
+    double       extent[2];
+    camera->eyes = half;
+    if (half == 0 || camera->projection == KRS_PANORAMA || !camera_basis(camera, &basis))
+        return;
+    const double focus = camera->focus = focus_of(camera, &basis);
+    half_extent(camera, width, height, extent);
+    for (int i = 0; i < 3; i++) {
+        camera->eye[i] += half * basis.right[i];
+        camera->target[i] += half * basis.right[i];
+    }
+    camera->shift[0] -= 0.5 * half /
+                        (extent[0] * (camera->projection == KRS_PERSPECTIVE ? focus : 1));
+}
+
+/* Sets what kernels with a lens need. */
+static void place_lens(const KrsCamera *camera, const Basis *basis, const double extent[2],
+                       FrameBlock *block)
+{
+    for (int i = 0; i < 2; i++) {
+        block->lens[i]  = (float)(camera->aperture / extent[i]);
+        block->shift[i] = (float)(2 * camera->shift[i]);
+    }
+    block->lens[2]  = (float)(1 / focus_of(camera, basis));
+    block->lens[3]  = camera->blades >= 3 ? (float)camera->blades : 0;
+    block->shift[2] = (float)camera->eyes;
+}
+
 bool view_prepare(const KrsView *view, const double low[3], const double high[3], uint32_t width,
                   uint32_t height, FrameBlock *block)
 {
@@ -231,6 +282,7 @@ bool view_prepare(const KrsView *view, const double low[3], const double high[3]
 
     block->pixel_base  = (float)view_pixel(camera, height, 0);
     block->pixel_slope = (float)(view_pixel(camera, height, 1) - view_pixel(camera, height, 0));
+    place_lens(camera, &basis, extent, block);
     view_place_box(view, low, high, block);
     place_ends(view, low, high, basis.distance, block);
     return isfinite(block->farthest);
@@ -289,8 +341,9 @@ void view_matrices(const KrsCamera *camera, uint32_t width, uint32_t height, Krs
         const bool    perspective = camera->projection == KRS_PERSPECTIVE;
         for (int column = 0; column < 4; column++)
             picture->world_to_camera[row][column] = (float)from[column];
-        picture->world_to_ndc[row][0] = (float)(from[0] / extent[0]);
-        picture->world_to_ndc[row][1] = (float)(from[1] / extent[1]);
+        for (int i = 0; i < 2; i++)
+            picture->world_to_ndc[row][i] =
+                (float)(from[i] / extent[i] - 2 * camera->shift[i] * from[perspective ? 2 : 3]);
         picture->world_to_ndc[row][2] = (float)(perspective ? from[2] - NDC_NEAR * from[3]
                                                             : from[2]);
         picture->world_to_ndc[row][3] = (float)(perspective ? from[2] : from[3]);

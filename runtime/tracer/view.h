@@ -13,6 +13,13 @@
 bool view_prepare(const KrsView *view, const double low[3], const double high[3], uint32_t width,
                   uint32_t height, FrameBlock *block);
 
+/* The distance of a camera's two eyes. */
+double view_eyes(const KrsCamera *camera);
+/* Moves a camera to one of its two eyes.  Both see what is in focus at the same place of the
+   picture.  The eye of a panorama looks a different way with each column, so it is left to
+   view_prepare, by `eyes`: then this is half of their distance to the right. */
+void view_choose_eye(KrsCamera *camera, KrsEye eye, uint32_t width, uint32_t height);
+
 /* The width of a pixel in the middle of the picture, at a distance from the eye. */
 double view_pixel(const KrsCamera *camera, uint32_t height, double distance);
 
@@ -21,8 +28,9 @@ double view_pixel(const KrsCamera *camera, uint32_t height, double distance);
 void view_place_box(const KrsView *view, const double low[3], const double high[3],
                     FrameBlock *block);
 
-/* The pixels whose rays may meet the box of the block; for a panorama all pixels. */
-KrsWindow view_window(const FrameBlock *block, const KrsCamera *camera);
+/* The pixels whose rays may meet the box of the block, if these go up to `reach` pixels from the
+   middle of theirs; for a panorama or a lens all pixels. */
+KrsWindow view_window(const FrameBlock *block, const KrsCamera *camera, double reach);
 
 /* A camera in place of `count` rays: in the middle of the box around their origins, with that box's
    diagonal as its height.  False when a ray or its width cannot be used. */

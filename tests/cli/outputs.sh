@@ -2,7 +2,7 @@
 # outputs.sh: an output appears whole or not at all, and says why not.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 40
+plan 47
 small="--size 16x12 --quiet"
 
 # shellcheck disable=SC2086 # the options are separate words
@@ -23,6 +23,29 @@ cmp -s redirected.png same.png
 result $? "- in a file"
 "$krs" render - --size 16x12 --quiet <ball.krs >out 2>err && cmp -s stdin.png same.png
 result $? "the default outputs of standard input"
+# Raw frames are the pixels of the PNGs, one after the other.
+"$krs" render ball.krs --size 16x12 --quiet --frames 1..3 --raw >raw 2>err &&
+    [ "$(wc -c <raw)" = $((3 * 16 * 12 * 3)) ]
+result $? "raw frames have three bytes a pixel"
+if command -v pngtopnm >/dev/null; then
+    pngtopnm same.png | tail -c $((16 * 12 * 3)) | cmp -s - raw -n $((16 * 12 * 3))
+    result $? "raw frames are what a PNG shows"
+else
+    result 0 "raw frames are what a PNG shows # SKIP there is no pngtopnm"
+fi
+"$krs" render ball.krs --size 640x480 --quiet --frames 1..9 --raw 2>err | head -c 10 >/dev/null
+grep -q "cannot write to standard output: Broken pipe" err
+result $? "an encoder that ends early is told of"
+picture --raw --stats json
+said 2 "--raw would go to where --stats goes" "raw frames and statistics on standard output"
+picture --raw -o -
+said 2 "both go to standard output" "raw frames and a picture on standard output"
+printf kept >skip-2.png
+run render ball.krs --size 16x12 --frames 1..3 --skip-existing -o 'skip-%d.png'
+[ "$status" -eq 0 ] && [ "$(cat skip-2.png)" = kept ] && [ -s skip-1.png ] && [ -s skip-3.png ]
+result $? "a frame that is there is left out"
+grep -qF "left out 1 frame whose files are there" err
+result $? "what is left out is said"
 picture -o - --stats json
 said 2 "the picture would go to where --stats goes" "a picture and statistics on standard output"
 picture -o a.exr -o a.png

@@ -2,7 +2,7 @@
 # pictures.sh: what is in the files that `krs render` writes.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 21
+plan 24
 "${CC:-cc}" -std=c17 -D_GNU_SOURCE -o exr_text "$root/tests/cli/exr_text.c" -lOpenEXRCore-3_1 ||
     exit 1
 
@@ -56,6 +56,18 @@ result $? "a param changes the picture"
 picture --camera side -o side.exr
 near "$(pixel side.exr P.X 20 16)" 1
 result $? "another camera"
+
+picture --stereo side-by-side -o pair.exr
+[ "$(./exr_text pair.exr A | sort -n -k2 | tail -n 1 | cut -d' ' -f2)" = 81 ] &&
+    [ "$(./exr_text pair.exr A | cut -d' ' -f3 | sort -n | tail -n 1)" = 32 ]
+result $? "two eyes are twice as wide"
+picture --stereo over-under -o pair.exr -o pair.png
+[ "$(./exr_text pair.exr A | cut -d' ' -f3 | sort -n | tail -n 1)" = 65 ]
+result $? "or twice as high"
+picture --white-balance 3200 --tone-map none -o warm.png && picture --tone-map none -o plain.png &&
+    picture --white-balance 6504,9.6 --pixel-filter gaussian --tone-map none -o day.png
+! cmp -s warm.png plain.png
+result $? "white balance changes a PNG"
 
 picture --aov none -o none.exr
 [ "$(channels none.exr)" = "A B G R " ]

@@ -95,6 +95,129 @@ static void aces_is_its_definition(void **state)
     }
 }
 
+/* The sigmoid of AgX as its author defines it: a line of slope 2 through (10 / 16.5, 1 / 2), bent by
+   powers at both ends so that it meets (0, 0) and (1, 1). */
+static double agx_sigmoid(double x)
+{
+    const double pivot = 10 / 16.5, slope = 2, power = x < pivot ? 3 : 3.25;
+    const double room  = x < pivot ? pivot : 1 - pivot;
+    const double scale = pow(pow(slope * room, -power) * (pow(slope * room / 0.5, power) - 1),
+                             -1 / power);
+    const double term  = slope * fabs(x - pivot) / scale;
+    return 0.5 + (x < pivot ? -1 : 1) * scale * term / pow(1 + pow(term, power), 1 / power);
+}
+
+static void agx_is_its_definition(void **state)
+{
+    (void)state;
+    /* A grey goes through the matrices as it is.  The fit is within 0.006 of the sigmoid. */
+    for (double v = 1e-3; v < 20; v *= 1.3) {
+        double x = (log2(v) + 12.47393) / 16.499999;
+        assert_near(pow(grey(TONE_AGX, v), 1 / 2.2), fmin(agx_sigmoid(x), 1), 0.0065);
+    }
+    assert_near(agx_sigmoid(0), 0, 1e-12);
+    assert_near(agx_sigmoid(1), 1, 1e-12);
+}
+
+/* What other programs show: the curves as three.js r170 and the specification of Khronos have them,
+   computed by a script of their own. */
+static void curves_are_those_of_others(void **state)
+{
+    (void)state;
+    static const double colors[][3] = {{0.18, 0.18, 0.18}, {1, 1, 1},    {0.8, 0.1, 0.05},
+                                       {0.02, 0.3, 4},     {20, 5, 0.5}, {0.05, 0.6, 0.1}};
+    static const struct {
+        ToneMap map;
+        double  shown[6][3];
+    } known[] = {
+        {TONE_AGX,
+         {{0.21455, 0.2145, 0.2145},
+          {0.59023, 0.59014, 0.5901},
+          {0.60762, 0.17716, 0.11252},
+          {0.28081, 0.50596, 0.9864},
+          {1, 0.90588, 0.77171},
+          {0.18, 0.45732, 0.16849}}},
+        {TONE_NEUTRAL,
+         {{0.14, 0.14, 0.14},
+          {0.86909, 0.86909, 0.86909},
+          {0.7655, 0.06563, 0.01564},
+          {0.30555, 0.35323, 0.98336},
+          {0.99704, 0.80214, 0.74367},
+          {0.01562, 0.56562, 0.06563}}},
+        {TONE_ACES,
+         {{0.10559, 0.10559, 0.10559},
+          {0.61912, 0.61912, 0.61911},
+          {0.57238, 0.05164, 0.02339},
+          {0.16214, 0.24371, 0.93879},
+          {1, 0.94292, 0.74775},
+          {0.04221, 0.43522, 0.06998}}},
+    };
+    for (size_t k = 0; k < sizeof known / sizeof known[0]; k++)
+        for (int c = 0; c < 6; c++) {
+            double out[3];
+            tone_map_apply(known[k].map, colors[c], out);
+            for (int i = 0; i < 3; i++) /* they round the matrices to four digits */
+                assert_near(out[i], known[k].shown[c][i], known[k].map == TONE_AGX ? 3e-4 : 1e-5);
+        }
+}
+
+/* ---- white balance ---- */
+
+static void balance(WhiteBalance by, const double rgb[3], double out[3])
+{
+    const ColorMatrix matrix = white_balance_matrix(by);
+    for (int i = 0; i < 3; i++)
+        out[i] = matrix.m[i][0] * rgb[0] + matrix.m[i][1] * rgb[1] + matrix.m[i][2] * rgb[2];
+}
+
+/* x, y of black bodies (CIE 1931), as tables have them; 2856 kelvins are illuminant A. */
+static const double black_bodies[][3] = {{2000, 0.52669, 0.41331}, {2500, 0.47701, 0.41368},
+                                         {2856, 0.44757, 0.40745}, {3000, 0.43693, 0.40407},
+                                         {4000, 0.38045, 0.37675}, {5000, 0.34510, 0.35161},
+                                         {6500, 0.31352, 0.32363}, {10000, 0.28063, 0.28828}};
+
+/* The linear Rec.709 colour of light of that x and y. */
+static void color_of(const double xy[2], double rgb[3])
+{
+    static const double rgb_of_xyz[3][3] = {{3.2404542, -1.5371385, -0.4985314},
+                                            {-0.9692660, 1.8760108, 0.0415560},
+                                            {0.0556434, -0.2040259, 1.0572252}};
+    const double        xyz[3]           = {xy[0] / xy[1], 1, (1 - xy[0] - xy[1]) / xy[1]};
+    for (int i = 0; i < 3; i++)
+        rgb[i] = rgb_of_xyz[i][0] * xyz[0] + rgb_of_xyz[i][1] * xyz[1] + rgb_of_xyz[i][2] * xyz[2];
+}
+
+static void balanced_light_is_white(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof black_bodies / sizeof black_bodies[0]; i++) {
+        const double *row = black_bodies[i];
+        double        light[3], out[3], before[3];
+        color_of(&row[1], light);
+        balance((WhiteBalance){row[0], 0}, light, out);
+        for (int k = 0; k < 3; k++) /* the locus is known within 0.0004 */
+            assert_near(out[k], 1, 0.008);
+        balance((WhiteBalance){1.1 * row[0], 0}, light,
+                before); /* too cold a white leaves it warm */
+        assert_true(before[0] / before[2] > 1.02);
+    }
+}
+
+static void daylight_stays(void **state)
+{
+    (void)state;
+    const double color[3] = {0.2, 0.5, 0.7};
+    double       out[3], green[3];
+    balance((WhiteBalance){6504, 9.6}, color, out);
+    for (int i = 0; i < 3; i++)
+        assert_near(out[i], color[i], 2e-3);
+    balance((WhiteBalance){6504, 40}, color, green);
+    assert_true(green[1] / green[0] < 0.98 * color[1] / color[0]); /* the light was greener */
+    assert_true(green[1] / green[2] < 0.98 * color[1] / color[2]);
+    balance((WhiteBalance){0, 0}, color, out);
+    assert_memory_equal(out, color, sizeof out);
+}
+
 static void names_are_found(void **state)
 {
     (void)state;
@@ -185,8 +308,11 @@ static uint8_t defined_byte(const float color[3], DisplayOptions options, int ch
                             double y)
 {
     double light[3], shown[3];
+    double gained[3];
     for (int i = 0; i < 3; i++)
-        light[i] = pow(2, options.exposure) * color[i];
+        light[i] = gained[i] = pow(2, options.exposure) * color[i];
+    if (options.white_balance.kelvins > 0)
+        balance(options.white_balance, gained, light);
     tone_map_apply(options.tone_map, light, shown);
     double noise = 0.06711056 * (x + 47 * channel) + 0.00583715 * (y + 17 * channel);
     noise        = 52.9829189 * (noise - floor(noise));
@@ -202,8 +328,10 @@ static void bytes_are_as_defined(void **state)
     static float        color[COUNT];
     static uint8_t      rgb[COUNT];
     uint32_t            chance = 7;
-    for (int kind = 0; kind < 12; kind++) {
-        DisplayOptions options = {(ToneMap)(kind % TONE_MAP_COUNT), stops[kind / TONE_MAP_COUNT]};
+    for (int kind = 0; kind < 4 * TONE_MAP_COUNT; kind++) {
+        DisplayOptions options = {(ToneMap)(kind % TONE_MAP_COUNT),
+                                  stops[kind / TONE_MAP_COUNT],
+                                  {kind % 3 == 2 ? 3200 : 0, kind % 5}};
         for (int i = 0; i < COUNT; i++) {
             chance       = chance * 1664525 + 1013904223;
             double part  = (chance >> 8) / 16777216.0;
@@ -230,6 +358,10 @@ int main(void)
         cmocka_unit_test(curves_survive_what_is_no_colour),
         cmocka_unit_test(neutral_is_its_definition),
         cmocka_unit_test(aces_is_its_definition),
+        cmocka_unit_test(agx_is_its_definition),
+        cmocka_unit_test(curves_are_those_of_others),
+        cmocka_unit_test(balanced_light_is_white),
+        cmocka_unit_test(daylight_stays),
         cmocka_unit_test(names_are_found),
         cmocka_unit_test(dithering_keeps_the_mean),
         cmocka_unit_test(black_and_white_are_clean),

@@ -95,6 +95,9 @@ static size_t difference(const KrsPicture *a, const KrsPicture *b)
 #include "runtime/planes.def"
 #undef KRS_ARRAY
 #undef KRS_PLANE
+    for (int kind = 0; a->mattes[0] && kind < KRS_MATTE_COUNT; kind++)
+        differ += memcmp(a->mattes[kind], b->mattes[kind],
+                         pixels * KRS_MATTE_RANKS * sizeof(KrsMatte)) != 0;
     return differ;
 }
 
@@ -107,8 +110,12 @@ static void assert_same(KrsPicture *a, KrsPicture *b)
 
 /* ---- Portions ---- */
 
-static const KrsRenderOptions part = {
-    .width = WIDTH, .height = HEIGHT, .crop = {13, 9, 60, 41}, .samples = SAMPLES, .seed = 3};
+static const KrsRenderOptions part = {.width   = WIDTH,
+                                      .height  = HEIGHT,
+                                      .crop    = {13, 9, 60, 41},
+                                      .samples = SAMPLES,
+                                      .seed    = 3,
+                                      .mattes  = true};
 
 /* On devices whose bands are small, or into which the host cannot look, as well. */
 static const unsigned pretences[] = {0, KRS_PRETEND_CARD, KRS_PRETEND_LEAST_LIMITS,
@@ -140,7 +147,7 @@ static void portions_are_the_whole(void **state)
 /* Where buffers hold 4,096 pixels, this picture has dozens of bands. */
 static void bands_are_swapped(void **state)
 {
-    const KrsRenderOptions large = {.width = 300, .height = 200, .samples = 3};
+    const KrsRenderOptions large = {.width = 300, .height = 200, .samples = 3, .mattes = true};
     (void)state;
     for (size_t k = 0; k < PRETENCES; k++) {
         Stage stage;
@@ -283,6 +290,78 @@ static void cameras_are_the_callers(void **state)
     close_watched(&here);
 }
 
+/* What exceeds the limit keeps its hue, and is counted; what does not is as it was, bit by bit. */
+static void bright_rays_are_clamped(void **state)
+{
+    Stage            stage;
+    const double     most    = 0.4;
+    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT};
+    size_t           count   = 0;
+    (void)state;
+    open_as(&stage, landscape_text, 0); /* all of its light comes in one pass */
+    KrsPicture *plain     = stage_render(&stage, options);
+    options.most_radiance = most;
+    KrsPicture *clamped   = stage_render(&stage, options);
+    for (size_t k = 0; k < (size_t)WIDTH * HEIGHT; k++) {
+        const float *from = &plain->color[4 * k], *to = &clamped->color[4 * k];
+        const double bright = (double)fmaxf(fmaxf(from[0], from[1]), from[2]);
+        const bool   over   = bright > most;
+        count += over;
+        for (int i = 0; i < 3; i++)
+            assert_near((double)to[i], (over ? most / bright : 1) * (double)from[i],
+                        over ? 1e-6 : 0);
+        assert_true(to[3] == from[3]);
+    }
+    assert_in_range(count, 300, WIDTH * HEIGHT - 300);
+    assert_int_equal(clamped->stats.clamped, count);
+    assert_int_equal(plain->stats.clamped, 0);
+    krs_picture_free(plain);
+    krs_picture_free(clamped);
+    close_watched(&stage);
+}
+
+/* Depths that are a little nearer than everything leave the plate, those a little farther all. */
+static void check_limits(Stage *stage, size_t camera)
+{
+    enum { ACROSS = 60, DOWN = 40, PIXELS = ACROSS * DOWN };
+    static float     depth[PIXELS], plate[PIXELS][4];
+    const float      scales[] = {0.999f, 1.001f}, behind[4] = {1, 0.5f, 0.25f, 0.5f};
+    KrsRenderOptions options = {.width = ACROSS, .height = DOWN, .camera = camera, .samples = 1};
+    KrsPicture      *plain   = stage_render(stage, options);
+    options.depth            = depth;
+    options.plate            = (const float(*)[4])plate;
+    options.crop             = (KrsWindow){3, 5, 50, 30};
+    for (int farther = 0; farther < 2; farther++) {
+        for (int i = 0; i < PIXELS; i++) {
+            depth[i] = scales[farther] * plain->depth[i];
+            memcpy(plate[i], behind, sizeof behind);
+        }
+        KrsPicture *seen = stage_render(stage, options);
+        for (int i = 0; i < 50 * 30; i++) {
+            const int  from = (i / 50 + 5) * ACROSS + i % 50 + 3;
+            const bool hit  = farther && isfinite(plain->depth[from]);
+            assert_int_equal(seen->component[i], hit ? plain->component[from] : 0);
+            assert_true(seen->depth[i] == (hit ? plain->depth[from] : depth[from]));
+            for (int c = hit ? 3 : 0; c < 4; c++)
+                assert_true(seen->color[4 * i + c] == (hit ? 1 : behind[c]));
+        }
+        krs_picture_free(seen);
+    }
+    krs_picture_free(plain);
+}
+
+static void depths_end_rays(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < PRETENCES; k += PRETENCES - 1) {
+        Stage stage;
+        open_as(&stage, film_text, pretences[k]);
+        for (size_t camera = 0; camera < 3; camera++)
+            check_limits(&stage, camera);
+        close_watched(&stage);
+    }
+}
+
 /* ---- What is refused ---- */
 
 static bool stop(void *user, double done)
@@ -373,6 +452,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(samples_go_on, set_up, stage_tear_down),
         cmocka_unit_test_setup_teardown(frames_may_differ, set_up, stage_tear_down),
         cmocka_unit_test_setup_teardown(cameras_are_the_callers, set_up, stage_tear_down),
+        cmocka_unit_test(bright_rays_are_clamped),
+        cmocka_unit_test(depths_end_rays),
         cmocka_unit_test_setup_teardown(failures_leave_it_empty, set_up, stage_tear_down),
         cmocka_unit_test_setup_teardown(wrong_use_is_refused, set_up, stage_tear_down),
         cmocka_unit_test_setup_teardown(planes_are_chosen_when_read, set_up, stage_tear_down),
