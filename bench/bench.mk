@@ -43,6 +43,10 @@ bench-normals: $(B)/bench/normals/normals
 bench-textures: $(B)/krs
 	@bench/textures/textures.sh $(B)/krs
 
+# How fast paths of light are followed.
+bench-paths: $(B)/krs
+	@bench/paths/paths.sh $(B)/krs
+
 # Algebraic surfaces: our tracers, POV-Ray and surf where they are installed (bench/README.md).
 ALGEBRAIC := $(addprefix bench/algebraic/, algebraic.o estimates.o judge.o processes.o programs.o \
                trees.o julias.o polynomial.o)
@@ -87,5 +91,5 @@ clang-objects: $(BENCH:%.c=$(B)/%.o) $(STAGE) $(MINIFY) \
                $(B)/bench/iterations/iterations.o $(B)/bench/inverted/inverted.o \
                $(B)/bench/normals/normals.o $(ALGEBRAIC:%=$(B)/%) $(DEVICES) \
                $(B)/bench/registers/registers.o $(B)/bench/parts/parts.o
-.PHONY: bench bench-quick minify iterations inverted bench-normals bench-textures bench-algebraic check-device \
+.PHONY: bench bench-quick minify iterations inverted bench-normals bench-textures bench-paths bench-algebraic check-device \
         bench-registers bench-parts bench-large

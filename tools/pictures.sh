@@ -7,12 +7,14 @@ shift
 cd "$(dirname "$0")/.." || exit 1
 [ $# -gt 0 ] || set -- gear machined-part school rock temple grove reef palm olive fern fractals \
     lamps inversion cabinet sextic lattice town bath lighthouse \
-    chess snow-globe gasket city sign logo bolt rope mug
+    chess snow-globe gasket city sign logo bolt rope mug vase spring jewel
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 for name in "$@"; do
+    samples=16
+    [ "$name" != jewel ] || samples=256
     scene=$(ls examples/??-"$name".krs) || exit 1
     picture=docs/pictures/$name.png
-    "$build/krs" render "$scene" --quiet --size 960x540 --samples 16 -o "$work/$name.png" &&
+    "$build/krs" render "$scene" --quiet --size 960x540 --samples $samples -o "$work/$name.png" &&
         convert "$work/$name.png" -strip -ordered-dither o8x8,64 "$picture" || exit 1
     if [ "$(wc -c <"$picture")" -gt 500000 ]; then
         convert "$work/$name.png" -strip -dither Riemersma -colors 256 "$picture" || exit 1

@@ -107,14 +107,11 @@ static const struct {
      "show circle(1).scale([1, 2, 1]).extrude(1);"},
     {"a material with parameters",
      "material m(a, b = 0.5 in [0, 1]) { color: mix(a, white, p.y), roughness: b }\n"
-     "show sphere(1).paint(m(red)) | box([3, 1, 1]);",
+     "material n(a, b = 0.5 in [0, 1]) { color: mix(a, white, p.y), roughness: b }\n"
+     "show sphere(1).paint(m(red)) | box([3, 1, 1]).paint(n(mix(red, navy, x), b: 0.2));",
      "material m { color: mix(red, white, y), roughness: 0.5 }\n"
-     "show sphere(1).paint(m) | box([3, 1, 1]);"},
-    {"its arguments, which may depend on the point",
-     "material m(a, b = 0.5 in [0, 1]) { color: mix(a, white, p.y), roughness: b }\n"
-     "show sphere(1) | box([3, 1, 1]).paint(m(mix(red, navy, x), b: 0.2));",
-     "material m { color: mix(mix(red, navy, x), white, y), roughness: 0.2 }\n"
-     "show sphere(1) | box([3, 1, 1]).paint(m);"},
+     "material n { color: mix(mix(red, navy, x), white, y), roughness: 0.2 }\n"
+     "show sphere(1).paint(m) | box([3, 1, 1]).paint(n);"},
     {"a material without any", "material m() { color: red } show sphere(1).paint(m());",
      "material m { color: red } show sphere(1).paint(m);"},
     {"remarks change nothing",
