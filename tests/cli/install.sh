@@ -63,7 +63,7 @@ touch ball.vm
 if command -v bash >/dev/null; then
     [ "$(complete_line krs ren)" = render ] &&
         [ "$(complete_line krs render --sam)" = --samples ] &&
-        [ "$(complete_line krs render --tone-map a)" = aces ] &&
+        [ "$(complete_line krs render --tone-map ac)" = aces ] &&
         [ "$(complete_line krs render ba)" = ball.krs ] &&
         [ "$(complete_line krs import ba)" = ball.vm ] &&
         [ -z "$(complete_line krs devices ba)" ] &&
@@ -89,7 +89,7 @@ for command in $commands; do
 done
 [ -z "$missing" ] && [ -s options ]
 result $? "zsh and fish have each command and each option$missing"
-grep -qF ':(neutral aces none)' $zsh && grep -qF "tone-map -x -a 'neutral aces none'" $fish &&
+grep -qF ':(neutral aces agx none)' $zsh && grep -qF "tone-map -x -a 'neutral aces agx none'" $fish &&
     grep -qF '_files -g "*.jsurf *.vm ' $zsh && grep -qF '(__fish_complete_suffix .vm)' $fish &&
     grep -q '1:code:(.*E0203' $zsh && grep -q "from explain' -a '.*E0203" $fish
 result $? "and values, files and codes"
