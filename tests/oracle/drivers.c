@@ -45,7 +45,11 @@ static bool both_are_open(void)
 static KrsPicture *render_on(KrsRenderer *on, const KrsScene *scene)
 {
     KrsRenderOptions options = {
-        .width = WIDTH, .height = HEIGHT, .planes = AGREEMENT_PLANES, .samples = 1};
+        .width      = WIDTH,
+        .height     = HEIGHT,
+        .planes     = AGREEMENT_PLANES,
+        .samples    = 1,
+        .integrator = KRS_INTEGRATOR_PREVIEW}; /* the planes are those of any */
     KrsRendering *rendering;
     KrsFrame     *frame;
     KrsPicture   *picture = NULL;
