@@ -13,7 +13,7 @@ room='camera { eye: [0, 2.4, 7], target: [0, 1, 0], fov: 40deg }
 light window { position: [-3, 5, 3], target: [0, 0.5, 0], size: [2, 2], intensity: 60 }
 sky { zenith: [0.4, 0.5, 0.7], horizon: [0.8, 0.8, 0.8], ground: [0.2, 0.2, 0.2] }
 show plane().paint([0.7, 0.7, 0.7]);
-def three(shape) = union([shape.move([2.2 * i - 2.2, 1, 0]) for i in range(3)]);
+def three(part) = union([part.move([2.2 * i - 2.2, 1, 0]) for i in range(3)]);
 show three((sphere(1) - box([0.6, 3, 0.6])).rotate([1, 0, 0], 40deg)).paint(body);'
 scene() { # name, material
     echo "material body { $2 }
@@ -25,10 +25,11 @@ scene metal "color: [0.9, 0.7, 0.4], roughness: 0.2, metallic: 1"
 scene glass "color: white, roughness: 0, transmission: 1, absorption: [0.5, 0.1, 0.1]"
 sed 's/^light window.*/for i in range(30) { light { position: [0.3 * i - 4.5, 4, 3], radius: 0.1, intensity: 2 } }/' \
     "$work/diffuse.krs" >"$work/lights.krs"
-cp bench/scenes/tree.krs "$work/foliage.krs"
 
 measure() { # scene: millions of paths a second, distances of a path, seconds
-    "$krs" render "$work/$1.krs" --quiet --device cpu --integrator path --size "$size" --samples "$samples" \
+    scene=$work/$1.krs
+    [ "$1" != foliage ] || scene=$(ls examples/??-fern.krs)
+    "$krs" render "$scene" --quiet --device cpu --integrator path --size "$size" --samples "$samples" \
         --stats json -o "$work/picture.png" 2>/dev/null | tr ',{}' '\n\n\n' | awk -F: '
         /"total"/ && !total { total = $2 }
         /"rays"/ && !rays { rays = $2 }
