@@ -79,13 +79,6 @@ vec3 find_radiance(uvec2 pixel)
     return finite_or_black(through_fog(radiance, left, sky > 0.0));
 }
 
-// A bit for each pixel of a quarter that is in the band; `corner` is the quarter's first pixel.
-uint find_existing(uvec2 corner)
-{
-    uvec2 size = min(max(work.extent, corner) - corner, uvec2(4u));
-    return ((1u << size.x) - 1u) * (0x1111u & (1u << 4u * size.y) - 1u);
-}
-
 void do_item(uint quarter)
 {
     uvec2 corner = pixel_of(slot_of_quarter(quarter));

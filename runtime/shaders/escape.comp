@@ -102,13 +102,6 @@ bool follow(uvec2 pixel, uint index, inout uint unresolved)
     return hits;
 }
 
-// A bit for each pixel of a quarter that is in the band; `corner` is the quarter's first pixel.
-uint find_existing(uvec2 corner)
-{
-    uvec2 size = min(max(work.extent, corner) - corner, uvec2(4u));
-    return ((1u << size.x) - 1u) * (0x1111u & (1u << 4u * size.y) - 1u);
-}
-
 // Indices in the list are reserved for all pixels of a quarter at once (background.comp).
 void list_hits(uint first, uint hits)
 {

@@ -279,3 +279,12 @@ vec2 clip_ray(vec3 origin, vec3 direction, float farthest)
 }
 
 float largest(vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
+
+// Two directions at right angles to a third (Duff et al. 2017).
+void find_frame(vec3 axis, out vec3 right, out vec3 up)
+{
+    float side = axis.z < 0.0 ? -1.0 : 1.0;
+    float a = -1.0 / (side + axis.z), b = axis.x * axis.y * a;
+    right = vec3(1.0 + side * axis.x * axis.x * a, side * b, -side * axis.x);
+    up = vec3(b, side + axis.y * axis.y * a, -axis.y);
+}

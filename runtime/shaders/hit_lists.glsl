@@ -54,6 +54,13 @@ uint slot_of_quarter(uint number)
     return 64u * (number / 4u) + 4u * (number & 1u) + 32u * (number >> 1u & 1u);
 }
 
+// A bit for each pixel of a quarter that is in the band; `corner` is the quarter's first pixel.
+uint find_existing(uvec2 corner)
+{
+    uvec2 size = min(max(work.extent, corner) - corner, uvec2(4u));
+    return ((1u << size.x) - 1u) * (0x1111u & (1u << 4u * size.y) - 1u);
+}
+
 // The slot of the lowest bit in a quarter whose first slot is `first`.
 uint slot_of_bit(uint first, uint bit)
 {

@@ -60,15 +60,6 @@ float sum_importance(vec3 place)
     return sum;
 }
 
-// Two directions at right angles to a third (Duff et al. 2017).
-void find_frame(vec3 axis, out vec3 right, out vec3 up)
-{
-    float side = axis.z < 0.0 ? -1.0 : 1.0;
-    float a = -1.0 / (side + axis.z), b = axis.x * axis.y * a;
-    right = vec3(1.0 + side * axis.x * axis.x * a, side * b, -side * axis.x);
-    up = vec3(b, side + axis.y * axis.y * a, -axis.y);
-}
-
 // The mean radiance of a light's disc: its irradiance over the solid angle, weighted by the cosine
 // from the middle.
 vec3 disc_radiance(Light light, vec3 place, float gap)

@@ -85,15 +85,6 @@ void begin_ray(vec3 normal, vec3 toward)
     step_limit = blocked || below_horizon ? 0u : MOST_STEPS;
 }
 
-// Two directions at right angles to a third (Duff et al. 2017).
-void find_frame(vec3 axis, out vec3 right, out vec3 up)
-{
-    float side = axis.z < 0.0 ? -1.0 : 1.0;
-    float a = -1.0 / (side + axis.z), b = axis.x * axis.y * a;
-    right = vec3(1.0 + side * axis.x * axis.x * a, side * b, -side * axis.x);
-    up = vec3(b, side + axis.y * axis.y * a, -axis.y);
-}
-
 vec2 sample_disc(uint use)
 {
     uvec2 pixel = work.corner + pixel_of(hit.slot);
