@@ -55,6 +55,7 @@ API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits
                 update.c search_pairs.c search_targets.c search_starts.c search.c refuter.c \
                 refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer integrators film display writer))))
+LIVE     := $(sort $(wildcard live/*.c))
 CLI      := $(sort $(wildcard cli/*.c))
 
 # Text files that the program carries: the standard library, what scenes and kernels share, kernels.
@@ -79,9 +80,13 @@ OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files
             $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o
 
 all: $(B)/krs
-$(B)/krs: $(CLI:%.c=$(B)/%.o) $(B)/libkrs.a
+$(B)/krs: $(CLI:%.c=$(B)/%.o) $(B)/live.a $(B)/libkrs.a
 	@echo "link   $@"
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+# What the command has for scenes that are open: a client of the library, and no part of it.
+$(B)/live.a: $(LIVE:%.c=$(B)/%.o)
+	@rm -f $@
+	@$(AR) rcs $@ $^
 $(B)/libkrs.a: $(OBJECTS)
 	@echo "pack   $@"
 	@rm -f $@

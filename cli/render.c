@@ -16,23 +16,9 @@
 #include "cli/frame_paths.h"
 #include "cli/picture.h"
 #include "cli/read_exr.h"
+#include "cli/render.h"
 #include "cli/render_stats.h"
 #include "cli/supervise.h"
-
-typedef struct Render {
-    const Options   *options;
-    const char     **outputs;
-    size_t           output_count;
-    KrsScene        *scene;
-    KrsFrame        *frame;
-    KrsRenderer     *renderer;
-    KrsRendering    *rendering;
-    KrsRenderOptions how;
-    float           *depth; /* of another renderer, for the frame at hand; NULL: none */
-    float (*plate)[4];
-    uint32_t samples; /* of a pixel, also where `how` leaves it to the scene */
-    Progress progress;
-} Render;
 
 static void choose_outputs(Render *render)
 {
@@ -52,8 +38,7 @@ static void choose_outputs(Render *render)
     }
 }
 
-/* "wrote `a.exr` and `a.png`"; of an animation once for all frames. */
-static void say_written(const Render *render)
+void render_say_written(const Render *render, double seconds)
 {
     const Options *options = render->options;
     Text           names   = {.arena = options->arena};
@@ -67,6 +52,8 @@ static void say_written(const Render *render)
                     render->outputs[i]);
     if (strcmp(render->outputs[0], STANDARD_OUTPUT) == 0)
         return; /* who reads it knows */
+    if (seconds > 0)
+        text_format(&names, " in %.2f s", seconds);
     if (options->animated)
         say("wrote frames %u to %u to %s", options->first_frame, options->last_frame, names.bytes);
     else
@@ -168,7 +155,7 @@ static bool show_progress(void *user, double done)
     Render *render = user;
     stage_goes_on();
     progress_show(&render->progress, done);
-    return !*interrupted();
+    return !*interrupted() && !(render->outdated && render->outdated(render->user));
 }
 
 /* What --limit allows beats what the scene asks for; what the command line asks for beyond it makes no
@@ -395,28 +382,43 @@ static KrsPurpose purpose_of(const Render *render)
     return render->how.integrator == KRS_INTEGRATOR_PREVIEW ? KRS_FOR_PICTURES : KRS_FOR_PATHS;
 }
 
+KrsStatus render_begin(Render *render, const Options *options)
+{
+    render->options = options;
+    choose_outputs(render);
+    return check_outputs(render);
+}
+
+KrsStatus render_choose(Render *render)
+{
+    KrsStatus status = scene_frame(render->options, render->scene, &render->frame);
+    return status == KRS_OK ? choose_how(render) : status;
+}
+
+KrsStatus render_compile(Render *render)
+{
+    const Options *options = render->options;
+    stage_enter(STAGE_SHADERS);
+    console_doing(options, "compiling the shaders");
+    KrsStatus status = krs_rendering_new_for(render->renderer, render->scene, purpose_of(render),
+                                             &render->rendering);
+    console_doing(options, NULL);
+    if (status != KRS_OK)
+        say("%s", krs_renderer_message(render->renderer));
+    return status;
+}
+
 static KrsStatus make_ready(Render *render)
 {
     const Options *options = render->options;
     KrsStatus      status  = scene_open(options, options->files.items[0], &render->scene);
     if (status == KRS_OK)
-        status = scene_frame(options, render->scene, &render->frame);
-    if (status == KRS_OK)
-        status = choose_how(render);
+        status = render_choose(render);
     if (status == KRS_OK)
         status = specialize(render);
     if (status == KRS_OK)
         status = open_renderer(options, &render->renderer);
-    if (status != KRS_OK)
-        return status;
-    stage_enter(STAGE_SHADERS);
-    console_doing(options, "compiling the shaders");
-    status = krs_rendering_new_for(render->renderer, render->scene, purpose_of(render),
-                                   &render->rendering);
-    console_doing(options, NULL);
-    if (status != KRS_OK)
-        say("%s", krs_renderer_message(render->renderer));
-    return status;
+    return status == KRS_OK ? render_compile(render) : status;
 }
 
 /* Whether all files of a frame are there already. */
@@ -428,12 +430,14 @@ static bool is_there(const Render *render, uint32_t frame)
     return there;
 }
 
-/* Renders all frames but those that are there, if that is asked for. */
-static KrsStatus render_frames(Render *render)
+/* Those that are there are left out, if that is asked for. */
+KrsStatus render_frames(Render *render)
 {
     const Options *options = render->options;
     KrsStatus      status  = KRS_OK;
     uint32_t       skipped = 0;
+    progress_start(&render->progress, options,
+                   (size_t)options->last_frame - options->first_frame + 1);
     for (uint32_t frame = options->first_frame; frame <= options->last_frame && status == KRS_OK;
          frame++) {
         render->progress.frame = frame - options->first_frame;
@@ -448,24 +452,25 @@ static KrsStatus render_frames(Render *render)
     return status;
 }
 
-KrsStatus command_render(Options *options)
+void render_free(Render *render)
 {
-    Render *render  = arena_new(options->arena, Render);
-    render->options = options;
-    choose_outputs(render);
-    KrsStatus status = check_outputs(render);
-    if (status == KRS_OK)
-        status = make_ready(render);
-    progress_start(&render->progress, options,
-                   (size_t)options->last_frame - options->first_frame + 1);
-    if (status == KRS_OK)
-        status = render_frames(render);
-    progress_end(&render->progress);
-    if (status == KRS_OK)
-        say_written(render);
     krs_rendering_free(render->rendering);
     krs_renderer_free(render->renderer);
     krs_frame_free(render->frame);
     krs_scene_free(render->scene);
+}
+
+KrsStatus command_render(Options *options)
+{
+    Render   *render = arena_new(options->arena, Render);
+    KrsStatus status = render_begin(render, options);
+    if (status == KRS_OK)
+        status = make_ready(render);
+    if (status == KRS_OK)
+        status = render_frames(render);
+    progress_end(&render->progress);
+    if (status == KRS_OK)
+        render_say_written(render, 0);
+    render_free(render);
     return status;
 }

@@ -49,15 +49,28 @@ static const char *scene_root(const Options *options, const char *path)
     return slash ? arena_copy_text(options->arena, path, (size_t)(slash - path) + 1) : ".";
 }
 
+/* Who watches a scene is about to edit it. */
+static KrsSpecialize find_specialize(const Options *options)
+{
+    if (options->specialize >= 0)
+        return (KrsSpecialize)options->specialize;
+    return options->command == COMMAND_WATCH ? KRS_SPECIALIZE_AUTO : KRS_SPECIALIZE_NUMBERS;
+}
+
+static bool shows_pictures(const Options *options)
+{
+    return options->command == COMMAND_RENDER || options->command == COMMAND_WATCH;
+}
+
 KrsOptions scene_options(DiagnosticSink *sink, const char *path)
 {
     const Options *options = sink->options;
     return (KrsOptions){.diagnostic   = print_diagnostic,
                         .user         = sink,
-                        .specialize   = options->specialize,
+                        .specialize   = find_specialize(options),
                         .gradients    = options->how.normals == KRS_NORMALS_ANALYTIC,
                         .memory_limit = options->limits.memory,
-                        .studio       = options->command == COMMAND_RENDER && !options->no_studio,
+                        .studio       = shows_pictures(options) && !options->no_studio,
                         .root         = scene_root(options, path),
                         .text         = is_input(options, path) ? options->input : NULL,
                         .text_length  = options->input_length};

@@ -49,6 +49,7 @@ static const StageInfo stage_info[STAGE_COUNT] = {
     [STAGE_VALIDATE] = {"validate", "validating", 0, false, true},
     [STAGE_WRITE]    = {"write", "writing", 0, false, true},
     [STAGE_ANSWER]   = {"answer", "printing the answer", 0, false, false},
+    [STAGE_WAIT]     = {"wait", "waiting for changes", 0, false, true},
 };
 
 /* The child. */

@@ -205,7 +205,10 @@ static KrsStatus load_and_compile(const char *text, size_t length, const char *n
     static const KrsOptions defaults = {0};
     options                          = options ? options : &defaults;
     *scene                           = NULL;
-    Loader      loader               = {.supplier = options->load, .user = options->load_user};
+    Loader      loader               = {.supplier      = options->load,
+                                        .user          = options->load_user,
+                                        .observer      = options->opened,
+                                        .observer_user = options->opened_user};
     KrsStatus   status               = KRS_OUT_OF_MEMORY;
     Compilation c                    = {.request = request,
                                         .options = options,

@@ -62,6 +62,11 @@ typedef struct KrsAllocator {
    text must stay valid until the next call, or until compiling has ended. */
 typedef const char *KrsLoadCallback(void *user, const char *path, size_t *length);
 
+/* Told of each file that a scene is read from: its own, what it uses or reads as data, pictures and
+   fonts.  Also of files that do not exist, and perhaps of one more than once.  `path` is the one
+   that diagnostics show; it lives until the callback returns. */
+typedef void KrsOpenedCallback(void *user, const char *path);
+
 /* Where numbers of the scene's text are in its shaders. */
 typedef enum KrsSpecialize {
     KRS_SPECIALIZE_NUMBERS,   /* in their text, as literals: fast frames */
@@ -90,6 +95,10 @@ typedef struct KrsOptions {
     size_t           text_length;
     KrsLoadCallback *load;      /* supplies the files that are used; NULL: they are read */
     void            *load_user; /* handed to `load` */
+    /* To know whether a scene must be compiled again, as after an edit.  The text of the scene and
+       files of the standard library are not told of where they are not read from disk. */
+    KrsOpenedCallback *opened;      /* may be NULL */
+    void              *opened_user; /* handed to `opened` */
 } KrsOptions;
 
 /* Compiles a text in memory, or a file.  `name` is the text's name in diagnostics, and paths of

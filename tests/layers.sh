@@ -9,7 +9,7 @@ cd "$(dirname "$0")/.." || exit 1
 layers="compiler/base compiler/image compiler/outline compiler/graph compiler/shape compiler/lower compiler/family compiler/front
         compiler/eval compiler/print compiler/print/glsl compiler/target compiler
         runtime/device runtime/shared runtime/tracer runtime/integrators runtime/film runtime/display
-        runtime/writer runtime cli"
+        runtime/writer runtime live cli"
 api="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h
      compiler/shape/surface.def compiler/print/variant.h compiler/target/spirv.h
      runtime/krs_vulkan.h runtime/planes.def runtime/choices.def"

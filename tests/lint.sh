@@ -56,12 +56,12 @@ for script in tools/*.sh tests/*.sh tests/*/*.sh .ci/run; do
     shellcheck -x -P SCRIPTDIR "$script"
     report "$script passes shellcheck" $?
 done
-formatted=$(find bench cli compiler runtime tests -name '*.[ch]' -o -name '*.cpp')
+formatted=$(find bench cli compiler live runtime tests -name '*.[ch]' -o -name '*.cpp')
 # shellcheck disable=SC2086 # the list is words
 clang-format-14 --dry-run --Werror $formatted
 report "C has the style of .clang-format" $?
 # A file has one subject, and at most 500 lines.
-found=$(find Makefile .ci bench cli compiler grammar runtime tests tools -name results -prune -o \
+found=$(find Makefile .ci bench cli compiler grammar live runtime tests tools -name results -prune -o \
     -type f ! -path 'tests/golden/*.glsl' \( -name Makefile -o -name run -o -name '*.[ch]' \
     -o -name '*.cpp' -o -name '*.def' -o -name '*.glsl' -o -name '*.comp' -o -name '*.sh' \
     -o -name '*.mk' -o -name '*.py' \) -exec wc -l {} + |

@@ -18,7 +18,7 @@ UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c
 PROPERTY_SHARED := $(addprefix tests/property/, crowd_parts.c garden.c op_trial.c reach_crowd.c)
 UNIT        := texts front synonyms look diagnostics shape parts passes display devices tracer film pixel_filters lens rendering lights methods schedules paths writer \
                image_files image_reading memory validate search refute frame query zones surroundings cache cache_limits \
-               compiled pipelines per_component stencils glslang loader drivers grid crowd_grid crowds \
+               compiled pipelines per_component stencils glslang loader watcher drivers grid crowd_grid crowds \
                crowd_kernels crowd_pictures tables device_tables table_files printing printers answers alike update edits values
 PROPERTY    := ops noise textures graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees crowds crowds_apart moving_crowds
@@ -37,7 +37,7 @@ PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
 SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/synonyms unit/diagnostics unit/shape unit/parts unit/passes unit/display \
-               unit/writer unit/image_files unit/image_reading unit/validate unit/loader unit/grid unit/crowd_grid unit/crowds unit/tables unit/search \
+               unit/writer unit/image_files unit/image_reading unit/validate unit/loader unit/watcher unit/grid unit/crowd_grid unit/crowds unit/tables unit/search \
                unit/refute unit/memory unit/cache unit/cache_limits unit/frame unit/query \
                unit/zones unit/printers unit/alike unit/update unit/values property/ops property/noise property/textures property/graph property/simplify \
                property/facts property/derive property/series property/zeros property/local \
@@ -82,6 +82,7 @@ IMPORTS     := imports imports_csg imports_pov
 $(IMPORTS:%=$(B)/tests/oracle/%): $(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/imported.o \
         $(patsubst %.c,$(B)/%.o,$(wildcard cli/import_*.c)) $(LINKED)
 	@$(LINK)
+$(B)/tests/unit/watcher: $(B)/live.a
 # It runs the command.
 $(B)/tests/unit/table_files: | $(B)/krs
 # In no archive: system calls that can fail are for those two alone.
@@ -101,7 +102,7 @@ sanitize:
 # clang must like every file as well; its objects are not linked.
 clang-check: $(B)/library_files.c $(B)/shader_files.c
 	@$(MAKE) --no-print-directory clang-objects B=$(B)/clang CC=$(CLANG) CFLAGS=-O1
-clang-objects: $(COMPILER:%.c=$(B)/%.o) $(RUNTIME:%.c=$(B)/%.o) $(CLI:%.c=$(B)/%.o)
+clang-objects: $(COMPILER:%.c=$(B)/%.o) $(RUNTIME:%.c=$(B)/%.o) $(LIVE:%.c=$(B)/%.o) $(CLI:%.c=$(B)/%.o)
 
 # The front end (lexer, parser, names) and the whole compiler but glslang under libFuzzer.
 HARNESSES   := front_fuzz scene_fuzz
@@ -120,7 +121,7 @@ fuzz: fuzzers
 lint:
 	@tests/lint.sh
 format:
-	@clang-format-14 -i $$(find bench cli compiler runtime tests -name '*.[ch]' -o -name '*.cpp')
+	@clang-format-14 -i $$(find bench cli compiler live runtime tests -name '*.[ch]' -o -name '*.cpp')
 bless: $(B)/krs
 	@tests/errors.sh --bless
 

@@ -142,9 +142,16 @@ static Loaded read_file(const char *path)
     return loaded;
 }
 
+static void tell_observer(const Loader *loader, const char *path)
+{
+    if (loader->observer)
+        loader->observer(loader->observer_user, path);
+}
+
 Loaded loader_read_scene(const Loader *loader, const char *path)
 {
     char *whole = NULL;
+    tell_observer(loader, path);
     if (!loader->confined)
         return read_file(path);
     if (loader->scene_folder &&
@@ -156,6 +163,7 @@ Loaded loader_read_scene(const Loader *loader, const char *path)
 Loaded loader_read(const Loader *loader, const char *path)
 {
     Loaded loaded = {0};
+    tell_observer(loader, path);
     if (!loader->supplier)
         return loader->confined ? read_confined(loader, path_from_root(loader, path))
                                 : read_file(path);

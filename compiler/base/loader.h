@@ -11,9 +11,14 @@
    diagnostics.  The caller owns the text. */
 typedef const char *TextSupplier(void *user, const char *path, size_t *length);
 
+/* A caller's function that is told of each file before it is read. */
+typedef void TextObserver(void *user, const char *path);
+
 typedef struct Loader {
     TextSupplier *supplier; /* NULL: files are read from disk */
     void         *user;
+    TextObserver *observer; /* may be NULL */
+    void         *observer_user;
     bool          confined; /* only files below the folder `root` may be read */
     int           root;     /* descriptor of that folder; -1 where it could not be opened */
     char         *scene;    /* the scene's path, simplified; paths of used files begin like it */
@@ -30,7 +35,7 @@ typedef struct Loaded {
 
 /* Removes "." and "name/.." from a path, in place. */
 void path_simplify(char *path);
-/* Sets all members but `supplier` and `user`.  `root` may be NULL: nothing is confined.  False when
+/* Sets all members but the caller's functions and what is handed to them.  `root` may be NULL: nothing is confined.  False when
    there is no memory. */
 bool loader_open(Loader *loader, const char *root, const char *scene);
 void loader_close(Loader *loader);

@@ -189,6 +189,36 @@ static void a_caller_supplies_what_is_used(void **state)
     krs_scene_free(scene);
 }
 
+static void note_opened(void *user, const char *path)
+{
+    Asked *opened = user;
+    snprintf(opened->paths[opened->count++ % 8], 64, "%s", path);
+}
+
+/* Who watches a scene has to know what it is read from, also what is missing. */
+static void callers_are_told_of_files(void **state)
+{
+    (void)state;
+    Asked      opened  = {.count = 0};
+    KrsOptions options = {.opened = note_opened, .opened_user = &opened};
+    KrsScene  *scene;
+    put("main.krs", "use \"std/trees.krs\"; use \"root/size.krs\"; show sphere(size);");
+    put("root/size.krs", "let size = read_csv(\"table.csv\")[0][0];");
+    put("root/table.csv", "2\n");
+    assert_int_equal(krs_compile_file("main.krs", &options, &scene), KRS_OK);
+    krs_scene_free(scene);
+    assert_int_equal(opened.count, 3);
+    assert_string_equal(opened.paths[0], "main.krs");
+    assert_string_equal(opened.paths[1], "root/size.krs");
+    assert_string_equal(opened.paths[2], "root/table.csv");
+
+    opened.count = 0;
+    assert_int_equal(compile("use \"a/missing.krs\"; show sphere(1);", "main.krs", options, &scene),
+                     KRS_BAD_SCENE);
+    assert_int_equal(opened.count, 1);
+    assert_string_equal(opened.paths[0], "a/missing.krs");
+}
+
 static void a_library_is_confined(void **state)
 {
     (void)state;
@@ -224,6 +254,7 @@ int main(void)
         cmocka_unit_test(nothing_outside_is_opened),
         cmocka_unit_test(what_is_inside_is_opened),
         cmocka_unit_test(a_caller_supplies_what_is_used),
+        cmocka_unit_test(callers_are_told_of_files),
         cmocka_unit_test(a_library_is_confined),
     };
     return cmocka_run_group_tests_name("loader", tests, make_folder, remove_folder);
