@@ -145,10 +145,13 @@ static void fill_values(const KrsPicture *picture, KrsMatteKind kind, const Part
         values[2 * i] = values[2 * i + 1] = 0;
         if (entry->rays == 0)
             continue;
+        const uint32_t     samples = picture->pixel_samples
+                                         ? picture->pixel_samples[i / KRS_MATTE_RANKS]
+                                         : picture->samples;
         const struct Part *part = bsearch(entry, parts->items, parts->count, sizeof *parts->items,
                                           compare_parts);
         memcpy(&values[2 * i], &part->identifier, sizeof part->identifier);
-        values[2 * i + 1] = (float)entry->rays / (float)picture->samples;
+        values[2 * i + 1] = (float)entry->rays / (float)samples;
     }
 }
 

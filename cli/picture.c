@@ -133,7 +133,7 @@ static size_t collect_channels(const Options *options, const KrsPicture *source,
             continue;
         const char *samples; /* floats and integers alike: the pointer is taken as bytes */
         memcpy(&samples, (const char *)source + array->offset, sizeof samples);
-        for (size_t k = 0; k < array->numbers; k++)
+        for (size_t k = 0; samples && k < array->numbers; k++)
             channels[count++] = (PictureChannel){.name    = array->channels[k],
                                                  .type    = array->type,
                                                  .samples = samples + k * sizeof(float),

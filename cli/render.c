@@ -187,6 +187,13 @@ static KrsIntegrator find_integrator(KrsIntegrator asked, const char *scene)
     return found > 0 ? (KrsIntegrator)found : KRS_INTEGRATOR_PREVIEW;
 }
 
+/* All planes but the noise, unless that is asked for by its name: samples must not be compared for
+   nothing. */
+static uint32_t known_planes(const Options *options)
+{
+    return options->aovs == KRS_PLANE_ALL ? KRS_PLANE_ALL & ~KRS_PLANE_NOISE : KRS_PLANE_ALL;
+}
+
 /* Size, crop and what else the options and the scene's image block say together. */
 static KrsStatus choose_how(Render *render)
 {
@@ -200,7 +207,9 @@ static KrsStatus choose_how(Render *render)
         return status;
     KrsRenderOptions *how     = &render->how;
     const uint32_t    asked   = options->how.samples;
-    const uint32_t    samples = first_of(asked, view.image.samples, KRS_DEFAULT_SAMPLES);
+    const bool        noise   = options->how.noise > 0 || view.image.noise > 0;
+    const uint32_t    samples = first_of(asked, view.image.samples,
+                                      noise ? KRS_DEFAULT_NOISY_SAMPLES : KRS_DEFAULT_SAMPLES);
     const KrsWindow  *crop    = &options->how.crop;
     *how                      = options->how;
     how->width                = first_of(how->width, view.image.width, KRS_DEFAULT_WIDTH);
@@ -221,10 +230,12 @@ static KrsStatus choose_how(Render *render)
     how->camera        = camera;
     how->seed          = options->seed;
     how->frame_seconds = 1 / options->fps;
-    how->planes        = picture_planes(options, exr);
-    how->integrator    = find_integrator(how->integrator, view.image.integrator);
-    how->progress      = show_progress;
-    how->user          = render;
+    how->planes = picture_planes(options, exr) & (noise ? UINT32_MAX : known_planes(options));
+    if (!isnan(options->exposure))
+        how->noise_floor = KRS_DEFAULT_NOISE_FLOOR * exp2(-options->exposure);
+    how->integrator = find_integrator(how->integrator, view.image.integrator);
+    how->progress   = show_progress;
+    how->user       = render;
     return KRS_OK;
 }
 

@@ -41,6 +41,7 @@ typedef struct KrsImage {
     double      exposure;     /* in stops; 0 changes nothing */
     const char *tone_map;     /* or NULL */
     double      error;        /* permitted distance from the surface in pixels; 0: the default */
+    double      noise;        /* error at which samples of a pixel end; 0: none */
     const char *pixel_filter; /* or NULL */
     double      white_balance[2]; /* the white of the light: kelvins, tint; 0: as it is */
 } KrsImage;

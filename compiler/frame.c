@@ -366,6 +366,7 @@ KrsImage krs_scene_image(const KrsScene *scene)
                       .exposure      = image->exposure,
                       .tone_map      = image->tone_map,
                       .error         = image->error,
+                      .noise         = image->noise,
                       .pixel_filter  = image->pixel_filter,
                       .white_balance = {image->white_balance[0], image->white_balance[1]}};
 }

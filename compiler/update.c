@@ -309,7 +309,7 @@ static bool same_image(const SceneImage *a, const SceneImage *b)
     return a->width == b->width && a->height == b->height && a->samples == b->samples &&
            a->bounces == b->bounces && same_name(a->integrator, b->integrator) &&
            same_name(a->tone_map, b->tone_map) && same_name(a->pixel_filter, b->pixel_filter) &&
-           a->exposure == b->exposure && a->error == b->error &&
+           a->exposure == b->exposure && a->error == b->error && a->noise == b->noise &&
            a->white_balance[0] == b->white_balance[0] && a->white_balance[1] == b->white_balance[1];
 }
 

@@ -223,16 +223,19 @@ extern const char *const krs_pixel_filter_names[KRS_PIXEL_FILTER_COUNT];
 typedef enum KrsEye { KRS_EYE_OF_BOTH, KRS_EYE_ON_LEFT, KRS_EYE_ON_RIGHT } KrsEye;
 
 /* What is meant where neither the caller nor the scene says, and the most there may be. */
-#define KRS_DEFAULT_WIDTH   1280
-#define KRS_DEFAULT_HEIGHT  720
-#define KRS_DEFAULT_SAMPLES 1
-#define KRS_DEFAULT_ERROR   0.25
-#define KRS_MOST_SIDE       16384 /* pixels along a side of a picture */
-#define KRS_MOST_SAMPLES    65536
-#define KRS_MOST_ERROR      1000
-#define KRS_DEFAULT_BOUNCES 10
-#define KRS_MOST_BOUNCES    1000
-#define KRS_NO_LIGHT        UINT32_MAX
+#define KRS_DEFAULT_WIDTH         1280
+#define KRS_DEFAULT_HEIGHT        720
+#define KRS_DEFAULT_SAMPLES       1
+#define KRS_DEFAULT_NOISY_SAMPLES 1024 /* where they end by noise, */
+#define KRS_LEAST_NOISY_SAMPLES   16   /* but not before */
+#define KRS_DEFAULT_NOISE_FLOOR   0.05
+#define KRS_DEFAULT_ERROR         0.25
+#define KRS_MOST_SIDE             16384 /* pixels along a side of a picture */
+#define KRS_MOST_SAMPLES          65536
+#define KRS_MOST_ERROR            1000
+#define KRS_DEFAULT_BOUNCES       10
+#define KRS_MOST_BOUNCES          1000
+#define KRS_NO_LIGHT              UINT32_MAX
 
 /* Zero asks for the defaults. */
 typedef struct KrsRenderOptions {
@@ -249,6 +252,12 @@ typedef struct KrsRenderOptions {
     /* Light of a ray is clamped to this, by its largest component; 0: no limit.  Each pass is
        clamped by itself: the light of three lamps, and every further sun. */
     double most_radiance;
+    /* Samples of a pixel end where the estimated error of its colour is below this, but not before
+       16, and at `samples` at the latest: 0.02 is 2 %.  The error is the standard deviation of the
+       mean of R, G and B, relative to their mean plus `noise_floor`.  0: as the scene says, or all
+       pixels have equal samples. */
+    double noise;
+    double noise_floor; /* 0: 0.05 at the scene's exposure, and as much darker for each stop */
     /* 0: all light.  A number from 1 on: that light alone, without sky and fog's color; KRS_NO_LIGHT: none.
        What things emit is there in any case.  So pictures of lights, less the one without, add up. */
     uint32_t light;
@@ -259,8 +268,9 @@ typedef struct KrsRenderOptions {
        live as long as the film. */
     const float *depth;
     const float (*plate)[4];
-    uint32_t       planes;        /* bits of KrsPlane; 0: all */
-    uint32_t       most_steps;    /* of a primary ray; 0: 16384, which is also the most */
+    uint32_t       planes;     /* bits of KrsPlane; 0: all but noise, which is there where samples
+                                    end by it */
+    uint32_t       most_steps; /* of a primary ray; 0: 16384, which is also the most */
     uint32_t       steps_at_once; /* of a primary ray in one dispatch; 0: 512; at most 8192 */
     KrsTrace       trace;
     KrsSchedule    schedule;
@@ -334,9 +344,9 @@ typedef struct KrsPicture {
 #undef KRS_ARRAY
 #undef KRS_PLANE
     /* With KrsRenderOptions.mattes, KRS_MATTE_RANKS for each pixel, the most covered first; else
-       NULL.  The share of a pixel that one covers is its rays / samples. */
+       NULL.  The share of a pixel that one covers is its rays / samples, or / pixel_samples where they differ. */
     KrsMatte *mattes[KRS_MATTE_COUNT];
-    uint32_t  samples; /* rays of each pixel */
+    uint32_t  samples; /* rays of each pixel, at most */
     /* Without a camera these change nothing.  For row vectors, v * M.  Camera space has x to the right, y up, z along the view axis.  NDC
        has x and y from -1 to 1; in perspective z goes from 0 at distance 0.001 to 1 at infinity.
        For a panorama NDC is camera space. */

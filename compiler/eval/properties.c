@@ -58,6 +58,7 @@ static const struct BlockProperty {
     {SYNTAX_IMAGE, "exposure", false},
     {SYNTAX_IMAGE, "tone_map", false},
     {SYNTAX_IMAGE, "error", false},
+    {SYNTAX_IMAGE, "noise", false},
     {SYNTAX_IMAGE, "pixel_filter", false},
     {SYNTAX_IMAGE, "white_balance", false},
     {SYNTAX_IMAGE, "frames", true},

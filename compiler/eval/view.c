@@ -194,6 +194,7 @@ static void set_image(Elaboration *e, const Environment *env, const Syntax *synt
     image->bounces      = (uint32_t)constant_property(e, env, syntax, "bounces", 1, 1000, 0);
     image->exposure     = constant_property(e, env, syntax, "exposure", -20, 20, 0);
     image->error        = constant_property(e, env, syntax, "error", 0.001, 1, 0);
+    image->noise        = constant_property(e, env, syntax, "noise", 0.0001, 1, 0);
     image->integrator   = word_property(e, env, syntax, "integrator", integrators, 3, 0);
     image->tone_map     = word_property(e, env, syntax, "tone_map", tone_maps, 4, 0);
     image->pixel_filter = word_property(e, env, syntax, "pixel_filter", filters, 3, 0);

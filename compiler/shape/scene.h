@@ -39,7 +39,7 @@ typedef struct SceneLight {
 typedef struct SceneImage {
     uint32_t    width, height, samples, bounces;
     const char *integrator, *tone_map, *pixel_filter;
-    double      exposure, error;
+    double      exposure, error, noise;
     double      white_balance[2]; /* kelvins, or 0, and tint */
 } SceneImage;
 

@@ -14,6 +14,7 @@
 #include "runtime/film/held.h"
 #include "runtime/film/inputs.h"
 #include "runtime/film/mattes.h"
+#include "runtime/film/noise.h"
 #include "runtime/film/picture.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
@@ -28,6 +29,21 @@ static IntegratorPlan *const integrators[KRS_INTEGRATOR_COUNT] = {
 
 /* ---- films ---- */
 
+/* Makes room for the sums of all samples; false with the failure noted. */
+static bool make_sums(KrsFilm *film)
+{
+    Gpu                    *gpu    = &film->rendering->renderer->gpu;
+    const KrsRenderOptions *o      = &film->options;
+    const bool              noise  = noise_is_wanted(o);
+    const uint32_t          planes = o->planes | KRS_PLANE_COLOR | (noise ? KRS_PLANE_NOISE : 0);
+    film->sums                     = picture_new(gpu, o->width, o->height, o->crop, planes);
+    if (!film->sums || (o->mattes && !mattes_new(gpu, film->sums)))
+        return false;
+    if (noise)
+        film->kept = gpu_alloc(gpu, held_kept(o), sizeof *film->kept, "make a film");
+    return film->kept || !noise;
+}
+
 KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options, KrsFilm **out)
 {
     Gpu *gpu = &rendering->renderer->gpu;
@@ -41,9 +57,7 @@ KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options,
     if (options)
         film->asked = film->options = *options;
     KrsRenderOptions *o = &film->options;
-    if (settings_complete(rendering, o, &film->asked_schedule))
-        film->sums = picture_new(gpu, o->width, o->height, o->crop, o->planes | KRS_PLANE_COLOR);
-    if (!film->sums || (o->mattes && !mattes_new(gpu, film->sums))) {
+    if (!settings_complete(rendering, o, &film->asked_schedule) || !make_sums(film)) {
         krs_picture_free(film->sums);
         gpu_release(gpu, film);
         return gpu->status;
@@ -65,6 +79,7 @@ void krs_film_free(KrsFilm *film)
         return;
     release_band(film);
     krs_picture_free(film->sums);
+    gpu_release(&film->rendering->renderer->gpu, film->kept);
     gpu_release(&film->rendering->renderer->gpu, film);
 }
 
@@ -110,19 +125,6 @@ static KrsWindow with_halo(const Job *job, uint32_t halo, KrsWindow window)
     window.width  = (right < job->options.width ? right : job->options.width) - window.x;
     window.height = (bottom < job->options.height ? bottom : job->options.height) - window.y;
     return window;
-}
-
-/* The crop extended to whole tiles.  The rays of a tile share a beam, which must not depend on the
-   crop. */
-static KrsWindow whole_tiles(const KrsRenderOptions *options)
-{
-    const KrsWindow *crop   = &options->crop;
-    KrsWindow        cover  = {crop->x / TILE * TILE, crop->y / TILE * TILE, 0, 0};
-    uint32_t         right  = (crop->x + crop->width + TILE - 1) / TILE * TILE;
-    uint32_t         bottom = (crop->y + crop->height + TILE - 1) / TILE * TILE;
-    cover.width             = (right < options->width ? right : options->width) - cover.x;
-    cover.height            = (bottom < options->height ? bottom : options->height) - cover.y;
-    return cover;
 }
 
 /* Adds the counters of the kernels to the statistics, and resets them. */
@@ -201,18 +203,24 @@ static bool add_to_band(Job *job, const Plan *plan, const KrsFilm *film, uint32_
                                                         : INFINITY,
     };
     job->later_rows = 1u << ROW_COLORS | (job->options.mattes ? MATTE_ROWS : 0);
-    job->first_rows = picture_rows(film->sums) | job->later_rows;
+    job->first_rows = (picture_rows(film->sums) & ~(1u << ROW_NOISE)) | job->later_rows;
     inputs_upload(job, traced);
     const bool spares = spares_first(job);
     if (spares && film->samples == 0 && !find_planes(job, plan, &work))
         return false;
-    for (uint32_t i = 0; i < samples; i++) {
-        job->progress_share = share / samples;
-        job->progress_done  = done + job->progress_share * i;
-        if (!add_ray(job, plan, &work, film->samples + i + spares))
+    const bool noise   = film->kept != NULL;
+    bool       goes_on = true;
+    if (noise && !noise_resume(job, plan, &work, film->samples, &goes_on))
+        return false;
+    for (uint32_t i = 0; i < samples && goes_on; i++) {
+        const uint32_t before = film->samples + i;
+        job->progress_share   = share / samples;
+        job->progress_done    = done + job->progress_share * i;
+        if (!add_ray(job, plan, &work, before + spares) ||
+            (noise && !noise_take(job, plan, &work, before + 1, &goes_on)))
             return false;
     }
-    return true;
+    return !noise || noise_restore(job, &work, film->samples + samples);
 }
 
 static bool add_to_bands(Job *job, const Plan *plan, KrsFilm *film, uint32_t samples)
@@ -251,7 +259,8 @@ static bool make_room(Job *job, const Plan *plan, KrsFilm *film)
         if (!held_store(rendering))
             return false;
         rendering->held = (HeldBand){0};
-        film->rows      = band_allocate(rendering, &job->cover, plan->halo, plan->has_paths);
+        film->rows      = band_allocate(rendering, &job->cover, plan->halo, plan->has_paths,
+                                        film->kept != NULL);
     }
     return film->rows > 0 &&
            rendering_set_lights(rendering, job->view.lights, job->view.light_count,
@@ -298,7 +307,7 @@ static KrsStatus add_moment(KrsFilm *film, const Addition *a)
                .asked_schedule = film->asked_schedule,
                .schedule       = film->options.schedule,
                .rays           = a->rays,
-               .cover          = whole_tiles(&film->options),
+               .cover          = held_cover(&film->options),
                .part_begun     = a->part_begun,
                .part           = a->part,
                .stats          = &film->sums->stats};
@@ -392,13 +401,23 @@ static bool store_all(KrsFilm *film)
     return good;
 }
 
+/* Samples of all pixels together. */
+static uint64_t count_rays(const KrsFilm *film)
+{
+    const size_t    pixels = (size_t)film->options.crop.width * film->options.crop.height;
+    const uint32_t *ended  = film->sums->pixel_samples;
+    uint64_t        rays   = 0;
+    for (size_t k = 0; k < pixels; k++)
+        rays += ended && ended[k] > 0 ? ended[k] : film->samples;
+    return rays;
+}
+
 /* Turns the sums of a film into a picture with statistics. */
 static void finish(const KrsFilm *film, KrsPicture *picture)
 {
     KrsRenderStats     *stats     = &picture->stats;
     const KrsRendering *rendering = film->rendering;
     const Gpu          *gpu       = &rendering->renderer->gpu;
-    const KrsWindow    *window    = &film->options.crop;
     const double        flops     = rendering->program->flops;
     const double marching = stats->phase_ms[KRS_PHASE_PRIMARY] + stats->phase_ms[KRS_PHASE_BOUNCES];
     stats->spirv_ms       = rendering->spirv_ms;
@@ -407,14 +426,15 @@ static void finish(const KrsFilm *film, KrsPicture *picture)
     stats->device_time    = gpu->times != VK_NULL_HANDLE;
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         stats->total_ms += stats->phase_ms[phase];
-    stats->rays                 = (uint64_t)film->samples * window->width * window->height;
+    stats->rays                 = count_rays(film);
     stats->evaluations_per_ray  = (double)stats->evaluations / (double)stats->rays;
     stats->flops_per_evaluation = flops;
     stats->gflops = marching > 0 ? (double)stats->evaluations * flops / marching / 1e6 : 0;
     stats->peak_memory_bytes += gpu->memory_peak;
     memcpy(stats->device, gpu->properties.deviceName, sizeof stats->device);
     picture->samples = film->samples;
-    picture_divide(picture, film->samples);
+    picture_divide(picture, film->sums->pixel_samples, film->samples);
+    noise_finish(picture);
     picture_compose(picture, film->options.depth, film->options.plate);
     mattes_sort(picture);
 }

@@ -9,6 +9,25 @@
 #include "runtime/film/mattes.h"
 #include "runtime/film/picture.h"
 
+enum { KEPT_ROWS = 3 };
+
+KrsWindow held_cover(const KrsRenderOptions *options)
+{
+    const KrsWindow *crop   = &options->crop;
+    KrsWindow        cover  = {crop->x / TILE * TILE, crop->y / TILE * TILE, 0, 0};
+    uint32_t         right  = (crop->x + crop->width + TILE - 1) / TILE * TILE;
+    uint32_t         bottom = (crop->y + crop->height + TILE - 1) / TILE * TILE;
+    cover.width             = (right < options->width ? right : options->width) - cover.x;
+    cover.height            = (bottom < options->height ? bottom : options->height) - cover.y;
+    return cover;
+}
+
+size_t held_kept(const KrsRenderOptions *options)
+{
+    const KrsWindow cover = held_cover(options);
+    return (size_t)KEPT_ROWS * cover.width * cover.height;
+}
+
 /* Records copies of rows of results from one buffer to another: those whose bit ROW_... is set in
    `rows`. */
 static void record_copies(Gpu *gpu, const Buffer *from, const Buffer *to, uint32_t rows,
@@ -95,16 +114,38 @@ static void place_positions(KrsFilm *film, const float *position_row, size_t fir
         }
 }
 
+/* The rows of results that samples add to. */
+static uint32_t rows_of_sums(const KrsFilm *film)
+{
+    return 1u << ROW_COLORS | (film->kept ? 1u << ROW_NOISE | 1u << ROW_EARLIER : 0);
+}
+
+/* Copies the rows of sums of the whole tiles in the buffers to what the film keeps, or back. */
+static void copy_kept(const KrsFilm *film, const HeldBand *held, float *results, bool back)
+{
+    static const uint32_t kept_rows[KEPT_ROWS] = {ROW_COLORS, ROW_NOISE, ROW_EARLIER};
+    const KrsWindow       cover = held_cover(&film->options), *traced = &held->traced;
+    const size_t          band  = (size_t)traced->height * traced->width;
+    const size_t          whole = (size_t)cover.height * cover.width;
+    for (size_t row = 0; row < KEPT_ROWS; row++)
+        for (size_t y = held->from; y < held->from + held->rows; y++) {
+            const size_t in_band = (cover.y + y - traced->y) * traced->width + cover.x - traced->x;
+            float       *numbers = results + (kept_rows[row] * band + in_band) * RESULT_NUMBERS;
+            float       *kept    = film->kept[row * whole + y * cover.width];
+            memcpy(back ? numbers : kept, back ? kept : numbers, cover.width * RESULT_BYTES);
+        }
+}
+
 bool held_store(KrsRendering *rendering)
 {
     HeldBand *held = &rendering->held;
     KrsFilm  *film = held->film;
     if (!film || !(held->has_colors || held->has_planes))
         return true;
-    const uint32_t planes  = held->has_planes ? KRS_PLANE_ALL : KRS_PLANE_COLOR;
-    const uint32_t rows    = held->has_planes ? picture_rows(film->sums) : 1u << ROW_COLORS;
+    const uint32_t planes  = held->has_planes ? KRS_PLANE_ALL : KRS_PLANE_COLOR | KRS_PLANE_NOISE;
+    const uint32_t rows    = rows_of_sums(film) | (held->has_planes ? picture_rows(film->sums) : 0);
     const size_t   band    = (size_t)held->traced.height * held->traced.width;
-    const float   *results = fetch(rendering, rows);
+    float         *results = fetch(rendering, rows);
     uint32_t       y, end;
     if (!results)
         return false;
@@ -118,6 +159,8 @@ bool held_store(KrsRendering *rendering)
             place_positions(film, results + (ROW_POSITIONS * band + in_band) * RESULT_NUMBERS,
                             in_film, film->options.crop.width);
     }
+    if (film->kept)
+        copy_kept(film, held, results, false);
     held->has_colors = held->has_planes = false;
     return true;
 }
@@ -126,7 +169,7 @@ bool held_take_mattes(KrsRendering *rendering)
 {
     HeldBand    *held    = &rendering->held;
     KrsFilm     *film    = held->film;
-    const float *results = fetch(rendering, MATTE_ROWS);
+    const float *results = fetch(rendering, MATTE_ROWS | (film->kept ? 1u << ROW_NOISE : 0));
     const size_t band    = (size_t)held->traced.height * held->traced.width;
     uint32_t     y, end;
     if (!results)
@@ -140,8 +183,8 @@ bool held_take_mattes(KrsRendering *rendering)
     return true;
 }
 
-/* Copies the colours of a film back to the buffers, whose colours are 0. */
-static bool load_colors(const KrsFilm *film)
+/* Copies the sums of a film back to the buffers, whose colours are 0. */
+static bool load_sums(const KrsFilm *film)
 {
     KrsRendering *rendering = film->rendering;
     Gpu          *gpu       = &rendering->renderer->gpu;
@@ -149,20 +192,25 @@ static bool load_colors(const KrsFilm *film)
     HeldBand     *held      = &rendering->held;
     double        ms        = 0;
     uint32_t      y, end;
-    float *results = buffers->results.bytes ? buffers->results.bytes : buffers->fetched.bytes;
-    if (!buffers->results.bytes)
-        memset(results, 0, row_bytes_of(held));
+    const size_t  band = (size_t)held->traced.height * held->traced.width;
+    float *results     = buffers->results.bytes ? buffers->results.bytes : buffers->fetched.bytes;
+    for (size_t row = 0; row < RESULT_ROWS && !buffers->results.bytes; row++)
+        if (rows_of_sums(film) >> row & 1)
+            memset(results + row * band * RESULT_NUMBERS, 0, row_bytes_of(held));
     for (rows_of_held(film, held, &y, &end); y < end; y++) {
         size_t in_band, in_film;
         if (find_row(film, held, y, &in_band, &in_film))
             memcpy(results + in_band * RESULT_NUMBERS, film->sums->color + in_film * RESULT_NUMBERS,
                    film->options.crop.width * RESULT_BYTES);
     }
+    if (film->kept)
+        copy_kept(film, held, results, true);
     if (buffers->results.bytes)
         return true;
     if (!gpu_begin(gpu))
         return false;
-    record_copies(gpu, &buffers->fetched, &buffers->results, 1u << ROW_COLORS, row_bytes_of(held));
+    record_copies(gpu, &buffers->fetched, &buffers->results, rows_of_sums(film),
+                  row_bytes_of(held));
     return gpu_finish(gpu, &ms);
 }
 
@@ -177,8 +225,8 @@ bool held_change(KrsFilm *film, const HeldBand *wanted)
     }
     if (!held_store(rendering))
         return false;
-    uint32_t rows = film->samples == 0 ? picture_rows(film->sums) : 1u << ROW_COLORS;
+    uint32_t rows = film->samples == 0 ? picture_rows(film->sums) : rows_of_sums(film);
     *held         = *wanted;
     return clear_results(rendering, rows, row_bytes_of(held)) &&
-           (film->samples == 0 || load_colors(film));
+           (film->samples == 0 || load_sums(film));
 }

@@ -8,15 +8,23 @@
 
 struct KrsFilm {
     KrsRendering    *rendering;
-    KrsRenderOptions asked;            /* by the caller */
-    KrsRenderOptions options;          /* complete: none asks for a default */
-    KrsSchedule      asked_schedule;   /* before it was completed */
-    uint32_t         updates;          /* of its rendering that it has followed */
-    KrsPicture      *sums;             /* colours are sums over the samples */
-    uint32_t         samples;          /* of each pixel so far */
-    uint32_t         rows;             /* of a band; 0: no band has been made */
-    double           rebase_origin[3]; /* positions of the first sample are relative to it */
+    KrsRenderOptions asked;          /* by the caller */
+    KrsRenderOptions options;        /* complete: none asks for a default */
+    KrsSchedule      asked_schedule; /* before it was completed */
+    uint32_t         updates;        /* of its rendering that it has followed */
+    KrsPicture      *sums;           /* colours are sums over the samples */
+    float (*kept)[4];                /* see held_kept; NULL: no error is estimated */
+    uint32_t samples;                /* of each pixel so far, unless it has ended by noise */
+    uint32_t rows;                   /* of a band; 0: no band has been made */
+    double   rebase_origin[3];       /* positions of the first sample are relative to it */
 };
+
+/* The crop of a film extended to whole tiles: the rays of a tile share a beam, and pixels of a tile go
+   on together (noise.comp), which must not depend on the crop. */
+KrsWindow held_cover(const KrsRenderOptions *options);
+/* How many numbers of four members `kept` has: of each pixel of these tiles in the rows of colours,
+   noise and earlier sums. */
+size_t held_kept(const KrsRenderOptions *options);
 
 /* Copies the samples in the buffers to their film, unless it has them. */
 bool held_store(KrsRendering *rendering);

@@ -56,8 +56,9 @@ void mattes_take(KrsPicture *picture, const float *results, size_t row_pixels, s
         const uint32_t component = bits_at(results, row_pixels, ROW_NORMALS, k, 3);
         const uint32_t instance  = bits_at(results, row_pixels, ROW_COUNTS, k, 0);
         const uint32_t material  = bits_at(results, row_pixels, ROW_COUNTS, k, 2);
-        if (component == 0)
-            continue;
+        if (component == 0 ||
+            (picture->noise && bits_at(results, row_pixels, ROW_NOISE, k, 1) != 0))
+            continue; /* it hits nothing, or the samples of the pixel have ended */
         count_ray(picture, KRS_MATTE_COMPONENTS, first + k, component, 0);
         count_ray(picture, KRS_MATTE_INSTANCES, first + k, component, instance);
         count_ray(picture, KRS_MATTE_MATERIALS, first + k, material, 0);

@@ -170,11 +170,14 @@ void picture_drop(KrsPicture *picture, uint32_t unwanted)
         }
 }
 
-void picture_divide(KrsPicture *picture, uint32_t samples)
+void picture_divide(KrsPicture *picture, const uint32_t *ended, uint32_t samples)
 {
-    const size_t count = picture->color ? 4 * pixels_of(picture) : 0;
-    for (size_t k = 0; samples > 1 && k < count; k++)
-        picture->color[k] /= (float)samples;
+    const size_t count = picture->color ? pixels_of(picture) : 0;
+    for (size_t k = 0; samples > 1 && k < count; k++) {
+        const float by = (float)(ended && ended[k] > 0 ? ended[k] : samples);
+        for (int i = 0; i < 4; i++)
+            picture->color[4 * k + (size_t)i] /= by;
+    }
 }
 
 void picture_compose(KrsPicture *picture, const float *depth, const float (*plate)[4])

@@ -23,8 +23,9 @@ void picture_take(KrsPicture *picture, uint32_t planes, const float *results, si
 KrsPicture *picture_copy(Gpu *gpu, const KrsPicture *picture, uint32_t planes);
 /* Frees those planes of the picture that are among `planes`. */
 void picture_drop(KrsPicture *picture, uint32_t planes);
-/* Divides the colours, which are sums over `samples`, to get their means. */
-void picture_divide(KrsPicture *picture, uint32_t samples);
+/* Divides the colours, which are sums over `samples`, to get their means; `ended`: the samples of
+   pixels that have ended before, 0 for others; NULL: none has. */
+void picture_divide(KrsPicture *picture, const uint32_t *ended, uint32_t samples);
 
 /* Shows a plate behind the picture, and its depth where nothing is hit; both are of the whole
    picture, or NULL. */

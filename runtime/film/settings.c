@@ -3,6 +3,7 @@
  */
 #include "runtime/film/settings.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "runtime/tracer/methods.h"
@@ -68,13 +69,24 @@ static KrsPixelFilter filter_of(const KrsImage *image)
     return filter;
 }
 
+/* When samples end by noise.  What is seen as black depends on the exposure. */
+static void put_noise(const KrsImage *image, KrsRenderOptions *o)
+{
+    o->noise = o->noise != 0 ? o->noise : image->noise;
+    if (o->noise_floor == 0)
+        o->noise_floor = KRS_DEFAULT_NOISE_FLOOR * exp2(-image->exposure);
+}
+
 static void put_defaults(const KrsImage *image, KrsRenderOptions *o)
 {
-    o->width         = first_nonzero(o->width, image->width, KRS_DEFAULT_WIDTH);
-    o->height        = first_nonzero(o->height, image->height, KRS_DEFAULT_HEIGHT);
-    o->samples       = first_nonzero(o->samples, image->samples, KRS_DEFAULT_SAMPLES);
-    o->bounces       = first_nonzero(o->bounces, image->bounces, KRS_DEFAULT_BOUNCES);
-    o->planes        = first_nonzero(o->planes, 0, KRS_PLANE_ALL);
+    o->width  = first_nonzero(o->width, image->width, KRS_DEFAULT_WIDTH);
+    o->height = first_nonzero(o->height, image->height, KRS_DEFAULT_HEIGHT);
+    put_noise(image, o);
+    o->samples = first_nonzero(o->samples, image->samples,
+                               o->noise > 0 ? KRS_DEFAULT_NOISY_SAMPLES : KRS_DEFAULT_SAMPLES);
+    o->bounces = first_nonzero(o->bounces, image->bounces, KRS_DEFAULT_BOUNCES);
+    o->planes  = first_nonzero(o->planes, 0, KRS_PLANE_ALL & ~KRS_PLANE_NOISE) |
+                (o->noise > 0 ? KRS_PLANE_NOISE : 0);
     o->most_steps    = first_nonzero(o->most_steps, 0, MOST_STEPS);
     o->steps_at_once = first_nonzero(o->steps_at_once, 0,
                                      o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
@@ -101,6 +113,8 @@ static bool check(KrsRendering *rendering, const KrsRenderOptions *o)
         return refuse(rendering, "a path has at most 1000 bounces");
     if (!(o->error > 0) || !(o->error <= KRS_MOST_ERROR))
         return refuse(rendering, "the permitted error must be above 0 and at most 1000 pixels");
+    if (!(o->noise >= 0) || !(o->noise_floor > 0))
+        return refuse(rendering, "noise at which samples end, and its floor, must be above 0");
     if (!(o->most_radiance >= 0))
         return refuse(rendering, "the most radiance of a ray must be above 0");
     if (!(o->slice_ms > 0) || o->most_steps > MOST_STEPS || o->steps_at_once > MOST_STEPS_AT_ONCE)

@@ -82,7 +82,7 @@ vec3 find_radiance(uvec2 pixel)
 void do_item(uint quarter)
 {
     uvec2 corner = pixel_of(slot_of_quarter(quarter));
-    uint  exist = find_existing(corner), hits = 0u, unresolved = 0u, clamped = 0u, bit = 0u;
+    uint  exist = find_existing(corner) & find_sampled(quarter), hits = 0u, unresolved = 0u, clamped = 0u, bit = 0u;
     do {
         uvec2 pixel = corner + uvec2(bit & 3u, bit >> 2u);
         uint  index = index_of(pixel);

@@ -125,7 +125,7 @@ void do_item(uint quarter)
 {
     uint  first = slot_of_quarter(quarter), hits = 0u, unresolved = 0u;
     uvec2 corner = pixel_of(first);
-    for (uint left = find_existing(corner); left != 0u; left &= left - 1u) {
+    for (uint left = find_existing(corner) & find_sampled(quarter); left != 0u; left &= left - 1u) {
         uint  number = uint(findLSB(left));
         uvec2 pixel = corner + uvec2(number & 3u, number >> 2u);
         uint  index = index_of(pixel);

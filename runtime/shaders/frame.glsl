@@ -123,6 +123,13 @@ uvec2 pixel_of(uint slot)
     return 8u * tile + uvec2(slot & 7u, slot >> 3u & 7u);
 }
 
+// The bits of the pixels of a quarter of a tile that have rays: all, but where samples end by noise
+// (noise.comp).
+uint find_sampled(uint quarter)
+{
+    return control.sampled_at != 0u ? tiles[control.sampled_at + quarter] : 0xffffu;
+}
+
 // Where the rows of a pixel's path begin; hits have rows for whole tiles.
 uint path_at(uint index) { return HIT_ROWS * 64u * count_tiles() + PATH_ROWS * index; }
 

@@ -291,6 +291,17 @@ void begin_march(uint index, float start, bool is_ray)
 #include "packed.glsl"
 #endif
 
+#ifndef PATH_RAYS
+// Whether a pixel of a quarter has a ray, by its number; 16: whether any of the tile has.
+bool has_samples(uvec2 cell, uint quarter, uint number)
+{
+    uint first = 4u * (cell.y * count_8.x + cell.x), bits = find_sampled(first + quarter);
+    if (number == 16u)
+        bits |= find_sampled(first + 1u) | find_sampled(first + 2u) | find_sampled(first + 3u);
+    return number == 16u ? bits != 0u : (bits >> (number & 15u) & 1u) != 0u;
+}
+#endif
+
 void begin_item(uint number, bool saved)
 {
     bool  is_ray = control.phase == TRACE_RAYS, large = control.phase == TRACE_BEAMS_32;
@@ -306,6 +317,10 @@ void begin_item(uint number, bool saved)
     uint  index = local.y * work.extent.x + local.x;
     tile_index = tile_of_item(number) - first_tile;
     exists = !is_ray || local.x < work.extent.x && local.y < work.extent.y;
+#ifndef PATH_RAYS
+    if (control.sampled_at != 0u && (is_ray || !large && !small))
+        exists = exists && has_samples(item_tile - first_8, quarter, is_ray ? number : 16u);
+#endif
     if (saved) {
         uint at = 2u * (control.reading + number);
         march = unpack_march(queue[at], queue[at + 1u]);
@@ -440,7 +455,7 @@ void end_item()
 #endif
     if (!is_ray && march.state == STATE_MISS)
         march.t = INFINITE;
-    found_tiles |= march.state != STATE_MISS ? 1u << (tile_index & 15u) : 0u;
+    found_tiles |= exists && march.state != STATE_MISS ? 1u << (tile_index & 15u) : 0u;
     uint bits = pack_ray(
         RayEnd(march.t, march.side, march.steps, march.state, unresolved, march_group));
     if (exists) {

@@ -138,7 +138,10 @@ static_assert(sizeof(PointWorkBlock) == 8, "std430");
     uint  filters;        /* 1: neighbours share what their rays find (shared.glsl) */            \
     float most_radiance;  /* of a ray: more is clamped */                                         \
     uint  no_background;  /* 1: where nothing is hit there is no light */                         \
-    uint  limits;         /* where depths of pixels begin in the inputs (limit.comp) */
+    uint  limits;         /* where depths of pixels begin in the inputs (limit.comp) */           \
+    uint  sampled_at;     /* where words of quarters begin in `tiles`; 0: all pixels get rays */  \
+    float noise;          /* error at which samples of a pixel end */                             \
+    float noise_floor;    /* light to which the error of black pixels is relative */
 
 /* What the kernels count, and what next_dispatch.comp says of the next dispatch. */
 #define COUNTER_MEMBERS                                                                            \
@@ -156,7 +159,8 @@ static_assert(sizeof(PointWorkBlock) == 8, "std430");
     uint groups[3];                   /* workgroups of the next dispatch */                        \
     uint stopped;                     /* the dispatch at which the chain stopped; 0: none */       \
     uint ran[MOST_CHAINED];           /* workgroups that each dispatch had */                      \
-    uint clamped;                     /* rays whose light was clamped */
+    uint clamped;                     /* rays whose light was clamped */                           \
+    uint sampled;                     /* pixels whose samples go on */
 
 /* buffer ControlBlock, std430: the counters follow these members. */
 struct Control {
@@ -165,16 +169,16 @@ struct Control {
 
 /* Indices of some words of the control block, for next_dispatch.comp. */
 CONSTANT(ITEMS_WORD, 10);
-CONSTANT(GROUPS_WORD, 45);
-CONSTANT(STOPPED_WORD, 48);
-CONSTANT(RAN_WORD, 49);
+CONSTANT(GROUPS_WORD, 48);
+CONSTANT(STOPPED_WORD, 51);
+CONSTANT(RAN_WORD, 52);
 
 #ifdef __STDC_VERSION__
 typedef struct ControlBlock {
     CONTROL_MEMBERS
     COUNTER_MEMBERS
 } ControlBlock;
-static_assert(sizeof(ControlBlock) == (25 + 25 + MOST_CHAINED) * sizeof(uint32_t), "std430");
+static_assert(sizeof(ControlBlock) == (28 + 26 + MOST_CHAINED) * sizeof(uint32_t), "std430");
 static_assert(sizeof(struct Control) == offsetof(ControlBlock, queued), "the host's part");
 #endif
 
@@ -211,6 +215,13 @@ CONSTANT(OCCLUSION_AT_SPARSE_PIXELS, 0);
 CONSTANT(OCCLUSION_WIDER, 1);
 CONSTANT(OCCLUSION_UPSAMPLED, 2);
 CONSTANT(OCCLUSION_OF_REMAINING, 3);
+
+/* phase, of noise.comp */
+CONSTANT(NOISE_BEGINS, 0);
+CONSTANT(NOISE_ENDS_SAMPLES, 1);
+CONSTANT(NOISE_LISTS, 2);
+CONSTANT(NOISE_SPREADS, 3);
+CONSTANT(NOISE_RESTORES, 4);
 
 /* source */
 CONSTANT(ITEMS_FRESH, 0);
@@ -278,7 +289,15 @@ CONSTANT(ROW_POSITIONS, 1); /* floats: position, depth; infinite where nothing i
 CONSTANT(ROW_NORMALS, 2);   /* floats, and the component; 0: nothing is hit */
 CONSTANT(ROW_ALBEDOS, 3);   /* floats, and the level */
 CONSTANT(ROW_COUNTS, 4);    /* the instance, the steps of the ray */
-CONSTANT(RESULT_ROWS, 5);
+CONSTANT(ROW_NOISE, 5);     /* estimated error; the samples of a pixel that has ended, else 0 */
+/* Floats.  Of a pixel whose samples go on: sums of its colour when its error was estimated last, and
+   the variance of the mean.  Of another: sums of its colour and alpha. */
+CONSTANT(ROW_EARLIER, 6);
+CONSTANT(RESULT_ROWS, 7);
+/* The least samples of a pixel, which may end when they are a power of two.  The error is estimated
+   from half as many on, by means of two halves. */
+CONSTANT(LEAST_NOISE_SAMPLES, 16);
+CONSTANT(FIRST_NOISE_SAMPLES, 4);
 
 struct Light {
     vec3  vector;   /* direction towards the light (unit), or its position */

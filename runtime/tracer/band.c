@@ -33,14 +33,18 @@ static VkDeviceSize most_beams(uint64_t pixels)
     return 2 * (pixels / TILE + 2 * KRS_MOST_SIDE / TILE);
 }
 
-static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths)
+/* The last rows are for noise.comp. */
+static uint64_t rows_of_results(bool noise) { return noise ? RESULT_ROWS : ROW_NOISE; }
+
+static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths, bool noise)
 {
     Gpu               *gpu           = &rendering->renderer->gpu;
     Band              *band          = &rendering->band;
     const bool         read_in_place = gpu_is_cpu(gpu); /* the host reads the device's buffer */
     const Where        shared        = read_in_place ? SHARED : ON_DEVICE;
     const VkDeviceSize hit           = HIT_BYTES + (paths ? PATH_BYTES : 0);
-    const VkDeviceSize results = pixels * RESULT_ROWS * RESULT_BYTES, beams = most_beams(pixels);
+    const VkDeviceSize beams = most_beams(pixels), tiles = paths ? pixels : beams;
+    const VkDeviceSize results = pixels * rows_of_results(noise) * RESULT_BYTES;
     const struct {
         Buffer      *buffer;
         uint32_t     binding, texels; /* in set 1: as a buffer, as texels; 0: none */
@@ -55,11 +59,11 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths)
         {&band->queue, QUEUE_BINDING, PIXEL_LIST_TEXELS_BINDING, 2 * pixels * MARCH_BYTES,
          ON_DEVICE, "queue of rays"},
         {&band->taken, TAKEN_BINDING, 0, beams * sizeof(uint32_t), ON_DEVICE, "shares of groups"},
-        {&band->tiles, TILES_BINDING, 0, (paths ? pixels : beams) * sizeof(uint32_t), ON_DEVICE,
-         "tiles"},
+        {&band->tiles, TILES_BINDING, 0, (tiles + (noise ? beams : 0)) * sizeof(uint32_t),
+         ON_DEVICE, "tiles"},
         {&band->fetched, 0, 0, read_in_place ? 0 : results, SHARED, "pixels to read"},
     };
-    if (band->pixels >= pixels && (band->has_paths || !paths))
+    if (band->pixels >= pixels && (band->has_paths || !paths) && (band->has_noise || !noise))
         return true;
     band_destroy(gpu, band);
     for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
@@ -79,8 +83,10 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths)
         if (wanted[i].texels)
             rendering_bind(rendering, rendering->band_set, wanted[i].texels, buffer);
     }
-    band->pixels    = pixels;
-    band->has_paths = paths;
+    band->pixels     = pixels;
+    band->has_paths  = paths;
+    band->has_noise  = noise;
+    band->sampled_at = (uint32_t)tiles;
     return true;
 }
 
@@ -94,7 +100,7 @@ static uint32_t rows_within(uint32_t width, uint64_t pixels)
     return rows < TILE ? TILE : (uint32_t)rows;
 }
 
-/* Bytes of all buffers of a band for a pixel, about. */
+/* Bytes of all buffers of a band for a pixel, about, with the rows for noise. */
 #define BAND_BYTES(hit) (END_BYTES + (hit) + 2 * RESULT_ROWS * RESULT_BYTES + 2 * MARCH_BYTES + 4)
 
 /* The most pixels that a band may have on this device.  All of its buffers must fit into the
@@ -116,7 +122,8 @@ static uint64_t most_pixels(const Gpu *gpu, bool paths)
     return most > BAND_PIXELS_MIN ? most : BAND_PIXELS_MIN;
 }
 
-uint32_t band_allocate(KrsRendering *rendering, const KrsWindow *cover, uint32_t halo, bool paths)
+uint32_t band_allocate(KrsRendering *rendering, const KrsWindow *cover, uint32_t halo, bool paths,
+                       bool noise)
 {
     Gpu           *gpu    = &rendering->renderer->gpu;
     const uint64_t across = round_to_tiles(cover->width) + 2 * halo;
@@ -124,7 +131,7 @@ uint32_t band_allocate(KrsRendering *rendering, const KrsWindow *cover, uint32_t
         uint32_t rows = rows_within((uint32_t)across, pixels);
         rows          = rows > 2 * halo + TILE ? rows - 2 * halo : TILE;
         rows          = rows < cover->height ? rows : cover->height;
-        if (band_create(rendering, (round_to_tiles(rows) + 2 * halo) * across, paths)) {
+        if (band_create(rendering, (round_to_tiles(rows) + 2 * halo) * across, paths, noise)) {
             renderer_clear(rendering->renderer);
             return rows;
         }

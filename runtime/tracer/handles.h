@@ -53,6 +53,7 @@ struct KrsRenderer {
     Kernel pixels[RAY_KINDS][PIXEL_KERNELS];
     Kernel limits[RAY_KINDS];     /* limit.comp, made when it is needed */
     Kernel escapes[RAY_KINDS];    /* escape.comp, made when paths are traced */
+    Kernel noise;                 /* noise.comp, likewise */
     Kernel next_dispatch;         /* on graphics cards only (dispatch.c), */
     Kernel clear_shared;          /* and likewise */
     double spirv_ms, pipeline_ms; /* the time to make these kernels */
@@ -65,8 +66,10 @@ struct KrsRenderer {
 
 /* The buffers that hold a band of the picture. */
 typedef struct Band {
-    uint64_t pixels;    /* the most that fit; 0: there are no buffers */
-    bool     has_paths; /* there are rows for the path of each */
+    uint64_t pixels;     /* the most that fit; 0: there are no buffers */
+    bool     has_paths;  /* there are rows for the path of each */
+    bool     has_noise;  /* there are words of the quarters of tiles whose pixels have rays, */
+    uint32_t sampled_at; /* from here on in `tiles` */
     Buffer   ends, hits, results, queue, taken, tiles;
     /* A copy of the results for the host; none where the host reads `results` directly. */
     Buffer fetched;

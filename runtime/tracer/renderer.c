@@ -87,6 +87,7 @@ void krs_renderer_free(KrsRenderer *renderer)
             kernel_destroy(gpu, &renderer->limits[kind]);
             kernel_destroy(gpu, &renderer->escapes[kind]);
         }
+        kernel_destroy(gpu, &renderer->noise);
         kernel_destroy(gpu, &renderer->next_dispatch);
         kernel_destroy(gpu, &renderer->clear_shared);
         layouts_destroy(renderer);
@@ -140,12 +141,24 @@ bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_
            kernels_make(renderer, VK_NULL_HANDLE, requests, count, spirv_ms, pipeline_ms);
 }
 
-const Kernel *renderer_limit(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
-                             double *pipeline_ms)
+/* Makes a kernel without a scene, unless it exists; NULL with the failure noted. */
+static const Kernel *make_ready(KrsRenderer *renderer, Kernel *kernel, const char *file,
+                                RayKind kind, double *spirv_ms, double *pipeline_ms)
 {
-    Kernel       *kernel  = &renderer->limits[kind];
-    KernelRequest request = request_kernel(renderer, kernel, "limit.comp", kind);
+    KernelRequest request = request_kernel(renderer, kernel, file, kind);
     bool          made    = kernel->pipeline ||
                 kernels_make(renderer, VK_NULL_HANDLE, &request, 1, spirv_ms, pipeline_ms);
     return made ? kernel : NULL;
+}
+
+const Kernel *renderer_limit(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
+                             double *pipeline_ms)
+{
+    return make_ready(renderer, &renderer->limits[kind], "limit.comp", kind, spirv_ms, pipeline_ms);
+}
+
+const Kernel *renderer_noise(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms)
+{
+    return make_ready(renderer, &renderer->noise, "noise.comp", RAYS_OF_CAMERAS, spirv_ms,
+                      pipeline_ms);
 }

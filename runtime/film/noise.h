@@ -1,0 +1,24 @@
+/*
+ * noise.h: ends the samples of pixels whose error is small (noise.comp).
+ */
+#ifndef KRS_NOISE_H
+#define KRS_NOISE_H
+
+#include "runtime/tracer/job.h"
+#include "runtime/tracer/plan.h"
+
+/* Whether the error of pixels is estimated, for these options. */
+bool noise_is_wanted(const KrsRenderOptions *options);
+/* Before samples are added to the band in the buffers, whose pixels have `samples` so far.  Clears
+   *goes_on if all of them have ended. */
+bool noise_resume(Job *job, const Plan *plan, const WorkBlock *work, uint32_t samples,
+                  bool *goes_on);
+/* After a sample of each pixel: there are `samples` now. */
+bool noise_take(Job *job, const Plan *plan, const WorkBlock *work, uint32_t samples, bool *goes_on);
+/* After all samples: gives pixels that have ended their colours back. */
+bool noise_restore(Job *job, const WorkBlock *work, uint32_t samples);
+
+/* Completes the planes of noise of a picture for pixels that have not ended. */
+void noise_finish(KrsPicture *picture);
+
+#endif
