@@ -85,6 +85,7 @@ typedef struct KrsProgram {
     bool          plain;   /* no component is curved (shape_is_curved) */
     bool          shadows; /* a light casts shadows */
     bool          mirrors; /* a material is smooth enough to show images, or lets light through */
+    bool          media;   /* a component may let light through: there are variants of KrsGlass */
     KrsMarchGroup march_groups[KRS_MOST_MARCH_GROUPS];
     size_t        march_group_count; /* 0: all components are marched together */
     bool          per_component;     /* it is faster to march one group after the other */

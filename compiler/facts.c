@@ -178,6 +178,8 @@ void print_facts(Compilation *c, Text *out)
     text_format(out, "operations  %zu\nflops  %.6g\nloops  %u\n", program->operations,
                 program->flops, program->loops);
     print_flags(program, out);
+    if (program->media) /* a line of its own, since few scenes have any */
+        text_add(out, "media  yes\n");
     text_format(out, "scene parts  %u\nexpensive components  %u\nmarch groups  %zu\n",
                 program->scene_parts, program->expensive, program->march_group_count);
     for (size_t i = 0; i < program->march_group_count; i++) {

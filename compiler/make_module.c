@@ -72,6 +72,7 @@ KrsStatus pass_emit(Compilation *c)
                              .mirror_nodes    = c->mirror_nodes,
                              .march_groups    = program->march_group_count ? c->march_groups : NULL,
                              .is_plane        = program->planes ? is_plane : NULL,
+                             .is_medium       = program->media ? c->is_medium : NULL,
                              .has_slopes      = scene->slope_count > 0,
                              .derives         = program->gradients};
     module_lay_out(&scene->module, KRS_MOST_ZONES, arena, &c->scratch);

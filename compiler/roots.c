@@ -11,6 +11,7 @@
 #include "compiler/base/far.h"
 #include "compiler/compilation.h"
 #include "compiler/graph/build.h"
+#include "compiler/graph/facts.h"
 #include "compiler/graph/rebase.h"
 #include "compiler/graph/derive.h"
 #include "compiler/lower/crowd.h"
@@ -90,13 +91,29 @@ static void lower_marches(Compilation *c, Graph *g, LoweredCrowds *crowds)
     }
 }
 
-/* Rays go on inside of a half-space that lets light through, so it is marched like all else. */
-static void forget_planes_of_glass(Compilation *c, const Graph *g)
+/* Whether a property may be above 0.  At points it may be anything that pictures permit. */
+static bool may_exceed_zero(const Graph *g, Node property, Arena *scratch)
 {
-    for (size_t i = 0; i < c->elaborated.components.count; i++) {
-        Component *component = &c->elaborated.components.items[i];
-        if (!is_number(g, surface_roots(&c->scene->roots, i)[ROOT_transmission], 0))
-            component->plane_normal = component->plane_offset = NODE_NONE;
+    if (is_number(g, property, 0))
+        return false;
+    return g->items[property].time == TIME_POINT ||
+           graph_frame_fact(g, property, scratch).value[0].high > 0;
+}
+
+/* Finds the components that may let light through.  Rays go on inside of them, so half-spaces are
+   marched like all else.  Sheets have no inside. */
+static void find_media(Compilation *c, const Graph *g)
+{
+    const size_t count = c->elaborated.components.count;
+    c->is_medium       = arena_new_array(&c->scene->arena, bool, count + 1);
+    for (size_t i = 0; i < count; i++) {
+        Component *component    = &c->elaborated.components.items[i];
+        Node       transmission = surface_roots(&c->scene->roots, i)[ROOT_transmission];
+        if (!may_exceed_zero(g, transmission, &c->scratch))
+            continue;
+        component->plane_normal = component->plane_offset = NODE_NONE;
+        c->is_medium[i]                                   = !has_thin_sheets(component->shape);
+        c->scene->program.media |= c->is_medium[i];
     }
 }
 
@@ -207,7 +224,7 @@ KrsStatus pass_lower(Compilation *c)
     more->camera_relative = !more->sheets && may_need_rebase(s, s->graph, roots, &c->scratch);
     gather_view(s, roots);
     lower_marches(c, s->graph, crowds);
-    forget_planes_of_glass(c, s->graph);
+    find_media(c, s->graph);
     lower_planes(c, s->graph);
     arena_free(&c->scratch);
     more->algebraic = is_algebraic(s, roots);

@@ -55,16 +55,24 @@ void emit_distance_of(Emitter *e, const ModuleFunction *function)
     emit_line(e, "    return %s;\n}\n\n", e->text[*function->roots]);
 }
 
+static FunctionKind kind_of_distance(const Emitter *e, uint32_t component)
+{
+    (void)e;
+    (void)component;
+    return OF_DISTANCE;
+}
+
 /* The least, which begins with the first component where none is left out. */
 void emit_distance(Emitter *e)
 {
-    bool     some  = e->variant->march_group > 0 || (e->variant->planes && e->module->is_plane);
+    bool some = e->variant->march_group > 0 || (e->variant->planes && e->module->is_plane) ||
+                (e->variant->glass && e->module->is_medium);
     uint32_t count = (uint32_t)e->module->components, first = !some && count > 0;
     emit_local(e, TYPE_FLOAT, "d", first ? emit_call_of(e, OF_DISTANCE, 0) : NOWHERE_TEXT);
     for (uint32_t i = first; i < count; i++)
-        if (!emit_leaves_out(e, i))
+        if (!emit_leaves_out(e, i) && !emit_is_medium(e, i))
             text_format(e->out, "    d = min(d, %s);\n", emit_call_of(e, OF_DISTANCE, i));
-    text_format(e->out, "    return %s;\n", emit_cut(e, "d"));
+    emit_media_steps(e, kind_of_distance, "d");
 }
 
 /* ---- gradients ---- */
@@ -130,10 +138,13 @@ void emit_gradient(Emitter *e)
     const Operands nearer = {"other.w < nearest.w", "other", "nearest"};
     uint32_t       count  = (uint32_t)e->module->components;
     emit_phrase(e, PHRASE_NEAREST_GRADIENT, (Operands){0});
-    for (uint32_t i = 0; i < count; i++)
-        if (is_of_group(e, i))
-            text_format(e->out, "    other = %s;\n    nearest = %s;\n",
-                        emit_call_of(e, OF_GRADIENT, i), phrase_text(e, PHRASE_CHOICE, nearer));
+    for (uint32_t i = 0; i < count; i++) {
+        if (!is_of_group(e, i))
+            continue;
+        text_format(e->out, "    other = %s;\n", emit_call_of(e, OF_GRADIENT, i));
+        emit_media_gradient(e, i);
+        text_format(e->out, "    nearest = %s;\n", phrase_text(e, PHRASE_CHOICE, nearer));
+    }
     emit_zone_gradients(e, e->module->gradients + 2 * count);
     text_add(e->out, "    return nearest.xyz;\n");
 }

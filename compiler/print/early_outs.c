@@ -148,6 +148,13 @@ static void emit_guarded_component(Emitter *e, uint32_t component, bool first)
     emit_phrase(e, PHRASE_SET_IF, (Operands){nearer.bytes, "d", least.bytes});
 }
 
+static FunctionKind kind_of_lod(const Emitter *e, uint32_t component)
+{
+    (void)e;
+    (void)component;
+    return OF_LOD;
+}
+
 /* Endless components first, then the others where they may be nearer. */
 void emit_lod(Emitter *e)
 {
@@ -157,9 +164,10 @@ void emit_lod(Emitter *e)
         emit_local(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
     for (int finite = 0; finite < 2; finite++)
         for (uint32_t i = 0; i < e->module->components; i++)
-            if (is_looked_at(e, i) && box_is_finite(e->module->boxes[i]) == finite)
+            if (is_looked_at(e, i) && box_is_finite(e->module->boxes[i]) == finite &&
+                !emit_is_medium(e, i))
                 emit_guarded_component(e, i, found && count++ == 0);
     if (found && count == 0)
         emit_local(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
-    text_format(e->out, "    return %s;\n", emit_cut(e, "d"));
+    emit_media_steps(e, kind_of_lod, "d");
 }

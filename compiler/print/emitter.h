@@ -205,6 +205,8 @@ void emit_struct(Emitter *e);
 void need_surface(Emitter *e);
 void emit_surface_of(Emitter *e, const ModuleFunction *function);
 void emit_surface(Emitter *e);
+/* `nearest`: what is anywhere in a scene without components. */
+void emit_nothing(Emitter *e);
 
 /* crowds.c: functions of crowds, and the tables that they read. */
 /* Finds what these functions call; bodies of that join their roots. */
@@ -233,6 +235,25 @@ void need_lod(Emitter *e);
 void need_lod_of(Emitter *e, uint32_t component);
 void emit_lod_of(Emitter *e, const ModuleFunction *function);
 void emit_lod(Emitter *e);
+
+/* media.c: distances and surfaces of rays that are inside of glass, or are not. */
+/* Whether a component is a medium of the variant. */
+bool emit_is_medium(const Emitter *e, uint32_t component);
+/* Whether rays of the variant are in media. */
+bool emit_has_media(const Emitter *e);
+/* The globals of media. */
+void emit_media_globals(Emitter *e);
+/* What is left of `variable`, the least length to solids that are no media, with those to the
+   boundaries of media, which are functions of this kind; and cut by zones. */
+void emit_media_steps(Emitter    *e, FunctionKind (*kind_of)(const Emitter *e, uint32_t component),
+                      const char *variable);
+/* The gradient `other` of a component, as the ray sees it. */
+void emit_media_gradient(Emitter *e, uint32_t component);
+void need_media_surface(Emitter *e);
+void emit_media_surface(Emitter *e);
+void need_media(Emitter *e);
+void emit_medium_at(Emitter *e);
+void emit_glass(Emitter *e);
 
 /* march.c: what some marches need beside a distance: krs_plane_t and krs_plane_cosine;
    krs_scene_part_distance and krs_scene_part_box; krs_along and krs_probe. */

@@ -130,15 +130,21 @@ static void emit_steps(Emitter *e, FunctionKind kind)
     emit_local(e, TYPE_FLOAT, "t", NOWHERE_TEXT);
     for (uint32_t i = 0; i < e->module->components; i++) {
         FunctionKind called = has_own_step(e, kind, i) ? kind : OF_DISTANCE;
-        if (!emit_leaves_out(e, i))
+        bool         apart  = kind == OF_ALONG && emit_is_medium(e, i);
+        if (!emit_leaves_out(e, i) && !apart)
             text_format(e->out, "    t = min(t, %s);\n", emit_call_of(e, called, i));
     }
+}
+
+static FunctionKind kind_of_step(const Emitter *e, uint32_t component)
+{
+    return has_own_step(e, OF_ALONG, component) ? OF_ALONG : OF_DISTANCE;
 }
 
 void emit_along(Emitter *e)
 {
     emit_steps(e, OF_ALONG);
-    text_format(e->out, "    return %s;\n", emit_cut(e, "t"));
+    emit_media_steps(e, kind_of_step, "t");
 }
 
 void emit_probe(Emitter *e)

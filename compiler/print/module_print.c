@@ -28,6 +28,8 @@ static const struct {
     [KRS_FUNCTION_SCENE_PART_BOX]      = {NULL, emit_scene_part_box},
     [KRS_FUNCTION_GRADIENT]            = {need_gradient, emit_gradient},
     [KRS_FUNCTION_SURFACE]             = {need_surface, emit_surface},
+    [KRS_FUNCTION_MEDIUM_AT]           = {need_media, emit_medium_at},
+    [KRS_FUNCTION_GLASS]               = {need_media, emit_glass},
 };
 
 static void (*const component_functions[FUNCTION_KINDS])(Emitter              *e,
@@ -100,6 +102,9 @@ bool emit_leaves_out(const Emitter *e, uint32_t component)
 {
     if (e->variant->march_group > 0)
         return !emit_is_of_group(e, component);
+    if (e->variant->glass == KRS_GLASS_LEFT_OUT && e->module->is_medium &&
+        e->module->is_medium[component])
+        return true;
     return e->variant->planes && e->module->is_plane && e->module->is_plane[component];
 }
 
@@ -155,9 +160,13 @@ void module_lay_out(Module *module, uint32_t zone_slots, Arena *arena, Arena *sc
 /* Whether a function that is wanted is cut by zones. */
 static bool needs_cut(const Emitter *e)
 {
-    static const KrsFunction cut[]  = {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_ALONG,
-                                       KRS_FUNCTION_DISTANCE_LOD, KRS_FUNCTION_PROBE,
-                                       KRS_FUNCTION_SCENE_PART_DISTANCE};
+    static const KrsFunction cut[]  = {KRS_FUNCTION_DISTANCE,
+                                       KRS_FUNCTION_ALONG,
+                                       KRS_FUNCTION_DISTANCE_LOD,
+                                       KRS_FUNCTION_PROBE,
+                                       KRS_FUNCTION_SCENE_PART_DISTANCE,
+                                       KRS_FUNCTION_MEDIUM_AT,
+                                       KRS_FUNCTION_GLASS};
     bool                     needed = e->wanted[KRS_FUNCTION_SURFACE] && e->module->components > 0;
     for (size_t i = 0; i < sizeof cut / sizeof *cut; i++)
         needed = needed || e->wanted[cut[i]];
@@ -281,6 +290,7 @@ static void emit_promises(Emitter *e)
 {
     if (e->wanted[KRS_FUNCTION_SURFACE])
         emit_struct(e);
+    emit_media_globals(e);
     emit_prepare_promise(e);
     for (int f = 0; f < KRS_FUNCTION_COUNT; f++)
         if (e->wanted[f])
@@ -323,7 +333,8 @@ uint64_t krs_variant_hash(const KrsVariant *variant, const KrsFunction *wanted, 
 {
     const uint64_t numbers[] = {variant->zones,  variant->march_group,     variant->step,
                                 variant->planes, variant->camera_relative, variant->many_threads,
-                                variant->values, variant->shares,          variant->buffers};
+                                variant->values, variant->shares,          variant->buffers,
+                                variant->glass};
     uint64_t       set = 0, h = 0xcbf29ce484222325u; /* FNV-1a */
     for (size_t i = 0; i < count; i++)
         set |= (uint64_t)1 << wanted[i];

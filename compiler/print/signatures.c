@@ -87,6 +87,14 @@ static const Signature of_scene[KRS_FUNCTION_COUNT] = {
          {&point, &normal, &footprint},
          "// What is at p: the component with the least distance.  `normal` is the\n"
          "// gradient of krs_distance there, `footprint` the radius of a pixel, or 0.\n"},
+    [KRS_FUNCTION_MEDIUM_AT] = {"krs_medium_at",
+                                TYPE_UINT,
+                                {&point},
+                                "// The medium at p, as in krs_medium.\n"},
+    [KRS_FUNCTION_GLASS]     = {"krs_glass",
+                                TYPE_FLOAT,
+                                {&point},
+                                "// The distance to what may let light through; negative inside.\n"},
 };
 
 static const Signature zone_depth = {"krs_zone_depth", TYPE_FLOAT, {&point}, NULL};

@@ -30,6 +30,8 @@ void emit_struct(Emitter *e)
 
 void need_surface(Emitter *e)
 {
+    if (emit_has_media(e))
+        need_media_surface(e);
     for (uint32_t i = 0; i < e->module->components; i++)
         e->needed_of[OF_SURFACE][i] = true;
 }
@@ -60,7 +62,7 @@ void emit_surface_of(Emitter *e, const ModuleFunction *function)
 }
 
 /* What is anywhere in a scene without components. */
-static void emit_nothing(Emitter *e)
+void emit_nothing(Emitter *e)
 {
     Text nothing = {.arena = e->scratch};
     text_add(&nothing, "KrsSurface(" NOWHERE_TEXT);
@@ -77,6 +79,10 @@ static void emit_nothing(Emitter *e)
 
 void emit_surface(Emitter *e)
 {
+    if (emit_has_media(e)) {
+        emit_media_surface(e);
+        return;
+    }
     uint32_t count = (uint32_t)e->module->components;
     if (count > 0)
         emit_phrase(e, PHRASE_LOCAL,

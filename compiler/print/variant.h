@@ -48,6 +48,10 @@ typedef enum KrsFunction {
        KrsSurface has float distance; properties of the material (shape/surface.def): vec3 color,
        float roughness and others; uint component, level, instance; vec3 normal. */
     KRS_FUNCTION_SURFACE,
+    /* uint krs_medium_at(vec3 p): the medium there, as in krs_medium; where glass is nested. */
+    KRS_FUNCTION_MEDIUM_AT,
+    /* float krs_glass(vec3 p): the distance to components of glass alone, < 0 inside of one. */
+    KRS_FUNCTION_GLASS,
     /* float krs_sin(float a), krs_cos, krs_tan: for callers that need them as well. */
     KRS_FUNCTION_SINES,
     KRS_FUNCTION_COUNT
@@ -64,10 +68,25 @@ typedef enum KrsRayStep {
 /* In place of a march group's number: the planes that rays meet without a march. */
 enum { KRS_MARCH_GROUP_OF_PLANES = 255 };
 
+/*
+ * What distances say of components that may let light through, where the scene has any
+ * (KrsProgram.media).  GLASS_NESTED: they are media, and a ray is in one of them or in none.  Its
+ * number is in the global krs_medium, which the caller sets.  Where several contain a point, the
+ * one that is shown last is the medium there.  Distances and steps are those to where the ray
+ * leaves its medium, enters one that is shown later, or meets a solid that lets no light
+ * through.  There krs_surface tells what is known of the boundary (compiler/print/media.c).
+ */
+typedef enum KrsGlass {
+    KRS_GLASS_SOLID,    /* they are like all others */
+    KRS_GLASS_NESTED,   /* as above */
+    KRS_GLASS_LEFT_OUT, /* distances leave them out */
+} KrsGlass;
+
 typedef struct KrsVariant {
     uint32_t   zones;       /* of the caller, that the block has room for, behind all other slots */
     uint32_t   march_group; /* krs_distance and krs_along are of this group alone; 0: of all */
     KrsRayStep step;        /* of krs_along */
+    KrsGlass   glass;       /* what distances say of components that may let light through */
     bool       planes;      /* distances leave out the planes that krs_plane_t knows */
     bool       camera_relative; /* points are relative to an origin near them (graph/rebase.h) */
     bool many_threads; /* for devices with many threads: operations count, and branches save work.

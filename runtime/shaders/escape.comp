@@ -98,7 +98,12 @@ bool follow(uvec2 pixel, uint index, inout uint unresolved)
 #endif
     }
     add_light(index, clamped(finite_or_black(path.weight * found)));
-    store_path(PATH_TOWARD, index, vec4(0.0, 0.0, 0.0, hits ? ray.side : 0.0));
+#ifdef PATH_RAYS
+    float begun = abs(load_path(PATH_TOWARD, index).w); // in a medium
+#else
+    float begun = 1.0;
+#endif
+    store_path(PATH_TOWARD, index, vec4(0.0, 0.0, 0.0, hits ? begun * ray.side : 0.0));
     return hits;
 }
 

@@ -5,6 +5,7 @@
  * noise.  Where glass lets a ray through, what it mirrors is the sky alone.
  */
 #include "optics.glsl"
+#include "boundary.glsl"
 
 // Roughnesses below which a ray finds what a surface mirrors, and above which it is the sky alone:
 // of metals, and of others.
@@ -27,13 +28,13 @@ float find_traced(KrsSurface surface)
 struct Onward {
     vec3  direction, part;
     float side; // on which it begins, relative to that of the ray: -1 behind the surface
+    float code; // of where it begins (media.glsl)
 };
 
-Onward find_onward(HitPoint hit, KrsSurface surface, vec3 normal, vec3 mirrored)
+Onward find_onward(HitPoint hit, KrsSurface surface, Boundary boundary, vec3 normal, vec3 mirrored)
 {
     Onward onward;
-    float ior = clamp(surface.ior, 1.0001, 4.0), eta = hit.side > 0.0 ? ior : 1.0 / ior;
-    float glass = find_glass(surface);
+    float glass = find_glass(surface), eta = boundary.eta;
     float back = fresnel(clamp(-dot(hit.direction, normal), 0.0, 1.0), eta);
     bool  refracts = glass > 0.0 && back < 1.0;
     onward.direction = refracts ? refract(hit.direction, normal, 1.0 / eta)
@@ -42,19 +43,20 @@ Onward find_onward(HitPoint hit, KrsSurface surface, vec3 normal, vec3 mirrored)
                   : glass > 0.0 ? vec3(glass)
                                 : find_traced(surface) * mirrored;
     onward.side = refracts ? -1.0 : 1.0;
+    onward.code = refracts ? boundary.beyond : boundary.code;
     return onward;
 }
 
 // Stores the path that goes on, and lists it.
-void follow_onward(HitPoint hit, uint index, Onward onward, vec3 facing, vec3 weight, float spread)
+void follow_onward(HitPoint hit, uint index, Onward onward, vec4 facing, vec3 weight, float spread)
 {
-    float lift = 0.5 * hit.width + 4.0 * hit.rounding;
-    if (largest(weight) < LEAST_WEIGHT || dot(onward.direction, facing) * onward.side <= 0.0)
+    if (largest(weight) < LEAST_WEIGHT || dot(onward.direction, facing.xyz) * onward.side <= 0.0)
         return;
-    store_path(PATH_ORIGIN, index,
-               vec4(hit.position + onward.side * lift * facing, hit.width));
-    store_path(PATH_DIRECTION, index, vec4(normalize(onward.direction), spread));
+    vec3 direction = normalize(onward.direction);
+    store_path(PATH_ORIGIN, index, vec4(find_start(hit, direction, facing, onward.side), hit.width));
+    store_path(PATH_DIRECTION, index, vec4(direction, spread));
     store_path(PATH_WEIGHT, index, vec4(min(weight, 1e30), 1.0));
-    store_path(PATH_TOWARD, index, vec4(0.0, 0.0, 0.0, onward.side * hit.side));
+    store_path(PATH_TOWARD, index, vec4(0.0, 0.0, 0.0, onward.code));
+    store_path(PATH_SURFACE, index, vec4(hit.position, onward.code));
     tiles[atomicAdd(counts.tiles, 1u)] = hit.slot;
 }

@@ -13,6 +13,9 @@
 #include "frame.glsl"
 #include "hit_lists.glsl"
 #include "stencil.glsl"
+#ifdef PATH_RAYS
+#include "media.glsl"
+#endif
 
 // The least reach of differences, relative to the coordinates: less would be noise.
 const float NOISE = 3e-4;
@@ -105,6 +108,9 @@ void begin_item(uint number)
 {
     hit = find_hit_point(number);
     start = hit.position;
+#ifdef PATH_RAYS
+    enter_medium(load_path(PATH_TOWARD, index_of(pixel_of(hit.slot))).w);
+#endif
     begin_normal();
 }
 

@@ -17,6 +17,7 @@
 #include "path_samples.glsl"
 #include "bsdf.glsl"
 #include "lights.glsl"
+#include "boundary.glsl"
 
 const uint CHOICES = 3u;      // points of the unit square for each surface of a path
 const uint FIRST_ROULETTE = 3u;
@@ -108,9 +109,9 @@ vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, v
     return point.toward;
 }
 
-// Sends the path on, or ends it.  Returns the side on which its ray begins; 0: it ends.
+// Sends the path on, or ends it.  Returns where its ray begins (media.glsl); 0: it ends.
 float go_on(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 facing, vec3 weight,
-            float roughness)
+            float roughness, Boundary boundary)
 {
     vec2  chosen = choose(pixel, 2u);
     vec3  light = sample_direction(bsdf, choose(pixel, 0u), chosen.y);
@@ -126,25 +127,25 @@ float go_on(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 fa
         weight /= max(chance, 1e-30);
     }
     float side = light.z < 0.0 ? -1.0 : 1.0; // of the surface, relative to the ray's
-    float lift = 0.5 * hit.width + 4.0 * hit.rounding;
     float spread = load_path(PATH_DIRECTION, index).w;
     spread = max(spread, min(1.0 + 2.0 * roughness, MOST_SPREAD) * frame.pixel_slope);
-    store_path(PATH_ORIGIN, index, vec4(hit.position + side * lift * facing.xyz, hit.width));
+    store_path(PATH_ORIGIN, index, vec4(find_start(hit, direction, facing, side), hit.width));
     store_path(PATH_DIRECTION, index, vec4(direction, spread));
     store_path(PATH_WEIGHT, index, vec4(weight, scattered.w));
-    return goes_on ? side * hit.side : 0.0;
+    return !goes_on ? 0.0 : side > 0.0 ? boundary.code : boundary.beyond;
 }
 
-// How long a path's ray has been inside of a solid.  It began somewhat beyond the surface, but the
-// camera's did not; where it leaves a surface nearly along it, no more is added than this cosine
-// says.
-const float LEAST_COSINE = 0.25;
-float find_way(uint index, HitPoint hit, vec3 origin, float t)
+// The surface that a path has hit.  What it reflects depends on the medium before it.
+Boundary meet_boundary(inout HitPoint hit, uint index, vec3 facing, out KrsSurface surface)
 {
-    vec3  lifted = origin - load_path(PATH_SURFACE, index).xyz;
-    float height = length(lifted);
-    float ahead = max(dot(lifted, hit.direction), LEAST_COSINE * height);
-    return control.value == 0u ? t : t + height * height / max(ahead, 1e-30);
+    prepare_boundary(hit, load_path(PATH_TOWARD, index).w);
+    surface = within_limits(krs_surface(hit.position, hit.side * facing, 0.5 * hit.width));
+    Boundary boundary = find_boundary(hit, surface);
+    hit.side = boundary.side;
+#ifdef MEDIA
+    surface.ior = max(boundary.eta, 1.0 / boundary.eta);
+#endif
+    return boundary;
 }
 
 void do_item(uint number)
@@ -154,14 +155,13 @@ void do_item(uint number)
 #ifdef KRS_VIEW // as in shade.comp
     krs_view = hit.direction;
 #endif
-    KrsSurface surface = within_limits(
-        krs_surface(hit.position, hit.side * facing.xyz, 0.5 * hit.width));
     uvec2 pixel = pixel_of(hit.slot);
     uint  index = index_of(pixel);
+    KrsSurface surface;
+    Boundary   boundary = meet_boundary(hit, index, facing.xyz, surface);
     float t = find_end(index).t;
     vec3  origin = load_path(PATH_ORIGIN, index).xyz, weight = load_path(PATH_WEIGHT, index).xyz;
-    vec3  absorbed = surface.absorption * find_way(index, hit, origin, t);
-    weight *= hit.side < 0.0 ? exp(-absorbed) : vec3(1.0);
+    weight *= find_left(boundary, find_way(index, hit, t, control.value == 0u));
     float left = let_through(origin.y, hit.direction.y, t);
     vec3  radiance = weight * through_fog(surface.emission, left, true);
     weight *= left;
@@ -173,12 +173,15 @@ void do_item(uint number)
         return;
     Axes axes = find_axes(normal);
     Bsdf   bsdf = make_bsdf(surface, hit.side > 0.0, into(axes, -hit.direction));
+    bsdf.eta = boundary.eta;
     vec3  toward = choose_light(pixel, index, hit, bsdf, axes, facing.xyz, weight);
-    float side = go_on(pixel, index, hit, bsdf, axes, facing, weight, surface.roughness);
+    float side = go_on(pixel, index, hit, bsdf, axes, facing, weight, surface.roughness,
+                       boundary);
     store_path(PATH_TOWARD, index, vec4(toward, side));
     if (side != 0.0)
         tiles[atomicAdd(counts.tiles, 1u)] = hit.slot;
-    store_path(PATH_SURFACE, index, vec4(hit.position, hit.side * hit.width));
+    float of_light = dot(facing.xyz, toward) < 0.0 ? boundary.beyond : boundary.code;
+    store_path(PATH_SURFACE, index, vec4(hit.position, of_light));
 }
 
 #include "pixels.glsl"

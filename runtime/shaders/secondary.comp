@@ -23,6 +23,7 @@
 #ifdef PATH_RAYS
 #include "results.glsl"
 #endif
+#include "media.glsl"
 
 const uint MOST_STEPS = 1024u;
 // How many pixels above the surface rays start, where it is even and where it is not.  Rays for
@@ -80,7 +81,7 @@ void begin_ray(vec3 normal, vec3 toward)
     facing = dot(normal, direction);
     float box_end = clip_ray(start, direction, end).y;
     // A ray from inside of a solid that reaches the box around all solids has met a wall there.
-    blocked = hit.side < 0.0 && box_end < end;
+    blocked = (hit.side < 0.0 || is_in_medium()) && box_end < end;
     end = min(end, box_end);
     step_limit = blocked || below_horizon ? 0u : MOST_STEPS;
 }
@@ -159,9 +160,11 @@ vec3 added; // by the light if it is visible
 // Where the path was scattered; its ray has gone on.
 HitPoint hit_of_path(uint slot)
 {
-    vec4 surface = load_path(PATH_SURFACE, index_of(pixel_of(slot)));
-    return HitPoint(slot, surface.xyz, vec3(0.0), abs(surface.w), ROUNDING * largest(surface.xyz),
-                    sign(surface.w), 0u);
+    uint index = index_of(pixel_of(slot));
+    vec4 surface = load_path(PATH_SURFACE, index);
+    enter_medium(surface.w);
+    return HitPoint(slot, surface.xyz, vec3(0.0), load_path(PATH_ORIGIN, index).w,
+                    ROUNDING * largest(surface.xyz), sign(surface.w), 0u);
 }
 
 // Aims at the light that the path has chosen.  A light behind the surface is seen from there.
@@ -171,7 +174,6 @@ void aim_as_chosen(vec3 normal)
     vec4 chosen = load_path(PATH_LIGHT, index);
     vec3 toward = load_path(PATH_TOWARD, index).xyz;
     float behind = dot(normal, toward) < 0.0 ? -1.0 : 1.0;
-    hit.side *= behind;
     lift = lift_in_pixels * hit.width + 4.0 * hit.rounding;
     start = hit.position + behind * lift * normal;
     end = min(chosen.w, frame.farthest);

@@ -106,12 +106,13 @@ vec3 ambient(Coat coat, float openness)
 
 #ifdef MIRRORS
 // Follows what the surface mirrors or lets through.  `weight` is that of the ray that hit it.
-void send_on(HitPoint hit, uint index, KrsSurface surface, Coat coat, vec3 facing, vec3 weight)
+void send_on(HitPoint hit, uint index, KrsSurface surface, Boundary boundary, Coat coat,
+             vec4 facing, vec3 weight)
 {
     // The coat has no colour where there is glass, which is found by Fresnel's formulas.
     vec3 mirrored = find_mirrored(coat.normal, coat.toward_eye, coat.color, coat.roughness,
                                   coat.metallic);
-    Onward onward = find_onward(hit, surface, coat.normal, mirrored);
+    Onward onward = find_onward(hit, surface, boundary, coat.normal, mirrored);
     float spread = frame.pixel_slope;
 #ifdef PATH_RAYS
     spread = load_path(PATH_DIRECTION, index).w;
@@ -139,8 +140,17 @@ void do_item(uint number)
 #ifdef KRS_VIEW // materials see how long the pixel is on the surface
     krs_view = hit.direction;
 #endif
-    KrsSurface surface = krs_surface(hit.position, hit.side * facing.xyz, 0.5 * hit.width);
     uint       index = index_of(pixel_of(hit.slot));
+#ifdef PATH_RAYS
+    prepare_boundary(hit, load_path(PATH_TOWARD, index).w);
+#elif defined(MIRRORS)
+    prepare_boundary(hit, hit.side);
+#endif
+    KrsSurface surface = krs_surface(hit.position, hit.side * facing.xyz, 0.5 * hit.width);
+#ifdef MIRRORS
+    Boundary boundary = find_boundary(hit, surface);
+    hit.side = boundary.side;
+#endif
     Coat       coat = find_coat(hit, surface, facing.w);
     vec4       radiance = vec4(0.0);
     vec3       weight = vec3(1.0);
@@ -148,7 +158,7 @@ void do_item(uint number)
 #ifdef PATH_RAYS
     openness = 1.0;
     weight = load_path(PATH_WEIGHT, index).xyz;
-    weight *= hit.side < 0.0 ? exp(-max(surface.absorption, 0.0) * find_end(index).t) : vec3(1.0);
+    weight *= find_left(boundary, find_way(index, hit, find_end(index).t, false));
 #endif
     if (control.light == 0u) {
         radiance.rgb = saturate(vec4(surface.emission, 0.0), BRIGHTEST).rgb +
@@ -175,7 +185,7 @@ void do_item(uint number)
     radiance.rgb = weight * through_fog(radiance.rgb, left, control.light == 0u);
 #ifdef MIRRORS
     if (control.phase == PATHS_GO_ON && control.light + LIGHTS_AT_ONCE >= control.lights)
-        send_on(hit, index, surface, coat, facing.xyz, weight * left);
+        send_on(hit, index, surface, boundary, coat, facing, weight * left);
 #endif
     vec3 added = clamped(finite_or_black(radiance.rgb));
 #ifdef PATH_RAYS

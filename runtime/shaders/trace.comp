@@ -39,6 +39,9 @@
 #endif
 #include "scene.glsl"
 #include "frame.glsl"
+#ifdef PATH_RAYS
+#include "media.glsl"
+#endif
 
 const uint PLAIN = 1u, RELAXED = 2u, AUTOMATIC = 3u; // TRACE: as KrsTrace
 const uint MOST_BEAM_STEPS = 256u; // the rest is left to the rays
@@ -338,6 +341,11 @@ void begin_item(uint number, bool saved)
     shrinking = 1.0 / (1.0 + width.y);
     if (saved && march.side < 0.0)
         width = inside_width();
+#ifdef PATH_RAYS
+    float code = load_path(PATH_TOWARD, saved ? march.index : index).w;
+    enter_medium(code);
+    width = is_in_medium() ? inside_width() : width;
+#endif
     vec2 range = is_ray ? clip_ray(origin, direction, frame.farthest) : vec2(0.0, frame.farthest);
     end = range.y;
     ends_at_walls = is_ray && end < frame.farthest;
@@ -360,7 +368,7 @@ void begin_item(uint number, bool saved)
     uint  beam = large ? end_of_32(cell) : small ? end_of_4(cell, quarter) : end_of_8(cell);
     begin_march(is_ray ? index : beam, max(range.x, item_start), is_ray);
 #ifdef PATH_RAYS // it begins at a surface, so its first distance is too small to tell the side
-    march.side = load_path(PATH_TOWARD, index).w;
+    march.side = sign(code);
     width = march.side < 0.0 ? inside_width() : width;
 #endif
 #ifdef PACKED
@@ -416,7 +424,12 @@ void end_item()
     uint march_group = 0u;
     march.state = unresolved ? STATE_MISS : march.state;
     // A ray from inside of a solid that reaches the box around all solids hits a wall there.
-    if (is_ray && !unresolved && march.state == STATE_MISS && march.side < 0.0 && ends_at_walls) {
+#ifdef PATH_RAYS
+    bool is_inside = march.side < 0.0 || is_in_medium();
+#else
+    bool is_inside = march.side < 0.0;
+#endif
+    if (is_ray && !unresolved && march.state == STATE_MISS && is_inside && ends_at_walls) {
         march.state = STATE_HIT;
         march.t = end;
     }

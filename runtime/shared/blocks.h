@@ -253,8 +253,8 @@ CONSTANT(HIT_ROWS, 2);
    the light from there that reaches the eye, and the probability density of the direction; 0: it
    is the camera's.  PATH_LIGHT: what a light adds if nothing is in between, and its distance.
    PATH_TOWARD: the direction to that light, and the side on which the ray begins: 1 outside of all
-   solids, -1 inside of one, 0: the path has ended.  PATH_SURFACE: where the path was scattered last,
-   and the width there; negative: from inside. */
+   solids, -1 inside of one, 0: the path has ended; with media more (media.glsl).  PATH_SURFACE: where
+   the path was scattered last, and the side on which the ray to the light begins. */
 CONSTANT(PATH_ORIGIN, 0);
 CONSTANT(PATH_DIRECTION, 1);
 CONSTANT(PATH_WEIGHT, 2);

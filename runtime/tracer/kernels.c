@@ -87,15 +87,16 @@ Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule sch
 }
 
 static KernelVariant variant_of_rays(const KrsRendering *rendering, KrsSchedule schedule,
-                                     bool by_roots)
+                                     bool by_roots, KrsPurpose purpose)
 {
     return variant_of_secondary(rendering, by_roots ? KRS_TRACE_EXACT : KRS_TRACE_PLAIN,
-                                schedule_of_kernel(schedule));
+                                schedule_of_kernel(schedule), purpose);
 }
 
 Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots)
 {
-    return find_kernel(rendering, "secondary.comp", variant_of_rays(rendering, schedule, by_roots));
+    return find_kernel(rendering, "secondary.comp",
+                       variant_of_rays(rendering, schedule, by_roots, KRS_FOR_PICTURES));
 }
 
 Kernel *rendering_normals_kernel(KrsRendering *rendering, KrsNormals normals, uint32_t march_group)
@@ -152,7 +153,8 @@ bool rendering_paths(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedu
     kernels->scatter    = purpose == KRS_FOR_PATHS
                               ? find_kernel(rendering, "scatter.comp", variant_of_scatter(rendering))
                               : rendering_shade(rendering);
-    kernels->shadows    = rendering_secondary(rendering, schedule, roots);
+    kernels->shadows    = find_kernel(rendering, "secondary.comp",
+                                      variant_of_rays(rendering, schedule, roots, purpose));
     rendering->rays     = rays;
     return kernels->march && kernels->normals && kernels->scatter && kernels->shadows;
 }
@@ -216,7 +218,8 @@ static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedu
     else
         request(requests, "shade.comp", variant_of_shade(rendering));
     request(requests, "secondary.comp",
-            variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace)));
+            variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace),
+                            rendering->purpose));
     rendering->rays = rays;
 }
 
@@ -231,7 +234,8 @@ static void request_pictures(Requests *requests, KrsTrace trace, KrsSchedule sch
                 variant_of_normals(rendering, usual, by_group ? KRS_MARCH_GROUP_OF_PLANES : 0));
     request(requests, "shade.comp", variant_of_shade(rendering));
     request(requests, "secondary.comp",
-            variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace)));
+            variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace),
+                            KRS_FOR_PICTURES));
     request_marches(requests, trace, schedule);
     if (rendering->program->mirrors)
         request_paths(requests, trace, schedule);

@@ -39,6 +39,14 @@ static bool wants(const KernelVariant *of, KrsFunction function)
     return found;
 }
 
+/* Chooses that distances and surfaces are those that a ray sees from inside of glass, or from
+   outside. */
+static void want_media(KernelVariant *to, const KrsRendering *rendering)
+{
+    if (rendering->program->media)
+        to->scene.variant.glass = KRS_GLASS_NESTED;
+}
+
 /* Defines for the kernel's own text what was chosen for the scene's.  It must be called last. */
 static void define_choices(KernelVariant *to)
 {
@@ -61,6 +69,8 @@ static void define_choices(KernelVariant *to)
         define(to, "#define MARCH_GROUP %u\n", to->scene.variant.march_group);
     if (to->scene.variant.camera_relative)
         define(to, "#define CAMERA_RELATIVE\n");
+    if (to->scene.variant.glass == KRS_GLASS_NESTED)
+        define(to, "#define MEDIA\n"); /* the scene's text has krs_medium */
 }
 
 /* Chooses the distance to march by.  Where branches save work, it is the one that skips far shapes.
@@ -141,6 +151,8 @@ KernelVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, Kr
 {
     KernelVariant to = begin_variant(rendering, trace, schedule);
     want_rays(&to, rendering);
+    if (rendering->rays == RAYS_OF_PATHS)
+        want_media(&to, rendering);
     if (group > 0 && rendering_knows_planes(rendering)) {
         to.scene.variant.planes = true;
         want(&to, KRS_FUNCTION_PLANE_T);
@@ -164,6 +176,8 @@ KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals norma
     KernelVariant     to         = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     to.scene.variant.march_group = group;
     want_rays(&to, rendering);
+    if (rendering->rays == RAYS_OF_PATHS)
+        want_media(&to, rendering);
     want(&to, KRS_FUNCTION_DISTANCE);
     if (normals == KRS_NORMALS_ANALYTIC && !to.scene.variant.camera_relative)
         want(&to, KRS_FUNCTION_GRADIENT);
@@ -178,11 +192,13 @@ KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals norma
     return to;
 }
 
-/* The random directions of rays need sines. */
+/* The random directions of rays need sines.  Rays of previews pass through glass. */
 KernelVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace,
-                                   KrsSchedule schedule)
+                                   KrsSchedule schedule, KrsPurpose purpose)
 {
     KernelVariant to = begin_variant(rendering, trace, schedule);
+    if (rendering->program->media)
+        to.scene.variant.glass = purpose == KRS_FOR_PATHS ? KRS_GLASS_NESTED : KRS_GLASS_LEFT_OUT;
     want(&to, KRS_FUNCTION_SINES);
     if (!want_along(&to, rendering, trace))
         want(&to, KRS_FUNCTION_DISTANCE);
@@ -195,6 +211,7 @@ KernelVariant variant_of_shade(const KrsRendering *rendering)
     KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     want_rays(&to, rendering);
     want(&to, KRS_FUNCTION_SURFACE);
+    want_media(&to, rendering);
     if (rendering->program->mirrors)
         define(&to, "#define MIRRORS\n");
     define_choices(&to);
@@ -207,6 +224,7 @@ KernelVariant variant_of_scatter(const KrsRendering *rendering)
     KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     want(&to, KRS_FUNCTION_SURFACE);
     want(&to, KRS_FUNCTION_SINES);
+    want_media(&to, rendering);
     define_choices(&to);
     return to;
 }

@@ -28,7 +28,7 @@ KernelVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, Kr
                                uint32_t group);
 KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals normals, uint32_t group);
 KernelVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace,
-                                   KrsSchedule schedule);
+                                   KrsSchedule schedule, KrsPurpose purpose);
 KernelVariant variant_of_shade(const KrsRendering *rendering);
 KernelVariant variant_of_scatter(const KrsRendering *rendering);
 KernelVariant variant_of_query(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule);

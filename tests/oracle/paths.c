@@ -113,9 +113,6 @@ static double seen_of_board(double angle, double index, double edge)
     return sum;
 }
 
-/* Rays begin half a pixel below a surface, so what they see is displaced by about as much. */
-#define HALF_A_PIXEL (0.5 / 96 / 0.27)
-
 /* The edge is near where the middle of the picture would see it without the slab. */
 static void slabs_displace_what_is_behind(void **state)
 {
@@ -130,9 +127,9 @@ static void slabs_displace_what_is_behind(void **state)
         Estimate found = look_through(&stage, angles[k], 1.5, 0);
         double   right = seen_of_board(angles[k], 1.5, edge);
         snprintf(name, sizeof name, "an edge at %.0f degrees", angles[k] / DEGREE);
-        wrong += !must_be_near(found, right, HALF_A_PIXEL, name);
+        wrong += !must_be_near(found, right, 0.004, name);
         if (k > 0) /* a ray that meets the slab head on is not bent */
-            assert_false(is_near(found, seen_of_board(angles[k], 1.3, edge), HALF_A_PIXEL));
+            assert_false(is_near(found, seen_of_board(angles[k], 1.3, edge), 0.004));
     }
     path_stage_close(&stage);
     assert_int_equal(wrong, 0);

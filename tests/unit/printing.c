@@ -139,6 +139,8 @@ static const char *const calls[KRS_FUNCTION_COUNT] = {
     [KRS_FUNCTION_SCENE_PART_BOX]      = "(krs_scene_part_box(0u, p, p), p.x)",
     [KRS_FUNCTION_GRADIENT]            = "krs_gradient(p, 0.1).x",
     [KRS_FUNCTION_SURFACE]             = "krs_surface(p, p, 0.0).roughness",
+    [KRS_FUNCTION_MEDIUM_AT]           = "float(krs_medium_at(p))",
+    [KRS_FUNCTION_GLASS]               = "krs_glass(p)",
     [KRS_FUNCTION_SINES]               = "krs_sin(p.x) + krs_cos(p.x) + krs_tan(p.x)",
 };
 
@@ -197,6 +199,8 @@ static bool can_want(const KernelScene *of, KrsFunction function)
     case KRS_FUNCTION_GRADIENT: return !v->camera_relative && v->march_group == 0;
     case KRS_FUNCTION_SCENE_PART_DISTANCE:
     case KRS_FUNCTION_SCENE_PART_BOX: return program->scene_parts >= 2 && v->march_group == 0;
+    case KRS_FUNCTION_MEDIUM_AT:
+    case KRS_FUNCTION_GLASS: return program->media && v->march_group == 0;
     case KRS_FUNCTION_SURFACE: return v->march_group == 0;
     default: return true;
     }
@@ -230,6 +234,10 @@ static void look_at_variants(KrsScene *scene, const char *path, bool compiled)
          {.step = KRS_STEP_TAYLOR},
          {.step = KRS_STEP_ROOT_FREE},
          {.step = KRS_STEP_DIRECTIONAL},
+         {.glass = KRS_GLASS_LEFT_OUT},
+         {.glass = KRS_GLASS_NESTED, .values = true},
+         {.glass = KRS_GLASS_NESTED, .zones = 2, .many_threads = true},
+         {.glass = KRS_GLASS_NESTED, .planes = program->planes},
          {.planes = program->planes, .values = true},
          {.planes = program->planes, .many_threads = true},
          {.camera_relative = program->camera_relative, .values = true},
@@ -265,6 +273,23 @@ static void look_at_far_scene(bool compiled)
     look_at_variants(scene, "far.krs", compiled);
 }
 
+/* Glass of different kinds: alone, many, by polynomials; and a solid that is none. */
+static void look_at_glass(void)
+{
+    static const char text[] = "use \"std/surfaces.krs\";"
+                               "material glass { transmission: 1 }"
+                               "show sphere(1).paint(glass);"
+                               "for i in 0..50 { show sphere(0.1).move([i, 1, 0]).paint(glass); }"
+                               "show barth_sextic(within: 1.5).move([0, 3, 0]).paint(glass);"
+                               "show box([1, 1, 1]).paint(gold);"
+                               "show plane([0, 1, 0], 0);";
+    KrsScene         *scene;
+    const KrsOptions  options = {.gradients = true};
+    assert_int_equal(krs_compile_text(text, strlen(text), "glass.krs", &options, &scene), KRS_OK);
+    assert_true(krs_scene_program(scene)->media);
+    look_at_variants(scene, "glass.krs", true);
+}
+
 static void texts_hold_what_is_called(void **state)
 {
     (void)state;
@@ -291,6 +316,7 @@ static void texts_are_glsl(void **state)
     compile_scene("tests/golden/fractals.krs"); /* without derivatives */
     compile_scene("bench/scenes/compound.krs");
     look_at_far_scene(true);
+    look_at_glass();
     spirv_stop();
     assert_true(groups_seen > 0 && relative_seen > 0 && planes_seen > 0);
 }

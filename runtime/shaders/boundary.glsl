@@ -1,0 +1,86 @@
+/*
+ * boundary.glsl: what is on both sides of a surface that the ray of a path has met, and how far it
+ * has come.
+ */
+#include "media.glsl"
+
+// A boundary that a ray has met.
+struct Boundary {
+    float side;        // 1: it enters what has the boundary, -1: it leaves that
+    float eta;         // index of refraction beyond, relative to here
+    vec3  absorption;  // of the medium that the ray has been in
+    bool  absorbs;     // it has been in one
+    float code, beyond; // of rays that stay on this side, and of those that go on beyond
+};
+
+// Nothing refracts less than this.
+const float LEAST_ETA = 1.001;
+
+float find_eta(float here, float beyond)
+{
+    float eta = clamp(beyond, 1.0, 4.0) / clamp(here, 1.0, 4.0);
+    return eta < 1.0 ? min(eta, 1.0 / LEAST_ETA) : max(eta, LEAST_ETA);
+}
+
+// How many pixels above a surface rays start, where it is even and where it is not, as in
+// secondary.comp.
+const float START_OF_EVEN = 0.125, START = 0.5;
+
+// Where a ray starts that leaves the hit into a direction, on the side `side` of the surface.  That
+// is so far along the ray that it is as high above the surface as it must be.  So the ray itself is
+// not displaced, unless it leaves the surface at less than this cosine: then it is lifted, too.
+const float LEAST_COSINE = 0.25;
+vec3 find_start(HitPoint hit, vec3 direction, vec4 facing, float side)
+{
+    float pixels = mix(START, START_OF_EVEN, smoothstep(0.9, 0.99, facing.w));
+    float height = pixels * hit.width + 4.0 * hit.rounding;
+    float cosine = abs(dot(direction, facing.xyz));
+    float ahead = height / max(cosine, LEAST_COSINE);
+    return hit.position + ahead * direction + side * (height - ahead * cosine) * facing.xyz;
+}
+
+// How long a path's ray has been on its way from the last surface.  It began somewhat beyond that,
+// but the camera's did not (`first`).
+float find_way(uint index, HitPoint hit, float t, bool first)
+{
+    vec3 lifted = load_path(PATH_ORIGIN, index).xyz - load_path(PATH_SURFACE, index).xyz;
+    return first ? t : t + dot(lifted, hit.direction);
+}
+
+// What absorption leaves of light on that way.
+vec3 find_left(Boundary boundary, float way)
+{
+    return boundary.absorbs ? exp(-max(boundary.absorption, 0.0) * way) : vec3(1.0);
+}
+
+#ifdef MEDIA
+// What krs_surface needs to know of the ray.
+void prepare_boundary(HitPoint hit, float code)
+{
+    enter_medium(code);
+    krs_lift = 0.5 * hit.width + 4.0 * hit.rounding;
+}
+
+// What it has told, for the surface that it has found.
+Boundary find_boundary(HitPoint hit, KrsSurface surface)
+{
+    bool leaves = krs_medium != 0u && krs_struck == krs_medium;
+    Boundary boundary;
+    boundary.side = leaves ? -1.0 : hit.side;
+    boundary.eta = find_eta(krs_ior_here, krs_struck == 0u ? surface.ior : krs_ior_beyond);
+    boundary.absorption = krs_absorption;
+    boundary.absorbs = krs_medium != 0u;
+    boundary.code = code_of_ray(hit.side, krs_medium);
+    boundary.beyond = code_of_ray(krs_struck == 0u ? -hit.side : hit.side, krs_beyond);
+    return boundary;
+}
+#else
+void prepare_boundary(HitPoint hit, float code) {}
+
+Boundary find_boundary(HitPoint hit, KrsSurface surface)
+{
+    float ior = max(surface.ior, LEAST_ETA);
+    return Boundary(hit.side, hit.side > 0.0 ? ior : 1.0 / ior, surface.absorption, hit.side < 0.0,
+                    hit.side, -hit.side);
+}
+#endif

@@ -1,0 +1,18 @@
+/*
+ * media.glsl: what rays of paths know of the glass that they are inside of.
+ *
+ * MEDIA: components that may let light through are media (compiler/print/media.c).  The side and
+ * the medium of a ray are one number of its path: the sign is that of the side, and the size is 1
+ * and the number of the medium.  The side is 1 then, unless the camera is inside of a solid.
+ */
+float code_of_ray(float side, uint medium) { return side * float(1u + medium); }
+
+uint medium_of_code(float code) { return code == 0.0 ? 0u : uint(abs(code)) - 1u; }
+
+#ifdef MEDIA
+void enter_medium(float code) { krs_medium = medium_of_code(code); }
+bool is_in_medium() { return krs_medium != 0u; }
+#else
+void enter_medium(float code) {}
+bool is_in_medium() { return false; }
+#endif
