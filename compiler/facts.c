@@ -57,6 +57,7 @@ static void find_kinds(Compilation *c)
     for (size_t i = 0; i < s->components.count; i++)
         program->plain = program->plain && !shape_is_curved(s->components.items[i].shape);
     program->mirrors = s->mirrors;
+    program->layers  = s->layers;
     for (size_t i = 0; i < s->lights.count; i++)
         program->shadows = program->shadows || s->lights.items[i].shadow;
 }
@@ -154,17 +155,13 @@ static void print_flags(const KrsProgram *program, Text *out)
     const struct {
         const char *name;
         bool        is;
-    } flags[] = {{"planes", program->planes},
-                 {"camera-relative", program->camera_relative},
-                 {"gradients", program->gradients},
-                 {"algebraic normals", program->algebraic},
-                 {"steps along rays", program->along},
-                 {"maps that invert", program->inverts},
-                 {"sheets", program->sheets},
-                 {"no curved shapes", program->plain},
-                 {"shadows", program->shadows},
-                 {"mirrors", program->mirrors},
-                 {"march groups pay", program->per_component}};
+    } flags[] = {
+        {"planes", program->planes},          {"camera-relative", program->camera_relative},
+        {"gradients", program->gradients},    {"algebraic normals", program->algebraic},
+        {"steps along rays", program->along}, {"maps that invert", program->inverts},
+        {"sheets", program->sheets},          {"no curved shapes", program->plain},
+        {"shadows", program->shadows},        {"mirrors", program->mirrors},
+        {"layers", program->layers},          {"march groups pay", program->per_component}};
     for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
         text_format(out, "%s  %s\n", flags[i].name, flags[i].is ? "yes" : "no");
 }

@@ -73,7 +73,16 @@ static bool sends_rays(Elaboration *e, const Material *material)
 {
     const bool metal = property_range(e, material->metallic).high > 0;
     return property_range(e, material->transmission).high > 0 ||
-           property_range(e, material->roughness).low < (metal ? 0.3 : 0.12);
+           property_range(e, material->roughness).low < (metal ? 0.3 : 0.12) ||
+           (property_range(e, material->coat).high > 0 &&
+            property_range(e, material->coat_roughness).low < 0.12);
+}
+
+/* Whether previews see more of this material than a body and a usual mirror (layers.glsl). */
+static bool has_layers(Elaboration *e, const Material *material)
+{
+#define IS_USUAL(property) (material->property == root_otherwise(e->graph, ROOT_##property))
+    return !(IS_USUAL(coat) && IS_USUAL(sheen) && IS_USUAL(specular) && IS_USUAL(ior));
 }
 
 Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *syntax)
@@ -88,6 +97,7 @@ Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *s
     material_property(e, env, syntax, "bump", TYPE_FLOAT, false, &material->bump);
     e->in_material    = outer;
     e->scene->mirrors = e->scene->mirrors || sends_rays(e, material);
+    e->scene->layers  = e->scene->layers || has_layers(e, material);
     return (Value){.type = VALUE_MATERIAL, .material = material};
 }
 

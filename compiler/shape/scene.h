@@ -78,6 +78,7 @@ typedef struct Scene {
     Node       zone; /* the depth of OP_POINT in zones, negative outside; NODE_NONE without any */
     size_t     zone_count;
     bool       mirrors; /* a material is smooth enough to show images, or lets light through */
+    bool       layers;  /* a material has a coat, sheen, or a mirror other than usual */
     SceneImage image;
     Box        box; /* around all components */
 } Scene;

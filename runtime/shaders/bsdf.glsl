@@ -17,6 +17,45 @@ const float LEAST_ALPHA = 1e-3;
 const float COAT_HEAD_ON = 0.04; // reflectance of a coat with an index of refraction of 1.5
 const float LEAST_SHEEN_ROUGHNESS = 0.3;
 
+// ---- the surface, and directions seen from it ----
+
+// A number within its limits; NaN becomes the lower one.
+float within(float number, float low, float high) { return number > low ? min(number, high) : low; }
+
+vec3 within(vec3 numbers, float low, float high)
+{
+    return mix(vec3(low), min(numbers, high), greaterThan(numbers, vec3(low)));
+}
+
+KrsSurface within_limits(KrsSurface surface)
+{
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    surface.name = within(surface.name, low, high);
+#include "compiler/shape/surface.def"
+    return surface;
+}
+
+struct Axes {
+    vec3 right, up, normal;
+};
+
+Axes find_axes(vec3 normal)
+{
+    Axes axes;
+    axes.normal = normal;
+    find_frame(normal, axes.right, axes.up);
+    return axes;
+}
+
+vec3 into(Axes axes, vec3 v)
+{
+    return vec3(dot(v, axes.right), dot(v, axes.up), dot(v, axes.normal));
+}
+
+vec3 out_of(Axes axes, vec3 v) { return v.x * axes.right + v.y * axes.up + v.z * axes.normal; }
+
+// ---- what is known of a surface that an eye sees ----
+
 struct Bsdf {
     vec3  color;
     float metallic, alpha;
@@ -29,6 +68,8 @@ struct Bsdf {
     // What follows depends on the eye.
     vec3  eye;                // unit, towards it
     float sheen_scale;        // keeps sheen from reflecting more than all
+    float fuzzy, coated;      // what sheen that is white sends back, and what the coat does
+    vec3  mirrored;           // what the mirrors of body and metal send back
     float under_sheen, under_coat; // what comes through
     float more_of_coat, more_of_body; // light that bounces more than once
     vec3  more_of_metal;
@@ -71,16 +112,6 @@ float find_visible(vec3 eye, vec3 normal, float alpha)
 {
     return find_density(normal, alpha) * max(dot(eye, normal), 0.0) /
            (eye.z * (1.0 + find_hidden(eye, alpha)));
-}
-
-vec3 sample_visible(vec3 eye, float alpha, vec2 square)
-{
-    vec3  tall = normalize(vec3(alpha * eye.xy, eye.z));
-    float angle = 2.0 * PI * square.x;
-    float z = (1.0 - square.y) * (1.0 + tall.z) - tall.z;
-    float ring = sqrt(clamp(1.0 - z * z, 0.0, 1.0));
-    vec3  cap = vec3(ring * krs_cos(angle), ring * krs_sin(angle), z) + tall;
-    return normalize(vec3(alpha * cap.xy, max(cap.z, 1e-6)));
 }
 
 float schlick(float cosine)
@@ -130,18 +161,6 @@ float glass_towards(Bsdf bsdf, vec3 light)
     return glass_density(bsdf, light, refracts) + glass_density(bsdf, upside_down, refracts);
 }
 
-vec3 sample_glass(Bsdf bsdf, vec2 square_point, float choice)
-{
-    vec3  normal = sample_visible(bsdf.eye, bsdf.alpha, square_point);
-    float cosine = clamp(dot(bsdf.eye, normal), 0.0, 1.0);
-    float beyond = max(1.0 - (1.0 - cosine * cosine) / square(bsdf.eta), 0.0);
-    bool  mirrors = choice < fresnel(cosine, bsdf.eta);
-    vec3  light = mirrors ? 2.0 * cosine * normal - bsdf.eye
-                          : (cosine / bsdf.eta - sqrt(beyond)) * normal - bsdf.eye / bsdf.eta;
-    light.z = mirrors ? abs(light.z) : -abs(light.z);
-    return normalize(light);
-}
-
 // ---- sheen ----
 
 float sheen_towards(Bsdf bsdf, vec3 light)
@@ -178,12 +197,13 @@ Bsdf make_bsdf(KrsSurface surface, bool entering, vec3 eye)
     float row = (fuzz - LEAST_SHEEN_ROUGHNESS) / (1.0 - LEAST_SHEEN_ROUGHNESS);
     float fuzzy = find_albedo(bsdf.eye.z, row).z;
     bsdf.sheen_scale = 1.0 / max(fuzzy, 1.0);
-    bsdf.under_sheen = 1.0 - max(max(bsdf.sheen.r, bsdf.sheen.g), bsdf.sheen.b) * min(fuzzy, 1.0);
+    bsdf.fuzzy = min(fuzzy, 1.0);
+    bsdf.under_sheen = 1.0 - max(max(bsdf.sheen.r, bsdf.sheen.g), bsdf.sheen.b) * bsdf.fuzzy;
 
     vec2 all = find_albedo(bsdf.eye.z, surface.coat_roughness).xy;
     bsdf.more_of_coat = 1.0 + COAT_HEAD_ON * (1.0 - all.x) / all.x;
-    float coated = bsdf.coat * bsdf.more_of_coat * (COAT_HEAD_ON * (all.x - all.y) + all.y);
-    bsdf.under_coat = bsdf.under_sheen * (1.0 - coated);
+    bsdf.coated = bsdf.coat * bsdf.more_of_coat * (COAT_HEAD_ON * (all.x - all.y) + all.y);
+    bsdf.under_coat = bsdf.under_sheen * (1.0 - bsdf.coated);
 
     all = find_albedo(bsdf.eye.z, surface.roughness).xy;
     float lost = (1.0 - all.x) / all.x;
@@ -195,10 +215,11 @@ Bsdf make_bsdf(KrsSurface surface, bool entering, vec3 eye)
     float body = (1.0 - bsdf.metallic) * (1.0 - surface.transmission);
     vec3  metal = bsdf.metallic * bsdf.more_of_metal * (bsdf.color * (all.x - all.y) + all.y);
     vec4  shares;
-    shares.x = bsdf.under_sheen * coated;
-    shares.y = bsdf.under_coat * (luminance(metal) + body * mirrored);
+    bsdf.mirrored = metal + body * mirrored;
+    shares.x = bsdf.under_sheen * bsdf.coated;
+    shares.y = bsdf.under_coat * luminance(bsdf.mirrored);
     shares.z = bsdf.under_coat * bsdf.glass;
-    shares.w = luminance(bsdf.sheen) * min(fuzzy, 1.0) +
+    shares.w = luminance(bsdf.sheen) * bsdf.fuzzy +
                bsdf.under_coat * body * bsdf.diffuse * max(luminance(bsdf.color), 0.05);
     bsdf.shares = shares / max(dot(shares, vec4(1.0)), 1e-6);
     return bsdf;
@@ -208,7 +229,7 @@ Bsdf make_bsdf(KrsSurface surface, bool entering, vec3 eye)
 // sampling that direction.
 vec4 scatter(Bsdf bsdf, vec3 light)
 {
-    float glass = bsdf.glass * glass_towards(bsdf, light);
+    float glass = bsdf.glass > 0.0 ? bsdf.glass * glass_towards(bsdf, light) : 0.0;
     vec3  sum = bsdf.under_coat * glass * (light.z < 0.0 ? bsdf.color : vec3(1.0));
     float density = bsdf.glass > 0.0 ? bsdf.shares.z * glass / bsdf.glass : 0.0;
     if (light.z > 0.0) {
@@ -227,24 +248,4 @@ vec4 scatter(Bsdf bsdf, vec3 light)
         density += bsdf.shares.x * coat.y + bsdf.shares.y * all.y + bsdf.shares.w * light.z / PI;
     }
     return vec4(sum, density);
-}
-
-// A direction that light comes from, by the density of `scatter`; 0 where microfacets mirror below
-// the surface.  If that were a direction, glass would count it as well.
-vec3 sample_direction(Bsdf bsdf, vec2 square_point, float choice)
-{
-    vec4 below = bsdf.shares;
-    below.y += below.x;
-    below.z += below.y;
-    if (choice >= below.z) {
-        float angle = 2.0 * PI * square_point.x, ring = sqrt(square_point.y);
-        return vec3(ring * krs_cos(angle), ring * krs_sin(angle),
-                    sqrt(max(1.0 - square_point.y, 0.0)));
-    }
-    if (choice >= below.y)
-        return sample_glass(bsdf, square_point, (choice - below.y) / bsdf.shares.z);
-    float alpha = choice < below.x ? bsdf.coat_alpha : bsdf.alpha;
-    vec3  normal = sample_visible(bsdf.eye, alpha, square_point);
-    vec3  light = 2.0 * dot(bsdf.eye, normal) * normal - bsdf.eye;
-    return light.z > 0.0 ? light : vec3(0.0);
 }

@@ -17,11 +17,13 @@ float find_glass(KrsSurface surface)
     return clamp(surface.transmission, 0.0, 1.0) * (1.0 - clamp(surface.metallic, 0.0, 1.0));
 }
 
-// The part of what a surface mirrors that a ray finds.
-float find_traced(KrsSurface surface)
+// The part of what a surface mirrors that a ray finds, and of what its clear coat mirrors.
+vec2 find_traced(KrsSurface surface)
 {
-    vec2 limits = mix(SMOOTH_BODY, SMOOTH_METAL, clamp(surface.metallic, 0.0, 1.0));
-    return find_glass(surface) > 0.0 ? 0.0 : 1.0 - smoothstep(limits.x, limits.y, surface.roughness);
+    vec2  limits = mix(SMOOTH_BODY, SMOOTH_METAL, clamp(surface.metallic, 0.0, 1.0));
+    float body = 1.0 - smoothstep(limits.x, limits.y, surface.roughness);
+    float coat = 1.0 - smoothstep(SMOOTH_BODY.x, SMOOTH_BODY.y, surface.coat_roughness);
+    return find_glass(surface) > 0.0 ? vec2(0.0) : vec2(body, coat);
 }
 
 // The ray that goes on, and the part of its light that the surface sends back.
@@ -31,6 +33,7 @@ struct Onward {
     float code; // of where it begins (media.glsl)
 };
 
+// `mirrored`: what it mirrors, as far as a ray finds that.
 Onward find_onward(HitPoint hit, KrsSurface surface, Boundary boundary, vec3 normal, vec3 mirrored)
 {
     Onward onward;
@@ -41,7 +44,7 @@ Onward find_onward(HitPoint hit, KrsSurface surface, Boundary boundary, vec3 nor
                                 : reflect(hit.direction, normal);
     onward.part = refracts      ? glass * (1.0 - back) * clamp(surface.color, 0.0, 1.0)
                   : glass > 0.0 ? vec3(glass)
-                                : find_traced(surface) * mirrored;
+                                : mirrored;
     onward.side = refracts ? -1.0 : 1.0;
     onward.code = refracts ? boundary.beyond : boundary.code;
     return onward;

@@ -1,6 +1,9 @@
 /*
  * optics.glsl: what kernels share that know of light.
  */
+#ifndef OPTICS // another file may have it already
+#define OPTICS
+
 float square(float x) { return x * x; }
 
 float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }
@@ -14,3 +17,4 @@ float fresnel(float cosine, float eta)
     float along = (eta * cosine - through) / (eta * cosine + through);
     return beyond > 0.0 ? 0.5 * (across * across + along * along) : 1.0;
 }
+#endif

@@ -16,6 +16,7 @@
 #include "light.glsl"
 #include "path_samples.glsl"
 #include "bsdf.glsl"
+#include "bsdf_samples.glsl"
 #include "lights.glsl"
 #include "boundary.glsl"
 
@@ -30,41 +31,6 @@ vec2 choose(uvec2 pixel, uint choice)
     return sample_choice(work.corner + pixel, control.ray, CHOICES * control.value + choice,
                          control.seed);
 }
-
-// A number within its limits; NaN becomes the lower one.
-float within(float number, float low, float high) { return number > low ? min(number, high) : low; }
-
-vec3 within(vec3 numbers, float low, float high)
-{
-    return mix(vec3(low), min(numbers, high), greaterThan(numbers, vec3(low)));
-}
-
-KrsSurface within_limits(KrsSurface surface)
-{
-#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
-    surface.name = within(surface.name, low, high);
-#include "compiler/shape/surface.def"
-    return surface;
-}
-
-struct Axes {
-    vec3 right, up, normal;
-};
-
-Axes find_axes(vec3 normal)
-{
-    Axes axes;
-    axes.normal = normal;
-    find_frame(normal, axes.right, axes.up);
-    return axes;
-}
-
-vec3 into(Axes axes, vec3 v)
-{
-    return vec3(dot(v, axes.right), dot(v, axes.up), dot(v, axes.normal));
-}
-
-vec3 out_of(Axes axes, vec3 v) { return v.x * axes.right + v.y * axes.up + v.z * axes.normal; }
 
 // The normal on the side of the ray.  Where a material turns it too far, the surface's own is taken.
 vec3 find_normal(HitPoint hit, KrsSurface surface, vec3 facing)

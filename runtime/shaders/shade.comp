@@ -7,6 +7,8 @@
  *
  * MIRRORS: what smooth surfaces mirror is found by rays, and glass lets them through.  With PATH_RAYS
  * these are their hits.
+ *
+ * LAYERS: materials have coats, sheen, or mirrors other than usual.
  */
 #include "scene.glsl"
 #include "frame.glsl"
@@ -16,6 +18,9 @@
 #include "planes.glsl"
 #ifdef MIRRORS
 #include "mirrors.glsl"
+#endif
+#ifdef LAYERS
+#include "layers.glsl"
 #endif
 
 const float EVEN = 0.98;              // less comes from detail, not from curvature
@@ -31,7 +36,10 @@ struct Coat {
     float mean_length;   // length of this mean
     float roughness, metallic;
     vec3  toward_eye;
-    float traced; // the part of what it mirrors that a ray finds
+    vec2  traced; // the parts of what the body mirrors, and its clear coat, that a ray finds
+#ifdef LAYERS
+    Layers layers;
+#endif
 };
 
 // Clamps numbers to [0, most]; NaN becomes 0.
@@ -63,18 +71,44 @@ Coat find_coat(HitPoint hit, KrsSurface surface, float evenness)
     vec3  mean = mean_normal(hit.side * surface.normal, mean_length, -hit.direction);
     vec4  coat = saturate(vec4(surface.color, surface.roughness), 1.0);
     float size = length(mean);
-    float traced = 0.0;
+    vec2  traced = vec2(0.0);
+    float glass = 0.0;
 #ifdef MIRRORS // glass scatters nothing
-    coat.rgb *= 1.0 - find_glass(surface);
+    glass = find_glass(surface);
+    coat.rgb *= 1.0 - glass;
     traced = find_traced(surface);
 #endif
-    return Coat(coat.rgb, mean / max(size, 1e-6), min(size, 1.0), roughen(coat.a, mean_length),
-                saturate(vec4(surface.metallic), 1.0).x, -hit.direction, traced);
+    Coat found;
+    found.color = coat.rgb;
+    found.normal = mean / max(size, 1e-6);
+    found.mean_length = min(size, 1.0);
+    found.roughness = roughen(coat.a, mean_length);
+    found.metallic = saturate(vec4(surface.metallic), 1.0).x;
+    found.toward_eye = -hit.direction;
+    found.traced = traced;
+#ifdef LAYERS
+    surface.roughness = found.roughness;
+    surface.coat_roughness = roughen(saturate(vec4(surface.coat_roughness), 1.0).x, mean_length);
+    found.layers = find_layers(surface, hit.side > 0.0, found.normal, found.toward_eye, glass);
+    found.layers.bsdf.diffuse *= found.mean_length;
+#endif
+    return found;
 }
 
 // Scattered light is in proportion to the cosine, and so to the mean of the normals, which is
 // shorter than each.  What a coat mirrors is the same amount at any roughness.
 vec3 mean_color(Coat coat) { return coat.color * mix(coat.mean_length, 1.0, coat.metallic); }
+
+// Reflectance times cosine.
+vec3 find_reflected(Coat coat, vec3 toward)
+{
+#ifdef LAYERS
+    return reflected_by_layers(coat.layers, toward);
+#else
+    return reflected(coat.normal, coat.toward_eye, toward, mean_color(coat), coat.roughness,
+                     coat.metallic);
+#endif
+}
 
 vec3 direct_light(Light light, HitPoint hit, Coat coat, vec3 facing, float visible)
 {
@@ -88,8 +122,7 @@ vec3 direct_light(Light light, HitPoint hit, Coat coat, vec3 facing, float visib
     // Rays do not test lights without shadows, but a surface that faces away from one is dark.
     if ((light.kind & LIGHT_CASTS_SHADOWS) == 0u)
         visible = dot(facing, toward) > 0.0 ? 1.0 : 0.0;
-    return visible * color * reflected(coat.normal, coat.toward_eye, toward, mean_color(coat),
-                                       coat.roughness, coat.metallic);
+    return visible * color * find_reflected(coat, toward);
 }
 
 // The light of the sky, as far as the hemisphere is open.  Occluders are taken to have the
@@ -97,11 +130,16 @@ vec3 direct_light(Light light, HitPoint hit, Coat coat, vec3 facing, float visib
 vec3 ambient(Coat coat, float openness)
 {
     vec3 bounce = openness / max(1.0 - coat.color * (1.0 - openness), 0.05);
+#ifdef LAYERS
+    return ambient_of_layers(coat.layers, coat.toward_eye, coat.mean_length * coat.normal, openness,
+                             bounce, coat.traced);
+#else
     vec3 scattered = coat.color * (1.0 - coat.metallic) *
                      sky_light(coat.mean_length * coat.normal) * bounce;
     vec3 mirrored = sky_reflected(coat.normal, coat.toward_eye, coat.color, coat.roughness,
                                   coat.metallic);
-    return scattered + mirrored * openness * (1.0 - coat.traced);
+    return scattered + mirrored * openness * (1.0 - coat.traced.x);
+#endif
 }
 
 #ifdef MIRRORS
@@ -109,9 +147,12 @@ vec3 ambient(Coat coat, float openness)
 void send_on(HitPoint hit, uint index, KrsSurface surface, Boundary boundary, Coat coat,
              vec4 facing, vec3 weight)
 {
-    // The coat has no colour where there is glass, which is found by Fresnel's formulas.
-    vec3 mirrored = find_mirrored(coat.normal, coat.toward_eye, coat.color, coat.roughness,
-                                  coat.metallic);
+#ifdef LAYERS
+    vec3 mirrored = traced_by_layers(coat.layers, coat.traced);
+#else
+    vec3 mirrored = coat.traced.x * find_mirrored(coat.normal, coat.toward_eye, coat.color,
+                                                  coat.roughness, coat.metallic);
+#endif
     Onward onward = find_onward(hit, surface, boundary, coat.normal, mirrored);
     float spread = frame.pixel_slope;
 #ifdef PATH_RAYS

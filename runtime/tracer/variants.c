@@ -214,6 +214,8 @@ KernelVariant variant_of_shade(const KrsRendering *rendering)
     want_media(&to, rendering);
     if (rendering->program->mirrors)
         define(&to, "#define MIRRORS\n");
+    if (rendering->program->layers)
+        define(&to, "#define LAYERS\n");
     define_choices(&to);
     return to;
 }

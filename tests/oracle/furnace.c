@@ -37,7 +37,8 @@ static const char furnace[] =
     "camera { eye: [0, 0, 5], projection: \"orthographic\", height: 2 }\n"
     "param day = 1 in [0, 1]; param bright = 0 in [0, 100]; param size = 0.1 in [0.1, 900];\n"
     "sky { zenith: [day, day, day], horizon: [day, day, day], ground: [day, day, day] }\n"
-    "light sun { direction: [0.6, 0.64, 0.48], intensity: bright, softness: 120deg }\n"
+    "param width = 120deg in [0deg, 120deg];\n"
+    "light sun { direction: [0.6, 0.64, 0.48], intensity: bright, softness: width }\n"
     "material lamp { color: black, specular: 0, emission: 1.2732395 }\n"
     "show sphere(size).move([600, 640, 480]).paint(lamp);\n"
     "material m { color: shade, roughness: rough, metallic: metal, transmission: glass,\n"
@@ -229,6 +230,76 @@ static void nothing_bounces_from_a_ball(void **state)
     path_stage_set(&stage, "bright", 0);
 }
 
+/* ---- Previews ---- */
+
+#define PREVIEW_OPTIONS                                                                           \
+    (KrsRenderOptions)                                                                            \
+    {                                                                                             \
+        .width = 64, .height = 64, .samples = 1, .no_occlusion = true, .planes = KRS_PLANE_COLOR, \
+        .integrator = KRS_INTEGRATOR_PREVIEW                                                      \
+    }
+
+/* Where normals do not differ much within a pixel. */
+static const Region middle = {0.3, 0.3, 0.7, 0.7};
+
+/* What previews say that each layer sends back of the sky adds up to all of it. */
+static void previews_lose_no_sky(void **state)
+{
+    (void)state;
+    size_t wrong = 0;
+    for (size_t i = 0; i < WHITES; i++)
+        for (int k = 0; k <= 3 && !has_glass(&whites[i]); k++) {
+            char name[100];
+            snprintf(name, sizeof name, "preview of %s, roughness %.2f", whites[i].name, k / 3.0);
+            paint(&whites[i], k / 3.0);
+            Estimate white = path_stage_estimate(&stage, PREVIEW_OPTIONS, middle, 1);
+            wrong += !must_be_near(white, 1, MOST_LOST, name);
+        }
+    assert_int_equal(wrong, 0);
+}
+
+/* One light without a size: neither integrator chooses anything, so there is no noise. */
+static size_t compare_lamp(const White *white)
+{
+    KrsRenderOptions options = PREVIEW_OPTIONS;
+    KrsPicture      *preview = path_stage_render(&stage, &options);
+    size_t           wrong   = 0;
+    options.integrator       = KRS_INTEGRATOR_DIRECT;
+    KrsPicture *direct       = path_stage_render(&stage, &options);
+    for (unsigned i = 0; i < 4 * 64 * 64; i++) {
+        const unsigned x = i / 4 % 64, y = i / 256;
+        const double   a = preview->color[i], b = direct->color[i];
+        bool           inside = x > 19 && x < 45 && y > 19 && y < 45;
+        wrong += inside && !(fabs(a - b) <= 1e-4 + 2e-3 * b);
+    }
+    if (wrong)
+        print_message("# %s: preview and direct differ in %zu numbers\n", white->name, wrong);
+    krs_picture_free(preview);
+    krs_picture_free(direct);
+    return wrong;
+}
+
+/* Layers show a lamp in previews as they do on paths. */
+static void previews_show_a_lamp_as_paths_do(void **state)
+{
+    (void)state;
+    size_t wrong = 0;
+    path_stage_set(&stage, "day", 0);
+    path_stage_set(&stage, "width", 0);
+    path_stage_set(&stage, "bright", IRRADIANCE);
+    for (size_t i = 0; i < WHITES; i++)
+        for (int k = 1; k <= 2 && !has_glass(&whites[i]); k++) {
+            paint(&whites[i], k / 3.0);
+            path_stage_set_all(&stage, "shade", 0.9, 0.5, 0.2);
+            wrong += compare_lamp(&whites[i]);
+        }
+    path_stage_set_all(&stage, "shade", 1, 1, 1);
+    path_stage_set(&stage, "bright", 0);
+    path_stage_set(&stage, "width", 2.0943951);
+    path_stage_set(&stage, "day", 1);
+    assert_int_equal(wrong, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -236,6 +307,8 @@ int main(void)
         cmocka_unit_test(gray_is_seen),
         cmocka_unit_test(light_is_found_either_way),
         cmocka_unit_test(nothing_bounces_from_a_ball),
+        cmocka_unit_test(previews_lose_no_sky),
+        cmocka_unit_test(previews_show_a_lamp_as_paths_do),
     };
     spirv_start(); /* held for all, so that the shader compiler is not started anew */
     int failed = cmocka_run_group_tests_name("furnace", tests, open_furnace, close_furnace);
