@@ -32,10 +32,13 @@ FRONT    := $(addprefix compiler/front/, lexer.c lex_literals.c syntax.c parser.
 OUTLINE  := $(addprefix compiler/outline/, path.c knots.c edge_cuts.c edge_sides.c resolve.c members.c letters.c \
                 svg_shapes.c svg.c)
 IMAGE    := $(addprefix compiler/image/, png.c exr.c image.c)
+# Points side by side, once for each instruction set.
+LANES    := $(addprefix compiler/graph/lanes_, plain.c $(if $(filter x86_64, $(shell $(CC) -dumpmachine | cut -d - -f 1)), avx2.c avx512.c))
 GRAPH    := $(addprefix compiler/graph/, intern.c alike.c alike_copy.c graph.c crowd.c build.c substitute.c extract.c derive_rules.c \
                 derive_blends.c derive.c series.c zeros.c local_terms.c local_curves.c local.c rebase.c \
                 simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c texture.c texture_facts.c \
-                regions.c squares.c grid.c grid_find.c fractal.c op_values.c tape.c evaluate.c print.c)
+                regions.c squares.c grid.c grid_find.c fractal.c op_values.c tape.c evaluate.c lane_rows.c lane_make.c lane_run.c lane_ranges.c \
+                lane_prune.c print.c) $(LANES)
 SHAPE    := $(addprefix compiler/shape/, box.c reach.c cover.c map.c moebius.c builder.c slope.c print.c)
 LOWER    := $(addprefix compiler/lower/, footprint.c bump.c context.c box_distance.c surface.c join.c crowd_table.c crowd_functions.c crowd_find.c crowd.c normal.c map_chain.c \
                 outline.c sphere_fold.c guards.c ray_images.c ray_step.c lower.c)
@@ -94,9 +97,13 @@ $(B)/libkrs.a: $(OBJECTS)
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
 	@echo "compile $<"
-	@$(CC) $(STYLE) $(CFLAGS) -c -o $@ $<
+	@$(CC) $(STYLE) $(CFLAGS) $(FAST) -c -o $@ $<
 # Its libraries have their headers in folders of their own.
 $(B)/compiler/outline/letters.o: STYLE += $(shell pkg-config --cflags freetype2 harfbuzz)
+# Loops over lanes become vector instructions; results are the same on every machine.
+$(LANES:%.c=$(B)/%.o): FAST := -O3 -ffp-contract=off -fno-math-errno -fno-trapping-math
+$(B)/compiler/graph/lanes_avx2.o: FAST += -mavx2
+$(B)/compiler/graph/lanes_avx512.o: FAST += -mavx512f -mavx512dq -mavx512vl -mprefer-vector-width=512
 $(B)/%.o: %.cpp
 	@mkdir -p $(@D)
 	@echo "compile $<"

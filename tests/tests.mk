@@ -21,7 +21,7 @@ UNIT        := texts front synonyms look diagnostics shape parts passes display 
                compiled pipelines per_component stencils glslang loader watcher drivers grid crowd_grid crowds \
                crowd_kernels crowd_pictures tables device_tables table_files printing printers answers alike update edits values
 PROPERTY    := ops noise textures graph simplify facts derive series zeros local along rebase slope \
-               parity reach reach_trees crowds crowds_apart moving_crowds
+               parity reach reach_trees crowds crowds_apart moving_crowds lanes
 ORACLES     := self patterns bumps primitives krs_expand folds trees maps moebius moebius_images operators cells \
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
@@ -42,7 +42,7 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/synonyms unit/diag
                unit/zones unit/printers unit/alike unit/update unit/values property/ops property/noise property/textures property/graph property/simplify \
                property/facts property/derive property/series property/zeros property/local \
                property/along property/rebase property/slope property/parity property/reach \
-               property/reach_trees property/crowds property/crowds_apart property/moving_crowds oracle/primitives \
+               property/reach_trees property/crowds property/crowds_apart property/moving_crowds property/lanes oracle/primitives \
                oracle/krs_expand oracle/folds oracle/bounds \
                oracle/cells oracle/maps oracle/moebius oracle/moebius_images oracle/operators oracle/moving \
                oracle/fractals oracle/metasurfaces oracle/normals oracle/drawings oracle/imports \

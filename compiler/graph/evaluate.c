@@ -25,8 +25,15 @@ typedef struct Inputs {
     const NodeValue *states;
 } Inputs;
 
-static NodeValue all_of(const double v[4]) { return (NodeValue){{v[0], v[1], v[2], v[3]}}; }
-static NodeValue vector_of(const double v[3]) { return vector3(v[0], v[1], v[2]); }
+/* Zero has no sign here either (op_evaluate). */
+static NodeValue all_of(const double v[4])
+{
+    return (NodeValue){{v[0] + 0.0, v[1] + 0.0, v[2] + 0.0, v[3] + 0.0}};
+}
+static NodeValue vector_of(const double v[3])
+{
+    return vector3(v[0] + 0.0, v[1] + 0.0, v[2] + 0.0);
+}
 
 static inline NodeValue leaf_value(const Expr *e, const Inputs *in)
 {
@@ -301,6 +308,24 @@ static NodeValue run_call(const Tape *tape, const Expr *e, const Inputs *outer, 
     return run_loop(&loop);
 }
 
+static void run_reader(const Tape *tape, Node node, const Inputs *in, NodeValue *values)
+{
+    const Expr *e = &tape->graph->items[node];
+    values[node]  = e->op == OP_row         ? read_table(tape->graph, e, values)
+                    : is_texture((Op)e->op) ? read_texture(tape->graph, e, values)
+                                            : run_call(tape, e, in, values);
+}
+
+NodeValue tape_run_reader(const Tape *tape, Node node, const NodeValue *operands, NodeValue *values)
+{
+    const Expr  *e  = &tape->graph->items[node];
+    const Inputs in = {.by_cells = tape->by_cells};
+    for (uint32_t k = 0; k < e->operand_count; k++)
+        values[e->operands[k]] = operands[k];
+    run_reader(tape, node, &in, values);
+    return values[node];
+}
+
 static void run_points(const Tape *tape, const Inputs *in, NodeValue *values)
 {
     for (size_t i = tape->frame_count; i < tape->count; i++) {
@@ -310,12 +335,8 @@ static void run_points(const Tape *tape, const Inputs *in, NodeValue *values)
             values[node] = leaf_value(e, in);
         else if (e->op == OP_guard)
             i += run_guard(tape, i, values);
-        else if (e->op == OP_row)
-            values[node] = read_table(tape->graph, e, values);
-        else if (is_texture(e->op))
-            values[node] = read_texture(tape->graph, e, values);
-        else if (is_call(e->op))
-            values[node] = run_call(tape, e, in, values);
+        else if (op_promises((Op)e->op, READS_TABLES))
+            run_reader(tape, node, in, values);
         else
             tape_run_node(tape->graph, node, values);
     }

@@ -64,6 +64,11 @@ void tape_run_point(const Tape *tape, const double point[3], NodeValue *values);
 void tape_run_surface(const Tape *tape, const double point[3], const double normal[3],
                       double footprint, NodeValue *values);
 
+/* Only one operation of it, which reads tables or textures; tape_run_frame has filled `values`, where
+   those of its operands change. */
+NodeValue tape_run_reader(const Tape *tape, Node node, const NodeValue *operands,
+                          NodeValue *values);
+
 /* substitute.c: a copy of a root with other nodes in place of some of its tape: `by` has for each node
    of the tape the other one + 1, or 0. */
 Node graph_replace_nodes(Graph *graph, Node root, const Tape *tape, const Node *by, Arena *scratch);

@@ -1,0 +1,23 @@
+/*
+ * lane_call.h: what the kernels of lane tapes share.
+ */
+#ifndef KRS_LANE_CALL_H
+#define KRS_LANE_CALL_H
+
+#include "compiler/graph/lanes.h"
+
+/* An operation at one point; `values`, which only those that read tables need, are of the frame. */
+NodeValue lane_call(const Tape *tape, NodeValue *values, Node node, const NodeValue *operands);
+
+/* The length of a vector that is very long or very short. */
+double lane_length(const double *vector, uint32_t size);
+
+/* Whether a guard leaves out its third operand: in all points, in none, or one does not know. */
+typedef enum LaneTruth { LANE_NEVER, LANE_SOMETIMES, LANE_ALWAYS } LaneTruth;
+LaneTruth lane_guard_decides(Range bound, Range least, Range far);
+
+LaneKernel lane_double_plain, lane_single_plain;
+LaneKernel lane_double_avx2, lane_single_avx2;
+LaneKernel lane_double_avx512, lane_single_avx512;
+
+#endif

@@ -1,0 +1,256 @@
+/*
+ * lane_kernel.h: the loop over the steps of a lane tape, for one precision and one instruction set.
+ *
+ * It is included once for each: REAL is the type of a number, LANE_KERNEL the name of the function.  The
+ * rows of ops.def and blends.def are loops over lanes, which the compiler turns into vector
+ * instructions; those that call the C library for each number stay as they are.  Products and sums
+ * are never contracted (Makefile), so that all instruction sets give the same.
+ */
+#ifndef KRS_LANE_KERNEL_H
+#define KRS_LANE_KERNEL_H
+
+#include <assert.h>
+#include <math.h>
+#include <tgmath.h>
+
+/* fmin and fmax as the C library has them, without calls. */
+#define LESSER(type, name)                                                                 \
+    static inline type name##_least(type a, type b) { return b != b ? a : a < b ? a : b; } \
+    static inline type name##_greatest(type a, type b) { return b != b ? a : a > b ? a : b; }
+LESSER(double, double)
+LESSER(float, float)
+#undef LESSER
+#undef fmin
+#undef fmax
+#define fmin(a, b) _Generic((a) + (b), float : float_least, default : double_least)(a, b)
+#define fmax(a, b) _Generic((a) + (b), float : float_greatest, default : double_greatest)(a, b)
+
+#include "compiler/graph/lane_call.h"
+#include "compiler/graph/op_values.h"
+
+#ifdef __clang__
+#define LANES_APART _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define LANES_APART _Pragma("GCC ivdep")
+#endif
+
+#define LANE_NAME_(kernel, name) kernel##_##name
+#define LANE_NAME(kernel, name)  LANE_NAME_(kernel, name)
+
+/* For each lane i of the blocks; rows are the same or apart. */
+#define EACH_LANE(blocks)                             \
+    for (size_t block = 0; block < (blocks); block++) \
+    LANES_APART for (size_t i = LANE_BLOCK * block; i < LANE_BLOCK * block + LANE_BLOCK; i++)
+
+#endif
+
+#define LOCAL(name) LANE_NAME(LANE_KERNEL, name)
+
+/* Where the sum of squares overflows or loses what is small, the scalar operation goes on. */
+static void LOCAL(length)(REAL *to, const REAL *const *x, uint32_t size, size_t blocks)
+{
+    const REAL small = sizeof(REAL) == 4 ? (REAL)1e-30 : (REAL)1e-200, large = 1 / small;
+    REAL       sums[LANES];
+    int        odd = 0;
+    EACH_LANE(blocks)
+    {
+        REAL sum = 0;
+        for (uint32_t k = 0; k < size; k++)
+            sum += x[k][i] * x[k][i];
+        sums[i] = sum;
+    }
+    for (size_t i = 0; i < LANE_BLOCK * blocks; i++)
+        odd |= !(sums[i] > small && sums[i] < large);
+    if (!odd) {
+        EACH_LANE(blocks)
+        to[i] = sqrt(sums[i]);
+        return;
+    }
+    for (size_t i = 0; i < LANE_BLOCK * blocks; i++) {
+        double vector[4] = {0};
+        for (uint32_t k = 0; k < size; k++)
+            vector[k] = x[k][i];
+        to[i] = (REAL)lane_length(vector, size);
+    }
+}
+
+static void LOCAL(call)(const LaneTape *tape, const LaneWork *work, const LaneCall *call,
+                        size_t points)
+{
+    REAL       *rows = work->rows;
+    const Expr *e    = &tape->tape->graph->items[call->node];
+    for (size_t i = 0; i < points; i++) {
+        NodeValue operands[MAX_OPERANDS] = {0};
+        for (uint32_t k = 0; k < e->operand_count; k++)
+            for (uint32_t c = 0; c < 4 && call->from[k][c] != NODE_NONE; c++)
+                operands[k].v[c] = call->from[k][c] & LANE_SCALAR
+                                       ? tape->scalars[call->from[k][c] & ~LANE_SCALAR]
+                                       : (double)rows[(size_t)call->from[k][c] * LANES + i];
+        NodeValue value = lane_call(tape->tape, work->values, call->node, operands);
+        for (uint32_t c = 0; c < call->parts; c++)
+            rows[(size_t)call->to[c] * LANES + i] = (REAL)value.v[c];
+    }
+    /* Lanes behind the last point must hold numbers of some kind. */
+    for (size_t i = points; i % LANE_BLOCK != 0; i++)
+        for (uint32_t c = 0; c < call->parts; c++)
+            rows[(size_t)call->to[c] * LANES + i] = 0;
+}
+
+/* ---- blends ---- */
+
+#define BLEND(name, signature, slope, bulge, most, reach, cost, facts, glsl, value, weights, \
+              meaning)                                                                       \
+    static inline REAL LOCAL(smin_##name)(REAL a, REAL b, REAL k, REAL n)                    \
+    {                                                                                        \
+        REAL t = a == b ? 0 : fabs(a - b) / k, h = fmax(1 - t, 0);                           \
+        (void)h, (void)n;                                                                    \
+        return !(k > 0) ? fmin(a, b) : (REAL)(value);                                        \
+    }
+#include "compiler/graph/blends.def"
+
+/* ---- steps ---- */
+
+/* Zero has no sign (op_evaluate). */
+#define STORE(value) to[i] = (REAL)(value) + 0
+
+/* A step on two operands of which the first is a scalar; false: there is no such loop. */
+static bool LOCAL(scalar_first)(const LaneCode *code, REAL a, REAL *rows, size_t blocks)
+{
+    const REAL  c  = 0;
+    const REAL *y  = rows + (size_t)code->from[1] * LANES;
+    REAL       *to = rows + (size_t)code->to * LANES;
+    (void)c;
+    switch (code->op) {
+#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning) \
+    case OP_##name:                                                             \
+        if (arity != 2)                                                         \
+            return false;                                                       \
+        EACH_LANE(blocks)                                                       \
+        {                                                                       \
+            const REAL b = y[i];                                                \
+            (void)b;                                                            \
+            STORE(value);                                                       \
+        }                                                                       \
+        return true;
+#include "compiler/graph/ops.def"
+    default: return false;
+    }
+}
+
+static bool LOCAL(scalar_second)(const LaneCode *code, REAL b, REAL *rows, size_t blocks)
+{
+    const REAL  c  = 0;
+    const REAL *x  = rows + (size_t)code->from[0] * LANES;
+    REAL       *to = rows + (size_t)code->to * LANES;
+    (void)c;
+    switch (code->op) {
+#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning) \
+    case OP_##name:                                                             \
+        if (arity != 2)                                                         \
+            return false;                                                       \
+        EACH_LANE(blocks)                                                       \
+        {                                                                       \
+            const REAL a = x[i];                                                \
+            (void)a;                                                            \
+            STORE(value);                                                       \
+        }                                                                       \
+        return true;
+#include "compiler/graph/ops.def"
+    default: return false;
+    }
+}
+
+static bool LOCAL(mixed_step)(const LaneTape *tape, const LaneCode *code, REAL *rows, size_t blocks)
+{
+    if (code->scalars == 1)
+        return LOCAL(scalar_first)(code, (REAL)tape->scalars[code->from[0]], rows, blocks);
+    return LOCAL(scalar_second)(code, (REAL)tape->scalars[code->from[1]], rows, blocks);
+}
+
+#define ROW(op, value)                                                     \
+    case op:                                                               \
+        EACH_LANE(blocks)                                                  \
+        {                                                                  \
+            const REAL a = x[0][i], b = x[1][i], c = x[2][i], d = x[3][i]; \
+            (void)b, (void)c, (void)d;                                     \
+            STORE(value);                                                  \
+        }                                                                  \
+        return;
+
+/* A step on rows. */
+static void LOCAL(step)(uint16_t op, REAL *to, const REAL *const *x, uint32_t size, size_t blocks)
+{
+    switch (op) {
+#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning) \
+    ROW(OP_##name, value)
+#include "compiler/graph/ops.def"
+#define BLEND(name, signature, slope, bulge, most, reach, cost, facts, glsl, value, weights, \
+              meaning)                                                                       \
+    ROW(OP_smin_##name, LOCAL(smin_##name)(a, b, c, d))
+#include "compiler/graph/blends.def"
+    case OP_length:
+        LOCAL(length)(to, x, size, blocks);
+        return;
+        ROW(OP_less, a < b)
+        ROW(OP_less_equal, a <= b)
+        ROW(OP_equal, a == b)
+        ROW(OP_not_equal, a != b)
+        ROW(OP_and, a != 0 ? b != 0 : 0)
+        ROW(OP_or, a != 0 ? 1 : b != 0)
+        ROW(OP_not, a == 0)
+        ROW(OP_select, a != 0 ? b : c)
+        ROW(OP_guard, a >= fmin(b, d) ? (a > fmin(d, 0) ? fmin(a, b) : c) : c)
+        ROW(OP_normalize, b != 0 ? a / b : 0)
+        ROW(OP_cell, b > 0 ? a - b * fmin(fmax(floor(a / b + 0.5), c), d) : a)
+        ROW(OP_blend_weight, !(c > 0) ? b >= a
+                             : a == b ? 0.5
+                                      : fmin(fmax(0.5 + 0.5 * (b - a) / c, 0), 1))
+        ROW(LANE_LESSER, b < a ? b : a)
+        ROW(LANE_GREATER, b > a ? b : a)
+    default: assert(!"no step");
+    }
+}
+
+/* The row of an operand; a scalar fills the row `spare`. */
+static const REAL *LOCAL(operand)(const LaneTape *tape, const LaneCode *code, int k, REAL *rows,
+                                  REAL *spare, size_t blocks)
+{
+    if (k >= code->operand_count)
+        return rows;
+    if (!(code->scalars >> k & 1))
+        return rows + (size_t)code->from[k] * LANES;
+    const REAL number = (REAL)tape->scalars[code->from[k]];
+    EACH_LANE(blocks)
+    spare[i] = number;
+    return spare;
+}
+
+static void LOCAL(general_step)(const LaneTape *tape, const LaneCode *code, REAL *rows,
+                                size_t blocks)
+{
+    _Alignas(64) REAL spare[MAX_OPERANDS][LANES];
+    const REAL       *x[MAX_OPERANDS];
+    for (int k = 0; k < MAX_OPERANDS; k++)
+        x[k] = LOCAL(operand)(tape, code, k, rows, spare[k], blocks);
+    LOCAL(step)(code->op, rows + (size_t)code->to * LANES, x, code->operand_count, blocks);
+}
+
+void LANE_KERNEL(const LaneTape *tape, const LaneWork *work, size_t points)
+{
+    REAL  *rows   = work->rows;
+    size_t blocks = (points + LANE_BLOCK - 1) / LANE_BLOCK;
+    for (const LaneCode *code = tape->code, *end = code + tape->count; code < end; code++) {
+        if (code->op == LANE_CALL)
+            LOCAL(call)(tape, work, &tape->calls[code->from[0]], points);
+        else if (code->op != LANE_PART &&
+                 !(code->operand_count == 2 && (code->scalars == 1 || code->scalars == 2) &&
+                   LOCAL(mixed_step)(tape, code, rows, blocks)))
+            LOCAL(general_step)(tape, code, rows, blocks);
+    }
+}
+
+#undef LANE_KERNEL
+#undef REAL
+#undef LOCAL
+#undef ROW
+#undef STORE

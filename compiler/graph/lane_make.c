@@ -1,0 +1,268 @@
+/*
+ * lane_make.c: lane tapes are made of tapes: vectors are taken apart into scalar steps.
+ */
+#include "compiler/graph/lanes.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "compiler/graph/crowd.h"
+#include "compiler/graph/lane_rows.h"
+#include "compiler/graph/op_values.h"
+
+/* The components of a node, as operands of steps; NODE_NONE behind the last. */
+typedef struct Parts {
+    uint32_t of[4];
+} Parts;
+
+typedef struct Builder {
+    const Graph *graph;
+    const Tape  *tape;
+    Arena       *arena;
+    LaneSteps   *to;
+    Parts *parts; /* by place on the tape; a frame's node that nobody has asked for is all 0 */
+} Builder;
+
+static uint32_t add_scalar(LaneSteps *to, LaneScalar scalar)
+{
+    array_push(to->arena, &to->sources, scalar);
+    return LANE_SCALAR | (uint32_t)(to->sources.count - 1);
+}
+
+uint32_t lane_steps_number(LaneSteps *to, double number)
+{
+    return add_scalar(to, (LaneScalar){NODE_NONE, 0, number});
+}
+
+uint32_t lane_steps_add(LaneSteps *to, LaneStep step)
+{
+    array_push(to->arena, &to->steps, step);
+    return LANE_INPUTS + (uint32_t)(to->steps.count - 1);
+}
+
+static uint32_t emit(Builder *b, uint16_t op, uint32_t count, const uint32_t *operands)
+{
+    LaneStep step = {.op = op, .operand_count = (uint16_t)count};
+    memcpy(step.operands, operands, count * sizeof *operands);
+    return lane_steps_add(b->to, step);
+}
+
+static uint32_t emit1(Builder *b, uint16_t op, uint32_t x) { return emit(b, op, 1, &x); }
+
+static uint32_t emit2(Builder *b, uint16_t op, uint32_t x, uint32_t y)
+{
+    return emit(b, op, 2, (uint32_t[]){x, y});
+}
+
+/* The components of a node; those of the frame become scalars. */
+static const Parts *parts_of(Builder *b, Node node)
+{
+    const Expr *e     = &b->graph->items[node];
+    Parts      *parts = &b->parts[tape_index(b->tape, node)];
+    if (e->time == TIME_POINT || (parts->of[0] & LANE_SCALAR))
+        return parts;
+    for (uint32_t k = 0; k < 4; k++)
+        parts->of[k] = k < components(e->type) ? add_scalar(b->to, (LaneScalar){node, k, 0})
+                                               : NODE_NONE;
+    return parts;
+}
+
+/* ---- operations that are taken apart ---- */
+
+typedef struct Operands {
+    const uint32_t *x, *y, *z, *w;
+    uint32_t        size; /* components of the first */
+} Operands;
+
+static uint32_t emit_dot(Builder *b, const uint32_t *x, const uint32_t *y, uint32_t size)
+{
+    uint32_t sum = emit2(b, OP_mul, x[0], y[0]);
+    for (uint32_t k = 1; k < size; k++)
+        sum = emit2(b, OP_add, sum, emit2(b, OP_mul, x[k], y[k]));
+    return sum;
+}
+
+static uint32_t emit_minor(Builder *b, const uint32_t *x, const uint32_t *y, int i, int k)
+{
+    return emit2(b, OP_sub, emit2(b, OP_mul, x[i], y[k]), emit2(b, OP_mul, x[k], y[i]));
+}
+
+static void emit_cross(Builder *b, const Operands *o, uint32_t *to)
+{
+    to[0] = emit_minor(b, o->x, o->y, 1, 2);
+    to[1] = emit_minor(b, o->x, o->y, 2, 0);
+    to[2] = emit_minor(b, o->x, o->y, 0, 1);
+}
+
+static void emit_turn(Builder *b, const Operands *o, uint32_t *to)
+{
+    to[0] = emit_dot(b, o->y, o->x, 3);
+    to[1] = emit_dot(b, o->z, o->x, 3);
+    to[2] = emit_dot(b, o->w, o->x, 3);
+}
+
+static void emit_fold(Builder *b, const Operands *o, uint32_t *to)
+{
+    uint32_t beyond = emit2(b, OP_sub, emit_dot(b, o->y, o->x, 3), o->z[0]);
+    uint32_t depth  = emit2(b, OP_max, beyond, lane_steps_number(b->to, 0));
+    uint32_t twice  = emit2(b, OP_mul, lane_steps_number(b->to, 2), depth);
+    for (int k = 0; k < 3; k++)
+        to[k] = emit2(b, OP_sub, o->x[k], emit2(b, OP_mul, twice, o->y[k]));
+}
+
+/* An operation on the same component of each operand; operands that are FLOAT have only one. */
+static void emit_each(Builder *b, const Expr *e, const Operands *o, uint32_t *to)
+{
+    const uint32_t *from[] = {o->x, o->y, o->z, o->w};
+    for (uint32_t k = 0; k < components(e->type); k++) {
+        uint32_t operands[MAX_OPERANDS];
+        for (uint32_t i = 0; i < e->operand_count; i++)
+            operands[i] = from[i][1] == NODE_NONE ? from[i][0] : from[i][k];
+        to[k] = emit(b, e->op == OP_scale ? OP_mul : e->op, e->operand_count, operands);
+    }
+}
+
+/* An operation that has no steps: point by point. */
+static void emit_call(Builder *b, Node node, uint32_t *to)
+{
+    const Expr *e    = &b->graph->items[node];
+    LaneCall    call = {.node = node, .parts = components(e->type)};
+    for (uint32_t k = 0; k < e->operand_count; k++)
+        memcpy(call.operands[k], parts_of(b, e->operands[k])->of, sizeof call.operands[k]);
+    array_push(b->arena, &b->to->calls, call);
+    to[0] = emit1(b, LANE_CALL, (uint32_t)(b->to->calls.count - 1));
+    for (uint32_t k = 1; k < call.parts; k++)
+        to[k] = emit1(b, LANE_PART, to[0]);
+}
+
+static void emit_operation(Builder *b, Node node, const Operands *o, uint32_t *to)
+{
+    const Expr *e = &b->graph->items[node];
+    switch ((Op)e->op) {
+    case OP_COMPONENT: to[0] = o->x[e->index]; return;
+    case OP_splat2:
+    case OP_splat3:
+    case OP_splat4:
+        for (uint32_t k = 0; k < components(e->type); k++)
+            to[k] = o->x[0];
+        return;
+    case OP_vec2:
+    case OP_vec3:
+    case OP_vec4:
+        for (uint32_t k = 0; k < components(e->type); k++)
+            to[k] = (const uint32_t *[]){o->x, o->y, o->z, o->w}[k][0];
+        return;
+    case OP_dot: to[0] = emit_dot(b, o->x, o->y, o->size); return;
+    case OP_cross: emit_cross(b, o, to); return;
+    case OP_turn: emit_turn(b, o, to); return;
+    case OP_fold: emit_fold(b, o, to); return;
+    case OP_front: to[0] = emit2(b, OP_less, o->z[0], emit_dot(b, o->y, o->x, 3)); return;
+    case OP_length: to[0] = emit(b, OP_length, o->size, o->x); return;
+    case OP_footprint: to[0] = lane_steps_number(b->to, 0); return;
+    case OP_normalize: {
+        uint32_t length = emit(b, OP_length, o->size, o->x);
+        for (uint32_t k = 0; k < o->size; k++)
+            to[k] = emit2(b, OP_normalize, o->x[k], length);
+        return;
+    }
+#define MAP(name, ...) case OP_##name:
+#include "compiler/graph/ops.def"
+#define BLEND(name, ...) case OP_smin_##name:
+#include "compiler/graph/blends.def"
+    case OP_scale:
+    case OP_cell:
+    case OP_select:
+    case OP_guard:
+    case OP_blend_weight:
+    case OP_less:
+    case OP_less_equal:
+    case OP_equal:
+    case OP_not_equal:
+    case OP_and:
+    case OP_or:
+    case OP_not: emit_each(b, e, o, to); return;
+    default: emit_call(b, node, to);
+    }
+}
+
+/* Leaves that are known at a point alone; the others have the same value everywhere (ops.def). */
+static void emit_leaf(Builder *b, const Expr *e, uint32_t *to)
+{
+    uint32_t first = e->op == OP_POINT ? LANE_POINT : LANE_NORMAL;
+    assert(!is_of_crowd((Op)e->op));
+    for (uint32_t k = 0; k < components(e->type); k++)
+        switch ((Op)e->op) {
+        case OP_POINT:
+        case OP_NORMAL:
+        case OP_VIEW:
+        case OP_DIRECTION: to[k] = first + k; break;
+        case OP_FOOTPRINT: to[k] = LANE_FOOTPRINT; break;
+        default: to[k] = lane_steps_number(b->to, e->op == OP_INSTANCE && k == 0);
+        }
+}
+
+static void emit_node(Builder *b, size_t place)
+{
+    Node        node            = b->tape->nodes[place];
+    const Expr *e               = &b->graph->items[node];
+    uint32_t    to[4]           = {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE};
+    const Parts nothing         = {{NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE}};
+    Parts       o[MAX_OPERANDS] = {nothing, nothing, nothing, nothing};
+    for (uint32_t k = 0; k < e->operand_count; k++)
+        o[k] = *parts_of(b, e->operands[k]);
+    Operands operands = {o[0].of, o[1].of, o[2].of, o[3].of, 0};
+    if (e->operand_count == 0) {
+        emit_leaf(b, e, to);
+    } else {
+        operands.size = components(b->graph->items[e->operands[0]].type);
+        emit_operation(b, node, &operands, to);
+    }
+    memcpy(b->parts[place].of, to, sizeof to);
+}
+
+/* ---- outputs ---- */
+
+static void add_outputs(Builder *b, Node root)
+{
+    const Parts *parts = parts_of(b, root);
+    for (uint32_t k = 0; k < components(b->graph->items[root].type); k++)
+        array_push(b->arena, &b->to->outputs, parts->of[k]);
+}
+
+/* As queries find the distance of a scene: the least of the first ones, cut by the others. */
+static uint32_t emit_least(Builder *b, const Node *roots, size_t count, size_t cuts)
+{
+    assert(count > cuts);
+    uint32_t least = parts_of(b, roots[0])->of[0];
+    for (size_t i = 1; i < count - cuts; i++)
+        least = emit2(b, LANE_LESSER, least, parts_of(b, roots[i])->of[0]);
+    for (size_t i = count - cuts; i < count; i++)
+        least = emit2(b, LANE_GREATER, least, parts_of(b, roots[i])->of[0]);
+    return least;
+}
+
+LaneTape lane_tape_new(const Tape *tape, const Node *roots, size_t root_count, bool least,
+                       size_t cuts, Arena *arena)
+{
+    LaneSteps steps = {.arena = arena};
+    Builder   b     = {.graph = tape->graph, .tape = tape, .arena = arena, .to = &steps};
+    assert(!tape->skips);
+    b.parts = arena_new_array(arena, Parts, tape->count + 1);
+    for (size_t i = tape->frame_count; i < tape->count; i++)
+        emit_node(&b, i);
+    if (least)
+        array_push(arena, &steps.outputs, emit_least(&b, roots, root_count, cuts));
+    for (size_t i = 0; i < root_count; i++)
+        add_outputs(&b, roots[i]);
+    return lane_steps_finish(&steps, tape);
+}
+
+void lane_tape_scalars(const LaneTape *tape, const NodeValue *values, double *scalars)
+{
+    for (size_t i = 0; i < tape->scalar_count; i++) {
+        const LaneScalar *source = &tape->sources[i];
+        scalars[i]               = source->node == NODE_NONE ? source->number
+                                                             : values[source->node].v[source->component];
+    }
+}

@@ -1,0 +1,208 @@
+/*
+ * lane_prune.c: what a lane tape need not do in a box.
+ *
+ * A step whose result is one number all over the box, or always that of one operand, is not needed;
+ * nor is what only such steps need.  Results stay the same, bit for bit: an operand is taken only
+ * where it is sure to be a number, and a blend only where nothing is taken off.
+ */
+#include <assert.h>
+#include <string.h>
+
+#include "compiler/graph/lane_call.h"
+#include "compiler/graph/lane_rows.h"
+
+/* A step whose value is being looked for, and what is known of its operands. */
+typedef struct Question {
+    const LaneTape   *tape;
+    const LaneRanges *ranges;
+    const LaneStep   *step;
+} Question;
+
+static Range range_at(const Question *q, int k)
+{
+    uint32_t operand = q->step->operands[k];
+    if (operand & LANE_SCALAR)
+        return range_of(q->tape->scalars[operand & ~LANE_SCALAR]);
+    return q->ranges->ranges[operand];
+}
+
+static bool is_sure(const Question *q, int k)
+{
+    uint32_t operand = q->step->operands[k];
+    if (operand & LANE_SCALAR)
+        return !isnan(q->tape->scalars[operand & ~LANE_SCALAR]);
+    return q->ranges->sure[operand];
+}
+
+/* The operand, if it is a number. */
+static uint32_t taken(const Question *q, int k)
+{
+    return is_sure(q, k) ? q->step->operands[k] : NODE_NONE;
+}
+
+static uint32_t lesser(const Question *q, int a, int b)
+{
+    if (range_at(q, a).high <= range_at(q, b).low)
+        return taken(q, a);
+    return range_at(q, b).high <= range_at(q, a).low ? taken(q, b) : NODE_NONE;
+}
+
+static uint32_t greater(const Question *q, int a, int b)
+{
+    if (range_at(q, a).low >= range_at(q, b).high)
+        return taken(q, a);
+    return range_at(q, b).low >= range_at(q, a).high ? taken(q, b) : NODE_NONE;
+}
+
+/* min(max(a, b), c) */
+static uint32_t clamped(const Question *q)
+{
+    Range a = range_at(q, 0), low = range_at(q, 1), high = range_at(q, 2);
+    if (a.low >= low.high && a.high <= high.low)
+        return taken(q, 0);
+    if (!is_sure(q, 0) || !is_sure(q, 1))
+        return NODE_NONE;
+    if (a.high <= low.low && low.high <= high.low)
+        return taken(q, 1);
+    return a.low >= high.high && low.high <= high.low ? taken(q, 2) : NODE_NONE;
+}
+
+static uint32_t selected(const Question *q)
+{
+    Range condition = range_at(q, 0);
+    return condition.low > 0     ? q->step->operands[1]
+           : condition.high <= 0 ? q->step->operands[2]
+                                 : NODE_NONE;
+}
+
+static uint32_t guarded(const Question *q)
+{
+    if (!is_sure(q, 0) || !is_sure(q, 1) || !is_sure(q, 3))
+        return NODE_NONE;
+    switch (lane_guard_decides(range_at(q, 0), range_at(q, 1), range_at(q, 3))) {
+    case LANE_ALWAYS: return lesser(q, 0, 1);
+    case LANE_NEVER: return q->step->operands[2];
+    default: return NODE_NONE;
+    }
+}
+
+/* Blends that take nothing off where |a - b| is the width or more. */
+static uint32_t blended(const Question *q)
+{
+    Range a = range_at(q, 0), b = range_at(q, 1), width = range_at(q, 2);
+    if (!is_sure(q, 0) || !is_sure(q, 1) || !is_sure(q, 2))
+        return NODE_NONE;
+    double apart = fmax(b.low - a.high, a.low - b.high);
+    return width.high <= 0 || apart * (1 - 0x1p-50) > width.high ? lesser(q, 0, 1) : NODE_NONE;
+}
+
+/* The operand whose value the step has in every point; NODE_NONE: there is none. */
+static uint32_t same_operand(const Question *q)
+{
+    switch (q->step->op) {
+    case OP_min: return lesser(q, 0, 1);
+    case OP_max: return greater(q, 0, 1);
+    case LANE_LESSER: return is_sure(q, 0) && is_sure(q, 1) ? lesser(q, 0, 1) : NODE_NONE;
+    case LANE_GREATER: return is_sure(q, 0) && is_sure(q, 1) ? greater(q, 0, 1) : NODE_NONE;
+    case OP_abs: return range_at(q, 0).low >= 0 ? taken(q, 0) : NODE_NONE;
+    case OP_clamp: return clamped(q);
+    case OP_select: return selected(q);
+    case OP_guard: return guarded(q);
+    case OP_smin_quadratic:
+    case OP_smin_cubic: return blended(q);
+    default: return NODE_NONE;
+    }
+}
+
+/* The sign of the operand is known: its complement, which is one step as well, but then more may be
+   known. */
+static bool is_complement(const Question *q)
+{
+    return q->step->op == OP_abs && range_at(q, 0).high <= 0;
+}
+
+/* ---- the shorter tape ---- */
+
+typedef struct Pruning {
+    const LaneTape   *from;
+    const LaneRanges *ranges;
+    LaneSteps         to;
+    uint32_t         *same; /* of each value: the operand that stands for it */
+} Pruning;
+
+static uint32_t stand_in(const Pruning *p, uint32_t operand)
+{
+    return operand == NODE_NONE || (operand & LANE_SCALAR) ? operand : p->same[operand];
+}
+
+/* A number that the step has in every point. */
+static bool is_single(const Pruning *p, size_t value, double *number)
+{
+    Range range = p->ranges->ranges[value];
+    *number     = range.low + 0.0;
+    return p->ranges->sure[value] && range_is_single(range) && isfinite(range.low);
+}
+
+static void prune_step(Pruning *p, size_t i)
+{
+    LaneStep step  = p->from->steps[i];
+    uint32_t value = (uint32_t)(LANE_INPUTS + i);
+    Question q     = {p->from, p->ranges, &p->from->steps[i]};
+    double   number;
+    bool     call   = step.op == LANE_CALL || step.op == LANE_PART;
+    bool     single = is_single(p, value, &number);
+    uint32_t other  = call || single ? NODE_NONE : same_operand(&q);
+    p->same[value]  = single               ? lane_steps_number(&p->to, number)
+                      : other != NODE_NONE ? stand_in(p, other)
+                                           : value;
+    if (step.op != LANE_CALL)
+        for (uint32_t k = 0; k < step.operand_count; k++)
+            step.operands[k] = step.op == LANE_PART ? step.operands[k]
+                                                    : stand_in(p, step.operands[k]);
+    if (is_complement(&q))
+        step.op = OP_neg;
+    lane_steps_add(&p->to, step);
+}
+
+static void prune_calls(Pruning *p)
+{
+    for (size_t i = 0; i < p->from->call_count; i++) {
+        LaneCall call = p->from->calls[i];
+        for (uint32_t k = 0; k < MAX_OPERANDS; k++)
+            for (uint32_t c = 0; c < 4; c++)
+                call.operands[k][c] = stand_in(p, call.operands[k][c]);
+        array_push(p->to.arena, &p->to.calls, call);
+    }
+}
+
+/* Room for everything at once, so that nothing is copied. */
+static void reserve(Pruning *p)
+{
+    Arena *arena           = p->to.arena;
+    p->to.steps.capacity   = p->from->count + 1;
+    p->to.steps.items      = arena_new_array(arena, LaneStep, p->to.steps.capacity);
+    p->to.sources.capacity = p->from->scalar_count + p->from->count + 1;
+    p->to.sources.items    = arena_new_array(arena, LaneScalar, p->to.sources.capacity);
+    p->same                = arena_new_array(arena, uint32_t, LANE_INPUTS + p->from->count);
+}
+
+LaneTape lane_prune(const LaneTape *tape, const LaneRanges *ranges, size_t outputs, Arena *arena)
+{
+    Pruning p = {.from = tape, .ranges = ranges, .to = {.arena = arena}};
+    assert(outputs <= tape->output_count);
+    reserve(&p);
+    for (uint32_t i = 0; i < LANE_INPUTS; i++)
+        p.same[i] = i;
+    for (size_t i = 0; i < tape->scalar_count; i++)
+        lane_steps_number(&p.to, tape->scalars[i]);
+    for (size_t i = 0; i < tape->count; i++)
+        prune_step(&p, i);
+    prune_calls(&p);
+    for (size_t i = 0; i < outputs; i++)
+        array_push(arena, &p.to.outputs, stand_in(&p, tape->outputs[i]));
+    LaneTape pruned = lane_steps_finish(&p.to, tape->tape);
+    pruned.scalars  = arena_new_array(arena, double, pruned.scalar_count + 1);
+    for (size_t i = 0; i < pruned.scalar_count; i++)
+        pruned.scalars[i] = pruned.sources[i].number;
+    return pruned;
+}

@@ -1,0 +1,363 @@
+/*
+ * lane_ranges.c: a lane tape over a box, in intervals.
+ *
+ * Ranges hold every value that lanes find in the box, as far as it is a number.  Where it is one in every
+ * point the value is sure; pruning needs that, since a minimum with what is not a number is the other
+ * operand.
+ */
+#include <assert.h>
+#include <math.h>
+
+#include "compiler/graph/facts.h"
+#include "compiler/graph/lane_call.h"
+#include "compiler/graph/op_values.h"
+#include "compiler/graph/rules.h"
+#include "compiler/graph/texture.h"
+
+LaneRanges lane_ranges_new(const LaneTape *tape, Arena *arena)
+{
+    return (LaneRanges){arena_new_array(arena, Range, LANE_INPUTS + tape->count),
+                        arena_new_array(arena, bool, LANE_INPUTS + tape->count)};
+}
+
+/* ---- operands ---- */
+
+typedef struct Operand {
+    Range range;
+    bool  sure;
+} Operand;
+
+static Operand operand_of(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand)
+{
+    if (!(operand & LANE_SCALAR))
+        return (Operand){ranges->ranges[operand], ranges->sure[operand]};
+    double scalar = tape->scalars[operand & ~LANE_SCALAR];
+    return isnan(scalar) ? (Operand){ANYTHING, false} : (Operand){range_of(scalar), true};
+}
+
+/* Whether the result is a number only if all operands are.  A minimum is not like that. */
+static bool needs_numbers(uint16_t op)
+{
+    switch (op) {
+    case OP_neg:
+    case OP_precise:
+    case OP_abs:
+    case OP_floor:
+    case OP_ceil:
+    case OP_round:
+    case OP_fract:
+    case OP_square:
+    case OP_sqrt:
+    case OP_inversesqrt:
+    case OP_exp:
+    case OP_exp2:
+    case OP_log:
+    case OP_log2:
+    case OP_sin:
+    case OP_cos:
+    case OP_tan:
+    case OP_atan:
+    case OP_sinh:
+    case OP_cosh:
+    case OP_tanh:
+    case OP_add:
+    case OP_sub:
+    case OP_mul:
+    case OP_div:
+    case OP_atan2:
+    case OP_mod:
+    case OP_mix:
+    case OP_normalize: return true;
+    case OP_select: return true; /* the one that is selected; conditions are numbers */
+    default: return false;
+    }
+}
+
+/* What is not a number may then act as any. */
+static Operand operand_for(const LaneTape *tape, const LaneRanges *ranges, uint16_t op,
+                           uint32_t operand)
+{
+    Operand found = operand_of(tape, ranges, operand);
+    if (!found.sure && !needs_numbers(op))
+        found.range = ANYTHING;
+    return found;
+}
+
+static bool is_finite(Range a) { return isfinite(a.low) && isfinite(a.high); }
+
+static const Range TRUTH = {0, 1};
+
+static Range truth(bool always, bool never)
+{
+    return always ? range_of(1) : never ? range_of(0) : TRUTH;
+}
+
+/* ---- steps that are no MAP rows ---- */
+
+static Range range_compare(uint16_t op, const Operand *o)
+{
+    Range a = o[0].range, b = o[1].range;
+    bool  apart = a.high < b.low || b.high < a.low, same = a.low == b.high && b.low == a.high;
+    if (!o[0].sure || !o[1].sure)
+        return TRUTH;
+    switch (op) {
+    case OP_less: return truth(a.high < b.low, a.low >= b.high);
+    case OP_less_equal: return truth(a.high <= b.low, a.low > b.high);
+    case OP_equal: return truth(same, apart);
+    default: return truth(apart, same); /* OP_not_equal */
+    }
+}
+
+static bool always_true(Range a) { return a.low > 0; }
+static bool never_true(Range a) { return a.high <= 0; }
+
+static Range range_logic(uint16_t op, const Operand *o)
+{
+    Range a = o[0].range, b = o[1].range;
+    switch (op) {
+    case OP_and: return truth(always_true(a) && always_true(b), never_true(a) || never_true(b));
+    case OP_or: return truth(always_true(a) || always_true(b), never_true(a) && never_true(b));
+    default: return truth(never_true(a), always_true(a)); /* OP_not */
+    }
+}
+
+static Range range_select(const Operand *o)
+{
+    if (always_true(o[0].range))
+        return o[1].range;
+    return never_true(o[0].range) ? o[2].range : range_hull(o[1].range, o[2].range);
+}
+
+/* guard_decides: everywhere, nowhere, or neither. */
+LaneTruth lane_guard_decides(Range bound, Range least, Range far)
+{
+    Range nearer = range_min(least, far), inside = range_min(far, range_of(0));
+    if (bound.low >= nearer.high && bound.low > inside.high)
+        return LANE_ALWAYS;
+    return bound.high < nearer.low || bound.high <= inside.low ? LANE_NEVER : LANE_SOMETIMES;
+}
+
+static Range range_guard(const Operand *o)
+{
+    Range     out     = range_min(o[0].range, o[1].range);
+    LaneTruth decides = lane_guard_decides(o[0].range, o[1].range, o[3].range);
+    return decides == LANE_ALWAYS  ? out
+           : decides == LANE_NEVER ? o[2].range
+                                   : range_hull(out, o[2].range);
+}
+
+static Range range_length(const Operand *o, uint32_t size)
+{
+    Range sum = range_square(o[0].range);
+    for (uint32_t i = 1; i < size; i++)
+        sum = range_add(sum, range_square(o[i].range));
+    return range_sqrt(sum);
+}
+
+static Range range_normalized(Range a, Range length)
+{
+    const Range unit = {-1 - 0x1p-48, 1 + 0x1p-48};
+    if (length.low > 0)
+        return range_intersect(range_div(a, length), unit);
+    return range_intersect((Range){a.low < 0 ? unit.low : 0, a.high > 0 ? unit.high : 0}, unit);
+}
+
+/* Where the period is above 0, whole periods are taken off; behind the first and the last cell no more
+   than there. */
+static Range range_of_cell(Range a, Range period, Range first, Range last)
+{
+    Range  cell  = range_min(range_max(range_round(range_div(a, period)), first), last);
+    Range  moved = range_sub(a, range_mul(period, cell));
+    double slack = 0x1p-48 * (range_largest(a) + period.high), half = period.high / 2 + slack;
+    Range  before = range_sub(range_of(a.low), range_mul(period, first));
+    Range  behind = range_sub(range_of(a.high), range_mul(period, last));
+    Range  folded = {fmin(-half, before.low - slack), fmax(half, behind.high + slack)};
+    return range_is_single(cell) || !is_finite(folded) ? moved : range_intersect(moved, folded);
+}
+
+static Range range_cell(const Operand *o)
+{
+    Range a = o[0].range, period = o[1].range;
+    if (period.high <= 0)
+        return a;
+    if (period.low <= 0 || !is_finite(a) || !is_finite(period))
+        return ANYTHING;
+    return range_of_cell(a, period, o[2].range, o[3].range);
+}
+
+static Range range_blend_weight(const Operand *o)
+{
+    Range a = o[0].range, b = o[1].range, width = o[2].range;
+    if (!(width.low > 0) || !o[0].sure || !o[1].sure || !is_finite(a) || !is_finite(b))
+        return TRUTH;
+    Range share = range_div(range_mul(range_of(0.5), range_sub(b, a)), width);
+    return range_max(range_min(range_add(range_of(0.5), share), range_of(1)), range_of(0));
+}
+
+/* ---- by the rules of facts ---- */
+
+static Fact fact_in(Range range)
+{
+    Fact fact     = fact_unknown(1);
+    fact.value[0] = range;
+    return fact;
+}
+
+static Range range_by_rule(uint16_t op, const Operand *o, uint32_t count)
+{
+    Fact      facts[MAX_OPERANDS];
+    GraphType types[MAX_OPERANDS];
+    for (uint32_t k = 0; k < count; k++) {
+        facts[k] = fact_in(o[k].range);
+        types[k] = TYPE_FLOAT;
+    }
+    return op_fact((Op)op, TYPE_FLOAT, 0, types, facts, NULL).value[0];
+}
+
+static void run_call(const LaneTape *tape, const LaneRanges *ranges, size_t step)
+{
+    const LaneCall *call  = &tape->calls[tape->steps[step].operands[0]];
+    const Graph    *graph = tape->tape->graph;
+    const Expr     *e     = &graph->items[call->node];
+    Fact            facts[MAX_OPERANDS];
+    GraphType       types[MAX_OPERANDS];
+    bool            sure = op_promises((Op)e->op, STAYS_FINITE);
+    for (uint32_t k = 0; k < e->operand_count; k++) {
+        types[k] = graph->items[e->operands[k]].type;
+        facts[k] = fact_unknown(type_size(types[k]));
+        for (uint32_t c = 0; c < type_size(types[k]); c++) {
+            Operand o         = operand_for(tape, ranges, LANE_CALL, call->operands[k][c]);
+            facts[k].value[c] = o.range;
+            sure              = sure && o.sure && is_finite(o.range);
+        }
+    }
+    Fact fact = is_texture((Op)e->op)
+                    ? texture_fact_of(graph, e, facts)
+                    : op_fact((Op)e->op, (GraphType)e->type, e->index, types, facts, NULL);
+    for (uint32_t c = 0; c < call->parts; c++) {
+        ranges->ranges[LANE_INPUTS + step + c] = fact.value[c];
+        ranges->sure[LANE_INPUTS + step + c]   = sure;
+    }
+}
+
+/* The `range` column of MAP rows; else the rule. */
+static Range range_by_row(uint16_t op, const Operand *o, uint32_t count)
+{
+    Range a = o[0].range, b = o[1].range, c = o[2].range;
+    switch (op) {
+#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning) \
+    case OP_##name: {                                                           \
+        return (range);                                                         \
+    }
+#include "compiler/graph/ops.def"
+    default: return range_by_rule(op, o, count);
+    }
+}
+
+/* ---- steps ---- */
+
+/* A quotient by 0 is infinite, of either sign. */
+static Range range_quotient(Range a, Range b)
+{
+    return b.low <= 0 && b.high >= 0 ? ANYTHING : range_div(a, b);
+}
+
+static Range range_of_step(const LaneStep *step, const Operand *o)
+{
+    Range a = o[0].range, b = o[1].range;
+    switch (step->op) {
+    case OP_div: return range_quotient(a, b);
+    case OP_smoothstep: /* infinite / infinite counts as 0 */
+        return is_finite(a) && is_finite(b) && is_finite(o[2].range)
+                   ? range_by_row(OP_smoothstep, o, 3)
+                   : TRUTH;
+    case OP_less:
+    case OP_less_equal:
+    case OP_equal:
+    case OP_not_equal: return range_compare(step->op, o);
+    case OP_and:
+    case OP_or:
+    case OP_not: return range_logic(step->op, o);
+    case OP_select: return range_select(o);
+    case OP_guard: return range_guard(o);
+    case OP_length: return range_length(o, step->operand_count);
+    case OP_normalize: return range_normalized(a, b);
+    case OP_cell: return range_cell(o);
+    case OP_blend_weight: return range_blend_weight(o);
+    case LANE_LESSER: return range_min(a, b);
+    case LANE_GREATER: return range_max(a, b);
+    default: return range_by_row(step->op, o, step->operand_count);
+    }
+}
+
+/* Whether it is a number wherever its operands are. */
+static bool is_defined(const LaneStep *step, const Operand *o)
+{
+    Range a = o[0].range, b = o[1].range;
+    bool  finite = true;
+    for (uint32_t k = 0; k < step->operand_count; k++)
+        finite = finite && is_finite(o[k].range);
+    switch (step->op) {
+    case OP_neg:
+    case OP_precise:
+    case OP_abs:
+    case OP_min:
+    case OP_max:
+    case OP_clamp:
+    case OP_select:
+    case OP_guard:
+    case OP_step:
+    case OP_exp:
+    case OP_exp2:
+    case LANE_LESSER:
+    case LANE_GREATER: return true;
+    case OP_sqrt: return a.low >= 0;
+    case OP_inversesqrt:
+    case OP_log:
+    case OP_log2: return a.low > 0;
+    case OP_add:
+    case OP_sub: return is_finite(a) || is_finite(b);
+    case OP_div:
+    case OP_mod: return finite && (b.low > 0 || b.high < 0);
+    case OP_pow: return finite && a.low > 0;
+    default: return finite && op_promises((Op)step->op, STAYS_FINITE);
+    }
+}
+
+static void run_step(const LaneTape *tape, const LaneRanges *ranges, size_t i)
+{
+    const LaneStep *step            = &tape->steps[i];
+    Operand         o[MAX_OPERANDS] = {0};
+    bool            sure            = true;
+    for (uint32_t k = 0; k < step->operand_count; k++) {
+        o[k] = operand_for(tape, ranges, step->op, step->operands[k]);
+        sure = sure && o[k].sure;
+    }
+    bool  square = step->op == OP_mul && step->operands[0] == step->operands[1];
+    Range range  = square ? range_square(o[0].range) : range_of_step(step, o);
+    if (!(range.low <= range.high))
+        range = ANYTHING; /* it is a number nowhere, or a rule gave up */
+    ranges->ranges[LANE_INPUTS + i] = range;
+    ranges->sure[LANE_INPUTS + i]   = sure && is_defined(step, o);
+}
+
+Range lane_ranges_run(const LaneTape *tape, const LaneRanges *ranges, Box box)
+{
+    assert(tape->scalars);
+    for (uint32_t k = 0; k < LANE_INPUTS; k++) {
+        bool place        = k < LANE_NORMAL;
+        ranges->ranges[k] = place ? box.axis[k] : ANYTHING;
+        ranges->sure[k]   = place;
+    }
+    for (size_t i = 0; i < tape->count; i++)
+        if (tape->steps[i].op == LANE_CALL)
+            run_call(tape, ranges, i);
+        else if (tape->steps[i].op != LANE_PART)
+            run_step(tape, ranges, i);
+    return lane_ranges_output(tape, ranges, 0);
+}
+
+Range lane_ranges_output(const LaneTape *tape, const LaneRanges *ranges, size_t output)
+{
+    return operand_of(tape, ranges, tape->outputs[output]).range;
+}

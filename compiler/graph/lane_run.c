@@ -1,0 +1,183 @@
+/*
+ * lane_run.c: lane tapes are run over many points, by the best instruction set that there is.
+ */
+#include <assert.h>
+#include <math.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#include "compiler/base/vec.h"
+#include "compiler/graph/lane_call.h"
+#include "compiler/graph/lanes.h"
+#include "compiler/graph/op_values.h"
+
+/* ---- instruction sets ---- */
+
+static const LaneSet all_sets[] = {
+#if defined(__x86_64__)
+    {"avx512", {lane_double_avx512, lane_single_avx512}},
+    {"avx2", {lane_double_avx2, lane_single_avx2}},
+#endif
+    {"plain", {lane_double_plain, lane_single_plain}},
+};
+enum { SETS = sizeof all_sets / sizeof *all_sets };
+
+static size_t first_set(void)
+{
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512vl"))
+        return 0;
+    return __builtin_cpu_supports("avx2") ? 1 : 2;
+#else
+    return 0;
+#endif
+}
+
+size_t lane_sets(const LaneSet **sets)
+{
+    *sets = &all_sets[first_set()];
+    return SETS - first_set();
+}
+
+static _Atomic(const LaneSet *) used_set;
+
+void lane_use_set(const LaneSet *set) { atomic_store(&used_set, set); }
+
+static const LaneSet *current_set(void)
+{
+    const LaneSet *set = atomic_load_explicit(&used_set, memory_order_relaxed);
+    if (!set) {
+        set = &all_sets[first_set()];
+        atomic_store(&used_set, set);
+    }
+    return set;
+}
+
+/* ---- point by point ---- */
+
+NodeValue lane_call(const Tape *tape, NodeValue *values, Node node, const NodeValue *operands)
+{
+    const Expr *e = &tape->graph->items[node];
+    GraphType   types[MAX_OPERANDS];
+    if (op_promises((Op)e->op, READS_TABLES))
+        return tape_run_reader(tape, node, operands, values);
+    for (uint32_t k = 0; k < e->operand_count; k++)
+        types[k] = tape->graph->items[e->operands[k]].type;
+    return op_evaluate((Op)e->op, e->type, e->index, types, operands);
+}
+
+double lane_length(const double *vector, uint32_t size)
+{
+    GraphType type  = (GraphType)size;
+    NodeValue value = {0};
+    memcpy(value.v, vector, size * sizeof *vector);
+    return op_evaluate(OP_length, TYPE_FLOAT, 0, &type, &value).v[0];
+}
+
+/* ---- rows ---- */
+
+enum { ROW_ALIGNMENT = 64 };
+
+size_t lane_work_bytes(const LaneTape *tape)
+{
+    return (size_t)tape->rows * LANES * sizeof(double) + ROW_ALIGNMENT;
+}
+
+LaneWork lane_work_in(void *memory, NodeValue *values)
+{
+    size_t past = (uintptr_t)memory % ROW_ALIGNMENT;
+    return (LaneWork){(char *)memory + (past ? ROW_ALIGNMENT - past : 0), values};
+}
+
+static void put(const LaneWork *work, LanePrecision precision, size_t at, double number)
+{
+    if (precision == LANE_SINGLE)
+        ((float *)work->rows)[at] = (float)number + 0.0f;
+    else
+        ((double *)work->rows)[at] = number + 0.0;
+}
+
+static double get(const LaneWork *work, LanePrecision precision, size_t at)
+{
+    return precision == LANE_SINGLE ? (double)((const float *)work->rows)[at]
+                                    : ((const double *)work->rows)[at];
+}
+
+static void fill_inputs(const LaneWork *work, LanePrecision precision, const LanePoints *points,
+                        size_t first, size_t count)
+{
+    size_t filled = (count + LANE_BLOCK - 1) / LANE_BLOCK * LANE_BLOCK;
+    for (size_t i = 0; i < filled; i++) {
+        size_t at = first + (i < count ? i : count - 1);
+        for (uint32_t k = 0; k < 3; k++) {
+            put(work, precision, (LANE_POINT + k) * LANES + i, points->points[at][k]);
+            put(work, precision, (LANE_NORMAL + k) * LANES + i,
+                points->normals ? points->normals[at][k] : 0);
+        }
+        put(work, precision, LANE_FOOTPRINT * LANES + i,
+            points->footprints ? points->footprints[at] : 0);
+    }
+}
+
+static double output_at(const LaneTape *tape, const LaneWork *work, LanePrecision precision,
+                        size_t output, size_t lane)
+{
+    uint32_t row = tape->output_rows[output];
+    if (row & LANE_SCALAR)
+        return tape->scalars[row & ~LANE_SCALAR];
+    return get(work, precision, (size_t)row * LANES + lane);
+}
+
+void lane_run(const LaneTape *tape, const LaneWork *work, LanePrecision precision,
+              LanePoints points, size_t first, size_t outputs, double *results)
+{
+    LaneKernel *run = current_set()->run[precision];
+    assert(first + outputs <= tape->output_count);
+    for (size_t begin = 0; begin < points.count; begin += LANES) {
+        size_t count = points.count - begin < LANES ? points.count - begin : LANES;
+        fill_inputs(work, precision, &points, begin, count);
+        run(tape, work, count);
+        for (size_t i = 0; i < count; i++)
+            for (size_t k = 0; k < outputs; k++)
+                results[(begin + i) * outputs + k] = output_at(tape, work, precision, first + k, i);
+    }
+}
+
+/* ---- derivatives ---- */
+
+enum { BESIDE = 6, STENCIL = BESIDE + 1, AT_ONCE = 16 };
+
+static double stencil_step(const double point[3]) { return 1e-6 * (1 + largest3(point)); }
+
+/* A point and what lies beside it: before and behind along each axis. */
+static void place_stencil(const double point[3], double (*to)[3])
+{
+    double step = stencil_step(point);
+    for (int k = 0; k < STENCIL; k++)
+        memcpy(to[k], point, 3 * sizeof *point);
+    for (int k = 0; k < BESIDE; k++)
+        to[k][k / 2] += k % 2 ? step : -step;
+}
+
+void lane_gradients(const LaneTape *tape, const LaneWork *work, const double (*points)[3],
+                    size_t count, double (*gradients)[3], double *values)
+{
+    double places[AT_ONCE * STENCIL][3], found[AT_ONCE * STENCIL];
+    for (size_t begin = 0; begin < count; begin += AT_ONCE) {
+        size_t now = count - begin < AT_ONCE ? count - begin : AT_ONCE;
+        for (size_t i = 0; i < now; i++)
+            place_stencil(points[begin + i], &places[i * STENCIL]);
+        lane_run(tape, work, LANE_DOUBLE,
+                 (LanePoints){.points = (const double(*)[3])places, .count = now * STENCIL}, 0, 1,
+                 found);
+        for (size_t i = 0; i < now; i++) {
+            const double *at   = &found[i * STENCIL];
+            double        step = stencil_step(points[begin + i]);
+            for (int k = 0; k < 3; k++)
+                gradients[begin + i][k] = (at[2 * k + 1] - at[2 * k]) / (2 * step);
+            if (values)
+                values[begin + i] = at[BESIDE];
+        }
+    }
+}

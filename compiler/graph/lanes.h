@@ -1,0 +1,156 @@
+/*
+ * lanes.h: expressions in many points at once, and over boxes.
+ *
+ * A lane tape is made of a tape (evaluate.h).  Its steps are scalar: vectors are taken apart, in the
+ * order of op_values.c, so that in double precision every result is equal to that of the tape, bit for
+ * bit (one that is not a number is not a number).  A step works on rows of LANES numbers, one for
+ * each point.  Rows are reused.  Operands that are the same in all points are scalars.
+ *
+ * The same steps are run over boxes, in intervals.  They tell which operand of a minimum, a choice or a
+ * blend decides all over a box.  The lane tape without the others is shorter, and in that box its
+ * outputs are the same, bit for bit.
+ *
+ * A lane tape is never changed once it is made: threads share it, and each has its own work space.
+ */
+#ifndef KRS_LANES_H
+#define KRS_LANES_H
+
+#include "compiler/graph/evaluate.h"
+#include "compiler/graph/range.h"
+
+/* Points in a row; rows are filled in blocks, so that few points cost less than many. */
+enum { LANES = 32, LANE_BLOCK = 8 };
+
+/* Steps that are no operation of ops.def. */
+enum {
+    LANE_CALL = OP_COUNT, /* an operation that is evaluated point by point: calls[operands[0]] */
+    LANE_PART,            /* a further component of the call right before */
+    LANE_LESSER,          /* b where b < a, else a */
+    LANE_GREATER          /* b where b > a, else a */
+};
+
+/* What a step works on: the number of a value, or this bit and the number of a scalar.  Values are the
+   inputs, then the results of the steps. */
+#define LANE_SCALAR 0x80000000u
+enum { LANE_POINT = 0, LANE_NORMAL = 3, LANE_FOOTPRINT = 6, LANE_INPUTS = 7 };
+
+/* An operation of ops.def works on numbers here: OP_length on the components of a vector, OP_normalize
+   on one component and the length, OP_cell on one component of each operand. */
+typedef struct LaneStep {
+    uint16_t op;
+    uint16_t operand_count;
+    uint32_t operands[MAX_OPERANDS];
+} LaneStep;
+
+/* How a step is run: on rows and, where the bit of the operand is set, scalars. */
+typedef struct LaneCode {
+    uint16_t op;
+    uint8_t  operand_count, scalars;
+    uint32_t to, from[MAX_OPERANDS];
+} LaneCode;
+
+/* An operation that is evaluated point by point. */
+typedef struct LaneCall {
+    Node     node;
+    uint32_t parts; /* components of the result, each a step */
+    uint32_t operands[MAX_OPERANDS][4];
+    uint32_t from[MAX_OPERANDS][4], to[4]; /* rows */
+} LaneCall;
+
+/* Where a scalar comes from: a component of a node of the frame, or, with NODE_NONE, a number. */
+typedef struct LaneScalar {
+    Node     node;
+    uint32_t component;
+    double   number;
+} LaneScalar;
+
+typedef struct LaneTape {
+    const Tape *tape;
+    LaneStep   *steps;
+    LaneCode   *code;
+    size_t      count;
+    LaneCall   *calls;
+    size_t      call_count;
+    bool        reads_tables; /* some call reads tables or textures */
+    LaneScalar *sources;
+    size_t      scalar_count;
+    double     *scalars; /* their values; NULL: not known yet */
+    uint32_t   *outputs; /* operands as of steps */
+    uint32_t   *output_rows;
+    size_t      output_count;
+    uint32_t    rows; /* those of inputs are the first */
+} LaneTape;
+
+/* Outputs are the components of the roots, one root after the other; the tape has these roots, no guards
+   that skip, and lives as long.  With `least`, output 0 is the least of all roots but the last
+   `cuts`, which are numbers, cut by those: as far as the greatest of them is greater. */
+LaneTape lane_tape_new(const Tape *tape, const Node *roots, size_t root_count, bool least,
+                       size_t cuts, Arena *arena);
+
+/* The values of its scalars: `values` is as tape_run_frame fills it; `scalars` has room for
+   scalar_count. */
+void lane_tape_scalars(const LaneTape *tape, const NodeValue *values, double *scalars);
+
+/* ---- points ---- */
+
+typedef enum LanePrecision { LANE_DOUBLE, LANE_SINGLE, LANE_PRECISIONS } LanePrecision;
+
+/* What one thread needs to run a lane tape, and all that it is pruned to. */
+typedef struct LaneWork {
+    void *rows; /* aligned to 64 bytes */
+    NodeValue *
+        values; /* those of the frame, for calls that read tables, which change others; else NULL */
+} LaneWork;
+
+/* Bytes of rows, and the rows within a block of memory of that size. */
+size_t   lane_work_bytes(const LaneTape *tape);
+LaneWork lane_work_in(void *memory, NodeValue *values);
+
+/* Where points are: on surfaces with these normals, seen by pixels of these radii; NULL: 0. */
+typedef struct LanePoints {
+    const double (*points)[3], (*normals)[3];
+    const double *footprints;
+    size_t        count;
+} LanePoints;
+
+/* Outputs `first` to first + outputs - 1 in all points: that of point i to results[i * outputs]. */
+void lane_run(const LaneTape *tape, const LaneWork *work, LanePrecision precision,
+              LanePoints points, size_t first, size_t outputs, double *results);
+
+/* How an instruction set runs a block of rows whose inputs are filled. */
+typedef void LaneKernel(const LaneTape *tape, const LaneWork *work, size_t points);
+typedef struct LaneSet {
+    const char *name;
+    LaneKernel *run[LANE_PRECISIONS];
+} LaneSet;
+
+/* The sets that this processor has, best first; the last is plain C. */
+size_t lane_sets(const LaneSet **sets);
+/* For tests: only this one is used, by all threads; NULL: the best. */
+void lane_use_set(const LaneSet *set);
+
+/* The derivatives of output 0 by central differences, as normals of queries are found; its values,
+   unless NULL. */
+void lane_gradients(const LaneTape *tape, const LaneWork *work, const double (*points)[3],
+                    size_t count, double (*gradients)[3], double *values);
+
+/* ---- boxes ---- */
+
+/* The ranges of values over a box, by one thread.  `sure`: it is a number in every point of the box. */
+typedef struct LaneRanges {
+    Range *ranges;
+    bool  *sure;
+} LaneRanges;
+
+/* Room for those of a lane tape, and of all that it is pruned to. */
+LaneRanges lane_ranges_new(const LaneTape *tape, Arena *arena);
+/* Returns that of output 0; it holds where the value is a number.  Normals and footprints may be
+   anything. */
+Range lane_ranges_run(const LaneTape *tape, const LaneRanges *ranges, Box box);
+/* Of an output, after a run. */
+Range lane_ranges_output(const LaneTape *tape, const LaneRanges *ranges, size_t output);
+
+/* After a run over a box: the first `outputs` outputs without what has no influence in it. */
+LaneTape lane_prune(const LaneTape *tape, const LaneRanges *ranges, size_t outputs, Arena *arena);
+
+#endif

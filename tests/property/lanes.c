@@ -1,0 +1,215 @@
+/*
+ * lanes.c: lane tapes give what tapes give, bit for bit, on every instruction set of this machine;
+ * ranges over boxes hold what is found in them; what is pruned for a box is the same in it.
+ *
+ * Graphs are made at random from every operation there is.  What is pruned for a smaller box than the one
+ * it is asked in must be seen to be wrong.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "compiler/graph/lanes.h"
+
+#include "tests/property/garden.h"
+
+enum { GRAPHS = 300, POINTS = 45, ROOTS = 3, NODES = 60 };
+
+/* Some expressions of one graph, as a tape and as a lane tape. */
+typedef struct Pair {
+    Tape       tape;
+    NodeValue *values;
+    LaneTape   lanes;
+    LaneWork   work;
+    Node       roots[ROOTS];
+} Pair;
+
+static void pair_make(Bench *b, Pair *pair)
+{
+    b->graph      = graph_new(&b->arena);
+    Garden garden = random_garden(b, NODES);
+    Place  place  = random_place(b);
+    for (int i = 0; i < ROOTS; i++)
+        pair->roots[i] = garden.nodes[garden.count - 1 - random_below(&b->random, 20)];
+    pair->tape   = tape_new(b->graph, pair->roots, ROOTS, &b->arena);
+    pair->values = arena_new_array(&b->arena, NodeValue, b->graph->count);
+    tape_run_frame(&pair->tape, place.parameters, pair->values);
+    pair->lanes         = lane_tape_new(&pair->tape, pair->roots, ROOTS, false, 0, &b->arena);
+    pair->lanes.scalars = arena_new_array(&b->arena, double, pair->lanes.scalar_count + 1);
+    lane_tape_scalars(&pair->lanes, pair->values, pair->lanes.scalars);
+    pair->work = lane_work_in(arena_alloc(&b->arena, lane_work_bytes(&pair->lanes), 1),
+                              pair->values);
+}
+
+/* Mostly usual coordinates, and those that operations may stumble over. */
+static double random_coordinate(Bench *b)
+{
+    static const double odd[] = {0, -0.0, 1, -1, 0.5, 1e-300, 1e200, -1e200, 1e-160};
+    return random_below(&b->random, 8) ? random_between(&b->random, -2, 2)
+                                       : odd[random_below(&b->random, 9)];
+}
+
+static void random_points(Bench *b, double (*points)[3], size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            points[i][k] = random_coordinate(b);
+}
+
+static bool same_number(double a, double b)
+{
+    return memcmp(&a, &b, sizeof a) == 0 || (isnan(a) && isnan(b));
+}
+
+/* ---- points ---- */
+
+/* How many outputs differ from what the tape finds. */
+static size_t count_different(const Pair *pair, const double (*points)[3], size_t count,
+                              const double *results)
+{
+    size_t different = 0, outputs = pair->lanes.output_count;
+    for (size_t i = 0; i < count; i++) {
+        size_t output = 0;
+        tape_run_point(&pair->tape, points[i], pair->values);
+        for (int root = 0; root < ROOTS; root++)
+            for (uint32_t k = 0; k < components(pair->tape.graph->items[pair->roots[root]].type);
+                 k++)
+                different += !same_number(pair->values[pair->roots[root]].v[k],
+                                          results[i * outputs + output++]);
+    }
+    return different;
+}
+
+static void lanes_give_what_tapes_give(void **state)
+{
+    Bench         *b = *state;
+    const LaneSet *sets;
+    size_t         count = lane_sets(&sets);
+    for (int turn = 0; turn < GRAPHS; turn++) {
+        Pair   pair;
+        double points[POINTS][3];
+        pair_make(b, &pair);
+        random_points(b, points, POINTS);
+        double *results = arena_new_array(&b->arena, double, POINTS *pair.lanes.output_count);
+        for (size_t set = 0; set < count; set++)
+            for (size_t some = 1; some <= POINTS; some += 11) {
+                lane_use_set(&sets[set]);
+                lane_run(&pair.lanes, &pair.work, LANE_DOUBLE,
+                         (LanePoints){.points = (const double(*)[3])points, .count = some}, 0,
+                         pair.lanes.output_count, results);
+                if (count_different(&pair, (const double(*)[3])points, some, results))
+                    fail_msg("graph %d on %s is different", turn, sets[set].name);
+            }
+        lane_use_set(NULL);
+    }
+}
+
+/* ---- boxes ---- */
+
+static Box random_box(Bench *b)
+{
+    Box    box;
+    double half = pow(2, -random_between(&b->random, 0, 6));
+    for (int k = 0; k < 3; k++) {
+        double middle = random_between(&b->random, -2, 2);
+        box.axis[k]   = (Range){middle - half, middle + half};
+    }
+    return box;
+}
+
+static Box half_of(Box box)
+{
+    for (int k = 0; k < 3; k++)
+        box.axis[k].high = box.axis[k].low / 2 + box.axis[k].high / 2;
+    return box;
+}
+
+static void points_in(Bench *b, Box box, double (*points)[3])
+{
+    for (int i = 0; i < POINTS; i++)
+        for (int k = 0; k < 3; k++)
+            points[i][k] = random_below(&b->random, 6) == 0
+                               ? (random_below(&b->random, 2) ? box.axis[k].low : box.axis[k].high)
+                               : random_between(&b->random, box.axis[k].low, box.axis[k].high);
+}
+
+static bool holds(Range range, double number)
+{
+    return isnan(number) || (range.low <= number && number <= range.high);
+}
+
+/* What is known of many graphs in many boxes. */
+typedef struct Tally {
+    size_t steps, left, outside, different, unsure;
+} Tally;
+
+/* Ranges and a pruned tape of one box, looked at in the points of another one. */
+static void try_box(Bench *b, Pair *pair, Box known, Box looked, Tally *tally)
+{
+    double     points[POINTS][3];
+    size_t     outputs = pair->lanes.output_count;
+    LaneRanges ranges  = lane_ranges_new(&pair->lanes, &b->arena);
+    double    *whole   = arena_new_array(&b->arena, double, POINTS *outputs);
+    double    *pruned  = arena_new_array(&b->arena, double, POINTS *outputs);
+    lane_ranges_run(&pair->lanes, &ranges, known);
+    LaneTape shorter = lane_prune(&pair->lanes, &ranges, outputs, &b->arena);
+    assert_true(shorter.rows <= pair->lanes.rows);
+    points_in(b, looked, points);
+    LanePoints all = {.points = (const double(*)[3])points, .count = POINTS};
+    lane_run(&pair->lanes, &pair->work, LANE_DOUBLE, all, 0, outputs, whole);
+    lane_run(&shorter, &pair->work, LANE_DOUBLE, all, 0, outputs, pruned);
+    for (size_t i = 0; i < POINTS * outputs; i++) {
+        Range    range = lane_ranges_output(&pair->lanes, &ranges, i % outputs);
+        uint32_t value = pair->lanes.outputs[i % outputs];
+        tally->outside += !holds(range, whole[i]);
+        tally->different += !same_number(whole[i], pruned[i]);
+        tally->unsure += !(value & LANE_SCALAR) && ranges.sure[value] && isnan(whole[i]);
+    }
+    tally->steps += pair->lanes.count;
+    tally->left += shorter.count;
+}
+
+static void ranges_hold_and_pruning_changes_nothing(void **state)
+{
+    Bench *b     = *state;
+    Tally  tally = {0};
+    for (int turn = 0; turn < 4 * GRAPHS; turn++) {
+        Pair pair;
+        Box  box = random_box(b);
+        pair_make(b, &pair);
+        try_box(b, &pair, box, box, &tally);
+        if (tally.outside + tally.different + tally.unsure)
+            fail_msg("graph %d: %zu outside, %zu different, %zu not numbers", turn, tally.outside,
+                     tally.different, tally.unsure);
+    }
+    print_message("# %zu of %zu steps are left\n", tally.left, tally.steps);
+    assert_true(tally.left < 0.9 * (double)tally.steps);
+}
+
+static void what_is_pruned_for_less_is_seen(void **state)
+{
+    Bench *b     = *state;
+    Tally  tally = {0};
+    for (int turn = 0; turn < GRAPHS; turn++) {
+        Pair pair;
+        Box  box = random_box(b);
+        pair_make(b, &pair);
+        try_box(b, &pair, half_of(box), box, &tally);
+    }
+    assert_true(tally.outside > 100);
+    assert_true(tally.different > 100);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(lanes_give_what_tapes_give, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(ranges_hold_and_pruning_changes_nothing, bench_start,
+                                        bench_stop),
+        cmocka_unit_test_setup_teardown(what_is_pruned_for_less_is_seen, bench_start, bench_stop),
+    };
+    return cmocka_run_group_tests_name("lanes", tests, NULL, NULL);
+}
