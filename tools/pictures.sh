@@ -11,7 +11,7 @@ cd "$(dirname "$0")/.." || exit 1
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 for name in "$@"; do
     samples=16
-    [ "$name" != jewel ] || samples=256
+    case $name in jewel | chess) samples=256 ;; esac
     scene=$(ls examples/??-"$name".krs) || exit 1
     picture=docs/pictures/$name.png
     "$build/krs" render "$scene" --quiet --size 960x540 --samples $samples -o "$work/$name.png" &&
