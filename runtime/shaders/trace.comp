@@ -41,6 +41,8 @@
 #include "frame.glsl"
 #ifdef PATH_RAYS
 #include "media.glsl"
+#else
+#include "limits.glsl"
 #endif
 
 const uint PLAIN = 1u, RELAXED = 2u, AUTOMATIC = 3u; // TRACE: as KrsTrace
@@ -59,6 +61,9 @@ const float LEARNING = 0.3;
 // clearance at its start.
 const float OVERSHOOT = 1.05;
 const float SHALLOW = 0.25;
+// How much farther than the depths of the caller rays go, so that steps before them stay as they are;
+// limit.comp ends them there.
+const float BEYOND_LIMIT = 1.02;
 // Methods that try balls (PROBE).  SAFETY: the next radius, relative to the predicted one.
 const uint  BINARY = 1u;
 const float SAFETY = 0.9;
@@ -354,6 +359,14 @@ void begin_item(uint number, bool saved)
     if (exists && is_ray) {
         RayEnd known = find_end(at_pixel);
         end = known.state == STATE_HIT || known.unresolved ? min(end, known.t) : end;
+    }
+#endif
+#ifndef PATH_RAYS // what is behind the caller's depth is not seen
+    if (is_ray && control.limits != 0u) {
+        float limit = find_limit(saved ? march.index : exists ? index : 0u);
+        limit = BEYOND_LIMIT * limit / max(find_depth_rate(direction), 1e-6);
+        ends_at_walls = ends_at_walls && !(limit < end);
+        end = min(end, limit);
     }
 #endif
 #ifdef PLANES

@@ -320,26 +320,37 @@ static void bright_rays_are_clamped(void **state)
     close_watched(&stage);
 }
 
-/* Depths that are a little nearer than everything leave the plate, those a little farther all. */
+static uint64_t sum_of_steps(const KrsPicture *picture)
+{
+    uint64_t sum = 0;
+    for (size_t i = 0; i < (size_t)picture->window.width * picture->window.height; i++)
+        sum += picture->steps[i];
+    return sum;
+}
+
+/* Depths that are nearer than everything leave the plate, those a little farther all.  Rays march no
+   farther: to half of the way they need fewer steps. */
 static void check_limits(Stage *stage, size_t camera)
 {
-    enum { ACROSS = 60, DOWN = 40, PIXELS = ACROSS * DOWN };
+    enum { ACROSS = 60, DOWN = 40, PIXELS = ACROSS * DOWN, SCALES = 3 };
     static float     depth[PIXELS], plate[PIXELS][4];
-    const float      scales[] = {0.999f, 1.001f}, behind[4] = {1, 0.5f, 0.25f, 0.5f};
+    const float      scales[SCALES] = {0.5f, 0.999f, 1.001f}, behind[4] = {1, 0.5f, 0.25f, 0.5f};
+    uint64_t         steps[SCALES];
     KrsRenderOptions options = {.width = ACROSS, .height = DOWN, .camera = camera, .samples = 1};
     KrsPicture      *plain   = stage_render(stage, options);
     options.depth            = depth;
     options.plate            = (const float(*)[4])plate;
     options.crop             = (KrsWindow){3, 5, 50, 30};
-    for (int farther = 0; farther < 2; farther++) {
+    for (int scale = 0; scale < SCALES; scale++) {
         for (int i = 0; i < PIXELS; i++) {
-            depth[i] = scales[farther] * plain->depth[i];
+            depth[i] = scales[scale] * plain->depth[i];
             memcpy(plate[i], behind, sizeof behind);
         }
         KrsPicture *seen = stage_render(stage, options);
+        steps[scale]     = sum_of_steps(seen);
         for (int i = 0; i < 50 * 30; i++) {
             const int  from = (i / 50 + 5) * ACROSS + i % 50 + 3;
-            const bool hit  = farther && isfinite(plain->depth[from]);
+            const bool hit  = scales[scale] > 1 && isfinite(plain->depth[from]);
             assert_int_equal(seen->component[i], hit ? plain->component[from] : 0);
             assert_true(seen->depth[i] == (hit ? plain->depth[from] : depth[from]));
             for (int c = hit ? 3 : 0; c < 4; c++)
@@ -347,6 +358,7 @@ static void check_limits(Stage *stage, size_t camera)
         }
         krs_picture_free(seen);
     }
+    assert_true(4 * steps[0] < 3 * steps[2] && steps[1] <= steps[2]);
     krs_picture_free(plain);
 }
 
