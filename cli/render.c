@@ -223,6 +223,10 @@ static KrsStatus choose_how(Render *render)
     if (crop->x + crop->width > how->width || crop->y + crop->height > how->height)
         return say_usage(options, "--crop %u,%u,%u,%u is not inside of a picture of %ux%u", crop->x,
                          crop->y, crop->width, crop->height, how->width, how->height);
+    if (noise && options->light_groups)
+        return say_usage(options,
+                         "--light-groups add up to the picture; where samples end by noise "
+                         "they do not");
     bool exr = false;
     for (size_t i = 0; i < render->output_count; i++)
         exr = exr || file_form(render->outputs[i]) == FORM_EXR;

@@ -130,6 +130,16 @@ uint find_sampled(uint quarter)
     return control.sampled_at != 0u ? tiles[control.sampled_at + quarter] : 0xffffu;
 }
 
+// Whether a pixel of a quarter, by its number, has a ray; or whether a whole tile has any.
+bool has_rays(uint tile, uint quarter, bool is_pixel, uint number)
+{
+    uint bits = find_sampled(4u * tile + quarter);
+    if (is_pixel)
+        return (bits >> (number & 15u) & 1u) != 0u;
+    return (bits | find_sampled(4u * tile + 1u) | find_sampled(4u * tile + 2u) |
+            find_sampled(4u * tile + 3u)) != 0u;
+}
+
 // Where the rows of a pixel's path begin; hits have rows for whole tiles.
 uint path_at(uint index) { return HIT_ROWS * 64u * count_tiles() + PATH_ROWS * index; }
 

@@ -61,9 +61,6 @@ const float LEARNING = 0.3;
 // clearance at its start.
 const float OVERSHOOT = 1.05;
 const float SHALLOW = 0.25;
-// How much farther than the depths of the caller rays go, so that steps before them stay as they are;
-// limit.comp ends them there.
-const float BEYOND_LIMIT = 1.02;
 // Methods that try balls (PROBE).  SAFETY: the next radius, relative to the predicted one.
 const uint  BINARY = 1u;
 const float SAFETY = 0.9;
@@ -299,17 +296,6 @@ void begin_march(uint index, float start, bool is_ray)
 #include "packed.glsl"
 #endif
 
-#ifndef PATH_RAYS
-// Whether a pixel of a quarter has a ray, by its number; 16: whether any of the tile has.
-bool has_samples(uvec2 cell, uint quarter, uint number)
-{
-    uint first = 4u * (cell.y * count_8.x + cell.x), bits = find_sampled(first + quarter);
-    if (number == 16u)
-        bits |= find_sampled(first + 1u) | find_sampled(first + 2u) | find_sampled(first + 3u);
-    return number == 16u ? bits != 0u : (bits >> (number & 15u) & 1u) != 0u;
-}
-#endif
-
 void begin_item(uint number, bool saved)
 {
     bool  is_ray = control.phase == TRACE_RAYS, large = control.phase == TRACE_BEAMS_32;
@@ -326,8 +312,9 @@ void begin_item(uint number, bool saved)
     tile_index = tile_of_item(number) - first_tile;
     exists = !is_ray || local.x < work.extent.x && local.y < work.extent.y;
 #ifndef PATH_RAYS
+    uint tile_number = (item_tile.y - first_8.y) * count_8.x + item_tile.x - first_8.x;
     if (control.sampled_at != 0u && (is_ray || !large && !small))
-        exists = exists && has_samples(item_tile - first_8, quarter, is_ray ? number : 16u);
+        exists = exists && has_rays(tile_number, quarter, is_ray, number);
 #endif
     if (saved) {
         uint at = 2u * (control.reading + number);
@@ -363,8 +350,7 @@ void begin_item(uint number, bool saved)
 #endif
 #ifndef PATH_RAYS // what is behind the caller's depth is not seen
     if (is_ray && control.limits != 0u) {
-        float limit = find_limit(saved ? march.index : exists ? index : 0u);
-        limit = BEYOND_LIMIT * limit / max(find_depth_rate(direction), 1e-6);
+        float limit = find_end_by_limit(saved ? march.index : exists ? index : 0u, direction);
         ends_at_walls = ends_at_walls && !(limit < end);
         end = min(end, limit);
     }

@@ -2,7 +2,7 @@
 # outputs.sh: an output appears whole or not at all, and says why not.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 47
+plan 49
 small="--size 16x12 --quiet"
 
 # shellcheck disable=SC2086 # the options are separate words
@@ -40,6 +40,26 @@ picture --raw --stats json
 said 2 "--raw would go to where --stats goes" "raw frames and statistics on standard output"
 picture --raw -o -
 said 2 "both go to standard output" "raw frames and a picture on standard output"
+if command -v ffmpeg >/dev/null; then
+    ffmpeg -loglevel error -f rawvideo -pixel_format rgb24 -video_size 16x12 -framerate 24 -i - \
+        -c:v ffv1 -pix_fmt bgr0 film.mkv <raw >out 2>err &&
+        ffmpeg -loglevel error -i film.mkv -f rawvideo -pix_fmt rgb24 - </dev/null 2>>err | cmp -s - raw
+    result $? "an encoder takes raw frames"
+else
+    skip "an encoder takes raw frames" "ffmpeg is not installed"
+fi
+# Noise that changes from frame to frame boils.  What moves here is out of sight.
+cat >still.krs <<'END'
+camera { eye: [0, 1, 5], target: [0, 0.5, 0], fov: 40deg }
+light lamp { position: [2, 3, 1], radius: 1, intensity: 8 }
+show sphere(0.7).move([0, 0.7, 0]); show plane([0, 1, 0], 0);
+show sphere(0.01).move([0, 50 + time, 0]);
+END
+run render still.krs --size 32x24 --quiet --integrator path --samples 2 --frames 1..2 --raw
+head -c $((32 * 24 * 3)) out >first && tail -c $((32 * 24 * 3)) out | cmp -s - first &&
+    run render still.krs --size 32x24 --quiet --integrator path --samples 2 --raw --seed 1 &&
+    ! cmp -s out first
+result $? "noise stays where it is from frame to frame"
 printf kept >skip-2.png
 run render ball.krs --size 16x12 --frames 1..3 --skip-existing -o 'skip-%d.png'
 [ "$status" -eq 0 ] && [ "$(cat skip-2.png)" = kept ] && [ -s skip-1.png ] && [ -s skip-3.png ]
