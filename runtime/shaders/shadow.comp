@@ -23,6 +23,11 @@
 // limit is smaller, by a factor down to GRAZING.
 const float RADIUS_OF_PENUMBRA = 0.5, LEAST_RADIUS = 1.25, NEAR_RADIUS = 2.0, GRAZING = 0.25;
 
+// Rays of few pixels would fray the edge of a narrow penumbra.  So its means reach farther along
+// the edge: distances there count by LEAST_ALONG, and in full from a radius of WIDE_ENOUGH on.
+// LEAST_CHANGE: the least sum of differences that tells a direction.
+const float LEAST_ALONG = 0.15, WIDE_ENOUGH = 6.0, LEAST_CHANGE = 1.5;
+
 // The fraction of a disc above a line that is `depth` radii below its centre.
 float fraction_above(float depth)
 {
@@ -87,13 +92,43 @@ float find_radius(ivec2 pixel)
     return lit > 0.0 && hidden > 0.0 ? radius * inversesqrt(float(control.rays)) : 0.0;
 }
 
+// Of a neighbour: whether it is visible, and whether that is known.
+vec2 find_seen(uint list, Neighbour there)
+{
+    float seen = list == RAYS_SHARED ? float(there.code == LIT) : openness_of_code(there.code);
+    bool  knows = there.exists && (list == MEANS_SHARED || there.code != BELOW_HORIZON);
+    return knows ? vec2(seen, 1.0) : vec2(0.0);
+}
+
+// The direction in the picture, a unit vector, in which a shadow changes most over 5x5 pixels; 0
+// where it does not change.
+vec2 find_change(uint list, ivec2 pixel, int stride)
+{
+    vec2 known = vec2(0.0), product = vec2(0.0), place = vec2(0.0);
+    ivec2 tap = ivec2(-2);
+    do {
+        vec2 seen = find_seen(list, find_neighbour(list, pixel + stride * tap));
+        known += seen;
+        product += seen.x * vec2(tap);
+        place += seen.y * vec2(tap);
+        tap = next_offset(tap, 2);
+    } while (tap.y <= 2);
+    vec2  change = product - place * (known.x / max(known.y, 1.0));
+    float size = length(change);
+    return size > LEAST_CHANGE ? change / size : vec2(0.0);
+}
+
 // The mean visibility over 5x5 pixels that are `stride` apart, weighted by how near their hits are.
+// Along the edge of a narrow penumbra distances count less.
 float find_mean(uint list, ivec2 pixel, HitPoint hit, Disc disc, int stride, float radius)
 {
     vec2  sums = vec2(0.0);
     float within = 1.0 / max(radius * hit.width, 1e-30), edge = 1.0 / (2.0 * float(stride) + 1.0);
     // How little distances along the light count; 1: not at all.
     float stretched = 1.0 - min(2.0 * disc.spread, 1.0);
+    vec2  change = radius > 0.0 ? find_change(list, pixel, stride) : vec2(0.0);
+    float along_edge = mix(LEAST_ALONG, 1.0, min(radius / WIDE_ENOUGH, 1.0));
+    along_edge = 1.0 - along_edge * along_edge;
     ivec2 tap = ivec2(-2);
     do {
         ivec2     offset = stride * tap;
@@ -101,12 +136,11 @@ float find_mean(uint list, ivec2 pixel, HitPoint hit, Disc disc, int stride, flo
         vec3      difference = (there.position - hit.position) * within;
         difference -= stretched * dot(difference, disc.toward) * disc.toward;
         vec2      lateral = vec2(offset) * edge;
-        float weight = max(1.0 - dot(difference, difference), 0.0) *
+        float along = dot(lateral, vec2(change.y, -change.x));
+        float counts_less = 1.0 - along_edge * along * along / max(dot(lateral, lateral), 1e-6);
+        float weight = max(1.0 - counts_less * dot(difference, difference), 0.0) *
                        max(1.0 - dot(lateral, lateral), 0.0);
-        float     seen = list == RAYS_SHARED ? float(there.code == LIT)
-                                             : openness_of_code(there.code);
-        bool      knows = there.exists && (list == MEANS_SHARED || there.code != BELOW_HORIZON);
-        sums += knows ? weight * vec2(seen, 1.0) : vec2(0.0);
+        sums += weight * find_seen(list, there);
         tap = next_offset(tap, 2);
     } while (tap.y <= 2 && radius > 0.0);
     return sums.y > 0.0 ? sums.x / sums.y : 1.0;
@@ -131,7 +165,7 @@ void do_item(uint number)
     float rise = dot(load_hit(FACING, slot).xyz, disc.toward);
     if (!wide)
         store_shared(MEANS_SHARED, slot, uintBitsToFloat(word), code_of_openness(visible));
-    if (!wide && radius > NEAR_RADIUS * clamp(rise, GRAZING, 1.0))
+    if (!wide && radius > 0.0)
         pixel_lists[LIST_WIDE * band_pixels() + atomicAdd(counts.wide, 1u)] = slot;
     else
         store_lighting(control.value, slot, visible * find_fraction_above(disc, rise));

@@ -19,6 +19,10 @@
 #define MOST_OFF_1      0.025
 #define MOST_OFF_4      0.015
 #define MOST_OFF_AT_ALL 0.15
+/* Of single pixels of a narrow penumbra, one ray each: root of the mean square.  It is 0.13 where
+   means reach as far across the edge as along it. */
+#define NARROW      (1.5 * DEGREE)
+#define MOST_FRAYED 0.105
 
 /* How far the mean of 5x5 pixels is outside of what is true for it; NAN where one of them shows
    no ground in the light. */
@@ -103,6 +107,40 @@ static void soft_shadows_are_shares_of_the_disc(void **state)
     assert_int_equal(wrong, 0);
 }
 
+/* How far pixels in and beside the penumbra are from the truth: root of the mean square. */
+static double find_fraying(const KrsPicture *picture, const Shot *shot, int *count)
+{
+    double squares = 0, low, high;
+    *count         = 0;
+    compute_truths(share_by_rays, shot, LIFT);
+    for (int k = 0; k < truths.width * truths.height; k++) {
+        double seen = seen_at(picture, k);
+        truths_within(k, 1, &low, &high);
+        if (seen < 0 || low < 0 || low == high)
+            continue;
+        double off = fmax(fmax(truth_low(k) - seen, seen - truth_high(k)), 0);
+        squares += off * off;
+        ++*count;
+    }
+    return sqrt(squares / *count);
+}
+
+/* A penumbra of a few pixels is an even ramp, though each of its pixels has a single ray. */
+static void edges_of_narrow_shadows_are_not_frayed(void **state)
+{
+    (void)state;
+    Shot ball                  = ball_shot(&lightings[0], KRS_SHADOWS_SOFT, 1);
+    ball.wide                  = NARROW;
+    ball.options.no_upsampling = false;
+    int         count;
+    KrsPicture *picture = shoot(&ball);
+    double      frayed  = find_fraying(picture, &ball, &count);
+    print_message("# narrow: %d pixels, off by %.4f\n", count, frayed);
+    assert_true(count > 300);
+    assert_true(frayed < MOST_FRAYED);
+    krs_picture_free(picture);
+}
+
 /* However far below the true distance a bound is. */
 static void soft_shadows_of_bounds_are_the_same(void **state)
 {
@@ -146,6 +184,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(soft_shadows_are_shares_of_the_disc),
+        cmocka_unit_test(edges_of_narrow_shadows_are_not_frayed),
         cmocka_unit_test(soft_shadows_of_bounds_are_the_same),
         cmocka_unit_test(wrong_soft_shadows_are_found),
     };
