@@ -59,6 +59,7 @@ API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits
                 refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer integrators film display writer))))
 LIVE     := $(sort $(wildcard live/*.c))
+LIVE_BORDER := live/gui.cpp
 CLI      := $(sort $(wildcard cli/*.c))
 
 # Text files that the program carries: the standard library, what scenes and kernels share, kernels.
@@ -77,6 +78,8 @@ LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLC
             -lSPVRemapper -lglslang-default-resource-limits -lSPIRV-Tools-opt -lSPIRV-Tools \
             -lharfbuzz -lfreetype -lfontconfig -lexpat -lOpenEXRCore-3_1 -lpng -lxxhash -lqhull_r -lvulkan \
             -lstdc++ -lm -pthread
+# Of the command alone.
+WINDOW_LIBS := -limgui -lstb -lglfw -lGL -lX11
 
 COMPILER := $(BASE) $(IMAGE) $(OUTLINE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
@@ -85,9 +88,9 @@ OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files
 all: $(B)/krs
 $(B)/krs: $(CLI:%.c=$(B)/%.o) $(B)/live.a $(B)/libkrs.a
 	@echo "link   $@"
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(WINDOW_LIBS) $(LIBS)
 # What the command has for scenes that are open: a client of the library, and no part of it.
-$(B)/live.a: $(LIVE:%.c=$(B)/%.o)
+$(B)/live.a: $(LIVE:%.c=$(B)/%.o) $(LIVE_BORDER:%.cpp=$(B)/%.o)
 	@rm -f $@
 	@$(AR) rcs $@ $^
 $(B)/libkrs.a: $(OBJECTS)
@@ -107,7 +110,7 @@ $(B)/compiler/graph/lanes_avx512.o: FAST += -mavx512f -mavx512dq -mavx512vl -mpr
 $(B)/%.o: %.cpp
 	@mkdir -p $(@D)
 	@echo "compile $<"
-	@$(CXX) -std=c++17 -Wall -Wextra -I. -I/usr/include/glslang -MMD -MP $(CFLAGS) -c -o $@ $<
+	@$(CXX) -std=c++17 -Wall -Wextra -I. -I/usr/include/glslang -I/usr/include/imgui -MMD -MP $(CFLAGS) -c -o $@ $<
 $(B)/%.o: $(B)/%.c
 	@$(CC) $(STYLE) $(CFLAGS) -c -o $@ $<
 $(B)/library_files.c: $(B)/embed $(LIBRARY)

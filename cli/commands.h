@@ -55,6 +55,8 @@ KrsScene *specialize_edited(const Options *options, const KrsScene *literals, do
 
 /* Where compiled shaders are kept; NULL: nowhere. */
 const char *cache_folder(const Options *options);
+/* For krs_renderer_new, as the options ask for it. */
+KrsRendererOptions renderer_options(const Options *options);
 /* Opens the device that --device asks for.  On KRS_OK the caller owns *renderer,
    else it is NULL and the user knows why. */
 KrsStatus open_renderer(const Options *options, KrsRenderer **renderer);

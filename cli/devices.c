@@ -98,14 +98,19 @@ static void go_on(void *user)
     stage_goes_on();
 }
 
+KrsRendererOptions renderer_options(const Options *options)
+{
+    const char *device = options->device ? options->device : getenv("KRS_DEVICE");
+    return (KrsRendererOptions){.device     = device,
+                                .cache      = cache_folder(options),
+                                .early_outs = options->early_outs,
+                                .working    = go_on,
+                                .patience   = DEVICE_PATIENCE * options->deadline};
+}
+
 KrsStatus open_renderer(const Options *options, KrsRenderer **renderer)
 {
-    const char        *device = options->device ? options->device : getenv("KRS_DEVICE");
-    KrsRendererOptions with   = {.device     = device,
-                                 .cache      = cache_folder(options),
-                                 .early_outs = options->early_outs,
-                                 .working    = go_on,
-                                 .patience   = DEVICE_PATIENCE * options->deadline};
+    const KrsRendererOptions with = renderer_options(options);
     stage_enter(STAGE_DEVICE);
     KrsStatus status = krs_renderer_new(&with, renderer);
     stage_enter(STAGE_START);

@@ -9,7 +9,8 @@
 #define ON(command)     (1u << COMMAND_##command)
 #define ON_ALL          ((1u << COMMAND_COUNT) - 1)
 #define ON_PICTURES     (ON(RENDER) | ON(WATCH))
-#define ON_SCENE        (ON_PICTURES | ON(VALIDATE) | ON(QUERY))
+#define ON_SHOWN        (ON_PICTURES | ON(VIEW))
+#define ON_SCENE        (ON_SHOWN | ON(VALIDATE) | ON(QUERY))
 #define ON_COMPILING    (ON_ALL & ~(ON(DEVICES) | ON(EXPLAIN) | ON(IMPORT)))
 #define TEXT_OF(macro)  TEXT_OF_(macro)
 #define TEXT_OF_(words) #words

@@ -54,12 +54,15 @@ static KrsSpecialize find_specialize(const Options *options)
 {
     if (options->specialize >= 0)
         return (KrsSpecialize)options->specialize;
-    return options->command == COMMAND_WATCH ? KRS_SPECIALIZE_AUTO : KRS_SPECIALIZE_NUMBERS;
+    return options->command == COMMAND_WATCH || options->command == COMMAND_VIEW
+               ? KRS_SPECIALIZE_AUTO
+               : KRS_SPECIALIZE_NUMBERS;
 }
 
 static bool shows_pictures(const Options *options)
 {
-    return options->command == COMMAND_RENDER || options->command == COMMAND_WATCH;
+    return options->command == COMMAND_RENDER || options->command == COMMAND_WATCH ||
+           options->command == COMMAND_VIEW;
 }
 
 KrsOptions scene_options(DiagnosticSink *sink, const char *path)

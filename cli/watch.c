@@ -12,7 +12,7 @@
 #include "cli/input.h"
 #include "cli/render.h"
 #include "cli/supervise.h"
-#include "compiler/base/loader.h"
+#include "live/document.h"
 #include "live/watcher.h"
 
 /* How long a signal may go unnoticed where the system does not end the wait for it. */
@@ -21,88 +21,52 @@
 typedef struct Watch {
     const Options *options;
     const char    *path;
-    Render         render;
-    Watcher       *watcher;
-    DiagnosticSink sink;    /* what the scene's diagnostics go to, for as long as it is edited */
+    Render         render; /* its scene is that of the version */
+    Document      *document;
+    Version       *version; /* that is rendered; NULL: none yet */
+    DiagnosticSink sink;
     bool           refused; /* the system does not let us watch a file */
     bool           changed; /* files were saved while a picture was rendered */
 } Watch;
 
-static void watch_file(void *user, const char *path)
-{
-    Watch *watch   = user;
-    watch->refused = !watcher_add(watch->watcher, path) || watch->refused;
-}
-
 static bool has_changed(void *user)
 {
     Watch *watch   = user;
-    watch->changed = watch->changed || watcher_changed(watch->watcher);
+    watch->changed = watch->changed || document_changed(watch->document);
     return watch->changed;
 }
 
 /* ---- a saved text ---- */
 
-static KrsStatus compile_first(Watch *watch)
+/* Takes the rendering over to the document's version. */
+static KrsStatus adopt(Watch *watch)
 {
-    KrsOptions with  = scene_options(&watch->sink, watch->path);
-    with.opened      = watch_file;
-    with.opened_user = watch;
-    return krs_compile_file(watch->path, &with, &watch->render.scene);
-}
-
-/* The text is read by the rules of the first compilation, also those for untrusted scenes. */
-static KrsStatus read_text(Watch *watch, Loaded *text)
-{
-    const KrsOptions with   = scene_options(&watch->sink, watch->path);
-    Loader           loader = {0};
-    if (!loader_open(&loader, with.root, watch->path))
-        return KRS_OUT_OF_MEMORY;
-    *text = loader_read_scene(&loader, watch->path);
-    loader_close(&loader);
-    watch_file(watch, watch->path);
-    if (text->text)
-        return KRS_OK;
-    say("cannot read `%s`: %s", watch->path, text->reason);
-    return KRS_IO_ERROR;
-}
-
-/* Takes the rendering over to a scene, and the scene into `render`. */
-static KrsStatus adopt(Watch *watch, KrsScene *scene)
-{
-    Render   *render = &watch->render;
-    KrsStatus status = KRS_OK;
+    Render   *render  = &watch->render;
+    Version  *version = document_version(watch->document);
+    KrsStatus status  = KRS_OK;
     stage_enter(STAGE_SHADERS);
     if (render->rendering)
-        status = krs_rendering_update(render->rendering, scene);
+        status = krs_rendering_update(render->rendering, version_scene(version));
     if (status != KRS_OK) {
         say("%s", krs_renderer_message(render->renderer));
-        krs_scene_free(scene);
+        version_release(version);
         return status;
     }
-    krs_scene_free(render->scene);
-    render->scene = scene;
+    version_release(watch->version);
+    watch->version = version;
+    render->scene  = version_scene(version);
     return KRS_OK;
-}
-
-static KrsStatus compile_edited(Watch *watch)
-{
-    Loaded    text   = {0};
-    KrsScene *scene  = NULL;
-    KrsStatus status = read_text(watch, &text);
-    if (status == KRS_OK)
-        status = krs_scene_update(watch->render.scene, text.text, text.length, &scene, NULL);
-    free(text.owned);
-    return status == KRS_OK ? adopt(watch, scene) : status;
 }
 
 static KrsStatus compile_scene(Watch *watch)
 {
     watch->sink.errors = watch->sink.warnings = 0;
     scene_enter_compile(watch->path);
-    KrsStatus status = watch->render.scene ? compile_edited(watch) : compile_first(watch);
+    KrsStatus status = document_read(watch->document);
     scene_print_counts(&watch->sink);
-    return say_status(status, watch->path);
+    watch->refused = status == KRS_CANNOT_CREATE;
+    say_status(status, watch->path);
+    return status == KRS_OK ? adopt(watch) : status;
 }
 
 /* ---- a picture ---- */
@@ -151,9 +115,9 @@ static void wait_for_change(Watch *watch)
     stage_enter(STAGE_WAIT);
     bool changed = false;
     if (watch->changed) /* it may not be all that is saved now */
-        watcher_wait(watch->watcher, SETTLED_SECONDS);
+        document_wait(watch->document, SETTLED_SECONDS);
     while (!watch->changed && !changed && !*interrupted())
-        changed = watcher_wait(watch->watcher, LONGEST_WAIT);
+        changed = document_wait(watch->document, LONGEST_WAIT);
     watch->changed = false;
 }
 
@@ -162,7 +126,7 @@ static KrsStatus watch_scene(Watch *watch)
     KrsStatus status = KRS_OK;
     for (bool first = true; !*interrupted(); first = false) {
         status = make_picture(watch);
-        if (*interrupted() || !can_be_mended(watch, status, first))
+        if (*interrupted() || (!watch->refused && !can_be_mended(watch, status, first)))
             break;
         if (watch->refused) {
             say("the system does not let `%s`, or what it uses, be watched", watch->path);
@@ -196,13 +160,16 @@ KrsStatus command_watch(Options *options)
         return status;
     watch->render.outdated = has_changed;
     watch->render.user     = watch;
-    watch->watcher         = watcher_new();
-    if (!watch->watcher) {
+    const KrsOptions with  = scene_options(&watch->sink, watch->path);
+    watch->document        = document_new(watch->path, &with);
+    if (!watch->document) {
         say("the system does not let files be watched: too many programs do");
         return KRS_IO_ERROR;
     }
-    status = watch_scene(watch);
+    status              = watch_scene(watch);
+    watch->render.scene = NULL;
     render_free(&watch->render);
-    watcher_free(watch->watcher);
+    version_release(watch->version);
+    document_free(watch->document);
     return status;
 }

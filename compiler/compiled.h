@@ -33,19 +33,6 @@ typedef struct KrsFog {
     double density, fall, base;
 } KrsFog;
 
-/* The properties of the `image` block; 0 or NULL where one is not given. */
-typedef struct KrsImage {
-    uint32_t    width, height, samples;
-    uint32_t    bounces;      /* of a path, at most */
-    const char *integrator;   /* "preview", "direct", "path", or NULL */
-    double      exposure;     /* in stops; 0 changes nothing */
-    const char *tone_map;     /* or NULL */
-    double      error;        /* permitted distance from the surface in pixels; 0: the default */
-    double      noise;        /* error at which samples of a pixel end; 0: none */
-    const char *pixel_filter; /* or NULL */
-    double      white_balance[2]; /* the white of the light: kelvins, tint; 0: as it is */
-} KrsImage;
-
 /* Camera, light and image, which the host evaluates once per frame. */
 typedef struct KrsView {
     KrsCamera       camera;
@@ -127,8 +114,6 @@ bool krs_scene_has_lens(const KrsScene *scene);
 size_t krs_turns_end(const KrsScene *scene, size_t component);
 /* The number of zones that the scene declares. */
 size_t krs_zone_count(const KrsScene *scene);
-/* The properties of the `image` block. */
-KrsImage krs_scene_image(const KrsScene *scene);
 /* Camera `camera`, lights, sky and image at the frame's parameters and time. */
 KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view);
 /* Whether the rounding error of such a coordinate in single precision is visible in pixels of this

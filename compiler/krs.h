@@ -143,6 +143,10 @@ typedef struct KrsChanges {
 KrsStatus krs_scene_update(const KrsScene *scene, const char *text, size_t length,
                            KrsScene **updated, KrsChanges *changes);
 
+/* The same with the scene's own file as it is now, which is read by the rules of the first
+   compilation, and told of to KrsOptions.opened.  KRS_IO_ERROR: it cannot be read. */
+KrsStatus krs_scene_reload(const KrsScene *scene, KrsScene **updated, KrsChanges *changes);
+
 /* Strings that the functions below return (names, places, rules) live as long as the scene. */
 
 /* A `param` of the scene.  Angles are in radians, colours linear Rec.709. */
@@ -152,11 +156,31 @@ typedef struct KrsParameter {
     double      value[4];        /* the default */
     double      low[4], high[4]; /* the permitted range; may be infinite */
     int         degrees;         /* the text gives its default or range in degrees */
+    bool        color;           /* the text gives its default as a colour */
+    const char *doc;             /* its comment of `///` lines, or NULL */
+    /* Where the text has the default: bytes [start, end) of the file or text of this name. */
+    const char *source;
+    uint32_t    start, end;
+    uint32_t    line, column; /* of the name, from 1 */
 } KrsParameter;
 
 size_t krs_parameter_count(const KrsScene *scene);
 /* Parameter `index` in the order of the text; KRS_BAD_ARGUMENT when there is none. */
 KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *parameter);
+
+/* The properties of the `image` block; 0 or NULL where one is not given. */
+typedef struct KrsImage {
+    uint32_t    width, height, samples;
+    uint32_t    bounces;      /* of a path, at most */
+    const char *integrator;   /* "preview", "direct", "path", or NULL */
+    double      exposure;     /* in stops; 0 changes nothing */
+    const char *tone_map;     /* or NULL */
+    double      error;        /* permitted distance from the surface in pixels; 0: the default */
+    double      noise;        /* error at which samples of a pixel end; 0: none */
+    const char *pixel_filter; /* or NULL */
+    double      white_balance[2]; /* the white of the light: kelvins, tint; 0: as it is */
+} KrsImage;
+KrsImage krs_scene_image(const KrsScene *scene);
 
 /* Makes a frame: parameters at their defaults, time 0, no zones of the caller.  The scene must
    outlive the frame.  KRS_OUT_OF_MEMORY: *frame is NULL. */

@@ -74,9 +74,18 @@ KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *param
 {
     if (index >= scene->parameter_count)
         return KRS_BAD_ARGUMENT;
-    const Parameter *from = &scene->parameters[index];
-    *parameter            = (KrsParameter){
-                   .name = from->name, .components = from->components, .degrees = from->degrees};
+    const Parameter     *from  = &scene->parameters[index];
+    const RetainedPlace *place = &scene->parameter_places[index];
+    *parameter                 = (KrsParameter){.name       = from->name,
+                                                .components = from->components,
+                                                .degrees    = from->degrees,
+                                                .color      = from->color,
+                                                .doc        = from->doc,
+                                                .source     = place->source,
+                                                .start      = from->default_span.start,
+                                                .end        = from->default_span.end,
+                                                .line       = place->position.line,
+                                                .column     = place->position.column};
     memcpy(parameter->value, from->value, sizeof parameter->value);
     memcpy(parameter->low, from->low, sizeof parameter->low);
     memcpy(parameter->high, from->high, sizeof parameter->high);

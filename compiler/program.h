@@ -124,6 +124,12 @@ typedef struct RetainedSlope {
     const char *place; /* "scene.krs:3:14" */
 } RetainedSlope;
 
+/* Where something is in the texts of the scene. */
+typedef struct RetainedPlace {
+    const char *source; /* name of the text */
+    Position    position;
+} RetainedPlace;
+
 struct KrsScene {
     Memory         memory;
     Arena          arena;   /* of all that is below: graph, names, program */
@@ -141,6 +147,7 @@ struct KrsScene {
     RetainedSlope *slopes;     /* slopes that are computed per frame */
     size_t         slope_count;
     Parameter     *parameters;
+    RetainedPlace *parameter_places; /* of their names */
     size_t         parameter_count;
     size_t         material_count;
     const char   **materials; /* names; the numbers of surfaces count from 1 */

@@ -86,6 +86,25 @@ static void retain_slopes(Compilation *c)
     }
 }
 
+static void retain_parameters(Compilation *c)
+{
+    KrsScene         *scene = c->scene;
+    Arena            *arena = &scene->arena;
+    const Parameters *from  = &c->elaborated.parameters;
+    scene->parameter_count  = from->count;
+    scene->parameters       = arena_new_array(arena, Parameter, from->count + 1);
+    scene->parameter_places = arena_new_array(arena, RetainedPlace, from->count + 1);
+    for (size_t i = 0; i < from->count; i++) {
+        Parameter    *to           = &scene->parameters[i];
+        const Source *source       = &c->sources.items[from->items[i].name_span.source];
+        *to                        = from->items[i];
+        to->name                   = retain_text(c, to->name);
+        to->doc                    = retain_text(c, to->doc);
+        scene->parameter_places[i] = (RetainedPlace){retain_text(c, source->name),
+                                                     source_position(source, to->name_span.start)};
+    }
+}
+
 static void retain_scene(Compilation *c)
 {
     KrsScene    *scene = c->scene;
@@ -94,12 +113,7 @@ static void retain_scene(Compilation *c)
     retain_components(c);
     retain_turns(c);
     retain_slopes(c);
-    scene->parameter_count = s->parameters.count;
-    scene->parameters      = arena_new_array(arena, Parameter, s->parameters.count + 1);
-    for (size_t i = 0; i < s->parameters.count; i++) {
-        scene->parameters[i]      = s->parameters.items[i];
-        scene->parameters[i].name = retain_text(c, s->parameters.items[i].name);
-    }
+    retain_parameters(c);
     scene->camera_count = s->cameras.count;
     scene->cameras      = arena_new_array(arena, SceneCamera, s->cameras.count + 1);
     for (size_t i = 0; i < s->cameras.count; i++) {

@@ -359,14 +359,17 @@ static KrsStatus find_changes(const KrsScene *a, const KrsScene *b, KrsChanges *
     return status;
 }
 
-KrsStatus krs_scene_update(const KrsScene *scene, const char *text, size_t length,
-                           KrsScene **updated, KrsChanges *changes)
+/* Of the text or, when that is NULL, of the scene's file. */
+static KrsStatus update(const KrsScene *scene, const char *text, size_t length, KrsScene **updated,
+                        KrsChanges *changes)
 {
     KrsOptions options = scene->options;
     KrsChanges found   = {0};
     if (options.specialize == KRS_SPECIALIZE_AUTO)
         options.specialize = KRS_SPECIALIZE_STRUCTURE;
-    KrsStatus status = krs_compile_text(text, length, scene->name, &options, updated);
+    options.text     = NULL; /* that of the first compilation */
+    KrsStatus status = text ? krs_compile_text(text, length, scene->name, &options, updated)
+                            : krs_compile_file(scene->name, &options, updated);
     if (status == KRS_OK)
         status = find_changes(scene, *updated, &found);
     if (status != KRS_OK) {
@@ -376,4 +379,15 @@ KrsStatus krs_scene_update(const KrsScene *scene, const char *text, size_t lengt
     if (changes)
         *changes = found;
     return status;
+}
+
+KrsStatus krs_scene_update(const KrsScene *scene, const char *text, size_t length,
+                           KrsScene **updated, KrsChanges *changes)
+{
+    return update(scene, text ? text : "", length, updated, changes);
+}
+
+KrsStatus krs_scene_reload(const KrsScene *scene, KrsScene **updated, KrsChanges *changes)
+{
+    return update(scene, NULL, 0, updated, changes);
 }

@@ -363,6 +363,14 @@ KrsStatus krs_render(KrsRendering *rendering, KrsFrame *frame, const KrsRenderOp
                      KrsPicture **picture);
 void      krs_picture_free(KrsPicture *picture);
 
+/* What a screen shows of a picture: its window as 8-bit sRGB, `channels` bytes a pixel (3, or 4 with
+   an alpha of 255), as a PNG of `krs render` has it.  The curve, the exposure and the white balance
+   are those of the scene's `image` block; `stops` are added to the exposure.  Colours are
+   dithered by their place in the whole picture.  KRS_BAD_ARGUMENT: other channels, or the picture
+   has no colour. */
+KrsStatus krs_picture_to_srgb8(const KrsPicture *picture, const KrsScene *scene, double stops,
+                               uint32_t channels, uint8_t *pixels);
+
 /* Two pictures of the same size and planes as one: the second to the right of the first, or below
    it.  Its statistics are the sums.  It has no camera, so its matrices change nothing.  On KRS_OK
    the caller owns *joined.  KRS_BAD_ARGUMENT: they differ, or have a crop; KRS_OUT_OF_MEMORY. */

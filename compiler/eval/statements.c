@@ -95,9 +95,20 @@ static bool param_range(Elaboration *e, const Environment *env, const Syntax *sy
     return false;
 }
 
+/* The syntax tree does not live as long as the scene that is made of it. */
+static const char *copy_doc(Elaboration *e, const char *doc)
+{
+    return doc ? arena_copy_text(e->arena, doc, strlen(doc)) : NULL;
+}
+
 static Value define_param(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    Parameter parameter = {.name = syntax->name, .degrees = written_in_degrees(e, syntax)};
+    Parameter parameter = {.name         = syntax->name,
+                           .degrees      = written_in_degrees(e, syntax),
+                           .color        = syntax->children[0]->kind == SYNTAX_COLOUR,
+                           .doc          = copy_doc(e, syntax->doc),
+                           .name_span    = syntax->name_span,
+                           .default_span = syntax->children[0]->span};
     Value     value     = evaluate(e, env, syntax->children[0]);
     if (value.type == VALUE_ERROR)
         return value;

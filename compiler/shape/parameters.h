@@ -15,6 +15,9 @@ typedef struct Parameter {
     uint32_t    slot, components;
     double      value[4], low[4], high[4];
     bool        degrees; /* its default or range is written so */
+    bool        color;   /* its default is written so */
+    const char *doc;     /* lines of its `///` comment, or NULL */
+    Span        name_span, default_span;
 } Parameter;
 
 typedef struct Parameters {

@@ -186,6 +186,12 @@ static double noise(double x, double y)
 
 void display_to_srgb8(const KrsPicture *picture, const DisplayOptions *options, uint8_t *rgb)
 {
+    display_to_channels(picture, options, 3, rgb);
+}
+
+void display_to_channels(const KrsPicture *picture, const DisplayOptions *options,
+                         uint32_t channels, uint8_t *pixels)
+{
     const KrsWindow  *window  = &picture->window;
     const double      gain    = exp2(options->exposure);
     const bool        tinted  = options->white_balance.kelvins > 0;
@@ -203,8 +209,10 @@ void display_to_srgb8(const KrsPicture *picture, const DisplayOptions *options, 
             tone_map_apply(options->tone_map, tinted ? white : light, shown);
             for (int i = 0; i < 3; i++) {
                 /* The noise of each channel is shifted, so that greys are dithered more finely. */
-                double step        = noise(window->x + x + 47.0 * i, window->y + y + 17.0 * i);
-                rgb[3 * index + i] = to_byte(&encoding, shown[i], step);
+                double step = noise(window->x + x + 47.0 * i, window->y + y + 17.0 * i);
+                pixels[channels * index + i] = to_byte(&encoding, shown[i], step);
             }
+            if (channels == 4)
+                pixels[4 * index + 3] = 255;
         }
 }

@@ -36,5 +36,8 @@ double srgb_encode(double linear);
    between levels; it depends only on the pixel's position in the whole picture.  The picture must
    have the colour plane. */
 void display_to_srgb8(const KrsPicture *picture, const DisplayOptions *options, uint8_t *rgb);
+/* The same with this many bytes a pixel, 3 or 4; the fourth is 255. */
+void display_to_channels(const KrsPicture *picture, const DisplayOptions *options,
+                         uint32_t channels, uint8_t *pixels);
 
 #endif

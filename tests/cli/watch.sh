@@ -65,7 +65,7 @@ done
 result $? "a hundred edits, each second one with a mistake"
 cp a.png before.png
 rm scene.krs
-heard "cannot read \`scene.krs\`" 1 && cmp -s a.png before.png
+heard "cannot be read: No such file" 1 && cmp -s a.png before.png
 result $? "the scene is removed, and its last picture stays"
 scene 0.9 >scene.krs
 shows "it is there again"

@@ -350,6 +350,29 @@ static void bytes_are_as_defined(void **state)
     }
 }
 
+/* The image block decides; the fourth byte is full. */
+static void pictures_are_shown_as_the_scene_says(void **state)
+{
+    (void)state;
+    static const char text[] = "show sphere(1); image { exposure: 1, tone_map: \"aces\" }";
+    float             color[4 * 6];
+    uint8_t           meant[3 * 6], rgb[3 * 6], rgba[4 * 6];
+    KrsScene         *scene;
+    const KrsPicture  picture = {.width = 3, .height = 2, .window = {0, 0, 3, 2}, .color = color};
+    for (int i = 0; i < 4 * 6; i++)
+        color[i] = (float)(i % 7) / 8;
+    assert_int_equal(krs_compile_text(text, sizeof text - 1, "a", NULL, &scene), KRS_OK);
+    display_to_srgb8(&picture, &(DisplayOptions){TONE_ACES, 1.5, {0, 0}}, meant);
+    assert_int_equal(krs_picture_to_srgb8(&picture, scene, 0.5, 3, rgb), KRS_OK);
+    assert_int_equal(krs_picture_to_srgb8(&picture, scene, 0.5, 4, rgba), KRS_OK);
+    assert_memory_equal(rgb, meant, sizeof meant);
+    for (int i = 0; i < 4 * 6; i++)
+        assert_int_equal(rgba[i], i % 4 == 3 ? 255 : meant[3 * (i / 4) + i % 4]);
+    assert_int_equal(krs_picture_to_srgb8(&picture, scene, 0, 2, rgba), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_picture_to_srgb8(&(KrsPicture){0}, scene, 0, 3, rgb), KRS_BAD_ARGUMENT);
+    krs_scene_free(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -368,6 +391,7 @@ int main(void)
         cmocka_unit_test(dithering_hangs_on_the_place_in_the_whole),
         cmocka_unit_test(a_stop_is_a_doubling),
         cmocka_unit_test(bytes_are_as_defined),
+        cmocka_unit_test(pictures_are_shown_as_the_scene_says),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

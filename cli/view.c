@@ -1,0 +1,87 @@
+/*
+ * view.c: `krs view`: a window on a scene that is being written.
+ */
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/input.h"
+#include "cli/supervise.h"
+#include "live/viewer.h"
+
+/* A window without display has nothing to free, and nobody to ask. */
+static void lose_display(void)
+{
+    say("the display is gone");
+    _exit(KRS_NO_DEVICE);
+}
+
+static bool is_stopped(void *user)
+{
+    (void)user;
+    return *interrupted();
+}
+
+/* Wrong settings are said before there is a window; the scene is compiled once more for them. */
+static KrsStatus check_settings(const Options *options)
+{
+    KrsScene *scene;
+    KrsFrame *frame  = NULL;
+    KrsStatus status = scene_open(options, options->files.items[0], &scene);
+    if (status != KRS_OK)
+        return status;
+    status = scene_frame(options, scene, &frame);
+    krs_frame_free(frame);
+    krs_scene_free(scene);
+    return status;
+}
+
+static KrsStatus check_use(const Options *options)
+{
+    const char *path = options->files.items[0];
+    if (is_input(options, path))
+        return say_usage(options, "standard input has one text; view a file");
+    KrsStatus status = scene_readable(options, path);
+    if (status == KRS_OK && (options->settings.count > 0 || options->zone_count > 0))
+        status = check_settings(options);
+    return status;
+}
+
+KrsStatus command_view(Options *options)
+{
+    char           message[256];
+    DiagnosticSink sink     = {.options = options};
+    const char    *path     = options->files.items[0];
+    ViewerSetting *settings = arena_new_array(options->arena, ViewerSetting,
+                                              options->settings.count + 1);
+    KrsStatus      status   = check_use(options);
+    if (status != KRS_OK)
+        return status;
+    for (size_t i = 0; i < options->settings.count; i++)
+        settings[i] = (ViewerSetting){options->settings.items[i].name,
+                                      options->settings.items[i].values,
+                                      options->settings.items[i].count};
+    const ViewerOptions with = {.path          = path,
+                                .scene         = scene_options(&sink, path),
+                                .renderer      = renderer_options(options),
+                                .width         = options->how.width,
+                                .height        = options->how.height,
+                                .samples       = options->how.samples,
+                                .integrator    = options->how.integrator,
+                                .camera        = options->camera,
+                                .time          = options->time,
+                                .fps           = options->fps,
+                                .settings      = settings,
+                                .setting_count = options->settings.count,
+                                .zones         = options->zones,
+                                .zone_count    = options->zone_count,
+                                .stopped       = is_stopped,
+                                .lost          = lose_display};
+    stage_enter(STAGE_WAIT);
+    status = viewer_run(&with, message);
+    if (message[0])
+        say("%s", message);
+    return message[0] ? status : say_status(status, path);
+}

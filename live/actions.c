@@ -1,0 +1,253 @@
+/*
+ * actions.c: what mouse and keys do.
+ */
+#include "live/actions.h"
+
+#include <GLFW/glfw3.h>
+#include <math.h>
+#include <string.h>
+
+#include "live/orbit.h"
+
+/* Of a turn for the height of the window. */
+#define DRAG_TURN M_PI
+#define STEP_TURN (M_PI / 24)
+#define STEP_MOVE 0.05
+/* What a step of the wheel leaves of the distance. */
+#define WHEEL_FACTOR 0.88
+/* Of the distance to the target, in a second. */
+#define FLY_SPEED 0.8
+
+static void changed(Viewing *viewing)
+{
+    viewing->moved = true;
+    viewing_show(viewing);
+}
+
+static void turn(Viewing *viewing, double right, double up)
+{
+    orbit_turn(&viewing->view.camera, right, up);
+    changed(viewing);
+}
+
+static void pan(Viewing *viewing, double right, double up)
+{
+    orbit_pan(&viewing->view.camera, right, up);
+    changed(viewing);
+}
+
+static Found find_under_mouse(Viewing *viewing)
+{
+    double x, y;
+    window_mouse(viewing->window, &x, &y);
+    return painter_find(viewing->painter, x, y);
+}
+
+/* ---- keys ---- */
+
+static void act_frame(Viewing *viewing)
+{
+    double       low[3], high[3];
+    const double aspect = viewing->view.height > 0
+                              ? (double)viewing->view.width / viewing->view.height
+                              : 1;
+    if (!orbit_box(version_scene(viewing->view.version), low, high))
+        return;
+    orbit_frame(&viewing->view.camera, low, high, aspect);
+    changed(viewing);
+}
+
+static void act_home(Viewing *viewing) { viewing_take_camera(viewing, viewing->camera); }
+
+static void act_next_camera(Viewing *viewing)
+{
+    const size_t count = krs_camera_count(version_scene(viewing->view.version));
+    viewing_take_camera(viewing, (viewing->camera + 1) % count);
+}
+
+static void act_center(Viewing *viewing)
+{
+    const Found found = find_under_mouse(viewing);
+    if (!found.hit)
+        return;
+    orbit_target(&viewing->view.camera, found.position);
+    changed(viewing);
+}
+
+static void look_along(Viewing *viewing, double x, double y, double z)
+{
+    orbit_axis(&viewing->view.camera, (double[]){x, y, z});
+    changed(viewing);
+}
+
+static void act_front(Viewing *viewing) { look_along(viewing, 0, 0, 1); }
+static void act_back(Viewing *viewing) { look_along(viewing, 0, 0, -1); }
+static void act_right(Viewing *viewing) { look_along(viewing, 1, 0, 0); }
+static void act_left(Viewing *viewing) { look_along(viewing, -1, 0, 0); }
+static void act_top(Viewing *viewing) { look_along(viewing, 0, 1, 0); }
+static void act_bottom(Viewing *viewing) { look_along(viewing, 0, -1, 0); }
+
+static void act_perspective(Viewing *viewing)
+{
+    orbit_toggle_perspective(&viewing->view.camera);
+    changed(viewing);
+}
+
+static void act_turn_left(Viewing *viewing) { turn(viewing, -STEP_TURN, 0); }
+static void act_turn_right(Viewing *viewing) { turn(viewing, STEP_TURN, 0); }
+static void act_turn_up(Viewing *viewing) { turn(viewing, 0, STEP_TURN); }
+static void act_turn_down(Viewing *viewing) { turn(viewing, 0, -STEP_TURN); }
+static void act_move_left(Viewing *viewing) { pan(viewing, -STEP_MOVE, 0); }
+static void act_move_right(Viewing *viewing) { pan(viewing, STEP_MOVE, 0); }
+static void act_move_up(Viewing *viewing) { pan(viewing, 0, STEP_MOVE); }
+static void act_move_down(Viewing *viewing) { pan(viewing, 0, -STEP_MOVE); }
+
+static void act_nearer(Viewing *viewing)
+{
+    orbit_dolly(&viewing->view.camera, NULL, WHEEL_FACTOR);
+    changed(viewing);
+}
+
+static void act_farther(Viewing *viewing)
+{
+    orbit_dolly(&viewing->view.camera, NULL, 1 / WHEEL_FACTOR);
+    changed(viewing);
+}
+
+static void act_play(Viewing *viewing)
+{
+    viewing->playing   = !viewing->playing;
+    viewing->played_at = viewing_now();
+}
+
+static void act_earlier(Viewing *viewing)
+{
+    viewing_set_time(viewing, viewing->view.time - 1 / viewing->options->fps);
+}
+
+static void act_later(Viewing *viewing)
+{
+    viewing_set_time(viewing, viewing->view.time + 1 / viewing->options->fps);
+}
+
+static void act_path(Viewing *viewing)
+{
+    viewing->view.integrator = viewing->view.integrator == KRS_INTEGRATOR_PATH
+                                   ? KRS_INTEGRATOR_PREVIEW
+                                   : KRS_INTEGRATOR_PATH;
+    viewing_show(viewing);
+}
+
+static void act_reset(Viewing *viewing) { viewing_reset_values(viewing); }
+
+static void act_panels(Viewing *viewing) { viewing->panels = !viewing->panels; }
+
+static void act_help(Viewing *viewing) { viewing->help = !viewing->help; }
+
+static void act_quit(Viewing *viewing) { window_ask_to_close(viewing->window); }
+
+static void act_close(Viewing *viewing)
+{
+    if (viewing->help)
+        viewing->help = false;
+    else
+        act_quit(viewing);
+}
+
+const Action actions[] = {
+#define ACTION(id, key, modifiers, keys, does) {key, modifiers, keys, does, act_##id},
+#include "live/actions.def"
+#undef ACTION
+};
+const size_t action_count = sizeof actions / sizeof *actions;
+
+void act_key(void *user, int key, int modifiers)
+{
+    Viewing  *viewing = user;
+    const int counted = modifiers & (GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT);
+    if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9)
+        key += GLFW_KEY_0 - GLFW_KEY_KP_0;
+    if (key == GLFW_KEY_KP_ADD || key == GLFW_KEY_KP_SUBTRACT)
+        key = key == GLFW_KEY_KP_ADD ? GLFW_KEY_EQUAL : GLFW_KEY_MINUS;
+    for (size_t i = 0; i < action_count; i++)
+        if (actions[i].key == key && actions[i].modifiers == counted) {
+            actions[i].act(viewing);
+            return;
+        }
+}
+
+/* ---- the mouse ---- */
+
+void act_scroll(void *user, double steps)
+{
+    Viewing    *viewing = user;
+    const Found found   = find_under_mouse(viewing);
+    orbit_dolly(&viewing->view.camera, found.hit ? found.position : NULL, pow(WHEEL_FACTOR, steps));
+    changed(viewing);
+}
+
+void act_drag(void *user, int button, int modifiers, double right, double down)
+{
+    Viewing     *viewing = user;
+    const double side    = viewing->view.height > 0 ? viewing->view.height : 1;
+    const double x = right / side, y = down / side;
+    if (button == GLFW_MOUSE_BUTTON_MIDDLE ||
+        (button == GLFW_MOUSE_BUTTON_LEFT && (modifiers & GLFW_MOD_SHIFT)))
+        pan(viewing, x, -y);
+    else if (button == GLFW_MOUSE_BUTTON_LEFT)
+        turn(viewing, -x * DRAG_TURN, y * DRAG_TURN);
+    else {
+        orbit_look(&viewing->view.camera, x * DRAG_TURN / 2, -y * DRAG_TURN / 2);
+        changed(viewing);
+    }
+}
+
+void act_click(void *user, int button, int modifiers)
+{
+    (void)user;
+    (void)button;
+    (void)modifiers;
+}
+
+/* ---- what goes on by itself ---- */
+
+/* -1, 0 or 1 by two keys that are held. */
+static double held(const Viewing *viewing, int less, int more)
+{
+    return (window_key_is_held(viewing->window, more) ? 1 : 0) -
+           (window_key_is_held(viewing->window, less) ? 1 : 0);
+}
+
+static bool fly(Viewing *viewing, double now)
+{
+    const double seconds = fmin(now - viewing->flown_at, 0.1) * FLY_SPEED;
+    const bool   control = window_key_is_held(viewing->window, GLFW_KEY_LEFT_CONTROL) ||
+                         window_key_is_held(viewing->window, GLFW_KEY_RIGHT_CONTROL);
+    const double ahead = held(viewing, GLFW_KEY_S, GLFW_KEY_W);
+    const double right = held(viewing, GLFW_KEY_A, GLFW_KEY_D);
+    const double up    = held(viewing, GLFW_KEY_Q, GLFW_KEY_E);
+    viewing->flown_at  = now;
+    if (control || (ahead == 0 && right == 0 && up == 0))
+        return false;
+    orbit_fly(&viewing->view.camera, ahead * seconds, right * seconds, up * seconds);
+    changed(viewing);
+    return true;
+}
+
+static void play(Viewing *viewing, double now)
+{
+    double time = viewing->view.time + now - viewing->played_at;
+    if (viewing->loop > 0 && time > viewing->loop)
+        time = fmod(time, viewing->loop);
+    viewing->played_at = now;
+    viewing_set_time(viewing, time);
+}
+
+bool act_run(Viewing *viewing)
+{
+    const double now    = viewing_now();
+    const bool   flying = fly(viewing, now);
+    if (viewing->playing)
+        play(viewing, now);
+    return flying || viewing->playing;
+}

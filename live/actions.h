@@ -1,0 +1,24 @@
+/*
+ * actions.h: what mouse and keys do.
+ */
+#ifndef KRS_ACTIONS_H
+#define KRS_ACTIONS_H
+
+#include "live/viewing.h"
+
+typedef struct Action {
+    int         key, modifiers;
+    const char *keys, *does; /* NULL: not in the help */
+    void (*act)(Viewing *viewing);
+} Action;
+extern const Action actions[];
+extern const size_t action_count;
+
+void act_key(void *viewing, int key, int modifiers);
+void act_scroll(void *viewing, double steps);
+void act_drag(void *viewing, int button, int modifiers, double right, double down);
+void act_click(void *viewing, int button, int modifiers);
+/* Moves on what is held or plays.  Whether anything does. */
+bool act_run(Viewing *viewing);
+
+#endif

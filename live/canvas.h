@@ -1,0 +1,59 @@
+/*
+ * canvas.h: a scene on a device, and the films of it that a viewer shows.
+ *
+ * A canvas belongs to one thread at a time.
+ */
+#ifndef KRS_CANVAS_H
+#define KRS_CANVAS_H
+
+#include "live/document.h"
+#include "runtime/krs_vulkan.h"
+
+/* What is to be seen. */
+typedef struct View {
+    Version  *version; /* held */
+    KrsCamera camera;
+    double    time;
+    double (*values)[4]; /* of each parameter of the version */
+    double        zones[KRS_MOST_ZONES][4];
+    size_t        zone_count;
+    uint32_t      width, height;
+    KrsIntegrator integrator;
+    uint32_t      samples; /* how many make the picture complete */
+    double        stops;   /* brighter than the scene's exposure */
+} View;
+
+/* A copy, which view_free frees; false: without memory. */
+bool view_copy(const View *view, View *copy);
+void view_free(View *view);
+
+/* A coarse picture for what moves, and the whole one. */
+typedef enum FilmKind { FILM_COARSE, FILM_FULL, FILM_COUNT } FilmKind;
+
+typedef struct Canvas Canvas;
+
+/* Opens a device.  The caller frees the canvas whatever the status; NULL: without memory. */
+KrsStatus canvas_new(const KrsRendererOptions *options, Canvas **canvas);
+void      canvas_free(Canvas *canvas);
+/* One line about the last failure. */
+const char *canvas_message(const Canvas *canvas);
+
+/* Takes the canvas over to a version, which may compile shaders.  If that fails, the version before
+   stays. */
+KrsStatus canvas_adopt(Canvas *canvas, Version *version, KrsIntegrator integrator);
+/* The version of the canvas; NULL: none yet. */
+Version *canvas_version(const Canvas *canvas);
+
+/* Sets the frame to the view's values and time.  Those that the scene refuses stay as they were:
+   KRS_BAD_ARGUMENT. */
+KrsStatus canvas_set(Canvas *canvas, const View *view);
+
+/* Samples of a film of this size, which begins anew when `again`.  `progress` is asked between slices. */
+KrsStatus canvas_add(Canvas *canvas, FilmKind kind, const View *view, uint32_t width,
+                     uint32_t height, uint32_t samples, bool again, KrsProgressCallback *progress,
+                     void *user);
+uint32_t  canvas_samples(const Canvas *canvas, FilmKind kind);
+/* The picture of a film, with these planes (0: all that it has); the caller frees it. */
+KrsStatus canvas_read(Canvas *canvas, FilmKind kind, uint32_t planes, KrsPicture **picture);
+
+#endif

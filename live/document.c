@@ -1,0 +1,248 @@
+/*
+ * document.c: a scene while it is edited.
+ *
+ * Edits are compared to the version before.  So a scene that is right again after a mistake is an
+ * update of the one that was right before it, and its shaders are not compiled again.
+ */
+#include "live/document.h"
+
+#include <limits.h>
+#include <poll.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "live/watcher.h"
+
+struct Version {
+    KrsScene   *scene;
+    KrsChanges  changes;
+    unsigned    number;
+    atomic_uint holders;
+};
+
+struct Document {
+    const char     *path;
+    KrsOptions      options; /* the caller's */
+    Watcher        *watcher;
+    bool            refused; /* the system does not let us watch a file */
+    int             woken;   /* an eventfd */
+    Remarks         heard;   /* by the reading that is under way */
+    pthread_mutex_t lock;    /* of all below */
+    Version        *version;
+    Remarks         remarks;
+    unsigned        readings;
+};
+
+/* ---- versions ---- */
+
+Version *version_hold(Version *version)
+{
+    if (version)
+        atomic_fetch_add(&version->holders, 1);
+    return version;
+}
+
+void version_release(Version *version)
+{
+    if (!version || atomic_fetch_sub(&version->holders, 1) > 1)
+        return;
+    krs_scene_free(version->scene);
+    free(version);
+}
+
+KrsScene *version_scene(const Version *version) { return version->scene; }
+
+unsigned version_number(const Version *version) { return version->number; }
+
+KrsChanges version_changes(const Version *version) { return version->changes; }
+
+/* ---- remarks ---- */
+
+void remarks_free(Remarks *remarks)
+{
+    for (size_t i = 0; i < remarks->count; i++) {
+        free((char *)remarks->items[i].text);
+        free((char *)remarks->items[i].source);
+    }
+    free(remarks->items);
+    *remarks = (Remarks){0};
+}
+
+static void remarks_add(Remarks *remarks, const Remark *remark)
+{
+    Remark *items = realloc(remarks->items, (remarks->count + 1) * sizeof *items);
+    if (!items)
+        return;
+    remarks->items = items;
+    Remark *added  = &items[remarks->count];
+    *added         = *remark;
+    added->text    = strdup(remark->text);
+    added->source  = strdup(remark->source ? remark->source : "");
+    remarks->errors += remark->error;
+    if (added->text && added->source)
+        remarks->count++;
+}
+
+static void hear(void *user, const KrsDiagnostic *diagnostic)
+{
+    Document *document = user;
+    remarks_add(&document->heard, &(Remark){.error  = diagnostic->error,
+                                            .note   = diagnostic->note,
+                                            .text   = diagnostic->text,
+                                            .source = diagnostic->source,
+                                            .line   = diagnostic->line,
+                                            .column = diagnostic->column});
+    if (document->options.diagnostic)
+        document->options.diagnostic(document->options.user, diagnostic);
+}
+
+static void watch_file(void *user, const char *path)
+{
+    Document *document = user;
+    document->refused  = !watcher_add(document->watcher, path) || document->refused;
+    if (document->options.opened)
+        document->options.opened(document->options.opened_user, path);
+}
+
+/* ---- documents ---- */
+
+Document *document_new(const char *path, const KrsOptions *options)
+{
+    Document *document = calloc(1, sizeof *document);
+    if (!document)
+        return NULL;
+    document->path    = path;
+    document->options = *options;
+    document->woken   = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    document->watcher = watcher_new();
+    pthread_mutex_init(&document->lock, NULL);
+    if (document->watcher && document->woken >= 0)
+        return document;
+    document_free(document);
+    return NULL;
+}
+
+void document_free(Document *document)
+{
+    if (!document)
+        return;
+    version_release(document->version);
+    remarks_free(&document->remarks);
+    remarks_free(&document->heard);
+    watcher_free(document->watcher);
+    if (document->woken >= 0)
+        close(document->woken);
+    pthread_mutex_destroy(&document->lock);
+    free(document);
+}
+
+static KrsStatus compile(Document *document, KrsScene **scene, KrsChanges *changes)
+{
+    KrsOptions with  = document->options;
+    with.diagnostic  = hear;
+    with.user        = document;
+    with.opened      = watch_file;
+    with.opened_user = document;
+    if (document->version)
+        return krs_scene_reload(document->version->scene, scene, changes);
+    *changes = (KrsChanges){KRS_CHANGE_STRUCTURE, true, true, true, true, true};
+    return krs_compile_file(document->path, &with, scene);
+}
+
+/* Takes the scene.  NULL: without memory. */
+static Version *version_new(KrsScene *scene, KrsChanges changes, unsigned number)
+{
+    Version *version = malloc(sizeof *version);
+    if (!version) {
+        krs_scene_free(scene);
+        return NULL;
+    }
+    version->scene   = scene;
+    version->changes = changes;
+    version->number  = number;
+    atomic_init(&version->holders, 1);
+    return version;
+}
+
+/* Puts what was read in the place of what was there. */
+static void publish(Document *document, Version *version)
+{
+    Version *before = NULL;
+    pthread_mutex_lock(&document->lock);
+    Remarks old        = document->remarks;
+    document->remarks  = document->heard;
+    document->readings = document->readings + 1;
+    if (version) {
+        before            = document->version;
+        document->version = version;
+    }
+    pthread_mutex_unlock(&document->lock);
+    document->heard = (Remarks){0};
+    remarks_free(&old);
+    version_release(before);
+}
+
+KrsStatus document_read(Document *document)
+{
+    KrsScene  *scene   = NULL;
+    Version   *version = NULL;
+    unsigned   number  = document->version ? document->version->number + 1 : 1;
+    KrsChanges changes;
+    document->refused = false;
+    KrsStatus status  = compile(document, &scene, &changes);
+    if (status == KRS_OK) {
+        version = version_new(scene, changes, number);
+        status  = version ? KRS_OK : KRS_OUT_OF_MEMORY;
+    }
+    publish(document, version);
+    return document->refused ? KRS_CANNOT_CREATE : status;
+}
+
+Version *document_version(Document *document)
+{
+    pthread_mutex_lock(&document->lock);
+    Version *version = version_hold(document->version);
+    pthread_mutex_unlock(&document->lock);
+    return version;
+}
+
+Remarks document_remarks(Document *document)
+{
+    Remarks copy = {0};
+    pthread_mutex_lock(&document->lock);
+    for (size_t i = 0; i < document->remarks.count; i++)
+        remarks_add(&copy, &document->remarks.items[i]);
+    pthread_mutex_unlock(&document->lock);
+    return copy;
+}
+
+unsigned document_readings(Document *document)
+{
+    pthread_mutex_lock(&document->lock);
+    unsigned readings = document->readings;
+    pthread_mutex_unlock(&document->lock);
+    return readings;
+}
+
+bool document_changed(Document *document) { return watcher_changed(document->watcher); }
+
+bool document_wait(Document *document, double seconds)
+{
+    struct pollfd events[2] = {{.fd = watcher_descriptor(document->watcher), .events = POLLIN},
+                               {.fd = document->woken, .events = POLLIN}};
+    int           limit     = seconds > INT_MAX / 1000 ? -1 : (int)(seconds * 1000);
+    if (poll(events, 2, limit) <= 0 || events[1].revents)
+        return false;
+    return watcher_wait(document->watcher, 0);
+}
+
+void document_wake(Document *document)
+{
+    const uint64_t one = 1;
+    if (write(document->woken, &one, sizeof one) < 0)
+        return; /* it is awake already */
+}

@@ -1,0 +1,61 @@
+/*
+ * document.h: a scene while it is edited: its last good version, and what is wrong with its text.
+ */
+#ifndef KRS_DOCUMENT_H
+#define KRS_DOCUMENT_H
+
+#include "compiler/krs.h"
+
+/* A text that compiled.  Several threads may hold it; the last one to let go frees the scene. */
+typedef struct Version Version;
+
+Version  *version_hold(Version *version);
+void      version_release(Version *version); /* NULL is ignored */
+KrsScene *version_scene(const Version *version);
+/* From 1 on, greater for each later version. */
+unsigned version_number(const Version *version);
+/* Against the version before; of the first, everything is new. */
+KrsChanges version_changes(const Version *version);
+
+/* What was said of a text that was read. */
+typedef struct Remark {
+    bool        error, note;
+    const char *text; /* as the command prints it, with the marked source */
+    const char *source;
+    uint32_t    line, column;
+} Remark;
+
+typedef struct Remarks {
+    Remark *items;
+    size_t  count, errors;
+} Remarks;
+
+typedef struct Document Document;
+
+/* A document of a file, which is not read yet.  The callbacks of `options` are called as well as the
+   document's own; `path` and the options' strings must outlive the document.  NULL: the system does
+   not let files be watched, or memory ran out. */
+Document *document_new(const char *path, const KrsOptions *options);
+void      document_free(Document *document);
+
+/* Reads and compiles the file.  On KRS_OK there is a new version; otherwise the last good one stays,
+   and the remarks say why.  KRS_CANNOT_CREATE: the system does not let a file be watched. */
+KrsStatus document_read(Document *document);
+
+/* The last good version, which the caller releases; NULL: there is none.  For any thread. */
+Version *document_version(Document *document);
+/* A copy of what was said when the file was last read, which the caller frees; for any thread. */
+Remarks document_remarks(Document *document);
+void    remarks_free(Remarks *remarks);
+/* How often the file was read; for any thread. */
+unsigned document_readings(Document *document);
+
+/* Whether the file, or one that it uses, has changed since the last call; waits for nothing. */
+bool document_changed(Document *document);
+/* Waits for that, and until nothing has happened for a moment.  False: a signal has come, the time is
+   over, or document_wake was called. */
+bool document_wait(Document *document, double seconds);
+/* Ends a wait; for any thread. */
+void document_wake(Document *document);
+
+#endif

@@ -1,0 +1,294 @@
+// gui.cpp: the border to Dear ImGui.  Nothing is decided here but how things look.
+#include "live/gui.h"
+
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <cmath>
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+
+namespace
+{
+
+ImFont     *plain, *source;
+const float margin = 12, labels = 0.36f;
+
+ImVec4 tone_color(GuiTone tone)
+{
+    switch (tone) {
+    case GUI_FAINT: return ImVec4(0.60f, 0.61f, 0.63f, 1);
+    case GUI_STRONG: return ImVec4(1, 1, 1, 1);
+    case GUI_WARNING: return ImVec4(0.95f, 0.76f, 0.42f, 1);
+    case GUI_ERROR: return ImVec4(1.0f, 0.50f, 0.46f, 1);
+    default: return ImVec4(0.88f, 0.89f, 0.90f, 1);
+    }
+}
+
+void set_colors(ImVec4 *colors)
+{
+    const ImVec4 accent(0.36f, 0.58f, 0.78f, 1), well(1, 1, 1, 0.07f), over(1, 1, 1, 0.12f);
+    colors[ImGuiCol_Text]             = tone_color(GUI_PLAIN);
+    colors[ImGuiCol_TextDisabled]     = tone_color(GUI_FAINT);
+    colors[ImGuiCol_WindowBg]         = ImVec4(0.085f, 0.09f, 0.10f, 0.86f);
+    colors[ImGuiCol_PopupBg]          = ImVec4(0.10f, 0.105f, 0.115f, 0.97f);
+    colors[ImGuiCol_Border]           = ImVec4(1, 1, 1, 0.07f);
+    colors[ImGuiCol_FrameBg]          = well;
+    colors[ImGuiCol_FrameBgHovered]   = over;
+    colors[ImGuiCol_FrameBgActive]    = ImVec4(1, 1, 1, 0.16f);
+    colors[ImGuiCol_SliderGrab]       = accent;
+    colors[ImGuiCol_SliderGrabActive] = ImVec4(0.50f, 0.72f, 0.92f, 1);
+    colors[ImGuiCol_Button]           = well;
+    colors[ImGuiCol_ButtonHovered]    = over;
+    colors[ImGuiCol_ButtonActive]     = accent;
+    colors[ImGuiCol_Header]           = well;
+    colors[ImGuiCol_HeaderHovered]    = over;
+    colors[ImGuiCol_HeaderActive]     = accent;
+    colors[ImGuiCol_CheckMark]        = accent;
+    colors[ImGuiCol_Separator]        = ImVec4(1, 1, 1, 0.08f);
+    colors[ImGuiCol_ScrollbarBg]      = ImVec4(0, 0, 0, 0);
+    colors[ImGuiCol_ScrollbarGrab]    = over;
+}
+
+// Whole pixels: sums that are not would need a bar to scroll.
+ImVec2 rounded(float x, float y) { return ImVec2(std::floor(x), std::floor(y)); }
+
+void set_style(float size)
+{
+    ImGuiStyle &style      = ImGui::GetStyle();
+    style.WindowRounding   = 6;
+    style.FrameRounding    = 4;
+    style.GrabRounding     = 4;
+    style.PopupRounding    = 5;
+    style.WindowBorderSize = 1;
+    style.GrabMinSize      = 9;
+    style.ScrollbarSize    = 10;
+    style.WindowPadding    = rounded(0.8f * size, 0.65f * size);
+    style.FramePadding     = rounded(0.5f * size, 0.22f * size);
+    style.ItemSpacing      = rounded(0.5f * size, 0.38f * size);
+    set_colors(style.Colors);
+}
+
+ImFont *add_font(const char *path, float size)
+{
+    ImFontAtlas *atlas = ImGui::GetIO().Fonts;
+    ImFont      *font  = path ? atlas->AddFontFromFileTTF(path, size) : nullptr;
+    return font ? font : atlas->AddFontDefault();
+}
+
+// Where a panel stands: the point, and which point of the panel is there.
+void place(GuiCorner corner, float below)
+{
+    const ImVec2 size  = ImGui::GetIO().DisplaySize;
+    const bool   right = corner == GUI_TOP_RIGHT || corner == GUI_BOTTOM_RIGHT;
+    const bool   low   = corner == GUI_BOTTOM_LEFT || corner == GUI_BOTTOM_RIGHT;
+    const ImVec2 at(right ? size.x - margin : margin,
+                    low ? size.y - margin - below : margin + below);
+    if (corner == GUI_CENTER)
+        ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y / 2), ImGuiCond_Always,
+                                ImVec2(0.5f, 0.5f));
+    else
+        ImGui::SetNextWindowPos(at, ImGuiCond_Always, ImVec2(right ? 1 : 0, low ? 1 : 0));
+}
+
+// The label stands to the left; what is behind it takes the rest of the line.
+void label_left(const char *label)
+{
+    const char *end = label;
+    while (*end && !(end[0] == '#' && end[1] == '#'))
+        end++;
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(label, end);
+    ImGui::SameLine(labels * ImGui::GetWindowWidth());
+    ImGui::SetNextItemWidth(-1);
+    ImGui::PushID(label);
+}
+
+} // namespace
+
+extern "C" {
+
+void gui_start(GLFWwindow *window, const char *sans, const char *mono, float size)
+{
+    ImGui::CreateContext();
+    ImGuiIO &io    = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    plain          = add_font(sans, size);
+    source         = add_font(mono, 1.07f * size);
+    set_style(size);
+    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    ImGui_ImplOpenGL3_Init(nullptr);
+}
+
+void gui_stop(void)
+{
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+}
+
+void gui_begin(void)
+{
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+}
+
+void gui_end(void)
+{
+    ImGui::Render();
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+bool gui_has_mouse(void) { return ImGui::GetIO().WantCaptureMouse; }
+bool gui_has_keys(void) { return ImGui::GetIO().WantTextInput; }
+
+void gui_backdrop(unsigned texture)
+{
+    const ImTextureID id = reinterpret_cast<ImTextureID>(static_cast<size_t>(texture));
+    ImGui::GetBackgroundDrawList()->AddImage(id, ImVec2(0, 0), ImGui::GetIO().DisplaySize);
+}
+
+void gui_mark(float x, float y)
+{
+    ImDrawList *list = ImGui::GetBackgroundDrawList();
+    list->AddCircle(ImVec2(x, y), 5, IM_COL32(0, 0, 0, 160), 0, 3);
+    list->AddCircle(ImVec2(x, y), 5, IM_COL32(255, 255, 255, 230), 0, 1.5f);
+}
+
+void gui_panel(const char *name, GuiCorner corner, float below, float width, bool quiet)
+{
+    const ImVec2 size  = ImGui::GetIO().DisplaySize;
+    const float  most  = size.y - 2 * margin - below;
+    int          flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav |
+                ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize;
+    if (quiet)
+        flags |= ImGuiWindowFlags_NoInputs;
+    else
+        flags &= ~ImGuiWindowFlags_NoScrollbar;
+    place(corner, below);
+    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width > 0 ? width : size.x, most));
+    if (quiet)
+        ImGui::SetNextWindowBgAlpha(0.55f);
+    ImGui::Begin(name, nullptr, flags);
+}
+
+float gui_panel_end(void)
+{
+    const float height = ImGui::GetWindowHeight();
+    ImGui::End();
+    return height;
+}
+
+void gui_text(GuiTone tone, const char *text)
+{
+    ImGui::PushStyleColor(ImGuiCol_Text, tone_color(tone));
+    ImGui::TextUnformatted(text);
+    ImGui::PopStyleColor();
+}
+
+void gui_source(GuiTone tone, const char *text)
+{
+    ImGui::PushFont(source);
+    gui_text(tone, text);
+    ImGui::PopFont();
+}
+
+void gui_tip(const char *text)
+{
+    if (!ImGui::IsItemHovered())
+        return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(26 * ImGui::GetFontSize());
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+void gui_heading(const char *text) { gui_text(GUI_FAINT, text); }
+void gui_gap(void) { ImGui::Dummy(ImVec2(0, 0.2f * ImGui::GetFontSize())); }
+void gui_beside(void) { ImGui::SameLine(); }
+
+bool gui_button(const char *label, bool on)
+{
+    if (on)
+        ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0.30f, 0.47f, 0.63f, 1));
+    const bool pressed = ImGui::Button(label);
+    if (on)
+        ImGui::PopStyleColor();
+    return pressed;
+}
+
+bool gui_line(const char *label, GuiTone tone)
+{
+    ImGui::PushFont(source);
+    ImGui::PushStyleColor(ImGuiCol_Text, tone_color(tone));
+    const ImVec2 size    = ImGui::CalcTextSize(label, nullptr, true);
+    const bool   pressed = ImGui::Selectable(label, false, 0, size);
+    ImGui::PopStyleColor();
+    ImGui::PopFont();
+    return pressed;
+}
+
+bool gui_slider(const char *label, double *value, double low, double high, const char *format)
+{
+    label_left(label);
+    const bool changed = ImGui::SliderScalar("##value", ImGuiDataType_Double, value, &low, &high,
+                                             format, ImGuiSliderFlags_AlwaysClamp);
+    ImGui::PopID();
+    return changed;
+}
+
+bool gui_drag(const char *label, double *values, size_t count, double speed, double low,
+              double high, const char *format)
+{
+    label_left(label);
+    const bool changed = ImGui::DragScalarN("##values", ImGuiDataType_Double, values,
+                                            static_cast<int>(count), static_cast<float>(speed),
+                                            &low, &high, format, ImGuiSliderFlags_AlwaysClamp);
+    ImGui::PopID();
+    return changed;
+}
+
+bool gui_color(const char *label, double rgb[3])
+{
+    float color[3] = {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]),
+                      static_cast<float>(rgb[2])};
+    label_left(label);
+    const bool changed = ImGui::ColorEdit3(
+        "##color", color, ImGuiColorEditFlags_DisplayHex | ImGuiColorEditFlags_PickerHueWheel);
+    ImGui::PopID();
+    for (int i = 0; changed && i < 3; i++)
+        rgb[i] = color[i];
+    return changed;
+}
+
+bool gui_choice(const char *label, int *chosen, const char *const *names, size_t count)
+{
+    label_left(label);
+    const bool changed = ImGui::Combo("##choice", chosen, names, static_cast<int>(count));
+    ImGui::PopID();
+    return changed;
+}
+
+bool gui_input(const char *label, char *text, size_t size)
+{
+    label_left(label);
+    const bool entered = ImGui::InputText("##text", text, size,
+                                          ImGuiInputTextFlags_EnterReturnsTrue);
+    ImGui::PopID();
+    return entered;
+}
+
+void gui_keys(const char *keys, const char *does)
+{
+    ImGui::PushFont(source);
+    gui_text(GUI_STRONG, keys);
+    ImGui::PopFont();
+    ImGui::SameLine(13 * ImGui::GetFontSize());
+    gui_text(GUI_PLAIN, does);
+}
+
+} // extern "C"

@@ -1,0 +1,67 @@
+/*
+ * gui.h: the border to Dear ImGui, which is C++.  Labels may end in `##` and what tells them apart.
+ */
+#ifndef KRS_GUI_H
+#define KRS_GUI_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct GLFWwindow GLFWwindow;
+
+/* For the window whose context is current.  Fonts are paths, or NULL for the built-in one; `size` is
+   in pixels. */
+void gui_start(GLFWwindow *window, const char *sans, const char *mono, float size);
+void gui_stop(void);
+void gui_begin(void); /* of a frame */
+void gui_end(void);   /* and draw it */
+
+/* Whether mouse or keys are used by a panel just now. */
+bool gui_has_mouse(void);
+bool gui_has_keys(void);
+
+/* A texture behind all panels, over the whole window. */
+void gui_backdrop(unsigned texture);
+/* A cross in the picture, for a moment, in pixels of the window. */
+void gui_mark(float x, float y);
+
+typedef enum GuiCorner {
+    GUI_TOP_LEFT,
+    GUI_TOP_RIGHT,
+    GUI_BOTTOM_LEFT,
+    GUI_BOTTOM_RIGHT,
+    GUI_CENTER
+} GuiCorner;
+
+typedef enum GuiTone { GUI_PLAIN, GUI_FAINT, GUI_STRONG, GUI_WARNING, GUI_ERROR } GuiTone;
+
+/* A panel in a corner, `below` pixels away from it, so wide (0: as its text needs).  It grows with
+   what it has.  Returns its height of the last frame through gui_panel_end. */
+void  gui_panel(const char *name, GuiCorner corner, float below, float width, bool quiet);
+float gui_panel_end(void);
+
+void gui_text(GuiTone tone, const char *text);
+void gui_source(GuiTone tone, const char *text); /* in the monospaced font */
+void gui_tip(const char *text);                  /* of the last item, when the mouse is on it */
+void gui_heading(const char *text);
+void gui_gap(void);
+void gui_beside(void); /* the next item stands beside the last one */
+bool gui_button(const char *label, bool on);
+bool gui_line(const char *label, GuiTone tone); /* a line that can be clicked */
+bool gui_slider(const char *label, double *value, double low, double high, const char *format);
+/* Without limits, by dragging; `speed` is for a pixel. */
+bool gui_drag(const char *label, double *values, size_t count, double speed, double low,
+              double high, const char *format);
+bool gui_color(const char *label, double rgb[3]); /* as the screen has it, each in [0, 1] */
+bool gui_choice(const char *label, int *chosen, const char *const *names, size_t count);
+bool gui_input(const char *label, char *text, size_t size);
+void gui_keys(const char *keys, const char *does); /* a row of the help */
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,265 @@
+/*
+ * orbit.c: moves a camera as a mouse and keys do.
+ */
+#include "live/orbit.h"
+
+#include <math.h>
+#include <string.h>
+
+/* How near the line of sight may come to the upright direction, as a cosine. */
+#define MOST_UPRIGHT 0.9995
+/* No zoom goes nearer to its point, in parts of its distance. */
+#define LEAST_FACTOR 1e-3
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    const double c[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                         a[0] * b[1] - a[1] * b[0]};
+    memcpy(out, c, sizeof c);
+}
+
+static double length(const double v[3]) { return sqrt(dot(v, v)); }
+
+static void normalize(double v[3])
+{
+    const double size = length(v);
+    for (int i = 0; size > 0 && i < 3; i++)
+        v[i] /= size;
+}
+
+static void add(double v[3], double factor, const double w[3])
+{
+    for (int i = 0; i < 3; i++)
+        v[i] += factor * w[i];
+}
+
+/* Turns a vector around a unit axis (Rodrigues). */
+static void turn(double v[3], const double axis[3], double angle)
+{
+    double       side[3];
+    const double along = dot(axis, v) * (1 - cos(angle));
+    cross(axis, v, side);
+    for (int i = 0; i < 3; i++)
+        v[i] = v[i] * cos(angle) + side[i] * sin(angle) + axis[i] * along;
+}
+
+static double distance(const KrsCamera *camera)
+{
+    double sight[3];
+    for (int i = 0; i < 3; i++)
+        sight[i] = camera->target[i] - camera->eye[i];
+    return length(sight);
+}
+
+/* Height of the picture at the target, in world units. */
+static double height_at_target(const KrsCamera *camera)
+{
+    return camera->projection == KRS_ORTHOGRAPHIC ? camera->height
+                                                  : 2 * distance(camera) * tan(camera->fov / 2);
+}
+
+void orbit_axes(const KrsCamera *camera, double forward[3], double right[3], double up[3])
+{
+    for (int i = 0; i < 3; i++)
+        forward[i] = camera->target[i] - camera->eye[i];
+    normalize(forward);
+    cross(forward, camera->up, right);
+    normalize(right);
+    cross(right, forward, up);
+}
+
+/* The angle upwards that leaves the line of sight off the upright direction. */
+static double limit_up(const double forward[3], const double upright[3], double angle)
+{
+    const double most  = acos(MOST_UPRIGHT);
+    const double above = acos(fmin(fmax(dot(forward, upright), -1), 1)); /* angle from the top */
+    return fmin(fmax(angle, above - (M_PI - most)), above - most);
+}
+
+/* Turns a line of sight to the right, around the upright direction, and upwards. */
+static void turn_sight(const KrsCamera *camera, double sight[3], double right, double up)
+{
+    double upright[3], forward[3], side[3], top[3];
+    memcpy(upright, camera->up, sizeof upright);
+    normalize(upright);
+    orbit_axes(camera, forward, side, top);
+    turn(sight, side, limit_up(forward, upright, up));
+    turn(sight, upright, -right);
+}
+
+void orbit_turn(KrsCamera *camera, double right, double up)
+{
+    double sight[3];
+    for (int i = 0; i < 3; i++)
+        sight[i] = camera->target[i] - camera->eye[i];
+    turn_sight(camera, sight, right, up);
+    for (int i = 0; i < 3; i++)
+        camera->eye[i] = camera->target[i] - sight[i];
+}
+
+void orbit_look(KrsCamera *camera, double right, double up)
+{
+    double sight[3];
+    for (int i = 0; i < 3; i++)
+        sight[i] = camera->target[i] - camera->eye[i];
+    turn_sight(camera, sight, right, up);
+    for (int i = 0; i < 3; i++)
+        camera->target[i] = camera->eye[i] + sight[i];
+}
+
+static void shift(KrsCamera *camera, double factor, const double direction[3])
+{
+    add(camera->eye, factor, direction);
+    add(camera->target, factor, direction);
+}
+
+void orbit_pan(KrsCamera *camera, double right, double up)
+{
+    double       forward[3], side[3], top[3];
+    const double height = height_at_target(camera);
+    orbit_axes(camera, forward, side, top);
+    shift(camera, -right * height, side);
+    shift(camera, -up * height, top);
+}
+
+void orbit_dolly(KrsCamera *camera, const double *point, double factor)
+{
+    double target[3];
+    factor = fmax(factor, LEAST_FACTOR);
+    memcpy(target, point ? point : camera->target, sizeof target);
+    for (int i = 0; i < 3; i++) {
+        camera->eye[i]    = target[i] + factor * (camera->eye[i] - target[i]);
+        camera->target[i] = target[i] + factor * (camera->target[i] - target[i]);
+    }
+    camera->height *= factor;
+    camera->focus *= factor;
+}
+
+void orbit_fly(KrsCamera *camera, double forward, double right, double up)
+{
+    double       ahead[3], side[3], top[3];
+    const double size = distance(camera);
+    orbit_axes(camera, ahead, side, top);
+    shift(camera, forward * size, ahead);
+    shift(camera, right * size, side);
+    shift(camera, up * size, top);
+}
+
+void orbit_roll(KrsCamera *camera, double angle)
+{
+    double forward[3], side[3], top[3];
+    orbit_axes(camera, forward, side, top);
+    turn(top, forward, angle);
+    memcpy(camera->up, top, sizeof top);
+}
+
+/* How far the eye must be from the center of a box, for each of its corners to be in the picture. */
+static double distance_for(const KrsCamera *camera, const double half[3], double aspect)
+{
+    double       forward[3], side[3], top[3], farthest = 0;
+    const double tall = tan(camera->fov / 2), wide = tall * aspect;
+    orbit_axes(camera, forward, side, top);
+    for (int corner = 0; corner < 8; corner++) {
+        const double at[3] = {corner & 1 ? half[0] : -half[0], corner & 2 ? half[1] : -half[1],
+                              corner & 4 ? half[2] : -half[2]};
+        const double needed = fmax(fabs(dot(at, side)) / wide, fabs(dot(at, top)) / tall);
+        farthest            = fmax(farthest, needed - dot(at, forward));
+    }
+    return farthest;
+}
+
+/* The height of an orthographic picture that has each corner of the box. */
+static double height_for(const KrsCamera *camera, const double half[3], double aspect)
+{
+    double forward[3], side[3], top[3], tall = 0, wide = 0;
+    orbit_axes(camera, forward, side, top);
+    for (int i = 0; i < 3; i++) {
+        tall += 2 * half[i] * fabs(top[i]);
+        wide += 2 * half[i] * fabs(side[i]);
+    }
+    return fmax(tall, wide / aspect);
+}
+
+void orbit_frame(KrsCamera *camera, const double low[3], const double high[3], double aspect)
+{
+    const double margin = 1.08;
+    double       forward[3], side[3], top[3], half[3];
+    orbit_axes(camera, forward, side, top);
+    for (int i = 0; i < 3; i++)
+        half[i] = fmax((high[i] - low[i]) / 2, 1e-9);
+    const double away = camera->projection == KRS_PERSPECTIVE ? distance_for(camera, half, aspect)
+                                                              : 2 * length(half);
+    for (int i = 0; i < 3; i++) {
+        camera->target[i] = (low[i] + high[i]) / 2;
+        camera->eye[i]    = camera->target[i] - margin * away * forward[i];
+    }
+    if (camera->projection == KRS_ORTHOGRAPHIC)
+        camera->height = margin * height_for(camera, half, aspect);
+    camera->focus = 0;
+}
+
+static void make_orthographic(KrsCamera *camera)
+{
+    if (camera->projection == KRS_PERSPECTIVE)
+        camera->height = height_at_target(camera);
+    camera->projection = KRS_ORTHOGRAPHIC;
+}
+
+void orbit_toggle_perspective(KrsCamera *camera)
+{
+    if (camera->projection == KRS_PERSPECTIVE) {
+        make_orthographic(camera);
+        return;
+    }
+    double forward[3], side[3], top[3];
+    orbit_axes(camera, forward, side, top);
+    if (!(camera->fov > 0))
+        camera->fov = 40 * M_PI / 180;
+    const double away = camera->projection == KRS_ORTHOGRAPHIC
+                            ? camera->height / (2 * tan(camera->fov / 2))
+                            : distance(camera);
+    for (int i = 0; i < 3; i++)
+        camera->eye[i] = camera->target[i] - away * forward[i];
+    camera->projection = KRS_PERSPECTIVE;
+}
+
+void orbit_axis(KrsCamera *camera, const double from[3])
+{
+    /* From above or below, a little to the front: the picture needs to know what is up. */
+    const double aside = fabs(from[1]) > 0.5 ? 1e-4 : 0, up[3] = {0, 1, 0};
+    const double away = distance(camera);
+    make_orthographic(camera);
+    for (int i = 0; i < 3; i++)
+        camera->eye[i] = camera->target[i] + away * from[i];
+    camera->eye[2] += away * aside;
+    memcpy(camera->up, up, sizeof up);
+}
+
+void orbit_target(KrsCamera *camera, const double point[3])
+{
+    memcpy(camera->target, point, sizeof camera->target);
+    camera->focus = 0;
+}
+
+bool orbit_box(const KrsScene *scene, double low[3], double high[3])
+{
+    bool any = false;
+    for (size_t i = 0; i < krs_component_count(scene); i++) {
+        KrsComponent component;
+        bool         finite = krs_component(scene, i, &component) == KRS_OK;
+        for (int k = 0; k < 3; k++)
+            finite = finite && isfinite(component.low[k]) && isfinite(component.high[k]) &&
+                     component.low[k] <= component.high[k];
+        for (int k = 0; finite && k < 3; k++) {
+            low[k]  = any ? fmin(low[k], component.low[k]) : component.low[k];
+            high[k] = any ? fmax(high[k], component.high[k]) : component.high[k];
+        }
+        any = any || finite;
+    }
+    return any;
+}

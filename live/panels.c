@@ -1,0 +1,205 @@
+/*
+ * panels.c: what stands over the picture.
+ */
+#include "live/panels.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "live/actions.h"
+#include "live/gui.h"
+
+#define PANEL_WIDTH 320
+
+static double encode_srgb(double linear)
+{
+    linear = fmin(fmax(linear, 0), 1);
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+}
+
+static double decode_srgb(double value)
+{
+    return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
+}
+
+/* ---- parameters ---- */
+
+static bool draw_color(const KrsParameter *parameter, double *value)
+{
+    double shown[3];
+    for (int i = 0; i < 3; i++)
+        shown[i] = encode_srgb(value[i]);
+    if (!gui_color(parameter->name, shown))
+        return false;
+    for (int i = 0; i < 3; i++)
+        value[i] = fmin(fmax(decode_srgb(shown[i]), parameter->low[i]), parameter->high[i]);
+    return true;
+}
+
+/* A number with both limits is a slider; others are dragged.  Angles are shown in degrees. */
+static bool draw_numbers(const KrsParameter *parameter, double *value)
+{
+    const double unit = parameter->degrees ? 180 / M_PI : 1;
+    const double low = parameter->low[0] * unit, high = parameter->high[0] * unit;
+    const char  *format = parameter->degrees ? "%.5g\u00b0" : "%.5g";
+    const bool   slides = parameter->components == 1 && isfinite(low) && isfinite(high);
+    double       shown[4];
+    for (uint32_t i = 0; i < parameter->components; i++)
+        shown[i] = value[i] * unit;
+    const double speed   = parameter->degrees ? 1 : fmax(fabs(shown[0]), 0.1) * 0.01;
+    const bool   changed = slides ? gui_slider(parameter->name, shown, low, high, format)
+                                  : gui_drag(parameter->name, shown, parameter->components, speed,
+                                             low, high, format);
+    for (uint32_t i = 0; changed && i < parameter->components; i++)
+        value[i] = fmin(fmax(shown[i] / unit, parameter->low[i]), parameter->high[i]);
+    return changed;
+}
+
+static void draw_parameters(Viewing *viewing)
+{
+    const KrsScene *scene = version_scene(viewing->view.version);
+    for (size_t i = 0; i < krs_parameter_count(scene); i++) {
+        KrsParameter parameter;
+        double      *value = viewing->view.values[i];
+        krs_parameter(scene, i, &parameter);
+        const bool changed = parameter.color ? draw_color(&parameter, value)
+                                             : draw_numbers(&parameter, value);
+        if (parameter.doc)
+            gui_tip(parameter.doc);
+        if (changed)
+            viewing_show(viewing);
+    }
+}
+
+static void draw_time(Viewing *viewing)
+{
+    double time = viewing->view.time, loop = viewing->loop;
+    if (gui_button(viewing->playing ? "Pause" : "Play", viewing->playing))
+        act_key(viewing, ' ', 0);
+    gui_beside();
+    if (gui_button("0 s", false))
+        viewing_set_time(viewing, 0);
+    if (gui_slider("time", &time, 0, fmax(loop, time), "%.2f s"))
+        viewing_set_time(viewing, time);
+    if (gui_drag("length", &loop, 1, 0.05, 0.1, 3600, "%.2f s"))
+        viewing->loop = loop;
+}
+
+static void draw_camera(Viewing *viewing)
+{
+    const KrsScene *scene = version_scene(viewing->view.version);
+    const size_t    count = krs_camera_count(scene);
+    for (size_t i = 0; count > 1 && i < count; i++) {
+        char        label[80];
+        const char *name = krs_camera_name(scene, i);
+        snprintf(label, sizeof label, "%s##camera%zu", name ? name : "camera", i);
+        if (i > 0)
+            gui_beside();
+        if (gui_button(label, i == viewing->camera && !viewing->moved))
+            viewing_take_camera(viewing, i);
+    }
+    if (gui_button("Frame all", false))
+        act_key(viewing, 'F', 0);
+    gui_beside();
+    if (gui_button("Reset", false))
+        viewing_take_camera(viewing, viewing->camera);
+    gui_beside();
+    if (gui_button("Path", viewing->view.integrator == KRS_INTEGRATOR_PATH))
+        act_key(viewing, 'P', 0);
+}
+
+static void draw_controls(Viewing *viewing)
+{
+    gui_panel("controls", GUI_TOP_RIGHT, 0, PANEL_WIDTH, false);
+    if (krs_parameter_count(version_scene(viewing->view.version)) > 0) {
+        gui_heading("PARAMETERS");
+        draw_parameters(viewing);
+        gui_gap();
+    }
+    gui_heading("CAMERA");
+    draw_camera(viewing);
+    gui_gap();
+    gui_heading("TIME");
+    draw_time(viewing);
+    gui_panel_end();
+}
+
+/* ---- what is going on ---- */
+
+static const char *doing(const Viewing *viewing)
+{
+    if (viewing->painting.compiling)
+        return "compiling the shaders";
+    if (viewing->painting.refused)
+        return "the scene refuses these values";
+    return "";
+}
+
+static void draw_status(Viewing *viewing)
+{
+    char        line[200];
+    const char *slash = strrchr(viewing->options->path, '/');
+    const Shot *shot  = &viewing->shot;
+    gui_panel("status", GUI_TOP_LEFT, 0, 0, true);
+    gui_text(GUI_STRONG, slash ? slash + 1 : viewing->options->path);
+    if (shot->width > 0) {
+        snprintf(line, sizeof line, "%u\u00d7%u   %u/%u   %.0f ms", shot->width, shot->height,
+                 shot->samples, viewing->view.samples, shot->ms);
+        gui_text(GUI_FAINT, line);
+    }
+    if (*doing(viewing))
+        gui_text(GUI_WARNING, doing(viewing));
+    gui_panel_end();
+}
+
+static void draw_remarks(Viewing *viewing)
+{
+    const Remarks *remarks = &viewing->remarks;
+    if (remarks->count == 0)
+        return;
+    gui_panel("remarks", GUI_BOTTOM_LEFT, 0, 0, false);
+    for (size_t i = 0; i < remarks->count; i++) {
+        const Remark *remark = &remarks->items[i];
+        if (i > 0)
+            gui_gap();
+        gui_source(remark->error  ? GUI_ERROR
+                   : remark->note ? GUI_FAINT
+                                  : GUI_WARNING,
+                   remark->text);
+    }
+    if (remarks->errors > 0 && viewing->shot.width > 0)
+        gui_text(GUI_FAINT, "The picture is that of the last text without a mistake.");
+    gui_panel_end();
+}
+
+static void draw_help(void)
+{
+    gui_panel("help", GUI_CENTER, 0, 0, false);
+    gui_text(GUI_STRONG, "Mouse");
+    gui_keys("left", "turn; with Shift move");
+    gui_keys("middle", "move");
+    gui_keys("right", "look around");
+    gui_keys("wheel", "nearer to what is under the mouse, or farther");
+    gui_gap();
+    gui_text(GUI_STRONG, "Keys");
+    gui_keys("W A S D E Q", "fly: ahead, left, back, right, up, down");
+    for (size_t i = 0; i < action_count; i++)
+        if (actions[i].keys)
+            gui_keys(actions[i].keys, actions[i].does);
+    gui_panel_end();
+}
+
+void panels_draw(Viewing *viewing)
+{
+    if (viewing->help) {
+        draw_help();
+        return;
+    }
+    if (viewing->panels && viewing->view.version) {
+        draw_controls(viewing);
+        draw_status(viewing);
+    }
+    if (viewing->panels || viewing->remarks.errors > 0)
+        draw_remarks(viewing);
+}

@@ -1,0 +1,226 @@
+/*
+ * viewer.c: `krs view`: a window on a scene that is being written.
+ *
+ * Three threads: this one has the window and never waits for the others; one reads and compiles the
+ * scene when it is saved (document.h); one makes pictures (painter.h).
+ */
+#include "live/viewer.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "live/actions.h"
+#include "live/panels.h"
+
+/* Milliseconds of a frame while something moves. */
+#define BUDGET_MS 40
+/* The window is not drawn more often. */
+#define FRAME_SECONDS (1.0 / 60)
+/* After an event, panels are drawn for so long: some answer in the next frame only. */
+#define SETTLE_SECONDS 0.1
+/* How long a signal may go unnoticed. */
+#define LONGEST_WAIT 1.0
+
+/* ---- the thread that reads the scene ---- */
+
+static void *read_scene(void *user)
+{
+    Viewing *viewing = user;
+    while (!atomic_load(&viewing->closing)) {
+        if (!document_wait(viewing->document, INFINITY))
+            continue;
+        const KrsStatus status = document_read(viewing->document);
+        if (status == KRS_CANNOT_CREATE)
+            atomic_store(&viewing->read_status, status);
+        window_wake();
+    }
+    return NULL;
+}
+
+/* ---- the loop ---- */
+
+static void take_document(Viewing *viewing)
+{
+    const unsigned readings = document_readings(viewing->document);
+    if (readings == viewing->readings)
+        return;
+    viewing->readings = readings;
+    remarks_free(&viewing->remarks);
+    viewing->remarks = document_remarks(viewing->document);
+    Version *version = document_version(viewing->document);
+    if (version && version != viewing->view.version)
+        viewing_adopt(viewing, version);
+    version_release(version);
+}
+
+static void take_shot(Viewing *viewing)
+{
+    Shot shot;
+    if (painter_take(viewing->painter, &shot)) {
+        window_set_picture(viewing->window, shot.pixels, shot.width, shot.height);
+        free(shot.pixels);
+        shot.pixels   = NULL;
+        viewing->shot = shot;
+    }
+    viewing->painting = painter_state(viewing->painter);
+}
+
+/* Hands the view to the painter, if it is another one. */
+static void send_view(Viewing *viewing)
+{
+    uint32_t width, height;
+    window_size(viewing->window, &width, &height);
+    if (width == 0 || height == 0)
+        return; /* minimised */
+    if (width != viewing->view.width || height != viewing->view.height)
+        viewing->view_changed = true;
+    viewing->view.width  = width < KRS_MOST_SIDE ? width : KRS_MOST_SIDE;
+    viewing->view.height = height < KRS_MOST_SIDE ? height : KRS_MOST_SIDE;
+    if (viewing->view_changed)
+        painter_show(viewing->painter, &viewing->view);
+    viewing->view_changed = false;
+}
+
+static void wake_window(void *user)
+{
+    (void)user;
+    window_wake();
+}
+
+static void draw(Viewing *viewing)
+{
+    window_begin(viewing->window);
+    panels_draw(viewing);
+    window_end(viewing->window);
+}
+
+/* How long the window may wait for the next event. */
+static double choose_wait(const Viewing *viewing, bool running)
+{
+    if (running)
+        return 0;
+    return viewing_now() < viewing->redraw_until ? FRAME_SECONDS : LONGEST_WAIT;
+}
+
+static void limit_rate(double begun)
+{
+    const double left = begun + FRAME_SECONDS - viewing_now();
+    if (left > 0)
+        nanosleep(&(struct timespec){0, (long)(left * 1e9)}, NULL);
+}
+
+/* Waits for events.  False: the window is to be closed.  *quiet: nothing has happened. */
+static bool wait_for_events(Viewing *viewing, bool running, bool *quiet)
+{
+    const double limit = choose_wait(viewing, running), begun = viewing_now();
+    const bool   open = window_wait(viewing->window, limit);
+    const double now  = viewing_now();
+    *quiet            = limit >= LONGEST_WAIT && now - begun >= limit;
+    if (now - begun < limit)
+        viewing->redraw_until = now + SETTLE_SECONDS;
+    return open;
+}
+
+static KrsStatus loop(Viewing *viewing)
+{
+    bool running = false, quiet = false;
+    while (wait_for_events(viewing, running, &quiet)) {
+        const double begun = viewing_now();
+        if (viewing->options->stopped && viewing->options->stopped(viewing->options->user))
+            return KRS_OK;
+        if (quiet)
+            continue;
+        take_document(viewing);
+        running = act_run(viewing);
+        take_shot(viewing);
+        if (viewing->painting.status != KRS_OK)
+            return viewing->painting.status;
+        draw(viewing);
+        send_view(viewing); /* panels may have changed it */
+        limit_rate(begun);
+    }
+    return KRS_OK;
+}
+
+/* ---- begin and end ---- */
+
+static KrsStatus fail(char message[256], KrsStatus status, const char *what, const char *why)
+{
+    snprintf(message, 256, "%s%s", what, why);
+    return status;
+}
+
+static KrsStatus open_window(Viewing *viewing, char message[256])
+{
+    const ViewerOptions *options = viewing->options;
+    const KrsImage       image   = krs_scene_image(version_scene(viewing->view.version));
+    const char          *why;
+    char                 title[280];
+    const WindowEvents   events = {act_key, act_scroll, act_drag, act_click, viewing};
+    const uint32_t       width  = options->width ? options->width
+                                  : image.width  ? image.width
+                                                 : KRS_DEFAULT_WIDTH;
+    const uint32_t       height = options->height ? options->height
+                                  : image.height  ? image.height
+                                                  : KRS_DEFAULT_HEIGHT;
+    const char          *slash  = strrchr(options->path, '/');
+    snprintf(title, sizeof title, "%.255s \u2014 krs", slash ? slash + 1 : options->path);
+    viewing->window = window_open(title, width, height, &events, options->lost, &why);
+    if (!viewing->window)
+        return fail(message, KRS_NO_DEVICE, "no window can be opened: ", why);
+    return KRS_OK;
+}
+
+static KrsStatus begin(Viewing *viewing, char message[256])
+{
+    const ViewerOptions *options = viewing->options;
+    viewing->document            = document_new(options->path, &options->scene);
+    if (!viewing->document)
+        return fail(message, KRS_IO_ERROR, "the system does not let files be watched", "");
+    KrsStatus status = document_read(viewing->document);
+    if (status != KRS_OK && status != KRS_BAD_SCENE)
+        return fail(message, status, "", "");
+    take_document(viewing);
+    return status;
+}
+
+static KrsStatus run(Viewing *viewing, char message[256])
+{
+    const ViewerOptions *options = viewing->options;
+    KrsStatus            status  = open_window(viewing, message);
+    if (status != KRS_OK)
+        return status;
+    const PainterOptions painting = {.renderer = options->renderer,
+                                     .wake     = wake_window,
+                                     .budget   = options->budget > 0 ? options->budget : BUDGET_MS};
+    viewing->painter              = painter_new(&painting);
+    if (!viewing->painter || pthread_create(&viewing->reader, NULL, read_scene, viewing) != 0)
+        return fail(message, KRS_OUT_OF_MEMORY, "out of memory", "");
+    status = loop(viewing);
+    if (status != KRS_OK)
+        fail(message, status, viewing->painting.message, "");
+    atomic_store(&viewing->closing, true);
+    document_wake(viewing->document);
+    pthread_join(viewing->reader, NULL);
+    return status;
+}
+
+KrsStatus viewer_run(const ViewerOptions *options, char message[256])
+{
+    Viewing viewing = {.options = options, .panels = true, .loop = 10};
+    message[0]      = '\0';
+    atomic_init(&viewing.closing, false);
+    KrsStatus status = begin(&viewing, message);
+    if (status == KRS_OK)
+        status = run(&viewing, message);
+    painter_free(viewing.painter);
+    window_close(viewing.window);
+    krs_frame_free(viewing.frame);
+    view_free(&viewing.view);
+    remarks_free(&viewing.remarks);
+    document_free(viewing.document);
+    return status;
+}

@@ -1,0 +1,40 @@
+/*
+ * viewer_options.h: what a viewer is started with.
+ */
+#ifndef KRS_VIEWER_OPTIONS_H
+#define KRS_VIEWER_OPTIONS_H
+
+#include "runtime/krs_vulkan.h"
+
+/* A value of a parameter to begin with. */
+typedef struct ViewerSetting {
+    const char   *name;
+    const double *values;
+    size_t        count;
+} ViewerSetting;
+
+typedef struct ViewerOptions {
+    const char          *path;
+    KrsOptions           scene;
+    KrsRendererOptions   renderer;
+    uint32_t             width, height; /* of the window; 0: the scene's, or the default */
+    uint32_t             samples;       /* of a complete picture; 0: the scene's, or the default */
+    KrsIntegrator        integrator;    /* default: the scene's */
+    const char          *camera;        /* NULL: the first */
+    double               time, fps;
+    const ViewerSetting *settings;
+    size_t               setting_count;
+    double (*zones)[4];
+    size_t zone_count;
+    double budget; /* milliseconds of a frame while something moves; 0: the default */
+    /* Asked between frames: true ends the viewer. */
+    bool (*stopped)(void *user);
+    /* The connection to the display is lost: does not return. */
+    void (*lost)(void);
+    void *user;
+} ViewerOptions;
+
+/* Samples of a complete picture where nobody says. */
+#define VIEWER_SAMPLES 16
+
+#endif

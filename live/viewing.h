@@ -1,0 +1,54 @@
+/*
+ * viewing.h: what the parts of the viewer share: the state of a window.
+ */
+#ifndef KRS_VIEWING_H
+#define KRS_VIEWING_H
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+#include "live/document.h"
+#include "live/painter.h"
+#include "live/viewer_options.h"
+#include "live/window.h"
+
+typedef struct Viewing {
+    const ViewerOptions *options;
+    Document            *document;
+    Painter             *painter;
+    Window              *window;
+    pthread_t            reader;
+    atomic_bool          closing;
+    atomic_int           read_status; /* of the document, where no edit will mend it */
+
+    KrsFrame    *frame; /* of the view's version: cameras, and whether values fit */
+    View         view;
+    bool         view_changed;
+    size_t       camera; /* of the scene's */
+    bool         moved;  /* the camera is not the scene's any more */
+    Remarks      remarks;
+    unsigned     readings;
+    Shot         shot; /* the last one; its pixels are in the window */
+    PainterState painting;
+
+    bool   playing;
+    double played_at; /* when the time was last moved on */
+    double flown_at;
+    double loop; /* seconds after which time begins again; 0: never */
+    bool   panels, help;
+    double redraw_until; /* panels need some frames to settle */
+} Viewing;
+
+/* Seconds of a clock that only goes forward. */
+double viewing_now(void);
+/* What is to be seen has changed. */
+void viewing_show(Viewing *viewing);
+void viewing_set_time(Viewing *viewing, double time);
+/* Takes the camera to that of the scene. */
+void viewing_take_camera(Viewing *viewing, size_t camera);
+/* Takes a new version of the document. */
+void viewing_adopt(Viewing *viewing, Version *version);
+/* All parameters to the scene's defaults. */
+void viewing_reset_values(Viewing *viewing);
+
+#endif

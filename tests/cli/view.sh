@@ -1,0 +1,108 @@
+#!/bin/sh
+# view.sh: `krs view` in a real window, driven by events of a mouse and keys.  The picture in the window
+# is that of `krs render`, pixel by pixel.
+# shellcheck source-path=SCRIPTDIR
+. "$(dirname "$0")/common.sh"
+export XDG_CACHE_HOME="$work/caches"
+unset WAYLAND_DISPLAY
+"${CC:-cc}" -std=c17 -o screen_check "$root/tests/cli/screen_check.c" -lpng || exit 1
+plan 14
+: >out
+
+scene() { # radius
+    printf 'camera { eye: [0, 1, %s], target: [0, 0, 0] }\n' "${far:-5}"
+    printf 'light { direction: [-0.5, 1, 0.6], intensity: 2.5 }\n'
+    printf 'param r = %s in [0.5, 2];\nshow sphere(r);\nshow box([4, 0.5, 1]);\n' "$1"
+}
+# Waits for the window to show this picture.
+screen_is() { # picture
+    for _ in $(seq 100); do
+        ./screen_check Xvfb_screen0 "$1" >out && return 0
+        kill -0 "$viewer" 2>/dev/null || return 1
+        sleep 0.1
+    done
+    return 1
+}
+# The window shows what a render of the scene does.
+shows() { # what was tested, options
+    what=$1
+    shift
+    "$krs" render scene.krs --size 96x64 --samples 2 --specialize structure -q -o b.png "$@" \
+        2>err && screen_is b.png
+    result $? "$what"
+}
+heard() { # words, times
+    for _ in $(seq 100); do
+        [ "$(grep -cF -- "$1" err.view)" -ge "$2" ] && return 0
+        sleep 0.05
+    done
+    return 1
+}
+
+run view -
+said 2 "standard input has one text" "a text that cannot change"
+DISPLAY='' run view ball.krs
+said 69 "no window can be opened" "no display"
+
+mkfifo number
+Xvfb -displayfd 3 -screen 0 320x240x24 -fbdir . -nocursor >/dev/null 2>&1 3>number &
+server=$!
+read -r screen <number
+export DISPLAY=":$screen"
+# shellcheck disable=SC2064 # as it is now
+trap "kill $server 2>/dev/null; rm -rf '$work'" EXIT
+
+scene 1 >scene.krs
+"$krs" view scene.krs --size 96x64 --samples 2 >out.view 2>err.view &
+viewer=$!
+window=$(timeout 20 xdotool search --sync --onlyvisible --name scene.krs | head -n 1)
+xdotool mousemove 48 32 key Tab
+shows "the first picture" --specialize numbers
+scene 1.25 >scene.krs
+shows "a number is edited"
+for i in 1 2 3 4 5; do
+    echo 'show spere(1);' >scene.krs
+    heard "a name that is similar exists: \`sphere\`" "$i" || break
+    scene "1.$i" >new.krs && mv new.krs scene.krs
+    sleep 0.3
+done
+shows "edits, each second one with a mistake"
+far=4.5
+scene 0.9 >scene.krs
+shows "a camera that nobody has moved follows its text"
+xdotool mousedown 1 mousemove 60 40 mousemove 70 30 mouseup 1 click 5
+sleep 0.5
+./screen_check Xvfb_screen0 b.png >out
+[ $? -eq 1 ]
+result $? "the mouse moves the camera"
+xdotool key h
+screen_is b.png
+result $? "and a key takes it back"
+scene 0.8 >scene.krs
+scene '0.5' | sed 's/box(/sphere(0.7).move(/; s/\[4/[1/' >scene.krs
+shows "the structure is edited"
+xdotool windowunmap "$window"
+scene 1.1 >scene.krs
+sleep 0.3
+xdotool windowmap "$window" windowsize "$window" 120 80
+shows "hidden, edited, and shown in another size" --size 120x80
+xdotool key F1
+sleep 0.3
+xdotool key Escape
+screen_is b.png
+result $? "the help comes and goes"
+xdotool key Escape
+wait "$viewer"
+status=$?
+ended 0 "a key closes the window"
+
+"$krs" view scene.krs --size 96x64 --samples 1 >out.view 2>err.view &
+viewer=$!
+timeout 20 xdotool search --sync --onlyvisible --name scene.krs >/dev/null
+kill "$server"
+wait "$viewer"
+status=$?
+cp err.view err
+said 69 "the display is gone" "the display goes away"
+no_temporaries
+result $? "nothing is left over"
