@@ -47,6 +47,10 @@ bench-textures: $(B)/krs
 bench-paths: $(B)/krs
 	@bench/paths/paths.sh $(B)/krs
 
+# A room by POV-Ray's radiosity and by paths in the same time, where POV-Ray is installed.
+bench-radiosity: $(B)/krs
+	@bench/radiosity/radiosity.sh $(B)/krs
+
 # Algebraic surfaces: our tracers, POV-Ray and surf where they are installed (bench/README.md).
 ALGEBRAIC := $(addprefix bench/algebraic/, algebraic.o estimates.o judge.o processes.o programs.o \
                trees.o julias.o polynomial.o)
@@ -92,4 +96,4 @@ clang-objects: $(BENCH:%.c=$(B)/%.o) $(STAGE) $(MINIFY) \
                $(B)/bench/normals/normals.o $(ALGEBRAIC:%=$(B)/%) $(DEVICES) \
                $(B)/bench/registers/registers.o $(B)/bench/parts/parts.o
 .PHONY: bench bench-quick minify iterations inverted bench-normals bench-textures bench-paths bench-algebraic check-device \
-        bench-registers bench-parts bench-large
+        bench-registers bench-parts bench-large bench-radiosity
