@@ -39,13 +39,13 @@ GRAPH    := $(addprefix compiler/graph/, intern.c alike.c alike_copy.c graph.c c
                 simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c texture.c texture_facts.c \
                 regions.c squares.c grid.c grid_find.c fractal.c op_values.c tape.c evaluate.c lane_rows.c lane_make.c lane_run.c lane_ranges.c \
                 lane_prune.c print.c) $(LANES)
-SHAPE    := $(addprefix compiler/shape/, box.c reach.c cover.c map.c moebius.c builder.c slope.c print.c)
+SHAPE    := $(addprefix compiler/shape/, box.c reach.c cover.c map.c moebius.c builder.c sky_map.c slope.c print.c)
 LOWER    := $(addprefix compiler/lower/, footprint.c bump.c context.c box_distance.c surface.c join.c crowd_table.c crowd_functions.c crowd_find.c crowd.c normal.c map_chain.c \
                 outline.c sphere_fold.c guards.c ray_images.c ray_step.c lower.c)
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
 EVAL     := $(addprefix compiler/eval/, scope.c forget.c expression.c arithmetic.c reports.c units.c arguments.c components.c records.c data.c csv.c json.c builtins.c lists.c \
                 random.c files.c text.c drawing.c texture.c functions.c csg.c fractal.c declare.c extremes.c claim_pairs.c claims.c empty.c cells.c measure.c methods.c properties.c \
-                material.c camera.c view.c palette.c remarks.c statements.c shown.c studio.c hull.c hull_parts.c \
+                material.c camera.c view.c sky.c palette.c remarks.c statements.c shown.c studio.c hull.c hull_parts.c \
                 hull_supports.c hull_triangles.c)
 PRINT    := $(addprefix compiler/print/, frame_values.c media.c lines.c signatures.c helpers.c mirrors.c statements.c \
                 prepare.c crowds.c textures.c distances.c shared.c surfaces.c boxes.c early_outs.c march.c \
@@ -54,7 +54,7 @@ PRINT    := $(addprefix compiler/print/, frame_values.c media.c lines.c signatur
 TARGET   := compiler/target/spirv.c
 BORDER   := compiler/target/glslang_border.cpp
 API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c retain.c tables.c facts.c \
-                march_groups.c make_module.c program.c scene_text.c framing.c look.c frame.c query.c \
+                march_groups.c make_module.c program.c scene_text.c framing.c look.c daylight.c frame.c query.c \
                 update.c search_pairs.c search_targets.c search_starts.c search.c refuter.c \
                 refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer integrators film display writer))))

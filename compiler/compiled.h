@@ -6,6 +6,7 @@
 
 #include "compiler/krs.h"
 #include "compiler/print/variant.h"
+#include "compiler/shape/sky_map.h"
 
 typedef struct KrsLight {
     bool   positional; /* else directional */
@@ -23,7 +24,10 @@ typedef struct KrsLight {
 } KrsLight;
 
 typedef struct KrsSky {
-    double zenith[3], horizon[3], ground[3]; /* linear radiance */
+    double           zenith[3], horizon[3], ground[3]; /* linear radiance */
+    const KrsSkyMap *map;       /* NULL: there are these colours; lives as `lights` do */
+    double           rotation;  /* of the map, radians, counterclockwise from above */
+    double           intensity; /* a factor for the map */
 } KrsSky;
 
 /* Fog takes the part density * exp(-fall * (y - base)) of the light away on a unit of length, and
@@ -71,6 +75,7 @@ typedef struct KrsProgram {
     bool          inverts; /* krs_along has methods for sequences with maps that invert */
     bool          plain;   /* no component is curved (shape_is_curved) */
     bool          shadows; /* a light casts shadows */
+    bool          sky_map; /* the sky is a picture of all directions */
     bool          mirrors; /* a material is smooth enough to show images, or lets light through */
     bool          media;   /* a component may let light through: there are variants of KrsGlass */
     bool          layers;  /* a material has a coat, sheen, or a mirror other than usual */

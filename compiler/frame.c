@@ -83,7 +83,10 @@ KrsStatus frame_new(const KrsScene *scene, KrsFrame **result)
     frame->values     = frame_alloc(scene, scene->graph->count, sizeof *frame->values);
     frame->lights     = frame_alloc(scene, scene->light_count, sizeof *frame->lights);
     frame->workspace  = frame_alloc(scene, slope_workspace(scene), 1);
-    if (!frame->parameters || !frame->values || !frame->lights || !frame->workspace) {
+    frame->sky        = frame_alloc(scene, scene->daylight ? DAYLIGHT_WIDTH * DAYLIGHT_HEIGHT : 0,
+                                    sizeof *frame->sky);
+    if (!frame->parameters || !frame->values || !frame->lights || !frame->workspace ||
+        !frame->sky) {
         frame_free(frame);
         return KRS_OUT_OF_MEMORY;
     }
@@ -106,6 +109,7 @@ void frame_free(KrsFrame *frame)
     frame_release(scene, frame->parameters);
     frame_release(scene, frame->values);
     frame_release(scene, frame->lights);
+    frame_release(scene, frame->sky);
     frame_release(scene, frame->workspace);
     frame_release(scene, frame);
 }
@@ -355,6 +359,59 @@ static void view_light(const KrsFrame *frame, size_t index, KrsLight *light)
         aim_light(frame, roots, light);
 }
 
+/* ---- daylight ---- */
+
+/* The sun, once lights are known. */
+static Daylight find_daylight(const KrsFrame *frame)
+{
+    const KrsScene *scene = frame->scene;
+    const SkyRoots *sky   = sky_roots(&scene->roots);
+    Daylight        light = {.rise      = frame->lights[scene->daylight_by].vector[1],
+                             .turbidity = frame->values[sky->turbidity].v[0]};
+    frame_copy(frame, sky->ground, light.ground);
+    return light;
+}
+
+/* Air takes light from the sun, unless its colour is given. */
+static void dim_sun(const KrsFrame *frame)
+{
+    const size_t   sun   = frame->scene->daylight_by;
+    const Daylight light = find_daylight(frame);
+    double         part[3];
+    if (frame->scene->lights[sun].colored)
+        return;
+    daylight_sun(&light, part);
+    for (int i = 0; i < 3; i++)
+        frame->lights[sun].color[i] *= part[i];
+}
+
+static bool make_sky(KrsFrame *frame, const Daylight *light)
+{
+    if (memcmp(&frame->sky_made, light, sizeof *light) == 0)
+        return true;
+    frame->sky_made = (Daylight){0};
+    if (!daylight_sky(light, frame->sky))
+        return false;
+    frame->sky_made = *light;
+    frame->sky_map = (KrsSkyMap){DAYLIGHT_WIDTH, DAYLIGHT_HEIGHT, 0, (const float(*)[3])frame->sky};
+    frame->sky_map.version = sky_map_version(&frame->sky_map);
+    return true;
+}
+
+/* The sun is in the middle of the map, so that the map does not depend on where it is round about. */
+static KrsStatus view_daylight(KrsFrame *frame, KrsView *view)
+{
+    const size_t    sun   = frame->scene->daylight_by;
+    const Daylight  light = find_daylight(frame);
+    const KrsLight *day   = &frame->lights[sun];
+    if (!make_sky(frame, &light))
+        return KRS_OUT_OF_MEMORY;
+    view->sky.map      = &frame->sky_map;
+    view->sky.rotation = -atan2(day->vector[0], -day->vector[2]);
+    view->sky.intensity *= frame->values[light_roots(&frame->scene->roots, sun)->intensity].v[0];
+    return KRS_OK;
+}
+
 KrsImage krs_scene_image(const KrsScene *scene)
 {
     const SceneImage *image = &scene->image;
@@ -383,12 +440,17 @@ KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view)
     frame_copy(frame, sky->zenith, view->sky.zenith);
     frame_copy(frame, sky->horizon, view->sky.horizon);
     frame_copy(frame, sky->ground, view->sky.ground);
+    view->sky.map       = scene->sky_map;
+    view->sky.rotation  = frame->values[sky->rotation].v[0];
+    view->sky.intensity = frame->values[sky->intensity].v[0];
     frame_copy(frame, sky->fog_color, view->fog.color);
     view->fog.density = frame->values[sky->fog_density].v[0];
     view->fog.fall    = frame->values[sky->fog_fall].v[0];
     view->fog.base    = frame->values[sky->fog_base].v[0];
     for (size_t i = 0; i < scene->light_count; i++)
         view_light(frame, i, &frame->lights[i]);
+    if (scene->daylight)
+        dim_sun(frame);
     view->image = krs_scene_image(scene);
     return KRS_OK;
 }
@@ -401,7 +463,8 @@ void krs_frame_free(KrsFrame *frame) { frame_free(frame); }
 
 KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view)
 {
-    return frame_view(frame, camera, view);
+    KrsStatus status = frame_view(frame, camera, view);
+    return status == KRS_OK && frame->scene->daylight ? view_daylight(frame, view) : status;
 }
 
 KrsStatus krs_frame_camera(KrsFrame *frame, size_t index, KrsCamera *camera)

@@ -88,9 +88,11 @@ static bool hoists(const Compilation *c)
 
 KrsStatus pass_elaborate(Compilation *c)
 {
-    Graph *graph  = graph_new(&c->work);
-    c->elaborated = (Scene){
-        .graph = graph, .zenith = NODE_NONE, .zone = NODE_NONE, .fog = {.color = NODE_NONE}};
+    Graph *graph         = graph_new(&c->work);
+    c->elaborated        = (Scene){.graph = graph,
+                                   .sky   = {.zenith = NODE_NONE},
+                                   .zone  = NODE_NONE,
+                                   .fog   = {.color = NODE_NONE}};
     ShapeBuilder builder = {.arena      = &c->work,
                             .scratch    = &c->scratch,
                             .diags      = &c->diags,

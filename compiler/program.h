@@ -6,6 +6,7 @@
 
 #include "compiler/bounds.h"
 #include "compiler/compiled.h"
+#include "compiler/daylight.h"
 #include "compiler/lower/lower.h"
 #include "compiler/shape/scene.h"
 #include "compiler/graph/evaluate.h"
@@ -35,10 +36,10 @@ typedef struct CameraRoots {
     Node eye, target, up, fov, height, aperture, focus, shift, shutter, eyes;
 } CameraRoots;
 typedef struct LightRoots {
-    Node vector, color, softness, target, angle, edge, size;
+    Node vector, color, softness, target, angle, edge, size, intensity;
 } LightRoots;
 typedef struct SkyRoots {
-    Node zenith, horizon, ground;
+    Node zenith, horizon, ground, rotation, intensity, turbidity;
     Node fog_color, fog_density, fog_fall, fog_base;
 } SkyRoots;
 typedef struct PlaneRoots {
@@ -131,40 +132,43 @@ typedef struct RetainedPlace {
 } RetainedPlace;
 
 struct KrsScene {
-    Memory         memory;
-    Arena          arena;   /* of all that is below: graph, names, program */
-    const char    *name;    /* as it was compiled, */
-    KrsOptions     options; /* and how: for krs_scene_update */
-    KrsProgram     program;
-    const Graph   *graph;
-    Module         module; /* what text is printed from */
-    Roots          roots;
-    size_t         component_count, shown_count, camera_count, light_count;
-    size_t         zone_count; /* zones that the scene declares; they share one root */
-    KrsComponent  *components; /* all that are shown */
-    size_t        *turns_end;  /* of each of these: krs_turns_end */
-    KrsBounds     *bounds;     /* of each component */
-    RetainedSlope *slopes;     /* slopes that are computed per frame */
-    size_t         slope_count;
-    Parameter     *parameters;
-    RetainedPlace *parameter_places; /* of their names */
-    size_t         parameter_count;
-    size_t         material_count;
-    const char   **materials; /* names; the numbers of surfaces count from 1 */
-    SceneCamera   *cameras;   /* for their values use the roots, not the nodes in here */
-    SceneLight    *lights;
-    bool           framed; /* the scene has no camera, and framing.c has placed one: */
-    double         framed_eye[3], framed_target[3];
-    SceneImage     image;
-    char           hash[17];
-    Tape           distance; /* distances of all components, and zones */
-    Tape           guarded;  /* distances with guards (ROOTS_GUARDED) of all components, and
+    Memory           memory;
+    Arena            arena;   /* of all that is below: graph, names, program */
+    const char      *name;    /* as it was compiled, */
+    KrsOptions       options; /* and how: for krs_scene_update */
+    KrsProgram       program;
+    const Graph     *graph;
+    Module           module; /* what text is printed from */
+    Roots            roots;
+    size_t           component_count, shown_count, camera_count, light_count;
+    size_t           zone_count; /* zones that the scene declares; they share one root */
+    KrsComponent    *components; /* all that are shown */
+    size_t          *turns_end;  /* of each of these: krs_turns_end */
+    KrsBounds       *bounds;     /* of each component */
+    RetainedSlope   *slopes;     /* slopes that are computed per frame */
+    size_t           slope_count;
+    Parameter       *parameters;
+    RetainedPlace   *parameter_places; /* of their names */
+    size_t           parameter_count;
+    size_t           material_count;
+    const char     **materials; /* names; the numbers of surfaces count from 1 */
+    SceneCamera     *cameras;   /* for their values use the roots, not the nodes in here */
+    SceneLight      *lights;
+    const KrsSkyMap *sky_map; /* NULL: the sky is colours, or daylight, */
+    bool             daylight;
+    size_t           daylight_by; /* which is that of this light */
+    bool             framed;      /* the scene has no camera, and framing.c has placed one: */
+    double           framed_eye[3], framed_target[3];
+    SceneImage       image;
+    char             hash[17];
+    Tape             distance; /* distances of all components, and zones */
+    Tape             guarded;  /* distances with guards (ROOTS_GUARDED) of all components, and
     zones */
-    Tape           ahead;    /* if there are sheets: ALONG_EXACT of all components, and zones */
-    Tape           turned;   /* if there are sheets: gradients of all components */
-    Tape           surface;  /* all roots of all components, and zones */
-    Tape           view;     /* cameras, lights and sky */
-    Tape           rows;     /* numbers of tables that depend on the frame */
+    Tape             ahead;    /* if there are sheets: ALONG_EXACT of all components, and zones */
+    Tape             turned;   /* if there are sheets: gradients of all components */
+    Tape             surface;  /* all roots of all components, and zones */
+    Tape             view;     /* cameras, lights and sky */
+    Tape             rows;     /* numbers of tables that depend on the frame */
 };
 
 /* A frame: values of the parameters, and memory for the values of all nodes. */
@@ -177,10 +181,13 @@ struct KrsFrame {
     frame */
     NodeValue      *values;     /* of every node */
     KrsLight       *lights;
-    bool            exact; /* rays are marched with exact distances of crowds */
-    bool            fresh; /* the frame values in `values` belong to the parameters */
-    double          zones[KRS_MOST_ZONES][4];
-    size_t          zone_count; /* zones of the caller */
+    float (*sky)[3];    /* of daylight, */
+    KrsSkyMap sky_map;  /* which these texels are of, */
+    Daylight  sky_made; /* as it was made; turbidity 0: not yet */
+    bool      exact;    /* rays are marched with exact distances of crowds */
+    bool      fresh;    /* the frame values in `values` belong to the parameters */
+    double    zones[KRS_MOST_ZONES][4];
+    size_t    zone_count; /* zones of the caller */
 };
 
 /* The functions of krs.h and compiled.h with the same names.  The compiler itself calls them, after

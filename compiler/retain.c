@@ -130,6 +130,9 @@ static void retain_scene(Compilation *c)
         scene->lights[i]      = s->lights.items[i];
         scene->lights[i].name = retain_text(c, s->lights.items[i].name);
     }
+    scene->sky_map            = s->sky.map;
+    scene->daylight           = s->sky.daylight;
+    scene->daylight_by        = s->sky.light;
     scene->zone_count         = s->zone_count;
     scene->image              = s->image;
     scene->image.integrator   = retain_text(c, s->image.integrator);

@@ -66,13 +66,15 @@ static void gather_view(const Scene *s, const Roots *roots)
     }
     for (size_t i = 0; i < s->lights.count; i++) {
         const SceneLight *light = &s->lights.items[i];
-        *light_roots(roots, i)  = (LightRoots){light->vector, light->color, light->softness,
-                                               light->target, light->angle, light->edge,
-                                               light->size};
+        *light_roots(roots, i)  = (LightRoots){light->vector, light->color,    light->softness,
+                                               light->target, light->angle,    light->edge,
+                                               light->size,   light->intensity};
     }
     const SceneFog *fog = &s->fog;
-    *sky_roots(roots)   = (SkyRoots){s->zenith,    s->horizon, s->ground, fog->color,
-                                     fog->density, fog->fall,  fog->base};
+    const SceneSky *sky = &s->sky;
+    *sky_roots(roots)   = (SkyRoots){sky->zenith,    sky->horizon,   sky->ground, sky->rotation,
+                                     sky->intensity, sky->turbidity, fog->color,  fog->density,
+                                     fog->fall,      fog->base};
 }
 
 static void lower_marches(Compilation *c, Graph *g, LoweredCrowds *crowds)

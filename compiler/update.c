@@ -206,7 +206,8 @@ static bool same_facts(const KrsScene *a, const KrsScene *b)
 {
     return a->component_count == b->component_count && a->zone_count == b->zone_count &&
            krs_scene_is_panoramic(a) == krs_scene_is_panoramic(b) &&
-           krs_scene_has_lens(a) == krs_scene_has_lens(b) && same_slots(&a->program, &b->program) &&
+           krs_scene_has_lens(a) == krs_scene_has_lens(b) &&
+           a->program.sky_map == b->program.sky_map && same_slots(&a->program, &b->program) &&
            same_methods(&a->program, &b->program) && a->module.has_slopes == b->module.has_slopes &&
            !a->module.box_nodes.around == !b->module.box_nodes.around &&
            same_kinds_of_boxes(a, b) && same_groups(&a->module, &b->module);
@@ -298,10 +299,18 @@ static bool same_lights(const KrsScene *a, const KrsScene *b)
     for (size_t i = 0; same && i < a->light_count; i++)
         same = same_name(a->lights[i].name, b->lights[i].name) &&
                a->lights[i].positional == b->lights[i].positional &&
+               a->lights[i].colored == b->lights[i].colored &&
                a->lights[i].shadow == b->lights[i].shadow &&
                a->lights[i].rectangle == b->lights[i].rectangle &&
                a->lights[i].spot == b->lights[i].spot;
     return same;
+}
+
+static bool same_sky(const KrsScene *a, const KrsScene *b)
+{
+    const KrsSkyMap *x = a->sky_map, *y = b->sky_map;
+    return (x == y || (x && y && x->version == y->version)) && a->daylight == b->daylight &&
+           a->daylight_by == b->daylight_by;
 }
 
 static bool same_image(const SceneImage *a, const SceneImage *b)
@@ -323,7 +332,7 @@ static void compare(Comparison *c)
     changes->components = !same_components(c->a, c->b);
     changes->cameras    = !same_cameras(c->a, c->b) ||
                        compare_graphs(c, false, ROOTS_CAMERA, ROOTS_CAMERA) != EQUAL;
-    changes->lights = !same_lights(c->a, c->b) ||
+    changes->lights = !same_lights(c->a, c->b) || !same_sky(c->a, c->b) ||
                       compare_graphs(c, false, ROOTS_LIGHT, ROOTS_SKY) != EQUAL;
     changes->image = !same_image(&c->a->image, &c->b->image);
     bool values = kernels != EQUAL || changes->parameters || changes->cameras || changes->lights ||

@@ -16,7 +16,7 @@ ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c prod
 UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c queried.c \
                cache_folder.c compiled_files.c crowd_scene.c)
 PROPERTY_SHARED := $(addprefix tests/property/, crowd_parts.c garden.c op_trial.c reach_crowd.c)
-UNIT        := texts front synonyms look diagnostics shape parts passes display devices tracer film noise pixel_filters lens rendering lights methods schedules paths writer \
+UNIT        := texts front synonyms look diagnostics shape parts passes display devices tracer film noise pixel_filters lens rendering lights sky_table daylight methods schedules paths writer \
                image_files image_reading memory validate search refute frame query zones surroundings cache cache_limits \
                compiled pipelines per_component stencils glslang loader watcher drivers grid crowd_grid crowds \
                crowd_kernels crowd_pictures tables device_tables table_files printing printers answers alike update reload edits values
@@ -25,7 +25,7 @@ PROPERTY    := ops noise textures graph simplify facts derive series zeros local
 ORACLES     := self patterns bumps primitives krs_expand folds trees maps moebius moebius_images operators cells \
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
-               albedo furnace paths media cornell touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling \
+               albedo furnace paths sky media cornell touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling \
                occlusion curves sweeps hulls lofts places underestimates bounds stencils light sides steep scales agree far sheets ray_lists specialize outlines drawings \
                imports imports_csg imports_pov
 FUZZ        := sentences

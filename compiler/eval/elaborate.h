@@ -481,7 +481,12 @@ const Material *to_material(Elaboration *e, Value value, const Syntax *syntax);
 /* Adds lights, a sky and a floor to a scene that has none. */
 void run_studio(Elaboration *e, const Files *files);
 
-/* ---- view.c: lights, sky, image, zones; cameras by camera.c ---- */
+/* ---- sky.c ---- */
+void elaborate_sky(Elaboration *e, const Environment *env, const Syntax *syntax);
+/* Finds the light that is the sun of daylight, once all lights are known. */
+void complete_sky(Elaboration *e);
+
+/* ---- view.c: lights, image, zones; cameras by camera.c ---- */
 /* Adds a camera, a light or a zone to the scene, or sets its sky or image. */
 void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax);
 /* Adds what the scene leaves out: a camera, a sun, a sky. */

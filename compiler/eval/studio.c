@@ -54,9 +54,9 @@ void run_studio(Elaboration *e, const Files *files)
     Scene *scene = e->scene;
     Scope *scope = find_studio(e, files);
     Box    box;
-    if (!scope || e->diags->errors > 0 || scene->lights.count > 0 || scene->zenith != NODE_NONE ||
-        scene->fog.color != NODE_NONE || !box_of_scene(scene, &box) ||
-        !cameras_are_above(e, box.axis[1].low))
+    if (!scope || e->diags->errors > 0 || scene->lights.count > 0 ||
+        scene->sky.zenith != NODE_NONE || scene->fog.color != NODE_NONE ||
+        !box_of_scene(scene, &box) || !cameras_are_above(e, box.axis[1].low))
         return;
     set_number(scope, "_bottom", box.axis[1].low);
     set_number(scope, "_size", fmax(box_diagonal(box), 1e-9));

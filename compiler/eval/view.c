@@ -79,12 +79,13 @@ static void add_light(Elaboration *e, const Environment *env, const Syntax *synt
         diag->help = "for example `light sun { direction: [-1, 2, 1], intensity: 3 }`";
         return;
     }
-    light.vector   = position ? position_property(e, env, syntax, "position", UP)
-                              : vector_property(e, env, syntax, "direction", UP);
-    Node color     = vector_property(e, env, syntax, "color", WHITE);
-    Node intensity = number_property(e, env, syntax, "intensity", 1);
-    light.color    = graph_op2(e->graph, OP_scale, color, intensity);
-    light.softness = number_property(e, env, syntax, position ? "radius" : "softness", 0);
+    light.vector    = position ? position_property(e, env, syntax, "position", UP)
+                               : vector_property(e, env, syntax, "direction", UP);
+    Node color      = vector_property(e, env, syntax, "color", WHITE);
+    light.colored   = find_property(syntax, "color") != NULL;
+    light.intensity = number_property(e, env, syntax, "intensity", 1);
+    light.color     = graph_op2(e->graph, OP_scale, color, light.intensity);
+    light.softness  = number_property(e, env, syntax, position ? "radius" : "softness", 0);
     warn_of_light(e, env, syntax);
     aim_light(e, env, syntax, &light);
     if (direction)
@@ -96,20 +97,6 @@ static void add_light(Elaboration *e, const Environment *env, const Syntax *synt
     else
         type_error(e, shadow, value, "true or false");
     array_push(e->arena, &e->scene->lights, light);
-}
-
-static void set_sky(Elaboration *e, const Environment *env, const Syntax *syntax)
-{
-    static const double zenith[3]  = {0.17, 0.26, 0.42};
-    static const double horizon[3] = {0.56, 0.6, 0.66};
-    static const double ground[3]  = {0.17, 0.165, 0.16};
-    e->scene->zenith               = vector_property(e, env, syntax, "zenith", zenith);
-    e->scene->horizon              = vector_property(e, env, syntax, "horizon", horizon);
-    e->scene->ground               = vector_property(e, env, syntax, "ground", ground);
-    /* `sun:` names the light that is the sun; every light is in the sky anyway. */
-    const Syntax *sun = find_property(syntax, "sun");
-    if (sun && sun->kind != SYNTAX_NAME)
-        type_error(e, sun, evaluate(e, env, sun), "the name of a light");
 }
 
 /* 1 over the height, unless that is 0: then the fog is as dense everywhere. */
@@ -258,7 +245,7 @@ void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax
         if (known) /* else what seems to be missing may have another name */
             add_light(e, env, syntax);
         break;
-    case SYNTAX_SKY: set_sky(e, env, syntax); break;
+    case SYNTAX_SKY: elaborate_sky(e, env, syntax); break;
     case SYNTAX_FOG: set_fog(e, env, syntax); break;
     case SYNTAX_ZONE: add_zone(e, env, syntax); break;
     default: set_image(e, env, syntax); break;
@@ -294,14 +281,15 @@ static void default_camera(Elaboration *e)
 
 static void default_sun(Elaboration *e)
 {
-    SceneLight sun = {.shadow   = true,
-                      .vector   = graph_vec3(e->graph, -0.5, 1, 0.6),
-                      .color    = graph_vec3(e->graph, 2.9, 2.75, 2.5),
-                      .softness = graph_number(e->graph, 0.02),
-                      .target   = graph_constant(e->graph, TYPE_VEC3, ORIGIN),
-                      .angle    = graph_number(e->graph, 0),
-                      .edge     = graph_number(e->graph, 0),
-                      .size     = graph_constant(e->graph, TYPE_VEC3, ORIGIN)};
+    SceneLight sun = {.shadow    = true,
+                      .vector    = graph_vec3(e->graph, -0.5, 1, 0.6),
+                      .color     = graph_vec3(e->graph, 2.9, 2.75, 2.5),
+                      .intensity = graph_number(e->graph, 1),
+                      .softness  = graph_number(e->graph, 0.02),
+                      .target    = graph_constant(e->graph, TYPE_VEC3, ORIGIN),
+                      .angle     = graph_number(e->graph, 0),
+                      .edge      = graph_number(e->graph, 0),
+                      .size      = graph_constant(e->graph, TYPE_VEC3, ORIGIN)};
     array_push(e->arena, &e->scene->lights, sun);
 }
 
@@ -310,10 +298,11 @@ void complete_view(Elaboration *e)
     static const Syntax silent = {.kind = SYNTAX_SKY};
     if (e->scene->cameras.count == 0)
         default_camera(e);
-    if (e->scene->lights.count == 0)
+    if (e->scene->sky.zenith == NODE_NONE)
+        elaborate_sky(e, NULL, &silent);
+    if (e->scene->lights.count == 0 && !e->scene->sky.map)
         default_sun(e);
-    if (e->scene->zenith == NODE_NONE)
-        set_sky(e, NULL, &silent);
+    complete_sky(e);
     if (e->scene->fog.color == NODE_NONE) {
         set_fog(e, NULL, &silent);
         e->scene->fog.density = graph_number(e->graph, 0);

@@ -226,6 +226,8 @@ static void emit_functions(Emitter *e)
     }
     for (size_t i = 0; e->wanted[KRS_FUNCTION_SINES] && i < sizeof sines / sizeof *sines; i++)
         emit_call(e, sines[i], TYPE_FLOAT, 1);
+    if (e->wanted[KRS_FUNCTION_ARCS])
+        emit_call(e, "krs_atan2", TYPE_FLOAT, 2);
 }
 
 static void emit_about_textures(Emitter *e)

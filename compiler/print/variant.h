@@ -54,6 +54,8 @@ typedef enum KrsFunction {
     KRS_FUNCTION_GLASS,
     /* float krs_sin(float a), krs_cos, krs_tan: for callers that need them as well. */
     KRS_FUNCTION_SINES,
+    /* float krs_atan2(float a, float b), likewise. */
+    KRS_FUNCTION_ARCS,
     KRS_FUNCTION_COUNT
 } KrsFunction;
 

@@ -6,6 +6,7 @@
 
 #include "compiler/shape/parameters.h"
 #include "compiler/shape/shape.h"
+#include "compiler/shape/sky_map.h"
 
 /* What a `show` shows, or shows all in all where it stands in a loop. */
 typedef struct Component {
@@ -31,7 +32,8 @@ typedef struct SceneLight {
     const char *name; /* or NULL */
     bool        positional, shadow;
     bool        rectangle, spot;
-    Node        vector, color, softness;
+    bool        colored; /* its color is given */
+    Node        vector, color, softness, intensity;
     Node        target, angle, edge; /* of a spot: the whole angle, and the part of it that fades */
     Node        size;                /* of a rectangle */
 } SceneLight;
@@ -42,6 +44,18 @@ typedef struct SceneImage {
     double      exposure, error, noise;
     double      white_balance[2]; /* kelvins, or 0, and tint */
 } SceneImage;
+
+/* The sky: three colours, a picture of all directions, or daylight. */
+typedef struct SceneSky {
+    Node zenith, horizon, ground; /* NODE_NONE: there is no sky yet */
+    Node rotation, intensity, turbidity;
+    /* NULL: there is none. */
+    const KrsSkyMap *map;
+    const char      *sun; /* the name of a light; NULL: not given */
+    Span             sun_span;
+    bool             daylight; /* by the light `light`, */
+    size_t           light;    /* once lights are known */
+} SceneSky;
 
 /* Fog; its color is NODE_NONE where there is none. */
 typedef struct SceneFog {
@@ -73,7 +87,7 @@ typedef struct Scene {
         const char **items;
         size_t       count, capacity;
     } materials; /* their names, each once */
-    Node       zenith, horizon, ground;
+    SceneSky   sky;
     SceneFog   fog;
     Node       zone; /* the depth of OP_POINT in zones, negative outside; NODE_NONE without any */
     size_t     zone_count;

@@ -14,7 +14,7 @@
 
 /* What a stage of a kernel binds of storage buffers (layouts.h), and how many more in place of
    texels; devices may have four and no more, but those of desktops have 16 and more. */
-enum { STORAGE_BUFFERS = 8, STORAGE_BUFFERS_FOR_TEXELS = 2 };
+enum { STORAGE_BUFFERS = 8, STORAGE_BUFFERS_FOR_TEXELS = 3 };
 
 typedef struct SharedKernel SharedKernel; /* shared_kernels.h */
 

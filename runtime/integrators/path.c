@@ -48,7 +48,7 @@ static void add_surface(const Paths *paths, uint32_t number)
     add_items(paths, KRS_PHASE_NORMALS, paths->kernels.normals, LIST_ALL, NO_LIST,
               (PassConstants){0});
     add_items(paths, KRS_PHASE_SHADING, paths->kernels.scatter, LIST_ALL, LIST_OF_PATHS, constants);
-    if (!ends && paths->job->view.light_count > 0)
+    if (!ends && (paths->job->view.light_count > 0 || paths->job->view.sky.map))
         plan_add(paths->plan, (Pass){.kind      = PASS_RAYS,
                                      .phase     = KRS_PHASE_SHADOWS,
                                      .weight    = 0.3f * paths->weight,

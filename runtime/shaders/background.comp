@@ -10,9 +10,8 @@
 #include "frame.glsl"
 #include "hit_lists.glsl"
 #include "light.glsl"
+#include "sky_map.glsl"
 #include "results.glsl"
-
-const float FARTHEST = 1e30; // the sky is behind all fog
 
 Light sun;
 float sky; // 1: the sky is added; 0: the sun alone
@@ -73,7 +72,10 @@ vec3 find_radiance(uvec2 pixel)
     vec3  origin, direction;
     float base, slope;
     find_ray(vec2(work.corner + pixel) + work.offset, origin, direction, base, slope);
-    vec3 radiance = sky * sky_radiance(direction) +
+    vec3 seen = sky_radiance(direction);
+    if (has_sky_map())
+        seen = sky_map_radiance(direction);
+    vec3 radiance = sky * seen +
                     sun_radiance(direction, sun.vector, sun.color, sun.softness);
     float left = let_through(origin.y, direction.y, FARTHEST);
     return finite_or_black(through_fog(radiance, left, sky > 0.0));

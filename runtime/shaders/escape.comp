@@ -15,9 +15,9 @@
 #include "light.glsl"
 
 #include "optics.glsl"
+#define SKY_MAP
+#include "sky_map.glsl"
 #include "lights.glsl"
-
-const float FARTHEST = 1e30; // the sky is behind all fog
 
 // What a path is when its ray ends.
 struct Path {
@@ -48,6 +48,19 @@ vec3 find_sources(Path path, float end)
         sum += shows && density > 0.0 ? share * radiance : vec3(0.0);
     }
     return sum;
+}
+
+// The light of the sky that a path's ray meets, which directions may have been chosen by, too.
+vec3 find_sky(Path path)
+{
+    if (!has_sky_map())
+        return sky_radiance(path.direction);
+    vec2  place = place_on_sky(path.direction);
+    vec3  radiance = radiance_on_sky(place);
+    float all = max(sum_importance(path.origin), 1e-30);
+    float by_lights = sky_map_density(radiance, place) * frame.sky_power.x / all;
+    bool  chosen = control.phase == ESCAPE_TO_LIGHTS && path.density > 0.0;
+    return radiance * (chosen ? share_of_rays(path.density, by_lights) : 1.0);
 }
 
 void begin_group() {}
@@ -86,7 +99,7 @@ bool follow(uvec2 pixel, uint index, inout uint unresolved)
         found = find_sources(path, hits ? ray.t : INFINITE);
     if (!hits) {
         // Fog does not dim lights, but it hides the sun's disc as it hides the sky.
-        vec3  behind = sky_radiance(path.direction), light = found;
+        vec3  behind = find_sky(path), light = found;
         if (path.density == 0.0) {
             behind += found;
             light = vec3(0.0);

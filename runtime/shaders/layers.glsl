@@ -44,22 +44,15 @@ vec3 traced_by_layers(Layers layers, vec2 traced)
            layers.bsdf.under_coat * layers.bsdf.mirrored * traced.x;
 }
 
-// The sky as a mirror of some roughness shows it.
-vec3 sky_of_mirror(Layers layers, vec3 toward_eye, float roughness)
-{
-    vec3 bounced = reflect(-toward_eye, layers.axes.normal);
-    return mix(sky_radiance(bounced), sky_light(layers.axes.normal), roughness);
-}
-
 // The light of the sky.  `bounce`: the part that reaches the body, with the light between it and
 // what occludes it.
 vec3 ambient_of_layers(Layers layers, vec3 toward_eye, vec3 normal, float openness, vec3 bounce,
                        vec2 traced)
 {
     Bsdf bsdf = layers.bsdf;
-    vec3 around = sky_light(normal);
-    vec3 body = sky_of_mirror(layers, toward_eye, layers.roughness);
-    vec3 coat = sky_of_mirror(layers, toward_eye, layers.coat_roughness);
+    vec3 around = find_sky_around(normal);
+    vec3 body = find_sky_mirrored(layers.axes.normal, toward_eye, layers.roughness);
+    vec3 coat = find_sky_mirrored(layers.axes.normal, toward_eye, layers.coat_roughness);
     vec3 mirrored = bsdf.under_sheen * bsdf.coated * (1.0 - traced.y) * coat +
                     bsdf.under_coat * bsdf.mirrored * (1.0 - traced.x) * body;
     return layers.body * around * bounce + (bsdf.sheen * bsdf.fuzzy * around + mirrored) * openness;

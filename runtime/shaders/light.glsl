@@ -78,11 +78,3 @@ vec3 find_mirrored(vec3 normal, vec3 toward_eye, vec3 color, float roughness, fl
     vec2  fit = vec2(-1.04, 1.04) * a + r.zw;
     return mix(vec3(0.04), color, metallic) * fit.x + fit.y;
 }
-
-// The sky mirrored by the coat.
-vec3 sky_reflected(vec3 normal, vec3 toward_eye, vec3 color, float roughness, float metallic)
-{
-    vec3  bounced = reflect(-toward_eye, normal);
-    vec3  seen = mix(sky_radiance(bounced), sky_light(normal), roughness);
-    return seen * find_mirrored(normal, toward_eye, color, roughness, metallic);
-}

@@ -52,13 +52,32 @@ float find_importance(Light light, vec3 place)
     return luminance(find_irradiance(light, place)) * share;
 }
 
+// That of the sky comes first.
 float sum_importance(vec3 place)
 {
-    float sum = 0.0;
+    float sum = frame.sky_power.x;
     for (uint i = 0u; i < control.lights; i++)
         sum += find_importance(find_light(i), place);
     return sum;
 }
+
+#ifdef SKY_MAP
+// A direction of a sky that is a picture, by how bright it is there.  Fog hides it as it hides all of
+// the sky.
+LightPoint sample_sky(vec3 place, float chance, vec2 square_point)
+{
+    LightPoint point;
+    uvec2 cell = choose_cell(square_point);
+    vec2  on_sky = choose_in_cell(cell, square_point);
+    vec3  radiance = radiance_on_sky(on_sky);
+    point.toward = direction_on_sky(on_sky);
+    point.density = chance * sky_map_density(radiance, on_sky);
+    float left = let_through(place.y, point.toward.y, FARTHEST);
+    point.light = left * radiance / max(point.density, 1e-30);
+    point.end = INFINITE;
+    return point;
+}
+#endif
 
 // The mean radiance of a light's disc: its irradiance over the solid angle, weighted by the cosine
 // from the middle.

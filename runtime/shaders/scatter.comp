@@ -14,6 +14,9 @@
 #include "results.glsl"
 #include "planes.glsl"
 #include "light.glsl"
+#ifdef SKY_MAP
+#include "sky_map.glsl"
+#endif
 #include "path_samples.glsl"
 #include "bsdf.glsl"
 #include "bsdf_samples.glsl"
@@ -24,6 +27,10 @@ const uint CHOICES = 3u;      // points of the unit square for each surface of a
 const uint FIRST_ROULETTE = 3u;
 // How much the width of a ray grows where rough surfaces scatter it, relative to a camera's.
 const float MOST_SPREAD = 3.0;
+
+// Rays towards the sky that rise less go along a plane for too many steps.  They bring a
+// hundred thousandth of the light on a dull surface; smooth ones find it by their own rays.
+const float LEAST_RISE = 2e-3;
 
 // The number of the choice at surface `control.value` of a path.
 vec2 choose(uvec2 pixel, uint choice)
@@ -53,7 +60,9 @@ void begin_group()
 vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec3 facing,
                   vec3 weight)
 {
-    float all = sum_importance(hit.position), left = choose(pixel, 2u).x * all;
+    float all = sum_importance(hit.position);
+    float left = choose(pixel, 2u).x * all - frame.sky_power.x;
+    bool  is_sky = left < 0.0;
     uint  number = 0u;
     float importance = 0.0;
     for (uint i = 0u; i < control.lights; i++) {
@@ -65,11 +74,17 @@ vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, v
     }
     LightPoint point = sample_light(find_light(number), hit.position, importance / max(all, 1e-30),
                                     choose(pixel, 1u));
+#ifdef SKY_MAP
+    if (is_sky)
+        point = sample_sky(hit.position, frame.sky_power.x / all, choose(pixel, 1u));
+#endif
     vec3 light = into(axes, point.toward);
     vec4 scattered = scatter(bsdf, light);
     // Both methods together count once (escape.comp).
     float share = point.density > 0.0 ? 1.0 / (1.0 + square(scattered.w / point.density)) : 1.0;
-    bool  sees = dot(point.toward, facing) * light.z > 0.0 && all > 0.0;
+    float rise = dot(point.toward, facing);
+    bool  along = is_sky && abs(rise) < LEAST_RISE;
+    bool  sees = rise * light.z > 0.0 && all > 0.0 && !along;
     vec3  added = sees ? weight * scattered.rgb * point.light * share : vec3(0.0);
     store_path(PATH_LIGHT, index, vec4(finite_or_black(added), point.end));
     return point.toward;

@@ -16,6 +16,7 @@
 #include "light.glsl"
 #include "results.glsl"
 #include "planes.glsl"
+#include "sky_means.glsl"
 #ifdef MIRRORS
 #include "mirrors.glsl"
 #endif
@@ -135,9 +136,10 @@ vec3 ambient(Coat coat, float openness)
                              bounce, coat.traced);
 #else
     vec3 scattered = coat.color * (1.0 - coat.metallic) *
-                     sky_light(coat.mean_length * coat.normal) * bounce;
-    vec3 mirrored = sky_reflected(coat.normal, coat.toward_eye, coat.color, coat.roughness,
-                                  coat.metallic);
+                     find_sky_around(coat.mean_length * coat.normal) * bounce;
+    vec3 mirrored =
+        find_sky_mirrored(coat.normal, coat.toward_eye, coat.roughness) *
+        find_mirrored(coat.normal, coat.toward_eye, coat.color, coat.roughness, coat.metallic);
     return scattered + mirrored * openness * (1.0 - coat.traced.x);
 #endif
 }

@@ -47,6 +47,25 @@ CONSTANT(PIXEL_LIST_TEXELS_BINDING, 12);
 CONSTANT(RESULT_TEXELS_BINDING, 13);
 CONSTANT(FRAME_BINDINGS, 14); /* how many */
 
+/* ---- Binding in set 0, of pictures: the table of a sky that is a picture ---- */
+
+CONSTANT(SKY_BINDING, 3);
+
+/* First are means of the sky: around normals, weighted by the cosine, and around directions by what
+   surfaces mirror that are so rough.  They are pictures of all directions as well, of these widths,
+   half as high.  Behind them is the sky itself.  Last are sums to choose directions by: of four cells
+   between texels, of four of these, and so on.  The coarsest is first. */
+CONSTANT(SKY_AROUND_WIDTH, 32);
+CONSTANT(SKY_ROUGH_WIDTH, 64); /* roughness 1, 0.8, 0.6 and 0.4 */
+CONSTANT(SKY_ROUGH_LEVELS, 4);
+CONSTANT(SKY_SMOOTH_WIDTH, 128);   /* 0.2 */
+CONSTANT(SKY_SMOOTHER_WIDTH, 256); /* 0.1 */
+/* Where these begin. */
+CONSTANT(SKY_ROUGH, 512);
+CONSTANT(SKY_SMOOTH, 512 + 4 * 2048);
+CONSTANT(SKY_SMOOTHER, 512 + 4 * 2048 + 8192);
+CONSTANT(SKY_ITSELF, 512 + 4 * 2048 + 8192 + 32768);
+
 /* ---- The frame and the dispatch ---- */
 
 /* uniform FrameBlock, std140. */
@@ -69,6 +88,9 @@ struct Frame {
     /* With LENS: the radius of the lens in `right` and in `up`, 1 / the distance of what is sharp,
        corners of the aperture; 0: it is round. */
     vec4 lens;
+    /* Of a sky that is a picture: its columns and rows, or 0; its rotation in radians; a factor. */
+    vec4 sky_map;
+    vec4 sky_power; /* the mean irradiance by the sky, by which paths choose it; 0, 0, 0 */
     vec4 shift; /* of the picture in half widths and half heights; how far the eye of a panorama is
                    to the right, for stereo; 0 */
 };
@@ -99,7 +121,7 @@ struct PointWork {
 
 #ifdef __STDC_VERSION__
 typedef struct Frame FrameBlock;
-static_assert(sizeof(FrameBlock) == 240, "std140");
+static_assert(sizeof(FrameBlock) == 272, "std140");
 typedef struct Work WorkBlock;
 static_assert(sizeof(WorkBlock) == 40, "std430");
 typedef struct NextDispatch NextDispatchBlock;

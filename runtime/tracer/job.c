@@ -8,6 +8,7 @@
 
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/rendering.h"
+#include "runtime/tracer/sky_table.h"
 #include "runtime/tracer/view.h"
 
 bool job_refuse(Job *job, const char *words)
@@ -115,6 +116,9 @@ static bool prepare_frame_block(Job *job)
                                " it, or its angle, height or aperture is not one");
     if (job->rays && job->rays->farthest > 0)
         job->frame.farthest = (float)fmin(job->rays->farthest, (double)job->frame.farthest);
+    if (view.sky.map)
+        job->frame.sky_power[0] = (float)(view.sky.intensity *
+                                          sky_table_irradiance(job->rendering));
     job->frame.error        = (float)job->options.error;
     job->frame.most_steps   = job->options.most_steps;
     job->frame.normal_reach = normal_reach(&job->options);
@@ -158,7 +162,7 @@ bool job_read_frame(Job *job, KrsFrame *frame, const KrsCamera *camera)
                                "or a spread above 0");
     choose_rebase_origin(job, frame);
     job->begins_outside = begins_outside(job, frame);
-    if (!prepare_frame_block(job))
+    if (!sky_table_upload(job->rendering, job->view.sky.map) || !prepare_frame_block(job))
         return false;
     memcpy(job->rendering->frame.bytes, &job->frame, sizeof job->frame);
     return rendering_set_parameters(job->rendering, frame) &&

@@ -18,8 +18,9 @@ static const struct {
     [FOUR_FLOATS]  = {VK_FORMAT_R32G32B32A32_SFLOAT, 16},
 };
 static const TexelKind texels_of_scene[SCENE_BINDINGS] = {
-    [ROWS_BINDING]  = FOUR_FLOATS,
-    [CELLS_BINDING] = TWO_NUMBERS,
+    [ROWS_BINDING]      = FOUR_FLOATS,
+    [CELLS_BINDING]     = TWO_NUMBERS,
+    [SKY_TABLE_BINDING] = FOUR_FLOATS,
 };
 static const TexelKind texels_of[FRAME_BINDINGS] = {
     [INPUT_TEXELS_BINDING] = FOUR_NUMBERS,  [END_TEXELS_BINDING] = TWO_NUMBERS,
@@ -28,6 +29,7 @@ static const TexelKind texels_of[FRAME_BINDINGS] = {
 };
 
 static_assert((int)BUFFER_BINDINGS <= (int)STORAGE_BUFFERS, "devices are asked for so many");
+static_assert((int)SKY_TABLE_BINDING == (int)SKY_BINDING, "as kernels have it");
 static_assert((int)TABLE_BINDINGS <= (int)STORAGE_BUFFERS_FOR_TEXELS, "and for so many more");
 
 static VkDescriptorType type_of(uint32_t binding)

@@ -8,12 +8,13 @@
 
 #include "runtime/tracer/handles.h"
 
-/* Bindings of the scene's set, as the compiler prints them: the parameter block and the tables.
-   Those of the frame's set are in blocks.h. */
+/* Bindings of the scene's set, as the compiler prints them: the parameter block and the tables; and
+   the table of the sky (blocks.h).  Those of the frame's set are in blocks.h. */
 enum {
     PARAMETERS_BINDING,
     ROWS_BINDING,
     CELLS_BINDING,
+    SKY_TABLE_BINDING,
     SCENE_BINDINGS,
     TABLE_BINDINGS = SCENE_BINDINGS - ROWS_BINDING /* texels, or storage buffers without them */
 };

@@ -12,6 +12,7 @@
 #include "runtime/tracer/layouts.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/scene_tables.h"
+#include "runtime/tracer/sky_table.h"
 #include "runtime/tracer/slots.h"
 
 /* The radius of an unused zone, in which no point is. */
@@ -70,6 +71,7 @@ static void bind_scene(KrsRendering *rendering)
     layouts_bind_scene(&rendering->renderer->gpu, rendering->scene_set, PARAMETERS_BINDING,
                        &rendering->parameters);
     scene_tables_bind(rendering);
+    sky_table_bind(rendering);
 }
 
 /* Makes the parameter block and the tables of the rendering's scene. */
@@ -215,6 +217,7 @@ void krs_rendering_free(KrsRendering *rendering)
     Buffer *buffers[] = {&rendering->parameters,
                          &rendering->table_rows,
                          &rendering->table_cells,
+                         &rendering->sky_table,
                          &rendering->frame,
                          &rendering->control,
                          &rendering->device_control,

@@ -49,10 +49,10 @@ bool scene_tables_create(KrsRendering *rendering)
 
 void scene_tables_bind(KrsRendering *rendering)
 {
-    const bool    any                    = rendering->program->table_cells > 0;
-    const Buffer *tables[SCENE_BINDINGS] = {
+    const bool    any      = rendering->program->table_cells > 0;
+    const Buffer *tables[] = {
         [ROWS_BINDING] = &rendering->table_rows, [CELLS_BINDING] = &rendering->table_cells};
-    for (uint32_t binding = ROWS_BINDING; binding < SCENE_BINDINGS; binding++)
+    for (uint32_t binding = ROWS_BINDING; binding <= CELLS_BINDING; binding++)
         layouts_bind_scene(&rendering->renderer->gpu, rendering->scene_set, binding,
                            any ? tables[binding]
                                : layouts_idle_table(rendering->renderer, binding));

@@ -59,6 +59,7 @@ static void define_choices(KernelVariant *to)
         {KRS_FUNCTION_PLANE_T, "#define PLANES\n"},
         {KRS_FUNCTION_SCENE_PART_DISTANCE, "#define PACKED\n"},
         {KRS_FUNCTION_SINES, "#define KRS_SINES\n"}, /* the scene's text has sines.glsl */
+        {KRS_FUNCTION_ARCS, "#define KRS_ARCS\n"},   /* and arcs.glsl */
     };
     for (size_t i = 0; i < sizeof choices / sizeof *choices; i++)
         if (wants(to, choices[i].function))
@@ -86,6 +87,17 @@ static void want_rays(KernelVariant *to, const KrsRendering *rendering)
 {
     if (rendering->rays == RAYS_OF_PANORAMAS || rendering->rays == RAYS_OF_LENSES)
         want(to, KRS_FUNCTION_SINES);
+}
+
+/* A sky that is a picture is read by longitude and latitude. */
+static void want_sky(KernelVariant *to, const KrsRendering *rendering)
+{
+    if (!rendering->program->sky_map)
+        return;
+    define(to, "#define SKY_MAP\n");
+    if (!wants(to, KRS_FUNCTION_SINES))
+        want(to, KRS_FUNCTION_SINES);
+    want(to, KRS_FUNCTION_ARCS);
 }
 
 /* ---- variants for a rendering ---- */
@@ -216,6 +228,7 @@ KernelVariant variant_of_shade(const KrsRendering *rendering)
         define(&to, "#define MIRRORS\n");
     if (rendering->program->layers)
         define(&to, "#define LAYERS\n");
+    want_sky(&to, rendering);
     define_choices(&to);
     return to;
 }
@@ -227,6 +240,7 @@ KernelVariant variant_of_scatter(const KrsRendering *rendering)
     want(&to, KRS_FUNCTION_SURFACE);
     want(&to, KRS_FUNCTION_SINES);
     want_media(&to, rendering);
+    want_sky(&to, rendering);
     define_choices(&to);
     return to;
 }

@@ -275,6 +275,12 @@ bool view_prepare(const KrsView *view, const double low[3], const double high[3]
     to_floats(view->sky.zenith, block->zenith);
     to_floats(view->sky.horizon, block->horizon);
     to_floats(view->sky.ground, block->ground);
+    if (view->sky.map) {
+        block->sky_map[0] = (float)view->sky.map->width;
+        block->sky_map[1] = (float)view->sky.map->height;
+        block->sky_map[2] = (float)fmod(view->sky.rotation, 2 * PI);
+        block->sky_map[3] = (float)view->sky.intensity;
+    }
     to_floats(view->fog.color, block->fog);
     block->fog[3]       = (float)view->fog.density;
     block->fog_level[0] = (float)view->fog.fall;

@@ -17,8 +17,9 @@
 
 static bool warm_up(KrsRenderer *renderer, VkDescriptorSet scene_set, Kernel *kernel)
 {
-    const VkDescriptorSet sets[2] = {scene_set, renderer->idle_frame};
-    const WorkBlock       work    = {.groups = 1, .stride = 1};
+    const VkDescriptorSet sets[2] = {scene_set ? scene_set : renderer->idle_scene,
+                                     renderer->idle_frame};
+    const WorkBlock work     = {.groups = 1, .stride = 1};
     return kernel->warmed_up = gpu_warm_up(&renderer->gpu, kernel->pipeline, renderer->layout, sets,
                                            &work, sizeof work, &kernel->warm_up);
 }

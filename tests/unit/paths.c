@@ -37,6 +37,19 @@ static Scene still = {
             "show torus(0.5, 0.2).move([1.3, 0.2, 0.6]).paint(cloth);\n"
             "show plane([0, 1, 0], 0);\n"};
 
+/* A sky that is chosen by its brightness, in a scene that ends. */
+static Scene daylight = {
+    .name = "daylight",
+    .fov  = 0.7,
+    .text = "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }\n"
+            "light sun { direction: [1, 0.4, 1], softness: 1deg, intensity: 2 }\n"
+            "sky { sun: sun, turbidity: 3 }\n"
+            "material metal { color: gold, metallic: 1, roughness: 0.3 }\n"
+            "material lamp { color: black, emission: [9, 8, 6] }\n"
+            "show sphere(0.8).move([0, 0.8, 0]).paint(metal);\n"
+            "show sphere(0.2).move([1.2, 0.4, 0.6]).paint(lamp);\n"
+            "show box([9, 1, 9]).move([0, -0.5, 0]);\n"};
+
 static KrsRenderOptions usual(void)
 {
     return (KrsRenderOptions){.width      = SMALL_WIDTH,
@@ -87,6 +100,21 @@ static void crops_are_not_seen(void **state)
         krs_picture_free(whole);
     }
     assert_int_equal(wrong, 0);
+}
+
+static void crops_and_slices_of_daylight_are_not_seen(void **state)
+{
+    (void)state;
+    assert_int_equal(open_scene(&daylight), KRS_OK);
+    KrsRenderOptions options = usual();
+    KrsPicture      *whole   = render_scene(&daylight, options);
+    options.crop             = (KrsWindow){33, 17, 41, 30};
+    options.steps_at_once    = 64;
+    options.schedule         = KRS_SCHEDULE_REFILL;
+    bool same = is_part_of(&daylight, whole, render_scene(&daylight, options), words(&options));
+    krs_picture_free(whole);
+    close_scene(&daylight);
+    assert_true(same);
 }
 
 static void slices_are_not_seen(void **state)
@@ -374,6 +402,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(schedules_are_not_seen, hear_layers),
         cmocka_unit_test_teardown(crops_are_not_seen, hear_layers),
+        cmocka_unit_test_teardown(crops_and_slices_of_daylight_are_not_seen, hear_layers),
         cmocka_unit_test_teardown(slices_are_not_seen, hear_layers),
         cmocka_unit_test_teardown(bands_are_not_seen, hear_layers),
         cmocka_unit_test_teardown(a_flipped_bit_is_found, hear_layers),

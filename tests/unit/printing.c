@@ -90,13 +90,15 @@ static const char *name_of(KrsFunction function)
 
 static bool is_promised(const char *name, const KernelScene *of)
 {
-    bool sines = false;
+    bool sines = false, arcs = false;
     for (size_t i = 0; i < of->wanted_count; i++) {
         sines = sines || of->wanted[i] == KRS_FUNCTION_SINES;
+        arcs  = arcs || of->wanted[i] == KRS_FUNCTION_ARCS;
         if (strcmp(name, name_of(of->wanted[i])) == 0)
             return true;
     }
-    return strcmp(name, "krs_prepare") == 0 || (sines && strlen(name) == strlen("krs_sin"));
+    return strcmp(name, "krs_prepare") == 0 || (sines && strlen(name) == strlen("krs_sin")) ||
+           (arcs && strcmp(name, "krs_atan2") == 0);
 }
 
 /* A global is declared, set and read; a function that is not wanted is called. */
@@ -142,6 +144,7 @@ static const char *const calls[KRS_FUNCTION_COUNT] = {
     [KRS_FUNCTION_MEDIUM_AT]           = "float(krs_medium_at(p))",
     [KRS_FUNCTION_GLASS]               = "krs_glass(p)",
     [KRS_FUNCTION_SINES]               = "krs_sin(p.x) + krs_cos(p.x) + krs_tan(p.x)",
+    [KRS_FUNCTION_ARCS]                = "krs_atan2(p.x, p.y)",
 };
 
 /* A kernel around it, as a stranger would write one. */

@@ -4,7 +4,11 @@
  * Built-in ones are accurate to 1e-4 only on some devices; these are good to a few units in the last
  * place.  Beyond 1/2 the half-angle formula brings the argument of an arc sine back to where the
  * polynomial is good.  Arguments of the arc tangent above tan(pi / 8) are turned back by pi / 4.
+ *
+ * Operations of ops.def call these, and kernels without a scene include this file.
  */
+#ifndef KRS_ARCS
+#define KRS_ARCS
 
 float krs_asin_small(float x)
 {
@@ -60,3 +64,5 @@ float krs_atan2(float a, float b)
     s = mix(s, 3.14159265359 - s, b < 0.0);
     return mix(s, -s, a < 0.0);
 }
+
+#endif
