@@ -5,9 +5,13 @@
 
 #include <GLFW/glfw3.h>
 #include <math.h>
-#include <string.h>
+#include <png.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
 
 #include "live/orbit.h"
+#include "live/text_edit.h"
 
 /* Of a turn for the height of the window. */
 #define DRAG_TURN M_PI
@@ -36,13 +40,6 @@ static void pan(Viewing *viewing, double right, double up)
     changed(viewing);
 }
 
-static Found find_under_mouse(Viewing *viewing)
-{
-    double x, y;
-    window_mouse(viewing->window, &x, &y);
-    return painter_find(viewing->painter, x, y);
-}
-
 /* ---- keys ---- */
 
 static void act_frame(Viewing *viewing)
@@ -67,7 +64,7 @@ static void act_next_camera(Viewing *viewing)
 
 static void act_center(Viewing *viewing)
 {
-    const Found found = find_under_mouse(viewing);
+    const Found found = viewing_find(viewing);
     if (!found.hit)
         return;
     orbit_target(&viewing->view.camera, found.position);
@@ -140,6 +137,69 @@ static void act_path(Viewing *viewing)
 
 static void act_reset(Viewing *viewing) { viewing_reset_values(viewing); }
 
+static void act_undo(Viewing *viewing)
+{
+    viewing->undoing = history_undo(viewing->history, &viewing->view);
+    if (viewing->undoing)
+        changed(viewing);
+}
+
+static void act_redo(Viewing *viewing)
+{
+    viewing->undoing = history_redo(viewing->history, &viewing->view);
+    if (viewing->undoing)
+        changed(viewing);
+}
+
+static void act_copy_camera(Viewing *viewing)
+{
+    char *text = camera_text(&viewing->view.camera);
+    if (text)
+        window_copy(viewing->window, text);
+    viewing_notice(viewing, "the camera is on the clipboard");
+    free(text);
+}
+
+static void act_write_values(Viewing *viewing)
+{
+    size_t          written;
+    const KrsScene *scene  = version_scene(viewing->view.version);
+    const KrsStatus status = write_defaults(scene, (const double(*)[4])viewing->view.values,
+                                            &written);
+    if (status == KRS_BAD_ARGUMENT || viewing->remarks.errors > 0)
+        viewing_notice(viewing, "the text is not the one that is shown: save it without mistakes");
+    else if (status != KRS_OK)
+        viewing_notice(viewing, "the file cannot be written");
+    else
+        viewing_notice(viewing, "%zu value%s written", written, written == 1 ? "" : "s");
+}
+
+/* The first name that is free. */
+static void act_save(Viewing *viewing)
+{
+    const Shot *shot = &viewing->shot;
+    char        name[32];
+    int         number = 0;
+    png_image   image  = {.version = PNG_IMAGE_VERSION,
+                          .width   = shot->width,
+                          .height  = shot->height,
+                          .format  = PNG_FORMAT_RGBA};
+    do
+        snprintf(name, sizeof name, "view-%04d.png", number++);
+    while (access(name, F_OK) == 0 && number < 10000);
+    if (viewing->pixels && png_image_write_to_file(&image, name, 0, viewing->pixels, 0, NULL))
+        viewing_notice(viewing, "saved %s", name);
+    else
+        viewing_notice(viewing, "%s cannot be written", name);
+}
+
+static void act_look(Viewing *viewing)
+{
+    viewing->view.look = (Look)((viewing->view.look + 1) % LOOK_COUNT);
+    viewing_notice(viewing, "%s", look_names[viewing->view.look]);
+    viewing_show(viewing);
+}
+
 static void act_panels(Viewing *viewing) { viewing->panels = !viewing->panels; }
 
 static void act_help(Viewing *viewing) { viewing->help = !viewing->help; }
@@ -181,7 +241,7 @@ void act_key(void *user, int key, int modifiers)
 void act_scroll(void *user, double steps)
 {
     Viewing    *viewing = user;
-    const Found found   = find_under_mouse(viewing);
+    const Found found   = viewing_find(viewing);
     orbit_dolly(&viewing->view.camera, found.hit ? found.position : NULL, pow(WHEEL_FACTOR, steps));
     changed(viewing);
 }
@@ -202,11 +262,20 @@ void act_drag(void *user, int button, int modifiers, double right, double down)
     }
 }
 
+/* What is clicked is edited, or in focus. */
 void act_click(void *user, int button, int modifiers)
 {
-    (void)user;
-    (void)button;
-    (void)modifiers;
+    Viewing    *viewing = user;
+    const Found found   = viewing_find(viewing);
+    char        place[300];
+    if (button != GLFW_MOUSE_BUTTON_LEFT || !found.hit)
+        return;
+    if ((modifiers & GLFW_MOD_CONTROL) && viewing_place(viewing, found.component, place))
+        viewing_open_editor(viewing, place);
+    else if (modifiers & GLFW_MOD_ALT) {
+        viewing->view.camera.focus = found.depth;
+        changed(viewing);
+    }
 }
 
 /* ---- what goes on by itself ---- */

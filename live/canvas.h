@@ -7,6 +7,7 @@
 #define KRS_CANVAS_H
 
 #include "live/document.h"
+#include "live/false_color.h"
 #include "runtime/krs_vulkan.h"
 
 /* What is to be seen. */
@@ -21,6 +22,7 @@ typedef struct View {
     KrsIntegrator integrator;
     uint32_t      samples; /* how many make the picture complete */
     double        stops;   /* brighter than the scene's exposure */
+    Look          look;
 } View;
 
 /* A copy, which view_free frees; false: without memory. */

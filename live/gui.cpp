@@ -221,13 +221,15 @@ bool gui_button(const char *label, bool on)
     return pressed;
 }
 
-bool gui_line(const char *label, GuiTone tone)
+bool gui_line(const char *id, const char *text, GuiTone tone)
 {
     ImGui::PushFont(source);
-    ImGui::PushStyleColor(ImGuiCol_Text, tone_color(tone));
-    const ImVec2 size    = ImGui::CalcTextSize(label, nullptr, true);
-    const bool   pressed = ImGui::Selectable(label, false, 0, size);
-    ImGui::PopStyleColor();
+    const ImVec2 size = ImGui::CalcTextSize(text), at = ImGui::GetCursorPos();
+    ImGui::PushID(id);
+    const bool pressed = ImGui::Selectable("##line", false, 0, size);
+    ImGui::PopID();
+    ImGui::SetCursorPos(at);
+    gui_text(tone, text);
     ImGui::PopFont();
     return pressed;
 }

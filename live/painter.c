@@ -177,8 +177,11 @@ static KrsStatus publish(Painter *painter, FilmKind kind, double ms)
         krs_picture_free(picture);
         return KRS_OUT_OF_MEMORY;
     }
-    krs_picture_to_srgb8(picture, version_scene(painter->view.version), painter->view.stops, 4,
-                         shot.pixels);
+    if (painter->view.look == LOOK_LIGHT)
+        krs_picture_to_srgb8(picture, version_scene(painter->view.version), painter->view.stops, 4,
+                             shot.pixels);
+    else
+        false_color(picture, painter->view.look, shot.pixels);
     pthread_mutex_lock(&painter->lock);
     free(painter->shot.pixels);
     painter->shot          = shot;
@@ -272,8 +275,8 @@ static KrsStatus show_view(Painter *painter)
         status = make(painter, FILM_FULL, view->width, view->height, 1, true);
     while (status == KRS_OK && !is_outdated(painter)) {
         const uint32_t samples = canvas_samples(painter->canvas, FILM_FULL);
-        if (samples >= view->samples)
-            break;
+        if (samples >= view->samples || view->look != LOOK_LIGHT)
+            break; /* other looks are of the first sample */
         status = make(painter, FILM_FULL, view->width, view->height,
                       choose_portion(painter, view->samples - samples), false);
     }

@@ -119,6 +119,18 @@ static void draw_controls(Viewing *viewing)
     }
     gui_heading("CAMERA");
     draw_camera(viewing);
+    int look = (int)viewing->view.look;
+    if (gui_choice("shows", &look, look_names, LOOK_COUNT)) {
+        viewing->view.look = (Look)look;
+        viewing_show(viewing);
+    }
+    double aperture = viewing->view.camera.aperture;
+    if (gui_drag("aperture", &aperture, 1, 0.002, 0, 1000, "%.4g")) {
+        viewing->view.camera.aperture = aperture;
+        viewing->moved                = true;
+        viewing_show(viewing);
+    }
+    gui_tip("The radius of the lens. Alt and a click sets what is sharp.");
     gui_gap();
     gui_heading("TIME");
     draw_time(viewing);
@@ -148,8 +160,31 @@ static void draw_status(Viewing *viewing)
                  shot->samples, viewing->view.samples, shot->ms);
         gui_text(GUI_FAINT, line);
     }
+    if (viewing_now() - viewing->noticed_at < 4 && viewing->notice[0])
+        gui_text(GUI_PLAIN, viewing->notice);
     if (*doing(viewing))
         gui_text(GUI_WARNING, doing(viewing));
+    gui_panel_end();
+}
+
+/* What is under the mouse. */
+static void draw_found(Viewing *viewing)
+{
+    char         line[400], place[300];
+    const Found  found = viewing_find(viewing);
+    KrsComponent component;
+    if (gui_has_mouse() || !found.hit ||
+        krs_component(version_scene(viewing->view.version), found.component - 1, &component) !=
+            KRS_OK)
+        return;
+    gui_panel("found", GUI_BOTTOM_RIGHT, 0, 0, true);
+    const char *where = viewing_place(viewing, found.component, place);
+    snprintf(line, sizeof line, "%s   %s", component.name, where ? where : "");
+    gui_text(GUI_STRONG, line);
+    snprintf(line, sizeof line, "%.4g, %.4g, %.4g   distance %.4g   level %u   instance %u",
+             found.position[0], found.position[1], found.position[2], found.depth, found.level,
+             found.instance);
+    gui_text(GUI_FAINT, line);
     gui_panel_end();
 }
 
@@ -163,10 +198,12 @@ static void draw_remarks(Viewing *viewing)
         const Remark *remark = &remarks->items[i];
         if (i > 0)
             gui_gap();
-        gui_source(remark->error  ? GUI_ERROR
-                   : remark->note ? GUI_FAINT
-                                  : GUI_WARNING,
-                   remark->text);
+        char    label[32], place[300];
+        GuiTone tone = remark->error ? GUI_ERROR : remark->note ? GUI_FAINT : GUI_WARNING;
+        snprintf(label, sizeof label, "remark%zu", i);
+        snprintf(place, sizeof place, "%s:%u", remark->source, remark->line);
+        if (gui_line(label, remark->text, tone))
+            viewing_open_editor(viewing, place);
     }
     if (remarks->errors > 0 && viewing->shot.width > 0)
         gui_text(GUI_FAINT, "The picture is that of the last text without a mistake.");
@@ -180,6 +217,8 @@ static void draw_help(void)
     gui_keys("left", "turn; with Shift move");
     gui_keys("middle", "move");
     gui_keys("right", "look around");
+    gui_keys("Ctrl click", "open $KRS_EDITOR where the text has this");
+    gui_keys("Alt click", "focus the lens on this");
     gui_keys("wheel", "nearer to what is under the mouse, or farther");
     gui_gap();
     gui_text(GUI_STRONG, "Keys");
@@ -199,6 +238,7 @@ void panels_draw(Viewing *viewing)
     if (viewing->panels && viewing->view.version) {
         draw_controls(viewing);
         draw_status(viewing);
+        draw_found(viewing);
     }
     if (viewing->panels || viewing->remarks.errors > 0)
         draw_remarks(viewing);

@@ -61,9 +61,10 @@ static void take_shot(Viewing *viewing)
     Shot shot;
     if (painter_take(viewing->painter, &shot)) {
         window_set_picture(viewing->window, shot.pixels, shot.width, shot.height);
-        free(shot.pixels);
-        shot.pixels   = NULL;
-        viewing->shot = shot;
+        free(viewing->pixels);
+        viewing->pixels = shot.pixels;
+        shot.pixels     = NULL;
+        viewing->shot   = shot;
     }
     viewing->painting = painter_state(viewing->painter);
 }
@@ -79,8 +80,12 @@ static void send_view(Viewing *viewing)
         viewing->view_changed = true;
     viewing->view.width  = width < KRS_MOST_SIDE ? width : KRS_MOST_SIDE;
     viewing->view.height = height < KRS_MOST_SIDE ? height : KRS_MOST_SIDE;
-    if (viewing->view_changed)
+    if (viewing->view_changed) {
         painter_show(viewing->painter, &viewing->view);
+        if (!viewing->playing && !viewing->undoing)
+            history_note(viewing->history, &viewing->view, viewing_now());
+    }
+    viewing->undoing      = false;
     viewing->view_changed = false;
 }
 
@@ -177,7 +182,10 @@ static KrsStatus open_window(Viewing *viewing, char message[256])
 static KrsStatus begin(Viewing *viewing, char message[256])
 {
     const ViewerOptions *options = viewing->options;
-    viewing->document            = document_new(options->path, &options->scene);
+    viewing->history             = history_new();
+    if (!viewing->history)
+        return fail(message, KRS_OUT_OF_MEMORY, "out of memory", "");
+    viewing->document = document_new(options->path, &options->scene);
     if (!viewing->document)
         return fail(message, KRS_IO_ERROR, "the system does not let files be watched", "");
     KrsStatus status = document_read(viewing->document);
@@ -220,6 +228,8 @@ KrsStatus viewer_run(const ViewerOptions *options, char message[256])
     window_close(viewing.window);
     krs_frame_free(viewing.frame);
     view_free(&viewing.view);
+    history_free(viewing.history);
+    free(viewing.pixels);
     remarks_free(&viewing.remarks);
     document_free(viewing.document);
     return status;

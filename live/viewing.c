@@ -4,9 +4,13 @@
 #include "live/viewing.h"
 
 #include <math.h>
+#include <spawn.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 double viewing_now(void)
 {
@@ -24,6 +28,48 @@ void viewing_set_time(Viewing *viewing, double time)
     if (!viewing->moved)
         viewing_take_camera(viewing, viewing->camera); /* it may move with the time */
     viewing_show(viewing);
+}
+
+void viewing_notice(Viewing *viewing, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(viewing->notice, sizeof viewing->notice, format, arguments);
+    va_end(arguments);
+    viewing->noticed_at = viewing_now();
+}
+
+Found viewing_find(Viewing *viewing)
+{
+    double x, y;
+    window_mouse(viewing->window, &x, &y);
+    return painter_find(viewing->painter, x, y);
+}
+
+const char *viewing_place(const Viewing *viewing, uint32_t component, char place[300])
+{
+    KrsBound bound;
+    if (component == 0 ||
+        krs_bound(version_scene(viewing->view.version), component - 1, 0, &bound) != KRS_OK ||
+        bound.line == 0)
+        return NULL;
+    snprintf(place, 300, "%s:%u", bound.source, bound.line);
+    return place;
+}
+
+/* The place is an argument of its own, so that no name of a file is taken for a command. */
+void viewing_open_editor(Viewing *viewing, const char *place)
+{
+    static char shell[] = "sh", option[] = "-c", command[] = "exec $KRS_EDITOR \"$0\"";
+    char       *argument = strdup(place);
+    char       *words[]  = {shell, option, command, argument, NULL};
+    pid_t       child;
+    const char *editor = getenv("KRS_EDITOR");
+    if (!editor || !*editor)
+        viewing_notice(viewing, "%s   (KRS_EDITOR names no editor)", place);
+    else if (argument && posix_spawnp(&child, shell, NULL, NULL, words, environ) == 0)
+        viewing_notice(viewing, "opened %s", place);
+    free(argument);
 }
 
 /* Sets the frame to the values, as far as the scene permits them. */

@@ -8,6 +8,7 @@
 #include <stdatomic.h>
 
 #include "live/document.h"
+#include "live/history.h"
 #include "live/painter.h"
 #include "live/viewer_options.h"
 #include "live/window.h"
@@ -31,14 +32,28 @@ typedef struct Viewing {
     Shot         shot; /* the last one; its pixels are in the window */
     PainterState painting;
 
-    bool   playing;
-    double played_at; /* when the time was last moved on */
-    double flown_at;
-    double loop; /* seconds after which time begins again; 0: never */
-    bool   panels, help;
-    double redraw_until; /* panels need some frames to settle */
+    bool     playing;
+    double   played_at; /* when the time was last moved on */
+    double   flown_at;
+    double   loop; /* seconds after which time begins again; 0: never */
+    History *history;
+    bool     undoing;     /* the view changes by undo or redo */
+    uint8_t *pixels;      /* of the shot */
+    char     notice[160]; /* what was done last */
+    double   noticed_at;
+    bool     panels, help;
+    double   redraw_until; /* panels need some frames to settle */
 } Viewing;
 
+/* Says for a moment what was done. */
+void viewing_notice(Viewing *viewing, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/* What is under the mouse. */
+Found viewing_find(Viewing *viewing);
+/* Where the text has the component of this number, from 1; NULL: nowhere.  "a.krs:3" */
+const char *viewing_place(const Viewing *viewing, uint32_t component, char place[300]);
+/* Opens $KRS_EDITOR at a place. */
+void viewing_open_editor(Viewing *viewing, const char *place);
 /* Seconds of a clock that only goes forward. */
 double viewing_now(void);
 /* What is to be seen has changed. */

@@ -6,7 +6,7 @@
 export XDG_CACHE_HOME="$work/caches"
 unset WAYLAND_DISPLAY
 "${CC:-cc}" -std=c17 -o screen_check "$root/tests/cli/screen_check.c" -lpng || exit 1
-plan 14
+plan 16
 : >out
 
 scene() { # radius
@@ -91,14 +91,25 @@ sleep 0.3
 xdotool key Escape
 screen_is b.png
 result $? "the help comes and goes"
+xdotool key F12
+for _ in $(seq 50); do [ -s view-0000.png ] && break; sleep 0.1; done
+sleep 0.2
+./screen_check Xvfb_screen0 view-0000.png >out
+result $? "the picture is saved"
 xdotool key Escape
 wait "$viewer"
 status=$?
 ended 0 "a key closes the window"
 
-"$krs" view scene.krs --size 96x64 --samples 1 >out.view 2>err.view &
+"$krs" view scene.krs --size 96x64 --samples 1 --set r=0.75 >out.view 2>err.view &
 viewer=$!
 timeout 20 xdotool search --sync --onlyvisible --name scene.krs >/dev/null
+scene 0.75 >written.krs
+sleep 0.5
+xdotool key ctrl+s
+for _ in $(seq 50); do cmp -s scene.krs written.krs && break; sleep 0.1; done
+cmp scene.krs written.krs >out
+result $? "a value is written into the text, and nothing else"
 kill "$server"
 wait "$viewer"
 status=$?

@@ -1,0 +1,106 @@
+/*
+ * false_color.c: depth, normals, numbers and steps as colours.
+ */
+#include "live/false_color.h"
+
+#include <math.h>
+
+const char *const look_names[LOOK_COUNT] = {
+#define LOOK(id, name, about) name,
+#include "live/looks.def"
+#undef LOOK
+};
+
+/* The least and the greatest of what a picture shows. */
+typedef struct Range {
+    double low, high;
+} Range;
+
+static void set(uint8_t *pixel, double r, double g, double b)
+{
+    const double rgb[3] = {r, g, b};
+    for (int i = 0; i < 3; i++)
+        pixel[i] = (uint8_t)(255 * fmin(fmax(rgb[i], 0), 1) + 0.5);
+    pixel[3] = 255;
+}
+
+/* Dark blue, magenta, orange, yellow: each brighter than the one before. */
+static void set_heat(uint8_t *pixel, double part)
+{
+    static const double colors[4][3] = {
+        {0.05, 0.03, 0.25}, {0.55, 0.10, 0.50}, {0.95, 0.45, 0.25}, {0.98, 0.95, 0.55}};
+    const double at = fmin(fmax(part, 0), 1) * 3;
+    const int    i  = at < 2.999 ? (int)at : 2;
+    const double t  = at - i;
+    set(pixel, colors[i][0] + t * (colors[i + 1][0] - colors[i][0]),
+        colors[i][1] + t * (colors[i + 1][1] - colors[i][1]),
+        colors[i][2] + t * (colors[i + 1][2] - colors[i][2]));
+}
+
+/* Hues by the golden ratio: numbers next to each other are far apart. */
+static void set_number(uint8_t *pixel, uint32_t number, double shade)
+{
+    double       whole;
+    const double hue = modf(number * 0.61803398875 + 0.1, &whole) * 2 * M_PI;
+    set(pixel, shade * (0.6 + 0.35 * cos(hue)), shade * (0.6 + 0.35 * cos(hue - 2.1)),
+        shade * (0.6 + 0.35 * cos(hue + 2.1)));
+}
+
+static double value_at(const KrsPicture *picture, Look look, size_t at)
+{
+    return look == LOOK_DEPTH    ? picture->depth[at]
+           : look == LOOK_LEVELS ? picture->level[at]
+                                 : picture->steps[at];
+}
+
+static Range find_range(const KrsPicture *picture, Look look)
+{
+    Range        range = {INFINITY, -INFINITY};
+    const size_t count = (size_t)picture->window.width * picture->window.height;
+    for (size_t i = 0; i < count; i++) {
+        const double value = value_at(picture, look, i);
+        if (!isfinite(value))
+            continue;
+        range.low  = fmin(range.low, value);
+        range.high = fmax(range.high, value);
+    }
+    return range;
+}
+
+/* How much a surface faces the viewer tells the shape where the colour is flat. */
+static double shade_of(const KrsPicture *picture, size_t at)
+{
+    const float *n = &picture->normal[3 * at];
+    const double z = n[0] * picture->world_to_camera[0][2] + n[1] * picture->world_to_camera[1][2] +
+                     n[2] * picture->world_to_camera[2][2];
+    return 0.35 + 0.65 * fabs(z);
+}
+
+static void color_pixel(const KrsPicture *picture, Look look, Range range, size_t at,
+                        uint8_t *pixel)
+{
+    const float *n    = &picture->normal[3 * at];
+    const double size = fmax(range.high - range.low, 1e-9);
+    const double part = (value_at(picture, look, at) - range.low) / size;
+    if (look == LOOK_STEPS)
+        set_heat(pixel, part);
+    else if (picture->component[at] == 0)
+        set(pixel, 0.09, 0.095, 0.1);
+    else if (look == LOOK_DEPTH)
+        set(pixel, 1 - 0.9 * part, 1 - 0.9 * part, 1 - 0.9 * part);
+    else if (look == LOOK_NORMALS)
+        set(pixel, 0.5 + 0.5 * n[0], 0.5 + 0.5 * n[1], 0.5 + 0.5 * n[2]);
+    else if (look == LOOK_LEVELS)
+        set_heat(pixel, part);
+    else
+        set_number(pixel, look == LOOK_COMPONENTS ? picture->component[at] : picture->instance[at],
+                   shade_of(picture, at));
+}
+
+void false_color(const KrsPicture *picture, Look look, uint8_t *pixels)
+{
+    const Range  range = find_range(picture, look);
+    const size_t count = (size_t)picture->window.width * picture->window.height;
+    for (size_t i = 0; i < count; i++)
+        color_pixel(picture, look, range, i, pixels + 4 * i);
+}

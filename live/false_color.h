@@ -1,0 +1,20 @@
+/*
+ * false_color.h: what else than light a picture may show.
+ */
+#ifndef KRS_FALSE_COLOR_H
+#define KRS_FALSE_COLOR_H
+
+#include "runtime/krs_vulkan.h"
+
+typedef enum Look {
+#define LOOK(id, name, about) LOOK_##id,
+#include "live/looks.def"
+#undef LOOK
+    LOOK_COUNT
+} Look;
+extern const char *const look_names[LOOK_COUNT];
+
+/* Four bytes for each pixel of a picture with all planes; `look` is not LOOK_LIGHT. */
+void false_color(const KrsPicture *picture, Look look, uint8_t *pixels);
+
+#endif

@@ -1,0 +1,211 @@
+/*
+ * text_edit.c: from the viewer back to the text of the scene.
+ */
+#include "live/text_edit.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* ---- cameras ---- */
+
+static void print_vector(FILE *out, const char *name, const double v[3])
+{
+    fprintf(out, "%s: [%.6g, %.6g, %.6g]", name, v[0] + 0.0, v[1] + 0.0, v[2] + 0.0);
+}
+
+static double degrees(double radians) { return radians * 180 / M_PI; }
+
+static void print_projection(FILE *out, const KrsCamera *camera)
+{
+    if (camera->projection == KRS_PERSPECTIVE)
+        fprintf(out, ", fov: %.6gdeg", degrees(camera->fov));
+    else if (camera->projection == KRS_ORTHOGRAPHIC)
+        fprintf(out, ", projection: \"orthographic\", height: %.6g", camera->height);
+    else
+        fprintf(out, ", projection: \"panorama\"");
+}
+
+char *camera_text(const KrsCamera *camera)
+{
+    char  *text   = NULL;
+    size_t length = 0;
+    FILE  *out    = open_memstream(&text, &length);
+    if (!out)
+        return NULL;
+    fprintf(out, "camera { ");
+    print_vector(out, "eye", camera->eye);
+    print_vector(out, ", target", camera->target);
+    if (camera->up[0] != 0 || camera->up[2] != 0 || camera->up[1] <= 0)
+        print_vector(out, ", up", camera->up);
+    print_projection(out, camera);
+    if (camera->aperture > 0)
+        fprintf(out, ", aperture: %.6g", camera->aperture);
+    if (camera->aperture > 0 && camera->focus > 0)
+        fprintf(out, ", focus: %.6g", camera->focus);
+    fprintf(out, " }\n");
+    return fclose(out) == 0 ? text : NULL;
+}
+
+/* ---- values ---- */
+
+/* A hexadecimal colour, if there is one that is this. */
+static bool print_color(FILE *out, const double *value)
+{
+    unsigned bytes[3];
+    for (int i = 0; i < 3; i++) {
+        const double v = value[i];
+        if (!(v >= 0 && v <= 1))
+            return false;
+        const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055;
+        bytes[i]             = (unsigned)lround(255 * encoded);
+    }
+    fprintf(out, "#%02x%02x%02x", bytes[0], bytes[1], bytes[2]);
+    return true;
+}
+
+static void print_value(FILE *out, const KrsParameter *parameter, const double *value)
+{
+    const double unit = parameter->degrees ? 180 / M_PI : 1;
+    const char  *deg  = parameter->degrees ? "deg" : "";
+    if (parameter->color && print_color(out, value))
+        return;
+    if (parameter->components == 1) {
+        fprintf(out, "%.6g%s", value[0] * unit, deg);
+        return;
+    }
+    for (uint32_t i = 0; i < parameter->components; i++)
+        fprintf(out, "%s%.6g%s", i == 0 ? "[" : ", ", value[i] * unit, deg);
+    fprintf(out, "]");
+}
+
+/* ---- files ---- */
+
+typedef struct Bytes {
+    char  *text;
+    size_t length;
+} Bytes;
+
+static bool read_bytes(const char *path, Bytes *bytes)
+{
+    FILE  *file = fopen(path, "rb");
+    char   part[4096];
+    size_t got;
+    if (!file)
+        return false;
+    FILE *out = open_memstream(&bytes->text, &bytes->length);
+    while (out && (got = fread(part, 1, sizeof part, file)) > 0)
+        fwrite(part, 1, got, out);
+    const bool good = out && !ferror(file);
+    fclose(file);
+    return out && fclose(out) == 0 && good;
+}
+
+/* The file appears whole or not at all; links stay links. */
+static bool write_bytes(const char *path, const Bytes *bytes)
+{
+    struct stat info;
+    char       *real = realpath(path, NULL), *name = NULL;
+    bool        good = real && stat(real, &info) == 0 && asprintf(&name, "%s.XXXXXX", real) > 0;
+    const int   fd   = good ? mkstemp(name) : -1;
+    FILE       *file = fd >= 0 ? fdopen(fd, "wb") : NULL;
+    if (file) {
+        good = fwrite(bytes->text, 1, bytes->length, file) == bytes->length &&
+               fchmod(fd, info.st_mode & 07777) == 0;
+        good = fclose(file) == 0 && good;
+        good = good && rename(name, real) == 0;
+        if (!good)
+            unlink(name);
+    }
+    free(real);
+    free(name);
+    return file && good;
+}
+
+/* ---- defaults ---- */
+
+static bool is_default(const KrsParameter *parameter, const double *value)
+{
+    return memcmp(parameter->value, value, parameter->components * sizeof *value) == 0;
+}
+
+/* Whether the text still has "NAME =" before these bytes, and `in` or `;` behind them. */
+static bool stands_there(const Bytes *bytes, const KrsParameter *parameter)
+{
+    size_t       before = parameter->start, behind = parameter->end;
+    const size_t length = strlen(parameter->name);
+    if (behind > bytes->length || before > behind)
+        return false;
+    while (before > 0 && isspace((unsigned char)bytes->text[before - 1]))
+        before--;
+    if (before == 0 || bytes->text[--before] != '=')
+        return false;
+    while (before > 0 && isspace((unsigned char)bytes->text[before - 1]))
+        before--;
+    while (behind < bytes->length && isspace((unsigned char)bytes->text[behind]))
+        behind++;
+    return before >= length &&
+           memcmp(bytes->text + before - length, parameter->name, length) == 0 &&
+           behind < bytes->length &&
+           (bytes->text[behind] == ';' || strncmp(bytes->text + behind, "in", 2) == 0);
+}
+
+static KrsStatus write_default(const KrsParameter *parameter, const double *value)
+{
+    Bytes     before = {0}, after = {0};
+    KrsStatus status = read_bytes(parameter->source, &before) ? KRS_OK : KRS_IO_ERROR;
+    if (status == KRS_OK && !stands_there(&before, parameter))
+        status = KRS_BAD_ARGUMENT;
+    FILE *out = status == KRS_OK ? open_memstream(&after.text, &after.length) : NULL;
+    if (out) {
+        fwrite(before.text, 1, parameter->start, out);
+        print_value(out, parameter, value);
+        fwrite(before.text + parameter->end, 1, before.length - parameter->end, out);
+        if (fclose(out) != 0 || !write_bytes(parameter->source, &after))
+            status = KRS_IO_ERROR;
+    }
+    free(before.text);
+    free(after.text);
+    return status;
+}
+
+/* The parameter that stands last before this byte, in whatever file; false: there is none. */
+static bool find_last(const KrsScene *scene, uint64_t before, size_t *last)
+{
+    uint64_t found = 0;
+    bool     any   = false;
+    for (size_t i = 0; i < krs_parameter_count(scene); i++) {
+        KrsParameter parameter;
+        krs_parameter(scene, i, &parameter);
+        const uint64_t place = ((uint64_t)parameter.start << 24) + i;
+        if (place < before && (!any || place > found)) {
+            found = place;
+            *last = i;
+            any   = true;
+        }
+    }
+    return any;
+}
+
+/* From the end of the files on, so that places before stay what they are. */
+KrsStatus write_defaults(const KrsScene *scene, const double (*values)[4], size_t *written)
+{
+    uint64_t  before = UINT64_MAX;
+    KrsStatus status = KRS_OK;
+    size_t    i;
+    *written = 0;
+    while (status == KRS_OK && find_last(scene, before, &i)) {
+        KrsParameter parameter;
+        krs_parameter(scene, i, &parameter);
+        before = ((uint64_t)parameter.start << 24) + i;
+        if (is_default(&parameter, values[i]))
+            continue;
+        status = write_default(&parameter, values[i]);
+        *written += status == KRS_OK;
+    }
+    return status;
+}

@@ -1,0 +1,277 @@
+/*
+ * live.c: what the viewer does to cameras and texts, without a window.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "live/document.h"
+#include "live/history.h"
+#include "live/orbit.h"
+#include "live/text_edit.h"
+
+static const KrsCamera start = {.projection = KRS_PERSPECTIVE,
+                                .eye        = {3, 2, 5},
+                                .target     = {0.5, 0.25, -1},
+                                .up         = {0, 1, 0},
+                                .fov        = 0.7};
+
+static double apart(const double a[3], const double b[3])
+{
+    return sqrt(pow(a[0] - b[0], 2) + pow(a[1] - b[1], 2) + pow(a[2] - b[2], 2));
+}
+
+/* Where a point is in the picture, in parts of its height from the center. */
+static void project(const KrsCamera *camera, const double point[3], double out[2])
+{
+    double forward[3], right[3], up[3], x = 0, y = 0, z = 0;
+    orbit_axes(camera, forward, right, up);
+    for (int i = 0; i < 3; i++) {
+        const double d = point[i] - camera->eye[i];
+        x += d * right[i];
+        y += d * up[i];
+        z += d * forward[i];
+    }
+    const double height = camera->projection == KRS_PERSPECTIVE ? 2 * z * tan(camera->fov / 2)
+                                                                : camera->height;
+    out[0]              = x / height;
+    out[1]              = y / height;
+}
+
+static void turns_keep_the_target(void **state)
+{
+    (void)state;
+    KrsCamera camera = start;
+    for (int i = 0; i < 200; i++) {
+        double forward[3], right[3], up[3];
+        orbit_turn(&camera, 0.3 * sin(i), 0.5 * cos(0.7 * i));
+        orbit_axes(&camera, forward, right, up);
+        assert_true(fabs(apart(camera.eye, camera.target) - apart(start.eye, start.target)) < 1e-9);
+        assert_true(fabs(right[1]) < 1e-9 && up[1] > 0); /* upright */
+    }
+    assert_memory_equal(camera.target, start.target, sizeof camera.target);
+}
+
+static void what_is_grabbed_stays_under_the_mouse(void **state)
+{
+    (void)state;
+    const double point[3] = {1, 0.5, 0.75};
+    double       before[2], after[2];
+    KrsCamera    camera = start;
+    project(&camera, start.target, before);
+    orbit_pan(&camera, 0.25, -0.125);
+    project(&camera, start.target, after);
+    assert_true(fabs(after[0] - before[0] - 0.25) < 1e-9);
+    assert_true(fabs(after[1] - before[1] + 0.125) < 1e-9);
+    for (int orthographic = 0; orthographic < 2; orthographic++) {
+        if (orthographic)
+            orbit_toggle_perspective(&camera);
+        project(&camera, point, before);
+        orbit_dolly(&camera, point, 0.6);
+        project(&camera, point, after);
+        assert_true(fabs(after[0] - before[0]) < 1e-9 && fabs(after[1] - before[1]) < 1e-9);
+    }
+}
+
+static void boxes_are_framed(void **state)
+{
+    (void)state;
+    const double low[3] = {-3, 1, 2}, high[3] = {4, 2, 9}, aspect = 1.5;
+    KrsCamera    camera = start;
+    for (int orthographic = 0; orthographic < 2; orthographic++) {
+        double largest = 0;
+        if (orthographic)
+            orbit_toggle_perspective(&camera);
+        orbit_frame(&camera, low, high, aspect);
+        for (int corner = 0; corner < 8; corner++) {
+            const double at[3] = {corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1],
+                                  corner & 4 ? high[2] : low[2]};
+            double seen[2];
+            project(&camera, at, seen);
+            largest = fmax(largest, fmax(fabs(seen[0]) / aspect, fabs(seen[1])));
+        }
+        assert_true(largest < 0.5 && largest > 0.4);
+    }
+}
+
+/* A camera's text makes the same camera. */
+static void cameras_are_written(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        KrsCamera camera = start, read;
+        KrsScene *scene;
+        KrsFrame *frame;
+        char      text[600];
+        if (i == 1)
+            orbit_toggle_perspective(&camera);
+        if (i == 2) {
+            orbit_roll(&camera, 0.3);
+            camera.aperture = 0.125;
+            camera.focus    = 4.5;
+        }
+        char *block = camera_text(&camera);
+        snprintf(text, sizeof text, "show sphere(1); %s", block);
+        free(block);
+        assert_int_equal(krs_compile_text(text, strlen(text), "a", NULL, &scene), KRS_OK);
+        assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+        assert_int_equal(krs_frame_camera(frame, 0, &read), KRS_OK);
+        assert_int_equal(read.projection, camera.projection);
+        assert_true(apart(read.eye, camera.eye) < 1e-4 && apart(read.target, camera.target) < 1e-4);
+        assert_true(apart(read.up, camera.up) < 1e-4);
+        assert_true(fabs(read.aperture - camera.aperture) < 1e-9);
+        assert_true(i != 1 || fabs(read.height - camera.height) < 1e-4);
+        assert_true(i == 1 || fabs(read.fov - camera.fov) < 1e-5);
+        krs_frame_free(frame);
+        krs_scene_free(scene);
+    }
+}
+
+static void write_file(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static void assert_file(const char *path, const char *meant)
+{
+    char  text[1000] = "";
+    FILE *file       = fopen(path, "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    assert_string_equal(text, meant);
+}
+
+/* What stands around the defaults stays. */
+#define TEXT(r, turn, tint, size)                                    \
+    "// r = 1;\nparam r=" r " in [0, 9]; /* r */ param turn = " turn \
+    " in [0deg, 90deg];\n\tparam tint = " tint "  ;\n"               \
+    "param size = " size "; show box(size).rotate([0, 1, 0], turn).paint(tint);show sphere(r);\n"
+
+static void defaults_are_written(void **state)
+{
+    (void)state;
+    char             path[] = "/tmp/krs-live-XXXXXX";
+    const int        fd     = mkstemp(path);
+    const char      *before = TEXT("1 + 1", "30deg", "#ff8000", "[1, 2, 3]");
+    const KrsOptions with   = {0};
+    double           values[4][4];
+    size_t           written;
+    assert_true(fd >= 0);
+    close(fd);
+    write_file(path, before);
+    Document *document = document_new(path, &with);
+    assert_int_equal(document_read(document), KRS_OK);
+    Version  *version = document_version(document);
+    KrsScene *scene   = version_scene(version);
+    for (size_t i = 0; i < 4; i++) {
+        KrsParameter parameter;
+        assert_int_equal(krs_parameter(scene, i, &parameter), KRS_OK);
+        memcpy(values[i], parameter.value, sizeof parameter.value);
+    }
+    assert_int_equal(write_defaults(scene, (const double(*)[4])values, &written), KRS_OK);
+    assert_int_equal(written, 0);
+    for (size_t i = 0; i < 4; i++) {
+        KrsParameter parameter;
+        krs_parameter(scene, i, &parameter);
+        values[i][0] = strcmp(parameter.name, "r") == 0      ? 2.5
+                       : strcmp(parameter.name, "turn") == 0 ? M_PI / 4
+                       : strcmp(parameter.name, "tint") == 0 ? 0
+                                                             : 1.5;
+    }
+    assert_int_equal(write_defaults(scene, (const double(*)[4])values, &written), KRS_OK);
+    assert_int_equal(written, 4);
+    assert_file(path, TEXT("2.5", "45deg", "#008000", "[1.5, 2, 3]"));
+    assert_int_equal(write_defaults(scene, (const double(*)[4])values, &written), KRS_BAD_ARGUMENT);
+    assert_file(path, TEXT("2.5", "45deg", "#008000", "[1.5, 2, 3]"));
+    assert_true(document_changed(document));
+    version_release(version);
+    document_free(document);
+    remove(path);
+}
+
+/* A mistake leaves the version before, and what was said of it. */
+static void mistakes_leave_the_version(void **state)
+{
+    (void)state;
+    char             path[] = "/tmp/krs-live-XXXXXX";
+    const int        fd     = mkstemp(path);
+    const KrsOptions with   = {0};
+    assert_true(fd >= 0);
+    close(fd);
+    write_file(path, "show sphere(1);");
+    Document *document = document_new(path, &with);
+    assert_int_equal(document_read(document), KRS_OK);
+    Version *first = document_version(document);
+    write_file(path, "\nshow spere(1);");
+    assert_int_equal(document_read(document), KRS_BAD_SCENE);
+    Version *same    = document_version(document);
+    Remarks  remarks = document_remarks(document);
+    assert_ptr_equal(same, first);
+    assert_int_equal(remarks.errors, 1);
+    assert_int_equal(remarks.items[0].line, 2);
+    remarks_free(&remarks);
+    write_file(path, "show sphere(2);");
+    assert_int_equal(document_read(document), KRS_OK);
+    Version *second = document_version(document);
+    remarks         = document_remarks(document);
+    assert_int_equal(remarks.count, 0);
+    assert_true(version_number(second) > version_number(first));
+    remarks_free(&remarks);
+    document_free(document); /* versions that are held stay */
+    assert_int_equal(krs_component_count(version_scene(first)), 1);
+    version_release(first);
+    version_release(same);
+    version_release(second);
+    remove(path);
+}
+
+static void gestures_are_undone(void **state)
+{
+    (void)state;
+    History *history = history_new();
+    View     view    = {.camera = start};
+    history_note(history, &view, 0);
+    for (int i = 1; i <= 5; i++) { /* one gesture */
+        view.camera.eye[0] = 3 + i;
+        history_note(history, &view, 10 + 0.1 * i);
+    }
+    view.camera.eye[0] = 20;
+    history_note(history, &view, 30);
+    assert_true(history_undo(history, &view) && view.camera.eye[0] == 8);
+    assert_true(history_undo(history, &view) && view.camera.eye[0] == 3);
+    assert_false(history_undo(history, &view));
+    assert_true(history_redo(history, &view) && view.camera.eye[0] == 8);
+    view.camera.eye[0] = 30;
+    history_note(history, &view, 40);
+    assert_false(history_redo(history, &view)); /* that was another branch */
+    assert_true(history_undo(history, &view) && view.camera.eye[0] == 8);
+    for (int i = 0; i < 1000; i++)
+        history_note(history, &view, 100 + 10 * i);
+    history_free(history);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(turns_keep_the_target),
+        cmocka_unit_test(what_is_grabbed_stays_under_the_mouse),
+        cmocka_unit_test(boxes_are_framed),
+        cmocka_unit_test(cameras_are_written),
+        cmocka_unit_test(defaults_are_written),
+        cmocka_unit_test(mistakes_leave_the_version),
+        cmocka_unit_test(gestures_are_undone),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
