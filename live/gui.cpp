@@ -171,7 +171,7 @@ void gui_panel(const char *name, GuiCorner corner, float below, float width, boo
     place(corner, below);
     ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width > 0 ? width : size.x, most));
     if (quiet)
-        ImGui::SetNextWindowBgAlpha(0.55f);
+        ImGui::SetNextWindowBgAlpha(0.72f);
     ImGui::Begin(name, nullptr, flags);
 }
 
