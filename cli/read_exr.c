@@ -1,16 +1,16 @@
 /*
- * read_exr.c: reads channels of scanline EXR files with OpenEXRCore.
+ * read_exr.c: reads channels of scanline EXR files, as another renderer has named them.
  *
  * Files come from anywhere.  The library checks what it decodes; the sizes are checked here.
  */
 #include "cli/read_exr.h"
 
-#include <OpenEXR/openexr.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/console.h"
+#include "compiler/base/exr_chunks.h"
 
 enum { MOST_WANTED = 4 };
 
@@ -31,12 +31,6 @@ static KrsStatus say_result(const Reading *r, exr_result_t result)
 {
     say("cannot read `%s`: %s", r->path, exr_get_default_error_message(result));
     return result == EXR_ERR_OUT_OF_MEMORY ? KRS_OUT_OF_MEMORY : KRS_IO_ERROR;
-}
-
-/* Errors are also results. */
-static void ignore_message(exr_const_context_t context, exr_result_t code, const char *message)
-{
-    (void)context, (void)code, (void)message;
 }
 
 /* The number of the letter that a channel has: "Z", "depth.Z"; the count of letters: none. */
@@ -66,9 +60,10 @@ static void choose_channels(const Reading *r, const exr_decode_pipeline_t *pipel
 }
 
 /* Tells the library where the lines of a chunk go; channels that nobody wants go nowhere. */
-static void aim_channels(Reading *r, exr_decode_pipeline_t *pipeline)
+static void aim_channels(void *user, exr_decode_pipeline_t *pipeline)
 {
-    int chosen[MOST_WANTED];
+    Reading *r = user;
+    int      chosen[MOST_WANTED];
     choose_channels(r, pipeline, chosen);
     for (int c = 0; c < pipeline->channel_count; c++)
         pipeline->channels[c].decode_to_ptr = NULL;
@@ -85,11 +80,12 @@ static void aim_channels(Reading *r, exr_decode_pipeline_t *pipeline)
     }
 }
 
-/* Copies a chunk, whose first line is `y`, to the display window. */
-static void take_lines(Reading *r, int y, int count)
+/* Copies a chunk to the display window. */
+static void take_lines(void *user, const exr_decode_pipeline_t *pipeline)
 {
-    const int width = r->data.max.x - r->data.min.x + 1;
-    for (int line = 0; line < count; line++)
+    Reading  *r     = user;
+    const int width = r->data.max.x - r->data.min.x + 1, y = pipeline->chunk.start_y;
+    for (int line = 0; line < pipeline->chunk.height; line++)
         for (int column = 0; column < width; column++) {
             int64_t x   = (int64_t)r->data.min.x + column - r->display.min.x;
             int64_t row = (int64_t)y + line - r->display.min.y;
@@ -104,40 +100,18 @@ static void take_lines(Reading *r, int y, int count)
         }
 }
 
-static exr_result_t read_chunk(Reading *r, int y, exr_decode_pipeline_t *pipeline)
-{
-    exr_chunk_info_t chunk;
-    const bool       first  = y == r->data.min.y;
-    exr_result_t     result = exr_read_scanline_chunk_info(r->context, 0, y, &chunk);
-    if (result == EXR_ERR_SUCCESS)
-        result = first ? exr_decoding_initialize(r->context, 0, &chunk, pipeline)
-                       : exr_decoding_update(r->context, 0, &chunk, pipeline);
-    if (result != EXR_ERR_SUCCESS)
-        return result;
-    aim_channels(r, pipeline);
-    if (first)
-        result = exr_decoding_choose_default_routines(r->context, 0, pipeline);
-    if (result == EXR_ERR_SUCCESS)
-        result = exr_decoding_run(r->context, 0, pipeline);
-    if (result == EXR_ERR_SUCCESS)
-        take_lines(r, y, chunk.height);
-    return result;
-}
-
 static KrsStatus read_chunks(Reading *r)
 {
-    exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
-    const size_t          width    = (size_t)(r->data.max.x - r->data.min.x) + 1;
-    int32_t               lines    = 0;
-    exr_result_t          result   = exr_get_scanlines_per_chunk(r->context, 0, &lines);
+    const ExrChunks chunks = {r->context, r->data, aim_channels, take_lines, r};
+    const size_t    width  = (size_t)(r->data.max.x - r->data.min.x) + 1;
+    int32_t         lines  = 0;
+    exr_result_t    result = exr_get_scanlines_per_chunk(r->context, 0, &lines);
     if (result != EXR_ERR_SUCCESS)
         return say_result(r, result);
     for (size_t i = 0; i < r->count; i++)
         if (!(r->lines[i] = calloc(width * (size_t)lines, sizeof(float))))
             return say_status(KRS_OUT_OF_MEMORY, r->path);
-    for (int64_t y = r->data.min.y; y <= r->data.max.y && result == EXR_ERR_SUCCESS; y += lines)
-        result = read_chunk(r, (int)y, &pipeline);
-    exr_decoding_destroy(r->context, &pipeline);
+    result = exr_chunks_read(&chunks, lines);
     return result == EXR_ERR_SUCCESS ? KRS_OK : say_result(r, result);
 }
 
@@ -175,9 +149,8 @@ static KrsStatus check_layout(const Options *options, Reading *r, float otherwis
 
 static KrsStatus read_picture(const Options *options, Reading *r, float otherwise)
 {
-    exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    setup.error_handler_fn          = ignore_message;
-    exr_result_t result             = exr_start_read(&r->context, r->path, &setup);
+    exr_context_initializer_t setup  = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    exr_result_t              result = exr_chunks_open(&r->context, r->path, setup);
     if (result != EXR_ERR_SUCCESS)
         return say_result(r, result);
     KrsStatus status = check_layout(options, r, otherwise);

@@ -4,10 +4,10 @@
  * The library has memory of its own, so the arena, which may leave by longjmp, is asked for memory
  * only while no file is open: a first look finds the size, a second one reads the pixels.
  */
-#include <OpenEXR/openexr.h>
 #include <string.h>
 
 #include "compiler/base/srgb.h"
+#include "compiler/base/exr_chunks.h"
 #include "compiler/image/image.h"
 
 typedef struct ExrReader {
@@ -38,11 +38,6 @@ static int64_t size_callback(exr_const_context_t context, void *user)
     return (int64_t)((const ExrReader *)user)->length;
 }
 
-static void ignore_message(exr_const_context_t context, exr_result_t code, const char *message)
-{
-    (void)context, (void)code, (void)message;
-}
-
 static bool exr_try(ExrReader *reader, exr_result_t result)
 {
     return result == EXR_ERR_SUCCESS ||
@@ -55,9 +50,7 @@ static bool begin(ExrReader *reader)
     options.user_data                 = reader;
     options.read_fn                   = read_callback;
     options.size_fn                   = size_callback;
-    options.error_handler_fn          = ignore_message;
-    reader->context                   = NULL;
-    return exr_try(reader, exr_start_read(&reader->context, "texture", &options));
+    return exr_try(reader, exr_chunks_open(&reader->context, "texture", options));
 }
 
 /* ---- channels ---- */
@@ -127,8 +120,9 @@ static float *lines_of(const ExrReader *reader, int place)
     return reader->planes + plane * (size_t)reader->lines * reader->image->width;
 }
 
-static void place_channels(const ExrReader *reader, exr_decode_pipeline_t *pipeline)
+static void place_channels(void *user, exr_decode_pipeline_t *pipeline)
 {
+    const ExrReader *reader = user;
     for (int c = 0; c < pipeline->channel_count; c++) {
         exr_coding_channel_info_t *channel = &pipeline->channels[c];
         int                        place   = place_of(reader->image->gray, channel->channel_name);
@@ -154,8 +148,9 @@ static void take_channel(const ExrReader *reader, const exr_decode_pipeline_t *p
         to[i * channels] = lines_of(reader, place)[i];
 }
 
-static void take_chunk(const ExrReader *reader, const exr_decode_pipeline_t *pipeline)
+static void take_chunk(void *user, const exr_decode_pipeline_t *pipeline)
 {
+    const ExrReader *reader = user;
     for (int c = 0; c < pipeline->channel_count; c++) {
         int place = place_of(reader->image->gray, pipeline->channels[c].channel_name);
         if (place >= 0)
@@ -163,31 +158,10 @@ static void take_chunk(const ExrReader *reader, const exr_decode_pipeline_t *pip
     }
 }
 
-static bool read_chunk(ExrReader *reader, exr_decode_pipeline_t *pipeline, int y, bool first)
-{
-    exr_chunk_info_t chunk;
-    exr_context_t    context = reader->context;
-    if (!exr_try(reader, exr_read_scanline_chunk_info(context, 0, y, &chunk)) ||
-        !exr_try(reader, first ? exr_decoding_initialize(context, 0, &chunk, pipeline)
-                               : exr_decoding_update(context, 0, &chunk, pipeline)))
-        return false;
-    place_channels(reader, pipeline);
-    if (first && !exr_try(reader, exr_decoding_choose_default_routines(context, 0, pipeline)))
-        return false;
-    if (!exr_try(reader, exr_decoding_run(context, 0, pipeline)))
-        return false;
-    take_chunk(reader, pipeline);
-    return true;
-}
-
 static bool read_pixels(ExrReader *reader)
 {
-    exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
-    bool                  good     = true;
-    for (int64_t y = reader->window.min.y; good && y <= reader->window.max.y; y += reader->lines)
-        good = read_chunk(reader, &pipeline, (int)y, y == reader->window.min.y);
-    exr_decoding_destroy(reader->context, &pipeline);
-    return good;
+    const ExrChunks chunks = {reader->context, reader->window, place_channels, take_chunk, reader};
+    return exr_try(reader, exr_chunks_read(&chunks, reader->lines));
 }
 
 /* Opened again for each of the two looks. */
