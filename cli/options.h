@@ -81,6 +81,12 @@ typedef struct Limits {
     uint64_t pixels, samples;
 } Limits;
 
+/* --within */
+typedef struct WithinBox {
+    bool   given;
+    double low[3], high[3];
+} WithinBox;
+
 /* The path of standard output, which `-o -` is. */
 #define STANDARD_OUTPUT "/dev/stdout"
 

@@ -47,6 +47,7 @@ static const StageInfo stage_info[STAGE_COUNT] = {
     [STAGE_DEVICE]   = {"device", "starting the device", 1, false, false},
     [STAGE_RENDER]   = {"render", "rendering", 2 * DEVICE_PATIENCE, false, true},
     [STAGE_VALIDATE] = {"validate", "validating", 0, false, true},
+    [STAGE_MESH]     = {"mesh", "making the mesh", 0, false, true},
     [STAGE_WRITE]    = {"write", "writing", 0, false, true},
     [STAGE_ANSWER]   = {"answer", "printing the answer", 0, false, false},
     [STAGE_WAIT]     = {"wait", "waiting for changes", 0, false, true},

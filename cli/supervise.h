@@ -18,6 +18,7 @@ typedef enum RunStage {
     STAGE_DEVICE,
     STAGE_RENDER,
     STAGE_VALIDATE,
+    STAGE_MESH,
     STAGE_WRITE,
     STAGE_ANSWER,
     STAGE_WAIT,
@@ -38,8 +39,8 @@ int supervise(Options *options, Work *work);
 /* The following are for the child. */
 
 /* Tells the parent.  For the tests, the environment variable KRS_TEST_CRASH=STAGE makes the
-   process crash on entering a stage (start, compile, shaders, device, render, validate, write,
-   answer, wait); STAGE:9 sends itself that signal instead, STAGE:hang never returns. */
+   process crash on entering a stage (start, compile, shaders, device, render, validate, mesh,
+   write, answer, wait); STAGE:9 sends itself that signal instead, STAGE:hang never returns. */
 void stage_enter(RunStage stage);
 
 /* Tells the parent that the work of this stage goes on: the deadline begins anew. */
@@ -47,8 +48,8 @@ void stage_goes_on(void);
 /* How large what is compiled is, should it take too long: "`a.krs` has 12 bytes". */
 void stage_size(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* Nonzero once the user has asked to stop.  In STAGE_RENDER, STAGE_VALIDATE, STAGE_WRITE and
-   STAGE_WAIT it is for the work to notice; in the others the process just ends. */
+/* Nonzero once the user has asked to stop.  In STAGE_RENDER, STAGE_VALIDATE, STAGE_MESH,
+   STAGE_WRITE and STAGE_WAIT it is for the work to notice; in the others the process just ends. */
 const volatile sig_atomic_t *interrupted(void);
 
 /* Writes an output file by `fill`, in STAGE_WRITE, and says why when it cannot be.  The parent

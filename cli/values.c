@@ -137,6 +137,21 @@ bool read_setting(Options *options, const char *word)
     return done;
 }
 
+bool read_within(const char *word, WithinBox *box)
+{
+    double numbers[6];
+    for (int i = 0; i < 6; i++) {
+        if (!read_number_prefix(word, &word, &numbers[i]) ||
+            fabs(numbers[i]) > KRS_MOST_COORDINATE || *word != (i < 5 ? ',' : '\0'))
+            return false;
+        word += i < 5;
+    }
+    box->given = true;
+    memcpy(box->low, numbers, sizeof box->low);
+    memcpy(box->high, numbers + 3, sizeof box->high);
+    return box->low[0] < box->high[0] && box->low[1] < box->high[1] && box->low[2] < box->high[2];
+}
+
 /* What the library would refuse is refused here. */
 bool read_zone(Options *options, const char *word)
 {

@@ -114,6 +114,18 @@ void frame_free(KrsFrame *frame)
     frame_release(scene, frame);
 }
 
+KrsStatus frame_copy_of(const KrsFrame *frame, KrsFrame **copy)
+{
+    KrsStatus status = frame_new(frame->scene, copy);
+    if (status != KRS_OK)
+        return status;
+    memcpy((*copy)->parameters, frame->parameters,
+           frame->scene->program.parameter_slots * sizeof *frame->parameters);
+    memcpy((*copy)->zones, frame->zones, sizeof frame->zones);
+    (*copy)->zone_count = frame->zone_count;
+    return KRS_OK;
+}
+
 void frame_refresh(KrsFrame *frame)
 {
     if (frame->fresh)

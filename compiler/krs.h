@@ -403,6 +403,49 @@ KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, Kr
 KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
                       size_t count, double farthest, double tolerance, KrsHit *hits);
 
+/*
+ * Meshes: triangles near the surface.
+ *
+ * The mesh is closed, each edge is in two triangles with opposite directions, and no two triangles
+ * cross.  Triangles are counter-clockwise seen from outside.  Edges and corners of the surface are kept.
+ */
+typedef struct KrsMeshOptions {
+    double error; /* largest distance between mesh and surface; 0: a 200th of the longest side of
+                            the box */
+    size_t component; /* from 1; 0: all */
+    bool   within;    /* only what is in the box from `low` to `high`, for scenes without an end */
+    double low[3], high[3];
+    size_t memory_limit; /* bytes; 0: 2 GiB */
+    /* Told now and then which part of the work is done, as far as one can say; false: stop, with
+       KRS_INTERRUPTED.  May be NULL. */
+    bool (*go_on)(void *user, double fraction);
+    void *user;
+} KrsMeshOptions;
+
+typedef struct KrsMesh {
+    double (*vertices)[3];
+    size_t vertex_count;
+    uint32_t (*triangles)[3];
+    size_t triangle_count;
+    double
+        error; /* largest distance, of a point of either from the nearest of the other, as far as it is
+                     proven */
+    /* Places where the surface may be farther from the mesh than that: what is thinner than the error,
+       or solids that touch.  The first of them is at `unresolved_at`. */
+    size_t unresolved;
+    double unresolved_at[3];
+    bool   estimate; /* of a component nothing is proven, as of its distance */
+} KrsMesh;
+
+/*
+ * Makes a mesh of what a frame shows.  What is thicker than the error everywhere is never missed.
+ * On KRS_OK the caller frees *mesh with krs_mesh_free; it may have no triangles.  KRS_BAD_ARGUMENT:
+ * there is no such component; what is meshed has no end, or is no solid (surfaces without
+ * thickness); or the error is below a 500,000th of the size.
+ */
+KrsStatus krs_mesh(KrsFrame *frame, const KrsMeshOptions *options, KrsMesh **mesh);
+void      krs_mesh_free(KrsMesh *mesh);
+
 #ifdef __cplusplus
 }
 #endif

@@ -198,6 +198,8 @@ KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view);
 KrsStatus frame_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
                         size_t count, double farthest, double tolerance, KrsHit *hits);
 void      scene_free(KrsScene *scene);
+/* A frame of the same scene with the same parameters, time and zones. */
+KrsStatus frame_copy_of(const KrsFrame *frame, KrsFrame **copy);
 
 /* The GLSL of all functions that the scene has in a variant, without comments, so that it says
    nothing of names and lines. */
@@ -205,6 +207,9 @@ char *scene_plain_text(const KrsScene *scene, const KrsVariant *variant, Arena *
 
 /* Evaluates the nodes that depend on parameters only, unless their values are up to date. */
 void frame_refresh(KrsFrame *frame);
+/* The distance of a component, counted from 1, or of all (0), cut by the zones; frame_refresh was
+   called before. */
+double frame_component_distance(KrsFrame *frame, size_t component, const double point[3]);
 /* A value of the frame, used by points or the view, that is not finite; NODE_NONE: there is
    none. */
 Node frame_infinite(KrsFrame *frame);

@@ -58,6 +58,16 @@ static double distance_at(KrsFrame *frame, const double point[3], uint32_t *near
     return distance_by(frame, &frame->scene->distance, point, nearest);
 }
 
+double frame_component_distance(KrsFrame *frame, size_t component, const double point[3])
+{
+    uint32_t nearest  = 0;
+    double   distance = distance_at(frame, point, &nearest);
+    if (component == 0)
+        return distance;
+    return fmax(frame->values[distance_root(&frame->scene->roots, component - 1)].v[0],
+                zone_depth(frame, point));
+}
+
 /* Far from surfaces, short steps cost less than exact ones. */
 static Tape march_tape(const KrsFrame *frame, const Tape *tape)
 {

@@ -7,7 +7,7 @@
 set -u
 cd "$(dirname "$0")/.." || exit 1
 layers="compiler/base compiler/image compiler/outline compiler/graph compiler/shape compiler/lower compiler/family compiler/front
-        compiler/eval compiler/print compiler/print/glsl compiler/target compiler
+        compiler/eval compiler/print compiler/print/glsl compiler/target compiler compiler/mesh
         runtime/device runtime/shared runtime/tracer runtime/integrators runtime/film runtime/display
         runtime/writer runtime live cli"
 api="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h

@@ -1,0 +1,187 @@
+/* bvh.c: boxes of triangles, halved at the middle of their centres. */
+#include "compiler/mesh/bvh.h"
+
+#include <string.h>
+
+#include "compiler/base/vec.h"
+
+enum { FEW = 4, MOST_DEPTH = 64 };
+
+static void triangle_corners(const Bvh *bvh, uint32_t triangle, double corners[3][3])
+{
+    for (int i = 0; i < 3; i++)
+        memcpy(corners[i], bvh->vertices[bvh->triangles[triangle][i]], sizeof corners[i]);
+}
+
+static double center_of(const Bvh *bvh, uint32_t triangle, int axis)
+{
+    const uint32_t *corners = bvh->triangles[triangle];
+    return bvh->vertices[corners[0]][axis] + bvh->vertices[corners[1]][axis] +
+           bvh->vertices[corners[2]][axis];
+}
+
+static void find_box(const Bvh *bvh, BvhNode *node, uint32_t first, uint32_t count)
+{
+    for (int k = 0; k < 3; k++) {
+        node->low[k]  = INFINITY;
+        node->high[k] = -INFINITY;
+    }
+    for (uint32_t i = first; i < first + count; i++)
+        for (int c = 0; c < 3; c++)
+            for (int k = 0; k < 3; k++) {
+                double at     = bvh->vertices[bvh->triangles[bvh->order[i]][c]][k];
+                node->low[k]  = fmin(node->low[k], at);
+                node->high[k] = fmax(node->high[k], at);
+            }
+}
+
+/* Brings those whose centre is below the middle to the front; returns how many. */
+static uint32_t divide(const Bvh *bvh, const BvhNode *node, uint32_t first, uint32_t count)
+{
+    int axis = 0;
+    for (int k = 1; k < 3; k++)
+        if (node->high[k] - node->low[k] > node->high[axis] - node->low[axis])
+            axis = k;
+    double   middle = 1.5 * (node->low[axis] + node->high[axis]);
+    uint32_t front  = 0;
+    for (uint32_t i = first; i < first + count; i++)
+        if (center_of(bvh, bvh->order[i], axis) < middle) {
+            uint32_t swap               = bvh->order[i];
+            bvh->order[i]               = bvh->order[first + front];
+            bvh->order[first + front++] = swap;
+        }
+    return front == 0 || front == count ? count / 2 : front;
+}
+
+static void build(Bvh *bvh, uint32_t first, uint32_t count, int depth)
+{
+    BvhNode *node = &bvh->nodes[bvh->node_count++];
+    find_box(bvh, node, first, count);
+    node->first = first;
+    node->count = count;
+    if (count <= FEW || depth == MOST_DEPTH)
+        return;
+    uint32_t front = divide(bvh, node, first, count);
+    node->count    = 0;
+    build(bvh, first, front, depth + 1);
+    node->second = (uint32_t)bvh->node_count;
+    build(bvh, first + front, count - front, depth + 1);
+}
+
+void bvh_new(Bvh *bvh, const double (*vertices)[3], const uint32_t (*triangles)[3], size_t count,
+             Arena *arena)
+{
+    *bvh = (Bvh){.vertices = vertices, .triangles = triangles};
+    if (count == 0)
+        return;
+    bvh->order = arena_new_array(arena, uint32_t, count);
+    bvh->nodes = arena_new_array(arena, BvhNode, 2 * count);
+    for (size_t i = 0; i < count; i++)
+        bvh->order[i] = (uint32_t)i;
+    build(bvh, 0, (uint32_t)count, 0);
+}
+
+void bvh_free(Bvh *bvh, size_t count, Arena *arena)
+{
+    if (count == 0)
+        return;
+    arena_release(arena, bvh->order, count * sizeof *bvh->order);
+    arena_release(arena, bvh->nodes, 2 * count * sizeof *bvh->nodes);
+}
+
+static double square_to_box(const BvhNode *node, const double point[3])
+{
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        double excess = fmax(fmax(node->low[k] - point[k], point[k] - node->high[k]), 0);
+        square += excess * excess;
+    }
+    return square;
+}
+
+static bool visit_node(const Bvh *bvh, const BvhNode *node, const double point[3], double radius,
+                       BvhVisit *visit, void *user)
+{
+    for (uint32_t i = node->first; i < node->first + node->count; i++) {
+        double corners[3][3], nearest[3];
+        triangle_corners(bvh, bvh->order[i], corners);
+        triangle_nearest((const double(*)[3])corners, point, nearest);
+        if (distance3(nearest, point) <= radius &&
+            !visit(user, bvh->order[i], (const double(*)[3])corners))
+            return false;
+    }
+    return true;
+}
+
+bool bvh_visit(const Bvh *bvh, const double point[3], double radius, BvhVisit *visit, void *user)
+{
+    uint32_t waiting[MOST_DEPTH + 2], count = 0;
+    if (bvh->node_count > 0)
+        waiting[count++] = 0;
+    while (count > 0) {
+        uint32_t       number = waiting[--count];
+        const BvhNode *node   = &bvh->nodes[number];
+        if (square_to_box(node, point) > radius * radius)
+            continue;
+        if (node->count == 0) {
+            waiting[count++] = node->second;
+            waiting[count++] = number + 1;
+        } else if (!visit_node(bvh, node, point, radius, visit, user))
+            return false;
+    }
+    return true;
+}
+
+static bool stop(void *user, uint32_t triangle, const double corners[3][3])
+{
+    (void)user, (void)triangle, (void)corners;
+    return false;
+}
+
+bool bvh_is_near(const Bvh *bvh, const double point[3], double radius)
+{
+    return !bvh_visit(bvh, point, radius, stop, NULL);
+}
+
+/* The nearest point of a segment. */
+static void segment_nearest(const double a[3], const double b[3], const double point[3],
+                            double nearest[3])
+{
+    double along[3], offset[3];
+    add_scaled3(along, b, -1, a);
+    add_scaled3(offset, point, -1, a);
+    double square = dot3(along, along);
+    double part   = square > 0 ? fmin(fmax(dot3(offset, along) / square, 0), 1) : 0;
+    add_scaled3(nearest, a, part, along);
+}
+
+static void nearest_of_edges(const double corners[3][3], const double point[3], double nearest[3])
+{
+    double least = INFINITY;
+    for (int i = 0; i < 3; i++) {
+        double candidate[3];
+        segment_nearest(corners[i], corners[(i + 1) % 3], point, candidate);
+        if (distance3(candidate, point) < least) {
+            least = distance3(candidate, point);
+            memcpy(nearest, candidate, sizeof candidate);
+        }
+    }
+}
+
+void triangle_nearest(const double corners[3][3], const double point[3], double nearest[3])
+{
+    double edges[2][3], normal[3], offset[3], cross[3];
+    add_scaled3(edges[0], corners[1], -1, corners[0]);
+    add_scaled3(edges[1], corners[2], -1, corners[0]);
+    add_scaled3(offset, point, -1, corners[0]);
+    cross3(edges[0], edges[1], normal);
+    double square = dot3(normal, normal);
+    cross3(offset, edges[1], cross);
+    double first = dot3(cross, normal);
+    cross3(edges[0], offset, cross);
+    double second = dot3(cross, normal);
+    if (square > 0 && first >= 0 && second >= 0 && first + second <= square)
+        add_scaled3(nearest, point, -dot3(offset, normal) / square, normal);
+    else
+        nearest_of_edges(corners, point, nearest);
+}

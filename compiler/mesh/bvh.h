@@ -1,0 +1,42 @@
+/*
+ * bvh.h: triangles by where they are: a tree of boxes.
+ */
+#ifndef KRS_MESH_BVH_H
+#define KRS_MESH_BVH_H
+
+#include "compiler/base/arena.h"
+
+#include <stdint.h>
+
+typedef struct BvhNode {
+    double   low[3], high[3];
+    uint32_t first, count; /* of its triangles in `order`; `count` 0: it has two nodes, the first is
+                              next in the list */
+    uint32_t second;
+} BvhNode;
+
+typedef struct Bvh {
+    const double (*vertices)[3];
+    const uint32_t (*triangles)[3];
+    uint32_t *order;
+    BvhNode  *nodes;
+    size_t    node_count;
+} Bvh;
+
+/* Memory for a tree of so many triangles is in the arena. */
+void bvh_new(Bvh *bvh, const double (*vertices)[3], const uint32_t (*triangles)[3], size_t count,
+             Arena *arena);
+/* Frees what is large of it. */
+void bvh_free(Bvh *bvh, size_t count, Arena *arena);
+
+/* Calls `visit` for the triangles that come within the radius of a point, until one returns false;
+   whether none did. */
+typedef bool BvhVisit(void *user, uint32_t triangle, const double corners[3][3]);
+bool bvh_visit(const Bvh *bvh, const double point[3], double radius, BvhVisit *visit, void *user);
+/* Whether a triangle comes within the radius of a point. */
+bool bvh_is_near(const Bvh *bvh, const double point[3], double radius);
+
+/* The nearest point of a triangle. */
+void triangle_nearest(const double corners[3][3], const double point[3], double nearest[3]);
+
+#endif

@@ -1,0 +1,410 @@
+/* contour.c: vertices on edges, in faces and inside, and the triangles between them. */
+#include "compiler/mesh/contour.h"
+
+#include <string.h>
+
+#include "compiler/base/parallel.h"
+#include "compiler/base/vec.h"
+#include "compiler/mesh/quadric.h"
+
+/* Parts of an edge at its ends where no vertex is, so that vertices of other edges are elsewhere;
+   and the same for vertices in faces and inside. */
+static const double END_OF_EDGE = 1e-4, END_OF_BODY = 0.02;
+/* Part of the error by which a line or a triangle may miss the surface without a further vertex. */
+static const double STRAIGHT = 0.1;
+
+/* ---- distances of points ---- */
+
+static void find_distances(void *task, size_t part, size_t parts)
+{
+    const Contour *contour = task;
+    size_t         count   = contour->tets->points.count - contour->known_points;
+    for (size_t i = part_begin(count, part, parts); i < part_begin(count, part + 1, parts); i++) {
+        double    position[3];
+        TetPoint *point = &contour->tets->points.items[contour->known_points + i];
+        tets_position(contour->tets, (uint32_t)(contour->known_points + i), position);
+        point->distance = field_distance(&contour->fields[part], position);
+    }
+}
+
+void contour_distances(Contour *contour)
+{
+    run_in_parallel(find_distances, contour);
+    contour->known_points = contour->tets->points.count;
+}
+
+/* ---- vertices on edges ---- */
+
+/* Where the sign changes, by false position that halves an end that stays (Illinois). */
+static double find_root(const MeshField *field, const double from[3], const double along[3],
+                        double at_from, double at_to, double enough)
+{
+    enum { MOST_ROUNDS = 60 };
+    double low = 0, high = 1, middle = 0;
+    int    side = 0;
+    for (int i = 0; i < MOST_ROUNDS && high - low > enough; i++) {
+        double point[3];
+        middle = isfinite(at_from) && isfinite(at_to)
+                     ? low + (high - low) * at_from / (at_from - at_to)
+                     : 0.5 * (low + high);
+        if (i % 4 == 3)
+            middle = 0.5 * (low + high);
+        add_scaled3(point, from, middle, along);
+        double value = field_distance(field, point);
+        if (value == 0)
+            return middle;
+        if (value < 0) {
+            low     = middle;
+            at_from = value;
+            at_to *= side < 0 ? 0.5 : 1;
+            side = -1;
+        } else {
+            high  = middle;
+            at_to = value;
+            at_from *= side > 0 ? 0.5 : 1;
+            side = 1;
+        }
+    }
+    return 0.5 * (low + high);
+}
+
+static void find_crossing(const Contour *contour, const MeshField *field, Crossing *crossing)
+{
+    const TetPoint *points = contour->tets->points.items;
+    double          from[3], along[3];
+    tets_position(contour->tets, crossing->from, from);
+    tets_position(contour->tets, crossing->to, along);
+    add_scaled3(along, along, -1, from);
+    double length = length3(along);
+    double part   = find_root(field, from, along, points[crossing->from].distance,
+                              points[crossing->to].distance, 1e-4 * contour->error / length);
+    part          = fmin(fmax(part, END_OF_EDGE), 1 - END_OF_EDGE);
+    add_scaled3(crossing->at, from, part, along);
+    if (!field_normal(field, crossing->at, 1e-3 * contour->error, crossing->normal))
+        add_scaled3(crossing->normal, crossing->normal, 1 / length, along);
+}
+
+static void find_crossings(void *task, size_t part, size_t parts)
+{
+    const Contour *contour = task;
+    size_t         count   = contour->crossings.count - contour->known_crossings;
+    for (size_t i = part_begin(count, part, parts); i < part_begin(count, part + 1, parts); i++)
+        find_crossing(contour, &contour->fields[part],
+                      &contour->crossings.items[contour->known_crossings + i]);
+}
+
+/* ---- vertices in faces ---- */
+
+/* Moves a point of a convex body towards one inside of it, so far that all its weights of the
+   corners are at least END_OF_BODY. */
+static void keep_inside(const double *weights, const double *inner, int count, double point[3],
+                        const double center[3])
+{
+    double share = 1;
+    for (int i = 0; i < count; i++)
+        if (weights[i] < END_OF_BODY)
+            share = fmin(share, fmax(0, (inner[i] - END_OF_BODY) / (inner[i] - weights[i])));
+    for (int k = 0; k < 3; k++)
+        point[k] = center[k] + share * (point[k] - center[k]);
+}
+
+/* Solves for the point with these products with three vectors; false: they are in a plane. */
+static bool solve3(const double rows[3][3], const double right[3], double point[3])
+{
+    double cross[3][3];
+    for (int i = 0; i < 3; i++)
+        cross3(rows[(i + 1) % 3], rows[(i + 2) % 3], cross[i]);
+    double volume = dot3(rows[0], cross[0]);
+    if (fabs(volume) < 1e-3)
+        return false;
+    for (int k = 0; k < 3; k++)
+        point[k] = (right[0] * cross[0][k] + right[1] * cross[1][k] + right[2] * cross[2][k]) /
+                   volume;
+    return true;
+}
+
+/* Areas of the parts of a triangle around a point of its plane, over all of it. */
+static void face_weights(const double corners[3][3], const double normal[3], const double point[3],
+                         double weights[3])
+{
+    double sum = 0;
+    for (int i = 0; i < 3; i++) {
+        double edge[3], to_point[3], product[3];
+        add_scaled3(edge, corners[(i + 2) % 3], -1, corners[(i + 1) % 3]);
+        add_scaled3(to_point, point, -1, corners[(i + 1) % 3]);
+        cross3(edge, to_point, product);
+        weights[i] = dot3(product, normal);
+        sum += weights[i];
+    }
+    for (int i = 0; i < 3; i++)
+        weights[i] /= sum;
+}
+
+/* Where the surface's planes at both crossings meet the face. */
+static void find_line(const Contour *contour, const MeshField *field, FaceLine *line)
+{
+    const Crossing *a = &contour->crossings.items[line->crossings[0]];
+    const Crossing *b = &contour->crossings.items[line->crossings[1]];
+    double          corners[3][3], edges[2][3], middle[3], rows[3][3], weights[3], inner[3];
+    for (int i = 0; i < 3; i++) {
+        tets_position(contour->tets, line->points[i], corners[i]);
+        middle[i] = 0.5 * (a->at[i] + b->at[i]);
+    }
+    double missed = fabs(field_distance(field, middle));
+    if (missed <= STRAIGHT * contour->error)
+        return;
+    add_scaled3(edges[0], corners[1], -1, corners[0]);
+    add_scaled3(edges[1], corners[2], -1, corners[0]);
+    cross3(edges[0], edges[1], rows[2]);
+    normalize3(rows[2]);
+    memcpy(rows[0], a->normal, sizeof rows[0]);
+    memcpy(rows[1], b->normal, sizeof rows[1]);
+    double right[3] = {dot3(rows[0], a->at), dot3(rows[1], b->at), dot3(rows[2], corners[0])};
+    if (!solve3((const double(*)[3])rows, right, line->at))
+        return;
+    face_weights((const double(*)[3])corners, rows[2], line->at, weights);
+    face_weights((const double(*)[3])corners, rows[2], middle, inner);
+    keep_inside(weights, inner, 3, line->at, middle);
+    line->bent = fabs(field_distance(field, line->at)) < 0.5 * missed;
+}
+
+static void find_lines(void *task, size_t part, size_t parts)
+{
+    const Contour *contour = task;
+    size_t         count   = contour->lines.count - contour->known_lines;
+    for (size_t i = part_begin(count, part, parts); i < part_begin(count, part + 1, parts); i++)
+        find_line(contour, &contour->fields[part], &contour->lines.items[contour->known_lines + i]);
+}
+
+/* ---- vertices inside ---- */
+
+static void tet_weights(const double corners[4][3], const double point[3], double weights[4])
+{
+    double edges[3][3], offset[3], cross[3];
+    for (int i = 0; i < 3; i++)
+        add_scaled3(edges[i], corners[i + 1], -1, corners[0]);
+    add_scaled3(offset, point, -1, corners[0]);
+    weights[0] = 1;
+    for (int i = 0; i < 3; i++) {
+        cross3(edges[(i + 1) % 3], edges[(i + 2) % 3], cross);
+        weights[i + 1] = dot3(offset, cross) / dot3(edges[i], cross);
+        weights[0] -= weights[i + 1];
+    }
+}
+
+static void find_apex(const Contour *contour, const MeshField *field, Patch *patch)
+{
+    double corners[4][3], points[4][3], normals[4][3], middle[3] = {0, 0, 0};
+    double weights[4], inner[4];
+    patch->fan = false;
+    for (uint32_t i = 0; i < patch->corner_count; i++) {
+        const Crossing *crossing = &contour->crossings.items[patch->crossings[i]];
+        memcpy(points[i], crossing->at, sizeof points[i]);
+        memcpy(normals[i], crossing->normal, sizeof normals[i]);
+        add_scaled3(middle, middle, 1.0 / patch->corner_count, points[i]);
+        patch->fan = patch->fan || contour->lines.items[patch->lines[i]].bent;
+    }
+    double missed = fabs(field_distance(field, middle));
+    if (!patch->fan && missed <= STRAIGHT * contour->error)
+        return;
+    tets_corners(contour->tets, &contour->tets->list.items[patch->tet], corners);
+    quadric_point((const double(*)[3])points, (const double(*)[3])normals, patch->corner_count,
+                  patch->apex);
+    tet_weights((const double(*)[3])corners, patch->apex, weights);
+    tet_weights((const double(*)[3])corners, middle, inner);
+    keep_inside(weights, inner, 4, patch->apex, middle);
+    if (fabs(field_distance(field, patch->apex)) < 0.5 * missed)
+        patch->fan = true;
+    else
+        memcpy(patch->apex, middle, sizeof middle);
+}
+
+static void find_apexes(void *task, size_t part, size_t parts)
+{
+    const Contour *contour = task;
+    size_t         count   = contour->patches.count;
+    for (size_t i = part_begin(count, part, parts); i < part_begin(count, part + 1, parts); i++)
+        find_apex(contour, &contour->fields[part], &contour->patches.items[i]);
+}
+
+/* ---- which tetrahedra have what ---- */
+
+static uint32_t take_crossing(Contour *contour, uint32_t inside, uint32_t outside)
+{
+    uint32_t fresh  = (uint32_t)contour->crossings.count;
+    uint32_t number = numbering_take(&contour->crossing_numbers, edge_key(inside, outside), fresh);
+    if (number == fresh) {
+        Crossing crossing = {.from = inside, .to = outside};
+        array_push_large(contour->arena, &contour->crossings, crossing);
+    }
+    return number;
+}
+
+/* The line between two crossings on one face. */
+static uint32_t take_line(Contour *contour, uint32_t first, uint32_t second)
+{
+    const Crossing *a = &contour->crossings.items[first], *b = &contour->crossings.items[second];
+    uint32_t        third  = a->from == b->from ? b->to : b->from;
+    uint32_t        fresh  = (uint32_t)contour->lines.count;
+    uint32_t        number = numbering_take(&contour->line_numbers, face_key(a->from, a->to, third),
+                                            fresh);
+    if (number == fresh) {
+        FaceLine line = {.points = {a->from, a->to, third}, .crossings = {first, second}};
+        array_push_large(contour->arena, &contour->lines, line);
+    }
+    return number;
+}
+
+/* Whether points 1 to 3 are in the positive order, seen from point 0. */
+static bool is_positive(const Tets *tets, const uint32_t points[4])
+{
+    double edges[3][3], cross[3];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            edges[i][k] = (double)tets->points.items[points[i + 1]].at[k] -
+                          (double)tets->points.items[points[0]].at[k];
+    cross3(edges[1], edges[2], cross);
+    return dot3(edges[0], cross) > 0;
+}
+
+static void reverse(uint32_t *numbers, uint32_t count)
+{
+    for (uint32_t i = 0; i < count / 2; i++) {
+        uint32_t swap          = numbers[i];
+        numbers[i]             = numbers[count - 1 - i];
+        numbers[count - 1 - i] = swap;
+    }
+}
+
+/* The points of a tetrahedron, those inside first; returns how many these are. */
+static uint32_t inside_first(const Tets *tets, const Tet *tet, uint32_t points[4])
+{
+    uint32_t count = 0, end = 4;
+    for (int i = 0; i < 4; i++)
+        if (point_is_inside(tets, tet->points[i]))
+            points[count++] = tet->points[i];
+    for (int i = 3; i >= 0; i--)
+        if (!point_is_inside(tets, tet->points[i]))
+            points[--end] = tet->points[i];
+    return count;
+}
+
+static void add_patch(Contour *contour, uint32_t number, const uint32_t points[4], uint32_t inside)
+{
+    static const int around[4][2] = {{0, 2}, {0, 3}, {1, 3}, {1, 2}};
+    Patch            patch        = {.tet = number, .corner_count = inside == 2 ? 4 : 3};
+    for (uint32_t i = 0; i < patch.corner_count; i++) {
+        uint32_t from = inside == 1 ? points[0] : inside == 3 ? points[i] : points[around[i][0]];
+        uint32_t to = inside == 1 ? points[i + 1] : inside == 3 ? points[3] : points[around[i][1]];
+        patch.crossings[i] = take_crossing(contour, from, to);
+    }
+    if (!is_positive(contour->tets, points))
+        reverse(patch.crossings, patch.corner_count);
+    for (uint32_t i = 0; i < patch.corner_count; i++)
+        patch.lines[i] = take_line(contour, patch.crossings[i],
+                                   patch.crossings[(i + 1) % patch.corner_count]);
+    array_push_large(contour->arena, &contour->patches, patch);
+}
+
+static void find_patches(Contour *contour)
+{
+    const Tets *tets       = contour->tets;
+    contour->patches.count = 0;
+    for (size_t i = 0; i < tets->list.count; i++) {
+        uint32_t points[4], inside = inside_first(tets, &tets->list.items[i], points);
+        if (inside > 0 && inside < 4)
+            add_patch(contour, (uint32_t)i, points, inside);
+    }
+    run_in_parallel(find_crossings, contour);
+    contour->known_crossings = contour->crossings.count;
+    run_in_parallel(find_lines, contour);
+    contour->known_lines = contour->lines.count;
+    run_in_parallel(find_apexes, contour);
+}
+
+/* ---- triangles ---- */
+
+static uint32_t add_vertex(Contour *contour, const double at[3])
+{
+    if (contour->vertices.count == contour->vertices.capacity) {
+        size_t before           = contour->vertices.capacity * sizeof *contour->vertices.items;
+        void  *old              = contour->vertices.items;
+        contour->vertices.items = arena_grow(contour->arena, old, contour->vertices.count,
+                                             &contour->vertices.capacity,
+                                             sizeof *contour->vertices.items);
+        arena_release(contour->arena, old, before);
+    }
+    memcpy(contour->vertices.items[contour->vertices.count], at, 3 * sizeof *at);
+    return (uint32_t)contour->vertices.count++;
+}
+
+static void add_triangle(Contour *contour, Tet *tet, uint32_t a, uint32_t b, uint32_t c)
+{
+    if (contour->triangles.count == contour->triangles.capacity) {
+        size_t before            = contour->triangles.capacity * sizeof *contour->triangles.items;
+        void  *old               = contour->triangles.items;
+        contour->triangles.items = arena_grow(contour->arena, old, contour->triangles.count,
+                                              &contour->triangles.capacity,
+                                              sizeof *contour->triangles.items);
+        arena_release(contour->arena, old, before);
+    }
+    uint32_t *triangle = contour->triangles.items[contour->triangles.count++];
+    triangle[0]        = a;
+    triangle[1]        = b;
+    triangle[2]        = c;
+    tet->triangle_count++;
+}
+
+static uint32_t vertex_for(Contour *contour, uint32_t *number, const double at[3])
+{
+    if (*number == NO_NUMBER)
+        *number = add_vertex(contour, at);
+    return *number;
+}
+
+static uint32_t find_loop(Contour *contour, const Patch *patch, uint32_t loop[8])
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < patch->corner_count; i++) {
+        const Crossing *crossing = &contour->crossings.items[patch->crossings[i]];
+        const FaceLine *line     = &contour->lines.items[patch->lines[i]];
+        loop[count++] = vertex_for(contour, &contour->vertex_of[patch->crossings[i]], crossing->at);
+        if (line->bent)
+            loop[count++] = vertex_for(
+                contour, &contour->vertex_of[contour->crossings.count + patch->lines[i]], line->at);
+    }
+    return count;
+}
+
+static void add_triangles(Contour *contour, const Patch *patch)
+{
+    Tet     *tet = &contour->tets->list.items[patch->tet];
+    uint32_t loop[8], count = find_loop(contour, patch, loop);
+    tet->first_triangle = (uint32_t)contour->triangles.count;
+    if (patch->fan) {
+        uint32_t apex = add_vertex(contour, patch->apex);
+        for (uint32_t i = 0; i < count; i++)
+            add_triangle(contour, tet, loop[i], loop[(i + 1) % count], apex);
+        return;
+    }
+    double(*at)[3] = contour->vertices.items;
+    uint32_t turn  = count == 4 &&
+                    distance3(at[loop[1]], at[loop[3]]) < distance3(at[loop[0]], at[loop[2]]);
+    add_triangle(contour, tet, loop[turn], loop[turn + 1], loop[turn + 2]);
+    if (count == 4)
+        add_triangle(contour, tet, loop[turn], loop[turn + 2], loop[(turn + 3) % 4]);
+}
+
+void contour_find(Contour *contour)
+{
+    find_patches(contour);
+    size_t numbers     = contour->crossings.count + contour->lines.count;
+    contour->vertex_of = arena_new_array(contour->arena, uint32_t, numbers + 1);
+    memset(contour->vertex_of, 0xff, (numbers + 1) * sizeof *contour->vertex_of);
+    contour->vertices.count = contour->triangles.count = 0;
+    for (size_t i = 0; i < contour->tets->list.count; i++)
+        contour->tets->list.items[i].triangle_count = 0;
+    for (size_t i = 0; i < contour->patches.count; i++)
+        add_triangles(contour, &contour->patches.items[i]);
+    arena_release(contour->arena, contour->vertex_of, (numbers + 1) * sizeof(uint32_t));
+}

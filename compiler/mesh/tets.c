@@ -1,0 +1,146 @@
+/* tets.c: bisection of tetrahedra, and its closure. */
+#include "compiler/mesh/tets.h"
+
+#include <string.h>
+
+#include "compiler/base/vec.h"
+
+static NumberKey point_key(const uint32_t at[3])
+{
+    return (NumberKey){(uint64_t)at[0] << 32 | at[1], (uint64_t)at[2] + 1};
+}
+
+static uint32_t take_point(Tets *tets, const uint32_t at[3])
+{
+    uint32_t fresh  = (uint32_t)tets->points.count;
+    uint32_t number = numbering_take(&tets->numbers, point_key(at), fresh);
+    if (number == fresh) {
+        TetPoint point = {.at = {at[0], at[1], at[2]}, .distance = NAN};
+        array_push_large(tets->arena, &tets->points, point);
+    }
+    return number;
+}
+
+/* The six paths from one corner of the cube to the opposite one. */
+void tets_new(Tets *tets, const double origin[3], double side, Arena *arena)
+{
+    static const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},
+                                     {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    *tets = (Tets){.arena = arena, .numbers = {.arena = arena}, .step = side / CUBE_STEPS};
+    memcpy(tets->origin, origin, sizeof tets->origin);
+    for (int i = 0; i < 6; i++) {
+        uint32_t at[3] = {0, 0, 0};
+        Tet      tet   = {.tag = 3};
+        for (int k = 0; k < 4; k++) {
+            tet.points[k] = take_point(tets, at);
+            if (k < 3)
+                at[orders[i][k]] = CUBE_STEPS;
+        }
+        array_push_large(arena, &tets->list, tet);
+    }
+}
+
+/* The middle of two points; false: it is between whole steps. */
+static bool find_middle(const Tets *tets, uint32_t a, uint32_t b, uint32_t middle[3])
+{
+    const uint32_t *from = tets->points.items[a].at, *to = tets->points.items[b].at;
+    for (int k = 0; k < 3; k++) {
+        if ((from[k] + to[k]) % 2)
+            return false;
+        middle[k] = (from[k] + to[k]) / 2;
+    }
+    return true;
+}
+
+bool tets_can_bisect(const Tets *tets, size_t index)
+{
+    const Tet *tet = &tets->list.items[index];
+    uint32_t   middle[3];
+    return find_middle(tets, tet->points[0], tet->points[tet->tag], middle);
+}
+
+void tets_bisect(Tets *tets, size_t index)
+{
+    Tet      tet = tets->list.items[index], first = tet, second = tet;
+    uint32_t middle[3];
+    find_middle(tets, tet.points[0], tet.points[tet.tag], middle);
+    uint32_t point         = take_point(tets, middle);
+    first.points[tet.tag]  = point;
+    second.points[tet.tag] = point;
+    for (int k = 0; k < tet.tag; k++)
+        second.points[k] = tet.points[k + 1];
+    first.tag   = tet.tag > 1 ? (uint8_t)(tet.tag - 1) : 3;
+    second.tag  = first.tag;
+    first.state = second.state = tet.state == TET_EMPTY ? TET_EMPTY : TET_NEW;
+    first.triangle_count = second.triangle_count = 0;
+    tets->list.items[index]                      = first;
+    array_push_large(tets->arena, &tets->list, second);
+}
+
+/* Whether an edge has been bisected by a neighbour. */
+static bool has_hanging_point(const Tets *tets, const Tet *tet)
+{
+    uint32_t middle[3];
+    for (int i = 0; i < 4; i++)
+        for (int j = i + 1; j < 4; j++)
+            if (find_middle(tets, tet->points[i], tet->points[j], middle) &&
+                numbering_find(&tets->numbers, point_key(middle)) != NO_NUMBER)
+                return true;
+    return false;
+}
+
+void tets_close(Tets *tets)
+{
+    size_t before;
+    do {
+        before = tets->list.count;
+        for (size_t i = 0; i < tets->list.count; i++)
+            while (has_hanging_point(tets, &tets->list.items[i]))
+                tets_bisect(tets, i);
+    } while (tets->list.count > before);
+}
+
+void tets_position(const Tets *tets, uint32_t point, double position[3])
+{
+    for (int k = 0; k < 3; k++)
+        position[k] = tets->origin[k] + tets->step * tets->points.items[point].at[k];
+}
+
+void tets_corners(const Tets *tets, const Tet *tet, double corners[4][3])
+{
+    for (int i = 0; i < 4; i++)
+        tets_position(tets, tet->points[i], corners[i]);
+}
+
+double tets_longest_edge(const Tets *tets, const Tet *tet)
+{
+    double corners[4][3], longest = 0;
+    tets_corners(tets, tet, corners);
+    for (int i = 0; i < 4; i++)
+        for (int j = i + 1; j < 4; j++)
+            longest = fmax(longest, distance3(corners[i], corners[j]));
+    return longest;
+}
+
+double corners_ball(const double corners[4][3], double center[3])
+{
+    double radius = 0;
+    for (int k = 0; k < 3; k++)
+        center[k] = 0.25 * (corners[0][k] + corners[1][k] + corners[2][k] + corners[3][k]);
+    for (int i = 0; i < 4; i++)
+        radius = fmax(radius, distance3(center, corners[i]));
+    return radius;
+}
+
+int bisect_corners(const double corners[4][3], int tag, double first[4][3], double second[4][3])
+{
+    double middle[3];
+    for (int k = 0; k < 3; k++)
+        middle[k] = 0.5 * (corners[0][k] + corners[tag][k]);
+    memcpy(first, corners, 4 * sizeof *first);
+    memcpy(second, corners, 4 * sizeof *second);
+    memcpy(second, corners + 1, (size_t)tag * sizeof *second);
+    memcpy(first[tag], middle, sizeof middle);
+    memcpy(second[tag], middle, sizeof middle);
+    return tag > 1 ? tag - 1 : 3;
+}

@@ -1,0 +1,284 @@
+/*
+ * mesh.c: meshes: closed, without crossings, and as near to the surface as they say; judged by closed forms,
+ * by exact rays and by trying all pairs of triangles.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "compiler/base/vec.h"
+#include "compiler/mesh/bvh.h"
+#include "tests/unit/queried.h"
+
+static KrsMesh *mesh_of(Scene s, double error)
+{
+    KrsMeshOptions options = {.error = error};
+    KrsMesh       *mesh;
+    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_OK);
+    return mesh;
+}
+
+/* ---- what judges ---- */
+
+static int compare_edges(const void *a, const void *b)
+{
+    return memcmp(a, b, 2 * sizeof(uint32_t));
+}
+
+/* Each edge is in two triangles, once in each direction. */
+static void check_closed(const KrsMesh *mesh)
+{
+    size_t count        = 3 * mesh->triangle_count;
+    uint32_t(*edges)[2] = malloc((count + 1) * sizeof *edges);
+    for (size_t i = 0; i < count; i++) {
+        edges[i][0] = mesh->triangles[i / 3][i % 3];
+        edges[i][1] = mesh->triangles[i / 3][(i + 1) % 3];
+    }
+    qsort(edges, count, sizeof *edges, compare_edges);
+    for (size_t i = 0; i < count; i++) {
+        uint32_t back[2] = {edges[i][1], edges[i][0]};
+        assert_true(i == 0 || compare_edges(edges[i - 1], edges[i]) != 0);
+        assert_non_null(bsearch(back, edges, count, sizeof *edges, compare_edges));
+    }
+    free(edges);
+}
+
+static long euler_number(const KrsMesh *mesh)
+{
+    return (long)mesh->vertex_count - (long)mesh->triangle_count / 2;
+}
+
+static double volume_of(const KrsMesh *mesh)
+{
+    double volume = 0;
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        double cross[3];
+        cross3(mesh->vertices[mesh->triangles[i][1]], mesh->vertices[mesh->triangles[i][2]], cross);
+        volume += dot3(mesh->vertices[mesh->triangles[i][0]], cross) / 6;
+    }
+    return volume;
+}
+
+static void corners_of(const KrsMesh *mesh, size_t triangle, double corners[3][3])
+{
+    for (int i = 0; i < 3; i++)
+        memcpy(corners[i], mesh->vertices[mesh->triangles[triangle][i]], sizeof corners[i]);
+}
+
+static double distance_to_mesh(const KrsMesh *mesh, const double point[3])
+{
+    double least = INFINITY;
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        double corners[3][3], nearest[3];
+        corners_of(mesh, i, corners);
+        triangle_nearest((const double(*)[3])corners, point, nearest);
+        least = fmin(least, distance3(nearest, point));
+    }
+    return least;
+}
+
+/* Points of the surface, where rays hit, are near the mesh. */
+static void check_hits(Scene s, const KrsMesh *mesh, double size)
+{
+    enum { RAYS = 200 };
+    for (int i = 0; i < RAYS; i++) {
+        double from[3], to[3], direction[3];
+        random_vector(&chance, size, from);
+        random_vector(&chance, size, to);
+        add_scaled3(direction, to, -1, from);
+        KrsHit hit = cast(s.frame, from, direction, INFINITY, 0);
+        if (hit.hit && hit.t > 0)
+            assert_true(distance_to_mesh(mesh, hit.point) <= mesh->error);
+    }
+}
+
+/* Points of triangles are near the surface: rays from them hit it soon, in one of many directions. */
+static void check_triangles(Scene s, const KrsMesh *mesh)
+{
+    enum { POINTS = 500, DIRECTIONS = 60 };
+    for (int i = 0; i < POINTS; i++) {
+        double corners[3][3], point[3] = {0, 0, 0}, weights[3], sum = 0;
+        size_t triangle = (size_t)uniform(0, (double)mesh->triangle_count);
+        bool   near     = false;
+        corners_of(mesh, triangle, corners);
+        for (int k = 0; k < 3; k++)
+            sum += weights[k] = uniform(0, 1);
+        for (int k = 0; k < 3; k++)
+            add_scaled3(point, point, weights[k] / sum, corners[k]);
+        for (int k = 0; k < DIRECTIONS && !near; k++) {
+            double direction[3];
+            random_vector(&chance, 1, direction);
+            near = cast(s.frame, point, direction, mesh->error, 0).hit;
+        }
+        assert_true(near);
+    }
+}
+
+/* Whether a segment goes through a triangle that has none of its ends. */
+static bool goes_through(const double a[3], const double b[3], const double corners[3][3])
+{
+    double edges[2][3], along[3], offset[3], cross[3], turn[3];
+    add_scaled3(edges[0], corners[1], -1, corners[0]);
+    add_scaled3(edges[1], corners[2], -1, corners[0]);
+    add_scaled3(along, b, -1, a);
+    add_scaled3(offset, a, -1, corners[0]);
+    cross3(along, edges[1], cross);
+    double size = dot3(edges[0], cross);
+    if (fabs(size) < 1e-15)
+        return false;
+    double first = dot3(offset, cross) / size;
+    cross3(offset, edges[0], turn);
+    double second = dot3(along, turn) / size, t = dot3(edges[1], turn) / size;
+    return first > 1e-9 && second > 1e-9 && first + second < 1 - 1e-9 && t > 1e-9 && t < 1 - 1e-9;
+}
+
+static void check_crossings(const KrsMesh *mesh)
+{
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        double corners[3][3];
+        corners_of(mesh, i, corners);
+        for (size_t j = 0; j < mesh->triangle_count; j++)
+            for (int k = 0; k < 3; k++) {
+                const uint32_t *other = mesh->triangles[j], *own = mesh->triangles[i];
+                uint32_t        a = other[k], b = other[(k + 1) % 3];
+                if (a < b && a != own[0] && a != own[1] && a != own[2] && b != own[0] &&
+                    b != own[1] && b != own[2])
+                    assert_false(goes_through(mesh->vertices[a], mesh->vertices[b],
+                                              (const double(*)[3])corners));
+            }
+    }
+}
+
+/* ---- tests ---- */
+
+typedef struct Known {
+    const char *text;
+    double      error, size, volume, area;
+    long        euler;
+} Known;
+
+static void meshes_are_closed_and_near(void **context)
+{
+    static const double PI      = 3.14159265358979323846;
+    const Known         known[] = {
+                {"show sphere(0.5);", 0.04, 1, PI / 6, PI, 2},
+                {"show torus(1, 0.4);", 0.08, 2, 2 * PI * PI * 0.16, 4 * PI * PI * 0.4, 0},
+                {"show box([1, 1, 1]).rotate([1, 2, 3], 40deg);", 0.06, 1.5, 1, 6, 2},
+                {"show difference(box([1, 1, 1]), box([2, 0.4, 0.4]), box([0.4, 2, 0.4]), "
+                         "box([0.4, 0.4, 2]));",
+                 0.06, 1.5, 1 - 3 * 0.16 + 2 * 0.064, 6, -8},
+                {"show sphere(0.3).move([1, 0, 0]); show sphere(0.3).move([-1, 0, 0]);", 0.05, 2,
+                 2 * 4.0 / 3 * PI * 0.027, 2.3, 4}};
+    (void)context;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        Scene    s    = scene_of(known[i].text);
+        KrsMesh *mesh = mesh_of(s, known[i].error);
+        check_closed(mesh);
+        check_crossings(mesh);
+        assert_int_equal(mesh->unresolved, 0);
+        assert_int_equal(euler_number(mesh), known[i].euler);
+        assert_true(fabs(volume_of(mesh) - known[i].volume) < 1.2 * known[i].area * known[i].error);
+        check_hits(s, mesh, known[i].size);
+        check_triangles(s, mesh);
+        krs_mesh_free(mesh);
+        scene_close(s);
+    }
+}
+
+static void sharp_corners_are_kept(void **context)
+{
+    (void)context;
+    Scene    s    = scene_of("show box([1, 1, 1]).rotate([1, 2, 3], 40deg);");
+    KrsMesh *mesh = mesh_of(s, 0.05);
+    assert_true(fabs(volume_of(mesh) - 1) < 0.004); /* a bevel as wide as the error has 0.015 */
+    double farthest = 0;
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        farthest = fmax(farthest, length3(mesh->vertices[i]));
+    assert_true(fabs(farthest - sqrt(0.75)) < 1e-3);
+    krs_mesh_free(mesh);
+    scene_close(s);
+}
+
+static void thin_walls_are_found_or_reported(void **context)
+{
+    (void)context;
+    const char *text  = "show box([1, 0.1, 0.3]).rotate([1, 2, 3], 40deg);";
+    Scene       s     = scene_of(text);
+    Scene       sheet = scene_of("show box([1, 0.001, 1]).rotate([1, 2, 3], 40deg);");
+    KrsMesh    *fine = mesh_of(s, 0.06), *coarse = mesh_of(sheet, 0.2);
+    check_closed(fine);
+    check_hits(s, fine, 1);
+    assert_int_equal(fine->unresolved, 0);
+    check_closed(coarse);
+    assert_true(coarse->unresolved > 0);
+    krs_mesh_free(fine);
+    krs_mesh_free(coarse);
+    scene_close(s);
+    scene_close(sheet);
+}
+
+static bool stop(void *user, double fraction)
+{
+    (void)user, (void)fraction;
+    return false;
+}
+
+static void what_cannot_be_meshed_is_refused(void **context)
+{
+    (void)context;
+    KrsMeshOptions options = {.error = 0.1};
+    KrsMesh       *mesh;
+    Scene          s = scene_of("show half_space([0, 1, 0], 0.2);");
+    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_BAD_ARGUMENT);
+    assert_null(mesh);
+    options = (KrsMeshOptions){
+        .error = 0.1, .within = true, .low = {-1, -1, -1}, .high = {1, 1, 1}};
+    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_OK);
+    check_closed(mesh);
+    assert_true(fabs(volume_of(mesh) - 4 * 1.2) < 0.2);
+    krs_mesh_free(mesh);
+    options.component = 2;
+    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_BAD_ARGUMENT);
+    options.component    = 1;
+    options.memory_limit = 10000;
+    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_OUT_OF_MEMORY);
+    options.memory_limit = 0;
+    options.go_on        = stop;
+    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_INTERRUPTED);
+    scene_close(s);
+}
+
+static void components_and_empty_scenes(void **context)
+{
+    (void)context;
+    Scene          s       = scene_of("show sphere(0.5); show box([1, 1, 1]).move([3, 0, 0]);");
+    KrsMeshOptions options = {.error = 0.1, .component = 2};
+    KrsMesh       *mesh;
+    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_OK);
+    assert_true(fabs(volume_of(mesh) - 1) < 0.05);
+    krs_mesh_free(mesh);
+    scene_close(s);
+    s    = scene_of("camera { eye: [0, 0, 5] }");
+    mesh = mesh_of(s, 0);
+    assert_int_equal(mesh->triangle_count, 0);
+    krs_mesh_free(mesh);
+    scene_close(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(meshes_are_closed_and_near),
+        cmocka_unit_test(sharp_corners_are_kept),
+        cmocka_unit_test(thin_walls_are_found_or_reported),
+        cmocka_unit_test(what_cannot_be_meshed_is_refused),
+        cmocka_unit_test(components_and_empty_scenes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
