@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -60,15 +61,17 @@ const char *viewing_place(const Viewing *viewing, uint32_t component, char place
 /* The place is an argument of its own, so that no name of a file is taken for a command. */
 void viewing_open_editor(Viewing *viewing, const char *place)
 {
-    static char shell[] = "sh", option[] = "-c", command[] = "exec $KRS_EDITOR \"$0\"";
+    static char shell[] = "sh", option[] = "-c", command[] = "$KRS_EDITOR \"$0\" &";
     char       *argument = strdup(place);
     char       *words[]  = {shell, option, command, argument, NULL};
     pid_t       child;
     const char *editor = getenv("KRS_EDITOR");
     if (!editor || !*editor)
         viewing_notice(viewing, "%s   (KRS_EDITOR names no editor)", place);
-    else if (argument && posix_spawnp(&child, shell, NULL, NULL, words, environ) == 0)
+    else if (argument && posix_spawnp(&child, shell, NULL, NULL, words, environ) == 0) {
+        waitpid(child, NULL, 0); /* the shell does not wait for the editor */
         viewing_notice(viewing, "opened %s", place);
+    }
     free(argument);
 }
 

@@ -6,7 +6,7 @@
 export XDG_CACHE_HOME="$work/caches"
 unset WAYLAND_DISPLAY
 "${CC:-cc}" -std=c17 -o screen_check "$root/tests/cli/screen_check.c" -lpng || exit 1
-plan 16
+plan 17
 : >out
 
 scene() { # radius
@@ -101,7 +101,8 @@ wait "$viewer"
 status=$?
 ended 0 "a key closes the window"
 
-"$krs" view scene.krs --size 96x64 --samples 1 --set r=0.75 >out.view 2>err.view &
+printf '#!/bin/sh\necho "$*" >opened\n' >editor && chmod +x editor
+KRS_EDITOR="./editor -g" "$krs" view scene.krs --size 96x64 --samples 1 --set r=0.75 >out.view 2>err.view &
 viewer=$!
 timeout 20 xdotool search --sync --onlyvisible --name scene.krs >/dev/null
 scene 0.75 >written.krs
@@ -110,6 +111,14 @@ xdotool key ctrl+s
 for _ in $(seq 50); do cmp -s scene.krs written.krs && break; sleep 0.1; done
 cmp scene.krs written.krs >out
 result $? "a value is written into the text, and nothing else"
+xdotool key Tab mousemove 48 32
+for _ in $(seq 20); do
+    xdotool keydown ctrl click 1 keyup ctrl
+    sleep 0.2
+    [ -s opened ] && break
+done
+[ "$(cat opened)" = "-g scene.krs:4" ]
+result $? "a click opens the text where it has what is clicked"
 kill "$server"
 wait "$viewer"
 status=$?
