@@ -54,11 +54,16 @@ vec3 find_left(Boundary boundary, float way)
 }
 
 #ifdef MEDIA
-// What krs_surface needs to know of the ray.
-void prepare_boundary(HitPoint hit, float code)
+// What krs_surface needs to know of the ray.  A camera's ray does not know its medium, but whether it
+// began inside of something.
+void prepare_boundary(inout HitPoint hit, float code, vec3 facing)
 {
     enter_medium(code);
     krs_lift = 0.5 * hit.width + 4.0 * hit.rounding;
+    if (hit.side < 0.0) {
+        krs_medium = krs_medium_at(hit.position + krs_lift * facing);
+        hit.side = krs_medium == 0u ? -1.0 : 1.0;
+    }
 }
 
 // What it has told, for the surface that it has found.
@@ -75,7 +80,7 @@ Boundary find_boundary(HitPoint hit, KrsSurface surface)
     return boundary;
 }
 #else
-void prepare_boundary(HitPoint hit, float code) {}
+void prepare_boundary(inout HitPoint hit, float code, vec3 facing) {}
 
 Boundary find_boundary(HitPoint hit, KrsSurface surface)
 {

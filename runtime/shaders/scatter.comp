@@ -119,7 +119,7 @@ float go_on(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 fa
 // The surface that a path has hit.  What it reflects depends on the medium before it.
 Boundary meet_boundary(inout HitPoint hit, uint index, vec3 facing, out KrsSurface surface)
 {
-    prepare_boundary(hit, load_path(PATH_TOWARD, index).w);
+    prepare_boundary(hit, load_path(PATH_TOWARD, index).w, facing);
     surface = within_limits(krs_surface(hit.position, hit.side * facing, 0.5 * hit.width));
     Boundary boundary = find_boundary(hit, surface);
     hit.side = boundary.side;

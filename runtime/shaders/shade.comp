@@ -23,6 +23,9 @@
 #ifdef LAYERS
 #include "layers.glsl"
 #endif
+#ifdef MEDIA
+#include "tints.glsl"
+#endif
 
 const float EVEN = 0.98;              // less comes from detail, not from curvature
 const float LEAST_NORMAL_REACH = 0.5; // the reach without filtering (normal_reach in job.c)
@@ -185,9 +188,9 @@ void do_item(uint number)
 #endif
     uint       index = index_of(pixel_of(hit.slot));
 #ifdef PATH_RAYS
-    prepare_boundary(hit, load_path(PATH_TOWARD, index).w);
+    prepare_boundary(hit, load_path(PATH_TOWARD, index).w, facing.xyz);
 #elif defined(MIRRORS)
-    prepare_boundary(hit, hit.side);
+    prepare_boundary(hit, hit.side, facing.xyz);
 #endif
     KrsSurface surface = krs_surface(hit.position, hit.side * facing.xyz, 0.5 * hit.width);
 #ifdef MIRRORS
@@ -214,6 +217,10 @@ void do_item(uint number)
     Light now = lights[0], next = lights[1];
     do { // do-while, as in pixels.glsl
         vec3 light = direct_light(now, hit, coat, facing.xyz, visible.x);
+#ifdef MEDIA
+        if (i < end && largest(light) > 0.0)
+            light *= find_tint(now, hit, facing.xyz);
+#endif
         radiance.rgb += i < end ? light : vec3(0.0);
         visible = visible.yzx;
         now = next;

@@ -43,8 +43,11 @@ static bool wants(const KernelVariant *of, KrsFunction function)
    outside. */
 static void want_media(KernelVariant *to, const KrsRendering *rendering)
 {
-    if (rendering->program->media)
-        to->scene.variant.glass = KRS_GLASS_NESTED;
+    if (!rendering->program->media)
+        return;
+    to->scene.variant.glass = KRS_GLASS_NESTED;
+    if (wants(to, KRS_FUNCTION_SURFACE))
+        want(to, KRS_FUNCTION_MEDIUM_AT);
 }
 
 /* Defines for the kernel's own text what was chosen for the scene's.  It must be called last. */
@@ -224,6 +227,8 @@ KernelVariant variant_of_shade(const KrsRendering *rendering)
     want_rays(&to, rendering);
     want(&to, KRS_FUNCTION_SURFACE);
     want_media(&to, rendering);
+    if (rendering->program->media)
+        want(&to, KRS_FUNCTION_GLASS);
     if (rendering->program->mirrors)
         define(&to, "#define MIRRORS\n");
     if (rendering->program->layers)

@@ -216,12 +216,91 @@ static void solids_touch_glass(void **state)
     assert_int_equal(wrong, 0);
 }
 
+/* ---- A camera in glass ---- */
+
+/* The camera is in the middle of a pane of thickness 1, and looks up through its upper side.  What
+   that mirrors comes back from the lower side. */
+static void cameras_look_out_of_glass(void **state)
+{
+    (void)state;
+    PathStage stage = path_stage_open(
+        "param angle = 0 in [0, 1.5];\n"
+        "camera { eye: [0, 0, 0], target: [sin(angle), cos(angle), 0], up: [0, 0, 1],\n"
+        "         projection: \"orthographic\", height: 0.2 }\n"
+        "sky { zenith: white, horizon: white, ground: black }\n"
+        "light none { direction: [0, 1, 0], color: black }\n"
+        "material glass { color: white, transmission: 1, roughness: 0, ior: 1.5,\n"
+        "                 absorption: [0.5, 0.5, 0.5] }\n"
+        "show box([60, 1, 60]).paint(glass);\n");
+    size_t wrong = 0;
+    for (int i = 0; i < 3; i++) {
+        const double angle = 0.3 * i, kept = exp(-0.5 / cos(angle));
+        const double back = fresnel(sin(angle), 1 / 1.5);
+        char         name[100];
+        snprintf(name, sizeof name, "out of glass at %g", angle);
+        path_stage_set(&stage, "angle", angle);
+        Estimate found = path_stage_estimate(&stage, paths, everywhere, 6);
+        double   right = (1 - back) * sqrt(kept) / (1 - back * back * kept * kept);
+        wrong += !must_be_near(found, right, 0.004, name);
+    }
+    path_stage_close(&stage);
+    assert_int_equal(wrong, 0);
+}
+
+/* ---- Light through glass, in previews ---- */
+
+/* A pane hangs over the floor, or beside it.  The camera is below it. */
+static const char below_a_pane[] =
+    "param angle = 0 in [0, 1.5]; param beside = 0 in [0, 100];\n"
+    "camera { eye: [0, 1, 0.5], target: [0, 0, 0], projection: \"orthographic\", height: 0.1 }\n"
+    "sky { zenith: black, horizon: black, ground: black }\n"
+    "light sun { direction: [sin(angle), cos(angle), 0], intensity: 2 }\n"
+    "material glass { color: [0.8, 0.8, 0.8], transmission: 1, roughness: 0, ior: 1.5,\n"
+    "                 absorption: [0.7, 0.7, 0.7] }\n"
+    "show plane([0, 1, 0], 0);\n"
+    "show box([60, 0.5, 60]).move([beside, 3, 0]).paint(glass);\n";
+
+static double look_below_pane(PathStage *stage, double beside)
+{
+    KrsRenderOptions preview = {.width      = 32,
+                                .height     = 32,
+                                .samples    = 1,
+                                .planes     = KRS_PLANE_COLOR,
+                                .integrator = KRS_INTEGRATOR_PREVIEW};
+    path_stage_set(stage, "beside", beside);
+    KrsPicture *picture = path_stage_render(stage, &preview);
+    double      mean    = mean_of_region(picture, everywhere, 1);
+    krs_picture_free(picture);
+    return mean;
+}
+
+static void previews_light_through_glass(void **state)
+{
+    (void)state;
+    PathStage stage = path_stage_open(below_a_pane);
+    size_t    wrong = 0;
+    for (int i = 0; i < 3; i++) {
+        const double angle = 0.4 * i, head_on = (1.5 - 1) / (1.5 + 1);
+        const double kept = 0.8 * pow(1 - head_on * head_on, 2) * exp(-0.7 * 0.5 / cos(angle));
+        path_stage_set(&stage, "angle", angle);
+        double found = look_below_pane(&stage, 0) / look_below_pane(&stage, 100);
+        if (fabs(found - kept) > 0.003 * kept) {
+            print_message("# light at %g through glass: %.5f instead of %.5f\n", angle, found,
+                          kept);
+            wrong++;
+        }
+    }
+    path_stage_close(&stage);
+    assert_int_equal(wrong, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(balls_are_seen_in_glass),   cmocka_unit_test(water_stands_in_glass),
-        cmocka_unit_test(what_is_shown_last_counts), cmocka_unit_test(hollows_are_empty),
-        cmocka_unit_test(solids_touch_glass),
+        cmocka_unit_test(balls_are_seen_in_glass),      cmocka_unit_test(water_stands_in_glass),
+        cmocka_unit_test(what_is_shown_last_counts),    cmocka_unit_test(hollows_are_empty),
+        cmocka_unit_test(solids_touch_glass),           cmocka_unit_test(cameras_look_out_of_glass),
+        cmocka_unit_test(previews_light_through_glass),
     };
     spirv_start(); /* held for all, so that the shader compiler is not started anew */
     int failed = cmocka_run_group_tests_name("media", tests, renderer_open, renderer_close);
