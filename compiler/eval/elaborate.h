@@ -12,6 +12,7 @@
 #define KRS_ELABORATE_H
 
 #include "compiler/base/loader.h"
+#include "compiler/eval/call.h"
 #include "compiler/eval/texture_keys.h"
 #include "compiler/eval/value.h"
 #include "compiler/family/family.h"
@@ -26,7 +27,6 @@ typedef struct Binding {
     const struct Binding *next; /* bound before, in this or an outer block */
 } Binding;
 
-typedef struct Environment Environment;
 struct Environment {
     const Binding *locals;
     struct Scope  *scope; /* the file whose top-level names are seen */
@@ -73,7 +73,7 @@ typedef struct FileBytes {
     size_t               length;
 } FileBytes;
 
-typedef struct Elaboration {
+struct Elaboration {
     ShapeBuilder *builder; /* with the arenas, diagnostics and graph that stand here as well */
     Arena        *arena;   /* shapes and the scene */
     Arena        *values;  /* values and bindings of names, until they are forgotten */
@@ -113,7 +113,7 @@ typedef struct Elaboration {
     uint32_t depth, calls; /* how deep expressions and calls are nested now */
     Node     rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
     bool     in_material;  /* level, instance, u, v and normal have a meaning */
-} Elaboration;
+};
 
 /* What a shape knows of the declaration that made it. */
 struct Declaration {
@@ -201,99 +201,6 @@ Node value_node(Elaboration *e, Value value);
 /* The latest of its parts. */
 BindingTime value_time(const Elaboration *e, Value value);
 
-/* ---- arguments.c ---- */
-/* An argument as it arrived: its value and where it was written. */
-typedef struct Argument {
-    Value         value;
-    const Syntax *syntax; /* NULL: not given */
-} Argument;
-
-enum { MAX_PARAMETERS = 12 };
-
-/* A call of a built-in function or method, arguments in the order of its parameters.  What
-   stood in a variadic first parameter is gathered in `rest`. */
-typedef struct Call {
-    const Syntax *syntax; /* the whole call, or method call */
-    const char   *name;
-    Argument      arguments[MAX_PARAMETERS];
-    Argument     *rest;
-    uint32_t      rest_count;
-} Call;
-
-/*
- * Each `want_` says what an argument must be, reports when it is not and then returns NODE_NONE,
- * NULL or false.  A missing argument gives the default and no report.  Values that are VALUE_ERROR
- * fail silently.
- */
-
-/* What is chosen by a name: kinds of blends, palettes. */
-typedef struct Choices {
-    const char *noun, *wanted;  /* "blend"; "the kind of a blend, a string" */
-    const char *unknown, *more; /* label of another name; what follows the names in its help */
-    const char *const *items;
-    uint32_t           count;
-} Choices;
-
-/* Which one an argument names, the first without one. */
-bool want_name(Elaboration *e, const Argument *argument, const Choices *names, uint32_t *chosen);
-
-/* A FLOAT, or a VEC3, of frame time. */
-Node want_number(Elaboration *e, const Call *call, uint32_t index, double otherwise);
-Node want_vector(Elaboration *e, const Call *call, uint32_t index, const double otherwise[3]);
-bool want_count(Elaboration *e, const Call *call, uint32_t index, uint32_t least, uint32_t most,
-                uint32_t otherwise, uint32_t *count);
-const Shape *want_shape(Elaboration *e, const Call *call, uint32_t index);
-/* The node of a number or a vector. */
-Node want_numeric(Elaboration *e, const Call *call, uint32_t index);
-/* A number that is known at compile time; *number stays what it is when nothing was given. */
-const List *want_list(Elaboration *e, const Call *call, uint32_t index);
-bool        want_constant(Elaboration *e, const Call *call, uint32_t index, double *number);
-/* True or false, known at compile time; *flag stays what it is when nothing was given. */
-bool want_flag(Elaboration *e, const Call *call, uint32_t index, bool *flag);
-/* The parameter "plane": its unit normal and offset. */
-bool want_plane(Elaboration *e, const Call *call, Node *normal, Node *offset);
-/* The map that the parameters "by", "axis angle" and "by" describe. */
-const Map *want_translation(Elaboration *e, const Call *call);
-const Map *want_rotation(Elaboration *e, const Call *call);
-const Map *want_scaling(Elaboration *e, const Call *call);
-/* The same for a value that stands anywhere; `what` names it: "`fov`", "this argument". */
-Node to_number(Elaboration *e, Value value, const Syntax *syntax, const char *what);
-Node to_vector(Elaboration *e, Value value, const Syntax *syntax, const char *what);
-Node to_pair(Elaboration *e, Value value, const Syntax *syntax, const char *what);
-bool is_given(const Call *call, uint32_t index);
-
-/* Reports a direction that is always the zero vector, or a size that can be 0 or less. */
-bool check_direction(Elaboration *e, Node vector, const Syntax *syntax, const char *what);
-bool check_positive(Elaboration *e, Node number, const Syntax *syntax, const char *what);
-/* Reports a number that can be infinite for some permitted value of the parameters. */
-bool check_finite(Elaboration *e, Node node, const Syntax *syntax);
-
-/* Sorts the arguments of a call into the parameters "a b= rest..."; false: reported.  `=` marks
-   an optional parameter, `...` one that takes all positional ones. */
-bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_syntax,
-                    uint32_t first, const char *name, const char *parameters, Call *call);
-
-/* Report; the strings of `parameters` must live as long as the diagnostics. */
-Diag *too_many_arguments(Elaboration *e, const Syntax *argument, const char *name, uint32_t count);
-Diag *missing_argument(Elaboration *e, const Syntax *call, const char *name, const char *parameter);
-void unknown_parameter(Elaboration *e, const Syntax *call, const Syntax *argument, const char *name,
-                       const char *const *parameters, uint32_t count);
-/* Adds how a function or method of the language is called, where synonyms.def has that. */
-void explain_usage(Elaboration *e, Diag *diag, const Syntax *call, const char *name);
-/* Adds a note with the names that would be right: "its properties: eye, target". */
-void note_names(Elaboration *e, Diag *diag, const char *what, const char *const *names,
-                size_t count);
-/* A value of another type than `wanted` ("a number"); silent for VALUE_ERROR. */
-Diag *type_error(Elaboration *e, const Syntax *syntax, Value found, const char *wanted);
-/* A value that must be known at compile time, and is not. */
-void constant_error(Elaboration *e, const Syntax *syntax, const char *message);
-/* A value that must be the same at every point, and is not; `what` names it. */
-void point_error(Elaboration *e, const Syntax *syntax, const char *what);
-/* What the language describes and this version does not have. */
-void not_supported(Elaboration *e, Span span, const char *what);
-/* "torus(major, minor)", for notes. */
-const char *signature(Elaboration *e, const char *name, const char *const *parameters,
-                      uint32_t count);
 /* ---- units.c ---- */
 /* Whether a number in an expression has `deg` behind it. */
 bool written_in_degrees(const Elaboration *e, const Syntax *syntax);
