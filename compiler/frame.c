@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
+#include "compiler/points.h"
 #include "compiler/program.h"
 #include "compiler/shape/slope.h"
 #include "compiler/tables.h"
@@ -106,6 +107,7 @@ void frame_free(KrsFrame *frame)
     if (!frame)
         return;
     const KrsScene *scene = frame->scene;
+    frame_lanes_free(frame);
     frame_release(scene, frame->parameters);
     frame_release(scene, frame->values);
     frame_release(scene, frame->lights);
@@ -137,6 +139,7 @@ void frame_refresh(KrsFrame *frame)
     tape_run_frame(&frame->scene->turned, frame->parameters, frame->values);
     tape_run_frame(&frame->scene->view, frame->parameters, frame->values);
     frame->fresh = true;
+    frame_lanes_refresh(frame);
 }
 
 Node frame_infinite(KrsFrame *frame)

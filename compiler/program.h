@@ -181,13 +181,14 @@ struct KrsFrame {
     frame */
     NodeValue      *values;     /* of every node */
     KrsLight       *lights;
-    float (*sky)[3];    /* of daylight, */
-    KrsSkyMap sky_map;  /* which these texels are of, */
-    Daylight  sky_made; /* as it was made; turbidity 0: not yet */
-    bool      exact;    /* rays are marched with exact distances of crowds */
-    bool      fresh;    /* the frame values in `values` belong to the parameters */
-    double    zones[KRS_MOST_ZONES][4];
-    size_t    zone_count; /* zones of the caller */
+    float (*sky)[3];             /* of daylight, */
+    KrsSkyMap          sky_map;  /* which these texels are of, */
+    Daylight           sky_made; /* as it was made; turbidity 0: not yet */
+    struct FrameLanes *lanes;    /* points.h; NULL: nobody has asked for many points */
+    bool               exact;    /* rays are marched with exact distances of crowds */
+    bool               fresh;    /* the frame values in `values` belong to the parameters */
+    double             zones[KRS_MOST_ZONES][4];
+    size_t             zone_count; /* zones of the caller */
 };
 
 /* The functions of krs.h and compiled.h with the same names.  The compiler itself calls them, after

@@ -9,6 +9,8 @@
 
 #include "compiler/base/far.h"
 #include "compiler/base/vec.h"
+#include "compiler/graph/lanes.h"
+#include "compiler/points.h"
 #include "compiler/program.h"
 
 static bool are_finite(const double (*vectors)[3], size_t count)
@@ -104,29 +106,37 @@ static double clearance_at(KrsFrame *frame, const double point[3])
     return fmax(least, zone_depth(frame, point));
 }
 
-KrsStatus krs_distance_bound(KrsFrame *frame, const double (*points)[3], size_t count,
-                             double *distances)
+/* Whether questions are answered in many points at once. */
+static bool by_lanes(const KrsFrame *frame, size_t count)
+{
+    return count >= FEWEST_POINTS && frame->scene->component_count > 0;
+}
+
+static KrsStatus find_distances(KrsFrame *frame, const double (*points)[3], size_t count,
+                                bool bound, double *distances)
 {
     uint32_t nearest = 0;
-    Tape     bound   = frame->scene->distance;
-    bound.by_cells   = true;
+    Tape     tape    = frame->scene->distance;
+    tape.by_cells    = bound;
     if (!are_finite(points, count))
         return KRS_BAD_ARGUMENT;
     frame_refresh(frame);
+    if (by_lanes(frame, count))
+        return points_distances(frame, points, count, bound, distances);
     for (size_t i = 0; i < count; i++)
-        distances[i] = distance_by(frame, &bound, points[i], &nearest);
+        distances[i] = distance_by(frame, &tape, points[i], &nearest);
     return KRS_OK;
+}
+
+KrsStatus krs_distance_bound(KrsFrame *frame, const double (*points)[3], size_t count,
+                             double *distances)
+{
+    return find_distances(frame, points, count, true, distances);
 }
 
 KrsStatus krs_distance(KrsFrame *frame, const double (*points)[3], size_t count, double *distances)
 {
-    uint32_t nearest = 0;
-    if (!are_finite(points, count))
-        return KRS_BAD_ARGUMENT;
-    frame_refresh(frame);
-    for (size_t i = 0; i < count; i++)
-        distances[i] = distance_at(frame, points[i], &nearest);
-    return KRS_OK;
+    return find_distances(frame, points, count, false, distances);
 }
 
 /* A normal by derivatives, in scenes with sheets: differences would mix both sides of a sheet.
@@ -172,6 +182,8 @@ KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count, d
     if (!are_finite(points, count))
         return KRS_BAD_ARGUMENT;
     frame_refresh(frame);
+    if (by_lanes(frame, count) && !frame->scene->program.sheets)
+        return points_normals(frame, points, count, normals);
     for (size_t i = 0; i < count; i++)
         normal_at(frame, points[i], normals[i]);
     return KRS_OK;
@@ -188,18 +200,10 @@ static void copy_property(const KrsFrame *frame, const Node *roots, ComponentRoo
     }
 }
 
-static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
+/* Puts what is known of the surface of a component into an answer: its roots are in frame->values. */
+static void copy_surface(const KrsFrame *frame, uint32_t nearest, KrsHit *hit)
 {
-    const KrsScene *scene   = frame->scene;
-    uint32_t        nearest = 0;
-    *hit                    = (KrsHit){.hit = true};
-    memcpy(hit->point, point, sizeof hit->point);
-    normal_at(frame, point, hit->normal);
-    hit->distance = distance_at(frame, point, &nearest);
-    if (!nearest)
-        return;
-    tape_run_surface(&scene->surface, point, hit->normal, 0, frame->values);
-    const Node *root = surface_roots(&scene->roots, nearest - 1);
+    const Node *root = surface_roots(&frame->scene->roots, nearest - 1);
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     copy_property(frame, root, ROOT_##name, (double *)&hit->name);
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) \
@@ -212,14 +216,58 @@ static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
         frame_copy(frame, root[ROOT_NORMAL], hit->shading);
 }
 
+static KrsHit hit_at(const double point[3])
+{
+    KrsHit hit = {.hit = true};
+    memcpy(hit.point, point, sizeof hit.point);
+    return hit;
+}
+
+static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
+{
+    uint32_t nearest = 0;
+    *hit             = hit_at(point);
+    normal_at(frame, point, hit->normal);
+    hit->distance = distance_at(frame, point, &nearest);
+    if (!nearest)
+        return;
+    tape_run_surface(&frame->scene->surface, point, hit->normal, 0, frame->values);
+    copy_surface(frame, nearest, hit);
+}
+
+/* As many points as lanes. */
+static KrsStatus probe_lanes(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits)
+{
+    double    normals[LANES][3], distances[LANES];
+    uint32_t  nearest[LANES];
+    KrsStatus status = krs_normal(frame, points, count, normals);
+    if (status != KRS_OK || !frame_lanes(frame))
+        return KRS_OUT_OF_MEMORY;
+    points_look(frame, points, (const double(*)[3])normals, count, distances, nearest);
+    for (size_t i = 0; i < count; i++) {
+        hits[i]          = hit_at(points[i]);
+        hits[i].distance = distances[i];
+        memcpy(hits[i].normal, normals[i], sizeof normals[i]);
+        points_surface(frame, i, nearest[i]);
+        copy_surface(frame, nearest[i], &hits[i]);
+    }
+    return KRS_OK;
+}
+
 KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits)
 {
     if (!are_finite(points, count))
         return KRS_BAD_ARGUMENT;
     frame_refresh(frame);
-    for (size_t i = 0; i < count; i++)
+    KrsStatus status = KRS_OK;
+    size_t    i      = 0;
+    for (size_t now; by_lanes(frame, count - i) && status == KRS_OK; i += now) {
+        now    = count - i < LANES ? count - i : LANES;
+        status = probe_lanes(frame, points + i, now, hits + i);
+    }
+    for (; i < count && status == KRS_OK; i++)
         probe(frame, points[i], &hits[i]);
-    return KRS_OK;
+    return status;
 }
 
 /* ---- rays ---- */

@@ -20,7 +20,7 @@ static void *run_part(void *data)
     return NULL;
 }
 
-static size_t count_processors(void)
+size_t parallel_parts(void)
 {
     cpu_set_t processors;
     if (sched_getaffinity(0, sizeof processors, &processors) != 0)
@@ -32,7 +32,7 @@ static size_t count_processors(void)
 void run_in_parallel(void (*work)(void *task, size_t part, size_t parts), void *task)
 {
     Part   all[MOST_PARTS];
-    size_t parts = count_processors();
+    size_t parts = parallel_parts();
     for (size_t i = 0; i < parts; i++)
         all[i] = (Part){.work = work, .task = task, .number = i, .parts = parts};
     for (size_t i = 1; i < parts; i++)
