@@ -288,6 +288,14 @@ typedef struct KrsCamera {
    is the default.  The name is NULL if the camera has none, and lives as long as the scene. */
 size_t      krs_camera_count(const KrsScene *scene);
 const char *krs_camera_name(const KrsScene *scene, size_t index);
+/* Where the text has its block: bytes [start, end) of the file or text of this name, from `camera`
+   to behind the `}`.  KRS_BAD_ARGUMENT: there is no such camera, or the compiler places it. */
+typedef struct KrsPlace {
+    const char *source;
+    uint32_t    start, end;
+    uint32_t    line, column; /* of its beginning, from 1 */
+} KrsPlace;
+KrsStatus krs_camera_place(const KrsScene *scene, size_t index, KrsPlace *place);
 /* A camera at the frame's parameters and time.  KRS_BAD_ARGUMENT when there is none of that
    index. */
 KrsStatus krs_frame_camera(KrsFrame *frame, size_t index, KrsCamera *camera);

@@ -53,6 +53,20 @@ const char *krs_camera_name(const KrsScene *scene, size_t index)
     return index < scene->camera_count ? scene->cameras[index].name : NULL;
 }
 
+KrsStatus krs_camera_place(const KrsScene *scene, size_t index, KrsPlace *place)
+{
+    if (index >= scene->camera_count || scene->cameras[index].standing_in)
+        return KRS_BAD_ARGUMENT;
+    const RetainedPlace *from = &scene->camera_places[index];
+    const Span           span = scene->cameras[index].block;
+    *place                    = (KrsPlace){.source = from->source,
+                                           .start  = span.start,
+                                           .end    = span.end,
+                                           .line   = from->position.line,
+                                           .column = from->position.column};
+    return KRS_OK;
+}
+
 size_t krs_texture_count(const KrsScene *scene) { return scene->program.texture_count; }
 
 KrsStatus krs_texture(const KrsScene *scene, size_t index, KrsTexture *texture)

@@ -149,6 +149,7 @@ struct KrsScene {
     size_t           slope_count;
     Parameter       *parameters;
     RetainedPlace   *parameter_places; /* of their names */
+    RetainedPlace   *camera_places;    /* of their blocks */
     size_t           parameter_count;
     size_t           material_count;
     const char     **materials; /* names; the numbers of surfaces count from 1 */

@@ -86,6 +86,12 @@ static void retain_slopes(Compilation *c)
     }
 }
 
+static RetainedPlace retain_place(Compilation *c, Span span)
+{
+    const Source *source = &c->sources.items[span.source];
+    return (RetainedPlace){retain_text(c, source->name), source_position(source, span.start)};
+}
+
 static void retain_parameters(Compilation *c)
 {
     KrsScene         *scene = c->scene;
@@ -95,13 +101,11 @@ static void retain_parameters(Compilation *c)
     scene->parameters       = arena_new_array(arena, Parameter, from->count + 1);
     scene->parameter_places = arena_new_array(arena, RetainedPlace, from->count + 1);
     for (size_t i = 0; i < from->count; i++) {
-        Parameter    *to           = &scene->parameters[i];
-        const Source *source       = &c->sources.items[from->items[i].name_span.source];
+        Parameter *to              = &scene->parameters[i];
         *to                        = from->items[i];
         to->name                   = retain_text(c, to->name);
         to->doc                    = retain_text(c, to->doc);
-        scene->parameter_places[i] = (RetainedPlace){retain_text(c, source->name),
-                                                     source_position(source, to->name_span.start)};
+        scene->parameter_places[i] = retain_place(c, to->name_span);
     }
 }
 
@@ -114,11 +118,14 @@ static void retain_scene(Compilation *c)
     retain_turns(c);
     retain_slopes(c);
     retain_parameters(c);
-    scene->camera_count = s->cameras.count;
-    scene->cameras      = arena_new_array(arena, SceneCamera, s->cameras.count + 1);
+    scene->camera_count  = s->cameras.count;
+    scene->cameras       = arena_new_array(arena, SceneCamera, s->cameras.count + 1);
+    scene->camera_places = arena_new_array(arena, RetainedPlace, s->cameras.count + 1);
     for (size_t i = 0; i < s->cameras.count; i++) {
         scene->cameras[i]      = s->cameras.items[i];
         scene->cameras[i].name = retain_text(c, s->cameras.items[i].name);
+        if (!s->cameras.items[i].standing_in)
+            scene->camera_places[i] = retain_place(c, s->cameras.items[i].block);
     }
     scene->material_count = s->materials.count;
     scene->materials      = arena_new_array(arena, const char *, s->materials.count + 1);

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "live/camera_text.h"
 #include "live/orbit.h"
 #include "live/text_edit.h"
 
@@ -24,7 +25,8 @@
 
 static void changed(Viewing *viewing)
 {
-    viewing->moved = true;
+    viewing->moved          = true;
+    viewing->camera_written = false;
     viewing_show(viewing);
 }
 
@@ -160,17 +162,40 @@ static void act_copy_camera(Viewing *viewing)
     free(text);
 }
 
+/* Says what came of writing into the text.  False: nothing was written. */
+static bool is_written(Viewing *viewing, KrsStatus status)
+{
+    if (status == KRS_BAD_ARGUMENT)
+        viewing_notice(viewing, "the text is not the one that is shown: save it without mistakes");
+    else if (status != KRS_OK)
+        viewing_notice(viewing, "the file cannot be written");
+    return status == KRS_OK;
+}
+
+/* From then on the camera follows the text again. */
+static void act_write_camera(Viewing *viewing)
+{
+    const KrsScene *scene  = version_scene(viewing->view.version);
+    KrsStatus       status = KRS_BAD_ARGUMENT;
+    KrsCamera       before;
+    if (viewing->remarks.errors == 0 &&
+        krs_frame_camera(viewing->frame, viewing->camera, &before) == KRS_OK)
+        status = camera_text_write(scene, viewing->camera, &before, &viewing->view.camera,
+                                   viewing->options->path);
+    if (!is_written(viewing, status))
+        return;
+    viewing->camera_written = true;
+    viewing_notice(viewing, "the camera is written");
+}
+
 static void act_write_values(Viewing *viewing)
 {
     size_t          written;
     const KrsScene *scene  = version_scene(viewing->view.version);
-    const KrsStatus status = write_defaults(scene, (const double(*)[4])viewing->view.values,
-                                            &written);
-    if (status == KRS_BAD_ARGUMENT || viewing->remarks.errors > 0)
-        viewing_notice(viewing, "the text is not the one that is shown: save it without mistakes");
-    else if (status != KRS_OK)
-        viewing_notice(viewing, "the file cannot be written");
-    else
+    KrsStatus       status = KRS_BAD_ARGUMENT;
+    if (viewing->remarks.errors == 0)
+        status = write_defaults(scene, (const double(*)[4])viewing->view.values, &written);
+    if (is_written(viewing, status))
         viewing_notice(viewing, "%zu value%s written", written, written == 1 ? "" : "s");
 }
 
@@ -225,6 +250,7 @@ void act_key(void *user, int key, int modifiers)
 {
     Viewing  *viewing = user;
     const int counted = modifiers & (GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT);
+    viewing->grounded = viewing->grounded || (modifiers & GLFW_MOD_CONTROL);
     if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9)
         key += GLFW_KEY_0 - GLFW_KEY_KP_0;
     if (key == GLFW_KEY_KP_ADD || key == GLFW_KEY_KP_SUBTRACT)
@@ -290,13 +316,13 @@ static double held(const Viewing *viewing, int less, int more)
 static bool fly(Viewing *viewing, double now)
 {
     const double seconds = fmin(now - viewing->flown_at, 0.1) * FLY_SPEED;
-    const bool   control = window_key_is_held(viewing->window, GLFW_KEY_LEFT_CONTROL) ||
-                         window_key_is_held(viewing->window, GLFW_KEY_RIGHT_CONTROL);
-    const double ahead = held(viewing, GLFW_KEY_S, GLFW_KEY_W);
-    const double right = held(viewing, GLFW_KEY_A, GLFW_KEY_D);
-    const double up    = held(viewing, GLFW_KEY_Q, GLFW_KEY_E);
-    viewing->flown_at  = now;
-    if (control || (ahead == 0 && right == 0 && up == 0))
+    const double ahead   = held(viewing, GLFW_KEY_S, GLFW_KEY_W);
+    const double right   = held(viewing, GLFW_KEY_A, GLFW_KEY_D);
+    const double up      = held(viewing, GLFW_KEY_Q, GLFW_KEY_E);
+    const bool   any     = ahead != 0 || right != 0 || up != 0;
+    viewing->flown_at    = now;
+    viewing->grounded    = viewing->grounded && any;
+    if (viewing->grounded || !any)
         return false;
     orbit_fly(&viewing->view.camera, ahead * seconds, right * seconds, up * seconds);
     changed(viewing);

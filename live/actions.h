@@ -11,6 +11,8 @@ typedef struct Action {
     const char *keys, *does; /* NULL: not in the help */
     void (*act)(Viewing *viewing);
 } Action;
+/* A modifier of act_key. */
+#define ACT_CONTROL 2
 extern const Action actions[];
 extern const size_t action_count;
 

@@ -20,10 +20,16 @@ struct Canvas {
     KrsRendering *rendering;
     KrsFrame     *frame;
     Version      *version;
+    Needs         made;        /* whose shaders there are; the most of each kind */
+    bool          previews;    /* such shaders there are */
+    bool          paths_first; /* what the rendering is for */
     Film          films[FILM_COUNT];
     /* Of the picture that is being made: films keep the functions that they were made with. */
     KrsProgressCallback *progress;
     void                *user;
+    /* While canvas_prepare compiles. */
+    KrsCompilingCallback *compiling;
+    void                 *compiling_user;
 };
 
 bool view_copy(const View *view, View *copy)
@@ -46,10 +52,21 @@ void view_free(View *view)
     *view = (View){0};
 }
 
+static bool go_on_compiling(void *user, double done)
+{
+    Canvas *canvas = user;
+    return !canvas->compiling || canvas->compiling(canvas->compiling_user, done);
+}
+
 KrsStatus canvas_new(const KrsRendererOptions *options, Canvas **canvas)
 {
-    *canvas = calloc(1, sizeof **canvas);
-    return *canvas ? krs_renderer_new(options, &(*canvas)->renderer) : KRS_OUT_OF_MEMORY;
+    KrsRendererOptions with = *options;
+    *canvas                 = calloc(1, sizeof **canvas);
+    if (!*canvas)
+        return KRS_OUT_OF_MEMORY;
+    with.compiling      = go_on_compiling;
+    with.compiling_user = *canvas;
+    return krs_renderer_new(&with, &(*canvas)->renderer);
 }
 
 static void free_films(Canvas *canvas)
@@ -77,20 +94,92 @@ const char *canvas_message(const Canvas *canvas)
     return canvas && canvas->renderer ? krs_renderer_message(canvas->renderer) : "out of memory";
 }
 
-Version *canvas_version(const Canvas *canvas) { return canvas->version; }
+/* ---- shaders ---- */
 
-static KrsStatus begin(Canvas *canvas, const KrsScene *scene, KrsIntegrator integrator)
+static unsigned lens_of(const KrsCamera *camera)
 {
-    const bool paths  = integrator > KRS_INTEGRATOR_PREVIEW;
-    KrsStatus  status = krs_frame_new(scene, &canvas->frame);
-    if (status == KRS_OK)
-        status = krs_rendering_new_for(
-            canvas->renderer, scene, paths ? KRS_FOR_PATHS : KRS_FOR_PICTURES, &canvas->rendering);
-    if (status != KRS_OK) {
-        krs_frame_free(canvas->frame);
-        canvas->frame = NULL;
+    return camera->aperture > 0 ? 2 : camera->projection == KRS_PANORAMA ? 1 : 0;
+}
+
+/* As many as kernels have room for (krs_vulkan.h). */
+static unsigned room_for(size_t zones)
+{
+    unsigned room = zones > 0;
+    while (room < zones)
+        room *= 2;
+    return room;
+}
+
+Needs view_needs(const View *view)
+{
+    return (Needs){.structure = version_structure(view->version),
+                   .paths     = view->integrator > KRS_INTEGRATOR_PREVIEW,
+                   .lens      = lens_of(&view->camera),
+                   .zones     = room_for(view->zone_count)};
+}
+
+bool needs_are_equal(const Needs *a, const Needs *b)
+{
+    return a->structure == b->structure && a->paths == b->paths && a->lens == b->lens &&
+           a->zones == b->zones;
+}
+
+bool canvas_meets(const Canvas *canvas, const Needs *needs)
+{
+    const Needs *made = &canvas->made;
+    return made->structure == needs->structure && (needs->paths ? made->paths : canvas->previews) &&
+           needs->lens <= made->lens && needs->zones <= made->zones;
+}
+
+/* The cameras of a scene are served by its shaders from the beginning. */
+static unsigned lens_of_scene(const Canvas *canvas)
+{
+    const KrsScene *scene = version_scene(canvas->version);
+    unsigned        most  = 0;
+    for (size_t i = 0; i < krs_camera_count(scene); i++) {
+        KrsCamera      camera;
+        const unsigned lens = krs_frame_camera(canvas->frame, i, &camera) == KRS_OK
+                                  ? lens_of(&camera)
+                                  : 0;
+        most                = lens > most ? lens : most;
     }
-    return status;
+    return most;
+}
+
+static void note_made(Canvas *canvas, const Needs *needs)
+{
+    Needs         *made = &canvas->made;
+    const bool     same = made->structure == needs->structure;
+    const Needs    old  = same ? *made : (Needs){0};
+    const unsigned lens = lens_of_scene(canvas);
+    canvas->previews    = !needs->paths || (same && canvas->previews);
+    *made               = *needs;
+    made->paths         = needs->paths || old.paths;
+    made->lens          = made->lens > old.lens ? made->lens : old.lens;
+    made->lens          = made->lens > lens ? made->lens : lens;
+    made->zones         = made->zones > old.zones ? made->zones : old.zones;
+}
+
+/* Makes frame and rendering; what there was stays if that fails. */
+static KrsStatus make_rendering(Canvas *canvas, const KrsScene *scene, bool paths)
+{
+    KrsFrame     *frame     = NULL;
+    KrsRendering *rendering = NULL;
+    KrsStatus     status    = krs_frame_new(scene, &frame);
+    if (status == KRS_OK)
+        status = krs_rendering_new_for(canvas->renderer, scene,
+                                       paths ? KRS_FOR_PATHS : KRS_FOR_PICTURES, &rendering);
+    if (status != KRS_OK) {
+        krs_frame_free(frame);
+        return status;
+    }
+    free_films(canvas);
+    krs_rendering_free(canvas->rendering);
+    krs_frame_free(canvas->frame);
+    canvas->rendering   = rendering;
+    canvas->frame       = frame;
+    canvas->paths_first = paths;
+    return KRS_OK;
 }
 
 /* Frame and rendering are of the same scene, whatever fails. */
@@ -109,18 +198,54 @@ static KrsStatus update(Canvas *canvas, const KrsScene *scene)
     return KRS_OK;
 }
 
-KrsStatus canvas_adopt(Canvas *canvas, Version *version, KrsIntegrator integrator)
+KrsStatus canvas_adopt(Canvas *canvas, const View *view)
 {
-    const KrsScene *scene = version_scene(version);
-    if (version == canvas->version)
+    const KrsScene *scene = version_scene(view->version);
+    const bool      paths = view_needs(view).paths;
+    if (view->version == canvas->version)
         return KRS_OK;
-    KrsStatus status = canvas->rendering ? update(canvas, scene) : begin(canvas, scene, integrator);
+    const bool updates = canvas->rendering &&
+                         (canvas->paths_first == paths ||
+                          version_structure(view->version) == version_structure(canvas->version));
+    KrsStatus status = updates ? update(canvas, scene) : make_rendering(canvas, scene, paths);
     if (status != KRS_OK)
         return status;
+    if (canvas->made.structure != version_structure(view->version)) {
+        canvas->made     = (Needs){0};
+        canvas->previews = false;
+    }
     version_release(canvas->version);
-    canvas->version = version_hold(version);
+    canvas->version = version_hold(view->version);
     return KRS_OK;
 }
+
+/* The sides of a picture that only compiles. */
+#define LEAST_SIDE 32
+
+/* Some shaders are compiled when a picture needs them: a small one is made. */
+static KrsStatus try_out(Canvas *canvas, const View *view)
+{
+    KrsStatus status = canvas_adopt(canvas, view);
+    if (status != KRS_OK)
+        return status;
+    canvas_set(canvas, view); /* values that are refused need no other shaders */
+    return canvas_add(canvas, FILM_COARSE, view, LEAST_SIDE, LEAST_SIDE, 1, true, NULL, NULL);
+}
+
+KrsStatus canvas_prepare(Canvas *canvas, const View *view, KrsCompilingCallback *compiling,
+                         void *user)
+{
+    const Needs needs      = view_needs(view);
+    canvas->compiling      = compiling;
+    canvas->compiling_user = user;
+    const KrsStatus status = try_out(canvas, view);
+    canvas->compiling      = NULL;
+    if (status == KRS_OK)
+        note_made(canvas, &needs);
+    return status;
+}
+
+void canvas_rest(Canvas *canvas) { free_films(canvas); }
 
 KrsStatus canvas_set(Canvas *canvas, const View *view)
 {

@@ -40,11 +40,26 @@ void      canvas_free(Canvas *canvas);
 /* One line about the last failure. */
 const char *canvas_message(const Canvas *canvas);
 
-/* Takes the canvas over to a version, which may compile shaders.  If that fails, the version before
-   stays. */
-KrsStatus canvas_adopt(Canvas *canvas, Version *version, KrsIntegrator integrator);
-/* The version of the canvas; NULL: none yet. */
-Version *canvas_version(const Canvas *canvas);
+/* What the shaders of a view depend on. */
+typedef struct Needs {
+    unsigned structure; /* of the version */
+    bool     paths;     /* or previews */
+    unsigned lens;  /* 2: the camera has a lens; 1: it is a panorama; those with more serve all */
+    unsigned zones; /* there is room for so many */
+} Needs;
+Needs view_needs(const View *view);
+bool  needs_are_equal(const Needs *a, const Needs *b);
+/* Whether a canvas shows what has these needs without compiling shaders. */
+bool canvas_meets(const Canvas *canvas, const Needs *needs);
+
+/* Compiles the shaders of a view; `compiling` may be NULL. */
+KrsStatus canvas_prepare(Canvas *canvas, const View *view, KrsCompilingCallback *compiling,
+                         void *user);
+/* Takes the canvas over to the view's version, if it has another one.  If that fails, the version
+   before stays. */
+KrsStatus canvas_adopt(Canvas *canvas, const View *view);
+/* Frees what pictures need. */
+void canvas_rest(Canvas *canvas);
 
 /* Sets the frame to the view's values and time.  Those that the scene refuses stay as they were:
    KRS_BAD_ARGUMENT. */

@@ -20,7 +20,7 @@
 struct Version {
     KrsScene   *scene;
     KrsChanges  changes;
-    unsigned    number;
+    unsigned    number, structure;
     atomic_uint holders;
 };
 
@@ -57,6 +57,8 @@ void version_release(Version *version)
 KrsScene *version_scene(const Version *version) { return version->scene; }
 
 unsigned version_number(const Version *version) { return version->number; }
+
+unsigned version_structure(const Version *version) { return version->structure; }
 
 KrsChanges version_changes(const Version *version) { return version->changes; }
 
@@ -154,16 +156,18 @@ static KrsStatus compile(Document *document, KrsScene **scene, KrsChanges *chang
 }
 
 /* Takes the scene.  NULL: without memory. */
-static Version *version_new(KrsScene *scene, KrsChanges changes, unsigned number)
+static Version *version_new(KrsScene *scene, KrsChanges changes, const Version *before)
 {
-    Version *version = malloc(sizeof *version);
+    const bool structure = changes.kind == KRS_CHANGE_STRUCTURE;
+    Version   *version   = malloc(sizeof *version);
     if (!version) {
         krs_scene_free(scene);
         return NULL;
     }
-    version->scene   = scene;
-    version->changes = changes;
-    version->number  = number;
+    version->scene     = scene;
+    version->changes   = changes;
+    version->number    = before ? before->number + 1 : 1;
+    version->structure = before ? before->structure + structure : 1;
     atomic_init(&version->holders, 1);
     return version;
 }
@@ -190,12 +194,11 @@ KrsStatus document_read(Document *document)
 {
     KrsScene  *scene   = NULL;
     Version   *version = NULL;
-    unsigned   number  = document->version ? document->version->number + 1 : 1;
     KrsChanges changes;
     document->refused = false;
     KrsStatus status  = compile(document, &scene, &changes);
     if (status == KRS_OK) {
-        version = version_new(scene, changes, number);
+        version = version_new(scene, changes, document->version);
         status  = version ? KRS_OK : KRS_OUT_OF_MEMORY;
     }
     publish(document, version);

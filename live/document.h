@@ -14,6 +14,8 @@ void      version_release(Version *version); /* NULL is ignored */
 KrsScene *version_scene(const Version *version);
 /* From 1 on, greater for each later version. */
 unsigned version_number(const Version *version);
+/* The same for versions that the same shaders show. */
+unsigned version_structure(const Version *version);
 /* Against the version before; of the first, everything is new. */
 KrsChanges version_changes(const Version *version);
 

@@ -284,6 +284,14 @@ bool gui_input(const char *label, char *text, size_t size)
     return entered;
 }
 
+void gui_progress(double done)
+{
+    const ImVec2 size(13 * ImGui::GetFontSize(), 0.3f * ImGui::GetFontSize());
+    ImGui::PushStyleColor(ImGuiCol_PlotHistogram, ImGui::GetStyleColorVec4(ImGuiCol_SliderGrab));
+    ImGui::ProgressBar(static_cast<float>(done), size, "");
+    ImGui::PopStyleColor();
+}
+
 void gui_keys(const char *keys, const char *does)
 {
     ImGui::PushFont(source);

@@ -59,6 +59,7 @@ bool gui_drag(const char *label, double *values, size_t count, double speed, dou
 bool gui_color(const char *label, double rgb[3]); /* as the screen has it, each in [0, 1] */
 bool gui_choice(const char *label, int *chosen, const char *const *names, size_t count);
 bool gui_input(const char *label, char *text, size_t size);
+void gui_progress(double done);                    /* a bar; `done` is from 0 to 1 */
 void gui_keys(const char *keys, const char *does); /* a row of the help */
 
 #ifdef __cplusplus

@@ -1,10 +1,15 @@
 /*
  * painter.c: a thread that makes pictures of what is to be seen.
  *
+ * Whoever changes the text's structure waits for shaders; another thread compiles them (builder.h),
+ * and until they are there the version before is shown, from wherever the camera is by then.
+ *
  * Coarse pictures are not interrupted by a change, unless they take far too long: while something
  * moves, each is shown.  Whole ones are interrupted at once.
  */
 #include "live/painter.h"
+
+#include "live/builder.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -31,13 +36,14 @@ struct Painter {
     KrsPicture     *planes;
     PainterState    state;
     atomic_uint     number; /* of the wanted view */
+    atomic_bool     told;   /* the builder has something to say */
+    Builder        *builder;
     /* of the thread alone */
     Canvas  *canvas;
     View     view;
     unsigned shown;                  /* number of `view` */
     double   ms_per_pixel, fixed_ms; /* what a picture costs; 0: not known yet */
     double   divisor;                /* of the sides of coarse pictures */
-    bool     fresh;                  /* the next picture also waits for shaders */
     double   begun;                  /* when the picture that is being made was begun */
     FilmKind making;
 };
@@ -116,35 +122,28 @@ PainterState painter_state(Painter *painter)
     pthread_mutex_lock(&painter->lock);
     PainterState state = painter->state;
     pthread_mutex_unlock(&painter->lock);
+    const BuilderState building = builder_state(painter->builder);
+    state.compiling             = building.building;
+    state.compiled              = building.done;
+    snprintf(state.unbuilt, sizeof state.unbuilt, "%s",
+             building.status == KRS_OK ? "" : building.message);
     return state;
 }
 
 /* ---- the thread ---- */
 
-static void say_doing(Painter *painter, bool compiling, bool busy)
-{
-    pthread_mutex_lock(&painter->lock);
-    const bool news          = painter->state.compiling != compiling;
-    painter->state.compiling = compiling;
-    painter->state.busy      = busy;
-    pthread_mutex_unlock(&painter->lock);
-    if (news)
-        wake(painter);
-}
-
-static void say_failed(Painter *painter, KrsStatus status)
+static void say_failed(Painter *painter, KrsStatus status, const char *message)
 {
     pthread_mutex_lock(&painter->lock);
     painter->state.status = status;
-    snprintf(painter->state.message, sizeof painter->state.message, "%s",
-             canvas_message(painter->canvas));
+    snprintf(painter->state.message, sizeof painter->state.message, "%s", message);
     pthread_mutex_unlock(&painter->lock);
     wake(painter);
 }
 
 static bool is_outdated(const Painter *painter)
 {
-    return atomic_load(&painter->number) != painter->shown;
+    return atomic_load(&painter->number) != painter->shown || atomic_load(&painter->told);
 }
 
 static bool go_on(void *user, double done)
@@ -170,6 +169,7 @@ static KrsStatus publish(Painter *painter, FilmKind kind, double ms)
                    .samples = samples,
                    .whole   = kind == FILM_FULL,
                    .view    = painter->shown,
+                   .version = version_number(painter->view.version),
                    .ms      = ms,
                    .stats   = picture->stats};
     shot.pixels = malloc((size_t)shot.width * shot.height * 4);
@@ -218,9 +218,7 @@ static KrsStatus make(Painter *painter, FilmKind kind, uint32_t width, uint32_t 
     if (status != KRS_OK)
         return status;
     const double ms = now_ms() - painter->begun;
-    if (!painter->fresh)
-        learn_cost(painter, kind, ms / samples, (double)width * height);
-    painter->fresh = false;
+    learn_cost(painter, kind, ms / samples, (double)width * height);
     return publish(painter, kind, ms);
 }
 
@@ -283,31 +281,94 @@ static KrsStatus show_view(Painter *painter)
     return status == KRS_INTERRUPTED ? KRS_OK : status;
 }
 
-static KrsStatus adopt(Painter *painter)
+/* ---- which canvas ---- */
+
+/* Called in the builder's thread. */
+static void hear_builder(void *user)
 {
-    if (painter->view.version == canvas_version(painter->canvas))
-        return KRS_OK;
-    const bool first = !canvas_version(painter->canvas);
-    say_doing(painter, true, true);
-    KrsStatus status = canvas_adopt(painter->canvas, painter->view.version,
-                                    painter->view.integrator);
-    painter->fresh   = first || version_changes(painter->view.version).kind == KRS_CHANGE_STRUCTURE;
-    say_doing(painter, false, true);
-    return status;
+    Painter           *painter = user;
+    const BuilderState state   = builder_state(painter->builder);
+    if (!state.building) {
+        pthread_mutex_lock(&painter->lock);
+        atomic_store(&painter->told, true);
+        pthread_cond_signal(&painter->changed);
+        pthread_mutex_unlock(&painter->lock);
+    }
+    wake(painter);
 }
 
-/* Waits for another view, and takes it.  False: that was the last one. */
-static bool take_view(Painter *painter)
+/* Whether a canvas has the shaders of a view: the one that is shown, or the one that was built.  If
+   there is none, it is built. */
+static bool choose_canvas(Painter *painter, const View *next)
 {
-    View next;
+    const Needs needs = view_needs(next);
+    if (painter->canvas && canvas_meets(painter->canvas, &needs)) {
+        builder_cancel(painter->builder);
+        return true;
+    }
+    Canvas *built = builder_exchange(painter->builder, &needs, painter->canvas);
+    if (!built) {
+        builder_start(painter->builder, next);
+        return false;
+    }
+    if (painter->canvas)
+        canvas_rest(painter->canvas);
+    painter->canvas       = built;
+    painter->ms_per_pixel = painter->fixed_ms = 0;
+    return true;
+}
+
+/* Values of parameters of the same name, where there are such. */
+static void take_values(View *view, const View *from)
+{
+    const KrsScene *scene = version_scene(view->version), *other = version_scene(from->version);
+    for (size_t i = 0; i < krs_parameter_count(scene); i++)
+        for (size_t k = 0; k < krs_parameter_count(other); k++) {
+            KrsParameter a, b;
+            krs_parameter(scene, i, &a);
+            krs_parameter(other, k, &b);
+            if (strcmp(a.name, b.name) == 0 && a.components == b.components)
+                memcpy(view->values[i], from->values[k], sizeof *view->values);
+        }
+}
+
+/* Shows as much of the next view as the canvas has shaders for. */
+static void follow(Painter *painter, const View *next)
+{
+    View       *view  = &painter->view;
+    const Needs needs = view_needs(view), wanted = view_needs(next);
+    if (wanted.lens <= needs.lens)
+        view->camera = next->camera;
+    take_values(view, next);
+    view->time    = next->time;
+    view->width   = next->width;
+    view->height  = next->height;
+    view->samples = next->samples;
+    view->stops   = next->stops;
+    view->look    = next->look;
+}
+
+static void adopt_view(Painter *painter, View *next)
+{
+    if (choose_canvas(painter, next)) {
+        view_free(&painter->view);
+        painter->view = *next;
+        *next         = (View){0};
+    } else if (painter->canvas) {
+        follow(painter, next);
+    }
+}
+
+/* Waits for another view, or for shaders.  False: that was the last one. */
+static bool wait_for_view(Painter *painter, View *next)
+{
     bool taken = false;
     pthread_mutex_lock(&painter->lock);
     painter->state.busy = false;
     while (!painter->quit && !is_outdated(painter))
         pthread_cond_wait(&painter->changed, &painter->lock);
-    if (!painter->quit && view_copy(&painter->wanted, &next)) {
-        view_free(&painter->view);
-        painter->view           = next;
+    atomic_store(&painter->told, false);
+    if (!painter->quit && view_copy(&painter->wanted, next)) {
         painter->shown          = atomic_load(&painter->number);
         painter->options.budget = painter->budget;
         painter->state.busy     = true;
@@ -325,20 +386,35 @@ static void set_values(Painter *painter)
     pthread_mutex_unlock(&painter->lock);
 }
 
+static KrsStatus paint_view(Painter *painter)
+{
+    KrsStatus status = canvas_adopt(painter->canvas, &painter->view);
+    if (status != KRS_OK)
+        return status;
+    set_values(painter);
+    return show_view(painter);
+}
+
 static void *paint(void *user)
 {
-    Painter  *painter = user;
-    KrsStatus status  = canvas_new(&painter->options.renderer, &painter->canvas);
-    while (status == KRS_OK && take_view(painter)) {
-        status = adopt(painter);
+    Painter *painter = user;
+    View     next    = {0};
+    while (wait_for_view(painter, &next)) {
+        KrsStatus status = KRS_OK;
+        if (next.version)
+            adopt_view(painter, &next);
+        view_free(&next);
+        if (painter->canvas)
+            status = paint_view(painter);
+        const BuilderState building = builder_state(painter->builder);
+        if (status != KRS_OK)
+            say_failed(painter, status, canvas_message(painter->canvas));
+        else if (!painter->canvas && building.status != KRS_OK)
+            say_failed(painter, status = building.status, building.message);
         if (status != KRS_OK)
             break;
-        set_values(painter);
-        status = show_view(painter);
         wake(painter); /* it is idle now */
     }
-    if (status != KRS_OK)
-        say_failed(painter, status);
     return NULL;
 }
 
@@ -352,8 +428,11 @@ Painter *painter_new(const PainterOptions *options)
     pthread_mutex_init(&painter->lock, NULL);
     pthread_cond_init(&painter->changed, NULL);
     atomic_init(&painter->number, 0);
-    if (pthread_create(&painter->thread, NULL, paint, painter) == 0)
+    atomic_init(&painter->told, false);
+    painter->builder = builder_new(&options->renderer, hear_builder, painter);
+    if (painter->builder && pthread_create(&painter->thread, NULL, paint, painter) == 0)
         return painter;
+    builder_free(painter->builder);
     free(painter);
     return NULL;
 }
@@ -368,6 +447,7 @@ void painter_free(Painter *painter)
     pthread_cond_signal(&painter->changed);
     pthread_mutex_unlock(&painter->lock);
     pthread_join(painter->thread, NULL);
+    builder_free(painter->builder);
     canvas_free(painter->canvas);
     view_free(&painter->view);
     view_free(&painter->wanted);

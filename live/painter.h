@@ -21,9 +21,9 @@ typedef struct Shot {
     uint8_t       *pixels;        /* 8-bit sRGB, four bytes a pixel, from the top */
     uint32_t       width, height; /* of these; the view's, or fewer */
     uint32_t       samples;
-    bool           whole; /* with all pixels of the view */
-    unsigned       view;  /* number of the view */
-    double         ms;    /* what it took to make */
+    bool           whole;         /* with all pixels of the view */
+    unsigned       view, version; /* numbers of the view, and of the version that is seen */
+    double         ms;            /* what it took to make */
     KrsRenderStats stats;
 } Shot;
 
@@ -35,10 +35,12 @@ typedef struct Found {
 } Found;
 
 typedef struct PainterState {
-    bool      compiling;    /* shaders */
+    bool      compiling;    /* shaders of what is wanted; meanwhile the version before is shown */
+    double    compiled;     /* the part of them that is done */
     bool      busy;         /* a picture is made or refined */
-    KrsStatus status;       /* not KRS_OK: the painter has ended, or shows the version before */
+    KrsStatus status;       /* not KRS_OK: the painter has ended */
     char      message[256]; /* why */
+    char      unbuilt[256]; /* why there are no shaders of what is wanted; "" if there are */
     bool      refused;      /* the scene refuses a value, or the time */
     unsigned  version;      /* the number of the one that is shown; 0: none */
     char      device[256];

@@ -105,6 +105,10 @@ static void draw_camera(Viewing *viewing)
     if (gui_button("Reset", false))
         viewing_take_camera(viewing, viewing->camera);
     gui_beside();
+    if (gui_button("Write", false))
+        act_key(viewing, 'E', ACT_CONTROL);
+    gui_tip("Writes the camera into the text of the scene.");
+    gui_beside();
     if (gui_button("Path", viewing->view.integrator == KRS_INTEGRATOR_PATH))
         act_key(viewing, 'P', 0);
 }
@@ -139,13 +143,22 @@ static void draw_controls(Viewing *viewing)
 
 /* ---- what is going on ---- */
 
-static const char *doing(const Viewing *viewing)
+static void draw_doing(const Viewing *viewing)
 {
-    if (viewing->painting.compiling)
-        return "compiling the shaders";
-    if (viewing->painting.refused)
-        return "the scene refuses these values";
-    return "";
+    const PainterState *painting  = &viewing->painting;
+    char                line[340] = "";
+    if (painting->compiling)
+        snprintf(line, sizeof line, "compiling the shaders: %.0f %%%s", 100 * painting->compiled,
+                 viewing->shot.width > 0 ? "; this is what was before" : "");
+    else if (painting->unbuilt[0])
+        snprintf(line, sizeof line, "no shaders, so this is what was before: %s",
+                 painting->unbuilt);
+    else if (painting->refused)
+        snprintf(line, sizeof line, "the scene refuses these values");
+    if (line[0])
+        gui_text(GUI_WARNING, line);
+    if (painting->compiling)
+        gui_progress(painting->compiled);
 }
 
 static void draw_status(Viewing *viewing)
@@ -162,8 +175,7 @@ static void draw_status(Viewing *viewing)
     }
     if (viewing_now() - viewing->noticed_at < 4 && viewing->notice[0])
         gui_text(GUI_PLAIN, viewing->notice);
-    if (*doing(viewing))
-        gui_text(GUI_WARNING, doing(viewing));
+    draw_doing(viewing);
     gui_panel_end();
 }
 

@@ -8,48 +8,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-/* ---- cameras ---- */
-
-static void print_vector(FILE *out, const char *name, const double v[3])
-{
-    fprintf(out, "%s: [%.6g, %.6g, %.6g]", name, v[0] + 0.0, v[1] + 0.0, v[2] + 0.0);
-}
-
-static double degrees(double radians) { return radians * 180 / M_PI; }
-
-static void print_projection(FILE *out, const KrsCamera *camera)
-{
-    if (camera->projection == KRS_PERSPECTIVE)
-        fprintf(out, ", fov: %.6gdeg", degrees(camera->fov));
-    else if (camera->projection == KRS_ORTHOGRAPHIC)
-        fprintf(out, ", projection: \"orthographic\", height: %.6g", camera->height);
-    else
-        fprintf(out, ", projection: \"panorama\"");
-}
-
-char *camera_text(const KrsCamera *camera)
-{
-    char  *text   = NULL;
-    size_t length = 0;
-    FILE  *out    = open_memstream(&text, &length);
-    if (!out)
-        return NULL;
-    fprintf(out, "camera { ");
-    print_vector(out, "eye", camera->eye);
-    print_vector(out, ", target", camera->target);
-    if (camera->up[0] != 0 || camera->up[2] != 0 || camera->up[1] <= 0)
-        print_vector(out, ", up", camera->up);
-    print_projection(out, camera);
-    if (camera->aperture > 0)
-        fprintf(out, ", aperture: %.6g", camera->aperture);
-    if (camera->aperture > 0 && camera->focus > 0)
-        fprintf(out, ", focus: %.6g", camera->focus);
-    fprintf(out, " }\n");
-    return fclose(out) == 0 ? text : NULL;
-}
+#include "live/text_file.h"
 
 /* ---- values ---- */
 
@@ -83,49 +43,6 @@ static void print_value(FILE *out, const KrsParameter *parameter, const double *
     fprintf(out, "]");
 }
 
-/* ---- files ---- */
-
-typedef struct Bytes {
-    char  *text;
-    size_t length;
-} Bytes;
-
-static bool read_bytes(const char *path, Bytes *bytes)
-{
-    FILE  *file = fopen(path, "rb");
-    char   part[4096];
-    size_t got;
-    if (!file)
-        return false;
-    FILE *out = open_memstream(&bytes->text, &bytes->length);
-    while (out && (got = fread(part, 1, sizeof part, file)) > 0)
-        fwrite(part, 1, got, out);
-    const bool good = out && !ferror(file);
-    fclose(file);
-    return out && fclose(out) == 0 && good;
-}
-
-/* The file appears whole or not at all; links stay links. */
-static bool write_bytes(const char *path, const Bytes *bytes)
-{
-    struct stat info;
-    char       *real = realpath(path, NULL), *name = NULL;
-    bool        good = real && stat(real, &info) == 0 && asprintf(&name, "%s.XXXXXX", real) > 0;
-    const int   fd   = good ? mkstemp(name) : -1;
-    FILE       *file = fd >= 0 ? fdopen(fd, "wb") : NULL;
-    if (file) {
-        good = fwrite(bytes->text, 1, bytes->length, file) == bytes->length &&
-               fchmod(fd, info.st_mode & 07777) == 0;
-        good = fclose(file) == 0 && good;
-        good = good && rename(name, real) == 0;
-        if (!good)
-            unlink(name);
-    }
-    free(real);
-    free(name);
-    return file && good;
-}
-
 /* ---- defaults ---- */
 
 static bool is_default(const KrsParameter *parameter, const double *value)
@@ -157,7 +74,7 @@ static bool stands_there(const Bytes *bytes, const KrsParameter *parameter)
 static KrsStatus write_default(const KrsParameter *parameter, const double *value)
 {
     Bytes     before = {0}, after = {0};
-    KrsStatus status = read_bytes(parameter->source, &before) ? KRS_OK : KRS_IO_ERROR;
+    KrsStatus status = text_file_read(parameter->source, &before) ? KRS_OK : KRS_IO_ERROR;
     if (status == KRS_OK && !stands_there(&before, parameter))
         status = KRS_BAD_ARGUMENT;
     FILE *out = status == KRS_OK ? open_memstream(&after.text, &after.length) : NULL;
@@ -165,7 +82,7 @@ static KrsStatus write_default(const KrsParameter *parameter, const double *valu
         fwrite(before.text, 1, parameter->start, out);
         print_value(out, parameter, value);
         fwrite(before.text + parameter->end, 1, before.length - parameter->end, out);
-        if (fclose(out) != 0 || !write_bytes(parameter->source, &after))
+        if (fclose(out) != 0 || !text_file_write(parameter->source, &after))
             status = KRS_IO_ERROR;
     }
     free(before.text);

@@ -6,9 +6,6 @@
 
 #include "compiler/krs.h"
 
-/* A `camera` block of the language, with its newline; the caller frees it.  NULL: without memory. */
-char *camera_text(const KrsCamera *camera);
-
 /* Writes values into the defaults of the scene's parameters, where they differ, and changes nothing
    else of its files.  *written is how many were.  KRS_BAD_ARGUMENT: a file is not what the scene was
    compiled of; KRS_IO_ERROR. */

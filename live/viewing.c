@@ -213,6 +213,8 @@ void viewing_adopt(Viewing *viewing, Version *version)
     free(before.values);
     if (viewing->camera >= krs_camera_count(scene))
         viewing->camera = 0;
+    if (viewing->camera_written)
+        viewing->moved = viewing->camera_written = false;
     if (!viewing->moved)
         viewing_take_camera(viewing, viewing->camera);
     set_frame(viewing);

@@ -25,8 +25,9 @@ typedef struct Viewing {
     KrsFrame    *frame; /* of the view's version: cameras, and whether values fit */
     View         view;
     bool         view_changed;
-    size_t       camera; /* of the scene's */
-    bool         moved;  /* the camera is not the scene's any more */
+    size_t       camera;         /* of the scene's */
+    bool         moved;          /* the camera is not the scene's any more */
+    bool         camera_written; /* but will be in the next version */
     Remarks      remarks;
     unsigned     readings;
     Shot         shot; /* the last one; its pixels are in the window */
@@ -35,7 +36,8 @@ typedef struct Viewing {
     bool     playing;
     double   played_at; /* when the time was last moved on */
     double   flown_at;
-    double   loop; /* seconds after which time begins again; 0: never */
+    bool     grounded; /* a key of flying was pressed for something else, and is not released yet */
+    double   loop;     /* seconds after which time begins again; 0: never */
     History *history;
     bool     undoing;     /* the view changes by undo or redo */
     uint8_t *pixels;      /* of the shot */

@@ -43,6 +43,11 @@ typedef void KrsValidationCallback(void *user, const char *message);
    caller can tell slow from stuck. */
 typedef void KrsWorkingCallback(void *user);
 
+/* Called between steps of compiling shaders, in the thread that called the library: `done` rises from
+   0 to 1 for the shaders that are compiled together.  False interrupts: when the step has ended, the
+   call returns KRS_INTERRUPTED, and what there was stays. */
+typedef bool KrsCompilingCallback(void *user, double done);
+
 /* Whether branches skip shapes that are far away for their size.  The default is on, but off on
    devices of type CPU, which run both sides of a branch. */
 typedef enum KrsEarlyOuts {
@@ -67,6 +72,8 @@ typedef struct KrsRendererOptions {
     KrsValidationCallback *complaint;  /* may be NULL: complaints are counted all the same */
     KrsWorkingCallback    *working;    /* may be NULL */
     void                  *user;       /* handed to both */
+    KrsCompilingCallback  *compiling;  /* may be NULL */
+    void                  *compiling_user;
     /* A folder that caches compiled shaders.  It is made if it is missing, and need not be
        writable.  NULL: no cache, and nothing is written to disk. */
     const char  *cache;
@@ -105,7 +112,10 @@ typedef enum KrsPurpose {
 } KrsPurpose;
 
 /* Compiles the scene's shaders, for pictures.  The scene must outlive the rendering.  On any status
-   but KRS_OK *rendering is NULL: KRS_OUT_OF_MEMORY, KRS_INTERNAL. */
+   but KRS_OK *rendering is NULL: KRS_OUT_OF_MEMORY, KRS_INTERRUPTED, KRS_INTERNAL.
+
+   To go on rendering meanwhile, compile by a second renderer, in a thread of its own: whichever
+   rendering is ready is shown, and the other renderer is free for the next edit. */
 KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRendering **rendering);
 KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, KrsPurpose purpose,
                                 KrsRendering **rendering);
@@ -130,7 +140,7 @@ size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelStats *kern
  * an update of.  Its films stay as large as they are, and lose their samples; what their options
  * left to the scene is chosen anew.  Afterwards the rendering needs the other scene alone, and
  * frames of that one.  On any other status than KRS_OK rendering and films are as they were:
- * KRS_OUT_OF_MEMORY, KRS_INTERNAL.
+ * KRS_OUT_OF_MEMORY, KRS_INTERRUPTED, KRS_INTERNAL.
  *
  * Kernels whose text is the same stay.  A renderer has each of them once, whatever scene they are
  * of, and keeps some that are no longer used.  So after an edit of numbers nothing is compiled, nor

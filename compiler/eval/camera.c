@@ -109,13 +109,14 @@ void elaborate_camera(Elaboration *e, const Environment *env, const Syntax *synt
     static const char *const projections[] = {"perspective", "orthographic", "panorama"};
     static const double      eye[3]        = {4, 3, 6};
     const Syntax            *stands        = find_property(syntax, "eye");
-    SceneCamera camera = {.name = syntax->name, .span = stands ? stands->span : syntax->span};
-    camera.eye         = position_property(e, env, syntax, "eye", eye);
-    camera.target      = position_property(e, env, syntax, "target", ORIGIN);
-    camera.up          = vector_property(e, env, syntax, "up", UP);
-    camera.fov         = number_property(e, env, syntax, "fov", 40 * M_PI / 180);
-    camera.height      = number_property(e, env, syntax, "height", 4);
-    const char *word   = word_property(e, env, syntax, "projection", projections, 3, 0);
+    SceneCamera              camera        = {
+                            .name = syntax->name, .span = stands ? stands->span : syntax->span, .block = syntax->span};
+    camera.eye       = position_property(e, env, syntax, "eye", eye);
+    camera.target    = position_property(e, env, syntax, "target", ORIGIN);
+    camera.up        = vector_property(e, env, syntax, "up", UP);
+    camera.fov       = number_property(e, env, syntax, "fov", 40 * M_PI / 180);
+    camera.height    = number_property(e, env, syntax, "height", 4);
+    const char *word = word_property(e, env, syntax, "projection", projections, 3, 0);
     while (word && projections[camera.projection] != word)
         camera.projection++;
     const Syntax *fov  = find_property(syntax, "fov");

@@ -21,6 +21,7 @@ typedef struct Component {
 typedef struct SceneCamera {
     const char *name; /* or NULL */
     Span        span; /* of its `eye`, or else of all of it */
+    Span        block;
     Node        eye, target, up, fov, height;
     Node        aperture, focus, shift, shutter, eyes; /* as in KrsCamera */
     uint32_t    projection, blades;

@@ -161,11 +161,13 @@ bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
     if (!options)
         options = &defaults;
     *gpu = (Gpu){
-        .allocator = options->allocator,
-        .complaint = options->complaint,
-        .working   = options->working,
-        .user      = options->user,
-        .patience  = options->patience > 0 ? options->patience : DEFAULT_PATIENCE,
+        .allocator      = options->allocator,
+        .complaint      = options->complaint,
+        .working        = options->working,
+        .user           = options->user,
+        .compiling      = options->compiling,
+        .compiling_user = options->compiling_user,
+        .patience       = options->patience > 0 ? options->patience : DEFAULT_PATIENCE,
     };
     cache_open(&gpu->cache, options->cache, options->allocator);
     if (instance_create(gpu, options->validation) && choose_device(gpu, options->device) &&

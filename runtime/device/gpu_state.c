@@ -90,6 +90,14 @@ void gpu_fail(Gpu *gpu, VkResult result, const char *attempt)
     }
 }
 
+bool gpu_tell_compiled(Gpu *gpu, double done)
+{
+    if (!gpu->compiling || gpu->compiling(gpu->compiling_user, done))
+        return true;
+    gpu_refuse(gpu, KRS_INTERRUPTED, "interrupted");
+    return false;
+}
+
 void gpu_name(Gpu *gpu, VkObjectType type, uint64_t handle, const char *name)
 {
     if (gpu->set_name)

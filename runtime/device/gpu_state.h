@@ -54,6 +54,8 @@ typedef struct Gpu {
     KrsValidationCallback           *complaint;
     KrsWorkingCallback              *working;
     void                            *user;
+    KrsCompilingCallback            *compiling;
+    void                            *compiling_user;
     uint64_t                         complaints;
 
     double patience; /* seconds that a submission may take */
@@ -79,6 +81,9 @@ void  gpu_release(Gpu *gpu, void *block);
 void gpu_refuse(Gpu *gpu, KrsStatus status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 void gpu_fail(Gpu *gpu, VkResult result, const char *attempt);
+
+/* Tells how much of the kernels that are made is ready.  False, and noted: that is to end. */
+bool gpu_tell_compiled(Gpu *gpu, double done);
 
 /* Gives an object a name in the messages of the validation layers. */
 void gpu_name(Gpu *gpu, VkObjectType type, uint64_t handle, const char *name);

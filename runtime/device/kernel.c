@@ -176,8 +176,10 @@ bool kernel_compile_all(Gpu *gpu, const KernelRequest *requests, size_t count, K
         if (ready)
             start_build(&builds[i]);
     }
-    for (size_t i = 0; i < count && builds; i++)
+    for (size_t i = 0; i < count && builds; i++) {
         end_build(&builds[i]);
+        ready = ready && gpu_tell_compiled(gpu, COMPILED_PART * (double)(i + 1) / (double)count);
+    }
     for (size_t i = 0; i < count && ready; i++)
         ready = finish(gpu, &builds[i]);
     for (size_t i = 0; i < count; i++)

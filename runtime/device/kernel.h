@@ -59,6 +59,9 @@ typedef struct KernelCode {
     CacheKey      key;      /* of its text, then */
 } KernelCode;
 
+/* Of making kernels, how much is done when all are SPIR-V. */
+#define COMPILED_PART 0.5
+
 typedef struct KernelRequest {
     Kernel      *kernel; /* to be made */
     KernelSource source;

@@ -66,6 +66,18 @@ static void *warm_up_on_second_device(void *user)
     return NULL;
 }
 
+static size_t taken_so_far(WarmUpQueue *queue)
+{
+    const size_t next = atomic_load(&queue->next);
+    return next < queue->count ? next : queue->count;
+}
+
+static bool tell_warmed_up(KrsRenderer *renderer, size_t warmed_up, size_t count)
+{
+    const double part = (double)warmed_up / (double)count;
+    return gpu_tell_compiled(&renderer->gpu, COMPILED_PART + (1 - COMPILED_PART) * part);
+}
+
 /* Warms up the kernels that the second device does not take, and then, from the disk, those that it
    took. */
 static bool warm_up_all(KrsRenderer *renderer, VkDescriptorSet scene_set,
@@ -78,13 +90,16 @@ static bool warm_up_all(KrsRenderer *renderer, VkDescriptorSet scene_set,
     bool      helped = worth_second_device(&renderer->gpu, codes, count) &&
                   pthread_create(&thread, NULL, warm_up_on_second_device, &queue) == 0;
     while (helped && ready) {
-        ready    = gpu_wait(&renderer->gpu); /* takes a kernel only when it can run it */
+        /* It takes a kernel only when it can run it. */
+        ready = gpu_wait(&renderer->gpu) && tell_warmed_up(renderer, taken_so_far(&queue), count);
         size_t i = atomic_fetch_add(&queue.next, 1);
         if (i >= count)
             break;
         taken[i] = ready = ready &&
                            (codes[i].shared || warm_up(renderer, scene_set, requests[i].kernel));
     }
+    if (!ready)
+        atomic_store(&queue.next, count);
     if (helped)
         pthread_join(thread, NULL);
     for (size_t i = 0; i < count && ready; i++)
@@ -104,6 +119,7 @@ bool kernels_make(KrsRenderer *renderer, VkDescriptorSet scene_set, const Kernel
     ready = ready && kernel_load_all(gpu, requests, codes, count, renderer->layout);
     if (gpu_is_cpu(gpu))
         ready = ready && warm_up_all(renderer, scene_set, requests, codes, count);
+    ready = ready && tell_warmed_up(renderer, count, count);
     for (size_t i = 0; i < count; i++)
         kernel_code_release(gpu, &codes[i]);
     *pipeline_ms += clock_ms() - start;

@@ -6,7 +6,7 @@
 export XDG_CACHE_HOME="$work/caches"
 unset WAYLAND_DISPLAY
 "${CC:-cc}" -std=c17 -o screen_check "$root/tests/cli/screen_check.c" -lpng || exit 1
-plan 17
+plan 18
 : >out
 
 scene() { # radius
@@ -119,6 +119,12 @@ for _ in $(seq 20); do
 done
 [ "$(cat opened)" = "-g scene.krs:4" ]
 result $? "a click opens the text where it has what is clicked"
+xdotool key 3 ctrl+e
+for _ in $(seq 50); do cmp -s scene.krs written.krs || break; sleep 0.1; done
+sed 1d written.krs >rest
+sed 1d scene.krs | cmp - rest >out 2>&1 && grep -q '^camera { eye: .*orthographic.* }$' scene.krs &&
+    "$krs" render scene.krs --size 96x64 --samples 1 --specialize structure -q -o b.png 2>err && screen_is b.png
+result $? "the camera is written into the text, and nothing else"
 kill "$server"
 wait "$viewer"
 status=$?

@@ -102,39 +102,6 @@ static void boxes_are_framed(void **state)
     }
 }
 
-/* A camera's text makes the same camera. */
-static void cameras_are_written(void **state)
-{
-    (void)state;
-    for (int i = 0; i < 3; i++) {
-        KrsCamera camera = start, read;
-        KrsScene *scene;
-        KrsFrame *frame;
-        char      text[600];
-        if (i == 1)
-            orbit_toggle_perspective(&camera);
-        if (i == 2) {
-            orbit_roll(&camera, 0.3);
-            camera.aperture = 0.125;
-            camera.focus    = 4.5;
-        }
-        char *block = camera_text(&camera);
-        snprintf(text, sizeof text, "show sphere(1); %s", block);
-        free(block);
-        assert_int_equal(krs_compile_text(text, strlen(text), "a", NULL, &scene), KRS_OK);
-        assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
-        assert_int_equal(krs_frame_camera(frame, 0, &read), KRS_OK);
-        assert_int_equal(read.projection, camera.projection);
-        assert_true(apart(read.eye, camera.eye) < 1e-4 && apart(read.target, camera.target) < 1e-4);
-        assert_true(apart(read.up, camera.up) < 1e-4);
-        assert_true(fabs(read.aperture - camera.aperture) < 1e-9);
-        assert_true(i != 1 || fabs(read.height - camera.height) < 1e-4);
-        assert_true(i == 1 || fabs(read.fov - camera.fov) < 1e-5);
-        krs_frame_free(frame);
-        krs_scene_free(scene);
-    }
-}
-
 static void write_file(const char *path, const char *text)
 {
     FILE *file = fopen(path, "w");
@@ -268,7 +235,6 @@ int main(void)
         cmocka_unit_test(turns_keep_the_target),
         cmocka_unit_test(what_is_grabbed_stays_under_the_mouse),
         cmocka_unit_test(boxes_are_framed),
-        cmocka_unit_test(cameras_are_written),
         cmocka_unit_test(defaults_are_written),
         cmocka_unit_test(mistakes_leave_the_version),
         cmocka_unit_test(gestures_are_undone),

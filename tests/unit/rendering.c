@@ -63,6 +63,50 @@ static void progress_goes_forwards(void **state)
     stage_close(&stage);
 }
 
+typedef struct Compiling {
+    int    calls, most; /* the last one interrupts; 0: none does */
+    double done;
+} Compiling;
+
+static bool hear_compiling(void *user, double done)
+{
+    Compiling *compiling = user;
+    assert_true(done >= 0 && done <= 1);
+    compiling->done = done;
+    return ++compiling->calls != compiling->most;
+}
+
+/* Wherever compiling is interrupted, the renderer goes on as if nothing had been. */
+static void compiling_is_interrupted(void **state)
+{
+    Stage                   *stage     = *state;
+    Compiling                compiling = {0};
+    const KrsRendererOptions options   = {
+          .device = tested_device(), .compiling = hear_compiling, .compiling_user = &compiling};
+    const KrsRenderOptions small = {.width = WIDTH, .height = HEIGHT};
+    KrsRenderer           *renderer;
+    KrsRendering          *rendering;
+    KrsPicture            *picture, *meant = stage_render(stage, (KrsRenderOptions){0});
+    assert_int_equal(krs_renderer_new(&options, &renderer), KRS_OK);
+    for (int most = 1;; most += 2) {
+        compiling        = (Compiling){.most = most};
+        KrsStatus status = krs_rendering_new(renderer, stage->scene, &rendering);
+        if (status == KRS_OK)
+            break;
+        assert_int_equal(status, KRS_INTERRUPTED);
+        assert_int_equal(compiling.calls, most);
+        assert_null(rendering);
+    }
+    assert_true(compiling.calls > 2 && compiling.done == 1);
+    assert_int_equal(krs_render(rendering, stage->frame, &small, &picture), KRS_OK);
+    assert_memory_equal(picture->color, meant->color,
+                        (size_t)WIDTH * HEIGHT * 4 * sizeof *picture->color);
+    krs_picture_free(picture);
+    krs_picture_free(meant);
+    krs_rendering_free(rendering);
+    krs_renderer_free(renderer);
+}
+
 /* ---- Counts, planes and refusals ---- */
 
 static void exhausted_rays_are_counted(void **state)
@@ -343,6 +387,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(interruption_is_heard, stage_set_up, stage_tear_down),
         cmocka_unit_test(progress_goes_forwards),
+        cmocka_unit_test_setup_teardown(compiling_is_interrupted, stage_set_up, stage_tear_down),
         cmocka_unit_test(materials_give_numbers),
         cmocka_unit_test_setup_teardown(exhausted_rays_are_counted, stage_set_up, stage_tear_down),
         cmocka_unit_test_setup_teardown(wrong_use_is_refused, stage_set_up, stage_tear_down),

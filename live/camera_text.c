@@ -1,0 +1,331 @@
+/*
+ * camera_text.c: cameras as text of the language.
+ */
+#include "live/camera_text.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "live/text_file.h"
+
+/* ---- properties ---- */
+
+typedef enum Property {
+    EYE,
+    TARGET,
+    UP,
+    PROJECTION,
+    FOV,
+    HEIGHT,
+    APERTURE,
+    FOCUS,
+    BLADES,
+    SHIFT,
+    SHUTTER,
+    EYES,
+    PROPERTIES
+} Property;
+
+static const char *const names[PROPERTIES] = {"eye",    "target", "up",       "projection",
+                                              "fov",    "height", "aperture", "focus",
+                                              "blades", "shift",  "shutter",  "eyes"};
+
+/* Zero has no sign. */
+static void print_numbers(FILE *out, const double *v, int count)
+{
+    for (int i = 0; i < count; i++)
+        fprintf(out, "%s%.6g", i == 0 ? "[" : ", ", v[i] + 0.0);
+    fprintf(out, "]");
+}
+
+static void print_value(FILE *out, Property property, const KrsCamera *camera)
+{
+    static const char *const projections[] = {"\"perspective\"", "\"orthographic\"",
+                                              "\"panorama\""};
+    switch (property) {
+    case EYE: print_numbers(out, camera->eye, 3); break;
+    case TARGET: print_numbers(out, camera->target, 3); break;
+    case UP: print_numbers(out, camera->up, 3); break;
+    case PROJECTION: fprintf(out, "%s", projections[camera->projection]); break;
+    case FOV: fprintf(out, "%.6gdeg", camera->fov * 180 / M_PI); break;
+    case HEIGHT: fprintf(out, "%.6g", camera->height); break;
+    case APERTURE: fprintf(out, "%.6g", camera->aperture); break;
+    case FOCUS: fprintf(out, "%.6g", camera->focus); break;
+    case BLADES: fprintf(out, "%u", camera->blades); break;
+    case SHIFT: print_numbers(out, camera->shift, 2); break;
+    case SHUTTER: print_numbers(out, camera->shutter, 2); break;
+    case EYES: fprintf(out, "%.6g", camera->eyes); break;
+    case PROPERTIES: break;
+    }
+}
+
+/* Whether a block without it would be another camera. */
+static bool is_needed(Property property, const KrsCamera *camera)
+{
+    const double *up = camera->up;
+    switch (property) {
+    case UP: return up[0] != 0 || up[2] != 0 || up[1] <= 0;
+    case PROJECTION: return camera->projection != KRS_PERSPECTIVE;
+    case FOV: return camera->projection == KRS_PERSPECTIVE;
+    case HEIGHT: return camera->projection == KRS_ORTHOGRAPHIC;
+    case APERTURE: return camera->aperture > 0;
+    case FOCUS: return camera->aperture > 0 && camera->focus > 0;
+    case BLADES: return camera->aperture > 0 && camera->blades > 0;
+    case SHIFT: return camera->shift[0] != 0 || camera->shift[1] != 0;
+    case SHUTTER: return camera->shutter[0] != camera->shutter[1];
+    case EYES: return camera->eyes > 0;
+    default: return true;
+    }
+}
+
+/* The caller frees it; NULL: without memory. */
+static char *value_text(Property property, const KrsCamera *camera)
+{
+    char  *text   = NULL;
+    size_t length = 0;
+    FILE  *out    = open_memstream(&text, &length);
+    if (!out)
+        return NULL;
+    print_value(out, property, camera);
+    return fclose(out) == 0 ? text : NULL;
+}
+
+char *camera_text(const KrsCamera *camera)
+{
+    char       *text   = NULL;
+    const char *before = "camera { ";
+    size_t      length = 0;
+    FILE       *out    = open_memstream(&text, &length);
+    if (!out)
+        return NULL;
+    for (Property i = 0; i < PROPERTIES; i++)
+        if (is_needed(i, camera)) {
+            fprintf(out, "%s%s: ", before, names[i]);
+            print_value(out, i, camera);
+            before = ", ";
+        }
+    fprintf(out, " }\n");
+    return fclose(out) == 0 ? text : NULL;
+}
+
+/* ---- where they stand in a block ---- */
+
+/* Behind blanks and comments. */
+static const char *skip_blanks(const char *at)
+{
+    for (;;) {
+        while (isspace((unsigned char)*at))
+            at++;
+        if (at[0] == '/' && at[1] == '/') {
+            at += strcspn(at, "\n");
+        } else if (at[0] == '/' && at[1] == '*') {
+            const char *end = strstr(at + 2, "*/");
+            at              = end ? end + 2 : at + strlen(at);
+        } else {
+            return at;
+        }
+    }
+}
+
+static const char *skip_word(const char *at)
+{
+    while (isalnum((unsigned char)*at) || *at == '_')
+        at++;
+    return at;
+}
+
+/* Behind a text between quotes. */
+static const char *skip_string(const char *at)
+{
+    for (at++; *at && *at != '"'; at++)
+        if (at[0] == '\\' && at[1])
+            at++;
+    return *at ? at + 1 : at;
+}
+
+/* Where a value ends: before the comma or brace that ends it, and blanks and comments before that. */
+static const char *end_of_value(const char *at)
+{
+    const char *end   = at;
+    int         depth = 0;
+    for (at = skip_blanks(at); *at && (depth > 0 || (*at != ',' && *at != '}'));
+         at = skip_blanks(at)) {
+        depth += strchr("([{", *at) ? 1 : strchr(")]}", *at) ? -1 : 0;
+        at  = *at == '"' ? skip_string(at) : at + 1;
+        end = at;
+    }
+    return end;
+}
+
+/* A property of a block, as bytes: from its name, its value, up to its end. */
+typedef struct Place {
+    size_t start, value, end;
+} Place;
+
+/* Looks at the properties of a block one after the other: `at` is where the next may begin.  False:
+   there is none. */
+static bool next_property(const char *block, size_t *at, Place *place)
+{
+    const char *start = skip_blanks(block + *at), *end;
+    if (*start == ',')
+        start = skip_blanks(start + 1);
+    end = skip_word(start);
+    if (end == start || *skip_blanks(end) != ':')
+        return false;
+    const char *value = skip_blanks(skip_blanks(end) + 1);
+    *place            = (Place){(size_t)(start - block), (size_t)(value - block),
+                                (size_t)(end_of_value(value) - block)};
+    *at               = place->end;
+    return true;
+}
+
+/* Finds a property, or with NULL the last one. */
+static bool find_property(const char *block, const char *name, Place *place)
+{
+    const char *brace = strchr(block, '{');
+    size_t      at    = brace ? (size_t)(brace - block) + 1 : strlen(block);
+    bool        any   = false;
+    Place       found;
+    while (next_property(block, &at, &found)) {
+        const char *word = block + found.start;
+        any              = true;
+        *place           = found;
+        if (name && strncmp(word, name, strlen(name)) == 0 &&
+            skip_word(word) == word + strlen(name))
+            return true;
+    }
+    return !name && any;
+}
+
+/* ---- edits ---- */
+
+/* Replaces bytes [start, end) of a text, which it frees.  NULL: without memory. */
+static char *splice(char *text, size_t start, size_t end, const char *name, const char *value)
+{
+    char *spliced = NULL;
+    if (asprintf(&spliced, "%.*s%s%s%s", (int)start, text, name, value, text + end) < 0)
+        spliced = NULL;
+    free(text);
+    return spliced;
+}
+
+static char *add_property(char *block, const char *name, const char *value)
+{
+    Place last;
+    char  label[32];
+    if (find_property(block, NULL, &last)) {
+        snprintf(label, sizeof label, ", %s: ", name);
+        return splice(block, last.end, last.end, label, value);
+    }
+    const size_t brace = strcspn(block, "{") + 1;
+    snprintf(label, sizeof label, " %s: ", name);
+    return splice(block, brace, brace, label, value);
+}
+
+/* With the comma behind it, or before it. */
+static char *remove_property(char *block, const Place *place)
+{
+    const char *behind = skip_blanks(block + place->end);
+    size_t      start = place->start, end = place->end;
+    if (*behind == ',') {
+        end = (size_t)(skip_blanks(behind + 1) - block);
+    } else {
+        while (start > 0 && block[start - 1] != ',' && block[start - 1] != '{')
+            start--;
+        start -= start > 0 && block[start - 1] == ',';
+    }
+    return splice(block, start, end, "", "");
+}
+
+static char *edit_property(char *block, Property property, const KrsCamera *before,
+                           const KrsCamera *camera)
+{
+    char      *old = value_text(property, before), *value = value_text(property, camera);
+    const bool differs = old && value && strcmp(old, value) != 0;
+    Place      place;
+    const bool is_there = differs && find_property(block, names[property], &place);
+    if (differs && !is_there)
+        block = is_needed(property, camera) ? add_property(block, names[property], value) : block;
+    else if (is_there && (is_needed(property, camera) || property == UP || property == PROJECTION))
+        block = splice(block, place.value, place.end, "", value);
+    else if (is_there)
+        block = remove_property(block, &place);
+    free(old);
+    free(value);
+    return block;
+}
+
+char *camera_text_edit(const char *block, const KrsCamera *before, const KrsCamera *camera)
+{
+    const size_t length = strlen(block);
+    const bool   good = strncmp(block, "camera", 6) == 0 && length > 7 && block[length - 1] == '}';
+    char        *edited = good ? strdup(block) : NULL;
+    for (Property i = 0; edited && i < PROPERTIES; i++)
+        edited = edit_property(edited, i, before, camera);
+    return edited;
+}
+
+/* ---- files ---- */
+
+/* What is written in place of bytes [start, end) of a file. */
+static KrsStatus write_instead(const char *path, const Bytes *before, size_t start, size_t end,
+                               const char *text)
+{
+    Bytes     after  = {0};
+    KrsStatus status = KRS_OUT_OF_MEMORY;
+    FILE     *out    = open_memstream(&after.text, &after.length);
+    if (out) {
+        const bool joined = start > 0 && start == before->length && before->text[start - 1] != '\n';
+        fwrite(before->text, 1, start, out);
+        fprintf(out, "%s%s", joined ? "\n" : "", text);
+        fwrite(before->text + end, 1, before->length - end, out);
+        if (fclose(out) == 0)
+            status = text_file_write(path, &after) ? KRS_OK : KRS_IO_ERROR;
+    }
+    free(after.text);
+    return status;
+}
+
+static KrsStatus change(const KrsPlace *place, const KrsCamera *before, const KrsCamera *camera)
+{
+    Bytes     bytes = {0};
+    char     *block = NULL, *edited = NULL;
+    KrsStatus status = text_file_read(place->source, &bytes) ? KRS_BAD_ARGUMENT : KRS_IO_ERROR;
+    if (status == KRS_BAD_ARGUMENT && place->start < place->end && place->end <= bytes.length)
+        block = strndup(bytes.text + place->start, place->end - place->start);
+    if (block)
+        edited = camera_text_edit(block, before, camera);
+    if (edited)
+        status = write_instead(place->source, &bytes, place->start, place->end, edited);
+    free(bytes.text);
+    free(block);
+    free(edited);
+    return status;
+}
+
+static KrsStatus add(const char *path, const KrsCamera *camera)
+{
+    Bytes     bytes  = {0};
+    char     *block  = camera_text(camera);
+    KrsStatus status = !block                          ? KRS_OUT_OF_MEMORY
+                       : !text_file_read(path, &bytes) ? KRS_IO_ERROR
+                                                       : KRS_OK;
+    if (status == KRS_OK)
+        status = write_instead(path, &bytes, bytes.length, bytes.length, block);
+    free(bytes.text);
+    free(block);
+    return status;
+}
+
+KrsStatus camera_text_write(const KrsScene *scene, size_t index, const KrsCamera *before,
+                            const KrsCamera *camera, const char *path)
+{
+    KrsPlace place;
+    if (krs_camera_place(scene, index, &place) != KRS_OK)
+        return add(path, camera);
+    return change(&place, before, camera);
+}

@@ -1,0 +1,20 @@
+/*
+ * text_file.h: reads and writes whole files.
+ */
+#ifndef KRS_TEXT_FILE_H
+#define KRS_TEXT_FILE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct Bytes {
+    char  *text;
+    size_t length;
+} Bytes;
+
+/* The caller frees the text whatever is returned. */
+bool text_file_read(const char *path, Bytes *bytes);
+/* The file appears whole or not at all; links stay links. */
+bool text_file_write(const char *path, const Bytes *bytes);
+
+#endif

@@ -1,0 +1,231 @@
+/*
+ * painter.c: pictures of a scene whose text changes: what needs other shaders waits for them, while
+ * what there was can still be turned.  Each picture is what krs_render makes of the same.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "live/painter.h"
+#include "tests/support/device.h"
+#include "tests/support/renderer.h"
+
+enum { WIDTH = 64, HEIGHT = 48, BYTES = 4 * WIDTH * HEIGHT, PATIENCE = 60 };
+
+static const char one_ball[]  = "param r = 1 in [0.5, 2]; show sphere(r);";
+static const char two_boxes[] = "param r = 1 in [0.5, 2]; show union([box([r, 2, 1]), box([3, 0.5, "
+                                "r])], blend: 0.2).rotate([0, 1, 0], 20deg);";
+
+typedef struct Stage {
+    char      path[32];
+    Document *document;
+    Painter  *painter;
+    View      view;
+    Version  *version;
+} Stage;
+
+static double now(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+/* The next text, as if it were saved. */
+static void edit(Stage *stage, const char *text)
+{
+    FILE *file = fopen(stage->path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+    assert_int_equal(document_read(stage->document), KRS_OK);
+    version_release(stage->view.version);
+    stage->view.version = document_version(stage->document);
+}
+
+static unsigned show(Stage *stage, double aside)
+{
+    stage->view.camera.eye[0] = aside;
+    return painter_show(stage->painter, &stage->view);
+}
+
+static void set_up(Stage *stage, const char *text)
+{
+    static double    values[1][4]; /* the defaults of both texts */
+    const KrsOptions with      = {.specialize = KRS_SPECIALIZE_STRUCTURE};
+    *stage                     = (Stage){.path = "/tmp/krs-painter-XXXXXX"};
+    const int            fd    = mkstemp(stage->path);
+    const PainterOptions paint = {.renderer = {.device = tested_device()}, .budget = 40};
+    assert_true(fd >= 0);
+    close(fd);
+    values[0][0]       = 1;
+    stage->document    = document_new(stage->path, &with);
+    stage->painter     = painter_new(&paint);
+    stage->view.values = values;
+    stage->view.camera = (KrsCamera){
+        .projection = KRS_PERSPECTIVE, .eye = {0, 1, 5}, .up = {0, 1, 0}, .fov = 0.8};
+    stage->view.width      = WIDTH;
+    stage->view.height     = HEIGHT;
+    stage->view.samples    = 1;
+    stage->view.integrator = KRS_INTEGRATOR_PREVIEW;
+    assert_non_null(stage->painter);
+    edit(stage, text);
+    show(stage, 0);
+}
+
+static void tear_down(Stage *stage)
+{
+    painter_free(stage->painter);
+    version_release(stage->view.version);
+    document_free(stage->document);
+    remove(stage->path);
+}
+
+/* The next picture with all pixels, of this version, of this view or a later one. */
+static Shot take_whole(Stage *stage, unsigned version, unsigned view)
+{
+    for (const double begun = now(); now() - begun < PATIENCE; usleep(2000)) {
+        Shot shot;
+        if (painter_state(stage->painter).status != KRS_OK)
+            fail_msg("%s", painter_state(stage->painter).message);
+        if (!painter_take(stage->painter, &shot))
+            continue;
+        if (shot.whole && shot.version == version && shot.view >= view)
+            return shot;
+        free(shot.pixels);
+    }
+    fail_msg("there is no picture");
+    return (Shot){0};
+}
+
+/* What krs_render makes of a text, from the view's camera. */
+static uint8_t *render(const Stage *stage, const char *text, double r)
+{
+    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT};
+    const KrsOptions with    = {.specialize = KRS_SPECIALIZE_STRUCTURE};
+    uint8_t         *pixels  = malloc(BYTES);
+    KrsScene        *scene;
+    KrsFrame        *frame;
+    KrsRendering    *rendering;
+    KrsFilm         *film;
+    KrsPicture      *picture;
+    assert_int_equal(krs_compile_text(text, strlen(text), "a", &with, &scene), KRS_OK);
+    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_frame_set(frame, "r", &r, 1), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
+    assert_int_equal(krs_film_new(rendering, &options, &film), KRS_OK);
+    assert_int_equal(krs_film_add(film, frame, &stage->view.camera, 1), KRS_OK);
+    assert_int_equal(krs_film_read(film, KRS_PLANE_COLOR, &picture), KRS_OK);
+    assert_int_equal(krs_picture_to_srgb8(picture, scene, 0, 4, pixels), KRS_OK);
+    krs_picture_free(picture);
+    krs_film_free(film);
+    krs_rendering_free(rendering);
+    krs_frame_free(frame);
+    krs_scene_free(scene);
+    return pixels;
+}
+
+/* Returns how many kernels the device has made that shows it. */
+static uint64_t assert_shows(Stage *stage, unsigned version, unsigned view, const char *text,
+                             double r)
+{
+    const Shot shown = take_whole(stage, version, view);
+    uint8_t   *meant = render(stage, text, r);
+    assert_memory_equal(shown.pixels, meant, BYTES);
+    free(shown.pixels);
+    free(meant);
+    return shown.stats.kernels;
+}
+
+static void what_there_was_is_turned_meanwhile(void **state)
+{
+    (void)state;
+    Stage    stage;
+    uint8_t *turned[3];
+    set_up(&stage, one_ball);
+    assert_shows(&stage, 1, 1, one_ball, 1);
+    for (int i = 0; i < 3; i++) { /* before the processor is busy */
+        stage.view.camera.eye[0] = i;
+        turned[i]                = render(&stage, one_ball, 1);
+    }
+    edit(&stage, two_boxes);
+    for (int i = 0; i < 3; i++) {
+        const unsigned view  = show(&stage, i);
+        const Shot     shown = take_whole(&stage, 1, view);
+        assert_true(painter_state(stage.painter).compiling);
+        assert_memory_equal(shown.pixels, turned[i], BYTES);
+        free(shown.pixels);
+        free(turned[i]);
+    }
+    assert_shows(&stage, 2, 0, two_boxes, 1);
+    assert_false(painter_state(stage.painter).compiling);
+    tear_down(&stage);
+}
+
+/* Numbers need no shaders, and neither does what was there before. */
+static void nothing_is_compiled_twice(void **state)
+{
+    (void)state;
+    Stage stage;
+    set_up(&stage, one_ball);
+    const uint64_t kernels = assert_shows(&stage, 1, 1, one_ball, 1);
+    edit(&stage, two_boxes);
+    unsigned view = show(&stage, 1);
+    assert_shows(&stage, 2, view, two_boxes, 1);
+    edit(&stage, one_ball);
+    view = show(&stage, 1);
+    assert_int_equal(assert_shows(&stage, 3, view, one_ball, 1), kernels);
+    edit(&stage, "param r = 1.5 in [0.5, 2]; show sphere(r);");
+    stage.view.values[0][0] = 1.5;
+    view                    = show(&stage, 1);
+    assert_false(painter_state(stage.painter).compiling);
+    assert_shows(&stage, 4, view, one_ball, 1.5);
+    tear_down(&stage);
+}
+
+/* Of edits that follow each other quickly the last is shown, and the others are given up. */
+static void edits_overtake_each_other(void **state)
+{
+    (void)state;
+    Stage    stage;
+    unsigned view = 0;
+    set_up(&stage, one_ball);
+    for (int i = 0; i < 6; i++) {
+        edit(&stage,
+             i % 2 ? "show cylinder(1, 2); param r = 1;" : "show torus(1, 0.5); param r = 1;");
+        view = show(&stage, 1);
+        usleep(50000);
+    }
+    edit(&stage, two_boxes);
+    view = show(&stage, 1);
+    assert_shows(&stage, 8, view, two_boxes, 1);
+    assert_string_equal(painter_state(stage.painter).unbuilt, "");
+    tear_down(&stage);
+}
+
+static void the_end_does_not_wait_for_shaders_that_nobody_sees(void **state)
+{
+    (void)state;
+    Stage stage;
+    set_up(&stage, two_boxes);
+    tear_down(&stage);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_there_was_is_turned_meanwhile),
+        cmocka_unit_test(nothing_is_compiled_twice),
+        cmocka_unit_test(edits_overtake_each_other),
+        cmocka_unit_test(the_end_does_not_wait_for_shaders_that_nobody_sees),
+    };
+    return cmocka_run_group_tests(tests, renderer_open, renderer_close);
+}
