@@ -11,8 +11,9 @@ typedef struct Action {
     const char *keys, *does; /* NULL: not in the help */
     void (*act)(Viewing *viewing);
 } Action;
-/* A modifier of act_key. */
+/* Of act_key: a modifier, and a key without a letter. */
 #define ACT_CONTROL 2
+#define ACT_F12     301
 extern const Action actions[];
 extern const size_t action_count;
 

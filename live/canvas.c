@@ -13,6 +13,7 @@ typedef struct Film {
     KrsFilm      *film;
     uint32_t      width, height, samples;
     KrsIntegrator integrator;
+    double        frame_seconds;
 } Film;
 
 struct Canvas {
@@ -264,6 +265,11 @@ KrsStatus canvas_set(Canvas *canvas, const View *view)
     return status;
 }
 
+KrsStatus canvas_camera(Canvas *canvas, size_t index, KrsCamera *camera)
+{
+    return krs_frame_camera(canvas->frame, index, camera);
+}
+
 static bool go_on(void *user, double done)
 {
     Canvas *canvas = user;
@@ -275,17 +281,19 @@ static KrsStatus make_film(Canvas *canvas, Film *film, const View *view, uint32_
                            uint32_t height)
 {
     if (film->film && film->width == width && film->height == height &&
-        film->integrator == view->integrator && film->samples == view->samples)
+        film->integrator == view->integrator && film->samples == view->samples &&
+        film->frame_seconds == view->frame_seconds)
         return KRS_OK;
-    KrsRenderOptions options = {.width      = width,
-                                .height     = height,
-                                .samples    = view->samples,
-                                .integrator = view->integrator,
-                                .slice_ms   = SLICE_MS,
-                                .progress   = go_on,
-                                .user       = canvas};
+    KrsRenderOptions options = {.width         = width,
+                                .height        = height,
+                                .samples       = view->samples,
+                                .integrator    = view->integrator,
+                                .frame_seconds = view->frame_seconds,
+                                .slice_ms      = SLICE_MS,
+                                .progress      = go_on,
+                                .user          = canvas};
     krs_film_free(film->film);
-    *film = (Film){NULL, width, height, view->samples, view->integrator};
+    *film = (Film){NULL, width, height, view->samples, view->integrator, view->frame_seconds};
     return krs_film_new(canvas->rendering, &options, &film->film);
 }
 

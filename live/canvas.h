@@ -20,8 +20,9 @@ typedef struct View {
     size_t        zone_count;
     uint32_t      width, height;
     KrsIntegrator integrator;
-    uint32_t      samples; /* how many make the picture complete */
-    double        stops;   /* brighter than the scene's exposure */
+    uint32_t      samples;       /* how many make the picture complete */
+    double        stops;         /* brighter than the scene's exposure */
+    double        frame_seconds; /* between frames, for shutters; 0: they count as closed */
     Look          look;
 } View;
 
@@ -64,6 +65,9 @@ void canvas_rest(Canvas *canvas);
 /* Sets the frame to the view's values and time.  Those that the scene refuses stay as they were:
    KRS_BAD_ARGUMENT. */
 KrsStatus canvas_set(Canvas *canvas, const View *view);
+
+/* A camera of the scene, as it is at the values and the time. */
+KrsStatus canvas_camera(Canvas *canvas, size_t index, KrsCamera *camera);
 
 /* Samples of a film of this size, which begins anew when `again`.  `progress` is asked between slices. */
 KrsStatus canvas_add(Canvas *canvas, FilmKind kind, const View *view, uint32_t width,

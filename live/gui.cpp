@@ -208,6 +208,14 @@ void gui_tip(const char *text)
 }
 
 void gui_heading(const char *text) { gui_text(GUI_FAINT, text); }
+bool gui_section(const char *label)
+{
+    ImGui::PushStyleColor(ImGuiCol_Text, tone_color(GUI_FAINT));
+    const bool open = ImGui::TreeNodeEx(label, ImGuiTreeNodeFlags_NoTreePushOnOpen);
+    ImGui::PopStyleColor();
+    return open;
+}
+
 void gui_gap(void) { ImGui::Dummy(ImVec2(0, 0.2f * ImGui::GetFontSize())); }
 void gui_beside(void) { ImGui::SameLine(); }
 

@@ -48,6 +48,7 @@ void gui_text(GuiTone tone, const char *text);
 void gui_source(GuiTone tone, const char *text); /* in the monospaced font */
 void gui_tip(const char *text);                  /* of the last item, when the mouse is on it */
 void gui_heading(const char *text);
+bool gui_section(const char *label); /* a heading that opens and closes; whether it is open */
 void gui_gap(void);
 void gui_beside(void); /* the next item stands beside the last one */
 bool gui_button(const char *label, bool on);

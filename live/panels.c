@@ -113,6 +113,36 @@ static void draw_camera(Viewing *viewing)
         act_key(viewing, 'P', 0);
 }
 
+/* A whole number; 0 is written as what it stands for. */
+static void draw_count(const char *label, uint32_t *count, uint32_t least, uint32_t most,
+                       uint32_t stands_for)
+{
+    double shown = *count > 0 ? *count : stands_for;
+    if (gui_drag(label, &shown, 1, 1, least, most, "%.0f"))
+        *count = (uint32_t)lround(shown);
+}
+
+static void draw_save(Viewing *viewing)
+{
+    const SaverState         saving  = saver_state(viewing->saver);
+    const View              *view    = &viewing->view;
+    static const char *const forms[] = {"PNG", "EXR"};
+    int                      kind = (int)viewing->save.kind, form = viewing->save.exr;
+    if (gui_choice("what", &kind, save_names, SAVE_COUNT))
+        viewing->save.kind = (SaveKind)kind;
+    if (gui_choice("form", &form, forms, 2))
+        viewing->save.exr = form == 1;
+    draw_count("width", &viewing->save.width, 1, KRS_MOST_SIDE, view->width);
+    draw_count("height", &viewing->save.height, 1, KRS_MOST_SIDE, view->height);
+    draw_count("samples", &viewing->save.samples, 1, KRS_MOST_SAMPLES, view->samples);
+    if (viewing->save.kind != SAVE_PICTURE)
+        draw_count("frames", &viewing->save.frames, 1, 9999, 1);
+    if (gui_button(saving.busy ? "Give up##save" : "Save##save", saving.busy))
+        act_key(viewing, ACT_F12, ACT_CONTROL);
+    if (saving.busy)
+        gui_progress(saving.done);
+}
+
 static void draw_controls(Viewing *viewing)
 {
     gui_panel("controls", GUI_TOP_RIGHT, 0, PANEL_WIDTH, false);
@@ -138,6 +168,9 @@ static void draw_controls(Viewing *viewing)
     gui_gap();
     gui_heading("TIME");
     draw_time(viewing);
+    gui_gap();
+    if (gui_section("SAVE"))
+        draw_save(viewing);
     gui_panel_end();
 }
 

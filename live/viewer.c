@@ -66,7 +66,11 @@ static void take_shot(Viewing *viewing)
         shot.pixels     = NULL;
         viewing->shot   = shot;
     }
-    viewing->painting = painter_state(viewing->painter);
+    viewing->painting       = painter_state(viewing->painter);
+    const SaverState saving = saver_state(viewing->saver);
+    if (saving.orders != viewing->saved)
+        viewing_notice(viewing, "%s", saving.message);
+    viewing->saved = saving.orders;
 }
 
 /* Hands the view to the painter, if it is another one. */
@@ -205,7 +209,9 @@ static KrsStatus run(Viewing *viewing, char message[256])
                                      .wake     = wake_window,
                                      .budget   = options->budget > 0 ? options->budget : BUDGET_MS};
     viewing->painter              = painter_new(&painting);
-    if (!viewing->painter || pthread_create(&viewing->reader, NULL, read_scene, viewing) != 0)
+    viewing->saver                = saver_new(&options->renderer, wake_window, NULL);
+    if (!viewing->painter || !viewing->saver ||
+        pthread_create(&viewing->reader, NULL, read_scene, viewing) != 0)
         return fail(message, KRS_OUT_OF_MEMORY, "out of memory", "");
     status = loop(viewing);
     if (status != KRS_OK)
@@ -218,12 +224,13 @@ static KrsStatus run(Viewing *viewing, char message[256])
 
 KrsStatus viewer_run(const ViewerOptions *options, char message[256])
 {
-    Viewing viewing = {.options = options, .panels = true, .loop = 10};
+    Viewing viewing = {.options = options, .panels = true, .loop = 10, .save = {.frames = 36}};
     message[0]      = '\0';
     atomic_init(&viewing.closing, false);
     KrsStatus status = begin(&viewing, message);
     if (status == KRS_OK)
         status = run(&viewing, message);
+    saver_free(viewing.saver);
     painter_free(viewing.painter);
     window_close(viewing.window);
     krs_frame_free(viewing.frame);

@@ -10,6 +10,7 @@
 #include "live/document.h"
 #include "live/history.h"
 #include "live/painter.h"
+#include "live/saver.h"
 #include "live/viewer_options.h"
 #include "live/window.h"
 
@@ -44,7 +45,15 @@ typedef struct Viewing {
     char     notice[160]; /* what was done last */
     double   noticed_at;
     bool     panels, help;
-    double   redraw_until; /* panels need some frames to settle */
+    Saver   *saver;
+    unsigned saved; /* orders whose end was noticed */
+    struct {
+        uint32_t width, height, samples; /* 0: as the window */
+        uint32_t frames;
+        SaveKind kind;
+        bool     exr;
+    } save;              /* what the next order will be */
+    double redraw_until; /* panels need some frames to settle */
 } Viewing;
 
 /* Says for a moment what was done. */

@@ -19,7 +19,7 @@ PROPERTY_SHARED := $(addprefix tests/property/, crowd_parts.c garden.c op_trial.
 UNIT        := texts front synonyms look diagnostics shape parts passes display devices tracer film noise pixel_filters lens rendering lights sky_table daylight methods schedules paths writer \
                image_files image_reading memory validate search refute frame query zones surroundings cache cache_limits \
                compiled pipelines per_component stencils glslang loader watcher drivers grid crowd_grid crowds \
-               crowd_kernels crowd_pictures tables device_tables table_files printing printers answers alike update reload live camera_text painter edits values mesh
+               crowd_kernels crowd_pictures tables device_tables table_files printing printers answers alike update reload live camera_text painter saver edits values mesh
 PROPERTY    := ops noise textures graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees crowds crowds_apart moving_crowds lanes
 ORACLES     := self patterns bumps primitives krs_expand folds trees maps moebius moebius_images operators cells \
@@ -83,7 +83,7 @@ $(IMPORTS:%=$(B)/tests/oracle/%): $(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B
         $(patsubst %.c,$(B)/%.o,$(wildcard cli/import_*.c)) $(LINKED)
 	@$(LINK)
 $(B)/tests/unit/watcher: $(B)/live.a
-$(addprefix $(B)/tests/unit/, live camera_text painter): $(B)/tests/unit/%: $(B)/tests/unit/%.o $(B)/live.a $(LINKED)
+$(addprefix $(B)/tests/unit/, live camera_text painter saver): $(B)/tests/unit/%: $(B)/tests/unit/%.o $(B)/live.a $(LINKED)
 	@$(LINK)
 # It runs the command.
 $(B)/tests/unit/table_files: | $(B)/krs

@@ -6,7 +6,7 @@
 export XDG_CACHE_HOME="$work/caches"
 unset WAYLAND_DISPLAY
 "${CC:-cc}" -std=c17 -o screen_check "$root/tests/cli/screen_check.c" -lpng || exit 1
-plan 18
+plan 19
 : >out
 
 scene() { # radius
@@ -96,6 +96,11 @@ for _ in $(seq 50); do [ -s view-0000.png ] && break; sleep 0.1; done
 sleep 0.2
 ./screen_check Xvfb_screen0 view-0000.png >out
 result $? "the picture is saved"
+xdotool key ctrl+F12
+for _ in $(seq 100); do [ -s view-0001.png ] && break; sleep 0.1; done
+sleep 0.2
+./screen_check Xvfb_screen0 view-0001.png >out
+result $? "the picture is rendered into a file"
 xdotool key Escape
 wait "$viewer"
 status=$?

@@ -1,0 +1,100 @@
+/*
+ * picture_file.c: pictures as files, in the forms of `krs render`.
+ */
+#include "live/picture_file.h"
+
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "runtime/writer/exr.h"
+#include "runtime/writer/png.h"
+
+/* An array of KrsPicture: how many numbers a pixel has, and the channel of an EXR for each. */
+typedef struct PlaneArray {
+    size_t      offset, numbers;
+    SampleType  type;
+    const char *channels[4];
+} PlaneArray;
+
+static const PlaneArray plane_arrays[] = {
+#define KRS_PLANE(id, bit, aov, about, arrays) arrays
+#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
+    {offsetof(KrsPicture, member), numbers, SAMPLE_##sample, {__VA_ARGS__}},
+#include "runtime/planes.def"
+#undef KRS_ARRAY
+#undef KRS_PLANE
+};
+enum { PLANE_ARRAYS = sizeof plane_arrays / sizeof *plane_arrays, CHANNELS = 4 * PLANE_ARRAYS };
+
+static size_t collect_channels(const KrsPicture *picture, PictureChannel channels[CHANNELS])
+{
+    size_t count = 0;
+    for (size_t i = 0; i < PLANE_ARRAYS; i++) {
+        const PlaneArray *array = &plane_arrays[i];
+        const char       *samples; /* floats and integers alike: the pointer is taken as bytes */
+        memcpy(&samples, (const char *)picture + array->offset, sizeof samples);
+        for (size_t k = 0; samples && k < array->numbers; k++)
+            channels[count++] = (PictureChannel){.name    = array->channels[k],
+                                                 .type    = array->type,
+                                                 .samples = samples + k * sizeof(float),
+                                                 .stride  = array->numbers};
+    }
+    return count;
+}
+
+static bool write_exr(Picture *file, const KrsPicture *picture, OutputFile *output,
+                      OutputError *error)
+{
+    PictureChannel channels[CHANNELS];
+    PictureMatrix  to_camera, to_ndc;
+    memcpy(to_camera.m, picture->world_to_camera, sizeof to_camera.m);
+    memcpy(to_ndc.m, picture->world_to_ndc, sizeof to_ndc.m);
+    file->channels        = channels;
+    file->channel_count   = collect_channels(picture, channels);
+    file->world_to_camera = &to_camera;
+    file->world_to_ndc    = &to_ndc;
+    return exr_write(file, output, error);
+}
+
+static bool write_png(const Picture *file, const KrsPicture *picture, const View *view,
+                      OutputFile *output, OutputError *error)
+{
+    uint8_t *rgb  = malloc((size_t)picture->window.width * picture->window.height * 3);
+    bool     done = rgb &&
+                krs_picture_to_srgb8(picture, version_scene(view->version), view->stops, 3, rgb) ==
+                    KRS_OK &&
+                png_write(file, rgb, output, error);
+    if (!rgb)
+        error->status = KRS_OUT_OF_MEMORY;
+    free(rgb);
+    return done;
+}
+
+KrsStatus picture_file_write(const KrsPicture *picture, const View *view, const char *path,
+                             char why[300])
+{
+    const char       *dot      = strrchr(path, '.');
+    char              time[32] = "";
+    OutputError       error    = {.status = KRS_OK};
+    OutputFile       *output   = output_open(path, NULL, &error);
+    const PictureText texts[]  = {{"software", "krs " KRS_VERSION}, {"krs:time", time}};
+    Picture           file     = {.width       = picture->width,
+                                  .height      = picture->height,
+                                  .crop_width  = picture->window.width,
+                                  .crop_height = picture->window.height,
+                                  .texts       = texts,
+                                  .text_count  = 2};
+    snprintf(time, sizeof time, "%.9g", view->time);
+    const bool as_exr  = dot && strcasecmp(dot, ".exr") == 0;
+    const bool written = output && (as_exr ? write_exr(&file, picture, output, &error)
+                                           : write_png(&file, picture, view, output, &error));
+    if (written)
+        output_commit(output);
+    else if (output)
+        output_abandon(output);
+    snprintf(why, 300, "%.299s", error.message[0] ? error.message : "out of memory");
+    return error.status;
+}
