@@ -190,8 +190,8 @@ static void time_goes_on(void **state)
 
 static size_t count_files(const char *part)
 {
-    DIR   *here = opendir(".");
-    size_t count  = 0;
+    DIR   *here  = opendir(".");
+    size_t count = 0;
     for (struct dirent *entry; (entry = readdir(here));)
         count += strstr(entry->d_name, part) != NULL;
     closedir(here);
