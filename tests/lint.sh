@@ -56,7 +56,7 @@ for script in tools/*.sh tests/*.sh tests/*/*.sh .ci/run; do
     shellcheck -x -P SCRIPTDIR "$script"
     report "$script passes shellcheck" $?
 done
-formatted=$(find bench cli compiler live runtime tests -name '*.[ch]' -o -name '*.cpp')
+formatted=$(find bench cli compiler examples live runtime tests -name '*.[ch]' -o -name '*.cpp')
 # shellcheck disable=SC2086 # the list is words
 clang-format-14 --dry-run --Werror $formatted
 report "C has the style of .clang-format" $?

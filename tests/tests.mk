@@ -123,7 +123,7 @@ fuzz: fuzzers
 lint:
 	@tests/lint.sh
 format:
-	@clang-format-14 -i $$(find bench cli compiler live runtime tests -name '*.[ch]' -o -name '*.cpp')
+	@clang-format-14 -i $$(find bench cli compiler examples live runtime tests -name '*.[ch]' -o -name '*.cpp')
 bless: $(B)/krs
 	@tests/errors.sh --bless
 

@@ -6,7 +6,7 @@
 export XDG_CACHE_HOME="$work/caches"
 unset WAYLAND_DISPLAY
 "${CC:-cc}" -std=c17 -o screen_check "$root/tests/cli/screen_check.c" -lpng || exit 1
-plan 19
+plan 24
 : >out
 
 scene() { # radius
@@ -71,9 +71,8 @@ far=4.5
 scene 0.9 >scene.krs
 shows "a camera that nobody has moved follows its text"
 xdotool mousedown 1 mousemove 60 40 mousemove 70 30 mouseup 1 click 5
-sleep 0.5
-./screen_check Xvfb_screen0 b.png >out
-[ $? -eq 1 ]
+for _ in $(seq 50); do ./screen_check Xvfb_screen0 b.png >out || break; sleep 0.1; done
+[ "$(cat out)" != "0 pixels differ" ]
 result $? "the mouse moves the camera"
 xdotool key h
 screen_is b.png
@@ -130,6 +129,33 @@ sed 1d written.krs >rest
 sed 1d scene.krs | cmp - rest >out 2>&1 && grep -q '^camera { eye: .*orthographic.* }$' scene.krs &&
     "$krs" render scene.krs --size 96x64 --samples 1 --specialize structure -q -o b.png 2>err && screen_is b.png
 result $? "the camera is written into the text, and nothing else"
+printf 'camera { eye: [4, 3, 6] } show sphere(1);' >own.krs
+# shellcheck disable=SC2046 # many words
+(cd "$root" && "${CC:-cc}" -Wall -Wextra -Werror -I. -o "$work/own" examples/c/view.c "${B:-build}/libkrs.a" \
+    $(make --no-print-directory -s libs) -lglfw -lGL) >out 2>&1
+result $? "the viewer of examples/c compiles"
+other=$viewer
+./own own.krs >said 2>err.view &
+viewer=$!
+window=$(timeout 20 xdotool search --sync --onlyvisible --name own.krs | head -n 1)
+xdotool windowsize "$window" 96 64 mousemove 48 32 windowraise "$window"
+own_is() { # what was tested
+    "$krs" render own.krs --size 96x64 --samples 8 --specialize structure -q -o b.png 2>err && screen_is b.png
+    result $? "$1"
+}
+own_is "it shows the scene"
+printf 'camera { eye: [4, 3, 6] }\nshow box([2, 1, 1]);' >own.krs
+sleep 0.3
+own_is "it follows the file"
+xdotool click 1
+sleep 0.3
+grep -q '^component 1 at .*, .*, ' said
+result $? "it says what is clicked"
+xdotool key --window "$window" q
+wait "$viewer"
+status=$?
+viewer=$other
+ended 0 "and ends"
 kill "$server"
 wait "$viewer"
 status=$?
