@@ -224,10 +224,22 @@ static void look_at_variant(KernelScene of, const char *path, bool compiled)
     look_at_text(&all, path, compiled);
 }
 
+/* Whether an earlier variant says the same: a scene has no planes, or no glass, to choose for. */
+static bool is_repeated(const KrsVariant *variants, size_t number)
+{
+    bool repeated = false;
+    for (size_t i = 0; i < number; i++)
+        repeated = repeated || krs_variant_hash(&variants[i], NULL, 0) ==
+                                   krs_variant_hash(&variants[number], NULL, 0);
+    return repeated;
+}
+
 /* Every choice, where there is one. */
 static void look_at_variants(KrsScene *scene, const char *path, bool compiled)
 {
     const KrsProgram *program  = krs_scene_program(scene);
+    const KrsGlass    left_out = program->media ? KRS_GLASS_LEFT_OUT : 0;
+    const KrsGlass    nested   = program->media ? KRS_GLASS_NESTED : 0;
     const KrsVariant  chosen[] = {
          {.many_threads = false},
          {.many_threads = true},
@@ -237,17 +249,18 @@ static void look_at_variants(KrsScene *scene, const char *path, bool compiled)
          {.step = KRS_STEP_TAYLOR},
          {.step = KRS_STEP_ROOT_FREE},
          {.step = KRS_STEP_DIRECTIONAL},
-         {.glass = KRS_GLASS_LEFT_OUT},
-         {.glass = KRS_GLASS_NESTED, .values = true},
-         {.glass = KRS_GLASS_NESTED, .zones = 2, .many_threads = true},
-         {.glass = KRS_GLASS_NESTED, .planes = program->planes},
+         {.glass = left_out},
+         {.glass = nested, .values = true},
+         {.glass = nested, .zones = 2, .many_threads = true},
+         {.glass = nested, .planes = program->planes},
          {.planes = program->planes, .values = true},
          {.planes = program->planes, .many_threads = true},
          {.camera_relative = program->camera_relative, .values = true},
          {.camera_relative = program->camera_relative, .values = true, .planes = program->planes},
     };
     for (size_t i = 0; i < sizeof chosen / sizeof *chosen; i++)
-        look_at_variant((KernelScene){.scene = scene, .variant = chosen[i]}, path, compiled);
+        if (!is_repeated(chosen, i))
+            look_at_variant((KernelScene){.scene = scene, .variant = chosen[i]}, path, compiled);
     for (uint32_t group = 1; group <= program->march_group_count; group++)
         for (int many = 0; many < 2; many++)
             look_at_variant((KernelScene){.scene   = scene,
