@@ -53,8 +53,8 @@ PRINT    := $(addprefix compiler/print/, frame_values.c media.c lines.c signatur
             $(sort $(wildcard compiler/print/*/*.c))
 TARGET   := compiler/target/spirv.c
 BORDER   := compiler/target/glslang_border.cpp
-API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c retain.c tables.c facts.c \
-                march_groups.c make_module.c program.c scene_text.c framing.c look.c daylight.c frame.c points.c query.c \
+API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c find_emissive.c retain.c tables.c facts.c \
+                march_groups.c make_module.c program.c scene_text.c framing.c look.c daylight.c frame.c frame_emissive.c points.c query.c \
                 update.c search_pairs.c search_targets.c search_starts.c search.c refuter.c \
                 refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)
 MESH     := $(addprefix compiler/mesh/, field.c numbering.c tets.c quadric.c contour.c bvh.c verify.c mesh.c)

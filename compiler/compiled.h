@@ -47,6 +47,12 @@ typedef struct KrsView {
     const KrsLight *lights; /* lives as long as the frame, until the next krs_frame_view */
 } KrsView;
 
+/* A ball around something that emits light, and about the mean radiance of its disc. */
+typedef struct KrsEmissive {
+    double middle[3], radius, radiance;
+} KrsEmissive;
+enum { KRS_MOST_EMISSIVE = 32 };
+
 /* Components that are marched together, apart from other groups.  A text may have one group only,
    chosen by its number from 1. */
 typedef struct KrsMarchGroup {
@@ -75,6 +81,7 @@ typedef struct KrsProgram {
     bool          inverts; /* krs_along has methods for sequences with maps that invert */
     bool          plain;   /* no component is curved (shape_is_curved) */
     bool          shadows; /* a light casts shadows */
+    bool          emits;   /* a component may emit light */
     bool          sky_map; /* the sky is a picture of all directions */
     bool          mirrors; /* a material is smooth enough to show images, or lets light through */
     bool          media;   /* a component may let light through: there are variants of KrsGlass */
@@ -121,6 +128,11 @@ size_t krs_turns_end(const KrsScene *scene, size_t component);
 size_t krs_zone_count(const KrsScene *scene);
 /* Camera `camera`, lights, sky and image at the frame's parameters and time. */
 KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view);
+/* Balls around what emits light in the frame, within a box.  Returns how many; small ones and few
+   cost least, so that none is divided whose radius is below `least_radius`.  Light that is emitted
+   elsewhere is not in them. */
+size_t krs_frame_emissive(KrsFrame *frame, const double low[3], const double high[3],
+                          double least_radius, KrsEmissive balls[KRS_MOST_EMISSIVE]);
 /* Whether the rounding error of such a coordinate in single precision is visible in pixels of this
    width.  Then points must be relative to an origin near the camera. */
 bool krs_needs_rebase(double coordinate, double pixel);

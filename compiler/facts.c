@@ -60,6 +60,7 @@ static void find_kinds(Compilation *c)
     program->layers  = s->layers;
     for (size_t i = 0; i < s->lights.count; i++)
         program->shadows = program->shadows || s->lights.items[i].shadow;
+    program->emits   = c->scene->emissive_count > 0;
     program->sky_map = s->sky.map != NULL || s->sky.daylight;
 }
 

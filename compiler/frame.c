@@ -83,11 +83,12 @@ KrsStatus frame_new(const KrsScene *scene, KrsFrame **result)
                                     sizeof *frame->parameters);
     frame->values     = frame_alloc(scene, scene->graph->count, sizeof *frame->values);
     frame->lights     = frame_alloc(scene, scene->light_count, sizeof *frame->lights);
+    frame->lit        = frame_alloc(scene, scene->emissive_count, sizeof *frame->lit);
     frame->workspace  = frame_alloc(scene, slope_workspace(scene), 1);
     frame->sky        = frame_alloc(scene, scene->daylight ? DAYLIGHT_WIDTH * DAYLIGHT_HEIGHT : 0,
                                     sizeof *frame->sky);
     if (!frame->parameters || !frame->values || !frame->lights || !frame->workspace ||
-        !frame->sky) {
+        !frame->sky || !frame->lit) {
         frame_free(frame);
         return KRS_OUT_OF_MEMORY;
     }
@@ -112,6 +113,7 @@ void frame_free(KrsFrame *frame)
     frame_release(scene, frame->values);
     frame_release(scene, frame->lights);
     frame_release(scene, frame->sky);
+    frame_release(scene, frame->lit);
     frame_release(scene, frame->workspace);
     frame_release(scene, frame);
 }

@@ -7,6 +7,7 @@
 #include "compiler/bounds.h"
 #include "compiler/compiled.h"
 #include "compiler/daylight.h"
+#include "compiler/emissive.h"
 #include "compiler/lower/lower.h"
 #include "compiler/shape/scene.h"
 #include "compiler/graph/evaluate.h"
@@ -147,6 +148,8 @@ struct KrsScene {
     KrsBounds       *bounds;     /* of each component */
     RetainedSlope   *slopes;     /* slopes that are computed per frame */
     size_t           slope_count;
+    EmissivePart    *emissive;
+    size_t           emissive_count;
     Parameter       *parameters;
     RetainedPlace   *parameter_places; /* of their names */
     RetainedPlace   *camera_places;    /* of their blocks */
@@ -177,6 +180,7 @@ struct KrsFrame {
     const KrsScene *scene;
     NodeValue      *parameters; /* the parameter block: the time in slot 0, parameters, slopes.  The
                                    slopes always belong to the other values */
+    size_t         *lit;        /* parts of the scene that may emit light (frame_emissive.c) */
     void           *workspace;  /* memory for the computation of slopes */
     const char     *unbounded;  /* location of the slope without a bound in the last refused
     frame */

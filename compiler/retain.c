@@ -206,6 +206,7 @@ KrsStatus pass_retain(Compilation *c)
     sources_hash(&c->sources, c->scene->hash);
     retain_scene(c);
     retain_tapes(c);
+    retain_emissive(c);
     return KRS_OK;
 }
 

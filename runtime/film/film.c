@@ -262,9 +262,12 @@ static bool make_room(Job *job, const Plan *plan, KrsFilm *film)
         film->rows      = band_allocate(rendering, &job->cover, plan->halo, plan->has_paths,
                                         film->kept != NULL);
     }
-    return film->rows > 0 &&
-           rendering_set_lights(rendering, job->view.lights, job->view.light_count,
-                                job->options.light, job->rebase_origin, inputs_room(job));
+    if (film->rows == 0 ||
+        !rendering_set_lights(rendering, job->view.lights, job->view.light_count,
+                              job->options.light, job->rebase_origin, inputs_room(job)))
+        return false;
+    rendering_set_emissive(rendering, job->emissive, job->frame.emissive_count);
+    return true;
 }
 
 /* Records what the film keeps of its first sample: the rebase origin and the matrices. */

@@ -32,7 +32,7 @@ static void upload_limits(const Job *job, const KrsWindow *traced)
     const size_t  listed  = job->rays ? job->rendering->band.pixels : 0;
     ControlBlock *control = job->rendering->control.bytes;
     float *to = (float *)(rendering_listed_rays(job->rendering, job->view.light_count) + listed);
-    control->limits = ALBEDO_ROWS + 2 * (uint32_t)listed +
+    control->limits = LIGHTS_AT + 2 * (uint32_t)listed +
                       LIGHT_ROWS * ((uint32_t)job->view.light_count + LIGHTS_AT_ONCE);
     for (uint32_t y = traced->y; y < traced->y + traced->height; y++)
         for (uint32_t x = traced->x; x < traced->x + traced->width; x++, to++) {

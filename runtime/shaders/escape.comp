@@ -58,7 +58,7 @@ vec3 find_sky(Path path)
     vec2  place = place_on_sky(path.direction);
     vec3  radiance = radiance_on_sky(place);
     float all = max(sum_importance(path.origin), 1e-30);
-    float by_lights = sky_map_density(radiance, place) * frame.sky_power.x / all;
+    float by_lights = sky_map_density(radiance, place) * frame.sky_power / all;
     bool  chosen = control.phase == ESCAPE_TO_LIGHTS && path.density > 0.0;
     return radiance * (chosen ? share_of_rays(path.density, by_lights) : 1.0);
 }

@@ -49,8 +49,8 @@ uvec2 load_end(uint index) { return ends[index]; }
 vec4  load_hit_row(uint number) { return hits[number]; }
 #else
 layout(std430, set = 1, binding = HITS_BINDING) writeonly buffer Hits { vec4 hits[]; };
-// A table of albedos; then lights, and behind them the rays of a list, two texels each.  The other texels are those of
-// the buffers above (layouts.c).
+// A table of albedos; then balls around what emits light, lights, and behind them the rays of a list.
+// The other texels are those of the buffers above (layouts.c).
 layout(set = 1, binding = INPUT_TEXELS_BINDING) uniform usamplerBuffer input_texels;
 layout(set = 1, binding = END_TEXELS_BINDING) uniform usamplerBuffer end_texels;
 layout(set = 1, binding = HIT_TEXELS_BINDING) uniform usamplerBuffer hit_texels;
@@ -80,7 +80,7 @@ void load_frame()
 
 Light find_light(uint number)
 {
-    uint  row = ALBEDO_ROWS + LIGHT_ROWS * number;
+    uint  row = LIGHTS_AT + LIGHT_ROWS * number;
     vec4  vector = uintBitsToFloat(load_input(row));
     uvec4 color = load_input(row + 1u);
     vec4  right = uintBitsToFloat(load_input(row + 2u));
@@ -213,7 +213,7 @@ void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float b
 {
     uvec2 pixel = min(uvec2(image_point) - work.corner, work.extent - 1u);
     uint  number = pixel.y * work.extent.x + pixel.x;
-    uint  row = ALBEDO_ROWS + LIGHT_ROWS * (control.lights + LIGHTS_AT_ONCE) + 2u * number;
+    uint  row = LIGHTS_AT + LIGHT_ROWS * (control.lights + LIGHTS_AT_ONCE) + 2u * number;
     vec4  start = uintBitsToFloat(load_input(row)), ahead = uintBitsToFloat(load_input(row + 1u));
     origin = start.xyz;
     base = start.w;

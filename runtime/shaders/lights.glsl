@@ -55,7 +55,7 @@ float find_importance(Light light, vec3 place)
 // That of the sky comes first.
 float sum_importance(vec3 place)
 {
-    float sum = frame.sky_power.x;
+    float sum = frame.sky_power;
     for (uint i = 0u; i < control.lights; i++)
         sum += find_importance(find_light(i), place);
     return sum;

@@ -21,6 +21,7 @@
 #include "bsdf.glsl"
 #include "bsdf_samples.glsl"
 #include "lights.glsl"
+#include "emissive.glsl"
 #include "boundary.glsl"
 
 const uint CHOICES = 3u;      // points of the unit square for each surface of a path
@@ -58,10 +59,10 @@ void begin_group()
 
 // Chooses a point of a light, and what it adds if it is visible.  Returns the direction to it.
 vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec3 facing,
-                  vec3 weight)
+                  vec3 weight, Cones cones)
 {
     float all = sum_importance(hit.position);
-    float left = choose(pixel, 2u).x * all - frame.sky_power.x;
+    float left = choose(pixel, 2u).x * all - frame.sky_power;
     bool  is_sky = left < 0.0;
     uint  number = 0u;
     float importance = 0.0;
@@ -76,12 +77,13 @@ vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, v
                                     choose(pixel, 1u));
 #ifdef SKY_MAP
     if (is_sky)
-        point = sample_sky(hit.position, frame.sky_power.x / all, choose(pixel, 1u));
+        point = sample_sky(hit.position, frame.sky_power / all, choose(pixel, 1u));
 #endif
     vec3 light = into(axes, point.toward);
     vec4 scattered = scatter(bsdf, light);
     // Both methods together count once (escape.comp).
-    float share = point.density > 0.0 ? 1.0 / (1.0 + square(scattered.w / point.density)) : 1.0;
+    float by_rays = mixed_density(cones, point.toward, scattered.w);
+    float share = point.density > 0.0 ? 1.0 / (1.0 + square(by_rays / point.density)) : 1.0;
     float rise = dot(point.toward, facing);
     bool  along = is_sky && abs(rise) < LEAST_RISE;
     bool  sees = rise * light.z > 0.0 && all > 0.0 && !along;
@@ -90,19 +92,28 @@ vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, v
     return point.toward;
 }
 
+// The direction in which the path goes on, in the frame of the surface; 0: it ends.
+vec3 choose_way(Bsdf bsdf, Axes axes, Cones cones, vec2 square_point, float choice)
+{
+    if (choice < cones.part)
+        return into(axes, sample_cones(cones, square_point, choice / cones.part));
+    return sample_direction(bsdf, square_point, (choice - cones.part) / (1.0 - cones.part));
+}
+
 // Sends the path on, or ends it.  Returns where its ray begins (media.glsl); 0: it ends.
 float go_on(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 facing, vec3 weight,
-            float roughness, Boundary boundary)
+            float roughness, Boundary boundary, Cones cones)
 {
-    vec2  chosen = choose(pixel, 2u);
-    vec3  light = sample_direction(bsdf, choose(pixel, 0u), chosen.y);
+    vec3  light = choose_way(bsdf, axes, cones, choose(pixel, 0u), choose(pixel, 2u).y);
     vec4  scattered = scatter(bsdf, light);
     vec3  direction = out_of(axes, light) / max(length(light), 1e-6);
+    float kept = largest(scattered.rgb) / max(scattered.w, 1e-30);
+    scattered.w = mixed_density(cones, direction, scattered.w);
     weight *= scattered.rgb / max(scattered.w, 1e-30);
     bool  goes_on = dot(direction, facing.xyz) * light.z > 0.0 && scattered.w > 0.0 &&
                     largest(weight) > 0.0 && largest(weight) < 1e30;
     if (control.value >= FIRST_ROULETTE) {
-        float chance = min(largest(weight), 0.95);
+        float chance = min(find_survival(weight, kept), 0.95);
         goes_on = goes_on && sample_choice(work.corner + pixel, control.ray,
                                            0x10000u + control.value, control.seed).x < chance;
         weight /= max(chance, 1e-30);
@@ -155,9 +166,12 @@ void do_item(uint number)
     Axes axes = find_axes(normal);
     Bsdf   bsdf = make_bsdf(surface, hit.side > 0.0, into(axes, -hit.direction));
     bsdf.eta = boundary.eta;
-    vec3  toward = choose_light(pixel, index, hit, bsdf, axes, facing.xyz, weight);
+    // Glass bends what leaves it, so that cones are of no use there.
+    float dull = mix(surface.roughness * (1.0 - bsdf.glass), 1.0, bsdf.shares.w);
+    Cones cones = find_cones(hit.position, facing.xyz, hit.side > 0.0 ? dull : 0.0);
+    vec3  toward = choose_light(pixel, index, hit, bsdf, axes, facing.xyz, weight, cones);
     float side = go_on(pixel, index, hit, bsdf, axes, facing, weight, surface.roughness,
-                       boundary);
+                       boundary, cones);
     store_path(PATH_TOWARD, index, vec4(toward, side));
     if (side != 0.0)
         tiles[atomicAdd(counts.tiles, 1u)] = hit.slot;

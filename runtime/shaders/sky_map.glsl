@@ -96,7 +96,7 @@ float crowding_on_sky(float down)
 // luminance.
 float sky_map_density(vec3 radiance, vec2 place)
 {
-    float all = 4.0 * frame.sky_power.x;
+    float all = 4.0 * frame.sky_power;
     return luminance(radiance) / max(all, 1e-30) * crowding_on_sky(place.y);
 }
 

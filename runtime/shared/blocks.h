@@ -89,9 +89,11 @@ struct Frame {
        corners of the aperture; 0: it is round. */
     vec4 lens;
     /* Of a sky that is a picture: its columns and rows, or 0; its rotation in radians; a factor. */
-    vec4 sky_map;
-    vec4 sky_power; /* the mean irradiance by the sky, by which paths choose it; 0, 0, 0 */
-    vec4 shift; /* of the picture in half widths and half heights; how far the eye of a panorama is
+    vec4  sky_map;
+    float sky_power; /* the mean irradiance by the sky, by which paths choose it */
+    uint  emissive_count;
+    uint  gap_a, gap_b;
+    vec4  shift; /* of the picture in half widths and half heights; how far the eye of a panorama is
                    to the right, for stereo; 0 */
 };
 
@@ -334,11 +336,22 @@ struct Light {
 CONSTANT(LIGHT_ROWS, 4);
 CONSTANT(LIGHT_RECTANGLE, 4);
 CONSTANT(LIGHT_SPOT, 8);
-/* Before the lights is albedo_table.def: ALBEDO_SIDE * ALBEDO_SIDE rows. */
+/* Before the lights is albedo_table.def: ALBEDO_SIDE * ALBEDO_SIDE rows.  Behind that are balls. */
 CONSTANT(ALBEDO_SIDE, 16);
 CONSTANT(ALBEDO_ROWS, 256);
+CONSTANT(MOST_EMISSIVE, 32); /* KRS_MOST_EMISSIVE */
+CONSTANT(EMISSIVE_ROWS, 2);
+CONSTANT(LIGHTS_AT, 256 + 2 * 32); /* the row of the first light */
 CONSTANT(LIGHT_POSITIONAL, 1);
 CONSTANT(LIGHT_CASTS_SHADOWS, 2);
+
+/* A ball around something that emits light (emissive.glsl). */
+struct EmissiveBall {
+    vec3  middle;
+    float radius;
+    float radiance; /* about that of its disc */
+    float gap_a, gap_b, gap_c;
+};
 
 /* The ray of a pixel, given by the caller.  Listed rays lie behind the lights and room for
    LIGHTS_AT_ONCE more. */
@@ -355,6 +368,9 @@ enum { RESULT_NUMBERS = 4, RESULT_BYTES = 4 * RESULT_NUMBERS, DEPTH_NUMBER = 3 }
 enum { END_BYTES = 8, HIT_BYTES = 16 * HIT_ROWS, PATH_BYTES = 16 * PATH_ROWS, MARCH_BYTES = 32 };
 typedef struct Light LightBlock;
 static_assert(sizeof(LightBlock) == 16 * LIGHT_ROWS, "std430");
+typedef struct EmissiveBall EmissiveBlock;
+static_assert(sizeof(EmissiveBlock) == 16 * EMISSIVE_ROWS, "std430");
+static_assert(LIGHTS_AT == ALBEDO_ROWS + EMISSIVE_ROWS * MOST_EMISSIVE, "rows of inputs");
 typedef struct ListedRay ListedRayBlock;
 static_assert(sizeof(ListedRayBlock) == 32, "std430");
 #endif

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "runtime/tracer/emissive.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/rendering.h"
 #include "runtime/tracer/sky_table.h"
@@ -117,8 +118,7 @@ static bool prepare_frame_block(Job *job)
     if (job->rays && job->rays->farthest > 0)
         job->frame.farthest = (float)fmin(job->rays->farthest, (double)job->frame.farthest);
     if (view.sky.map)
-        job->frame.sky_power[0] = (float)(view.sky.intensity *
-                                          sky_table_irradiance(job->rendering));
+        job->frame.sky_power = (float)(view.sky.intensity * sky_table_irradiance(job->rendering));
     job->frame.error        = (float)job->options.error;
     job->frame.most_steps   = job->options.most_steps;
     job->frame.normal_reach = normal_reach(&job->options);
@@ -164,6 +164,9 @@ bool job_read_frame(Job *job, KrsFrame *frame, const KrsCamera *camera)
     job->begins_outside = begins_outside(job, frame);
     if (!sky_table_upload(job->rendering, job->view.sky.map) || !prepare_frame_block(job))
         return false;
+    if (job->rendering->program->emits && job->options.integrator != KRS_INTEGRATOR_PREVIEW)
+        job->frame.emissive_count = emissive_find(job->rendering->program, &job->view.camera, frame,
+                                                  job->rebase_origin, job->emissive);
     memcpy(job->rendering->frame.bytes, &job->frame, sizeof job->frame);
     return rendering_set_parameters(job->rendering, frame) &&
            rendering_set_rays(job->rendering, kind_of_rays(job)) &&

@@ -54,9 +54,10 @@ typedef struct Job {
     const KrsRays   *rays; /* a list of rays; NULL: they are those of the view's camera */
     uint32_t         first_rows, later_rows; /* of results that rays store: the first, others */
     FrameBlock       frame;
-    double           rebase_origin[3]; /* points on the device are relative to it */
-    bool             begins_outside;   /* all rays begin outside of all solids */
-    KrsWindow        cover;            /* the crop, extended to whole tiles */
+    EmissiveBlock    emissive[MOST_EMISSIVE]; /* frame.emissive_count of them */
+    double           rebase_origin[3];        /* points on the device are relative to it */
+    bool             begins_outside;          /* all rays begin outside of all solids */
+    KrsWindow        cover;                   /* the crop, extended to whole tiles */
     KrsWindow        window;           /* the pixels whose rays may meet what is marched now */
     KrsRenderStats  *stats;            /* the job adds to them */
     double           part_begun, part; /* progress before these samples; their part of 1 */

@@ -251,9 +251,14 @@ static const float albedos[ALBEDO_ROWS][RESULT_NUMBERS] = {
 #undef KRS_ALBEDO
 };
 
+static char *row_of_inputs(const KrsRendering *rendering, uint32_t row)
+{
+    return (char *)rendering->inputs.bytes + (size_t)row * RESULT_BYTES;
+}
+
 static LightBlock *lights_of(const KrsRendering *rendering)
 {
-    return (LightBlock *)((char *)rendering->inputs.bytes + sizeof albedos);
+    return (LightBlock *)row_of_inputs(rendering, LIGHTS_AT);
 }
 
 /* Makes room for lights, and for listed rays behind them.  Kernels load several lights at a time,
@@ -262,7 +267,7 @@ static bool make_room(KrsRendering *rendering, size_t lights, size_t rays)
 {
     Gpu         *gpu    = &rendering->renderer->gpu;
     Buffer      *buffer = &rendering->inputs;
-    VkDeviceSize bytes  = buffer_texel_bytes(sizeof albedos +
+    VkDeviceSize bytes  = buffer_texel_bytes(LIGHTS_AT * RESULT_BYTES +
                                              (lights + LIGHTS_AT_ONCE) * sizeof(LightBlock) +
                                              rays * sizeof(ListedRayBlock));
     if (buffer->size >= bytes)
@@ -314,6 +319,11 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
         }
     }
     return true;
+}
+
+void rendering_set_emissive(KrsRendering *rendering, const EmissiveBlock *balls, size_t count)
+{
+    memcpy(row_of_inputs(rendering, ALBEDO_ROWS), balls, count * sizeof *balls);
 }
 
 ListedRayBlock *rendering_listed_rays(KrsRendering *rendering, size_t lights)

@@ -19,6 +19,8 @@ bool rendering_rebase(KrsRendering *rendering, KrsFrame *frame, const double reb
    listed rays behind them.  `light` is as in KrsRenderOptions: others are black. */
 bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count,
                           uint32_t light, const double rebase_origin[3], size_t rays);
+/* Copies balls around what emits light; call it after rendering_set_lights. */
+void rendering_set_emissive(KrsRendering *rendering, const EmissiveBlock *balls, size_t count);
 /* The listed rays, which lie behind `lights` lights. */
 ListedRayBlock *rendering_listed_rays(KrsRendering *rendering, size_t lights);
 /* A stride that visits all numbers in [0, count), far apart each time.  Neighbouring workgroups

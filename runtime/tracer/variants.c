@@ -244,6 +244,8 @@ KernelVariant variant_of_scatter(const KrsRendering *rendering)
     KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     want(&to, KRS_FUNCTION_SURFACE);
     want(&to, KRS_FUNCTION_SINES);
+    if (rendering->program->emits)
+        define(&to, "#define EMISSIVE\n");
     want_media(&to, rendering);
     want_sky(&to, rendering);
     define_choices(&to);
