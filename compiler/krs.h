@@ -157,7 +157,8 @@ typedef struct KrsParameter {
     double      low[4], high[4]; /* the permitted range; may be infinite */
     int         degrees;         /* the text gives its default or range in degrees */
     bool        color;           /* the text gives its default as a colour */
-    const char *doc;             /* its comment of `///` lines, or NULL */
+    bool        whole; /* the text gives its range as that of the numbers 0 and 1: `0..2` */
+    const char *doc;   /* its comment of `///` lines, or NULL */
     /* Where the text has the default: bytes [start, end) of the file or text of this name. */
     const char *source;
     uint32_t    start, end;

@@ -94,6 +94,7 @@ KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *param
                                                 .components = from->components,
                                                 .degrees    = from->degrees,
                                                 .color      = from->color,
+                                                .whole      = from->whole,
                                                 .doc        = from->doc,
                                                 .source     = place->source,
                                                 .start      = from->default_span.start,

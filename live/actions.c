@@ -8,6 +8,7 @@
 #include <png.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 #include "live/camera_text.h"
@@ -264,6 +265,54 @@ static void act_look(Viewing *viewing)
     viewing_show(viewing);
 }
 
+/* The size of what is seen, for a scene without an end as well. */
+static void measure_scene(Viewing *viewing)
+{
+    const KrsCamera *camera = &viewing->view.camera;
+    double           low[3], high[3], sum = 0;
+    const bool       bounded = orbit_box(version_scene(viewing->view.version), low, high);
+    for (int i = 0; i < 3; i++)
+        sum += bounded ? pow(high[i] - low[i], 2) : pow(camera->target[i] - camera->eye[i], 2);
+    viewing->cut.size = fmax(sqrt(sum), 1e-9);
+}
+
+static void act_cut_plane(Viewing *viewing)
+{
+    Cut *cut = &viewing->cut;
+    measure_scene(viewing);
+    if (cut->plane)
+        cut->plane = false;
+    else
+        cut_face(cut, &viewing->view.camera, viewing->view.camera.target);
+    viewing_set_cut(viewing);
+}
+
+static void act_cut_ball(Viewing *viewing)
+{
+    Cut        *cut   = &viewing->cut;
+    const Found found = viewing_find(viewing);
+    measure_scene(viewing);
+    cut->ball   = !cut->ball;
+    cut->radius = 0.1 * cut->size;
+    memcpy(cut->center, found.hit ? found.position : viewing->view.camera.target,
+           sizeof cut->center);
+    viewing_set_cut(viewing);
+}
+
+static void act_larger(Viewing *viewing)
+{
+    viewing->cut.radius *= 1.15;
+    viewing_set_cut(viewing);
+}
+
+static void act_smaller(Viewing *viewing)
+{
+    viewing->cut.radius /= 1.15;
+    viewing_set_cut(viewing);
+}
+
+static void act_numbers(Viewing *viewing) { viewing->numbers = !viewing->numbers; }
+
 static void act_panels(Viewing *viewing) { viewing->panels = !viewing->panels; }
 
 static void act_help(Viewing *viewing) { viewing->help = !viewing->help; }
@@ -316,8 +365,11 @@ void act_drag(void *user, int button, int modifiers, double right, double down)
     Viewing     *viewing = user;
     const double side    = viewing->view.height > 0 ? viewing->view.height : 1;
     const double x = right / side, y = down / side;
-    if (button == GLFW_MOUSE_BUTTON_MIDDLE ||
-        (button == GLFW_MOUSE_BUTTON_LEFT && (modifiers & GLFW_MOD_SHIFT)))
+    if ((modifiers & GLFW_MOD_ALT) && (viewing->cut.ball || viewing->cut.plane)) {
+        cut_drag(&viewing->cut, &viewing->view.camera, x, -y);
+        viewing_set_cut(viewing);
+    } else if (button == GLFW_MOUSE_BUTTON_MIDDLE ||
+               (button == GLFW_MOUSE_BUTTON_LEFT && (modifiers & GLFW_MOD_SHIFT)))
         pan(viewing, x, -y);
     else if (button == GLFW_MOUSE_BUTTON_LEFT)
         turn(viewing, -x * DRAG_TURN, y * DRAG_TURN);

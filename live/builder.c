@@ -136,8 +136,10 @@ void builder_start(Builder *builder, const View *view)
     pthread_mutex_lock(&builder->lock);
     const bool  pending = builder->wants;
     const Needs last    = pending ? view_needs(&builder->wanted) : builder->needs;
-    const bool  same    = needs_are_equal(&needs, &last) &&
-                      (pending || builder->building || builder->status != KRS_OK);
+    const bool  same    = builder->building && !pending && !atomic_load(&builder->given_up)
+                              ? needs.structure == last.structure
+                              : needs_are_equal(&needs, &last) &&
+                                (pending || builder->status != KRS_OK);
     if (!same && view_copy(view, &copy)) {
         old             = builder->wanted;
         builder->wanted = copy;
@@ -157,11 +159,13 @@ void builder_cancel(Builder *builder)
     pthread_mutex_unlock(&builder->lock);
 }
 
-Canvas *builder_exchange(Builder *builder, const Needs *needs, Canvas *other)
+Canvas *builder_exchange(Builder *builder, const Needs *needs, bool some, Canvas *other)
 {
     Canvas *built = NULL;
     pthread_mutex_lock(&builder->lock);
-    if (!builder->building && builder->canvas && canvas_meets(builder->canvas, needs)) {
+    if (!builder->building && builder->canvas &&
+        (canvas_meets(builder->canvas, needs) ||
+         (some && canvas_structure(builder->canvas) == needs->structure))) {
         built           = builder->canvas;
         builder->canvas = other;
     }

@@ -19,14 +19,14 @@ typedef struct Builder Builder;
 Builder *builder_new(const KrsRendererOptions *options, void (*told)(void *user), void *user);
 void     builder_free(Builder *builder);
 
-/* Compiles what the view needs, unless it is being compiled, or was and failed.  Another build is
-   given up. */
+/* Compiles what the view needs, unless it is being compiled, or was and failed.  A build of another
+   structure is given up; one of the same goes on. */
 void builder_start(Builder *builder, const View *view);
 /* Gives up what is being compiled. */
 void builder_cancel(Builder *builder);
-/* Takes the canvas that was built if it meets these needs, and leaves another in its place, which may
-   be NULL.  NULL: there is none. */
-Canvas *builder_exchange(Builder *builder, const Needs *needs, Canvas *other);
+/* Takes the canvas that was built if it meets these needs, or with `some` if it is of their structure,
+   and leaves another in its place, which may be NULL.  NULL: there is none. */
+Canvas *builder_exchange(Builder *builder, const Needs *needs, bool some, Canvas *other);
 
 BuilderState builder_state(Builder *builder);
 

@@ -3,6 +3,7 @@
  */
 #include "live/canvas.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -116,20 +117,43 @@ Needs view_needs(const View *view)
     return (Needs){.structure = version_structure(view->version),
                    .paths     = view->integrator > KRS_INTEGRATOR_PREVIEW,
                    .lens      = lens_of(&view->camera),
-                   .zones     = room_for(view->zone_count)};
+                   .zones     = room_for(view->zone_count),
+                   .points    = view->look == LOOK_SLOPE};
 }
 
 bool needs_are_equal(const Needs *a, const Needs *b)
 {
     return a->structure == b->structure && a->paths == b->paths && a->lens == b->lens &&
-           a->zones == b->zones;
+           a->zones == b->zones && a->points == b->points;
 }
 
 bool canvas_meets(const Canvas *canvas, const Needs *needs)
 {
     const Needs *made = &canvas->made;
     return made->structure == needs->structure && (needs->paths ? made->paths : canvas->previews) &&
-           needs->lens <= made->lens && needs->zones <= made->zones;
+           needs->lens <= made->lens && needs->zones <= made->zones &&
+           needs->points <= made->points;
+}
+
+unsigned canvas_structure(const Canvas *canvas) { return canvas->made.structure; }
+
+void canvas_reduce(const Canvas *canvas, View *view)
+{
+    const Needs *made = &canvas->made;
+    if (view->integrator > KRS_INTEGRATOR_PREVIEW && !made->paths)
+        view->integrator = KRS_INTEGRATOR_PREVIEW;
+    else if (view->integrator <= KRS_INTEGRATOR_PREVIEW && !canvas->previews)
+        view->integrator = KRS_INTEGRATOR_PATH;
+    if (made->lens < 2)
+        view->camera.aperture = 0;
+    if (made->lens < 1 && view->camera.projection == KRS_PANORAMA) {
+        view->camera.projection = KRS_PERSPECTIVE;
+        view->camera.fov        = 1;
+    }
+    if (view->zone_count > made->zones)
+        view->zone_count = made->zones;
+    if (view->look == LOOK_SLOPE && !made->points)
+        view->look = LOOK_LIGHT;
 }
 
 /* The cameras of a scene are served by its shaders from the beginning. */
@@ -159,6 +183,7 @@ static void note_made(Canvas *canvas, const Needs *needs)
     made->lens          = made->lens > old.lens ? made->lens : old.lens;
     made->lens          = made->lens > lens ? made->lens : lens;
     made->zones         = made->zones > old.zones ? made->zones : old.zones;
+    made->points        = made->points || old.points;
 }
 
 /* Makes frame and rendering; what there was stays if that fails. */
@@ -230,7 +255,12 @@ static KrsStatus try_out(Canvas *canvas, const View *view)
     if (status != KRS_OK)
         return status;
     canvas_set(canvas, view); /* values that are refused need no other shaders */
-    return canvas_add(canvas, FILM_COARSE, view, LEAST_SIDE, LEAST_SIDE, 1, true, NULL, NULL);
+    status = canvas_add(canvas, FILM_COARSE, view, LEAST_SIDE, LEAST_SIDE, 1, true, NULL, NULL);
+    if (status != KRS_OK || view->look != LOOK_SLOPE)
+        return status;
+    const float point[1][3] = {{0, 0, 0}};
+    float       distance;
+    return krs_sample(canvas->rendering, canvas->frame, point, 1, &distance, NULL);
 }
 
 KrsStatus canvas_prepare(Canvas *canvas, const View *view, KrsCompilingCallback *compiling,
@@ -320,4 +350,53 @@ uint32_t canvas_samples(const Canvas *canvas, FilmKind kind)
 KrsStatus canvas_read(Canvas *canvas, FilmKind kind, uint32_t planes, KrsPicture **picture)
 {
     return krs_film_read(canvas->films[kind].film, planes, picture);
+}
+
+/* Where slopes are measured, before and behind the surface, in parts of the depth. */
+#define SLOPE_STEP 5e-4
+
+/* Two points for each pixel that hits something. */
+static size_t place_points(const KrsPicture *picture, float (*points)[3], float *steps)
+{
+    const size_t count = (size_t)picture->width * picture->height;
+    size_t       used  = 0;
+    for (size_t i = 0; i < count; i++) {
+        const float step = (float)(SLOPE_STEP * fabs(picture->depth[i]));
+        if (picture->component[i] == 0)
+            continue;
+        for (int side = 0; side < 2; side++)
+            for (int k = 0; k < 3; k++)
+                points[2 * used + (size_t)side][k] = picture->position[3 * i + (size_t)k] +
+                                                     (side ? step : -step) *
+                                                         picture->normal[3 * i + (size_t)k];
+        steps[used++] = step;
+    }
+    return used;
+}
+
+float *canvas_slopes(Canvas *canvas, const KrsPicture *picture)
+{
+    const size_t count = (size_t)picture->width * picture->height;
+    float(*points)[3]  = malloc(2 * count * sizeof *points);
+    float *steps = malloc(count * sizeof *steps), *slopes = calloc(count, sizeof *slopes);
+    float *distances = malloc(2 * count * sizeof *distances);
+    bool   good      = points && steps && slopes && distances;
+    if (good) {
+        const size_t used = place_points(picture, points, steps);
+        good = krs_sample(canvas->rendering, canvas->frame, (const float(*)[3])points, 2 * used,
+                          distances, NULL) == KRS_OK;
+        for (size_t i = 0, at = 0; good && i < count; i++)
+            if (picture->component[i] != 0) {
+                slopes[i] = fabsf(distances[2 * at + 1] - distances[2 * at]) / (2 * steps[at]);
+                at++;
+            }
+    }
+    free(points);
+    free(steps);
+    free(distances);
+    if (!good) {
+        free(slopes);
+        slopes = NULL;
+    }
+    return slopes;
 }

@@ -45,13 +45,19 @@ const char *canvas_message(const Canvas *canvas);
 typedef struct Needs {
     unsigned structure; /* of the version */
     bool     paths;     /* or previews */
-    unsigned lens;  /* 2: the camera has a lens; 1: it is a panorama; those with more serve all */
-    unsigned zones; /* there is room for so many */
+    unsigned lens;   /* 2: the camera has a lens; 1: it is a panorama; those with more serve all */
+    unsigned zones;  /* there is room for so many */
+    bool     points; /* distances of points are asked for */
 } Needs;
 Needs view_needs(const View *view);
 bool  needs_are_equal(const Needs *a, const Needs *b);
 /* Whether a canvas shows what has these needs without compiling shaders. */
 bool canvas_meets(const Canvas *canvas, const Needs *needs);
+
+/* The structure that a canvas has shaders of; 0: none. */
+unsigned canvas_structure(const Canvas *canvas);
+/* Takes out of a view of that structure what the canvas has no shaders for. */
+void canvas_reduce(const Canvas *canvas, View *view);
 
 /* Compiles the shaders of a view; `compiling` may be NULL. */
 KrsStatus canvas_prepare(Canvas *canvas, const View *view, KrsCompilingCallback *compiling,
@@ -76,5 +82,9 @@ KrsStatus canvas_add(Canvas *canvas, FilmKind kind, const View *view, uint32_t w
 uint32_t  canvas_samples(const Canvas *canvas, FilmKind kind);
 /* The picture of a film, with these planes (0: all that it has); the caller frees it. */
 KrsStatus canvas_read(Canvas *canvas, FilmKind kind, uint32_t planes, KrsPicture **picture);
+
+/* How fast the distance changes along the normal of each pixel of a picture, of how fast it may; 0
+   where nothing is hit.  The caller frees the numbers; NULL: it failed. */
+float *canvas_slopes(Canvas *canvas, const KrsPicture *picture);
 
 #endif

@@ -76,7 +76,7 @@ static double shade_of(const KrsPicture *picture, size_t at)
     return 0.35 + 0.65 * fabs(z);
 }
 
-static void color_pixel(const KrsPicture *picture, Look look, Range range, size_t at,
+static void color_pixel(const KrsPicture *picture, Look look, Range range, size_t at, double slope,
                         uint8_t *pixel)
 {
     const float *n    = &picture->normal[3 * at];
@@ -92,15 +92,17 @@ static void color_pixel(const KrsPicture *picture, Look look, Range range, size_
         set(pixel, 0.5 + 0.5 * n[0], 0.5 + 0.5 * n[1], 0.5 + 0.5 * n[2]);
     else if (look == LOOK_LEVELS)
         set_heat(pixel, part);
+    else if (look == LOOK_SLOPE)
+        set_heat(pixel, slope);
     else
         set_number(pixel, look == LOOK_COMPONENTS ? picture->component[at] : picture->instance[at],
                    shade_of(picture, at));
 }
 
-void false_color(const KrsPicture *picture, Look look, uint8_t *pixels)
+void false_color(const KrsPicture *picture, Look look, const float *slopes, uint8_t *pixels)
 {
     const Range  range = find_range(picture, look);
     const size_t count = (size_t)picture->window.width * picture->window.height;
     for (size_t i = 0; i < count; i++)
-        color_pixel(picture, look, range, i, pixels + 4 * i);
+        color_pixel(picture, look, range, i, slopes ? slopes[i] : 0, pixels + 4 * i);
 }

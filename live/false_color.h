@@ -14,7 +14,8 @@ typedef enum Look {
 } Look;
 extern const char *const look_names[LOOK_COUNT];
 
-/* Four bytes for each pixel of a picture with all planes; `look` is not LOOK_LIGHT. */
-void false_color(const KrsPicture *picture, Look look, uint8_t *pixels);
+/* Four bytes for each pixel of a picture with all planes; `look` is not LOOK_LIGHT.  `slopes` has a
+   number for each pixel, for LOOK_SLOPE alone. */
+void false_color(const KrsPicture *picture, Look look, const float *slopes, uint8_t *pixels);
 
 #endif

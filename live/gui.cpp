@@ -262,6 +262,14 @@ bool gui_drag(const char *label, double *values, size_t count, double speed, dou
     return changed;
 }
 
+bool gui_check(const char *label, bool *on)
+{
+    label_left(label);
+    const bool changed = ImGui::Checkbox("##check", on);
+    ImGui::PopID();
+    return changed;
+}
+
 bool gui_color(const char *label, double rgb[3])
 {
     float color[3] = {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]),

@@ -57,6 +57,7 @@ bool gui_slider(const char *label, double *value, double low, double high, const
 /* Without limits, by dragging; `speed` is for a pixel. */
 bool gui_drag(const char *label, double *values, size_t count, double speed, double low,
               double high, const char *format);
+bool gui_check(const char *label, bool *on);
 bool gui_color(const char *label, double rgb[3]); /* as the screen has it, each in [0, 1] */
 bool gui_choice(const char *label, int *chosen, const char *const *names, size_t count);
 bool gui_input(const char *label, char *text, size_t size);

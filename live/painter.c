@@ -180,8 +180,12 @@ static KrsStatus publish(Painter *painter, FilmKind kind, double ms)
     if (painter->view.look == LOOK_LIGHT)
         krs_picture_to_srgb8(picture, version_scene(painter->view.version), painter->view.stops, 4,
                              shot.pixels);
-    else
-        false_color(picture, painter->view.look, shot.pixels);
+    else {
+        float *slopes = painter->view.look == LOOK_SLOPE ? canvas_slopes(painter->canvas, picture)
+                                                         : NULL;
+        false_color(picture, painter->view.look, slopes, shot.pixels);
+        free(slopes);
+    }
     pthread_mutex_lock(&painter->lock);
     free(painter->shot.pixels);
     painter->shot          = shot;
@@ -297,8 +301,17 @@ static void hear_builder(void *user)
     wake(painter);
 }
 
+/* Shows another canvas from now on. */
+static void change_canvas(Painter *painter, Canvas *built)
+{
+    if (painter->canvas)
+        canvas_rest(painter->canvas);
+    painter->canvas       = built;
+    painter->ms_per_pixel = painter->fixed_ms = 0;
+}
+
 /* Whether a canvas has the shaders of a view: the one that is shown, or the one that was built.  If
-   there is none, it is built. */
+   there is none, it is built; one that has some of them is better than one of another text. */
 static bool choose_canvas(Painter *painter, const View *next)
 {
     const Needs needs = view_needs(next);
@@ -306,16 +319,14 @@ static bool choose_canvas(Painter *painter, const View *next)
         builder_cancel(painter->builder);
         return true;
     }
-    Canvas *built = builder_exchange(painter->builder, &needs, painter->canvas);
-    if (!built) {
-        builder_start(painter->builder, next);
-        return false;
-    }
-    if (painter->canvas)
-        canvas_rest(painter->canvas);
-    painter->canvas       = built;
-    painter->ms_per_pixel = painter->fixed_ms = 0;
-    return true;
+    const bool other = !painter->canvas || canvas_structure(painter->canvas) != needs.structure;
+    Canvas    *built = builder_exchange(painter->builder, &needs, other, painter->canvas);
+    if (built)
+        change_canvas(painter, built);
+    if (built && canvas_meets(built, &needs))
+        return true;
+    builder_start(painter->builder, next);
+    return false;
 }
 
 /* Values of parameters of the same name, where there are such. */
@@ -333,19 +344,20 @@ static void take_values(View *view, const View *from)
 }
 
 /* Shows as much of the next view as the canvas has shaders for. */
-static void follow(Painter *painter, const View *next)
+static void follow(Painter *painter, View *next)
 {
-    View       *view  = &painter->view;
-    const Needs needs = view_needs(view), wanted = view_needs(next);
-    if (wanted.lens <= needs.lens)
-        view->camera = next->camera;
-    take_values(view, next);
-    view->time    = next->time;
-    view->width   = next->width;
-    view->height  = next->height;
-    view->samples = next->samples;
-    view->stops   = next->stops;
-    view->look    = next->look;
+    View *view = &painter->view, old = *view;
+    if (version_structure(next->version) == canvas_structure(painter->canvas)) {
+        view_free(view);
+        *view = *next;
+        *next = (View){0};
+    } else {
+        take_values(view, next);
+        *view         = *next;
+        view->version = old.version;
+        view->values  = old.values;
+    }
+    canvas_reduce(painter->canvas, view);
 }
 
 static void adopt_view(Painter *painter, View *next)

@@ -56,6 +56,40 @@ static bool draw_numbers(const KrsParameter *parameter, double *value)
     return changed;
 }
 
+/* `in 0..2`: the whole numbers 0 and 1. */
+static bool is_switch(const KrsParameter *parameter)
+{
+    return parameter->whole && parameter->components == 1 && parameter->low[0] == 0 &&
+           parameter->high[0] == 1;
+}
+
+static bool draw_switch(const KrsParameter *parameter, double *value)
+{
+    bool on = value[0] > 0.5;
+    if (!gui_check(parameter->name, &on))
+        return false;
+    value[0] = on;
+    return true;
+}
+
+static void draw_presets(Viewing *viewing)
+{
+    const Presets *presets = &viewing->presets;
+    for (size_t i = 0; i < presets->count; i++) {
+        char label[100];
+        snprintf(label, sizeof label, "%s##preset%zu", presets->items[i].name, i);
+        if (i % 3 > 0)
+            gui_beside();
+        if (gui_button(label, false))
+            viewing_take_preset(viewing, &presets->items[i]);
+    }
+    if (gui_input("keep as", viewing->preset, sizeof viewing->preset) && viewing->preset[0]) {
+        viewing_make_preset(viewing, viewing->preset);
+        viewing->preset[0] = '\0';
+    }
+    gui_tip("A name and Enter keeps these values, in a file beside the scene.");
+}
+
 static void draw_parameters(Viewing *viewing)
 {
     const KrsScene *scene = version_scene(viewing->view.version);
@@ -63,8 +97,9 @@ static void draw_parameters(Viewing *viewing)
         KrsParameter parameter;
         double      *value = viewing->view.values[i];
         krs_parameter(scene, i, &parameter);
-        const bool changed = parameter.color ? draw_color(&parameter, value)
-                                             : draw_numbers(&parameter, value);
+        const bool changed = parameter.color         ? draw_color(&parameter, value)
+                             : is_switch(&parameter) ? draw_switch(&parameter, value)
+                                                     : draw_numbers(&parameter, value);
         if (parameter.doc)
             gui_tip(parameter.doc);
         if (changed)
@@ -143,12 +178,28 @@ static void draw_save(Viewing *viewing)
         gui_progress(saving.done);
 }
 
+static void draw_cut(Viewing *viewing)
+{
+    Cut *cut = &viewing->cut;
+    if (gui_button("Cut", cut->plane))
+        act_key(viewing, 'K', 0);
+    gui_tip("Cuts away what is before the middle of the picture. Alt and the mouse move it.");
+    gui_beside();
+    if (gui_button("Ball", cut->ball))
+        act_key(viewing, 'Z', 0);
+    gui_tip("Cuts a ball out. Alt and the mouse move it.");
+    if (cut->ball && gui_drag("radius", &cut->radius, 1, 0.001 * cut->size, 0, 1e9, "%.4g"))
+        viewing_set_cut(viewing);
+}
+
 static void draw_controls(Viewing *viewing)
 {
     gui_panel("controls", GUI_TOP_RIGHT, 0, PANEL_WIDTH, false);
     if (krs_parameter_count(version_scene(viewing->view.version)) > 0) {
         gui_heading("PARAMETERS");
         draw_parameters(viewing);
+        if (gui_section("PRESETS"))
+            draw_presets(viewing);
         gui_gap();
     }
     gui_heading("CAMERA");
@@ -158,6 +209,7 @@ static void draw_controls(Viewing *viewing)
         viewing->view.look = (Look)look;
         viewing_show(viewing);
     }
+    draw_cut(viewing);
     double aperture = viewing->view.camera.aperture;
     if (gui_drag("aperture", &aperture, 1, 0.002, 0, 1000, "%.4g")) {
         viewing->view.camera.aperture = aperture;
@@ -194,6 +246,26 @@ static void draw_doing(const Viewing *viewing)
         gui_progress(painting->compiled);
 }
 
+static void draw_numbers_of_shot(const Viewing *viewing)
+{
+    const KrsRenderStats *stats = &viewing->shot.stats;
+    char                  line[300];
+    gui_text(GUI_FAINT, stats->device);
+    for (int i = 0; i < KRS_PHASE_COUNT; i++) {
+        snprintf(line, sizeof line, "%-10s %8.1f ms", krs_phase_names[i], stats->phase_ms[i]);
+        gui_source(GUI_PLAIN, line);
+    }
+    snprintf(line, sizeof line,
+             "on device  %8.1f ms\nby clock   %8.1f ms\n%llu rays, %llu evaluations\n"
+             "%.1f evaluations a ray, at most %u\n%.0f flops an evaluation, %.2f GFLOPS\n"
+             "%llu unresolved, %.1f MB",
+             stats->total_ms, stats->wall_ms, (unsigned long long)stats->rays,
+             (unsigned long long)stats->evaluations, stats->evaluations_per_ray,
+             stats->most_evaluations_per_ray, stats->flops_per_evaluation, stats->gflops,
+             (unsigned long long)stats->unresolved, (double)stats->peak_memory_bytes / 1e6);
+    gui_source(GUI_PLAIN, line);
+}
+
 static void draw_status(Viewing *viewing)
 {
     char        line[200];
@@ -209,6 +281,8 @@ static void draw_status(Viewing *viewing)
     if (viewing_now() - viewing->noticed_at < 4 && viewing->notice[0])
         gui_text(GUI_PLAIN, viewing->notice);
     draw_doing(viewing);
+    if (viewing->numbers)
+        draw_numbers_of_shot(viewing);
     gui_panel_end();
 }
 
@@ -264,6 +338,7 @@ static void draw_help(void)
     gui_keys("right", "look around");
     gui_keys("Ctrl click", "open $KRS_EDITOR where the text has this");
     gui_keys("Alt click", "focus the lens on this");
+    gui_keys("Alt drag", "move what is cut away");
     gui_keys("wheel", "nearer to what is under the mouse, or farther");
     gui_gap();
     gui_text(GUI_STRONG, "Keys");

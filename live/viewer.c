@@ -238,6 +238,7 @@ KrsStatus viewer_run(const ViewerOptions *options, char message[256])
     history_free(viewing.history);
     free(viewing.pixels);
     remarks_free(&viewing.remarks);
+    presets_free(&viewing.presets);
     document_free(viewing.document);
     return status;
 }

@@ -140,6 +140,34 @@ static bool set_value(Viewing *viewing, const char *name, const double *value, s
     return false;
 }
 
+void viewing_take_preset(Viewing *viewing, const Preset *preset)
+{
+    for (size_t i = 0; i < preset->count; i++)
+        set_value(viewing, preset->values[i].name, preset->values[i].value,
+                  preset->values[i].count);
+    viewing_notice(viewing, "%s", preset->name);
+    viewing_show(viewing);
+}
+
+void viewing_make_preset(Viewing *viewing, const char *name)
+{
+    if (!presets_set(&viewing->presets, name, version_scene(viewing->view.version),
+                     (const double(*)[4])viewing->view.values) ||
+        !presets_write(&viewing->presets, viewing->options->path))
+        viewing_notice(viewing, "%s.presets cannot be written", viewing->options->path);
+    else
+        viewing_notice(viewing, "kept as %s", name);
+}
+
+void viewing_set_cut(Viewing *viewing)
+{
+    const ViewerOptions *options = viewing->options;
+    for (size_t i = 0; i < options->zone_count; i++)
+        memcpy(viewing->view.zones[i], options->zones[i], sizeof options->zones[i]);
+    viewing->view.zone_count = cut_zones(&viewing->cut, viewing->view.zones, options->zone_count);
+    viewing_show(viewing);
+}
+
 /* Values that were set stay; others become the new defaults. */
 static void keep_values(Viewing *viewing, const View *before)
 {
@@ -159,9 +187,8 @@ static void take_settings(Viewing *viewing)
     for (size_t i = 0; i < options->setting_count; i++)
         set_value(viewing, options->settings[i].name, options->settings[i].values,
                   options->settings[i].count);
-    for (size_t i = 0; i < options->zone_count; i++)
-        memcpy(viewing->view.zones[i], options->zones[i], sizeof options->zones[i]);
-    viewing->view.zone_count = options->zone_count;
+    viewing_set_cut(viewing);
+    viewing->presets = presets_read(options->path);
 }
 
 /* What the first version decides about. */

@@ -7,9 +7,11 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
+#include "live/cut.h"
 #include "live/document.h"
 #include "live/history.h"
 #include "live/painter.h"
+#include "live/presets.h"
 #include "live/saver.h"
 #include "live/viewer_options.h"
 #include "live/window.h"
@@ -44,7 +46,10 @@ typedef struct Viewing {
     uint8_t *pixels;      /* of the shot */
     char     notice[160]; /* what was done last */
     double   noticed_at;
-    bool     panels, help;
+    bool     panels, help, numbers;
+    Cut      cut;
+    Presets  presets;
+    char     preset[64]; /* the name of the next one */
     Saver   *saver;
     unsigned saved; /* orders whose end was noticed */
     struct {
@@ -74,6 +79,11 @@ void viewing_set_time(Viewing *viewing, double time);
 void viewing_take_camera(Viewing *viewing, size_t camera);
 /* Takes a new version of the document. */
 void viewing_adopt(Viewing *viewing, Version *version);
+/* What is cut away has changed. */
+void viewing_set_cut(Viewing *viewing);
+/* Values by a preset, or a new preset of the values. */
+void viewing_take_preset(Viewing *viewing, const Preset *preset);
+void viewing_make_preset(Viewing *viewing, const char *name);
 /* All parameters to the scene's defaults. */
 void viewing_reset_values(Viewing *viewing);
 

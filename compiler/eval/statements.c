@@ -101,11 +101,17 @@ static const char *copy_doc(Elaboration *e, const char *doc)
     return doc ? arena_copy_text(e->arena, doc, strlen(doc)) : NULL;
 }
 
+static bool is_whole(const Syntax *param)
+{
+    return param->count > 1 && param->children[1]->kind == SYNTAX_RANGE;
+}
+
 static Value define_param(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     Parameter parameter = {.name         = syntax->name,
                            .degrees      = written_in_degrees(e, syntax),
                            .color        = syntax->children[0]->kind == SYNTAX_COLOUR,
+                           .whole        = is_whole(syntax),
                            .doc          = copy_doc(e, syntax->doc),
                            .name_span    = syntax->name_span,
                            .default_span = syntax->children[0]->span};

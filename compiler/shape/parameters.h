@@ -16,6 +16,7 @@ typedef struct Parameter {
     double      value[4], low[4], high[4];
     bool        degrees; /* its default or range is written so */
     bool        color;   /* its default is written so */
+    bool        whole;   /* its range is written as one of whole numbers, `0..2` */
     const char *doc;     /* lines of its `///` comment, or NULL */
     Span        name_span, default_span;
 } Parameter;

@@ -13,9 +13,11 @@
 
 #include <cmocka.h>
 
+#include "live/cut.h"
 #include "live/document.h"
 #include "live/history.h"
 #include "live/orbit.h"
+#include "live/presets.h"
 #include "live/text_edit.h"
 
 static const KrsCamera start = {.projection = KRS_PERSPECTIVE,
@@ -204,6 +206,102 @@ static void mistakes_leave_the_version(void **state)
     remove(path);
 }
 
+/* ---- what is cut away ---- */
+
+static bool is_cut(const Cut *cut, const double point[3])
+{
+    double       zones[KRS_MOST_ZONES][4];
+    const size_t count = cut_zones(cut, zones, 0);
+    bool         empty = false;
+    for (size_t i = 0; i < count; i++)
+        empty = empty || apart(zones[i], point) < zones[i][3];
+    return empty;
+}
+
+/* A plane is one for all of the scene, to a thousandth of its size. */
+static void planes_cut_what_is_before_them(void **state)
+{
+    (void)state;
+    Cut    cut = {.size = 10};
+    double forward[3], right[3], up[3];
+    orbit_axes(&start, forward, right, up);
+    cut_face(&cut, &start, start.target);
+    for (int i = 0; i < 1000; i++) {
+        const double x = 5 * sin(i), y = 5 * cos(1.7 * i), z = 3 * sin(2.3 * i);
+        double       point[3];
+        for (int k = 0; k < 3; k++)
+            point[k] = start.target[k] + x * right[k] + y * up[k] + z * forward[k];
+        if (fabs(z) > 0.01 * cut.size)
+            assert_int_equal(is_cut(&cut, point), z < 0);
+    }
+    assert_true(is_cut(&cut, start.eye));
+    cut_drag(&cut, &start, 0, 0.1);
+    assert_false(is_cut(&cut, start.target)); /* it came nearer to the viewer */
+}
+
+static void balls_follow_the_mouse(void **state)
+{
+    (void)state;
+    Cut    cut = {.size = 10, .ball = true, .radius = 0.5, .center = {1, 0.5, 0.75}};
+    double before[2], after[2];
+    assert_true(is_cut(&cut, (double[]){1, 0.5, 1.1}) && !is_cut(&cut, (double[]){1, 0.5, 1.3}));
+    for (int orthographic = 0; orthographic < 2; orthographic++) {
+        KrsCamera camera = start;
+        if (orthographic)
+            orbit_toggle_perspective(&camera);
+        project(&camera, cut.center, before);
+        cut_drag(&cut, &camera, 0.2, -0.1);
+        project(&camera, cut.center, after);
+        assert_true(fabs(after[0] - before[0] - 0.2) < 1e-9);
+        assert_true(fabs(after[1] - before[1] + 0.1) < 1e-9);
+    }
+    double zones[KRS_MOST_ZONES][4];
+    assert_int_equal(cut_zones(&cut, zones, KRS_MOST_ZONES), KRS_MOST_ZONES); /* no room */
+}
+
+/* ---- presets ---- */
+
+static void presets_are_kept(void **state)
+{
+    (void)state;
+    char       path[] = "/tmp/krs-live-XXXXXX", file[64];
+    const int  fd     = mkstemp(path);
+    const char text[] =
+        "param r = 1; param tint = #ff8000; param lit = 1 in 0..2; param f = 0.5 in "
+        "[0, 1]; show sphere(r).paint(tint).move([lit, f, 0]);";
+    const double values[4][4] = {{1.0 / 3}, {0.1, 0.2, 0.7}, {0}, {1}};
+    KrsScene    *scene;
+    assert_true(fd >= 0);
+    close(fd);
+    assert_int_equal(krs_compile_text(text, strlen(text), "a", NULL, &scene), KRS_OK);
+    Presets presets = presets_read(path);
+    assert_int_equal(presets.count, 0);
+    assert_true(presets_set(&presets, "at night", scene, values));
+    assert_true(presets_set(&presets, "b", scene, (const double[4][4]){{0}}));
+    assert_true(presets_set(&presets, "b", scene, (const double[4][4]){{2}}));
+    assert_true(presets_write(&presets, path));
+    presets_free(&presets);
+    presets = presets_read(path);
+    assert_int_equal(presets.count, 2);
+    assert_string_equal(presets.items[0].name, "at night");
+    assert_int_equal(presets.items[0].count, 4);
+    assert_true(presets.items[1].values[0].value[0] == 2);
+    for (size_t i = 0; i < 4; i++) {
+        KrsParameter parameter;
+        krs_parameter(scene, i, &parameter);
+        assert_string_equal(presets.items[0].values[i].name, parameter.name);
+        assert_int_equal(presets.items[0].values[i].count, parameter.components);
+        assert_memory_equal(presets.items[0].values[i].value, values[i],
+                            parameter.components * sizeof(double));
+        assert_int_equal(parameter.whole, strcmp(parameter.name, "lit") == 0);
+    }
+    presets_free(&presets);
+    krs_scene_free(scene);
+    snprintf(file, sizeof file, "%s.presets", path);
+    remove(file);
+    remove(path);
+}
+
 static void gestures_are_undone(void **state)
 {
     (void)state;
@@ -238,6 +336,9 @@ int main(void)
         cmocka_unit_test(defaults_are_written),
         cmocka_unit_test(mistakes_leave_the_version),
         cmocka_unit_test(gestures_are_undone),
+        cmocka_unit_test(planes_cut_what_is_before_them),
+        cmocka_unit_test(balls_follow_the_mouse),
+        cmocka_unit_test(presets_are_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -211,6 +211,24 @@ static void edits_overtake_each_other(void **state)
     tear_down(&stage);
 }
 
+/* A ball uses all of its slope, a twisted bar only where it is thickest. */
+static void slopes_that_are_not_used_are_seen(void **state)
+{
+    (void)state;
+    Stage        stage;
+    const size_t middle = 4 * ((size_t)HEIGHT / 2 * WIDTH + WIDTH / 2);
+    set_up(&stage, one_ball);
+    stage.view.look = LOOK_SLOPE;
+    Shot shot       = take_whole(&stage, 1, show(&stage, 0));
+    assert_true(shot.pixels[middle] > 245 && shot.pixels[middle + 1] > 225);
+    free(shot.pixels);
+    edit(&stage, "show box([2, 4, 0.2]).twist([0, 1, 0], 60deg);param r = 1;");
+    shot = take_whole(&stage, 2, show(&stage, 0));
+    assert_true(shot.pixels[middle + 1] < 200);
+    free(shot.pixels);
+    tear_down(&stage);
+}
+
 static void the_end_does_not_wait_for_shaders_that_nobody_sees(void **state)
 {
     (void)state;
@@ -225,6 +243,7 @@ int main(void)
         cmocka_unit_test(what_there_was_is_turned_meanwhile),
         cmocka_unit_test(nothing_is_compiled_twice),
         cmocka_unit_test(edits_overtake_each_other),
+        cmocka_unit_test(slopes_that_are_not_used_are_seen),
         cmocka_unit_test(the_end_does_not_wait_for_shaders_that_nobody_sees),
     };
     return cmocka_run_group_tests(tests, renderer_open, renderer_close);
