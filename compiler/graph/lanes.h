@@ -150,6 +150,17 @@ Range lane_ranges_run(const LaneTape *tape, const LaneRanges *ranges, Box box);
 /* Of an output, after a run. */
 Range lane_ranges_output(const LaneTape *tape, const LaneRanges *ranges, size_t output);
 
+/* Ranges of the derivatives of a value by x, y and z. */
+typedef struct LaneSlope {
+    Range by[3];
+} LaneSlope;
+
+/* Room for those of a lane tape, and of all that it is pruned to; for one thread. */
+LaneSlope *lane_slopes_new(const LaneTape *tape, Arena *arena);
+/* After a run over a box: those of output 0 in it.  They are of its pieces if it chooses between some.  False: it may not be a number, or there is no bound. */
+bool lane_slopes_run(const LaneTape *tape, const LaneRanges *ranges, LaneSlope *slopes,
+                     LaneSlope *slope);
+
 /* After a run over a box: the first `outputs` outputs without what has no influence in it. */
 LaneTape lane_prune(const LaneTape *tape, const LaneRanges *ranges, size_t outputs, Arena *arena);
 

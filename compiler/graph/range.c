@@ -9,6 +9,8 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
 
 static const double PI = 3.14159265358979323846;
 
@@ -26,7 +28,17 @@ double range_least(Range a) { return a.low > 0 ? a.low : a.high < 0 ? -a.high : 
 
 /* ---- directed rounding ---- */
 
-static double step_down(double a) { return nextafter(a, -HUGE_VAL); }
+/* The next number below.  Those of one sign are in the order of their bits. */
+static double step_down(double a)
+{
+    uint64_t bits;
+    if (a == 0 || !isfinite(a))
+        return nextafter(a, -HUGE_VAL);
+    memcpy(&bits, &a, sizeof bits);
+    bits += a > 0 ? UINT64_MAX : 1;
+    memcpy(&a, &bits, sizeof a);
+    return a;
+}
 
 /* (a + b) - the exact sum, by Knuth; a + b is finite. */
 static double sum_excess(double a, double b, double sum)
@@ -252,6 +264,27 @@ Range range_add(Range a, Range b)
 
 Range range_sub(Range a, Range b) { return range_add(a, range_neg(b)); }
 
+static Range product_of_all(Range a, Range b)
+{
+    return (Range){fmin(fmin(product_low(a.low, b.low), product_low(a.low, b.high)),
+                        fmin(product_low(a.high, b.low), product_low(a.high, b.high))),
+                   fmax(fmax(product_high(a.low, b.low), product_high(a.low, b.high)),
+                        fmax(product_high(a.high, b.low), product_high(a.high, b.high)))};
+}
+
+static bool is_ordered(Range a) { return a.low <= a.high; }
+
+/* Of ranges of which at least one has 0 inside. */
+static Range product_across(Range a, Range b)
+{
+    if (b.low >= 0)
+        return (Range){product_low(a.low, b.high), product_high(a.high, b.high)};
+    if (b.high <= 0)
+        return (Range){product_low(a.high, b.low), product_high(a.low, b.low)};
+    return (Range){fmin(product_low(a.low, b.high), product_low(a.high, b.low)),
+                   fmax(product_high(a.low, b.low), product_high(a.high, b.high))};
+}
+
 Range range_mul(Range a, Range b)
 {
     if (range_is_zero(a) || range_is_zero(b))
@@ -260,10 +293,17 @@ Range range_mul(Range a, Range b)
         return b;
     if (b.low == 1 && b.high == 1)
         return a;
-    return (Range){fmin(fmin(product_low(a.low, b.low), product_low(a.low, b.high)),
-                        fmin(product_low(a.high, b.low), product_low(a.high, b.high))),
-                   fmax(fmax(product_high(a.low, b.low), product_high(a.low, b.high)),
-                        fmax(product_high(a.high, b.low), product_high(a.high, b.high)))};
+    if (!is_ordered(a) || !is_ordered(b))
+        return product_of_all(a, b);
+    if (a.low < 0 && a.high > 0)
+        return product_across(a, b);
+    if (b.low < 0 && b.high > 0)
+        return product_across(b, a);
+    /* Signs tell which ends make the least and the greatest. */
+    bool   up = b.low >= 0, right = a.low >= 0;
+    double a_least = up ? a.low : a.high, a_most = up ? a.high : a.low;
+    double b_least = right ? b.low : b.high, b_most = right ? b.high : b.low;
+    return (Range){product_low(a_least, b_least), product_high(a_most, b_most)};
 }
 
 Range range_div(Range a, Range b)
@@ -275,6 +315,10 @@ Range range_div(Range a, Range b)
         b.low  = b.low == 0 ? 0.0 : b.low;
         b.high = b.high == 0 ? -0.0 : b.high;
     }
+    if (b.low > 0 && is_ordered(a) && is_ordered(b) && isfinite(a.low) && isfinite(a.high) &&
+        isfinite(b.high))
+        return (Range){quotient_low(a.low, a.low >= 0 ? b.high : b.low),
+                       quotient_high(a.high, a.high >= 0 ? b.low : b.high)};
     return (Range){fmin(fmin(quotient_low(a.low, b.low), quotient_low(a.low, b.high)),
                         fmin(quotient_low(a.high, b.low), quotient_low(a.high, b.high))),
                    fmax(fmax(quotient_high(a.low, b.low), quotient_high(a.low, b.high)),

@@ -219,13 +219,6 @@ static Fact fact_guard(const RuleInput *input)
 
 /* ---- one operation ---- */
 
-#define ZERO      range_of(0)
-#define ONE       range_of(1)
-#define MINUS_ONE range_of(-1)
-#define TWO       range_of(2)
-#define HALF      range_of(0.5)
-#define LN2       ((Range){0.69314718055994528, 0.6931471805599454})
-
 static Fact rule_of_row(const RuleInput *input, uint32_t index, const double *constant)
 {
     const Fact *o = input->operands;

@@ -68,6 +68,14 @@ Fact fact_truth(const RuleInput *input, uint32_t count, bool always, bool never)
 
 /* ---- rules of rows ---- */
 
+/* What the columns of derivatives are written in. */
+#define ZERO      range_of(0)
+#define ONE       range_of(1)
+#define MINUS_ONE range_of(-1)
+#define TWO       range_of(2)
+#define HALF      range_of(0.5)
+#define LN2       ((Range){0.69314718055994528, 0.6931471805599454})
+
 /* rules_space.c */
 Rule fact_turn, fact_fold, fact_front, fact_cell, fact_cell_polar, fact_noise2, fact_noise3,
     fact_identity, fact_to_uint, fact_id_unit, fact_julia, fact_mandelbulb, fact_trap,

@@ -71,7 +71,7 @@ static void build(Bvh *bvh, uint32_t first, uint32_t count, int depth)
 void bvh_new(Bvh *bvh, const double (*vertices)[3], const uint32_t (*triangles)[3], size_t count,
              Arena *arena)
 {
-    *bvh = (Bvh){.vertices = vertices, .triangles = triangles};
+    *bvh = (Bvh){.vertices = vertices, .triangles = triangles, .triangle_count = count};
     if (count == 0)
         return;
     bvh->order = arena_new_array(arena, uint32_t, count);
@@ -93,7 +93,8 @@ static double square_to_box(const BvhNode *node, const double point[3])
 {
     double square = 0;
     for (int k = 0; k < 3; k++) {
-        double excess = fmax(fmax(node->low[k] - point[k], point[k] - node->high[k]), 0);
+        double below = node->low[k] - point[k], above = point[k] - node->high[k];
+        double excess = below > 0 ? below : above > 0 ? above : 0;
         square += excess * excess;
     }
     return square;
@@ -132,15 +133,28 @@ bool bvh_visit(const Bvh *bvh, const double point[3], double radius, BvhVisit *v
     return true;
 }
 
-static bool stop(void *user, uint32_t triangle, const double corners[3][3])
+static bool stop_at(void *user, uint32_t triangle, const double corners[3][3])
 {
-    (void)user, (void)triangle, (void)corners;
+    uint32_t *found = user;
+    (void)corners;
+    *found = triangle;
     return false;
 }
 
-bool bvh_is_near(const Bvh *bvh, const double point[3], double radius)
+static bool triangle_is_near(const Bvh *bvh, uint32_t triangle, const double point[3],
+                             double radius)
 {
-    return !bvh_visit(bvh, point, radius, stop, NULL);
+    double corners[3][3], nearest[3];
+    triangle_corners(bvh, triangle, corners);
+    triangle_nearest((const double(*)[3])corners, point, nearest);
+    return distance3(nearest, point) <= radius;
+}
+
+bool bvh_is_near(const Bvh *bvh, const double point[3], double radius, uint32_t *last)
+{
+    if (*last < bvh->triangle_count && triangle_is_near(bvh, *last, point, radius))
+        return true;
+    return !bvh_visit(bvh, point, radius, stop_at, last);
 }
 
 /* The nearest point of a segment. */

@@ -20,7 +20,7 @@ typedef struct Bvh {
     const uint32_t (*triangles)[3];
     uint32_t *order;
     BvhNode  *nodes;
-    size_t    node_count;
+    size_t    node_count, triangle_count;
 } Bvh;
 
 /* Memory for a tree of so many triangles is in the arena. */
@@ -33,8 +33,9 @@ void bvh_free(Bvh *bvh, size_t count, Arena *arena);
    whether none did. */
 typedef bool BvhVisit(void *user, uint32_t triangle, const double corners[3][3]);
 bool bvh_visit(const Bvh *bvh, const double point[3], double radius, BvhVisit *visit, void *user);
-/* Whether a triangle comes within the radius of a point. */
-bool bvh_is_near(const Bvh *bvh, const double point[3], double radius);
+/* Whether a triangle comes within the radius of a point.  `last` is one that may, which is tried first, and
+   becomes the one that does. */
+bool bvh_is_near(const Bvh *bvh, const double point[3], double radius, uint32_t *last);
 
 /* The nearest point of a triangle. */
 void triangle_nearest(const double corners[3][3], const double point[3], double nearest[3]);

@@ -6,6 +6,7 @@
 #include "compiler/base/parallel.h"
 #include "compiler/base/vec.h"
 #include "compiler/mesh/quadric.h"
+#include "compiler/mesh/roots.h"
 
 /* Parts of an edge at its ends where no vertex is, so that vertices of other edges are elsewhere;
    and the same for vertices in faces and inside. */
@@ -19,11 +20,16 @@ static void find_distances(void *task, size_t part, size_t parts)
 {
     const Contour *contour = task;
     size_t         count   = contour->tets->points.count - contour->known_points;
-    for (size_t i = part_begin(count, part, parts); i < part_begin(count, part + 1, parts); i++) {
-        double    position[3];
-        TetPoint *point = &contour->tets->points.items[contour->known_points + i];
-        tets_position(contour->tets, (uint32_t)(contour->known_points + i), position);
-        point->distance = field_distance(&contour->fields[part], position);
+    TetPoint      *points  = contour->tets->points.items + contour->known_points;
+    size_t         end     = part_begin(count, part + 1, parts);
+    for (size_t i = part_begin(count, part, parts), now; i < end; i += now) {
+        double positions[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
+        now = end - i < MOST_FIELD_POINTS ? end - i : MOST_FIELD_POINTS;
+        for (size_t k = 0; k < now; k++)
+            tets_position(contour->tets, (uint32_t)(contour->known_points + i + k), positions[k]);
+        field_distances(&contour->fields[part], (const double(*)[3])positions, now, distances);
+        for (size_t k = 0; k < now; k++)
+            points[i + k].distance = distances[k];
     }
 }
 
@@ -35,62 +41,47 @@ void contour_distances(Contour *contour)
 
 /* ---- vertices on edges ---- */
 
-/* Where the sign changes, by false position that halves an end that stays (Illinois). */
-static double find_root(const MeshField *field, const double from[3], const double along[3],
-                        double at_from, double at_to, double enough)
-{
-    enum { MOST_ROUNDS = 60 };
-    double low = 0, high = 1, middle = 0;
-    int    side = 0;
-    for (int i = 0; i < MOST_ROUNDS && high - low > enough; i++) {
-        double point[3];
-        middle = isfinite(at_from) && isfinite(at_to)
-                     ? low + (high - low) * at_from / (at_from - at_to)
-                     : 0.5 * (low + high);
-        if (i % 4 == 3)
-            middle = 0.5 * (low + high);
-        add_scaled3(point, from, middle, along);
-        double value = field_distance(field, point);
-        if (value == 0)
-            return middle;
-        if (value < 0) {
-            low     = middle;
-            at_from = value;
-            at_to *= side < 0 ? 0.5 : 1;
-            side = -1;
-        } else {
-            high  = middle;
-            at_to = value;
-            at_from *= side > 0 ? 0.5 : 1;
-            side = 1;
-        }
-    }
-    return 0.5 * (low + high);
-}
-
-static void find_crossing(const Contour *contour, const MeshField *field, Crossing *crossing)
+static RootSearch root_search(const Contour *contour, const Crossing *crossing)
 {
     const TetPoint *points = contour->tets->points.items;
-    double          from[3], along[3];
-    tets_position(contour->tets, crossing->from, from);
-    tets_position(contour->tets, crossing->to, along);
-    add_scaled3(along, along, -1, from);
-    double length = length3(along);
-    double part   = find_root(field, from, along, points[crossing->from].distance,
-                              points[crossing->to].distance, 1e-4 * contour->error / length);
-    part          = fmin(fmax(part, END_OF_EDGE), 1 - END_OF_EDGE);
-    add_scaled3(crossing->at, from, part, along);
-    if (!field_normal(field, crossing->at, 1e-3 * contour->error, crossing->normal))
-        add_scaled3(crossing->normal, crossing->normal, 1 / length, along);
+    RootSearch      search = {.high    = 1,
+                              .at_low  = points[crossing->from].distance,
+                              .at_high = points[crossing->to].distance};
+    tets_position(contour->tets, crossing->from, search.from);
+    tets_position(contour->tets, crossing->to, search.along);
+    add_scaled3(search.along, search.along, -1, search.from);
+    search.length = length3(search.along);
+    return search;
+}
+
+static void find_some_crossings(const Contour *contour, const MeshField *field, Crossing *crossings,
+                                size_t count)
+{
+    RootSearch searches[MOST_FIELD_POINTS];
+    for (size_t i = 0; i < count; i++)
+        searches[i] = root_search(contour, &crossings[i]);
+    find_roots(field, searches, count, 1e-4 * contour->error);
+    for (size_t i = 0; i < count; i++) {
+        const RootSearch *search   = &searches[i];
+        Crossing         *crossing = &crossings[i];
+        double            part     = 0.5 * (search->low + search->high);
+        part                       = fmin(fmax(part, END_OF_EDGE), 1 - END_OF_EDGE);
+        add_scaled3(crossing->at, search->from, part, search->along);
+        if (!field_normal(field, crossing->at, 1e-3 * contour->error, crossing->normal))
+            add_scaled3(crossing->normal, crossing->normal, 1 / search->length, search->along);
+    }
 }
 
 static void find_crossings(void *task, size_t part, size_t parts)
 {
     const Contour *contour = task;
+    Crossing      *fresh   = contour->crossings.items + contour->known_crossings;
     size_t         count   = contour->crossings.count - contour->known_crossings;
-    for (size_t i = part_begin(count, part, parts); i < part_begin(count, part + 1, parts); i++)
-        find_crossing(contour, &contour->fields[part],
-                      &contour->crossings.items[contour->known_crossings + i]);
+    size_t         end     = part_begin(count, part + 1, parts);
+    for (size_t i = part_begin(count, part, parts), now; i < end; i += now) {
+        now = end - i < MOST_FIELD_POINTS ? end - i : MOST_FIELD_POINTS;
+        find_some_crossings(contour, &contour->fields[part], fresh + i, now);
+    }
 }
 
 /* ---- vertices in faces ---- */
@@ -141,7 +132,7 @@ static void face_weights(const double corners[3][3], const double normal[3], con
 }
 
 /* Where the surface's planes at both crossings meet the face. */
-static void find_line(const Contour *contour, const MeshField *field, FaceLine *line)
+static void find_line(const Contour *contour, const MeshField *field, double missed, FaceLine *line)
 {
     const Crossing *a = &contour->crossings.items[line->crossings[0]];
     const Crossing *b = &contour->crossings.items[line->crossings[1]];
@@ -150,9 +141,6 @@ static void find_line(const Contour *contour, const MeshField *field, FaceLine *
         tets_position(contour->tets, line->points[i], corners[i]);
         middle[i] = 0.5 * (a->at[i] + b->at[i]);
     }
-    double missed = fabs(field_distance(field, middle));
-    if (missed <= STRAIGHT * contour->error)
-        return;
     add_scaled3(edges[0], corners[1], -1, corners[0]);
     add_scaled3(edges[1], corners[2], -1, corners[0]);
     cross3(edges[0], edges[1], rows[2]);
@@ -168,12 +156,31 @@ static void find_line(const Contour *contour, const MeshField *field, FaceLine *
     line->bent = fabs(field_distance(field, line->at)) < 0.5 * missed;
 }
 
+/* Most are straight. */
+static void find_some_lines(const Contour *contour, const MeshField *field, FaceLine *lines,
+                            size_t count)
+{
+    double middles[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            middles[i][k] = 0.5 * (contour->crossings.items[lines[i].crossings[0]].at[k] +
+                                   contour->crossings.items[lines[i].crossings[1]].at[k]);
+    field_distances(field, (const double(*)[3])middles, count, distances);
+    for (size_t i = 0; i < count; i++)
+        if (fabs(distances[i]) > STRAIGHT * contour->error)
+            find_line(contour, field, fabs(distances[i]), &lines[i]);
+}
+
 static void find_lines(void *task, size_t part, size_t parts)
 {
     const Contour *contour = task;
+    FaceLine      *fresh   = contour->lines.items + contour->known_lines;
     size_t         count   = contour->lines.count - contour->known_lines;
-    for (size_t i = part_begin(count, part, parts); i < part_begin(count, part + 1, parts); i++)
-        find_line(contour, &contour->fields[part], &contour->lines.items[contour->known_lines + i]);
+    size_t         end     = part_begin(count, part + 1, parts);
+    for (size_t i = part_begin(count, part, parts), now; i < end; i += now) {
+        now = end - i < MOST_FIELD_POINTS ? end - i : MOST_FIELD_POINTS;
+        find_some_lines(contour, &contour->fields[part], fresh + i, now);
+    }
 }
 
 /* ---- vertices inside ---- */
@@ -192,21 +199,24 @@ static void tet_weights(const double corners[4][3], const double point[3], doubl
     }
 }
 
-static void find_apex(const Contour *contour, const MeshField *field, Patch *patch)
+static void find_middle(const Contour *contour, const Patch *patch, double middle[3])
 {
-    double corners[4][3], points[4][3], normals[4][3], middle[3] = {0, 0, 0};
-    double weights[4], inner[4];
-    patch->fan = false;
+    middle[0] = middle[1] = middle[2] = 0;
+    for (uint32_t i = 0; i < patch->corner_count; i++)
+        add_scaled3(middle, middle, 1.0 / patch->corner_count,
+                    contour->crossings.items[patch->crossings[i]].at);
+}
+
+/* `missed` is how far the middle of the crossings is from the surface. */
+static void find_apex(const Contour *contour, const MeshField *field, const double middle[3],
+                      double missed, Patch *patch)
+{
+    double corners[4][3], points[4][3], normals[4][3], weights[4], inner[4];
     for (uint32_t i = 0; i < patch->corner_count; i++) {
         const Crossing *crossing = &contour->crossings.items[patch->crossings[i]];
         memcpy(points[i], crossing->at, sizeof points[i]);
         memcpy(normals[i], crossing->normal, sizeof normals[i]);
-        add_scaled3(middle, middle, 1.0 / patch->corner_count, points[i]);
-        patch->fan = patch->fan || contour->lines.items[patch->lines[i]].bent;
     }
-    double missed = fabs(field_distance(field, middle));
-    if (!patch->fan && missed <= STRAIGHT * contour->error)
-        return;
     tets_corners(contour->tets, &contour->tets->list.items[patch->tet], corners);
     quadric_point((const double(*)[3])points, (const double(*)[3])normals, patch->corner_count,
                   patch->apex);
@@ -216,15 +226,35 @@ static void find_apex(const Contour *contour, const MeshField *field, Patch *pat
     if (fabs(field_distance(field, patch->apex)) < 0.5 * missed)
         patch->fan = true;
     else
-        memcpy(patch->apex, middle, sizeof middle);
+        memcpy(patch->apex, middle, 3 * sizeof *middle);
+}
+
+static void find_some_apexes(const Contour *contour, const MeshField *field, Patch *patches,
+                             size_t count)
+{
+    double middles[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
+    for (size_t i = 0; i < count; i++)
+        find_middle(contour, &patches[i], middles[i]);
+    field_distances(field, (const double(*)[3])middles, count, distances);
+    for (size_t i = 0; i < count; i++) {
+        Patch *patch = &patches[i];
+        patch->fan   = false;
+        for (uint32_t k = 0; k < patch->corner_count; k++)
+            patch->fan = patch->fan || contour->lines.items[patch->lines[k]].bent;
+        if (patch->fan || fabs(distances[i]) > STRAIGHT * contour->error)
+            find_apex(contour, field, middles[i], fabs(distances[i]), patch);
+    }
 }
 
 static void find_apexes(void *task, size_t part, size_t parts)
 {
     const Contour *contour = task;
     size_t         count   = contour->patches.count;
-    for (size_t i = part_begin(count, part, parts); i < part_begin(count, part + 1, parts); i++)
-        find_apex(contour, &contour->fields[part], &contour->patches.items[i]);
+    size_t         end     = part_begin(count, part + 1, parts);
+    for (size_t i = part_begin(count, part, parts), now; i < end; i += now) {
+        now = end - i < MOST_FIELD_POINTS ? end - i : MOST_FIELD_POINTS;
+        find_some_apexes(contour, &contour->fields[part], contour->patches.items + i, now);
+    }
 }
 
 /* ---- which tetrahedra have what ---- */
@@ -376,6 +406,15 @@ static uint32_t find_loop(Contour *contour, const Patch *patch, uint32_t loop[8]
     return count;
 }
 
+/* The shorter diagonal of four crossings begins here: 0 or 1. */
+static uint32_t first_of_diagonal(const Contour *contour, const Patch *patch)
+{
+    const double *at[4];
+    for (int i = 0; i < 4; i++)
+        at[i] = contour->crossings.items[patch->crossings[i]].at;
+    return distance3(at[1], at[3]) < distance3(at[0], at[2]);
+}
+
 static void add_triangles(Contour *contour, const Patch *patch)
 {
     Tet     *tet = &contour->tets->list.items[patch->tet];
@@ -387,9 +426,7 @@ static void add_triangles(Contour *contour, const Patch *patch)
             add_triangle(contour, tet, loop[i], loop[(i + 1) % count], apex);
         return;
     }
-    double(*at)[3] = contour->vertices.items;
-    uint32_t turn  = count == 4 &&
-                    distance3(at[loop[1]], at[loop[3]]) < distance3(at[loop[0]], at[loop[2]]);
+    uint32_t turn = count == 4 ? first_of_diagonal(contour, patch) : 0;
     add_triangle(contour, tet, loop[turn], loop[turn + 1], loop[turn + 2]);
     if (count == 4)
         add_triangle(contour, tet, loop[turn], loop[turn + 2], loop[(turn + 3) % 4]);

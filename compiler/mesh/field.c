@@ -1,8 +1,122 @@
-/* field.c: the distance of the meshed components, cut by a box. */
+/* field.c: the distance of the meshed components, cut by a box and by zones. */
 #include "compiler/mesh/field.h"
 
+#include <string.h>
+
 #include "compiler/base/vec.h"
-#include "compiler/program.h"
+
+/* ---- lane tapes ---- */
+
+/* The least distance of the components that are meshed, cut by the zones of the scene. */
+static LaneTape make_tape(const MeshField *field, Arena *arena)
+{
+    const KrsScene *scene = field->frame->scene;
+    size_t          first = field->component ? field->component - 1 : 0;
+    size_t          count = field->component ? 1 : scene->component_count;
+    Node            zone  = zone_root(scene);
+    Node           *roots = arena_new_array(arena, Node, count + 1);
+    for (size_t i = 0; i < count; i++)
+        roots[i] = distance_root(&scene->roots, first + i);
+    roots[count]      = zone;
+    size_t   cuts     = zone != NODE_NONE;
+    LaneTape tape     = lane_tape_new(&scene->distance, roots, count + cuts, true, cuts, arena);
+    tape.output_count = 1;
+    tape.scalars      = arena_new_array(arena, double, tape.scalar_count + 1);
+    lane_tape_scalars(&tape, field->frame->values, tape.scalars);
+    return tape;
+}
+
+/* Bytes that a pruned tape may take while it is made. */
+static size_t bytes_of_region(const LaneTape *tape)
+{
+    return 65536 +
+           2 * (tape->count + tape->scalar_count) *
+               (sizeof(LaneStep) + sizeof(LaneCode) + 4 * sizeof(LaneScalar)) +
+           2 * tape->call_count * sizeof(LaneCall);
+}
+
+void field_open(MeshField *field, Arena *arena)
+{
+    field->tape         = make_tape(field, arena);
+    field->work         = lane_work_in(arena_alloc(arena, lane_work_bytes(&field->tape), 1),
+                                       field->frame->values);
+    field->ranges       = lane_ranges_new(&field->tape, arena);
+    field->slopes       = lane_slopes_new(&field->tape, arena);
+    field->region_bytes = bytes_of_region(&field->tape);
+    for (int i = 0; i < MOST_REGIONS; i++)
+        field->regions[i].memory = arena_alloc(arena, field->region_bytes, 1);
+}
+
+/* ---- regions ---- */
+
+typedef struct Pool {
+    FieldRegion *region;
+    size_t       size;
+} Pool;
+
+static void *take_bytes(void *user, size_t bytes)
+{
+    const Pool *pool  = user;
+    size_t      begin = (pool->region->used + 15) & ~(size_t)15;
+    if (bytes > pool->size || begin > pool->size - bytes)
+        return NULL;
+    pool->region->used = begin + bytes;
+    return pool->region->memory + begin;
+}
+
+static void give_bytes(void *user, void *block) { (void)user, (void)block; }
+
+static const LaneTape *outer_tape(const MeshField *field)
+{
+    return field->region_count ? &field->regions[field->region_count - 1].tape : &field->tape;
+}
+
+/* Threads take no memory from the arenas of others; without room the tape stays as it is. */
+static void prune(MeshField *field, const LaneTape *outer, FieldRegion *region)
+{
+    Pool    pool = {region, field->region_bytes};
+    jmp_buf exhausted;
+    Memory  memory = {take_bytes, give_bytes, &pool, 0, 0, &exhausted};
+    Arena   arena  = {.memory = &memory};
+    region->used   = 0;
+    region->tape   = *outer;
+    if (setjmp(exhausted) == 0)
+        region->tape = lane_prune(outer, &field->ranges, 1, &arena);
+}
+
+static bool box_has(const Box *box, const double point[3])
+{
+    for (int k = 0; k < 3; k++)
+        if (!(point[k] >= box->axis[k].low && point[k] <= box->axis[k].high))
+            return false;
+    return true;
+}
+
+/* The shortest tape that is right at all points. */
+static const LaneTape *tape_at(const MeshField *field, const double (*points)[3], size_t count)
+{
+    for (size_t r = field->region_count; r > 0; r--) {
+        const FieldRegion *region = &field->regions[r - 1];
+        size_t             inside = 0;
+        while (inside < count && box_has(&region->box, points[inside]))
+            inside++;
+        if (inside == count)
+            return &region->tape;
+    }
+    return &field->tape;
+}
+
+static const LaneTape *tape_in(const MeshField *field, const Box *box)
+{
+    double corners[2][3];
+    for (int k = 0; k < 3; k++) {
+        corners[0][k] = box->axis[k].low;
+        corners[1][k] = box->axis[k].high;
+    }
+    return tape_at(field, (const double(*)[3])corners, 2);
+}
+
+/* ---- points ---- */
 
 /* The distance to the surface of the box, negative inside. */
 static double distance_to_cut(const MeshField *field, const double point[3])
@@ -16,23 +130,130 @@ static double distance_to_cut(const MeshField *field, const double point[3])
     return outside > 0 ? sqrt(outside) : inside;
 }
 
+static double cut_by_zones(const KrsFrame *frame, const double point[3], double distance)
+{
+    for (size_t i = 0; i < frame->zone_count; i++)
+        distance = fmax(distance, frame->zones[i][3] - distance3(point, frame->zones[i]));
+    return distance;
+}
+
+void field_distances(const MeshField *field, const double (*points)[3], size_t count,
+                     double *distances)
+{
+    lane_run(tape_at(field, points, count), &field->work, LANE_DOUBLE,
+             (LanePoints){.points = points, .count = count}, 0, 1, distances);
+    for (size_t i = 0; i < count; i++) {
+        distances[i] = cut_by_zones(field->frame, points[i], distances[i]);
+        if (field->cut)
+            distances[i] = fmax(distances[i], distance_to_cut(field, points[i]));
+    }
+}
+
 double field_distance(const MeshField *field, const double point[3])
 {
-    double distance = frame_component_distance(field->frame, field->component, point);
-    return field->cut ? fmax(distance, distance_to_cut(field, point)) : distance;
+    double distance;
+    field_distances(field, (const double(*)[3])point, 1, &distance);
+    return distance;
 }
 
 bool field_normal(const MeshField *field, const double point[3], double step, double normal[3])
 {
-    for (int k = 0; k < 3; k++) {
-        double before[3] = {point[0], point[1], point[2]},
-               after[3]  = {point[0], point[1], point[2]};
-        before[k] -= step;
-        after[k] += step;
-        normal[k] = field_distance(field, after) - field_distance(field, before);
+    double beside[6][3], distances[6];
+    for (int i = 0; i < 6; i++) {
+        memcpy(beside[i], point, sizeof beside[i]);
+        beside[i][i / 2] += i % 2 ? step : -step;
     }
+    field_distances(field, (const double(*)[3])beside, 6, distances);
+    for (int k = 0; k < 3; k++)
+        normal[k] = distances[2 * k + 1] - distances[2 * k];
     if (normalize3(normal))
         return true;
     normal[0] = normal[1] = normal[2] = 0;
     return false;
 }
+
+/* ---- boxes ---- */
+
+/* Of what changes no faster than the point moves: all values within a box around a middle. */
+static Range range_around(double middle, Box box)
+{
+    double radius = 0;
+    for (int k = 0; k < 3; k++)
+        radius = hypot_upward(radius, 0.5 * (box.axis[k].high - box.axis[k].low));
+    radius *= 1 + 1e-12;
+    return (Range){middle - radius, middle + radius};
+}
+
+/* What cuts the components: its values in a box. */
+static Range range_of_cuts(const MeshField *field, Box box)
+{
+    double middle[3];
+    for (int k = 0; k < 3; k++)
+        middle[k] = 0.5 * (box.axis[k].low + box.axis[k].high);
+    double cut = cut_by_zones(field->frame, middle, -INFINITY);
+    if (field->cut)
+        cut = fmax(cut, distance_to_cut(field, middle));
+    return cut > -INFINITY ? range_around(cut, box) : range_of(-INFINITY);
+}
+
+Range field_range(const MeshField *field, Box box)
+{
+    return range_max(lane_ranges_run(tape_in(field, &box), &field->ranges, box),
+                     range_of_cuts(field, box));
+}
+
+/* Inside, one side of the box is the nearest; false: one does not know which. */
+static bool slope_of_cut(const MeshField *field, Box box, LaneSlope *slope)
+{
+    Range nearest = range_of(-INFINITY);
+    int   side    = 0, axis;
+    for (int i = 0; i < 6; i++) {
+        int   k     = i / 2;
+        Range depth = i % 2 ? range_sub(box.axis[k], range_of(field->high[k]))
+                            : range_sub(range_of(field->low[k]), box.axis[k]);
+        if (depth.low >= nearest.high) {
+            nearest = depth;
+            side    = i;
+        } else if (depth.high > nearest.low)
+            return false;
+    }
+    axis = side / 2;
+    for (int k = 0; k < 3; k++) {
+        slope->by[k] = range_of(k != axis ? 0 : side % 2 ? 1 : -1);
+        if (k != axis && (box.axis[k].low < field->low[k] || box.axis[k].high > field->high[k]))
+            return false;
+    }
+    return true;
+}
+
+bool field_slope(const MeshField *field, Box box, Range *range, LaneSlope *slope)
+{
+    const LaneTape *tape = tape_in(field, &box);
+    Range           own  = lane_ranges_run(tape, &field->ranges, box);
+    Range           cut  = range_of_cuts(field, box);
+    *range               = range_max(own, cut);
+    if (range->low > 0 || range->high < 0)
+        return false;
+    if (own.high <= cut.low && field->frame->zone_count == 0)
+        return slope_of_cut(field, box, slope);
+    if (!lane_slopes_run(tape, &field->ranges, field->slopes, slope))
+        return false;
+    for (int k = 0; own.low < cut.high && k < 3; k++)
+        slope->by[k] = range_hull(slope->by[k], (Range){-1, 1});
+    return true;
+}
+
+bool field_enter(MeshField *field, Box box)
+{
+    const LaneTape *outer  = outer_tape(field);
+    FieldRegion    *region = &field->regions[field->region_count];
+    Range range = range_max(lane_ranges_run(outer, &field->ranges, box), range_of_cuts(field, box));
+    if (range.low > 0 || range.high < 0)
+        return false;
+    region->box = box;
+    prune(field, outer, region);
+    field->region_count++;
+    return true;
+}
+
+void field_leave(MeshField *field) { field->region_count--; }

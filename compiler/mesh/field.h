@@ -1,23 +1,61 @@
 /*
- * field.h: what the mesher knows of a scene: a number at a point.
+ * field.h: what the mesher knows of a scene: a number at a point, and ranges of it in a box.
  *
  * Its sign says what is solid (negative inside), and its size is never above the distance to the
- * nearest surface.  Nothing else here asks the scene, so a faster evaluator has its place in field.c.
+ * nearest surface.  Nothing else here asks the scene.
+ *
+ * Questions are answered by lane tapes (graph/lanes.h).  Who asks much within one box enters it: the lane
+ * tape is then pruned to that box.  Answers are the same, bit for bit.
  */
 #ifndef KRS_MESH_FIELD_H
 #define KRS_MESH_FIELD_H
 
-#include "compiler/krs.h"
+#include "compiler/graph/lanes.h"
+#include "compiler/program.h"
 
+/* A box that was entered, and its lane tape. */
+typedef struct FieldRegion {
+    Box      box;
+    LaneTape tape;
+    char    *memory; /* of the tape */
+    size_t   used;
+} FieldRegion;
+
+enum { MOST_REGIONS = 2, MOST_FIELD_POINTS = LANES };
+
+/* For one thread. */
 typedef struct MeshField {
-    KrsFrame *frame;
+    KrsFrame *frame;     /* its own */
     size_t    component; /* from 1; 0: all */
     bool      cut;       /* nothing is solid outside of the box */
     double    low[3], high[3];
+
+    LaneTape    tape;
+    LaneWork    work;
+    LaneRanges  ranges;
+    LaneSlope  *slopes;
+    FieldRegion regions[MOST_REGIONS]; /* each within the one before */
+    size_t      region_count, region_bytes;
 } MeshField;
 
+/* What it needs to answer; frame, component and box are set, and the frame is up to date. */
+void field_open(MeshField *field, Arena *arena);
+
+/* Enters a box, of which only what is within the last one entered is looked at, and leaves it.  False: there is
+   no surface in it, and it was not entered. */
+bool field_enter(MeshField *field, Box box);
+void field_leave(MeshField *field);
+
+/* At up to MOST_FIELD_POINTS points. */
+void   field_distances(const MeshField *field, const double (*points)[3], size_t count,
+                       double *distances);
 double field_distance(const MeshField *field, const double point[3]);
 /* The unit gradient, by differences over `step`; false and 0 where there is none. */
 bool field_normal(const MeshField *field, const double point[3], double step, double normal[3]);
+
+/* All values in a box. */
+Range field_range(const MeshField *field, Box box);
+/* That and the ranges of its derivatives by x, y and z; false: there are none, or no value is 0. */
+bool field_slope(const MeshField *field, Box box, Range *range, LaneSlope *slope);
 
 #endif

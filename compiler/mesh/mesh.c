@@ -11,10 +11,11 @@
 
 #include "compiler/base/parallel.h"
 #include "compiler/base/vec.h"
+#include "compiler/mesh/groups.h"
 #include "compiler/mesh/verify.h"
 #include "compiler/program.h"
 
-enum { MARKS = 64, PATIENCE = 64 }; /* cells along a side; tetrahedra between two questions */
+enum { MARKS = 64, PATIENCE = 16 }; /* cells along a side; groups between two questions */
 static const size_t DEFAULT_LIMIT = (size_t)2 << 30;
 static const double DEFAULT_ERROR = 1.0 / 200, LEAST_ERROR = 1.0 / 500000;
 /* The cube is larger than the box, and its corner is nowhere in particular, so that planes of the
@@ -34,6 +35,8 @@ typedef struct Mesher {
     Contour               contour;
     Bvh                   bvh;
     bool                  marked[MARKS][MARKS][MARKS];
+    Groups                groups; /* of tetrahedra to be looked at */
+    atomic_size_t         next_group;
     size_t                unresolved; /* tetrahedra */
     double                unresolved_at[3];
     double                fraction; /* of the work, as was last said */
@@ -88,20 +91,73 @@ static bool is_wanted(const Mesher *m)
     return !m->options->go_on || m->options->go_on(m->options->user, m->fraction);
 }
 
+static void add_to_groups(Mesher *m, size_t index)
+{
+    double corners[4][3], center[3];
+    tets_corners(&m->tets, &m->tets.list.items[index], corners);
+    corners_ball((const double(*)[3])corners, center);
+    for (int k = 0; k < 3; k++)
+        center[k] = (center[k] - m->tets.origin[k]) / m->side;
+    groups_add(&m->groups, (uint32_t)index, center);
+}
+
+/* Tetrahedra without a proof, by where they are. */
+static void find_groups(Mesher *m)
+{
+    groups_clear(&m->groups);
+    for (size_t i = 0; i < m->tets.list.count; i++) {
+        const Tet *tet = &m->tets.list.items[i];
+        if (tet->state != TET_EMPTY && (tet->state != TET_PROVEN || is_marked(m, tet)))
+            add_to_groups(m, i);
+    }
+    groups_finish(&m->groups);
+    atomic_store(&m->next_group, 0);
+}
+
+static Box box_of_group(const Mesher *m, const Group *group)
+{
+    Box box = {{{INFINITY, -INFINITY}, {INFINITY, -INFINITY}, {INFINITY, -INFINITY}}};
+    for (uint32_t i = 0; i < group->count; i++) {
+        double corners[4][3];
+        tets_corners(&m->tets, &m->tets.list.items[m->groups.order.items[group->first + i]],
+                     corners);
+        for (int k = 0; k < 12; k++) {
+            Range *axis = &box.axis[k % 3];
+            axis->low   = fmin(axis->low, corners[k / 3][k % 3] - m->error);
+            axis->high  = fmax(axis->high, corners[k / 3][k % 3] + m->error);
+        }
+    }
+    return box;
+}
+
+static void verify_group(Mesher *m, Verifier *verifier, const Group *group)
+{
+    bool entered = field_enter(verifier->field, box_of_group(m, group));
+    for (uint32_t i = group->first; i < group->first + group->count; i++) {
+        Tet *tet   = &m->tets.list.items[m->groups.order.items[i]];
+        tet->state = (uint8_t)verify_tet(verifier, tet);
+    }
+    if (entered)
+        field_leave(verifier->field);
+}
+
 static void verify_part(void *task, size_t part, size_t parts)
 {
     Mesher   *m        = task;
     Verifier *verifier = &m->verifiers[part];
-    *verifier          = (Verifier){.field = &m->fields[part],
-                                    .tets  = &m->tets,
-                                    .mesh  = &m->bvh,
-                                    .error = PROVEN_ERROR * m->error};
-    for (size_t i = part; i < m->tets.list.count && !atomic_load(&m->stopped); i += parts) {
-        Tet *tet = &m->tets.list.items[i];
-        if (part == 0 && i % PATIENCE == 0 && !is_wanted(m))
+    size_t    asked    = 0;
+    (void)parts;
+    *verifier = (Verifier){.field = &m->fields[part],
+                           .tets  = &m->tets,
+                           .mesh  = &m->bvh,
+                           .error = PROVEN_ERROR * m->error};
+    while (!atomic_load(&m->stopped)) {
+        size_t next = atomic_fetch_add(&m->next_group, 1);
+        if (next >= m->groups.list.count)
+            return;
+        if (part == 0 && asked++ % PATIENCE == 0 && !is_wanted(m))
             atomic_store(&m->stopped, true);
-        if (tet->state != TET_EMPTY && (tet->state != TET_PROVEN || is_marked(m, tet)))
-            tet->state = (uint8_t)verify_tet(verifier, tet);
+        verify_group(m, verifier, &m->groups.list.items[next]);
     }
 }
 
@@ -183,15 +239,17 @@ static KrsStatus make_mesh(Mesher *m)
         origin[k] = 0.5 * (m->low[k] + m->high[k]) -
                     (0.5 + 0.1 * (CUBE_CORNER[k] - 0.045)) * m->side;
     tets_new(&m->tets, origin, m->side, &m->arena);
-    m->contour = (Contour){.arena            = &m->arena,
-                           .tets             = &m->tets,
-                           .fields           = m->fields,
-                           .error            = m->error,
-                           .crossing_numbers = {.arena = &m->arena},
-                           .line_numbers     = {.arena = &m->arena}};
+    m->contour      = (Contour){.arena            = &m->arena,
+                                .tets             = &m->tets,
+                                .fields           = m->fields,
+                                .error            = m->error,
+                                .crossing_numbers = {.arena = &m->arena},
+                                .line_numbers     = {.arena = &m->arena}};
+    m->groups.arena = &m->arena;
     bisect_evenly(m);
     do {
         find_mesh(m);
+        find_groups(m);
         run_in_parallel(verify_part, m);
         if (atomic_load(&m->stopped) || !is_wanted(m))
             return KRS_INTERRUPTED;
@@ -238,14 +296,16 @@ static bool is_nothing(const Mesher *m)
 static KrsStatus open_fields(Mesher *m, KrsFrame *frame)
 {
     KrsStatus status = KRS_OK;
-    for (int i = 0; i < MOST_PARTS && status == KRS_OK; i++) {
+    for (size_t i = 0; i < parallel_parts() && status == KRS_OK; i++) {
         MeshField *field = &m->fields[i];
         *field = (MeshField){.component = m->options->component, .cut = m->options->within};
         memcpy(field->low, m->low, sizeof field->low);
         memcpy(field->high, m->high, sizeof field->high);
         status = frame_copy_of(frame, &field->frame);
-        if (status == KRS_OK)
+        if (status == KRS_OK) {
             frame_refresh(field->frame);
+            field_open(field, &m->arena);
+        }
     }
     return status;
 }

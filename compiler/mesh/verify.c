@@ -1,22 +1,24 @@
 /*
- * verify.c: proofs by balls: where the distance at a point is d, the ball of radius |d| around it has no
- * surface in it.
+ * verify.c: proofs by balls and by slopes: where the distance at a point is d, the ball of radius |d| around
+ * it has no surface in it; and where all derivatives in a box are about the same, the surface there is
+ * about a plane.
  *
  * A part of space is near enough to the mesh if it is within the error of it.  That takes as many
- * parts as there are squares of the error on the surface, so flat places have a shorter proof: a
- * large ball outside and one inside that nearly touch leave a thin lens between them, and the
- * surface is in it.  Both ask for bounds only; that distances are exact makes them quick, not true.
+ * parts as there are squares of the error on the surface, so flat places have a shorter proof: the
+ * surface is in a thin lens.  Derivatives tell that; where they have no bounds, a large ball outside and
+ * one inside that nearly touch leave a lens between them.
  */
 #include "compiler/mesh/verify.h"
 
 #include <string.h>
 
 #include "compiler/base/vec.h"
+#include "compiler/mesh/gradient.h"
+#include "compiler/mesh/lens.h"
 
 enum { MOST_UNRESOLVED = 16, MOST_HALVINGS = 80 };
 /* Parts of the error: what is smaller is not divided further. */
 static const double TINY_CELL = 0.25, TINY_TRIANGLE = 0.125;
-static const double ROUNDING = 1 + 1e-9;
 
 bool verify_is_empty(const Verifier *verifier, const Tet *tet)
 {
@@ -33,137 +35,35 @@ bool verify_is_empty(const Verifier *verifier, const Tet *tet)
     return fabs(field_distance(verifier->field, center)) > ROUNDING * radius;
 }
 
-/* ---- lenses ---- */
-
-/* A disc of some radius; within that of its axis, and as far from its plane as the balls reach, all is
-   outside above `above` and inside below -`below`. */
-typedef struct Lens {
-    double center[3], normal[3], radius, above, below;
-} Lens;
-
-/* How high above the disc the surface may be, if the ball around a point above it has no surface. */
-static double height_under_ball(double height, double ball, double radius)
-{
-    return ball > ROUNDING * radius ? height - sqrt(ball * ball - ROUNDING * radius * radius)
-                                    : INFINITY;
-}
-
-/* Finds heights by balls whose centres are so far from the disc. */
-static bool find_lens(const Verifier *verifier, double far, Lens *lens)
-{
-    double point[3];
-    add_scaled3(point, lens->center, far, lens->normal);
-    lens->above = height_under_ball(far, field_distance(verifier->field, point), lens->radius);
-    if (!(lens->above < verifier->error))
-        return false;
-    add_scaled3(point, lens->center, -far, lens->normal);
-    lens->below = height_under_ball(far, -field_distance(verifier->field, point), lens->radius);
-    return lens->below < verifier->error;
-}
-
-/* So far that a lens under flat surfaces has half of the error. */
-static double lens_distance(const Verifier *verifier, double radius)
-{
-    return fmax(radius * radius / verifier->error, 2 * radius);
-}
-
-/* The triangles that are near to a lens. */
-typedef struct LensMesh {
-    const Lens *lens;
-    double      error;
-    bool        pierced; /* its axis meets one */
-} LensMesh;
-
-static bool axis_meets(const Lens *lens, const double corners[3][3])
-{
-    double turns[3];
-    for (int i = 0; i < 3; i++) {
-        double from[3], to[3], cross[3];
-        add_scaled3(from, corners[i], -1, lens->center);
-        add_scaled3(to, corners[(i + 1) % 3], -1, lens->center);
-        cross3(from, to, cross);
-        turns[i] = dot3(cross, lens->normal);
-    }
-    return turns[0] >= 0 && turns[1] >= 0 && turns[2] >= 0;
-}
-
-/* A triangle must face as the lens does and be within the error of all that is in the lens, or be
-   farther away than that. */
-static bool fits_lens(void *user, uint32_t triangle, const double corners[3][3])
-{
-    static const double STEEPEST = 0.3; /* least cosine between the normals */
-    LensMesh           *mesh     = user;
-    const Lens         *lens     = mesh->lens;
-    double              edges[2][3], normal[3], offset[3], low = INFINITY, high = -INFINITY;
-    (void)triangle;
-    for (int i = 0; i < 3; i++) {
-        add_scaled3(offset, corners[i], -1, lens->center);
-        low  = fmin(low, dot3(offset, lens->normal));
-        high = fmax(high, dot3(offset, lens->normal));
-    }
-    add_scaled3(edges[0], corners[1], -1, corners[0]);
-    add_scaled3(edges[1], corners[2], -1, corners[0]);
-    cross3(edges[0], edges[1], normal);
-    double cosine = normalize3(normal) ? dot3(normal, lens->normal) : 0;
-    if (cosine > 0) {
-        double middle = dot3(normal, offset) / cosine;
-        double rise   = lens->radius * sqrt(fmax(0, 1 - cosine * cosine)) / cosine;
-        low           = fmax(low, middle - rise);
-        high          = fmin(high, middle + rise);
-    }
-    double farthest = 2 * mesh->error;
-    if (low > farthest || high < -farthest)
-        return true;
-    mesh->pierced = mesh->pierced || axis_meets(lens, corners);
-    return cosine >= STEEPEST && high + lens->below <= mesh->error &&
-           lens->above - low <= mesh->error;
-}
-
-/* Whether the mesh goes through the lens: then it is a graph over all of its disc, since it is closed
-   and its triangles all face to one side.  So it is as near as it is at any point. */
-static bool mesh_fills_lens(const Verifier *verifier, const Lens *lens)
-{
-    LensMesh mesh  = {.lens = lens, .error = verifier->error};
-    double   reach = hypot(lens->radius, 2 * verifier->error);
-    return bvh_visit(verifier->mesh, lens->center, reach, fits_lens, &mesh) && mesh.pierced;
-}
-
 /* ---- from the surface to the mesh ---- */
 
-/* Whether all corners are above the lens, or all below. */
-static bool is_beside_lens(const Lens *lens, const double corners[4][3])
-{
-    double low = INFINITY, high = -INFINITY;
-    for (int i = 0; i < 4; i++) {
-        double offset[3];
-        add_scaled3(offset, corners[i], -1, lens->center);
-        low  = fmin(low, dot3(offset, lens->normal));
-        high = fmax(high, dot3(offset, lens->normal));
-    }
-    return low > lens->above || high < -lens->below;
-}
-
-/* A direction in which the distance grows; it need not be exact. */
-static bool find_slope(const Verifier *verifier, const double center[3], double distance,
-                       double direction[3])
-{
-    for (int k = 0; k < 3; k++) {
-        double aside[3] = {center[0], center[1], center[2]};
-        aside[k] += 1e-3 * verifier->error;
-        direction[k] = field_distance(verifier->field, aside) - distance;
-    }
-    return normalize3(direction);
-}
-
-static bool is_flat(const Verifier *verifier, const double corners[4][3], const double center[3],
-                    double radius, double distance)
+static bool is_flat_by_balls(const Verifier *verifier, const double corners[4][3],
+                             const double center[3], double radius, double distance,
+                             const double direction[3])
 {
     Lens lens = {.radius = radius};
-    if (!find_slope(verifier, center, distance, lens.normal))
-        return false;
+    memcpy(lens.normal, direction, sizeof lens.normal);
     add_scaled3(lens.center, center, -distance, lens.normal);
-    return find_lens(verifier, lens_distance(verifier, radius), &lens) &&
+    return find_lens_by_balls(verifier, &lens) &&
            (is_beside_lens(&lens, corners) || mesh_fills_lens(verifier, &lens));
+}
+
+static bool is_flat_by_slope(const Verifier *verifier, const double corners[4][3],
+                             const double center[3], double radius, double distance)
+{
+    Lens      lens = {.radius = radius};
+    Box       box  = corners_box(corners, 4, 0);
+    Range     range;
+    LaneSlope slope;
+    Gradient  gradient;
+    bool      bounded = field_slope(verifier->field, box, &range, &slope);
+    if (range.low > 0 || range.high < 0)
+        return true;
+    if (!bounded || !find_gradient(&slope, &gradient))
+        return false;
+    find_lens_by_slope(&gradient, center, distance, &lens);
+    return is_beside_lens(&lens, corners) ||
+           (lens.above < verifier->error && mesh_fills_lens(verifier, &lens));
 }
 
 /* At a place that is farther from the mesh than permitted, and nearer to the surface: goes on through
@@ -181,6 +81,8 @@ static bool leave_unresolved(Verifier *verifier, const double center[3], double 
     return true;
 }
 
+enum { CELLS_AT_ONCE = 8, MOST_CELLS = 1024 };
+
 /* A part of a tetrahedron. */
 typedef struct Cell {
     double corners[4][3];
@@ -188,32 +90,121 @@ typedef struct Cell {
     double lens; /* largest radius for which a lens is worth a try */
 } Cell;
 
-/* `side` is -1 or 1 if the mesh leaves all of the tetrahedron inside or outside, else 0. */
-static bool surface_is_near_mesh(Verifier *verifier, const Cell *cell, int side)
+/* What is known of a cell. */
+typedef struct CellView {
+    double center[3], radius, distance;
+    bool   near_mesh, may_be_flat;
+    double direction[3]; /* in which the distance grows, if it may be flat; it need not be exact */
+} CellView;
+
+/* Cells that are still to be looked at, the smallest last. */
+typedef struct Cells {
+    Cell   items[MOST_CELLS];
+    size_t count;
+    int    side; /* -1 or 1 if the mesh leaves all of the tetrahedron inside or outside, else 0 */
+} Cells;
+
+static CellView cell_view(Verifier *verifier, const Cell *cell)
 {
-    double center[3], error = verifier->error, lens = cell->lens;
-    double radius = ROUNDING * corners_ball(cell->corners, center);
-    if (--verifier->budget < 0)
-        return false;
-    if (radius < error && bvh_is_near(verifier->mesh, center, error - radius))
-        return true;
-    double distance = field_distance(verifier->field, center);
-    if (side * distance < -error)
-        return false;
-    if (fabs(distance) > radius || verifier->unresolved >= MOST_UNRESOLVED)
-        return true;
-    if (radius > error && radius <= lens) {
-        if (is_flat(verifier, cell->corners, center, radius, distance))
-            return true;
-        lens = 0.7 * radius;
+    CellView view  = {0};
+    view.radius    = ROUNDING * corners_ball(cell->corners, view.center);
+    view.near_mesh = view.radius < verifier->error &&
+                     bvh_is_near(verifier->mesh, view.center, verifier->error - view.radius,
+                                 &verifier->last);
+    view.may_be_flat = view.radius > verifier->error && view.radius <= cell->lens;
+    return view;
+}
+
+/* Finds distances and directions of all at once. */
+static void look_at_cells(const Verifier *verifier, CellView *views, size_t count)
+{
+    double places[4 * CELLS_AT_ONCE][3], distances[4 * CELLS_AT_ONCE];
+    size_t first[CELLS_AT_ONCE], used = 0;
+    for (size_t i = 0; i < count; i++) {
+        first[i] = used;
+        for (int k = 0; !views[i].near_mesh && k < (views[i].may_be_flat ? 4 : 1); k++) {
+            memcpy(places[used], views[i].center, sizeof places[used]);
+            if (k > 0)
+                places[used][k - 1] += 1e-3 * verifier->error;
+            used++;
+        }
     }
-    if (radius < TINY_CELL * error || cell->halvings == MOST_HALVINGS)
-        return leave_unresolved(verifier, center, distance);
-    Cell first = {.halvings = cell->halvings + 1, .lens = lens}, second = first;
-    first.tag = second.tag = bisect_corners(cell->corners, cell->tag, first.corners,
-                                            second.corners);
-    return surface_is_near_mesh(verifier, &first, side) &&
-           surface_is_near_mesh(verifier, &second, side);
+    field_distances(verifier->field, (const double(*)[3])places, used, distances);
+    for (size_t i = 0; i < count; i++) {
+        const double *found = &distances[first[i]];
+        if (views[i].near_mesh)
+            continue;
+        views[i].distance = found[0];
+        for (int k = 0; views[i].may_be_flat && k < 3; k++)
+            views[i].direction[k] = found[k + 1] - found[0];
+    }
+}
+
+static void halve_cell(Cells *cells, const Cell *cell, double lens)
+{
+    Cell *first  = &cells->items[cells->count++];
+    Cell *second = &cells->items[cells->count++];
+    *first = *second = (Cell){.halvings = cell->halvings + 1, .lens = lens};
+    first->tag = second->tag = bisect_corners(cell->corners, cell->tag, first->corners,
+                                              second->corners);
+}
+
+/* Balls cost less than slopes, and tell where distances are exact. */
+static bool is_flat(const Verifier *verifier, const Cell *cell, CellView *view)
+{
+    return (normalize3(view->direction) &&
+            is_flat_by_balls(verifier, cell->corners, view->center, view->radius, view->distance,
+                             view->direction)) ||
+           is_flat_by_slope(verifier, cell->corners, view->center, view->radius, view->distance);
+}
+
+/* False: the mesh is refuted. */
+static bool cell_is_near_mesh(Verifier *verifier, Cells *cells, const Cell *cell, CellView *view)
+{
+    double error = verifier->error, lens = cell->lens;
+    if (view->near_mesh)
+        return true;
+    if (cells->side * view->distance < -error)
+        return false;
+    if (fabs(view->distance) > view->radius || verifier->unresolved >= MOST_UNRESOLVED)
+        return true;
+    if (view->may_be_flat) {
+        if (is_flat(verifier, cell, view))
+            return true;
+        lens = 0.7 * view->radius;
+    }
+    if (view->radius < TINY_CELL * error || cell->halvings == MOST_HALVINGS)
+        return leave_unresolved(verifier, view->center, view->distance);
+    if (cells->count + 2 > MOST_CELLS)
+        return false;
+    halve_cell(cells, cell, lens);
+    return true;
+}
+
+static bool surface_is_near_mesh(Verifier *verifier, const Cell *whole, int side)
+{
+    Cells cells;
+    cells.items[0] = *whole;
+    cells.count    = 1;
+    cells.side     = side;
+    while (cells.count > 0) {
+        Cell     now[CELLS_AT_ONCE];
+        CellView views[CELLS_AT_ONCE];
+        size_t   count = 0;
+        while (cells.count > 0 && count < CELLS_AT_ONCE) {
+            now[count]   = cells.items[--cells.count];
+            views[count] = cell_view(verifier, &now[count]);
+            count++;
+        }
+        verifier->budget -= (double)count;
+        if (verifier->budget < 0)
+            return false;
+        look_at_cells(verifier, views, count);
+        for (size_t i = 0; i < count; i++)
+            if (!cell_is_near_mesh(verifier, &cells, &now[i], &views[i]))
+                return false;
+    }
+    return true;
 }
 
 /* ---- from the mesh to the surface ---- */
@@ -222,11 +213,11 @@ static bool surface_is_near_mesh(Verifier *verifier, const Cell *cell, int side)
 static bool is_crossed(const Verifier *verifier, const double center[3], double far,
                        const double direction[3])
 {
-    double above[3], below[3];
-    add_scaled3(above, center, far, direction);
-    add_scaled3(below, center, -far, direction);
-    return field_distance(verifier->field, above) >= 0 &&
-           field_distance(verifier->field, below) < 0;
+    double beside[2][3], distances[2];
+    add_scaled3(beside[0], center, far, direction);
+    add_scaled3(beside[1], center, -far, direction);
+    field_distances(verifier->field, (const double(*)[3])beside, 2, distances);
+    return distances[0] >= 0 && distances[1] < 0;
 }
 
 static void halve_edges(const double corners[3][3], double middles[3][3])
@@ -256,25 +247,65 @@ static bool parts_are_near_surface(Verifier *verifier, const double corners[3][3
     return triangle_is_near_surface(verifier, (const double(*)[3])middles, normal);
 }
 
+typedef enum Nearness { FAR_FROM_SURFACE, NEAR_SURFACE, NOT_KNOWN } Nearness;
+
+/* By derivatives up to the error around a triangle: along their direction the surface is as far away as the value
+   over the least of them.  Without bounds of them, by balls. */
+static Nearness find_nearness(const Verifier *verifier, const double corners[3][3],
+                              const double center[3], double radius, double distance)
+{
+    Box       box = corners_box(corners, 3, verifier->error);
+    Range     range;
+    LaneSlope slope;
+    Gradient  gradient;
+    double    most    = 0;
+    bool      bounded = field_slope(verifier->field, box, &range, &slope);
+    if (range.low > 0 || range.high < 0)
+        return FAR_FROM_SURFACE;
+    if (!bounded || !find_gradient(&slope, &gradient))
+        return NOT_KNOWN;
+    for (int i = 0; i < 3; i++) {
+        double offset[3];
+        add_scaled3(offset, corners[i], -1, center);
+        most = fmax(most, fabs(distance + dot3(gradient.middle, offset)));
+    }
+    return ROUNDING * (most + gradient.across * radius) <= gradient.least * verifier->error
+               ? NEAR_SURFACE
+               : NOT_KNOWN;
+}
+
+static bool is_crossed_nearby(const Verifier *verifier, const double center[3], double radius,
+                              const double normal[3])
+{
+    double far = verifier->error - radius, gradient[3];
+    return is_crossed(verifier, center, far, normal) ||
+           (field_normal(verifier->field, center, 1e-3 * verifier->error, gradient) &&
+            is_crossed(verifier, center, far, gradient));
+}
+
 static bool triangle_is_near_surface(Verifier *verifier, const double corners[3][3],
                                      const double normal[3])
 {
-    double error = verifier->error, center[3], radius = 0, gradient[3];
+    double error = verifier->error, center[3], radius = 0;
     for (int k = 0; k < 3; k++)
         center[k] = (corners[0][k] + corners[1][k] + corners[2][k]) / 3;
     for (int i = 0; i < 3; i++)
         radius = fmax(radius, ROUNDING * distance3(center, corners[i]));
-    if (--verifier->budget < 0 || fabs(field_distance(verifier->field, center)) > error)
+    double distance = field_distance(verifier->field, center);
+    if (--verifier->budget < 0 || fabs(distance) > error)
         return false;
-    if (radius <= 0.5 * error && (is_crossed(verifier, center, error - radius, normal) ||
-                                  (field_normal(verifier->field, center, 1e-3 * error, gradient) &&
-                                   is_crossed(verifier, center, error - radius, gradient))))
+    if (radius <= 0.5 * error && is_crossed_nearby(verifier, center, radius, normal))
         return true;
-    Lens lens = {.radius = radius};
-    memcpy(lens.center, center, sizeof lens.center);
-    memcpy(lens.normal, normal, sizeof lens.normal);
-    if (radius > 0.5 * error && find_lens(verifier, lens_distance(verifier, radius), &lens))
-        return true;
+    if (radius > 0.5 * error) {
+        Lens lens = {.radius = radius};
+        memcpy(lens.center, center, sizeof lens.center);
+        memcpy(lens.normal, normal, sizeof lens.normal);
+        if (find_lens_by_balls(verifier, &lens))
+            return true;
+        Nearness nearness = find_nearness(verifier, corners, center, radius, distance);
+        if (nearness != NOT_KNOWN)
+            return nearness == NEAR_SURFACE;
+    }
     return radius > TINY_TRIANGLE * error && parts_are_near_surface(verifier, corners, normal);
 }
 
@@ -314,22 +345,32 @@ static double proof_budget(const Verifier *verifier, const Tet *tet)
     return squares < 4 ? INFINITY : CELLS + CELLS_OF_SQUARE * squares;
 }
 
-/* Small ones need no proof where the mesh goes through: so does the surface.  They are not made smaller. */
-TetState verify_tet(Verifier *verifier, const Tet *tet)
+/* Within the box of a tetrahedron, which has surface. */
+static TetState verify_parts(Verifier *verifier, const Tet *tet, const Cell *whole, int side)
 {
-    double length = tets_longest_edge(verifier->tets, tet);
-    int    side   = find_side(verifier->tets, tet);
-    if (side == 0 && length <= verifier->error)
-        return TET_PROVEN;
-    if (verify_is_empty(verifier, tet))
-        return TET_EMPTY;
-    Cell whole = {.tag = tet->tag, .lens = INFINITY};
-    tets_corners(verifier->tets, tet, whole.corners);
     verifier->unresolved = 0;
     verifier->budget     = proof_budget(verifier, tet);
     bool near            = triangles_are_near_surface(verifier, tet) &&
-                surface_is_near_mesh(verifier, &whole, side);
-    if (!near && length > 0.5 * verifier->error)
+                surface_is_near_mesh(verifier, whole, side);
+    if (!near && tets_longest_edge(verifier->tets, tet) > 0.5 * verifier->error)
         return TET_REFUTED;
     return !near || verifier->unresolved > 0 ? TET_UNRESOLVED : TET_PROVEN;
+}
+
+/* Small ones need no proof where the mesh goes through: so does the surface.  They are not made smaller. */
+TetState verify_tet(Verifier *verifier, const Tet *tet)
+{
+    int  side  = find_side(verifier->tets, tet);
+    Cell whole = {.tag = tet->tag, .lens = INFINITY};
+    if (side == 0 && tets_longest_edge(verifier->tets, tet) <= verifier->error)
+        return TET_PROVEN;
+    if (verify_is_empty(verifier, tet))
+        return TET_EMPTY;
+    tets_corners(verifier->tets, tet, whole.corners);
+    Box box = corners_box((const double(*)[3])whole.corners, 4, verifier->error);
+    if (!field_enter(verifier->field, box))
+        return TET_EMPTY;
+    TetState state = verify_parts(verifier, tet, &whole, side);
+    field_leave(verifier->field);
+    return state;
 }

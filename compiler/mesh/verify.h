@@ -4,18 +4,7 @@
 #ifndef KRS_MESH_VERIFY_H
 #define KRS_MESH_VERIFY_H
 
-#include "compiler/mesh/bvh.h"
-#include "compiler/mesh/contour.h"
-
-/* What a proof needs; for one thread. */
-typedef struct Verifier {
-    const MeshField *field;
-    const Tets      *tets;
-    const Bvh       *mesh;
-    double           error;
-    double           budget;     /* cells that the proof may still look at */
-    uint32_t         unresolved; /* places of the tetrahedron where it has not been decided */
-} Verifier;
+#include "compiler/mesh/verifier.h"
 
 /* Whether, within a tetrahedron, each point of the surface is within the error of the mesh, and each
    point of its triangles within the error of the surface. */

@@ -120,6 +120,59 @@ static Box random_box(Bench *b)
     return box;
 }
 
+/* The value at one point; NAN: none. */
+static double first_output(const Pair *pair, const double point[3])
+{
+    double result;
+    lane_run(&pair->lanes, &pair->work, LANE_DOUBLE,
+             (LanePoints){.points = (const double(*)[3])point, .count = 1}, 0, 1, &result);
+    return result;
+}
+
+/* By the mean value theorem: how far the values at two points of the box are outside of what derivatives
+   permit, as far as rounding does not explain it. */
+static bool slope_permits(const Pair *pair, const LaneSlope *slope, const double a[3],
+                          const double b[3])
+{
+    double from = first_output(pair, a), to = first_output(pair, b);
+    Range  change = range_of(0);
+    for (int k = 0; k < 3; k++)
+        change = range_add(change, range_mul(slope->by[k], range_of(b[k] - a[k])));
+    double slack = 1e-9 * (1 + fabs(from) + fabs(to) + range_largest(change));
+    return !isfinite(from) || !isfinite(to) || fabs(from) > 1e6 || fabs(to) > 1e6 ||
+           (to - from >= change.low - slack && to - from <= change.high + slack);
+}
+
+static void points_in(Bench *b, Box box, double (*points)[3]);
+
+/* Between their pieces these may jump. */
+static bool has_pieces(const LaneTape *tape)
+{
+    for (size_t i = 0; i < tape->count; i++)
+        if (tape->steps[i].op == OP_cell || tape->steps[i].op == OP_select ||
+            tape->steps[i].op == OP_guard)
+            return true;
+    for (size_t i = 0; i < tape->call_count; i++)
+        if (tape->tape->graph->items[tape->calls[i].node].op == OP_cell_polar)
+            return true;
+    return false;
+}
+
+/* Derivatives of a box, tried between points of another one.  Returns how many are not permitted. */
+static size_t try_slopes(Bench *b, const Pair *pair, Box known, Box looked, bool *bounded)
+{
+    double     points[POINTS][3];
+    size_t     wrong  = 0;
+    LaneRanges ranges = lane_ranges_new(&pair->lanes, &b->arena);
+    LaneSlope *slopes = lane_slopes_new(&pair->lanes, &b->arena), slope;
+    lane_ranges_run(&pair->lanes, &ranges, known);
+    *bounded = lane_slopes_run(&pair->lanes, &ranges, slopes, &slope) && !has_pieces(&pair->lanes);
+    points_in(b, looked, points);
+    for (int i = 1; *bounded && i < POINTS; i++)
+        wrong += !slope_permits(pair, &slope, points[i - 1], points[i]);
+    return wrong;
+}
+
 static Box half_of(Box box)
 {
     for (int k = 0; k < 3; k++)
@@ -203,6 +256,25 @@ static void what_is_pruned_for_less_is_seen(void **state)
     assert_true(tally.different > 100);
 }
 
+static void slopes_hold(void **state)
+{
+    Bench *b       = *state;
+    size_t bounded = 0, wrong = 0;
+    for (int turn = 0; turn < 4 * GRAPHS; turn++) {
+        Pair pair;
+        Box  box = random_box(b);
+        bool known;
+        pair_make(b, &pair);
+        if (try_slopes(b, &pair, box, box, &known))
+            fail_msg("graph %d changes faster than its derivatives", turn);
+        bounded += known;
+        wrong += try_slopes(b, &pair, half_of(box), box, &known) > 0;
+    }
+    print_message("# %zu of %d have bounds; %zu are wrong outside of their boxes\n", bounded,
+                  4 * GRAPHS, wrong);
+    assert_true(bounded > GRAPHS && wrong > 50);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -210,6 +282,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(ranges_hold_and_pruning_changes_nothing, bench_start,
                                         bench_stop),
         cmocka_unit_test_setup_teardown(what_is_pruned_for_less_is_seen, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(slopes_hold, bench_start, bench_stop),
     };
     return cmocka_run_group_tests_name("lanes", tests, NULL, NULL);
 }

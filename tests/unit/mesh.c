@@ -191,6 +191,23 @@ static void meshes_are_closed_and_near(void **context)
     }
 }
 
+/* A gyroid changes its sign where the point does, so it has half of a ball.  Its distance is a bound, far from
+   exact. */
+static void bounds_of_distances_are_enough(void **context)
+{
+    static const double PI = 3.14159265358979323846;
+    (void)context;
+    Scene s = scene_of("show sphere(0.5) & field(sin(6 * x) * cos(6 * y) + sin(6 * y) * cos(6 * z) "
+                       "+ sin(6 * z) * cos(6 * x));");
+    KrsMesh *mesh = mesh_of(s, 0.05);
+    check_closed(mesh);
+    check_hits(s, mesh, 1);
+    check_triangles(s, mesh);
+    assert_true(fabs(volume_of(mesh) - PI / 12) < 0.04);
+    krs_mesh_free(mesh);
+    scene_close(s);
+}
+
 static void sharp_corners_are_kept(void **context)
 {
     (void)context;
@@ -275,6 +292,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(meshes_are_closed_and_near),
+        cmocka_unit_test(bounds_of_distances_are_enough),
         cmocka_unit_test(sharp_corners_are_kept),
         cmocka_unit_test(thin_walls_are_found_or_reported),
         cmocka_unit_test(what_cannot_be_meshed_is_refused),

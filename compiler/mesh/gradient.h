@@ -1,0 +1,21 @@
+/*
+ * gradient.h: ranges of derivatives, as a direction and how far they are from it.
+ */
+#ifndef KRS_MESH_GRADIENT_H
+#define KRS_MESH_GRADIENT_H
+
+#include "compiler/graph/lanes.h"
+
+/* Derivatives in a box: those along the direction of their middle are from `least` to `most`, and those
+   across it up to `across`. */
+typedef struct Gradient {
+    double middle[3], direction[3], least, most, across;
+} Gradient;
+
+/* False: the value does not grow along any direction that is known. */
+bool find_gradient(const LaneSlope *slope, Gradient *gradient);
+
+/* The box of some corners, wider by a margin. */
+Box corners_box(const double (*corners)[3], size_t count, double margin);
+
+#endif

@@ -1,0 +1,21 @@
+/*
+ * verifier.h: what a proof needs.
+ */
+#ifndef KRS_MESH_VERIFIER_H
+#define KRS_MESH_VERIFIER_H
+
+#include "compiler/mesh/bvh.h"
+#include "compiler/mesh/contour.h"
+
+/* For one thread. */
+typedef struct Verifier {
+    MeshField  *field;
+    const Tets *tets;
+    const Bvh  *mesh;
+    double      error;
+    double      budget;     /* cells that the proof may still look at */
+    uint32_t    last;       /* the triangle that was found to be near to a place */
+    uint32_t    unresolved; /* places of the tetrahedron where it has not been decided */
+} Verifier;
+
+#endif
