@@ -22,6 +22,7 @@ const struct Surroundings { vec4 zenith, horizon, ground, fog; vec2 fog_level; }
     Surroundings(vec4(ZENITH, 0.0), vec4(HORIZON, 0.0), vec4(GROUND, 0.0), vec4(0.0), vec2(0.0));
 
 #include "light.glsl"
+#include "sky_means.glsl"
 
 vec3 normal_at(vec3 p, float spacing)
 {
@@ -86,7 +87,8 @@ void main()
         vec3 n = normal_at(p, 0.5 * width * t);
         vec4 m = material(p);
         color = m.rgb * (1.0 - METALLIC) * sky_light(n) +
-                sky_reflected(n, -direction, m.rgb, m.a, METALLIC) +
+                find_sky_mirrored(n, -direction, m.a) *
+                    find_mirrored(n, -direction, m.rgb, m.a, METALLIC) +
                 SUN_COLOR * reflected(n, -direction, SUN_DIRECTION, m.rgb, m.a, METALLIC);
     }
 #ifdef COUNT_STEPS

@@ -77,14 +77,14 @@ static void nothing_is_written_unasked(void **state)
     assert_int_equal(access("krs", F_OK), -1);
 }
 
-/* As frame.glsl and its kind have them: texels where kernels only read. */
-static VkDescriptorType type_of_binding(uint32_t binding)
+/* As the scene's text (set 0) and frame.glsl (set 1) have them: texels where kernels only read. */
+static VkDescriptorType type_of_binding(int set, uint32_t binding)
 {
+    const bool read[] = {binding >= 1 && binding <= 3,
+                         binding == 8 || (binding >= 10 && binding <= 13)};
     if (binding == 0)
         return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-    return binding == 8 || (binding >= 10 && binding <= 13)
-               ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
-               : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    return read[set] ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
 /* A layout that has room for the bindings of any kernel. */
@@ -94,20 +94,22 @@ static VkPipelineLayout make_layout(Gpu *gpu)
     VkDescriptorSetLayoutBinding bindings[BINDINGS];
     VkDescriptorSetLayout        sets[SETS];
     VkPipelineLayout             layout;
-    for (uint32_t i = 0; i < BINDINGS; i++)
-        bindings[i] = (VkDescriptorSetLayoutBinding){.binding         = i,
-                                                     .descriptorCount = 1,
-                                                     .stageFlags      = VK_SHADER_STAGE_COMPUTE_BIT,
-                                                     .descriptorType  = type_of_binding(i)};
-    for (int i = 0; i < SETS; i++)
+    for (int set = 0; set < SETS; set++) {
+        for (uint32_t i = 0; i < BINDINGS; i++)
+            bindings[i] =
+                (VkDescriptorSetLayoutBinding){.binding         = i,
+                                               .descriptorCount = 1,
+                                               .stageFlags      = VK_SHADER_STAGE_COMPUTE_BIT,
+                                               .descriptorType  = type_of_binding(set, i)};
         assert_int_equal(vkCreateDescriptorSetLayout(
                              gpu->device,
                              &(VkDescriptorSetLayoutCreateInfo){
                                  .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                  .bindingCount = BINDINGS,
                                  .pBindings    = bindings},
-                             NULL, &sets[i]),
+                             NULL, &sets[set]),
                          VK_SUCCESS);
+    }
     assert_int_equal(
         vkCreatePipelineLayout(
             gpu->device,

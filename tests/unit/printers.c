@@ -76,6 +76,7 @@ static const EmbeddedFile helpers[] = {
              "fn krs_sin(a: f32) -> f32 {\n}\n\n"
              "fn krs_cos(a: f32) -> f32 {\n}\n\n"
              "fn krs_tan(a: f32) -> f32 {\n}\n\n"
+             "fn krs_atan2(y: f32, x: f32) -> f32 {\n}\n\n"
              "fn krs_read_texture(header: u32) -> KrsTexture {\n}\n\n"
              "fn krs_texture_sharp(uv: vec2f, read: KrsTexture) -> vec4f {\n}\n\n"
              "fn krs_texture(uv: vec2f, width: f32, read: KrsTexture) -> vec4f {\n}\n"},
