@@ -8,6 +8,7 @@
 # make bench-algebraic  algebraic surfaces beside other programs
 # make check-device DEVICE=...  what to know of a Vulkan device first, in ten minutes
 # make bench-registers  registers, waves and spills of each kernel on a graphics card
+# make bench-view       how fast the viewer follows edits, sliders and the camera
 # make minify     how well one sample shows what is finer than a pixel
 # make fuzz       the front end under libFuzzer for FUZZ_SECONDS (20)
 # make golden     pictures under every option, bit for bit as they were: after changes that nobody should see

@@ -88,12 +88,19 @@ bench-large: deps
 	@$(MAKE) --no-print-directory $(B)/krs
 	@bench/large/large.sh $(B)/krs
 
+# How fast the viewer follows edits, sliders and the camera (bench/README.md).
+$(B)/bench/view/view: $(B)/bench/view/view.o $(STAGE) $(B)/live.a $(B)/libkrs.a
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+bench-view: $(B)/bench/view/view $(B)/krs
+	@REVISION=$(REVISION) bench/view/view.sh $(B) $(SCENES)
+
 # For `make test`.
 SCRIPTS += tests/bench.sh
 test-programs: $(B)/bench/bench
 clang-objects: $(BENCH:%.c=$(B)/%.o) $(STAGE) $(MINIFY) \
                $(B)/bench/iterations/iterations.o $(B)/bench/inverted/inverted.o \
                $(B)/bench/normals/normals.o $(ALGEBRAIC:%=$(B)/%) $(DEVICES) \
-               $(B)/bench/registers/registers.o $(B)/bench/parts/parts.o
+               $(B)/bench/registers/registers.o $(B)/bench/parts/parts.o \
+               $(B)/bench/view/view.o
 .PHONY: bench bench-quick minify iterations inverted bench-normals bench-textures bench-paths bench-algebraic check-device \
-        bench-registers bench-parts bench-large bench-radiosity
+        bench-registers bench-parts bench-large bench-radiosity bench-view

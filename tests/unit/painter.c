@@ -229,6 +229,28 @@ static void slopes_that_are_not_used_are_seen(void **state)
     tear_down(&stage);
 }
 
+/* A device that does not answer is lost: that is said, and nobody waits for it. */
+static void lost_devices_are_said(void **state)
+{
+    (void)state;
+    Stage                stage;
+    const PainterOptions options = {.renderer = {.device = tested_device(), .patience = 1e-9},
+                                    .budget   = 40};
+    set_up(&stage, one_ball);
+    painter_free(stage.painter);
+    stage.painter    = painter_new(&options);
+    PainterState now = {.status = KRS_OK};
+    show(&stage, 0);
+    for (int i = 0; i < 6000 && now.status == KRS_OK; i++) {
+        usleep(10000);
+        now = painter_state(stage.painter);
+    }
+    assert_int_equal(now.status, KRS_INTERNAL);
+    assert_non_null(strstr(now.message, "the device has not finished"));
+    show(&stage, 1);
+    tear_down(&stage);
+}
+
 static void the_end_does_not_wait_for_shaders_that_nobody_sees(void **state)
 {
     (void)state;
@@ -244,6 +266,7 @@ int main(void)
         cmocka_unit_test(nothing_is_compiled_twice),
         cmocka_unit_test(edits_overtake_each_other),
         cmocka_unit_test(slopes_that_are_not_used_are_seen),
+        cmocka_unit_test(lost_devices_are_said),
         cmocka_unit_test(the_end_does_not_wait_for_shaders_that_nobody_sees),
     };
     return cmocka_run_group_tests(tests, renderer_open, renderer_close);

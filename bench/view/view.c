@@ -1,0 +1,265 @@
+/*
+ * view.c: how fast `krs view` follows an edit, a slider and the camera, at 640x360.
+ *
+ * It drives what the window shows pictures of (live/painter.h), without the window.  IDLE in the
+ * environment is what view.sh has measured of the window itself.
+ */
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "bench/sheet.h"
+#include "bench/stage.h"
+#include "live/orbit.h"
+#include "live/painter.h"
+#include "live/text_file.h"
+
+enum { WIDTH = 640, HEIGHT = 360, EDITS = 5, MOST_TRIES = 60 };
+static const double SECONDS = 2; /* that the camera, and a slider, move */
+static const double BUDGET = 40, PATIENCE = 120;
+
+typedef struct Trial {
+    const char *path;
+    Document   *document;
+    Painter    *painter;
+    View        view;
+    unsigned    number; /* of the view that was shown last */
+} Trial;
+
+static double now(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static void show(Trial *trial) { trial->number = painter_show(trial->painter, &trial->view); }
+
+/* The next picture of the last view: its width. */
+static uint32_t await(Trial *trial, bool whole)
+{
+    for (const double begun = now(); now() - begun < PATIENCE; usleep(200)) {
+        Shot               shot;
+        const PainterState state = painter_state(trial->painter);
+        if (state.status != KRS_OK)
+            give_up(trial->path, state.message);
+        if (!painter_take(trial->painter, &shot))
+            continue;
+        free(shot.pixels);
+        if (shot.view == trial->number && (shot.whole || !whole) &&
+            shot.version == version_number(trial->view.version))
+            return shot.width;
+    }
+    give_up(trial->path, "there is no picture");
+}
+
+static void take_version(Trial *trial)
+{
+    Version        *version = document_version(trial->document);
+    const KrsScene *scene   = version_scene(version);
+    const size_t    count   = krs_parameter_count(scene);
+    view_free(&(View){.version = trial->view.version, .values = trial->view.values});
+    trial->view.version = version;
+    trial->view.values  = calloc(count + 1, sizeof *trial->view.values);
+    for (size_t i = 0; i < count; i++) {
+        KrsParameter parameter;
+        krs_parameter(scene, i, &parameter);
+        memcpy(trial->view.values[i], parameter.value, sizeof parameter.value);
+    }
+}
+
+/* ---- an edit of a number ---- */
+
+/* The next number with a point, outside of comments: the offset of its last digit, or 0. */
+static size_t find_number(const char *text, size_t from)
+{
+    for (size_t i = from; text[i]; i++) {
+        if (text[i] == '/' && text[i + 1] == '/')
+            i += strcspn(text + i, "\n");
+        if (text[i] == '.' && i > 0 && isdigit((unsigned char)text[i - 1]) &&
+            isdigit((unsigned char)text[i + 1])) {
+            while (isdigit((unsigned char)text[i + 1]))
+                i++;
+            return i;
+        }
+    }
+    return 0;
+}
+
+static bool reread(Trial *trial, const Bytes *text)
+{
+    return text_file_write(trial->path, text) && document_read(trial->document) == KRS_OK;
+}
+
+/* A number whose edit needs no other shaders: the offset of its last digit; 0: there is none. */
+static size_t find_edit(Trial *trial, Bytes *text)
+{
+    size_t at = 0;
+    for (int i = 0; i < MOST_TRIES && (at = find_number(text->text, at + 1)) > 0; i++) {
+        const char     digit  = text->text[at];
+        const unsigned before = version_structure(trial->view.version);
+        text->text[at]        = digit == '9' ? '8' : (char)(digit + 1);
+        if (reread(trial, text)) {
+            Version   *version = document_version(trial->document);
+            const bool same    = version_structure(version) == before &&
+                              version_changes(version).kind == KRS_CHANGE_VALUES;
+            version_release(version);
+            take_version(trial);
+            if (same)
+                return at;
+        }
+        text->text[at] = digit;
+        if (!reread(trial, text))
+            give_up(trial->path, "the text does not compile again");
+        take_version(trial);
+    }
+    return 0;
+}
+
+static int compare(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* Milliseconds from a saved file to its first picture, the median; below 0: there is no such number. */
+static double time_edits(Trial *trial)
+{
+    Bytes  text = {0};
+    double ms[EDITS];
+    if (!text_file_read(trial->path, &text))
+        give_up(trial->path, "it cannot be read");
+    const size_t at = find_edit(trial, &text);
+    show(trial);
+    await(trial, true);
+    for (int i = 0; at > 0 && i < EDITS; i++) {
+        text.text[at]      = text.text[at] == '9' ? '8' : (char)(text.text[at] + 1);
+        const double begun = now();
+        if (!reread(trial, &text))
+            give_up(trial->path, "the edited text does not compile");
+        take_version(trial);
+        show(trial);
+        await(trial, false);
+        ms[i] = 1e3 * (now() - begun);
+        await(trial, true);
+    }
+    free(text.text);
+    if (at == 0)
+        return -1;
+    qsort(ms, EDITS, sizeof *ms, compare);
+    return ms[EDITS / 2];
+}
+
+/* ---- what moves ---- */
+
+/* Pictures a second while `step` changes the view; *width is that of the last one. */
+static double count_pictures(Trial *trial, void (*step)(Trial *trial, int i), uint32_t *width)
+{
+    int i = 0;
+    for (; i < 8; i++) { /* until it knows what a picture costs */
+        step(trial, i);
+        show(trial);
+        await(trial, false);
+    }
+    const double begun = now();
+    int          count = 0;
+    for (; now() - begun < SECONDS; count++) {
+        step(trial, i + count);
+        show(trial);
+        *width = await(trial, false);
+    }
+    return count / (now() - begun);
+}
+
+static void turn(Trial *trial, int i)
+{
+    (void)i;
+    orbit_turn(&trial->view.camera, 0.02, 0);
+}
+
+/* The first parameter with a range, or else the time. */
+static void slide(Trial *trial, int i)
+{
+    const KrsScene *scene = version_scene(trial->view.version);
+    const double    part  = 0.5 + 0.5 * sin(0.1 * i);
+    trial->view.time      = 0.05 * i;
+    for (size_t k = 0; k < krs_parameter_count(scene); k++) {
+        KrsParameter parameter;
+        krs_parameter(scene, k, &parameter);
+        if (!isfinite(parameter.low[0]) || !isfinite(parameter.high[0]))
+            continue;
+        for (uint32_t c = 0; c < parameter.components; c++)
+            trial->view.values[k][c] = parameter.low[c] +
+                                       part * (parameter.high[c] - parameter.low[c]);
+        trial->view.time = 0;
+        return;
+    }
+}
+
+/* ---- a scene ---- */
+
+static void set_camera(Trial *trial)
+{
+    KrsFrame *frame;
+    if (krs_frame_new(version_scene(trial->view.version), &frame) != KRS_OK ||
+        krs_frame_camera(frame, 0, &trial->view.camera) != KRS_OK)
+        give_up(trial->path, "it has no camera");
+    krs_frame_free(frame);
+}
+
+static void measure(const Sheet *sheet, const char *path)
+{
+    const KrsOptions     with    = {.specialize = KRS_SPECIALIZE_STRUCTURE, .studio = true};
+    const PainterOptions options = {
+        .renderer = {.device = getenv("KRS_DEVICE"), .cache = getenv("KRS_VIEW_CACHE")},
+        .budget   = BUDGET};
+    const char *slash = strrchr(path, '/');
+    Trial       trial = {
+              .path = path, .document = document_new(path, &with), .painter = painter_new(&options)};
+    uint32_t turned = 0, slid = 0;
+    if (!trial.document || !trial.painter || document_read(trial.document) != KRS_OK)
+        give_up(path, "it does not compile");
+    trial.view = (View){
+        .width = WIDTH, .height = HEIGHT, .samples = 1, .integrator = KRS_INTEGRATOR_PREVIEW};
+    const double begun = now();
+    take_version(&trial);
+    set_camera(&trial);
+    show(&trial);
+    await(&trial, false);
+    const double first = now() - begun, edit = time_edits(&trial);
+    const double camera = count_pictures(&trial, turn, &turned);
+    const double slider = count_pictures(&trial, slide, &slid);
+    char         edited[32];
+    snprintf(edited, sizeof edited, edit < 0 ? "-" : "%.0f", edit);
+    sheet_print(sheet, "| %s | %.1f | %s | %.1f | %u | %.1f | %u |\n", slash ? slash + 1 : path,
+                first, edited, camera, turned, slider, slid);
+    painter_free(trial.painter);
+    view_free(&trial.view);
+    document_free(trial.document);
+}
+
+int main(int argc, char **argv)
+{
+    KrsRenderer *renderer = device_open();
+    const char  *idle     = getenv("IDLE");
+    Sheet        sheet    = sheet_open("view", "The viewer", "make bench-view", renderer, false);
+    krs_renderer_free(renderer);
+    sheet_print(
+        &sheet,
+        "\nAt %dx%d, by the preview, with %.0f ms for a picture of what moves. *first*: seconds "
+        "until the first picture, with shaders; *edit*: milliseconds from a saved number to its "
+        "first picture, the median of %d, to which the watcher adds 50; then pictures a second "
+        "while the camera turns and while a slider is pulled (or time runs), and how wide they "
+        "are.\n\nThe window, when nothing happens, uses %s of a processor.\n\n",
+        WIDTH, HEIGHT, BUDGET, EDITS, idle && *idle ? idle : "an unknown part");
+    sheet_print(&sheet, "| scene | first | edit | camera | wide | slider | wide |\n"
+                        "| --- | --- | --- | --- | --- | --- | --- |\n");
+    for (int i = 1; i < argc; i++)
+        measure(&sheet, argv[i]);
+    sheet_close(&sheet);
+    return 0;
+}
