@@ -167,7 +167,7 @@ static void planes_do_not_hang_on_others(void **state)
 {
     Stage           *stage   = *state;
     const size_t     pixels  = (size_t)WIDTH * HEIGHT;
-    KrsRenderOptions options = {.samples = 3};
+    KrsRenderOptions options = {.samples = 3, .planes = KRS_PLANE_ALL};
     KrsPicture      *whole   = stage_render(stage, options);
     for (int bit = 0; KRS_PLANE_ALL >> bit; bit++) {
         /* What this leaves in memory is not to be taken for what has not been made. */
