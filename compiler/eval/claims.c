@@ -17,7 +17,8 @@
 
 /* ---- samples ---- */
 
-enum { SAMPLES = 400 };
+/* Samples, and the least of them where many operations make each one slow. */
+enum { SAMPLES = 400, LEAST_SAMPLES = 40, MANY_OPERATIONS = 5000 };
 
 /* What is sampled: numbers at points of a box, at the default values of the parameters. */
 typedef struct Sampling {
@@ -25,6 +26,7 @@ typedef struct Sampling {
     NodeValue *values;
     Box        around;
     double     size, rounding;
+    uint32_t   count; /* of samples */
     bool       flat; /* z stays 0 */
 } Sampling;
 
@@ -59,6 +61,9 @@ static bool start_sampling(Elaboration *e, Sampling *s, const Node *roots, size_
                                      : (Box){{{-10, 10}, {-10, 10}, {-10, 10}}};
     s->size     = box_diagonal(s->around);
     s->rounding = 1e-9 * (1 + s->size);
+    s->count    = (uint32_t)fmax(
+        fmin(SAMPLES, SAMPLES * (double)MANY_OPERATIONS / (double)(tape_operations(&s->tape) + 1)),
+        LEAST_SAMPLES);
     return s->size < 1e100;
 }
 
@@ -104,7 +109,7 @@ static bool check_slope_and_box(Elaboration *e, const Shape *shape, double slope
     Sampling s;
     if (!start_sampling(e, &s, &distance, 1, shape->box))
         return true;
-    for (uint32_t i = 0; i < SAMPLES; i++) {
+    for (uint32_t i = 0; i < s.count; i++) {
         double a[3], b[3], moved = 0;
         sample_point(i, s.around, a);
         sample_point(i + 7 * SAMPLES, (Box){{{-1, 1}, {-1, 1}, {-1, 1}}}, b);
@@ -162,7 +167,7 @@ static bool check_exact(Elaboration *e, const Shape *shape)
     if (!start_sampling(e, &s, &distance, 1, shape->box))
         return true;
     s.flat = shape->figure;
-    for (uint32_t i = 0; i < SAMPLES; i++) {
+    for (uint32_t i = 0; i < s.count; i++) {
         double point[3], gradient[3], end[3];
         sample_point(i, s.around, point);
         sample_at(&s, point);
@@ -247,7 +252,7 @@ static bool check_pairs(Elaboration *e, const Shape *shape, const ShapeClaims *c
     for (uint32_t k = 0; k < claims->count; k++) {
         const ShapeClaim *claim = &claims->items[k];
         s.flat                  = shape->figure && strcmp(claim->property, "figure") != 0;
-        for (uint32_t i = 0; i < SAMPLES; i++) {
+        for (uint32_t i = 0; i < s.count; i++) {
             double before[3], point[3];
             sample_point(i, s.around, before);
             sample_point(i + 1, s.around, point);
@@ -271,7 +276,7 @@ typedef struct Surfaces {
 static void find_surfaces(const Sampling *s, Node distance, Surfaces *surfaces)
 {
     surfaces->count = 0;
-    for (uint32_t i = 0; i < SAMPLES; i++) {
+    for (uint32_t i = 0; i < s->count; i++) {
         double a[3], b[3];
         sample_point(i, s->around, a);
         sample_point(i + 1, s->around, b);
@@ -300,7 +305,7 @@ static double distance_to(const Surfaces *surfaces, const double p[3])
 static bool check_bound(Elaboration *e, const Shape *shape, const Sampling *s,
                         const Surfaces *surfaces)
 {
-    for (uint32_t i = 0; i < SAMPLES; i++) {
+    for (uint32_t i = 0; i < s->count; i++) {
         double point[3];
         sample_point(i, s->around, point);
         sample_at(s, point);
