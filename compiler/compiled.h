@@ -86,6 +86,7 @@ typedef struct KrsProgram {
     bool          mirrors; /* a material is smooth enough to show images, or lets light through */
     bool          media;   /* a component may let light through: there are variants of KrsGlass */
     bool          layers;  /* a material has a coat, sheen, or a mirror other than usual */
+    bool          films;   /* a material may have a thin film */
     KrsMarchGroup march_groups[KRS_MOST_MARCH_GROUPS];
     size_t        march_group_count; /* 0: all components are marched together */
     bool          per_component;     /* it is faster to march one group after the other */

@@ -82,7 +82,8 @@ static bool sends_rays(Elaboration *e, const Material *material)
 static bool has_layers(Elaboration *e, const Material *material)
 {
 #define IS_USUAL(property) (material->property == root_otherwise(e->graph, ROOT_##property))
-    return !(IS_USUAL(coat) && IS_USUAL(sheen) && IS_USUAL(specular) && IS_USUAL(ior));
+    return !(IS_USUAL(coat) && IS_USUAL(sheen) && IS_USUAL(specular) && IS_USUAL(ior) &&
+             IS_USUAL(thin_film_weight));
 }
 
 Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *syntax)
@@ -98,6 +99,7 @@ Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *s
     e->in_material    = outer;
     e->scene->mirrors = e->scene->mirrors || sends_rays(e, material);
     e->scene->layers  = e->scene->layers || has_layers(e, material);
+    e->scene->films   = e->scene->films || !IS_USUAL(thin_film_weight);
     return (Value){.type = VALUE_MATERIAL, .material = material};
 }
 

@@ -94,6 +94,7 @@ typedef struct Scene {
     size_t     zone_count;
     bool       mirrors; /* a material is smooth enough to show images, or lets light through */
     bool       layers;  /* a material has a coat, sheen, or a mirror other than usual */
+    bool       films;   /* a material may have a thin film */
     SceneImage image;
     Box        box; /* around all components */
 } Scene;

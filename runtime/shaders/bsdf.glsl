@@ -11,6 +11,14 @@
  */
 
 #include "optics.glsl"
+#ifdef FILM // a material may have a thin film
+#include "thin_film.glsl"
+#define PART vec3 // of light, for each colour
+#define GLASS_PART vec4 // the same, and their luminance, by which directions are chosen
+#else
+#define PART float
+#define GLASS_PART float
+#endif
 
 // The least width of a lobe; at most so much a mirror blurs.
 const float LEAST_ALPHA = 1e-3;
@@ -73,7 +81,11 @@ struct Bsdf {
     float under_sheen, under_coat; // what comes through
     float more_of_coat, more_of_body; // light that bounces more than once
     vec3  more_of_metal;
-    float diffuse;            // what comes through the mirror
+    PART  diffuse;            // what comes through the mirror
+#ifdef FILM
+    float film, film_thickness, film_ior;
+    vec3  film_on_body, film_on_metal; // reflectance of films on them
+#endif
     vec4  shares;             // probabilities of sampling coat, mirror, glass, and the diffuse
 };
 
@@ -135,8 +147,24 @@ vec2 mirror(vec3 eye, vec3 light, float alpha, out float cosine)
 
 // ---- glass ----
 
+// The part of light that a microfacet mirrors.
+#ifdef FILM
+vec4 find_glass_part(Bsdf bsdf, float cosine)
+{
+    vec3 mirrors = find_film_on_glass(cosine, bsdf.eta, bsdf.film, bsdf.film_thickness,
+                                      bsdf.film_ior);
+    return vec4(mirrors, luminance(mirrors));
+}
+
+float find_mirrored_share(Bsdf bsdf, float cosine) { return find_glass_part(bsdf, cosine).a; }
+#else
+float find_glass_part(Bsdf bsdf, float cosine) { return fresnel(cosine, bsdf.eta); }
+
+float find_mirrored_share(Bsdf bsdf, float cosine) { return find_glass_part(bsdf, cosine); }
+#endif
+
 // The density of light that visible microfacets mirror, or refract, into a direction.
-float glass_density(Bsdf bsdf, vec3 light, bool refracts)
+GLASS_PART glass_density(Bsdf bsdf, vec3 light, bool refracts)
 {
     vec3  sum = refracts ? bsdf.eye + bsdf.eta * light : bsdf.eye + light;
     float size = max(length(sum), 1e-12);
@@ -145,16 +173,16 @@ float glass_density(Bsdf bsdf, vec3 light, bool refracts)
     float gap = to_eye + bsdf.eta * to_light;
     float spread = refracts ? square(bsdf.eta) * abs(to_light) / max(gap * gap, 1e-12)
                             : 0.25 / max(to_eye, 1e-6);
-    float mirrors = fresnel(clamp(to_eye, 0.0, 1.0), bsdf.eta);
     bool  meets = to_eye > 0.0 && (to_light < 0.0) == refracts;
     float density = find_visible(bsdf.eye, normal, bsdf.alpha) * spread;
-    return meets ? density * (refracts ? 1.0 - mirrors : mirrors) : 0.0;
+    GLASS_PART mirrors = find_glass_part(bsdf, clamp(to_eye, 0.0, 1.0));
+    return meets ? density * (refracts ? 1.0 - mirrors : mirrors) : GLASS_PART(0.0);
 }
 
 // The density of light that glass sends into a direction.  What a microfacet mirrors or refracts to
 // the wrong side of the surface is sent to the right one, upside down.  So all light leaves, as if
 // it went on between microfacets.
-float glass_towards(Bsdf bsdf, vec3 light)
+GLASS_PART glass_towards(Bsdf bsdf, vec3 light)
 {
     vec3 upside_down = vec3(light.xy, -light.z);
     bool refracts = light.z < 0.0;
@@ -173,6 +201,25 @@ float sheen_towards(Bsdf bsdf, vec3 light)
 }
 
 // ---- all of it ----
+
+#ifdef FILM
+// A film's colour is that in which the eye sees the surface as a whole, so that no light is lost on
+// rough ones.  `all`: what microfacets send back that mirror all.
+void add_film(inout Bsdf bsdf, KrsSurface surface, float all)
+{
+    bsdf.film = surface.thin_film_weight;
+    bsdf.film_thickness = surface.thin_film_thickness;
+    bsdf.film_ior = surface.thin_film_ior;
+    if (bsdf.film <= 0.0)
+        return;
+    vec3 on_body = find_filmed(bsdf.eye.z, bsdf.film_thickness, bsdf.film_ior,
+                               ior_of(vec3(bsdf.head_on)));
+    vec3 on_metal = find_filmed(bsdf.eye.z, bsdf.film_thickness, bsdf.film_ior, ior_of(bsdf.color));
+    float more = (1.0 - all) / all;
+    bsdf.film_on_body = on_body * (1.0 + on_body * more);
+    bsdf.film_on_metal = on_metal * (1.0 + on_metal * more);
+}
+#endif
 
 // `entering`: the ray comes from outside.  The eye's direction may lie below the horizon by
 // rounding.
@@ -209,18 +256,24 @@ Bsdf make_bsdf(KrsSurface surface, bool entering, vec3 eye)
     float lost = (1.0 - all.x) / all.x;
     bsdf.more_of_body = 1.0 + bsdf.head_on * lost;
     bsdf.more_of_metal = 1.0 + bsdf.color * lost;
-    float mirrored = bsdf.more_of_body * (bsdf.head_on * (all.x - all.y) + bsdf.grazing * all.y);
+    PART mirrored = PART(bsdf.more_of_body *
+                         (bsdf.head_on * (all.x - all.y) + bsdf.grazing * all.y));
+    vec3 metal = bsdf.metallic * bsdf.more_of_metal * (bsdf.color * (all.x - all.y) + all.y);
+#ifdef FILM
+    add_film(bsdf, surface, all.x);
+    mirrored = mix(mirrored, bsdf.film_on_body * all.x, bsdf.film);
+    metal = mix(metal, bsdf.metallic * bsdf.film_on_metal * all.x, bsdf.film);
+#endif
     bsdf.diffuse = 1.0 - mirrored;
 
     float body = (1.0 - bsdf.metallic) * (1.0 - surface.transmission);
-    vec3  metal = bsdf.metallic * bsdf.more_of_metal * (bsdf.color * (all.x - all.y) + all.y);
     vec4  shares;
     bsdf.mirrored = metal + body * mirrored;
     shares.x = bsdf.under_sheen * bsdf.coated;
     shares.y = bsdf.under_coat * luminance(bsdf.mirrored);
     shares.z = bsdf.under_coat * bsdf.glass;
     shares.w = luminance(bsdf.sheen) * bsdf.fuzzy +
-               bsdf.under_coat * body * bsdf.diffuse * max(luminance(bsdf.color), 0.05);
+               bsdf.under_coat * body * luminance(bsdf.diffuse) * max(luminance(bsdf.color), 0.05);
     bsdf.shares = shares / max(dot(shares, vec4(1.0)), 1e-6);
     return bsdf;
 }
@@ -229,9 +282,17 @@ Bsdf make_bsdf(KrsSurface surface, bool entering, vec3 eye)
 // sampling that direction.
 vec4 scatter(Bsdf bsdf, vec3 light)
 {
-    float glass = bsdf.glass > 0.0 ? bsdf.glass * glass_towards(bsdf, light) : 0.0;
-    vec3  sum = bsdf.under_coat * glass * (light.z < 0.0 ? bsdf.color : vec3(1.0));
-    float density = bsdf.glass > 0.0 ? bsdf.shares.z * glass / bsdf.glass : 0.0;
+    GLASS_PART glass = GLASS_PART(0.0);
+    if (bsdf.glass > 0.0)
+        glass = bsdf.glass * glass_towards(bsdf, light);
+#ifdef FILM
+    vec3  through = glass.rgb;
+    float by_glass = glass.a;
+#else
+    float through = glass, by_glass = glass;
+#endif
+    vec3  sum = bsdf.under_coat * through * (light.z < 0.0 ? bsdf.color : vec3(1.0));
+    float density = bsdf.glass > 0.0 ? bsdf.shares.z * by_glass / bsdf.glass : 0.0;
     if (light.z > 0.0) {
         float facing;
         vec2  coat = mirror(bsdf.eye, light, bsdf.coat_alpha, facing);
@@ -239,10 +300,15 @@ vec4 scatter(Bsdf bsdf, vec3 light)
         sum += bsdf.under_sheen * bsdf.coat * bsdf.more_of_coat * edge * coat.x;
         vec2  all = mirror(bsdf.eye, light, bsdf.alpha, facing);
         float body = (1.0 - bsdf.metallic) - bsdf.glass;
-        vec3  metal = bsdf.color + (1.0 - bsdf.color) * schlick(facing);
         edge = bsdf.head_on + (bsdf.grazing - bsdf.head_on) * schlick(facing);
-        sum += bsdf.under_coat * all.x *
-               (bsdf.metallic * bsdf.more_of_metal * metal + body * bsdf.more_of_body * edge);
+        PART of_body = PART(body * bsdf.more_of_body * edge);
+        vec3 metal = bsdf.color + (1.0 - bsdf.color) * schlick(facing);
+        metal *= bsdf.metallic * bsdf.more_of_metal;
+#ifdef FILM
+        of_body = mix(of_body, body * bsdf.film_on_body, bsdf.film);
+        metal = mix(metal, bsdf.metallic * bsdf.film_on_metal, bsdf.film);
+#endif
+        sum += bsdf.under_coat * all.x * (metal + of_body);
         sum += bsdf.under_coat * body * bsdf.diffuse * bsdf.color * (light.z / PI);
         sum += bsdf.sheen * sheen_towards(bsdf, light);
         density += bsdf.shares.x * coat.y + bsdf.shares.y * all.y + bsdf.shares.w * light.z / PI;

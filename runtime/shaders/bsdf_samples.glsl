@@ -21,7 +21,7 @@ vec3 sample_glass(Bsdf bsdf, vec2 square_point, float choice)
     vec3  normal = sample_visible(bsdf.eye, bsdf.alpha, square_point);
     float cosine = clamp(dot(bsdf.eye, normal), 0.0, 1.0);
     float beyond = max(1.0 - (1.0 - cosine * cosine) / square(bsdf.eta), 0.0);
-    bool  mirrors = choice < fresnel(cosine, bsdf.eta);
+    bool  mirrors = choice < find_mirrored_share(bsdf, cosine);
     vec3  light = mirrors ? 2.0 * cosine * normal - bsdf.eye
                           : (cosine / bsdf.eta - sqrt(beyond)) * normal - bsdf.eye / bsdf.eta;
     light.z = mirrors ? abs(light.z) : -abs(light.z);

@@ -6,6 +6,9 @@
  */
 #include "optics.glsl"
 #include "boundary.glsl"
+#ifdef FILM
+#include "thin_film.glsl"
+#endif
 
 // Roughnesses below which a ray finds what a surface mirrors, and above which it is the sky alone:
 // of metals, and of others.
@@ -42,7 +45,14 @@ Onward find_onward(HitPoint hit, KrsSurface surface, Boundary boundary, vec3 nor
     bool  refracts = glass > 0.0 && back < 1.0;
     onward.direction = refracts ? refract(hit.direction, normal, 1.0 / eta)
                                 : reflect(hit.direction, normal);
-    onward.part = refracts      ? glass * (1.0 - back) * clamp(surface.color, 0.0, 1.0)
+    vec3 through = vec3(1.0 - back);
+#ifdef FILM
+    through = 1.0 - find_film_on_glass(clamp(-dot(hit.direction, normal), 0.0, 1.0), eta,
+                                       clamp(surface.thin_film_weight, 0.0, 1.0),
+                                       clamp(surface.thin_film_thickness, 0.0, 1e3),
+                                       clamp(surface.thin_film_ior, 1.0, 4.0));
+#endif
+    onward.part = refracts      ? glass * through * clamp(surface.color, 0.0, 1.0)
                   : glass > 0.0 ? vec3(glass)
                                 : mirrored;
     onward.side = refracts ? -1.0 : 1.0;

@@ -8,6 +8,8 @@ float square(float x) { return x * x; }
 
 float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }
 
+float luminance(float gray) { return gray; }
+
 // The reflectance of a boundary between two media.
 float fresnel(float cosine, float eta)
 {

@@ -103,6 +103,16 @@ static void want_sky(KernelVariant *to, const KrsRendering *rendering)
     want(to, KRS_FUNCTION_ARCS);
 }
 
+/* Phases of waves need cosines. */
+static void want_films(KernelVariant *to, const KrsRendering *rendering)
+{
+    if (!rendering->program->films)
+        return;
+    define(to, "#define FILM\n");
+    if (!wants(to, KRS_FUNCTION_SINES))
+        want(to, KRS_FUNCTION_SINES);
+}
+
 /* ---- variants for a rendering ---- */
 
 /* Not on lavapipe, which compiles a sum over the lanes to a loop. */
@@ -233,6 +243,7 @@ KernelVariant variant_of_shade(const KrsRendering *rendering)
         define(&to, "#define MIRRORS\n");
     if (rendering->program->layers)
         define(&to, "#define LAYERS\n");
+    want_films(&to, rendering);
     want_sky(&to, rendering);
     define_choices(&to);
     return to;
@@ -246,6 +257,7 @@ KernelVariant variant_of_scatter(const KrsRendering *rendering)
     want(&to, KRS_FUNCTION_SINES);
     if (rendering->program->emits)
         define(&to, "#define EMISSIVE\n");
+    want_films(&to, rendering);
     want_media(&to, rendering);
     want_sky(&to, rendering);
     define_choices(&to);

@@ -15,6 +15,9 @@ struct KrsSurface {
     float coat_roughness;
     vec3  sheen;
     float sheen_roughness;
+    float thin_film_weight;
+    float thin_film_thickness;
+    float thin_film_ior;
     uint  component;
     uint  level;
     uint  instance;
@@ -164,7 +167,7 @@ KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
     bool b2 = s0 < s1;
     float t3 = mix(0.0, 2.0, b2);
     uint n4 = b2 ? n0 : n1;
-    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 1u, uint(t3), n4, 0u, normal);
+    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 1u, uint(t3), n4, 0u, normal);
 }
 
 float krs_distance(vec3 p)

@@ -33,6 +33,7 @@ static const char furnace[] =
     "param rough = 0.5 in [0, 1]; param metal = 0 in [0, 1]; param glass = 0 in [0, 1];\n"
     "param lacquer = 0 in [0, 1]; param lacquer_rough = 0 in [0, 1];\n"
     "param fuzz = 0 in [0, 1]; param fuzz_rough = 0.5 in [0, 1];\n"
+    "param film = 0 in [0, 1]; param thick = 0.4 in [0, 9];\n"
     "param index = 1.5 in [1, 4]; param mirrors = 1 in [0, 1]; param shade = [1, 1, 1];\n"
     "camera { eye: [0, 0, 5], projection: \"orthographic\", height: 2 }\n"
     "param day = 1 in [0, 1]; param bright = 0 in [0, 100]; param size = 0.1 in [0.1, 900];\n"
@@ -43,7 +44,8 @@ static const char furnace[] =
     "show sphere(size).move([600, 640, 480]).paint(lamp);\n"
     "material m { color: shade, roughness: rough, metallic: metal, transmission: glass,\n"
     "             coat: lacquer, coat_roughness: lacquer_rough, sheen: [fuzz, fuzz, fuzz],\n"
-    "             sheen_roughness: fuzz_rough, ior: index, specular: mirrors }\n"
+    "             sheen_roughness: fuzz_rough, ior: index, specular: mirrors,\n"
+    "             thin_film_weight: film, thin_film_thickness: thick }\n"
     "show sphere(1).paint(m);\n";
 
 enum { MOST_NUMBERS = 8 };
@@ -75,9 +77,13 @@ static const White whites[] = {
     {"smooth cloth", {{"fuzz", 1}, {"fuzz_rough", 0}}},
     {"rough cloth", {{"fuzz", 1}, {"fuzz_rough", 1}}},
     {"half cloth", {{"fuzz", 0.5}, {"fuzz_rough", 0.8}}},
+    {"a film on a dielectric", {{"film", 1}, {"index", 2}}},
+    {"a thick film on a metal", {{"film", 1}, {"metal", 1}, {"thick", 3}}},
+    {"a bubble", {{"film", 1}, {"glass", 1}, {"index", 1.2}}},
     {"all at once",
      {{"metal", 0.3},
       {"glass", 0.4},
+      {"film", 0.5},
       {"lacquer", 0.6},
       {"lacquer_rough", 0.4},
       {"fuzz", 0.5},
@@ -85,8 +91,9 @@ static const White whites[] = {
 };
 enum { WHITES = sizeof whites / sizeof *whites };
 
-static const char *const parameters[] = {"rough", "metal",      "glass", "lacquer", "lacquer_rough",
-                                         "fuzz",  "fuzz_rough", "index", "mirrors"};
+static const char *const parameters[] = {"rough",         "metal", "glass",      "lacquer",
+                                         "lacquer_rough", "fuzz",  "fuzz_rough", "index",
+                                         "mirrors",       "film",  "thick"};
 
 static PathStage stage;
 
@@ -106,7 +113,7 @@ static int close_furnace(void **state)
 
 static void paint(const White *white, double roughness)
 {
-    static const double usual[] = {0, 0, 0, 0, 0, 0, 0.5, 1.5, 1};
+    static const double usual[] = {0, 0, 0, 0, 0, 0, 0.5, 1.5, 1, 0, 0.4};
     for (size_t i = 0; i < sizeof usual / sizeof *usual; i++)
         path_stage_set(&stage, parameters[i], usual[i]);
     path_stage_set(&stage, "rough", roughness);
