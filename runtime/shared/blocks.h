@@ -70,6 +70,9 @@ CONSTANT(SKY_ITSELF, 512 + 4 * 2048 + 8192 + 32768);
 
 /* uniform FrameBlock, std140. */
 struct Frame {
+    /* Of a sky that is a picture: its columns and rows, or 0; its rotation in radians; a factor.  It
+       comes first: lavapipe compiles kernels anew for each value of a block's first number. */
+    vec4  sky_map;
     vec3  eye;
     float farthest;  /* no ray goes farther */
     vec4  right, up; /* to the edges of the picture; at distance 1 in perspective */
@@ -87,9 +90,7 @@ struct Frame {
     float normal_reach; /* radius of the taps for a normal, in pixels */
     /* With LENS: the radius of the lens in `right` and in `up`, 1 / the distance of what is sharp,
        corners of the aperture; 0: it is round. */
-    vec4 lens;
-    /* Of a sky that is a picture: its columns and rows, or 0; its rotation in radians; a factor. */
-    vec4  sky_map;
+    vec4  lens;
     float sky_power; /* the mean irradiance by the sky, by which paths choose it */
     uint  emissive_count;
     uint  gap_a, gap_b;
@@ -124,6 +125,7 @@ struct PointWork {
 #ifdef __STDC_VERSION__
 typedef struct Frame FrameBlock;
 static_assert(sizeof(FrameBlock) == 272, "std140");
+static_assert(offsetof(FrameBlock, sky_map) == 0, "what no camera changes comes first");
 typedef struct Work WorkBlock;
 static_assert(sizeof(WorkBlock) == 40, "std430");
 typedef struct NextDispatch NextDispatchBlock;
