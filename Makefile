@@ -63,6 +63,7 @@ RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tra
 LIVE     := $(sort $(wildcard live/*.c))
 LIVE_BORDER := live/gui.cpp
 CLI      := $(sort $(wildcard cli/*.c))
+CLI_BORDER := cli/mesh_border.cpp
 
 # Text files that the program carries: the standard library, what scenes and kernels share, kernels.
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))
@@ -82,15 +83,16 @@ LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLC
             -lstdc++ -lm -pthread
 # Of the command alone.
 WINDOW_LIBS := -limgui -lstb -lglfw -lGL -lX11
+MESH_LIBS := -ltinygltf -l3MF
 
 COMPILER := $(BASE) $(IMAGE) $(OUTLINE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API) $(MESH)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
             $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o
 
 all: $(B)/krs
-$(B)/krs: $(CLI:%.c=$(B)/%.o) $(B)/live.a $(B)/libkrs.a
+$(B)/krs: $(CLI:%.c=$(B)/%.o) $(CLI_BORDER:%.cpp=$(B)/%.o) $(B)/live.a $(B)/libkrs.a
 	@echo "link   $@"
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(WINDOW_LIBS) $(LIBS)
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(WINDOW_LIBS) $(MESH_LIBS) $(LIBS)
 # What the command has for scenes that are open: a client of the library, and no part of it.
 $(B)/live.a: $(LIVE:%.c=$(B)/%.o) $(LIVE_BORDER:%.cpp=$(B)/%.o)
 	@rm -f $@
@@ -114,7 +116,7 @@ $(B)/compiler/graph/lanes_avx512.o: FAST += -mavx512f -mavx512dq -mavx512vl -mpr
 $(B)/%.o: %.cpp
 	@mkdir -p $(@D)
 	@echo "compile $<"
-	@$(CXX) -std=c++17 -Wall -Wextra -I. -I/usr/include/glslang -I/usr/include/imgui -MMD -MP $(CFLAGS) -c -o $@ $<
+	@$(CXX) -std=c++17 -Wall -Wextra -I. -I/usr/include/glslang -I/usr/include/imgui -I/usr/include/lib3mf -MMD -MP $(CFLAGS) -c -o $@ $<
 $(B)/%.o: $(B)/%.c
 	@$(CC) $(STYLE) $(CFLAGS) -c -o $@ $<
 $(B)/library_files.c: $(B)/embed $(LIBRARY)

@@ -62,6 +62,12 @@ const Choice on_off_choices[]      = {{"on", ""}, {"off", ""}, LAST};
 const Choice on_choices[]          = {{"host", ""}, {"device", ""}, LAST};
 const Choice when_choices[]        = {{"auto", ""}, {"always", ""}, {"never", ""}, LAST};
 const Choice diagnostics_choices[] = {{"text", ""}, {"json", ""}, LAST};
+const Choice split_choices[]       = {{"none", "one mesh of all"},
+                                      {"components", "a mesh for each component, by its name"},
+                                      {"materials", "triangles keep the names of their materials"},
+                                      LAST};
+const Choice unit_choices[]        = {{"mm", ""}, {"um", ""}, {"cm", ""}, {"m", ""},
+                                      {"in", ""}, {"ft", ""}, LAST};
 const Choice json_choices[]        = {{"json", ""}, LAST};
 const Choice pass_choices[]        = {
 #define PASS(name, validate, meaning)          {#name, ""},

@@ -4,27 +4,28 @@
 #ifndef KRS_MESH_FILES_H
 #define KRS_MESH_FILES_H
 
+#include "cli/mesh_border.h"
 #include "cli/supervise.h"
 
-/* A mesh as it is written: in the units of the file. */
+/* A mesh that is being written. */
 typedef struct MeshFile {
-    const KrsMesh *mesh;
-    double         scale;
-    const unsigned char (*colors)[3]; /* of vertices, sRGB */
-    OutputFile *file;
-    char        buffer[1 << 16];
-    size_t      length;
+    const MeshParts *parts;
+    size_t           vertex_count, triangle_count; /* of all parts */
+    OutputFile      *file;
+    char             buffer[1 << 16];
+    size_t           length;
 } MeshFile;
 
 typedef struct MeshFormat {
     const char *ending;
+    bool        has_parts, has_units;
     bool (*write)(MeshFile *file);
 } MeshFormat;
 
 /* The format by the ending of a path; NULL: there is none. */
 const MeshFormat *mesh_format(const char *path);
-/* ".stl, .ply or .obj" */
-#define MESH_ENDINGS ".stl, .ply or .obj"
+/* ".stl, .ply, .obj, .glb or .3mf" */
+#define MESH_ENDINGS ".stl, .ply, .obj, .glb or .3mf"
 
 /* Writes all but what the writer left in the buffer, and that. */
 bool mesh_file_write(MeshFile *file, const MeshFormat *format);

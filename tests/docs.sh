@@ -9,7 +9,7 @@ krs=${KRS:-build/krs}
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 pages="README.md docs/tutorial.md docs/coming-from.md docs/language.md docs/library.md docs/architecture.md docs/details.md
-docs/viewer.md docs/how-it-works.md docs/glossary.md bench/README.md bench/measurements.md"
+docs/viewer.md docs/meshes.md docs/how-it-works.md docs/glossary.md bench/README.md bench/measurements.md"
 failed=0
 report() { # status, name
     if [ "$1" -eq 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failed=1; fi

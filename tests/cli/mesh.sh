@@ -1,7 +1,7 @@
 #!/bin/sh
 # mesh.sh: `krs mesh`: files that other programs accept, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 11
+plan 18
 
 echo 'show sphere(0.5).paint(#ff8800);' >ball.krs
 echo 'let floor = half_space([0, 1, 0], 0); show floor; let ball = sphere(1); show ball;' >floor.krs
@@ -37,7 +37,72 @@ said 2 "it has \`floor\`, \`ball\`" "components are named"
 run mesh empty.krs
 said 1 "nothing to write" "nothing is no mesh"
 run mesh ball.krs -o ball.xyz
-said 2 ".stl, .ply or .obj" "formats are named"
+said 2 ".stl, .ply, .obj, .glb or .3mf" "formats are named"
 run mesh ball.krs --error 1e-9
 [ "$status" -eq 2 ] && no_temporaries
 result $? "errors below what numbers tell are refused"
+
+cat >two.krs <<'END'
+material red { color: #d02010, roughness: 0.3 }
+let ball  = sphere(0.5).paint(red);
+let stand = box([1, 0.3, 1]).move([0, -1, 0]).paint(#20c040);
+show ball;
+show stand;
+END
+# What assimp counts in a file: counted FILE WORD.
+counted() { assimp info "$1" 2>&1 | sed -n "s/^$2: *\([0-9]\)/\1/p"; }
+run mesh --quiet two.krs --error 0.05 -o t.stl -o t.ply -o t.obj -o t.glb -o t.3mf
+triangles=$(grep -c '^f' t.obj)
+if command -v assimp >/dev/null; then
+    bad=0
+    for file in t.stl t.ply t.obj t.glb; do
+        [ "$(counted $file Faces)" = "$triangles" ] || bad=1
+        assimp info $file | grep -q '^Minimum point *(-0.500000 -1.1500' || bad=1
+    done
+    [ "$status" -eq 0 ] && [ $bad -eq 0 ]
+    result $? "assimp reads the triangles of each format, where they are"
+    run mesh --quiet two.krs --error 0.5 --units mm --size 20 --split components -o s.glb
+    [ "$(counted s.glb Meshes)" = 2 ] && assimp info s.glb | grep -q '0 (ball)' &&
+        assimp info s.glb | grep -q '^Maximum point *(0.006'
+    result $? "GLB has a mesh for each component, in metres"
+    run mesh --quiet two.krs --error 0.05 --split materials -o s.glb
+    [ "$(counted s.glb Materials)" = 2 ] && assimp info s.glb | grep -q "'red'"
+    result $? "and its triangles by material"
+else
+    skip "assimp reads the triangles of each format, where they are" "no assimp"
+    skip "GLB has a mesh for each component, in metres" "no assimp"
+    skip "and its triangles by material" "no assimp"
+fi
+run mesh --quiet two.krs --error 0.05 --units in --split materials -o s.3mf
+if command -v python3 >/dev/null; then
+    python3 - "$triangles" >out 2>err <<'END'
+import sys, zipfile
+import xml.etree.ElementTree as tree
+model = tree.fromstring(zipfile.ZipFile("s.3mf").read("3D/3dmodel.model"))
+name = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
+edges = {}
+triangles = list(model.iter(name + "triangle"))
+for triangle in triangles:
+    corners = [triangle.get(k) for k in ("v1", "v2", "v3")]
+    for k in range(3):
+        edge = (corners[k], corners[(k + 1) % 3])
+        edges[edge] = edges.get(edge, 0) + 1
+colors = {base.get("name"): base.get("displaycolor") for base in model.iter(name + "base")}
+assert len(triangles) == int(sys.argv[1]) and model.get("unit") == "inch"
+assert all(n == 1 and edges.get((b, a)) == 1 for (a, b), n in edges.items())
+assert colors == {"red": "#D02010FF", "colour": "#20C040FF"}
+assert len({triangle.get("p1") for triangle in triangles}) == 2
+END
+    result $? "3MF has the closed mesh, its unit, and materials by triangle"
+else
+    skip "3MF has the closed mesh, its unit, and materials by triangle" "no python3"
+fi
+run mesh --quiet two.krs --error 0.05 --split components -o s.obj
+[ "$(grep '^o' s.obj)" = "o ball
+o stand" ] && [ "$(awk '$1 == "o" { part = $2 } $1 == "f" && part == "stand" { n++ } END { print (n > 100) }' \
+    n=0 s.obj)" = 1 ]
+result $? "OBJ has a group for each component"
+run mesh two.krs --split components -o s.stl
+said 2 "has no parts" "STL has none"
+run mesh two.krs --units furlong -o s.3mf
+ended 2 "units are known"
