@@ -27,7 +27,7 @@ typedef struct Sampling {
     Box        around;
     double     size, rounding;
     uint32_t   count; /* of samples */
-    bool       flat; /* z stays 0 */
+    bool       flat;  /* z stays 0 */
 } Sampling;
 
 /* Points for sampling: a fixed sequence (Roberts' R3), spread over a box. */
@@ -62,8 +62,8 @@ static bool start_sampling(Elaboration *e, Sampling *s, const Node *roots, size_
     s->size     = box_diagonal(s->around);
     s->rounding = 1e-9 * (1 + s->size);
     s->count    = (uint32_t)fmax(
-        fmin(SAMPLES, SAMPLES * (double)MANY_OPERATIONS / (double)(tape_operations(&s->tape) + 1)),
-        LEAST_SAMPLES);
+           fmin(SAMPLES, SAMPLES * (double)MANY_OPERATIONS / (double)(tape_operations(&s->tape) + 1)),
+           LEAST_SAMPLES);
     return s->size < 1e100;
 }
 

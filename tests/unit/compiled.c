@@ -96,11 +96,10 @@ static VkPipelineLayout make_layout(Gpu *gpu)
     VkPipelineLayout             layout;
     for (int set = 0; set < SETS; set++) {
         for (uint32_t i = 0; i < BINDINGS; i++)
-            bindings[i] =
-                (VkDescriptorSetLayoutBinding){.binding         = i,
-                                               .descriptorCount = 1,
-                                               .stageFlags      = VK_SHADER_STAGE_COMPUTE_BIT,
-                                               .descriptorType  = type_of_binding(set, i)};
+            bindings[i] = (VkDescriptorSetLayoutBinding){.binding         = i,
+                                                         .descriptorCount = 1,
+                                                         .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
+                                                         .descriptorType = type_of_binding(set, i)};
         assert_int_equal(vkCreateDescriptorSetLayout(
                              gpu->device,
                              &(VkDescriptorSetLayoutCreateInfo){
