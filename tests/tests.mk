@@ -130,7 +130,7 @@ bless: $(B)/krs
 test: deps
 	@$(MAKE) --no-print-directory -j$(JOBS) all test-programs clang-check fuzzers
 	@$(MAKE) --no-print-directory -j$(JOBS) sanitize
-	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=300 \
+	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=480 \
 	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") \
 	    JOBS=$(TEST_JOBS) $(BESIDE) $(PROGRAMS:%=$(B)/%) $(SANITIZED:%=$(B)/asan/%) \
 	    JOBS=1 $(SCRIPTS) JOBS=$(TEST_JOBS) \

@@ -7,11 +7,11 @@ shift
 cd "$(dirname "$0")/.." || exit 1
 [ $# -gt 0 ] || set -- gear machined-part school rock temple grove reef palm olive fern fractals \
     lamps inversion cabinet sextic lattice town bath lighthouse \
-    chess snow-globe gasket city sign logo bolt rope mug vase spring jewel
+    chess snow-globe gasket city sign logo bolt rope mug vase spring jewel dodecahedron
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 for name in "$@"; do
     samples=16
-    case $name in jewel | chess) samples=256 ;; esac
+    case $name in jewel | chess | dodecahedron) samples=256 ;; esac
     scene=$(ls examples/??-"$name".krs) || exit 1
     picture=docs/pictures/$name.png
     "$build/krs" render "$scene" --quiet --size 960x540 --samples $samples -o "$work/$name.png" &&

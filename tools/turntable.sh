@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.." || exit 1
 frames=36 rate=18 size=400x340 samples=16
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 sed -e "s/\[0, 1, 0\], turn)/[0, 1, 0], turn + 72deg * time * $rate \/ $frames)/" \
-    -e 's/target: \[0.1, 1.5, 0\], fov: 31deg/target: [0, 1.5, 0], fov: 27deg/' \
+    -e 's/target: \[0.1, 1.5, 0\], fov: 31deg/target: [0, 1.63, 0], fov: 29deg/' \
     examples/35-jewel.krs >"$work/turntable.krs"
 grep -q '72deg \* time' "$work/turntable.krs" || exit 1
 "$build/krs" render "$work/turntable.krs" --integrator preview --size $size --samples $samples \
