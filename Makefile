@@ -81,8 +81,9 @@ LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLC
             -lSPVRemapper -lglslang-default-resource-limits -lSPIRV-Tools-opt -lSPIRV-Tools \
             -lharfbuzz -lfreetype -lfontconfig -lexpat -lOpenEXRCore-3_1 -lpng -lxxhash -lqhull_r -lvulkan \
             -lstdc++ -lm -pthread
-# Of the command alone.
-WINDOW_LIBS := -limgui -lstb -lglfw -lGL -lX11
+# Of the command alone.  Without libchafa `krs view --terminal` says so.
+CHAFA    := $(shell pkg-config --exists chafa && echo chafa)
+WINDOW_LIBS := $(if $(CHAFA),$(shell pkg-config --libs chafa)) -limgui -lstb -lglfw -lGL -lX11
 MESH_LIBS := -ltinygltf -l3MF
 
 COMPILER := $(BASE) $(IMAGE) $(OUTLINE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API) $(MESH)
@@ -107,6 +108,7 @@ $(B)/%.o: %.c
 	@$(CC) $(STYLE) $(CFLAGS) $(FAST) -c -o $@ $<
 # Its libraries have their headers in folders of their own.
 $(B)/compiler/outline/letters.o: STYLE += $(shell pkg-config --cflags freetype2 harfbuzz)
+$(B)/live/cells.o: STYLE += $(if $(CHAFA),-DKRS_HAS_CHAFA $(shell pkg-config --cflags chafa | sed 's/-I/-isystem /g'))
 # Loops over lanes become vector instructions; results are the same on every machine.  What sanitizers
 # watch cannot become such: trying it takes minutes, and clang warns that it failed.
 $(LANES:%.c=$(B)/%.o): FAST := $(if $(findstring -fsanitize,$(CFLAGS)),-Wno-pass-failed,-O3) \

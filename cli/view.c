@@ -44,7 +44,8 @@ static KrsStatus check_use(const Options *options)
     if (is_input(options, path))
         return say_usage(options, "standard input has one text; view a file");
     KrsStatus status = scene_readable(options, path);
-    if (status == KRS_OK && (options->settings.count > 0 || options->zone_count > 0))
+    if (status == KRS_OK &&
+        (options->settings.count > 0 || options->zone_count > 0 || options->terminal))
         status = check_settings(options);
     return status;
 }
@@ -63,22 +64,25 @@ KrsStatus command_view(Options *options)
         settings[i] = (ViewerSetting){options->settings.items[i].name,
                                       options->settings.items[i].values,
                                       options->settings.items[i].count};
-    const ViewerOptions with = {.path          = path,
-                                .scene         = scene_options(&sink, path),
-                                .renderer      = renderer_options(options),
-                                .width         = options->how.width,
-                                .height        = options->how.height,
-                                .samples       = options->how.samples,
-                                .integrator    = options->how.integrator,
-                                .camera        = options->camera,
-                                .time          = options->time,
-                                .fps           = options->fps,
-                                .settings      = settings,
-                                .setting_count = options->settings.count,
-                                .zones         = options->zones,
-                                .zone_count    = options->zone_count,
-                                .stopped       = is_stopped,
-                                .lost          = lose_display};
+    ViewerOptions with = {.path          = path,
+                          .scene         = scene_options(&sink, path),
+                          .renderer      = renderer_options(options),
+                          .width         = options->how.width,
+                          .height        = options->how.height,
+                          .samples       = options->how.samples,
+                          .integrator    = options->how.integrator,
+                          .camera        = options->camera,
+                          .time          = options->time,
+                          .fps           = options->fps,
+                          .settings      = settings,
+                          .setting_count = options->settings.count,
+                          .zones         = options->zones,
+                          .zone_count    = options->zone_count,
+                          .terminal      = options->terminal,
+                          .stopped       = is_stopped,
+                          .lost          = lose_display};
+    if (options->terminal) /* its screen is for the picture, which has the mistakes below it */
+        with.scene.diagnostic = NULL;
     stage_enter(STAGE_WAIT);
     status = viewer_run(&with, message);
     if (message[0])

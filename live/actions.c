@@ -157,9 +157,11 @@ static void act_redo(Viewing *viewing)
 static void act_copy_camera(Viewing *viewing)
 {
     char *text = camera_text(&viewing->view.camera);
-    if (text)
+    if (text && viewing->window)
         window_copy(viewing->window, text);
-    viewing_notice(viewing, "the camera is on the clipboard");
+    viewing_notice(viewing, viewing->window
+                                ? "the camera is on the clipboard"
+                                : "a terminal has no clipboard; Ctrl E writes it into the file");
     free(text);
 }
 
@@ -317,7 +319,12 @@ static void act_panels(Viewing *viewing) { viewing->panels = !viewing->panels; }
 
 static void act_help(Viewing *viewing) { viewing->help = !viewing->help; }
 
-static void act_quit(Viewing *viewing) { window_ask_to_close(viewing->window); }
+static void act_quit(Viewing *viewing)
+{
+    viewing->ended = true;
+    if (viewing->window)
+        window_ask_to_close(viewing->window);
+}
 
 static void act_close(Viewing *viewing)
 {
@@ -397,9 +404,25 @@ void act_click(void *user, int button, int modifiers)
 
 /* ---- what goes on by itself ---- */
 
+/* A terminal does not tell which keys are held: each press goes a step. */
+bool act_fly_step(Viewing *viewing, int key)
+{
+    const double step  = 0.1;
+    const double ahead = key == GLFW_KEY_W ? step : key == GLFW_KEY_S ? -step : 0;
+    const double right = key == GLFW_KEY_D ? step : key == GLFW_KEY_A ? -step : 0;
+    const double up    = key == GLFW_KEY_E ? step : key == GLFW_KEY_Q ? -step : 0;
+    if (ahead == 0 && right == 0 && up == 0)
+        return false;
+    orbit_fly(&viewing->view.camera, ahead, right, up);
+    changed(viewing);
+    return true;
+}
+
 /* -1, 0 or 1 by two keys that are held. */
 static double held(const Viewing *viewing, int less, int more)
 {
+    if (!viewing->window)
+        return 0;
     return (window_key_is_held(viewing->window, more) ? 1 : 0) -
            (window_key_is_held(viewing->window, less) ? 1 : 0);
 }

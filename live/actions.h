@@ -21,6 +21,8 @@ void act_key(void *viewing, int key, int modifiers);
 void act_scroll(void *viewing, double steps);
 void act_drag(void *viewing, int button, int modifiers, double right, double down);
 void act_click(void *viewing, int button, int modifiers);
+/* Flies a step by one of the keys for it; false: it is another key. */
+bool act_fly_step(Viewing *viewing, int key);
 /* Moves on what is held or plays.  Whether anything does. */
 bool act_run(Viewing *viewing);
 

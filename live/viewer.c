@@ -35,7 +35,7 @@ static void *read_scene(void *user)
         const KrsStatus status = document_read(viewing->document);
         if (status == KRS_CANNOT_CREATE)
             atomic_store(&viewing->read_status, status);
-        window_wake();
+        viewing_wake(viewing);
     }
     return NULL;
 }
@@ -60,7 +60,8 @@ static void take_shot(Viewing *viewing)
 {
     Shot shot;
     if (painter_take(viewing->painter, &shot)) {
-        window_set_picture(viewing->window, shot.pixels, shot.width, shot.height);
+        if (viewing->window)
+            window_set_picture(viewing->window, shot.pixels, shot.width, shot.height);
         free(viewing->pixels);
         viewing->pixels = shot.pixels;
         shot.pixels     = NULL;
@@ -77,7 +78,10 @@ static void take_shot(Viewing *viewing)
 static void send_view(Viewing *viewing)
 {
     uint32_t width, height;
-    window_size(viewing->window, &width, &height);
+    if (viewing->terminal)
+        terminal_size(viewing->terminal, &width, &height);
+    else
+        window_size(viewing->window, &width, &height);
     if (width == 0 || height == 0)
         return; /* minimised */
     if (width != viewing->view.width || height != viewing->view.height)
@@ -93,11 +97,7 @@ static void send_view(Viewing *viewing)
     viewing->view_changed = false;
 }
 
-static void wake_window(void *user)
-{
-    (void)user;
-    window_wake();
-}
+static void wake_viewer(void *user) { viewing_wake(user); }
 
 static void draw(Viewing *viewing)
 {
@@ -154,6 +154,70 @@ static KrsStatus loop(Viewing *viewing)
     return KRS_OK;
 }
 
+/* ---- the same in a terminal ---- */
+
+static void draw_help_lines(Viewing *viewing)
+{
+    const char *lines[64];
+    char        texts[64][120];
+    size_t      count = 0;
+    for (size_t i = 0; i < action_count && count < 63; i++)
+        if (actions[i].keys) {
+            snprintf(texts[count], sizeof texts[count], "%-10s %s", actions[i].keys,
+                     actions[i].does);
+            lines[count] = texts[count];
+            count++;
+        }
+    lines[count++] = "W A S D E Q fly";
+    terminal_show(viewing->terminal, NULL, 0, 0, lines, count);
+}
+
+/* Below the picture: what it is, and what goes on; the first mistake of the text comes first. */
+static void draw_terminal(Viewing *viewing)
+{
+    const Shot         *shot     = &viewing->shot;
+    const PainterState *painting = &viewing->painting;
+    char                first[400], second[400] = "";
+    const char         *lines[] = {first, second};
+    if (viewing->help) {
+        draw_help_lines(viewing);
+        return;
+    }
+    snprintf(first, sizeof first, "%s   %ux%u   %u/%u   %s   ? help", viewing->options->path,
+             shot->width, shot->height, shot->samples, viewing->view.samples,
+             look_names[viewing->view.look]);
+    if (viewing->remarks.errors > 0)
+        snprintf(second, sizeof second, "%s:%u: %s", viewing->remarks.items[0].source,
+                 viewing->remarks.items[0].line, viewing->remarks.items[0].text);
+    else if (painting->compiling)
+        snprintf(second, sizeof second, "compiling the shaders: %.0f %%", 100 * painting->compiled);
+    else if (viewing_now() - viewing->noticed_at < 4)
+        snprintf(second, sizeof second, "%s", viewing->notice);
+    terminal_show(viewing->terminal, viewing->pixels, shot->width, shot->height, lines, 2);
+}
+
+static KrsStatus terminal_loop(Viewing *viewing)
+{
+    bool running = false, closed = false;
+    while (!viewing->ended && !closed) {
+        int key, modifiers;
+        terminal_wait(viewing->terminal, running ? FRAME_SECONDS : LONGEST_WAIT);
+        if (viewing->options->stopped && viewing->options->stopped(viewing->options->user))
+            return KRS_OK;
+        take_document(viewing);
+        while (terminal_key(viewing->terminal, &key, &modifiers, &closed))
+            if (modifiers != 0 || !act_fly_step(viewing, key))
+                act_key(viewing, key, modifiers);
+        running = act_run(viewing);
+        take_shot(viewing);
+        if (viewing->painting.status != KRS_OK)
+            return viewing->painting.status;
+        draw_terminal(viewing);
+        send_view(viewing);
+    }
+    return KRS_OK;
+}
+
 /* ---- begin and end ---- */
 
 static KrsStatus fail(char message[256], KrsStatus status, const char *what, const char *why)
@@ -183,6 +247,13 @@ static KrsStatus open_window(Viewing *viewing, char message[256])
     return KRS_OK;
 }
 
+static KrsStatus open_terminal(Viewing *viewing, char message[256])
+{
+    const char *why;
+    viewing->terminal = terminal_open(&why);
+    return viewing->terminal ? KRS_OK : fail(message, KRS_NO_DEVICE, "no terminal: ", why);
+}
+
 static KrsStatus begin(Viewing *viewing, char message[256])
 {
     const ViewerOptions *options = viewing->options;
@@ -202,18 +273,20 @@ static KrsStatus begin(Viewing *viewing, char message[256])
 static KrsStatus run(Viewing *viewing, char message[256])
 {
     const ViewerOptions *options = viewing->options;
-    KrsStatus            status  = open_window(viewing, message);
+    KrsStatus            status  = options->terminal ? open_terminal(viewing, message)
+                                                     : open_window(viewing, message);
     if (status != KRS_OK)
         return status;
     const PainterOptions painting = {.renderer = options->renderer,
-                                     .wake     = wake_window,
+                                     .wake     = wake_viewer,
+                                     .user     = viewing,
                                      .budget   = options->budget > 0 ? options->budget : BUDGET_MS};
     viewing->painter              = painter_new(&painting);
-    viewing->saver                = saver_new(&options->renderer, wake_window, NULL);
+    viewing->saver                = saver_new(&options->renderer, wake_viewer, viewing);
     if (!viewing->painter || !viewing->saver ||
         pthread_create(&viewing->reader, NULL, read_scene, viewing) != 0)
         return fail(message, KRS_OUT_OF_MEMORY, "out of memory", "");
-    status = loop(viewing);
+    status = viewing->terminal ? terminal_loop(viewing) : loop(viewing);
     if (status != KRS_OK)
         fail(message, status, viewing->painting.message, "");
     atomic_store(&viewing->closing, true);
@@ -233,6 +306,7 @@ KrsStatus viewer_run(const ViewerOptions *options, char message[256])
     saver_free(viewing.saver);
     painter_free(viewing.painter);
     window_close(viewing.window);
+    terminal_close(viewing.terminal);
     krs_frame_free(viewing.frame);
     view_free(&viewing.view);
     history_free(viewing.history);

@@ -26,7 +26,8 @@ typedef struct ViewerOptions {
     size_t               setting_count;
     double (*zones)[4];
     size_t zone_count;
-    double budget; /* milliseconds of a frame while something moves; 0: the default */
+    bool   terminal; /* in place of a window */
+    double budget;   /* milliseconds of a frame while something moves; 0: the default */
     /* Asked between frames: true ends the viewer. */
     bool (*stopped)(void *user);
     /* The connection to the display is lost: does not return. */

@@ -40,10 +40,19 @@ void viewing_notice(Viewing *viewing, const char *format, ...)
     viewing->noticed_at = viewing_now();
 }
 
+void viewing_wake(Viewing *viewing)
+{
+    if (viewing->terminal)
+        terminal_wake(viewing->terminal);
+    else
+        window_wake();
+}
+
 Found viewing_find(Viewing *viewing)
 {
-    double x, y;
-    window_mouse(viewing->window, &x, &y);
+    double x = 0.5, y = 0.5;
+    if (viewing->window)
+        window_mouse(viewing->window, &x, &y);
     return painter_find(viewing->painter, x, y);
 }
 

@@ -13,6 +13,7 @@
 #include "live/painter.h"
 #include "live/presets.h"
 #include "live/saver.h"
+#include "live/terminal.h"
 #include "live/viewer_options.h"
 #include "live/window.h"
 
@@ -20,7 +21,9 @@ typedef struct Viewing {
     const ViewerOptions *options;
     Document            *document;
     Painter             *painter;
-    Window              *window;
+    Window              *window; /* or */
+    Terminal            *terminal;
+    bool                 ended; /* by a key of the terminal */
     pthread_t            reader;
     atomic_bool          closing;
     atomic_int           read_status; /* of the document, where no edit will mend it */
@@ -64,7 +67,9 @@ typedef struct Viewing {
 /* Says for a moment what was done. */
 void viewing_notice(Viewing *viewing, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
-/* What is under the mouse. */
+/* There is something new to show; for any thread. */
+void viewing_wake(Viewing *viewing);
+/* What is under the mouse; in a terminal, in the middle. */
 Found viewing_find(Viewing *viewing);
 /* Where the text has the component of this number, from 1; NULL: nowhere.  "a.krs:3" */
 const char *viewing_place(const Viewing *viewing, uint32_t component, char place[300]);

@@ -1,0 +1,17 @@
+/*
+ * cells.h: pictures as characters of a terminal, by libchafa.
+ */
+#ifndef KRS_CELLS_H
+#define KRS_CELLS_H
+
+#include <stdint.h>
+
+/* Whether the program was built with libchafa. */
+#include <stdbool.h>
+bool cells_exist(void);
+/* What a terminal of so many columns and rows is to be sent, for free(); its cells have so many pixels
+   each.  NULL: without memory. */
+char *cells_print(const uint8_t *pixels, uint32_t width, uint32_t height, int columns, int rows,
+                  int cell_width, int cell_height);
+
+#endif
