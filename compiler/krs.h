@@ -440,7 +440,8 @@ typedef struct KrsMesh {
         error; /* largest distance, of a point of either from the nearest of the other, as far as it is
                      proven */
     /* Places where the surface may be farther from the mesh than that: what is thinner than the error,
-       or solids that touch.  The first of them is at `unresolved_at`. */
+       or solids that touch.  The first of them is at `unresolved_at`.  Voids that are thinner than
+       it and nowhere longer than twice of it are closed. */
     size_t unresolved;
     double unresolved_at[3];
     bool   estimate; /* of a component nothing is proven, as of its distance */

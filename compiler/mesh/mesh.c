@@ -13,6 +13,7 @@
 #include "compiler/base/vec.h"
 #include "compiler/mesh/groups.h"
 #include "compiler/mesh/verify.h"
+#include "compiler/mesh/voids.h"
 #include "compiler/program.h"
 
 enum { MARKS = 64, PATIENCE = 16 }; /* cells along a side; groups between two questions */
@@ -232,6 +233,15 @@ static void count_proven(Mesher *m)
         m->fraction = fmax(m->fraction, (double)proven / (double)near);
 }
 
+static void close_voids(Mesher *m)
+{
+    double at[3];
+    size_t closed = voids_close(&m->contour, at);
+    if (closed > 0 && m->unresolved == 0)
+        memcpy(m->unresolved_at, at, sizeof m->unresolved_at);
+    m->unresolved += closed;
+}
+
 static KrsStatus make_mesh(Mesher *m)
 {
     double origin[3];
@@ -255,6 +265,7 @@ static KrsStatus make_mesh(Mesher *m)
             return KRS_INTERRUPTED;
         count_proven(m);
     } while (refine(m));
+    close_voids(m);
     return KRS_OK;
 }
 

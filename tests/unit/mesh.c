@@ -191,6 +191,49 @@ static void meshes_are_closed_and_near(void **context)
     }
 }
 
+static uint32_t leader_of(const uint32_t *leaders, uint32_t vertex)
+{
+    while (leaders[vertex] != vertex)
+        vertex = leaders[vertex];
+    return vertex;
+}
+
+/* How many parts of the mesh do not hang together. */
+static size_t count_parts(const KrsMesh *mesh)
+{
+    uint32_t *leaders = malloc((mesh->vertex_count + 1) * sizeof *leaders);
+    size_t    parts   = 0;
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        leaders[i] = (uint32_t)i;
+    for (size_t i = 0; i < 3 * mesh->triangle_count; i++)
+        leaders[leader_of(leaders, mesh->triangles[i / 3][i % 3])] = leader_of(
+            leaders, mesh->triangles[i / 3][(i + 1) % 3]);
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        parts += leaders[i] == i;
+    free(leaders);
+    return parts;
+}
+
+/* The gap between them is thinner than any error at the place where they touch: no bubbles are there.  A void
+   that is longer stays. */
+static void solids_that_touch_leave_no_bubbles(void **context)
+{
+    (void)context;
+    Scene    s    = scene_of("show sphere(0.5).move([0, 0.5, 0]); "
+                                   "show box([1, 0.2, 1]).move([0, -0.1, 0]);");
+    KrsMesh *mesh = mesh_of(s, 0.02);
+    check_closed(mesh);
+    assert_int_equal(count_parts(mesh), 1);
+    assert_true(mesh->unresolved > 0);
+    krs_mesh_free(mesh);
+    scene_close(s);
+    s    = scene_of("show difference(box([1, 1, 1]), box([0.5, 0.05, 0.5]));");
+    mesh = mesh_of(s, 0.06);
+    assert_int_equal(count_parts(mesh), 2);
+    krs_mesh_free(mesh);
+    scene_close(s);
+}
+
 /* A gyroid changes its sign where the point does, so it has half of a ball.  Its distance is a bound, far from
    exact. */
 static void bounds_of_distances_are_enough(void **context)
@@ -293,6 +336,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(meshes_are_closed_and_near),
         cmocka_unit_test(bounds_of_distances_are_enough),
+        cmocka_unit_test(solids_that_touch_leave_no_bubbles),
         cmocka_unit_test(sharp_corners_are_kept),
         cmocka_unit_test(thin_walls_are_found_or_reported),
         cmocka_unit_test(what_cannot_be_meshed_is_refused),
