@@ -4,10 +4,10 @@
 #ifndef KRS_CELLS_H
 #define KRS_CELLS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Whether the program was built with libchafa. */
-#include <stdbool.h>
 bool cells_exist(void);
 /* What a terminal of so many columns and rows is to be sent, for free(); its cells have so many pixels
    each.  NULL: without memory. */
