@@ -94,6 +94,14 @@ $(B)/bench/view/view: $(B)/bench/view/view.o $(STAGE) $(B)/live.a $(B)/libkrs.a
 bench-view: $(B)/bench/view/view $(B)/krs
 	@REVISION=$(REVISION) bench/view/view.sh $(B) $(SCENES)
 
+# How fast distances are evaluated, and meshes made.
+$(B)/bench/lanes/lanes: $(B)/bench/lanes/lanes.o $(B)/libkrs.a
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+bench-lanes: $(B)/bench/lanes/lanes
+	@$(B)/bench/lanes/lanes
+bench-mesh: $(B)/krs
+	@bench/mesh/mesh.sh $(B)/krs
+
 # For `make test`.
 SCRIPTS += tests/bench.sh
 test-programs: $(B)/bench/bench
@@ -103,4 +111,5 @@ clang-objects: $(BENCH:%.c=$(B)/%.o) $(STAGE) $(MINIFY) \
                $(B)/bench/registers/registers.o $(B)/bench/parts/parts.o \
                $(B)/bench/view/view.o
 .PHONY: bench bench-quick minify iterations inverted bench-normals bench-textures bench-paths bench-algebraic check-device \
-        bench-registers bench-parts bench-large bench-radiosity bench-view
+        bench-registers bench-parts bench-large bench-radiosity \
+        bench-lanes bench-mesh bench-view
