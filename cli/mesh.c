@@ -75,6 +75,33 @@ static bool find_end(const Meshing *meshing, double *longest)
     return true;
 }
 
+static bool has_end(const KrsComponent *component)
+{
+    bool ends = true;
+    for (int k = 0; k < 3; k++)
+        ends = ends && isfinite(component->high[k] - component->low[k]);
+    return ends;
+}
+
+/* A floor without an end is common, so the components that have one are named. */
+static KrsStatus refuse_endless(const Meshing *meshing)
+{
+    const Options *options = meshing->options;
+    Text           others  = {.arena = options->arena};
+    for (size_t i = 0; i < krs_component_count(meshing->scene); i++) {
+        KrsComponent component;
+        krs_component(meshing->scene, i, &component);
+        if (has_end(&component))
+            text_format(&others, "%s`%s`", others.length ? ", " : "", component.name);
+    }
+    return say_usage(options,
+                     "`%s` has no end; say which box of it is wanted, as in "
+                     "--within=-1,-1,-1,1,1,1%s%s",
+                     options->files.items[0],
+                     others.length ? ", or by --component one that has: " : "",
+                     others.length ? others.bytes : "");
+}
+
 static KrsStatus check_wishes(Meshing *meshing)
 {
     const Options *options = meshing->options;
@@ -94,10 +121,7 @@ static KrsStatus check_wishes(Meshing *meshing)
                          "makes a solid of them",
                          path);
     if (!find_end(meshing, &longest))
-        return say_usage(options,
-                         "`%s` has no end; say which box of it is wanted, as in "
-                         "--within=-1,-1,-1,1,1,1, or which --component",
-                         path);
+        return refuse_endless(meshing);
     return KRS_OK;
 }
 

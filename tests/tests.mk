@@ -44,7 +44,7 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/synonyms unit/diag
                property/along property/rebase property/slope property/parity property/reach \
                property/reach_trees property/crowds property/crowds_apart property/moving_crowds property/lanes oracle/primitives \
                oracle/krs_expand oracle/folds oracle/bounds \
-               oracle/cells oracle/maps oracle/moebius oracle/moebius_images oracle/operators oracle/moving \
+               oracle/cells oracle/maps oracle/operators oracle/moving \
                oracle/fractals oracle/metasurfaces oracle/normals oracle/drawings oracle/imports \
                oracle/imports_csg oracle/imports_pov fuzz/sentences)
 # Scripts that run beside programs, the longest first.  SCRIPTS run alone: they measure time, or count

@@ -15,7 +15,8 @@ Xvfb -displayfd 3 -screen 0 ${width}x${height}x24 >/dev/null 2>&1 3>"$work/numbe
 server=$!
 read -r screen <"$work/number"
 export DISPLAY=":$screen"
-"$build/krs" view "$work/hello.krs" --size ${width}x${height} --samples 4 --specialize structure &
+(cd "$work" && # names of files are shown
+    exec "$build/krs" view hello.krs --size ${width}x${height} --samples 4 --specialize structure) &
 viewer=$!
 timeout 60 xdotool search --sync --onlyvisible --name hello.krs >/dev/null
 xdotool mousemove 200 300

@@ -29,7 +29,8 @@ else
     skip "admesh finds nothing to repair" "no admesh"
 fi
 run mesh floor.krs
-said 2 "has no end" "what has no end is refused"
+said 2 "floor.krs\` has no end" "what has no end is refused"
+said 2 "one that has: \`ball\`" "and what has one is named"
 run mesh --quiet floor.krs --component ball --error 0.2 -o ball.stl
 ended 0 "but not its component"
 run mesh floor.krs --component bowl
