@@ -75,29 +75,20 @@ static bool find_end(const Meshing *meshing, double *longest)
     return true;
 }
 
-static bool has_end(const KrsComponent *component)
-{
-    bool ends = true;
-    for (int k = 0; k < 3; k++)
-        ends = ends && isfinite(component->high[k] - component->low[k]);
-    return ends;
-}
-
 /* A floor without an end is common, so the components that have one are named. */
 static KrsStatus refuse_endless(const Meshing *meshing)
 {
-    const Options *options = meshing->options;
-    Text           others  = {.arena = options->arena};
+    Text others = {.arena = meshing->options->arena};
     for (size_t i = 0; i < krs_component_count(meshing->scene); i++) {
         KrsComponent component;
         krs_component(meshing->scene, i, &component);
-        if (has_end(&component))
+        const double *low = component.low, *high = component.high;
+        if (isfinite((high[0] - low[0]) + (high[1] - low[1]) + (high[2] - low[2])))
             text_format(&others, "%s`%s`", others.length ? ", " : "", component.name);
     }
-    return say_usage(options,
-                     "`%s` has no end; say which box of it is wanted, as in "
-                     "--within=-1,-1,-1,1,1,1%s%s",
-                     options->files.items[0],
+    return say_usage(meshing->options,
+                     "`%s` has no end; say which box is wanted, as in --within=-1,-1,-1,1,1,1%s%s",
+                     meshing->options->files.items[0],
                      others.length ? ", or by --component one that has: " : "",
                      others.length ? others.bytes : "");
 }
