@@ -95,14 +95,15 @@ static bool reread(Trial *trial, const Bytes *text)
     return text_file_write(trial->path, text) && document_read(trial->document) == KRS_OK;
 }
 
-/* A number whose edit needs no other shaders: the offset of its last digit; 0: there is none. */
-static size_t find_edit(Trial *trial, Bytes *text)
+/* Edits a number so that no other shaders are needed: the offset of its last digit, and this digit
+   before the edit; 0: there is no such number. */
+static size_t find_edit(Trial *trial, Bytes *text, char *old)
 {
     size_t at = 0;
     for (int i = 0; i < MOST_TRIES && (at = find_number(text->text, at + 1)) > 0; i++) {
-        const char     digit  = text->text[at];
-        const unsigned before = version_structure(trial->view.version);
-        text->text[at]        = digit == '9' ? '8' : (char)(digit + 1);
+        const char     digit  = *old = text->text[at];
+        const unsigned before        = version_structure(trial->view.version);
+        text->text[at]               = digit == '9' ? '8' : (char)(digit + 1);
         if (reread(trial, text)) {
             Version   *version = document_version(trial->document);
             const bool same    = version_structure(version) == before &&
@@ -133,11 +134,14 @@ static double time_edits(Trial *trial)
     double ms[EDITS];
     if (!text_file_read(trial->path, &text))
         give_up(trial->path, "it cannot be read");
-    const size_t at = find_edit(trial, &text);
+    char         digit = '0'; /* that was there before the last edit */
+    const size_t at    = find_edit(trial, &text, &digit);
     show(trial);
     await(trial, true);
     for (int i = 0; at > 0 && i < EDITS; i++) {
-        text.text[at]      = text.text[at] == '9' ? '8' : (char)(text.text[at] + 1);
+        const char before  = text.text[at]; /* both digits are known to compile */
+        text.text[at]      = digit;
+        digit              = before;
         const double begun = now();
         if (!reread(trial, &text))
             give_up(trial->path, "the edited text does not compile");
