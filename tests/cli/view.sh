@@ -6,7 +6,7 @@
 export XDG_CACHE_HOME="$work/caches"
 unset WAYLAND_DISPLAY
 "${CC:-cc}" -std=c17 -o screen_check "$root/tests/cli/screen_check.c" -lpng || exit 1
-plan 24
+plan 28
 : >out
 
 scene() { # radius
@@ -156,6 +156,39 @@ wait "$viewer"
 status=$?
 viewer=$other
 ended 0 "and ends"
+
+# A window manager that leaves windows without a frame in the corner of the screen.
+cat >manager.xml <<'END'
+<?xml version="1.0"?>
+<openbox_config xmlns="http://openbox.org/3.4/rc"><theme><keepBorder>no</keepBorder></theme>
+<applications><application class="*"><decor>no</decor>
+<position force="yes"><x>0</x><y>0</y></position></application></applications></openbox_config>
+END
+other=$viewer
+openbox --config-file "$work/manager.xml" >manager.log 2>&1 &
+manager=$!
+printf 'show sphere(1);' >small.krs
+"$krs" view small.krs --size 96x64 --samples 2 >out.view 2>err.view &
+viewer=$!
+window=$(timeout 20 xdotool search --sync --onlyvisible --name small.krs | head -n 1)
+xdotool mousemove 48 32 key Tab
+"$krs" render small.krs --size 96x64 --samples 2 --specialize structure -q -o b.png && screen_is b.png
+result $? "a window manager shows it"
+xdotool windowminimize "$window"
+for _ in $(seq 50); do ./screen_check Xvfb_screen0 b.png >out || break; sleep 0.1; done
+[ "$(cat out)" != "0 pixels differ" ]
+result $? "it is minimised"
+printf 'show box([2, 1, 1]);' >small.krs
+sleep 0.3
+xdotool windowactivate "$window"
+"$krs" render small.krs --size 96x64 --samples 2 --specialize structure -q -o b.png && screen_is b.png
+result $? "and shows what was edited meanwhile"
+xdotool key --window "$window" Escape
+wait "$viewer"
+status=$?
+ended 0 "a key closes it"
+kill "$manager"
+viewer=$other
 kill "$server"
 wait "$viewer"
 status=$?
