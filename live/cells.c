@@ -32,6 +32,20 @@ static ChafaPixelMode choose_pixels(const ChafaTermInfo *info)
                                                                          : CHAFA_PIXEL_MODE_SYMBOLS;
 }
 
+bool cells_have_pixels(void)
+{
+    ChafaTermInfo *info = chafa_term_db_detect(chafa_term_db_get_default(), environ);
+    const bool     have = choose_pixels(info) != CHAFA_PIXEL_MODE_SYMBOLS;
+    chafa_term_info_unref(info);
+    return have;
+}
+
+/* Takes away what was shown before.  Kitty else keeps all pictures, one upon the other. */
+static const char *clear_before(const ChafaTermInfo *info)
+{
+    return choose_pixels(info) == CHAFA_PIXEL_MODE_KITTY ? "\033_Ga=d,d=A\033\\" : "";
+}
+
 static ChafaCanvas *make_canvas(const ChafaTermInfo *info, int columns, int rows, int cell_width,
                                 int cell_height)
 {
@@ -57,7 +71,8 @@ char *cells_print(const uint8_t *pixels, uint32_t width, uint32_t height, int co
     chafa_canvas_draw_all_pixels(canvas, CHAFA_PIXEL_RGBA8_UNASSOCIATED, pixels, (gint)width,
                                  (gint)height, (gint)(4 * width));
     GString *printed = chafa_canvas_print(canvas, info);
-    char    *text    = strdup(printed->str);
+    g_string_prepend(printed, clear_before(info));
+    char *text = strdup(printed->str);
     g_string_free(printed, TRUE);
     chafa_canvas_unref(canvas);
     chafa_term_info_unref(info);
@@ -67,6 +82,7 @@ char *cells_print(const uint8_t *pixels, uint32_t width, uint32_t height, int co
 #else
 
 bool cells_exist(void) { return false; }
+bool cells_have_pixels(void) { return false; }
 
 char *cells_print(const uint8_t *pixels, uint32_t width, uint32_t height, int columns, int rows,
                   int cell_width, int cell_height)

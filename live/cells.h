@@ -9,6 +9,8 @@
 
 /* Whether the program was built with libchafa. */
 bool cells_exist(void);
+/* Whether the terminal shows pixels, not characters alone. */
+bool cells_have_pixels(void);
 /* What a terminal of so many columns and rows is to be sent, for free(); its cells have so many pixels
    each.  NULL: without memory. */
 char *cells_print(const uint8_t *pixels, uint32_t width, uint32_t height, int columns, int rows,

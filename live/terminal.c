@@ -16,10 +16,10 @@
 
 #include "live/cells.h"
 
-/* Pixels of a cell where the terminal does not tell: chafa's symbols have as many. */
-enum { CELL_WIDTH = 8, CELL_HEIGHT = 8 };
-/* Characters are about twice as high as wide, so a pixel of a cell of 4x8 is square. */
-enum { SYMBOL_WIDTH = 4 };
+/* Pixels of a cell where the terminal does not tell.  Characters are about twice as high as wide. */
+enum { CELL_WIDTH = 8, CELL_HEIGHT = 16 };
+/* Pixels of the picture for a character: chafa's symbols tell no finer detail. */
+enum { SYMBOL_WIDTH = 4, SYMBOL_HEIGHT = 8 };
 /* Rows below the picture. */
 enum { LINES = 2 };
 
@@ -29,6 +29,7 @@ struct Terminal {
     char           typed[64];
     size_t         count;
     bool           closed;
+    bool           shows_pixels; /* not characters alone */
 };
 
 Terminal *terminal_open(const char **why)
@@ -45,8 +46,9 @@ Terminal *terminal_open(const char **why)
         free(terminal);
         return NULL;
     }
-    terminal->woken = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    raw             = terminal->before;
+    terminal->shows_pixels = cells_have_pixels();
+    terminal->woken        = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    raw                    = terminal->before;
     raw.c_lflag &= ~(tcflag_t)(ICANON | ECHO); /* Ctrl C stays a signal */
     raw.c_iflag &= ~(tcflag_t)(IXON | ICRNL);
     raw.c_cc[VMIN] = raw.c_cc[VTIME] = 0;
@@ -204,10 +206,10 @@ static Grid measure(void)
 
 void terminal_size(const Terminal *terminal, uint32_t *width, uint32_t *height)
 {
-    const Grid grid = measure();
-    (void)terminal;
-    *width  = (uint32_t)(grid.columns * SYMBOL_WIDTH);
-    *height = (uint32_t)(grid.rows * CELL_HEIGHT);
+    const Grid grid   = measure();
+    const bool pixels = terminal->shows_pixels;
+    *width            = (uint32_t)(grid.columns * (pixels ? grid.cell_width : SYMBOL_WIDTH));
+    *height           = (uint32_t)(grid.rows * (pixels ? grid.cell_height : SYMBOL_HEIGHT));
 }
 
 /* A line, as far as there is room for its characters. */

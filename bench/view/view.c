@@ -101,9 +101,9 @@ static size_t find_edit(Trial *trial, Bytes *text, char *old)
 {
     size_t at = 0;
     for (int i = 0; i < MOST_TRIES && (at = find_number(text->text, at + 1)) > 0; i++) {
-        const char     digit  = *old = text->text[at];
-        const unsigned before        = version_structure(trial->view.version);
-        text->text[at]               = digit == '9' ? '8' : (char)(digit + 1);
+        const char     digit = *old = text->text[at];
+        const unsigned before       = version_structure(trial->view.version);
+        text->text[at]              = digit == '9' ? '8' : (char)(digit + 1);
         if (reread(trial, text)) {
             Version   *version = document_version(trial->document);
             const bool same    = version_structure(version) == before &&
