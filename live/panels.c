@@ -72,17 +72,26 @@ static bool draw_switch(const KrsParameter *parameter, double *value)
     return true;
 }
 
+/* Presets two in a line, each with a button that takes it out. */
 static void draw_presets(Viewing *viewing)
 {
     const Presets *presets = &viewing->presets;
+    size_t         removed = presets->count;
     for (size_t i = 0; i < presets->count; i++) {
         char label[100];
         snprintf(label, sizeof label, "%s##preset%zu", presets->items[i].name, i);
-        if (i % 3 > 0)
+        if (i % 2 > 0)
             gui_beside();
         if (gui_button(label, false))
             viewing_take_preset(viewing, &presets->items[i]);
+        snprintf(label, sizeof label, "x##removed%zu", i);
+        gui_beside();
+        if (gui_button(label, false))
+            removed = i;
+        gui_tip("Forgets this preset.");
     }
+    if (removed < presets->count)
+        viewing_drop_preset(viewing, removed);
     if (gui_input("keep as", viewing->preset, sizeof viewing->preset) && viewing->preset[0]) {
         viewing_make_preset(viewing, viewing->preset);
         viewing->preset[0] = '\0';

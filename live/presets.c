@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "live/text_file.h"
+
 static bool file_name(const char *scene_path, char path[4096])
 {
     return snprintf(path, 4096, "%s.presets", scene_path) < 4096;
@@ -102,6 +104,14 @@ bool presets_set(Presets *presets, const char *name, const KrsScene *scene,
     return good;
 }
 
+void presets_remove(Presets *presets, size_t number)
+{
+    free(presets->items[number].values);
+    presets->count--;
+    memmove(presets->items + number, presets->items + number + 1,
+            (presets->count - number) * sizeof *presets->items);
+}
+
 static void write_value(FILE *file, const PresetValue *value)
 {
     fprintf(file, "%s=%s", value->name, value->count > 1 ? "[" : "");
@@ -113,11 +123,14 @@ static void write_value(FILE *file, const PresetValue *value)
 bool presets_write(const Presets *presets, const char *scene_path)
 {
     char  path[4096];
-    FILE *file = file_name(scene_path, path) ? fopen(path, "w") : NULL;
+    Bytes bytes = {0};
+    FILE *file  = file_name(scene_path, path) ? open_memstream(&bytes.text, &bytes.length) : NULL;
     for (size_t i = 0; file && i < presets->count; i++) {
         fprintf(file, "%s[%s]\n", i == 0 ? "" : "\n", presets->items[i].name);
         for (size_t k = 0; k < presets->items[i].count; k++)
             write_value(file, &presets->items[i].values[k]);
     }
-    return file && fclose(file) == 0;
+    const bool good = file && fclose(file) == 0 && text_file_write(path, &bytes);
+    free(bytes.text);
+    return good;
 }

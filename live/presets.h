@@ -35,7 +35,9 @@ void    presets_free(Presets *presets);
    memory. */
 bool presets_set(Presets *presets, const char *name, const KrsScene *scene,
                  const double (*values)[4]);
-/* Writes the file; false: it cannot be written. */
+/* Takes out the one with this number. */
+void presets_remove(Presets *presets, size_t number);
+/* Writes the file, whole or not at all; false: it cannot be written. */
 bool presets_write(const Presets *presets, const char *scene_path);
 
 #endif

@@ -3,8 +3,11 @@
  */
 #include "live/text_file.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -27,12 +30,15 @@ bool text_file_write(const char *path, const Bytes *bytes)
 {
     struct stat info;
     char       *real = realpath(path, NULL), *name = NULL;
-    bool        good = real && stat(real, &info) == 0 && asprintf(&name, "%s.XXXXXX", real) > 0;
-    const int   fd   = good ? mkstemp(name) : -1;
-    FILE       *file = fd >= 0 ? fdopen(fd, "wb") : NULL;
+    const bool  old = real && stat(real, &info) == 0;
+    if (!real && errno == ENOENT)
+        real = strdup(path);
+    bool      good = real && asprintf(&name, "%s.%ld", real, (long)getpid()) > 0;
+    const int fd   = good ? open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666) : -1;
+    FILE     *file = fd >= 0 ? fdopen(fd, "wb") : NULL;
     if (file) {
         good = fwrite(bytes->text, 1, bytes->length, file) == bytes->length &&
-               fchmod(fd, info.st_mode & 07777) == 0;
+               (!old || fchmod(fd, info.st_mode & 07777) == 0);
         good = fclose(file) == 0 && good;
         good = good && rename(name, real) == 0;
         if (!good)

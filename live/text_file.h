@@ -14,7 +14,7 @@ typedef struct Bytes {
 
 /* The caller frees the text whatever is returned. */
 bool text_file_read(const char *path, Bytes *bytes);
-/* The file appears whole or not at all; links stay links. */
+/* A new file, or one in place of an old one, appears whole or not at all; links stay links. */
 bool text_file_write(const char *path, const Bytes *bytes);
 
 #endif

@@ -168,6 +168,13 @@ void viewing_make_preset(Viewing *viewing, const char *name)
         viewing_notice(viewing, "kept as %s", name);
 }
 
+void viewing_drop_preset(Viewing *viewing, size_t number)
+{
+    presets_remove(&viewing->presets, number);
+    if (!presets_write(&viewing->presets, viewing->options->path))
+        viewing_notice(viewing, "%s.presets cannot be written", viewing->options->path);
+}
+
 void viewing_set_cut(Viewing *viewing)
 {
     const ViewerOptions *options = viewing->options;

@@ -86,9 +86,10 @@ void viewing_take_camera(Viewing *viewing, size_t camera);
 void viewing_adopt(Viewing *viewing, Version *version);
 /* What is cut away has changed. */
 void viewing_set_cut(Viewing *viewing);
-/* Values by a preset, or a new preset of the values. */
+/* Values by a preset, a new preset of the values, or one preset less. */
 void viewing_take_preset(Viewing *viewing, const Preset *preset);
 void viewing_make_preset(Viewing *viewing, const char *name);
+void viewing_drop_preset(Viewing *viewing, size_t number);
 /* All parameters to the scene's defaults. */
 void viewing_reset_values(Viewing *viewing);
 

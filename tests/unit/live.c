@@ -295,6 +295,13 @@ static void presets_are_kept(void **state)
                             parameter.components * sizeof(double));
         assert_int_equal(parameter.whole, strcmp(parameter.name, "lit") == 0);
     }
+    presets_remove(&presets, 0);
+    assert_true(presets_write(&presets, path));
+    presets_free(&presets);
+    presets = presets_read(path);
+    assert_int_equal(presets.count, 1);
+    assert_string_equal(presets.items[0].name, "b");
+    assert_false(presets_write(&presets, "/nowhere/a"));
     presets_free(&presets);
     krs_scene_free(scene);
     snprintf(file, sizeof file, "%s.presets", path);
