@@ -21,13 +21,16 @@ static const double LEAST_COSINE_SQUARED = 1e-6;
 /* Bodies of crowds have leaves of their own. */
 Pixel pixel_of(Graph *g, Node expression, Arena *scratch)
 {
-    uint32_t crowd = UINT32_MAX;
-    Tape     tape  = tape_new(g, &expression, 1, scratch);
+    uint32_t crowd    = 0;
+    bool     in_crowd = false;
+    Tape     tape     = tape_new(g, &expression, 1, scratch);
     for (size_t i = tape.frame_count; i < tape.count; i++)
-        if (g->items[tape.nodes[i]].op == OP_CROWD_POINT)
-            crowd = g->items[tape.nodes[i]].index;
+        if (g->items[tape.nodes[i]].op == OP_CROWD_POINT) {
+            crowd    = g->items[tape.nodes[i]].index;
+            in_crowd = true;
+        }
     Pixel pixel = {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE};
-    if (crowd == UINT32_MAX) {
+    if (!in_crowd) {
         pixel.point  = graph_leaf(g, OP_POINT);
         pixel.normal = graph_leaf(g, OP_NORMAL);
         pixel.view   = graph_leaf(g, OP_VIEW);
