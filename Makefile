@@ -41,7 +41,7 @@ GRAPH    := $(addprefix compiler/graph/, intern.c alike.c alike_copy.c graph.c c
                 regions.c squares.c grid.c grid_find.c fractal.c op_values.c tape.c evaluate.c lane_rows.c lane_make.c lane_run.c lane_ranges.c \
                 lane_slopes.c lane_prune.c print.c) $(LANES)
 SHAPE    := $(addprefix compiler/shape/, box.c reach.c cover.c map.c moebius.c builder.c sky_map.c slope.c print.c)
-LOWER    := $(addprefix compiler/lower/, footprint.c bump.c context.c box_distance.c surface.c join.c crowd_table.c crowd_functions.c crowd_find.c crowd.c normal.c map_chain.c \
+LOWER    := $(addprefix compiler/lower/, footprint.c bump.c context.c box_distance.c surface.c join.c crowd_table.c crowd_functions.c crowd_find.c crowd.c normal.c tangent.c map_chain.c \
                 outline.c sphere_fold.c guards.c ray_images.c ray_step.c lower.c)
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
 EVAL     := $(addprefix compiler/eval/, scope.c forget.c expression.c arithmetic.c reports.c units.c arguments.c components.c records.c data.c csv.c json.c builtins.c lists.c \

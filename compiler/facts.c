@@ -56,9 +56,10 @@ static void find_kinds(Compilation *c)
     program->plain       = true;
     for (size_t i = 0; i < s->components.count; i++)
         program->plain = program->plain && !shape_is_curved(s->components.items[i].shape);
-    program->mirrors = s->mirrors;
-    program->layers  = s->layers;
-    program->films   = s->films;
+    program->mirrors     = s->mirrors;
+    program->layers      = s->layers;
+    program->films       = s->films;
+    program->anisotropic = s->anisotropic;
     for (size_t i = 0; i < s->lights.count; i++)
         program->shadows = program->shadows || s->lights.items[i].shadow;
     program->emits   = c->scene->emissive_count > 0;

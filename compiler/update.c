@@ -208,8 +208,10 @@ static bool same_facts(const KrsScene *a, const KrsScene *b)
            krs_scene_is_panoramic(a) == krs_scene_is_panoramic(b) &&
            krs_scene_has_lens(a) == krs_scene_has_lens(b) &&
            a->program.sky_map == b->program.sky_map && a->program.emits == b->program.emits &&
-           a->program.films == b->program.films && same_slots(&a->program, &b->program) &&
-           same_methods(&a->program, &b->program) && a->module.has_slopes == b->module.has_slopes &&
+           a->program.films == b->program.films &&
+           a->program.anisotropic == b->program.anisotropic &&
+           same_slots(&a->program, &b->program) && same_methods(&a->program, &b->program) &&
+           a->module.has_slopes == b->module.has_slopes &&
            !a->module.box_nodes.around == !b->module.box_nodes.around &&
            same_kinds_of_boxes(a, b) && same_groups(&a->module, &b->module);
 }

@@ -17,6 +17,16 @@ static void not_a_colour(Elaboration *e, const Syntax *syntax, Value value, cons
         diag->help = "a texture has a colour at each place: `t(u, v)`, or `t(x, z)`";
 }
 
+/* A direction that may depend on the point, of any length. */
+static void direction_property(Elaboration *e, const Syntax *syntax, Value value, Node *property)
+{
+    Node node = value_node(e, value);
+    if (node != NODE_NONE && e->graph->items[node].type == TYPE_VEC3)
+        *property = node;
+    else
+        type_error(e, syntax, value, "a direction, such as `[1, 0, 0]`");
+}
+
 /* A number or a colour that may depend on the point; *property stays when it is not given. */
 static void material_property(Elaboration *e, const Environment *env, const Syntax *block,
                               const char *name, GraphType type, bool limited, Node *property)
@@ -26,6 +36,10 @@ static void material_property(Elaboration *e, const Environment *env, const Synt
         return;
     Value value = evaluate(e, env, syntax);
     Node  node  = value_node(e, value);
+    if (strcmp(name, root_info[ROOT_tangent].name) == 0) {
+        direction_property(e, syntax, value, property);
+        return;
+    }
     if (limited && type == TYPE_VEC3)
         warn_of_bright_colour(e, syntax, value, "what a surface sends out itself is `emission`");
     if (node != NODE_NONE && type == TYPE_VEC3 && e->graph->items[node].type == TYPE_FLOAT)
@@ -83,7 +97,7 @@ static bool has_layers(Elaboration *e, const Material *material)
 {
 #define IS_USUAL(property) (material->property == root_otherwise(e->graph, ROOT_##property))
     return !(IS_USUAL(coat) && IS_USUAL(sheen) && IS_USUAL(specular) && IS_USUAL(ior) &&
-             IS_USUAL(thin_film_weight));
+             IS_USUAL(thin_film_weight) && IS_USUAL(specular_roughness_anisotropy));
 }
 
 Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *syntax)
@@ -96,10 +110,11 @@ Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *s
     material_property(e, env, syntax, #name, TYPE_##type, (high) <= 1, &material->name);
 #include "compiler/shape/surface.def"
     material_property(e, env, syntax, "bump", TYPE_FLOAT, false, &material->bump);
-    e->in_material    = outer;
-    e->scene->mirrors = e->scene->mirrors || sends_rays(e, material);
-    e->scene->layers  = e->scene->layers || has_layers(e, material);
-    e->scene->films   = e->scene->films || !IS_USUAL(thin_film_weight);
+    e->in_material        = outer;
+    e->scene->mirrors     = e->scene->mirrors || sends_rays(e, material);
+    e->scene->layers      = e->scene->layers || has_layers(e, material);
+    e->scene->films       = e->scene->films || !IS_USUAL(thin_film_weight);
+    e->scene->anisotropic = e->scene->anisotropic || !IS_USUAL(specular_roughness_anisotropy);
     return (Value){.type = VALUE_MATERIAL, .material = material};
 }
 

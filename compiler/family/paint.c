@@ -3,10 +3,12 @@
  */
 #include "compiler/family/family.h"
 
+#include "compiler/graph/build.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/lower/bump.h"
 #include "compiler/lower/footprint.h"
 #include "compiler/lower/normal.h"
+#include "compiler/lower/tangent.h"
 
 /* ---- how it is made ---- */
 
@@ -39,6 +41,18 @@ static bool material_needs(ShapeBuilder *builder, const Material *material, Op l
     return needed;
 }
 
+/* Whether a material has highlights whose length depends on a direction. */
+static bool is_anisotropic(const Graph *graph, const Material *material)
+{
+    const Node roughness = material->specular_roughness_anisotropy;
+    return roughness != NODE_NONE && !is_number(graph, roughness, 0);
+}
+
+static bool has_tangent(const Graph *graph, const Material *material)
+{
+    return material->tangent == NODE_NONE || !is_number(graph, material->tangent, 0);
+}
+
 const Shape *make_paint(ShapeBuilder *builder, const Shape *shape, const Material *material,
                         Span span)
 {
@@ -50,13 +64,16 @@ const Shape *make_paint(ShapeBuilder *builder, const Shape *shape, const Materia
         diag_secondary(builder->diags, diag, shape->span, "none in this shape");
         return NULL;
     }
-    if (shape->without_uv && material_needs(builder, material, OP_UV)) {
+    const bool by_u = is_anisotropic(builder->graph, material) &&
+                      !has_tangent(builder->graph, material);
+    if (shape->without_uv && (by_u || material_needs(builder, material, OP_UV))) {
         const Shape *without = shape->without_uv;
         Diag        *diag    = diag_add(builder->diags, DIAG_OUT_OF_PLACE, span,
                                         "`u` and `v` have no meaning on `%s`", without->name);
         diag->label          = "this material needs them";
         diag_secondary(builder->diags, diag, without->span, "declared without `uv`");
-        diag->help = "give the declaration of the shape a `uv: [...]`";
+        diag->help = by_u ? "it is anisotropic along `u`: give the material a `tangent`"
+                          : "give the declaration of the shape a `uv: [...]`";
         return NULL;
     }
     Shape *painted    = shape_around(builder, SHAPE_PAINT, "paint", shape, span);
@@ -76,6 +93,17 @@ static void paint_with(Lowering *l, Node *property, Node paint, Substitution wit
     *property    = lower_footprints(l->graph, painted, l->scratch);
 }
 
+/* A tangent that no material gives is that of `u`. */
+static void paint_tangent(Lowering *l, const Material *material, Node point, Surface *surface)
+{
+    if (material->tangent == NODE_NONE)
+        return;
+    if (has_tangent(l->graph, material))
+        surface->tangent = tangent_outwards(l->graph, surface->tangent, point, l->scratch);
+    else if (is_anisotropic(l->graph, material) && surface->uv != NODE_NONE)
+        surface->tangent = tangent_of_uv(l->graph, surface->uv, l->scratch);
+}
+
 /* The outermost paint counts, as the last method of a chain does. */
 Lowered lower_paint(Lowering *l, const Shape *shape, LowerContext context)
 {
@@ -90,6 +118,7 @@ Lowered lower_paint(Lowering *l, const Shape *shape, LowerContext context)
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     paint_with(l, &result.surface.name, material->name, with);
 #include "compiler/shape/surface.def"
+    paint_tangent(l, material, context.point, &result.surface);
     Node height = NODE_NONE;
     paint_with(l, &height, material->bump, with);
     if (height != NODE_NONE)

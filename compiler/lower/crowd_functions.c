@@ -7,6 +7,7 @@
 #include "compiler/base/far.h"
 #include "compiler/lower/crowd_group.h"
 #include "compiler/lower/join.h"
+#include "compiler/lower/tangent.h"
 
 PartLeaves part_leaves(Graph *graph)
 {
@@ -225,6 +226,7 @@ static Surface lower_surface(CrowdGroup *group, const GroupJoin *join, LowerCont
     KRS_INNER(name, blends)
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) KRS_INNER(name, blends)
 #include "compiler/shape/surface.def"
+    surface.tangent = tangent_outwards(join->graph, surface.tangent, context.point, join->scratch);
     return surface;
 }
 

@@ -92,9 +92,10 @@ typedef struct Scene {
     SceneFog   fog;
     Node       zone; /* the depth of OP_POINT in zones, negative outside; NODE_NONE without any */
     size_t     zone_count;
-    bool       mirrors; /* a material is smooth enough to show images, or lets light through */
-    bool       layers;  /* a material has a coat, sheen, or a mirror other than usual */
-    bool       films;   /* a material may have a thin film */
+    bool       mirrors;     /* a material is smooth enough to show images, or lets light through */
+    bool       layers;      /* a material has a coat, sheen, or a mirror other than usual */
+    bool       films;       /* a material may have a thin film */
+    bool       anisotropic; /* a material may be rougher along its tangent than across */
     SceneImage image;
     Box        box; /* around all components */
 } Scene;

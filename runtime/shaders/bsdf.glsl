@@ -22,6 +22,13 @@
 
 // The least width of a lobe; at most so much a mirror blurs.
 const float LEAST_ALPHA = 1e-3;
+#ifdef ANISOTROPIC // a material may be rougher along its tangent than across
+#include "anisotropy.glsl"
+#define WIDTH vec2
+const float LEAST_TANGENT = 1e-3; // of the part across the normal; a shorter one is none
+#else
+#define WIDTH float
+#endif
 const float COAT_HEAD_ON = 0.04; // reflectance of a coat with an index of refraction of 1.5
 const float LEAST_SHEEN_ROUGHNESS = 0.3;
 
@@ -47,11 +54,20 @@ struct Axes {
     vec3 right, up, normal;
 };
 
-Axes find_axes(vec3 normal)
+// With ANISOTROPIC the first axis is the tangent; it is no unit vector, nor across the normal.
+Axes find_axes(vec3 normal, vec3 tangent)
 {
     Axes axes;
     axes.normal = normal;
     find_frame(normal, axes.right, axes.up);
+#ifdef ANISOTROPIC
+    vec3  along = tangent - dot(tangent, normal) * normal;
+    float size = length(along);
+    if (size > LEAST_TANGENT) {
+        axes.right = along / size;
+        axes.up = cross(normal, axes.right);
+    }
+#endif
     return axes;
 }
 
@@ -66,11 +82,13 @@ vec3 out_of(Axes axes, vec3 v) { return v.x * axes.right + v.y * axes.up + v.z *
 
 struct Bsdf {
     vec3  color;
-    float metallic, alpha;
+    float metallic;
+    WIDTH alpha;
     float head_on, grazing;   // reflectance of the body's mirror, where it is no metal
     float eta;                // index of refraction on the far side, relative to this one
     float glass;              // share of the body that is glass, and no metal
-    float coat, coat_alpha;
+    float coat;
+    WIDTH coat_alpha;
     vec3  sheen;
     float sheen_alpha;
     // What follows depends on the eye.
@@ -105,6 +123,7 @@ vec3 find_albedo(float cosine, float roughness)
 
 // ---- microfacets ----
 
+#ifndef ANISOTROPIC
 // Smith's function: how much of the microfacets is hidden from a direction.
 float find_hidden(vec3 direction, float alpha)
 {
@@ -118,9 +137,10 @@ float find_density(vec3 normal, float alpha)
     float across = dot(normal.xy, normal.xy) / (alpha * alpha) + normal.z * normal.z;
     return 1.0 / (PI * alpha * alpha * across * across);
 }
+#endif
 
 // The density of normals that are visible from the eye, in solid angle.
-float find_visible(vec3 eye, vec3 normal, float alpha)
+float find_visible(vec3 eye, vec3 normal, WIDTH alpha)
 {
     return find_density(normal, alpha) * max(dot(eye, normal), 0.0) /
            (eye.z * (1.0 + find_hidden(eye, alpha)));
@@ -133,7 +153,7 @@ float schlick(float cosine)
 }
 
 // Reflected light times the cosine, of microfacets that mirror all, and its probability.
-vec2 mirror(vec3 eye, vec3 light, float alpha, out float cosine)
+vec2 mirror(vec3 eye, vec3 light, WIDTH alpha, out float cosine)
 {
     vec3 sum = eye + light;
     vec3 halfway = sum / max(length(sum), 1e-12);
@@ -229,9 +249,13 @@ Bsdf make_bsdf(KrsSurface surface, bool entering, vec3 eye)
     bsdf.eye = normalize(vec3(eye.xy, max(abs(eye.z), 1e-3)));
     bsdf.color = surface.color;
     bsdf.metallic = surface.metallic;
+#ifdef ANISOTROPIC
+    bsdf.alpha = find_widths(surface.roughness, surface.specular_roughness_anisotropy);
+#else
     bsdf.alpha = max(square(surface.roughness), LEAST_ALPHA);
+#endif
     bsdf.coat = entering ? surface.coat : 0.0;
-    bsdf.coat_alpha = max(square(surface.coat_roughness), LEAST_ALPHA);
+    bsdf.coat_alpha = WIDTH(max(square(surface.coat_roughness), LEAST_ALPHA));
     bsdf.sheen = entering ? surface.sheen : vec3(0.0);
     float ior = max(surface.ior, 1.001);
     bsdf.eta = entering ? ior : 1.0 / ior;
@@ -252,7 +276,11 @@ Bsdf make_bsdf(KrsSurface surface, bool entering, vec3 eye)
     bsdf.coated = bsdf.coat * bsdf.more_of_coat * (COAT_HEAD_ON * (all.x - all.y) + all.y);
     bsdf.under_coat = bsdf.under_sheen * (1.0 - bsdf.coated);
 
+#ifdef ANISOTROPIC
+    all = find_wide_albedo(bsdf.eye, surface.roughness, surface.specular_roughness_anisotropy);
+#else
     all = find_albedo(bsdf.eye.z, surface.roughness).xy;
+#endif
     float lost = (1.0 - all.x) / all.x;
     bsdf.more_of_body = 1.0 + bsdf.head_on * lost;
     bsdf.more_of_metal = 1.0 + bsdf.color * lost;

@@ -6,7 +6,7 @@
  * those of bsdf.glsl.
  */
 
-vec3 sample_visible(vec3 eye, float alpha, vec2 square)
+vec3 sample_visible(vec3 eye, WIDTH alpha, vec2 square)
 {
     vec3  tall = normalize(vec3(alpha * eye.xy, eye.z));
     float angle = 2.0 * PI * square.x;
@@ -42,7 +42,7 @@ vec3 sample_direction(Bsdf bsdf, vec2 square_point, float choice)
     }
     if (choice >= below.y)
         return sample_glass(bsdf, square_point, (choice - below.y) / bsdf.shares.z);
-    float alpha = choice < below.x ? bsdf.coat_alpha : bsdf.alpha;
+    WIDTH alpha = choice < below.x ? bsdf.coat_alpha : bsdf.alpha;
     vec3  normal = sample_visible(bsdf.eye, alpha, square_point);
     vec3  light = 2.0 * dot(bsdf.eye, normal) * normal - bsdf.eye;
     return light.z > 0.0 ? light : vec3(0.0);

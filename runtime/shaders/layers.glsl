@@ -12,7 +12,22 @@ struct Layers {
     Bsdf  bsdf;
     float roughness, coat_roughness; // with what varies within the pixel
     vec3  body;                      // what the body scatters
+#ifdef ANISOTROPIC
+    vec3 bent; // a normal by which the sky is mirrored
+#endif
 };
+
+#ifdef ANISOTROPIC
+// What a surface mirrors that is rougher along its tangent is drawn out into a fan of directions.
+// Its middle is that of a surface whose normal leans to the eye, along the tangent (McAuley 2015).
+vec3 bend_normal(Axes axes, vec3 toward_eye, KrsSurface surface)
+{
+    vec3  leaning = toward_eye - dot(toward_eye, axes.up) * axes.up;
+    float part = surface.specular_roughness_anisotropy * min(5.0 * surface.roughness, 1.0);
+    vec3  bent = mix(axes.normal, leaning / max(length(leaning), 1e-3), 0.5 * part);
+    return bent / max(length(bent), 1e-3);
+}
+#endif
 
 // `glass`: the part of the body that scatters nothing.
 Layers find_layers(KrsSurface surface, bool entering, vec3 normal, vec3 toward_eye, float glass)
@@ -21,10 +36,13 @@ Layers find_layers(KrsSurface surface, bool entering, vec3 normal, vec3 toward_e
     surface = within_limits(surface);
     surface.transmission = 0.0;
     surface.color *= 1.0 - glass;
-    layers.axes = find_axes(normal);
+    layers.axes = find_axes(normal, surface.tangent);
     layers.bsdf = make_bsdf(surface, entering, into(layers.axes, toward_eye));
     layers.roughness = surface.roughness;
     layers.coat_roughness = surface.coat_roughness;
+#ifdef ANISOTROPIC
+    layers.bent = bend_normal(layers.axes, toward_eye, surface);
+#endif
     layers.body = layers.bsdf.under_coat * (1.0 - layers.bsdf.metallic) * layers.bsdf.diffuse *
                   surface.color;
     return layers;
@@ -51,7 +69,11 @@ vec3 ambient_of_layers(Layers layers, vec3 toward_eye, vec3 normal, float openne
 {
     Bsdf bsdf = layers.bsdf;
     vec3 around = find_sky_around(normal);
+#ifdef ANISOTROPIC
+    vec3 body = find_sky_mirrored(layers.bent, toward_eye, layers.roughness);
+#else
     vec3 body = find_sky_mirrored(layers.axes.normal, toward_eye, layers.roughness);
+#endif
     vec3 coat = find_sky_mirrored(layers.axes.normal, toward_eye, layers.coat_roughness);
     vec3 mirrored = bsdf.under_sheen * bsdf.coated * (1.0 - traced.y) * coat +
                     bsdf.under_coat * bsdf.mirrored * (1.0 - traced.x) * body;

@@ -163,7 +163,7 @@ void do_item(uint number)
     store_planes(index, rows | 1u << ROW_COLORS, sum, hit, hit.side * normal, surface.color, surface);
     if (control.phase == PATHS_END)
         return;
-    Axes axes = find_axes(normal);
+    Axes axes = find_axes(normal, surface.tangent);
     Bsdf   bsdf = make_bsdf(surface, hit.side > 0.0, into(axes, -hit.direction));
     bsdf.eta = boundary.eta;
     // Glass bends what leaves it, so that cones are of no use there.

@@ -338,12 +338,17 @@ struct Light {
 CONSTANT(LIGHT_ROWS, 4);
 CONSTANT(LIGHT_RECTANGLE, 4);
 CONSTANT(LIGHT_SPOT, 8);
-/* Before the lights is albedo_table.def: ALBEDO_SIDE * ALBEDO_SIDE rows.  Behind that are balls. */
+/* Before the lights is albedo_table.def: ALBEDO_SIDE * ALBEDO_SIDE rows.  Behind that are balls,
+   and then anisotropic_albedo_table.def: a row for each cosine, roughness and anisotropy. */
 CONSTANT(ALBEDO_SIDE, 16);
 CONSTANT(ALBEDO_ROWS, 256);
 CONSTANT(MOST_EMISSIVE, 32); /* KRS_MOST_EMISSIVE */
 CONSTANT(EMISSIVE_ROWS, 2);
-CONSTANT(LIGHTS_AT, 256 + 2 * 32); /* the row of the first light */
+CONSTANT(WIDE_ALBEDOS_AT, 256 + 2 * 32);
+CONSTANT(WIDE_COSINES, 12);
+CONSTANT(WIDE_ROUGHNESSES, 16);
+CONSTANT(WIDE_ANISOTROPIES, 5);
+CONSTANT(LIGHTS_AT, 256 + 2 * 32 + 12 * 16 * 5); /* the row of the first light */
 CONSTANT(LIGHT_POSITIONAL, 1);
 CONSTANT(LIGHT_CASTS_SHADOWS, 2);
 
@@ -372,7 +377,9 @@ typedef struct Light LightBlock;
 static_assert(sizeof(LightBlock) == 16 * LIGHT_ROWS, "std430");
 typedef struct EmissiveBall EmissiveBlock;
 static_assert(sizeof(EmissiveBlock) == 16 * EMISSIVE_ROWS, "std430");
-static_assert(LIGHTS_AT == ALBEDO_ROWS + EMISSIVE_ROWS * MOST_EMISSIVE, "rows of inputs");
+enum { WIDE_ALBEDO_ROWS = WIDE_COSINES * WIDE_ROUGHNESSES * WIDE_ANISOTROPIES };
+static_assert(WIDE_ALBEDOS_AT == ALBEDO_ROWS + EMISSIVE_ROWS * MOST_EMISSIVE, "rows of inputs");
+static_assert(LIGHTS_AT == WIDE_ALBEDOS_AT + WIDE_ALBEDO_ROWS, "rows of inputs");
 typedef struct ListedRay ListedRayBlock;
 static_assert(sizeof(ListedRayBlock) == 32, "std430");
 #endif

@@ -251,6 +251,14 @@ static const float albedos[ALBEDO_ROWS][RESULT_NUMBERS] = {
 #undef KRS_ALBEDO
 };
 
+/* The same for microfacets that are wider along a tangent: in thousandths, two rows each. */
+enum { WIDE_SHARES = 8 };
+static const uint16_t wide_albedos[WIDE_ALBEDO_ROWS / 2][2 * WIDE_SHARES] = {
+#define KRS_ALBEDO(...) {__VA_ARGS__},
+#include "runtime/shared/anisotropic_albedo_table.def"
+#undef KRS_ALBEDO
+};
+
 static char *row_of_inputs(const KrsRendering *rendering, uint32_t row)
 {
     return (char *)rendering->inputs.bytes + (size_t)row * RESULT_BYTES;
@@ -259,6 +267,19 @@ static char *row_of_inputs(const KrsRendering *rendering, uint32_t row)
 static LightBlock *lights_of(const KrsRendering *rendering)
 {
     return (LightBlock *)row_of_inputs(rendering, LIGHTS_AT);
+}
+
+/* Copies the tables of albedos.  The second is in parts of 65535. */
+static void set_albedos(const KrsRendering *rendering)
+{
+    memcpy(rendering->inputs.bytes, albedos, sizeof albedos);
+    char *to = row_of_inputs(rendering, WIDE_ALBEDOS_AT);
+    for (size_t i = 0; i < WIDE_ALBEDO_ROWS / 2; i++) {
+        uint16_t parts[2 * WIDE_SHARES];
+        for (size_t k = 0; k < 2 * WIDE_SHARES; k++)
+            parts[k] = (uint16_t)((wide_albedos[i][k] * UINT16_MAX + 500) / 1000);
+        memcpy(to + i * sizeof parts, parts, sizeof parts);
+    }
 }
 
 /* Makes room for lights, and for listed rays behind them.  Kernels load several lights at a time,
@@ -276,7 +297,7 @@ static bool make_room(KrsRendering *rendering, size_t lights, size_t rays)
     if (!buffer_create(gpu, buffer, bytes, UPLOADED, "lights and rays") ||
         !layouts_view_texels(gpu, INPUT_TEXELS_BINDING, buffer, "lights and rays"))
         return false;
-    memcpy(buffer->bytes, albedos, sizeof albedos);
+    set_albedos(rendering);
     rendering_bind(rendering, rendering->band_set,
                    gpu->texels ? INPUT_TEXELS_BINDING : INPUT_ROWS_BINDING, buffer);
     return true;

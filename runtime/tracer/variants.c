@@ -103,9 +103,11 @@ static void want_sky(KernelVariant *to, const KrsRendering *rendering)
     want(to, KRS_FUNCTION_ARCS);
 }
 
-/* Phases of waves need cosines. */
-static void want_films(KernelVariant *to, const KrsRendering *rendering)
+/* What is known of materials before one is looked at.  Phases of waves need cosines. */
+static void want_materials(KernelVariant *to, const KrsRendering *rendering)
 {
+    if (rendering->program->anisotropic)
+        define(to, "#define ANISOTROPIC\n");
     if (!rendering->program->films)
         return;
     define(to, "#define FILM\n");
@@ -243,7 +245,7 @@ KernelVariant variant_of_shade(const KrsRendering *rendering)
         define(&to, "#define MIRRORS\n");
     if (rendering->program->layers)
         define(&to, "#define LAYERS\n");
-    want_films(&to, rendering);
+    want_materials(&to, rendering);
     want_sky(&to, rendering);
     define_choices(&to);
     return to;
@@ -257,7 +259,7 @@ KernelVariant variant_of_scatter(const KrsRendering *rendering)
     want(&to, KRS_FUNCTION_SINES);
     if (rendering->program->emits)
         define(&to, "#define EMISSIVE\n");
-    want_films(&to, rendering);
+    want_materials(&to, rendering);
     want_media(&to, rendering);
     want_sky(&to, rendering);
     define_choices(&to);

@@ -68,6 +68,15 @@ static double number_at(int property, const double point[3], int axis)
     return 0.5 + 0.05 * property + 1.5 * point[axis];
 }
 
+/* Tangents are given with any length, and answered as unit vectors. */
+static double length_at(int property, const double point[3])
+{
+    double square = 0;
+    for (int k = 0; k < 3; k++)
+        square += number_at(property, point, k) * number_at(property, point, k);
+    return strcmp(properties[property].name, "tangent") == 0 ? sqrt(square) : 1;
+}
+
 static void write_scene(char *text, size_t size)
 {
     static const char axes[] = "xyz";
@@ -88,7 +97,7 @@ static void assert_material(Material found, const double point[3])
 {
     for (int i = 0; i < PROPERTIES; i++)
         for (int k = 0; k < properties[i].count; k++) {
-            double number = number_at(i, point, k);
+            double number = number_at(i, point, k) / length_at(i, point);
             if (properties[i].limited)
                 number = fmin(fmax(number, properties[i].low), properties[i].high);
             if (!(fabs(found[i][k] - number) < 1e-5))
