@@ -54,16 +54,16 @@ PRINT    := $(addprefix compiler/print/, frame_values.c media.c lines.c signatur
             $(sort $(wildcard compiler/print/*/*.c))
 TARGET   := compiler/target/spirv.c
 BORDER   := compiler/target/glslang_border.cpp
-API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c find_emissive.c retain.c tables.c facts.c \
+API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c find_emissive.c find_assembly.c retain.c tables.c facts.c \
                 march_groups.c make_module.c program.c scene_text.c framing.c look.c daylight.c frame.c frame_emissive.c points.c query.c \
                 update.c search_pairs.c search_targets.c search_starts.c search.c refuter.c \
                 refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)
-MESH     := $(addprefix compiler/mesh/, field.c numbering.c tets.c quadric.c roots.c contour.c bvh.c groups.c gradient.c lens.c verify.c voids.c mesh.c)
+MESH     := $(addprefix compiler/mesh/, solid.c field.c numbering.c tets.c quadric.c roots.c contour.c bvh.c groups.c gradient.c lens.c verify.c voids.c mesh.c placing.c assemble.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer integrators film display writer))))
 LIVE     := $(sort $(wildcard live/*.c))
 LIVE_BORDER := live/gui.cpp
 CLI      := $(sort $(wildcard cli/*.c))
-CLI_BORDER := cli/mesh_border.cpp
+CLI_BORDER := cli/mesh_glb.cpp cli/mesh_3mf.cpp
 
 # Text files that the program carries: the standard library, what scenes and kernels share, kernels.
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))

@@ -62,14 +62,18 @@ const Choice on_off_choices[]      = {{"on", ""}, {"off", ""}, LAST};
 const Choice on_choices[]          = {{"host", ""}, {"device", ""}, LAST};
 const Choice when_choices[]        = {{"auto", ""}, {"always", ""}, {"never", ""}, LAST};
 const Choice diagnostics_choices[] = {{"text", ""}, {"json", ""}, LAST};
-const Choice split_choices[]       = {{"none", "one mesh of all"},
-                                      {"components", "a mesh for each component, by its name"},
-                                      {"materials", "triangles keep the names of their materials"},
-                                      LAST};
-const Choice unit_choices[]        = {{"mm", ""}, {"um", ""}, {"cm", ""}, {"m", ""},
-                                      {"in", ""}, {"ft", ""}, LAST};
-const Choice json_choices[]        = {{"json", ""}, LAST};
-const Choice pass_choices[]        = {
+const Choice copies_choices[] = {{"instances", "a mesh for each kernel, and where its copies are"},
+                                 {"flat", "the triangles of each copy"},
+                                 {"merged", "one mesh of all that is solid"},
+                                 LAST};
+const Choice split_choices[]  = {{"none", "one mesh of all"},
+                                 {"components", "a mesh for each component, by its name"},
+                                 {"materials", "triangles keep the names of their materials"},
+                                 LAST};
+const Choice unit_choices[]   = {{"mm", ""}, {"um", ""}, {"cm", ""}, {"m", ""},
+                                 {"in", ""}, {"ft", ""}, LAST};
+const Choice json_choices[]   = {{"json", ""}, LAST};
+const Choice pass_choices[]   = {
 #define PASS(name, validate, meaning)          {#name, ""},
 #define PASS_TO(form, name, validate, meaning) {form, ""}, {#name, ""},
 #include "compiler/passes.def"

@@ -6,30 +6,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/mesh_files.h"
-#include "compiler/base/srgb.h"
+#include "cli/meshing.h"
 
-/* --split, in the order of split_choices. */
-enum { SPLIT_NONE, SPLIT_COMPONENTS, SPLIT_MATERIALS };
+/* --copies, in the order of copies_choices. */
+enum { COPIES_INSTANCES, COPIES_FLAT, COPIES_MERGED };
 
-typedef struct Meshing {
-    const Options  *options;
-    const KrsScene *scene;
-    KrsFrame       *frame;
-    KrsMeshOptions  how;
-    KrsMesh        *mesh;  /* the last one */
-    double          scale; /* from the scene to the file */
-    Progress        progress;
-    struct {
-        KrsMesh **items;
-        size_t    count, capacity;
-    } meshes; /* of parts */
-    size_t vertex_count, triangle_count, unresolved;
-    double unresolved_at[3], error;
-    bool   estimate;
-} Meshing;
+/* How a file has copies. */
+static int copies_in(const Options *options, const MeshFormat *format)
+{
+    if (options->mesh_copies >= 0)
+        return options->mesh_copies;
+    return format->has_copies ? COPIES_INSTANCES : COPIES_MERGED;
+}
 
 /* ---- what is asked for ---- */
 
@@ -116,295 +104,6 @@ static KrsStatus check_wishes(Meshing *meshing)
     return KRS_OK;
 }
 
-/* ---- the mesh ---- */
-
-static bool go_on(void *user, double fraction)
-{
-    Meshing *meshing = user;
-    progress_show(&meshing->progress, fraction);
-    return !*interrupted();
-}
-
-static KrsStatus make_mesh(Meshing *meshing)
-{
-    const char *path   = meshing->options->files.items[0];
-    KrsStatus   status = krs_mesh(meshing->frame, &meshing->how, &meshing->mesh);
-    if (status == KRS_BAD_ARGUMENT) {
-        progress_end(&meshing->progress);
-        return say_usage(meshing->options, "--error is too small for the size of `%s`", path);
-    }
-    if (status == KRS_OUT_OF_MEMORY) {
-        progress_end(&meshing->progress);
-        say("a mesh of `%s` with this --error needs more memory than --limit memory permits", path);
-    }
-    return status;
-}
-
-/* The longest side of a box around all vertices. */
-static double longest_side(const Meshing *meshing)
-{
-    double longest = 0;
-    for (int k = 0; k < 3; k++) {
-        double low = INFINITY, high = -INFINITY;
-        for (size_t m = 0; m < meshing->meshes.count; m++)
-            for (size_t i = 0; i < meshing->meshes.items[m]->vertex_count; i++) {
-                low  = fmin(low, meshing->meshes.items[m]->vertices[i][k]);
-                high = fmax(high, meshing->meshes.items[m]->vertices[i][k]);
-            }
-        longest = fmax(longest, high - low);
-    }
-    return longest;
-}
-
-static void drop_meshes(Meshing *meshing)
-{
-    for (size_t i = 0; i < meshing->meshes.count; i++)
-        krs_mesh_free(meshing->meshes.items[i]);
-    meshing->meshes.count   = 0;
-    meshing->vertex_count   = 0;
-    meshing->triangle_count = 0;
-    meshing->unresolved     = 0;
-    meshing->error          = 0;
-}
-
-static void keep_mesh(Meshing *meshing)
-{
-    KrsMesh *mesh = meshing->mesh;
-    array_push(meshing->options->arena, &meshing->meshes, mesh);
-    if (mesh->unresolved > 0 && meshing->unresolved == 0)
-        memcpy(meshing->unresolved_at, mesh->unresolved_at, sizeof meshing->unresolved_at);
-    meshing->vertex_count += mesh->vertex_count;
-    meshing->triangle_count += mesh->triangle_count;
-    meshing->unresolved += mesh->unresolved;
-    meshing->error    = fmax(meshing->error, mesh->error);
-    meshing->estimate = meshing->estimate || mesh->estimate;
-    meshing->mesh     = NULL;
-}
-
-static bool is_split(const Meshing *meshing)
-{
-    return meshing->options->mesh_split == SPLIT_COMPONENTS && meshing->how.component == 0;
-}
-
-/* One of all, or one for each component. */
-static KrsStatus make_meshes(Meshing *meshing)
-{
-    size_t    count  = is_split(meshing) ? krs_component_count(meshing->scene) : 1;
-    bool      split  = is_split(meshing);
-    KrsStatus status = KRS_OK;
-    for (size_t i = 0; i < count && status == KRS_OK; i++) {
-        if (split)
-            meshing->how.component = i + 1;
-        status = make_mesh(meshing);
-        if (status == KRS_OK)
-            keep_mesh(meshing);
-    }
-    if (split)
-        meshing->how.component = 0;
-    return status;
-}
-
-/* With --size: a coarse mesh tells how long the scene is, and so how much smaller the error is there.
-   The final mesh is at most by the coarse one's error shorter.  Parts have one error. */
-static KrsStatus find_scale(Meshing *meshing)
-{
-    const Options *options = meshing->options;
-    double         longest = 0;
-    meshing->how.error     = options->mesh_error;
-    find_end(meshing, &longest);
-    if (options->mesh_error == 0 && longest > 0)
-        meshing->how.error = longest / 200;
-    if (options->mesh_size == 0 || options->mesh_error == 0)
-        return KRS_OK;
-    meshing->how.error = 0;
-    KrsStatus status   = make_meshes(meshing);
-    if (status != KRS_OK)
-        return status;
-    longest            = longest_side(meshing) - 2 * meshing->error;
-    meshing->how.error = options->mesh_error * longest / options->mesh_size;
-    drop_meshes(meshing);
-    return KRS_OK;
-}
-
-static KrsStatus find_meshes(Meshing *meshing)
-{
-    const Options *options = meshing->options;
-    stage_enter(STAGE_MESH);
-    progress_start(&meshing->progress, options, 1);
-    KrsStatus status = find_scale(meshing);
-    if (status == KRS_OK)
-        status = make_meshes(meshing);
-    progress_end(&meshing->progress);
-    if (status != KRS_OK)
-        return status;
-    if (meshing->triangle_count == 0) {
-        say("there is nothing to write: `%s` has nothing solid%s that is thicker than the error",
-            options->files.items[0], meshing->how.within ? " in this box" : "");
-        return KRS_BAD_SCENE;
-    }
-    if (options->mesh_size > 0)
-        meshing->scale = options->mesh_size / longest_side(meshing);
-    return KRS_OK;
-}
-
-/* ---- parts ---- */
-
-static const char *part_name(const Meshing *meshing, size_t index)
-{
-    KrsComponent component;
-    size_t       number = is_split(meshing) ? index + 1 : meshing->how.component;
-    if (number == 0)
-        return scene_name(meshing->options->arena, meshing->options->files.items[0]);
-    krs_component(meshing->scene, number - 1, &component);
-    return component.name;
-}
-
-/* All meshes one behind the other. */
-static void join_meshes(const Meshing *meshing, MeshParts *parts)
-{
-    Arena *arena            = meshing->options->arena;
-    double(*vertices)[3]    = arena_alloc(arena, meshing->vertex_count, sizeof *vertices);
-    uint32_t(*triangles)[3] = arena_alloc(arena, meshing->triangle_count, sizeof *triangles);
-    MeshPart *list          = arena_new_array(arena, MeshPart, meshing->meshes.count);
-    size_t    vertex = 0, triangle = 0;
-    for (size_t i = 0; i < meshing->meshes.count; i++) {
-        const KrsMesh *mesh = meshing->meshes.items[i];
-        if (mesh->triangle_count == 0)
-            continue;
-        list[parts->part_count++] = (MeshPart){part_name(meshing, i), vertex, mesh->vertex_count,
-                                               triangle, mesh->triangle_count};
-        memcpy(vertices + vertex, mesh->vertices, mesh->vertex_count * sizeof *vertices);
-        for (size_t t = 0; t < mesh->triangle_count; t++)
-            for (int k = 0; k < 3; k++)
-                triangles[triangle + t][k] = mesh->triangles[t][k] + (uint32_t)vertex;
-        vertex += mesh->vertex_count;
-        triangle += mesh->triangle_count;
-    }
-    parts->vertices  = (const double(*)[3])vertices;
-    parts->triangles = (const uint32_t(*)[3])triangles;
-    parts->parts     = list;
-}
-
-static unsigned char byte_of(double linear)
-{
-    double encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
-    return (unsigned char)lrint(255 * fmin(fmax(encoded, 0), 1));
-}
-
-enum { PROBES = 256 };
-
-static void find_colors(const Meshing *meshing, MeshParts *parts)
-{
-    unsigned char(*colors)[3] = arena_alloc(meshing->options->arena, meshing->vertex_count,
-                                            sizeof *colors);
-    KrsHit hits[PROBES];
-    for (size_t i = 0, now; i < meshing->vertex_count; i += now) {
-        now = meshing->vertex_count - i < PROBES ? meshing->vertex_count - i : PROBES;
-        krs_probe(meshing->frame, parts->vertices + i, now, hits);
-        for (size_t k = 0; k < 3 * now; k++)
-            colors[i + k / 3][k % 3] = byte_of(hits[k / 3].color[k % 3]);
-    }
-    parts->colors = (const unsigned char(*)[3])colors;
-}
-
-/* Materials as they come, with the look of their first triangle. */
-typedef struct MaterialList {
-    uint32_t     *places; /* from 1, by the number that answers have */
-    MeshMaterial *items;
-    size_t        count;
-} MaterialList;
-
-static uint32_t take_material(const Meshing *meshing, MaterialList *list, const KrsHit *hit)
-{
-    bool        split  = meshing->options->mesh_split == SPLIT_MATERIALS;
-    uint32_t    number = split ? hit->material : 0;
-    const char *name   = split ? krs_material_name(meshing->scene, number) : NULL;
-    if (list->places[number] == 0) {
-        MeshMaterial *material = &list->items[list->count];
-        *material              = (MeshMaterial){.name      = name ? name : "material",
-                                                .roughness = hit->roughness,
-                                                .metallic  = hit->metallic};
-        for (int k = 0; k < 3; k++)
-            material->color[k] = byte_of(hit->color[k]);
-        list->places[number] = (uint32_t)++list->count;
-    }
-    return list->places[number] - 1;
-}
-
-static void find_materials(const Meshing *meshing, MeshParts *parts)
-{
-    Arena       *arena = meshing->options->arena;
-    size_t       known = krs_material_count(meshing->scene) + 2;
-    MaterialList list  = {arena_new_array(arena, uint32_t, known),
-                          arena_new_array(arena, MeshMaterial, known), 0};
-    uint32_t    *of    = arena_new_array(arena, uint32_t, meshing->triangle_count);
-    double       middles[PROBES][3];
-    KrsHit       hits[PROBES];
-    for (size_t i = 0, now; i < meshing->triangle_count; i += now) {
-        now = meshing->triangle_count - i < PROBES ? meshing->triangle_count - i : PROBES;
-        for (size_t t = 0; t < now; t++)
-            for (int k = 0; k < 3; k++)
-                middles[t][k] = (parts->vertices[parts->triangles[i + t][0]][k] +
-                                 parts->vertices[parts->triangles[i + t][1]][k] +
-                                 parts->vertices[parts->triangles[i + t][2]][k]) /
-                                3;
-        krs_probe(meshing->frame, (const double(*)[3])middles, now, hits);
-        for (size_t t = 0; t < now; t++)
-            of[i + t] = take_material(meshing, &list, &hits[t]);
-    }
-    parts->material_of    = of;
-    parts->materials      = list.items;
-    parts->material_count = list.count;
-}
-
-static void find_parts(const Meshing *meshing, MeshParts *parts)
-{
-    *parts = (MeshParts){.scale = meshing->scale};
-    join_meshes(meshing, parts);
-    find_colors(meshing, parts);
-    find_materials(meshing, parts);
-}
-
-/* ---- units ---- */
-
-/* In the order of unit_choices. */
-static const double metres_of_units[] = {1e-3, 1e-6, 1e-2, 1, 0.0254, 0.3048};
-
-/* Without a wish, what the format is usually in. */
-static void set_units(const Meshing *meshing, const MeshFormat *format, MeshParts *parts)
-{
-    int unit = meshing->options->mesh_units;
-    if (unit < 0)
-        unit = find_choice(strcmp(format->ending, ".glb") == 0 ? "m" : "mm", unit_choices);
-    parts->unit   = unit_choices[unit].name;
-    parts->metres = metres_of_units[unit];
-}
-
-/* ---- files ---- */
-
-typedef struct Output {
-    const Meshing    *meshing;
-    const MeshParts  *parts;
-    const MeshFormat *format;
-} Output;
-
-static bool fill_mesh(const void *user, OutputFile *file, OutputError *error)
-{
-    const Output  *output  = user;
-    const Meshing *meshing = output->meshing;
-    MeshFile      *writer  = arena_new(meshing->options->arena, MeshFile);
-    writer->parts          = output->parts;
-    writer->vertex_count   = meshing->vertex_count;
-    writer->triangle_count = meshing->triangle_count;
-    writer->file           = file;
-    bool written           = mesh_file_write(writer, output->format);
-    if (!written && error->status == KRS_OK) {
-        error->status = KRS_OUT_OF_MEMORY;
-        snprintf(error->message, sizeof error->message, "not enough memory for this file");
-    }
-    return written;
-}
-
 static const char *output_path(const Meshing *meshing, size_t index)
 {
     const Options *options = meshing->options;
@@ -420,6 +119,262 @@ static size_t output_count(const Meshing *meshing)
     return meshing->options->outputs.count ? meshing->options->outputs.count : 1;
 }
 
+/* ---- the mesh ---- */
+
+static bool go_on(void *user, double fraction)
+{
+    Meshing *meshing = user;
+    progress_show(&meshing->progress, fraction);
+    return !*interrupted();
+}
+
+static KrsStatus make_merged(Meshing *meshing, Body *body)
+{
+    return krs_mesh(meshing->frame, &meshing->how, &body->mesh);
+}
+
+/* Where nothing can be taken apart, the meshes are those that are merged. */
+static KrsStatus make_assembled(Meshing *meshing, Body *body)
+{
+    KrsMeshOptions whole  = meshing->how;
+    KrsStatus      status = KRS_OK;
+    if (meshing->options->mesh_error == 0)
+        meshing->how.error = 0;
+    status             = krs_assemble(meshing->frame, &meshing->how, &body->assembly);
+    meshing->how.error = whole.error;
+    return status == KRS_OK && !body->assembly ? make_merged(meshing, body) : status;
+}
+
+typedef KrsStatus MakeBody(Meshing *meshing, Body *body);
+
+static KrsStatus make_body(Meshing *meshing, MakeBody *make, Bodies *bodies)
+{
+    const char *path   = meshing->options->files.items[0];
+    Body        body   = {.component = meshing->how.component};
+    KrsStatus   status = make(meshing, &body);
+    if (status != KRS_OK)
+        progress_end(&meshing->progress);
+    if (status == KRS_BAD_ARGUMENT)
+        return say_usage(meshing->options, "--error is too small for the size of `%s`", path);
+    if (status == KRS_OUT_OF_MEMORY)
+        say("a mesh of `%s` with this --error needs more memory than --limit memory permits", path);
+    if (status == KRS_OK)
+        array_push(meshing->options->arena, bodies, body);
+    return status;
+}
+
+static void drop_bodies(Bodies *bodies)
+{
+    for (size_t i = 0; i < bodies->count; i++) {
+        krs_mesh_free(bodies->items[i].mesh);
+        krs_assembly_free(bodies->items[i].assembly);
+    }
+    bodies->count = 0;
+}
+
+/* One of all, or one for each component; turns of a loop may be one. */
+static KrsStatus make_bodies(Meshing *meshing, MakeBody *make, Bodies *bodies)
+{
+    size_t    asked  = meshing->how.component;
+    bool      split  = meshing->options->mesh_split == SPLIT_COMPONENTS && asked == 0;
+    size_t    count  = split ? krs_component_count(meshing->scene) : 1;
+    KrsStatus status = KRS_OK;
+    for (size_t i = 0; i < count && status == KRS_OK;
+         i        = split ? krs_turns_end(meshing->scene, i) : i + 1) {
+        if (split)
+            meshing->how.component = i + 1;
+        status = make_body(meshing, make, bodies);
+    }
+    meshing->how.component = asked;
+    return status;
+}
+
+/* ---- what is known of bodies ---- */
+
+typedef struct Summary {
+    double low[3], high[3];
+    double error, triangles, vertices, copies;
+    size_t unresolved;
+    double unresolved_at[3];
+    bool   estimate;
+} Summary;
+
+static void add_mesh(void *user, const KrsMesh *mesh, const KrsItem *item)
+{
+    Summary *all    = user;
+    double   copies = item ? item->copies : 1;
+    double   scale  = item ? sqrt(item->first_copy[0][0] * item->first_copy[0][0] +
+                                  item->first_copy[0][1] * item->first_copy[0][1] +
+                                  item->first_copy[0][2] * item->first_copy[0][2])
+                           : 1;
+    if (mesh->unresolved > 0 && all->unresolved == 0)
+        memcpy(all->unresolved_at, mesh->unresolved_at, sizeof all->unresolved_at);
+    all->unresolved += mesh->unresolved;
+    all->error    = fmax(all->error, scale * mesh->error);
+    all->estimate = all->estimate || mesh->estimate;
+    all->triangles += copies * (double)mesh->triangle_count;
+    all->vertices += copies * (double)mesh->vertex_count;
+    all->copies += copies;
+    for (size_t i = 0; !item && i < mesh->vertex_count; i++)
+        for (int k = 0; k < 3; k++) {
+            all->low[k]  = fmin(all->low[k], mesh->vertices[i][k]);
+            all->high[k] = fmax(all->high[k], mesh->vertices[i][k]);
+        }
+}
+
+static Summary summarize(const Bodies *bodies)
+{
+    Summary all = {.low  = {INFINITY, INFINITY, INFINITY},
+                   .high = {-INFINITY, -INFINITY, -INFINITY}};
+    for (size_t i = 0; i < bodies->count; i++) {
+        const KrsAssembly *assembly = bodies->items[i].assembly;
+        visit_meshes(&bodies->items[i], add_mesh, &all);
+        for (int k = 0; assembly && k < 3; k++) {
+            all.low[k]  = fmin(all.low[k], assembly->low[k]);
+            all.high[k] = fmax(all.high[k], assembly->high[k]);
+        }
+    }
+    return all;
+}
+
+static double longest_side(const Bodies *bodies)
+{
+    Summary all     = summarize(bodies);
+    double  longest = 0;
+    for (int k = 0; k < 3; k++)
+        longest = fmax(longest, all.high[k] - all.low[k]);
+    return longest;
+}
+
+/* ---- which meshes are made ---- */
+
+/* With --size: a coarse mesh tells how long the scene is, and so how much smaller the error is there.
+   The final mesh is at most by the coarse one's error shorter.  Parts have one error. */
+static KrsStatus find_error(Meshing *meshing, MakeBody *make)
+{
+    const Options *options = meshing->options;
+    double         longest = 0;
+    Bodies         coarse  = {0};
+    meshing->how.error     = options->mesh_error;
+    find_end(meshing, &longest);
+    if (options->mesh_error == 0 && longest > 0)
+        meshing->how.error = longest / 200;
+    if (options->mesh_size == 0 || options->mesh_error == 0)
+        return KRS_OK;
+    meshing->how.error = 0;
+    KrsStatus status   = make_bodies(meshing, make, &coarse);
+    if (status == KRS_OK) {
+        longest            = longest_side(&coarse) - 2 * summarize(&coarse).error;
+        meshing->how.error = options->mesh_error * longest / options->mesh_size;
+    }
+    drop_bodies(&coarse);
+    return status;
+}
+
+static bool is_any(const Meshing *meshing, bool merged)
+{
+    for (size_t i = 0; i < output_count(meshing); i++)
+        if ((copies_in(meshing->options, mesh_format(output_path(meshing, i))) == COPIES_MERGED) ==
+            merged)
+            return true;
+    return false;
+}
+
+static double count_instances(const Meshing *meshing)
+{
+    double count = 0;
+    for (size_t i = 0; i < krs_component_count(meshing->scene); i++) {
+        KrsComponent component;
+        krs_component(meshing->scene, i, &component);
+        count += component.levels > 0 ? component.instances : 0;
+    }
+    return count;
+}
+
+/* Before a mesh of all is made that would have too many triangles: those of the kernels, copied, tell. */
+static KrsStatus check_merged(Meshing *meshing)
+{
+    const double few    = 1000;
+    KrsStatus    status = KRS_OK;
+    if (!is_any(meshing, true) || count_instances(meshing) < few)
+        return KRS_OK;
+    if (meshing->assembled.count == 0)
+        status = make_bodies(meshing, make_assembled, &meshing->assembled);
+    double triangles = summarize(&meshing->assembled).triangles;
+    if (status != KRS_OK || triangles <= MOST_TRIANGLES)
+        return status;
+    progress_end(&meshing->progress);
+    return say_usage(meshing->options,
+                     "a mesh of `%s` as one would have about %.3g triangles; .glb and .3mf have "
+                     "instances, --copies flat writes all, and a larger --error needs fewer",
+                     meshing->options->files.items[0], triangles);
+}
+
+static KrsStatus make_all(Meshing *meshing)
+{
+    bool      assembled = is_any(meshing, false);
+    KrsStatus status    = find_error(meshing, assembled ? make_assembled : make_merged);
+    if (status == KRS_OK && assembled)
+        status = make_bodies(meshing, make_assembled, &meshing->assembled);
+    if (status == KRS_OK)
+        status = check_merged(meshing);
+    if (status == KRS_OK && is_any(meshing, true))
+        status = make_bodies(meshing, make_merged, &meshing->merged);
+    return status;
+}
+
+/* Those of a file. */
+static const Bodies *bodies_of(const Meshing *meshing, const MeshFormat *format)
+{
+    return copies_in(meshing->options, format) == COPIES_MERGED ? &meshing->merged
+                                                                : &meshing->assembled;
+}
+
+static KrsStatus find_meshes(Meshing *meshing)
+{
+    const Options *options = meshing->options;
+    const Bodies  *bodies  = is_any(meshing, true) ? &meshing->merged : &meshing->assembled;
+    stage_enter(STAGE_MESH);
+    progress_start(&meshing->progress, options, 1);
+    KrsStatus status = make_all(meshing);
+    progress_end(&meshing->progress);
+    if (status != KRS_OK)
+        return status;
+    if (summarize(bodies).triangles == 0) {
+        say("there is nothing to write: `%s` has nothing solid%s that is thicker than the error",
+            options->files.items[0], meshing->how.within ? " in this box" : "");
+        return KRS_BAD_SCENE;
+    }
+    if (options->mesh_size > 0)
+        meshing->scale = options->mesh_size / longest_side(bodies);
+    return KRS_OK;
+}
+
+/* ---- files ---- */
+
+typedef struct Output {
+    const Meshing    *meshing;
+    const MeshParts  *parts;
+    const MeshFormat *format;
+    Summary           all;
+} Output;
+
+static bool fill_mesh(const void *user, OutputFile *file, OutputError *error)
+{
+    const Output *output   = user;
+    MeshFile     *writer   = arena_new(output->meshing->options->arena, MeshFile);
+    writer->parts          = output->parts;
+    writer->vertex_count   = (size_t)output->all.vertices;
+    writer->triangle_count = (size_t)output->all.triangles;
+    writer->file           = file;
+    bool written           = mesh_file_write(writer, output->format);
+    if (!written && error->status == KRS_OK) {
+        error->status = KRS_OUT_OF_MEMORY;
+        snprintf(error->message, sizeof error->message, "not enough memory for this file");
+    }
+    return written;
+}
+
 static KrsStatus check_outputs(const Meshing *meshing)
 {
     for (size_t i = 0; i < output_count(meshing); i++) {
@@ -431,6 +386,9 @@ static KrsStatus check_outputs(const Meshing *meshing)
         if (meshing->options->mesh_split != 0 && !mesh_format(path)->has_parts)
             return say_usage(meshing->options,
                              "`%s` has no parts to --split; .obj, .glb and .3mf have", path);
+        if (copies_in(meshing->options, mesh_format(path)) == COPIES_INSTANCES &&
+            !mesh_format(path)->has_copies)
+            return say_usage(meshing->options, "`%s` has no instances; .glb and .3mf have", path);
         KrsStatus status = check_scene_not_overwritten(meshing->options, path);
         if (status != KRS_OK)
             return status;
@@ -442,34 +400,66 @@ static KrsStatus check_outputs(const Meshing *meshing)
     return KRS_OK;
 }
 
+/* Formats have 32 bits for numbers, and some are made in memory. */
+static KrsStatus check_size(const Meshing *meshing, const char *path, const MeshFormat *format,
+                            const Summary *all)
+{
+    int    copies = copies_in(meshing->options, format);
+    double most   = !format->has_copies ? UINT32_MAX : MOST_TRIANGLES;
+    double count  = copies == COPIES_INSTANCES ? all->copies : all->triangles;
+    if (copies == COPIES_INSTANCES)
+        most = MOST_INSTANCES;
+    if (copies == COPIES_MERGED || count <= most)
+        return KRS_OK;
+    return say_usage(meshing->options, "`%s` would have %.0f %s, and can have %.0f; %s", path,
+                     count, copies == COPIES_INSTANCES ? "instances" : "triangles", most,
+                     copies == COPIES_INSTANCES ? "--component takes less of the scene"
+                     : format->has_copies       ? "--copies instances writes each kernel once"
+                                                : "a larger --error needs fewer");
+}
+
+static KrsStatus write_mesh(const Meshing *meshing, const char *path)
+{
+    const MeshFormat *format = mesh_format(path);
+    const Bodies     *bodies = bodies_of(meshing, format);
+    MeshParts         parts;
+    Output            output = {meshing, &parts, format, summarize(bodies)};
+    KrsStatus         status = check_size(meshing, path, format, &output.all);
+    if (status != KRS_OK)
+        return status;
+    find_parts(meshing, bodies, &parts);
+    if (format->has_copies && copies_in(meshing->options, format) == COPIES_FLAT)
+        flatten_parts(meshing, &parts);
+    set_units(meshing, format, &parts);
+    return write_output(path, fill_mesh, &output);
+}
+
 static KrsStatus write_meshes(const Meshing *meshing)
 {
     KrsStatus status = KRS_OK;
-    MeshParts parts;
-    find_parts(meshing, &parts);
-    for (size_t i = 0; i < output_count(meshing) && status == KRS_OK; i++) {
-        const char *path   = output_path(meshing, i);
-        Output      output = {meshing, &parts, mesh_format(path)};
-        set_units(meshing, output.format, &parts);
-        status = write_output(path, fill_mesh, &output);
-    }
+    for (size_t i = 0; i < output_count(meshing) && status == KRS_OK; i++)
+        status = write_mesh(meshing, output_path(meshing, i));
     return status;
 }
 
-static void report(const Meshing *meshing)
+static void report(const Meshing *meshing, const Bodies *bodies)
 {
-    const double *at = meshing->unresolved_at;
-    if (meshing->options->quiet)
+    Summary       all = summarize(bodies);
+    const double *at  = all.unresolved_at;
+    if (meshing->options->quiet || bodies->count == 0)
         return;
-    if (meshing->estimate)
+    if (all.estimate)
         say("warning: the distance is an estimate, so the error is one as well");
-    if (meshing->unresolved > 0)
-        say("warning: at %zu places, the first [%g, %g, %g] of the scene, is what is thinner than "
-            "the "
+    if (all.unresolved > 0)
+        say("warning: at %zu places, the first [%g, %g, %g] of the %s, is what is thinner than the "
             "error, or solids touch; a smaller --error tells",
-            meshing->unresolved, at[0], at[1], at[2]);
-    say("%zu triangles, within %.4g of the surface", meshing->triangle_count,
-        meshing->error * meshing->scale);
+            all.unresolved, at[0], at[1], at[2], all.copies > 1 ? "kernel" : "scene");
+    if (bodies == &meshing->assembled && all.copies > (double)bodies->count)
+        say("%.0f copies with %.0f triangles, within %.4g of the surface", all.copies,
+            all.triangles, all.error * meshing->scale);
+    else
+        say("%.0f triangles, within %.4g of the surface", all.triangles,
+            all.error * meshing->scale);
 }
 
 KrsStatus command_mesh(Options *options)
@@ -491,9 +481,12 @@ KrsStatus command_mesh(Options *options)
         status = find_meshes(&meshing);
     if (status == KRS_OK)
         status = write_meshes(&meshing);
-    if (status == KRS_OK)
-        report(&meshing);
-    drop_meshes(&meshing);
+    if (status == KRS_OK && is_any(&meshing, false))
+        report(&meshing, &meshing.assembled);
+    if (status == KRS_OK && is_any(&meshing, true))
+        report(&meshing, &meshing.merged);
+    drop_bodies(&meshing.assembled);
+    drop_bodies(&meshing.merged);
     krs_frame_free(meshing.frame);
     krs_scene_free(scene);
     return status;

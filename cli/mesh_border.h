@@ -8,6 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "compiler/krs.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -18,25 +20,36 @@ typedef struct MeshMaterial {
     double        roughness, metallic;
 } MeshMaterial;
 
-/* A closed mesh with a name. */
+/* A closed mesh. */
 typedef struct MeshPart {
-    const char *name;
-    size_t      first_vertex, vertex_count, first_triangle, triangle_count;
+    size_t first_vertex, vertex_count, first_triangle, triangle_count;
 } MeshPart;
 
-/* Parts, one behind the other, in the lengths of the file. */
+/* What has a name: a part, or copies of several. */
+typedef struct MeshBody {
+    const char        *name;
+    const KrsAssembly *assembly;   /* where copies are; NULL: it is its only part */
+    const size_t      *part_of;    /* the part of each item of the assembly that is a mesh */
+    size_t             first_part; /* of it, in the order of items */
+} MeshBody;
+
+/* Parts, one behind the other, and bodies that are made of them. */
 typedef struct MeshParts {
     const double (*vertices)[3];
     const unsigned char (*colors)[3]; /* of vertices, sRGB */
     const uint32_t (*triangles)[3];   /* numbers count from the first vertex of all */
     const uint32_t     *material_of;  /* of triangles */
     const MeshPart     *parts;
+    const MeshBody     *bodies;
     const MeshMaterial *materials;
-    size_t              part_count, material_count;
+    size_t              part_count, body_count, material_count;
     double              scale;  /* from vertices to the lengths of the file */
     const char         *unit;   /* of those: um, mm, cm, m, in or ft */
     double              metres; /* which is so long */
 } MeshParts;
+
+/* Whether a placing mirrors what it places. */
+bool mesh_is_reflection(const double matrix[3][4]);
 
 /* Takes the next bytes of the file; false: there has been a failure. */
 typedef bool MeshSink(void *user, const void *bytes, size_t count);

@@ -1,4 +1,4 @@
-/* mesh_files.c: binary STL, binary PLY with colours, and OBJ; GLB and 3MF by mesh_border.cpp. */
+/* mesh_files.c: binary STL, binary PLY with colours, and OBJ; GLB and 3MF by mesh_border.h. */
 #include "cli/mesh_files.h"
 
 #include <endian.h>
@@ -53,90 +53,132 @@ static bool add_float(MeshFile *file, double number)
     return add_word(file, word);
 }
 
-static bool add_vector(MeshFile *file, const double vector[3], double scale)
+static bool add_vector(MeshFile *file, const double vector[3])
 {
-    return add_float(file, scale * vector[0]) && add_float(file, scale * vector[1]) &&
-           add_float(file, scale * vector[2]);
+    return add_float(file, vector[0]) && add_float(file, vector[1]) && add_float(file, vector[2]);
+}
+
+/* ---- copies ---- */
+
+static bool visit_copies(MeshFile *file, VisitMeshCopy *visit)
+{
+    file->base = 0;
+    for (file->body = 0; file->body < file->parts->body_count; file->body++)
+        if (!mesh_body_visit(file->parts, file->body, visit, file))
+            return false;
+    return true;
+}
+
+/* In the lengths of the file. */
+static void vertex_of(const MeshFile *file, const MeshCopy *copy, size_t number, double at[3])
+{
+    mesh_copy_vertex(file->parts, copy, number, at);
+    for (int k = 0; k < 3; k++)
+        at[k] *= file->parts->scale;
 }
 
 /* ---- STL ---- */
 
-static void corners_of(const MeshFile *file, size_t triangle, const double *corners[3])
-{
-    for (int i = 0; i < 3; i++)
-        corners[i] = file->parts->vertices[file->parts->triangles[triangle][i]];
-}
-
 /* STL has no numbers of vertices: those that are equal in single precision are one. */
-static bool are_one(const MeshFile *file, const double a[3], const double b[3])
+static bool are_one(const double a[3], const double b[3])
 {
-    for (int k = 0; k < 3; k++)
-        if ((float)(file->parts->scale * a[k]) != (float)(file->parts->scale * b[k]))
-            return false;
-    return true;
+    return (float)a[0] == (float)b[0] && (float)a[1] == (float)b[1] && (float)a[2] == (float)b[2];
 }
 
-static bool has_area(const MeshFile *file, size_t triangle)
+/* False: it has no area there. */
+static bool find_corners(const MeshFile *file, const MeshCopy *copy, size_t number,
+                         double corners[3][3])
 {
-    const double *corners[3];
-    corners_of(file, triangle, corners);
-    return !are_one(file, corners[0], corners[1]) && !are_one(file, corners[1], corners[2]) &&
-           !are_one(file, corners[2], corners[0]);
+    uint32_t triangle[3];
+    mesh_copy_triangle(file->parts, copy, number, 0, triangle);
+    for (int i = 0; i < 3; i++)
+        vertex_of(file, copy, triangle[i], corners[i]);
+    return !are_one(corners[0], corners[1]) && !are_one(corners[1], corners[2]) &&
+           !are_one(corners[2], corners[0]);
 }
 
-static bool add_stl_triangle(MeshFile *file, size_t triangle)
+static bool add_stl_triangle(MeshFile *file, const double corners[3][3])
 {
     static const uint16_t nothing = 0;
-    const double         *corners[3];
     double                edges[2][3], normal[3];
-    corners_of(file, triangle, corners);
     add_scaled3(edges[0], corners[1], -1, corners[0]);
     add_scaled3(edges[1], corners[2], -1, corners[0]);
     cross3(edges[0], edges[1], normal);
     normalize3(normal);
-    return add_vector(file, normal, 1) && add_vector(file, corners[0], file->parts->scale) &&
-           add_vector(file, corners[1], file->parts->scale) &&
-           add_vector(file, corners[2], file->parts->scale) &&
+    return add_vector(file, normal) && add_vector(file, corners[0]) &&
+           add_vector(file, corners[1]) && add_vector(file, corners[2]) &&
            add_bytes(file, &nothing, sizeof nothing);
+}
+
+static bool count_stl(void *user, const MeshCopy *copy)
+{
+    MeshFile *file = user;
+    double    corners[3][3];
+    for (size_t i = 0; i < copy->part->triangle_count; i++)
+        file->triangle_count += find_corners(file, copy, i, corners);
+    return true;
+}
+
+static bool add_stl_copy(void *user, const MeshCopy *copy)
+{
+    MeshFile *file = user;
+    double    corners[3][3];
+    for (size_t i = 0; i < copy->part->triangle_count; i++)
+        if (find_corners(file, copy, i, corners) &&
+            !add_stl_triangle(file, (const double(*)[3])corners))
+            return false;
+    return true;
 }
 
 static bool write_stl(MeshFile *file)
 {
-    char     header[80] = "binary STL, made by krs";
-    uint32_t count      = 0;
-    for (size_t i = 0; i < file->triangle_count; i++)
-        count += has_area(file, i);
-    if (!add_bytes(file, header, sizeof header) || !add_word(file, count))
-        return false;
-    for (size_t i = 0; i < file->triangle_count; i++)
-        if (has_area(file, i) && !add_stl_triangle(file, i))
-            return false;
-    return true;
+    char header[80]      = "binary STL, made by krs";
+    file->triangle_count = 0;
+    visit_copies(file, count_stl);
+    return add_bytes(file, header, sizeof header) &&
+           add_word(file, (uint32_t)file->triangle_count) && visit_copies(file, add_stl_copy);
 }
 
 /* ---- PLY ---- */
 
+static bool add_ply_vertices(void *user, const MeshCopy *copy)
+{
+    MeshFile *file = user;
+    for (size_t i = 0; i < copy->part->vertex_count; i++) {
+        double at[3];
+        vertex_of(file, copy, i, at);
+        if (!add_vector(file, at) ||
+            !add_bytes(file, file->parts->colors[copy->part->first_vertex + i], 3))
+            return false;
+    }
+    return true;
+}
+
+static bool add_ply_faces(void *user, const MeshCopy *copy)
+{
+    MeshFile *file = user;
+    uint32_t  triangle[3];
+    for (size_t i = 0; i < copy->part->triangle_count; i++) {
+        mesh_copy_triangle(file->parts, copy, i, file->base, triangle);
+        if (!add_bytes(file, "\3", 1) || !add_word(file, triangle[0]) ||
+            !add_word(file, triangle[1]) || !add_word(file, triangle[2]))
+            return false;
+    }
+    file->base += copy->part->vertex_count;
+    return true;
+}
+
 static bool write_ply(MeshFile *file)
 {
-    const MeshParts *parts = file->parts;
-    if (!add_line(file,
-                  "ply\nformat binary_little_endian 1.0\ncomment made by krs\n"
-                  "element vertex %zu\nproperty float x\nproperty float y\nproperty float z\n",
-                  file->vertex_count) ||
-        !add_line(file, "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-                        "element face ") ||
-        !add_line(file, "%zu\nproperty list uchar uint vertex_indices\nend_header\n",
-                  file->triangle_count))
-        return false;
-    for (size_t i = 0; i < file->vertex_count; i++)
-        if (!add_vector(file, parts->vertices[i], file->parts->scale) ||
-            !add_bytes(file, parts->colors[i], sizeof parts->colors[i]))
-            return false;
-    for (size_t i = 0; i < file->triangle_count; i++)
-        if (!add_bytes(file, "\3", 1) || !add_word(file, parts->triangles[i][0]) ||
-            !add_word(file, parts->triangles[i][1]) || !add_word(file, parts->triangles[i][2]))
-            return false;
-    return true;
+    return add_line(file,
+                    "ply\nformat binary_little_endian 1.0\ncomment made by krs\n"
+                    "element vertex %zu\nproperty float x\nproperty float y\nproperty float z\n",
+                    file->vertex_count) &&
+           add_line(file, "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                          "element face ") &&
+           add_line(file, "%zu\nproperty list uchar uint vertex_indices\nend_header\n",
+                    file->triangle_count) &&
+           visit_copies(file, add_ply_vertices) && visit_copies(file, add_ply_faces);
 }
 
 /* ---- OBJ ---- */
@@ -152,49 +194,62 @@ static bool add_obj_name(MeshFile *file, const char *what, const char *name)
     return add_line(file, "%s %s\n", what, word);
 }
 
-static bool add_obj_faces(MeshFile *file, const MeshPart *part, uint32_t material)
+static bool add_obj_vertices(void *user, const MeshCopy *copy)
 {
-    const MeshParts *parts = file->parts;
-    bool             named = parts->material_count == 1;
-    for (size_t i = part->first_triangle; i < part->first_triangle + part->triangle_count; i++) {
-        const uint32_t *triangle = parts->triangles[i];
-        if (parts->material_of[i] != material)
-            continue;
-        if (!named && !add_obj_name(file, "usemtl", parts->materials[material].name))
-            return false;
-        named = true;
-        if (!add_line(file, "f %u %u %u\n", triangle[0] + 1, triangle[1] + 1, triangle[2] + 1))
+    MeshFile *file = user;
+    for (size_t i = 0; i < copy->part->vertex_count; i++) {
+        const unsigned char *color = file->parts->colors[copy->part->first_vertex + i];
+        double               at[3];
+        vertex_of(file, copy, i, at);
+        if (!add_line(file, "v %.9g %.9g %.9g %.4g %.4g %.4g\n", at[0], at[1], at[2],
+                      color[0] / 255.0, color[1] / 255.0, color[2] / 255.0))
             return false;
     }
     return true;
 }
 
-static bool add_obj_part(MeshFile *file, const MeshPart *part)
+static bool add_obj_faces(MeshFile *file, const MeshCopy *copy, uint32_t material)
 {
-    if (file->parts->part_count > 1 && !add_obj_name(file, "o", part->name))
-        return false;
-    for (uint32_t i = 0; i < file->parts->material_count; i++)
-        if (!add_obj_faces(file, part, i))
+    const MeshParts *parts = file->parts;
+    for (size_t i = 0; i < copy->part->triangle_count; i++) {
+        uint32_t triangle[3];
+        if (parts->material_of[copy->part->first_triangle + i] != material)
+            continue;
+        if (file->material != material &&
+            !add_obj_name(file, "usemtl", parts->materials[material].name))
             return false;
+        file->material = material;
+        mesh_copy_triangle(parts, copy, i, file->base + 1, triangle);
+        if (!add_line(file, "f %u %u %u\n", triangle[0], triangle[1], triangle[2]))
+            return false;
+    }
     return true;
 }
 
+static bool add_obj_copy(void *user, const MeshCopy *copy)
+{
+    MeshFile *file = user;
+    for (uint32_t i = 0; i < file->parts->material_count; i++)
+        if (!add_obj_faces(file, copy, i))
+            return false;
+    file->base += copy->part->vertex_count;
+    return true;
+}
+
+/* Without several of them, neither bodies nor materials have names. */
 static bool write_obj(MeshFile *file)
 {
     const MeshParts *parts = file->parts;
-    if (!add_line(file, "# made by krs\n"))
+    if (!add_line(file, "# made by krs\n") || !visit_copies(file, add_obj_vertices))
         return false;
-    for (size_t i = 0; i < file->vertex_count; i++) {
-        const double        *at    = parts->vertices[i];
-        const unsigned char *color = parts->colors[i];
-        if (!add_line(file, "v %.9g %.9g %.9g %.4g %.4g %.4g\n", file->parts->scale * at[0],
-                      file->parts->scale * at[1], file->parts->scale * at[2], color[0] / 255.0,
-                      color[1] / 255.0, color[2] / 255.0))
+    file->base = 0;
+    for (size_t i = 0; i < parts->body_count; i++) {
+        file->material = parts->material_count == 1 ? 0 : UINT32_MAX;
+        if (parts->body_count > 1 && !add_obj_name(file, "o", parts->bodies[i].name))
+            return false;
+        if (!mesh_body_visit(parts, i, add_obj_copy, file))
             return false;
     }
-    for (size_t i = 0; i < parts->part_count; i++)
-        if (!add_obj_part(file, &parts->parts[i]))
-            return false;
     return true;
 }
 

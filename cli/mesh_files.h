@@ -4,21 +4,24 @@
 #ifndef KRS_MESH_FILES_H
 #define KRS_MESH_FILES_H
 
-#include "cli/mesh_border.h"
+#include "cli/mesh_copies.h"
 #include "cli/supervise.h"
 
 /* A mesh that is being written. */
 typedef struct MeshFile {
     const MeshParts *parts;
-    size_t           vertex_count, triangle_count; /* of all parts */
+    size_t           vertex_count, triangle_count; /* of all copies */
     OutputFile      *file;
     char             buffer[1 << 16];
     size_t           length;
+    size_t           base; /* vertices of the copies before this one */
+    size_t           body;
+    uint32_t         material; /* that was named last */
 } MeshFile;
 
 typedef struct MeshFormat {
     const char *ending;
-    bool        has_parts, has_units;
+    bool        has_parts, has_copies;
     bool (*write)(MeshFile *file);
 } MeshFormat;
 

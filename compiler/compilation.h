@@ -91,6 +91,9 @@ bool may_need_rebase(const Scene *scene, Graph *graph, const Roots *roots, Arena
    operations; 0: there were too many to be counted. */
 void refuse_component(Compilation *c, size_t component, size_t operations);
 
+/* find_assembly.c: finds the assembly of the scene, if the options ask for it, and returns its roots. */
+RootRange find_assembly(Compilation *c, struct LoweredCrowds *crowds);
+
 /* march_groups.c: decides which components have a march group of their own.  Sets c->march_groups
    and the march groups of the program. */
 void form_march_groups(Compilation *c);

@@ -84,8 +84,9 @@ typedef struct KrsOptions {
     KrsSpecialize          specialize;
     bool                   gradients; /* compile derivatives too: for KRS_NORMALS_ANALYTIC,
                                             and as krs_gradient in the GLSL */
-    bool studio; /* a bounded scene without lights and sky gets some, and a floor, whose component
+    bool studio;   /* a bounded scene without lights and sky gets some, and a floor, whose component
                     is the last and named `floor`; for pictures */
+    bool assembly; /* keep what krs_assemble needs, which costs some time of compiling */
     /* Only files in this folder, and below it, are read; others are E0504, also behind symbolic
        links.  That includes the scene itself in krs_compile_file.  With krs_compile_text, `name`
        must be in the folder for `use` to work.  NULL: all files may be read. */
@@ -455,6 +456,43 @@ typedef struct KrsMesh {
  */
 KrsStatus krs_mesh(KrsFrame *frame, const KrsMeshOptions *options, KrsMesh **mesh);
 void      krs_mesh_free(KrsMesh *mesh);
+
+/* How an item is placed: x -> matrix (x, 1), which turns, moves, mirrors and scales evenly. */
+typedef struct KrsPlacing {
+    size_t item;
+    double matrix[3][4];
+} KrsPlacing;
+
+/* A mesh, or placings of items before it. */
+typedef struct KrsItem {
+    KrsMesh *mesh;             /* NULL: it has placings, */
+    size_t   first, count;     /* these of the assembly's */
+    double   copies;           /* number of its copies in all that is shown; 0: not used */
+    double   first_copy[3][4]; /* of a mesh: where one of them is */
+} KrsItem;
+
+/* What a frame shows, as meshes and their copies; the last item is all of it. */
+typedef struct KrsAssembly {
+    KrsItem    *items;
+    KrsPlacing *placings;
+    size_t      item_count, placing_count;
+    double      low[3], high[3];   /* a box around all vertices of all copies */
+    double      copies, triangles; /* of meshes, and of those copies */
+} KrsAssembly;
+
+/*
+ * As krs_mesh, with a mesh for each kernel of sequences and the places of its copies, and one for all else.
+ * The error is that of copies; 0: a 200th of the longest side of each kernel's box.  Where kernels overlap,
+ * so do meshes.  *assembly may be NULL on KRS_OK: there is no sequence that can be taken apart.  None can with
+ * zones or `within`; one whose mirrors cut anything, or may, or that inverts, cannot.  The scene must have been
+ * compiled with KrsOptions.assembly.
+ */
+KrsStatus krs_assemble(KrsFrame *frame, const KrsMeshOptions *options, KrsAssembly **assembly);
+void      krs_assembly_free(KrsAssembly *assembly);
+/* Calls `visit` for each copy of each mesh, one behind the other, until it returns false; then that is
+   returned. */
+typedef bool KrsVisitCopy(void *user, const KrsItem *item, const double matrix[3][4]);
+bool         krs_assembly_visit(const KrsAssembly *assembly, KrsVisitCopy *visit, void *user);
 
 #ifdef __cplusplus
 }

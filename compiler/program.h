@@ -6,6 +6,7 @@
 
 #include "compiler/bounds.h"
 #include "compiler/compiled.h"
+#include "compiler/assembly.h"
 #include "compiler/daylight.h"
 #include "compiler/emissive.h"
 #include "compiler/lower/lower.h"
@@ -29,6 +30,7 @@ typedef enum RootKind {
     ROOTS_PLANE,           /* PlaneRoots of the nearest half-space */
     ROOTS_GRADIENT,        /* GradientRoots of each component, then of all zones */
     ROOTS_SLOPE,           /* each slope that is computed per frame */
+    ROOTS_ASSEMBLY,        /* what the assembly's items refer to */
     ROOTS_CAMERA_RELATIVE, /* surfaces and plane again for camera-relative points, or none */
     ROOT_KINDS
 } RootKind;
@@ -146,6 +148,7 @@ struct KrsScene {
     KrsComponent    *components; /* all that are shown */
     size_t          *turns_end;  /* of each of these: krs_turns_end */
     KrsBounds       *bounds;     /* of each component */
+    Assembly         assembly;   /* nothing unless the options ask for it */
     RetainedSlope   *slopes;     /* slopes that are computed per frame */
     size_t           slope_count;
     EmissivePart    *emissive;

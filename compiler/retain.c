@@ -184,7 +184,9 @@ static void retain_tapes(Compilation *c)
         scene->turned       = tape_of(scene, gradients, arena);
     }
     scene->surface = tape_of(scene, roots_from(roots, ROOTS_SURFACE, ROOTS_ZONE), arena);
-    scene->view    = tape_of(scene, roots_from(roots, ROOTS_CAMERA, ROOTS_SKY), arena);
+    if (scene->assembly.items.count > 0)
+        scene->assembly.tape = tape_of(scene, roots_of(roots, ROOTS_ASSEMBLY), arena);
+    scene->view = tape_of(scene, roots_from(roots, ROOTS_CAMERA, ROOTS_SKY), arena);
 
     const Crowds *crowds = scene->graph->crowds;
     if (crowds)

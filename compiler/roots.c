@@ -18,7 +18,7 @@
 
 /* Allocates all roots, ordered by kind.  Those for camera-relative points are last, so that they
    can be left out. */
-static void allocate_roots(Compilation *c)
+static void allocate_roots(Compilation *c, RootRange assembly)
 {
     const Scene *s                  = &c->elaborated;
     Roots       *roots              = &c->scene->roots;
@@ -34,10 +34,14 @@ static void allocate_roots(Compilation *c)
         [ROOTS_PLANE]           = NODES_OF(PlaneRoots),
         [ROOTS_GRADIENT]        = (components + 1) * NODES_OF(GradientRoots),
         [ROOTS_SLOPE]           = s->slopes.count,
+        [ROOTS_ASSEMBLY]        = assembly.count,
         [ROOTS_CAMERA_RELATIVE] = components * ROOT_COUNT + NODES_OF(PlaneRoots)};
     for (RootKind kind = 0; kind < ROOT_KINDS; kind++)
         roots->first[kind + 1] = roots->first[kind] + counts[kind];
     roots->all = arena_new_array(&c->scene->arena, Node, roots->first[ROOT_KINDS]);
+    if (assembly.count > 0)
+        memcpy(roots_of(roots, ROOTS_ASSEMBLY).items, assembly.items,
+               assembly.count * sizeof(Node));
 }
 
 static bool lower_components(Compilation *c, Graph *g, LoweredCrowds *crowds)
@@ -219,7 +223,7 @@ KrsStatus pass_lower(Compilation *c)
     Additions     *more   = &c->additions;
     LoweredCrowds *crowds = lowered_crowds_new(s->graph, &c->work, &c->scene->arena,
                                                least_crowd(c));
-    allocate_roots(c);
+    allocate_roots(c, find_assembly(c, crowds));
     if (!lower_components(c, s->graph, crowds))
         return KRS_BAD_SCENE;
     more->sheets          = any_thin_sheets(s);

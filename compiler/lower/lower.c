@@ -55,6 +55,20 @@ bool lower_component(Graph *graph, const Shape *shape, uint32_t number,
     return !l.overflow;
 }
 
+bool lower_solid(Graph *graph, const Shape *shape, struct LoweredCrowds *crowds, Arena *scratch,
+                 Node *distance)
+{
+    Lowering l   = {.graph   = graph,
+                    .scratch = scratch,
+                    .thin    = true,
+                    .most    = graph->count + MOST_LOWERED,
+                    .crowds  = crowds};
+    Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(graph, OP_POINT), false));
+    *distance    = divide_by_slope(graph, or_else(all.distance, graph_number(graph, NOWHERE)),
+                                   shape->slope);
+    return !l.overflow;
+}
+
 Node lower_guarded(Graph *graph, const Shape *shape, Node plain, struct LoweredCrowds *crowds,
                    Arena *scratch)
 {

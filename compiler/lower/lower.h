@@ -40,6 +40,10 @@ Node root_otherwise(Graph *graph, ComponentRoot root);
 bool lower_component(Graph *graph, const Shape *shape, uint32_t number,
                      struct LoweredCrowds *crowds, Arena *scratch, Node *roots);
 
+/* Its distance alone, and nothing else of it; as ROOT_DISTANCE. */
+bool lower_solid(Graph *graph, const Shape *shape, struct LoweredCrowds *crowds, Arena *scratch,
+                 Node *distance);
+
 /*
  * A distance for marching that replaces ROOT_DISTANCE where branches save time.  OP_guard skips
  * levels of sequences that are far away compared with their size, or smaller than OP_FOOTPRINT.

@@ -7,19 +7,12 @@
 
 /* ---- lane tapes ---- */
 
-/* The least distance of the components that are meshed, cut by the zones of the scene. */
+/* The least distance of what is meshed, cut by the zones of the scene. */
 static LaneTape make_tape(const MeshField *field, Arena *arena)
 {
-    const KrsScene *scene = field->frame->scene;
-    size_t          first = field->component ? field->component - 1 : 0;
-    size_t          count = field->component ? 1 : scene->component_count;
-    Node            zone  = zone_root(scene);
-    Node           *roots = arena_new_array(arena, Node, count + 1);
-    for (size_t i = 0; i < count; i++)
-        roots[i] = distance_root(&scene->roots, first + i);
-    roots[count]      = zone;
-    size_t   cuts     = zone != NODE_NONE;
-    LaneTape tape     = lane_tape_new(&scene->distance, roots, count + cuts, true, cuts, arena);
+    const MeshSolid *solid = field->solid;
+    LaneTape tape = lane_tape_new(solid->tape, solid->roots, solid->root_count + solid->zoned, true,
+                                  solid->zoned, arena);
     tape.output_count = 1;
     tape.scalars      = arena_new_array(arena, double, tape.scalar_count + 1);
     lane_tape_scalars(&tape, field->frame->values, tape.scalars);

@@ -11,7 +11,7 @@
 #define KRS_MESH_FIELD_H
 
 #include "compiler/graph/lanes.h"
-#include "compiler/program.h"
+#include "compiler/mesh/solid.h"
 
 /* A box that was entered, and its lane tape. */
 typedef struct FieldRegion {
@@ -25,10 +25,10 @@ enum { MOST_REGIONS = 2, MOST_FIELD_POINTS = LANES };
 
 /* For one thread. */
 typedef struct MeshField {
-    KrsFrame *frame;     /* its own */
-    size_t    component; /* from 1; 0: all */
-    bool      cut;       /* nothing is solid outside of the box */
-    double    low[3], high[3];
+    KrsFrame        *frame; /* its own */
+    const MeshSolid *solid;
+    bool             cut; /* nothing is solid outside of the box */
+    double           low[3], high[3];
 
     LaneTape    tape;
     LaneWork    work;
@@ -38,7 +38,7 @@ typedef struct MeshField {
     size_t      region_count, region_bytes;
 } MeshField;
 
-/* What it needs to answer; frame, component and box are set, and the frame is up to date. */
+/* What it needs to answer; frame, solid and box are set, and the frame is up to date. */
 void field_open(MeshField *field, Arena *arena);
 
 /* Enters a box, of which only what is within the last one entered is looked at, and leaves it.  False: there is

@@ -29,6 +29,7 @@ typedef struct Mesher {
     Memory                memory;
     Arena                 arena;
     const KrsMeshOptions *options;
+    const MeshSolid      *solid;
     double                low[3], high[3], error, side;
     MeshField             fields[MOST_PARTS];
     Verifier              verifiers[MOST_PARTS];
@@ -271,25 +272,14 @@ static KrsStatus make_mesh(Mesher *m)
 
 /* ---- what is asked for ---- */
 
-static bool is_estimate(const KrsScene *scene, size_t component)
-{
-    for (size_t i = 0; i < scene->shown_count; i++)
-        if ((component == 0 || component == i + 1) && scene->components[i].estimate)
-            return true;
-    return false;
-}
-
 /* The box of what is meshed; false: it has no end. */
-static bool find_box(Mesher *m, const KrsScene *scene)
+static bool find_box(Mesher *m)
 {
     const KrsMeshOptions *options = m->options;
     for (int k = 0; k < 3; k++) {
-        double low  = options->component ? scene->components[options->component - 1].low[k]
-                                         : scene->program.low[k];
-        double high = options->component ? scene->components[options->component - 1].high[k]
-                                         : scene->program.high[k];
-        m->low[k]   = options->within ? fmax(low, options->low[k]) : low;
-        m->high[k]  = options->within ? fmin(high, options->high[k]) : high;
+        Range range = m->solid->box.axis[k];
+        m->low[k]   = options->within ? fmax(range.low, options->low[k]) : range.low;
+        m->high[k]  = options->within ? fmin(range.high, options->high[k]) : range.high;
         if (!isfinite(m->low[k]) || !isfinite(m->high[k])) {
             bool empty = m->low[k] > m->high[k];
             if (!empty)
@@ -309,7 +299,7 @@ static KrsStatus open_fields(Mesher *m, KrsFrame *frame)
     KrsStatus status = KRS_OK;
     for (size_t i = 0; i < parallel_parts() && status == KRS_OK; i++) {
         MeshField *field = &m->fields[i];
-        *field = (MeshField){.component = m->options->component, .cut = m->options->within};
+        *field           = (MeshField){.solid = m->solid, .cut = m->options->within};
         memcpy(field->low, m->low, sizeof field->low);
         memcpy(field->high, m->high, sizeof field->high);
         status = frame_copy_of(frame, &field->frame);
@@ -368,17 +358,16 @@ static KrsStatus run(Mesher *m, KrsFrame *frame, KrsMesh **mesh)
     if (status == KRS_OK)
         status = copy_mesh(m, mesh);
     if (status == KRS_OK)
-        (*mesh)->estimate = is_estimate(frame->scene, m->options->component);
+        (*mesh)->estimate = m->solid->estimate;
     m->memory.exhausted = NULL;
     return status;
 }
 
-static bool options_are_valid(Mesher *m, const KrsScene *scene)
+static bool options_are_valid(Mesher *m)
 {
     const KrsMeshOptions *options = m->options;
     double                longest = 0;
-    if (options->component > scene->shown_count || scene->program.sheets || !find_box(m, scene) ||
-        !(options->error >= 0) || isinf(options->error))
+    if (!find_box(m) || !(options->error >= 0) || isinf(options->error))
         return false;
     for (int k = 0; k < 3; k++)
         longest = fmax(longest, m->high[k] - m->low[k]);
@@ -387,20 +376,44 @@ static bool options_are_valid(Mesher *m, const KrsScene *scene)
     return is_nothing(m) || m->error >= LEAST_ERROR * m->side;
 }
 
-KrsStatus krs_mesh(KrsFrame *frame, const KrsMeshOptions *options, KrsMesh **mesh)
+static const KrsMeshOptions no_options = {0};
+
+KrsStatus mesh_solid(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
+                     KrsMesh **mesh)
 {
-    static const KrsMeshOptions none = {0};
-    *mesh                            = NULL;
-    Mesher *m                        = calloc(1, sizeof *m);
+    *mesh     = NULL;
+    Mesher *m = calloc(1, sizeof *m);
     if (!m)
         return KRS_OUT_OF_MEMORY;
-    m->options       = options ? options : &none;
+    m->options       = options;
+    m->solid         = solid;
     m->memory        = frame->scene->memory;
     m->memory.used   = 0;
     m->memory.limit  = m->options->memory_limit ? m->options->memory_limit : DEFAULT_LIMIT;
     m->arena.memory  = &m->memory;
-    KrsStatus status = options_are_valid(m, frame->scene) ? run(m, frame, mesh) : KRS_BAD_ARGUMENT;
+    KrsStatus status = options_are_valid(m) ? run(m, frame, mesh) : KRS_BAD_ARGUMENT;
     close_mesher(m);
+    return status;
+}
+
+KrsStatus krs_mesh(KrsFrame *frame, const KrsMeshOptions *options, KrsMesh **mesh)
+{
+    const KrsScene *scene  = frame->scene;
+    size_t          number = options ? options->component : 0;
+    MeshSolid       solid  = {.roots = malloc(solid_root_bytes(scene))};
+    bool           *wanted = number ? calloc(scene->component_count + 1, sizeof *wanted) : NULL;
+    KrsStatus       status = KRS_OUT_OF_MEMORY;
+    *mesh                  = NULL;
+    if (number > scene->shown_count || scene->program.sheets)
+        status = KRS_BAD_ARGUMENT;
+    else if (solid.roots && (wanted || !number)) {
+        if (wanted)
+            wanted[lowered_component(scene, number - 1)] = true;
+        solid_of_components(scene, wanted, &solid);
+        status = mesh_solid(frame, options ? options : &no_options, &solid, mesh);
+    }
+    free(wanted);
+    free(solid.roots);
     return status;
 }
 

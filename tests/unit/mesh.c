@@ -324,6 +324,13 @@ static void components_and_empty_scenes(void **context)
     assert_true(fabs(volume_of(mesh) - 1) < 0.05);
     krs_mesh_free(mesh);
     scene_close(s);
+    s                 = scene_of("for i in 0..100 { show sphere(0.3).move([i, 0, 0]); }"
+                                                 "show box([1, 1, 1]).move([3, 5, 0]);");
+    options.component = 101; /* behind many that are one in the shaders */
+    assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_OK);
+    assert_true(fabs(volume_of(mesh) - 1) < 0.05);
+    krs_mesh_free(mesh);
+    scene_close(s);
     s    = scene_of("camera { eye: [0, 0, 5] }");
     mesh = mesh_of(s, 0);
     assert_int_equal(mesh->triangle_count, 0);

@@ -1,0 +1,55 @@
+/* mesh_copies.c: the copies of parts, one behind the other. */
+#include "cli/mesh_copies.h"
+
+#include <string.h>
+
+#include "compiler/base/vec.h"
+
+bool mesh_is_reflection(const double matrix[3][4])
+{
+    double cross[3];
+    cross3(matrix[0], matrix[1], cross);
+    return dot3(cross, matrix[2]) < 0;
+}
+
+typedef struct Visit {
+    const MeshParts *parts;
+    const MeshBody  *body;
+    VisitMeshCopy   *visit;
+    void            *user;
+} Visit;
+
+static bool visit_item(void *user, const KrsItem *item, const double matrix[3][4])
+{
+    const Visit *visit  = user;
+    size_t       number = (size_t)(item - visit->body->assembly->items);
+    MeshCopy     copy   = {&visit->parts->parts[visit->body->part_of[number]], matrix,
+                           mesh_is_reflection(matrix)};
+    return visit->visit(visit->user, &copy);
+}
+
+bool mesh_body_visit(const MeshParts *parts, size_t number, VisitMeshCopy *visit, void *user)
+{
+    const MeshBody *body  = &parts->bodies[number];
+    Visit           each  = {parts, body, visit, user};
+    MeshCopy        whole = {.part = &parts->parts[body->first_part]};
+    return body->assembly ? krs_assembly_visit(body->assembly, visit_item, &each)
+                          : visit(user, &whole);
+}
+
+void mesh_copy_vertex(const MeshParts *parts, const MeshCopy *copy, size_t number, double at[3])
+{
+    const double *vertex = parts->vertices[copy->part->first_vertex + number];
+    for (int i = 0; i < 3; i++)
+        at[i] = copy->matrix ? dot3(copy->matrix[i], vertex) + copy->matrix[i][3] : vertex[i];
+}
+
+void mesh_copy_triangle(const MeshParts *parts, const MeshCopy *copy, size_t number, size_t base,
+                        uint32_t triangle[3])
+{
+    const uint32_t *from = parts->triangles[copy->part->first_triangle + number];
+    for (int k = 0; k < 3; k++) {
+        int corner  = copy->mirrored && k > 0 ? 3 - k : k;
+        triangle[k] = (uint32_t)(from[corner] - copy->part->first_vertex + base);
+    }
+}

@@ -1,0 +1,341 @@
+// mesh_glb.cpp: the border to tinygltf.
+#include "cli/mesh_border.h"
+
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_EXTERNAL_IMAGE
+#include <tiny_gltf.h>
+
+namespace
+{
+
+double linear_of(unsigned char byte)
+{
+    double encoded = byte / 255.0;
+    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+template <typename Number> void append(std::vector<unsigned char> &bytes, Number number)
+{
+    const unsigned char *begin = reinterpret_cast<const unsigned char *>(&number);
+    bytes.insert(bytes.end(), begin, begin + sizeof number);
+}
+
+// What is appended to the only buffer from here on is an accessor.
+tinygltf::Accessor &add_accessor(tinygltf::Model &model, int target, int component, int type,
+                                 size_t count)
+{
+    tinygltf::BufferView view;
+    tinygltf::Accessor   accessor;
+    view.buffer            = 0;
+    view.byteOffset        = model.buffers[0].data.size();
+    view.target            = target;
+    accessor.bufferView    = (int)model.bufferViews.size();
+    accessor.componentType = component;
+    accessor.type          = type;
+    accessor.count         = count;
+    model.bufferViews.push_back(view);
+    model.accessors.push_back(accessor);
+    return model.accessors.back();
+}
+
+int end_accessor(tinygltf::Model &model)
+{
+    tinygltf::BufferView &view = model.bufferViews.back();
+    view.byteLength            = model.buffers[0].data.size() - view.byteOffset;
+    while (model.buffers[0].data.size() % 4 != 0)
+        model.buffers[0].data.push_back(0);
+    return (int)model.accessors.size() - 1;
+}
+
+// A mirrored part is its image in the plane x = 0.
+int add_positions(tinygltf::Model &model, const MeshParts *parts, const MeshPart &part,
+                  bool mirrored)
+{
+    double              scale    = parts->scale * parts->metres;
+    tinygltf::Accessor &accessor = add_accessor(model, TINYGLTF_TARGET_ARRAY_BUFFER,
+                                                TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3,
+                                                part.vertex_count);
+    accessor.minValues.assign(3, HUGE_VAL);
+    accessor.maxValues.assign(3, -HUGE_VAL);
+    for (size_t i = part.first_vertex; i < part.first_vertex + part.vertex_count; i++)
+        for (int k = 0; k < 3; k++) {
+            double side           = mirrored && k == 0 ? -scale : scale;
+            float  number         = (float)(side * parts->vertices[i][k]);
+            accessor.minValues[k] = std::fmin(accessor.minValues[k], number);
+            accessor.maxValues[k] = std::fmax(accessor.maxValues[k], number);
+            append(model.buffers[0].data, number);
+        }
+    return end_accessor(model);
+}
+
+// Linear, sixteen bits; the fourth number is for alignment.
+int add_colors(tinygltf::Model &model, const MeshParts *parts, const MeshPart &part)
+{
+    add_accessor(model, TINYGLTF_TARGET_ARRAY_BUFFER, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+                 TINYGLTF_TYPE_VEC4, part.vertex_count)
+        .normalized = true;
+    for (size_t i = part.first_vertex; i < part.first_vertex + part.vertex_count; i++) {
+        for (int k = 0; k < 3; k++)
+            append(model.buffers[0].data,
+                   (uint16_t)std::lrint(65535 * linear_of(parts->colors[i][k])));
+        append(model.buffers[0].data, (uint16_t)65535);
+    }
+    return end_accessor(model);
+}
+
+int add_triangles(tinygltf::Model &model, const MeshParts *parts, const MeshPart &part,
+                  uint32_t material, bool mirrored)
+{
+    size_t count = 0, end = part.first_triangle + part.triangle_count;
+    for (size_t i = part.first_triangle; i < end; i++)
+        count += parts->material_of[i] == material;
+    if (count == 0)
+        return -1;
+    add_accessor(model, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
+                 TINYGLTF_TYPE_SCALAR, 3 * count);
+    for (size_t i = part.first_triangle; i < end; i++)
+        for (int k = 0; k < 3 && parts->material_of[i] == material; k++) {
+            int corner = mirrored && k > 0 ? 3 - k : k;
+            append(model.buffers[0].data,
+                   (uint32_t)(parts->triangles[i][corner] - part.first_vertex));
+        }
+    return end_accessor(model);
+}
+
+int add_mesh(tinygltf::Model &model, const MeshParts *parts, const MeshPart &part, bool mirrored,
+             const char *name)
+{
+    tinygltf::Mesh mesh;
+    int            positions = add_positions(model, parts, part, mirrored);
+    int            colors    = add_colors(model, parts, part);
+    for (uint32_t material = 0; material < parts->material_count; material++) {
+        int triangles = add_triangles(model, parts, part, material, mirrored);
+        if (triangles < 0)
+            continue;
+        tinygltf::Primitive primitive;
+        primitive.attributes["POSITION"] = positions;
+        primitive.attributes["COLOR_0"]  = colors;
+        primitive.indices                = triangles;
+        primitive.material               = (int)material;
+        primitive.mode                   = TINYGLTF_MODE_TRIANGLES;
+        mesh.primitives.push_back(primitive);
+    }
+    mesh.name = name;
+    model.meshes.push_back(mesh);
+    return (int)model.meshes.size() - 1;
+}
+
+int add_node(tinygltf::Model &model, const tinygltf::Node &node)
+{
+    model.nodes.push_back(node);
+    return (int)model.nodes.size() - 1;
+}
+
+// Where a copy is: what a node has.
+struct Pose {
+    double translation[3], rotation[4], scale;
+};
+
+// The quaternion x, y, z, w of a rotation (Shepperd's method).
+void find_rotation(const double m[3][3], double q[4])
+{
+    double trace = m[0][0] + m[1][1] + m[2][2], most = trace;
+    int    which = 3;
+    for (int k = 0; k < 3; k++)
+        if (m[k][k] > most) {
+            most  = m[k][k];
+            which = k;
+        }
+    int i = which % 3, j = (i + 1) % 3, k = (i + 2) % 3;
+    if (which == 3) {
+        q[3] = 1 + trace;
+        for (int n = 0; n < 3; n++)
+            q[n] = m[(n + 2) % 3][(n + 1) % 3] - m[(n + 1) % 3][(n + 2) % 3];
+    } else {
+        q[i] = 1 + 2 * m[i][i] - trace;
+        q[j] = m[j][i] + m[i][j];
+        q[k] = m[k][i] + m[i][k];
+        q[3] = m[k][j] - m[j][k];
+    }
+    double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    for (int n = 0; n < 4; n++)
+        q[n] /= length;
+}
+
+// Copies of a part, and of its image in the plane x = 0: by that no copy is a reflection, of which
+// instances must not be, since all triangles that are drawn together face to one side.
+struct Copies {
+    std::vector<Pose> poses[2];
+};
+
+void add_pose(Copies &copies, const double matrix[3][4], double lengths)
+{
+    bool   mirrored = mesh_is_reflection(matrix);
+    Pose   pose;
+    double turn[3][3];
+    pose.scale = std::sqrt(matrix[0][0] * matrix[0][0] + matrix[0][1] * matrix[0][1] +
+                           matrix[0][2] * matrix[0][2]);
+    for (int i = 0; i < 3; i++) {
+        pose.translation[i] = lengths * matrix[i][3];
+        for (int k = 0; k < 3; k++)
+            turn[i][k] = (mirrored && k == 0 ? -1 : 1) * matrix[i][k] / pose.scale;
+    }
+    find_rotation(turn, pose.rotation);
+    copies.poses[mirrored].push_back(pose);
+}
+
+// The copies of each item of an assembly.
+struct Collection {
+    const KrsAssembly  *assembly;
+    double              lengths;
+    std::vector<Copies> items;
+};
+
+bool collect(void *user, const KrsItem *item, const double matrix[3][4])
+{
+    Collection *collection = (Collection *)user;
+    add_pose(collection->items[item - collection->assembly->items], matrix, collection->lengths);
+    return true;
+}
+
+// A node for each copy.
+void place_by_nodes(tinygltf::Model &model, int mesh, const std::vector<Pose> &poses,
+                    tinygltf::Node &body)
+{
+    for (const Pose &pose : poses) {
+        tinygltf::Node node;
+        node.mesh = mesh;
+        node.translation.assign(pose.translation, pose.translation + 3);
+        node.rotation.assign(pose.rotation, pose.rotation + 4);
+        node.scale.assign(3, pose.scale);
+        body.children.push_back(add_node(model, node));
+    }
+}
+
+int add_instances(tinygltf::Model &model, const std::vector<Pose> &poses, int member)
+{
+    int type = member == 1 ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3;
+    add_accessor(model, 0, TINYGLTF_COMPONENT_TYPE_FLOAT, type, poses.size());
+    for (const Pose &pose : poses)
+        for (int k = 0; k < (member == 1 ? 4 : 3); k++)
+            append(model.buffers[0].data, (float)(member == 0   ? pose.translation[k]
+                                                  : member == 1 ? pose.rotation[k]
+                                                                : pose.scale));
+    return end_accessor(model);
+}
+
+// One node with all copies, by the extension EXT_mesh_gpu_instancing.
+void place_by_instances(tinygltf::Model &model, int mesh, const std::vector<Pose> &poses,
+                        tinygltf::Node &body)
+{
+    static const char *const names[]   = {"TRANSLATION", "ROTATION", "SCALE"};
+    static const char *const extension = "EXT_mesh_gpu_instancing";
+    tinygltf::Value::Object  attributes, content;
+    tinygltf::Node           node;
+    for (int member = 0; member < 3; member++)
+        attributes[names[member]] = tinygltf::Value(add_instances(model, poses, member));
+    content["attributes"]      = tinygltf::Value(attributes);
+    node.mesh                  = mesh;
+    node.extensions[extension] = tinygltf::Value(content);
+    if (model.extensionsRequired.empty()) {
+        model.extensionsRequired.push_back(extension);
+        model.extensionsUsed.push_back(extension);
+    }
+    body.children.push_back(add_node(model, node));
+}
+
+const double MOST_NODES = 1024; // for copies; more are instances
+
+void add_copies(tinygltf::Model &model, const MeshParts *parts, const MeshBody &body,
+                tinygltf::Node &node)
+{
+    const KrsAssembly *assembly   = body.assembly;
+    Collection         collection = {assembly, parts->scale * parts->metres,
+                                     std::vector<Copies>(assembly->item_count)};
+    krs_assembly_visit(assembly, collect, &collection);
+    for (size_t i = 0; i < assembly->item_count; i++)
+        for (int mirrored = 0; mirrored < 2; mirrored++) {
+            const std::vector<Pose> &poses = collection.items[i].poses[mirrored];
+            const MeshPart          &part  = parts->parts[body.part_of[i]];
+            if (poses.empty() || part.triangle_count == 0)
+                continue;
+            int mesh = add_mesh(model, parts, part, mirrored != 0, body.name);
+            if (assembly->copies <= MOST_NODES)
+                place_by_nodes(model, mesh, poses, node);
+            else
+                place_by_instances(model, mesh, poses, node);
+        }
+}
+
+void add_body(tinygltf::Model &model, const MeshParts *parts, const MeshBody &body)
+{
+    tinygltf::Node node;
+    node.name = body.name;
+    if (body.assembly)
+        add_copies(model, parts, body, node);
+    else
+        node.mesh = add_mesh(model, parts, parts->parts[body.first_part], false, body.name);
+    model.scenes[0].nodes.push_back(add_node(model, node));
+}
+
+void add_materials(tinygltf::Model &model, const MeshParts *parts)
+{
+    for (size_t i = 0; i < parts->material_count; i++) {
+        tinygltf::Material material;
+        material.name                                 = parts->materials[i].name;
+        material.pbrMetallicRoughness.roughnessFactor = parts->materials[i].roughness;
+        material.pbrMetallicRoughness.metallicFactor  = parts->materials[i].metallic;
+        model.materials.push_back(material);
+    }
+}
+
+// A stream whose bytes go to the sink.
+class SinkStream : public std::streambuf
+{
+  public:
+    SinkStream(MeshSink *to, void *user) : sink(to), data(user) {}
+
+  protected:
+    std::streamsize xsputn(const char *bytes, std::streamsize count) override
+    {
+        return sink(data, bytes, (size_t)count) ? count : 0;
+    }
+    int overflow(int byte) override
+    {
+        char one = (char)byte;
+        return byte != EOF && sink(data, &one, 1) ? byte : EOF;
+    }
+
+  private:
+    MeshSink *sink;
+    void     *data;
+};
+
+} // namespace
+
+bool mesh_border_glb(const MeshParts *parts, MeshSink *sink, void *user)
+{
+    try {
+        tinygltf::Model model;
+        SinkStream      bytes(sink, user);
+        std::ostream    stream(&bytes);
+        model.asset.version   = "2.0";
+        model.asset.generator = "krs";
+        model.buffers.resize(1);
+        model.scenes.resize(1);
+        model.defaultScene = 0;
+        add_materials(model, parts);
+        for (size_t i = 0; i < parts->body_count; i++)
+            add_body(model, parts, parts->bodies[i]);
+        return tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, stream, false, true) &&
+               stream.good();
+    } catch (...) {
+        return false;
+    }
+}

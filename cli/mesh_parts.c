@@ -1,0 +1,276 @@
+/*
+ * mesh_parts.c: what files have of meshes: parts with names, colours and materials.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "cli/meshing.h"
+#include "compiler/base/srgb.h"
+
+void visit_meshes(const Body *body, VisitMesh *visit, void *user)
+{
+    if (body->mesh)
+        visit(user, body->mesh, NULL);
+    for (size_t i = 0; body->assembly && i < body->assembly->item_count; i++)
+        if (body->assembly->items[i].mesh)
+            visit(user, body->assembly->items[i].mesh, &body->assembly->items[i]);
+}
+
+/* ---- one behind the other ---- */
+
+typedef struct Joined {
+    MeshParts parts;
+    double (*vertices)[3];
+    double (*places)[3]; /* of the vertices in the scene */
+    uint32_t (*triangles)[3];
+    MeshPart *list;
+    MeshBody *bodies;
+    size_t    vertex_count, triangle_count;
+} Joined;
+
+static void count_mesh(void *user, const KrsMesh *mesh, const KrsItem *item)
+{
+    Joined *joined = user;
+    (void)item;
+    joined->vertex_count += mesh->vertex_count;
+    joined->triangle_count += mesh->triangle_count;
+    joined->parts.part_count++;
+}
+
+static void place(const KrsItem *item, const double point[3], double image[3])
+{
+    for (int i = 0; i < 3; i++)
+        image[i] = item ? item->first_copy[i][0] * point[0] + item->first_copy[i][1] * point[1] +
+                              item->first_copy[i][2] * point[2] + item->first_copy[i][3]
+                        : point[i];
+}
+
+static void join_mesh(void *user, const KrsMesh *mesh, const KrsItem *item)
+{
+    Joined *joined = user;
+    size_t  vertex = joined->vertex_count, triangle = joined->triangle_count;
+    joined->list[joined->parts.part_count++] = (MeshPart){vertex, mesh->vertex_count, triangle,
+                                                          mesh->triangle_count};
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        memcpy(joined->vertices[vertex + i], mesh->vertices[i], sizeof *joined->vertices);
+        place(item, mesh->vertices[i], joined->places[vertex + i]);
+    }
+    for (size_t t = 0; t < mesh->triangle_count; t++)
+        for (int k = 0; k < 3; k++)
+            joined->triangles[triangle + t][k] = mesh->triangles[t][k] + (uint32_t)vertex;
+    joined->vertex_count += mesh->vertex_count;
+    joined->triangle_count += mesh->triangle_count;
+}
+
+static const char *body_name(const Meshing *meshing, const Body *body)
+{
+    KrsComponent component;
+    if (body->component == 0)
+        return scene_name(meshing->options->arena, meshing->options->files.items[0]);
+    krs_component(meshing->scene, body->component - 1, &component);
+    return component.name;
+}
+
+static void join_body(const Meshing *meshing, const Body *body, Joined *joined)
+{
+    size_t  items   = body->assembly ? body->assembly->item_count : 0;
+    size_t *part_of = arena_new_array(meshing->options->arena, size_t, items + 1);
+    size_t  part    = joined->parts.part_count;
+    for (size_t i = 0; i < items; i++)
+        part_of[i] = body->assembly->items[i].mesh ? part++ : 0;
+    joined->bodies[joined->parts.body_count++] = (MeshBody){
+        body_name(meshing, body), body->assembly, part_of, joined->parts.part_count};
+    visit_meshes(body, join_mesh, joined);
+}
+
+static bool has_triangles(const Body *body)
+{
+    return body->assembly ? body->assembly->triangles > 0 : body->mesh->triangle_count > 0;
+}
+
+static void join_bodies(const Meshing *meshing, const Bodies *bodies, Joined *joined)
+{
+    Arena *arena = meshing->options->arena;
+    for (size_t i = 0; i < bodies->count; i++)
+        visit_meshes(&bodies->items[i], count_mesh, joined);
+    joined->vertices       = arena_alloc(arena, joined->vertex_count, sizeof *joined->vertices);
+    joined->places         = arena_alloc(arena, joined->vertex_count, sizeof *joined->places);
+    joined->triangles      = arena_alloc(arena, joined->triangle_count, sizeof *joined->triangles);
+    joined->list           = arena_new_array(arena, MeshPart, joined->parts.part_count);
+    joined->bodies         = arena_new_array(arena, MeshBody, bodies->count);
+    joined->vertex_count   = 0;
+    joined->triangle_count = 0;
+    joined->parts.part_count = 0;
+    for (size_t i = 0; i < bodies->count; i++)
+        if (has_triangles(&bodies->items[i]))
+            join_body(meshing, &bodies->items[i], joined);
+    joined->parts.vertices  = (const double(*)[3])joined->vertices;
+    joined->parts.triangles = (const uint32_t(*)[3])joined->triangles;
+    joined->parts.parts     = joined->list;
+    joined->parts.bodies    = joined->bodies;
+}
+
+/* ---- looks ---- */
+
+static unsigned char byte_of(double linear)
+{
+    double encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+    return (unsigned char)lrint(255 * fmin(fmax(encoded, 0), 1));
+}
+
+enum { PROBES = 256 };
+
+static void find_colors(const Meshing *meshing, Joined *joined)
+{
+    unsigned char(*colors)[3] = arena_alloc(meshing->options->arena, joined->vertex_count,
+                                            sizeof *colors);
+    KrsHit hits[PROBES];
+    for (size_t i = 0, now; i < joined->vertex_count; i += now) {
+        now = joined->vertex_count - i < PROBES ? joined->vertex_count - i : PROBES;
+        krs_probe(meshing->frame, (const double(*)[3])joined->places + i, now, hits);
+        for (size_t k = 0; k < 3 * now; k++)
+            colors[i + k / 3][k % 3] = byte_of(hits[k / 3].color[k % 3]);
+    }
+    joined->parts.colors = (const unsigned char(*)[3])colors;
+}
+
+/* Materials as they come, with the look of their first triangle. */
+typedef struct MaterialList {
+    uint32_t     *places; /* from 1, by the number that answers have */
+    MeshMaterial *items;
+    size_t        count;
+} MaterialList;
+
+static uint32_t take_material(const Meshing *meshing, MaterialList *list, const KrsHit *hit)
+{
+    bool        split  = meshing->options->mesh_split == SPLIT_MATERIALS;
+    uint32_t    number = split ? hit->material : 0;
+    const char *name   = split ? krs_material_name(meshing->scene, number) : NULL;
+    if (list->places[number] == 0) {
+        MeshMaterial *material = &list->items[list->count];
+        *material              = (MeshMaterial){.name      = name ? name : "material",
+                                                .roughness = hit->roughness,
+                                                .metallic  = hit->metallic};
+        for (int k = 0; k < 3; k++)
+            material->color[k] = byte_of(hit->color[k]);
+        list->places[number] = (uint32_t)++list->count;
+    }
+    return list->places[number] - 1;
+}
+
+static void find_materials(const Meshing *meshing, Joined *joined)
+{
+    Arena       *arena = meshing->options->arena;
+    size_t       known = krs_material_count(meshing->scene) + 2;
+    MaterialList list  = {arena_new_array(arena, uint32_t, known),
+                          arena_new_array(arena, MeshMaterial, known), 0};
+    uint32_t    *of    = arena_new_array(arena, uint32_t, joined->triangle_count);
+    double       middles[PROBES][3];
+    KrsHit       hits[PROBES];
+    for (size_t i = 0, now; i < joined->triangle_count; i += now) {
+        now = joined->triangle_count - i < PROBES ? joined->triangle_count - i : PROBES;
+        for (size_t t = 0; t < now; t++) {
+            const uint32_t *triangle = joined->triangles[i + t];
+            for (int k = 0; k < 3; k++)
+                middles[t][k] = (joined->places[triangle[0]][k] + joined->places[triangle[1]][k] +
+                                 joined->places[triangle[2]][k]) /
+                                3;
+        }
+        krs_probe(meshing->frame, (const double(*)[3])middles, now, hits);
+        for (size_t t = 0; t < now; t++)
+            of[i + t] = take_material(meshing, &list, &hits[t]);
+    }
+    joined->parts.material_of    = of;
+    joined->parts.materials      = list.items;
+    joined->parts.material_count = list.count;
+}
+
+void find_parts(const Meshing *meshing, const Bodies *bodies, MeshParts *parts)
+{
+    Joined joined = {.parts = {.scale = meshing->scale}};
+    join_bodies(meshing, bodies, &joined);
+    find_colors(meshing, &joined);
+    find_materials(meshing, &joined);
+    *parts = joined.parts;
+}
+
+/* ---- without copies ---- */
+
+typedef struct Flat {
+    const MeshParts *from;
+    double (*vertices)[3];
+    unsigned char (*colors)[3];
+    uint32_t (*triangles)[3];
+    uint32_t *material_of;
+    size_t    vertex_count, triangle_count;
+} Flat;
+
+static bool count_copy(void *user, const MeshCopy *copy)
+{
+    Flat *flat = user;
+    flat->vertex_count += copy->part->vertex_count;
+    flat->triangle_count += copy->part->triangle_count;
+    return true;
+}
+
+static bool flatten_copy(void *user, const MeshCopy *copy)
+{
+    Flat            *flat = user;
+    const MeshParts *from = flat->from;
+    const MeshPart  *part = copy->part;
+    size_t           base = flat->vertex_count;
+    for (size_t i = 0; i < part->vertex_count; i++) {
+        mesh_copy_vertex(from, copy, i, flat->vertices[base + i]);
+        memcpy(flat->colors[base + i], from->colors[part->first_vertex + i], sizeof *flat->colors);
+    }
+    for (size_t t = 0; t < part->triangle_count; t++) {
+        mesh_copy_triangle(from, copy, t, base, flat->triangles[flat->triangle_count + t]);
+        flat->material_of[flat->triangle_count + t] = from->material_of[part->first_triangle + t];
+    }
+    return count_copy(flat, copy);
+}
+
+void flatten_parts(const Meshing *meshing, MeshParts *parts)
+{
+    Arena    *arena  = meshing->options->arena;
+    Flat      flat   = {.from = parts};
+    MeshPart *list   = arena_new_array(arena, MeshPart, parts->body_count);
+    MeshBody *bodies = arena_new_array(arena, MeshBody, parts->body_count);
+    for (size_t i = 0; i < parts->body_count; i++)
+        mesh_body_visit(parts, i, count_copy, &flat);
+    flat.vertices     = arena_alloc(arena, flat.vertex_count, sizeof *flat.vertices);
+    flat.colors       = arena_alloc(arena, flat.vertex_count, sizeof *flat.colors);
+    flat.triangles    = arena_alloc(arena, flat.triangle_count, sizeof *flat.triangles);
+    flat.material_of  = arena_new_array(arena, uint32_t, flat.triangle_count);
+    flat.vertex_count = flat.triangle_count = 0;
+    for (size_t i = 0; i < parts->body_count; i++) {
+        MeshPart part = {.first_vertex = flat.vertex_count, .first_triangle = flat.triangle_count};
+        mesh_body_visit(parts, i, flatten_copy, &flat);
+        part.vertex_count   = flat.vertex_count - part.first_vertex;
+        part.triangle_count = flat.triangle_count - part.first_triangle;
+        list[i]             = part;
+        bodies[i]           = (MeshBody){.name = parts->bodies[i].name, .first_part = i};
+    }
+    parts->vertices    = (const double(*)[3])flat.vertices;
+    parts->colors      = (const unsigned char(*)[3])flat.colors;
+    parts->triangles   = (const uint32_t(*)[3])flat.triangles;
+    parts->material_of = flat.material_of;
+    parts->parts       = list;
+    parts->bodies      = bodies;
+    parts->part_count  = parts->body_count;
+}
+
+/* ---- units ---- */
+
+/* In the order of unit_choices. */
+static const double metres_of_units[] = {1e-3, 1e-6, 1e-2, 1, 0.0254, 0.3048};
+
+/* Without a wish, what the format is usually in. */
+void set_units(const Meshing *meshing, const MeshFormat *format, MeshParts *parts)
+{
+    int unit = meshing->options->mesh_units;
+    if (unit < 0)
+        unit = find_choice(strcmp(format->ending, ".glb") == 0 ? "m" : "mm", unit_choices);
+    parts->unit   = unit_choices[unit].name;
+    parts->metres = metres_of_units[unit];
+}

@@ -1,0 +1,29 @@
+/*
+ * solid.h: what is meshed: some components of a scene, or a part of its assembly.
+ */
+#ifndef KRS_MESH_SOLID_H
+#define KRS_MESH_SOLID_H
+
+#include "compiler/program.h"
+
+typedef struct MeshSolid {
+    const Tape *tape;  /* has the roots */
+    Node       *roots; /* distances, whose least counts; room for all components and a zone */
+    size_t      root_count;
+    bool        zoned; /* behind them is the depth in zones */
+    Box         box;
+    bool        estimate;
+} MeshSolid;
+
+/* The index among the components that are lowered of one that is shown; turns of a loop may be one. */
+size_t lowered_component(const KrsScene *scene, size_t shown);
+/* All components, or those that are `wanted`, by their index among the lowered. */
+void solid_of_components(const KrsScene *scene, const bool *wanted, MeshSolid *solid);
+/* Bytes of `roots` that is enough. */
+size_t solid_root_bytes(const KrsScene *scene);
+
+/* As krs_mesh, which it is behind; the component of the options does not count. */
+KrsStatus mesh_solid(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
+                     KrsMesh **mesh);
+
+#endif
