@@ -2,7 +2,7 @@
 #
 # Every test speaks TAP; tests/run.sh counts.  `make test DEVICE=...` runs all on another Vulkan
 # device, in the words of `krs --device`; `DEVICE=swiftshader` on one that every Debian can have.
-# The compiler's tests run a second time under the address and undefined-behaviour sanitizers, and
+# The tests that need no device run under the address and undefined-behaviour sanitizers, and
 # everything compiles under clang as well.
 
 # What tests of several kinds share; nothing of it knows what is tested.
@@ -31,11 +31,12 @@ ORACLES     := self patterns bumps primitives krs_expand folds trees maps moebiu
 FUZZ        := sentences
 # On SwiftShader, unless another device is tested: what shows that drivers agree.
 DRIVERS     := tests/oracle/drivers
-SECOND      := $(DRIVERS) $(addprefix tests/, unit/devices unit/tracer unit/rendering \
+SECOND      := $(DRIVERS) $(addprefix tests/, unit/devices unit/tracer \
                oracle/device oracle/picture oracle/query oracle/query_limits)
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)
-# Without a device: what runs under the sanitizers, too (drivers leak by design).
+# Without a device: what runs under the sanitizers (drivers leak by design), and only there, but for
+# BOTH, whose machine code depends on the compiler's options.
 SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/synonyms unit/diagnostics unit/shape unit/parts unit/passes unit/display \
                unit/writer unit/image_files unit/image_reading unit/validate unit/loader unit/watcher unit/grid unit/crowd_grid unit/crowds unit/tables unit/search \
                unit/refute unit/memory unit/cache unit/cache_limits unit/frame unit/query \
@@ -47,6 +48,8 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/synonyms unit/diag
                oracle/cells oracle/maps oracle/operators oracle/moving \
                oracle/fractals oracle/metasurfaces oracle/normals oracle/tangents oracle/drawings oracle/imports \
                oracle/imports_csg oracle/imports_pov fuzz/sentences)
+BOTH        := $(addprefix tests/, property/lanes unit/mesh)
+PLAIN       := $(filter-out $(filter-out $(BOTH), $(SANITIZED)), $(PROGRAMS))
 # Scripts that run beside programs, the longest first.  SCRIPTS run alone: they measure time, or count
 # what others may change.
 BESIDE      := $(addprefix tests/, examples.sh tutorial.sh extend/extend.sh cli/scale.sh errors-sanitized.sh lint.sh \
@@ -128,11 +131,11 @@ bless: $(B)/krs
 	@tests/errors.sh --bless
 
 test: deps
-	@$(MAKE) --no-print-directory -j$(JOBS) all test-programs clang-check fuzzers
+	@$(MAKE) --no-print-directory -j$(JOBS) all $(PLAIN:%=$(B)/%) $(DRIVERS:%=$(B)/%) clang-check fuzzers
 	@$(MAKE) --no-print-directory -j$(JOBS) sanitize
 	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=480 \
 	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") \
-	    JOBS=$(TEST_JOBS) $(BESIDE) $(PROGRAMS:%=$(B)/%) $(SANITIZED:%=$(B)/asan/%) \
+	    JOBS=$(TEST_JOBS) $(BESIDE) $(PLAIN:%=$(B)/%) $(SANITIZED:%=$(B)/asan/%) \
 	    JOBS=1 $(SCRIPTS) JOBS=$(TEST_JOBS) \
 	    $(if $(DEVICE),$(DRIVERS:%=$(B)/%),KRS_DEVICE=swiftshader $(SECOND:%=$(B)/%))
 .PHONY: test golden test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers \
