@@ -151,6 +151,14 @@ void builder_start(Builder *builder, const View *view)
     view_free(&old);
 }
 
+bool builder_has(Builder *builder, const Needs *needs)
+{
+    pthread_mutex_lock(&builder->lock);
+    const bool has = !builder->building && builder->canvas && canvas_meets(builder->canvas, needs);
+    pthread_mutex_unlock(&builder->lock);
+    return has;
+}
+
 void builder_cancel(Builder *builder)
 {
     pthread_mutex_lock(&builder->lock);

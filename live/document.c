@@ -31,8 +31,10 @@ struct Document {
     bool            refused; /* the system does not let us watch a file */
     int             woken;   /* an eventfd */
     Remarks         heard;   /* by the reading that is under way */
+    bool            quiet;   /* what is said now was said before */
     pthread_mutex_t lock;    /* of all below */
     Version        *version;
+    Version        *spare; /* of the same text, for edits to be compared with */
     Remarks         remarks;
     unsigned        readings;
 };
@@ -92,6 +94,8 @@ static void remarks_add(Remarks *remarks, const Remark *remark)
 static void hear(void *user, const KrsDiagnostic *diagnostic)
 {
     Document *document = user;
+    if (document->quiet)
+        return;
     remarks_add(&document->heard, &(Remark){.error  = diagnostic->error,
                                             .note   = diagnostic->note,
                                             .text   = diagnostic->text,
@@ -133,6 +137,7 @@ void document_free(Document *document)
     if (!document)
         return;
     version_release(document->version);
+    version_release(document->spare);
     remarks_free(&document->remarks);
     remarks_free(&document->heard);
     watcher_free(document->watcher);
@@ -140,6 +145,12 @@ void document_free(Document *document)
         close(document->woken);
     pthread_mutex_destroy(&document->lock);
     free(document);
+}
+
+/* What the next version is compared with. */
+static Version *version_before(const Document *document)
+{
+    return document->spare ? document->spare : document->version;
 }
 
 static KrsStatus compile(Document *document, KrsScene **scene, KrsChanges *changes)
@@ -150,7 +161,7 @@ static KrsStatus compile(Document *document, KrsScene **scene, KrsChanges *chang
     with.opened      = watch_file;
     with.opened_user = document;
     if (document->version)
-        return krs_scene_reload(document->version->scene, scene, changes);
+        return krs_scene_reload(version_before(document)->scene, scene, changes);
     *changes = (KrsChanges){KRS_CHANGE_STRUCTURE, true, true, true, true, true};
     return krs_compile_file(document->path, &with, scene);
 }
@@ -175,19 +186,22 @@ static Version *version_new(KrsScene *scene, KrsChanges changes, const Version *
 /* Puts what was read in the place of what was there. */
 static void publish(Document *document, Version *version)
 {
-    Version *before = NULL;
+    Version *before = NULL, *spare = NULL;
     pthread_mutex_lock(&document->lock);
     Remarks old        = document->remarks;
     document->remarks  = document->heard;
     document->readings = document->readings + 1;
     if (version) {
         before            = document->version;
+        spare             = document->spare;
         document->version = version;
+        document->spare   = NULL;
     }
     pthread_mutex_unlock(&document->lock);
     document->heard = (Remarks){0};
     remarks_free(&old);
     version_release(before);
+    version_release(spare);
 }
 
 KrsStatus document_read(Document *document)
@@ -198,20 +212,46 @@ KrsStatus document_read(Document *document)
     document->refused = false;
     KrsStatus status  = compile(document, &scene, &changes);
     if (status == KRS_OK) {
-        version = version_new(scene, changes, document->version);
+        version = version_new(scene, changes, version_before(document));
         status  = version ? KRS_OK : KRS_OUT_OF_MEMORY;
     }
     publish(document, version);
     return document->refused ? KRS_CANNOT_CREATE : status;
 }
 
-Version *document_version(Document *document)
+void document_prepare(Document *document)
+{
+    KrsScene  *scene;
+    KrsChanges changes;
+    if (!document->version || document->version->number > 1 || document->spare ||
+        document->options.specialize != KRS_SPECIALIZE_AUTO)
+        return;
+    document->quiet        = true;
+    const KrsStatus status = compile(document, &scene, &changes);
+    document->quiet        = false;
+    Version *spare = status == KRS_OK ? version_new(scene, changes, document->version) : NULL;
+    if (document_changed(document)) {
+        version_release(spare);
+        document_read(document);
+    } else if (spare) {
+        spare->number = document->version->number; /* it shows the same */
+        pthread_mutex_lock(&document->lock);
+        document->spare = spare;
+        pthread_mutex_unlock(&document->lock);
+    }
+}
+
+static Version *hold(Document *document, Version *const *held)
 {
     pthread_mutex_lock(&document->lock);
-    Version *version = version_hold(document->version);
+    Version *version = version_hold(*held);
     pthread_mutex_unlock(&document->lock);
     return version;
 }
+
+Version *document_version(Document *document) { return hold(document, &document->version); }
+
+Version *document_spare(Document *document) { return hold(document, &document->spare); }
 
 Remarks document_remarks(Document *document)
 {
@@ -238,7 +278,10 @@ bool document_wait(Document *document, double seconds)
     struct pollfd events[2] = {{.fd = watcher_descriptor(document->watcher), .events = POLLIN},
                                {.fd = document->woken, .events = POLLIN}};
     int           limit     = seconds > INT_MAX / 1000 ? -1 : (int)(seconds * 1000);
-    if (poll(events, 2, limit) <= 0 || events[1].revents)
+    uint64_t      times;
+    if (poll(events, 2, limit) <= 0)
+        return false;
+    if (events[1].revents && read(document->woken, &times, sizeof times) > 0)
         return false;
     return watcher_wait(document->watcher, 0);
 }

@@ -44,6 +44,14 @@ void      document_free(Document *document);
    and the remarks say why.  KRS_CANNOT_CREATE: the system does not let a file be watched. */
 KrsStatus document_read(Document *document);
 
+/* Compiles the file once more, the way that edits of it are compiled, if that is another way than the
+   first (KRS_SPECIALIZE_AUTO).  The next reading is compared with that: what was made for its shaders
+   serves the edit.  If the file has changed meanwhile, this is a reading. */
+void document_prepare(Document *document);
+/* What that has made, which the caller releases; NULL: nothing, or a reading came after it.  For any
+   thread. */
+Version *document_spare(Document *document);
+
 /* The last good version, which the caller releases; NULL: there is none.  For any thread. */
 Version *document_version(Document *document);
 /* A copy of what was said when the file was last read, which the caller frees; for any thread. */

@@ -35,8 +35,9 @@ struct Painter {
     Shot            shot; /* not taken yet; without pixels: none */
     KrsPicture     *planes;
     PainterState    state;
-    atomic_uint     number; /* of the wanted view */
-    atomic_bool     told;   /* the builder has something to say */
+    atomic_uint     number;   /* of the wanted view */
+    atomic_bool     told;     /* the builder has something to say */
+    atomic_bool     prepares; /* the builder's last order is for later */
     Builder        *builder;
     /* of the thread alone */
     Canvas  *canvas;
@@ -61,6 +62,12 @@ static void wake(const Painter *painter)
         painter->options.wake(painter->options.user);
 }
 
+/* Whether there is something to do: another view, or news of the builder. */
+static bool is_outdated(const Painter *painter)
+{
+    return atomic_load(&painter->number) != painter->shown || atomic_load(&painter->told);
+}
+
 /* ---- what others may ask ---- */
 
 unsigned painter_show(Painter *painter, const View *view)
@@ -76,6 +83,22 @@ unsigned painter_show(Painter *painter, const View *view)
     pthread_mutex_unlock(&painter->lock);
     view_free(&old);
     return number;
+}
+
+bool painter_prepare(Painter *painter, const View *view)
+{
+    const Needs needs = view_needs(view);
+    if (builder_has(painter->builder, &needs))
+        return true;
+    pthread_mutex_lock(&painter->lock);
+    const bool builds = builder_state(painter->builder).building &&
+                        !atomic_load(&painter->prepares); /* what is wanted now */
+    if (!painter->state.busy && !is_outdated(painter) && !builds) {
+        atomic_store(&painter->prepares, true);
+        builder_start(painter->builder, view);
+    }
+    pthread_mutex_unlock(&painter->lock);
+    return false;
 }
 
 void painter_set_budget(Painter *painter, double ms)
@@ -123,10 +146,11 @@ PainterState painter_state(Painter *painter)
     PainterState state = painter->state;
     pthread_mutex_unlock(&painter->lock);
     const BuilderState building = builder_state(painter->builder);
-    state.compiling             = building.building;
+    const bool         later    = atomic_load(&painter->prepares);
+    state.compiling             = building.building && !later;
     state.compiled              = building.done;
     snprintf(state.unbuilt, sizeof state.unbuilt, "%s",
-             building.status == KRS_OK ? "" : building.message);
+             building.status == KRS_OK || later ? "" : building.message);
     return state;
 }
 
@@ -139,11 +163,6 @@ static void say_failed(Painter *painter, KrsStatus status, const char *message)
     snprintf(painter->state.message, sizeof painter->state.message, "%s", message);
     pthread_mutex_unlock(&painter->lock);
     wake(painter);
-}
-
-static bool is_outdated(const Painter *painter)
-{
-    return atomic_load(&painter->number) != painter->shown || atomic_load(&painter->told);
 }
 
 static bool go_on(void *user, double done)
@@ -292,7 +311,7 @@ static void hear_builder(void *user)
 {
     Painter           *painter = user;
     const BuilderState state   = builder_state(painter->builder);
-    if (!state.building) {
+    if (!state.building && !atomic_load(&painter->prepares)) {
         pthread_mutex_lock(&painter->lock);
         atomic_store(&painter->told, true);
         pthread_cond_signal(&painter->changed);
@@ -325,6 +344,7 @@ static bool choose_canvas(Painter *painter, const View *next)
         change_canvas(painter, built);
     if (built && canvas_meets(built, &needs))
         return true;
+    atomic_store(&painter->prepares, false);
     builder_start(painter->builder, next);
     return false;
 }
@@ -441,6 +461,7 @@ Painter *painter_new(const PainterOptions *options)
     pthread_cond_init(&painter->changed, NULL);
     atomic_init(&painter->number, 0);
     atomic_init(&painter->told, false);
+    atomic_init(&painter->prepares, false);
     painter->builder = builder_new(&options->renderer, hear_builder, painter);
     if (painter->builder && pthread_create(&painter->thread, NULL, paint, painter) == 0)
         return painter;

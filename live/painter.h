@@ -54,7 +54,10 @@ void     painter_free(Painter *painter);
 
 /* Shows a view from now on; returns its number. */
 unsigned painter_show(Painter *painter, const View *view);
-void     painter_set_budget(Painter *painter, double ms);
+/* Compiles the shaders of a view that may be shown later, unless there is something else to do; true:
+   they are there. */
+bool painter_prepare(Painter *painter, const View *view);
+void painter_set_budget(Painter *painter, double ms);
 /* The newest picture, if none took it before; the caller frees its pixels. */
 bool painter_take(Painter *painter, Shot *shot);
 /* What is in the picture at these parts of its width and height, from the top left. */

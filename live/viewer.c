@@ -30,8 +30,13 @@ static void *read_scene(void *user)
 {
     Viewing *viewing = user;
     while (!atomic_load(&viewing->closing)) {
-        if (!document_wait(viewing->document, INFINITY))
+        if (!document_wait(viewing->document, INFINITY)) {
+            if (!atomic_exchange(&viewing->prepares, false))
+                continue;
+            document_prepare(viewing->document);
+            viewing_wake(viewing);
             continue;
+        }
         const KrsStatus status = document_read(viewing->document);
         if (status == KRS_CANNOT_CREATE)
             atomic_store(&viewing->read_status, status);
@@ -106,6 +111,25 @@ static void draw(Viewing *viewing)
     window_end(viewing->window);
 }
 
+/* While nothing happens: makes ready what the first edit of a number will need. */
+static void prepare_edits(Viewing *viewing)
+{
+    if (viewing->painting.busy || viewing->painting.compiling ||
+        version_number(viewing->view.version) > 1)
+        return;
+    Version *spare = document_spare(viewing->document);
+    View     later = viewing->view;
+    if (spare) {
+        later.version = spare;
+        painter_prepare(viewing->painter, &later);
+    } else if (!viewing->asked) {
+        viewing->asked = true;
+        atomic_store(&viewing->prepares, true);
+        document_wake(viewing->document);
+    }
+    version_release(spare);
+}
+
 /* How long the window may wait for the next event. */
 static double choose_wait(const Viewing *viewing, bool running)
 {
@@ -140,8 +164,10 @@ static KrsStatus loop(Viewing *viewing)
         const double begun = viewing_now();
         if (viewing->options->stopped && viewing->options->stopped(viewing->options->user))
             return KRS_OK;
-        if (quiet)
+        if (quiet) {
+            prepare_edits(viewing);
             continue;
+        }
         take_document(viewing);
         running = act_run(viewing);
         take_shot(viewing);
@@ -200,8 +226,11 @@ static KrsStatus terminal_loop(Viewing *viewing)
 {
     bool running = false, closed = false;
     while (!viewing->ended && !closed) {
-        int key, modifiers;
+        int          key, modifiers;
+        const double begun = viewing_now();
         terminal_wait(viewing->terminal, running ? FRAME_SECONDS : LONGEST_WAIT);
+        if (!running && viewing_now() - begun >= LONGEST_WAIT)
+            prepare_edits(viewing);
         if (viewing->options->stopped && viewing->options->stopped(viewing->options->user))
             return KRS_OK;
         take_document(viewing);
@@ -300,6 +329,7 @@ KrsStatus viewer_run(const ViewerOptions *options, char message[256])
     Viewing viewing = {.options = options, .panels = true, .loop = 10, .save = {.frames = 36}};
     message[0]      = '\0';
     atomic_init(&viewing.closing, false);
+    atomic_init(&viewing.prepares, false);
     KrsStatus status = begin(&viewing, message);
     if (status == KRS_OK)
         status = run(&viewing, message);

@@ -26,6 +26,7 @@ typedef struct Viewing {
     bool                 ended; /* by a key of the terminal */
     pthread_t            reader;
     atomic_bool          closing;
+    atomic_bool          prepares;    /* the reader is to prepare edits */
     atomic_int           read_status; /* of the document, where no edit will mend it */
 
     KrsFrame    *frame; /* of the view's version: cameras, and whether values fit */
@@ -36,7 +37,8 @@ typedef struct Viewing {
     bool         camera_written; /* but will be in the next version */
     Remarks      remarks;
     unsigned     readings;
-    Shot         shot; /* the last one; its pixels are in the window */
+    bool         asked; /* the reader, to prepare edits */
+    Shot         shot;  /* the last one; its pixels are in the window */
     PainterState painting;
 
     bool     playing;

@@ -57,10 +57,10 @@ static unsigned show(Stage *stage, double aside)
     return painter_show(stage->painter, &stage->view);
 }
 
-static void set_up(Stage *stage, const char *text)
+static void set_up_with(Stage *stage, const char *text, KrsSpecialize specialize)
 {
     static double    values[1][4]; /* the defaults of both texts */
-    const KrsOptions with      = {.specialize = KRS_SPECIALIZE_STRUCTURE};
+    const KrsOptions with      = {.specialize = specialize};
     *stage                     = (Stage){.path = "/tmp/krs-painter-XXXXXX"};
     const int            fd    = mkstemp(stage->path);
     const PainterOptions paint = {.renderer = {.device = tested_device()}, .budget = 40};
@@ -79,6 +79,11 @@ static void set_up(Stage *stage, const char *text)
     assert_non_null(stage->painter);
     edit(stage, text);
     show(stage, 0);
+}
+
+static void set_up(Stage *stage, const char *text)
+{
+    set_up_with(stage, text, KRS_SPECIALIZE_STRUCTURE);
 }
 
 static void tear_down(Stage *stage)
@@ -191,6 +196,52 @@ static void nothing_is_compiled_twice(void **state)
     tear_down(&stage);
 }
 
+/* Compiles what the first edit will need, as the viewer does when nothing else happens. */
+static void prepare_edits(Stage *stage)
+{
+    View later = stage->view;
+    document_changed(stage->document); /* it was read already */
+    document_prepare(stage->document);
+    later.version = document_spare(stage->document);
+    assert_non_null(later.version);
+    for (const double begun = now(); !painter_prepare(stage->painter, &later); usleep(5000)) {
+        assert_false(painter_state(stage->painter).compiling);
+        assert_true(now() - begun < PATIENCE);
+    }
+    version_release(later.version);
+}
+
+/* Shaders of the first version have its numbers in their text, those of its edits have not. */
+static void the_first_edit_can_be_prepared(void **state)
+{
+    (void)state;
+    for (int prepared = 0; prepared < 2; prepared++) {
+        Stage stage;
+        set_up_with(&stage, "param r = 1 in [0.5, 2]; show sphere(1.1 * r);", KRS_SPECIALIZE_AUTO);
+        free(take_whole(&stage, 1, 1).pixels);
+        if (prepared)
+            prepare_edits(&stage);
+        edit(&stage, "param r = 1 in [0.5, 2]; show sphere(1.25 * r);");
+        assert_int_equal(version_number(stage.view.version), 2);
+        const unsigned view     = show(&stage, 1);
+        bool           compiled = false;
+        Shot           shot     = {0};
+        for (const double begun = now(); shot.version != 2 && now() - begun < PATIENCE;) {
+            compiled = painter_state(stage.painter).compiling || compiled;
+            free(shot.pixels);
+            shot = (Shot){0};
+            if (!painter_take(stage.painter, &shot))
+                usleep(500);
+        }
+        free(shot.pixels);
+        assert_int_equal(compiled, !prepared);
+        edit(&stage, "param r = 1 in [0.5, 2]; show sphere(1.5 * r);");
+        assert_true(show(&stage, 1) > view);
+        assert_shows(&stage, 3, view + 1, "param r = 1; show sphere(1.5 * r);", 1);
+        tear_down(&stage);
+    }
+}
+
 /* Of edits that follow each other quickly the last is shown, and the others are given up. */
 static void edits_overtake_each_other(void **state)
 {
@@ -276,6 +327,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_there_was_is_turned_meanwhile),
         cmocka_unit_test(nothing_is_compiled_twice),
+        cmocka_unit_test(the_first_edit_can_be_prepared),
         cmocka_unit_test(edits_overtake_each_other),
         cmocka_unit_test(slopes_that_are_not_used_are_seen),
         cmocka_unit_test(lost_devices_are_said),
