@@ -66,9 +66,10 @@ struct Compilation {
     Files             files;
     Scene             elaborated; /* its graph is extended by the pass `lower` */
     Additions         additions;
-    bool             *is_medium;    /* of each component: it may let light through */
-    size_t           *operations;   /* of each component and, behind them, of the zones */
-    uint32_t         *march_groups; /* number from 1 for each component; 0: needs no march */
+    bool             *is_medium;     /* of each component: it may let light through */
+    bool             *is_subsurface; /* likewise: light may go on below its surface */
+    size_t           *operations;    /* of each component and, behind them, of the zones */
+    uint32_t         *march_groups;  /* number from 1 for each component; 0: needs no march */
     Text              dump;
 };
 

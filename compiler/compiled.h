@@ -87,6 +87,7 @@ typedef struct KrsProgram {
     bool          media;   /* a component may let light through: there are variants of KrsGlass */
     bool          layers;  /* a material has a coat, sheen, or a mirror other than usual */
     bool          films;   /* a material may have a thin film */
+    bool          subsurface;  /* light may go on below the surface of a component */
     bool          anisotropic; /* a material may be rougher along its tangent than across */
     KrsMarchGroup march_groups[KRS_MOST_MARCH_GROUPS];
     size_t        march_group_count; /* 0: all components are marched together */

@@ -179,6 +179,8 @@ void print_facts(Compilation *c, Text *out)
     text_format(out, "operations  %zu\nflops  %.6g\nloops  %u\n", program->operations,
                 program->flops, program->loops);
     print_flags(program, out);
+    if (program->subsurface)
+        text_add(out, "subsurface  yes\n");
     if (program->media) /* a line of its own, since few scenes have any */
         text_add(out, "media  yes\n");
     text_format(out, "scene parts  %u\nexpensive components  %u\nmarch groups  %zu\n",

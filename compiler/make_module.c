@@ -73,6 +73,7 @@ KrsStatus pass_emit(Compilation *c)
                              .march_groups    = program->march_group_count ? c->march_groups : NULL,
                              .is_plane        = program->planes ? is_plane : NULL,
                              .is_medium       = program->media ? c->is_medium : NULL,
+                             .is_subsurface   = program->subsurface ? c->is_subsurface : NULL,
                              .has_slopes      = scene->slope_count > 0,
                              .derives         = program->gradients};
     module_lay_out(&scene->module, KRS_MOST_ZONES, arena, &c->scratch);

@@ -123,6 +123,19 @@ static void find_media(Compilation *c, const Graph *g)
     }
 }
 
+/* Finds the components below whose surface light may go on (krs_subsurface).  Sheets have no inside. */
+static void find_subsurface(Compilation *c, const Graph *g)
+{
+    const size_t count = c->elaborated.components.count;
+    c->is_subsurface   = arena_new_array(&c->scene->arena, bool, count + 1);
+    for (size_t i = 0; i < count; i++) {
+        Node weight         = surface_roots(&c->scene->roots, i)[ROOT_subsurface_weight];
+        c->is_subsurface[i] = may_exceed_zero(g, weight, &c->scratch) &&
+                              !has_thin_sheets(c->elaborated.components.items[i].shape);
+        c->scene->program.subsurface |= c->is_subsurface[i];
+    }
+}
+
 /*
  * Components that are half-spaces need no march.  A ray from p along d enters the half-space
  * n.x <= w at (w - n.p) / n.d, if n.d < 0.  The first root is the least of these lengths, the
@@ -231,6 +244,7 @@ KrsStatus pass_lower(Compilation *c)
     gather_view(s, roots);
     lower_marches(c, s->graph, crowds);
     find_media(c, s->graph);
+    find_subsurface(c, s->graph);
     lower_planes(c, s->graph);
     arena_free(&c->scratch);
     more->algebraic = is_algebraic(s, roots);

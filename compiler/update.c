@@ -195,11 +195,14 @@ static bool same_kinds_of_boxes(const KrsScene *a, const KrsScene *b)
 static bool same_groups(const Module *a, const Module *b)
 {
     size_t count = a->components;
-    if (!a->march_groups != !b->march_groups || !a->is_plane != !b->is_plane)
+    if (!a->march_groups != !b->march_groups || !a->is_plane != !b->is_plane ||
+        !a->is_subsurface != !b->is_subsurface)
         return false;
     return (!a->march_groups ||
             memcmp(a->march_groups, b->march_groups, count * sizeof *a->march_groups) == 0) &&
-           (!a->is_plane || memcmp(a->is_plane, b->is_plane, count * sizeof *a->is_plane) == 0);
+           (!a->is_plane || memcmp(a->is_plane, b->is_plane, count * sizeof *a->is_plane) == 0) &&
+           (!a->is_subsurface ||
+            memcmp(a->is_subsurface, b->is_subsurface, count * sizeof *a->is_subsurface) == 0);
 }
 
 static bool same_facts(const KrsScene *a, const KrsScene *b)
@@ -210,8 +213,8 @@ static bool same_facts(const KrsScene *a, const KrsScene *b)
            a->program.sky_map == b->program.sky_map && a->program.emits == b->program.emits &&
            a->program.films == b->program.films &&
            a->program.anisotropic == b->program.anisotropic &&
-           same_slots(&a->program, &b->program) && same_methods(&a->program, &b->program) &&
-           a->module.has_slopes == b->module.has_slopes &&
+           a->program.subsurface == b->program.subsurface && same_slots(&a->program, &b->program) &&
+           same_methods(&a->program, &b->program) && a->module.has_slopes == b->module.has_slopes &&
            !a->module.box_nodes.around == !b->module.box_nodes.around &&
            same_kinds_of_boxes(a, b) && same_groups(&a->module, &b->module);
 }

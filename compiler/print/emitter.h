@@ -254,6 +254,8 @@ void emit_media_surface(Emitter *e);
 void need_media(Emitter *e);
 void emit_medium_at(Emitter *e);
 void emit_glass(Emitter *e);
+void need_subsurface(Emitter *e);
+void emit_subsurface(Emitter *e);
 
 /* march.c: what some marches need beside a distance: krs_plane_t and krs_plane_cosine;
    krs_scene_part_distance and krs_scene_part_box; krs_along and krs_probe. */

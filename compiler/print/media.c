@@ -135,14 +135,25 @@ void emit_medium_at(Emitter *e)
     text_add(e->out, "    return medium;\n");
 }
 
-void emit_glass(Emitter *e)
+/* The distance to the nearest of some components. */
+static void emit_nearest_of(Emitter *e, const bool *of)
 {
     emit_local(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
     for (uint32_t i = 0; i < e->module->components; i++)
-        if (e->module->is_medium && e->module->is_medium[i])
+        if (of && of[i])
             text_format(e->out, "    d = min(d, %s);\n", emit_call_of(e, OF_DISTANCE, i));
     text_format(e->out, "    return %s;\n", emit_cut(e, "d"));
 }
+
+void emit_glass(Emitter *e) { emit_nearest_of(e, e->module->is_medium); }
+
+void need_subsurface(Emitter *e)
+{
+    for (uint32_t i = 0; i < e->module->components; i++)
+        e->needed_of[OF_DISTANCE][i] |= e->module->is_subsurface && e->module->is_subsurface[i];
+}
+
+void emit_subsurface(Emitter *e) { emit_nearest_of(e, e->module->is_subsurface); }
 
 /* ---- surfaces ---- */
 

@@ -47,10 +47,11 @@ typedef struct Module {
     BoxNodes        box_nodes;
     MirrorNodes    *mirror_nodes; /* by the mirror's node; NULL: where normals are literals */
     const uint32_t *march_groups; /* the group of each, or NULL: all together */
-    const bool     *is_plane;   /* whether each is a plane that krs_plane_t knows; NULL: none is */
-    const bool     *is_medium;  /* whether each may let light through; NULL: none may */
-    bool            has_slopes; /* there are slots of slopes behind those of parameters */
-    bool            derives;    /* gradients were asked for */
+    const bool     *is_plane;  /* whether each is a plane that krs_plane_t knows; NULL: none is */
+    const bool     *is_medium; /* whether each may let light through; NULL: none may */
+    const bool     *is_subsurface; /* whether light may go on below its surface; NULL: none */
+    bool            has_slopes;    /* there are slots of slopes behind those of parameters */
+    bool            derives;       /* gradients were asked for */
     FrameSlots      slots;
 } Module;
 

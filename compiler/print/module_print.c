@@ -30,6 +30,7 @@ static const struct {
     [KRS_FUNCTION_SURFACE]             = {need_surface, emit_surface},
     [KRS_FUNCTION_MEDIUM_AT]           = {need_media, emit_medium_at},
     [KRS_FUNCTION_GLASS]               = {need_media, emit_glass},
+    [KRS_FUNCTION_SUBSURFACE]          = {need_subsurface, emit_subsurface},
 };
 
 static void (*const component_functions[FUNCTION_KINDS])(Emitter              *e,
@@ -166,7 +167,8 @@ static bool needs_cut(const Emitter *e)
                                        KRS_FUNCTION_PROBE,
                                        KRS_FUNCTION_SCENE_PART_DISTANCE,
                                        KRS_FUNCTION_MEDIUM_AT,
-                                       KRS_FUNCTION_GLASS};
+                                       KRS_FUNCTION_GLASS,
+                                       KRS_FUNCTION_SUBSURFACE};
     bool                     needed = e->wanted[KRS_FUNCTION_SURFACE] && e->module->components > 0;
     for (size_t i = 0; i < sizeof cut / sizeof *cut; i++)
         needed = needed || e->wanted[cut[i]];

@@ -95,6 +95,11 @@ static const Signature of_scene[KRS_FUNCTION_COUNT] = {
                                 TYPE_FLOAT,
                                 {&point},
                                 "// The distance to what may let light through; negative inside.\n"},
+    [KRS_FUNCTION_SUBSURFACE] =
+        {"krs_subsurface",
+         TYPE_FLOAT,
+         {&point},
+         "// The distance to that below whose surface light may go on; negative inside.\n"},
 };
 
 static const Signature zone_depth = {"krs_zone_depth", TYPE_FLOAT, {&point}, NULL};

@@ -52,6 +52,9 @@ typedef enum KrsFunction {
     KRS_FUNCTION_MEDIUM_AT,
     /* float krs_glass(vec3 p): the distance to components of glass alone, < 0 inside of one. */
     KRS_FUNCTION_GLASS,
+    /* float krs_subsurface(vec3 p): the distance to components below whose surface light may go on
+       (KrsProgram.subsurface), < 0 inside of one. */
+    KRS_FUNCTION_SUBSURFACE,
     /* float krs_sin(float a), krs_cos, krs_tan: for callers that need them as well. */
     KRS_FUNCTION_SINES,
     /* float krs_atan2(float a, float b), likewise. */

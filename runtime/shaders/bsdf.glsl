@@ -104,6 +104,11 @@ struct Bsdf {
     float film, film_thickness, film_ior;
     vec3  film_on_body, film_on_metal; // reflectance of films on them
 #endif
+#ifdef SUBSURFACE
+    float below, upon; // of the diffuse: the part that goes on below the surface, and that does not
+    float chance_below; // probability of following the former
+    vec3  entering;     // the part of the eye's light that comes from below
+#endif
     vec4  shares;             // probabilities of sampling coat, mirror, glass, and the diffuse
 };
 
@@ -241,6 +246,22 @@ void add_film(inout Bsdf bsdf, KrsSurface surface, float all)
 }
 #endif
 
+#ifdef SUBSURFACE
+// Divides the body's diffuse light: a part of it goes on below the surface.  `shares` are those of all
+// that is scattered at the surface.
+void share_below(inout Bsdf bsdf, KrsSurface surface, float body, bool enters, inout vec4 shares)
+{
+    bsdf.below = enters ? surface.subsurface_weight : 0.0;
+    bsdf.upon = 1.0 - bsdf.below;
+    float diffuse = bsdf.under_coat * body * luminance(bsdf.diffuse);
+    float all = diffuse * max(luminance(bsdf.color), 0.05);
+    float goes = diffuse * bsdf.below * max(luminance(surface.subsurface_color), 0.05);
+    shares.w -= all * bsdf.below;
+    bsdf.chance_below = goes / max(goes + dot(shares, vec4(1.0)), 1e-6);
+    bsdf.entering = vec3(bsdf.under_coat * body * bsdf.below * bsdf.diffuse);
+}
+#endif
+
 // `entering`: the ray comes from outside.  The eye's direction may lie below the horizon by
 // rounding.
 Bsdf make_bsdf(KrsSurface surface, bool entering, vec3 eye)
@@ -302,6 +323,9 @@ Bsdf make_bsdf(KrsSurface surface, bool entering, vec3 eye)
     shares.z = bsdf.under_coat * bsdf.glass;
     shares.w = luminance(bsdf.sheen) * bsdf.fuzzy +
                bsdf.under_coat * body * luminance(bsdf.diffuse) * max(luminance(bsdf.color), 0.05);
+#ifdef SUBSURFACE
+    share_below(bsdf, surface, body, entering, shares);
+#endif
     bsdf.shares = shares / max(dot(shares, vec4(1.0)), 1e-6);
     return bsdf;
 }
@@ -337,6 +361,9 @@ vec4 scatter(Bsdf bsdf, vec3 light)
         metal = mix(metal, bsdf.metallic * bsdf.film_on_metal, bsdf.film);
 #endif
         sum += bsdf.under_coat * all.x * (metal + of_body);
+#ifdef SUBSURFACE
+        body *= bsdf.upon;
+#endif
         sum += bsdf.under_coat * body * bsdf.diffuse * bsdf.color * (light.z / PI);
         sum += bsdf.sheen * sheen_towards(bsdf, light);
         density += bsdf.shares.x * coat.y + bsdf.shares.y * all.y + bsdf.shares.w * light.z / PI;

@@ -49,6 +49,33 @@ vec3 find_normal(HitPoint hit, KrsSurface surface, vec3 facing)
     return usable ? normal / size : facing;
 }
 
+#ifdef SUBSURFACE
+#include "subsurface.glsl"
+
+// Chooses whether the path goes on below the surface.  If it does, it leaves elsewhere: the hit is
+// moved there, and what is seen of it is dull and white.
+vec3 go_below(uvec2 pixel, inout HitPoint hit, inout vec4 facing, inout Bsdf bsdf, inout Axes axes,
+              KrsSurface surface)
+{
+    uvec2 own = work.corner + pixel;
+    if (sample_choice(own, control.ray, 0x20000u + control.value, control.seed).x >=
+        bsdf.chance_below)
+        return vec3(1.0 / max(1.0 - bsdf.chance_below, 1e-6));
+    begin_chances(own);
+    Walk walk = walk_below(hit, facing.xyz, surface.subsurface_color, surface.subsurface_radius);
+    vec3 part = bsdf.entering * walk.weight / bsdf.chance_below;
+    bsdf = make_dull(bsdf);
+    if (walk.moved) {
+        hit.position = walk.position;
+        hit.rounding = ROUNDING * 2.0 * largest(walk.position);
+        facing = vec4(walk.normal, 0.0);
+        axes = find_axes(walk.normal, vec3(0.0));
+        store_hit(FACING, hit.slot, facing);
+    }
+    return part;
+}
+#endif
+
 uint rows;
 
 void begin_group()
@@ -127,6 +154,17 @@ float go_on(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 fa
     return !goes_on ? 0.0 : side > 0.0 ? boundary.code : boundary.beyond;
 }
 
+// The colour of a body, with what comes from below its surface; metals have none.
+vec3 albedo_of(KrsSurface surface)
+{
+#ifdef SUBSURFACE
+    float below = surface.subsurface_weight * (1.0 - surface.metallic);
+    return mix(surface.color, surface.subsurface_color, below);
+#else
+    return surface.color;
+#endif
+}
+
 // The surface that a path has hit.  What it reflects depends on the medium before it.
 Boundary meet_boundary(inout HitPoint hit, uint index, vec3 facing, out KrsSurface surface)
 {
@@ -160,12 +198,17 @@ void do_item(uint number)
     vec3 normal = find_normal(hit, surface, facing.xyz);
     radiance = clamped(finite_or_black(radiance));
     vec4 sum = find_color(index) + vec4(radiance, control.value == 0u ? 1.0 : 0.0);
-    store_planes(index, rows | 1u << ROW_COLORS, sum, hit, hit.side * normal, surface.color, surface);
+    store_planes(index, rows | 1u << ROW_COLORS, sum, hit, hit.side * normal, albedo_of(surface),
+                 surface);
     if (control.phase == PATHS_END)
         return;
     Axes axes = find_axes(normal, surface.tangent);
     Bsdf   bsdf = make_bsdf(surface, hit.side > 0.0, into(axes, -hit.direction));
     bsdf.eta = boundary.eta;
+#ifdef SUBSURFACE
+    if (bsdf.chance_below > 0.0)
+        weight *= go_below(pixel, hit, facing, bsdf, axes, surface);
+#endif
     // Glass bends what leaves it, so that cones are of no use there.
     float dull = mix(surface.roughness * (1.0 - bsdf.glass), 1.0, bsdf.shares.w);
     Cones cones = find_cones(hit.position, facing.xyz, hit.side > 0.0 ? dull : 0.0);

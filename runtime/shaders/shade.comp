@@ -52,6 +52,15 @@ vec4 saturate(vec4 numbers, float most)
     return mix(vec4(0.0), min(numbers, most), greaterThan(numbers, vec4(0.0)));
 }
 
+#ifdef SUBSURFACE
+// The colour of a body, with what comes from below its surface; metals have none.
+vec3 color_below(KrsSurface surface)
+{
+    vec2 parts = saturate(vec4(surface.subsurface_weight, surface.metallic, 0.0, 0.0), 1.0).xy;
+    return mix(surface.color, surface.subsurface_color, parts.x * (1.0 - parts.y));
+}
+#endif
+
 // The mean of the normals that the pixel shows; it is no unit vector.  `mean_length` is the length
 // of the mean of all normals around.  Of a thin thing only the side towards the eye is visible.
 vec3 mean_normal(vec3 normal, float mean_length, vec3 toward_eye)
@@ -193,6 +202,9 @@ void do_item(uint number)
     prepare_boundary(hit, hit.side, facing.xyz);
 #endif
     KrsSurface surface = krs_surface(hit.position, hit.side * facing.xyz, 0.5 * hit.width);
+#ifdef SUBSURFACE // light leaves where it has entered
+    surface.color = color_below(surface);
+#endif
 #ifdef MIRRORS
     Boundary boundary = find_boundary(hit, surface);
     hit.side = boundary.side;

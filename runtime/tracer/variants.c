@@ -108,6 +108,8 @@ static void want_materials(KernelVariant *to, const KrsRendering *rendering)
 {
     if (rendering->program->anisotropic)
         define(to, "#define ANISOTROPIC\n");
+    if (rendering->program->subsurface)
+        define(to, "#define SUBSURFACE\n");
     if (!rendering->program->films)
         return;
     define(to, "#define FILM\n");
@@ -259,6 +261,8 @@ KernelVariant variant_of_scatter(const KrsRendering *rendering)
     want(&to, KRS_FUNCTION_SINES);
     if (rendering->program->emits)
         define(&to, "#define EMISSIVE\n");
+    if (rendering->program->subsurface)
+        want(&to, KRS_FUNCTION_SUBSURFACE);
     want_materials(&to, rendering);
     want_media(&to, rendering);
     want_sky(&to, rendering);

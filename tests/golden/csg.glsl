@@ -20,6 +20,9 @@ struct KrsSurface {
     float thin_film_ior;
     float specular_roughness_anisotropy;
     vec3  tangent;
+    float subsurface_weight;
+    vec3  subsurface_color;
+    vec3  subsurface_radius;
     uint  component;
     uint  level;
     uint  instance;
@@ -104,13 +107,13 @@ float krs_distance_lod_2(vec3 p, float footprint)
 KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
 {
     float d = krs_distance_1(p);
-    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 1u, uint(0.0), 1u, 0u, normal);
+    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 0.0, vec3(0.8), vec3(1.0), 1u, uint(0.0), 1u, 0u, normal);
 }
 
 KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
 {
     float d = krs_distance_2(p);
-    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 2u, uint(0.0), 1u, 0u, normal);
+    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 0.0, vec3(0.8), vec3(1.0), 2u, uint(0.0), 1u, 0u, normal);
 }
 
 float krs_distance(vec3 p)

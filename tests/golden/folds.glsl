@@ -20,6 +20,9 @@ struct KrsSurface {
     float thin_film_ior;
     float specular_roughness_anisotropy;
     vec3  tangent;
+    float subsurface_weight;
+    vec3  subsurface_color;
+    vec3  subsurface_radius;
     uint  component;
     uint  level;
     uint  instance;
@@ -169,7 +172,7 @@ KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
     bool b2 = s0 < s1;
     float t3 = mix(0.0, 2.0, b2);
     uint n4 = b2 ? n0 : n1;
-    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 1u, uint(t3), n4, 0u, normal);
+    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 0.0, vec3(0.8), vec3(1.0), 1u, uint(t3), n4, 0u, normal);
 }
 
 float krs_distance(vec3 p)

@@ -20,6 +20,9 @@ struct KrsSurface {
     float thin_film_ior;
     float specular_roughness_anisotropy;
     vec3  tangent;
+    float subsurface_weight;
+    vec3  subsurface_color;
+    vec3  subsurface_radius;
     uint  component;
     uint  level;
     uint  instance;
@@ -114,19 +117,19 @@ KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
     // tests/golden/looks.krs:3
     float t0 = dot(normal, vec3(0.0, 1.0, 0.0));
     vec3 v1 = vec3(((t0 * (-0.3)) + 0.5), ((t0 * (-0.2)) + 0.4), ((t0 * 0.05) + 0.25));
-    return KrsSurface(d, v1, 0.3, 1.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 1u, uint(0.0), 1u, 1u, normal);
+    return KrsSurface(d, v1, 0.3, 1.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 0.0, vec3(0.8), vec3(1.0), 1u, uint(0.0), 1u, 1u, normal);
 }
 
 KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
 {
     float d = krs_distance_2(p);
-    return KrsSurface(d, vec3(1.0), 0.6, 0.0, krs_frame0, 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 2u, uint(0.0), 1u, 2u, normal);
+    return KrsSurface(d, vec3(1.0), 0.6, 0.0, krs_frame0, 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 0.0, vec3(0.8), vec3(1.0), 2u, uint(0.0), 1u, 2u, normal);
 }
 
 KrsSurface krs_surface_3(vec3 p, vec3 normal, float footprint)
 {
     float d = krs_distance_3(p);
-    return KrsSurface(d, vec3(0.2158605, 0.27889428, 0.3515326), 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 3u, uint(0.0), 1u, 3u, normal);
+    return KrsSurface(d, vec3(0.2158605, 0.27889428, 0.3515326), 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 0.0, vec3(0.8), vec3(1.0), 3u, uint(0.0), 1u, 3u, normal);
 }
 
 float krs_distance(vec3 p)

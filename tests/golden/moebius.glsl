@@ -20,6 +20,9 @@ struct KrsSurface {
     float thin_film_ior;
     float specular_roughness_anisotropy;
     vec3  tangent;
+    float subsurface_weight;
+    vec3  subsurface_color;
+    vec3  subsurface_radius;
     uint  component;
     uint  level;
     uint  instance;
@@ -277,13 +280,13 @@ KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
     bool b6 = s0 < s1;
     float t7 = mix(0.0, mix(1.0, mix(2.0, mix(3.0, 4.0, b1), b3), b5), b6);
     uint n8 = b6 ? (b5 ? (b3 ? (b1 ? 1u : n0) : n2) : n4) : (n4 * 2u + uint((dot(vec3(1.0, 0.0, 0.0), s4) > 0.1)));
-    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 1u, uint(t7), n8, 0u, normal);
+    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 0.0, vec3(0.8), vec3(1.0), 1u, uint(t7), n8, 0u, normal);
 }
 
 KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
 {
     float d = krs_distance_2(p);
-    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 2u, uint(0.0), 1u, 0u, normal);
+    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 0.0, vec3(0.8), vec3(1.0), 2u, uint(0.0), 1u, 0u, normal);
 }
 
 float krs_distance(vec3 p)

@@ -20,6 +20,9 @@ struct KrsSurface {
     float thin_film_ior;
     float specular_roughness_anisotropy;
     vec3  tangent;
+    float subsurface_weight;
+    vec3  subsurface_color;
+    vec3  subsurface_radius;
     uint  component;
     uint  level;
     uint  instance;
@@ -316,7 +319,7 @@ KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
     bool b34 = t16 < t19;
     float t35 = mix(0.0, t31, b34);
     uint n36 = b34 ? n32 : n33;
-    return KrsSurface(t20, vec3(0.6), 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 1u, uint(t35), n36, 0u, normal);
+    return KrsSurface(t20, vec3(0.6), 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 0.0, vec3(0.8), vec3(1.0), 1u, uint(t35), n36, 0u, normal);
 }
 
 float krs_distance(vec3 p)

@@ -34,6 +34,9 @@ struct KrsSurface {
     float thin_film_ior;
     float specular_roughness_anisotropy;
     vec3  tangent;
+    float subsurface_weight;
+    vec3  subsurface_color;
+    vec3  subsurface_radius;
     uint  component;
     uint  level;
     uint  instance;
@@ -226,7 +229,7 @@ KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
     vec2 v20 = vec2((t16 * t17), (t17 * t19)) * vec2(96.0, 288.0);
     vec4 v21 = krs_texture(vec2(krs_atan2(s0.z, s0.x), krs_atan2(s0.y, t1)), max(v20.x, v20.y), krs_texture0);
     vec3 v22 = vec3(v21.x, v21.y, v21.z) + vec3((1.0 - v21.w));
-    return KrsSurface(d, v22, 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 1u, uint(0.0), 1u, 1u, normal);
+    return KrsSurface(d, v22, 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 0.0, vec3(0.8), vec3(1.0), 1u, uint(0.0), 1u, 1u, normal);
 }
 
 KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
@@ -263,7 +266,7 @@ KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
     vec3 v25 = (normal - (v19 * (t18 / max(dot(v19, v19), 1e-30)))) - (v24 * (t23 / max(dot(v24, v24), 1e-30)));
     vec3 v26 = krs_normalize(v25);
     vec3 v27 = mix(krs_normalize(v26), normal, bvec3(dot(v26, v26) < 1e-08));
-    return KrsSurface(d, v6, 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 2u, uint(0.0), 1u, 2u, v27);
+    return KrsSurface(d, v6, 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 0.0, vec3(0.8), vec3(1.0), 2u, uint(0.0), 1u, 2u, v27);
 }
 
 float krs_distance(vec3 p)

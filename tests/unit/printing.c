@@ -143,6 +143,7 @@ static const char *const calls[KRS_FUNCTION_COUNT] = {
     [KRS_FUNCTION_SURFACE]             = "krs_surface(p, p, 0.0).roughness",
     [KRS_FUNCTION_MEDIUM_AT]           = "float(krs_medium_at(p))",
     [KRS_FUNCTION_GLASS]               = "krs_glass(p)",
+    [KRS_FUNCTION_SUBSURFACE]          = "krs_subsurface(p)",
     [KRS_FUNCTION_SINES]               = "krs_sin(p.x) + krs_cos(p.x) + krs_tan(p.x)",
     [KRS_FUNCTION_ARCS]                = "krs_atan2(p.x, p.y)",
 };
@@ -204,6 +205,7 @@ static bool can_want(const KernelScene *of, KrsFunction function)
     case KRS_FUNCTION_SCENE_PART_BOX: return program->scene_parts >= 2 && v->march_group == 0;
     case KRS_FUNCTION_MEDIUM_AT:
     case KRS_FUNCTION_GLASS: return program->media && v->march_group == 0;
+    case KRS_FUNCTION_SUBSURFACE: return program->subsurface && v->march_group == 0;
     case KRS_FUNCTION_SURFACE: return v->march_group == 0;
     default: return true;
     }
