@@ -58,7 +58,7 @@ API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits
                 march_groups.c make_module.c program.c scene_text.c framing.c look.c daylight.c frame.c frame_emissive.c points.c query.c \
                 update.c search_pairs.c search_targets.c search_starts.c search.c refuter.c \
                 refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)
-MESH     := $(addprefix compiler/mesh/, solid.c field.c numbering.c tets.c quadric.c roots.c contour.c bvh.c groups.c gradient.c lens.c verify.c voids.c mesh.c placing.c assemble.c)
+MESH     := $(addprefix compiler/mesh/, solid.c field.c numbering.c tets.c quadric.c roots.c contour.c bvh.c groups.c gradient.c lens.c verify.c voids.c mesh.c placing.c assemble.c crossing.c slivers.c simplify.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer integrators film display writer))))
 LIVE     := $(sort $(wildcard live/*.c))
 LIVE_BORDER := live/gui.cpp
@@ -79,7 +79,7 @@ EXAMPLES := $(sort $(wildcard examples/*.krs))
 STYLE    := -std=c17 -D_GNU_SOURCE -Wall -Wextra -Wpedantic -Wshadow -Werror -I. -MMD -MP -pthread
 LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLCompiler -lSPIRV \
             -lSPVRemapper -lglslang-default-resource-limits -lSPIRV-Tools-opt -lSPIRV-Tools \
-            -lharfbuzz -lfreetype -lfontconfig -lexpat -lOpenEXRCore-3_1 -lpng -lxxhash -lqhull_r -lvulkan \
+            -lharfbuzz -lfreetype -lfontconfig -lexpat -lOpenEXRCore-3_1 -lpng -lxxhash -lqhull_r -lmeshoptimizer -lvulkan \
             -lstdc++ -lm -pthread
 # Of the command alone.  Without libchafa `krs view --terminal` says so.
 CHAFA    := $(shell pkg-config --exists chafa && echo chafa)

@@ -152,6 +152,8 @@ static KrsStatus make_body(Meshing *meshing, MakeBody *make, Bodies *bodies)
     const char *path   = meshing->options->files.items[0];
     Body        body   = {.component = meshing->how.component};
     KrsStatus   status = make(meshing, &body);
+    if (status == KRS_OK)
+        status = simplify_body(meshing, &body);
     if (status != KRS_OK)
         progress_end(&meshing->progress);
     if (status == KRS_BAD_ARGUMENT)
@@ -168,6 +170,8 @@ static void drop_bodies(Bodies *bodies)
     for (size_t i = 0; i < bodies->count; i++) {
         krs_mesh_free(bodies->items[i].mesh);
         krs_assembly_free(bodies->items[i].assembly);
+        for (size_t k = 0; k < bodies->items[i].lod_count; k++)
+            krs_mesh_free(bodies->items[i].lods[k]);
     }
     bodies->count = 0;
 }
@@ -189,63 +193,6 @@ static KrsStatus make_bodies(Meshing *meshing, MakeBody *make, Bodies *bodies)
     return status;
 }
 
-/* ---- what is known of bodies ---- */
-
-typedef struct Summary {
-    double low[3], high[3];
-    double error, triangles, vertices, copies;
-    size_t unresolved;
-    double unresolved_at[3];
-    bool   estimate;
-} Summary;
-
-static void add_mesh(void *user, const KrsMesh *mesh, const KrsItem *item)
-{
-    Summary *all    = user;
-    double   copies = item ? item->copies : 1;
-    double   scale  = item ? sqrt(item->first_copy[0][0] * item->first_copy[0][0] +
-                                  item->first_copy[0][1] * item->first_copy[0][1] +
-                                  item->first_copy[0][2] * item->first_copy[0][2])
-                           : 1;
-    if (mesh->unresolved > 0 && all->unresolved == 0)
-        memcpy(all->unresolved_at, mesh->unresolved_at, sizeof all->unresolved_at);
-    all->unresolved += mesh->unresolved;
-    all->error    = fmax(all->error, scale * mesh->error);
-    all->estimate = all->estimate || mesh->estimate;
-    all->triangles += copies * (double)mesh->triangle_count;
-    all->vertices += copies * (double)mesh->vertex_count;
-    all->copies += copies;
-    for (size_t i = 0; !item && i < mesh->vertex_count; i++)
-        for (int k = 0; k < 3; k++) {
-            all->low[k]  = fmin(all->low[k], mesh->vertices[i][k]);
-            all->high[k] = fmax(all->high[k], mesh->vertices[i][k]);
-        }
-}
-
-static Summary summarize(const Bodies *bodies)
-{
-    Summary all = {.low  = {INFINITY, INFINITY, INFINITY},
-                   .high = {-INFINITY, -INFINITY, -INFINITY}};
-    for (size_t i = 0; i < bodies->count; i++) {
-        const KrsAssembly *assembly = bodies->items[i].assembly;
-        visit_meshes(&bodies->items[i], add_mesh, &all);
-        for (int k = 0; assembly && k < 3; k++) {
-            all.low[k]  = fmin(all.low[k], assembly->low[k]);
-            all.high[k] = fmax(all.high[k], assembly->high[k]);
-        }
-    }
-    return all;
-}
-
-static double longest_side(const Bodies *bodies)
-{
-    Summary all     = summarize(bodies);
-    double  longest = 0;
-    for (int k = 0; k < 3; k++)
-        longest = fmax(longest, all.high[k] - all.low[k]);
-    return longest;
-}
-
 /* ---- which meshes are made ---- */
 
 /* With --size: a coarse mesh tells how long the scene is, and so how much smaller the error is there.
@@ -255,17 +202,18 @@ static KrsStatus find_error(Meshing *meshing, MakeBody *make)
     const Options *options = meshing->options;
     double         longest = 0;
     Bodies         coarse  = {0};
-    meshing->how.error     = options->mesh_error;
+    meshing->how.error     = mesher_part(options) * options->mesh_error;
     find_end(meshing, &longest);
     if (options->mesh_error == 0 && longest > 0)
-        meshing->how.error = longest / 200;
+        meshing->how.error = mesher_part(options) * longest / 200;
     if (options->mesh_size == 0 || options->mesh_error == 0)
         return KRS_OK;
     meshing->how.error = 0;
     KrsStatus status   = make_bodies(meshing, make, &coarse);
     if (status == KRS_OK) {
         longest            = longest_side(&coarse) - 2 * summarize(&coarse).error;
-        meshing->how.error = options->mesh_error * longest / options->mesh_size;
+        meshing->how.error = mesher_part(options) * options->mesh_error * longest /
+                             options->mesh_size;
     }
     drop_bodies(&coarse);
     return status;
@@ -310,6 +258,15 @@ static KrsStatus check_merged(Meshing *meshing)
                      meshing->options->files.items[0], triangles);
 }
 
+/* Without copies what is assembled is what would be merged; as well where nothing has been assembled. */
+static bool has_copies(const Bodies *assembled)
+{
+    bool found = assembled->count == 0;
+    for (size_t i = 0; i < assembled->count; i++)
+        found = found || assembled->items[i].assembly;
+    return found;
+}
+
 static KrsStatus make_all(Meshing *meshing)
 {
     bool      assembled = is_any(meshing, false);
@@ -318,7 +275,7 @@ static KrsStatus make_all(Meshing *meshing)
         status = make_bodies(meshing, make_assembled, &meshing->assembled);
     if (status == KRS_OK)
         status = check_merged(meshing);
-    if (status == KRS_OK && is_any(meshing, true))
+    if (status == KRS_OK && is_any(meshing, true) && has_copies(&meshing->assembled))
         status = make_bodies(meshing, make_merged, &meshing->merged);
     return status;
 }
@@ -326,20 +283,20 @@ static KrsStatus make_all(Meshing *meshing)
 /* Those of a file. */
 static const Bodies *bodies_of(const Meshing *meshing, const MeshFormat *format)
 {
-    return copies_in(meshing->options, format) == COPIES_MERGED ? &meshing->merged
-                                                                : &meshing->assembled;
+    bool merged = copies_in(meshing->options, format) == COPIES_MERGED;
+    return merged && meshing->merged.count > 0 ? &meshing->merged : &meshing->assembled;
 }
 
 static KrsStatus find_meshes(Meshing *meshing)
 {
     const Options *options = meshing->options;
-    const Bodies  *bodies  = is_any(meshing, true) ? &meshing->merged : &meshing->assembled;
     stage_enter(STAGE_MESH);
     progress_start(&meshing->progress, options, 1);
     KrsStatus status = make_all(meshing);
     progress_end(&meshing->progress);
     if (status != KRS_OK)
         return status;
+    const Bodies *bodies = meshing->merged.count > 0 ? &meshing->merged : &meshing->assembled;
     if (summarize(bodies).triangles == 0) {
         say("there is nothing to write: `%s` has nothing solid%s that is thicker than the error",
             options->files.items[0], meshing->how.within ? " in this box" : "");
@@ -481,9 +438,9 @@ KrsStatus command_mesh(Options *options)
         status = find_meshes(&meshing);
     if (status == KRS_OK)
         status = write_meshes(&meshing);
-    if (status == KRS_OK && is_any(&meshing, false))
+    if (status == KRS_OK && (is_any(&meshing, false) || meshing.merged.count == 0))
         report(&meshing, &meshing.assembled);
-    if (status == KRS_OK && is_any(&meshing, true))
+    if (status == KRS_OK)
         report(&meshing, &meshing.merged);
     drop_bodies(&meshing.assembled);
     drop_bodies(&meshing.merged);

@@ -31,6 +31,7 @@ typedef struct MeshBody {
     const KrsAssembly *assembly;   /* where copies are; NULL: it is its only part */
     const size_t      *part_of;    /* the part of each item of the assembly that is a mesh */
     size_t             first_part; /* of it, in the order of items */
+    size_t             lod_count;  /* parts behind its only one, which show it in less detail */
 } MeshBody;
 
 /* Parts, one behind the other, and bodies that are made of them. */

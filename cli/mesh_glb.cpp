@@ -1,6 +1,7 @@
 // mesh_glb.cpp: the border to tinygltf.
 #include "cli/mesh_border.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <string>
@@ -230,6 +231,12 @@ int add_instances(tinygltf::Model &model, const std::vector<Pose> &poses, int me
     return end_accessor(model);
 }
 
+void use_extension(std::vector<std::string> &extensions, const char *name)
+{
+    if (std::find(extensions.begin(), extensions.end(), name) == extensions.end())
+        extensions.push_back(name);
+}
+
 // One node with all copies, by the extension EXT_mesh_gpu_instancing.
 void place_by_instances(tinygltf::Model &model, int mesh, const std::vector<Pose> &poses,
                         tinygltf::Node &body)
@@ -243,10 +250,8 @@ void place_by_instances(tinygltf::Model &model, int mesh, const std::vector<Pose
     content["attributes"]      = tinygltf::Value(attributes);
     node.mesh                  = mesh;
     node.extensions[extension] = tinygltf::Value(content);
-    if (model.extensionsRequired.empty()) {
-        model.extensionsRequired.push_back(extension);
-        model.extensionsUsed.push_back(extension);
-    }
+    use_extension(model.extensionsRequired, extension);
+    use_extension(model.extensionsUsed, extension);
     body.children.push_back(add_node(model, node));
 }
 
@@ -273,6 +278,29 @@ void add_copies(tinygltf::Model &model, const MeshParts *parts, const MeshBody &
         }
 }
 
+// A node for each further level of detail, which the extension MSFT_lod names.  No scene has them: a
+// program without it shows the first level.
+void add_lods(tinygltf::Model &model, const MeshParts *parts, const MeshBody &body,
+              tinygltf::Node &node)
+{
+    tinygltf::Value::Array  ids, coverages;
+    tinygltf::Value::Object content, extras;
+    double                  coverage = 0.5;
+    for (size_t i = 1; i <= body.lod_count; i++, coverage /= 4) {
+        tinygltf::Node level;
+        level.name = body.name;
+        level.mesh = add_mesh(model, parts, parts->parts[body.first_part + i], false, body.name);
+        ids.push_back(tinygltf::Value(add_node(model, level)));
+        coverages.push_back(tinygltf::Value(coverage));
+    }
+    coverages.push_back(tinygltf::Value(0.0));
+    content["ids"]                = tinygltf::Value(ids);
+    extras["MSFT_screencoverage"] = tinygltf::Value(coverages);
+    node.extensions["MSFT_lod"]   = tinygltf::Value(content);
+    node.extras                   = tinygltf::Value(extras);
+    use_extension(model.extensionsUsed, "MSFT_lod");
+}
+
 void add_body(tinygltf::Model &model, const MeshParts *parts, const MeshBody &body)
 {
     tinygltf::Node node;
@@ -281,6 +309,8 @@ void add_body(tinygltf::Model &model, const MeshParts *parts, const MeshBody &bo
         add_copies(model, parts, body, node);
     else
         node.mesh = add_mesh(model, parts, parts->parts[body.first_part], false, body.name);
+    if (body.lod_count > 0)
+        add_lods(model, parts, body, node);
     model.scenes[0].nodes.push_back(add_node(model, node));
 }
 

@@ -79,8 +79,11 @@ static void join_body(const Meshing *meshing, const Body *body, Joined *joined)
     for (size_t i = 0; i < items; i++)
         part_of[i] = body->assembly->items[i].mesh ? part++ : 0;
     joined->bodies[joined->parts.body_count++] = (MeshBody){
-        body_name(meshing, body), body->assembly, part_of, joined->parts.part_count};
+        body_name(meshing, body), body->assembly, part_of, joined->parts.part_count,
+        body->lod_count};
     visit_meshes(body, join_mesh, joined);
+    for (size_t i = 0; i < body->lod_count; i++)
+        join_mesh(joined, body->lods[i], NULL);
 }
 
 static bool has_triangles(const Body *body)
@@ -88,11 +91,18 @@ static bool has_triangles(const Body *body)
     return body->assembly ? body->assembly->triangles > 0 : body->mesh->triangle_count > 0;
 }
 
+static void count_body(const Body *body, Joined *joined)
+{
+    visit_meshes(body, count_mesh, joined);
+    for (size_t i = 0; i < body->lod_count; i++)
+        count_mesh(joined, body->lods[i], NULL);
+}
+
 static void join_bodies(const Meshing *meshing, const Bodies *bodies, Joined *joined)
 {
     Arena *arena = meshing->options->arena;
     for (size_t i = 0; i < bodies->count; i++)
-        visit_meshes(&bodies->items[i], count_mesh, joined);
+        count_body(&bodies->items[i], joined);
     joined->vertices       = arena_alloc(arena, joined->vertex_count, sizeof *joined->vertices);
     joined->places         = arena_alloc(arena, joined->vertex_count, sizeof *joined->places);
     joined->triangles      = arena_alloc(arena, joined->triangle_count, sizeof *joined->triangles);

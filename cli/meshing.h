@@ -21,13 +21,24 @@ enum { SPLIT_NONE, SPLIT_COMPONENTS, SPLIT_MATERIALS };
 typedef struct Body {
     KrsMesh     *mesh;
     KrsAssembly *assembly;
-    size_t       component; /* from 1; 0: all that is shown */
+    size_t       component;       /* from 1; 0: all that is shown */
+    KrsMesh     *lods[MOST_LODS]; /* levels of detail of the mesh, each coarser */
+    size_t       lod_count;
 } Body;
 
 typedef struct Bodies {
     Body  *items;
     size_t count, capacity;
 } Bodies;
+
+/* What is known of bodies. */
+typedef struct Summary {
+    double low[3], high[3];
+    double error, triangles, vertices, copies;
+    size_t unresolved;
+    double unresolved_at[3];
+    bool   estimate;
+} Summary;
 
 typedef struct Meshing {
     const Options  *options;
@@ -39,12 +50,21 @@ typedef struct Meshing {
     Bodies          merged, assembled; /* each is made if some file is of it */
 } Meshing;
 
+/* mesh_summary.c: of all bodies; lengths are those of the scene. */
+Summary summarize(const Bodies *bodies);
+double  longest_side(const Bodies *bodies);
+
 /* mesh_parts.c: what files have of bodies. */
 void find_parts(const Meshing *meshing, const Bodies *bodies, MeshParts *parts);
 /* The same without copies: a part has all triangles of a body. */
 void flatten_parts(const Meshing *meshing, MeshParts *parts);
 /* What a length of 1 is in the file. */
 void set_units(const Meshing *meshing, const MeshFormat *format, MeshParts *parts);
+
+/* mesh_simplify.c: leaves out triangles of a body, and makes its levels of detail, as options ask for. */
+KrsStatus simplify_body(const Meshing *meshing, Body *body);
+/* The part of the error that is the mesher's. */
+double mesher_part(const Options *options);
 
 /* Calls `visit` for each mesh of a body. */
 typedef void VisitMesh(void *user, const KrsMesh *mesh, const KrsItem *item);

@@ -15,6 +15,7 @@
 
 enum {
     MANY_FILES      = -1,  /* a command that takes one or more files */
+    MOST_LODS       = 8,   /* of --lods */
     OPTION_TEXT     = 256, /* bytes of what is said about an option, at most */
     DEVICE_PATIENCE = 5    /* deadlines that one step of a device may take */
 };

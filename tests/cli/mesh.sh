@@ -1,7 +1,7 @@
 #!/bin/sh
 # mesh.sh: `krs mesh`: files that other programs accept, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 19
+plan 23
 
 echo 'show sphere(0.5).paint(#ff8800);' >ball.krs
 echo 'let floor = half_space([0, 1, 0], 0); show floor; let ball = sphere(1); show ball;' >floor.krs
@@ -107,3 +107,21 @@ run mesh two.krs --split components -o s.stl
 said 2 "has no parts" "STL has none"
 run mesh two.krs --units furlong -o s.3mf
 ended 2 "units are known"
+run mesh --quiet two.krs --error 0.05 --simplify -o fewer.stl -o fewer.obj
+[ "$status" -eq 0 ] && [ "$(grep -c '^f' fewer.obj)" -lt $((triangles / 2)) ]
+result $? "--simplify halves the triangles"
+if command -v admesh >/dev/null; then
+    admesh fewer.stl >out 2>&1
+    grep -q 'Number of parts *: *2 ' out && grep -q 'Total disconnected facets *: *0 ' out &&
+        grep -q 'Degenerate facets *: *0' out
+    result $? "and they are closed"
+else
+    skip "and they are closed" "no admesh"
+fi
+# A ball of radius 0.5 at the origin: no vertex is farther than the error from it or from the stand.
+awk '$1 == "v" && $3 > -0.7 { r = sqrt($2^2 + $3^2 + $4^2); if (r < 0.45 || r > 0.55) bad = 1 }
+     $1 == "v" && $3 < -0.7 && ($3 < -1.2 || $3 > -0.8 || $2 < -0.55 || $2 > 0.55) { bad = 1 } END { exit bad }' fewer.obj
+result $? "within the error"
+run mesh --quiet two.krs --error 0.05 --lods 2 -o lods.glb
+[ "$status" -eq 0 ] && grep -a -q '"MSFT_lod":{"ids":\[[0-9]*,[0-9]*\]}' lods.glb
+result $? "GLB has levels of detail"

@@ -338,6 +338,31 @@ static void components_and_empty_scenes(void **context)
     scene_close(s);
 }
 
+/* Dense points of both are near to the other, by nearest points of all triangles. */
+static void simplified_meshes_are_near(void **context)
+{
+    (void)context;
+    static const char *const texts[] = {
+        "show torus(major: 0.5, minor: 0.2);", "show box([1, 0.6, 1]).round(0.1);",
+        "show difference(box([1, 1, 1]), sphere(0.3).move([0.5, 0, 0]));"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        Scene    s    = scene_of(texts[i]);
+        KrsMesh *mesh = mesh_of(s, 0.04), *few;
+        assert_int_equal(krs_mesh_simplify(mesh, 0.04, &few), KRS_OK);
+        assert_true(2 * few->triangle_count < mesh->triangle_count);
+        assert_true(fabs(few->error - 0.08) < 1e-12);
+        assert_int_equal(euler_number(few), euler_number(mesh));
+        check_closed(few);
+        check_crossings(few);
+        check_hits(s, few, 1.2);
+        check_triangles(s, few);
+        krs_mesh_free(few);
+        assert_int_equal(krs_mesh_simplify(mesh, 0, &few), KRS_BAD_ARGUMENT);
+        krs_mesh_free(mesh);
+        scene_close(s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -348,6 +373,7 @@ int main(void)
         cmocka_unit_test(thin_walls_are_found_or_reported),
         cmocka_unit_test(what_cannot_be_meshed_is_refused),
         cmocka_unit_test(components_and_empty_scenes),
+        cmocka_unit_test(simplified_meshes_are_near),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,103 @@
+/*
+ * krs_mesh.h: the part of krs.h that is about meshes; it is included there.
+ */
+#ifndef KRS_MESH_H
+#define KRS_MESH_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * Meshes: triangles near the surface.
+ *
+ * The mesh is closed, each edge is in two triangles with opposite directions, and no two triangles
+ * cross.  Triangles are counter-clockwise seen from outside.  Edges and corners of the surface are kept.
+ */
+typedef struct KrsMeshOptions {
+    double error; /* largest distance between mesh and surface; 0: a 200th of the longest side of
+                            the box */
+    size_t component; /* from 1; 0: all */
+    bool   within;    /* only what is in the box from `low` to `high`, for scenes without an end */
+    double low[3], high[3];
+    size_t memory_limit; /* bytes; 0: 2 GiB */
+    /* Told now and then which part of the work is done, as far as one can say; false: stop, with
+       KRS_INTERRUPTED.  May be NULL. */
+    bool (*go_on)(void *user, double fraction);
+    void *user;
+} KrsMeshOptions;
+
+typedef struct KrsMesh {
+    double (*vertices)[3];
+    size_t vertex_count;
+    uint32_t (*triangles)[3];
+    size_t triangle_count;
+    double
+        error; /* largest distance, of a point of either from the nearest of the other, as far as it is
+                     proven */
+    /* Places where the surface may be farther from the mesh than that: what is thinner than the error,
+       or solids that touch.  The first of them is at `unresolved_at`.  Voids that are thinner than
+       it and nowhere longer than twice of it are closed. */
+    size_t unresolved;
+    double unresolved_at[3];
+    bool   estimate; /* of a component nothing is proven, as of its distance */
+} KrsMesh;
+
+/*
+ * Makes a mesh of what a frame shows.  What is thicker than the error everywhere is never missed.
+ * On KRS_OK the caller frees *mesh with krs_mesh_free; it may have no triangles.  KRS_BAD_ARGUMENT:
+ * there is no such component; what is meshed has no end, or is no solid (surfaces without
+ * thickness); or the error is below a 500,000th of the size.
+ */
+KrsStatus krs_mesh(KrsFrame *frame, const KrsMeshOptions *options, KrsMesh **mesh);
+void      krs_mesh_free(KrsMesh *mesh);
+
+/*
+ * Leaves out triangles that are not needed for the mesh to stay within `error` of what it was, in both
+ * directions.  That is proven, and so is that the mesh is still closed and does not cross itself; where
+ * it cannot be, fewer are left out, or none.  mesh->error grows by `error`.  *simplified is a mesh of its own.
+ */
+KrsStatus krs_mesh_simplify(const KrsMesh *mesh, double error, KrsMesh **simplified);
+
+/* How an item is placed: x -> matrix (x, 1), which turns, moves, mirrors and scales evenly. */
+typedef struct KrsPlacing {
+    size_t item;
+    double matrix[3][4];
+} KrsPlacing;
+
+/* A mesh, or placings of items before it. */
+typedef struct KrsItem {
+    KrsMesh *mesh;             /* NULL: it has placings, */
+    size_t   first, count;     /* these of the assembly's */
+    double   copies;           /* number of its copies in all that is shown; 0: not used */
+    double   first_copy[3][4]; /* of a mesh: where one of them is */
+} KrsItem;
+
+/* What a frame shows, as meshes and their copies; the last item is all of it. */
+typedef struct KrsAssembly {
+    KrsItem    *items;
+    KrsPlacing *placings;
+    size_t      item_count, placing_count;
+    double      low[3], high[3];   /* a box around all vertices of all copies */
+    double      copies, triangles; /* of meshes, and of those copies */
+} KrsAssembly;
+
+/*
+ * As krs_mesh, with a mesh for each kernel of sequences and the places of its copies, and one for all else.
+ * The error is that of copies; 0: a 200th of the longest side of each kernel's box.  Where kernels overlap,
+ * so do meshes.  *assembly may be NULL on KRS_OK: there is no sequence that can be taken apart.  None can with
+ * zones or `within`; one whose mirrors cut anything, or may, or that inverts, cannot.  The scene must have been
+ * compiled with KrsOptions.assembly.
+ */
+KrsStatus krs_assemble(KrsFrame *frame, const KrsMeshOptions *options, KrsAssembly **assembly);
+void      krs_assembly_free(KrsAssembly *assembly);
+/* Calls `visit` for each copy of each mesh, one behind the other, until it returns false; then that is
+   returned. */
+typedef bool KrsVisitCopy(void *user, const KrsItem *item, const double matrix[3][4]);
+bool         krs_assembly_visit(const KrsAssembly *assembly, KrsVisitCopy *visit, void *user);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,28 @@
+/*
+ * crossing.h: whether triangles are a closed surface that does not cross itself.
+ */
+#ifndef KRS_MESH_CROSSING_H
+#define KRS_MESH_CROSSING_H
+
+#include "compiler/mesh/bvh.h"
+
+/* A directed edge, from the upper half of `ends` to the lower, and its triangle. */
+typedef struct TriangleEdge {
+    uint64_t ends;
+    uint32_t triangle;
+} TriangleEdge;
+
+/* All edges, in order of their ends. */
+TriangleEdge       *sort_edges(const uint32_t (*triangles)[3], size_t count, Arena *arena);
+const TriangleEdge *find_edge(const TriangleEdge *edges, size_t count, uint32_t from, uint32_t to);
+
+typedef void ReportTriangle(void *user, uint32_t triangle);
+
+/* Reports triangles with an edge that is not in two triangles with opposite directions. */
+void report_open(const uint32_t (*triangles)[3], size_t count, ReportTriangle *report, void *user,
+                 Arena *arena);
+/* Reports triangles that have points in common but corners and edges that both have; as well where
+   rounding does not tell. */
+void report_crossing(const Bvh *bvh, ReportTriangle *report, void *user);
+
+#endif
