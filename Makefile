@@ -77,10 +77,11 @@ MODULES  := $(MODULES:runtime/shaders/%=$(B)/modules/%.spv)
 EXAMPLES := $(sort $(wildcard examples/*.krs))
 
 STYLE    := -std=c17 -D_GNU_SOURCE -Wall -Wextra -Wpedantic -Wshadow -Werror -I. -MMD -MP -pthread
+# What the compiler needs but for glslang, which the fuzzers leave out.
+FRONT_LIBS := -lharfbuzz -lfreetype -lfontconfig -lexpat -lOpenEXRCore-3_1 -lpng -lqhull_r -lmeshoptimizer
 LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLCompiler -lSPIRV \
             -lSPVRemapper -lglslang-default-resource-limits -lSPIRV-Tools-opt -lSPIRV-Tools \
-            -lharfbuzz -lfreetype -lfontconfig -lexpat -lOpenEXRCore-3_1 -lpng -lxxhash -lqhull_r -lmeshoptimizer -lvulkan \
-            -lstdc++ -lm -pthread
+            $(FRONT_LIBS) -lxxhash -lvulkan -lstdc++ -lm -pthread
 # Of the command alone.  Without libchafa `krs view --terminal` says so.
 CHAFA    := $(shell pkg-config --exists chafa && echo chafa)
 WINDOW_LIBS := $(if $(CHAFA),$(shell pkg-config --libs chafa)) -limgui -lstb -lglfw -lGL -lX11

@@ -116,7 +116,7 @@ fuzz-programs: $(HARNESSES:%=$(B)/tests/fuzz/%)
 $(HARNESSES:%=$(B)/tests/fuzz/%): $(B)/tests/fuzz/%: $(B)/tests/fuzz/%.o \
                                     $(FUZZED:%.c=$(B)/%.o) $(B)/library_files.o \
                                     $(B)/helper_files.o
-	@$(CC) $(CFLAGS) -fsanitize=fuzzer -o $@ $^ -lOpenEXRCore-3_1 -lpng -lharfbuzz -lfreetype -lfontconfig -lexpat -lqhull_r -lm
+	@$(CC) $(CFLAGS) -fsanitize=fuzzer -o $@ $^ $(FRONT_LIBS) -lstdc++ -lm
 fuzzers:
 	@$(MAKE) --no-print-directory fuzz-programs B=$(B)/fuzz CC=$(CLANG) \
 	    CFLAGS='-g -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined'
