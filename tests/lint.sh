@@ -56,6 +56,14 @@ for script in tools/*.sh tests/*.sh tests/*/*.sh .ci/run; do
     shellcheck -x -P SCRIPTDIR "$script"
     report "$script passes shellcheck" $?
 done
+# What has an interpreter is run by its name.
+not_run=$(git grep -lI '^#!' -- '*.sh' '*.py' .ci | while read -r script; do
+    head -n 1 "$script" | grep -q '^#!' && [ ! -x "$script" ] && echo "$script"
+done)
+[ -z "$not_run" ]
+status=$?
+[ $status -eq 0 ] || echo "$not_run" | sed 's/^/# cannot be run: /'
+report "scripts can be run" $status
 formatted=$(find bench cli compiler examples live runtime tests -name '*.[ch]' -o -name '*.cpp')
 # shellcheck disable=SC2086 # the list is words
 clang-format-14 --dry-run --Werror $formatted

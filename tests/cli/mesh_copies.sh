@@ -29,16 +29,11 @@ grep -q '8 copies' err
 result $? "and the number of copies is told"
 run mesh --quiet bush.krs --error 0.02 --units m --copies flat -o f.glb -o f.3mf -o f.stl -o f.obj -o f.ply
 ended 0 "and files with the triangles of each"
-if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
-    /usr/bin/python3 "$triangles" a.glb a.3mf f.glb f.3mf f.stl >out 2>err
-    result $? "which have the same triangles"
-    # 8 tori of radii 0.15 and 0.05 have 8 * 2 pi^2 * 0.15 * 0.05^2 = 0.0592.
-    awk '{ exit !($2 > 0.050 && $2 < 0.0592) }' out
-    result $? "and the volume of what is shown"
-else
-    skip "which have the same triangles" "no numpy"
-    skip "and the volume of what is shown" "no numpy"
-fi
+/usr/bin/python3 "$triangles" a.glb a.3mf f.glb f.3mf f.stl >out 2>err
+result $? "which have the same triangles"
+# 8 tori of radii 0.15 and 0.05 have 8 * 2 pi^2 * 0.15 * 0.05^2 = 0.0592.
+awk '{ exit !($2 > 0.050 && $2 < 0.0592) }' out
+result $? "and the volume of what is shown"
 [ "$(wc -c <a.3mf)" -lt "$(($(wc -c <f.3mf) / 3))" ] && [ "$(wc -c <a.glb)" -lt "$(($(wc -c <f.glb) / 3))" ]
 result $? "but instances take less space"
 if command -v assimp >/dev/null; then
