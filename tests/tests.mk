@@ -98,7 +98,7 @@ $(B)/tests/unit/writer $(B)/tests/unit/image_files: $(B)/tests/unit/file_faults.
 golden: all $(B)/tests/golden/pictures
 	@B=$(B) tests/golden/pictures.sh
 
-test-programs: $(PROGRAMS:%=$(B)/%) $(DRIVERS:%=$(B)/%)
+test-programs: $(PLAIN:%=$(B)/%) $(DRIVERS:%=$(B)/%)
 sanitized-programs: $(SANITIZED:%=$(B)/%) $(B)/krs
 sanitize:
 	@$(MAKE) --no-print-directory sanitized-programs B=$(B)/asan \
@@ -131,7 +131,7 @@ bless: $(B)/krs
 	@tests/errors.sh --bless
 
 test: deps
-	@$(MAKE) --no-print-directory -j$(JOBS) all $(PLAIN:%=$(B)/%) $(DRIVERS:%=$(B)/%) clang-check fuzzers
+	@$(MAKE) --no-print-directory -j$(JOBS) all test-programs clang-check fuzzers
 	@$(MAKE) --no-print-directory -j$(JOBS) sanitize
 	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=480 \
 	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") \
