@@ -64,6 +64,14 @@ done)
 status=$?
 [ $status -eq 0 ] || echo "$not_run" | sed 's/^/# cannot be run: /'
 report "scripts can be run" $status
+# Every program of a test is in a list of tests.mk.
+listed=$(make -s list-programs | tr ' ' '\n')
+unlisted=$(grep -lE '^int main' tests/*/*.c | sed 's/\.c$//' | grep -vE '^tests/(cli|golden)/|_fuzz$' |
+    grep -vxF "$listed")
+[ -n "$listed" ] && [ -z "$unlisted" ]
+status=$?
+[ $status -eq 0 ] || echo "$unlisted" | sed 's/^/# no list has it: /'
+report "every program of a test is run" $status
 formatted=$(find bench cli compiler examples live runtime tests -name '*.[ch]' -o -name '*.cpp')
 # shellcheck disable=SC2086 # the list is words
 clang-format-14 --dry-run --Werror $formatted
