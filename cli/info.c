@@ -17,7 +17,7 @@ static void print_vector(const double *values, size_t count)
 }
 
 /* Of the bounds of one component, and of the components of one loop; JSON has all. */
-enum { MOST_LINES = 48, MOST_TURNS = 50 };
+enum { MOST_LINES = 48, MOST_ALIKE = 50 };
 
 static bool is_box(const KrsBound *bound)
 {
@@ -109,21 +109,22 @@ static void print_parameter(const KrsParameter *parameter)
     putchar('\n');
 }
 
-/* Of one `show` in a loop the first ones. */
+/* Of many that are alike the first ones. */
 static void print_components(const KrsScene *scene)
 {
-    size_t end;
-    for (size_t i = 0; i < krs_component_count(scene); i = end) {
-        end         = krs_turns_end(scene, i);
-        size_t last = end - i > MOST_TURNS ? i + MOST_TURNS : end;
-        for (; i < last; i++) {
-            KrsComponent component;
-            krs_component(scene, i, &component);
-            print_component(&component, i + 1);
-            print_bounds(scene, i);
+    const size_t count = krs_component_count(scene);
+    for (size_t i = 0, end; i < count; i = end) {
+        for (end = i; end < count && krs_joined_rank(scene, end) >= MOST_ALIKE;)
+            end++;
+        if (end > i) {
+            printf("components %zu to %zu: %zu more that are alike\n", i + 1, end, end - i);
+            continue;
         }
-        if (last < end)
-            printf("components %zu to %zu: %zu more of this loop\n", last + 1, end, end - last);
+        KrsComponent component;
+        krs_component(scene, i, &component);
+        print_component(&component, i + 1);
+        print_bounds(scene, i);
+        end = i + 1;
     }
 }
 

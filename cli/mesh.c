@@ -176,15 +176,16 @@ static void drop_bodies(Bodies *bodies)
     bodies->count = 0;
 }
 
-/* One of all, or one for each component; turns of a loop may be one. */
+/* One of all, or one for each component; many that are alike may be one. */
 static KrsStatus make_bodies(Meshing *meshing, MakeBody *make, Bodies *bodies)
 {
     size_t    asked  = meshing->how.component;
     bool      split  = meshing->options->mesh_split == SPLIT_COMPONENTS && asked == 0;
     size_t    count  = split ? krs_component_count(meshing->scene) : 1;
     KrsStatus status = KRS_OK;
-    for (size_t i = 0; i < count && status == KRS_OK;
-         i        = split ? krs_turns_end(meshing->scene, i) : i + 1) {
+    for (size_t i = 0; i < count && status == KRS_OK; i++) {
+        if (split && krs_joined_rank(meshing->scene, i) > 0)
+            continue;
         if (split)
             meshing->how.component = i + 1;
         status = make_body(meshing, make, bodies);

@@ -124,9 +124,9 @@ size_t krs_promised_functions(const KrsScene *scene, bool many_threads,
 bool krs_scene_is_panoramic(const KrsScene *scene);
 /* Whether a camera of the scene may have an aperture or a shift. */
 bool krs_scene_has_lens(const KrsScene *scene);
-/* The index behind the last of the components that one `show` of a loop shows, from this one on; the
-   next index where they are not one component of the shaders. */
-size_t krs_turns_end(const KrsScene *scene, size_t component);
+/* How many components before this one are one component of the shaders with it, as many that are alike
+   are; 0 where it is the first, or alone. */
+size_t krs_joined_rank(const KrsScene *scene, size_t component);
 /* The number of zones that the scene declares. */
 size_t krs_zone_count(const KrsScene *scene);
 /* Camera `camera`, lights, sky and image at the frame's parameters and time. */

@@ -60,8 +60,8 @@ static void add_component(Compilation *c, Parts *parts, size_t number)
     Tape *tape = arena_new(&scene->arena, Tape);
     *tape      = tape_new(scene->graph, nodes, 2, &scene->arena);
     part.tape  = tape;
-    for (size_t i = 0; i < component->count; i++)
-        add_parts(c, parts, part, c->elaborated.shown.items[component->first + i].shape);
+    for (size_t i = component->first; i != NO_COMPONENT; i = c->elaborated.shown.items[i].next)
+        add_parts(c, parts, part, c->elaborated.shown.items[i].shape);
 }
 
 /* ---- their order ---- */

@@ -319,7 +319,7 @@ typedef struct KrsComponent {
     double      instances;       /* number of kernels with all their copies */
     uint32_t    inversions;      /* maps that invert, in its outermost sequence or `.transform` */
     double      flops;           /* multiply-adds to evaluate its distance at a point; its share
-                                    where many turns of a loop are evaluated together */
+                                    where many that are alike are evaluated together */
 } KrsComponent;
 
 size_t krs_component_count(const KrsScene *scene);

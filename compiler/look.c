@@ -147,15 +147,6 @@ static void warn_of_unseen(Compilation *c, const Pyramid *pyramids, size_t count
     }
 }
 
-static const Component *component_of(const Scene *scene, size_t shown)
-{
-    size_t i = 0;
-    while (i + 1 < scene->components.count &&
-           shown >= scene->components.items[i].first + scene->components.items[i].count)
-        i++;
-    return &scene->components.items[i];
-}
-
 static void warn_of_inside(Compilation *c, KrsFrame *frame)
 {
     for (size_t i = 0; i < c->elaborated.cameras.count; i++) {
@@ -168,7 +159,7 @@ static void warn_of_inside(Compilation *c, KrsFrame *frame)
             krs_distance(frame, eye, 1, &distance) != KRS_OK || !(distance < 0) ||
             krs_probe(frame, eye, 1, &hit) != KRS_OK || hit.component == 0)
             continue;
-        const Component *around = component_of(&c->elaborated, hit.component - 1);
+        const Component *around = &c->elaborated.shown.items[hit.component - 1];
         Diag            *diag   = diag_add(&c->diags, DIAG_CAMERA_INSIDE, camera->span,
                                            "the camera is inside of `%s`", around->name);
         diag->label             = camera_moves(c->elaborated.graph, camera)

@@ -36,7 +36,7 @@ size_t      krs_table_rows(const KrsScene *scene) { return scene->program.table_
 size_t      krs_table_cells(const KrsScene *scene) { return scene->program.table_cells; }
 size_t      krs_frame_slope_count(const KrsScene *scene) { return scene->slope_count; }
 size_t      krs_component_count(const KrsScene *scene) { return scene->shown_count; }
-size_t      krs_turns_end(const KrsScene *scene, size_t index) { return scene->turns_end[index]; }
+size_t      krs_joined_rank(const KrsScene *scene, size_t index) { return scene->rank[index]; }
 
 const char *krs_material_name(const KrsScene *scene, size_t number)
 {

@@ -146,7 +146,8 @@ struct KrsScene {
     size_t           component_count, shown_count, camera_count, light_count;
     size_t           zone_count; /* zones that the scene declares; they share one root */
     KrsComponent    *components; /* all that are shown */
-    size_t          *turns_end;  /* of each of these: krs_turns_end */
+    size_t          *lowered;    /* of each of these: its index among those that are lowered, */
+    size_t          *rank;       /* and krs_joined_rank */
     KrsBounds       *bounds;     /* of each component */
     Assembly         assembly;   /* nothing unless the options ask for it */
     RetainedSlope   *slopes;     /* slopes that are computed per frame */

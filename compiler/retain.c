@@ -43,15 +43,15 @@ static void retain_components(Compilation *c)
     }
 }
 
-static void retain_turns(Compilation *c)
+static void retain_lowered(Compilation *c)
 {
-    const Scene *s      = &c->elaborated;
-    c->scene->turns_end = arena_new_array(&c->scene->arena, size_t, s->shown.count + 1);
-    for (size_t i = 0; i < s->components.count; i++) {
-        const Component *component = &s->components.items[i];
-        size_t           end       = component->first + component->count;
-        for (size_t k = component->first; k < end; k++)
-            c->scene->turns_end[k] = end;
+    KrsScene    *scene = c->scene;
+    const Scene *s     = &c->elaborated;
+    scene->lowered     = arena_new_array(&scene->arena, size_t, s->shown.count + 1);
+    scene->rank        = arena_new_array(&scene->arena, size_t, s->shown.count + 1);
+    for (size_t i = 0; i < s->shown.count; i++) {
+        scene->lowered[i] = s->shown.items[i].lowered;
+        scene->rank[i]    = s->shown.items[i].rank;
     }
 }
 
@@ -115,7 +115,7 @@ static void retain_scene(Compilation *c)
     const Scene *s     = &c->elaborated;
     Arena       *arena = &scene->arena;
     retain_components(c);
-    retain_turns(c);
+    retain_lowered(c);
     retain_slopes(c);
     retain_parameters(c);
     scene->camera_count  = s->cameras.count;

@@ -126,7 +126,7 @@ static bool has_cuts(Assembler *a, size_t number, char *asked)
 static bool is_wanted(const Assembler *a, size_t lowered)
 {
     return a->options->component == 0 ||
-           lowered_component(a->frame->scene, a->options->component - 1) == lowered;
+           a->frame->scene->lowered[a->options->component - 1] == lowered;
 }
 
 /* False: none is. */

@@ -408,7 +408,7 @@ KrsStatus krs_mesh(KrsFrame *frame, const KrsMeshOptions *options, KrsMesh **mes
         status = KRS_BAD_ARGUMENT;
     else if (solid.roots && (wanted || !number)) {
         if (wanted)
-            wanted[lowered_component(scene, number - 1)] = true;
+            wanted[scene->lowered[number - 1]] = true;
         solid_of_components(scene, wanted, &solid);
         status = mesh_solid(frame, options ? options : &no_options, &solid, mesh);
     }

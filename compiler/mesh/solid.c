@@ -1,14 +1,6 @@
 /* solid.c: components as one solid. */
 #include "compiler/mesh/solid.h"
 
-size_t lowered_component(const KrsScene *scene, size_t shown)
-{
-    size_t lowered = 0;
-    for (size_t i = 0; i < shown && scene->turns_end[i] <= shown; i = scene->turns_end[i])
-        lowered++;
-    return lowered;
-}
-
 size_t solid_root_bytes(const KrsScene *scene)
 {
     return (scene->component_count + 2) * sizeof(Node);
@@ -19,18 +11,18 @@ void solid_of_components(const KrsScene *scene, const bool *wanted, MeshSolid *s
     Node zone   = zone_root(scene);
     solid->tape = &scene->distance;
     solid->box  = box_empty;
-    for (size_t i = 0, lowered = 0; i < scene->shown_count; i = scene->turns_end[i], lowered++) {
-        if (wanted && !wanted[lowered])
+    for (size_t i = 0; i < scene->component_count; i++)
+        if (!wanted || wanted[i])
+            solid->roots[solid->root_count++] = distance_root(&scene->roots, i);
+    for (size_t i = 0; i < scene->shown_count; i++) {
+        const KrsComponent *component = &scene->components[i];
+        Box                 box;
+        if (wanted && !wanted[scene->lowered[i]])
             continue;
-        solid->roots[solid->root_count++] = distance_root(&scene->roots, lowered);
-        for (size_t turn = i; turn < scene->turns_end[i]; turn++) {
-            const KrsComponent *component = &scene->components[turn];
-            Box                 box;
-            for (int k = 0; k < 3; k++)
-                box.axis[k] = (Range){component->low[k], component->high[k]};
-            solid->box      = box_hull(solid->box, box);
-            solid->estimate = solid->estimate || component->estimate;
-        }
+        for (int k = 0; k < 3; k++)
+            box.axis[k] = (Range){component->low[k], component->high[k]};
+        solid->box      = box_hull(solid->box, box);
+        solid->estimate = solid->estimate || component->estimate;
     }
     solid->roots[solid->root_count] = zone;
     solid->zoned                    = zone != NODE_NONE;

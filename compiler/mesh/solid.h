@@ -15,8 +15,6 @@ typedef struct MeshSolid {
     bool        estimate;
 } MeshSolid;
 
-/* The index among the components that are lowered of one that is shown; turns of a loop may be one. */
-size_t lowered_component(const KrsScene *scene, size_t shown);
 /* All components, or those that are `wanted`, by their index among the lowered. */
 void solid_of_components(const KrsScene *scene, const bool *wanted, MeshSolid *solid);
 /* Bytes of `roots` that is enough. */

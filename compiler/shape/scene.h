@@ -8,10 +8,15 @@
 #include "compiler/shape/shape.h"
 #include "compiler/shape/sky_map.h"
 
-/* What a `show` shows, or shows all in all where it stands in a loop. */
+#define NO_COMPONENT SIZE_MAX
+
+/* What a `show` shows; or, where many are alike, all that are lowered as one. */
 typedef struct Component {
-    const char  *name;
-    size_t       first, count; /* its part of Scene.shown */
+    const char *name;
+    size_t      first, count; /* of those in Scene.shown that it has: the first, and how many */
+    /* In Scene.shown: its index in Scene.components; how many before it are lowered with it; and the
+       index of the next that is, or NO_COMPONENT. */
+    size_t       lowered, rank, next;
     const Shape *shape;
     Span         span;
     Node         plane_normal, plane_offset; /* of a half-space and nothing else, or NODE_NONE */
@@ -68,7 +73,8 @@ typedef struct Scene {
     struct {
         Component *items;
         size_t     count, capacity;
-    } components, shown; /* what is lowered; what has a number for the user: more in loops */
+    } components,
+        shown; /* what is lowered; what has a number for the user: more, where many are alike */
     Parameters  parameters;
     FrameSlopes slopes;
     /* Declared half-spaces, which may be in no component: mirrors. */

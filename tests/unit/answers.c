@@ -11,6 +11,7 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "compiler/compiled.h"
 #include "tests/unit/tracer_stage.h"
 
 /* ---- The rows ---- */
@@ -234,6 +235,52 @@ static void turns_of_a_loop_are_components(void **state)
     stage_close(&stage);
 }
 
+/* Balls and boxes in turn, as a loop shows them and one by one, with another shape between them: each is a
+   component of its own, and both kinds are tables of the shaders. */
+static void alike_components_are_components(void **state)
+{
+    enum { PAIRS = 100, BEFORE = 37, ALL = 2 * PAIRS + 1 };
+    static double places[ALL][3];
+    static KrsHit hits[2][ALL];
+    static char   texts[2][32768];
+    (void)state;
+    for (int i = 0; i < ALL; i++)
+        places[i][0] = 3 * i;
+    snprintf(texts[0], sizeof texts[0],
+             "for i in 0..100 { show sphere(1).move([6 * i, 0, 0]);"
+             "  show box([2, 2, 2]).move([6 * i + 3, 0, 0]); }"
+             "let last = torus(2, 0.5).move([602, 0, 0]); show last;");
+    for (int i = 0, used = 0; i < PAIRS; i++) {
+        if (i == BEFORE)
+            used += snprintf(texts[1] + used, sizeof texts[1] - (size_t)used,
+                             "let last = torus(2, 0.5).move([602, 0, 0]); show last;");
+        used += snprintf(texts[1] + used, sizeof texts[1] - (size_t)used,
+                         "show sphere(1).move([%d, 0, 0]); show box([2, 2, 2]).move([%d, 0, 0]);",
+                         6 * i, 6 * i + 3);
+    }
+    for (int each = 0; each < 2; each++) {
+        Stage stage = {0};
+        stage_open(&stage, texts[each], NULL);
+        uint32_t last             = each ? 2 * BEFORE : ALL - 1;
+        const double(*centres)[3] = (const double(*)[3])places;
+        assert_int_equal(krs_component_count(stage.scene), ALL);
+        assert_int_equal(krs_scene_program(stage.scene)->table_count, 2);
+        assert_int_equal(krs_probe(stage.frame, centres, ALL, hits[0]), KRS_OK);
+        assert_int_equal(krs_device_probe(stage.rendering, stage.frame, centres, ALL, hits[1]),
+                         KRS_OK);
+        for (int on = 0; on < 2; on++)
+            for (uint32_t i = 0; i < ALL; i++) {
+                uint32_t number = i == ALL - 1 ? last : i + (i >= last);
+                assert_int_equal(hits[on][i].component, number + 1);
+                assert_near(hits[on][i].distance, i == ALL - 1 ? -0.5 : -1, 1e-4);
+            }
+        KrsComponent component;
+        assert_int_equal(krs_component(stage.scene, last, &component), KRS_OK);
+        assert_string_equal(component.name, "last");
+        stage_close(&stage);
+    }
+}
+
 static int set_up(void **state)
 {
     static Stage stage;
@@ -260,6 +307,7 @@ int main(void)
         cmocka_unit_test(rays_end_at_materials),
         cmocka_unit_test(the_rest_is_as_the_table_says),
         cmocka_unit_test(turns_of_a_loop_are_components),
+        cmocka_unit_test(alike_components_are_components),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

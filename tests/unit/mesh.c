@@ -324,9 +324,9 @@ static void components_and_empty_scenes(void **context)
     assert_true(fabs(volume_of(mesh) - 1) < 0.05);
     krs_mesh_free(mesh);
     scene_close(s);
-    s                 = scene_of("for i in 0..100 { show sphere(0.3).move([i, 0, 0]); }"
-                                                 "show box([1, 1, 1]).move([3, 5, 0]);");
-    options.component = 101; /* behind many that are one in the shaders */
+    s                 = scene_of("for i in 0..100 { show sphere(0.3).move([i, 0, 0]);"
+                                                 "  if i == 50 { show box([1, 1, 1]).move([3, 5, 0]); } }");
+    options.component = 52; /* between many that are one in the shaders */
     assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_OK);
     assert_true(fabs(volume_of(mesh) - 1) < 0.05);
     krs_mesh_free(mesh);

@@ -215,6 +215,8 @@ static void memory_grows_with_the_parts(void **state)
         "show union([sphere(0.1 + random(i)).move([i, 0, 0]) for i in 0..%d]);",
         "show union([box([1, 1, 0.1 + random(i)]).rotate([0, 1, 0], i) for i in 0..%d]);",
         "for i in 0..%d { show sphere(0.3) - sphere(0.1 + 0.1 * random(i)).move([0.2, 0, 0]); }",
+        "for i in 0..%d { show sphere(0.3).move([i, 0, 0]); show box([0.3, 0.3, 0.3]).move([i, 1, "
+        "0]); }",
         "shape knob(r) { distance: length([x, 2 * y, z]) - r, within: box([2 * r, 2 * r, 2 * r]) }"
         "show union([knob(0.2 + 0.1 * random(i)) for i in 0..%d]);",
     };
