@@ -7,7 +7,8 @@
  * hash of the text with the first literals, and whether other ones were seen since.  Edits that no
  * shader shows, of cameras and lights, do not count.
  *
- * Scenes that no structure can be compiled of, or remembered, have literals.
+ * Scenes that no structure can be compiled of, or remembered, have literals.  So have scenes of so many
+ * numbers that a driver would take minutes without them.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -99,7 +100,8 @@ KrsScene *specialize_edited(const Options *options, const KrsScene *literals, do
     if (samples > SAMPLES_THAT_REPAY_LITERALS || !cache_folder(options))
         return NULL;
     KrsScene *structure = compile_structure(options);
-    if (!structure || is_edited(options, literals, structure))
+    if (!structure ||
+        (krs_structure_is_affordable(structure) && is_edited(options, literals, structure)))
         return structure;
     krs_scene_free(structure);
     return NULL;

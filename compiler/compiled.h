@@ -127,6 +127,8 @@ bool krs_scene_has_lens(const KrsScene *scene);
 /* How many components before this one are one component of the shaders with it, as many that are alike
    are; 0 where it is the first, or alone. */
 size_t krs_joined_rank(const KrsScene *scene, size_t component);
+/* Whether drivers compile the shaders of a scene without its numbers in a reasonable time. */
+bool krs_structure_is_affordable(const KrsScene *scene);
 /* The number of zones that the scene declares. */
 size_t krs_zone_count(const KrsScene *scene);
 /* Camera `camera`, lights, sky and image at the frame's parameters and time. */

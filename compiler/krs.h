@@ -73,7 +73,8 @@ typedef enum KrsSpecialize {
     KRS_SPECIALIZE_STRUCTURE, /* in the parameter block: a scene that differs in numbers alone has
                                  the same shaders, and compiles none */
     KRS_SPECIALIZE_AUTO       /* as NUMBERS at first, and as STRUCTURE from the first
-                                 krs_scene_update on */
+                                 krs_scene_update on; still as NUMBERS where there are so
+                                 many that drivers would take minutes */
 } KrsSpecialize;
 
 typedef struct KrsOptions {

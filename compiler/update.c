@@ -374,17 +374,48 @@ static KrsStatus find_changes(const KrsScene *a, const KrsScene *b, KrsChanges *
     return status;
 }
 
+/* Drivers keep the values of the frame in registers, and need minutes where there are thousands:
+   bench/measurements.md. */
+enum { MOST_VALUE_SLOTS = 1000 };
+
+bool krs_structure_is_affordable(const KrsScene *scene)
+{
+    return scene->program.value_slots <= MOST_VALUE_SLOTS;
+}
+
 /* Of the text or, when that is NULL, of the scene's file. */
+static KrsStatus compile_again(const KrsScene *scene, const char *text, size_t length,
+                               const KrsOptions *options, KrsScene **updated)
+{
+    return text ? krs_compile_text(text, length, scene->name, options, updated)
+                : krs_compile_file(scene->name, options, updated);
+}
+
+static KrsStatus compile_edited(const KrsScene *scene, const char *text, size_t length,
+                                KrsScene **updated)
+{
+    KrsOptions options   = scene->options;
+    const bool automatic = options.specialize == KRS_SPECIALIZE_AUTO;
+    options.text         = NULL; /* that of the first compilation */
+    if (automatic)
+        options.specialize = KRS_SPECIALIZE_STRUCTURE;
+    KrsStatus status = compile_again(scene, text, length, &options, updated);
+    if (status != KRS_OK || !automatic || krs_structure_is_affordable(*updated))
+        return status;
+    krs_scene_free(*updated);
+    options.specialize = KRS_SPECIALIZE_AUTO;
+    options.diagnostic = NULL; /* all has been said */
+    status             = compile_again(scene, text, length, &options, updated);
+    if (status == KRS_OK)
+        (*updated)->options.diagnostic = scene->options.diagnostic;
+    return status;
+}
+
 static KrsStatus update(const KrsScene *scene, const char *text, size_t length, KrsScene **updated,
                         KrsChanges *changes)
 {
-    KrsOptions options = scene->options;
-    KrsChanges found   = {0};
-    if (options.specialize == KRS_SPECIALIZE_AUTO)
-        options.specialize = KRS_SPECIALIZE_STRUCTURE;
-    options.text     = NULL; /* that of the first compilation */
-    KrsStatus status = text ? krs_compile_text(text, length, scene->name, &options, updated)
-                            : krs_compile_file(scene->name, &options, updated);
+    KrsChanges found  = {0};
+    KrsStatus  status = compile_edited(scene, text, length, updated);
     if (status == KRS_OK)
         status = find_changes(scene, *updated, &found);
     if (status != KRS_OK) {

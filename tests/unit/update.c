@@ -219,6 +219,35 @@ static void auto_takes_numbers_out_with_the_first_edit(void **state)
     krs_scene_free(literal);
 }
 
+/* Sixty parts of each of twelve kinds: too few for crowds, and thousands of numbers. */
+#define MANY                                                                                 \
+    "def solids(t) = [sphere(0.3 + t), box([0.2, 0.3, 0.2 + t]), cylinder(0.2 + t, 0.3),"    \
+    " torus(0.3, 0.1 + t), capped_cone(0.1 + t, 0.2, 0.3), ellipsoid([0.1, 0.2, 0.2 + t])];" \
+    "let more = 0.0001;"                                                                     \
+    "show union([[s.move([i % 8 + 0.1, floor(i / 8), 2]),"                                   \
+    " s.rotate([0, 0, 1], 1deg * i + 0.01).move([i % 8, 9.2, floor(i / 8)])]"                \
+    " for i in 0..60 for s in solids(0.001 * i + more)]);"
+
+static void auto_keeps_very_many_numbers(void **state)
+{
+    (void)state;
+    KrsChanges  changes;
+    const char *text      = edited(MANY, "0.0001", "0.0002");
+    KrsScene   *structure = compile(MANY, KRS_SPECIALIZE_STRUCTURE);
+    KrsScene   *scene     = compile(MANY, KRS_SPECIALIZE_AUTO);
+    KrsScene   *first     = update(scene, text, &changes);
+    KrsScene   *literal   = compile(text, KRS_SPECIALIZE_NUMBERS);
+    KrsScene   *second    = update(first, MANY, &changes);
+    assert_false(krs_structure_is_affordable(structure));
+    assert_true(same_kernels(first, literal));
+    assert_true(same_kernels(second, scene));
+    krs_scene_free(second);
+    krs_scene_free(literal);
+    krs_scene_free(first);
+    krs_scene_free(scene);
+    krs_scene_free(structure);
+}
+
 /* ---- crowds ---- */
 
 /* A crowd of 100 balls, of which one is lifted; and a block that is far away. */
@@ -434,6 +463,7 @@ int main(void)
         cmocka_unit_test(changes_are_told),
         cmocka_unit_test(literals_are_structure),
         cmocka_unit_test(auto_takes_numbers_out_with_the_first_edit),
+        cmocka_unit_test(auto_keeps_very_many_numbers),
         cmocka_unit_test(tables_are_values),
         cmocka_unit_test(mistakes_leave_the_scene),
         cmocka_unit_test(used_files_are_read_again),
