@@ -204,6 +204,7 @@ void do_item(uint number)
     KrsSurface surface = krs_surface(hit.position, hit.side * facing.xyz, 0.5 * hit.width);
 #ifdef SUBSURFACE // light leaves where it has entered
     surface.color = color_below(surface);
+    surface.subsurface_weight = 0.0; // layers are not to leave this light to paths
 #endif
 #ifdef MIRRORS
     Boundary boundary = find_boundary(hit, surface);

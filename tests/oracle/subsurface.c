@@ -287,13 +287,14 @@ static void thin_plates_let_light_through(void **state)
 static const char furnace[] =
     "param radius = [0.1, 0.1, 0.1]; param shade = [1, 1, 1]; param much = 1 in [0, 1];\n"
     "param metal = 0 in [0, 1]; param lacquer = 0 in [0, 1]; param mirrors = 1 in [0, 1];\n"
+    "param rough = 0.4 in [0, 1];\n"
     "camera { eye: [0, 0, 5], projection: \"orthographic\", height: 2.2 }\n"
     "param day = 1 in [0, 1]; param bright = 0 in [0, 100]; param size = 0.1 in [0.1, 900];\n"
     "sky { zenith: [day, day, day], horizon: [day, day, day], ground: [day, day, day] }\n"
     "light sun { direction: [0.6, 0.64, 0.48], intensity: bright, softness: 120deg }\n"
     "material lamp { color: black, specular: 0, emission: 1.2732395 }\n"
     "show sphere(size).move([600, 640, 480]).paint(lamp);\n"
-    "material m { color: white, roughness: 0.4, metallic: metal, coat: lacquer, specular: "
+    "material m { color: white, roughness: rough, metallic: metal, coat: lacquer, specular: "
     "mirrors,\n"
     "             subsurface_weight: much, subsurface_color: shade, subsurface_radius: radius }\n"
     "show union(sphere(0.7), box([0.2, 2, 0.05]).move([0.7, 0, 0]), blend: 0.1).paint(m);\n";
@@ -328,6 +329,7 @@ static void paint(PathStage *s, int i)
     path_stage_set(s, "metal", whites[i].metal);
     path_stage_set(s, "lacquer", whites[i].lacquer);
     path_stage_set(s, "mirrors", whites[i].mirrors);
+    path_stage_set(s, "rough", i % 4 / 3.0);
 }
 
 static size_t compare_suns(PathStage *s)
@@ -366,6 +368,53 @@ static void white_is_not_seen(void **state)
     assert_int_equal(wrong, 0);
 }
 
+/* ---- Previews ---- */
+
+/* In previews light leaves where it has entered: wax that is white looks like a white body. */
+static KrsPicture *preview_wax(PathStage *s, double much)
+{
+    path_stage_set(s, "much", much);
+    return path_stage_render(s, &(KrsRenderOptions){.width      = 32,
+                                                    .height     = 32,
+                                                    .samples    = 1,
+                                                    .planes     = KRS_PLANE_COLOR,
+                                                    .integrator = KRS_INTEGRATOR_PREVIEW});
+}
+
+/* How many numbers differ, of a lamp's light alone; `sum`: of this light. */
+static size_t compare_previews(PathStage *s, double *sum)
+{
+    KrsPicture *wax = preview_wax(s, 1), *body = preview_wax(s, 0);
+    size_t      wrong = 0;
+    for (size_t i = 0; i < (size_t)4 * 32 * 32; i++) {
+        wrong += !(fabs(wax->color[i] - body->color[i]) <= 1e-5 + 1e-4 * body->color[i]);
+        *sum += i % 4 < 3 ? body->color[i] : 0;
+    }
+    krs_picture_free(wax);
+    krs_picture_free(body);
+    return wrong;
+}
+
+static void previews_light_wax_as_a_body(void **state)
+{
+    (void)state;
+    size_t    wrong = 0;
+    PathStage s     = path_stage_open(furnace);
+    path_stage_set(&s, "day", 0);
+    path_stage_set(&s, "bright", IRRADIANCE);
+    for (int i = 0; i < WHITES; i++) {
+        double sum = 0;
+        paint(&s, i);
+        const size_t differ = compare_previews(&s, &sum);
+        if (differ)
+            print_message("# %s: %zu numbers differ\n", whites[i].name, differ);
+        wrong += differ;
+        assert_true(sum > 100);
+    }
+    path_stage_close(&s);
+    assert_int_equal(wrong, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -374,6 +423,7 @@ int main(void)
         cmocka_unit_test(half_spaces_have_their_color),
         cmocka_unit_test(thin_plates_let_light_through),
         cmocka_unit_test(white_is_not_seen),
+        cmocka_unit_test(previews_light_wax_as_a_body),
     };
     spirv_start(); /* held for all, so that the shader compiler is not started anew */
     int failed = cmocka_run_group_tests_name("subsurface", tests, open_slab, close_slab);
