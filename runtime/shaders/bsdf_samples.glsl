@@ -29,21 +29,24 @@ vec3 sample_glass(Bsdf bsdf, vec2 square_point, float choice)
 }
 
 // A direction that light comes from, by the density of `scatter`; 0 where microfacets mirror below
-// the surface.  If that were a direction, glass would count it as well.
+// the surface.  If that were a direction, glass would count it as well.  `choice`: of what glass does.
 vec3 sample_direction(Bsdf bsdf, vec2 square_point, float choice)
 {
     vec4 below = bsdf.shares;
     below.y += below.x;
     below.z += below.y;
-    if (choice >= below.z) {
-        float angle = 2.0 * PI * square_point.x, ring = sqrt(square_point.y);
-        return vec3(ring * krs_cos(angle), ring * krs_sin(angle),
-                    sqrt(max(1.0 - square_point.y, 0.0)));
+    vec2 at = square_point;
+    if (take_part(at, below.z, 1.0)) {
+        float angle = 2.0 * PI * at.x, ring = sqrt(at.y);
+        return vec3(ring * krs_cos(angle), ring * krs_sin(angle), sqrt(max(1.0 - at.y, 0.0)));
     }
-    if (choice >= below.y)
-        return sample_glass(bsdf, square_point, (choice - below.y) / bsdf.shares.z);
-    WIDTH alpha = choice < below.x ? bsdf.coat_alpha : bsdf.alpha;
-    vec3  normal = sample_visible(bsdf.eye, alpha, square_point);
-    vec3  light = 2.0 * dot(bsdf.eye, normal) * normal - bsdf.eye;
+    if (take_part(at, below.y, below.z))
+        return sample_glass(bsdf, at, choice);
+    bool  coat = take_part(at, 0.0, below.x);
+    WIDTH alpha = coat ? bsdf.coat_alpha : bsdf.alpha;
+    if (!coat)
+        take_part(at, below.x, below.y);
+    vec3 normal = sample_visible(bsdf.eye, alpha, at);
+    vec3 light = 2.0 * dot(bsdf.eye, normal) * normal - bsdf.eye;
     return light.z > 0.0 ? light : vec3(0.0);
 }

@@ -85,18 +85,20 @@ float mixed_density(Cones cones, vec3 direction, float density)
 }
 
 // A direction by cones; `choice` is of [0, 1).
-vec3 sample_cones(Cones cones, vec2 square_point, float choice)
+vec3 sample_cones(Cones cones, vec2 square_point)
 {
-    float left = choice * cones.all;
+    float left = square_point.x * cones.all, part = 0.0;
     Cone  chosen = Cone(cones.facing, 0.0, 0.0);
     for (uint i = 0u; i < frame.emissive_count; i++) {
         Cone cone = find_cone(cones, i);
-        if (left >= 0.0 && cone.weight > 0.0)
+        if (left >= 0.0 && cone.weight > 0.0) {
             chosen = cone;
+            part = left / cone.weight;
+        }
         left -= cone.weight;
     }
     float gap = chosen.gap * square_point.y, ring = sqrt(gap * (2.0 - gap));
-    float angle = 2.0 * PI * square_point.x;
+    float angle = 2.0 * PI * min(part, BELOW_1);
     vec3  right, up;
     find_frame(chosen.axis, right, up);
     return normalize(ring * (krs_cos(angle) * right + krs_sin(angle) * up) +
@@ -113,5 +115,5 @@ float mixed_density(Cones cones, vec3 direction, float density) { return density
 
 float find_survival(vec3 weight, float kept) { return largest(weight); }
 
-vec3 sample_cones(Cones cones, vec2 square_point, float choice) { return cones.facing; }
+vec3 sample_cones(Cones cones, vec2 square_point) { return cones.facing; }
 #endif

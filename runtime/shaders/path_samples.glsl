@@ -8,6 +8,18 @@
 #include "sines.glsl"
 #include "samples.glsl"
 
+const float BELOW_1 = 0.99999994; // the largest number below it
+
+// Chooses by the first coordinate of a point: whether it lies in a part of [0, 1).  If it does, the part
+// is stretched to all of it.  So the points of all rays that choose the same still fill the square evenly.
+bool take_part(inout vec2 point, float low, float high)
+{
+    if (point.x < low || point.x >= high)
+        return false;
+    point.x = min((point.x - low) / (high - low), BELOW_1);
+    return true;
+}
+
 // The bits of a number, scrambled from the highest to the lowest.
 uint scramble_reversed(uint bits, uint seed)
 {

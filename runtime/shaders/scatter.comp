@@ -88,9 +88,11 @@ void begin_group()
 vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec3 facing,
                   vec3 weight, Cones cones)
 {
+    vec2  square_point = choose(pixel, 1u);
     float all = sum_importance(hit.position);
-    float left = choose(pixel, 2u).x * all - frame.sky_power;
+    float left = square_point.x * all - frame.sky_power;
     bool  is_sky = left < 0.0;
+    float part = 1.0 + left / max(frame.sky_power, 1e-30); // of what the chosen one has of the square
     uint  number = 0u;
     float importance = 0.0;
     for (uint i = 0u; i < control.lights; i++) {
@@ -98,13 +100,15 @@ vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, v
         bool  chosen = left >= 0.0 && own > 0.0;
         number = chosen ? i : number;
         importance = chosen ? own : importance;
+        part = chosen ? left / own : part;
         left -= own;
     }
+    square_point.x = min(part, BELOW_1);
     LightPoint point = sample_light(find_light(number), hit.position, importance / max(all, 1e-30),
-                                    choose(pixel, 1u));
+                                    square_point);
 #ifdef SKY_MAP
     if (is_sky)
-        point = sample_sky(hit.position, frame.sky_power / all, choose(pixel, 1u));
+        point = sample_sky(hit.position, frame.sky_power / all, square_point);
 #endif
     vec3 light = into(axes, point.toward);
     vec4 scattered = scatter(bsdf, light);
@@ -122,9 +126,11 @@ vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, v
 // The direction in which the path goes on, in the frame of the surface; 0: it ends.
 vec3 choose_way(Bsdf bsdf, Axes axes, Cones cones, vec2 square_point, float choice)
 {
-    if (choice < cones.part)
-        return into(axes, sample_cones(cones, square_point, choice / cones.part));
-    return sample_direction(bsdf, square_point, (choice - cones.part) / (1.0 - cones.part));
+    vec2 at = square_point;
+    if (take_part(at, 0.0, cones.part))
+        return into(axes, sample_cones(cones, at));
+    take_part(at, cones.part, 1.0);
+    return sample_direction(bsdf, at, choice);
 }
 
 // Sends the path on, or ends it.  Returns where its ray begins (media.glsl); 0: it ends.

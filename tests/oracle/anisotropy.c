@@ -256,13 +256,13 @@ static void a_highlight_is_as_long_as_its_widths_say(void **state)
 
 #define IRRADIANCE 3.0
 #define BALL       866.0254 /* looks as large as the sun from a distance of 1000 */
-#define NO_BALL    0.1
+#define NO_BALL    2
 
 static const char furnace[] =
     "param rough = 0.5 in [0, 1]; param brushed = 0 in [0, 1]; param metal = 0 in [0, 1];\n"
     "param glass = 0 in [0, 1]; param lacquer = 0 in [0, 1]; param shade = [1, 1, 1];\n"
     "camera { eye: [0, 0, 5], projection: \"orthographic\", height: 2 }\n"
-    "param day = 1 in [0, 1]; param bright = 0 in [0, 100]; param size = 0.1 in [0.1, 900];\n"
+    "param day = 1 in [0, 1]; param bright = 0 in [0, 100]; param size = 2 in [2, 900];\n"
     "sky { zenith: [day, day, day], horizon: [day, day, day], ground: [day, day, day] }\n"
     "light sun { direction: [0.6, 0.64, 0.48], intensity: bright, softness: 120deg }\n"
     "material lamp { color: black, specular: 0, emission: 1.2732395 }\n"

@@ -340,12 +340,32 @@ static void more_samples_have_less_noise(void **state)
     path_stage_close(&stage);
 }
 
+/* A varnished floor: rays choose between the varnish, what it mirrors below, and the body. */
+static const char floor_text[] =
+    "camera { eye: [0, 4, 14], target: [0, 0.7, 0], fov: 30deg }\n"
+    "light none { direction: [0, 1, 0], intensity: 0 }\n"
+    "sky { zenith: #6080b0, horizon: #c0c8d0, ground: #504840 }\n"
+    "material varnished { color: gray, coat: 1, coat_roughness: 0.3 }\n"
+    "show plane().paint(varnished);\n";
+
+/* Rays of a pixel that choose the same layer fill its directions evenly, too.  If they were a random
+   choice of all points, noise would fall as the root of the number of samples. */
+static void rays_of_each_layer_are_even(void **state)
+{
+    (void)state;
+    PathStage stage  = path_stage_open(floor_text);
+    double    before = find_noise(&stage, 16), after = find_noise(&stage, 256);
+    assert_true(after > 0 && after < 0.6 * 0.25 * before);
+    path_stage_close(&stage);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_lamp_lights_a_room),
         cmocka_unit_test(a_panel_lights_a_room),
         cmocka_unit_test(more_samples_have_less_noise),
+        cmocka_unit_test(rays_of_each_layer_are_even),
     };
     spirv_start(); /* held for all, so that the shader compiler is not started anew */
     int failed = cmocka_run_group_tests_name("cornell", tests, renderer_open, renderer_close);

@@ -27,7 +27,7 @@
    sun's disc does: its irradiance over pi sin(60deg)^2. */
 #define IRRADIANCE 3.0
 #define BALL       866.0254
-#define NO_BALL    0.1
+#define NO_BALL    0.5 /* rays that just miss a smaller one are lost in roundings */
 
 static const char furnace[] =
     "param rough = 0.5 in [0, 1]; param metal = 0 in [0, 1]; param glass = 0 in [0, 1];\n"
@@ -36,7 +36,7 @@ static const char furnace[] =
     "param film = 0 in [0, 1]; param thick = 0.4 in [0, 9];\n"
     "param index = 1.5 in [1, 4]; param mirrors = 1 in [0, 1]; param shade = [1, 1, 1];\n"
     "camera { eye: [0, 0, 5], projection: \"orthographic\", height: 2 }\n"
-    "param day = 1 in [0, 1]; param bright = 0 in [0, 100]; param size = 0.1 in [0.1, 900];\n"
+    "param day = 1 in [0, 1]; param bright = 0 in [0, 100]; param size = 0.5 in [0.5, 900];\n"
     "sky { zenith: [day, day, day], horizon: [day, day, day], ground: [day, day, day] }\n"
     "param width = 120deg in [0deg, 120deg];\n"
     "light sun { direction: [0.6, 0.64, 0.48], intensity: bright, softness: width }\n"
