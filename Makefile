@@ -2,6 +2,7 @@
 # make demo       set up, build, render the examples' highlights to build/demo/
 # make test       set up, build, run every test; the last line is `N passed, N failed`, and
 #                 `, N skipped` where some were; DEVICE=...: on another device (krs devices)
+# make test-meshes    300 random meshes within their error, and what CGAL finds of them; half an hour
 # make sanitize   the same programs under ASan and UBSan, in build/asan/
 # make bench      measures, writes bench/results/; bench-quick: only whether it can
 # make bench-normals    how normals are found

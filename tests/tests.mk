@@ -12,7 +12,7 @@ SUPPORT     := $(addprefix tests/support/, agreement.c bench.c crowd_texts.c dev
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c \
                formulas.c montecarlo.c quaternions.c chain.c chain_random.c map_chain.c \
                deformed.c methods.c primitive_solids.c primitive_figures.c random_scene.c \
-               device_answers.c outline_truth.c path_stage.c rooms.c shadow_stage.c shadow_truth.c twigs.c)
+               device_answers.c known_solid.c mesh_distance.c mesh_shape.c outline_truth.c path_stage.c rooms.c shadow_stage.c shadow_truth.c twigs.c)
 UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c queried.c \
                cache_folder.c compiled_files.c crowd_scene.c)
 PROPERTY_SHARED := $(addprefix tests/property/, crowd_parts.c garden.c op_trial.c reach_crowd.c)
@@ -27,7 +27,7 @@ ORACLES     := self patterns bumps primitives krs_expand folds trees maps moebiu
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
                albedo furnace thin_film anisotropy tangents subsurface paths emissive sky media cornell touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling \
                occlusion curves sweeps hulls lofts places underestimates bounds stencils light sides steep scales agree far sheets ray_lists specialize outlines drawings \
-               imports imports_csg imports_pov
+               imports imports_csg imports_pov meshes mesh_forms
 FUZZ        := sentences
 # On SwiftShader, unless another device is tested: what shows that drivers agree.
 DRIVERS     := tests/oracle/drivers
@@ -88,6 +88,17 @@ $(IMPORTS:%=$(B)/tests/oracle/%): $(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B
 $(B)/tests/unit/watcher: $(B)/live.a
 $(addprefix $(B)/tests/unit/, live camera_text painter saver): $(B)/tests/unit/%: $(B)/tests/unit/%.o $(B)/live.a $(LINKED)
 	@$(LINK)
+# What CGAL finds of meshes, where it is installed: without it, tests say so.
+CGAL        := $(wildcard /usr/include/CGAL/Surface_mesh.h)
+JUDGE       := $(if $(CGAL),$(B)/tests/oracle/mesh_judge)
+$(B)/tests/oracle/mesh_judge: $(B)/tests/oracle/mesh_judge.o
+	@$(CXX) $(CFLAGS) -o $@ $^ -lgmp -lmpfr
+# Meshes of 300 random scenes, and a Menger sponge of three levels, by all judges: half an hour.
+test-meshes: $(B)/krs $(B)/tests/oracle/meshes $(B)/tests/oracle/mesh_forms $(JUDGE)
+	@mkdir -p $(B)/meshes && rm -f $(B)/meshes/*.off
+	@$(B)/tests/oracle/meshes 300 $(B)/meshes
+	@$(B)/tests/oracle/mesh_forms $(B)/meshes
+	@$(if $(JUDGE),$(JUDGE) $(B)/meshes/*.off,echo "no CGAL: nothing else looked at the meshes")
 # It runs the command.
 $(B)/tests/unit/table_files: | $(B)/krs
 # In no archive: system calls that can fail are for those two alone.
@@ -98,7 +109,7 @@ $(B)/tests/unit/writer $(B)/tests/unit/image_files: $(B)/tests/unit/file_faults.
 golden: all $(B)/tests/golden/pictures
 	@B=$(B) tests/golden/pictures.sh
 
-test-programs: $(PLAIN:%=$(B)/%) $(DRIVERS:%=$(B)/%)
+test-programs: $(PLAIN:%=$(B)/%) $(DRIVERS:%=$(B)/%) $(JUDGE)
 sanitized-programs: $(SANITIZED:%=$(B)/%) $(B)/krs
 sanitize:
 	@$(MAKE) --no-print-directory sanitized-programs B=$(B)/asan \
@@ -141,5 +152,5 @@ test: deps
 	    JOBS=$(TEST_JOBS) $(BESIDE) $(PLAIN:%=$(B)/%) $(SANITIZED:%=$(B)/asan/%) \
 	    JOBS=1 $(SCRIPTS) JOBS=$(TEST_JOBS) \
 	    $(if $(DEVICE),$(DRIVERS:%=$(B)/%),KRS_DEVICE=swiftshader $(SECOND:%=$(B)/%))
-.PHONY: test golden list-programs test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers \
+.PHONY: test test-meshes golden list-programs test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers \
         fuzz-programs lint format bless

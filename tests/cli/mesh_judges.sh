@@ -1,0 +1,60 @@
+#!/bin/sh
+# mesh_judges.sh: CGAL and a slicer accept what `krs mesh` writes.  What is not installed is skipped.
+. "$(dirname "$0")/common.sh"
+judge=$(dirname "$krs")/tests/oracle/mesh_judge
+plan 5
+
+cat >vase.krs <<'END'
+let wall = field(sin(3 * x) * cos(3 * y) + sin(3 * y) * cos(3 * z) + sin(3 * z) * cos(3 * x)).shell(0.9);
+show (cylinder(1, 2) & wall) | cylinder(1, 0.4).move([0, -1, 0]);
+END
+cat >crossed.off <<'END'
+OFF
+8 8 0
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+0.1 0.1 0.1
+1.1 0.1 0.1
+0.1 1.1 0.1
+0.1 0.1 1.1
+3 0 2 1
+3 0 1 3
+3 0 3 2
+3 1 2 3
+3 4 6 5
+3 4 5 7
+3 4 7 6
+3 5 6 7
+END
+head -n 13 crossed.off | sed 's/^8 8 0/8 3 0/' >open.off
+# The vertices and faces of an OBJ file as OFF.
+to_off() {
+    awk '$1 == "v" { v[++n] = $2 " " $3 " " $4 } $1 == "f" { f[++m] = $2 - 1 " " $3 - 1 " " $4 - 1 }
+         END { print "OFF\n" n, m, 0; for (i = 1; i <= n; i++) print v[i]; for (i = 1; i <= m; i++) print 3, f[i] }' "$1"
+}
+run mesh --quiet vase.krs --error 0.1 -o vase.obj -o vase.stl
+ended 0 "a vase is meshed"
+to_off vase.obj >vase.off
+if [ -x "$judge" ]; then
+    "$judge" vase.off >out
+    grep -q 'vase.off: good, .* 1 parts' out
+    result $? "CGAL finds one part, closed, a manifold, without crossings"
+    ! "$judge" crossed.off >out && grep -q 'crosses itself' out
+    result $? "and finds a planted crossing"
+    ! "$judge" open.off >out && grep -q 'open' out
+    result $? "and a planted hole"
+else
+    skip "CGAL finds one part, closed, a manifold, without crossings" "no CGAL"
+    skip "and finds a planted crossing" "no CGAL"
+    skip "and a planted hole" "no CGAL"
+fi
+if command -v prusa-slicer >/dev/null; then
+    prusa-slicer --export-gcode --scale 20 --center 100,100 --output vase.gcode vase.stl >out 2>err &&
+        [ "$(grep -c '^;LAYER_CHANGE' vase.gcode)" -gt 100 ] &&
+        ! grep -q -i 'repaired\|open edges\|manifold' out err vase.gcode
+    result $? "a slicer makes layers of it, without repair"
+else
+    skip "a slicer makes layers of it, without repair" "no prusa-slicer"
+fi
