@@ -33,6 +33,13 @@ $(B)/bench/inverted/inverted: $(B)/bench/inverted/inverted.o $(STAGE) $(B)/libkr
 inverted: $(B)/bench/inverted/inverted
 	@REVISION=$(REVISION) $(B)/bench/inverted/inverted
 
+# With and without each method of the enhanced-sphere-tracing paper.
+ENHANCED := $(addprefix $(B)/bench/, enhanced/enhanced.o enhanced/convex.o)
+$(B)/bench/enhanced/enhanced: $(ENHANCED) $(STAGE) $(B)/libkrs.a
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+bench-enhanced: $(B)/bench/enhanced/enhanced
+	@REVISION=$(REVISION) $(B)/bench/enhanced/enhanced
+
 # How well and how fast normals are found (bench/README.md).
 $(B)/bench/normals/normals: $(B)/bench/normals/normals.o $(STAGE) $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
@@ -109,7 +116,7 @@ clang-objects: $(BENCH:%.c=$(B)/%.o) $(STAGE) $(MINIFY) \
                $(B)/bench/iterations/iterations.o $(B)/bench/inverted/inverted.o \
                $(B)/bench/normals/normals.o $(ALGEBRAIC:%=$(B)/%) $(DEVICES) \
                $(B)/bench/registers/registers.o $(B)/bench/parts/parts.o \
-               $(B)/bench/view/view.o
-.PHONY: bench bench-quick minify iterations inverted bench-normals bench-textures bench-paths bench-algebraic check-device \
+               $(B)/bench/view/view.o $(ENHANCED)
+.PHONY: bench bench-quick minify iterations inverted bench-enhanced bench-normals bench-textures bench-paths bench-algebraic check-device \
         bench-registers bench-parts bench-large bench-radiosity \
         bench-lanes bench-mesh bench-view

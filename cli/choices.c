@@ -35,6 +35,10 @@ const Choice shadows_choices[] = {
 #define KRS_SHADOWS(id, name, about) {name, about},
 #include "runtime/choices.def"
     LAST};
+const Choice starts_choices[] = {
+#define KRS_STARTS(id, name, about) {name, about},
+#include "runtime/choices.def"
+    LAST};
 const Choice pixel_filter_choices[] = {
 #define KRS_PIXEL_FILTER(id, name, reach, integral, about) {name, about},
 #include "runtime/choices.def"

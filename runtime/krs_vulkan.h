@@ -221,6 +221,14 @@ typedef enum KrsShadows {
 } KrsShadows;
 extern const char *const krs_shadows_names[KRS_SHADOWS_COUNT];
 
+/* How far above surfaces rays of paths begin: KRS_STARTS_PIXELS, KRS_STARTS_DISTANCE. */
+typedef enum KrsStarts {
+#define KRS_STARTS(id, name, about) KRS_STARTS_##id,
+#include "runtime/choices.def"
+    KRS_STARTS_COUNT
+} KrsStarts;
+extern const char *const krs_starts_names[KRS_STARTS_COUNT];
+
 /* How the rays of a pixel are weighed by their place: KRS_PIXEL_FILTER_BOX and so on. */
 typedef enum KrsPixelFilter {
 #define KRS_PIXEL_FILTER(id, name, reach, integral, about) KRS_PIXEL_FILTER_##id,
@@ -245,6 +253,7 @@ typedef enum KrsEye { KRS_EYE_OF_BOTH, KRS_EYE_ON_LEFT, KRS_EYE_ON_RIGHT } KrsEy
 #define KRS_MOST_ERROR            1000
 #define KRS_DEFAULT_BOUNCES       10
 #define KRS_MOST_BOUNCES          1000
+#define KRS_MOST_EVEN_HITS        16
 #define KRS_NO_LIGHT              UINT32_MAX
 
 /* Zero asks for the defaults. */
@@ -278,15 +287,18 @@ typedef struct KrsRenderOptions {
        live as long as the film. */
     const float *depth;
     const float (*plate)[4];
-    uint32_t       planes;     /* bits of KrsPlane; 0: all but noise, which is there where samples
+    uint32_t      planes;        /* bits of KrsPlane; 0: all but noise, which is there where samples
                                     end by it */
-    uint32_t       most_steps; /* of a primary ray; 0: 16384, which is also the most */
-    uint32_t       steps_at_once; /* of a primary ray in one dispatch; 0: 512; at most 8192 */
-    KrsTrace       trace;
-    KrsSchedule    schedule;
-    KrsShadows     shadows;
-    KrsComponents  components;
-    KrsNormals     normals;
+    uint32_t      most_steps;    /* of a primary ray; 0: 16384, which is also the most */
+    uint32_t      steps_at_once; /* of a primary ray in one dispatch; 0: 512; at most 8192 */
+    KrsTrace      trace;
+    KrsSchedule   schedule;
+    KrsShadows    shadows;
+    KrsComponents components;
+    KrsNormals    normals;
+    KrsStarts     starts;
+    uint32_t      even_hits; /* iterations that even hits out along their rays (Keinert et al. 2014,
+                                 3.4); 0: none; at most KRS_MOST_EVEN_HITS */
     KrsPixelFilter pixel_filter;  /* not of rays of a list, which stand where the caller has them */
     bool           no_beams;      /* rays of a tile do not share the marching of empty space */
     bool           no_upsampling; /* neighbours do not share rays to lights, and such rays are sent

@@ -7,14 +7,23 @@ shift
 cd "$(dirname "$0")/.." || exit 1
 [ $# -gt 0 ] || set -- gear machined-part school rock temple grove reef palm olive fern fractals \
     lamps inversion cabinet sextic lattice town bath lighthouse \
-    chess snow-globe gasket city sign logo bolt rope mug vase spring jewel dodecahedron
+    chess snow-globe gasket city sign logo bolt rope mug vase spring jewel dodecahedron \
+    jewels night dusk
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 for name in "$@"; do
-    samples=16
-    case $name in jewel | chess | dodecahedron) samples=256 ;; esac
-    scene=$(ls examples/??-"$name".krs) || exit 1
+    scene=$(ls examples/??-"$name".krs 2>/dev/null)
+    size=960x540 samples=16 more=
+    case $name in # paths take many samples
+    chess | dodecahedron) size=640x360 samples=128 more="--clamp-radiance 4" ;;
+    jewel) samples=256 ;;
+    jewels) size=640x360 samples=400 more="--clamp-radiance 4" ;;
+    night) size=640x360 samples=96 ;;
+    dusk) scene=examples/07-grove.krs size=640x360 samples=8 more="--set dusk=1" ;;
+    esac
     picture=docs/pictures/$name.png
-    "$build/krs" render "$scene" --quiet --size 960x540 --samples $samples -o "$work/$name.png" &&
+    # shellcheck disable=SC2086 # several words
+    "$build/krs" render "${scene:?no example $name}" --quiet --size $size --samples $samples $more \
+        -o "$work/$name.png" &&
         convert "$work/$name.png" -strip -ordered-dither o8x8,64 "$picture" || exit 1
     if [ "$(wc -c <"$picture")" -gt 500000 ]; then
         convert "$work/$name.png" -strip -dither Riemersma -colors 256 "$picture" || exit 1

@@ -44,6 +44,7 @@ static bool choose(KrsRendering *rendering, KrsRenderOptions *o, KrsSchedule *as
         (unsigned)o->components >= KRS_COMPONENTS_COUNT ||
         (unsigned)o->normals >= KRS_NORMALS_COUNT ||
         (unsigned)o->pixel_filter >= KRS_PIXEL_FILTER_COUNT ||
+        (unsigned)o->starts >= KRS_STARTS_COUNT || o->even_hits > KRS_MOST_EVEN_HITS ||
         (unsigned)o->integrator >= KRS_INTEGRATOR_COUNT)
         return refuse(rendering, "there is no such method, schedule, stencil, kind of shadow, "
                                  "filter or integrator");

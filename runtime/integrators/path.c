@@ -67,7 +67,7 @@ static bool add_paths(Job *job, Plan *plan, uint32_t bounces)
     plan->has_paths               = true;
     if (!primary_add_marches(job, plan, WEIGHT_PRIMARY, NULL) ||
         !renderer_create_escapes(r->renderer, r->rays, &r->spirv_ms, &r->pipeline_ms) ||
-        !rendering_paths(r, o->trace, o->schedule, o->normals, KRS_FOR_PATHS, &paths.kernels))
+        !rendering_paths(r, o, KRS_FOR_PATHS, &paths.kernels))
         return false;
     const March march = primary_march_of_paths(job, paths.kernels.march);
     for (uint32_t number = 0; number <= bounces; number++) {

@@ -216,7 +216,7 @@ static bool add_mirrors(Preview *p)
     const float             weight = 0.2f * each;
     PathKernels             kernels;
     if (!renderer_create_escapes(r->renderer, RAYS_OF_PATHS, &r->spirv_ms, &r->pipeline_ms) ||
-        !rendering_paths(r, o->trace, o->schedule, o->normals, KRS_FOR_PICTURES, &kernels))
+        !rendering_paths(r, o, KRS_FOR_PICTURES, &kernels))
         return false;
     const March march = primary_march_of_paths(job, kernels.march);
     for (int i = 0; i < MIRRORED_SURFACES; i++) {

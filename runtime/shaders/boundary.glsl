@@ -22,18 +22,28 @@ float find_eta(float here, float beyond)
     return eta < 1.0 ? min(eta, 1.0 / LEAST_ETA) : max(eta, LEAST_ETA);
 }
 
+#ifdef STARTS_BY_DISTANCE
+#include "starts_by_distance.glsl"
+#else
 // How many pixels above a surface rays start, where it is even and where it is not, as in
 // secondary.comp.
 const float START_OF_EVEN = 0.125, START = 0.5;
+
+// How high above the surface a ray starts.
+float find_height(HitPoint hit, float evenness, float distance)
+{
+    float pixels = mix(START, START_OF_EVEN, smoothstep(0.9, 0.99, evenness));
+    return pixels * hit.width + 4.0 * hit.rounding;
+}
+#endif
 
 // Where a ray starts that leaves the hit into a direction, on the side `side` of the surface.  That
 // is so far along the ray that it is as high above the surface as it must be.  So the ray itself is
 // not displaced, unless it leaves the surface at less than this cosine: then it is lifted, too.
 const float LEAST_COSINE = 0.25;
-vec3 find_start(HitPoint hit, vec3 direction, vec4 facing, float side)
+vec3 find_start(HitPoint hit, vec3 direction, vec4 facing, float side, float distance)
 {
-    float pixels = mix(START, START_OF_EVEN, smoothstep(0.9, 0.99, facing.w));
-    float height = pixels * hit.width + 4.0 * hit.rounding;
+    float height = find_height(hit, facing.w, distance);
     float cosine = abs(dot(direction, facing.xyz));
     float ahead = height / max(cosine, LEAST_COSINE);
     return hit.position + ahead * direction + side * (height - ahead * cosine) * facing.xyz;

@@ -66,7 +66,7 @@ void follow_onward(HitPoint hit, uint index, Onward onward, vec4 facing, vec3 we
     if (largest(weight) < LEAST_WEIGHT || dot(onward.direction, facing.xyz) * onward.side <= 0.0)
         return;
     vec3 direction = normalize(onward.direction);
-    store_path(PATH_ORIGIN, index, vec4(find_start(hit, direction, facing, onward.side), hit.width));
+    store_path(PATH_ORIGIN, index, vec4(find_start(hit, direction, facing, onward.side, 0.0), hit.width));
     store_path(PATH_DIRECTION, index, vec4(direction, spread));
     store_path(PATH_WEIGHT, index, vec4(min(weight, 1e30), 1.0));
     store_path(PATH_TOWARD, index, vec4(0.0, 0.0, 0.0, onward.code));

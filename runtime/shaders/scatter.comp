@@ -133,9 +133,10 @@ vec3 choose_way(Bsdf bsdf, Axes axes, Cones cones, vec2 square_point, float choi
     return sample_direction(bsdf, at, choice);
 }
 
-// Sends the path on, or ends it.  Returns where its ray begins (media.glsl); 0: it ends.
+// Sends the path on, or ends it.  Returns where its ray begins (media.glsl); 0: it ends.  `off` is the
+// distance of the hit from the surface.
 float go_on(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 facing, vec3 weight,
-            float roughness, Boundary boundary, Cones cones)
+            float roughness, float off, Boundary boundary, Cones cones)
 {
     vec3  light = choose_way(bsdf, axes, cones, choose(pixel, 0u), choose(pixel, 2u).y);
     vec4  scattered = scatter(bsdf, light);
@@ -154,7 +155,7 @@ float go_on(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 fa
     float side = light.z < 0.0 ? -1.0 : 1.0; // of the surface, relative to the ray's
     float spread = load_path(PATH_DIRECTION, index).w;
     spread = max(spread, min(1.0 + 2.0 * roughness, MOST_SPREAD) * frame.pixel_slope);
-    store_path(PATH_ORIGIN, index, vec4(find_start(hit, direction, facing, side), hit.width));
+    store_path(PATH_ORIGIN, index, vec4(find_start(hit, direction, facing, side, off), hit.width));
     store_path(PATH_DIRECTION, index, vec4(direction, spread));
     store_path(PATH_WEIGHT, index, vec4(weight, scattered.w));
     return !goes_on ? 0.0 : side > 0.0 ? boundary.code : boundary.beyond;
@@ -220,7 +221,7 @@ void do_item(uint number)
     Cones cones = find_cones(hit.position, facing.xyz, hit.side > 0.0 ? dull : 0.0);
     vec3  toward = choose_light(pixel, index, hit, bsdf, axes, facing.xyz, weight, cones);
     float side = go_on(pixel, index, hit, bsdf, axes, facing, weight, surface.roughness,
-                       boundary, cones);
+                       surface.distance, boundary, cones);
     store_path(PATH_TOWARD, index, vec4(toward, side));
     if (side != 0.0)
         tiles[atomicAdd(counts.tiles, 1u)] = hit.slot;

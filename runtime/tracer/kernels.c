@@ -118,6 +118,11 @@ Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule)
     return find_kernel(rendering, "query.comp", variant_of_questions(rendering, schedule));
 }
 
+Kernel *rendering_even_hits(KrsRendering *rendering)
+{
+    return find_kernel(rendering, "even_hits.comp", variant_of_even_hits(rendering));
+}
+
 Kernel *rendering_shade(KrsRendering *rendering)
 {
     return find_kernel(rendering, "shade.comp", variant_of_shade(rendering));
@@ -141,21 +146,22 @@ static uint32_t group_of_paths(const KrsRendering *rendering)
     return rendering_knows_planes(rendering) ? MARCH_WITHOUT_PLANES : 0;
 }
 
-bool rendering_paths(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
-                     KrsNormals normals, KrsPurpose purpose, PathKernels *kernels)
+bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, KrsPurpose purpose,
+                     PathKernels *kernels)
 {
     const RayKind rays  = rendering->rays;
-    const bool    roots = rendering_has_roots(rendering, trace);
+    const bool    roots = rendering_has_roots(rendering, options->trace);
     rendering->rays     = RAYS_OF_PATHS;
-    kernels->march      = rendering_trace(rendering, trace_of_paths(trace), schedule,
-                                          group_of_paths(rendering));
-    kernels->normals    = rendering_normals_kernel(rendering, normals, 0);
-    kernels->scatter    = purpose == KRS_FOR_PATHS
-                              ? find_kernel(rendering, "scatter.comp", variant_of_scatter(rendering))
-                              : rendering_shade(rendering);
-    kernels->shadows    = find_kernel(rendering, "secondary.comp",
-                                      variant_of_rays(rendering, schedule, roots, purpose));
-    rendering->rays     = rays;
+    kernels->march   = rendering_trace(rendering, trace_of_paths(options->trace), options->schedule,
+                                       group_of_paths(rendering));
+    kernels->normals = rendering_normals_kernel(rendering, options->normals, 0);
+    kernels->scatter = purpose == KRS_FOR_PATHS
+                           ? find_kernel(rendering, "scatter.comp",
+                                         variant_of_scatter(rendering, options->starts))
+                           : rendering_shade(rendering);
+    kernels->shadows = find_kernel(rendering, "secondary.comp",
+                                   variant_of_rays(rendering, options->schedule, roots, purpose));
+    rendering->rays  = rays;
     return kernels->march && kernels->normals && kernels->scatter && kernels->shadows;
 }
 
@@ -214,7 +220,7 @@ static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedu
     request(requests, "normals.comp",
             variant_of_normals(rendering, rendering_normals(rendering, KRS_NORMALS_DEFAULT), 0));
     if (rendering->purpose == KRS_FOR_PATHS)
-        request(requests, "scatter.comp", variant_of_scatter(rendering));
+        request(requests, "scatter.comp", variant_of_scatter(rendering, KRS_STARTS_PIXELS));
     else
         request(requests, "shade.comp", variant_of_shade(rendering));
     request(requests, "secondary.comp",

@@ -21,6 +21,8 @@ Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule sch
 Kernel *rendering_normals_kernel(KrsRendering *rendering, KrsNormals normals, uint32_t march_group);
 /* The kernel of rays to lights and for occlusion; `by_roots`: they go from root to root. */
 Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots);
+/* The kernel that evens hits out. */
+Kernel *rendering_even_hits(KrsRendering *rendering);
 Kernel *rendering_shade(KrsRendering *rendering);
 Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule);
 Kernel *rendering_point_query(KrsRendering *rendering);
@@ -30,8 +32,8 @@ typedef struct PathKernels {
     Kernel *march, *normals, *shadows;
     Kernel *scatter; /* scatter.comp, or for previews shade.comp */
 } PathKernels;
-bool rendering_paths(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
-                     KrsNormals normals, KrsPurpose purpose, PathKernels *kernels);
+bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, KrsPurpose purpose,
+                     PathKernels *kernels);
 
 /* Makes the kernels for a purpose, pictures with default options or queries, unless they exist. */
 bool kernels_create(KrsRendering *rendering, KrsPurpose purpose);

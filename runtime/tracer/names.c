@@ -39,6 +39,11 @@ const char *const krs_shadows_names[KRS_SHADOWS_COUNT] = {
 #include "runtime/choices.def"
 };
 
+const char *const krs_starts_names[KRS_STARTS_COUNT] = {
+#define KRS_STARTS(id, name, about) name,
+#include "runtime/choices.def"
+};
+
 const char *const krs_pixel_filter_names[KRS_PIXEL_FILTER_COUNT] = {
 #define KRS_PIXEL_FILTER(id, name, reach, integral, about) name,
 #include "runtime/choices.def"

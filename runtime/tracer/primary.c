@@ -155,6 +155,23 @@ March primary_march_of_paths(const Job *job, Kernel *kernel)
     return march;
 }
 
+/* Hits are evened out where that is asked for.  Sheets have none to even out: their distance is that
+   of a shell around them. */
+static bool add_even_hits(Job *job, Plan *plan)
+{
+    KrsRendering *r = job->rendering;
+    if (job->options.even_hits == 0 || r->program->sheets)
+        return true;
+    const Kernel *kernel = rendering_even_hits(r);
+    plan_add(plan, (Pass){.kind      = PASS_ITEMS,
+                          .phase     = KRS_PHASE_PRIMARY,
+                          .kernel    = kernel,
+                          .in        = LIST_OF_BAND,
+                          .out       = NO_LIST,
+                          .constants = {.value = job->options.even_hits}});
+    return kernel != NULL;
+}
+
 /* Where the caller has depths, hits behind them are none. */
 static bool add_limit(Job *job, Plan *plan)
 {
@@ -184,7 +201,7 @@ bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary)
         plan_add(plan, (Pass){.kind = PASS_CLEAR, .phase = KRS_PHASE_BEAMS});
     bool added = per_component ? add_groups(job, plan, weight, primary)
                                : find_normals(job, primary) && add_whole(job, plan, weight);
-    return added && add_limit(job, plan);
+    return added && add_even_hits(job, plan) && add_limit(job, plan);
 }
 
 void primary_add_normals(Plan *plan, float weight, const Primary *primary)

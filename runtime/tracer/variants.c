@@ -254,18 +254,29 @@ KernelVariant variant_of_shade(const KrsRendering *rendering)
 }
 
 /* The random directions of paths need sines. */
-KernelVariant variant_of_scatter(const KrsRendering *rendering)
+KernelVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts)
 {
     KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     want(&to, KRS_FUNCTION_SURFACE);
     want(&to, KRS_FUNCTION_SINES);
     if (rendering->program->emits)
         define(&to, "#define EMISSIVE\n");
+    if (starts == KRS_STARTS_DISTANCE)
+        define(&to, "#define STARTS_BY_DISTANCE\n");
     if (rendering->program->subsurface)
         want(&to, KRS_FUNCTION_SUBSURFACE);
     want_materials(&to, rendering);
     want_media(&to, rendering);
     want_sky(&to, rendering);
+    define_choices(&to);
+    return to;
+}
+
+KernelVariant variant_of_even_hits(const KrsRendering *rendering)
+{
+    KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    want_rays(&to, rendering);
+    want(&to, KRS_FUNCTION_DISTANCE);
     define_choices(&to);
     return to;
 }
@@ -310,6 +321,7 @@ KernelVariant variant_for_any(const KrsScene *scene, const char *file, const Krs
         {"trace.comp", true, {0}, 0},
         {"query.comp", true, {0}, 0},
         {"normals.comp", false, {KRS_FUNCTION_DISTANCE}, 1},
+        {"even_hits.comp", false, {KRS_FUNCTION_DISTANCE}, 1},
         {"secondary.comp", false, {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_SINES}, 2},
         {"shade.comp", false, {KRS_FUNCTION_SURFACE}, 1},
         {"scatter.comp", false, {KRS_FUNCTION_SURFACE, KRS_FUNCTION_SINES}, 2},

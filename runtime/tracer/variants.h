@@ -30,7 +30,8 @@ KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals norma
 KernelVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace,
                                    KrsSchedule schedule, KrsPurpose purpose);
 KernelVariant variant_of_shade(const KrsRendering *rendering);
-KernelVariant variant_of_scatter(const KrsRendering *rendering);
+KernelVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts);
+KernelVariant variant_of_even_hits(const KrsRendering *rendering);
 KernelVariant variant_of_query(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule);
 KernelVariant variant_of_point_query(const KrsRendering *rendering);
 /* The source of a kernel.  It points into the variant, which must live as long. */

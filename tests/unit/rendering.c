@@ -139,6 +139,8 @@ static void wrong_use_is_refused(void **state)
         {.trace = KRS_TRACE_COUNT},
         {.schedule = KRS_SCHEDULE_COUNT},
         {.shadows = KRS_SHADOWS_COUNT},
+        {.starts = KRS_STARTS_COUNT},
+        {.even_hits = KRS_MOST_EVEN_HITS + 1},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         KrsPicture *picture;
