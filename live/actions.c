@@ -5,14 +5,13 @@
 
 #include <GLFW/glfw3.h>
 #include <math.h>
-#include <png.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "live/camera_text.h"
 #include "live/orbit.h"
+#include "live/saving.h"
 #include "live/text_edit.h"
 
 /* Of a turn for the height of the window. */
@@ -23,6 +22,8 @@
 #define WHEEL_FACTOR 0.88
 /* Of the distance to the target, in a second. */
 #define FLY_SPEED 0.8
+/* Of the distance: what is shown around a point of a component without an end. */
+#define NEAR_PART 0.1
 
 static void changed(Viewing *viewing)
 {
@@ -57,6 +58,24 @@ static void act_frame(Viewing *viewing)
     changed(viewing);
 }
 
+/* The component, or what is around the point where it has no end. */
+static void act_frame_part(Viewing *viewing)
+{
+    const Found  found  = viewing_find(viewing);
+    View        *view   = &viewing->view;
+    const double aspect = view->height > 0 ? (double)view->width / view->height : 1;
+    double       low[3], high[3];
+    if (!found.hit)
+        return;
+    if (!orbit_part_box(version_scene(view->version), found.component - 1, low, high))
+        for (int i = 0; i < 3; i++) {
+            low[i]  = found.position[i] - NEAR_PART * found.depth;
+            high[i] = found.position[i] + NEAR_PART * found.depth;
+        }
+    orbit_frame(&view->camera, low, high, aspect);
+    changed(viewing);
+}
+
 static void act_home(Viewing *viewing) { viewing_take_camera(viewing, viewing->camera); }
 
 static void act_next_camera(Viewing *viewing)
@@ -72,6 +91,25 @@ static void act_center(Viewing *viewing)
         return;
     orbit_target(&viewing->view.camera, found.position);
     changed(viewing);
+}
+
+static void focus_on(Viewing *viewing, const Found *found)
+{
+    KrsCamera *camera = &viewing->view.camera;
+    camera->focus     = found->depth;
+    if (camera->aperture > 0)
+        viewing_notice(viewing, "the lens is focused at %.4g", camera->focus);
+    else
+        viewing_notice(viewing, "the lens is focused at %.4g; all is sharp while its aperture is 0",
+                       camera->focus);
+    changed(viewing);
+}
+
+static void act_focus(Viewing *viewing)
+{
+    const Found found = viewing_find(viewing);
+    if (found.hit)
+        focus_on(viewing, &found);
 }
 
 static void look_along(Viewing *viewing, double x, double y, double z)
@@ -202,63 +240,24 @@ static void act_write_values(Viewing *viewing)
         viewing_notice(viewing, "%zu value%s written", written, written == 1 ? "" : "s");
 }
 
-/* The first name of a kind that is free, without its ending. */
-static void choose_name(const char *kind, const char *ending, char name[200])
+/* The first mistake of the text; if there is none, what is under the mouse. */
+static void act_edit(Viewing *viewing)
 {
-    char path[260];
-    int  number = 0;
-    do {
-        snprintf(name, 200, "%s-%04d", kind, number++);
-        snprintf(path, sizeof path, "%s%s", name, ending);
-    } while (access(path, F_OK) == 0 && number < 10000);
+    char        place[300];
+    const Found found = viewing_find(viewing);
+    for (size_t i = 0; i < viewing->remarks.count; i++)
+        if (viewing->remarks.items[i].error) {
+            remark_place(&viewing->remarks.items[i], place);
+            viewing_open_editor(viewing, place);
+            return;
+        }
+    if (found.hit && viewing_place(viewing, found.component, place))
+        viewing_open_editor(viewing, place);
 }
 
-static void act_save(Viewing *viewing)
-{
-    const Shot *shot = &viewing->shot;
-    char        name[200], path[260];
-    png_image   image = {.version = PNG_IMAGE_VERSION,
-                         .width   = shot->width,
-                         .height  = shot->height,
-                         .format  = PNG_FORMAT_RGBA};
-    choose_name("view", ".png", name);
-    snprintf(path, sizeof path, "%s.png", name);
-    if (viewing->pixels && png_image_write_to_file(&image, path, 0, viewing->pixels, 0, NULL))
-        viewing_notice(viewing, "saved %s", path);
-    else
-        viewing_notice(viewing, "%s cannot be written", path);
-}
+static void act_save(Viewing *viewing) { saving_keep_shot(viewing); }
 
-/* What the panel says, from where the view's camera is. */
-static SaveOrder make_order(const Viewing *viewing)
-{
-    SaveOrder order = {.view   = viewing->view,
-                       .kind   = viewing->save.kind,
-                       .frames = viewing->save.frames,
-                       .fps    = viewing->options->fps,
-                       .camera = viewing->moved ? -1 : (int)viewing->camera,
-                       .exr    = viewing->save.exr};
-    char      ending[16];
-    snprintf(ending, sizeof ending, "%s.%s", order.kind == SAVE_PICTURE ? "" : "-0000",
-             order.exr ? "exr" : "png");
-    choose_name(order.kind == SAVE_PICTURE ? "view" : save_names[order.kind], ending, order.name);
-    if (viewing->save.width > 0 && viewing->save.height > 0) {
-        order.view.width  = viewing->save.width;
-        order.view.height = viewing->save.height;
-    }
-    if (viewing->save.samples > 0)
-        order.view.samples = viewing->save.samples;
-    return order;
-}
-
-static void act_save_file(Viewing *viewing)
-{
-    const SaveOrder order = make_order(viewing);
-    if (saver_state(viewing->saver).busy)
-        saver_cancel(viewing->saver);
-    else if (saver_start(viewing->saver, &order))
-        viewing_notice(viewing, "saving %s", order.name);
-}
+static void act_save_file(Viewing *viewing) { saving_start_or_stop(viewing); }
 
 static void act_look(Viewing *viewing)
 {
@@ -317,6 +316,15 @@ static void act_numbers(Viewing *viewing) { viewing->numbers = !viewing->numbers
 
 static void act_panels(Viewing *viewing) { viewing->panels = !viewing->panels; }
 
+static void act_into_panel(Viewing *viewing)
+{
+    if (!viewing->window)
+        return;
+    viewing->panels = true;
+    viewing->help   = false;
+    window_navigate(viewing->window);
+}
+
 static void act_help(Viewing *viewing) { viewing->help = !viewing->help; }
 
 static void act_quit(Viewing *viewing)
@@ -350,6 +358,10 @@ void act_key(void *user, int key, int modifiers)
         key += GLFW_KEY_0 - GLFW_KEY_KP_0;
     if (key == GLFW_KEY_KP_ADD || key == GLFW_KEY_KP_SUBTRACT)
         key = key == GLFW_KEY_KP_ADD ? GLFW_KEY_EQUAL : GLFW_KEY_MINUS;
+    if (viewing->help && (key == GLFW_KEY_UP || key == GLFW_KEY_DOWN)) {
+        viewing->scrolled += key == GLFW_KEY_UP ? -1 : 1;
+        return;
+    }
     for (size_t i = 0; i < action_count; i++)
         if (actions[i].key == key && actions[i].modifiers == counted) {
             actions[i].act(viewing);
@@ -396,10 +408,8 @@ void act_click(void *user, int button, int modifiers)
         return;
     if ((modifiers & GLFW_MOD_CONTROL) && viewing_place(viewing, found.component, place))
         viewing_open_editor(viewing, place);
-    else if (modifiers & GLFW_MOD_ALT) {
-        viewing->view.camera.focus = found.depth;
-        changed(viewing);
-    }
+    else if (modifiers & GLFW_MOD_ALT)
+        focus_on(viewing, &found);
 }
 
 /* ---- what goes on by itself ---- */

@@ -10,6 +10,7 @@
 #include <poll.h>
 #include <pthread.h>
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/eventfd.h>
@@ -65,6 +66,11 @@ unsigned version_structure(const Version *version) { return version->structure; 
 KrsChanges version_changes(const Version *version) { return version->changes; }
 
 /* ---- remarks ---- */
+
+void remark_place(const Remark *remark, char place[300])
+{
+    snprintf(place, 300, "%s:%u", remark->source, remark->line);
+}
 
 void remarks_free(Remarks *remarks)
 {

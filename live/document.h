@@ -27,6 +27,9 @@ typedef struct Remark {
     uint32_t    line, column;
 } Remark;
 
+/* "a.krs:3" */
+void remark_place(const Remark *remark, char place[300]);
+
 typedef struct Remarks {
     Remark *items;
     size_t  count, errors;

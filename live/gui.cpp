@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include <cmath>
+#include <cstring>
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
@@ -13,6 +14,7 @@ namespace
 {
 
 ImFont     *plain, *source;
+const char *navigated; // the panel that is to have the keys; nullptr: it has them, or none has
 const float margin = 12, labels = 0.36f;
 
 ImVec4 tone_color(GuiTone tone)
@@ -144,6 +146,29 @@ void gui_end(void)
 bool gui_has_mouse(void) { return ImGui::GetIO().WantCaptureMouse; }
 bool gui_has_keys(void) { return ImGui::GetIO().WantTextInput; }
 
+void gui_navigate(const char *panel)
+{
+    ImGuiIO &io = ImGui::GetIO();
+    navigated   = panel;
+    if (panel) {
+        io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+        return;
+    }
+    io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
+    ImGui::SetWindowFocus(nullptr);
+}
+
+bool gui_navigates(void)
+{
+    return (ImGui::GetIO().ConfigFlags & ImGuiConfigFlags_NavEnableKeyboard) != 0;
+}
+
+bool gui_is_inside(void)
+{
+    const int any = ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel;
+    return ImGui::IsAnyItemActive() || ImGui::IsPopupOpen(nullptr, any);
+}
+
 void gui_backdrop(unsigned texture)
 {
     const ImTextureID id = reinterpret_cast<ImTextureID>(static_cast<size_t>(texture));
@@ -162,16 +187,20 @@ void gui_panel(const char *name, GuiCorner corner, float below, float width, boo
     const ImVec2 size  = ImGui::GetIO().DisplaySize;
     const float  most  = size.y - 2 * margin - below;
     int          flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav |
-                ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize;
+                ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                ImGuiWindowFlags_AlwaysAutoResize;
     if (quiet)
-        flags |= ImGuiWindowFlags_NoInputs;
+        flags |= ImGuiWindowFlags_NoInputs; // of keys as well
     else
         flags &= ~ImGuiWindowFlags_NoScrollbar;
     place(corner, below);
     ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width > 0 ? width : size.x, most));
     if (quiet)
         ImGui::SetNextWindowBgAlpha(0.72f);
+    if (navigated && std::strcmp(navigated, name) == 0) {
+        ImGui::SetNextWindowFocus();
+        navigated = nullptr;
+    }
     ImGui::Begin(name, nullptr, flags);
 }
 
@@ -313,8 +342,31 @@ void gui_keys(const char *keys, const char *does)
     ImGui::PushFont(source);
     gui_text(GUI_STRONG, keys);
     ImGui::PopFont();
-    ImGui::SameLine(13 * ImGui::GetFontSize());
+    ImGui::SameLine(8.5f * ImGui::GetFontSize());
     gui_text(GUI_PLAIN, does);
+}
+
+void gui_columns(int count)
+{
+    const float  gap = 1.2f * ImGui::GetFontSize(), needed = 58 * ImGui::GetFontSize();
+    const ImVec2 old = ImGui::GetStyle().CellPadding;
+    ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, ImVec2(gap / 2, old.y));
+    ImGui::BeginTable("columns", ImGui::GetIO().DisplaySize.x < needed ? 1 : count,
+                      ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoPadOuterX);
+    ImGui::TableNextColumn();
+}
+
+void gui_next_column(void) { ImGui::TableNextColumn(); }
+void gui_columns_end(void)
+{
+    ImGui::EndTable();
+    ImGui::PopStyleVar();
+}
+
+void gui_scroll(int lines)
+{
+    const float step = static_cast<float>(lines) * ImGui::GetTextLineHeightWithSpacing();
+    ImGui::SetScrollY(ImGui::GetScrollY() + step);
 }
 
 } // extern "C"

@@ -23,6 +23,10 @@ void gui_end(void);   /* and draw it */
 /* Whether mouse or keys are used by a panel just now. */
 bool gui_has_mouse(void);
 bool gui_has_keys(void);
+/* Keys go to the panel of this name; NULL: to none. */
+void gui_navigate(const char *panel);
+bool gui_navigates(void);
+bool gui_is_inside(void); /* of an item of the panel, which Esc leaves first */
 
 /* A texture behind all panels, over the whole window. */
 void gui_backdrop(unsigned texture);
@@ -63,6 +67,11 @@ bool gui_choice(const char *label, int *chosen, const char *const *names, size_t
 bool gui_input(const char *label, char *text, size_t size);
 void gui_progress(double done);                    /* a bar; `done` is from 0 to 1 */
 void gui_keys(const char *keys, const char *does); /* a row of the help */
+/* Columns side by side, each as wide as what it has; below each other in a narrow window. */
+void gui_columns(int count);
+void gui_next_column(void);
+void gui_columns_end(void);
+void gui_scroll(int lines); /* of the panel that is being drawn */
 
 #ifdef __cplusplus
 }

@@ -246,18 +246,27 @@ void orbit_target(KrsCamera *camera, const double point[3])
     camera->focus = 0;
 }
 
+bool orbit_part_box(const KrsScene *scene, size_t component, double low[3], double high[3])
+{
+    KrsComponent found;
+    bool         finite = krs_component(scene, component, &found) == KRS_OK;
+    for (int k = 0; finite && k < 3; k++) {
+        low[k]  = found.low[k];
+        high[k] = found.high[k];
+        finite  = isfinite(low[k]) && isfinite(high[k]) && low[k] <= high[k];
+    }
+    return finite;
+}
+
 bool orbit_box(const KrsScene *scene, double low[3], double high[3])
 {
     bool any = false;
     for (size_t i = 0; i < krs_component_count(scene); i++) {
-        KrsComponent component;
-        bool         finite = krs_component(scene, i, &component) == KRS_OK;
-        for (int k = 0; k < 3; k++)
-            finite = finite && isfinite(component.low[k]) && isfinite(component.high[k]) &&
-                     component.low[k] <= component.high[k];
+        double     least[3], most[3];
+        const bool finite = orbit_part_box(scene, i, least, most);
         for (int k = 0; finite && k < 3; k++) {
-            low[k]  = any ? fmin(low[k], component.low[k]) : component.low[k];
-            high[k] = any ? fmax(high[k], component.high[k]) : component.high[k];
+            low[k]  = any ? fmin(low[k], least[k]) : least[k];
+            high[k] = any ? fmax(high[k], most[k]) : most[k];
         }
         any = any || finite;
     }

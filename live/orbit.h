@@ -34,6 +34,8 @@ void orbit_target(KrsCamera *camera, const double point[3]);
 
 /* The unit direction of sight, and those of the picture's right and top. */
 void orbit_axes(const KrsCamera *camera, double forward[3], double right[3], double up[3]);
+/* The box around a component; false: it has no end. */
+bool orbit_part_box(const KrsScene *scene, size_t component, double low[3], double high[3]);
 /* The box around all components that have an end; false: there is none. */
 bool orbit_box(const KrsScene *scene, double low[3], double high[3]);
 

@@ -11,6 +11,8 @@
 #include "live/gui.h"
 
 #define PANEL_WIDTH 320
+/* Keys in the first column of the help, below the mouse. */
+#define FIRST_KEYS 12
 
 static double encode_srgb(double linear)
 {
@@ -232,6 +234,9 @@ static void draw_controls(Viewing *viewing)
     gui_gap();
     if (gui_section("SAVE"))
         draw_save(viewing);
+    if (gui_drag("frame", &viewing->budget, 1, 0.5, 5, 1000, "%.0f ms"))
+        painter_set_budget(viewing->painter, viewing->budget);
+    gui_tip("How long a picture may take while something moves. More: finer, and slower.");
     gui_panel_end();
 }
 
@@ -251,6 +256,8 @@ static void draw_doing(const Viewing *viewing)
         snprintf(line, sizeof line, "the scene refuses these values");
     if (line[0])
         gui_text(GUI_WARNING, line);
+    if (gui_navigates())
+        gui_text(GUI_PLAIN, "keys go to the panel; Esc: back");
     if (painting->compiling)
         gui_progress(painting->compiled);
 }
@@ -307,7 +314,8 @@ static void draw_found(Viewing *viewing)
         return;
     gui_panel("found", GUI_BOTTOM_RIGHT, 0, 0, true);
     const char *where = viewing_place(viewing, found.component, place);
-    snprintf(line, sizeof line, "%s   %s", component.name, where ? where : "");
+    snprintf(line, sizeof line, "%s   %s   %s", component.name,
+             viewing_shape(viewing, found.component), where ? where : "");
     gui_text(GUI_STRONG, line);
     snprintf(line, sizeof line, "%.4g, %.4g, %.4g   distance %.4g   level %u   instance %u",
              found.position[0], found.position[1], found.position[2], found.depth, found.level,
@@ -329,7 +337,7 @@ static void draw_remarks(Viewing *viewing)
         char    label[32], place[300];
         GuiTone tone = remark->error ? GUI_ERROR : remark->note ? GUI_FAINT : GUI_WARNING;
         snprintf(label, sizeof label, "remark%zu", i);
-        snprintf(place, sizeof place, "%s:%u", remark->source, remark->line);
+        remark_place(remark, place);
         if (gui_line(label, remark->text, tone))
             viewing_open_editor(viewing, place);
     }
@@ -338,9 +346,13 @@ static void draw_remarks(Viewing *viewing)
     gui_panel_end();
 }
 
-static void draw_help(void)
+/* Two columns, so that all of it is seen in a small window. */
+static void draw_help(Viewing *viewing)
 {
     gui_panel("help", GUI_CENTER, 0, 0, false);
+    gui_scroll(viewing->scrolled);
+    viewing->scrolled = 0;
+    gui_columns(2);
     gui_text(GUI_STRONG, "Mouse");
     gui_keys("left", "turn; with Shift move");
     gui_keys("middle", "move");
@@ -351,17 +363,22 @@ static void draw_help(void)
     gui_keys("wheel", "nearer to what is under the mouse, or farther");
     gui_gap();
     gui_text(GUI_STRONG, "Keys");
+    size_t rows = 0;
     gui_keys("W A S D E Q", "fly: ahead, left, back, right, up, down");
     for (size_t i = 0; i < action_count; i++)
-        if (actions[i].keys)
+        if (actions[i].keys) {
             gui_keys(actions[i].keys, actions[i].does);
+            if (++rows == FIRST_KEYS)
+                gui_next_column();
+        }
+    gui_columns_end();
     gui_panel_end();
 }
 
 void panels_draw(Viewing *viewing)
 {
     if (viewing->help) {
-        draw_help();
+        draw_help(viewing);
         return;
     }
     if (viewing->panels && viewing->view.version) {

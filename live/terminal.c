@@ -160,6 +160,8 @@ static void read_character(char typed, int *key, int *modifiers)
         }
     if (typed >= 'a' && typed <= 'z') {
         *key = typed - 'a' + GLFW_KEY_A;
+    } else if (typed >= 'A' && typed <= 'Z') {
+        *modifiers = GLFW_MOD_SHIFT;
     } else if (typed > 0 && typed < 27) {
         *key       = typed - 1 + GLFW_KEY_A;
         *modifiers = GLFW_MOD_CONTROL;

@@ -309,7 +309,7 @@ static KrsStatus run(Viewing *viewing, char message[256])
     const PainterOptions painting = {.renderer = options->renderer,
                                      .wake     = wake_viewer,
                                      .user     = viewing,
-                                     .budget   = options->budget > 0 ? options->budget : BUDGET_MS};
+                                     .budget   = viewing->budget};
     viewing->painter              = painter_new(&painting);
     viewing->saver                = saver_new(&options->renderer, wake_viewer, viewing);
     if (!viewing->painter || !viewing->saver ||
@@ -326,7 +326,11 @@ static KrsStatus run(Viewing *viewing, char message[256])
 
 KrsStatus viewer_run(const ViewerOptions *options, char message[256])
 {
-    Viewing viewing = {.options = options, .panels = true, .loop = 10, .save = {.frames = 36}};
+    Viewing viewing = {.options = options,
+                       .panels  = true,
+                       .budget  = options->budget > 0 ? options->budget : BUDGET_MS,
+                       .loop    = 10,
+                       .save    = {.frames = 36}};
     message[0]      = '\0';
     atomic_init(&viewing.closing, false);
     atomic_init(&viewing.prepares, false);

@@ -53,6 +53,8 @@ Found viewing_find(Viewing *viewing)
     double x = 0.5, y = 0.5;
     if (viewing->window)
         window_mouse(viewing->window, &x, &y);
+    if (x < 0 || x >= 1 || y < 0 || y >= 1) /* who has keys alone means the middle */
+        x = y = 0.5;
     return painter_find(viewing->painter, x, y);
 }
 
@@ -65,6 +67,26 @@ const char *viewing_place(const Viewing *viewing, uint32_t component, char place
         return NULL;
     snprintf(place, 300, "%s:%u", bound.source, bound.line);
     return place;
+}
+
+/* Entries come before their parts. */
+const char *viewing_shape(const Viewing *viewing, uint32_t component)
+{
+    const KrsScene *scene = version_scene(viewing->view.version);
+    const char     *name  = "";
+    KrsBound        bound, part, other;
+    for (size_t i = 0; krs_bound(scene, component - 1, i, &bound) == KRS_OK; i++) {
+        name = bound.name;
+        if (krs_bound(scene, component - 1, i + 1, &part) != KRS_OK || part.depth <= bound.depth)
+            break;
+        size_t next = i + 2; /* after the first part */
+        while (krs_bound(scene, component - 1, next, &other) == KRS_OK && other.depth > part.depth)
+            next++;
+        if (part.alike > 0 ||
+            (krs_bound(scene, component - 1, next, &other) == KRS_OK && other.depth == part.depth))
+            break; /* several parts */
+    }
+    return name;
 }
 
 /* The place is an argument of its own, so that no name of a file is taken for a command. */

@@ -45,6 +45,7 @@ typedef struct Viewing {
     double   played_at; /* when the time was last moved on */
     double   flown_at;
     bool     grounded; /* a key of flying was pressed for something else, and is not released yet */
+    double   budget;   /* milliseconds of a frame while something moves */
     double   loop;     /* seconds after which time begins again; 0: never */
     History *history;
     bool     undoing;     /* the view changes by undo or redo */
@@ -52,6 +53,7 @@ typedef struct Viewing {
     char     notice[160]; /* what was done last */
     double   noticed_at;
     bool     panels, help, numbers;
+    int      scrolled; /* lines of the help, since it was drawn */
     Cut      cut;
     Presets  presets;
     char     preset[64]; /* the name of the next one */
@@ -71,10 +73,12 @@ void viewing_notice(Viewing *viewing, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 /* There is something new to show; for any thread. */
 void viewing_wake(Viewing *viewing);
-/* What is under the mouse; in a terminal, in the middle. */
+/* What is under the mouse; in the middle, if there is none over the picture. */
 Found viewing_find(Viewing *viewing);
 /* Where the text has the component of this number, from 1; NULL: nowhere.  "a.krs:3" */
 const char *viewing_place(const Viewing *viewing, uint32_t component, char place[300]);
+/* What the component of this number is, without what moves or paints it: "torus", "union"; or "". */
+const char *viewing_shape(const Viewing *viewing, uint32_t component);
 /* Opens $KRS_EDITOR at a place. */
 void viewing_open_editor(Viewing *viewing, const char *place);
 /* Seconds of a clock that only goes forward. */

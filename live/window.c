@@ -47,7 +47,11 @@ static void on_key(GLFWwindow *glfw, int key, int code, int action, int modifier
 {
     Window *window = glfwGetWindowUserPointer(glfw);
     (void)code;
-    if (action != GLFW_RELEASE && !gui_has_keys())
+    if (gui_navigates()) {
+        const bool leaves = key == GLFW_KEY_F2 || (key == GLFW_KEY_ESCAPE && !gui_is_inside());
+        if (leaves && action == GLFW_PRESS)
+            gui_navigate(NULL);
+    } else if (action != GLFW_RELEASE && !gui_has_keys())
         window->events.key(window->events.user, key, modifiers);
 }
 
@@ -251,12 +255,18 @@ void window_mouse(const Window *window, double *x, double *y)
 
 bool window_key_is_held(const Window *window, int key)
 {
-    return glfwGetKey(window->glfw, key) == GLFW_PRESS;
+    return !gui_has_keys() && !gui_navigates() && glfwGetKey(window->glfw, key) == GLFW_PRESS;
 }
 
 void window_set_title(Window *window, const char *title)
 {
     glfwSetWindowTitle(window->glfw, title);
+}
+
+void window_navigate(Window *window)
+{
+    (void)window;
+    gui_navigate("controls");
 }
 
 void window_copy(Window *window, const char *text) { glfwSetClipboardString(window->glfw, text); }

@@ -6,7 +6,7 @@
 export XDG_CACHE_HOME="$work/caches"
 unset WAYLAND_DISPLAY
 "${CC:-cc}" -std=c17 -o screen_check "$root/tests/cli/screen_check.c" -lpng || exit 1
-plan 28
+plan 31
 : >out
 
 scene() { # radius
@@ -129,6 +129,29 @@ sed 1d written.krs >rest
 sed 1d scene.krs | cmp - rest >out 2>&1 && grep -q '^camera { eye: .*orthographic.* }$' scene.krs &&
     "$krs" render scene.krs --size 96x64 --samples 1 --specialize structure -q -o b.png 2>err && screen_is b.png
 result $? "the camera is written into the text, and nothing else"
+# By keys alone: the first item of the panel is the slider.
+xdotool key --delay 150 F2 Down space Left Left Left F2
+xdotool key ctrl+s
+for _ in $(seq 50); do grep -q 'r = 0.7[0-4]' scene.krs && break; sleep 0.1; done
+grep -q '^param r = 0.7[0-4][0-9]* in \[0.5, 2\];$' scene.krs
+result $? "keys pull a slider"
+rm -f opened
+echo 'show spere(1);' >scene.krs
+heard "a name that is similar exists: \`sphere\`" 1
+for _ in $(seq 20); do
+    xdotool key o
+    sleep 0.2
+    grep -qs ':1$' opened && break
+done
+[ "$(cat opened)" = "-g scene.krs:1" ]
+result $? "a key opens the text at its mistake"
+printf 'camera { eye: [0, 1, 9], target: [0, 1, 0] }\nshow box([1, 1, 1]).move([0.5, 1, 0]);\nshow sphere(0.5).move([9, 0, 0]);\n' >scene.krs
+xdotool key h
+"$krs" render scene.krs --size 96x64 --samples 1 --specialize structure -q -o b.png 2>err && screen_is b.png
+xdotool key shift+f ctrl+e
+for _ in $(seq 50); do grep -q 'target: \[0.5, 1, 0\]' scene.krs && break; sleep 0.1; done
+grep -q 'target: \[0.5, 1, 0\]' scene.krs
+result $? "a key frames what is under the mouse"
 printf 'camera { eye: [4, 3, 6] } show sphere(1);' >own.krs
 # shellcheck disable=SC2046 # many words
 (cd "$root" && "${CC:-cc}" -Wall -Wextra -Werror -I. -o "$work/own" examples/c/view.c "${B:-build}/libkrs.a" \
