@@ -6,7 +6,7 @@ packages="g++ glslang-dev glslang-tools spirv-tools libvulkan-dev mesa-vulkan-dr
           libharfbuzz-dev libfontconfig-dev libexpat1-dev fonts-dejavu-core libglfw3-dev libimgui-dev libgl-dev libchafa-dev
           libx11-dev libgl1-mesa-dri xvfb xdotool openbox libcmocka-dev clang-14
           clang-format-14 libclang-rt-14-dev shellcheck strace openexr patch pkgconf
-          chromium-common admesh libtinygltf-dev lib3mf-dev libmeshoptimizer-dev assimp-utils python3-numpy"
+          chromium-common admesh libtinygltf-dev lib3mf-dev libmeshoptimizer-dev assimp-utils python3-numpy libcgal-dev"
 
 missing=""
 for package in $packages; do
