@@ -214,6 +214,15 @@ static Range range_by_rule(uint16_t op, const Operand *o, uint32_t count)
     return op_fact((Op)op, TYPE_FLOAT, 0, types, facts, NULL).value[0];
 }
 
+/* Whether an operand is the same everywhere: some rules know values only then. */
+static bool is_scalar(const LaneCall *call, uint32_t operand, GraphType type)
+{
+    uint32_t scalars = 0;
+    for (uint32_t c = 0; c < type_size(type); c++)
+        scalars += (call->operands[operand][c] & LANE_SCALAR) != 0;
+    return scalars == type_size(type);
+}
+
 static void run_call(const LaneTape *tape, const LaneRanges *ranges, size_t step)
 {
     const LaneCall *call  = &tape->calls[tape->steps[step].operands[0]];
@@ -224,7 +233,7 @@ static void run_call(const LaneTape *tape, const LaneRanges *ranges, size_t step
     bool            sure = op_promises((Op)e->op, STAYS_FINITE);
     for (uint32_t k = 0; k < e->operand_count; k++) {
         types[k] = graph->items[e->operands[k]].type;
-        facts[k] = fact_unknown(type_size(types[k]));
+        facts[k] = is_scalar(call, k, types[k]) ? (Fact){0} : fact_unknown(type_size(types[k]));
         for (uint32_t c = 0; c < type_size(types[k]); c++) {
             Operand o         = operand_for(tape, ranges, LANE_CALL, call->operands[k][c]);
             facts[k].value[c] = o.range;

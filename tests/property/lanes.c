@@ -27,6 +27,19 @@ typedef struct Pair {
     Node       roots[ROOTS];
 } Pair;
 
+/* Of the roots. */
+static void pair_finish(Bench *b, Pair *pair, const NodeValue *parameters)
+{
+    pair->tape   = tape_new(b->graph, pair->roots, ROOTS, &b->arena);
+    pair->values = arena_new_array(&b->arena, NodeValue, b->graph->count);
+    tape_run_frame(&pair->tape, parameters, pair->values);
+    pair->lanes         = lane_tape_new(&pair->tape, pair->roots, ROOTS, false, 0, &b->arena);
+    pair->lanes.scalars = arena_new_array(&b->arena, double, pair->lanes.scalar_count + 1);
+    lane_tape_scalars(&pair->lanes, pair->values, pair->lanes.scalars);
+    pair->work = lane_work_in(arena_alloc(&b->arena, lane_work_bytes(&pair->lanes), 1),
+                              pair->values);
+}
+
 static void pair_make(Bench *b, Pair *pair)
 {
     b->graph      = graph_new(&b->arena);
@@ -34,14 +47,7 @@ static void pair_make(Bench *b, Pair *pair)
     Place  place  = random_place(b);
     for (int i = 0; i < ROOTS; i++)
         pair->roots[i] = garden.nodes[garden.count - 1 - random_below(&b->random, 20)];
-    pair->tape   = tape_new(b->graph, pair->roots, ROOTS, &b->arena);
-    pair->values = arena_new_array(&b->arena, NodeValue, b->graph->count);
-    tape_run_frame(&pair->tape, place.parameters, pair->values);
-    pair->lanes         = lane_tape_new(&pair->tape, pair->roots, ROOTS, false, 0, &b->arena);
-    pair->lanes.scalars = arena_new_array(&b->arena, double, pair->lanes.scalar_count + 1);
-    lane_tape_scalars(&pair->lanes, pair->values, pair->lanes.scalars);
-    pair->work = lane_work_in(arena_alloc(&b->arena, lane_work_bytes(&pair->lanes), 1),
-                              pair->values);
+    pair_finish(b, pair, place.parameters);
 }
 
 /* Mostly usual coordinates, and those that operations may stumble over. */
@@ -242,6 +248,28 @@ static void ranges_hold_and_pruning_changes_nothing(void **state)
     assert_true(tally.left < 0.9 * (double)tally.steps);
 }
 
+/* Copies around an axis are a call, whose rule knows values only where their number is the same everywhere. */
+static void copies_around_an_axis_have_ranges(void **state)
+{
+    Bench *b    = *state;
+    Box    box  = {{{1, 1.1}, {-0.1, 0.1}, {-0.4, 0.4}}};
+    Pair   pair = {0};
+    b->graph    = graph_new(&b->arena);
+    for (int i = 0; i < ROOTS; i++)
+        pair.roots[i] = graph_op2(b->graph, OP_cell_polar, graph_leaf(b->graph, OP_POINT),
+                                  graph_number(b->graph, 7));
+    pair_finish(b, &pair, NULL);
+    LaneRanges ranges = lane_ranges_new(&pair.lanes, &b->arena);
+    lane_ranges_run(&pair.lanes, &ranges, box);
+    for (size_t i = 0; i < 3; i++) {
+        Range range = lane_ranges_output(&pair.lanes, &ranges, i);
+        assert_true(range.low >= -1.2 && range.high <= 1.2);
+    }
+    Tally tally = {0};
+    try_box(b, &pair, box, box, &tally);
+    assert_true(tally.outside + tally.different + tally.unsure == 0);
+}
+
 static void what_is_pruned_for_less_is_seen(void **state)
 {
     Bench *b     = *state;
@@ -281,6 +309,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(lanes_give_what_tapes_give, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(ranges_hold_and_pruning_changes_nothing, bench_start,
                                         bench_stop),
+        cmocka_unit_test_setup_teardown(copies_around_an_axis_have_ranges, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(what_is_pruned_for_less_is_seen, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(slopes_hold, bench_start, bench_stop),
     };
