@@ -17,6 +17,9 @@
 #include "compiler/mesh/lens.h"
 
 enum { MOST_UNRESOLVED = 16, MOST_HALVINGS = 80 };
+/* Parts of a cell's radius from where on a lens is worth another try: the last was too thick; or the surface had
+   an edge, or derivatives no bounds, which parts share with the whole more often. */
+static const double LESS_FLAT = 0.7, LESS_STEEP = 0.35;
 /* Parts of the error: what is smaller is not divided further. */
 static const double TINY_CELL = 0.25, TINY_TRIANGLE = 0.125;
 
@@ -49,7 +52,8 @@ static bool is_flat_by_balls(const Verifier *verifier, const double corners[4][3
 }
 
 static bool is_flat_by_slope(const Verifier *verifier, const double corners[4][3],
-                             const double center[3], double radius, double distance)
+                             const double center[3], double radius, double distance,
+                             bool *has_gradient)
 {
     Lens      lens = {.radius = radius};
     Box       box  = corners_box(corners, 4, 0);
@@ -59,7 +63,8 @@ static bool is_flat_by_slope(const Verifier *verifier, const double corners[4][3
     bool      bounded = field_slope(verifier->field, box, &range, &slope);
     if (range.low > 0 || range.high < 0)
         return true;
-    if (!bounded || !find_gradient(&slope, &gradient))
+    *has_gradient = bounded && find_gradient(&slope, &gradient);
+    if (!*has_gradient)
         return false;
     find_lens_by_slope(&gradient, center, distance, &lens);
     return is_beside_lens(&lens, corners) ||
@@ -95,6 +100,7 @@ typedef struct CellView {
     double center[3], radius, distance;
     bool   near_mesh, may_be_flat;
     double direction[3]; /* in which the distance grows, if it may be flat; it need not be exact */
+    bool   has_gradient; /* there are bounds of derivatives, as far as they were asked for */
 } CellView;
 
 /* Cells that are still to be looked at, the smallest last. */
@@ -155,7 +161,8 @@ static bool is_flat(const Verifier *verifier, const Cell *cell, CellView *view)
     return (normalize3(view->direction) &&
             is_flat_by_balls(verifier, cell->corners, view->center, view->radius, view->distance,
                              view->direction)) ||
-           is_flat_by_slope(verifier, cell->corners, view->center, view->radius, view->distance);
+           is_flat_by_slope(verifier, cell->corners, view->center, view->radius, view->distance,
+                            &view->has_gradient);
 }
 
 /* False: the mesh is refuted. */
@@ -171,7 +178,7 @@ static bool cell_is_near_mesh(Verifier *verifier, Cells *cells, const Cell *cell
     if (view->may_be_flat) {
         if (is_flat(verifier, cell, view))
             return true;
-        lens = 0.7 * view->radius;
+        lens = (view->has_gradient ? LESS_FLAT : LESS_STEEP) * view->radius;
     }
     if (view->radius < TINY_CELL * error || cell->halvings == MOST_HALVINGS)
         return leave_unresolved(verifier, view->center, view->distance);
