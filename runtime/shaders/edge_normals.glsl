@@ -4,7 +4,9 @@
  * Differences that reach across an edge give a mean of the normals of its sides, which may mirror
  * light where neither side does.  So where the distance bends over the wide taps, nearer taps are
  * evaluated, which mostly see one side alone.  Where an edge is nearer still, they are evaluated
- * around a point a little outside, or inside.
+ * around a point a little outside, or inside.  Next to the line itself all of these see both sides.
+ * So they are evaluated across it at last: at a point beside the hit and a little outside, towards
+ * the eye or else at a right angle to that.
  *
  * The nearer taps are believed if the wide ones confirm them: the surface is flat and ends at an
  * edge.  Then one of each two opposite wide taps sees the same plane: the minimum or maximum of
@@ -26,16 +28,19 @@ const float THIN = 4.0;            // and below THIN
 const float SHARP = 0.5;           // nearer taps are for bends above SHARP: not by curvature alone,
 const float THIN = 1.0;            // and below THIN: else taps on both sides are outside
 #endif
-const float KINK = 0.06;           // nearer taps that bend more have an edge between them
 const float FLATTER = 0.008;       // largest bend of one side, relative to the wide bend, as
                                    // curvature bends in proportion to the reach
+// How far beside and outside of a hit on the line of an edge, in reaches of the nearer taps.  There
+// an edge of any angle from 30 to 150 degrees has one side nearer than the other.
+const float BESIDE_REACHES = 8.0, ABOVE_REACHES = 4.0;
 const float FACING_ALIKE = 0.3;    // the least cosine between a side and the mean
 const float ON_PLANE = 0.06;       // largest deviation from a plane, in parts of the reach
 const float FACING_SAME = 0.999;   // the least cosine between a plane and the taps beside the edge
 
-const uint WIDE = 0u, AT_HIT = 1u, OUTSIDE = 2u, INSIDE = 3u, BESIDE = 4u, ONE_SIDE = 5u, MEAN = 6u;
+const uint WIDE = 0u, AT_HIT = 1u, OUTSIDE = 2u, INSIDE = 3u, TO_EYE = 4u, ACROSS = 5u, BESIDE = 6u,
+           ONE_SIDE = 7u, MEAN = 8u;
 #ifdef PLAIN
-const uint FIRST = AT_HIT, LAST = INSIDE;
+const uint FIRST = AT_HIT, LAST = ACROSS;
 #else // most other detail is finer than a pixel
 const uint FIRST = OUTSIDE, LAST = OUTSIDE;
 #endif
@@ -50,12 +55,28 @@ vec3  plane_normal;    // of the plane that is looked for beside the edge
 // The bend: how far the distances are from those to a plane, in parts of the reach.
 float find_bend() { return length(level - 2.0 * middle) / length(sum); }
 
+// The point of the nearer taps for a hit on the line of an edge, relative to the hit, in reaches.
+vec3 find_place_across(bool turned)
+{
+    vec3 mean = normalize(sum_wide), backwards = find_backwards(), right, up;
+    find_frame(mean, right, up);
+    vec3  to_eye = backwards - dot(backwards, mean) * mean;
+    float size = length(to_eye);
+    to_eye = size > 1e-3 ? to_eye / size : right;
+    return BESIDE_REACHES * (turned ? cross(mean, to_eye) : to_eye) + ABOVE_REACHES * mean;
+}
+
 void begin_tap_set(uint which)
 {
     float outward = which == OUTSIDE ? OUTWARD_REACHES : which == INSIDE ? -OUTWARD_REACHES : 0.0;
     tap_set = which;
     t = max(NEARER * reach, NOISE_NEARER * largest(hit.position) + hit.rounding);
-    start = hit.position + outward * t * (normalize(sum_wide) + find_backwards());
+    vec3 place = outward * (normalize(sum_wide) + find_backwards());
+#ifdef PLAIN
+    if (which == TO_EYE || which == ACROSS)
+        place = find_place_across(which == ACROSS);
+#endif
+    start = hit.position + t * place;
     begin_taps();
     tap_limit = TAPS + 1u; // the first one is in the middle
     direction = vec3(0.0);
@@ -97,8 +118,9 @@ void end_wide_taps()
 bool is_one_side(float bend)
 {
     bool alike = dot(sum, sum_wide) > FACING_ALIKE * length(sum) * length(sum_wide);
-    return alike && tap_set != INSIDE && bend < FLATTER * bend_wide ||
-           bend < FLAT_ENOUGH && is_confirmed();
+    bool visible = tap_set < TO_EYE || dot(sum, find_backwards()) > 0.0;
+    return visible && (alike && tap_set != INSIDE && bend < FLATTER * bend_wide ||
+                       bend < FLAT_ENOUGH && is_confirmed());
 }
 
 // Begins the taps beside an edge at which another solid stands: a reach away from that solid, along
@@ -123,11 +145,11 @@ void end_nearer_taps()
 {
     float bend = find_bend();
     at_hit = tap_set == AT_HIT ? middle : at_hit;
-    if (bend > KINK && tap_set < LAST)
-        begin_tap_set(tap_set + 1u);
-    else if (is_one_side(bend))
+    if (is_one_side(bend))
         tap_set = ONE_SIDE;
-    else if (bend < FLAT_ENOUGH && tap_set != INSIDE)
+    else if (bend > FLAT_ENOUGH && tap_set < LAST) // an edge lies between the taps
+        begin_tap_set(tap_set + 1u);
+    else if (bend < FLAT_ENOUGH && tap_set < INSIDE)
         begin_beside();
     else
         tap_set = MEAN;

@@ -21,6 +21,8 @@ const float ON_PLANE = 1.5, LEAST_WEIGHT = 0.5, NEAR_REACH = 3.0, WIDE_REACH = 8
 // The reach of the wider mean, relative to the distance of the occluders: nearer to them occlusion
 // changes within a pixel.
 const float REACH_OF_HITS = 0.25;
+// Added to the mean squares of offsets, in reaches: slopes of few noisy taps count less.
+const float LEAST_SPREAD = 0.1;
 
 // The pixel of a sparse pixel's number, which is its column and row among the sparse ones of the
 // band.
@@ -44,15 +46,21 @@ float find_wide_reach(HitPoint hit, float openness)
            inversesqrt(float(control.rays));
 }
 
-// Two sums over the pixels around: of openness times weight, and of weights.  These are all of 5x5
-// pixels, or 3x3 sparse ones at this spacing.
-vec2 sum_openness(uint list, ivec2 pixel, HitPoint hit, vec3 normal, int spacing, float radius)
+// Sums over the pixels around, of weights and of weighted products; offsets are in reaches.
+struct Sums {
+    float weight, openness;
+    vec2  offset, sloped; // of offsets; of openness times offset
+    vec3  square;         // of x x, x y and y y
+};
+
+// These are all of 5x5 pixels, or 3x3 sparse ones at this spacing.
+Sums sum_openness(uint list, ivec2 pixel, HitPoint hit, vec3 normal, int spacing, float radius)
 {
     bool  sparse = spacing > 0;
     ivec2 nearest = sparse_at(pixel);
     int   reach = sparse ? 1 : 2;
     float within = 1.0 / radius, thin = 1.0 / (ON_PLANE * hit.width);
-    vec2  sums = vec2(0.0);
+    Sums  sums = Sums(0.0, 0.0, vec2(0.0), vec2(0.0), vec3(0.0));
     ivec2 tap = ivec2(-reach);
     do {
         ivec2     at = sparse ? pixel_of_sparse(nearest + spacing * tap) : pixel + tap;
@@ -60,10 +68,32 @@ vec2 sum_openness(uint list, ivec2 pixel, HitPoint hit, vec3 normal, int spacing
         vec2      lateral = vec2(at - pixel) * within;
         float     above = dot(there.position - hit.position, normal) * thin;
         float     weight = max(1.0 - above * above, 0.0) * max(1.0 - dot(lateral, lateral), 0.0);
-        sums += there.exists ? weight * vec2(openness_of_code(there.code), 1.0) : vec2(0.0);
+        weight = there.exists ? weight : 0.0;
+        float open = weight * openness_of_code(there.code);
+        sums.weight += weight;
+        sums.openness += open;
+        sums.offset += weight * lateral;
+        sums.sloped += open * lateral;
+        sums.square += weight * lateral.xxy * lateral.xyy;
         tap = next_offset(tap, reach);
     } while (tap.y <= reach);
     return sums;
+}
+
+// The openness at the pixel itself.  At the foot of a wall all taps are on one side, and sparse
+// pixels are nowhere even.  So it is that of the plane which fits the taps best, not their mean.
+float find_openness(Sums sums)
+{
+    float per_weight = 1.0 / max(sums.weight, 1e-6);
+    float mean = sums.openness * per_weight;
+    vec2  centre = sums.offset * per_weight;
+    vec3  spread = sums.square * per_weight - centre.xxy * centre.xyy;
+    vec2  change = sums.sloped * per_weight - mean * centre;
+    spread.xz += LEAST_SPREAD;
+    vec2  slope = vec2(spread.z * change.x - spread.y * change.y,
+                       spread.x * change.y - spread.y * change.x) /
+                 (spread.x * spread.z - spread.y * spread.y);
+    return clamp(mean - dot(slope, centre), 0.0, 1.0);
 }
 
 void begin_group() {}
@@ -80,14 +110,14 @@ void do_item(uint number)
     float own = openness_of_code(max(find_shared(list, slot) & 255u, CLOSED));
     float radius = wider ? find_wide_reach(hit, own) : upsampled ? FAR_REACH : NEAR_REACH;
     vec3  normal = load_hit(FACING, slot).xyz;
-    vec2  sums = sum_openness(list, ivec2(pixel_of(slot)), hit, normal, spacing, max(radius, 1.0));
-    float openness = sums.x / max(sums.y, 1e-6);
+    Sums  sums = sum_openness(list, ivec2(pixel_of(slot)), hit, normal, spacing, max(radius, 1.0));
+    float openness = find_openness(sums);
     // Remaining pixels also use the words of sparse ones, so the mean of a sparse pixel replaces
     // the word of its ray.
     if (control.phase == OCCLUSION_AT_SPARSE_PIXELS || wider)
         store_shared(wider ? RAYS_SHARED : MEANS_SHARED, slot, find_depth(hit),
                      code_of_openness(openness));
-    else if (!upsampled || sums.y > LEAST_WEIGHT)
+    else if (!upsampled || sums.weight > LEAST_WEIGHT)
         store_lighting(control.value, slot, openness);
     else
         pixel_lists[LIST_REMAINING * band_pixels() + atomicAdd(counts.remaining, 1u)] = slot;
