@@ -1,7 +1,7 @@
 #!/bin/sh
 # mesh.sh: `krs mesh`: files that other programs accept, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 23
+plan 25
 
 echo 'show sphere(0.5).paint(#ff8800);' >ball.krs
 echo 'let floor = half_space([0, 1, 0], 0); show floor; let ball = sphere(1); show ball;' >floor.krs
@@ -125,3 +125,11 @@ result $? "within the error"
 run mesh --quiet two.krs --error 0.05 --lods 2 -o lods.glb
 [ "$status" -eq 0 ] && grep -a -q '"MSFT_lod":{"ids":\[[0-9]*,[0-9]*\]}' lods.glb
 result $? "GLB has levels of detail"
+# What is there stays, whatever ends the command.
+echo old >kept.stl
+run mesh --quiet ball.krs --error 1e-4 --limit memory=4M -o kept.stl
+[ "$status" -eq 71 ] && grep -q 'out of memory' err && [ "$(cat kept.stl)" = old ] && no_temporaries
+result $? "no more memory is taken than is permitted"
+timeout -s INT 0.5 "$krs" mesh --quiet ball.krs --error 1e-5 -o kept.stl >out 2>err
+grep -q 'interrupted' err && [ "$(cat kept.stl)" = old ] && no_temporaries
+result $? "Ctrl C ends it and leaves the file as it was"
