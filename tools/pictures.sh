@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.." || exit 1
 [ $# -gt 0 ] || set -- gear machined-part school rock temple grove reef palm olive fern fractals \
     lamps inversion cabinet sextic lattice town bath lighthouse \
     chess snow-globe gasket city sign logo bolt rope mug vase spring jewel dodecahedron \
-    jewels night dusk
+    jewels night dusk direct-mug direct-vase
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 for name in "$@"; do
     scene=$(ls examples/??-"$name".krs 2>/dev/null)
@@ -18,6 +18,9 @@ for name in "$@"; do
     jewel) samples=256 ;;
     jewels) size=640x360 samples=400 more="--clamp-radiance 4" ;;
     night) size=640x360 samples=96 ;;
+    direct-*)
+        scene=$(ls examples/??-"${name#direct-}".krs)
+        size=640x360 samples=48 more="--integrator direct" ;;
     dusk) scene=examples/07-grove.krs size=640x360 samples=8 more="--set dusk=1" ;;
     esac
     picture=docs/pictures/$name.png
