@@ -92,10 +92,11 @@ static Lowered union_in_pairs(Lowering *l, const Shape *shape, const Shape *cons
     return join_two(l, shape->blend, left, right);
 }
 
+/* `reach` is that of their union, and the context's that of each child. */
 static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *children,
-                        uint32_t count, LowerContext context)
+                        uint32_t count, double reach, LowerContext context)
 {
-    CrowdJoin join   = {shape, children, count, false};
+    CrowdJoin join   = {shape, children, count, false, reach};
     Lowered   crowds = lower_crowds(l, &join, context);
     Lowered   others = union_in_pairs(l, shape, join.parts, join.count, context);
     return join_two(l, shape->blend, crowds, others);
@@ -103,8 +104,8 @@ static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *chi
 
 Lowered lower_union(Lowering *l, const Shape *shape, LowerContext context)
 {
-    context = joint_context(shape, context);
-    return union_of(l, shape, shape->children, shape->child_count, context);
+    return union_of(l, shape, shape->children, shape->child_count, context.reach,
+                    joint_context(shape, context));
 }
 
 static Lowered intersection_of_two(Lowering *l, const Shape *shape, Lowered a, Lowered b)
@@ -117,7 +118,7 @@ Lowered lower_intersection(Lowering *l, const Shape *shape, LowerContext context
 {
     context = joint_context(shape, context);
     /* The complement of the union of the complements. */
-    CrowdJoin join = {shape, shape->children, shape->child_count, true};
+    CrowdJoin join = {shape, shape->children, shape->child_count, true, context.reach};
     Lowered   all  = complement(l, lower_crowds(l, &join, context));
     for (uint32_t i = 0; i < join.count; i++) {
         Lowered next = lower_joined(l, shape, join.parts[i], context);
@@ -132,7 +133,8 @@ Lowered lower_difference(Lowering *l, const Shape *shape, LowerContext context)
 {
     context       = joint_context(shape, context);
     Lowered left  = lower_joined(l, shape, shape->children[0], context);
-    Lowered right = union_of(l, shape, shape->children + 1, shape->child_count - 1, context);
+    Lowered right = union_of(l, shape, shape->children + 1, shape->child_count - 1, context.reach,
+                             context);
     if (left.distance == NODE_NONE || right.distance == NODE_NONE)
         return left;
     Lowered joined = join_two(l, shape->blend, complement(l, left), right);

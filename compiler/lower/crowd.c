@@ -85,6 +85,13 @@ static double for_bounds(const PartFinder *finder, const CrowdGroup *group)
     return 1;
 }
 
+/* Up to which distance that of a group must be right.  Groups are joined with each other and with other
+   parts by the same blend; one that has all parts is not. */
+static double needed_reach(const PartFinder *finder, const CrowdGroup *group)
+{
+    return group->members.count == finder->count ? finder->reach : finder->context.reach;
+}
+
 static bool make_crowd(const PartFinder *finder, CrowdGroup *group, const GroupJoin *join,
                        const Box *boxes)
 {
@@ -93,7 +100,7 @@ static bool make_crowd(const PartFinder *finder, CrowdGroup *group, const GroupJ
         return false;
     double factor = for_bounds(finder, group);
     double reach  = factor * blended_reach(group, join);
-    double margin = isfinite(reach) ? factor * finder->context.reach : HUGE_VAL;
+    double margin = isfinite(reach) ? factor * needed_reach(finder, group) : HUGE_VAL;
     Crowd  table  = {.stretch = factor, .span = join->span};
     group_make_table(group, join, boxes, isfinite(reach) ? reach : 0, margin, table);
     return true;
@@ -161,6 +168,7 @@ static JointCrowds *find_joint(Lowering *l, const CrowdJoin *join, LowerContext 
                             .parts    = join->parts,
                             .count    = join->count,
                             .context  = parts,
+                            .reach    = join->reach,
                             .operands = !sharp || context.reach > 0,
                             .alike    = crowds->alike,
                             .least    = crowds->least,

@@ -23,6 +23,7 @@ typedef struct CrowdJoin {
     const Shape *const *parts;
     uint32_t            count;
     bool                complement;
+    double              reach; /* LowerContext.reach of all parts together */
 } CrowdJoin;
 
 /* Joins those parts that are many and alike.  The others are left in *join. */

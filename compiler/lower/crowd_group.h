@@ -70,6 +70,7 @@ typedef struct PartFinder {
     const Shape *const *parts;
     uint32_t            count;
     LowerContext        context;  /* of the parts */
+    double              reach;    /* LowerContext.reach of all parts together */
     bool                operands; /* their distances are used away from the surface */
     Alike              *alike;
     uint32_t            least; /* members of a group */

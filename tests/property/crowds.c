@@ -135,22 +135,30 @@ static const Shape *chain(BlendKind kind, double width, double step)
     return make_joint(&builder, SHAPE_UNION, parts, CHAIN, blend, no_place);
 }
 
+static double joined(Blend blend, double a, double b)
+{
+    const GraphType types[MAX_OPERANDS]    = {TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT};
+    NodeValue       operands[MAX_OPERANDS] = {{{a}}, {{b}}};
+    operands[2].v[0]                       = builder.graph->items[blend.width].number[0];
+    operands[3].v[0] = blend.steps == NODE_NONE ? 0 : builder.graph->items[blend.steps].number[0];
+    return op_evaluate(blend_info[blend.kind].op, TYPE_FLOAT, 0, types, operands).v[0];
+}
+
 /* The distances of all parts at a point, joined in their order; and their colours. */
 static double joined_in_order(const Shape *shape, const Seen *parts, const double p[3],
                               NodeValue *color)
 {
-    const GraphType types[MAX_OPERANDS]    = {TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT};
+    const GraphType types[MAX_OPERANDS]    = {TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT};
     Blend           blend                  = shape->blend;
     NodeValue       operands[MAX_OPERANDS] = {{{NOWHERE}}};
     operands[2].v[0]                       = builder.graph->items[blend.width].number[0];
-    operands[3].v[0] = blend.steps == NODE_NONE ? 0 : builder.graph->items[blend.steps].number[0];
     for (uint32_t i = 0; i < shape->child_count; i++) {
         operands[1].v[0]        = look(&parts[i], p);
         double           weight = op_evaluate(OP_blend_weight, TYPE_FLOAT, 0, types, operands).v[0];
         const NodeValue *own    = &parts[i].values[parts[i].roots[ROOT_color]];
         for (int k = 0; k < 3; k++)
             color->v[k] = own->v[k] * (1 - weight) + color->v[k] * weight;
-        operands[0] = op_evaluate(blend_info[blend.kind].op, TYPE_FLOAT, 0, types, operands);
+        operands[0].v[0] = joined(blend, operands[0].v[0], operands[1].v[0]);
     }
     return operands[0].v[0] / shape->slope;
 }
@@ -231,6 +239,64 @@ static void reach_is_needed(void **state)
     }
 }
 
+/* ---- blends of two crowds ---- */
+
+enum { EACH = 100 };
+
+static const Shape *balls_and_rings(BlendKind kind)
+{
+    const Shape *parts[2 * EACH];
+    Graph       *g = builder.graph;
+    for (int i = 0; i < 2 * EACH; i++) {
+        double x = between(-3, 3), y = between(-3, 3), z = between(-3, 3);
+        parts[i] = painted(placed(i < EACH ? ball(0.2) : ring(0.2, 0.1), x, y, z, 0.5, 1.25));
+    }
+    Blend blend = {kind, graph_number(g, 0.25), 0.25,
+                   kind == BLEND_stairs ? graph_number(g, 3) : NODE_NONE};
+    return make_joint(&builder, SHAPE_UNION, parts, 2 * EACH, blend, no_place);
+}
+
+/* At points near the surface they agree; returns how many there are. */
+static int compare_crowds(const Shape *shape, const Seen *parts, const Seen *crowds)
+{
+    Blend  blend = shape->blend;
+    double most  = allowed(blend.kind, 0.25);
+    int    near  = 0;
+    for (int n = 0; n < POINTS; n++) {
+        double p[3], each[2] = {NOWHERE, NOWHERE};
+        random_vector(&randomness, 3, p);
+        for (int i = 0; i < 2 * EACH; i++)
+            each[i / EACH] = joined(blend, each[i / EACH], look(&parts[i], p));
+        double wanted = joined(blend, each[0], each[1]), is = look(crowds, p) * shape->slope;
+        assert_true(is <= wanted + most);
+        if (fabs(wanted) > 0.02)
+            continue;
+        near++;
+        assert_true(is >= wanted - most);
+    }
+    return near;
+}
+
+/* As kernels have them: each must be right farther away than its surface. */
+static void blends_of_crowds(void **state)
+{
+    static Seen parts[2 * EACH];
+    for (BlendKind kind = 0; kind < BLEND_COUNT; kind++) {
+        const Shape *shape = balls_and_rings(kind);
+        Seen crowds        = lower(shape, lowered_crowds_new(builder.graph, &arena, &arena, LEAST));
+        assert_int_equal(builder.graph->crowds->tables.count, 2);
+        crowds.tape.by_cells = true;
+        for (int i = 0; i < 2 * EACH; i++)
+            parts[i] = lower(shape->children[i], NULL);
+        for (int i = 0; i < 2 * EACH; i++)
+            prepare(&parts[i]);
+        prepare(&crowds);
+        assert_true(compare_crowds(shape, parts, &crowds) > POINTS / 100);
+        finish(state);
+        start(state);
+    }
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, start, finish)
 
 int main(void)
@@ -245,6 +311,7 @@ int main(void)
         TEST(many_parts_need_few_nodes),
         TEST(blends),
         TEST(reach_is_needed),
+        TEST(blends_of_crowds),
     };
     return cmocka_run_group_tests_name("crowds", tests, NULL, NULL);
 }
