@@ -31,6 +31,8 @@ typedef struct Request {
     PassId   after;       /* the pass to dump; PASS_COUNT: none */
     PassId   end;         /* the pass before which the run ends; PASS_COUNT: none */
     char   **dump;        /* where the dump goes, unless NULL */
+    bool    *format;      /* unless NULL: the dump is the text in canonical layout, and *format is
+                             whether it was so before */
     Inspect *inspect;     /* called with the elaborated scene, unless NULL */
     void    *user;        /* passed to `inspect` */
     uint32_t least_crowd; /* members of a crowd (lower/crowd.h); 0: LEAST_CROWD */

@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "compiler/compilation.h"
+#include "compiler/front/format.h"
 
 static const size_t DEFAULT_MEMORY = (size_t)2 << 30;
 
@@ -88,6 +89,20 @@ static KrsStatus inspect(Compilation *c)
         &(Inspected){&c->elaborated, &c->diags, &c->work, &c->scratch, c->scene->program.pass_ms});
 }
 
+static KrsStatus format(Compilation *c)
+{
+    uint32_t source = c->files.items[0]->source;
+    if (c->diags.errors > 0)
+        return KRS_BAD_SCENE;
+    if (!format_source(source, &c->sources, &c->scratch, &c->dump))
+        return KRS_INTERNAL;
+    const Source *text  = &c->sources.items[source];
+    *c->request->format = text->length == c->dump.length &&
+                          (text->length == 0 ||
+                           memcmp(text->text, c->dump.bytes, text->length) == 0);
+    return KRS_OK;
+}
+
 /* ---- the API ---- */
 
 /* Passes a diagnostic to the caller. */
@@ -130,6 +145,8 @@ static KrsStatus run_guarded(Compilation *c)
     KrsStatus status = run_passes(c);
     if (status == KRS_OK && c->request->inspect)
         status = inspect(c);
+    if (status == KRS_OK && c->request->format)
+        status = format(c);
     report(c);
     return status;
 }
@@ -249,6 +266,24 @@ KrsStatus krs_dump(const char *path, const char *after, const KrsOptions *option
         return KRS_BAD_ARGUMENT;
     KrsStatus status = compile_path(path, options, &request, &scene);
     scene_free(scene);
+    return status;
+}
+
+KrsStatus krs_format(const char *path, const KrsOptions *options, char **formatted, bool *same)
+{
+    KrsScene *scene;
+    Request   request = {
+          .after = PASS_COUNT, .end = PASS_parse + 1, .dump = formatted, .format = same};
+    *formatted       = NULL;
+    *same            = false;
+    KrsStatus status = compile_path(path, options, &request, &scene);
+    scene_free(scene);
+    if (status == KRS_OK && !*formatted)
+        status = KRS_OUT_OF_MEMORY;
+    if (status != KRS_OK) {
+        free(*formatted);
+        *formatted = NULL;
+    }
     return status;
 }
 

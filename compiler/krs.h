@@ -115,6 +115,17 @@ KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene
    is ignored, as in all functions that free. */
 void krs_scene_free(KrsScene *scene);
 
+/*
+ * Lays out the text of a scene in the canonical way, which docs/language.md describes: blanks change, but
+ * no word, comment or break between lines.  Of the options, those count that say how the text is read;
+ * files that it uses are not read.
+ *
+ * On KRS_OK the caller frees *formatted with free(), and *same says whether it is equal to the text
+ * that was read.  On any other status *formatted is NULL.  KRS_BAD_SCENE: the text is no scene, and
+ * diagnostics say why; KRS_IO_ERROR: it cannot be read; KRS_OUT_OF_MEMORY.
+ */
+KrsStatus krs_format(const char *path, const KrsOptions *options, char **formatted, bool *same);
+
 /* What is different in an edited scene. */
 typedef enum KrsChange {
     KRS_CHANGE_NOTHING,  /* but names, comments and blanks: pictures and distances are the same */

@@ -3,11 +3,13 @@
  *
  * Whatever the text, reading it ends; nothing is touched that should not be; every place in the
  * tree and in the diagnostics is within the text; and a tree with a gap in it never comes
- * without an error.
+ * without an error.  The canonical layout of a text without mistakes is the layout of itself.
  */
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "compiler/front/format.h"
 #include "compiler/front/names.h"
 #include "compiler/front/parse.h"
 
@@ -60,6 +62,14 @@ static void read_scene(const char *bytes, size_t size, Arena *arena)
     Syntax                  *file    = parse(&tokens, &diags, arena);
     bool                     gap     = check_tree(file, size);
     demand(!gap || diags.errors > 0);
+    Text layout = {.arena = arena}, again = {.arena = arena};
+    if (diags.errors == 0) {
+        demand(format_source(source, &sources, arena, &layout));
+        uint32_t written = source_add(&sources, "", layout.length ? layout.bytes : "",
+                                      layout.length, false);
+        demand(format_source(written, &sources, arena, &again) && again.length == layout.length &&
+               (again.length == 0 || memcmp(again.bytes, layout.bytes, again.length) == 0));
+    }
     names_check(file, &scope, &diags, arena);
     diags_sort(&diags);
     check_diags(&diags, size, arena);

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/front/format.h"
 #include "compiler/front/parse.h"
 
 /* ---- the grammar ---- */
@@ -306,6 +307,76 @@ static bool is_accepted(const char *text, size_t length, bool should_be, Arena *
     return diags.count == 0;
 }
 
+/* The tree of a text as krs dumps it, but without places. */
+static Text tree_of(const char *bytes, size_t length, Arena *arena)
+{
+    Sources  sources = {.arena = arena};
+    Names    names   = {.arena = arena};
+    Diags    diags   = {.arena = arena, .sources = &sources};
+    uint32_t source  = source_add(&sources, "sentence.krs", bytes, length, false);
+    Tokens   tokens  = lex(source, &sources, &names, &diags, arena);
+    Text     whole = {.arena = arena}, tree = {.arena = arena};
+    syntax_print(parse(&tokens, &diags, arena), &sources, &whole);
+    for (size_t at = 0, end; at < whole.length; at = end + 1) {
+        end         = at + strcspn(whole.bytes + at, "\n");
+        size_t last = end;
+        while (last > at && whole.bytes[last] != ' ')
+            last--;
+        text_add_bytes(&tree, whole.bytes + at, last - at);
+        text_add(&tree, "\n");
+    }
+    return tree;
+}
+
+static Text without_blanks(const Text *text)
+{
+    Text out = {.arena = text->arena};
+    for (size_t i = 0; i < text->length; i++)
+        if (!strchr(" \t\r\n", text->bytes[i]))
+            text_add_bytes(&out, &text->bytes[i], 1);
+    return out;
+}
+
+static bool are_equal(const Text *a, const Text *b)
+{
+    return a->length == b->length && (a->length == 0 || memcmp(a->bytes, b->bytes, a->length) == 0);
+}
+
+static bool has_blanks_at_ends(const Text *text)
+{
+    for (size_t i = 1; i < text->length; i++)
+        if (text->bytes[i] == '\n' && strchr(" \t\r", text->bytes[i - 1]))
+            return true;
+    return text->length > 0 && text->bytes[text->length - 1] != '\n';
+}
+
+static Text format(const Text *text)
+{
+    Text     out     = {.arena = text->arena};
+    Sources  sources = {.arena = text->arena};
+    uint32_t source  = source_add(&sources, "", text->length ? text->bytes : "", text->length,
+                                  false);
+    if (!format_source(source, &sources, text->arena, &out))
+        text_add(&out, "not the same words");
+    return out;
+}
+
+/* Whether the canonical layout changes blanks alone, and nothing the second time. */
+static bool is_formatted(const Text *sentence)
+{
+    Text formatted = format(sentence), again = format(&formatted);
+    Text words = without_blanks(sentence), formatted_words = without_blanks(&formatted);
+    Text tree  = tree_of(sentence->bytes, sentence->length, sentence->arena);
+    Text other = tree_of(formatted.length ? formatted.bytes : "", formatted.length,
+                         sentence->arena);
+    bool good  = are_equal(&words, &formatted_words) && are_equal(&tree, &other) &&
+                are_equal(&formatted, &again) && !has_blanks_at_ends(&formatted);
+    if (!good && getenv("KRS_TEST_SHOW"))
+        printf("---- sentence\n%s\n---- formatted\n%s\n---- again\n%s\n", sentence->bytes,
+               formatted.bytes, again.bytes);
+    return good;
+}
+
 /* Takes one closing bracket out, at random; false when there is none.  Brackets in strings and
    comments do not occur. */
 static bool drop_closer(Grammar *g, Text *sentence)
@@ -336,7 +407,7 @@ int main(int argc, char **argv)
     Memory        memory = {.exhausted = &exhausted};
     Arena         fixed = {.memory = &memory}, each = {.memory = &memory};
     Grammar       grammar = {.arena = &fixed};
-    volatile long refused = 0, wrong = 0, cut = 0;
+    volatile long refused = 0, wrong = 0, cut = 0, untidy = 0;
     if (setjmp(exhausted)) {
         printf("Bail out! out of memory\n");
         return 1;
@@ -351,6 +422,7 @@ int main(int argc, char **argv)
         int room      = 40 + (int)random_below(&grammar, 100);
         make(&grammar, find_rule(&grammar, "file")->part, room, &sentence);
         refused += !is_accepted(sentence.bytes, sentence.length, true, &each);
+        untidy += !is_formatted(&sentence);
         if (drop_closer(&grammar, &sentence)) {
             cut++;
             wrong += is_accepted(sentence.bytes, sentence.length, false, &each);
@@ -364,9 +436,11 @@ int main(int argc, char **argv)
             all_used = false;
         }
     arena_free(&fixed);
-    printf("1..3\n# %ld sentences from seed %ld, %ld without a bracket\n", count, seed, (long)cut);
+    printf("1..4\n# %ld sentences from seed %ld, %ld without a bracket\n", count, seed, (long)cut);
     bool accepts = report(1, refused == 0 && count > 0, "sentences of the grammar are accepted");
     bool refuses = report(2, wrong == 0 && cut > 0, "sentences without a closing bracket are not");
     bool reaches = report(3, all_used, "the sentences use every rule");
-    return accepts && refuses && reaches ? 0 : 1;
+    bool keeps   = report(4, untidy == 0,
+                          "the canonical layout changes blanks alone, and is its own");
+    return accepts && refuses && reaches && keeps ? 0 : 1;
 }
