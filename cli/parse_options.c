@@ -154,8 +154,6 @@ static KrsStatus find_command(Options *options, const char *word)
             return KRS_OK;
         }
     }
-    if (strcmp(word, "format") == 0)
-        return say_usage(options, "`format` is not in this version");
     const char *nearest = nearest_name(word, names, COMMAND_COUNT);
     if (nearest)
         return say_usage(options, "there is no command `%s`; did you mean `%s`?", word, nearest);

@@ -10,8 +10,8 @@ run rendr ball.krs
 said 2 "did you mean \`render\`?" "a misspelt command"
 run frobnicate
 said 2 "there is no command \`frobnicate\`" "an unknown command"
-run format ball.krs
-said 2 "not in this version" "a command that is missing"
+run format --size 9x9 ball.krs
+said 2 "size" "an option that lays out nothing"
 run render ball.krs --sise 8x8
 said 2 "did you mean --size?" "a misspelt option"
 run check ball.krs --size 8x8
