@@ -105,7 +105,8 @@ static void add_occlusion(Preview *p)
         {OCCLUSION_UPSAMPLED, LIST_ALL, LIST_REMAINING},
         {OCCLUSION_OF_REMAINING, LIST_REMAINING, NO_LIST},
     };
-    PassConstants constants = {RAYS_OVER_HEMISPHERE, 0, VALUE_OCCLUSION, .filters = 1};
+    PassConstants constants = {
+        .phase = RAYS_OVER_HEMISPHERE, .value = VALUE_OCCLUSION, .filters = 1};
     if (p->job->options.no_occlusion)
         return;
     add_rays(p, KRS_PHASE_OCCLUSION, LIST_ALL, true, constants, 0.6f * WEIGHT_OCCLUSION);
@@ -147,7 +148,8 @@ static void add_visibility(Preview *p, uint32_t light, uint32_t value, float wei
 {
     const bool    shares    = p->filters_shadows;
     const bool    filters   = shares && p->job->view.lights[light].softness > 0;
-    PassConstants constants = {RAYS_TO_LIGHT, light, value, filters};
+    PassConstants constants = {
+        .phase = RAYS_TO_LIGHT, .light = light, .value = value, .filters = filters};
     if (shares)
         add_unproven(p, constants, 0.2f * weight);
     add_rays(p, KRS_PHASE_SHADOWS, shares ? LIST_REMAINING : LIST_ALL, !shares, constants,
@@ -196,11 +198,14 @@ static void add_mirrored_lights(Preview *p, const PathKernels *kernels, bool end
                                          .kernel    = kernels->shadows,
                                          .in        = LIST_ALL,
                                          .out       = NO_LIST,
-                                         .constants = {.phase = RAYS_TO_LIGHT,
-                                                       .light = first + i,
-                                                       .value = VALUE_VISIBLE + i}});
-        add_items(p, KRS_PHASE_BOUNCES, kernels->scatter, LIST_ALL, LIST_OF_PATHS,
-                  (PassConstants){.phase = ends ? PATHS_END : PATHS_GO_ON, .light = first}, weight);
+                                         .constants = {.phase    = RAYS_TO_LIGHT,
+                                                       .light    = first + i,
+                                                       .value    = VALUE_VISIBLE + i,
+                                                       .of_paths = 1}});
+        add_items(
+            p, KRS_PHASE_BOUNCES, kernels->scatter, LIST_ALL, LIST_OF_PATHS,
+            (PassConstants){.phase = ends ? PATHS_END : PATHS_GO_ON, .light = first, .of_paths = 1},
+            weight);
         first += LIGHTS_AT_ONCE;
     } while (first < count);
 }

@@ -205,11 +205,24 @@ void find_lens_ray(vec2 image_point, vec3 straight, inout vec3 origin, out vec3 
 }
 #endif
 
-// The ray through a point of the picture, which is given in pixels from the top left corner.  At t
-// a pixel is base + slope t wide.
+#if defined(PATH_RAYS) || defined(MIXED_RAYS)
+// The ray of the path that the point's pixel follows.
+void find_ray_of_path(vec2 image_point, out vec3 origin, out vec3 direction, out float base,
+                      out float slope)
+{
+    uvec2 pixel = min(uvec2(image_point - work.offset + 0.5) - work.corner, work.extent - 1u);
+    uint  index = pixel.y * work.extent.x + pixel.x;
+    vec4  start = load_path(PATH_ORIGIN, index), ahead = load_path(PATH_DIRECTION, index);
+    origin = start.xyz;
+    base = start.w;
+    direction = ahead.xyz;
+    slope = ahead.w;
+}
+#endif
+
 #ifdef LISTED_RAYS // the ray of the point's pixel, in the list of the band
-void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float base,
-              out float slope)
+void find_ray_of_picture(vec2 image_point, out vec3 origin, out vec3 direction, out float base,
+                         out float slope)
 {
     uvec2 pixel = min(uvec2(image_point) - work.corner, work.extent - 1u);
     uint  number = pixel.y * work.extent.x + pixel.x;
@@ -220,21 +233,9 @@ void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float b
     direction = ahead.xyz;
     slope = ahead.w;
 }
-#elif defined(PATH_RAYS) // the ray of the path that the point's pixel follows
-void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float base,
-              out float slope)
-{
-    uvec2 pixel = min(uvec2(image_point - work.offset + 0.5) - work.corner, work.extent - 1u);
-    uint  index = pixel.y * work.extent.x + pixel.x;
-    vec4  start = load_path(PATH_ORIGIN, index), ahead = load_path(PATH_DIRECTION, index);
-    origin = start.xyz;
-    base = start.w;
-    direction = ahead.xyz;
-    slope = ahead.w;
-}
-#else
-void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float base,
-              out float slope)
+#elif !defined(PATH_RAYS) // that of a camera
+void find_ray_of_picture(vec2 image_point, out vec3 origin, out vec3 direction, out float base,
+                         out float slope)
 {
     vec2 plane = vec2(2.0 * image_point.x / frame.size.x - 1.0,
                       1.0 - 2.0 * image_point.y / frame.size.y);
@@ -275,6 +276,34 @@ void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float b
 #endif
 }
 #endif
+
+// Whether the rays are those of paths.  Kernels with MIXED_RAYS are for both.
+bool are_of_paths()
+{
+#ifdef MIXED_RAYS
+    return control.of_paths != 0u;
+#elif defined(PATH_RAYS)
+    return true;
+#else
+    return false;
+#endif
+}
+
+// The ray through a point of the picture, which is given in pixels from the top left corner.  At t
+// a pixel is base + slope t wide.
+void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float base,
+              out float slope)
+{
+#ifdef PATH_RAYS
+    find_ray_of_path(image_point, origin, direction, base, slope);
+#else
+    find_ray_of_picture(image_point, origin, direction, base, slope);
+#endif
+#ifdef MIXED_RAYS
+    if (are_of_paths())
+        find_ray_of_path(image_point, origin, direction, base, slope);
+#endif
+}
 
 // The interval of t in which a ray is inside of a box; empty when its end is the smaller number.
 // The box may be as large as 1e18, and no component of the direction is taken as smaller than

@@ -54,13 +54,7 @@ void work_on_items(uint group, uint steps_allowed, inout uint steps)
     uint lane = gl_LocalInvocationIndex, first = group * LANES * control.items_per_lane,
          next = first;
     uint limit = min(first + LANES * control.items_per_lane, control.items);
-    bool has_item = false, is_stepping, wants_item;
-    if (control.source == ITEMS_QUEUED) {
-        has_item = first + lane < limit;
-        if (has_item)
-            begin_item(first + lane, true);
-        next = limit;
-    }
+    bool has_item = false, is_stepping, wants_item, saved = control.source == ITEMS_QUEUED;
     if (control.source == ITEMS_UNTAKEN)
         next += taken[group];
     do {
@@ -74,7 +68,7 @@ void work_on_items(uint group, uint steps_allowed, inout uint steps)
             uint number = next + bitCount(takers & (1u << lane) - 1u);
             exchange_item(number);
             if (takes_item && number < limit) {
-                begin_item(number, false);
+                begin_item(number, saved);
                 has_item = true;
             }
             next += bitCount(takers);

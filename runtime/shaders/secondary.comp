@@ -195,8 +195,8 @@ void begin_group(uint first)
     light = find_light(control.light);
     positional = (light.kind & LIGHT_POSITIONAL) != 0u;
     radius = light_radius(light);
-#ifdef PATH_RAYS // one sample has no noise
-    radius = control.rays > 1u ? radius : 0.0;
+#ifdef MIXED_RAYS // one sample has no noise
+    radius = control.rays > 1u || !are_of_paths() ? radius : 0.0;
 #endif
     is_cone = control.phase == RAYS_CONES;
 }

@@ -5,8 +5,8 @@
  * emitted light, light of the sky, and that of LIGHTS_AT_ONCE lights.  All of it is added to the
  * pixel.
  *
- * MIRRORS: what smooth surfaces mirror is found by rays, and glass lets them through.  With PATH_RAYS
- * these are their hits.
+ * MIRRORS: what smooth surfaces mirror is found by rays, and glass lets them through.  The hits are
+ * those of the camera's rays or of these (MIXED_RAYS).
  *
  * LAYERS: materials have coats, sheen, or mirrors other than usual.
  */
@@ -168,10 +168,7 @@ void send_on(HitPoint hit, uint index, KrsSurface surface, Boundary boundary, Co
                                                   coat.roughness, coat.metallic);
 #endif
     Onward onward = find_onward(hit, surface, boundary, coat.normal, mirrored);
-    float spread = frame.pixel_slope;
-#ifdef PATH_RAYS
-    spread = load_path(PATH_DIRECTION, index).w;
-#endif
+    float spread = are_of_paths() ? load_path(PATH_DIRECTION, index).w : frame.pixel_slope;
     follow_onward(hit, index, onward, facing, weight * onward.part, spread);
 }
 #endif
@@ -196,10 +193,9 @@ void do_item(uint number)
     krs_view = hit.direction;
 #endif
     uint       index = index_of(pixel_of(hit.slot));
-#ifdef PATH_RAYS
-    prepare_boundary(hit, load_path(PATH_TOWARD, index).w, facing.xyz);
-#elif defined(MIRRORS)
-    prepare_boundary(hit, hit.side, facing.xyz);
+#ifdef MIRRORS
+    float code = are_of_paths() ? load_path(PATH_TOWARD, index).w : hit.side;
+    prepare_boundary(hit, code, facing.xyz);
 #endif
     KrsSurface surface = krs_surface(hit.position, hit.side * facing.xyz, 0.5 * hit.width);
 #ifdef SUBSURFACE // light leaves where it has entered
@@ -214,10 +210,12 @@ void do_item(uint number)
     vec4       radiance = vec4(0.0);
     vec3       weight = vec3(1.0);
     float      openness = control.no_occlusion != 0u ? 1.0 : lighting.x;
-#ifdef PATH_RAYS
-    openness = 1.0;
-    weight = load_path(PATH_WEIGHT, index).xyz;
-    weight *= find_left(boundary, find_way(index, hit, find_end(index).t, false));
+#ifdef MIRRORS
+    if (are_of_paths()) {
+        openness = 1.0;
+        weight = load_path(PATH_WEIGHT, index).xyz;
+        weight *= find_left(boundary, find_way(index, hit, find_end(index).t, false));
+    }
 #endif
     if (control.light == 0u) {
         radiance.rgb = saturate(vec4(surface.emission, 0.0), BRIGHTEST).rgb +
@@ -251,13 +249,12 @@ void do_item(uint number)
         send_on(hit, index, surface, boundary, coat, facing, weight * left);
 #endif
     vec3 added = clamped(finite_or_black(radiance.rgb));
-#ifdef PATH_RAYS
-    add_light(index, added);
-    return;
-#endif
     vec4 sum = find_color(index) + vec4(added, radiance.a);
     vec3 albedo = saturate(vec4(surface.color, 0.0), 1.0).rgb; // also where glass has no coat
-    store_planes(index, rows, sum, hit, hit.side * coat.normal, albedo, surface);
+    if (are_of_paths())
+        add_light(index, added);
+    else
+        store_planes(index, rows, sum, hit, hit.side * coat.normal, albedo, surface);
 }
 
 #include "pixels.glsl"

@@ -167,7 +167,8 @@ static_assert(sizeof(PointWorkBlock) == 8, "std430");
     uint  limits;         /* where depths of pixels begin in the inputs (limit.comp) */           \
     uint  sampled_at;     /* where words of quarters begin in `tiles`; 0: all pixels get rays */  \
     float noise;          /* error at which samples of a pixel end */                             \
-    float noise_floor;    /* light to which the error of black pixels is relative */
+    float noise_floor;    /* light to which the error of black pixels is relative */              \
+    uint  of_paths;       /* 1: the rays are those of paths that have begun (MIXED_RAYS) */
 
 /* What the kernels count, and what next_dispatch.comp says of the next dispatch. */
 #define COUNTER_MEMBERS                                                                            \
@@ -195,16 +196,16 @@ struct Control {
 
 /* Indices of some words of the control block, for next_dispatch.comp. */
 CONSTANT(ITEMS_WORD, 10);
-CONSTANT(GROUPS_WORD, 48);
-CONSTANT(STOPPED_WORD, 51);
-CONSTANT(RAN_WORD, 52);
+CONSTANT(GROUPS_WORD, 49);
+CONSTANT(STOPPED_WORD, 52);
+CONSTANT(RAN_WORD, 53);
 
 #ifdef __STDC_VERSION__
 typedef struct ControlBlock {
     CONTROL_MEMBERS
     COUNTER_MEMBERS
 } ControlBlock;
-static_assert(sizeof(ControlBlock) == (28 + 26 + MOST_CHAINED) * sizeof(uint32_t), "std430");
+static_assert(sizeof(ControlBlock) == (29 + 26 + MOST_CHAINED) * sizeof(uint32_t), "std430");
 static_assert(sizeof(struct Control) == offsetof(ControlBlock, queued), "the host's part");
 #endif
 

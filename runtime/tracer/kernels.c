@@ -155,13 +155,16 @@ bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, K
     kernels->march   = rendering_trace(rendering, trace_of_paths(options->trace), options->schedule,
                                        group_of_paths(rendering));
     kernels->normals = rendering_normals_kernel(rendering, options->normals, 0);
-    kernels->scatter = purpose == KRS_FOR_PATHS
-                           ? find_kernel(rendering, "scatter.comp",
-                                         variant_of_scatter(rendering, options->starts))
-                           : rendering_shade(rendering);
+    if (purpose == KRS_FOR_PATHS)
+        kernels->scatter = find_kernel(rendering, "scatter.comp",
+                                       variant_of_scatter(rendering, options->starts));
+    else
+        rendering->rays = rays; /* the kernels of the picture are for its paths, too */
     kernels->shadows = find_kernel(rendering, "secondary.comp",
                                    variant_of_rays(rendering, options->schedule, roots, purpose));
-    rendering->rays  = rays;
+    if (purpose != KRS_FOR_PATHS)
+        kernels->scatter = rendering_shade(rendering);
+    rendering->rays = rays;
     return kernels->march && kernels->normals && kernels->scatter && kernels->shadows;
 }
 
@@ -219,13 +222,12 @@ static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedu
         variant_of_trace(rendering, trace_of_paths(trace), schedule, group_of_paths(rendering)));
     request(requests, "normals.comp",
             variant_of_normals(rendering, rendering_normals(rendering, KRS_NORMALS_DEFAULT), 0));
-    if (rendering->purpose == KRS_FOR_PATHS)
+    if (rendering->purpose == KRS_FOR_PATHS) {
         request(requests, "scatter.comp", variant_of_scatter(rendering, KRS_STARTS_PIXELS));
-    else
-        request(requests, "shade.comp", variant_of_shade(rendering));
-    request(requests, "secondary.comp",
-            variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace),
-                            rendering->purpose));
+        request(requests, "secondary.comp",
+                variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace),
+                                KRS_FOR_PATHS));
+    }
     rendering->rays = rays;
 }
 

@@ -113,6 +113,7 @@ static Dispatch dispatch_of_pass(const Job *job, const Pass *pass, const WorkBlo
     control->light        = pass->constants.light;
     control->value        = pass->constants.value;
     control->filters      = pass->constants.filters;
+    control->of_paths     = pass->constants.of_paths;
     control->reading      = list_at(work, pass->in);
     LaneBudget budget     = pass->kind == PASS_RAYS ? budget_of_rays(job, items_now(job, items))
                                                     : pixel_budget(job);

@@ -228,6 +228,8 @@ KernelVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace
     KernelVariant to = begin_variant(rendering, trace, schedule);
     if (rendering->program->media)
         to.scene.variant.glass = purpose == KRS_FOR_PATHS ? KRS_GLASS_NESTED : KRS_GLASS_LEFT_OUT;
+    if (rendering->program->mirrors && purpose != KRS_FOR_PATHS)
+        define(&to, MIXED_RAYS);
     want(&to, KRS_FUNCTION_SINES);
     if (!want_along(&to, rendering, trace))
         want(&to, KRS_FUNCTION_DISTANCE);
@@ -244,7 +246,7 @@ KernelVariant variant_of_shade(const KrsRendering *rendering)
     if (rendering->program->media)
         want(&to, KRS_FUNCTION_GLASS);
     if (rendering->program->mirrors)
-        define(&to, "#define MIRRORS\n");
+        define(&to, "#define MIRRORS\n" MIXED_RAYS);
     if (rendering->program->layers)
         define(&to, "#define LAYERS\n");
     want_materials(&to, rendering);

@@ -9,7 +9,7 @@
 
 typedef struct KernelVariant {
     KernelScene scene;
-    char        defines[320];
+    char        defines[400];
 } KernelVariant;
 
 /* Defines of kernels with or without a scene. */
@@ -22,6 +22,8 @@ typedef struct KernelVariant {
 #define LISTED_RAYS "#define LISTED_RAYS\n"
 /* Rays are those of paths that have begun (frame.glsl). */
 #define PATH_RAYS "#define PATH_RAYS\n"
+/* Rays are those of the picture or those of paths, as the pass says. */
+#define MIXED_RAYS "#define MIXED_RAYS\n"
 
 /* The variants of the kernels of kernels.h, with the same arguments. */
 KernelVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
