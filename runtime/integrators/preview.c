@@ -269,7 +269,9 @@ bool preview_plan(Job *job, Plan *plan)
     bool shares       = !options->no_occlusion || (p.filters_shadows && needs_secondary(job));
     plan->halo        = shares ? TILE : 0;
     plan->has_paths   = job->rendering->program->mirrors;
-    if (!primary_add_marches(job, plan, WEIGHT_MARCH, &primary) || !find_secondary(&p))
+    KrsRendering *r   = job->rendering;
+    if (!renderer_create_pixels(r->renderer, r->rays, &r->spirv_ms, &r->pipeline_ms) ||
+        !primary_add_marches(job, plan, WEIGHT_MARCH, &primary) || !find_secondary(&p))
         return false;
     const Kernel *shade = rendering_shade(job->rendering);
     add_background(&p);

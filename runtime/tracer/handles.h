@@ -49,7 +49,7 @@ struct KrsRenderer {
     VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters and tables */
     VkDescriptorSetLayout frame_layout; /* set 1: what frame.glsl declares */
     VkPipelineLayout      layout;       /* shared by all kernels */
-    /* Those for RAYS_OF_CAMERAS are made at once, the others when they are needed. */
+    /* Each is made when it is needed, with the kernels of the first scene that needs it. */
     Kernel pixels[RAY_KINDS][PIXEL_KERNELS];
     Kernel limits[RAY_KINDS];     /* limit.comp, made when it is needed */
     Kernel escapes[RAY_KINDS];    /* escape.comp, made when paths are traced */

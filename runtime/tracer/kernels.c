@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "runtime/tracer/methods.h"
+#include "runtime/tracer/renderer.h"
 #include "runtime/tracer/variants.h"
 #include "runtime/tracer/warmup.h"
 
@@ -172,7 +173,7 @@ bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, K
 
 typedef struct Requests {
     KrsRendering *rendering;
-    KernelRequest items[9 + 2 * KRS_MOST_MARCH_GROUPS];
+    KernelRequest items[KERNELS_AT_ONCE];
     size_t        count;
     bool          failed; /* the failure is noted */
 } Requests;
@@ -231,6 +232,20 @@ static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedu
     rendering->rays = rays;
 }
 
+/* Requests the kernels without a scene. */
+static void request_sceneless(Requests *requests, KrsPurpose purpose)
+{
+    KrsRendering *rendering = requests->rendering;
+    KrsRenderer  *renderer  = rendering->renderer;
+    if (purpose == KRS_FOR_PICTURES)
+        requests->count += renderer_request_pixels(renderer, rendering->rays,
+                                                   requests->items + requests->count);
+    const bool paths = purpose == KRS_FOR_PATHS;
+    if (paths || (purpose == KRS_FOR_PICTURES && rendering->program->mirrors))
+        requests->count += renderer_request_escapes(
+            renderer, paths ? rendering->rays : RAYS_OF_PATHS, requests->items + requests->count);
+}
+
 static void request_pictures(Requests *requests, KrsTrace trace, KrsSchedule schedule)
 {
     KrsRendering *rendering = requests->rendering;
@@ -255,6 +270,7 @@ bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
     KrsSchedule schedule = KRS_SCHEDULE_DEFAULT;
     Requests    requests = {.rendering = rendering};
     rendering_choose(rendering, &trace, &schedule);
+    request_sceneless(&requests, purpose);
     if (purpose == KRS_FOR_PICTURES) {
         request_pictures(&requests, trace, schedule_of_kernel(schedule));
     } else if (purpose == KRS_FOR_PATHS) {
@@ -265,9 +281,8 @@ bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
         request(&requests, "point_query.comp", variant_of_point_query(rendering));
     }
     return !requests.failed &&
-           (requests.count == 0 ||
-            kernels_make(rendering->renderer, rendering->scene_set, requests.items, requests.count,
-                         &rendering->spirv_ms, &rendering->pipeline_ms));
+           kernels_make(rendering->renderer, rendering->scene_set, requests.items, requests.count,
+                        &rendering->spirv_ms, &rendering->pipeline_ms);
 }
 
 /* ---- statistics ---- */

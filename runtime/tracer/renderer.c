@@ -36,15 +36,30 @@ static KernelRequest request_kernel(KrsRenderer *renderer, Kernel *kernel, const
                            {.file = file, .defines = ray_defines[kind][renderer->gpu.texels]}};
 }
 
-static void request_pixels(KrsRenderer *renderer, RayKind kind, KernelRequest *requests)
+size_t renderer_request_pixels(KrsRenderer *renderer, RayKind kind, KernelRequest *requests)
 {
     static const char *const files[PIXEL_KERNELS] = {
         [PIXELS_BACKGROUND] = "background.comp", [PIXELS_UNPROVEN] = "unproven.comp",
         [PIXELS_PENUMBRAE] = "penumbrae.comp",   [PIXELS_SHADOW] = "shadow.comp",
         [PIXELS_OCCLUSION] = "occlusion.comp",
     };
+    size_t count = 0;
     for (int i = 0; i < PIXEL_KERNELS; i++)
-        requests[i] = request_kernel(renderer, &renderer->pixels[kind][i], files[i], kind);
+        if (!renderer->pixels[kind][i].pipeline)
+            requests[count++] = request_kernel(renderer, &renderer->pixels[kind][i], files[i],
+                                               kind);
+    return count;
+}
+
+size_t renderer_request_escapes(KrsRenderer *renderer, RayKind kind, KernelRequest *requests)
+{
+    const RayKind kinds[2] = {kind, RAYS_OF_PATHS};
+    size_t        count    = 0;
+    for (int i = kind == RAYS_OF_PATHS; i < 2; i++)
+        if (!renderer->escapes[kinds[i]].pipeline)
+            requests[count++] = request_kernel(renderer, &renderer->escapes[kinds[i]],
+                                               "escape.comp", kinds[i]);
+    return count;
 }
 
 KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
@@ -60,14 +75,11 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
     renderer->early_outs    = early_outs == KRS_EARLY_OUTS_DEFAULT ? !gpu_is_cpu(&renderer->gpu)
                                                                    : early_outs == KRS_EARLY_OUTS_ON;
     spirv_start();
-    renderer->compiler_started               = true;
-    KernelRequest kernels[PIXEL_KERNELS + 2] = {
-        [PIXEL_KERNELS]     = {&renderer->next_dispatch, {.file = "next_dispatch.comp"}},
-        [PIXEL_KERNELS + 1] = {&renderer->clear_shared,
-                               {.file    = "clear_shared.comp",
-                                .defines = ray_defines[RAYS_OF_CAMERAS][renderer->gpu.texels]}}};
-    request_pixels(renderer, RAYS_OF_CAMERAS, kernels);
-    const size_t count = PIXEL_KERNELS + (gpu_is_cpu(&renderer->gpu) ? 0 : 2);
+    renderer->compiler_started    = true;
+    const KernelRequest kernels[] = {
+        {&renderer->next_dispatch, {.file = "next_dispatch.comp"}},
+        request_kernel(renderer, &renderer->clear_shared, "clear_shared.comp", RAYS_OF_CAMERAS)};
+    const size_t count = gpu_is_cpu(&renderer->gpu) ? 0 : sizeof kernels / sizeof *kernels;
     if (!layouts_create(renderer) || !kernels_make(renderer, VK_NULL_HANDLE, kernels, count,
                                                    &renderer->spirv_ms, &renderer->pipeline_ms))
         return renderer->gpu.status;
@@ -121,24 +133,16 @@ bool renderer_create_pixels(KrsRenderer *renderer, RayKind kind, double *spirv_m
                             double *pipeline_ms)
 {
     KernelRequest requests[PIXEL_KERNELS];
-    request_pixels(renderer, kind, requests);
-    return renderer->pixels[kind][0].pipeline ||
-           kernels_make(renderer, VK_NULL_HANDLE, requests, PIXEL_KERNELS, spirv_ms, pipeline_ms);
+    const size_t  count = renderer_request_pixels(renderer, kind, requests);
+    return kernels_make(renderer, VK_NULL_HANDLE, requests, count, spirv_ms, pipeline_ms);
 }
 
 bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
                              double *pipeline_ms)
 {
-    const RayKind kinds[2] = {kind, RAYS_OF_PATHS};
     KernelRequest requests[2];
-    size_t        count = 0;
-    for (int i = 0; i < 2; i++)
-        if (!renderer->escapes[kinds[i]].pipeline && (i == 0 || kind != RAYS_OF_PATHS))
-            requests[count++] = (KernelRequest){
-                &renderer->escapes[kinds[i]],
-                {.file = "escape.comp", .defines = ray_defines[kinds[i]][renderer->gpu.texels]}};
-    return count == 0 ||
-           kernels_make(renderer, VK_NULL_HANDLE, requests, count, spirv_ms, pipeline_ms);
+    const size_t  count = renderer_request_escapes(renderer, kind, requests);
+    return kernels_make(renderer, VK_NULL_HANDLE, requests, count, spirv_ms, pipeline_ms);
 }
 
 /* Makes a kernel without a scene, unless it exists; NULL with the failure noted. */

@@ -6,11 +6,15 @@
 
 #include "runtime/tracer/handles.h"
 
-/* Makes the kernels without a scene for rays of a kind, unless they exist.  Adds the time that this
-   takes. */
+/* Lists the kernels of previews without a scene for rays of a kind, PIXEL_KERNELS at most, that do
+   not exist.  Returns how many. */
+size_t renderer_request_pixels(KrsRenderer *renderer, RayKind kind, KernelRequest *requests);
+/* Likewise the kernels of escape.comp for a kind of primary rays, and for paths; 2 at most. */
+size_t renderer_request_escapes(KrsRenderer *renderer, RayKind kind, KernelRequest *requests);
+/* Makes these kernels of previews.  Adds the time that this takes. */
 bool renderer_create_pixels(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
                             double *pipeline_ms);
-/* Likewise the kernels of escape.comp for a kind of primary rays, and for paths. */
+/* Likewise those of escape.comp. */
 bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
                              double *pipeline_ms);
 /* The kernel that ends rays at given depths, for rays of a kind; NULL with the failure noted. */

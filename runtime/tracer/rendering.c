@@ -137,14 +137,6 @@ static void set_scene(KrsRendering *rendering, const KrsScene *scene)
     rendering->rays       = rendering->scene_rays;
 }
 
-/* Makes the kernels that every rendering of a purpose needs. */
-static bool prepare_kernels(KrsRendering *rendering)
-{
-    return renderer_create_pixels(rendering->renderer, rendering->rays, &rendering->spirv_ms,
-                                  &rendering->pipeline_ms) &&
-           kernels_create(rendering, rendering->purpose);
-}
-
 KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRendering **out)
 {
     return krs_rendering_new_for(renderer, scene, KRS_FOR_PICTURES, out);
@@ -166,7 +158,8 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         for (int has_scene = 0; has_scene < 2; has_scene++)
             rendering->groups_at_once[phase][has_scene] = guess_slice(rendering, phase, has_scene);
-    if (!sets_create(rendering) || !buffers_create(rendering) || !prepare_kernels(rendering)) {
+    if (!sets_create(rendering) || !buffers_create(rendering) ||
+        !kernels_create(rendering, purpose)) {
         KrsStatus status = renderer->gpu.status;
         krs_rendering_free(rendering);
         return status;
@@ -189,7 +182,8 @@ KrsStatus krs_rendering_update(KrsRendering *rendering, const KrsScene *scene)
     rendering->zone_slots = rendering->most_zone_slots = 0;
     rendering->camera_relative                         = false;
     set_scene(rendering, scene);
-    const bool      ready   = scene_buffers_create(rendering) && prepare_kernels(rendering);
+    const bool ready = scene_buffers_create(rendering) &&
+                       kernels_create(rendering, rendering->purpose);
     const KrsStatus status  = gpu->status;
     KrsRendering    dropped = ready ? before : *rendering;
     gpu_wait(gpu);
@@ -415,9 +409,7 @@ bool rendering_set_rays(KrsRendering *rendering, RayKind kind)
     if (kind <= rendering->rays)
         return true;
     rendering->rays = kind;
-    return renderer_create_pixels(rendering->renderer, kind, &rendering->spirv_ms,
-                                  &rendering->pipeline_ms) &&
-           kernels_create(rendering, rendering->purpose);
+    return kernels_create(rendering, rendering->purpose);
 }
 
 uint32_t rendering_spread(const KrsRendering *rendering, uint32_t count)

@@ -112,8 +112,10 @@ bool kernels_make(KrsRenderer *renderer, VkDescriptorSet scene_set, const Kernel
 {
     Gpu       *gpu = &renderer->gpu;
     KernelCode codes[KERNELS_AT_ONCE];
-    bool       ready = kernel_compile_all(gpu, requests, count, codes, spirv_ms);
-    double     start = clock_ms();
+    if (count == 0)
+        return true;
+    bool   ready = kernel_compile_all(gpu, requests, count, codes, spirv_ms);
+    double start = clock_ms();
     for (size_t i = 0; i < count; i++)
         *requests[i].kernel = (Kernel){0};
     ready = ready && kernel_load_all(gpu, requests, codes, count, renderer->layout);
