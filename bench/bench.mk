@@ -46,6 +46,10 @@ $(B)/bench/normals/normals: $(B)/bench/normals/normals.o $(STAGE) $(B)/libkrs.a
 bench-normals: $(B)/bench/normals/normals
 	@REVISION=$(REVISION) $(B)/bench/normals/normals
 
+# How long first pictures take, with empty and with full caches.
+bench-starts: $(B)/krs
+	@bench/starts.sh $(B)/krs
+
 # What textures and patterns cost beside a plain material.
 bench-textures: $(B)/krs
 	@bench/textures/textures.sh $(B)/krs
@@ -118,5 +122,5 @@ clang-objects: $(BENCH:%.c=$(B)/%.o) $(STAGE) $(MINIFY) \
                $(B)/bench/registers/registers.o $(B)/bench/parts/parts.o \
                $(B)/bench/view/view.o $(ENHANCED)
 .PHONY: bench bench-quick minify iterations inverted bench-enhanced bench-normals bench-textures bench-paths bench-algebraic check-device \
-        bench-registers bench-parts bench-large bench-radiosity \
+        bench-registers bench-parts bench-large bench-radiosity bench-starts \
         bench-lanes bench-mesh bench-view

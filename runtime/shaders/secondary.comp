@@ -192,6 +192,9 @@ void exchange_item(uint number) {}
 void begin_group(uint first)
 {
     unresolved = 0u;
+#ifdef PATH_RAYS // to the lights that paths have chosen
+    is_cone = false;
+#else
     light = find_light(control.light);
     positional = (light.kind & LIGHT_POSITIONAL) != 0u;
     radius = light_radius(light);
@@ -199,6 +202,7 @@ void begin_group(uint first)
     radius = control.rays > 1u || !are_of_paths() ? radius : 0.0;
 #endif
     is_cone = control.phase == RAYS_CONES;
+#endif
 }
 
 void begin_item(uint number, bool saved)
@@ -206,7 +210,7 @@ void begin_item(uint number, bool saved)
     uint listed = find_listed(control.reading + number);
     bool exists = !is_cone || has_cone(listed);
 #ifdef PATH_RAYS
-    hit = control.phase == RAYS_AS_CHOSEN ? hit_of_path(listed) : hit_point_of_slot(listed);
+    hit = hit_of_path(listed);
 #else
     hit = hit_point_of_slot(!exists ? 0u : is_cone ? cone_of_quarter(listed) : listed);
 #endif
@@ -216,10 +220,7 @@ void begin_item(uint number, bool saved)
     vec3 normal = facing_and_evenness.xyz;
     lift_in_pixels = mix(LIFT, LIFT_OF_EVEN, smoothstep(UNEVEN, EVEN, facing_and_evenness.w));
 #ifdef PATH_RAYS
-    if (control.phase == RAYS_AS_CHOSEN)
-        aim_as_chosen(normal);
-    else
-        aim_at_light(normal);
+    aim_as_chosen(normal);
 #else
     if (control.phase == RAYS_OVER_HEMISPHERE)
         aim_over_hemisphere(normal);
@@ -326,21 +327,13 @@ float find_penumbra()
 // The openness of a ray that hits something after this fraction of its reach.
 float openness_of_hit(float fraction) { return fraction * fraction; }
 
-void end_item()
+void end_ray()
 {
-    if (is_cone) {
-        if (!blocked && step_limit == 0u)
-            store_shared(RAYS_SHARED, hit.slot, find_depth(hit), LIT);
-        return;
-    }
     unresolved += step_limit > 0u ? 1u : 0u;
 #ifdef PATH_RAYS
-    if (control.phase == RAYS_AS_CHOSEN) {
-        if (!blocked && !below_horizon)
-            add_light(index_of(pixel_of(hit.slot)), clamped(added));
-        return;
-    }
-#endif
+    if (!blocked && !below_horizon)
+        add_light(index_of(pixel_of(hit.slot)), clamped(added));
+#else
     float visible = blocked || below_horizon ? 0.0 : 1.0;
     uint  code = below_horizon ? BELOW_HORIZON : blocked ? code_of_width(find_penumbra()) : LIT;
     if (control.phase == RAYS_OVER_HEMISPHERE) {
@@ -351,6 +344,15 @@ void end_item()
         store_shared(RAYS_SHARED, hit.slot, find_depth(hit), code);
     else
         store_lighting(control.value, hit.slot, visible);
+#endif
+}
+
+void end_item()
+{
+    if (!is_cone)
+        end_ray();
+    else if (!blocked && step_limit == 0u)
+        store_shared(RAYS_SHARED, hit.slot, find_depth(hit), LIT);
 }
 
 void end_group(uint steps)
