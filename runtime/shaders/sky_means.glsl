@@ -23,6 +23,6 @@ vec3 find_sky_mirrored(vec3 normal, vec3 toward_eye, float roughness)
 #ifdef SKY_MAP
     return sky_map_mirrored(bounced, roughness);
 #else
-    return mix(sky_radiance(bounced), sky_light(normal), roughness);
+    return sky_mirrored(bounced, normal, roughness);
 #endif
 }
