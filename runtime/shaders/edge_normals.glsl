@@ -28,8 +28,9 @@ const float THIN = 4.0;            // and below THIN
 const float SHARP = 0.5;           // nearer taps are for bends above SHARP: not by curvature alone,
 const float THIN = 1.0;            // and below THIN: else taps on both sides are outside
 #endif
-const float FLATTER = 0.008;       // largest bend of one side, relative to the wide bend, as
-                                   // curvature bends in proportion to the reach
+const float FLATTER = 0.008;       // largest bend of one side, relative to the wide bend up to 1, as
+                                   // curvature bends in proportion to the reach until the taps see
+                                   // the other side of something thin
 // How far beside and outside of a hit on the line of an edge, in reaches of the nearer taps.  There
 // an edge of any angle from 30 to 150 degrees has one side nearer than the other.
 const float BESIDE_REACHES = 8.0, ABOVE_REACHES = 4.0;
@@ -119,7 +120,7 @@ bool is_one_side(float bend)
 {
     bool alike = dot(sum, sum_wide) > FACING_ALIKE * length(sum) * length(sum_wide);
     bool visible = tap_set < TO_EYE || dot(sum, find_backwards()) > 0.0;
-    return visible && (alike && tap_set != INSIDE && bend < FLATTER * bend_wide ||
+    return visible && (alike && tap_set != INSIDE && bend < FLATTER * min(bend_wide, 1.0) ||
                        bend < FLAT_ENOUGH && is_confirmed());
 }
 
@@ -136,7 +137,8 @@ void begin_beside()
 
 void end_beside()
 {
-    bool same = find_bend() < FLAT_ENOUGH && dot(sum, plane_normal) > FACING_SAME * length(sum);
+    bool same = find_bend() < FLAT_ENOUGH && dot(sum, plane_normal) > FACING_SAME * length(sum) &&
+                abs(middle) < ON_PLANE * t; // else another plane is there, such as the floor below
     tap_set = same ? ONE_SIDE : MEAN;
     sum = plane_normal;
 }

@@ -118,3 +118,11 @@ HitPoint find_hit_point(uint number)
 {
     return hit_point_of_slot(find_listed(control.reading + number));
 }
+
+// The reach of the differences of which normals are made.  Its least, relative to the coordinates:
+// less would be noise.
+const float NOISE = 3e-4;
+float find_reach(HitPoint hit)
+{
+    return max(frame.normal_reach * hit.width, NOISE * largest(hit.position) + hit.rounding);
+}

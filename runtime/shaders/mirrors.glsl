@@ -60,6 +60,20 @@ Onward find_onward(HitPoint hit, KrsSurface surface, Boundary boundary, vec3 nor
     return onward;
 }
 
+// How much wider a ray gets with each unit of its way beyond the surface: it is a cone about the
+// pixel, and where the surface bends normals turn within the pixel.  The evenness tells how much
+// over the reach of differences (normals.comp).  Mirrors turn rays twice as far as normals, glass by
+// what it refracts.
+const float MOST_TURNED = 0.5; // more comes from an edge, or from detail
+float find_widening(HitPoint hit, vec4 facing, bool refracts, float eta)
+{
+    float evenness = max(facing.w, 1e-3);
+    float bend = sqrt(max(1.0 / (evenness * evenness) - 1.0, 0.0));
+    float cosine = max(abs(dot(hit.direction, facing.xyz)), 0.1);
+    float turned = 2.0 * bend * hit.width / (cosine * find_reach(hit));
+    return (refracts ? abs(1.0 - 1.0 / eta) : 2.0) * min(turned, MOST_TURNED);
+}
+
 // Stores the path that goes on, and lists it.
 void follow_onward(HitPoint hit, uint index, Onward onward, vec4 facing, vec3 weight, float spread)
 {

@@ -17,8 +17,6 @@
 #include "media.glsl"
 #endif
 
-// The least reach of differences, relative to the coordinates: less would be noise.
-const float NOISE = 3e-4;
 // Surfaces of this evenness or more are flat.
 const float EVEN = 0.9995;
 
@@ -72,7 +70,7 @@ void begin_nearer();
 void begin_normal()
 {
     // Differences over a pixel or so: finer detail would only be noise.
-    t = max(frame.normal_reach * hit.width, NOISE * largest(hit.position) + hit.rounding);
+    t = find_reach(hit);
 #if STENCIL == 3 && defined(ROOTS)
     looks_nearer = false;
 #elif STENCIL == 3

@@ -27,7 +27,9 @@
 #include "tints.glsl"
 #endif
 
-const float EVEN = 0.98;              // less comes from detail, not from curvature
+// Less evenness comes from detail, not from curvature.  Mirrors make things so small that curvature
+// turns normals within a pixel, too.
+const float EVEN = 0.98, EVEN_IN_MIRRORS = 1.0;
 const float LEAST_NORMAL_REACH = 0.5; // the reach without filtering (normal_reach in job.c)
 const float SEEN = 0.78;              // length of the mean visible normal of a thin round thing
 
@@ -78,9 +80,13 @@ float roughen(float roughness, float mean_length)
     return sqrt(sqrt(min(square * square + spread, 1.0)));
 }
 
+// Whether one sample stands for all that its pixel shows.
+bool filters_detail() { return frame.normal_reach > LEAST_NORMAL_REACH; }
+
 Coat find_coat(HitPoint hit, KrsSurface surface, float evenness)
 {
-    float mean_length = frame.normal_reach > LEAST_NORMAL_REACH ? min(evenness / EVEN, 1.0) : 1.0;
+    float even = are_of_paths() ? EVEN_IN_MIRRORS : EVEN;
+    float mean_length = filters_detail() ? min(evenness / even, 1.0) : 1.0;
     vec3  mean = mean_normal(hit.side * surface.normal, mean_length, -hit.direction);
     vec4  coat = saturate(vec4(surface.color, surface.roughness), 1.0);
     float size = length(mean);
@@ -169,6 +175,8 @@ void send_on(HitPoint hit, uint index, KrsSurface surface, Boundary boundary, Co
 #endif
     Onward onward = find_onward(hit, surface, boundary, coat.normal, mirrored);
     float spread = are_of_paths() ? load_path(PATH_DIRECTION, index).w : frame.pixel_slope;
+    if (filters_detail())
+        spread += find_widening(hit, facing, onward.side < 0.0, boundary.eta);
     follow_onward(hit, index, onward, facing, weight * onward.part, spread);
 }
 #endif
