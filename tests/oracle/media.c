@@ -102,15 +102,18 @@ static void balls_are_seen_in_glass(void **state)
     "                 absorption: [0.5, 0.5, 0.5] }\n"                           \
     "material water { color: white, transmission: 1, roughness: 0, ior: 1.33,\n" \
     "                 absorption: [1.5, 1.5, 1.5] }\n"                           \
+    "material ice { color: white, transmission: 1, roughness: 0, ior: 1.31,\n"   \
+    "               absorption: [3, 3, 3] }\n"                                   \
     "def layer(low, high) = box([60, high - low, 60]).move([0, 0.5 * (low + high), 0]);\n"
 #define GLASS "show layer(0, 0.3).paint(glass); show layer(0.8, 1).paint(glass);\n"
+#define ICE   "show layer(0.4, 0.65).paint(ice);\n"
 #define WATER "show layer(0.3 - overlap, 0.8 + overlap).paint(water);\n"
 
 typedef struct Layer {
     double thickness, index, loss;
 } Layer;
 
-enum { LAYERS = 3 };
+enum { LAYERS = 5 }; /* at most: what is behind the last is air */
 
 /* What a stack reflects and lets through, of light from either side. */
 typedef struct Stack {
@@ -132,7 +135,7 @@ static double let_through(const Layer layers[LAYERS], double angle)
     Stack  all  = {{0, 0}, 1};
     double here = 1;
     for (int i = 0; i <= LAYERS; i++) {
-        double beyond = i < LAYERS ? layers[i].index : 1;
+        double beyond = i < LAYERS && layers[i].index > 0 ? layers[i].index : 1;
         double back   = fresnel(sin(angle) / here, beyond / here);
         all           = join(all, (Stack){{back, back}, 1 - back});
         here          = beyond;
@@ -164,7 +167,12 @@ static bool is_stack(const char *text, double overlap, const Layer layers[LAYERS
 /* Where water and glass overlap by 0.1, what is shown last counts.  In a gap there is air. */
 static const Layer glass_counts[LAYERS] = {{0.3, 1.6, 0.5}, {0.5, 1.33, 1.5}, {0.2, 1.6, 0.5}},
                    water_counts[LAYERS] = {{0.2, 1.6, 0.5}, {0.7, 1.33, 1.5}, {0.1, 1.6, 0.5}},
-                   hollow[LAYERS]       = {{0.3, 1.6, 0.5}, {0.5, 1, 0}, {0.2, 1.6, 0.5}};
+                   hollow[LAYERS]       = {{0.3, 1.6, 0.5}, {0.5, 1, 0}, {0.2, 1.6, 0.5}},
+                   with_ice[LAYERS]     = {{0.3, 1.6, 0.5},
+                                           {0.1, 1.33, 1.5},
+                                           {0.25, 1.31, 3},
+                                           {0.15, 1.33, 1.5},
+                                           {0.2, 1.6, 0.5}};
 
 static void water_stands_in_glass(void **state)
 {
@@ -180,6 +188,16 @@ static void what_is_shown_last_counts(void **state)
     assert_true(fabs(let_through(glass_counts, 0) - let_through(water_counts, 0)) > 0.05);
     assert_true(is_stack(STACK WATER GLASS, 0.1, glass_counts, "glass over water"));
     assert_true(is_stack(STACK GLASS WATER, 0.1, water_counts, "water over glass"));
+}
+
+/* Ice swims in water that touches glass: three media, one in the other. */
+static void ice_is_in_water_in_glass(void **state)
+{
+    (void)state;
+    assert_true(fabs(let_through(with_ice, 0) - let_through(glass_counts, 0)) > 0.05);
+    assert_true(is_stack(STACK WATER ICE GLASS, 0, with_ice, "ice in water in glass"));
+    assert_true(is_stack(STACK GLASS WATER ICE, 0, with_ice, "the same, the glass first"));
+    assert_true(is_stack(STACK ICE WATER GLASS, 0, glass_counts, "water over ice hides it"));
 }
 
 static void hollows_are_empty(void **state)
@@ -297,10 +315,10 @@ static void previews_light_through_glass(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(balls_are_seen_in_glass),      cmocka_unit_test(water_stands_in_glass),
-        cmocka_unit_test(what_is_shown_last_counts),    cmocka_unit_test(hollows_are_empty),
-        cmocka_unit_test(solids_touch_glass),           cmocka_unit_test(cameras_look_out_of_glass),
-        cmocka_unit_test(previews_light_through_glass),
+        cmocka_unit_test(balls_are_seen_in_glass),   cmocka_unit_test(water_stands_in_glass),
+        cmocka_unit_test(what_is_shown_last_counts), cmocka_unit_test(ice_is_in_water_in_glass),
+        cmocka_unit_test(hollows_are_empty),         cmocka_unit_test(solids_touch_glass),
+        cmocka_unit_test(cameras_look_out_of_glass), cmocka_unit_test(previews_light_through_glass),
     };
     spirv_start(); /* held for all, so that the shader compiler is not started anew */
     int failed = cmocka_run_group_tests_name("media", tests, renderer_open, renderer_close);
