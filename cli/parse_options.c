@@ -23,10 +23,8 @@ static bool add_output(Options *options, const char *file)
 }
 
 /* What its row takes, and yet cannot be. */
-static KrsStatus check_version(const Options *options, OptionId id)
+static KrsStatus check_number(const Options *options, OptionId id)
 {
-    if (id == OPTION_RESUME)
-        return say_usage(options, "--resume is not in this version; there are no checkpoints");
     if (id == OPTION_ZONE && options->zone_count == KRS_MOST_ZONES)
         return say_usage(options, "there are at most %d zones", KRS_MOST_ZONES);
     return KRS_OK;
@@ -60,7 +58,7 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
     bool              chosen = value && info->choices && !info->wants;
     int               choice = chosen ? find_choice(value, info->choices) : 0;
     char              wants[OPTION_TEXT];
-    KrsStatus         status = check_version(options, id);
+    KrsStatus         status = check_number(options, id);
     if (status != KRS_OK)
         return status;
     if (choice >= 0 && take_value(options, id, value, choice))

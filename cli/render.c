@@ -3,7 +3,6 @@
  *
  * Whatever can be wrong with the command line or the outputs is found before the work begins.
  */
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,103 +18,6 @@
 #include "cli/render.h"
 #include "cli/render_stats.h"
 #include "cli/supervise.h"
-
-static void choose_outputs(Render *render)
-{
-    const Options *options = render->options;
-    render->outputs        = options->outputs.items;
-    render->output_count   = options->outputs.count;
-    if (render->output_count > 0 || options->raw)
-        return;
-    static const char *const endings[] = {".exr", ".png"};
-    enum { DEFAULT_OUTPUTS = 2 };
-    render->outputs = arena_new_array(options->arena, const char *, DEFAULT_OUTPUTS);
-    for (; render->output_count < DEFAULT_OUTPUTS; render->output_count++) {
-        Text text = {.arena = options->arena};
-        text_format(&text, "%s%s%s", scene_name(options->arena, options->files.items[0]),
-                    options->animated ? "-%04d" : "", endings[render->output_count]);
-        render->outputs[render->output_count] = text.bytes;
-    }
-}
-
-void render_say_written(const Render *render, double seconds)
-{
-    const Options *options = render->options;
-    Text           names   = {.arena = options->arena};
-    if (options->quiet || render->output_count == 0)
-        return;
-    for (size_t i = 0; i < render->output_count; i++)
-        text_format(&names, "%s`%s`",
-                    i == 0                         ? ""
-                    : i + 1 < render->output_count ? ", "
-                                                   : " and ",
-                    render->outputs[i]);
-    if (strcmp(render->outputs[0], STANDARD_OUTPUT) == 0)
-        return; /* who reads it knows */
-    if (seconds > 0)
-        text_format(&names, " in %.2f s", seconds);
-    if (options->animated)
-        say("wrote frames %u to %u to %s", options->first_frame, options->last_frame, names.bytes);
-    else
-        say("wrote %s", names.bytes);
-}
-
-static KrsStatus check_name(const Render *render, size_t index)
-{
-    const Options *options = render->options;
-    const char    *path    = render->outputs[index];
-    if (file_form(path) == FORM_UNKNOWN)
-        return say_usage(options, "the output `%s` ends in neither .exr nor .png", path);
-    if (strcmp(path, STANDARD_OUTPUT) == 0 && (options->stats != STATS_NONE || isatty(1)))
-        return say_usage(options, "the picture would go to %s; write it to a file",
-                         isatty(1) ? "the terminal" : "where --stats goes");
-    if (options->animated && frame_places(path) == 0)
-        return say_usage(options, "with --frames, `%s` needs a place for the number: %%04d", path);
-    if (options->animated && frame_places(path) > 1)
-        return say_usage(options, "`%s` has more than one place for the number of the frame", path);
-    for (size_t other = 0; other < index; other++)
-        if (are_one_file(options, render->outputs[other], path))
-            return say_usage(options, "the output `%s` is asked for twice", path);
-    return KRS_OK;
-}
-
-/* Standard output may have one thing only. */
-static KrsStatus check_raw(const Options *options)
-{
-    if (!options->raw)
-        return KRS_OK;
-    if (options->stats != STATS_NONE || isatty(1))
-        return say_usage(options, "--raw would go to %s; pipe it to an encoder",
-                         isatty(1) ? "the terminal" : "where --stats goes");
-    if (options->skip_existing)
-        return say_usage(options, "--raw has all frames, so there is nothing to skip");
-    for (size_t i = 0; i < options->outputs.count; i++)
-        if (strcmp(options->outputs.items[i], STANDARD_OUTPUT) == 0)
-            return say_usage(options, "--raw and `-o -` both go to standard output");
-    return KRS_OK;
-}
-
-static KrsStatus check_outputs(const Render *render)
-{
-    const Options *options = render->options;
-    KrsStatus      raw     = check_raw(options);
-    if (raw != KRS_OK)
-        return raw;
-    for (size_t i = 0; i < render->output_count; i++) {
-        const char *path = frame_path(options, render->outputs[i], options->first_frame);
-        OutputError error;
-        KrsStatus   status = check_name(render, i);
-        if (status == KRS_OK)
-            status = check_scene_not_overwritten(options, path);
-        if (status != KRS_OK)
-            return status;
-        if (output_check(path, &error) != KRS_OK) {
-            say("%s", error.message);
-            return error.status;
-        }
-    }
-    return KRS_OK;
-}
 
 static KrsStatus say_unknown_camera(const Options *options, const char *const *names, size_t count)
 {
@@ -154,7 +56,7 @@ static bool show_progress(void *user, double done)
 {
     Render *render = user;
     stage_goes_on();
-    progress_show(&render->progress, done);
+    progress_show(&render->progress, render->checkpoint.done + render->checkpoint.share * done);
     return !*interrupted() && !(render->outdated && render->outdated(render->user));
 }
 
@@ -306,6 +208,17 @@ static KrsStatus render_eyes(Render *render, KrsPicture **picture)
     return status;
 }
 
+static KrsStatus render_picture(Render *render, uint32_t frame, KrsPicture **picture)
+{
+    if (render->options->stereo >= 0)
+        return render_eyes(render, picture);
+    if (!render->options->resume)
+        return krs_render(render->rendering, render->frame, &render->how, picture);
+    const CheckpointFrame resumed = {render->rendering, render->frame, &render->how,
+                                     render->samples, frame};
+    return checkpoint_render(&render->checkpoint, &resumed, picture);
+}
+
 /* Reads what another renderer has made of the frame; free_others frees it. */
 static KrsStatus read_others(Render *render, uint32_t frame)
 {
@@ -346,13 +259,11 @@ static KrsStatus render_frame(Render *render, uint32_t frame)
     }
     stage_enter(STAGE_RENDER);
     if (status == KRS_OK)
-        status = options->stereo >= 0
-                     ? render_eyes(render, &picture)
-                     : krs_render(render->rendering, render->frame, &render->how, &picture);
+        status = render_picture(render, frame, &picture);
     if (status != KRS_OK) {
         free_others(render);
         progress_end(&render->progress);
-        if (status != KRS_INTERRUPTED)
+        if (status != KRS_INTERRUPTED && !render->checkpoint.failed)
             say("%s", krs_renderer_message(render->renderer));
         return status;
     }
@@ -395,13 +306,6 @@ static KrsStatus specialize(Render *render)
 static KrsPurpose purpose_of(const Render *render)
 {
     return render->how.integrator == KRS_INTEGRATOR_PREVIEW ? KRS_FOR_PICTURES : KRS_FOR_PATHS;
-}
-
-KrsStatus render_begin(Render *render, const Options *options)
-{
-    render->options = options;
-    choose_outputs(render);
-    return check_outputs(render);
 }
 
 KrsStatus render_choose(Render *render)
@@ -451,15 +355,20 @@ KrsStatus render_frames(Render *render)
     const Options *options = render->options;
     KrsStatus      status  = KRS_OK;
     uint32_t       skipped = 0;
+    const uint32_t resumed = options->resume ? checkpoint_find(&render->checkpoint, render->scene,
+                                                               render->renderer)
+                                             : options->first_frame;
     progress_start(&render->progress, options,
                    (size_t)options->last_frame - options->first_frame + 1);
     for (uint32_t frame = options->first_frame; frame <= options->last_frame && status == KRS_OK;
          frame++) {
         render->progress.frame = frame - options->first_frame;
-        if (options->skip_existing && is_there(render, frame))
+        if ((options->skip_existing || frame < resumed) && is_there(render, frame))
             skipped++;
         else
             status = render_frame(render, frame);
+        if (options->resume && status == KRS_OK && frame >= resumed)
+            status = checkpoint_advance(&render->checkpoint, frame);
     }
     progress_end(&render->progress);
     if (skipped > 0 && !options->quiet)

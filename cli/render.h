@@ -4,6 +4,7 @@
 #ifndef KRS_RENDER_H
 #define KRS_RENDER_H
 
+#include "cli/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 
@@ -18,8 +19,9 @@ typedef struct Render {
     KrsRenderOptions how;
     float           *depth; /* of another renderer, for the frame at hand; NULL: none */
     float (*plate)[4];
-    uint32_t samples; /* of a pixel, also where `how` leaves it to the scene */
-    Progress progress;
+    uint32_t   samples; /* of a pixel, also where `how` leaves it to the scene */
+    Progress   progress;
+    Checkpoint checkpoint;
     bool (*outdated)(
         void *user); /* asked while a picture is made: true ends it; NULL: it never is */
     void *user;      /* handed to `outdated` */

@@ -24,8 +24,9 @@
 
 typedef struct Shared {
     atomic_int       stage;
-    _Atomic uint64_t entered; /* when, milliseconds of clock_now */
-    atomic_int       open;    /* whether `temporary` exists */
+    _Atomic uint64_t entered;   /* when, milliseconds of clock_now */
+    atomic_int       resumable; /* whether a checkpoint is there */
+    atomic_int       open;      /* whether `temporary` exists */
     char             temporary[4096];
     char             size[256]; /* of what is compiled, in words */
 } Shared;
@@ -80,6 +81,8 @@ void stage_enter(RunStage stage)
 }
 
 void stage_goes_on(void) { atomic_store(&shared->entered, milliseconds()); }
+
+void stage_resumable(bool resumable) { atomic_store(&shared->resumable, resumable); }
 
 void stage_size(const char *format, ...)
 {
@@ -409,8 +412,11 @@ int supervise(Options *options, Work *work)
                                   : judge_death(options, &watch, WTERMSIG(ended));
     if (atomic_load(&shared->open))
         unlink(shared->temporary);
+    const bool resumable = atomic_load(&shared->resumable) != 0;
     if (status == KRS_INTERRUPTED)
-        say("interrupted");
+        say("%s", resumable ? "interrupted; the same command goes on from here" : "interrupted");
+    if (resumable && (status == KRS_INTERRUPTED || (WIFEXITED(ended) && status == KRS_INTERNAL)))
+        status = KRS_RESUMABLE; /* the latter: a device that is lost */
     munmap(shared, sizeof *shared);
     return status;
 }

@@ -33,7 +33,7 @@ typedef KrsStatus Work(Options *options);
        a line on standard error and a folder that keeps what is needed to see it again;
      - 1 when compiling takes longer than options->deadline, or all longer than its limit;
      - 71 when the system killed the child, which it does for want of memory;
-     - 130 after SIGINT, SIGTERM or SIGHUP, which are passed on. */
+     - 130 after SIGINT, SIGTERM or SIGHUP, which are passed on; 75 where a checkpoint is there. */
 int supervise(Options *options, Work *work);
 
 /* The following are for the child. */
@@ -45,6 +45,9 @@ void stage_enter(RunStage stage);
 
 /* Tells the parent that the work of this stage goes on: the deadline begins anew. */
 void stage_goes_on(void);
+/* Whether a checkpoint is there from which the same command goes on: then an interrupt ends it with
+   status 75. */
+void stage_resumable(bool resumable);
 /* How large what is compiled is, should it take too long: "`a.krs` has 12 bytes". */
 void stage_size(const char *format, ...) __attribute__((format(printf, 1, 2)));
 

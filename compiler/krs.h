@@ -29,6 +29,7 @@ typedef enum KrsStatus {
     KRS_OUT_OF_MEMORY = 71,
     KRS_CANNOT_CREATE = 73, /* an output cannot be created */
     KRS_IO_ERROR      = 74, /* the scene cannot be read, or an output cannot be written */
+    KRS_RESUMABLE     = 75, /* of the command alone: interrupted, but what is done is kept */
     KRS_INTERRUPTED   = 130
 } KrsStatus;
 

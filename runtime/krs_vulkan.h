@@ -495,4 +495,6 @@ KrsStatus krs_device_raycast(KrsRendering *rendering, KrsFrame *frame, const dou
 #ifdef __cplusplus
 }
 #endif
+
+#include "runtime/krs_film.h"
 #endif

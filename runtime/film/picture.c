@@ -58,6 +58,12 @@ static void plane_set(KrsPicture *picture, int plane, void *values)
     memcpy((char *)picture + planes[plane].member, &values, sizeof values);
 }
 
+size_t picture_plane(const KrsPicture *picture, int index, void **numbers)
+{
+    *numbers = index < PLANE_COUNT ? plane_get(picture, index) : NULL;
+    return index < PLANE_COUNT ? planes[index].bytes : 0;
+}
+
 KrsPicture *picture_new(Gpu *gpu, uint32_t width, uint32_t height, KrsWindow window,
                         uint32_t wanted)
 {

@@ -19,6 +19,9 @@ uint32_t picture_rows(const KrsPicture *picture);
    the row of colours; the next row lies `row_pixels` pixels behind. */
 void picture_take(KrsPicture *picture, uint32_t planes, const float *results, size_t row_pixels,
                   size_t first, size_t count);
+/* The numbers of plane `index`, and its bytes per pixel: NULL where the picture does not have it.  0:
+   there are no more planes. */
+size_t picture_plane(const KrsPicture *picture, int index, void **numbers);
 /* A copy of the picture with those planes that are among `planes`; NULL with the failure noted. */
 KrsPicture *picture_copy(Gpu *gpu, const KrsPicture *picture, uint32_t planes);
 /* Frees those planes of the picture that are among `planes`. */

@@ -63,8 +63,8 @@ run render ball.krs --camera overhead
 said 2 "has no camera \`overhead\`; it has \`" "an unknown camera"
 run render ball.krs --integrator foo
 said 2 "--integrator wants preview" "an unknown integrator"
-run render ball.krs --resume
-said 2 "not in this version" "checkpoints that are missing"
+run render ball.krs --resume --raw
+said 2 "beside the first output" "checkpoints without a place"
 run query ball.krs --set radus=1
 said 2 "did you mean \`radius\`?" "a misspelt param"
 run query ball.krs --set radius=7

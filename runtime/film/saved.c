@@ -1,0 +1,157 @@
+/*
+ * saved.c: a film as bytes, for a later process.
+ *
+ * They are what the film has in host memory, in the order of the machine: a header, the planes, the
+ * mattes, and what is kept for the estimate of errors.
+ */
+#include <string.h>
+
+#include "runtime/film/held.h"
+#include "runtime/film/noise.h"
+#include "runtime/film/picture.h"
+#include "runtime/tracer/renderer.h"
+#include "runtime/tracer/rendering.h"
+
+/* Bytes go one way: to `write`, or from `read`. */
+typedef struct Way {
+    KrsWriteCallback *write;
+    KrsReadCallback  *read;
+    void             *user;
+} Way;
+
+static bool pass(const Way *way, void *bytes, size_t size)
+{
+    return size == 0 ||
+           (way->write ? way->write(way->user, bytes, size) : way->read(way->user, bytes, size));
+}
+
+/* No member has bytes between it and the next. */
+typedef struct Header {
+    char      magic[8];
+    char      version[16];
+    uint64_t  kept; /* numbers of four members */
+    double    rebase_origin[3];
+    float     world_to_camera[4][4], world_to_ndc[4][4];
+    double    phase_ms[KRS_PHASE_COUNT], wall_ms;
+    uint64_t  evaluations, unresolved, clamped, submissions;
+    KrsWindow window;
+    uint32_t  width, height;
+    uint32_t  planes, mattes; /* bits of KrsPlane; whether there are mattes */
+    uint32_t  samples, most_evaluations;
+} Header;
+
+/* What is true of the film whether it has samples or not. */
+static Header describe(const KrsFilm *film)
+{
+    const KrsPicture *sums   = film->sums;
+    Header            header = {.magic   = "krsfilm",
+                                .version = KRS_VERSION,
+                                .kept    = film->kept ? held_kept(&film->options) : 0,
+                                .window  = sums->window,
+                                .width   = sums->width,
+                                .height  = sums->height,
+                                .planes  = film->options.planes,
+                                .mattes  = film->options.mattes};
+    return header;
+}
+
+static Header header_of(const KrsFilm *film)
+{
+    const KrsRenderStats *stats  = &film->sums->stats;
+    Header                header = describe(film);
+    memcpy(header.rebase_origin, film->rebase_origin, sizeof header.rebase_origin);
+    memcpy(header.world_to_camera, film->sums->world_to_camera, sizeof header.world_to_camera);
+    memcpy(header.world_to_ndc, film->sums->world_to_ndc, sizeof header.world_to_ndc);
+    memcpy(header.phase_ms, stats->phase_ms, sizeof header.phase_ms);
+    header.wall_ms          = stats->wall_ms;
+    header.evaluations      = stats->evaluations;
+    header.unresolved       = stats->unresolved;
+    header.clamped          = stats->clamped;
+    header.submissions      = stats->submissions;
+    header.samples          = film->samples;
+    header.most_evaluations = stats->most_evaluations_per_ray;
+    return header;
+}
+
+static void take_header(KrsFilm *film, const Header *header)
+{
+    KrsRenderStats *stats = &film->sums->stats;
+    memcpy(film->rebase_origin, header->rebase_origin, sizeof header->rebase_origin);
+    memcpy(film->sums->world_to_camera, header->world_to_camera, sizeof header->world_to_camera);
+    memcpy(film->sums->world_to_ndc, header->world_to_ndc, sizeof header->world_to_ndc);
+    memcpy(stats->phase_ms, header->phase_ms, sizeof header->phase_ms);
+    stats->wall_ms                  = header->wall_ms;
+    stats->evaluations              = header->evaluations;
+    stats->unresolved               = header->unresolved;
+    stats->clamped                  = header->clamped;
+    stats->submissions              = header->submissions;
+    stats->most_evaluations_per_ray = header->most_evaluations;
+    film->samples                   = header->samples;
+}
+
+static bool fits(const KrsFilm *film, const Header *header)
+{
+    const Header own = describe(film);
+    return memcmp(own.magic, header->magic, sizeof own.magic) == 0 &&
+           memcmp(own.version, header->version, sizeof own.version) == 0 &&
+           own.kept == header->kept &&
+           memcmp(&own.window, &header->window, sizeof own.window) == 0 &&
+           own.width == header->width && own.height == header->height &&
+           own.planes == header->planes && own.mattes == header->mattes && header->samples > 0 &&
+           header->samples <= KRS_MOST_SAMPLES;
+}
+
+/* All arrays of the film. */
+static bool pass_arrays(const KrsFilm *film, const Way *way)
+{
+    const KrsPicture *sums   = film->sums;
+    const size_t      pixels = (size_t)sums->window.width * sums->window.height;
+    void             *numbers;
+    size_t            bytes;
+    for (int i = 0; (bytes = picture_plane(sums, i, &numbers)) > 0; i++)
+        if (numbers && !pass(way, numbers, pixels * bytes))
+            return false;
+    for (int kind = 0; kind < KRS_MATTE_COUNT; kind++)
+        if (sums->mattes[kind] &&
+            !pass(way, sums->mattes[kind], pixels * KRS_MATTE_RANKS * sizeof(KrsMatte)))
+            return false;
+    return !film->kept || pass(way, film->kept, held_kept(&film->options) * sizeof *film->kept);
+}
+
+KrsStatus krs_film_save(KrsFilm *film, KrsWriteCallback *write, void *user)
+{
+    Gpu      *gpu = &film->rendering->renderer->gpu;
+    const Way way = {.write = write, .user = user};
+    renderer_clear(film->rendering->renderer);
+    if (krs_film_samples(film) == 0) {
+        gpu_refuse(gpu, KRS_BAD_ARGUMENT, "the film has no samples yet");
+        return gpu->status;
+    }
+    if (film->rendering->held.film == film && !held_store(film->rendering))
+        return gpu->status;
+    Header header = header_of(film);
+    if (!pass(&way, &header, sizeof header) || !pass_arrays(film, &way))
+        gpu_refuse(gpu, KRS_IO_ERROR, "the film cannot be written");
+    return gpu->status;
+}
+
+KrsStatus krs_film_load(KrsFilm *film, KrsReadCallback *read, void *user)
+{
+    Gpu      *gpu    = &film->rendering->renderer->gpu;
+    const Way way    = {.read = read, .user = user};
+    Header    header = {0};
+    renderer_clear(film->rendering->renderer);
+    krs_film_clear(film);
+    if (film->updates != film->rendering->updates)
+        gpu_refuse(gpu, KRS_BAD_ARGUMENT,
+                   "the film is of a scene that its rendering no longer has");
+    else if (!pass(&way, &header, sizeof header))
+        gpu_refuse(gpu, KRS_IO_ERROR, "the film cannot be read");
+    else if (!fits(film, &header))
+        gpu_refuse(gpu, KRS_BAD_ARGUMENT, "what was saved is no film like this one");
+    else if (!pass_arrays(film, &way))
+        gpu_refuse(gpu, KRS_IO_ERROR, "the film cannot be read");
+    else
+        take_header(film, &header);
+    return gpu->status;
+}

@@ -1,0 +1,198 @@
+/*
+ * saved.c: a film that is saved, and loaded by another renderer, goes on as if nothing had happened:
+ * the picture is that of krs_render, bit by bit.  What cannot be a film is refused.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "compiler/compile.h"
+#include "tests/support/device.h"
+#include "tests/unit/tracer_stage.h"
+
+enum { SAMPLES = 24 };
+
+static const char saved_text[] =
+    "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 40deg }\n"
+    "light sun { direction: [-1, 2, 1], intensity: 3, softness: 9deg }\n"
+    "light lamp { position: [1, 3, 2], intensity: 8, softness: 0.2 }\n"
+    "show sphere(1).move([0, 1, 0]); show box([0.9, 0.9, 0.9]).move([2, 0.5, 0.2]);\n"
+    "show plane([0, 1, 0], 0);\n";
+
+/* ---- a file in memory ---- */
+
+typedef struct Bytes {
+    unsigned char *bytes;
+    size_t         size, at;
+} Bytes;
+
+static bool take(void *user, const void *bytes, size_t size)
+{
+    Bytes *file = user;
+    if (file->at + size > file->size)
+        return false;
+    memcpy(file->bytes + file->at, bytes, size);
+    file->at += size;
+    return true;
+}
+
+static bool give(void *user, void *bytes, size_t size)
+{
+    Bytes *file = user;
+    if (file->at + size > file->size)
+        return false;
+    memcpy(bytes, file->bytes + file->at, size);
+    file->at += size;
+    return true;
+}
+
+/* ---- renderers ---- */
+
+static void open_stage(Stage *stage, unsigned pretence)
+{
+    const KrsRendererOptions options = {.device     = tested_device(),
+                                        .validation = true,
+                                        .complaint  = note_complaint,
+                                        .user       = stage,
+                                        .pretence   = pretence};
+    *stage                           = (Stage){0};
+    assert_int_equal(krs_renderer_new(&options, &stage->renderer), KRS_OK);
+    assert_int_equal(
+        krs_compile_text(saved_text, strlen(saved_text), "saved.krs", NULL, &stage->scene), KRS_OK);
+    assert_int_equal(krs_frame_new(stage->scene, &stage->frame), KRS_OK);
+    assert_int_equal(krs_rendering_new(stage->renderer, stage->scene, &stage->rendering), KRS_OK);
+}
+
+static void close_watched(Stage *stage)
+{
+    assert_int_equal(krs_renderer_complaints(stage->renderer), 0);
+    assert_int_equal(stage->complaints, 0);
+    stage_close(stage);
+}
+
+static KrsFilm *film_with(Stage *stage, const KrsRenderOptions *options, uint32_t samples)
+{
+    KrsFilm *film;
+    assert_int_equal(krs_film_new(stage->rendering, options, &film), KRS_OK);
+    if (samples > 0)
+        assert_int_equal(krs_film_add(film, stage->frame, NULL, samples), KRS_OK);
+    return film;
+}
+
+/* Every plane that one of the pictures has. */
+static void assert_same(KrsPicture *a, KrsPicture *b)
+{
+    const size_t pixels = (size_t)a->window.width * a->window.height;
+    assert_memory_equal(a->world_to_camera, b->world_to_camera, sizeof a->world_to_camera);
+    assert_memory_equal(a->world_to_ndc, b->world_to_ndc, sizeof a->world_to_ndc);
+    assert_int_equal(a->stats.evaluations, b->stats.evaluations);
+#define KRS_PLANE(id, bit, aov, about, arrays) arrays
+#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
+    assert_int_equal(a->member != NULL, b->member != NULL);              \
+    if (a->member)                                                       \
+        assert_memory_equal(a->member, b->member, pixels *numbers * sizeof(type));
+#include "runtime/planes.def"
+#undef KRS_ARRAY
+#undef KRS_PLANE
+    for (int kind = 0; a->mattes[0] && kind < KRS_MATTE_COUNT; kind++)
+        assert_memory_equal(a->mattes[kind], b->mattes[kind],
+                            pixels * KRS_MATTE_RANKS * sizeof(KrsMatte));
+    krs_picture_free(a);
+    krs_picture_free(b);
+}
+
+/* ---- the tests ---- */
+
+/* Planes and mattes; samples that end by noise; a crop. */
+static const KrsRenderOptions kinds[] = {
+    {.width = 100, .height = 80, .samples = SAMPLES, .mattes = true, .planes = KRS_PLANE_ALL},
+    {.width = 100, .height = 80, .samples = SAMPLES, .noise = 0.03, .seed = 7},
+    {.width   = 200,
+     .height  = 160,
+     .crop    = {33, 41, 90, 71},
+     .samples = SAMPLES,
+     .planes  = KRS_PLANE_DEPTH | KRS_PLANE_IDS}};
+
+static void a_saved_film_goes_on(void **state)
+{
+    static const unsigned pretences[] = {0, KRS_PRETEND_CARD | KRS_PRETEND_LEAST_LIMITS};
+    static const uint32_t first[]     = {1, 17, SAMPLES};
+    static unsigned char  room[1 << 23];
+    (void)state;
+    for (size_t k = 0; k < sizeof pretences / sizeof *pretences; k++)
+        for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+            Stage one, other;
+            Bytes file = {room, sizeof room, 0};
+            open_stage(&one, pretences[k]);
+            KrsFilm *film = film_with(&one, &kinds[i], first[(i + k) % 3]);
+            assert_int_equal(krs_film_save(film, take, &file), KRS_OK);
+            krs_film_free(film);
+            close_watched(&one);
+
+            KrsPicture *picture;
+            open_stage(&other, pretences[k]);
+            film      = film_with(&other, &kinds[i], 2); /* what is replaced */
+            file.size = file.at;
+            file.at   = 0;
+            assert_int_equal(krs_film_load(film, give, &file), KRS_OK);
+            assert_int_equal(file.at, file.size);
+            assert_int_equal(krs_film_samples(film), first[(i + k) % 3]);
+            const uint32_t left = SAMPLES - krs_film_samples(film);
+            if (left > 0)
+                assert_int_equal(krs_film_add(film, other.frame, NULL, left), KRS_OK);
+            assert_int_equal(krs_film_read(film, 0, &picture), KRS_OK);
+            assert_same(picture, stage_render(&other, kinds[i]));
+            krs_film_free(film);
+            close_watched(&other);
+        }
+}
+
+static void what_is_no_film_is_refused(void **state)
+{
+    static unsigned char room[1 << 22];
+    Bytes                file  = {room, sizeof room, 0};
+    KrsRenderOptions     wider = kinds[0], other = kinds[0];
+    Stage                stage;
+    (void)state;
+    wider.width += 8;
+    other.planes = KRS_PLANE_DEPTH;
+    open_stage(&stage, 0);
+    KrsFilm *film = film_with(&stage, &kinds[0], 0);
+    assert_int_equal(krs_film_save(film, take, &file), KRS_BAD_ARGUMENT); /* without samples */
+    assert_int_equal(file.at, 0);
+    assert_int_equal(krs_film_add(film, stage.frame, NULL, 1), KRS_OK);
+    assert_int_equal(krs_film_save(film, take, &(Bytes){room, 1000, 0}), KRS_IO_ERROR);
+    assert_int_equal(krs_film_samples(film), 1);
+    assert_int_equal(krs_film_save(film, take, &file), KRS_OK);
+    for (size_t cut = 0; cut < file.at; cut += cut < 400 ? 13 : 20011) {
+        assert_int_equal(krs_film_load(film, give, &(Bytes){room, cut, 0}), KRS_IO_ERROR);
+        assert_int_equal(krs_film_samples(film), 0);
+    }
+    const KrsRenderOptions *unlike[] = {&wider, &other, &kinds[1]};
+    for (size_t i = 0; i < 3; i++) {
+        KrsFilm *wrong = film_with(&stage, unlike[i], 0);
+        assert_int_equal(krs_film_load(wrong, give, &(Bytes){room, file.at, 0}), KRS_BAD_ARGUMENT);
+        assert_int_equal(krs_film_samples(wrong), 0);
+        krs_film_free(wrong);
+    }
+    room[9] ^= 1; /* the version */
+    assert_int_equal(krs_film_load(film, give, &(Bytes){room, file.at, 0}), KRS_BAD_ARGUMENT);
+    room[9] ^= 1;
+    assert_int_equal(krs_film_load(film, give, &(Bytes){room, file.at, 0}), KRS_OK);
+    krs_film_free(film);
+    close_watched(&stage);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_saved_film_goes_on),
+        cmocka_unit_test(what_is_no_film_is_refused),
+    };
+    return cmocka_run_group_tests_name("saved", tests, NULL, NULL);
+}
