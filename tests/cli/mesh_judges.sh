@@ -1,8 +1,8 @@
 #!/bin/sh
-# mesh_judges.sh: CGAL and a slicer accept what `krs mesh` writes.  What is not installed is skipped.
+# mesh_judges.sh: CGAL and a slicer accept, and the slicer reads, what `krs mesh` writes.  What is not installed is skipped.
 . "$(dirname "$0")/common.sh"
 judge=$(dirname "$krs")/tests/oracle/mesh_judge
-plan 5
+plan 7
 
 cat >vase.krs <<'END'
 let wall = field(sin(3 * x) * cos(3 * y) + sin(3 * y) * cos(3 * z) + sin(3 * z) * cos(3 * x)).shell(0.9);
@@ -57,4 +57,22 @@ if command -v prusa-slicer >/dev/null; then
     result $? "a slicer makes layers of it, without repair"
 else
     skip "a slicer makes layers of it, without repair" "no prusa-slicer"
+fi
+
+# A ball and a cube: two parts, whose volume is 4/3 pi + 1.
+cat >two.krs <<'END'
+material red { color: tomato }
+show sphere(1).paint(red); show box([1, 1, 1]).move([3, 0, 0]);
+END
+run mesh --quiet two.krs --error 0.01 -o two.3mf -o two.obj
+ended 0 "two parts are meshed"
+if command -v prusa-slicer >/dev/null; then
+    for file in two.3mf two.obj; do
+        prusa-slicer --info "$file" 2>/dev/null
+    done | awk -F '= *' '/^manifold/ { whole += $2 == "yes" } /^number_of_parts/ { parts += $2 }
+        /^volume/ { near += $2 > 5.0 && $2 < 5.19 } END { print whole, parts, near }' >out
+    [ "$(cat out)" = "2 4 2" ]
+    result $? "the slicer reads 3MF and OBJ: their parts, closed, and their volume"
+else
+    skip "the slicer reads 3MF and OBJ: their parts, closed, and their volume" "no prusa-slicer"
 fi
