@@ -1,8 +1,8 @@
 #!/bin/sh
-# mesh_judges.sh: CGAL and a slicer accept, and the slicer reads, what `krs mesh` writes.  What is not installed is skipped.
+# mesh_judges.sh: CGAL, a slicer and Blender accept what `krs mesh` writes.  What is not installed is skipped.
 . "$(dirname "$0")/common.sh"
 judge=$(dirname "$krs")/tests/oracle/mesh_judge
-plan 7
+plan 8
 
 cat >vase.krs <<'END'
 let wall = field(sin(3 * x) * cos(3 * y) + sin(3 * y) * cos(3 * z) + sin(3 * z) * cos(3 * x)).shell(0.9);
@@ -65,6 +65,7 @@ material red { color: tomato }
 show sphere(1).paint(red); show box([1, 1, 1]).move([3, 0, 0]);
 END
 run mesh --quiet two.krs --error 0.01 -o two.3mf -o two.obj
+"$krs" mesh --quiet two.krs --error 0.01 --split components -o two.glb
 ended 0 "two parts are meshed"
 if command -v prusa-slicer >/dev/null; then
     for file in two.3mf two.obj; do
@@ -75,4 +76,13 @@ if command -v prusa-slicer >/dev/null; then
     result $? "the slicer reads 3MF and OBJ: their parts, closed, and their volume"
 else
     skip "the slicer reads 3MF and OBJ: their parts, closed, and their volume" "no prusa-slicer"
+fi
+if command -v blender >/dev/null; then
+    blender -b --factory-startup --python "$root/tests/cli/mesh_blender.py" -- "$work/two.glb" >out 2>err
+    awk '$1 == "object" && $3 == "closed" && $5 == 1 { n++
+             ball += $6 == "red" && $4 > 4.13 && $4 < 4.189; cube += $6 != "red" && $4 > 0.99 && $4 < 1.01 }
+         END { exit !(n == 2 && ball == 1 && cube == 1) }' out
+    result $? "Blender reads a GLB: its parts, closed, their volume, colours and materials"
+else
+    skip "Blender reads a GLB: its parts, closed, their volume, colours and materials" "no Blender"
 fi
