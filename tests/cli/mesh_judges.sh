@@ -65,7 +65,7 @@ material red { color: tomato }
 show sphere(1).paint(red); show box([1, 1, 1]).move([3, 0, 0]);
 END
 run mesh --quiet two.krs --error 0.01 -o two.3mf -o two.obj
-"$krs" mesh --quiet two.krs --error 0.01 --split components -o two.glb
+"$krs" mesh --quiet two.krs --error 0.01 --split materials -o two.glb
 ended 0 "two parts are meshed"
 if command -v prusa-slicer >/dev/null; then
     for file in two.3mf two.obj; do
