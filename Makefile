@@ -40,7 +40,7 @@ GRAPH    := $(addprefix compiler/graph/, intern.c alike.c alike_copy.c graph.c c
                 derive_blends.c derive.c series.c zeros.c local_terms.c local_curves.c local.c rebase.c \
                 simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c texture.c texture_facts.c \
                 regions.c squares.c grid.c grid_find.c fractal.c op_values.c tape.c evaluate.c lane_rows.c lane_make.c lane_run.c lane_ranges.c \
-                lane_slopes.c lane_prune.c print.c) $(LANES)
+                lane_slopes.c lane_partials.c lane_hessians.c lane_prune.c print.c) $(LANES)
 SHAPE    := $(addprefix compiler/shape/, box.c reach.c cover.c map.c moebius.c builder.c sky_map.c slope.c print.c)
 LOWER    := $(addprefix compiler/lower/, footprint.c bump.c context.c box_distance.c surface.c join.c crowd_table.c crowd_functions.c crowd_find.c crowd.c normal.c tangent.c map_chain.c \
                 outline.c sphere_fold.c guards.c ray_images.c ray_step.c lower.c)
@@ -59,7 +59,7 @@ API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits
                 march_groups.c make_module.c program.c scene_text.c framing.c look.c daylight.c frame.c frame_emissive.c points.c query.c \
                 update.c search_pairs.c search_targets.c search_starts.c search.c refuter.c \
                 refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)
-MESH     := $(addprefix compiler/mesh/, solid.c field.c numbering.c tets.c quadric.c roots.c contour.c bvh.c groups.c gradient.c lens.c verify.c voids.c mesh.c placing.c assemble.c crossing.c slivers.c simplify.c)
+MESH     := $(addprefix compiler/mesh/, solid.c field.c numbering.c tets.c quadric.c roots.c contour.c bvh.c groups.c gradient.c lens.c verify.c smooth.c voids.c rounds.c mesh.c placing.c assemble.c crossing.c slivers.c simplify.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer integrators film display writer))))
 LIVE     := $(sort $(wildcard live/*.c))
 LIVE_BORDER := live/gui.cpp

@@ -161,6 +161,19 @@ LaneSlope *lane_slopes_new(const LaneTape *tape, Arena *arena);
 bool lane_slopes_run(const LaneTape *tape, const LaneRanges *ranges, LaneSlope *slopes,
                      LaneSlope *slope);
 
+/* Ranges of the second derivatives of a value: by xx, yy, zz, yz, xz and xy. */
+typedef struct LaneHessian {
+    Range by[6];
+    bool  known, flat; /* whether there are bounds; all are 0 */
+} LaneHessian;
+
+/* Room for those of a lane tape, and of all that it is pruned to; for one thread. */
+LaneHessian *lane_hessians_new(const LaneTape *tape, Arena *arena);
+/* After a run of slopes over a box: those of output 0 in it, whose first derivatives do not jump there.  False: they
+   may, or there is no bound. */
+bool lane_hessians_run(const LaneTape *tape, const LaneRanges *ranges, const LaneSlope *slopes,
+                       LaneHessian *hessians, LaneHessian *hessian);
+
 /* After a run over a box: the first `outputs` outputs without what has no influence in it. */
 LaneTape lane_prune(const LaneTape *tape, const LaneRanges *ranges, size_t outputs, Arena *arena);
 

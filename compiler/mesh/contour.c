@@ -67,8 +67,34 @@ static void find_some_crossings(const Contour *contour, const MeshField *field, 
         double            part     = 0.5 * (search->low + search->high);
         part                       = fmin(fmax(part, END_OF_EDGE), 1 - END_OF_EDGE);
         add_scaled3(crossing->at, search->from, part, search->along);
-        if (!field_normal(field, crossing->at, 1e-3 * contour->error, crossing->normal))
-            add_scaled3(crossing->normal, crossing->normal, 1 / search->length, search->along);
+        for (int k = 0; k < 3; k++)
+            crossing->normal[k] = search->along[k] / search->length;
+    }
+}
+
+/* Values and normals, by differences; without those the normals are along the edges. */
+static void look_at_crossings(const Contour *contour, const MeshField *field, Crossing *crossings,
+                              size_t count)
+{
+    enum { EACH = 7, AT_ONCE = MOST_FIELD_POINTS / EACH };
+    double step = 1e-3 * contour->error;
+    for (size_t i = 0, now; i < count; i += now) {
+        double points[AT_ONCE * EACH][3], values[AT_ONCE * EACH];
+        now = count - i < AT_ONCE ? count - i : AT_ONCE;
+        for (size_t k = 0; k < now * EACH; k++) {
+            size_t beside = k % EACH;
+            memcpy(points[k], crossings[i + k / EACH].at, sizeof points[k]);
+            if (beside < 6)
+                points[k][beside / 2] += beside % 2 ? step : -step;
+        }
+        field_distances(field, (const double(*)[3])points, now * EACH, values);
+        for (size_t k = 0; k < now; k++) {
+            const double *own       = &values[k * EACH];
+            double        normal[3] = {own[1] - own[0], own[3] - own[2], own[5] - own[4]};
+            crossings[i + k].value  = own[6];
+            if (normalize3(normal))
+                memcpy(crossings[i + k].normal, normal, sizeof normal);
+        }
     }
 }
 
@@ -81,6 +107,7 @@ static void find_crossings(void *task, size_t part, size_t parts)
     for (size_t i = part_begin(count, part, parts), now; i < end; i += now) {
         now = end - i < MOST_FIELD_POINTS ? end - i : MOST_FIELD_POINTS;
         find_some_crossings(contour, &contour->fields[part], fresh + i, now);
+        look_at_crossings(contour, &contour->fields[part], fresh + i, now);
     }
 }
 
@@ -153,7 +180,8 @@ static void find_line(const Contour *contour, const MeshField *field, double mis
     face_weights((const double(*)[3])corners, rows[2], line->at, weights);
     face_weights((const double(*)[3])corners, rows[2], middle, inner);
     keep_inside(weights, inner, 3, line->at, middle);
-    line->bent = fabs(field_distance(field, line->at)) < 0.5 * missed;
+    line->value = field_distance(field, line->at);
+    line->bent  = fabs(line->value) < 0.5 * missed;
 }
 
 /* Most are straight. */
@@ -207,7 +235,7 @@ static void find_middle(const Contour *contour, const Patch *patch, double middl
                     contour->crossings.items[patch->crossings[i]].at);
 }
 
-/* `missed` is how far the middle of the crossings is from the surface. */
+/* `missed` is the distance at the middle of the crossings. */
 static void find_apex(const Contour *contour, const MeshField *field, const double middle[3],
                       double missed, Patch *patch)
 {
@@ -223,10 +251,13 @@ static void find_apex(const Contour *contour, const MeshField *field, const doub
     tet_weights((const double(*)[3])corners, patch->apex, weights);
     tet_weights((const double(*)[3])corners, middle, inner);
     keep_inside(weights, inner, 4, patch->apex, middle);
-    if (fabs(field_distance(field, patch->apex)) < 0.5 * missed)
+    patch->value = field_distance(field, patch->apex);
+    if (fabs(patch->value) < 0.5 * fabs(missed)) {
         patch->fan = true;
-    else
-        memcpy(patch->apex, middle, 3 * sizeof *middle);
+        return;
+    }
+    memcpy(patch->apex, middle, 3 * sizeof *middle);
+    patch->value = missed;
 }
 
 static void find_some_apexes(const Contour *contour, const MeshField *field, Patch *patches,
@@ -242,7 +273,7 @@ static void find_some_apexes(const Contour *contour, const MeshField *field, Pat
         for (uint32_t k = 0; k < patch->corner_count; k++)
             patch->fan = patch->fan || contour->lines.items[patch->lines[k]].bent;
         if (patch->fan || fabs(distances[i]) > STRAIGHT * contour->error)
-            find_apex(contour, field, middles[i], fabs(distances[i]), patch);
+            find_apex(contour, field, middles[i], distances[i], patch);
     }
 }
 
@@ -417,7 +448,8 @@ static uint32_t first_of_diagonal(const Contour *contour, const Patch *patch)
 
 static void add_triangles(Contour *contour, const Patch *patch)
 {
-    Tet     *tet = &contour->tets->list.items[patch->tet];
+    Tet *tet   = &contour->tets->list.items[patch->tet];
+    tet->patch = (uint32_t)(patch - contour->patches.items);
     uint32_t loop[8], count = find_loop(contour, patch, loop);
     tet->first_triangle = (uint32_t)contour->triangles.count;
     if (patch->fan) {

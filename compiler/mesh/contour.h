@@ -17,14 +17,14 @@
 /* A vertex on an edge of the tetrahedra. */
 typedef struct Crossing {
     uint32_t from, to; /* points; `from` is inside */
-    double   at[3], normal[3];
+    double   at[3], normal[3], value;
 } Crossing;
 
 /* A face with two crossings. */
 typedef struct FaceLine {
     uint32_t points[3], crossings[2];
     bool     bent; /* there is a vertex in the face */
-    double   at[3];
+    double   at[3], value;
 } FaceLine;
 
 /* A tetrahedron with inside and outside corners. */
@@ -33,7 +33,7 @@ typedef struct Patch {
     uint32_t crossings[4],
         lines[4]; /* in order around it, outside to the front; lines[i] follows */
     bool   fan;
-    double apex[3];
+    double apex[3], value;
 } Patch;
 
 typedef struct Contour {

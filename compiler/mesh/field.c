@@ -35,6 +35,7 @@ void field_open(MeshField *field, Arena *arena)
                                        field->frame->values);
     field->ranges       = lane_ranges_new(&field->tape, arena);
     field->slopes       = lane_slopes_new(&field->tape, arena);
+    field->hessians     = lane_hessians_new(&field->tape, arena);
     field->region_bytes = bytes_of_region(&field->tape);
     for (int i = 0; i < MOST_REGIONS; i++)
         field->regions[i].memory = arena_alloc(arena, field->region_bytes, 1);
@@ -234,6 +235,20 @@ bool field_slope(const MeshField *field, Box box, Range *range, LaneSlope *slope
     for (int k = 0; own.low < cut.high && k < 3; k++)
         slope->by[k] = range_hull(slope->by[k], (Range){-1, 1});
     return true;
+}
+
+bool field_hessian(const MeshField *field, Box box, Range *range, LaneSlope *slope,
+                   LaneHessian *hessian)
+{
+    const LaneTape *tape = tape_in(field, &box);
+    Range           own  = lane_ranges_run(tape, &field->ranges, box);
+    Range           cut  = range_of_cuts(field, box);
+    *range               = range_max(own, cut);
+    *hessian             = (LaneHessian){.known = true, .flat = true};
+    if (own.high <= cut.low && field->frame->zone_count == 0)
+        return slope_of_cut(field, box, slope);
+    return own.low >= cut.high && lane_slopes_run(tape, &field->ranges, field->slopes, slope) &&
+           lane_hessians_run(tape, &field->ranges, field->slopes, field->hessians, hessian);
 }
 
 bool field_enter(MeshField *field, Box box)

@@ -30,12 +30,13 @@ typedef struct MeshField {
     bool             cut; /* nothing is solid outside of the box */
     double           low[3], high[3];
 
-    LaneTape    tape;
-    LaneWork    work;
-    LaneRanges  ranges;
-    LaneSlope  *slopes;
-    FieldRegion regions[MOST_REGIONS]; /* each within the one before */
-    size_t      region_count, region_bytes;
+    LaneTape     tape;
+    LaneWork     work;
+    LaneRanges   ranges;
+    LaneSlope   *slopes;
+    LaneHessian *hessians;
+    FieldRegion  regions[MOST_REGIONS]; /* each within the one before */
+    size_t       region_count, region_bytes;
 } MeshField;
 
 /* What it needs to answer; frame, solid and box are set, and the frame is up to date. */
@@ -57,5 +58,8 @@ bool field_normal(const MeshField *field, const double point[3], double step, do
 Range field_range(const MeshField *field, Box box);
 /* That and the ranges of its derivatives by x, y and z; false: there are none, or no value is 0. */
 bool field_slope(const MeshField *field, Box box, Range *range, LaneSlope *slope);
+/* And the ranges of its second derivatives; false: there are none, or the first may jump. */
+bool field_hessian(const MeshField *field, Box box, Range *range, LaneSlope *slope,
+                   LaneHessian *hessian);
 
 #endif

@@ -21,12 +21,35 @@ static uint32_t take_point(Tets *tets, const uint32_t at[3])
     return number;
 }
 
+/* The shares of the four corners in a point change along these vectors.  Those of some corners together are 1 at them and
+   0 at the others. */
+static float find_width(const Tets *tets, const Tet *tet)
+{
+    double corners[4][3], edges[3][3], shares[4][3] = {{0}}, most = 0;
+    tets_corners(tets, tet, corners);
+    for (int i = 0; i < 3; i++)
+        add_scaled3(edges[i], corners[i + 1], -1, corners[0]);
+    for (int i = 0; i < 3; i++) {
+        cross3(edges[(i + 1) % 3], edges[(i + 2) % 3], shares[i + 1]);
+        add_scaled3(shares[i + 1], shares[0], 1 / dot3(shares[i + 1], edges[i]), shares[i + 1]);
+    }
+    for (int i = 1; i < 4; i++)
+        add_scaled3(shares[0], shares[0], -1, shares[i]);
+    for (int i = 0; i < 4; i++) {
+        double pair[3];
+        add_scaled3(pair, shares[0], i > 0, shares[i]);
+        most = fmax(most, fmax(length3(shares[i]), length3(pair)));
+    }
+    return (float)((1 - 1e-6) / most);
+}
+
 /* The six paths from one corner of the cube to the opposite one. */
 void tets_new(Tets *tets, const double origin[3], double side, Arena *arena)
 {
     static const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},
                                      {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
-    *tets = (Tets){.arena = arena, .numbers = {.arena = arena}, .step = side / CUBE_STEPS};
+    *tets                         = (Tets){
+                                .arena = arena, .numbers = {.arena = arena}, .closures = 1, .step = side / CUBE_STEPS};
     memcpy(tets->origin, origin, sizeof tets->origin);
     for (int i = 0; i < 6; i++) {
         uint32_t at[3] = {0, 0, 0};
@@ -36,6 +59,7 @@ void tets_new(Tets *tets, const double origin[3], double side, Arena *arena)
             if (k < 3)
                 at[orders[i][k]] = CUBE_STEPS;
         }
+        tet.width = find_width(tets, &tet);
         array_push_large(arena, &tets->list, tet);
     }
 }
@@ -64,26 +88,33 @@ void tets_bisect(Tets *tets, size_t index)
     Tet      tet = tets->list.items[index], first = tet, second = tet;
     uint32_t middle[3];
     find_middle(tets, tet.points[0], tet.points[tet.tag], middle);
-    uint32_t point         = take_point(tets, middle);
-    first.points[tet.tag]  = point;
-    second.points[tet.tag] = point;
+    uint32_t point                                = take_point(tets, middle);
+    tets->points.items[tet.points[0]].split       = tets->closures;
+    tets->points.items[tet.points[tet.tag]].split = tets->closures;
+    first.points[tet.tag]                         = point;
+    second.points[tet.tag]                        = point;
     for (int k = 0; k < tet.tag; k++)
         second.points[k] = tet.points[k + 1];
     first.tag   = tet.tag > 1 ? (uint8_t)(tet.tag - 1) : 3;
     second.tag  = first.tag;
     first.state = second.state = tet.state == TET_EMPTY ? TET_EMPTY : TET_NEW;
     first.triangle_count = second.triangle_count = 0;
+    first.width                                  = find_width(tets, &first);
+    second.width                                 = find_width(tets, &second);
     tets->list.items[index]                      = first;
     array_push_large(tets->arena, &tets->list, second);
 }
 
-/* Whether an edge has been bisected by a neighbour. */
+/* Whether an edge has been bisected by a neighbour, which was after all met last. */
 static bool has_hanging_point(const Tets *tets, const Tet *tet)
 {
     uint32_t middle[3];
+    bool     split[4];
+    for (int i = 0; i < 4; i++)
+        split[i] = tets->points.items[tet->points[i]].split == tets->closures;
     for (int i = 0; i < 4; i++)
         for (int j = i + 1; j < 4; j++)
-            if (find_middle(tets, tet->points[i], tet->points[j], middle) &&
+            if (split[i] && split[j] && find_middle(tets, tet->points[i], tet->points[j], middle) &&
                 numbering_find(&tets->numbers, point_key(middle)) != NO_NUMBER)
                 return true;
     return false;
@@ -98,6 +129,7 @@ void tets_close(Tets *tets)
             while (has_hanging_point(tets, &tets->list.items[i]))
                 tets_bisect(tets, i);
     } while (tets->list.count > before);
+    tets->closures++;
 }
 
 void tets_position(const Tets *tets, uint32_t point, double position[3])

@@ -17,12 +17,15 @@
 
 typedef struct TetPoint {
     uint32_t at[3]; /* in steps from the corner of the cube */
+    uint32_t split; /* when an edge of it was last bisected: `closures` of the tetrahedra then */
     double   distance;
 } TetPoint;
 
 typedef enum TetState {
     TET_NEW,
     TET_EMPTY,     /* no surface in it */
+    TET_FITS,      /* its mesh is near to the surface */
+    TET_ROUGH,     /* nothing is known */
     TET_PROVEN,    /* mesh and surface are near to each other in it */
     TET_REFUTED,   /* they are not */
     TET_UNRESOLVED /* it may hold what is thinner than the error */
@@ -34,6 +37,9 @@ typedef struct Tet {
     uint8_t  state; /* TetState */
     uint8_t  triangle_count;
     uint32_t first_triangle;
+    uint32_t patch;       /* of the contour, where it has triangles */
+    float    width;       /* a point of one face or edge is no nearer to the one across */
+    float    miss, slope; /* smooth.h */
 } Tet;
 
 typedef struct Tets {
@@ -47,7 +53,8 @@ typedef struct Tets {
         Tet   *items;
         size_t count, capacity;
     } list;
-    double origin[3], step; /* where the cube's corner is, and the length of a step */
+    uint32_t closures;        /* how often all neighbours were made to meet, and 1 */
+    double   origin[3], step; /* where the cube's corner is, and the length of a step */
 } Tets;
 
 void tets_new(Tets *tets, const double origin[3], double side, Arena *arena);

@@ -23,17 +23,26 @@ static const double LESS_FLAT = 0.7, LESS_STEEP = 0.35;
 /* Parts of the error: what is smaller is not divided further. */
 static const double TINY_CELL = 0.25, TINY_TRIANGLE = 0.125;
 
-bool verify_is_empty(const Verifier *verifier, const Tet *tet)
+bool verify_is_far(const Tets *tets, const Tet *tet)
 {
-    double corners[4][3], center[3];
-    tets_corners(verifier->tets, tet, corners);
+    double corners[4][3];
+    tets_corners(tets, tet, corners);
     for (int i = 0; i < 4; i++) {
         double radius = 0;
         for (int j = 0; j < 4; j++)
             radius = fmax(radius, distance3(corners[i], corners[j]));
-        if (fabs(verifier->tets->points.items[tet->points[i]].distance) > ROUNDING * radius)
+        if (fabs(tets->points.items[tet->points[i]].distance) > ROUNDING * radius)
             return true;
     }
+    return false;
+}
+
+bool verify_is_empty(const Verifier *verifier, const Tet *tet)
+{
+    double corners[4][3], center[3];
+    if (verify_is_far(verifier->tets, tet))
+        return true;
+    tets_corners(verifier->tets, tet, corners);
     double radius = corners_ball((const double(*)[3])corners, center);
     return fabs(field_distance(verifier->field, center)) > ROUNDING * radius;
 }
@@ -357,7 +366,7 @@ static TetState verify_parts(Verifier *verifier, const Tet *tet, const Cell *who
 {
     verifier->unresolved = 0;
     verifier->budget     = proof_budget(verifier, tet);
-    bool near            = triangles_are_near_surface(verifier, tet) &&
+    bool near            = (tet->state == TET_FITS || triangles_are_near_surface(verifier, tet)) &&
                 surface_is_near_mesh(verifier, whole, side);
     if (!near && tets_longest_edge(verifier->tets, tet) > 0.5 * verifier->error)
         return TET_REFUTED;
@@ -371,8 +380,6 @@ TetState verify_tet(Verifier *verifier, const Tet *tet)
     Cell whole = {.tag = tet->tag, .lens = INFINITY};
     if (side == 0 && tets_longest_edge(verifier->tets, tet) <= verifier->error)
         return TET_PROVEN;
-    if (verify_is_empty(verifier, tet))
-        return TET_EMPTY;
     tets_corners(verifier->tets, tet, whole.corners);
     Box box = corners_box((const double(*)[3])whole.corners, 4, verifier->error);
     if (!field_enter(verifier->field, box))

@@ -303,6 +303,145 @@ static void slopes_hold(void **state)
     assert_true(bounded > GRAPHS && wrong > 50);
 }
 
+/* ---- second derivatives ---- */
+
+/* By Taylor's theorem at the middle of two points: how far the values there are from twice the value in the middle is what
+   the second derivatives permit along the way. */
+static bool hessian_permits(const Pair *pair, const LaneHessian *hessian, const double a[3],
+                            const double b[3])
+{
+    static const int ROW[6] = {0, 1, 2, 1, 0, 0}, COLUMN[6] = {0, 1, 2, 2, 2, 1};
+    double           middle[3];
+    for (int k = 0; k < 3; k++)
+        middle[k] = a[k] / 2 + b[k] / 2;
+    double from = first_output(pair, a), to = first_output(pair, b),
+           at     = first_output(pair, middle);
+    double change = from + to - 2 * at;
+    Range  bend   = range_of(0);
+    for (int i = 0; i < 6; i++)
+        bend = range_add(bend, range_mul(hessian->by[i],
+                                         range_of((i < 3 ? 0.25 : 0.5) * (b[ROW[i]] - a[ROW[i]]) *
+                                                  (b[COLUMN[i]] - a[COLUMN[i]]))));
+    double slack = 1e-9 * (1 + fabs(from) + fabs(to) + fabs(at) + range_largest(bend));
+    return !isfinite(change) || fabs(from) > 1e6 || fabs(to) > 1e6 || fabs(at) > 1e6 ||
+           (change >= bend.low - slack && change <= bend.high + slack);
+}
+
+/* Those of a box, tried between points of another one, as many times as wide; a share of what is known may be
+   left out.  Returns how many are not permitted. */
+static size_t try_hessians(Bench *b, const Pair *pair, Box known, Box looked, double share,
+                           bool *bounded)
+{
+    double       points[POINTS][3];
+    size_t       wrong    = 0;
+    LaneRanges   ranges   = lane_ranges_new(&pair->lanes, &b->arena);
+    LaneSlope   *slopes   = lane_slopes_new(&pair->lanes, &b->arena), slope;
+    LaneHessian *hessians = lane_hessians_new(&pair->lanes, &b->arena), hessian;
+    lane_ranges_run(&pair->lanes, &ranges, known);
+    *bounded = lane_slopes_run(&pair->lanes, &ranges, slopes, &slope) &&
+               lane_hessians_run(&pair->lanes, &ranges, slopes, hessians, &hessian) &&
+               !has_pieces(&pair->lanes) && !hessian.flat;
+    for (int i = 0; *bounded && i < 6; i++) {
+        hessian.by[i].low *= share;
+        hessian.by[i].high *= share;
+    }
+    points_in(b, looked, points);
+    for (int i = 1; *bounded && i < POINTS; i++)
+        wrong += !hessian_permits(pair, &hessian, points[i - 1], points[i]);
+    return wrong;
+}
+
+static void hessians_hold(void **state)
+{
+    Bench *b       = *state;
+    size_t bounded = 0, wrong = 0, halved = 0;
+    for (int turn = 0; turn < 12 * GRAPHS; turn++) {
+        Pair pair;
+        Box  box = random_box(b);
+        bool known;
+        pair_make(b, &pair);
+        if (try_hessians(b, &pair, box, box, 1, &known))
+            fail_msg("graph %d bends more than its second derivatives", turn);
+        bounded += known;
+        wrong += try_hessians(b, &pair, half_of(box), box, 1, &known) > 0;
+        halved += try_hessians(b, &pair, box, box, 0.5, &known) > 0;
+    }
+    print_message("# %zu of %d have bounds; %zu are wrong outside of their boxes, %zu if halved\n",
+                  bounded, 12 * GRAPHS, wrong, halved);
+    assert_true(bounded > GRAPHS / 2 && wrong > 20 && halved > 50);
+}
+
+/* What random graphs seldom have: roots, lengths with corners that do not count, blends, faces of boxes. */
+typedef enum Form {
+    ROOT,
+    LENGTH,
+    CUT_LENGTH,
+    BLEND_QUADRATIC,
+    BLEND_CUBIC,
+    BLEND_EXPONENTIAL,
+    FACE,
+    QUOTIENT,
+    POWER,
+    FORMS
+} Form;
+
+static Node form_node(Graph *g, Form form, Box box)
+{
+    Node p[3], q[3], zero = graph_number(g, 0), width = graph_number(g, 0.7);
+    for (uint32_t k = 0; k < 3; k++) {
+        p[k] = graph_component(g, graph_leaf(g, OP_POINT), k);
+        q[k] = graph_op2(g, OP_sub, p[k],
+                         graph_number(g, 0.5 * (box.axis[k].low + box.axis[k].high)));
+    }
+    Node far    = graph_op2(g, OP_add, q[0], graph_number(g, 2));
+    Node a      = graph_op1(g, OP_sin, graph_op2(g, OP_add, p[0], p[1]));
+    Node c      = graph_op1(g, OP_cos, graph_op2(g, OP_mul, p[1], p[2]));
+    Node cut[3] = {far, graph_op2(g, OP_max, q[1], zero), graph_op1(g, OP_abs, q[2])};
+    switch (form) {
+    case ROOT: return graph_op1(g, OP_sqrt, graph_op2(g, OP_add, graph_op1(g, OP_square, far), a));
+    case LENGTH: {
+        Node parts[3] = {far, a, c};
+        return graph_op1(g, OP_length, graph_op(g, OP_vec3, parts));
+    }
+    case CUT_LENGTH: return graph_op1(g, OP_length, graph_op(g, OP_vec3, cut));
+    case BLEND_QUADRATIC: return graph_op3(g, OP_smin_quadratic, a, c, width);
+    case BLEND_CUBIC: return graph_op3(g, OP_smin_cubic, a, c, width);
+    case BLEND_EXPONENTIAL: return graph_op3(g, OP_smin_exponential, a, c, width);
+    case FACE: {
+        Node half[3] = {graph_op2(g, OP_max, q[0], zero), zero, zero};
+        Node bent    = graph_op2(g, OP_add, graph_op1(g, OP_length, graph_op(g, OP_vec3, half)),
+                                 graph_op2(g, OP_min, q[0], zero));
+        return graph_op2(g, OP_add, bent, a);
+    }
+    case QUOTIENT: return graph_op2(g, OP_div, a, far);
+    default: return graph_op2(g, OP_pow, far, graph_number(g, 2.5));
+    }
+}
+
+static void hessians_of_forms_hold(void **state)
+{
+    Bench *b = *state;
+    for (int form = 0; form < FORMS; form++) {
+        size_t bounded = 0, halved = 0;
+        for (int turn = 0; turn < 40; turn++) {
+            Pair pair = {0};
+            Box  box  = random_box(b);
+            bool known;
+            b->graph = graph_new(&b->arena);
+            for (int i = 0; i < ROOTS; i++)
+                pair.roots[i] = form_node(b->graph, (Form)form, box);
+            pair_finish(b, &pair, NULL);
+            if (try_hessians(b, &pair, box, box, 1, &known))
+                fail_msg("form %d bends more than its second derivatives", form);
+            bounded += known;
+            halved += try_hessians(b, &pair, box, box, 0.5, &known) > 0;
+        }
+        print_message("# form %d: %zu of 40 have bounds, %zu are wrong if halved\n", form, bounded,
+                      halved);
+        assert_true(bounded >= 20 && halved > 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -312,6 +451,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(copies_around_an_axis_have_ranges, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(what_is_pruned_for_less_is_seen, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(slopes_hold, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(hessians_hold, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(hessians_of_forms_hold, bench_start, bench_stop),
     };
     return cmocka_run_group_tests_name("lanes", tests, NULL, NULL);
 }

@@ -191,6 +191,86 @@ static void meshes_are_closed_and_near(void **context)
     }
 }
 
+/* ---- smooth surfaces, by their distances in closed form ---- */
+
+/* Of a torus of radii 1 and 0.4 about y, and of a ball of radius 1. */
+static double ring_distance(const double p[3]) { return hypot(hypot(p[0], p[2]) - 1, p[1]) - 0.4; }
+static double ball_distance(const double p[3]) { return length3(p) - 1; }
+
+typedef struct Judged {
+    KrsMesh *mesh;
+    Bvh      bvh;
+    double (*distance)(const double p[3]);
+} Judged;
+
+static void check_points_of_triangles(const Judged *j)
+{
+    enum { STEPS = 4 };
+    for (size_t i = 0; i < j->mesh->triangle_count; i++) {
+        double corners[3][3];
+        corners_of(j->mesh, i, corners);
+        for (int a = 0; a <= STEPS; a++)
+            for (int b = 0; a + b <= STEPS; b++) {
+                double p[3];
+                for (int k = 0; k < 3; k++)
+                    p[k] = (a * corners[0][k] + b * corners[1][k] +
+                            (STEPS - a - b) * corners[2][k]) /
+                           STEPS;
+                assert_true(fabs(j->distance(p)) <= j->mesh->error);
+            }
+    }
+}
+
+/* Points beside it, brought to the surface along their gradients. */
+static void check_points_of_surface(const Judged *j)
+{
+    enum { POINTS = 5000 };
+    for (int i = 0; i < POINTS; i++) {
+        uint32_t last = 0;
+        double   p[3], gradient[3], step = 1e-6;
+        random_vector(&chance, 1.4, p);
+        for (int round = 0; round < 4; round++) {
+            for (int k = 0; k < 3; k++) {
+                double q[3] = {p[0], p[1], p[2]};
+                q[k] += step;
+                gradient[k] = (j->distance(q) - j->distance(p)) / step;
+            }
+            add_scaled3(p, p, -j->distance(p), gradient);
+        }
+        if (fabs(j->distance(p)) < 1e-6)
+            assert_true(bvh_is_near(&j->bvh, p, j->mesh->error + 1e-6, &last));
+    }
+}
+
+static void smooth_surfaces_are_near(void **context)
+{
+    static const struct {
+        const char *text;
+        double      error;
+        double (*distance)(const double p[3]);
+    } known[] = {{"show torus(1, 0.4);", 0.01, ring_distance},
+                 {"show sphere(1);", 0.006, ball_distance},
+                 {"show field(x^2 + y^2 + z^2 - 1) & sphere(1.5);", 0.015, ball_distance}};
+    (void)context;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        Scene  s      = scene_of(known[i].text);
+        Memory memory = {0};
+        Arena  arena  = {.memory = &memory};
+        Judged j      = {.mesh = mesh_of(s, known[i].error), .distance = known[i].distance};
+        bvh_new(&j.bvh, (const double(*)[3])j.mesh->vertices,
+                (const uint32_t(*)[3])j.mesh->triangles, j.mesh->triangle_count, &arena);
+        check_closed(j.mesh);
+        assert_int_equal(j.mesh->unresolved, 0);
+        check_points_of_triangles(&j);
+        check_points_of_surface(&j);
+        print_message("# %s within %g: %zu triangles\n", known[i].text, known[i].error,
+                      j.mesh->triangle_count);
+        arena_free(&arena);
+        krs_mesh_free(j.mesh);
+        scene_close(s);
+    }
+}
+
 static uint32_t leader_of(const uint32_t *leaders, uint32_t vertex)
 {
     while (leaders[vertex] != vertex)
@@ -367,6 +447,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(meshes_are_closed_and_near),
+        cmocka_unit_test(smooth_surfaces_are_near),
         cmocka_unit_test(bounds_of_distances_are_enough),
         cmocka_unit_test(solids_that_touch_leave_no_bubbles),
         cmocka_unit_test(sharp_corners_are_kept),

@@ -1,0 +1,360 @@
+/*
+ * lane_hessians.c: how fast the derivatives of the result of a lane tape change within a box, in intervals.
+ *
+ * Values and derivatives come from runs of lane_ranges.c and lane_slopes.c over the same box.  The chain rule of
+ * second order makes ranges of the second derivatives from them.  They hold almost everywhere, and the
+ * first derivatives do not jump: so Taylor's theorem holds in the box with any values within
+ * the ranges.  What may have a corner in the box, a minimum or a jump, has none.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "compiler/graph/lane_call.h"
+#include "compiler/graph/lane_partials.h"
+
+/* A run over a tape, and the step that it is at. */
+typedef struct Run {
+    const LaneTape   *tape;
+    const LaneRanges *ranges;
+    const LaneSlope  *slopes;
+    LaneHessian      *hessians;
+    size_t            at;
+    const LaneStep   *step;
+} Run;
+
+static const LaneHessian NO_BEND      = {.known = true, .flat = true};
+static const LaneHessian UNKNOWN_BEND = {.known = false};
+static const int         ROW[6] = {0, 1, 2, 1, 0, 0}, COLUMN[6] = {0, 1, 2, 2, 2, 1};
+
+LaneHessian *lane_hessians_new(const LaneTape *tape, Arena *arena)
+{
+    return arena_new_array(arena, LaneHessian, LANE_INPUTS + tape->count);
+}
+
+/* ---- operands ---- */
+
+static Range range_at(const Run *run, uint32_t operand)
+{
+    if (operand & LANE_SCALAR)
+        return range_of(run->tape->scalars[operand & ~LANE_SCALAR]);
+    return run->ranges->ranges[operand];
+}
+
+static Range range_in(const Run *run, int k) { return range_at(run, run->step->operands[k]); }
+static Range result(const Run *run) { return run->ranges->ranges[LANE_INPUTS + run->at]; }
+
+/* NULL: it is the same everywhere. */
+static const LaneSlope *slope_at(const Run *run, uint32_t operand)
+{
+    return operand & LANE_SCALAR ? NULL : &run->slopes[operand];
+}
+
+static const LaneHessian *hessian_at(const Run *run, uint32_t operand)
+{
+    return operand & LANE_SCALAR ? &NO_BEND : &run->hessians[operand];
+}
+
+static bool slope_is_zero(const LaneSlope *slope)
+{
+    return !slope || (range_is_zero(slope->by[0]) && range_is_zero(slope->by[1]) &&
+                      range_is_zero(slope->by[2]));
+}
+
+static bool operand_is_constant(const Run *run, int k)
+{
+    const LaneHessian *hessian = hessian_at(run, run->step->operands[k]);
+    return slope_is_zero(slope_at(run, run->step->operands[k])) && hessian->known && hessian->flat;
+}
+
+/* ---- sums ---- */
+
+/* sum += factor h */
+static void add_hessian(LaneHessian *sum, Range factor, const LaneHessian *h)
+{
+    if (range_is_zero(factor) || (h->known && h->flat))
+        return;
+    sum->known = sum->known && h->known && is_finite(factor);
+    sum->flat  = false;
+    for (int i = 0; sum->known && i < 6; i++)
+        sum->by[i] = plus(sum->by[i], times(factor, h->by[i]));
+}
+
+/* sum += factor a a^T */
+static void add_square(LaneHessian *sum, Range factor, const LaneSlope *a)
+{
+    if (range_is_zero(factor) || slope_is_zero(a))
+        return;
+    sum->known = sum->known && is_finite(factor);
+    sum->flat  = false;
+    for (int i = 0; sum->known && i < 6; i++) {
+        Range product = i < 3 ? range_square(a->by[i]) : times(a->by[ROW[i]], a->by[COLUMN[i]]);
+        sum->by[i]    = plus(sum->by[i], times(factor, product));
+    }
+}
+
+/* sum += factor (a b^T + b a^T) */
+static void add_product(LaneHessian *sum, Range factor, const LaneSlope *a, const LaneSlope *b)
+{
+    if (range_is_zero(factor) || slope_is_zero(a) || slope_is_zero(b))
+        return;
+    sum->known = sum->known && is_finite(factor);
+    sum->flat  = false;
+    for (int i = 0; sum->known && i < 6; i++) {
+        Range product = plus(times(a->by[ROW[i]], b->by[COLUMN[i]]),
+                             times(b->by[ROW[i]], a->by[COLUMN[i]]));
+        sum->by[i]    = plus(sum->by[i], times(factor, product));
+    }
+}
+
+static LaneHessian hessian_by_partials(const Run *run, const Partials *p)
+{
+    LaneHessian sum   = NO_BEND;
+    uint32_t    count = run->step->operand_count;
+    if (!p->known)
+        return UNKNOWN_BEND;
+    for (uint32_t k = 0; k < count; k++) {
+        const LaneSlope *slope = slope_at(run, run->step->operands[k]);
+        add_hessian(&sum, p->first[k], hessian_at(run, run->step->operands[k]));
+        add_square(&sum, p->second[k][k], slope);
+        for (uint32_t l = k + 1; l < count; l++)
+            add_product(&sum, p->second[k][l], slope, slope_at(run, run->step->operands[l]));
+    }
+    return sum;
+}
+
+/* ---- length ---- */
+
+/* The step that an operand is the result of; NULL: none. */
+static const LaneStep *step_of(const Run *run, uint32_t operand)
+{
+    return operand == NODE_NONE || (operand & LANE_SCALAR) || operand < LANE_INPUTS
+               ? NULL
+               : &run->tape->steps[operand - LANE_INPUTS];
+}
+
+/* What is squared, so that corners at 0 do not count: of abs(a) and max(a, 0) it is a. */
+static uint32_t without_corner(const Run *run, uint32_t operand)
+{
+    const LaneStep *step = step_of(run, operand);
+    if (!step)
+        return operand;
+    bool greater = step->op == OP_max || step->op == LANE_GREATER;
+    for (int k = 0; greater && k < 2; k++)
+        if (range_is_zero(range_at(run, step->operands[1 - k])) &&
+            (step->operands[1 - k] & LANE_SCALAR))
+            return step->operands[k];
+    return step->op == OP_abs ? step->operands[0] : operand;
+}
+
+/* Whether a square of its derivatives is not that of what is squared: abs(a) grows as fast as a or -a. */
+static bool sign_counts(const Run *run, uint32_t operand)
+{
+    const LaneStep *step = step_of(run, operand);
+    return !step || step->op != OP_abs;
+}
+
+/* A component over the length; of abs(a) the sign is that of a, which is not known. */
+static Range unit_part(const Run *run, uint32_t operand, Range length)
+{
+    const LaneStep *step = step_of(run, operand);
+    Range unit   = range_intersect(range_div(range_at(run, operand), length), (Range){-1, 1});
+    bool  corner = step && step->op == OP_abs && range_at(run, step->operands[0]).low < 0;
+    return corner ? range_hull(unit, minus(unit)) : unit;
+}
+
+/* (sum of a_k^2) - l^2, a_k the derivatives of the components and l those of the length, is at least 0 in all
+   directions (Cauchy). */
+static LaneHessian hessian_of_length(const Run *run)
+{
+    Range       length = result(run);
+    LaneHessian bend = {.known = length.low > 0 && isfinite(length.high)}, sum = NO_BEND;
+    if (!bend.known)
+        return UNKNOWN_BEND;
+    for (uint32_t k = 0; k < run->step->operand_count; k++) {
+        uint32_t operand = run->step->operands[k], inner = without_corner(run, operand);
+        add_hessian(&sum, unit_part(run, operand, length), hessian_at(run, inner));
+        add_square(&bend, range_of(1), slope_at(run, sign_counts(run, operand) ? operand : inner));
+    }
+    add_square(&bend, range_of(-1), &run->slopes[LANE_INPUTS + run->at]);
+    for (int i = 0; bend.known && i < 3; i++)
+        bend.by[i] = (Range){fmax(bend.by[i].low, 0), fmax(bend.by[i].high, 0)};
+    add_hessian(&sum, range_div(range_of(1), length), &bend);
+    return sum;
+}
+
+/* a a, or a^2 */
+static LaneHessian hessian_of_square(const Run *run)
+{
+    uint32_t         operand = run->step->operands[0], inner = without_corner(run, operand);
+    const LaneSlope *slope = slope_at(run, operand);
+    LaneHessian      sum   = NO_BEND;
+    Range            value = range_at(run, operand);
+    if (inner != operand && step_of(run, operand)->op == OP_abs)
+        value = range_at(run, inner);
+    add_hessian(&sum, scaled(2, value), hessian_at(run, inner));
+    add_square(&sum, range_of(2), slope);
+    return sum;
+}
+
+/* ---- smooth minima ---- */
+
+/* Second derivative of the blend by a - b, at most 0, times the width. */
+static double blend_bend(uint16_t op)
+{
+    return op == OP_smin_quadratic ? 0.5 : op == OP_smin_cubic ? 1 : 0.25;
+}
+
+/* Weights w and 1 - w of the operands, and what the change of w adds. */
+static LaneHessian hessian_of_blend(const Run *run)
+{
+    Range              a = range_in(run, 0), b = range_in(run, 1), width = range_in(run, 2);
+    const LaneHessian *first     = hessian_at(run, run->step->operands[0]);
+    const LaneHessian *second    = hessian_at(run, run->step->operands[1]);
+    const LaneSlope   *slopes[2] = {slope_at(run, run->step->operands[0]),
+                                    slope_at(run, run->step->operands[1])};
+    LaneSlope          apart     = {{{0, 0}, {0, 0}, {0, 0}}};
+    LaneHessian        sum       = {.known = first->known && second->known && width.low > 0 &&
+                                             operand_is_constant(run, 2)};
+    if (!sum.known || !is_finite(a) || !is_finite(b))
+        return UNKNOWN_BEND;
+    for (int i = 0; i < 6; i++)
+        sum.by[i] = range_hull(first->by[i], second->by[i]);
+    for (int j = 0; j < 3; j++) {
+        if (slopes[0])
+            apart.by[j] = slopes[0]->by[j];
+        if (slopes[1])
+            apart.by[j] = plus(apart.by[j], minus(slopes[1]->by[j]));
+    }
+    add_square(&sum, (Range){-blend_bend(run->step->op) / width.low * (1 + 0x1p-50), 0}, &apart);
+    return sum;
+}
+
+/* ---- max(a, 0) + min(a, 0) ---- */
+
+/* The operand that is not 0 all over the box, if there is one only; NODE_NONE: there is not. */
+static uint32_t only_operand(const Run *run, const LaneStep *step)
+{
+    uint32_t only = NODE_NONE;
+    for (uint32_t k = 0; k < step->operand_count; k++)
+        if (!range_is_zero(range_at(run, step->operands[k]))) {
+            if (only != NODE_NONE)
+                return NODE_NONE;
+            only = step->operands[k];
+        }
+    return only;
+}
+
+/* What the step, or the length of it alone, cuts at 0: above, for a minimum, or below. */
+static uint32_t cut_at_zero(const Run *run, uint32_t operand, Op least, uint32_t lane)
+{
+    const LaneStep *step = step_of(run, operand);
+    if (step && step->op == OP_length)
+        step = step_of(run, only_operand(run, step));
+    return step && (step->op == least || step->op == lane) ? only_operand(run, step) : NODE_NONE;
+}
+
+/* The parts of a box's distance outside and inside, on one of its faces: together they are a. */
+static uint32_t sum_of_cuts(const Run *run)
+{
+    for (int k = 0; run->step->op == OP_add && k < 2; k++) {
+        uint32_t a = cut_at_zero(run, run->step->operands[k], OP_max, LANE_GREATER);
+        if (a != NODE_NONE &&
+            a == cut_at_zero(run, run->step->operands[1 - k], OP_min, LANE_LESSER))
+            return a;
+    }
+    return NODE_NONE;
+}
+
+/* ---- other steps ---- */
+
+static LaneHessian hessian_of_guard(const Run *run)
+{
+    Range     a = range_in(run, 0), b = range_in(run, 1);
+    LaneTruth decides = lane_guard_decides(a, b, range_in(run, 3));
+    int       chosen  = decides == LANE_NEVER    ? 2
+                        : decides != LANE_ALWAYS ? -1
+                        : a.high <= b.low        ? 0
+                        : b.high <= a.low        ? 1
+                                                 : -1;
+    return chosen < 0 ? UNKNOWN_BEND : *hessian_at(run, run->step->operands[chosen]);
+}
+
+/* Within one cell. */
+static LaneHessian hessian_of_cell(const Run *run)
+{
+    Range a = range_in(run, 0), period = range_in(run, 1);
+    for (int k = 1; k < 4; k++)
+        if (!operand_is_constant(run, k))
+            return UNKNOWN_BEND;
+    if (period.high <= 0)
+        return *hessian_at(run, run->step->operands[0]);
+    if (period.low <= 0 || !is_finite(a) || !is_finite(period))
+        return UNKNOWN_BEND;
+    Range cell = range_min(range_max(range_round(range_div(a, period)), range_in(run, 2)),
+                           range_in(run, 3));
+    return range_is_single(cell) ? *hessian_at(run, run->step->operands[0]) : UNKNOWN_BEND;
+}
+
+/* ---- runs ---- */
+
+static LaneHessian hessian_of_step(const Run *run)
+{
+    const LaneStep *step = run->step;
+    switch (step->op) {
+    case OP_length: return hessian_of_length(run);
+    case OP_square: return hessian_of_square(run);
+    case OP_smin_quadratic:
+    case OP_smin_cubic:
+    case OP_smin_exponential: return hessian_of_blend(run);
+    case OP_guard: return hessian_of_guard(run);
+    case OP_cell: return hessian_of_cell(run);
+    default: break;
+    }
+    if (step->op == OP_mul && step->operands[0] == step->operands[1])
+        return hessian_of_square(run);
+    uint32_t whole = sum_of_cuts(run);
+    if (whole != NODE_NONE)
+        return *hessian_at(run, whole);
+    uint32_t count = step->operand_count;
+    Partials p = partials_of(step->op, range_in(run, 0), count > 1 ? range_in(run, 1) : range_of(0),
+                             count > 2 ? range_in(run, 2) : range_of(0), result(run));
+    return hessian_by_partials(run, &p);
+}
+
+static bool all_constant(const Run *run)
+{
+    for (uint32_t k = 0; k < run->step->operand_count; k++)
+        if (!operand_is_constant(run, (int)k))
+            return false;
+    return true;
+}
+
+static void run_step(Run *run)
+{
+    size_t       value   = LANE_INPUTS + run->at;
+    LaneHessian *hessian = &run->hessians[value];
+    bool         call    = run->step->op == LANE_CALL || run->step->op == LANE_PART;
+    bool         same    = range_is_single(result(run)) && run->ranges->sure[value];
+    if (same || (!call && all_constant(run))) {
+        *hessian = NO_BEND;
+        return;
+    }
+    *hessian = call ? UNKNOWN_BEND : hessian_of_step(run);
+    for (int i = 0; hessian->known && i < 6; i++)
+        hessian->known = is_finite(hessian->by[i]);
+}
+
+bool lane_hessians_run(const LaneTape *tape, const LaneRanges *ranges, const LaneSlope *slopes,
+                       LaneHessian *hessians, LaneHessian *hessian)
+{
+    Run run = {.tape = tape, .ranges = ranges, .slopes = slopes, .hessians = hessians};
+    for (uint32_t k = 0; k < LANE_INPUTS; k++)
+        hessians[k] = k < LANE_NORMAL ? NO_BEND : UNKNOWN_BEND;
+    for (run.at = 0; run.at < tape->count; run.at++) {
+        run.step = &tape->steps[run.at];
+        run_step(&run);
+    }
+    uint32_t output = tape->outputs[0];
+    *hessian        = *hessian_at(&run, output);
+    return hessian->known && ((output & LANE_SCALAR) || ranges->sure[output]);
+}

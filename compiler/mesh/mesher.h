@@ -1,0 +1,47 @@
+/*
+ * mesher.h: what a mesh is made with.
+ */
+#ifndef KRS_MESH_MESHER_H
+#define KRS_MESH_MESHER_H
+
+#include <stdatomic.h>
+
+#include "compiler/base/parallel.h"
+#include "compiler/mesh/groups.h"
+#include "compiler/mesh/verify.h"
+
+/* What a point of the tetrahedra knows of those around it: smooth.h. */
+typedef struct Around {
+    float miss, width; /* the largest and the least */
+} Around;
+
+enum { MARKS = 64 }; /* cells along a side */
+
+typedef struct Mesher {
+    Memory                memory;
+    Arena                 arena;
+    const KrsMeshOptions *options;
+    const MeshSolid      *solid;
+    double                low[3], high[3], error, side;
+    MeshField             fields[MOST_PARTS];
+    Verifier              verifiers[MOST_PARTS];
+    Tets                  tets;
+    Contour               contour;
+    Bvh                   bvh;
+    bool                  marked[MARKS][MARKS][MARKS];
+    struct {
+        Around *items;
+        size_t  count, capacity;
+    } around;
+    Groups        groups; /* of tetrahedra to be looked at */
+    atomic_size_t next_group;
+    size_t        unresolved; /* tetrahedra */
+    double        unresolved_at[3];
+    double        fraction; /* of the work, as was last said */
+    atomic_bool   stopped;
+} Mesher;
+
+/* Finds the mesh within the box of the mesher, whose fields are open; false: it was stopped. */
+bool find_proven_mesh(Mesher *m);
+
+#endif

@@ -1,0 +1,309 @@
+/* smooth.c: how far inside and outside of the mesh are from those of the surface, in one tetrahedron. */
+#include "compiler/mesh/smooth.h"
+
+#include <string.h>
+
+#include "compiler/base/vec.h"
+
+static const double ROUNDING = 1 + 1e-9;
+static const int    ROW[6] = {0, 1, 2, 1, 0, 0}, COLUMN[6] = {0, 1, 2, 2, 2, 1};
+
+/* ---- cells ---- */
+
+/* Those in the middle of the ranges, and what is added to the diagonal for the rest of them: |u_j u_k| is at
+   most (u_j^2 + u_k^2) / 2.  It is the same for all points around, though their second derivatives differ. */
+static void find_forms(const LaneHessian *hessian, SmoothCell *cell)
+{
+    double more[3] = {0, 0, 0}, size = 0;
+    for (int i = 0; i < 6; i++) {
+        double middle  = 0.5 * (hessian->by[i].low + hessian->by[i].high);
+        double rest    = ROUNDING * fmax(hessian->by[i].high - middle, middle - hessian->by[i].low);
+        cell->above[i] = middle;
+        cell->below[i] = -middle;
+        size           = fmax(size, fabs(middle));
+        more[ROW[i]] += rest;
+        if (i >= 3)
+            more[COLUMN[i]] += rest;
+    }
+    for (int k = 0; k < 3; k++) {
+        more[k] += 1e-12 * size;
+        cell->above[k] += more[k];
+        cell->below[k] += more[k];
+    }
+}
+
+/* By the mean value theorem: what the value grows by along its gradient in the middle of the box, less what second
+   derivatives may change that by.  Differences there are as wrong as those permit. */
+static double find_slope(const MeshField *field, Box box, double step, const LaneHessian *hessian)
+{
+    static const int PLACE[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
+    double           points[6][3], values[6], normal[3], slope, size = 0;
+    for (int i = 0; i < 6; i++) {
+        for (int k = 0; k < 3; k++)
+            points[i][k] = 0.5 * (box.axis[k].low + box.axis[k].high);
+        points[i][i / 2] += i % 2 ? step : -step;
+        size = fmax(size, range_largest(hessian->by[i]));
+    }
+    field_distances(field, (const double(*)[3])points, 6, values);
+    for (int k = 0; k < 3; k++)
+        normal[k] = (values[2 * k + 1] - values[2 * k]) / (2 * step);
+    slope = length3(normal) - step * size;
+    if (!normalize3(normal))
+        return 0;
+    for (int j = 0; j < 3; j++) {
+        Range change = range_of(0);
+        for (int k = 0; k < 3; k++)
+            change = range_add(change, range_mul(hessian->by[PLACE[j][k]], range_of(normal[k])));
+        slope -= range_largest(change) * 0.5 * (box.axis[j].high - box.axis[j].low);
+    }
+    return slope / (1 + 1e-6);
+}
+
+/* The ranges in parts of a box are together narrower than those in the whole. */
+static bool find_hessian(const MeshField *field, Box box, int halvings, LaneHessian *hessian)
+{
+    Range       range;
+    LaneSlope   slope;
+    LaneHessian second;
+    Box         parts[2] = {box, box};
+    int         axis     = halvings % 3;
+    if (halvings == 0)
+        return field_hessian(field, box, &range, &slope, hessian);
+    double middle            = 0.5 * (box.axis[axis].low + box.axis[axis].high);
+    parts[0].axis[axis].high = parts[1].axis[axis].low = middle;
+    if (!find_hessian(field, parts[0], halvings - 1, hessian) ||
+        !find_hessian(field, parts[1], halvings - 1, &second))
+        return false;
+    for (int i = 0; i < 6; i++)
+        hessian->by[i] = range_hull(hessian->by[i], second.by[i]);
+    return true;
+}
+
+void smooth_look(const MeshField *field, Box box, double error, SmoothCell *cell)
+{
+    LaneSlope   slope;
+    LaneHessian hessian;
+    Gradient    gradient;
+    Range       range;
+    *cell       = (SmoothCell){.box = box};
+    cell->known = field_hessian(field, box, &range, &slope, &hessian);
+    cell->empty = range.low > 0 || range.high < 0;
+    if (!cell->known || cell->empty)
+        return;
+    find_forms(&hessian, cell);
+    cell->slope = find_slope(field, box, 1e-2 * error, &hessian);
+    if (find_gradient(&slope, &gradient))
+        cell->slope = fmax(cell->slope, gradient.least / ROUNDING);
+}
+
+void smooth_look_closer(const MeshField *field, double error, int halvings, SmoothCell *cell)
+{
+    LaneHessian within, around;
+    Box         box = cell->box;
+    for (int k = 0; k < 3; k++) {
+        box.axis[k].low += error;
+        box.axis[k].high -= error;
+    }
+    if (!find_hessian(field, box, halvings, &within) ||
+        !find_hessian(field, cell->box, halvings, &around))
+        return;
+    find_forms(&within, cell);
+    cell->slope = fmax(cell->slope, find_slope(field, cell->box, 1e-2 * error, &around));
+}
+
+bool smooth_look_at_middle(const MeshField *field, const SmoothCell *cell, SmoothCell *middle)
+{
+    Range       range;
+    LaneSlope   slope;
+    LaneHessian hessian;
+    *middle = *cell;
+    for (int k = 0; k < 3; k++) {
+        Range *axis = &middle->box.axis[k];
+        axis->low = axis->high = 0.5 * (axis->low + axis->high);
+    }
+    if (!field_hessian(field, middle->box, &range, &slope, &hessian))
+        return false;
+    find_forms(&hessian, middle);
+    double square = 0;
+    for (int k = 0; k < 3; k++)
+        square += slope.by[k].low * slope.by[k].low;
+    middle->slope = sqrt(square);
+    return true;
+}
+
+/* ---- points ---- */
+
+/* Points of which those within the mesh's part of the tetrahedron are a mean: its vertices first. */
+enum { MOST_MESH_POINTS = 9, MOST_POINTS = 12 };
+
+typedef struct Side {
+    const double *at[MOST_POINTS];
+    int           count, on_mesh;
+    const double *form; /* of a cell */
+} Side;
+
+/* How much the form permits between two points. */
+static double bend(const double form[6], const double a[3], const double b[3])
+{
+    double d[3];
+    add_scaled3(d, a, -1, b);
+    double sum = form[0] * d[0] * d[0] + form[1] * d[1] * d[1] + form[2] * d[2] * d[2] +
+                 2 * (form[3] * d[1] * d[2] + form[4] * d[0] * d[2] + form[5] * d[0] * d[1]);
+    return fmax(sum, 0) * ROUNDING;
+}
+
+/* The most that the sum of w_i w_j q_ij over all pairs is, for weights w >= 0 whose sum is 1.  With q the squares of lengths
+   it is that of the radius of the smallest ball around the points. */
+static double most_of_pair(double q) { return 0.25 * q; }
+
+static double most_of_three(double a, double b, double c)
+{
+    double longest = fmax(a, fmax(b, c)),
+           square  = 2 * (a * b + b * c + c * a) - a * a - b * b - c * c;
+    if (2 * longest >= a + b + c || square <= 0)
+        return most_of_pair(longest);
+    return ROUNDING * a * b * c / square;
+}
+
+/* Of four whose pairs that are not neighbours have `a` and `b`, and all others at most c: with the share s of
+   the first pair it is at most s^2 a / 4 + (1 - s)^2 b / 4 + s (1 - s) c. */
+static double most_of_ring(double a, double b, double c)
+{
+    double curve = 0.25 * (a + b) - c, best = fmax(0.25 * a, 0.25 * b);
+    double s = curve < 0 ? 0.5 * (0.5 * b - c) / curve : 0;
+    if (s > 0 && s < 1)
+        best = fmax(best,
+                    ROUNDING * (0.25 * (s * s * a + (1 - s) * (1 - s) * b) + s * (1 - s) * c));
+    return best;
+}
+
+/* ---- the mesh in a tetrahedron ---- */
+
+/* Its vertices there: crossings, vertices of lines, apex. */
+typedef struct MeshPart {
+    const Patch  *patch;
+    const double *crossings[4], *bends[4]; /* bends[i] follows crossings[i]; NULL: none */
+    double        value;                   /* the largest size of values at its vertices */
+} MeshPart;
+
+static MeshPart mesh_part(const Contour *contour, const Tet *tet)
+{
+    MeshPart part = {NULL};
+    if (tet->triangle_count == 0)
+        return part;
+    part.patch = &contour->patches.items[tet->patch];
+    for (uint32_t i = 0; i < part.patch->corner_count; i++) {
+        const Crossing *crossing = &contour->crossings.items[part.patch->crossings[i]];
+        const FaceLine *line     = &contour->lines.items[part.patch->lines[i]];
+        part.crossings[i]        = crossing->at;
+        part.value               = fmax(part.value, fabs(crossing->value));
+        if (line->bent) {
+            part.bends[i] = line->at;
+            part.value    = fmax(part.value, fabs(line->value));
+        }
+    }
+    if (part.patch->fan)
+        part.value = fmax(part.value, fabs(part.patch->value));
+    return part;
+}
+
+/* A fan has a cone from its apex over each part of the tetrahedron's boundary, and cones have at most the vertices of
+   one line and the apex.  Two triangles are bounded by the hull of all four. */
+static double most_on_mesh(const MeshPart *part, const double form[6])
+{
+    const Patch *patch = part->patch;
+    uint32_t     count = patch->corner_count;
+    double       most  = 0;
+    for (uint32_t i = 0; patch->fan && i < count; i++) {
+        const double *a = part->crossings[i], *b = part->crossings[(i + 1) % count];
+        const double *m = part->bends[i], *apex = patch->apex;
+        double        ab = bend(form, a, b), pa = bend(form, apex, a), pb = bend(form, apex, b);
+        most = fmax(most,
+                    m ? most_of_ring(ab, bend(form, apex, m),
+                                     fmax(fmax(pa, pb), fmax(bend(form, a, m), bend(form, b, m))))
+                      : most_of_three(ab, pa, pb));
+    }
+    if (patch->fan)
+        return most;
+    const double *const *c = part->crossings;
+    if (count == 3)
+        return most_of_three(bend(form, c[0], c[1]), bend(form, c[1], c[2]),
+                             bend(form, c[2], c[0]));
+    double sides = 0;
+    for (int i = 0; i < 4; i++)
+        sides = fmax(sides, bend(form, c[i], c[(i + 1) % 4]));
+    return most_of_ring(bend(form, c[0], c[2]), bend(form, c[1], c[3]), sides);
+}
+
+/* ---- one side ---- */
+
+static void add_point(Side *side, const double at[3]) { side->at[side->count++] = at; }
+
+static Side start_side(const MeshPart *part, const double form[6])
+{
+    Side side = {.form = form};
+    for (int i = 0; i < 4; i++) {
+        if (part->crossings[i])
+            add_point(&side, part->crossings[i]);
+        if (part->bends[i])
+            add_point(&side, part->bends[i]);
+    }
+    if (part->patch && part->patch->fan)
+        add_point(&side, part->patch->apex);
+    side.on_mesh = side.count;
+    return side;
+}
+
+/* The most that the value may have the wrong sign on one side of the mesh; below 0: it has not.
+   `depths` are those of its corners, whose signs are right.  A corner so deep that pairs with it add nothing
+   leaves what the others permit; those that are not count as the mesh does, four points at most at once. */
+static double miss_of_side(const Side *side, const MeshPart *part, const double *depths)
+{
+    double most = part->patch ? part->value + 0.5 * most_on_mesh(part, side->form) : -INFINITY;
+    double deep = -INFINITY, pairs = 0, least = part->patch ? -part->value : INFINITY;
+    bool   shallow[MOST_POINTS] = {false}, any = false;
+    for (int i = side->on_mesh; i < side->count; i++) {
+        double longest = 0, depth = depths[i - side->on_mesh];
+        for (int j = 0; j < side->count; j++)
+            if (j != i)
+                longest = fmax(longest, bend(side->form, side->at[i], side->at[j]));
+        double left = 0.5 * longest - depth;
+        shallow[i]  = part->patch ? left > most : left >= 0;
+        any         = any || shallow[i];
+        if (shallow[i])
+            least = fmin(least, depth);
+        else
+            deep = fmax(deep, left);
+    }
+    if (!any)
+        return fmax(most, deep);
+    for (int i = 0; i < side->count; i++)
+        for (int j = 0; j < i; j++)
+            if ((i < side->on_mesh || shallow[i]) && (j < side->on_mesh || shallow[j]))
+                pairs = fmax(pairs, bend(side->form, side->at[i], side->at[j]));
+    return fmax(deep, 0.5 * 0.375 * pairs - least);
+}
+
+bool smooth_measure(const Contour *contour, const SmoothCell *cell, Tet *tet)
+{
+    MeshPart part = mesh_part(contour, tet);
+    double   corners[4][3], depths[2][4], miss = -INFINITY;
+    tet->miss  = INFINITY;
+    tet->slope = (float)(cell->slope * (1 - 1e-6));
+    if (!cell->known)
+        return false;
+    Side inside = start_side(&part, cell->below), outside = start_side(&part, cell->above);
+    tets_corners(contour->tets, tet, corners);
+    for (int i = 0; i < 4; i++) {
+        double value = contour->tets->points.items[tet->points[i]].distance;
+        Side  *side  = value < 0 ? &inside : &outside;
+        depths[value >= 0][side->count - side->on_mesh] = fabs(value);
+        add_point(side, corners[i]);
+    }
+    if (inside.count > inside.on_mesh)
+        miss = fmax(miss, miss_of_side(&inside, &part, depths[0]));
+    if (outside.count > outside.on_mesh)
+        miss = fmax(miss, miss_of_side(&outside, &part, depths[1]));
+    tet->miss = (float)(miss * (1 + copysign(1e-6, miss)));
+    return miss < 0;
+}

@@ -1,0 +1,36 @@
+/*
+ * smooth.h: proofs where derivatives do not jump, by bounds of second derivatives.
+ *
+ * Between points with known values a function is as far from linear as its second derivatives permit.  So in a
+ * tetrahedron no point that the mesh has inside is farther outside than `miss` (the value there is not above
+ * it), and none that it has outside farther inside.  Let the value grow by at least `slope` along some direction n.
+ * From a point of the surface both ways along n, by s = miss / slope, there are points that are outside
+ * and inside of the mesh: so it is crossed within s.  From a point of the mesh likewise one meets the
+ * surface.  Nothing is sampled, and neither triangles nor cells are searched.
+ */
+#ifndef KRS_MESH_SMOOTH_H
+#define KRS_MESH_SMOOTH_H
+
+#include "compiler/mesh/gradient.h"
+#include "compiler/mesh/verifier.h"
+
+/* What is known of a box: d^T (second derivatives) d is at most d^T above d, and at least -d^T below d, for all d; the value
+   grows by `slope` at least along some direction. */
+typedef struct SmoothCell {
+    Box    box;
+    bool   known, empty;
+    double above[6], below[6], slope;
+} SmoothCell;
+
+/* `error`: differences are over small parts of it. */
+void smooth_look(const MeshField *field, Box box, double error, SmoothCell *cell);
+
+/* Narrower bounds of one that is known, which has the error around what is measured, from parts of it. */
+void smooth_look_closer(const MeshField *field, double error, int halvings, SmoothCell *cell);
+/* What is true in the middle: no bound, but what bounds may become at best. */
+bool smooth_look_at_middle(const MeshField *field, const SmoothCell *cell, SmoothCell *middle);
+
+/* Finds `miss` and `slope` of a tetrahedron within the cell; true: it has no surface. */
+bool smooth_measure(const Contour *contour, const SmoothCell *cell, Tet *tet);
+
+#endif
