@@ -23,8 +23,8 @@ static size_t cell_count(const Grid *grid)
 /* Of a table that begins at these texels; they move on to the next one. */
 static Place place_table(const Crowd *table, TableSizes *next)
 {
-    size_t cells   = cell_count(&table->grid);
-    size_t entries = table->grid.first[cells], texels = row_texels(table);
+    size_t cells   = cell_count(&table->cells);
+    size_t entries = table->cells.first[cells], texels = row_texels(table);
     Place  place = {next->rows, next->rows + table->rows * texels, next->cells,
                     next->cells + cells + 1};
     next->rows   = place.copy + entries * texels;
@@ -138,9 +138,10 @@ static void put_rows(const Crowds *crowds, const Crowd *table, const NodeValue *
 /* The rows of all members of the lists, in the order of the lists. */
 static void put_copies(const Crowd *table, const float (*rows)[4], float (*copies)[4])
 {
-    const size_t texels = row_texels(table), entries = table->grid.first[cell_count(&table->grid)];
+    const size_t texels  = row_texels(table),
+                 entries = table->cells.first[cell_count(&table->cells)];
     for (size_t i = 0; i < entries; i++)
-        memcpy(copies + i * texels, rows + table->grid.members[i] * texels, texels * sizeof *rows);
+        memcpy(copies + i * texels, rows + table->cells.members[i] * texels, texels * sizeof *rows);
 }
 
 /* Packs all rows; the sizes become those of all tables. */
@@ -203,8 +204,8 @@ void tables_pack(const Crowds *crowds, const Textures *textures, const NodeValue
     for (size_t t = 0; t < table_count(crowds); t++) {
         const Crowd *table = &crowds->tables.items[t];
         Place        place = place_table(table, &next);
-        put_header(&table->grid, place, cells + GRID_HEADER * t);
-        put_grid(&table->grid, cells + place.cell, cells + place.list);
+        put_header(&table->cells, place, cells + GRID_HEADER * t);
+        put_grid(&table->cells, cells + place.cell, cells + place.list);
     }
     pack_textures(crowds, textures, cells);
     if (pack_rows(crowds, textures, values, rows).rows == 0)

@@ -118,7 +118,7 @@ static bool same_table(const Crowd *a, const Crowd *b)
     return a->rows == b->rows && a->columns == b->columns && a->stretch == b->stretch &&
            same_frame_columns(a, b) &&
            memcmp(a->numbers, b->numbers, numbers * sizeof *a->numbers) == 0 &&
-           same_grid(&a->grid, &b->grid);
+           same_grid(&a->grid, &b->grid) && same_grid(&a->cells, &b->cells);
 }
 
 static bool same_function(const CrowdFunction *a, const CrowdFunction *b)

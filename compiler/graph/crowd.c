@@ -84,10 +84,17 @@ void hand_on_crowds(Graph *to, const Graph *from, const Node *all, Node *roots, 
         to->crowds = crowds_with_nodes(from->crowds, all + root_count, to->arena);
 }
 
+static void keep_grid(Grid *grid, Arena *arena)
+{
+    size_t cells    = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
+    grid->members   = COPY_ITEMS(arena, grid->members, grid->first[cells]);
+    grid->first     = COPY_ITEMS(arena, grid->first, cells + 1);
+    grid->clearance = COPY_ITEMS(arena, grid->clearance, cells);
+}
+
 static void keep_table(Crowd *table, Arena *arena)
 {
-    Grid  *grid  = &table->grid;
-    size_t cells = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
+    bool same = table->cells.first == table->grid.first;
     if (table->arena == arena)
         return;
     table->arena   = arena;
@@ -96,9 +103,11 @@ static void keep_table(Crowd *table, Arena *arena)
         table->boxes = COPY_ITEMS(arena, table->boxes, table->rows);
     if (table->frame_columns)
         table->frame_columns = COPY_ITEMS(arena, table->frame_columns, table->columns);
-    grid->members   = COPY_ITEMS(arena, grid->members, grid->first[cells]);
-    grid->first     = COPY_ITEMS(arena, grid->first, cells + 1);
-    grid->clearance = COPY_ITEMS(arena, grid->clearance, cells);
+    keep_grid(&table->grid, arena);
+    if (same)
+        table->cells = table->grid;
+    else
+        keep_grid(&table->cells, arena);
 }
 
 void crowds_keep(Crowds *crowds, Arena *arena)

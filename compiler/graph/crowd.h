@@ -41,9 +41,11 @@ typedef struct Crowd {
     uint32_t *frame_columns; /* of each column: KNOWN_COLUMN, or where its nodes begin in
                                 Crowds.frame_numbers, one for each row; NULL: all are known */
     Grid      grid;          /* its members are the rows */
-    Box      *boxes;         /* of members of which only the nearest counts; NULL: not known */
-    double    stretch;       /* the distance of a member, times this, is at least that to its box */
-    Span      span;          /* of the join */
+    Grid      cells;   /* the same, or refined (grid_refine.h): what kernels read; right as far as
+                                the clearance is */
+    Box      *boxes;   /* of members of which only the nearest counts; NULL: not known */
+    double    stretch; /* the distance of a member, times this, is at least that to its box */
+    Span      span;    /* of the join */
 } Crowd;
 
 /* How many texels of krs_cells the header of a table has for kernels. */

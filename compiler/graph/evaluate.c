@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/bits.h"
 #include "compiler/base/far.h"
 #include "compiler/graph/crowd.h"
 #include "compiler/graph/op_values.h"
@@ -179,17 +180,6 @@ static NodeValue read_texture(const Graph *graph, const Expr *e, const NodeValue
                          values[e->operands[1]].v[0]);
 }
 
-static uint32_t lowest_bit(uint64_t bits)
-{
-    uint32_t bit = 0;
-    for (uint32_t half = 32; half; half /= 2)
-        if (!(bits & (((uint64_t)1 << half) - 1))) {
-            bits >>= half;
-            bit += half;
-        }
-    return bit;
-}
-
 static void run_points(const Tape *tape, const Inputs *in, NodeValue *values);
 
 /* The loop of a crowd function, which has a tape for what it does at each member. */
@@ -274,7 +264,7 @@ static NodeValue run_loop(Loop *loop)
 {
     double          clearance;
     uint32_t        listed;
-    const uint32_t *list = grid_find(&loop->table->grid, loop->in.point, &listed, &clearance);
+    const uint32_t *list = grid_find(&loop->table->cells, loop->in.point, &listed, &clearance);
     begin_loop(loop);
     for (uint32_t i = 0; i < listed; i++)
         loop_over(loop, list[i]);

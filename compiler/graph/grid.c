@@ -9,14 +9,13 @@
  * Kernels find the cell of a point in single precision, and may find a neighbour of it.  So boxes are
  * taken to be larger by what single precision can miss: the pad.
  */
-#include "compiler/graph/grid.h"
+#include "compiler/graph/grid_builder.h"
 
 #include <assert.h>
 #include <float.h>
 
 #include "compiler/base/far.h"
 #include "compiler/base/parallel.h"
-#include "compiler/graph/squares.h"
 
 /* Most cells and entries: few members may have more cells each, so that they may form a curve, and
    more entries, so that blends that reach far have short lists.  A loop over a list is most of a
@@ -30,47 +29,17 @@ enum {
     ENTRIES_PER_MEMBER = 8,
     SPARE_ENTRIES      = 4096,
     MANY_TEXELS        = 1 << 23, /* of all entries of few members: 128 MB */
-    ENTRIES_OF_FEW     = 1024     /* for each of few members */
+    ENTRIES_OF_FEW     = 1024,    /* for each of few members */
+    MANY_REFINED       = 1 << 17, /* cells of a refined grid */
+    LEAST_REFINED      = 8,       /* of these for each member */
+    MANY_TO_REFINE     = 1 << 20  /* entries of a coarse one, whose members are evaluated */
 };
 
-#define MARGIN_IN_CELLS 0.25    /* beyond what the caller gives */
-#define RING_IN_CELLS   0.5     /* how far beyond the margin boxes are measured */
-#define GROWTH          1.08    /* of the side: a quarter more volume */
-#define FLAT_IN_CELLS   1.75    /* how far away what decides in a cell of a flat grid may be */
-#define SMALLEST_SIDE   1e-12   /* of a cell */
-#define FLOAT_MISSES    0x1p-21 /* several roundings in single precision, of coordinates */
-#define ROUNDED_DOWN    (1 - 0x1p-22)
-
-typedef struct Builder {
-    Grid       *grid;
-    const Box  *boxes;
-    uint32_t    count, present; /* boxes; those that are not empty */
-    double      reach, margin;
-    double      given_margin;
-    uint32_t    texels; /* of an entry */
-    double      pad[3];
-    double      listed, seen; /* boxes up to this distance are in the list, or are measured */
-    float      *nearest;      /* of each cell: the square of the distance to the nearest box that is
-                                seen and not listed */
-    GridMembers flat;         /* of a flat grid */
-    double      half;         /* and half the diagonal of its cells, */
-    float      *centers;   /* and of each cell the distance from its center to the nearest member */
-    bool        measuring; /* these distances */
-    Arena      *scratch;
-} Builder;
-
-/* Cells from first to last along each axis. */
-typedef struct Cover {
-    uint32_t first[3], last[3];
-} Cover;
-
-static bool box_is_empty(const Box *box)
-{
-    for (int k = 0; k < 3; k++)
-        if (box->axis[k].low > box->axis[k].high)
-            return true;
-    return false;
-}
+#define MARGIN_IN_CELLS 0.25  /* beyond what the caller gives */
+#define RING_IN_CELLS   0.5   /* how far beyond the margin boxes are measured */
+#define GROWTH          1.08  /* of the side: a quarter more volume */
+#define FLAT_IN_CELLS   1.75  /* how far away what decides in a cell of a flat grid may be */
+#define SMALLEST_SIDE   1e-12 /* of a cell */
 
 /* Not so where a coordinate is not a number. */
 static bool box_is_bounded(const Box *box)
@@ -81,17 +50,12 @@ static bool box_is_bounded(const Box *box)
     return true;
 }
 
-static size_t cell_count(const Grid *grid)
-{
-    return (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
-}
-
 /* ---- One cell for all of space ---- */
 
 static bool all_are_bounded(const Builder *b)
 {
     for (uint32_t i = 0; i < b->count; i++)
-        if (!box_is_empty(&b->boxes[i]) && !box_is_bounded(&b->boxes[i]))
+        if (!grid_box_is_empty(&b->boxes[i]) && !box_is_bounded(&b->boxes[i]))
             return false;
     return b->given_margin < FAR_SIDE && b->reach < FAR_SIDE;
 }
@@ -108,7 +72,7 @@ static void one_cell(Builder *b, Arena *arena)
                         .most_listed = b->present};
 
     for (uint32_t i = 0; i < b->count; i++)
-        if (!box_is_empty(&b->boxes[i]))
+        if (!grid_box_is_empty(&b->boxes[i]))
             grid->members[grid->first[1]++] = i;
     grid->clearance[0] = (float)NOWHERE;
 }
@@ -121,7 +85,7 @@ static void find_inner(Builder *b)
     for (int k = 0; k < 3; k++)
         inner->axis[k] = (Range){HUGE_VAL, -HUGE_VAL};
     for (uint32_t i = 0; i < b->count; i++)
-        for (int k = 0; k < 3 && !box_is_empty(&b->boxes[i]); k++) {
+        for (int k = 0; k < 3 && !grid_box_is_empty(&b->boxes[i]); k++) {
             inner->axis[k].low  = fmin(inner->axis[k].low, b->boxes[i].axis[k].low);
             inner->axis[k].high = fmax(inner->axis[k].high, b->boxes[i].axis[k].high);
         }
@@ -168,12 +132,25 @@ static double placed_cells(const Grid *grid)
     return (double)grid->cells[0] * grid->cells[1] * grid->cells[2];
 }
 
+static double most_cells(const Builder *b)
+{
+    if (b->coarse)
+        return fmin((double)MOST_OF_A_MEMBER * b->present, MANY_REFINED) / GRID_REFINED;
+    double few = fmin((double)CELLS_OF_FEW * b->present, MANY_CELLS);
+    return fmin(fmax((double)CELLS_PER_MEMBER * b->present, few) + SPARE_CELLS,
+                (double)MOST_OF_A_MEMBER * b->present);
+}
+
+static double most_entries(const Builder *b)
+{
+    double few = fmin((double)ENTRIES_OF_FEW * b->present, (double)MANY_TEXELS / b->texels);
+    return fmax((double)ENTRIES_PER_MEMBER * b->present, few) + SPARE_ENTRIES;
+}
+
 /* The least side with few enough cells. */
 static double least_side(Builder *b)
 {
-    double few     = fmin((double)CELLS_OF_FEW * b->present, MANY_CELLS);
-    double most    = fmin(fmax((double)CELLS_PER_MEMBER * b->present, few) + SPARE_CELLS,
-                          (double)MOST_OF_A_MEMBER * b->present);
+    double most    = most_cells(b);
     double longest = 0;
     for (int k = 0; k < 3; k++) {
         Range axis = b->grid->inner.axis[k];
@@ -190,27 +167,15 @@ static double least_side(Builder *b)
     return high;
 }
 
-/* The cells that are up to `distance` away from a box along each axis. */
-static Cover cover_box(const Builder *b, const Box *box, double distance)
-{
-    Cover cover;
-    for (int k = 0; k < 3; k++) {
-        double grown   = distance + b->pad[k];
-        cover.first[k] = grid_cell_along(b->grid, k, box->axis[k].low - grown);
-        cover.last[k]  = grid_cell_along(b->grid, k, box->axis[k].high + grown);
-    }
-    return cover;
-}
-
 /* No fewer than the entries of all lists. */
 static double count_entries(const Builder *b)
 {
     double entries = 0;
     for (uint32_t i = 0; i < b->count; i++) {
-        if (box_is_empty(&b->boxes[i]))
+        if (grid_box_is_empty(&b->boxes[i]))
             continue;
         double far   = b->flat.distance ? fmax(b->listed, b->grid->size) : b->listed;
-        Cover  cover = cover_box(b, &b->boxes[i], far);
+        Cover  cover = grid_cover_box(b, &b->boxes[i], far);
         double cells = 1;
         for (int k = 0; k < 3; k++)
             cells *= (double)(cover.last[k] - cover.first[k]) + 1;
@@ -222,10 +187,8 @@ static double count_entries(const Builder *b)
 /* In the end there is one cell, which has as many entries as there are boxes. */
 static void choose_cells(Builder *b)
 {
-    double few  = fmin((double)ENTRIES_OF_FEW * b->present, (double)MANY_TEXELS / b->texels);
-    double most = fmax((double)ENTRIES_PER_MEMBER * b->present, few) + SPARE_ENTRIES;
     double side = least_side(b);
-    for (place_cells(b, side); count_entries(b) > most; place_cells(b, side))
+    for (place_cells(b, side); count_entries(b) > most_entries(b); place_cells(b, side))
         side *= GROWTH;
 }
 
@@ -241,28 +204,6 @@ static double gap_along(const Builder *b, const Box *box, int axis, uint32_t cel
     return gap > 0 ? gap : 0;
 }
 
-/* Cells [low, high) along an axis, of which one processor fills the lists. */
-typedef struct Slab {
-    int      axis; /* z, or y in a flat grid */
-    uint32_t low, high;
-} Slab;
-
-static Slab slab_of_part(const Builder *b, size_t part, size_t parts)
-{
-    int      axis  = b->flat.distance ? 1 : 2;
-    uint32_t cells = b->grid->cells[axis];
-    return (Slab){axis, (uint32_t)part_begin(cells, part, parts),
-                  (uint32_t)part_begin(cells, part + 1, parts)};
-}
-
-static Cover cover_in_slab(Cover cover, Slab slab)
-{
-    uint32_t *first = &cover.first[slab.axis], *last = &cover.last[slab.axis];
-    *first = *first > slab.low ? *first : slab.low;
-    *last  = *last < slab.high ? *last : slab.high - 1;
-    return cover;
-}
-
 /* Adds a member to the list of a cell, or counts it. */
 static void put_in_list(Grid *grid, size_t cell, uint32_t member)
 {
@@ -272,6 +213,30 @@ static void put_in_list(Grid *grid, size_t cell, uint32_t member)
         grid->first[cell]++;
 }
 
+/* From lengths to where lists begin. */
+void grid_begin_lists(Grid *grid, Arena *arena)
+{
+    size_t   cells    = grid_cell_count(grid);
+    uint32_t entries  = 0;
+    grid->most_listed = 0;
+    for (size_t c = 0; c < cells; c++) {
+        uint32_t length = grid->first[c];
+        if (length > grid->most_listed)
+            grid->most_listed = length;
+        grid->first[c] = entries;
+        entries += length;
+    }
+    grid->members = arena_new_array(arena, uint32_t, entries + 1);
+}
+
+/* Each first[] is now where the next list begins. */
+void grid_end_lists(Grid *grid)
+{
+    for (size_t c = grid_cell_count(grid); c > 0; c--)
+        grid->first[c] = grid->first[c - 1];
+    grid->first[0] = 0;
+}
+
 /* Visits cells of a slab around a box.  First their lists are counted, in first[]; when there are
    members, they are filled, and first[] moves on. */
 static void visit_cells(const Builder *b, uint32_t member, Slab slab)
@@ -279,8 +244,8 @@ static void visit_cells(const Builder *b, uint32_t member, Slab slab)
     const Grid *grid   = b->grid;
     const Box  *box    = &b->boxes[member];
     double      listed = b->listed * b->listed;
-    Cover       cover  = cover_box(b, box, grid->members ? b->listed : b->seen);
-    cover              = cover_in_slab(cover, slab);
+    Cover       cover  = grid_cover_box(b, box, grid->members ? b->listed : b->seen);
+    cover              = grid_cover_in_slab(cover, slab);
     for (uint32_t z = cover.first[2]; z <= cover.last[2]; z++) {
         double gap_z = gap_along(b, box, 2, z);
         for (uint32_t y = cover.first[1]; y <= cover.last[1]; y++) {
@@ -319,7 +284,7 @@ static void visit_flat_cells(const Builder *b, uint32_t member, Slab slab)
 {
     const Grid *grid  = b->grid;
     const Box  *box   = &b->boxes[member];
-    Cover       cover = cover_in_slab(cover_box(b, box, b->seen), slab);
+    Cover       cover = grid_cover_in_slab(grid_cover_box(b, box, b->seen), slab);
     for (uint32_t y = cover.first[1]; y <= cover.last[1]; y++) {
         double gap_y = gap_along(b, box, 1, y);
         for (uint32_t x = cover.first[0]; x <= cover.last[0]; x++) {
@@ -335,9 +300,9 @@ static void visit_flat_cells(const Builder *b, uint32_t member, Slab slab)
 static void visit_all(void *task, size_t part, size_t parts)
 {
     const Builder *b    = task;
-    Slab           slab = slab_of_part(b, part, parts);
+    Slab           slab = grid_slab_of_part(b, part, parts);
     for (uint32_t i = 0; i < b->count && slab.low < slab.high; i++)
-        if (box_is_empty(&b->boxes[i]))
+        if (grid_box_is_empty(&b->boxes[i]))
             continue;
         else if (b->flat.distance)
             visit_flat_cells(b, i, slab);
@@ -347,7 +312,7 @@ static void visit_all(void *task, size_t part, size_t parts)
 
 static void measure_centers(Builder *b)
 {
-    size_t cells = cell_count(b->grid);
+    size_t cells = grid_cell_count(b->grid);
     b->centers   = arena_new_array(b->scratch, float, cells);
     for (size_t c = 0; c < cells; c++)
         b->centers[c] = HUGE_VALF;
@@ -359,7 +324,7 @@ static void measure_centers(Builder *b)
 static void fill_lists(Builder *b, Arena *arena)
 {
     Grid  *grid  = b->grid;
-    size_t cells = cell_count(grid);
+    size_t cells = grid_cell_count(grid);
     grid->first  = arena_new_array(arena, uint32_t, cells + 1);
     b->nearest   = arena_new_array(b->scratch, float, cells);
     for (size_t c = 0; c < cells; c++)
@@ -368,104 +333,39 @@ static void fill_lists(Builder *b, Arena *arena)
         measure_centers(b);
     run_in_parallel(visit_all, b);
 
-    /* From lengths to where lists begin. */
-    uint32_t entries = 0;
-    for (size_t c = 0; c < cells; c++) {
-        uint32_t length = grid->first[c];
-        if (length > grid->most_listed)
-            grid->most_listed = length;
-        grid->first[c] = entries;
-        entries += length;
-    }
-    grid->members = arena_new_array(arena, uint32_t, entries + 1);
+    grid_begin_lists(grid, arena);
     run_in_parallel(visit_all, b);
-
-    /* Each first[] is now where the next list begins. */
-    for (size_t c = cells; c > 0; c--)
-        grid->first[c] = grid->first[c - 1];
-    grid->first[0] = 0;
+    grid_end_lists(grid);
 }
 
-/* ---- Distances in cells to the nearest cell with a box ---- */
+/* ---- All ---- */
 
-/* 0 in cells that touch a cell with a part of this box. */
-static void mark_box(const Builder *b, const Box *box, double *squares, Slab slab)
+/* False: nothing has an end, or there is nothing. */
+static bool begin(Builder *b)
 {
-    const Grid *grid  = b->grid;
-    Cover       cover = cover_box(b, box, 0);
-    for (int k = 0; k < 3; k++) {
-        cover.first[k] -= cover.first[k] > 0;
-        cover.last[k] += cover.last[k] + 1 < grid->cells[k];
-    }
-    cover = cover_in_slab(cover, slab);
-    for (uint32_t z = cover.first[2]; z <= cover.last[2]; z++)
-        for (uint32_t y = cover.first[1]; y <= cover.last[1]; y++)
-            for (uint32_t x = cover.first[0]; x <= cover.last[0]; x++)
-                squares[((size_t)z * grid->cells[1] + y) * grid->cells[0] + x] = 0;
+    *b->grid = (Grid){0};
+    for (uint32_t i = 0; i < b->count; i++)
+        b->present += !grid_box_is_empty(&b->boxes[i]);
+    if (b->present == 0 || !all_are_bounded(b))
+        return false;
+    find_inner(b);
+    return true;
 }
 
-/* Of all boxes. */
-typedef struct Marking {
-    const Builder *builder;
-    double        *squares;
-} Marking;
-
-static void mark_all(void *task, size_t part, size_t parts)
+static void fill(Builder *b, Arena *arena)
 {
-    const Marking *marking = task;
-    const Builder *b       = marking->builder;
-    Slab           slab    = slab_of_part(b, part, parts);
-    for (uint32_t i = 0; i < b->count && slab.low < slab.high; i++)
-        if (!box_is_empty(&b->boxes[i]))
-            mark_box(b, &b->boxes[i], marking->squares, slab);
-}
-
-/* Squares of lower bounds on the distance between a cell and the nearest box, in cells.  The walls
-   of cells i and k are |i - k| - 1 cells apart: as far as centers when one of them touches. */
-static double *cells_to_boxes(const Builder *b)
-{
-    size_t  cells   = cell_count(b->grid);
-    Marking marking = {b, arena_new_array(b->scratch, double, cells)};
-    for (size_t c = 0; c < cells; c++)
-        marking.squares[c] = HUGE_VAL;
-    run_in_parallel(mark_all, &marking);
-    squares_transform(b->grid->cells, marking.squares, b->scratch);
-    return marking.squares;
-}
-
-/* ---- Clearance ---- */
-
-static float rounded_down(double number) { return (float)fmax(number * ROUNDED_DOWN, FLT_MIN); }
-
-static void find_clearances(const Builder *b, Arena *arena)
-{
-    Grid         *grid    = b->grid;
-    size_t        cells   = cell_count(grid);
-    const double *squares = cells_to_boxes(b);
-    grid->clearance       = arena_new_array(arena, float, cells);
-    for (size_t c = 0; c < cells; c++) {
-        double seen = fmin(sqrt((double)b->nearest[c]) * ROUNDED_DOWN, b->seen);
-        double far  = fmax(seen, sqrt(squares[c]) * grid->size);
-        bool   all  = grid->first[c + 1] - grid->first[c] == b->present ||
-                   (b->flat.distance && (double)b->centers[c] <= b->half);
-
-        grid->clearance[c] = all ? (float)NOWHERE : rounded_down(fmax(far - b->reach, b->margin));
-    }
+    fill_lists(b, arena);
+    grid_find_clearances(b, arena);
 }
 
 static void build(Builder *b, Arena *arena)
 {
-    *b->grid = (Grid){0};
-    for (uint32_t i = 0; i < b->count; i++)
-        b->present += !box_is_empty(&b->boxes[i]);
-    if (b->present == 0 || !all_are_bounded(b)) {
+    if (!begin(b)) {
         one_cell(b, arena);
         return;
     }
-    find_inner(b);
     choose_cells(b);
-    fill_lists(b, arena);
-    find_clearances(b, arena);
+    fill(b, arena);
 }
 
 void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
@@ -480,6 +380,26 @@ void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, doub
                  .texels       = texels,
                  .scratch      = scratch};
     build(&b, arena);
+}
+
+bool grid_build_coarse(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
+                       Arena *arena, Arena *scratch)
+{
+    assert(count > 0);
+    Builder b = {.grid         = grid,
+                 .boxes        = boxes,
+                 .count        = count,
+                 .reach        = reach,
+                 .given_margin = margin,
+                 .coarse       = true,
+                 .scratch      = scratch};
+    if (!begin(&b) || (double)LEAST_REFINED * b.present > MANY_REFINED)
+        return false;
+    place_cells(&b, least_side(&b));
+    if (count_entries(&b) > MANY_TO_REFINE)
+        return false;
+    fill(&b, arena);
+    return true;
 }
 
 void grid_build_flat(Grid *grid, const Box *boxes, uint32_t count, double margin, uint32_t texels,

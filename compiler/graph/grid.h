@@ -36,6 +36,16 @@ typedef struct Grid {
 void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
                 uint32_t texels, Arena *arena, Arena *scratch);
 
+/*
+ * The same with large cells, for grid_refine.  False: all of space would be one cell, or lists would be so
+ * long that refining them takes too long; then there is no grid.
+ */
+bool grid_build_coarse(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
+                       Arena *arena, Arena *scratch);
+
+/* How many cells a cell becomes when a grid is refined, along each axis and in all. */
+enum { GRID_REFINED_ALONG = 4, GRID_REFINED = 64 };
+
 /* Members in the plane z = 0, of which the nearest one decides. */
 typedef struct GridMembers {
     double (*distance)(const void *members, uint32_t member, const double point[2]);
@@ -57,6 +67,8 @@ void grid_build_flat(Grid *grid, const Box *boxes, uint32_t count, double margin
  */
 const uint32_t *grid_find(const Grid *grid, const double point[3], uint32_t *count,
                           double *clearance);
+
+size_t grid_cell_count(const Grid *grid);
 
 /* How far a point is from a box. */
 double distance_to_box(const Box *box, const double point[3]);

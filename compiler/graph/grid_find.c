@@ -6,6 +6,11 @@
 
 #include "compiler/graph/grid.h"
 
+size_t grid_cell_count(const Grid *grid)
+{
+    return (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
+}
+
 uint32_t grid_cell_along(const Grid *grid, int axis, double coordinate)
 {
     double cell = (coordinate - grid->low[axis]) / grid->size;

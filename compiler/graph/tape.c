@@ -224,7 +224,7 @@ static double flops_of(const Tape *tape, bool apart);
 static double call_flops(const Tape *tape, uint32_t function, bool apart)
 {
     const Crowd *table = table_of(tape, function);
-    const Grid  *grid  = &table->grid;
+    const Grid  *grid  = &table->cells;
     size_t       cells = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
     double       mean  = (double)grid->first[cells] / (double)cells;
     return (apart ? table->rows : mean + 1) * flops_of(&tape->functions[function], apart);
@@ -260,7 +260,7 @@ double tape_flops_apart(const Tape *tape) { return flops_of(tape, true); }
 /* For the longest list. */
 static double call_loops(const Tape *tape, uint32_t function)
 {
-    return (double)table_of(tape, function)->grid.most_listed *
+    return (double)table_of(tape, function)->cells.most_listed *
            (1 + (double)tape_loops(&tape->functions[function]));
 }
 

@@ -92,6 +92,14 @@ static double needed_reach(const PartFinder *finder, const CrowdGroup *group)
     return group->members.count == finder->count ? finder->reach : finder->context.reach;
 }
 
+static double largest_slope(const PartFinder *finder, const CrowdGroup *group)
+{
+    double slope = 1;
+    for (size_t i = 0; i < group->members.count; i++)
+        slope = fmax(slope, finder->parts[group->members.items[i]]->slope);
+    return slope;
+}
+
 static bool make_crowd(const PartFinder *finder, CrowdGroup *group, const GroupJoin *join,
                        const Box *boxes)
 {
@@ -102,6 +110,7 @@ static bool make_crowd(const PartFinder *finder, CrowdGroup *group, const GroupJ
     double reach  = factor * blended_reach(group, join);
     double margin = isfinite(reach) ? factor * needed_reach(finder, group) : HUGE_VAL;
     Crowd  table  = {.stretch = factor, .span = join->span};
+    group->slope  = largest_slope(finder, group);
     group_make_table(group, join, boxes, isfinite(reach) ? reach : 0, margin, table);
     return true;
 }

@@ -45,6 +45,7 @@ typedef struct CrowdGroup {
     uint32_t *columns; /* of each slot 4: of its elements the column, or NO_COLUMN: equal in all */
     struct Column *sources; /* of each column, the element that it has */
     uint32_t       column_count;
+    double         slope;                  /* of the distances of all members */
     uint32_t       crowd;                  /* its table */
     uint32_t       distance, nearest;      /* functions; NO_FUNCTION: not made yet */
     uint32_t       properties[PART_ROOTS]; /* of blends: what is mixed */
@@ -94,9 +95,14 @@ bool group_find_columns(CrowdGroup *group, const GroupJoin *join);
 /* Makes the table, of which `stretch` and `span` are set.  `boxes` are of all parts of the joint. */
 void group_make_table(CrowdGroup *group, const GroupJoin *join, const Box *boxes, double reach,
                       double margin, Crowd table);
+/* crowd_cells.c: gives a table with all its numbers a grid and its cells; `boxes` are of its rows. */
+void group_make_cells(const CrowdGroup *group, const GroupJoin *join, const Box *boxes,
+                      double reach, double margin, Crowd *table);
 /* The nodes in the slots, for the member whose number is that node; without one (NODE_NONE) of what
    does not vary. */
 void group_slots(const CrowdGroup *group, Graph *graph, Node member, Node *slots);
+/* The same, with a parameter in the place of each column: those from slot `first` on. */
+void group_slots_of_parameters(const CrowdGroup *group, Graph *graph, uint32_t first, Node *slots);
 
 /* crowd_functions.c: whether functions can be made for all that is asked of the surface. */
 bool group_has_functions(const CrowdGroup *group, const GroupJoin *join);

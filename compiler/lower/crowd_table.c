@@ -191,25 +191,41 @@ void group_make_table(CrowdGroup *group, const GroupJoin *join, const Box *boxes
     Box *own = arena_new_array(join->scratch, Box, rows);
     for (uint32_t i = 0; i < rows; i++)
         own[i] = boxes[group->members.items[i]];
-    uint32_t texels = (uint32_t)row_texels(&table);
-    grid_build(&table.grid, own, rows, reach, margin, texels > 0 ? texels : 1, table.arena,
-               join->scratch);
+    group_make_cells(group, join, own, reach, margin, &table);
     group->crowd = (uint32_t)crowds->tables.count;
     array_push(crowds->arena, &crowds->tables, table);
 }
 
 /* ---- slots ---- */
 
+/* What is in the place of a column. */
+typedef struct ColumnReader {
+    Node (*read)(const struct ColumnReader *reader, Graph *graph, uint32_t column);
+    uint32_t crowd, first;
+    Node     member;
+} ColumnReader;
+
+static Node read_row(const ColumnReader *reader, Graph *graph, uint32_t column)
+{
+    return graph_row(graph, reader->crowd, column, reader->member);
+}
+
+static Node read_parameter(const ColumnReader *reader, Graph *graph, uint32_t column)
+{
+    return graph_parameter(graph, reader->first + column, TYPE_FLOAT);
+}
+
 /* What varies is read, the rest is as in the first member. */
-static Node slot_element(const CrowdGroup *group, Graph *graph, Node member, uint32_t slot,
-                         uint32_t element)
+static Node slot_element(const CrowdGroup *group, Graph *graph, const ColumnReader *reader,
+                         uint32_t slot, uint32_t element)
 {
     uint32_t column = group->columns[4 * slot + element];
     return column == NO_COLUMN ? graph_component(graph, group->template->slots[slot], element)
-                               : graph_row(graph, group->crowd, column, member);
+                               : reader->read(reader, graph, column);
 }
 
-static Node slot_node(const CrowdGroup *group, Graph *graph, Node member, uint32_t slot)
+static Node slot_node(const CrowdGroup *group, Graph *graph, const ColumnReader *reader,
+                      uint32_t slot)
 {
     static const Op vectors[] = {OP_vec2, OP_vec3, OP_vec4};
     Node            first     = group->template->slots[slot], parts[4];
@@ -217,7 +233,7 @@ static Node slot_node(const CrowdGroup *group, Graph *graph, Node member, uint32
     if (!group->varies[slot])
         return first;
     for (uint32_t i = 0; i < elements(group, slot); i++)
-        parts[i] = slot_element(group, graph, member, slot, i);
+        parts[i] = slot_element(group, graph, reader, slot, i);
     if (type == TYPE_UINT)
         return graph_op1(graph, OP_to_uint, parts[0]);
     return type == TYPE_FLOAT ? parts[0] : graph_op(graph, vectors[type - TYPE_VEC2], parts);
@@ -225,7 +241,15 @@ static Node slot_node(const CrowdGroup *group, Graph *graph, Node member, uint32
 
 void group_slots(const CrowdGroup *group, Graph *graph, Node member, Node *slots)
 {
+    ColumnReader reader = {.read = read_row, .crowd = group->crowd, .member = member};
     for (uint32_t i = 0; i < group->template->slot_count; i++)
         slots[i] = group->varies[i] && member == NODE_NONE ? NODE_NONE
-                                                           : slot_node(group, graph, member, i);
+                                                           : slot_node(group, graph, &reader, i);
+}
+
+void group_slots_of_parameters(const CrowdGroup *group, Graph *graph, uint32_t first, Node *slots)
+{
+    ColumnReader reader = {.read = read_parameter, .first = first};
+    for (uint32_t i = 0; i < group->template->slot_count; i++)
+        slots[i] = slot_node(group, graph, &reader, i);
 }

@@ -190,6 +190,7 @@ static uint32_t add_table(Graph *g, const OutlineShape *shape, double margin, Ar
     grid_build_flat(&table.grid, table.boxes, table.rows, margin, (uint32_t)row_texels(&table),
                     near, crowds->arena, scratch);
     mark_inside(&table.grid, &shape->outline, scratch);
+    table.cells = table.grid;
     array_push(crowds->arena, &crowds->tables, table);
     return (uint32_t)crowds->tables.count - 1;
 }

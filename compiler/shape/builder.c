@@ -28,6 +28,16 @@ double blend_reach(BlendKind kind, double n)
     return reaches[kind];
 }
 
+double blend_acts(BlendKind kind, double n)
+{
+    const double acts_within[BLEND_COUNT] = {
+#define BLEND(name, signature, slope, bulge, most, reach, acts, ...) [BLEND_##name] = (acts),
+#include "compiler/graph/blends.def"
+    };
+    (void)n;
+    return acts_within[kind];
+}
+
 const Blend blend_sharp = {.width = NODE_NONE, .steps = NODE_NONE};
 
 Range node_range(ShapeBuilder *builder, Node node, uint32_t component)

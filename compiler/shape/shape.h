@@ -83,6 +83,8 @@ extern const BlendInfo blend_info[BLEND_COUNT];
    result an operand no longer changes it. */
 double blend_bulge(BlendKind kind, uint32_t count);
 double blend_reach(BlendKind kind, double n);
+/* How far above what those before it make one of them changes nothing. */
+double blend_acts(BlendKind kind, double n);
 
 /* How the shapes of a metasurface fade; falloffs.def has a row for each. */
 typedef enum FalloffKind {

@@ -159,7 +159,7 @@ double clearance_at(const double p[3])
     uint32_t count;
     Crowds  *crowds = builder.graph->crowds;
     for (size_t i = 0; i < crowds->tables.count; i++) {
-        grid_find(&crowds->tables.items[i].grid, p, &count, &clearance);
+        grid_find(&crowds->tables.items[i].cells, p, &count, &clearance);
         least = fmin(least, clearance);
     }
     return least;

@@ -200,8 +200,11 @@ static Difference compare_blend(const Shape *shape, bool without_reach)
     Box boxes[CHAIN];
     for (uint32_t i = 0; i < CHAIN; i++)
         boxes[i] = shape->children[i]->box;
-    if (without_reach)
-        grid_build(&crowds->tables.items[0].grid, boxes, CHAIN, 0, 0, 1, &arena, &scratch);
+    Crowd *table = &crowds->tables.items[0];
+    if (without_reach) {
+        grid_build(&table->grid, boxes, CHAIN, 0, 0, 1, &arena, &scratch);
+        table->cells = table->grid;
+    }
     return compare_in_order(shape, parts, &crowd);
 }
 
@@ -237,6 +240,70 @@ static void reach_is_needed(void **state)
         finish(state);
         start(state);
     }
+}
+
+/* ---- refined grids ---- */
+
+enum { MANY = 400 };
+
+/* Balls that meet, or do not, or are within others. */
+static const Shape *cloud(BlendKind kind, double width)
+{
+    const Shape *parts[MANY];
+    Graph       *g = builder.graph;
+    for (int i = 0; i < MANY; i++) {
+        double x = between(-3, 3), y = between(-3, 3), z = between(-3, 3);
+        parts[i] = painted(placed(ball(between(0.1, 0.4)), x, y, z, 0.5, 1.25));
+    }
+    Blend blend = {kind, graph_number(g, width), width, NODE_NONE};
+    return make_joint(&builder, SHAPE_UNION, parts, MANY, blend, no_place);
+}
+
+static double mean_length(const Grid *grid)
+{
+    size_t cells = grid_cell_count(grid);
+    return (double)grid->first[cells] / (double)cells;
+}
+
+/* As kernels have it: a bound everywhere, and right where it is less than the clearance. */
+static void compare_cells(const Shape *shape, const Seen *parts, const Seen *crowd, double most)
+{
+    int right = 0;
+    for (int n = 0; n < POINTS; n++) {
+        double p[3], wanted = NOWHERE, clearance;
+        random_vector(&randomness, n % 8 ? 3 : 5, p);
+        clearance = clearance_at(p);
+        for (int i = 0; i < MANY; i++)
+            wanted = joined(shape->blend, wanted, look(&parts[i], p));
+        double is = look(crowd, p);
+        assert_true(is <= wanted + most);
+        assert_true(wanted >= clearance - most || fabs(is - wanted) <= most);
+        right += wanted < clearance && wanted > 0;
+    }
+    assert_true(right > POINTS / 20);
+}
+
+static void refined_blends(void **state)
+{
+    static Seen parts[MANY];
+    for (BlendKind kind = BLEND_quadratic; kind <= BLEND_exponential; kind++)
+        for (int wide = 0; wide < 2; wide++) {
+            double       width = kind == BLEND_exponential ? 0.02 : wide ? 0.5 : 0.1;
+            const Shape *shape = cloud(kind, width);
+            Seen crowd = lower(shape, lowered_crowds_new(builder.graph, &arena, &arena, LEAST));
+            const Crowd *table = &builder.graph->crowds->tables.items[0];
+            assert_true(table->cells.size < table->grid.size);
+            assert_true(mean_length(&table->cells) < 0.5 * mean_length(&table->grid));
+            crowd.tape.by_cells = true;
+            for (int i = 0; i < MANY; i++)
+                parts[i] = lower(shape->children[i], NULL);
+            for (int i = 0; i < MANY; i++)
+                prepare(&parts[i]);
+            prepare(&crowd);
+            compare_cells(shape, parts, &crowd, allowed(kind, width));
+            finish(state);
+            start(state);
+        }
 }
 
 /* ---- blends of two crowds ---- */
@@ -311,6 +378,7 @@ int main(void)
         TEST(many_parts_need_few_nodes),
         TEST(blends),
         TEST(reach_is_needed),
+        TEST(refined_blends),
         TEST(blends_of_crowds),
     };
     return cmocka_run_group_tests_name("crowds", tests, NULL, NULL);

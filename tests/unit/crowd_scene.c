@@ -17,6 +17,7 @@ static uint32_t add_table(Bench *b, Crowd table, const Box *boxes, double reach)
     Arena   scratch = {.memory = &b->memory};
     table.stretch   = 1;
     grid_build(&table.grid, boxes, table.rows, reach, 0, 1, &b->arena, &scratch);
+    table.cells = table.grid;
     arena_free(&scratch);
     array_push(&b->arena, &crowds->tables, table);
     return (uint32_t)crowds->tables.count - 1;

@@ -63,6 +63,7 @@ static void add_tables(Bench *bench, Stage *stage, uint32_t rows)
                 boxes[r].axis[k] = (Range){at, at + 0.1};
             }
         grid_build(&table.grid, boxes, rows, 0, 0, 1, &bench->arena, &bench->arena);
+        table.cells = table.grid;
         array_push(&bench->arena, &stage->crowds->tables, table);
     }
     Graph     *graph                  = (Graph *)(uintptr_t)stage->scene->graph;

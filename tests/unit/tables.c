@@ -32,6 +32,7 @@ static void make_table(Bench *bench, Crowd *table, uint32_t rows, uint32_t colum
     for (uint32_t i = 0; i < rows * columns; i++)
         table->numbers[i] = random_between(&bench->random, -1e3, 1e3);
     grid_build(&table->grid, boxes, rows, 0.1, 0, 1, &bench->arena, &bench->arena);
+    table->cells = table->grid;
 }
 
 typedef struct Packed {
@@ -100,7 +101,7 @@ static void grids_are_read_back(void **state)
     Packed packed = pack(*state);
     size_t next   = 8 * TABLES;
     for (int t = 0; t < TABLES; t++) {
-        const Grid *grid       = &packed.crowds.tables.items[t].grid;
+        const Grid *grid       = &packed.crowds.tables.items[t].cells;
         uint32_t(*header)[2]   = packed.cells + 8 * t;
         const uint32_t cells[] = {header[2][0], header[2][1], header[3][0]};
         uint32_t       first   = header[3][1];
@@ -126,7 +127,7 @@ static void places_of_grids_are_read_back(void **state)
 {
     Packed packed = pack(*state);
     for (int t = 0; t < TABLES; t++) {
-        const Grid *grid     = &packed.crowds.tables.items[t].grid;
+        const Grid *grid     = &packed.crowds.tables.items[t].cells;
         uint32_t(*header)[2] = packed.cells + 8 * t;
         const float low[]    = {float_of(header[0][0]), float_of(header[0][1]),
                                 float_of(header[1][0])};

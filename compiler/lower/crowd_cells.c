@@ -1,0 +1,114 @@
+/*
+ * crowd_cells.c: the grid of a crowd.  That of a blend is refined where the distances of its members depend
+ * on nothing but their numbers, and those are known.
+ */
+#include <math.h>
+
+#include "compiler/graph/grid_refine.h"
+#include "compiler/lower/crowd_group.h"
+#include "compiler/lower/join.h"
+
+/* The distance of a member with a parameter for each column, behind all others. */
+typedef struct MemberDistance {
+    Tape     tape;
+    Node     root;
+    uint32_t first; /* parameter */
+} MemberDistance;
+
+/* Whether nothing on the tape changes with the frame, or is another crowd or a texture. */
+static bool is_of_columns(const Graph *g, const MemberDistance *distance)
+{
+    for (size_t i = 0; i < distance->tape.count; i++) {
+        const Expr *e = &g->items[distance->tape.nodes[i]];
+        if ((e->op == OP_PARAMETER && e->index < distance->first) ||
+            op_promises((Op)e->op, READS_TABLES))
+            return false;
+    }
+    return true;
+}
+
+static MemberDistance distance_of_columns(const CrowdGroup *group, const GroupJoin *join)
+{
+    Graph         *g                  = join->graph;
+    MemberDistance distance           = {.first = (uint32_t)g->parameters.count};
+    bool           wanted[PART_ROOTS] = {[PART_DISTANCE] = true};
+    Node           roots[PART_ROOTS];
+    Node          *slots = arena_new_array(join->scratch, Node, group->template->slot_count + 1);
+    LeafPair       point = {join->leaves.point, graph_leaf(g, OP_POINT)};
+    group_slots_of_parameters(group, g, distance.first, slots);
+    template_copy(g, group->template, slots, &point, 1, wanted, roots, join->scratch);
+    distance.root = roots[PART_DISTANCE];
+    distance.tape = tape_new(g, &distance.root, 1, join->scratch);
+    return distance;
+}
+
+/* What the lanes need of each member. */
+static double *scalars_of(const MemberDistance *distance, const LaneTape *lanes, const Crowd *table,
+                          Arena *scratch)
+{
+    const size_t count      = lanes->scalar_count;
+    NodeValue   *parameters = arena_new_array(scratch, NodeValue,
+                                              distance->first + table->columns + 1);
+    NodeValue   *values     = arena_new_array(scratch, NodeValue, distance->tape.graph->count);
+    double      *scalars    = arena_new_array(scratch, double, count * table->rows + 1);
+    for (uint32_t i = 0; i < table->rows; i++) {
+        for (uint32_t k = 0; k < table->columns; k++)
+            parameters[distance->first + k].v[0] = table->numbers[(size_t)i * table->columns + k];
+        tape_run_frame(&distance->tape, parameters, values);
+        lane_tape_scalars(lanes, values, scalars + i * count);
+    }
+    return scalars;
+}
+
+/* Whether a blend's running value has the slope of its operands, and what is far from it does not act. */
+static bool may_refine(const CrowdGroup *group, const GroupJoin *join, const GridBlend *blend,
+                       const Crowd *table)
+{
+    return blend_info[join->blend.kind].slope == 1 && isfinite(blend->acts) && blend->width > 0 &&
+           isfinite(group->slope) && !join->complement && !table->frame_columns;
+}
+
+/* The grid is made and refined for what `blend` has already. */
+static bool refine(const CrowdGroup *group, const GroupJoin *join, const Box *boxes, double reach,
+                   GridBlend *blend, Crowd *table)
+{
+    Arena         *scratch  = join->scratch;
+    MemberDistance distance = distance_of_columns(group, join);
+    if (!is_of_columns(join->graph, &distance) ||
+        !grid_build_coarse(&table->grid, boxes, table->rows, reach, blend->margin, table->arena,
+                           scratch))
+        return false;
+    LaneTape lanes = lane_tape_new(&distance.tape, &distance.root, 1, false, 0, scratch);
+    blend->tape    = &lanes;
+    blend->scalars = scalars_of(&distance, &lanes, table, scratch);
+    grid_refine(&table->cells, &table->grid, blend, table->arena, scratch);
+    return true;
+}
+
+static bool make_refined(const CrowdGroup *group, const GroupJoin *join, const Box *boxes,
+                         double reach, double margin, Crowd *table)
+{
+    const Blend *of    = &join->blend;
+    GridBlend    blend = {.slope = group->slope, .reach = reach / table->stretch, .margin = margin};
+    if (of->width == NODE_NONE || !graph_known_component(join->graph, of->width, 0, &blend.width))
+        return false;
+    blend.op   = blend_info[of->kind].op;
+    blend.acts = blend.width * blend_acts(of->kind, table->rows);
+    if (!may_refine(group, join, &blend, table))
+        return false;
+    GraphMark mark    = graph_mark(join->graph);
+    bool      refined = refine(group, join, boxes, reach, &blend, table);
+    graph_release(join->graph, mark);
+    return refined;
+}
+
+void group_make_cells(const CrowdGroup *group, const GroupJoin *join, const Box *boxes,
+                      double reach, double margin, Crowd *table)
+{
+    size_t texels = row_texels(table);
+    if (make_refined(group, join, boxes, reach, margin, table))
+        return;
+    grid_build(&table->grid, boxes, table->rows, reach, margin, texels > 0 ? (uint32_t)texels : 1,
+               table->arena, join->scratch);
+    table->cells = table->grid;
+}
