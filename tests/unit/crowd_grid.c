@@ -1,5 +1,5 @@
 /*
- * crowd_grid.c: compiler/graph/grid.c lists all boxes that are near.  The oracle measures the
+ * crowd_grid.c: compiler/graph/grid_build.c lists all boxes that are near.  The oracle measures the
  * distance to each box.
  */
 #include <math.h>

@@ -1,5 +1,5 @@
 /*
- * grid.c: a grid of cubic cells over boxes, in time that is linear in boxes, cells and list entries.
+ * grid_build.c: a grid of cubic cells over boxes, in time that is linear in boxes, cells and list entries.
  * Each processor fills a slab of cells along z; lists do not depend on how many there are.
  *
  * Cells are as small as their number and the length of all lists together allow.  The distance from
