@@ -124,14 +124,6 @@ uint32_t value_numbers(Value value, double numbers[4])
     return (uint32_t)value.list->count;
 }
 
-static bool any_authored(const List *list)
-{
-    for (size_t i = 0; i < list->count; i++)
-        if (list->items[i].number_id)
-            return true;
-    return false;
-}
-
 Node value_node(Elaboration *e, Value value)
 {
     Graph *g = e->graph;
@@ -146,7 +138,7 @@ Node value_node(Elaboration *e, Value value)
     }
     double   numbers[4];
     uint32_t length = value_numbers(value, numbers);
-    if (length && !any_authored(value.list))
+    if (length && !value_is_authored(value))
         return graph_constant(g, (GraphType)length, numbers);
     length = vector_length(e, value);
     if (!length)
@@ -156,21 +148,6 @@ Node value_node(Elaboration *e, Value value)
     for (uint32_t i = 0; i < length; i++)
         elements[i] = value_node(e, value.list->items[i]);
     return graph_op(g, build[length], elements);
-}
-
-Value value_authored(Elaboration *e, Value value)
-{
-    if (e->hoists && value.type == VALUE_NUMBER)
-        value.number_id = ++e->number_count;
-    return value;
-}
-
-Value value_from(Elaboration *e, Value value, const Value *arguments, uint32_t count)
-{
-    bool authored = false;
-    for (uint32_t i = 0; i < count; i++)
-        authored = authored || (arguments[i].type == VALUE_NUMBER && arguments[i].number_id);
-    return authored ? value_authored(e, value) : value;
 }
 
 BindingTime value_time(const Elaboration *e, Value value)
@@ -205,28 +182,12 @@ static Value map_elements(Elaboration *e, Op op, const Value *arguments, uint32_
     return value_list(e, items, length);
 }
 
-/* The common case, which makes no node: an operation on numbers that are known now, though the author
-   may change them.  False: some are not, or the result is not finite. */
-static bool fold_op(Op op, const Value *arguments, uint32_t count, double *result)
-{
-    GraphType types[MAX_OPERANDS]    = {0};
-    NodeValue operands[MAX_OPERANDS] = {0};
-    for (uint32_t i = 0; i < count; i++) {
-        if (arguments[i].type != VALUE_NUMBER)
-            return false;
-        types[i]         = TYPE_FLOAT;
-        operands[i].v[0] = arguments[i].number + 0.0; /* -0 and 0 are one constant */
-    }
-    *result = op_evaluate(op, TYPE_FLOAT, 0, types, operands).v[0];
-    return isfinite(*result);
-}
-
 Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count,
                    const Syntax *origin)
 {
     double number;
     if (fold_op(op, arguments, count, &number))
-        return value_from(e, value_number(number), arguments, count);
+        return value_from(e, value_number(number), op, arguments, count);
     uint32_t length = 0;
     bool     whole  = false; /* some operand is a vector known only as a node */
     for (uint32_t i = 0; i < count; i++) {
@@ -252,7 +213,7 @@ Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count
     if (constant && e->graph->items[result].op != OP_CONSTANT)
         return not_finite(e, origin, op == OP_div || op == OP_mod);
     Value value = value_of_node(e, result);
-    return known ? value_from(e, value, arguments, count) : value;
+    return known ? value_from(e, value, op, arguments, count) : value;
 }
 
 /* The common case, and the one that loops run through: numbers known now. */
@@ -272,11 +233,14 @@ static bool fold_numbers(TokenKind op, double a, double b, double *result)
 
 static Value arithmetic(Elaboration *e, const Syntax *syntax, Value a, Value b)
 {
+    static const Op ops[TOKEN_KIND_COUNT] = {
+        [TOKEN_PLUS] = OP_add,  [TOKEN_MINUS] = OP_sub,   [TOKEN_STAR] = OP_mul,
+        [TOKEN_SLASH] = OP_div, [TOKEN_PERCENT] = OP_mod, [TOKEN_CARET] = OP_pow};
     double result;
     if (a.type == VALUE_NUMBER && b.type == VALUE_NUMBER &&
         fold_numbers(syntax->op, a.number, b.number, &result)) {
         if (isfinite(result))
-            return value_from(e, value_number(result), (Value[]){a, b}, 2);
+            return value_from(e, value_number(result), ops[syntax->op], (Value[]){a, b}, 2);
         bool by_zero = (syntax->op == TOKEN_SLASH || syntax->op == TOKEN_PERCENT) && b.number == 0;
         return not_finite(e, syntax, by_zero);
     }
@@ -290,9 +254,6 @@ static Value arithmetic(Elaboration *e, const Syntax *syntax, Value a, Value b)
                        diag_text(e->diags, "this has %u elements", m));
         return value_error();
     }
-    static const Op ops[TOKEN_KIND_COUNT] = {
-        [TOKEN_PLUS] = OP_add,  [TOKEN_MINUS] = OP_sub,   [TOKEN_STAR] = OP_mul,
-        [TOKEN_SLASH] = OP_div, [TOKEN_PERCENT] = OP_mod, [TOKEN_CARET] = OP_pow};
     if (syntax->op == TOKEN_CARET && b.type == VALUE_NUMBER && a.type == VALUE_EXPRESSION) {
         e->graph->here = syntax->span;
         Node exponent  = graph_number(e->graph, b.number);
@@ -458,7 +419,7 @@ Value value_unary(Elaboration *e, const Syntax *syntax, Value a)
     if (syntax->op == TOKEN_NOT && is_truth(e, a))
         return value_of_node(e, graph_op1(e->graph, OP_not, value_node(e, a)));
     if (syntax->op == TOKEN_MINUS && a.type == VALUE_NUMBER)
-        return value_from(e, value_number(-a.number), &a, 1);
+        return value_from(e, value_number(-a.number), OP_neg, &a, 1);
     if (syntax->op == TOKEN_MINUS && is_numeric(e, a))
         return value_map_op(e, OP_neg, &a, 1, syntax);
     Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span, "`%s` does not go with %s",

@@ -14,6 +14,10 @@ static Value vector_op(Elaboration *e, Call *call, Op op, uint32_t arity)
 {
     Node      nodes[2];
     GraphType types[2];
+    Value     result;
+    if (fold_vectors(e, op, (Value[]){call->arguments[0].value, call->arguments[1].value}, arity,
+                     &result))
+        return result;
     for (uint32_t i = 0; i < arity; i++) {
         nodes[i] = want_numeric(e, call, i);
         if (nodes[i] == NODE_NONE)
@@ -44,6 +48,9 @@ static Value builtin_distance(Elaboration *e, Call *call)
     Value offset = vector_op(e, call, OP_sub, 2);
     if (offset.type == VALUE_ERROR)
         return offset;
+    Value result;
+    if (fold_vectors(e, OP_length, &offset, 1, &result))
+        return result;
     return value_of_node(e, graph_op1(e->graph, OP_length, value_node(e, offset)));
 }
 

@@ -107,12 +107,13 @@ struct Elaboration {
     BuiltinName   builtins[MOST_BUILTIN_NAMES]; /* names looked up so far, by their addresses */
     bool     studio; /* a scene without lights and sky gets those of the library, and a floor */
     bool     hoists; /* numbers of the scene's own text are not those of the shaders' text */
-    uint32_t number_count; /* of such numbers so far */
-    uint64_t steps;        /* of evaluation, so far */
-    uint32_t printed;      /* notes by `print`, so far */
-    uint32_t depth, calls; /* how deep expressions and calls are nested now */
-    Node     rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
-    bool     in_material;  /* level, instance, u, v and normal have a meaning */
+    uint32_t number_count;            /* of such numbers so far */
+    struct Derivations *derivations;  /* which of them were computed from others: fold.c */
+    uint64_t            steps;        /* of evaluation, so far */
+    uint32_t            printed;      /* notes by `print`, so far */
+    uint32_t            depth, calls; /* how deep expressions and calls are nested now */
+    Node                rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
+    bool                in_material;  /* level, instance, u, v and normal have a meaning */
 };
 
 /* What a shape knows of the declaration that made it. */
@@ -170,17 +171,28 @@ void evaluation_forget(Elaboration *e, EvaluationMark mark, Value *result);
 /* The names that `inner` adds to `outer`, so that they stay. */
 Environment keep_names(Elaboration *e, const Environment *inner, const Environment *outer);
 
+/* ---- fold.c ---- */
+/* A number that the author of the scene may change without another program: it gets an identity, by
+   the order of evaluation, if shaders are to be apart from such numbers. */
+Value value_authored(Elaboration *e, Value value);
+/* A number that an operation on others gives: the author may change it if one of them.  The same
+   operation on the same numbers gives the same number. */
+Value value_from(Elaboration *e, Value value, Op op, const Value *arguments, uint32_t count);
+/* Whether it is such a number, or a list of some. */
+bool value_is_authored(Value value);
+/* The common case, which makes no node: an operation on numbers that are known now, though the author
+   may change them.  False: some are not, or the result is not finite. */
+bool fold_op(Op op, const Value *arguments, uint32_t count, double *result);
+/* The same of vectors and numbers, of which the author may change some.  Of others nodes are
+   constants, which are folded where they are made. */
+bool fold_vectors(Elaboration *e, Op op, const Value *arguments, uint32_t count, Value *result);
+
 /* ---- arithmetic.c ---- */
 /* The operator `syntax->op` on values; types that it does not go with are reported. */
 Value value_unary(Elaboration *e, const Syntax *syntax, Value a);
 Value value_binary(Elaboration *e, const Syntax *syntax, Value a, Value b);
 /* `if` on a condition that is a node: both branches are there, one is chosen. */
 Value value_select(Elaboration *e, const Syntax *syntax, Value condition, Value yes, Value no);
-/* A number that the author of the scene may change without another program: it gets an identity, by
-   the order of evaluation, if shaders are to be apart from such numbers. */
-Value value_authored(Elaboration *e, Value value);
-/* A number found from others: the author may change it if one of them. */
-Value value_from(Elaboration *e, Value value, const Value *arguments, uint32_t count);
 /* An operation that works element by element, on numbers and vectors whose types go together
    (graph_op_type); `origin` is blamed for results that are not finite. */
 Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count,

@@ -9,6 +9,7 @@
 #ifndef KRS_GRAPH_H
 #define KRS_GRAPH_H
 
+#include "compiler/base/near_slots.h"
 #include "compiler/base/source.h"
 #include "compiler/base/text.h"
 
@@ -74,11 +75,6 @@ typedef struct GraphParameter {
     double low[4], high[4];
 } GraphParameter;
 
-/* Of the hash table of nodes: a look at the hash is cheaper than one at the node. */
-typedef struct GraphSlot {
-    uint32_t hash, number; /* node + 1; 0 is free */
-} GraphSlot;
-
 /* Facts of nodes that depend neither on the point nor on parameters, as far as somebody has asked
    (facts.c). */
 typedef struct FrameFacts {
@@ -92,8 +88,7 @@ typedef struct Graph {
     Expr       *items;
     size_t      count, capacity;
     Expr       *older; /* the array before `items` */
-    GraphSlot  *slots;
-    size_t      slot_count;
+    NearSlots   slots; /* nodes by their expressions */
     struct {
         GraphParameter *items;
         size_t          count, capacity;

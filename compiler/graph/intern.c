@@ -36,31 +36,42 @@ static uint32_t expr_hash(const Expr *e)
     return (uint32_t)(hash >> 16);
 }
 
-/* The slot of an equal node, or the empty one where it belongs. */
-static GraphSlot *slot_find(const Graph *graph, const Expr *e, uint32_t hash)
+/* Beside which node it is looked for: its latest operand.  Leaves have none. */
+static uint32_t near_of(const Expr *e, uint32_t hash)
 {
-    size_t slot = hash & (graph->slot_count - 1);
-    for (;; slot = (slot + 1) & (graph->slot_count - 1)) {
-        GraphSlot *at = &graph->slots[slot];
+    uint32_t near = e->op == OP_HOISTED ? e->index : hash;
+    for (int i = 0; i < e->operand_count; i++)
+        near = i == 0 || e->operands[i] > near ? e->operands[i] : near;
+    return near;
+}
+
+/* The slot of an equal node, or the empty one where it belongs. */
+static NearSlot *slot_find(const Graph *graph, const Expr *e, uint32_t hash)
+{
+    const uint32_t near = near_of(e, hash);
+    for (size_t steps = 0;; steps++) {
+        NearSlot *at = near_slot(&graph->slots, near, hash, steps);
         if (!at->number || (at->hash == hash && expr_equal(&graph->items[at->number - 1], e)))
             return at;
     }
 }
 
+/* Of a node that is not in the table. */
+static void slot_take(Graph *graph, Node node, uint32_t hash)
+{
+    const uint32_t near                        = near_of(&graph->items[node], hash);
+    *near_slot_free(&graph->slots, near, hash) = (NearSlot){hash, node + 1};
+}
+
 static void slots_grow(Graph *graph)
 {
-    GraphSlot *old    = graph->slots;
-    size_t     count  = graph->slot_count;
-    graph->slot_count = count ? 2 * count : 64;
-    graph->slots      = arena_new_array(graph->arena, GraphSlot, graph->slot_count);
-    for (size_t i = 0; i < count; i++) {
-        size_t slot = old[i].hash & (graph->slot_count - 1);
-        while (old[i].number && graph->slots[slot].number)
-            slot = (slot + 1) & (graph->slot_count - 1);
-        if (old[i].number)
-            graph->slots[slot] = old[i];
-    }
-    arena_release(graph->arena, old, count * sizeof *old);
+    const NearSlots old = graph->slots;
+    graph->slots.count  = old.count ? 2 * old.count : LEAST_SLOTS;
+    graph->slots.items  = arena_new_array(graph->arena, NearSlot, graph->slots.count);
+    for (size_t i = 0; i < old.count; i++)
+        if (old.items[i].number)
+            slot_take(graph, old.items[i].number - 1, old.items[i].hash);
+    arena_release(graph->arena, old.items, old.count * sizeof *old.items);
 }
 
 void graph_drop_older(Graph *graph)
@@ -82,18 +93,18 @@ static void add_item(Graph *graph, Expr e)
 
 Node node_intern(Graph *graph, Expr e)
 {
-    if (2 * (graph->count + 1) > graph->slot_count)
+    if (2 * (graph->count + 1) > graph->slots.count)
         slots_grow(graph);
     for (int i = e.operand_count; i < MAX_OPERANDS; i++)
         e.operands[i] = NODE_NONE;
     for (int i = 0; i < 4; i++)
         e.number[i] += 0.0; /* -0 and 0 are one constant */
-    uint32_t   hash = expr_hash(&e);
-    GraphSlot *slot = slot_find(graph, &e, hash);
+    uint32_t  hash = expr_hash(&e);
+    NearSlot *slot = slot_find(graph, &e, hash);
     if (!slot->number) {
         e.span = graph->here;
         add_item(graph, e);
-        *slot = (GraphSlot){hash, (uint32_t)graph->count};
+        *slot = (NearSlot){hash, (uint32_t)graph->count};
     }
     Node node = slot->number - 1;
     if (!graph->items[node].span.source && graph->here.source) { /* the compiler's own until now */
@@ -107,7 +118,7 @@ Node node_intern(Graph *graph, Expr e)
 GraphMark graph_mark(Graph *graph)
 {
     graph->marks++;
-    return (GraphMark){graph->count, graph->slot_count, graph->respanned.count};
+    return (GraphMark){graph->count, graph->slots.count, graph->respanned.count};
 }
 
 /* Numbers of nodes that are dropped are given to others. */
@@ -125,11 +136,9 @@ void graph_keep(Graph *graph)
 
 static void slots_fill(Graph *graph)
 {
-    memset(graph->slots, 0, graph->slot_count * sizeof *graph->slots);
-    for (size_t i = 0; i < graph->count; i++) {
-        uint32_t hash                             = expr_hash(&graph->items[i]);
-        *slot_find(graph, &graph->items[i], hash) = (GraphSlot){hash, (uint32_t)i + 1};
-    }
+    memset(graph->slots.items, 0, graph->slots.count * sizeof *graph->slots.items);
+    for (size_t i = 0; i < graph->count; i++)
+        slot_take(graph, (Node)i, expr_hash(&graph->items[i]));
 }
 
 /* Slots are freed in the reverse order in which they were taken, so that none was passed over by a
@@ -139,14 +148,14 @@ void graph_release(Graph *graph, GraphMark mark)
     for (size_t i = graph->respanned.count; i-- > mark.respanned;)
         graph->items[graph->respanned.items[i]].span = (Span){0};
     graph->respanned.count = mark.respanned;
-    if (graph->slot_count == mark.slot_count)
+    if (graph->slots.count == mark.slot_count)
         for (size_t i = graph->count; i-- > mark.count;) {
             const Expr *e                      = &graph->items[i];
-            *slot_find(graph, e, expr_hash(e)) = (GraphSlot){0};
+            *slot_find(graph, e, expr_hash(e)) = (NearSlot){0};
         }
     graph->count = mark.count;
     facts_forget(graph->frame_facts, mark.count);
-    if (graph->slot_count != mark.slot_count)
+    if (graph->slots.count != mark.slot_count)
         slots_fill(graph);
     graph_keep(graph);
 }

@@ -232,6 +232,36 @@ static void examples_are_the_same(void **state)
     assert_in_range(tally.literal_same, 0, tally.literal_edits / 2);
 }
 
+/* ---- Vectors ---- */
+
+/* Functions of vectors that are known give numbers that are known, as those of literals do, and may
+   count.  The same function of the same vector is one number of the kernels. */
+static void vectors_are_known(void **state)
+{
+    static const char counted[] =
+        "let n = floor(length([3, 4])); let m = floor(dot([1, 2], [3, 1])"
+        "  - distance([1, 1], [1, 3]) - cross([1, 0, 0], [0, 1, 0])[2]"
+        "  + normalize([2, 0, 0])[0]);"
+        "show union([sphere(0.4).move([i, k, 0]) for i in 0..n for k in 0..m]);";
+    static const char once[]  = "let a = [0.3, 0.4]; let r = length(a) + 1;"
+                                "show sphere(r) & box([r, 2 * r, 2 * r]);";
+    static const char twice[] = "let a = [0.3, 0.4]; def r() = length(a) + 1;"
+                                "show sphere(r()) & box([r(), 2 * r(), 2 * r()]);";
+    (void)state;
+    KrsScene *literal = compile(counted, "a.krs", KRS_SPECIALIZE_NUMBERS);
+    KrsScene *scene   = compile(counted, "a.krs", KRS_SPECIALIZE_STRUCTURE);
+    assert_non_null(literal);
+    assert_non_null(scene);
+    assert_true(difference(literal, scene) < 1e-9);
+    krs_scene_free(literal);
+    krs_scene_free(scene);
+    KrsScene *one = compile(once, "a.krs", KRS_SPECIALIZE_STRUCTURE);
+    KrsScene *two = compile(twice, "a.krs", KRS_SPECIALIZE_STRUCTURE);
+    assert_int_equal(krs_value_slots(one), krs_value_slots(two));
+    krs_scene_free(one);
+    krs_scene_free(two);
+}
+
 /* ---- Pictures ---- */
 
 /* What changes nothing but numbers: sizes, places, turns, colours, blends, sequences. */
@@ -313,6 +343,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(examples_are_the_same),
+        cmocka_unit_test(vectors_are_known),
         cmocka_unit_test(pictures_are_the_same),
     };
     return cmocka_run_group_tests(tests, renderer_open, renderer_close);
