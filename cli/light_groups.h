@@ -15,10 +15,9 @@ typedef struct LightGroups {
     float          *values; /* for free() */
 } LightGroups;
 
-/* Renders what each light makes of a picture, which `how` has made of the frame.  On any status but
-   KRS_OK there are no groups; the renderer tells why. */
-KrsStatus light_groups_render(Arena *arena, KrsRendering *rendering, KrsFrame *frame,
-                              const KrsScene *scene, const KrsRenderOptions *how,
-                              const KrsPicture *picture, LightGroups *groups);
+/* Makes them of a picture with the light of lights; else there is the rest alone.
+   KRS_OUT_OF_MEMORY. */
+KrsStatus light_groups_make(Arena *arena, const KrsScene *scene, const KrsPicture *picture,
+                            LightGroups *groups);
 
 #endif

@@ -137,11 +137,14 @@ static KrsStatus choose_how(Render *render)
     how->seed          = options->seed;
     how->frame_seconds = 1 / options->fps;
     how->planes = picture_planes(options, exr) & (noise ? UINT32_MAX : known_planes(options));
+    if (options->light_groups && how->planes & KRS_PLANE_NOISE)
+        return say_usage(options, "--light-groups have no estimate of their noise");
     if (!isnan(options->exposure))
         how->noise_floor = KRS_DEFAULT_NOISE_FLOOR * exp2(-options->exposure);
-    how->integrator = find_integrator(how->integrator, view.image.integrator);
-    how->progress   = show_progress;
-    how->user       = render;
+    how->light_groups = options->light_groups;
+    how->integrator   = find_integrator(how->integrator, view.image.integrator);
+    how->progress     = show_progress;
+    how->user         = render;
     return KRS_OK;
 }
 
@@ -153,13 +156,11 @@ static void show_stats(Render *render, const KrsRenderStats *stats, uint32_t fra
     render_stats_show(options, render->rendering, krs_scene_program(render->scene), stats, frame);
 }
 
-static KrsStatus render_groups(Render *render, const KrsPicture *picture, LightGroups *groups)
+static KrsStatus make_groups(Render *render, const KrsPicture *picture, LightGroups *groups)
 {
-    KrsStatus status = light_groups_render(render->options->arena, render->rendering, render->frame,
-                                           render->scene, &render->how, picture, groups);
-    if (status != KRS_OK && status != KRS_INTERRUPTED)
-        say("%s", status == KRS_OUT_OF_MEMORY ? "out of memory for the groups of lights"
-                                              : krs_renderer_message(render->renderer));
+    KrsStatus status = light_groups_make(render->options->arena, render->scene, picture, groups);
+    if (status != KRS_OK)
+        say("%s", "out of memory for the groups of lights");
     return status;
 }
 
@@ -183,7 +184,7 @@ static KrsStatus write_outputs(Render *render, const KrsPicture *picture, double
     if (options->raw && status == KRS_OK)
         status = picture_write_raw(picture, &notes.display);
     if (options->light_groups && status == KRS_OK)
-        status = render_groups(render, picture, &notes.groups);
+        status = make_groups(render, picture, &notes.groups);
     for (size_t i = 0; i < render->output_count && status == KRS_OK; i++)
         status = picture_write(options, picture, &notes,
                                frame_path(options, render->outputs[i], frame));

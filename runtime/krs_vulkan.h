@@ -255,6 +255,7 @@ typedef enum KrsEye { KRS_EYE_OF_BOTH, KRS_EYE_ON_LEFT, KRS_EYE_ON_RIGHT } KrsEy
 #define KRS_MOST_BOUNCES          1000
 #define KRS_MOST_EVEN_HITS        16
 #define KRS_NO_LIGHT              UINT32_MAX
+#define KRS_MOST_LIGHT_GROUPS     240
 
 /* Zero asks for the defaults. */
 typedef struct KrsRenderOptions {
@@ -280,7 +281,8 @@ typedef struct KrsRenderOptions {
     /* 0: all light.  A number from 1 on: that light alone, without sky and fog's color; KRS_NO_LIGHT: none.
        What things emit is there in any case.  So pictures of lights, less the one without, add up. */
     uint32_t light;
-    bool     mattes; /* count what the rays of each pixel hit: KrsPicture.mattes */
+    bool     light_groups; /* makes KrsPicture.lights; neither with most_radiance nor with noise */
+    bool     mattes;       /* count what the rays of each pixel hit: KrsPicture.mattes */
     /* Of another renderer, a number and a colour for each pixel of the whole picture, from the top;
        NULL: none.  Rays end at the depths, which are as those of the depth plane; what is not a number
        is no limit.  What rays do not hit shows the plate: premultiplied light and alpha.  Both must
@@ -368,7 +370,9 @@ typedef struct KrsPicture {
     /* With KrsRenderOptions.mattes, KRS_MATTE_RANKS for each pixel, the most covered first; else
        NULL.  The share of a pixel that one covers is its rays / samples, or / pixel_samples where they differ. */
     KrsMatte *mattes[KRS_MATTE_COUNT];
-    uint32_t  samples; /* rays of each pixel, at most */
+    float (*lights)
+        [3]; /* with light_groups: of each light, pixel by pixel; the rest is sky, fog, emission */
+    uint32_t light_count, samples; /* of lights; of rays of each pixel, at most */
     /* Without a camera these change nothing.  For row vectors, v * M.  Camera space has x to the right, y up, z along the view axis.  NDC
        has x and y from -1 to 1; in perspective z goes from 0 at distance 0.001 to 1 at infinity.
        For a panorama NDC is camera space. */
@@ -393,9 +397,9 @@ void      krs_picture_free(KrsPicture *picture);
 KrsStatus krs_picture_to_srgb8(const KrsPicture *picture, const KrsScene *scene, double stops,
                                uint32_t channels, uint8_t *pixels);
 
-/* Two pictures of the same size and planes as one: the second to the right of the first, or below
-   it.  Its statistics are the sums.  It has no camera, so its matrices change nothing.  On KRS_OK
-   the caller owns *joined.  KRS_BAD_ARGUMENT: they differ, or have a crop; KRS_OUT_OF_MEMORY. */
+/* Two pictures of the same size and planes, without `lights`, as one: the second to the right of the
+   first, or below it.  Its statistics are the sums.  It has no camera, so its matrices change
+   nothing.  On KRS_OK the caller owns *joined.  KRS_BAD_ARGUMENT: they differ, or have a crop; KRS_OUT_OF_MEMORY. */
 KrsStatus krs_picture_join(const KrsPicture *first, const KrsPicture *second, bool below,
                            KrsPicture **joined);
 
@@ -414,15 +418,12 @@ KrsStatus krs_picture_join(const KrsPicture *first, const KrsPicture *second, bo
  */
 typedef struct KrsFilm KrsFilm;
 
-/* A film for pictures of a rendering's scene; `options` (which may be NULL) are checked and copied,
-   and hold for all of its samples.  On any status but KRS_OK *film is NULL: KRS_BAD_ARGUMENT,
-   KRS_OUT_OF_MEMORY. */
+/* A film of a rendering's scene; `options` (or NULL) are checked and copied, and hold for all of its
+   samples.  Where it fails *film is NULL: KRS_BAD_ARGUMENT, KRS_OUT_OF_MEMORY. */
 KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options, KrsFilm **film);
-void      krs_film_free(KrsFilm *film); /* before its rendering */
-/* Forgets all samples, as after the camera has moved. */
-void krs_film_clear(KrsFilm *film);
-/* Samples of each pixel so far. */
-uint32_t krs_film_samples(const KrsFilm *film);
+void      krs_film_free(KrsFilm *film);  /* before its rendering */
+void      krs_film_clear(KrsFilm *film); /* forgets all samples, as after the camera has moved */
+uint32_t  krs_film_samples(const KrsFilm *film); /* of each pixel so far */
 
 /* Adds samples of a frame, as seen by the camera, or by the one of the options where it is NULL.
    krs_frame_camera gives the scene's own to begin with.  KRS_BAD_ARGUMENT, KRS_OUT_OF_MEMORY,
@@ -442,9 +443,8 @@ typedef struct KrsRays {
     double farthest;
 } KrsRays;
 
-/* Adds a sample of each pixel by rays of a list; its depth is the distance along the ray.  It shows
-   what krs_film_add does of the same rays, but rays share no beams.  The first time it
-   compiles shaders. */
+/* Adds a sample of each pixel by rays of a list, which share no beams; its depth is the distance
+   along the ray.  The first time it compiles shaders. */
 KrsStatus krs_film_add_rays(KrsFilm *film, KrsFrame *frame, const KrsRays *rays);
 
 /* The mean of the samples so far, with planes of the options (bits; 0: all of these).  The film

@@ -13,6 +13,7 @@
 #include "runtime/integrators/integrators.h"
 #include "runtime/film/held.h"
 #include "runtime/film/inputs.h"
+#include "runtime/film/lights.h"
 #include "runtime/film/mattes.h"
 #include "runtime/film/noise.h"
 #include "runtime/film/picture.h"
@@ -41,7 +42,7 @@ static bool make_sums(KrsFilm *film)
         return false;
     if (noise)
         film->kept = gpu_alloc(gpu, held_kept(o), sizeof *film->kept, "make a film");
-    return film->kept || !noise;
+    return (film->kept || !noise) && lights_make(film);
 }
 
 KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options, KrsFilm **out)
@@ -59,6 +60,7 @@ KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options,
     KrsRenderOptions *o = &film->options;
     if (!settings_complete(rendering, o, &film->asked_schedule) || !make_sums(film)) {
         krs_picture_free(film->sums);
+        gpu_release(gpu, film->kept);
         gpu_release(gpu, film);
         return gpu->status;
     }
@@ -80,6 +82,7 @@ void krs_film_free(KrsFilm *film)
     release_band(film);
     krs_picture_free(film->sums);
     gpu_release(&film->rendering->renderer->gpu, film->kept);
+    gpu_release(&film->rendering->renderer->gpu, film->lights);
     gpu_release(&film->rendering->renderer->gpu, film);
 }
 
@@ -111,7 +114,7 @@ static bool follow_rendering(KrsFilm *film)
     krs_film_clear(film);
     film->options = options;
     film->updates = film->rendering->updates;
-    return true;
+    return lights_make(film);
 }
 
 /* ---- samples ---- */
@@ -196,6 +199,7 @@ static bool add_to_band(Job *job, const Plan *plan, const KrsFilm *film, uint32_
     *control = (ControlBlock){
         .projection    = job->rays ? LISTED : (uint32_t)job->view.camera.projection,
         .lights        = (uint32_t)job->view.light_count,
+        .apart         = film->lights != NULL,
         .seed          = (uint32_t)(job->options.seed ^ job->options.seed >> 32),
         .no_occlusion  = job->options.no_occlusion,
         .no_background = job->options.plate != NULL,
@@ -260,7 +264,7 @@ static bool make_room(Job *job, const Plan *plan, KrsFilm *film)
             return false;
         rendering->held = (HeldBand){0};
         film->rows      = band_allocate(rendering, &job->cover, plan->halo, plan->has_paths,
-                                        film->kept != NULL);
+                                        film->kept != NULL, film->light_count);
     }
     if (film->rows == 0 ||
         !rendering_set_lights(rendering, job->view.lights, job->view.light_count,
@@ -415,8 +419,8 @@ static uint64_t count_rays(const KrsFilm *film)
     return rays;
 }
 
-/* Turns the sums of a film into a picture with statistics. */
-static void finish(const KrsFilm *film, KrsPicture *picture)
+/* Turns the sums of a film into a picture with statistics; false with the failure noted. */
+static bool finish(const KrsFilm *film, KrsPicture *picture)
 {
     KrsRenderStats     *stats     = &picture->stats;
     const KrsRendering *rendering = film->rendering;
@@ -436,10 +440,13 @@ static void finish(const KrsFilm *film, KrsPicture *picture)
     stats->peak_memory_bytes += gpu->memory_peak;
     memcpy(stats->device, gpu->properties.deviceName, sizeof stats->device);
     picture->samples = film->samples;
+    if (!lights_finish(film, picture))
+        return false;
     picture_divide(picture, film->sums->pixel_samples, film->samples);
     noise_finish(picture);
     picture_compose(picture, film->options.depth, film->options.plate);
     mattes_sort(picture);
+    return true;
 }
 
 KrsStatus krs_film_read(KrsFilm *film, uint32_t planes, KrsPicture **picture)
@@ -456,10 +463,11 @@ KrsStatus krs_film_read(KrsFilm *film, uint32_t planes, KrsPicture **picture)
     }
     if (store_all(film))
         *picture = picture_copy(gpu, film->sums, wanted);
-    if (!*picture)
-        return gpu->status;
-    finish(film, *picture);
-    return KRS_OK;
+    if (*picture && !finish(film, *picture)) {
+        krs_picture_free(*picture);
+        *picture = NULL;
+    }
+    return *picture ? KRS_OK : gpu->status;
 }
 
 /* Renders by a film that is read once, so its sums become the picture without a copy. */
@@ -471,10 +479,9 @@ KrsStatus krs_render(KrsRendering *rendering, KrsFrame *frame, const KrsRenderOp
     *picture         = NULL;
     if (status == KRS_OK)
         status = krs_film_add(film, frame, NULL, film->options.samples);
-    if (status == KRS_OK && !store_all(film))
+    if (status == KRS_OK && !(store_all(film) && finish(film, film->sums)))
         status = rendering->renderer->gpu.status;
     if (status == KRS_OK) {
-        finish(film, film->sums);
         picture_drop(film->sums, ~film->options.planes);
         *picture   = film->sums;
         film->sums = NULL;

@@ -28,16 +28,25 @@ size_t held_kept(const KrsRenderOptions *options)
     return (size_t)KEPT_ROWS * cover.width * cover.height;
 }
 
-/* Records copies of rows of results from one buffer to another: those whose bit ROW_... is set in
-   `rows`. */
-static void record_copies(Gpu *gpu, const Buffer *from, const Buffer *to, uint32_t rows,
-                          VkDeviceSize row_bytes)
+/* The rows for the light of lights in the buffers.  They go along with the row of colours. */
+static uint32_t rows_of_lights(const HeldBand *held, uint32_t rows)
 {
-    VkBufferCopy copies[RESULT_ROWS];
+    return rows & 1u << ROW_COLORS ? held->film->light_count : 0;
+}
+
+/* Records copies of rows of results from one buffer to another: those whose bit ROW_... is set in
+   `rows`, and those of so many lights. */
+static void record_copies(Gpu *gpu, const Buffer *from, const Buffer *to, uint32_t rows,
+                          uint32_t lights, VkDeviceSize row_bytes)
+{
+    VkBufferCopy copies[RESULT_ROWS + 1];
     uint32_t     count = 0;
     for (VkDeviceSize row = 0; row < RESULT_ROWS; row++)
         if (rows >> row & 1)
             copies[count++] = (VkBufferCopy){row * row_bytes, row * row_bytes, row_bytes};
+    if (lights > 0)
+        copies[count++] = (VkBufferCopy){ROW_OF_LIGHTS * row_bytes, ROW_OF_LIGHTS * row_bytes,
+                                         lights * row_bytes};
     vkCmdCopyBuffer(gpu->commands, from->buffer, to->buffer, count, copies);
 }
 
@@ -56,7 +65,8 @@ static float *fetch(KrsRendering *rendering, uint32_t rows)
         return band->results.bytes;
     if (!gpu_begin(gpu))
         return NULL;
-    record_copies(gpu, &band->results, &band->fetched, rows, row_bytes_of(&rendering->held));
+    record_copies(gpu, &band->results, &band->fetched, rows, rows_of_lights(&rendering->held, rows),
+                  row_bytes_of(&rendering->held));
     return gpu_finish(gpu, &ms) ? band->fetched.bytes : NULL;
 }
 
@@ -73,6 +83,10 @@ static bool clear_results(KrsRendering *rendering, uint32_t rows, VkDeviceSize r
         if (rows >> row & 1)
             vkCmdFillBuffer(gpu->commands, rendering->band.results.buffer, row * row_bytes,
                             row_bytes, row == ROW_POSITIONS ? infinite : 0);
+    const uint32_t lights = rows_of_lights(&rendering->held, rows);
+    if (lights > 0)
+        vkCmdFillBuffer(gpu->commands, rendering->band.results.buffer, ROW_OF_LIGHTS * row_bytes,
+                        lights * row_bytes, 0);
     return gpu_finish(gpu, &ms);
 }
 
@@ -136,6 +150,18 @@ static void copy_kept(const KrsFilm *film, const HeldBand *held, float *results,
         }
 }
 
+/* Copies a row of pixels of the light of all lights from results to the film, or back. */
+static void copy_lights(const KrsFilm *film, float *results, size_t band, size_t in_band,
+                        size_t in_film, bool back)
+{
+    const KrsWindow *crop = &film->options.crop;
+    for (size_t light = 0; light < film->light_count; light++) {
+        float *numbers = results + ((ROW_OF_LIGHTS + light) * band + in_band) * RESULT_NUMBERS;
+        float *kept    = film->lights[light * crop->width * crop->height + in_film];
+        memcpy(back ? numbers : kept, back ? kept : numbers, crop->width * RESULT_BYTES);
+    }
+}
+
 bool held_store(KrsRendering *rendering)
 {
     HeldBand *held = &rendering->held;
@@ -155,6 +181,7 @@ bool held_store(KrsRendering *rendering)
             continue;
         picture_take(film->sums, planes, results + in_band * RESULT_NUMBERS, band, in_film,
                      film->options.crop.width);
+        copy_lights(film, results, band, in_band, in_film, false);
         if (held->has_planes)
             place_positions(film, results + (ROW_POSITIONS * band + in_band) * RESULT_NUMBERS,
                             in_film, film->options.crop.width);
@@ -197,11 +224,16 @@ static bool load_sums(const KrsFilm *film)
     for (size_t row = 0; row < RESULT_ROWS && !buffers->results.bytes; row++)
         if (rows_of_sums(film) >> row & 1)
             memset(results + row * band * RESULT_NUMBERS, 0, row_bytes_of(held));
+    if (!buffers->results.bytes)
+        memset(results + ROW_OF_LIGHTS * band * RESULT_NUMBERS, 0,
+               film->light_count * row_bytes_of(held));
     for (rows_of_held(film, held, &y, &end); y < end; y++) {
         size_t in_band, in_film;
-        if (find_row(film, held, y, &in_band, &in_film))
-            memcpy(results + in_band * RESULT_NUMBERS, film->sums->color + in_film * RESULT_NUMBERS,
-                   film->options.crop.width * RESULT_BYTES);
+        if (!find_row(film, held, y, &in_band, &in_film))
+            continue;
+        memcpy(results + in_band * RESULT_NUMBERS, film->sums->color + in_film * RESULT_NUMBERS,
+               film->options.crop.width * RESULT_BYTES);
+        copy_lights(film, results, band, in_band, in_film, true);
     }
     if (film->kept)
         copy_kept(film, held, results, true);
@@ -209,7 +241,7 @@ static bool load_sums(const KrsFilm *film)
         return true;
     if (!gpu_begin(gpu))
         return false;
-    record_copies(gpu, &buffers->fetched, &buffers->results, rows_of_sums(film),
+    record_copies(gpu, &buffers->fetched, &buffers->results, rows_of_sums(film), film->light_count,
                   row_bytes_of(held));
     return gpu_finish(gpu, &ms);
 }

@@ -14,9 +14,13 @@ struct KrsFilm {
     uint32_t         updates;        /* of its rendering that it has followed */
     KrsPicture      *sums;           /* colours are sums over the samples */
     float (*kept)[4];                /* see held_kept; NULL: no error is estimated */
-    uint32_t samples;                /* of each pixel so far, unless it has ended by noise */
-    uint32_t rows;                   /* of a band; 0: no band has been made */
-    double   rebase_origin[3];       /* positions of the first sample are relative to it */
+    /* Sums of the light of each light, where they are apart: all pixels of the crop for the first,
+       then for the next.  The sums of `sums` are those of the rest. */
+    float (*lights)[4];
+    uint32_t light_count;      /* 0: they are not apart */
+    uint32_t samples;          /* of each pixel so far, unless it has ended by noise */
+    uint32_t rows;             /* of a band; 0: no band has been made */
+    double   rebase_origin[3]; /* positions of the first sample are relative to it */
 };
 
 /* The crop of a film extended to whole tiles: the rays of a tile share a beam, and pixels of a tile go

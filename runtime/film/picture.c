@@ -211,7 +211,8 @@ static bool is_whole(const KrsPicture *picture)
 static bool can_join(const KrsPicture *a, const KrsPicture *b)
 {
     bool same = is_whole(a) && is_whole(b) && a->width == b->width && a->height == b->height &&
-                a->samples == b->samples && !a->mattes[0] == !b->mattes[0];
+                a->samples == b->samples && !a->mattes[0] == !b->mattes[0] && !a->lights &&
+                !b->lights;
     for (int i = 0; i < PLANE_COUNT; i++)
         same = same && !plane_get(a, i) == !plane_get(b, i);
     return same;
@@ -293,5 +294,6 @@ void krs_picture_free(KrsPicture *picture)
         gpu_release(&allocating, plane_get(picture, i));
     for (int kind = 0; kind < KRS_MATTE_COUNT; kind++)
         gpu_release(&allocating, picture->mattes[kind]);
+    gpu_release(&allocating, picture->lights);
     gpu_release(&allocating, picture);
 }

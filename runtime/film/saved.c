@@ -2,11 +2,12 @@
  * saved.c: a film as bytes, for a later process.
  *
  * They are what the film has in host memory, in the order of the machine: a header, the planes, the
- * mattes, and what is kept for the estimate of errors.
+ * mattes, the light of each light, and what is kept for the estimate of errors.
  */
 #include <string.h>
 
 #include "runtime/film/held.h"
+#include "runtime/film/lights.h"
 #include "runtime/film/noise.h"
 #include "runtime/film/picture.h"
 #include "runtime/tracer/renderer.h"
@@ -29,7 +30,7 @@ static bool pass(const Way *way, void *bytes, size_t size)
 typedef struct Header {
     char      magic[8];
     char      version[16];
-    uint64_t  kept; /* numbers of four members */
+    uint64_t  kept, lights; /* numbers of four members */
     double    rebase_origin[3];
     float     world_to_camera[4][4], world_to_ndc[4][4];
     double    phase_ms[KRS_PHASE_COUNT], wall_ms;
@@ -47,6 +48,7 @@ static Header describe(const KrsFilm *film)
     Header            header = {.magic   = "krsfilm",
                                 .version = KRS_VERSION,
                                 .kept    = film->kept ? held_kept(&film->options) : 0,
+                                .lights  = lights_numbers(film),
                                 .window  = sums->window,
                                 .width   = sums->width,
                                 .height  = sums->height,
@@ -94,7 +96,7 @@ static bool fits(const KrsFilm *film, const Header *header)
     const Header own = describe(film);
     return memcmp(own.magic, header->magic, sizeof own.magic) == 0 &&
            memcmp(own.version, header->version, sizeof own.version) == 0 &&
-           own.kept == header->kept &&
+           own.kept == header->kept && own.lights == header->lights &&
            memcmp(&own.window, &header->window, sizeof own.window) == 0 &&
            own.width == header->width && own.height == header->height &&
            own.planes == header->planes && own.mattes == header->mattes && header->samples > 0 &&
@@ -115,7 +117,8 @@ static bool pass_arrays(const KrsFilm *film, const Way *way)
         if (sums->mattes[kind] &&
             !pass(way, sums->mattes[kind], pixels * KRS_MATTE_RANKS * sizeof(KrsMatte)))
             return false;
-    return !film->kept || pass(way, film->kept, held_kept(&film->options) * sizeof *film->kept);
+    return pass(way, film->lights, lights_numbers(film) * sizeof *film->lights) &&
+           (!film->kept || pass(way, film->kept, held_kept(&film->options) * sizeof *film->kept));
 }
 
 KrsStatus krs_film_save(KrsFilm *film, KrsWriteCallback *write, void *user)

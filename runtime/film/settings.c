@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "runtime/film/noise.h"
 #include "runtime/tracer/methods.h"
 
 #define MOST_STEPS 16384
@@ -116,6 +117,10 @@ static bool check(KrsRendering *rendering, const KrsRenderOptions *o)
         return refuse(rendering, "the permitted error must be above 0 and at most 1000 pixels");
     if (!(o->noise >= 0) || !(o->noise_floor > 0))
         return refuse(rendering, "noise at which samples end, and its floor, must be above 0");
+    if (o->light_groups && (o->most_radiance > 0 || noise_is_wanted(o)))
+        return refuse(rendering, "what is clamped, or ends by noise, has no groups of lights");
+    if (o->light_groups && krs_light_count(rendering->scene) > KRS_MOST_LIGHT_GROUPS)
+        return refuse(rendering, "there are groups for at most 240 lights");
     if (!(o->most_radiance >= 0))
         return refuse(rendering, "the most radiance of a ray must be above 0");
     if (!(o->slice_ms > 0) || o->most_steps > MOST_STEPS || o->steps_at_once > MOST_STEPS_AT_ONCE)

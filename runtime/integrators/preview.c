@@ -78,17 +78,26 @@ static uint32_t find_sun(const KrsView *view, uint32_t light)
     return light;
 }
 
-/* Adds the passes for pixels without a hit.  The first one adds the sky and the first sun, and
-   lists the hits; each further one adds another sun. */
+/* The row of results for the light of a light. */
+static uint32_t row_of_light(const Preview *p, uint32_t light)
+{
+    return p->job->options.light_groups ? ROW_OF_LIGHTS + light : ROW_COLORS;
+}
+
+/* Adds the passes for pixels without a hit.  The first one adds the sky and, unless lights are apart,
+   the first sun, and lists the hits; each further one adds another sun. */
 static void add_background(Preview *p)
 {
-    const KrsView *view = &p->job->view;
-    uint32_t       sun  = find_sun(view, 0);
+    const KrsView *view  = &p->job->view;
+    const uint32_t count = (uint32_t)view->light_count;
+    uint32_t       sun   = find_sun(view, 0);
+    const bool     apart = p->job->options.light_groups;
     add_pixels(p, KRS_PHASE_RESOLVE, PIXELS_BACKGROUND, LIST_OF_BAND, NO_LIST,
-               (PassConstants){BACKGROUND_FIRST, .light = sun}, WEIGHT_BACKGROUND);
-    while (sun < view->light_count && (sun = find_sun(view, sun + 1)) < view->light_count)
+               (PassConstants){BACKGROUND_FIRST, .light = apart ? count : sun}, WEIGHT_BACKGROUND);
+    for (sun = apart ? sun : find_sun(view, sun + 1); sun < count; sun = find_sun(view, sun + 1))
         add_pixels(p, KRS_PHASE_RESOLVE, PIXELS_BACKGROUND, LIST_OF_BAND, NO_LIST,
-                   (PassConstants){BACKGROUND_SUN, .light = sun}, 0);
+                   (PassConstants){BACKGROUND_SUN, .light = sun, .color_row = row_of_light(p, sun)},
+                   0);
 }
 
 /* Adds a ray over the hemisphere of each hit, and means over neighbouring pixels.  The means are
@@ -158,27 +167,59 @@ static void add_visibility(Preview *p, uint32_t light, uint32_t value, float wei
         add_means(p, constants, 0.2f * weight);
 }
 
-/* Adds the passes for lights, LIGHTS_AT_ONCE at a time.  The first shading pass also adds all other
-   light, so there is one even without lights. */
+/* The lights of a pass of shading: LIGHTS_AT_ONCE, or one where they are apart; then the first of all
+   passes has none. */
+typedef struct LightPass {
+    uint32_t first, count;
+    bool     none; /* it adds all other light, and no lights */
+} LightPass;
+
+static LightPass first_lights(const Preview *p)
+{
+    const uint32_t count = (uint32_t)p->job->view.light_count;
+    if (p->job->options.light_groups)
+        return (LightPass){0, 0, true};
+    return (LightPass){0, count < LIGHTS_AT_ONCE ? count : LIGHTS_AT_ONCE, false};
+}
+
+/* The lights of the next pass; false: there are no more. */
+static bool next_lights(const Preview *p, LightPass *lights)
+{
+    const uint32_t count = (uint32_t)p->job->view.light_count;
+    const uint32_t most  = p->job->options.light_groups ? 1 : LIGHTS_AT_ONCE;
+    const uint32_t first = lights->first + lights->count, left = count - first;
+    *lights = (LightPass){first, left < most ? left : most, false};
+    return left > 0;
+}
+
+static PassConstants constants_of(const Preview *p, const LightPass *lights, uint32_t phase)
+{
+    return (PassConstants){.phase     = phase,
+                           .light     = lights->first,
+                           .count     = lights->count,
+                           .color_row = lights->none ? ROW_COLORS : row_of_light(p, lights->first)};
+}
+
+/* Adds the passes for lights.  The first shading pass also adds all other light, so there is one even
+   without lights. */
 static void add_lights(Preview *p, const Kernel *shade)
 {
-    const KrsView *view  = &p->job->view;
-    const uint32_t count = (uint32_t)view->light_count;
-    const float    each  = WEIGHT_LIGHTS / (float)(count ? count : 1);
-    uint32_t       first = 0;
+    const KrsView *view   = &p->job->view;
+    const uint32_t count  = (uint32_t)view->light_count;
+    const float    each   = WEIGHT_LIGHTS / (float)(count ? count : 1);
+    LightPass      lights = first_lights(p);
     do {
-        for (uint32_t i = 0; i < LIGHTS_AT_ONCE && first + i < count; i++)
-            if (view->lights[first + i].shadow)
-                add_visibility(p, first + i, VALUE_VISIBLE + i, 0.8f * each);
+        for (uint32_t i = 0; i < lights.count; i++)
+            if (view->lights[lights.first + i].shadow)
+                add_visibility(p, lights.first + i, VALUE_VISIBLE + i, 0.8f * each);
         plan_add(p->plan, (Pass){.kind      = PASS_ITEMS,
                                  .phase     = KRS_PHASE_SHADING,
                                  .weight    = 0.2f * each,
                                  .kernel    = shade,
                                  .in        = LIST_ALL,
                                  .out       = p->plan->has_paths ? LIST_OF_PATHS : NO_LIST,
-                                 .constants = {.light = first}});
-        first += LIGHTS_AT_ONCE;
-    } while (first < count);
+                                 .constants = constants_of(p, &lights, PATHS_GO_ON)});
+    } while (next_lights(p, &lights));
 }
 
 /* ---- mirrors and glass ---- */
@@ -186,12 +227,13 @@ static void add_lights(Preview *p, const Kernel *shade)
 /* Adds the light of the surfaces that rays have been followed to.  `ends`: no ray goes on. */
 static void add_mirrored_lights(Preview *p, const PathKernels *kernels, bool ends, float weight)
 {
-    const KrsView *view  = &p->job->view;
-    const uint32_t count = (uint32_t)view->light_count;
-    uint32_t       first = 0;
+    const KrsView *view   = &p->job->view;
+    LightPass      lights = first_lights(p);
     do {
-        for (uint32_t i = 0; i < LIGHTS_AT_ONCE && first + i < count; i++)
-            if (view->lights[first + i].shadow)
+        PassConstants constants = constants_of(p, &lights, ends ? PATHS_END : PATHS_GO_ON);
+        constants.of_paths      = 1;
+        for (uint32_t i = 0; i < lights.count; i++)
+            if (view->lights[lights.first + i].shadow)
                 plan_add(p->plan, (Pass){.kind      = PASS_RAYS,
                                          .phase     = KRS_PHASE_BOUNCES,
                                          .weight    = weight,
@@ -199,15 +241,12 @@ static void add_mirrored_lights(Preview *p, const PathKernels *kernels, bool end
                                          .in        = LIST_ALL,
                                          .out       = NO_LIST,
                                          .constants = {.phase    = RAYS_TO_LIGHT,
-                                                       .light    = first + i,
+                                                       .light    = lights.first + i,
                                                        .value    = VALUE_VISIBLE + i,
                                                        .of_paths = 1}});
-        add_items(
-            p, KRS_PHASE_BOUNCES, kernels->scatter, LIST_ALL, LIST_OF_PATHS,
-            (PassConstants){.phase = ends ? PATHS_END : PATHS_GO_ON, .light = first, .of_paths = 1},
-            weight);
-        first += LIGHTS_AT_ONCE;
-    } while (first < count);
+        add_items(p, KRS_PHASE_BOUNCES, kernels->scatter, LIST_ALL, LIST_OF_PATHS, constants,
+                  weight);
+    } while (next_lights(p, &lights));
 }
 
 /* Adds the passes that follow rays from the surfaces that are shaded, one after the other. */

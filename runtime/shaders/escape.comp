@@ -32,8 +32,9 @@ float share_of_rays(float by_rays, float by_lights)
     return by_rays > 0.0 ? 1.0 / (1.0 + square(by_lights / by_rays)) : 1.0;
 }
 
-// The light of all sources that a path's ray meets before it ends.
-vec3 find_sources(Path path, float end)
+// The light of all sources that a path's ray meets before it ends.  Where the light of each is apart,
+// it is added to their own rows, as far as it is `shown`.
+vec3 find_sources(Path path, float end, uint index, vec3 shown)
 {
     vec3  sum = vec3(0.0);
     bool  from_camera = path.density == 0.0;
@@ -45,7 +46,10 @@ vec3 find_sources(Path path, float end)
         float chance = find_importance(light, path.origin) / max(all, 1e-30);
         float share = share_of_rays(path.density, chance * density);
         bool  shows = !from_camera || (light.kind & LIGHT_POSITIONAL) == 0u;
-        sum += shows && density > 0.0 ? share * radiance : vec3(0.0);
+        vec3  own = shows && density > 0.0 ? share * radiance : vec3(0.0);
+        sum += control.apart != 0u ? vec3(0.0) : own;
+        for (uint once = 0u; once < control.apart; once++) // as in planes.glsl
+            add_light_to(ROW_OF_LIGHTS + i, index, finite_or_black(shown * own));
     }
     return sum;
 }
@@ -95,16 +99,20 @@ bool follow(uvec2 pixel, uint index, inout uint unresolved)
     unresolved += ray.unresolved ? 1u : 0u;
     bool lost = ray.unresolved && path.density > 0.0;
     vec3 found = vec3(0.0);
+    float left = let_through(path.origin.y, path.direction.y, FARTHEST);
+    // Fog does not dim lights, but it hides the sun's disc as it hides the sky.
+    float shown = hits ? 1.0 : lost ? 0.0 : path.density == 0.0 ? left : 1.0;
+#ifndef PATH_RAYS
+    shown = !hits && control.no_background != 0u ? 0.0 : shown;
+#endif
     if (control.phase == ESCAPE_TO_LIGHTS)
-        found = find_sources(path, hits ? ray.t : INFINITE);
+        found = find_sources(path, hits ? ray.t : INFINITE, index, path.weight * shown);
     if (!hits) {
-        // Fog does not dim lights, but it hides the sun's disc as it hides the sky.
         vec3  behind = find_sky(path), light = found;
         if (path.density == 0.0) {
             behind += found;
             light = vec3(0.0);
         }
-        float left = let_through(path.origin.y, path.direction.y, FARTHEST);
         found = lost ? vec3(0.0) : through_fog(behind, left, true) + light;
 #ifndef PATH_RAYS
         found = control.no_background != 0u ? vec3(0.0) : found;

@@ -5,6 +5,9 @@
  * the medium of a ray are one number of its path: the sign is that of the side, and the size is 1
  * and the number of the medium.  The side is 1 then, unless the camera is inside of a solid.
  */
+// Codes of rays to a light have the row of results for its light behind them, times this.
+const uint CODES_OF_RAYS = 65536u;
+
 float code_of_ray(float side, uint medium) { return side * float(1u + medium); }
 
 uint medium_of_code(float code) { return code == 0.0 ? 0u : uint(abs(code)) - 1u; }

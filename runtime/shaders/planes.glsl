@@ -24,7 +24,7 @@ void store_planes(uint index, uint rows, vec4 color, HitPoint hit, vec3 outward,
             numbers = uvec4(floatBitsToUint(albedo), surface.level);
         if (row == ROW_COUNTS)
             numbers = uvec4(surface.instance, hit.steps, surface.material, 0u);
-        results[row * band_pixels() + index] = numbers;
+        results[(row == ROW_COLORS ? control.color_row : row) * band_pixels() + index] = numbers;
         rows &= rows - 1u;
     } while (rows != 0u);
 }

@@ -19,16 +19,21 @@ uvec4 load_result(uint number) { return texelFetch(result_texels, int(number)); 
 
 bool is_wanted(uint row) { return (control.rows >> row & 1u) != 0u; }
 
-vec4 find_color(uint index)
+vec4 load_color(uint row, uint index)
 {
-    return uintBitsToFloat(load_result(ROW_COLORS * band_pixels() + index));
+    return uintBitsToFloat(load_result(row * band_pixels() + index));
 }
 
-// Adds light to the colour of a pixel; alpha stays as it is.
-void add_light(uint index, vec3 color)
+// The colour of a pixel, or its light of a light.
+vec4 find_color(uint index) { return load_color(control.color_row, index); }
+
+// Adds light to a row of a pixel; alpha stays as it is.
+void add_light_to(uint row, uint index, vec3 color)
 {
-    colors[ROW_COLORS * band_pixels() + index] = find_color(index).rgb + color;
+    colors[row * band_pixels() + index] = load_color(row, index).rgb + color;
 }
+
+void add_light(uint index, vec3 color) { add_light_to(control.color_row, index, color); }
 
 // Replaces components that are negative, infinite or NaN by 0.
 vec3 finite_or_black(vec3 radiance)

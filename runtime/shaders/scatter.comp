@@ -84,9 +84,10 @@ void begin_group()
     rows = control.value == 0u ? control.rows : 0u;
 }
 
-// Chooses a point of a light, and what it adds if it is visible.  Returns the direction to it.
+// Chooses a point of a light, and what it adds if it is visible.  Returns the direction to it, and the
+// row of results to which it is added.
 vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec3 facing,
-                  vec3 weight, Cones cones)
+                  vec3 weight, Cones cones, out uint row)
 {
     vec2  square_point = choose(pixel, 1u);
     float all = sum_importance(hit.position);
@@ -120,6 +121,7 @@ vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, v
     bool  sees = rise * light.z > 0.0 && all > 0.0 && !along;
     vec3  added = sees ? weight * scattered.rgb * point.light * share : vec3(0.0);
     store_path(PATH_LIGHT, index, vec4(finite_or_black(added), point.end));
+    row = control.apart != 0u && !is_sky ? ROW_OF_LIGHTS + number : ROW_COLORS;
     return point.toward;
 }
 
@@ -219,13 +221,15 @@ void do_item(uint number)
     // Glass bends what leaves it, so that cones are of no use there.
     float dull = mix(surface.roughness * (1.0 - bsdf.glass), 1.0, bsdf.shares.w);
     Cones cones = find_cones(hit.position, facing.xyz, hit.side > 0.0 ? dull : 0.0);
-    vec3  toward = choose_light(pixel, index, hit, bsdf, axes, facing.xyz, weight, cones);
+    uint  row;
+    vec3  toward = choose_light(pixel, index, hit, bsdf, axes, facing.xyz, weight, cones, row);
     float side = go_on(pixel, index, hit, bsdf, axes, facing, weight, surface.roughness,
                        surface.distance, boundary, cones);
     store_path(PATH_TOWARD, index, vec4(toward, side));
     if (side != 0.0)
         tiles[atomicAdd(counts.tiles, 1u)] = hit.slot;
     float of_light = dot(facing.xyz, toward) < 0.0 ? boundary.beyond : boundary.code;
+    of_light += sign(of_light) * float(row * CODES_OF_RAYS);
     store_path(PATH_SURFACE, index, vec4(hit.position, of_light));
 }
 

@@ -155,13 +155,16 @@ void aim_over_hemisphere(vec3 normal)
 }
 
 #ifdef PATH_RAYS
-vec3 added; // by the light if it is visible
+vec3 added; // by the light if it is visible,
+uint row;   // to this row of results
 
 // Where the path was scattered; its ray has gone on.
 HitPoint hit_of_path(uint slot)
 {
     uint index = index_of(pixel_of(slot));
     vec4 surface = load_path(PATH_SURFACE, index);
+    row = uint(abs(surface.w)) / CODES_OF_RAYS;
+    surface.w = sign(surface.w) * (abs(surface.w) - float(row * CODES_OF_RAYS));
     enter_medium(surface.w);
     return HitPoint(slot, surface.xyz, vec3(0.0), load_path(PATH_ORIGIN, index).w,
                     ROUNDING * largest(surface.xyz), sign(surface.w), 0u);
@@ -332,7 +335,7 @@ void end_ray()
     unresolved += step_limit > 0u ? 1u : 0u;
 #ifdef PATH_RAYS
     if (!blocked && !below_horizon)
-        add_light(index_of(pixel_of(hit.slot)), clamped(added));
+        add_light_to(row, index_of(pixel_of(hit.slot)), clamped(added));
 #else
     float visible = blocked || below_horizon ? 0.0 : 1.0;
     uint  code = below_horizon ? BELOW_HORIZON : blocked ? code_of_width(find_penumbra()) : LIT;

@@ -181,6 +181,7 @@ void send_on(HitPoint hit, uint index, KrsSurface surface, Boundary boundary, Co
 }
 #endif
 
+bool  first;      // this pass adds what is no light of lights, and the planes
 uint  rows;       // wanted rows of results
 Light lights[LIGHTS_AT_ONCE]; // each lane fetches them once
 
@@ -190,7 +191,8 @@ void begin_group()
     lights[0] = find_light(control.light);
     lights[1] = find_light(control.light + 1u);
     lights[2] = find_light(control.light + 2u);
-    rows = control.light == 0u ? control.rows : 1u << ROW_COLORS;
+    first = control.light == 0u && control.color_row == ROW_COLORS;
+    rows = first ? control.rows : 1u << ROW_COLORS;
 }
 
 void do_item(uint number)
@@ -225,12 +227,12 @@ void do_item(uint number)
         weight *= find_left(boundary, find_way(index, hit, find_end(index).t, false));
     }
 #endif
-    if (control.light == 0u) {
+    if (first) {
         radiance.rgb = saturate(vec4(surface.emission, 0.0), BRIGHTEST).rgb +
                        ambient(coat, openness);
         radiance.a = 1.0;
     }
-    uint end = min(control.light + LIGHTS_AT_ONCE, control.lights);
+    uint end = control.light + control.count;
     vec3 visible = lighting.yzw;
     uint i = control.light;
     Light now = lights[0], next = lights[1];
@@ -251,9 +253,9 @@ void do_item(uint number)
 #endif
     float t = find_end(index).t;
     float left = let_through(hit.position.y - t * hit.direction.y, hit.direction.y, t);
-    radiance.rgb = weight * through_fog(radiance.rgb, left, control.light == 0u);
+    radiance.rgb = weight * through_fog(radiance.rgb, left, first);
 #ifdef MIRRORS
-    if (control.phase == PATHS_GO_ON && control.light + LIGHTS_AT_ONCE >= control.lights)
+    if (control.phase == PATHS_GO_ON && end >= control.lights)
         send_on(hit, index, surface, boundary, coat, facing, weight * left);
 #endif
     vec3 added = clamped(finite_or_black(radiance.rgb));

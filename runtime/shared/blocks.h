@@ -168,7 +168,10 @@ static_assert(sizeof(PointWorkBlock) == 8, "std430");
     uint  sampled_at;     /* where words of quarters begin in `tiles`; 0: all pixels get rays */  \
     float noise;          /* error at which samples of a pixel end */                             \
     float noise_floor;    /* light to which the error of black pixels is relative */              \
-    uint  of_paths;       /* 1: the rays are those of paths that have begun (MIXED_RAYS) */
+    uint  of_paths;       /* 1: the rays are those of paths that have begun (MIXED_RAYS) */       \
+    uint  color_row;      /* the row of results to which light is added: ROW_... */               \
+    uint  apart;          /* 1: the light of each light has a row of results of its own */        \
+    uint  count;          /* of the lights that a pass of shade.comp adds */
 
 /* What the kernels count, and what next_dispatch.comp says of the next dispatch. */
 #define COUNTER_MEMBERS                                                                            \
@@ -196,16 +199,16 @@ struct Control {
 
 /* Indices of some words of the control block, for next_dispatch.comp. */
 CONSTANT(ITEMS_WORD, 10);
-CONSTANT(GROUPS_WORD, 49);
-CONSTANT(STOPPED_WORD, 52);
-CONSTANT(RAN_WORD, 53);
+CONSTANT(GROUPS_WORD, 52);
+CONSTANT(STOPPED_WORD, 55);
+CONSTANT(RAN_WORD, 56);
 
 #ifdef __STDC_VERSION__
 typedef struct ControlBlock {
     CONTROL_MEMBERS
     COUNTER_MEMBERS
 } ControlBlock;
-static_assert(sizeof(ControlBlock) == (29 + 26 + MOST_CHAINED) * sizeof(uint32_t), "std430");
+static_assert(sizeof(ControlBlock) == (32 + 26 + MOST_CHAINED) * sizeof(uint32_t), "std430");
 static_assert(sizeof(struct Control) == offsetof(ControlBlock, queued), "the host's part");
 #endif
 
@@ -321,6 +324,9 @@ CONSTANT(ROW_NOISE, 5);     /* estimated error; the samples of a pixel that has 
    the variance of the mean.  Of another: sums of its colour and alpha. */
 CONSTANT(ROW_EARLIER, 6);
 CONSTANT(RESULT_ROWS, 7);
+/* Behind these is a row for each light, where they are apart: floats, summed over the rays.  Then
+   ROW_COLORS has the rest. */
+CONSTANT(ROW_OF_LIGHTS, 7);
 /* The least samples of a pixel, which may end when they are a power of two.  The error is estimated
    from half as many on, by means of two halves. */
 CONSTANT(LEAST_NOISE_SAMPLES, 16);

@@ -33,10 +33,14 @@ static VkDeviceSize most_beams(uint64_t pixels)
     return 2 * (pixels / TILE + 2 * KRS_MOST_SIDE / TILE);
 }
 
-/* The last rows are for noise.comp. */
-static uint64_t rows_of_results(bool noise) { return noise ? RESULT_ROWS : ROW_NOISE; }
+/* The last rows are for noise.comp, and behind them those of lights. */
+static uint64_t rows_of_results(bool noise, uint32_t lights)
+{
+    return lights > 0 ? ROW_OF_LIGHTS + lights : noise ? RESULT_ROWS : ROW_NOISE;
+}
 
-static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths, bool noise)
+static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths, bool noise,
+                        uint32_t lights)
 {
     Gpu               *gpu           = &rendering->renderer->gpu;
     Band              *band          = &rendering->band;
@@ -44,7 +48,7 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths, bo
     const Where        shared        = read_in_place ? SHARED : ON_DEVICE;
     const VkDeviceSize hit           = HIT_BYTES + (paths ? PATH_BYTES : 0);
     const VkDeviceSize beams = most_beams(pixels), tiles = paths ? pixels : beams;
-    const VkDeviceSize results = pixels * rows_of_results(noise) * RESULT_BYTES;
+    const VkDeviceSize results = pixels * rows_of_results(noise, lights) * RESULT_BYTES;
     const struct {
         Buffer      *buffer;
         uint32_t     binding, texels; /* in set 1: as a buffer, as texels; 0: none */
@@ -63,7 +67,8 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths, bo
          ON_DEVICE, "tiles"},
         {&band->fetched, 0, 0, read_in_place ? 0 : results, SHARED, "pixels to read"},
     };
-    if (band->pixels >= pixels && (band->has_paths || !paths) && (band->has_noise || !noise))
+    if (band->pixels >= pixels && (band->has_paths || !paths) && (band->has_noise || !noise) &&
+        band->lights >= lights)
         return true;
     band_destroy(gpu, band);
     for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
@@ -86,6 +91,7 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths, bo
     band->pixels     = pixels;
     band->has_paths  = paths;
     band->has_noise  = noise;
+    band->lights     = lights;
     band->sampled_at = (uint32_t)tiles;
     return true;
 }
@@ -100,22 +106,25 @@ static uint32_t rows_within(uint32_t width, uint64_t pixels)
     return rows < TILE ? TILE : (uint32_t)rows;
 }
 
-/* Bytes of all buffers of a band for a pixel, about, with the rows for noise. */
-#define BAND_BYTES(hit) (END_BYTES + (hit) + 2 * RESULT_ROWS * RESULT_BYTES + 2 * MARCH_BYTES + 4)
+/* Bytes of all buffers of a band for a pixel, about, with so many rows of results. */
+#define BAND_BYTES(hit, rows) (END_BYTES + (hit) + 2 * (rows)*RESULT_BYTES + 2 * MARCH_BYTES + 4)
 
 /* The most pixels that a band may have on this device.  All of its buffers must fit into the
    device's memory, and none may be longer than kernels can read. */
-static uint64_t most_pixels(const Gpu *gpu, bool paths)
+static uint64_t most_pixels(const Gpu *gpu, bool paths, uint32_t lights)
 {
+    const uint64_t                rows     = RESULT_ROWS + lights;
     const uint64_t                hit      = HIT_BYTES + (paths ? PATH_BYTES : 0);
     const uint64_t                usual    = gpu_is_cpu(gpu) ? BAND_PIXELS_CPU : BAND_PIXELS;
     const VkPhysicalDeviceLimits *limits   = &gpu->properties.limits;
     const uint64_t                slack    = buffer_texel_bytes(1); /* what rounding adds at most */
     const uint64_t                in_range = (limits->maxStorageBufferRange - slack) /
-                              (hit > RESULT_ROWS * RESULT_BYTES ? hit : RESULT_ROWS * RESULT_BYTES);
+                              (hit > rows * RESULT_BYTES ? hit : rows * RESULT_BYTES);
     const uint64_t in_texels = (limits->maxTexelBufferElements - slack / sizeof(uint32_t)) /
-                               (2 * MARCH_BYTES / sizeof(uint32_t));
-    const uint64_t in_memory = gpu_memory(gpu) / PART_OF_MEMORY / BAND_BYTES(hit);
+                               (rows > 2 * MARCH_BYTES / sizeof(uint32_t)
+                                    ? rows
+                                    : 2 * MARCH_BYTES / sizeof(uint32_t));
+    const uint64_t in_memory = gpu_memory(gpu) / PART_OF_MEMORY / BAND_BYTES(hit, rows);
     uint64_t       most      = in_range < in_memory ? in_range : in_memory;
     most                     = gpu->texels && in_texels < most ? in_texels : most;
     most                     = most < usual ? most : usual;
@@ -123,15 +132,17 @@ static uint64_t most_pixels(const Gpu *gpu, bool paths)
 }
 
 uint32_t band_allocate(KrsRendering *rendering, const KrsWindow *cover, uint32_t halo, bool paths,
-                       bool noise)
+                       bool noise, uint32_t lights)
 {
     Gpu           *gpu    = &rendering->renderer->gpu;
     const uint64_t across = round_to_tiles(cover->width) + 2 * halo;
-    for (uint64_t pixels = most_pixels(gpu, paths); pixels >= BAND_PIXELS_MIN; pixels /= 2) {
+    for (uint64_t pixels = most_pixels(gpu, paths, lights); pixels >= BAND_PIXELS_MIN;
+         pixels /= 2) {
         uint32_t rows = rows_within((uint32_t)across, pixels);
         rows          = rows > 2 * halo + TILE ? rows - 2 * halo : TILE;
         rows          = rows < cover->height ? rows : cover->height;
-        if (band_create(rendering, (round_to_tiles(rows) + 2 * halo) * across, paths, noise)) {
+        if (band_create(rendering, (round_to_tiles(rows) + 2 * halo) * across, paths, noise,
+                        lights)) {
             renderer_clear(rendering->renderer);
             return rows;
         }

@@ -7,10 +7,10 @@
 #include "runtime/tracer/handles.h"
 
 /* Allocates buffers for a band of `cover`, a window of whole tiles, with `halo` more pixels on each
-   side; `paths`: each pixel follows a path; `noise`: its error is estimated.  When memory is short
-   the band has fewer rows.  Returns its rows; 0, with the failure noted, when even the smallest band
+   side; `paths`: each pixel follows a path; `noise`: its error is estimated; `lights` have rows of
+   results of their own.  When memory is short the band has fewer rows.  Returns its rows; 0, with the failure noted, when even the smallest band
    does not fit. */
 uint32_t band_allocate(KrsRendering *rendering, const KrsWindow *cover, uint32_t halo, bool paths,
-                       bool noise);
+                       bool noise, uint32_t lights);
 
 #endif

@@ -114,6 +114,8 @@ static Dispatch dispatch_of_pass(const Job *job, const Pass *pass, const WorkBlo
     control->value        = pass->constants.value;
     control->filters      = pass->constants.filters;
     control->of_paths     = pass->constants.of_paths;
+    control->color_row    = pass->constants.color_row;
+    control->count        = pass->constants.count;
     control->reading      = list_at(work, pass->in);
     LaneBudget budget     = pass->kind == PASS_RAYS ? budget_of_rays(job, items_now(job, items))
                                                     : pixel_budget(job);

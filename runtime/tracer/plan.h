@@ -20,7 +20,7 @@ enum {
 
 /* Values of the control block that belong to a pass (blocks.h has their meanings). */
 typedef struct PassConstants {
-    uint32_t phase, light, value, filters, of_paths;
+    uint32_t phase, light, value, filters, of_paths, color_row, count;
 } PassConstants;
 
 typedef enum PassKind {

@@ -2,7 +2,7 @@
 # light_groups.sh: the channels of lights add up to the picture, and each is what its light makes.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 8
+plan 9
 "${CC:-cc}" -std=c17 -D_GNU_SOURCE -o exr_text "$root/tests/cli/exr_text.c" -lOpenEXRCore-3_1 || exit 1
 cat >lights.krs <<'END'
 param power = 2 in [0, 9];
@@ -48,5 +48,7 @@ run render lights.krs --light-groups --clamp-radiance 1 -o b.exr
 said 2 "with --clamp-radiance they do not" "what is clamped does not add up"
 run render lights.krs --light-groups --stereo over-under -o b.exr
 said 2 "--stereo has two" "groups for two eyes"
+run render lights.krs --light-groups --aov noise -o b.exr
+said 2 "no estimate of their noise" "noise is estimated without groups"
 run render lights.krs --light-groups --noise 0.1 -o b.exr
 said 2 "where samples end by noise they do not" "samples that end at different times do not add up"

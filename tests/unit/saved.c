@@ -99,6 +99,9 @@ static void assert_same(KrsPicture *a, KrsPicture *b)
 #include "runtime/planes.def"
 #undef KRS_ARRAY
 #undef KRS_PLANE
+    assert_int_equal(a->light_count, b->light_count);
+    if (a->light_count > 0)
+        assert_memory_equal(a->lights, b->lights, pixels * a->light_count * sizeof *a->lights);
     for (int kind = 0; a->mattes[0] && kind < KRS_MATTE_COUNT; kind++)
         assert_memory_equal(a->mattes[kind], b->mattes[kind],
                             pixels * KRS_MATTE_RANKS * sizeof(KrsMatte));
@@ -108,15 +111,16 @@ static void assert_same(KrsPicture *a, KrsPicture *b)
 
 /* ---- the tests ---- */
 
-/* Planes and mattes; samples that end by noise; a crop. */
+/* Planes and mattes; samples that end by noise; a crop, and the light of each light. */
 static const KrsRenderOptions kinds[] = {
     {.width = 100, .height = 80, .samples = SAMPLES, .mattes = true, .planes = KRS_PLANE_ALL},
     {.width = 100, .height = 80, .samples = SAMPLES, .noise = 0.03, .seed = 7},
-    {.width   = 200,
-     .height  = 160,
-     .crop    = {33, 41, 90, 71},
-     .samples = SAMPLES,
-     .planes  = KRS_PLANE_DEPTH | KRS_PLANE_IDS}};
+    {.width        = 200,
+     .height       = 160,
+     .crop         = {33, 41, 90, 71},
+     .samples      = SAMPLES,
+     .planes       = KRS_PLANE_DEPTH | KRS_PLANE_IDS,
+     .light_groups = true}};
 
 static void a_saved_film_goes_on(void **state)
 {
