@@ -85,11 +85,17 @@ static double for_bounds(const PartFinder *finder, const CrowdGroup *group)
     return 1;
 }
 
-/* Up to which distance that of a group must be right.  Groups are joined with each other and with other
-   parts by the same blend; one that has all parts is not. */
-static double needed_reach(const PartFinder *finder, const CrowdGroup *group)
+/* Up to which distance that of a group must be right.  Groups are joined with each other and with the
+   other parts by the same blend; one that has all parts is not. */
+static double needed_reach(const PartFinder *finder, const CrowdGroups *groups, const Blend *blend)
 {
-    return group->members.count == finder->count ? finder->reach : finder->context.reach;
+    size_t members = 0;
+    for (size_t i = 0; i < groups->count; i++)
+        members += groups->items[i].members.count;
+    size_t operands = groups->count + (members < finder->count);
+    if (operands == 1 || blend->width == NODE_NONE)
+        return finder->reach;
+    return finder->reach + fmax(blend_reach(blend->kind, (double)operands) * blend->widest, 0);
 }
 
 static double largest_slope(const PartFinder *finder, const CrowdGroup *group)
@@ -100,15 +106,16 @@ static double largest_slope(const PartFinder *finder, const CrowdGroup *group)
     return slope;
 }
 
+/* The distance is right up to `right`. */
 static bool make_crowd(const PartFinder *finder, CrowdGroup *group, const GroupJoin *join,
-                       const Box *boxes)
+                       double right, const Box *boxes)
 {
     if (group->members.count < finder->least || !group_find_columns(group, join) ||
         !group_has_functions(group, join))
         return false;
     double factor = for_bounds(finder, group);
     double reach  = factor * blended_reach(group, join);
-    double margin = isfinite(reach) ? factor * needed_reach(finder, group) : HUGE_VAL;
+    double margin = isfinite(reach) ? factor * right : HUGE_VAL;
     Crowd  table  = {.stretch = factor, .span = join->span};
     group->slope  = largest_slope(finder, group);
     group_make_table(group, join, boxes, isfinite(reach) ? reach : 0, margin, table);
@@ -130,11 +137,12 @@ static void make_crowds(const PartFinder *finder, const GroupJoin *join, JointCr
     uint32_t    count    = finder->count;
     bool       *in_crowd = arena_new_array(join->scratch, bool, count);
     const Box  *boxes    = boxes_of(finder, join);
+    double      right    = needed_reach(finder, &groups, &join->blend);
     made->groups         = arena_new_array(arena, CrowdGroup, groups.count + 1);
     made->rest           = arena_new_array(arena, const Shape *, count);
     for (size_t i = 0; i < groups.count; i++) {
         CrowdGroup *group = &groups.items[i];
-        if (!make_crowd(finder, group, join, boxes))
+        if (!make_crowd(finder, group, join, right, boxes))
             continue;
         for (size_t k = 0; k < group->members.count; k++)
             in_crowd[group->members.items[k]] = true;

@@ -242,6 +242,29 @@ static void reach_is_needed(void **state)
     }
 }
 
+/* Of two operands, one that is the reach above the result changes it by less than a ten-thousandth; a fifth
+   less is too little. */
+static void reach_of_two(void **state)
+{
+    (void)state;
+    for (BlendKind kind = BLEND_quadratic; kind <= BLEND_chamfer; kind++) {
+        Blend  blend = {kind, graph_number(builder.graph, 1), 1, NODE_NONE};
+        double reach = blend_reach(kind, 2), beyond = 0, within = 0;
+        for (int i = 0; i < 100 * POINTS; i++) {
+            double a = between(0, 3), b = a + between(-1, 12), result = joined(blend, a, b);
+            double above = b - result, changed = fabs(result - a);
+            if (result < 0)
+                continue;
+            if (above >= reach)
+                beyond = fmax(beyond, changed);
+            else if (above >= 0.8 * reach)
+                within = fmax(within, changed);
+        }
+        assert_true(beyond <= 1e-4);
+        assert_true(within > 1e-4 || kind == BLEND_chamfer); /* it reaches less far for two */
+    }
+}
+
 /* ---- refined grids ---- */
 
 enum { MANY = 400 };
@@ -378,6 +401,7 @@ int main(void)
         TEST(many_parts_need_few_nodes),
         TEST(blends),
         TEST(reach_is_needed),
+        TEST(reach_of_two),
         TEST(refined_blends),
         TEST(blends_of_crowds),
     };
