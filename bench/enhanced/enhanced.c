@@ -201,16 +201,18 @@ static Evenness find_evenness(const KrsPicture *picture, const double *distances
     return found;
 }
 
-/* Figure 9: a pixel is white where the hit is a 20th of a pixel behind the surface, and black where it
-   is as far before it; gray is none. */
-enum { SHOWN = 2 };
-static uint8_t strip[3 * PIXELS * 2 * SHOWN];
+/* Figures 9 and 10 are above, 7 and 8 below. */
+enum { SHOWN = 2, ACROSS = 2 * SHOWN, ROWS = 2 };
+static uint8_t strip[3 * PIXELS * ACROSS * ROWS];
 
 static void put(int place, int x, int y, const uint8_t *rgb)
 {
-    memcpy(&strip[3 * ((size_t)y * WIDTH * 2 * SHOWN + (size_t)(place * WIDTH + x))], rgb, 3);
+    const size_t row = (size_t)(place / ACROSS * HEIGHT + y) * WIDTH * ACROSS;
+    memcpy(&strip[3 * (row + (size_t)(place % ACROSS * WIDTH + x))], rgb, 3);
 }
 
+/* Figure 9: a pixel is white where the hit is a 20th of a pixel behind the surface, and black where it
+   is as far before it; gray is none. */
 static void put_distances(const double *distances, int place)
 {
     for (int i = 0; i < PIXELS; i++) {
@@ -233,10 +235,10 @@ static void put_picture(const Stage *stage, const KrsPicture *picture, int place
 static void write_strip(const char *name)
 {
     OutputError   error = {0};
-    const Picture frame = {.width       = WIDTH * 2 * SHOWN,
-                           .height      = HEIGHT,
-                           .crop_width  = WIDTH * 2 * SHOWN,
-                           .crop_height = HEIGHT};
+    const Picture frame = {.width       = WIDTH * ACROSS,
+                           .height      = HEIGHT * ROWS,
+                           .crop_width  = WIDTH * ACROSS,
+                           .crop_height = HEIGHT * ROWS};
     OutputFile   *file  = output_open(name, NULL, &error);
     if (!file || !png_write(&frame, strip, file, &error) || output_commit(file) != KRS_OK)
         give_up(name, error.message);
@@ -275,6 +277,62 @@ static void compare_hits(KrsRenderer *renderer)
     stage_close(&stage);
 }
 
+/* ---- rays with few steps ---- */
+
+/* Figure 7: the steps at which a ray of the city ends; white is the most. */
+static void put_steps(const KrsPicture *picture, uint32_t most, int place)
+{
+    for (int i = 0; i < PIXELS; i++) {
+        const uint8_t gray   = (uint8_t)(255 * fmin((double)picture->steps[i] / most, 1) + 0.5);
+        const uint8_t rgb[3] = {gray, gray, gray};
+        put(place, i % WIDTH, i / WIDTH, rgb);
+    }
+}
+
+/* Figure 8: normals, as colours. */
+static void put_normals(const KrsPicture *picture, int place)
+{
+    for (int i = 0; i < PIXELS; i++) {
+        uint8_t rgb[3] = {0};
+        for (int c = 0; c < 3 && isfinite(picture->depth[i]); c++)
+            rgb[c] = (uint8_t)(127.5 + 127 * picture->normal[3 * i + c]);
+        put(place, i % WIDTH, i / WIDTH, rgb);
+    }
+}
+
+/* Rays of the city that end after few steps: by distances, by 1.2 of them, and as by default. */
+static void compare_few_steps(KrsRenderer *renderer)
+{
+    enum { FEW = 80, FEWER = 64 };
+    static const KrsTrace methods[] = {KRS_TRACE_PLAIN, KRS_TRACE_RELAXED, KRS_TRACE_AUTO};
+    Stage                 stage     = stage_open(renderer, scenes[0], NULL, false);
+    sheet_print(&sheet,
+                "\n| %s, steps | rays not ended after %d | after %d |\n| --- | --- | --- |\n",
+                scenes[0] + 9, FEW, FEWER);
+    for (int i = 0; i < 3; i++) {
+        KrsRenderOptions options = {.width        = WIDTH,
+                                    .height       = HEIGHT,
+                                    .samples      = 1,
+                                    .no_beams     = true,
+                                    .no_occlusion = true,
+                                    .most_steps   = FEW,
+                                    .trace        = methods[i]};
+        KrsPicture      *few     = stage_render(&stage, &options);
+        options.most_steps       = FEWER;
+        KrsPicture *fewer        = stage_render(&stage, &options);
+        sheet_print(&sheet, "| %s | %llu | %llu |\n", krs_trace_names[methods[i]],
+                    (unsigned long long)few->stats.unresolved,
+                    (unsigned long long)fewer->stats.unresolved);
+        if (i < 2)
+            put_steps(few, FEW, ACROSS + i);
+        if (i != 1)
+            put_normals(fewer, ACROSS + SHOWN + (i == 2));
+        krs_picture_free(few);
+        krs_picture_free(fewer);
+    }
+    stage_close(&stage);
+}
+
 static const char *base_name(const char *file)
 {
     const char *slash = strrchr(file, '/');
@@ -309,8 +367,10 @@ int main(int count, char **arguments)
                 "from pixel to pixel | largest | CPU ms |\n"
                 "| --- | --- | --- | --- | --- | --- | --- |\n");
     compare_hits(renderer);
+    compare_few_steps(renderer);
     sheet_print(&sheet,
-                "\n![distances of hits without iterations and with 3, and the pictures]"
+                "\n![distances of hits without iterations and with 3, and the pictures; below, "
+                "the city's steps by distances and by 1.2 of them, and its normals with few steps]"
                 "(%s)\n\n",
                 base_name(name));
     write_strip(name);
