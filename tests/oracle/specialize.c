@@ -243,10 +243,10 @@ static void vectors_are_known(void **state)
         "  - distance([1, 1], [1, 3]) - cross([1, 0, 0], [0, 1, 0])[2]"
         "  + normalize([2, 0, 0])[0]);"
         "show union([sphere(0.4).move([i, k, 0]) for i in 0..n for k in 0..m]);";
-    static const char once[]  = "let a = [0.3, 0.4]; let r = length(a) + 1;"
-                                "show sphere(r) & box([r, 2 * r, 2 * r]);";
-    static const char twice[] = "let a = [0.3, 0.4]; def r() = length(a) + 1;"
-                                "show sphere(r()) & box([r(), 2 * r(), 2 * r()]);";
+    static const char once[]  = "let a = [0.3, 0.4]; let r = length(a);"
+                                "show sphere(r) & cylinder(r, 2) & torus(1, r);";
+    static const char twice[] = "let a = [0.3, 0.4]; def r() = length(a);"
+                                "show sphere(r()) & cylinder(r(), 2) & torus(1, r());";
     (void)state;
     KrsScene *literal = compile(counted, "a.krs", KRS_SPECIALIZE_NUMBERS);
     KrsScene *scene   = compile(counted, "a.krs", KRS_SPECIALIZE_STRUCTURE);
