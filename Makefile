@@ -38,7 +38,7 @@ IMAGE    := $(addprefix compiler/image/, png.c exr.c image.c)
 LANES    := $(addprefix compiler/graph/lanes_, plain.c $(if $(filter x86_64, $(shell $(CC) -dumpmachine | cut -d - -f 1)), avx2.c avx512.c))
 GRAPH    := $(addprefix compiler/graph/, intern.c alike.c alike_copy.c graph.c crowd.c build.c substitute.c extract.c derive_rules.c \
                 derive_blends.c derive.c series.c zeros.c local_terms.c local_curves.c local.c rebase.c \
-                simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c texture.c texture_facts.c \
+                simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c frame_ranges.c parity.c texture.c texture_facts.c \
                 regions.c squares.c grid_build.c grid_find.c grid_clearance.c grid_refine.c fractal.c op_values.c tape.c evaluate.c lane_rows.c lane_make.c lane_run.c lane_ranges.c \
                 lane_slopes.c lane_partials.c lane_hessians.c lane_prune.c print.c) $(LANES)
 SHAPE    := $(addprefix compiler/shape/, box.c reach.c cover.c map.c moebius.c builder.c sky_map.c slope.c print.c)

@@ -21,7 +21,9 @@ static bool has_light(const Fact *emission)
 static bool may_emit(const Graph *graph, Node emission, Box box, Arena *scratch)
 {
     if (graph->items[emission].time != TIME_POINT) {
-        const Fact fact = graph_frame_fact(graph, emission, scratch);
+        Fact fact = {0};
+        for (uint32_t k = 0; k < 3; k++)
+            fact.value[k] = graph_frame_range(graph, emission, k, scratch);
         return has_light(&fact);
     }
     RangeTask task = range_task(graph, &emission, 1, scratch);

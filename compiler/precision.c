@@ -93,9 +93,10 @@ static double nearest_to(const ViewPrecision *view, const double eye[3])
 static double reach_of_eye(const ViewPrecision *view, Node eye)
 {
     double reach = 0;
-    Fact   fact  = graph_frame_fact(view->graph, eye, view->scratch);
-    for (int i = 0; i < 3; i++)
-        reach = fmax(reach, fmax(fabs(fact.value[i].low), fabs(fact.value[i].high)));
+    for (uint32_t i = 0; i < 3; i++) {
+        const Range range = graph_frame_range(view->graph, eye, i, view->scratch);
+        reach             = fmax(reach, fmax(fabs(range.low), fabs(range.high)));
+    }
     return reach;
 }
 

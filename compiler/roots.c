@@ -103,7 +103,7 @@ static bool may_exceed_zero(const Graph *g, Node property, Arena *scratch)
     if (is_number(g, property, 0))
         return false;
     return g->items[property].time == TIME_POINT ||
-           graph_frame_fact(g, property, scratch).value[0].high > 0;
+           graph_frame_range(g, property, 0, scratch).high > 0;
 }
 
 /* Finds the components that may let light through.  Rays go on inside of them, so half-spaces are

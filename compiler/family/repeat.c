@@ -128,7 +128,7 @@ static Range frame_range(Lowering *l, Node node)
 {
     if (graph_is_constant(l->graph, node))
         return (Range){l->graph->items[node].number[0], l->graph->items[node].number[0]};
-    return graph_frame_fact(l->graph, node, l->scratch).value[0];
+    return graph_frame_range(l->graph, node, 0, l->scratch);
 }
 
 static Lattice lattice_of(Lowering *l, const Shape *shape, LowerContext context, uint32_t axis)

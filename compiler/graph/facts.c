@@ -22,15 +22,12 @@ typedef struct Analysis {
     const Graph *graph;
     Tape         tape;
     bool         whole; /* facts of all nodes, else of those on the tape, in its order */
-    bool         frame; /* facts that the graph keeps */
     const double (*parameters)[4];
     Fact *facts;
 } Analysis;
 
 static Fact *analysis_fact(const Analysis *analysis, Node node)
 {
-    if (analysis->frame)
-        return analysis->graph->frame_facts->items[node];
     return &analysis->facts[analysis->whole ? node : tape_index(&analysis->tape, node)];
 }
 
@@ -105,75 +102,6 @@ Fact *graph_facts(const Graph *graph, Box box, const double (*parameters)[4], Ar
     for (Node node = 0; node < graph->count; node++)
         analysis.facts[node] = node_fact(&analysis, node, box);
     return analysis.facts;
-}
-
-/* Nodes whose facts are not found yet. */
-typedef struct NodeStack {
-    Node  *items;
-    size_t count, capacity;
-} NodeStack;
-
-/* Puts operands without facts on the stack; false: there are none. */
-static bool push_operands(NodeStack *rest, const Graph *graph, Node node, Arena *scratch)
-{
-    const Expr  *e      = &graph->items[node];
-    const size_t before = rest->count;
-    for (uint32_t k = 0; k < e->operand_count; k++)
-        if (!graph->frame_facts->items[e->operands[k]])
-            array_push(scratch, rest, e->operands[k]);
-    return rest->count > before;
-}
-
-/* In place of the fact of a node that depends on parameters: their ranges may change. */
-static Fact varies;
-
-/* Finds the fact of a node whose operands have theirs. */
-static void keep_fact(const Graph *graph, Node node)
-{
-    const Analysis analysis = {.graph = graph, .frame = true};
-    const Expr    *e        = &graph->items[node];
-    Fact         **facts    = graph->frame_facts->items;
-    bool           fixed    = e->op != OP_PARAMETER;
-    for (uint32_t k = 0; k < e->operand_count; k++)
-        fixed = fixed && facts[e->operands[k]] != &varies;
-    facts[node] = fixed ? arena_new(graph->arena, Fact) : &varies;
-    if (graph->frame_facts->used <= node)
-        graph->frame_facts->used = node + 1;
-    if (fixed)
-        *facts[node] = node_fact(&analysis, node, (Box){0});
-}
-
-/* Expressions grow from one another, and each is asked for.  So the graph keeps what is found of
-   those that depend on no parameter.  NULL: this one does. */
-static const Fact *kept_fact(const Graph *graph, Node node, Arena *scratch)
-{
-    FrameFacts *found = graph->frame_facts;
-    NodeStack   rest  = {0};
-    while (found->count <= node)
-        found->items = arena_grow(graph->arena, found->items, found->count, &found->count,
-                                  sizeof(Fact *));
-    array_push(scratch, &rest, node);
-    while (rest.count > 0) {
-        Node next = rest.items[rest.count - 1];
-        if (!found->items[next] && push_operands(&rest, graph, next, scratch))
-            continue;
-        if (!found->items[next])
-            keep_fact(graph, next);
-        rest.count--;
-    }
-    return found->items[node] != &varies ? found->items[node] : NULL;
-}
-
-Fact graph_frame_fact(const Graph *graph, Node node, Arena *scratch)
-{
-    assert(graph->items[node].time != TIME_POINT);
-    const Fact *kept = kept_fact(graph, node, scratch);
-    if (kept)
-        return *kept;
-    Analysis analysis = {.graph = graph, .tape = tape_new(graph, &node, 1, scratch)};
-    analysis.facts    = arena_new_array(scratch, Fact, analysis.tape.count);
-    analysis_run(&analysis, (Box){0}, 0, analysis.tape.frame_count);
-    return *analysis_fact(&analysis, node);
 }
 
 RangeTask range_task(const Graph *graph, const Node *roots, size_t count, Arena *arena)

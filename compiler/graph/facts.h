@@ -22,8 +22,9 @@ typedef struct Fact {
    `parameters` is given, at these very values: NodeValue-like rows of 4 doubles per slot). */
 Fact *graph_facts(const Graph *graph, Box box, const double (*parameters)[4], Arena *arena);
 
-/* Range of one node that does not depend on the point, over the ranges of the parameters. */
-Fact graph_frame_fact(const Graph *graph, Node node, Arena *scratch);
+/* frame_ranges.c: range of a component of a node that does not depend on the point, over the ranges
+   of the parameters. */
+Range graph_frame_range(const Graph *graph, Node node, uint32_t component, Arena *scratch);
 
 /* The slope of `root` over a box, refined by cutting the box into at most `cells` cells; inf
    when there is no bound. `*blame` (may be NULL) is the node whose slope first became infinite

@@ -157,7 +157,7 @@ Graph *graph_new(Arena *arena)
 {
     Graph *graph        = arena_new(arena, Graph);
     graph->arena        = arena;
-    graph->frame_facts  = arena_new(arena, FrameFacts);
+    graph->frame_ranges = arena_new(arena, FrameRanges);
     GraphParameter time = {{-HUGE_VAL}, {HUGE_VAL}};
     array_push(arena, &graph->parameters, time);
     return graph;

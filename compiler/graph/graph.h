@@ -75,20 +75,20 @@ typedef struct GraphParameter {
     double low[4], high[4];
 } GraphParameter;
 
-/* Facts of nodes that depend neither on the point nor on parameters, as far as somebody has asked
-   (facts.c). */
-typedef struct FrameFacts {
-    struct Fact **items;       /* by node; NULL: not found yet */
-    size_t        count, used; /* behind `used` none is found */
-} FrameFacts;
+/* Ranges of nodes that depend neither on the point nor on parameters, as far as somebody has asked
+   (frame_ranges.c). */
+typedef struct FrameRanges {
+    struct Range **items;       /* by node, of each component; NULL: not found yet */
+    size_t         count, used; /* behind `used` none is found */
+} FrameRanges;
 
 typedef struct Graph {
-    Arena      *arena;
-    FrameFacts *frame_facts;
-    Expr       *items;
-    size_t      count, capacity;
-    Expr       *older; /* the array before `items` */
-    NearSlots   slots; /* nodes by their expressions */
+    Arena       *arena;
+    FrameRanges *frame_ranges;
+    Expr        *items;
+    size_t       count, capacity;
+    Expr        *older; /* the array before `items` */
+    NearSlots    slots; /* nodes by their expressions */
     struct {
         GraphParameter *items;
         size_t          count, capacity;

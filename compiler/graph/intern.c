@@ -122,10 +122,10 @@ GraphMark graph_mark(Graph *graph)
 }
 
 /* Numbers of nodes that are dropped are given to others. */
-static void facts_forget(FrameFacts *facts, size_t first)
+static void ranges_forget(FrameRanges *ranges, size_t first)
 {
-    for (; facts->used > first; facts->used--)
-        facts->items[facts->used - 1] = NULL;
+    for (; ranges->used > first; ranges->used--)
+        ranges->items[ranges->used - 1] = NULL;
 }
 
 void graph_keep(Graph *graph)
@@ -154,7 +154,7 @@ void graph_release(Graph *graph, GraphMark mark)
             *slot_find(graph, e, expr_hash(e)) = (NearSlot){0};
         }
     graph->count = mark.count;
-    facts_forget(graph->frame_facts, mark.count);
+    ranges_forget(graph->frame_ranges, mark.count);
     if (graph->slots.count != mark.slot_count)
         slots_fill(graph);
     graph_keep(graph);

@@ -137,7 +137,7 @@ static Range frame_range(Lowering *l, Node node, uint32_t component)
 {
     if (graph_is_constant(l->graph, node))
         return range_of(l->graph->items[node].number[component]);
-    return graph_frame_fact(l->graph, node, l->scratch).value[component];
+    return graph_frame_range(l->graph, node, component, l->scratch);
 }
 
 /*

@@ -45,7 +45,7 @@ Range node_range(ShapeBuilder *builder, Node node, uint32_t component)
     double number;
     if (graph_known_component(builder->graph, node, component, &number))
         return range_of(number);
-    Range range = graph_frame_fact(builder->graph, node, builder->scratch).value[component];
+    Range range = graph_frame_range(builder->graph, node, component, builder->scratch);
     arena_free(builder->scratch);
     return range;
 }

@@ -120,9 +120,9 @@ static void parameters_count_with_their_range_or_value(void **state)
     const double values[2][4] = {{0}, {0.5}};
     assert_true(graph_slope(g, product, everywhere, values, 1, NULL, &b->arena) == 0.5);
 
-    Node shifted = graph_op2(g, OP_add, parameter, parameter);
-    Fact fact    = graph_frame_fact(g, shifted, &b->arena);
-    assert_true(fact.value[0].low == -2 && fact.value[0].high == 6 && fact.slope == 0);
+    Node  shifted = graph_op2(g, OP_add, parameter, parameter);
+    Range doubled = graph_frame_range(g, shifted, 0, &b->arena);
+    assert_true(doubled.low == -2 && doubled.high == 6);
 }
 
 /* One task, run for several values, gives what each would have got by itself. */
