@@ -24,6 +24,8 @@ BorderResult border_start(void);
 void         border_stop(void);
 /* Validates SPIR-V.  On BORDER_REFUSED *log has the validator's message, malloc'ed, or is NULL. */
 BorderResult border_validate(const uint32_t *words, size_t word_count, char **log);
+/* The version of SPIRV-Tools. */
+const char *border_tools_version(void);
 /* SPIR-V as assembly text, malloc'ed; NULL if it is no SPIR-V, or without memory. */
 char *border_disassemble(const uint32_t *words, size_t word_count);
 

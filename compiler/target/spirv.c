@@ -9,8 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <spirv-tools/libspirv.h>
-
 #include "compiler/target/glslang_border.h"
 #include "compiler/target/spirv.h"
 
@@ -84,7 +82,7 @@ const char *spirv_glslang_version(void)
         GLSLANG_VERSION_PATCH);
 }
 
-const char *spirv_tools_version(void) { return spvSoftwareVersionString(); }
+const char *spirv_tools_version(void) { return border_tools_version(); }
 
 /* A log of the names of the shader and of the tool, and the tool's message, which is freed. */
 static char *name_log(const char *entry, const char *tool, char *message)
