@@ -105,13 +105,13 @@ bool is_confirmed()
 void end_wide_taps()
 {
     bend_wide = find_bend();
-    if (!(bend_wide > SHARP && bend_wide < THIN))
-        return;
-    sum_wide = sum;
-    level_wide = level;
-    reach = t;
-    at_hit = 0.0;
-    begin_tap_set(FIRST);
+    if (bend_wide > SHARP && bend_wide < THIN) {
+        sum_wide = sum;
+        level_wide = level;
+        reach = t;
+        at_hit = 0.0;
+        begin_tap_set(FIRST);
+    }
 }
 
 // Whether the nearer taps see one side of an edge.  If they are flat they may also see the seam

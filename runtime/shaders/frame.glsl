@@ -134,10 +134,9 @@ uint find_sampled(uint quarter)
 bool has_rays(uint tile, uint quarter, bool is_pixel, uint number)
 {
     uint bits = find_sampled(4u * tile + quarter);
-    if (is_pixel)
-        return (bits >> (number & 15u) & 1u) != 0u;
-    return (bits | find_sampled(4u * tile + 1u) | find_sampled(4u * tile + 2u) |
-            find_sampled(4u * tile + 3u)) != 0u;
+    uint all = bits | find_sampled(4u * tile + 1u) | find_sampled(4u * tile + 2u) |
+               find_sampled(4u * tile + 3u);
+    return (is_pixel ? bits >> (number & 15u) & 1u : all) != 0u;
 }
 
 // Where the rows of a pixel's path begin; hits have rows for whole tiles.

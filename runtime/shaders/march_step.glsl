@@ -18,14 +18,13 @@ float find_crossing(float clearance)
 // unverified interval than is permitted.
 float find_step(float clearance, float last_slope, float slope, float permitted, float tolerance)
 {
-    if (TRACE == RELAXED)
-        return RELAXATION * clearance + tolerance;
-    if (TRACE == AUTOMATIC) {
-        bool  crosses = OVERSHOOT * clearance <= -last_slope * (clearance + permitted);
-        float factor = crosses ? OVERSHOOT / -last_slope : 2.0 / (1.0 - min(slope, 0.98));
-        return max(clearance, factor * clearance) + tolerance;
-    }
-    return clearance + tolerance;
+    bool  crosses = OVERSHOOT * clearance <= -last_slope * (clearance + permitted);
+    float factor = crosses ? OVERSHOOT / -last_slope : 2.0 / (1.0 - min(slope, 0.98));
+    float automatic = max(clearance, factor * clearance);
+    return (TRACE == RELAXED     ? RELAXATION * clearance
+            : TRACE == AUTOMATIC ? automatic
+                                 : clearance) +
+           tolerance;
 }
 
 #ifdef PROBE

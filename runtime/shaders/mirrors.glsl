@@ -77,13 +77,15 @@ float find_widening(HitPoint hit, vec4 facing, bool refracts, float eta)
 // Stores the path that goes on, and lists it.
 void follow_onward(HitPoint hit, uint index, Onward onward, vec4 facing, vec3 weight, float spread)
 {
-    if (largest(weight) < LEAST_WEIGHT || dot(onward.direction, facing.xyz) * onward.side <= 0.0)
-        return;
-    vec3 direction = normalize(onward.direction);
-    store_path(PATH_ORIGIN, index, vec4(find_start(hit, direction, facing, onward.side, 0.0), hit.width));
-    store_path(PATH_DIRECTION, index, vec4(direction, spread));
-    store_path(PATH_WEIGHT, index, vec4(min(weight, 1e30), 1.0));
-    store_path(PATH_TOWARD, index, vec4(0.0, 0.0, 0.0, onward.code));
-    store_path(PATH_SURFACE, index, vec4(hit.position, onward.code));
-    tiles[atomicAdd(counts.tiles, 1u)] = hit.slot;
+    bool leaves = dot(onward.direction, facing.xyz) * onward.side > 0.0;
+    if (leaves && largest(weight) >= LEAST_WEIGHT) {
+        vec3 direction = normalize(onward.direction);
+        vec3 start = find_start(hit, direction, facing, onward.side, 0.0);
+        store_path(PATH_ORIGIN, index, vec4(start, hit.width));
+        store_path(PATH_DIRECTION, index, vec4(direction, spread));
+        store_path(PATH_WEIGHT, index, vec4(min(weight, 1e30), 1.0));
+        store_path(PATH_TOWARD, index, vec4(0.0, 0.0, 0.0, onward.code));
+        store_path(PATH_SURFACE, index, vec4(hit.position, onward.code));
+        tiles[atomicAdd(counts.tiles, 1u)] = hit.slot;
+    }
 }

@@ -163,11 +163,11 @@ void take_difference(float distance)
     sum += weight * distance * direction;
     level += weight * distance * abs(direction);
     direction = taps < TAPS ? stencil(taps) : corner(taps - TAPS);
-    if (taps < TAPS || looks_nearer)
-        return;
-    even = find_evenness();
-    if (even < EVEN)
-        begin_nearer_taps();
+    if (taps >= TAPS && !looks_nearer) {
+        even = find_evenness();
+        if (even < EVEN)
+            begin_nearer_taps();
+    }
 }
 
 float find_flatness() { return looks_nearer ? even : find_evenness(); }
@@ -187,11 +187,11 @@ void take_difference(float distance)
 
 float find_flatness()
 {
+    float evenness = find_evenness();
 #if STENCIL == 3
-    if (tap_set == ONE_SIDE)
-        return 1.0;
+    evenness = tap_set == ONE_SIDE ? 1.0 : evenness;
 #endif
-    return find_evenness();
+    return evenness;
 }
 #endif
 
@@ -203,10 +203,10 @@ const float LEAST_OUTSIDE = 0.4;
 void take_outside(float rise)
 {
 #ifndef SHEETS // differences see both sides of a sheet
-    if (rise >= LEAST_OUTSIDE)
-        return;
-    derived = false;
-    begin_nearer();
+    if (!(rise >= LEAST_OUTSIDE)) {
+        derived = false;
+        begin_nearer();
+    }
 #endif
 }
 #endif
@@ -223,12 +223,13 @@ void take_distance(float distance)
     distance *= hit.side;
     taps++;
 #if defined(GRADIENT) && defined(ROOTS) && STENCIL == 3
-    if (derived) {
+    if (derived)
         take_outside(distance / t);
-        return;
-    }
-#endif
+    else
+        take_difference(distance);
+#else
     take_difference(distance);
+#endif
 }
 
 // Further sets of taps have a loop of their own.  In a single loop their variables would have to be

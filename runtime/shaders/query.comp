@@ -14,7 +14,7 @@
 #include "frame.glsl"
 
 const uint REFILL_THRESHOLD = 2u;
-const bool SAVES = false;
+#define SAVES 0
 
 // The longest interval that may stay unverified, in permitted errors.
 const float TOLERANCE = 0.0625;

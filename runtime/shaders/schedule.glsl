@@ -15,8 +15,8 @@
  *     void save_item()                     stores the state of an item that is not finished
  *     void end_group(uint steps)           called last: `steps` is the number of this lane's steps
  *     const uint REFILL_THRESHOLD          how many idle lanes begin new items together
- *     const bool SAVES                     whether items are saved when the steps of the dispatch
- *                                          are used up; else items that have begun are finished
+ *     SAVES                                1: items are saved when the steps of the dispatch are
+ *                                          used up; 0: items that have begun are finished
  *
  * On lavapipe a branch skips nothing, and eight lanes go through a loop together.  So a lane whose
  * item has ended takes the workgroup's next item while the others march on (REFILL).  The loop over
@@ -26,7 +26,7 @@
 // Whether the lane's item takes another step, after this many iterations.
 bool may_take_step(uint iterations, uint allowed)
 {
-    return item_needs_step() && (!SAVES || iterations < allowed);
+    return item_needs_step() && (SAVES == 0 || iterations < allowed);
 }
 
 #if REFILL
@@ -54,7 +54,7 @@ void work_on_items(uint group, uint steps_allowed, inout uint steps)
     uint lane = gl_LocalInvocationIndex, first = group * LANES * control.items_per_lane,
          next = first;
     uint limit = min(first + LANES * control.items_per_lane, control.items);
-    bool has_item = false, is_stepping, wants_item, saved = control.source == ITEMS_QUEUED;
+    bool has_item = false, is_stepping, wants_item, saved = SAVES != 0 && control.source == ITEMS_QUEUED;
     if (control.source == ITEMS_UNTAKEN)
         next += taken[group];
     do {
@@ -111,7 +111,7 @@ void work_on_items(uint group, uint steps_allowed, inout uint steps)
     if (number >= control.items)
         return;
     exchange_item(number);
-    begin_item(number, control.source == ITEMS_QUEUED);
+    begin_item(number, SAVES != 0 && control.source == ITEMS_QUEUED);
     for (; may_take_step(steps, steps_allowed); steps++)
         take_distance(item_distance(item_position()));
     if (item_needs_step())

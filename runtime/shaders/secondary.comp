@@ -86,10 +86,11 @@ void begin_ray(vec3 normal, vec3 toward)
     step_limit = blocked || below_horizon ? 0u : MOST_STEPS;
 }
 
-vec2 sample_disc(uint use)
+// A point of the unit square, for the light or the hemisphere of the dispatch.
+vec2 sample_now()
 {
-    uvec2 pixel = work.corner + pixel_of(hit.slot);
-    return disc_of_square(sample_square(pixel, control.ray, use, control.seed));
+    uint use = control.phase == RAYS_OVER_HEMISPHERE ? 0u : 1u + control.light;
+    return sample_square(work.corner + pixel_of(hit.slot), control.ray, use, control.seed);
 }
 
 // Where a cone, with its whole width, has left the box around the scene.
@@ -103,32 +104,22 @@ float find_end_of_cone()
     return min(min(ends.x, ends.y), min(ends.z, end));
 }
 
-// Aims a cone at the centre of the light, or a ray at a random point of its disc.
-void aim_at_light(vec3 normal)
+// Aims a cone at the centre of the light, or a ray at a random point of it.
+void aim_at_light(vec3 normal, vec2 square, vec2 disc)
 {
     lift = lift_in_pixels * hit.width + 4.0 * hit.rounding;
     start = hit.position + normal * lift;
     vec3  toward = positional ? light.vector - start : light.vector;
     float light_distance = max(length(toward), 1e-12);
     vec3  axis = toward / light_distance;
-    end = positional ? light_distance : frame.farthest;
-    if (is_cone) {
-        float turned = max(-dot(normal, hit.direction), 1.0 / MOST_STRETCHED);
-        begin_ray(normal, axis);
-        spread = radius / light_distance;
-        margin = CONE_MARGIN * hit.width / turned;
-        end = min(positional ? light_distance : frame.farthest, find_end_of_cone());
-        blocked = blocked || facing <= 2.0 * spread;
-        step_limit = blocked ? 0u : MOST_STEPS;
-        return;
-    }
-    if (radius > 0.0) {
+    float to_light = positional ? light_distance : frame.farthest;
+    end = to_light;
+    if (radius > 0.0 && !is_cone) {
         vec3 right, up;
-        vec2 point = radius * sample_disc(1u + control.light);
+        vec2 point = radius * disc;
         find_frame(axis, right, up);
         if ((light.kind & LIGHT_RECTANGLE) != 0u) {
-            uvec2 pixel = work.corner + pixel_of(hit.slot);
-            point = 2.0 * sample_square(pixel, control.ray, 1u + control.light, control.seed) - 1.0;
+            point = 2.0 * square - 1.0;
             right = light.right;
             up = light.up;
         }
@@ -136,15 +127,22 @@ void aim_at_light(vec3 normal)
         light_distance = length(toward);
         end = positional ? light_distance : end;
     }
-    below_horizon = dot(normal, toward) <= 0.0;
+    below_horizon = dot(normal, toward) <= 0.0 && !is_cone;
     begin_ray(normal, toward / light_distance);
+    if (is_cone) {
+        float turned = max(-dot(normal, hit.direction), 1.0 / MOST_STRETCHED);
+        spread = radius / light_distance;
+        margin = CONE_MARGIN * hit.width / turned;
+        end = min(to_light, find_end_of_cone());
+        blocked = blocked || facing <= 2.0 * spread;
+        step_limit = blocked ? 0u : MOST_STEPS;
+    }
 }
 
 // Aims over the hemisphere, with a density in proportion to the cosine, as light from there counts.
-void aim_over_hemisphere(vec3 normal)
+void aim_over_hemisphere(vec3 normal, vec2 point)
 {
     vec3 right, up;
-    vec2 point = sample_disc(0u);
     lift = max(lift_in_pixels * hit.width, LIFT_OF_REACH * frame.occlusion_reach) +
            4.0 * hit.rounding;
     start = hit.position + normal * lift;
@@ -225,10 +223,11 @@ void begin_item(uint number, bool saved)
 #ifdef PATH_RAYS
     aim_as_chosen(normal);
 #else
+    vec2 square = sample_now(), disc = disc_of_square(square);
     if (control.phase == RAYS_OVER_HEMISPHERE)
-        aim_over_hemisphere(normal);
+        aim_over_hemisphere(normal, disc);
     else
-        aim_at_light(normal);
+        aim_at_light(normal, square, disc);
 #endif
     blocked = blocked || !exists;
     step_limit = exists ? step_limit : 0u;
@@ -365,7 +364,7 @@ void end_group(uint steps)
 }
 
 const uint REFILL_THRESHOLD = 3u;
-const bool SAVES = false;
+#define SAVES 0
 void save_item() {}
 
 #include "schedule.glsl"

@@ -36,6 +36,7 @@
 #ifndef TRACE // chosen by the renderer; these choices suit every device
 #define TRACE 3u
 #define REFILL 0
+#define SAVES 1
 #endif
 #include "scene.glsl"
 #include "frame.glsl"
@@ -70,11 +71,6 @@ const float SEAM = 4.0; // roundings
 // A beam ends where its ball is hardly wider than the tile.
 const float BEAM_MARGIN = 1.05;
 
-#ifdef PACKED
-const bool SAVES = false; // there is a march for each part, too much to save
-#else
-const bool SAVES = true;
-#endif
 const uint REFILL_THRESHOLD = 2u;
 
 // The state of a ray that is marched; in the queue two rows of four numbers.
@@ -244,6 +240,7 @@ vec2 find_width(float side)
 
 vec2 inside_width() { return -SEAM * ROUNDING * vec2(rounding, 1.0); }
 
+#if SAVES
 RayMarch unpack_march(uvec4 low, uvec4 high)
 {
     vec4 rest = uintBitsToFloat(high);
@@ -272,6 +269,9 @@ void save_item()
     queue[at] = uvec4(march.index, bits, floatBitsToUint(vec2(march.t, march.clearance)));
     queue[at + 1u] = floatBitsToUint(vec4(march.step, march.slope, 0.0, 0.0));
 }
+#else
+void save_item() {}
+#endif
 
 // Begins the march of a ray or beam at `start`, before which nothing is hit.
 void begin_march(uint index, float start, bool is_ray)
@@ -316,12 +316,15 @@ void begin_item(uint number, bool saved)
     if (control.sampled_at != 0u && (is_ray || !large && !small))
         exists = exists && has_rays(tile_number, quarter, is_ray, number);
 #endif
+#if SAVES
     if (saved) {
         uint at = 2u * (control.reading + number);
         march = unpack_march(queue[at], queue[at + 1u]);
-        pixel = work.corner + find_cell(march.index, work.extent.x);
+        index = march.index;
+        pixel = work.corner + find_cell(index, work.extent.x);
         exists = true;
     }
+#endif
 
     float side = large ? 32.0 : small ? 4.0 : 8.0;
     uvec2 tile = small ? 2u * item_tile + half_tile : item_tile;
@@ -334,7 +337,7 @@ void begin_item(uint number, bool saved)
     if (saved && march.side < 0.0)
         width = inside_width();
 #ifdef PATH_RAYS
-    float code = load_path(PATH_TOWARD, saved ? march.index : index).w;
+    float code = load_path(PATH_TOWARD, index).w;
     enter_medium(code);
     width = is_in_medium() ? inside_width() : width;
 #endif
@@ -342,15 +345,14 @@ void begin_item(uint number, bool saved)
     end = range.y;
     ends_at_walls = is_ray && end < frame.farthest;
 #ifdef MARCH_GROUP
-    uint at_pixel = saved ? march.index : index;
     if (exists && is_ray) {
-        RayEnd known = find_end(at_pixel);
+        RayEnd known = find_end(index);
         end = known.state == STATE_HIT || known.unresolved ? min(end, known.t) : end;
     }
 #endif
 #ifndef PATH_RAYS // what is behind the caller's depth is not seen
     if (is_ray && control.limits != 0u) {
-        float limit = find_end_by_limit(saved ? march.index : exists ? index : 0u, direction);
+        float limit = find_end_by_limit(exists ? index : 0u, direction);
         ends_at_walls = ends_at_walls && !(limit < end);
         end = min(end, limit);
     }
@@ -360,19 +362,18 @@ void begin_item(uint number, bool saved)
     plane_t = plane_t > frame.farthest ? INFINITE : max(plane_t, 0.0);
     end = min(end, plane_t);
 #endif
-    if (saved)
-        return;
-
-    uvec2 cell = item_tile - (large ? first_32 : first_8);
-    uint  beam = large ? end_of_32(cell) : small ? end_of_4(cell, quarter) : end_of_8(cell);
-    begin_march(is_ray ? index : beam, max(range.x, item_start), is_ray);
+    if (!saved) {
+        uvec2 cell = item_tile - (large ? first_32 : first_8);
+        uint  beam = large ? end_of_32(cell) : small ? end_of_4(cell, quarter) : end_of_8(cell);
+        begin_march(is_ray ? index : beam, max(range.x, item_start), is_ray);
 #ifdef PATH_RAYS // it begins at a surface, so its first distance is too small to tell the side
-    march.side = sign(code);
-    width = march.side < 0.0 ? inside_width() : width;
+        march.side = sign(code);
+        width = march.side < 0.0 ? inside_width() : width;
 #endif
 #ifdef PACKED
-    begin_scene_parts(is_ray);
+        begin_scene_parts(is_ray);
 #endif
+    }
 }
 
 bool item_needs_step()

@@ -158,12 +158,24 @@ static bool trace_in_chain(Job *job, const March *march, const WorkBlock *work, 
     return true;
 }
 
+/* The budget of rays.  Where they are not saved, a lane's last one may take all steps of a ray beyond
+   those of the dispatch. */
+static LaneBudget ray_budget(const Job *job)
+{
+    LaneBudget     budget = lane_budget(job);
+    const uint32_t most   = rendering_steps_within(job->rendering, UINT32_MAX);
+    if (!rendering_saves_rays(job->rendering, job->schedule) &&
+        budget.steps > most - job->options.most_steps)
+        budget.steps = most - job->options.most_steps;
+    return budget;
+}
+
 /* Traces rays.  The first passes begin the rays of all pixels of the band, or of the listed tiles.
    Each further pass goes on with the rays that have not ended. */
 static bool trace(Job *job, const March *march, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    LaneBudget    budget  = lane_budget(job);
+    LaneBudget    budget  = ray_budget(job);
     Items         items   = pixels_of_rays(job, march, work);
     control->phase        = TRACE_RAYS;
     control->source       = ITEMS_FRESH;

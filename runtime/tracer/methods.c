@@ -34,6 +34,12 @@ uint32_t rendering_steps_within(const KrsRendering *rendering, uint32_t wanted)
     return wanted < most ? wanted : most > 0 ? most : 1;
 }
 
+/* Where lanes take new items anyway, saving makes kernels larger and saves nothing. */
+bool rendering_saves_rays(const KrsRendering *rendering, KrsSchedule schedule)
+{
+    return schedule != KRS_SCHEDULE_REFILL || rendering->program->loops > 0;
+}
+
 KrsSchedule rendering_schedule_of_march_group(const KrsRendering *rendering, KrsSchedule asked,
                                               uint32_t march_group)
 {

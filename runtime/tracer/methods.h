@@ -10,6 +10,9 @@
 void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule);
 /* The steps of a lane in a dispatch: `wanted`, or the most that its loops permit. */
 uint32_t rendering_steps_within(const KrsRendering *rendering, uint32_t wanted);
+/* Whether a primary ray is saved when the steps of its dispatch are used up.  Else it is marched to
+   its end; the steps of the dispatch and those of a ray are few enough for that. */
+bool rendering_saves_rays(const KrsRendering *rendering, KrsSchedule schedule);
 /* The schedule for the rays of a march group that is marched by itself. */
 KrsSchedule rendering_schedule_of_march_group(const KrsRendering *rendering, KrsSchedule asked,
                                               uint32_t march_group);

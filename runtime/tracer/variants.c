@@ -178,7 +178,9 @@ static bool want_probe(KernelVariant *to, const KrsRendering *rendering, KrsTrac
 KernelVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
                                uint32_t group)
 {
-    KernelVariant to = begin_variant(rendering, trace, schedule);
+    KernelVariant to    = begin_variant(rendering, trace, schedule);
+    const bool    saves = group != MARCH_PACKED && rendering_saves_rays(rendering, schedule);
+    define(&to, "#define SAVES %d\n", saves);
     want_rays(&to, rendering);
     if (rendering->rays == RAYS_OF_PATHS)
         want_media(&to, rendering);

@@ -9,7 +9,7 @@
 
 typedef struct KernelVariant {
     KernelScene scene;
-    char        defines[400];
+    char        defines[420];
 } KernelVariant;
 
 /* Defines of kernels with or without a scene. */

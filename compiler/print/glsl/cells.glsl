@@ -12,10 +12,9 @@ vec3 krs_cell(vec3 p, vec3 period, vec3 low, vec3 high)
 
 vec3 krs_cell_polar(vec3 p, float count)
 {
-    if (count < 1.0)
-        return p;
-    float sector = 6.28318530718 / count;
+    float sector = 6.28318530718 / max(count, 1.0);
     float angle = sector * floor(krs_atan2(p.z, p.x) / sector + 0.5);
     float c = krs_cos(angle), s = krs_sin(angle);
-    return vec3(c * p.x + s * p.z, p.y, c * p.z - s * p.x);
+    vec3 turned = vec3(c * p.x + s * p.z, p.y, c * p.z - s * p.x);
+    return mix(turned, p, bvec3(count < 1.0));
 }

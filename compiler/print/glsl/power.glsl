@@ -4,14 +4,10 @@
 
 float krs_pow(float a, float b)
 {
-    if (b == 0.0)
-        return 1.0;
-    if (a == 0.0)
-        return b > 0.0 ? 0.0 : uintBitsToFloat(0x7f800000u);
     float size = exp2(b * log2(abs(a)));
-    if (a > 0.0)
-        return size;
-    if (b != floor(b))
-        return uintBitsToFloat(0x7fc00000u);
-    return fract(b * 0.5) != 0.0 ? -size : size;
+    float of_zero = mix(uintBitsToFloat(0x7f800000u), 0.0, b > 0.0);
+    float of_negative = mix(size, -size, fract(b * 0.5) != 0.0);
+    of_negative = mix(of_negative, uintBitsToFloat(0x7fc00000u), b != floor(b));
+    float power = mix(mix(of_negative, size, a > 0.0), of_zero, a == 0.0);
+    return mix(power, 1.0, b == 0.0);
 }
