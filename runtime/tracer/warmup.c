@@ -11,6 +11,7 @@
 
 #include <pthread.h>
 #include <stdatomic.h>
+#include <string.h>
 #include <unistd.h>
 
 #include "runtime/tracer/layouts.h"
@@ -107,14 +108,34 @@ static bool warm_up_all(KrsRenderer *renderer, VkDescriptorSet scene_set,
     return ready;
 }
 
-bool kernels_make(KrsRenderer *renderer, VkDescriptorSet scene_set, const KernelRequest *requests,
+/* Puts the largest kernels first.  They take longest, and no thread should begin one when all others
+   are done. */
+static void sort_by_size(KernelRequest *requests, KernelCode *codes, size_t count)
+{
+    for (size_t i = 1; i < count; i++) {
+        const KernelRequest request = requests[i];
+        const KernelCode    code    = codes[i];
+        size_t              to      = i;
+        for (; to > 0 && codes[to - 1].bytes < code.bytes; to--) {
+            requests[to] = requests[to - 1];
+            codes[to]    = codes[to - 1];
+        }
+        requests[to] = request;
+        codes[to]    = code;
+    }
+}
+
+bool kernels_make(KrsRenderer *renderer, VkDescriptorSet scene_set, const KernelRequest *asked,
                   size_t count, double *spirv_ms, double *pipeline_ms)
 {
-    Gpu       *gpu = &renderer->gpu;
-    KernelCode codes[KERNELS_AT_ONCE];
+    Gpu          *gpu = &renderer->gpu;
+    KernelRequest requests[KERNELS_AT_ONCE];
+    KernelCode    codes[KERNELS_AT_ONCE];
     if (count == 0)
         return true;
-    bool   ready = kernel_compile_all(gpu, requests, count, codes, spirv_ms);
+    memcpy(requests, asked, count * sizeof *requests);
+    bool ready = kernel_compile_all(gpu, requests, count, codes, spirv_ms);
+    sort_by_size(requests, codes, count);
     double start = clock_ms();
     for (size_t i = 0; i < count; i++)
         *requests[i].kernel = (Kernel){0};

@@ -9,7 +9,7 @@
 /* Makes at most KERNELS_AT_ONCE kernels, and has the driver run each once in the background.  The
    scene's set may be VK_NULL_HANDLE. */
 enum { KERNELS_AT_ONCE = 16 + 2 * KRS_MOST_MARCH_GROUPS };
-bool kernels_make(KrsRenderer *renderer, VkDescriptorSet scene_set, const KernelRequest *requests,
+bool kernels_make(KrsRenderer *renderer, VkDescriptorSet scene_set, const KernelRequest *asked,
                   size_t count, double *spirv_ms, double *pipeline_ms);
 
 #endif
