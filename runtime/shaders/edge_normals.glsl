@@ -67,17 +67,26 @@ vec3 find_place_across(bool turned)
     return BESIDE_REACHES * (turned ? cross(mean, to_eye) : to_eye) + ABOVE_REACHES * mean;
 }
 
+// Begins another set of taps.  Those beside an edge at which another solid stands are a reach away
+// from that solid, along the plane that the last set has seen.
 void begin_tap_set(uint which)
 {
     float outward = which == OUTSIDE ? OUTWARD_REACHES : which == INSIDE ? -OUTWARD_REACHES : 0.0;
+    vec3  wide = normalize(sum_wide), place = outward * (wide + find_backwards());
     tap_set = which;
     t = max(NEARER * reach, NOISE_NEARER * largest(hit.position) + hit.rounding);
-    vec3 place = outward * (normalize(sum_wide) + find_backwards());
 #ifdef PLAIN
     if (which == TO_EYE || which == ACROSS)
         place = find_place_across(which == ACROSS);
 #endif
-    start = hit.position + t * place;
+    vec3 moved = t * place;
+    if (which == BESIDE) {
+        plane_normal = normalize(sum);
+        vec3 lateral = wide - dot(wide, plane_normal) * plane_normal;
+        t = reach;
+        moved = reach * lateral / max(length(lateral), 1e-6);
+    }
+    start = hit.position + moved;
     begin_taps();
     tap_limit = TAPS + 1u; // the first one is in the middle
     direction = vec3(0.0);
@@ -102,16 +111,15 @@ bool is_confirmed()
     return largest(deviation) < ON_PLANE * length(rise);
 }
 
-void end_wide_taps()
+// Ends the wide taps.  Returns the set that follows; WIDE: none.
+uint end_wide_taps()
 {
     bend_wide = find_bend();
-    if (bend_wide > SHARP && bend_wide < THIN) {
-        sum_wide = sum;
-        level_wide = level;
-        reach = t;
-        at_hit = 0.0;
-        begin_tap_set(FIRST);
-    }
+    sum_wide = sum;
+    level_wide = level;
+    reach = t;
+    at_hit = 0.0;
+    return bend_wide > SHARP && bend_wide < THIN ? FIRST : WIDE;
 }
 
 // Whether the nearer taps see one side of an edge.  If they are flat they may also see the seam
@@ -124,52 +132,39 @@ bool is_one_side(float bend)
                        bend < FLAT_ENOUGH && is_confirmed());
 }
 
-// Begins the taps beside an edge at which another solid stands: a reach away from that solid, along
-// the plane.
-void begin_beside()
-{
-    plane_normal = normalize(sum);
-    vec3 wide = normalize(sum_wide), lateral = wide - dot(wide, plane_normal) * plane_normal;
-    begin_tap_set(BESIDE);
-    t = reach;
-    start = hit.position + reach * lateral / max(length(lateral), 1e-6);
-}
-
-void end_beside()
+// Ends the taps beside an edge.  Returns what they have found: ONE_SIDE or MEAN.
+uint end_beside()
 {
     bool same = find_bend() < FLAT_ENOUGH && dot(sum, plane_normal) > FACING_SAME * length(sum) &&
                 abs(middle) < ON_PLANE * t; // else another plane is there, such as the floor below
-    tap_set = same ? ONE_SIDE : MEAN;
     sum = plane_normal;
+    return same ? ONE_SIDE : MEAN;
 }
 
-void end_nearer_taps()
+// Ends other taps.  Returns the set that follows, or what has been found.
+uint end_nearer_taps()
 {
     float bend = find_bend();
     at_hit = tap_set == AT_HIT ? middle : at_hit;
-    if (is_one_side(bend))
-        tap_set = ONE_SIDE;
-    else if (bend > FLAT_ENOUGH && tap_set < LAST) // an edge lies between the taps
-        begin_tap_set(tap_set + 1u);
-    else if (bend < FLAT_ENOUGH && tap_set < INSIDE)
-        begin_beside();
-    else
-        tap_set = MEAN;
+    uint next = bend < FLAT_ENOUGH && tap_set < INSIDE ? BESIDE : MEAN;
+    next = bend > FLAT_ENOUGH && tap_set < LAST ? tap_set + 1u : next; // an edge is between the taps
+    return is_one_side(bend) ? ONE_SIDE : next;
 }
 
 // Ends a set of taps.  Returns whether another one has begun.
 bool needs_more_taps()
 {
-    if (tap_set == WIDE)
-        end_wide_taps();
-    else if (tap_set == BESIDE)
-        end_beside();
-    else
-        end_nearer_taps();
-    if (tap_set == MEAN) {
+    uint next = tap_set == WIDE     ? end_wide_taps()
+                : tap_set == BESIDE ? end_beside()
+                                    : end_nearer_taps();
+    bool goes_on = next != WIDE && next < ONE_SIDE;
+    if (goes_on)
+        begin_tap_set(next);
+    tap_set = next;
+    if (next == MEAN) {
         sum = sum_wide;
         level = level_wide;
         t = reach;
     }
-    return tap_set != WIDE && tap_set < ONE_SIDE;
+    return goes_on;
 }
