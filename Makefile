@@ -74,7 +74,7 @@ SHADERS  := $(sort $(wildcard runtime/shaders/*.comp runtime/shaders/*.glsl runt
 # Kernels without a scene are compiled here and now, not on every machine again; what is optimized
 # here, drivers need not.
 MODULES  := $(shell grep -L 'include "scene.glsl"' runtime/shaders/*.comp)
-MODULES  := $(MODULES:runtime/shaders/%=$(B)/modules/%.spv)
+MODULES  := $(MODULES:runtime/shaders/%=$(B)/modules/%.spv) $(B)/modules/escape.comp-PATH_RAYS.spv
 EXAMPLES := $(sort $(wildcard examples/*.krs))
 
 STYLE    := -std=c17 -D_GNU_SOURCE -Wall -Wextra -Wpedantic -Wshadow -Werror -I. -MMD -MP -pthread
@@ -131,10 +131,11 @@ $(B)/shader_files.c: $(B)/embed $(SHADERS)
 	@$(B)/embed shader_files runtime/shaders/ $(SHADERS) >$@
 $(B)/module_files.c: $(B)/embed $(MODULES)
 	@$(B)/embed module_files $(B)/modules/ $(MODULES) >$@
-$(B)/modules/%.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
+$(B)/modules/%-PATH_RAYS.spv: DEFINES := -DPATH_RAYS
+$(B)/modules/%-PATH_RAYS.spv $(B)/modules/%.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
 	@mkdir -p $(@D)
 	@echo "shader $<"
-	@glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl -o $@ $< >/dev/null
+	@glslangValidator -V --target-env vulkan1.1 $(DEFINES) -I. -Iruntime/shaders -Icompiler/print/glsl -o $@ $< >/dev/null
 	@spirv-opt --target-env=vulkan1.1 -O $@ -o $@
 	@spirv-val --target-env vulkan1.1 $@
 $(B)/embed: compiler/base/embed/embed.c

@@ -54,13 +54,20 @@ static void *compile(void *user)
     return NULL;
 }
 
-/* The SPIR-V that the program carries of a kernel without a scene. */
+/* The SPIR-V that the program carries of a kernel without a scene: FILE.spv, or FILE-NAME.spv of a
+   kernel for which this name alone is defined. */
 static const EmbeddedFile *find_module(const KernelSource *source)
 {
-    size_t length = strlen(source->file);
+    char wanted[96], defined[32] = "";
+    int  length = 0; /* of the defines, if there is one alone */
+    if (source->defines)
+        sscanf(source->defines, "#define %31s%n", defined, &length);
+    if (source->scene || (source->defines && strcmp(source->defines + length, "\n") != 0))
+        return NULL;
+    snprintf(wanted, sizeof wanted, "%s%s%s.spv", source->file, source->defines ? "-" : "",
+             defined);
     for (const EmbeddedFile *file = module_files; file->name; file++)
-        if (!source->scene && !source->defines && strncmp(file->name, source->file, length) == 0 &&
-            strcmp(file->name + length, ".spv") == 0)
+        if (strcmp(file->name, wanted) == 0)
             return file;
     return NULL;
 }
