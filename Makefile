@@ -131,13 +131,18 @@ $(B)/shader_files.c: $(B)/embed $(SHADERS)
 	@$(B)/embed shader_files runtime/shaders/ $(SHADERS) >$@
 $(B)/module_files.c: $(B)/embed $(MODULES)
 	@$(B)/embed module_files $(B)/modules/ $(MODULES) >$@
-$(B)/modules/%-PATH_RAYS.spv: DEFINES := -DPATH_RAYS
-$(B)/modules/%-PATH_RAYS.spv $(B)/modules/%.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
+# A module of a kernel, without defines and with one.
+define MAKE_MODULE
 	@mkdir -p $(@D)
-	@echo "shader $<"
-	@glslangValidator -V --target-env vulkan1.1 $(DEFINES) -I. -Iruntime/shaders -Icompiler/print/glsl -o $@ $< >/dev/null
+	@echo "shader $<$(if $(1), $(1))"
+	@glslangValidator -V --target-env vulkan1.1 $(1) -I. -Iruntime/shaders -Icompiler/print/glsl -o $@ $< >/dev/null
 	@spirv-opt --target-env=vulkan1.1 -O $@ -o $@
 	@spirv-val --target-env vulkan1.1 $@
+endef
+$(B)/modules/%.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
+	$(call MAKE_MODULE)
+$(B)/modules/%-PATH_RAYS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
+	$(call MAKE_MODULE,-DPATH_RAYS)
 $(B)/embed: compiler/base/embed/embed.c
 	@mkdir -p $(@D)
 	@$(CC) $(STYLE) -O1 -o $@ $<
