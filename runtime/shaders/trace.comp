@@ -424,10 +424,9 @@ void end_item()
     uint march_group = 0u;
     march.state = unresolved ? STATE_MISS : march.state;
     // A ray from inside of a solid that reaches the box around all solids hits a wall there.
-#ifdef PATH_RAYS
-    bool is_inside = march.side < 0.0 || is_in_medium();
-#else
     bool is_inside = march.side < 0.0;
+#ifdef PATH_RAYS
+    is_inside = is_inside || is_in_medium();
 #endif
     if (is_ray && !unresolved && march.state == STATE_MISS && is_inside && ends_at_walls) {
         march.state = STATE_HIT;
