@@ -169,10 +169,11 @@ bool gui_is_inside(void)
     return ImGui::IsAnyItemActive() || ImGui::IsPopupOpen(nullptr, any);
 }
 
-void gui_backdrop(unsigned texture)
+void gui_backdrop(unsigned texture, float part)
 {
-    const ImTextureID id = reinterpret_cast<ImTextureID>(static_cast<size_t>(texture));
-    ImGui::GetBackgroundDrawList()->AddImage(id, ImVec2(0, 0), ImGui::GetIO().DisplaySize);
+    const ImVec2      size = ImGui::GetIO().DisplaySize;
+    const ImTextureID id   = reinterpret_cast<ImTextureID>(static_cast<size_t>(texture));
+    ImGui::GetBackgroundDrawList()->AddImage(id, ImVec2(0, 0), ImVec2(part * size.x, size.y));
 }
 
 void gui_mark(float x, float y)
@@ -203,6 +204,8 @@ void gui_panel(const char *name, GuiCorner corner, float below, float width, boo
     }
     ImGui::Begin(name, nullptr, flags);
 }
+
+float gui_panel_space(float width) { return width + 2 * margin; }
 
 float gui_panel_end(void)
 {

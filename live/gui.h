@@ -28,8 +28,8 @@ void gui_navigate(const char *panel);
 bool gui_navigates(void);
 bool gui_is_inside(void); /* of an item of the panel, which Esc leaves first */
 
-/* A texture behind all panels, over the whole window. */
-void gui_backdrop(unsigned texture);
+/* A texture behind all panels, over this part of the window's width from the left. */
+void gui_backdrop(unsigned texture, float part);
 /* A cross in the picture, for a moment, in pixels of the window. */
 void gui_mark(float x, float y);
 
@@ -47,6 +47,8 @@ typedef enum GuiTone { GUI_PLAIN, GUI_FAINT, GUI_STRONG, GUI_WARNING, GUI_ERROR 
    what it has.  Returns its height of the last frame through gui_panel_end. */
 void  gui_panel(const char *name, GuiCorner corner, float below, float width, bool quiet);
 float gui_panel_end(void);
+/* What a panel of this width needs of the window's, with its margins. */
+float gui_panel_space(float width);
 
 void gui_text(GuiTone tone, const char *text);
 void gui_source(GuiTone tone, const char *text); /* in the monospaced font */

@@ -375,6 +375,11 @@ static void draw_help(Viewing *viewing)
     gui_panel_end();
 }
 
+double panels_width(const Viewing *viewing)
+{
+    return viewing->panels ? gui_panel_space(PANEL_WIDTH) : 0;
+}
+
 void panels_draw(Viewing *viewing)
 {
     if (viewing->help) {

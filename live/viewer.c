@@ -85,8 +85,10 @@ static void send_view(Viewing *viewing)
     uint32_t width, height;
     if (viewing->terminal)
         terminal_size(viewing->terminal, &width, &height);
-    else
+    else {
+        window_reserve(viewing->window, panels_width(viewing));
         window_size(viewing->window, &width, &height);
+    }
     if (width == 0 || height == 0)
         return; /* minimised */
     if (width != viewing->view.width || height != viewing->view.height)

@@ -25,9 +25,10 @@ struct Window {
     WindowEvents events;
     GLuint       texture;
     bool         has_picture, linear;
-    int          button; /* that is held in the picture; -1: none */
-    double       x, y;   /* of the mouse at the last event */
-    double       moved;  /* pixels since the button was pressed */
+    int          button;   /* that is held in the picture; -1: none */
+    double       reserved; /* at the right, for panels */
+    double       x, y;     /* of the mouse at the last event */
+    double       moved;    /* pixels since the button was pressed */
     int          modifiers;
 };
 
@@ -217,16 +218,38 @@ void window_set_picture(Window *window, const uint8_t *pixels, uint32_t width, u
     window->has_picture = true;
 }
 
+void window_reserve(Window *window, double right) { window->reserved = right; }
+
+/* Less is no picture to work with. */
+enum { LEAST_PICTURE = 256 };
+
+/* The part of the window's width that the picture has.  In a narrow window it has all, and lies
+   behind what is to its right. */
+static double part_of_picture(const Window *window)
+{
+    int width, height;
+    glfwGetWindowSize(window->glfw, &width, &height);
+    return width >= window->reserved + LEAST_PICTURE ? 1 - window->reserved / width : 1;
+}
+
+static void framebuffer_size(const Window *window, uint32_t *width, uint32_t *height)
+{
+    int w, h;
+    glfwGetFramebufferSize(window->glfw, &w, &h);
+    *width  = w < 0 ? 0 : (uint32_t)w;
+    *height = h < 0 ? 0 : (uint32_t)h;
+}
+
 void window_begin(Window *window)
 {
     uint32_t width, height;
-    window_size(window, &width, &height);
+    framebuffer_size(window, &width, &height);
     glViewport(0, 0, (GLsizei)width, (GLsizei)height);
     glClearColor(0.07F, 0.075F, 0.08F, 1);
     glClear(GL_COLOR_BUFFER_BIT);
     gui_begin();
     if (window->has_picture)
-        gui_backdrop(window->texture);
+        gui_backdrop(window->texture, (float)part_of_picture(window));
 }
 
 void window_end(Window *window)
@@ -237,11 +260,10 @@ void window_end(Window *window)
 
 void window_size(const Window *window, uint32_t *width, uint32_t *height)
 {
-    int w, h;
-    glfwGetFramebufferSize(window->glfw, &w, &h);
-    const bool minimised = glfwGetWindowAttrib(window->glfw, GLFW_ICONIFIED);
-    *width               = minimised || w < 0 ? 0 : (uint32_t)w;
-    *height              = minimised || h < 0 ? 0 : (uint32_t)h;
+    framebuffer_size(window, width, height);
+    *width = (uint32_t)(*width * part_of_picture(window));
+    if (glfwGetWindowAttrib(window->glfw, GLFW_ICONIFIED))
+        *width = *height = 0;
 }
 
 void window_mouse(const Window *window, double *x, double *y)
@@ -249,7 +271,7 @@ void window_mouse(const Window *window, double *x, double *y)
     int width, height;
     glfwGetCursorPos(window->glfw, x, y);
     glfwGetWindowSize(window->glfw, &width, &height);
-    *x /= width > 0 ? width : 1;
+    *x /= width > 0 ? width * part_of_picture(window) : 1;
     *y /= height > 0 ? height : 1;
 }
 

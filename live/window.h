@@ -38,11 +38,14 @@ void window_ask_to_close(Window *window);
 void window_begin(Window *window);
 void window_end(Window *window);
 
-/* The picture behind everything, stretched to the whole window; four bytes a pixel. */
+/* Keeps so much of the window free, at its right; in the units of gui.h.  Not of a window
+   in which little would be left for the picture. */
+void window_reserve(Window *window, double right);
+/* The picture behind everything, stretched to the rest of the window; four bytes a pixel. */
 void window_set_picture(Window *window, const uint8_t *pixels, uint32_t width, uint32_t height);
-/* The size of what the window shows, in pixels of the screen; 0 when it is minimised. */
+/* The size of the picture in the window, in pixels of the screen; 0 when it is minimised. */
 void window_size(const Window *window, uint32_t *width, uint32_t *height);
-/* Where the mouse is, in parts of width and height from the top left. */
+/* Where the mouse is, in parts of the picture's width and height from its top left. */
 void window_mouse(const Window *window, double *x, double *y);
 bool window_key_is_held(const Window *window, int key);
 void window_set_title(Window *window, const char *title);

@@ -6,7 +6,7 @@
 export XDG_CACHE_HOME="$work/caches"
 unset WAYLAND_DISPLAY
 "${CC:-cc}" -std=c17 -o screen_check "$root/tests/cli/screen_check.c" -lpng || exit 1
-plan 31
+plan 32
 : >out
 
 scene() { # radius
@@ -45,7 +45,7 @@ DISPLAY='' run view ball.krs
 said 69 "no window can be opened" "no display"
 
 mkfifo number
-Xvfb -displayfd 3 -screen 0 320x240x24 -fbdir . -nocursor >/dev/null 2>&1 3>number &
+Xvfb -displayfd 3 -screen 0 640x240x24 -fbdir . -nocursor >/dev/null 2>&1 3>number &
 server=$!
 read -r screen <number
 export DISPLAY=":$screen"
@@ -58,6 +58,16 @@ viewer=$!
 window=$(timeout 20 xdotool search --sync --onlyvisible --name scene.krs | head -n 1)
 xdotool mousemove 48 32 key Tab
 shows "the first picture" --specialize numbers
+# All but what a note of 152 x 65 pixels in the corner hides.
+xdotool windowsize "$window" 640 160 key Tab
+"$krs" render scene.krs --size 296x160 --samples 2 -q -o wide.png
+for _ in $(seq 100); do
+    ./screen_check Xvfb_screen0 wide.png >out || [ "$(cut -d ' ' -f 1 out)" -gt 9880 ] || break
+    sleep 0.1
+done
+[ "$(cut -d ' ' -f 1 out)" -le 9880 ]
+result $? "the picture stands beside the panel"
+xdotool windowsize "$window" 96 64 key Tab
 scene 1.25 >scene.krs
 shows "a number is edited"
 for i in 1 2 3 4 5; do
