@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include <cmocka.h>
+#include <png.h>
 
 #include "live/cut.h"
 #include "live/document.h"
@@ -259,6 +260,66 @@ static void balls_follow_the_mouse(void **state)
     assert_int_equal(cut_zones(&cut, zones, KRS_MOST_ZONES), KRS_MOST_ZONES); /* no room */
 }
 
+/* ---- textures ---- */
+
+static void write_gray(const char *path, unsigned char gray)
+{
+    const unsigned char texels[4] = {gray, gray, gray, gray};
+    png_image           image     = {.version = PNG_IMAGE_VERSION, .width = 2, .height = 2};
+    image.format                  = PNG_FORMAT_GRAY;
+    assert_true(png_image_write_to_file(&image, path, 0, texels, 2, NULL));
+}
+
+/* Reads it again, and checks that a texture of this gray moves the surface of the ball. */
+static void expect_gray(Document *document, KrsChange kind, unsigned char gray)
+{
+    assert_int_equal(document_read(document), KRS_OK);
+    Version  *version = document_version(document);
+    KrsFrame *frame;
+    double    distance;
+    assert_int_equal(version_changes(version).kind, kind);
+    assert_int_equal(krs_frame_new(version_scene(version), &frame), KRS_OK);
+    const double point[1][3] = {{1 + 0.2 * gray / 255.0, 0, 0}};
+    assert_int_equal(krs_distance(frame, point, 1, &distance), KRS_OK);
+    assert_true(fabs(distance) < 1e-6);
+    krs_frame_free(frame);
+    version_release(version);
+}
+
+/* A picture that is written again, or replaced as programs for painting do, is read again, and
+   compiles nothing. */
+static void textures_are_followed(void **state)
+{
+    (void)state;
+    char             folder[] = "/tmp/krs-live-XXXXXX", scene[40], picture[40], other[40];
+    const KrsOptions with     = {.specialize = KRS_SPECIALIZE_STRUCTURE};
+    assert_non_null(mkdtemp(folder));
+    snprintf(scene, sizeof scene, "%s/a.krs", folder);
+    snprintf(picture, sizeof picture, "%s/a.png", folder);
+    snprintf(other, sizeof other, "%s/b.png", folder);
+    write_gray(picture, 51);
+    write_file(scene, "let t = texture(\"a.png\", space: \"linear\");"
+                      "show sphere(1).displace(t(x, y).r, amplitude: 0.2);");
+    Document *document = document_new(scene, &with);
+    expect_gray(document, KRS_CHANGE_STRUCTURE, 51);
+    assert_false(document_changed(document));
+    write_gray(picture, 204);
+    assert_true(document_changed(document));
+    expect_gray(document, KRS_CHANGE_VALUES, 204);
+    write_gray(other, 102);
+    assert_false(document_changed(document)); /* it is another file */
+    assert_int_equal(rename(other, picture), 0);
+    assert_true(document_changed(document));
+    expect_gray(document, KRS_CHANGE_VALUES, 102);
+    write_gray(picture, 102);
+    assert_true(document_changed(document));
+    expect_gray(document, KRS_CHANGE_NOTHING, 102);
+    document_free(document);
+    remove(picture);
+    remove(scene);
+    rmdir(folder);
+}
+
 /* ---- presets ---- */
 
 static void presets_are_kept(void **state)
@@ -345,6 +406,7 @@ int main(void)
         cmocka_unit_test(gestures_are_undone),
         cmocka_unit_test(planes_cut_what_is_before_them),
         cmocka_unit_test(balls_follow_the_mouse),
+        cmocka_unit_test(textures_are_followed),
         cmocka_unit_test(presets_are_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
