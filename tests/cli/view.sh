@@ -6,7 +6,7 @@
 export XDG_CACHE_HOME="$work/caches"
 unset WAYLAND_DISPLAY
 "${CC:-cc}" -std=c17 -o screen_check "$root/tests/cli/screen_check.c" -lpng || exit 1
-plan 32
+plan 34
 : >out
 
 scene() { # radius
@@ -67,7 +67,20 @@ for _ in $(seq 100); do
 done
 [ "$(cut -d ' ' -f 1 out)" -le 9880 ]
 result $? "the picture stands beside the panel"
-xdotool windowsize "$window" 96 64 key Tab
+# Each letter is a key that cuts, turns, plays or shows something else; the clicks open the section
+# and go into its line.
+xdotool mousemove 360 75 click 1
+sleep 0.5
+xdotool mousemove 560 98 click 1
+sleep 0.5
+xdotool type --delay 80 kzv1c
+xdotool key Return
+for _ in $(seq 50); do [ -e scene.krs.presets ] && break; sleep 0.1; done
+grep -q kzv1c scene.krs.presets
+result $? "a preset is kept by the name that is typed"
+rm -f scene.krs.presets
+xdotool windowsize "$window" 96 64 mousemove 48 32 click 1 key Tab
+shows "and letters of a name do nothing else"
 scene 1.25 >scene.krs
 shows "a number is edited"
 for i in 1 2 3 4 5; do
