@@ -437,10 +437,12 @@ static uint32_t find_loop(Contour *contour, const Patch *patch, uint32_t loop[8]
     return count;
 }
 
-/* The shorter diagonal of four crossings begins here: 0 or 1. */
-static uint32_t first_of_diagonal(const Contour *contour, const Patch *patch)
+/* The shorter diagonal of four crossings begins there: 0 or 1. */
+uint32_t patch_turn(const Contour *contour, const Patch *patch)
 {
     const double *at[4];
+    if (patch->corner_count < 4)
+        return 0;
     for (int i = 0; i < 4; i++)
         at[i] = contour->crossings.items[patch->crossings[i]].at;
     return distance3(at[1], at[3]) < distance3(at[0], at[2]);
@@ -458,7 +460,7 @@ static void add_triangles(Contour *contour, const Patch *patch)
             add_triangle(contour, tet, loop[i], loop[(i + 1) % count], apex);
         return;
     }
-    uint32_t turn = count == 4 ? first_of_diagonal(contour, patch) : 0;
+    uint32_t turn = patch_turn(contour, patch);
     add_triangle(contour, tet, loop[turn], loop[turn + 1], loop[turn + 2]);
     if (count == 4)
         add_triangle(contour, tet, loop[turn], loop[turn + 2], loop[(turn + 3) % 4]);

@@ -71,6 +71,9 @@ void contour_distances(Contour *contour);
 /* Finds vertices and triangles; those of each tetrahedron follow each other. */
 void contour_find(Contour *contour);
 
+/* All triangles of a patch that is no fan have this crossing of it. */
+uint32_t patch_turn(const Contour *contour, const Patch *patch);
+
 static inline bool point_is_inside(const Tets *tets, uint32_t point)
 {
     return tets->points.items[point].distance < 0;

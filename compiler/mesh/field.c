@@ -39,6 +39,7 @@ void field_open(MeshField *field, Arena *arena)
     field->region_bytes = bytes_of_region(&field->tape);
     for (int i = 0; i < MOST_REGIONS; i++)
         field->regions[i].memory = arena_alloc(arena, field->region_bytes, 1);
+    field->pieces.memory = arena_alloc(arena, field->region_bytes, 1);
 }
 
 /* ---- regions ---- */
@@ -66,7 +67,7 @@ static const LaneTape *outer_tape(const MeshField *field)
 }
 
 /* Threads take no memory from the arenas of others; without room the tape stays as it is. */
-static void prune(MeshField *field, const LaneTape *outer, FieldRegion *region)
+static bool prune(MeshField *field, const LaneTape *outer, FieldRegion *region)
 {
     Pool    pool = {region, field->region_bytes};
     jmp_buf exhausted;
@@ -74,8 +75,18 @@ static void prune(MeshField *field, const LaneTape *outer, FieldRegion *region)
     Arena   arena  = {.memory = &memory};
     region->used   = 0;
     region->tape   = *outer;
-    if (setjmp(exhausted) == 0)
-        region->tape = lane_prune(outer, &field->ranges, 1, &arena);
+    if (setjmp(exhausted) != 0)
+        return false;
+    region->tape = lane_prune(outer, &field->ranges, outer->output_count, &arena);
+    return true;
+}
+
+bool field_keep(MeshField *field, uint32_t *outputs, size_t count)
+{
+    LaneTape tape     = *outer_tape(field);
+    tape.outputs      = outputs;
+    tape.output_count = count;
+    return prune(field, &tape, &field->pieces) && field->pieces.tape.rows <= field->tape.rows;
 }
 
 static bool box_has(const Box *box, const double point[3])
@@ -188,6 +199,12 @@ static Range range_of_cuts(const MeshField *field, Box box)
     if (field->cut)
         cut = fmax(cut, distance_to_cut(field, middle));
     return cut > -INFINITY ? range_around(cut, box) : range_of(-INFINITY);
+}
+
+bool field_is_cut(const MeshField *field, Box box)
+{
+    return lane_ranges_run(tape_in(field, &box), &field->ranges, box).low <
+           range_of_cuts(field, box).high;
 }
 
 Range field_range(const MeshField *field, Box box)

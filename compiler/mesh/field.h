@@ -37,6 +37,7 @@ typedef struct MeshField {
     LaneHessian *hessians;
     FieldRegion  regions[MOST_REGIONS]; /* each within the one before */
     size_t       region_count, region_bytes;
+    FieldRegion  pieces; /* of field_pieces */
 } MeshField;
 
 /* What it needs to answer; frame, solid and box are set, and the frame is up to date. */
@@ -61,5 +62,30 @@ bool field_slope(const MeshField *field, Box box, Range *range, LaneSlope *slope
 /* And the ranges of its second derivatives; false: there are none, or the first may jump. */
 bool field_hessian(const MeshField *field, Box box, Range *range, LaneSlope *slope,
                    LaneHessian *hessian);
+
+/* Whether what cuts the components may be what is least in the box. */
+bool field_is_cut(const MeshField *field, Box box);
+/* Keeps values of the tape that was entered last, to be found at points. */
+bool field_keep(MeshField *field, uint32_t *outputs, size_t count);
+
+enum { MOST_PIECES = 8, MOST_PIECE_STEPS = 32 };
+
+/* In a box, a number of the same sign as the distance, and as often 0: made of pieces whose derivatives do not jump by
+   minima and maxima.  It is told in the order of a stack: a number of a piece, or one of these. */
+enum { PIECE_MIN = -1, PIECE_MAX = -2 };
+typedef struct FieldPieces {
+    size_t count, step_count;
+    int    steps[MOST_PIECE_STEPS];
+    double signs[MOST_PIECES],
+        offsets[MOST_PIECES]; /* a piece is sign times a value, and the offset */
+    LaneSlope   slopes[MOST_PIECES];
+    LaneHessian hessians[MOST_PIECES];
+} FieldPieces;
+
+/* In a box that was entered last; false: it is not made like that. */
+bool field_pieces(MeshField *field, Box box, FieldPieces *pieces);
+/* Their values at up to MOST_FIELD_POINTS points in that box: values[i * count] and so on are those of point i. */
+void field_piece_values(const MeshField *field, const FieldPieces *pieces,
+                        const double (*points)[3], size_t point_count, double *values);
 
 #endif

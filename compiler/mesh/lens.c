@@ -103,11 +103,16 @@ static bool fits_lens(void *user, uint32_t triangle, const double corners[3][3])
            lens->above - low <= mesh->error;
 }
 
+double lens_reach(const Verifier *verifier, const Lens *lens)
+{
+    return hypot(lens->radius, 2 * verifier->error);
+}
+
 bool mesh_fills_lens(const Verifier *verifier, const Lens *lens)
 {
-    LensMesh mesh  = {.lens = lens, .error = verifier->error};
-    double   reach = hypot(lens->radius, 2 * verifier->error);
-    return bvh_visit(verifier->mesh, lens->center, reach, fits_lens, &mesh) && mesh.pierced;
+    LensMesh mesh = {.lens = lens, .error = verifier->error};
+    return bvh_visit(verifier->mesh, lens->center, lens_reach(verifier, lens), fits_lens, &mesh) &&
+           mesh.pierced;
 }
 
 bool is_beside_lens(const Lens *lens, const double corners[4][3])

@@ -13,9 +13,11 @@
 /* What a point of the tetrahedra knows of those around it: smooth.h. */
 typedef struct Around {
     float miss, width; /* the largest and the least */
+    float way;         /* the largest miss over the slope */
+    bool  in_pieces;   /* some is bounded by pieces */
 } Around;
 
-enum { MARKS = 64 }; /* cells along a side */
+enum { MARKS = 160 }; /* cells along a side */
 
 typedef struct Mesher {
     Memory                memory;

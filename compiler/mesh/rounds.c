@@ -6,66 +6,59 @@
  * until the mesh changes near to it: after each round those that were bisected mark the cells of a
  * coarse grid, and what touches no marked cell is not looked at again.
  */
-#include <stdio.h>
-#include <time.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/mesh/mesher.h"
-#include "compiler/mesh/smooth.h"
+#include "compiler/mesh/bounds.h"
 
 enum { PATIENCE = 16 }; /* groups between two questions */
 /* The cube's corner is nowhere in particular, so that planes of the scene seldom have points of the
    grid. */
 static const double CUBE_CORNER[3] = {0.04417, 0.04731, 0.04553};
-/* The rest of the error is for rounding: files may have single precision. */
-static const double PROVEN_ERROR = 0.999;
-/* Edges, in errors, below which what curves too much for second derivatives is left to cells. */
-static const double LEAST_SMOOTH = 12;
-
-static double proven_error(const Mesher *m) { return PROVEN_ERROR * m->error; }
-
-static void find_box(const Mesher *m, const Tet *tet, double low[3], double high[3])
-{
-    double corners[4][3];
-    tets_corners(&m->tets, tet, corners);
-    for (int k = 0; k < 3; k++) {
-        low[k]  = fmin(fmin(corners[0][k], corners[1][k]), fmin(corners[2][k], corners[3][k]));
-        high[k] = fmax(fmax(corners[0][k], corners[1][k]), fmax(corners[2][k], corners[3][k]));
-    }
-}
 
 /* ---- marks ---- */
 
-static void find_cells(const Mesher *m, const Tet *tet, double margin, int low[3], int high[3])
+typedef struct Marks {
+    int low[3], high[3];
+} Marks;
+
+static Marks marks_in(const Mesher *m, const double low[3], const double high[3])
 {
-    double least[3], most[3];
-    find_box(m, tet, least, most);
+    Marks marks;
     for (int k = 0; k < 3; k++) {
         double scale = MARKS / m->side, origin = m->tets.origin[k];
-        low[k]  = (int)fmax(0, floor((least[k] - margin - origin) * scale));
-        high[k] = (int)fmin(MARKS - 1, floor((most[k] + margin - origin) * scale));
+        marks.low[k]  = (int)fmax(0, floor((low[k] - origin) * scale));
+        marks.high[k] = (int)fmin(MARKS - 1, floor((high[k] - origin) * scale));
     }
+    return marks;
 }
 
 static void mark(Mesher *m, const Tet *tet)
 {
-    int low[3], high[3];
-    find_cells(m, tet, 0, low, high);
-    for (int x = low[0]; x <= high[0]; x++)
-        for (int y = low[1]; y <= high[1]; y++)
-            for (int z = low[2]; z <= high[2]; z++)
+    double low[3], high[3];
+    tet_box(m, tet, low, high);
+    Marks in = marks_in(m, low, high);
+    for (int x = in.low[0]; x <= in.high[0]; x++)
+        for (int y = in.low[1]; y <= in.high[1]; y++)
+            for (int z = in.low[2]; z <= in.high[2]; z++)
                 m->marked[x][y][z] = true;
 }
 
+/* Whether what a proof asked for may be new. */
 static bool is_marked(const Mesher *m, const Tet *tet)
 {
-    int low[3], high[3];
-    find_cells(m, tet, 2 * m->error, low, high);
-    for (int x = low[0]; x <= high[0]; x++)
-        for (int y = low[1]; y <= high[1]; y++)
-            for (int z = low[2]; z <= high[2]; z++)
+    double corners[4][3], center[3], low[3], high[3];
+    tets_corners(&m->tets, tet, corners);
+    double reach = fmax(corners_ball((const double(*)[3])corners, center) + 2 * m->error,
+                        tet->reach);
+    for (int k = 0; k < 3; k++) {
+        low[k]  = center[k] - reach;
+        high[k] = center[k] + reach;
+    }
+    Marks in = marks_in(m, low, high);
+    for (int x = in.low[0]; x <= in.high[0]; x++)
+        for (int y = in.low[1]; y <= in.high[1]; y++)
+            for (int z = in.low[2]; z <= in.high[2]; z++)
                 if (m->marked[x][y][z])
                     return true;
     return false;
@@ -100,32 +93,19 @@ static void find_groups(Mesher *m, TetState first, TetState last)
     atomic_store(&m->next_group, 0);
 }
 
-static Tet *tet_of_group(Mesher *m, const Group *group, uint32_t i)
-{
-    return &m->tets.list.items[m->groups.order.items[group->first + i]];
-}
-
-static Box box_and_margin(const Mesher *m, const double low[3], const double high[3])
-{
-    Box box;
-    for (int k = 0; k < 3; k++)
-        box.axis[k] = (Range){low[k] - m->error, high[k] + m->error};
-    return box;
-}
-
-/* The error around is within it. */
+/* Twice the error around is within it. */
 static Box box_of_group(Mesher *m, const Group *group)
 {
     double low[3], high[3], least[3], most[3];
-    find_box(m, tet_of_group(m, group, 0), low, high);
+    tet_box(m, tet_of_group(m, group, 0), low, high);
     for (uint32_t i = 1; i < group->count; i++) {
-        find_box(m, tet_of_group(m, group, i), least, most);
+        tet_box(m, tet_of_group(m, group, i), least, most);
         for (int k = 0; k < 3; k++) {
             low[k]  = fmin(low[k], least[k]);
             high[k] = fmax(high[k], most[k]);
         }
     }
-    return box_and_margin(m, low, high);
+    return box_and_margin(2 * m->error, low, high);
 }
 
 typedef void WorkOnGroup(Mesher *m, Verifier *verifier, const Group *group);
@@ -165,168 +145,52 @@ static bool for_groups(Mesher *m, WorkOnGroup *work)
     return !atomic_load(&m->stopped);
 }
 
-/* ---- where the surface is smooth ---- */
+/* ---- where no cells are needed ---- */
 
-/* A tetrahedron, and the cell of a grid that has it: the finest one whose cells are no smaller. */
-typedef struct Placed {
-    uint64_t cell;
-    uint32_t tet;
-} Placed;
-
-static uint64_t cell_of(const Tets *tets, const Tet *tet)
+static float way_of(const Tet *tet)
 {
-    uint32_t low[3], most = 0;
-    uint64_t cell = 1, size = 1, bits = 20; /* the first bit tells sizes apart */
-    for (int k = 0; k < 3; k++) {
-        uint32_t high = 0;
-        low[k]        = UINT32_MAX;
-        for (int i = 0; i < 4; i++) {
-            uint32_t at = tets->points.items[tet->points[i]].at[k];
-            low[k]      = at < low[k] ? at : low[k];
-            high        = at > high ? at : high;
-        }
-        most = high - low[k] > most ? high - low[k] : most;
-    }
-    for (; size < most; size *= 2)
-        bits--;
-    for (int k = 0; k < 3; k++)
-        cell = cell << bits | low[k] / size;
-    return cell;
-}
-
-static int compare_placed(const void *a, const void *b)
-{
-    const Placed *first = a, *second = b;
-    return first->cell != second->cell ? (first->cell > second->cell) - (first->cell < second->cell)
-                                       : (first->tet > second->tet) - (first->tet < second->tet);
-}
-
-static TetState state_of_smooth(const Mesher *m, const Tet *tet)
-{
-    if (tet->miss <= tet->slope * proven_error(m))
-        return TET_FITS;
-    return tet->miss < INFINITY && tets_longest_edge(&m->tets, tet) > LEAST_SMOOTH * m->error
-               ? TET_REFUTED
-               : TET_ROUGH;
-}
-
-static void measure_in_cell(Mesher *m, const Verifier *verifier, const SmoothCell *cell,
-                            const Placed *placed, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        Tet *tet = &m->tets.list.items[placed[i].tet];
-        if (cell->empty || smooth_measure(&m->contour, cell, tet) ||
-            (!cell->known && verify_is_empty(verifier, tet)))
-            tet->state = TET_EMPTY;
-        else
-            tet->state = (uint8_t)state_of_smooth(m, tet);
-    }
-}
-
-/* Whether one that does not fit would by a share of the error, were bounds what they are at best. */
-static bool one_may_fit(Mesher *m, const SmoothCell *middle, double share, const Placed *placed,
-                        size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        Tet tet = m->tets.list.items[placed[i].tet];
-        if ((tet.state == TET_REFUTED || tet.state == TET_ROUGH) && tet.miss < INFINITY) {
-            smooth_measure(&m->contour, middle, &tet);
-            if (tet.miss <= share * tet.slope * proven_error(m))
-                return true;
-        }
-    }
-    return false;
-}
-
-/* Narrower bounds cost more, so they are found only where they may tell. */
-static void look_closer(Mesher *m, Verifier *verifier, SmoothCell *cell, const Placed *placed,
-                        size_t count)
-{
-    static const double AT_BEST = 0.85;
-    enum { HALVINGS = 3 };
-    SmoothCell middle;
-    if (cell->known && !cell->empty && smooth_look_at_middle(verifier->field, cell, &middle) &&
-        one_may_fit(m, &middle, AT_BEST, placed, count)) {
-        smooth_look_closer(verifier->field, m->error, HALVINGS, cell);
-        measure_in_cell(m, verifier, cell, placed, count);
-    }
-}
-
-static void look_at_cell(Mesher *m, Verifier *verifier, const Placed *placed, size_t count)
-{
-    double     low[3], high[3], least[3], most[3];
-    SmoothCell cell = {0};
-    find_box(m, &m->tets.list.items[placed[0].tet], low, high);
-    for (size_t i = 1; i < count; i++) {
-        find_box(m, &m->tets.list.items[placed[i].tet], least, most);
-        for (int k = 0; k < 3; k++) {
-            low[k]  = fmin(low[k], least[k]);
-            high[k] = fmax(high[k], most[k]);
-        }
-    }
-    Box  box     = box_and_margin(m, low, high);
-    bool entered = field_enter(verifier->field, box);
-    if (!entered) {
-        for (size_t i = 0; i < count; i++)
-            m->tets.list.items[placed[i].tet].state = TET_EMPTY;
-        return;
-    }
-    smooth_look(verifier->field, box, m->error, &cell);
-    measure_in_cell(m, verifier, &cell, placed, count);
-    look_closer(m, verifier, &cell, placed, count);
-    field_leave(verifier->field);
-}
-
-static void look_at_group(Mesher *m, Verifier *verifier, const Group *group)
-{
-    Placed placed[LARGEST_GROUP];
-    size_t count = 0, end;
-    for (uint32_t i = 0; i < group->count; i++) {
-        Tet *tet = tet_of_group(m, group, i);
-        if (verify_is_far(&m->tets, tet))
-            tet->state = TET_EMPTY;
-        else
-            placed[count++] = (Placed){cell_of(&m->tets, tet),
-                                       m->groups.order.items[group->first + i]};
-    }
-    qsort(placed, count, sizeof *placed, compare_placed);
-    for (size_t i = 0; i < count; i = end) {
-        for (end = i + 1; end < count && placed[end].cell == placed[i].cell;)
-            end++;
-        look_at_cell(m, verifier, &placed[i], end - i);
-    }
+    return tet->slope > 0 ? tet->miss / tet->slope * (1 + 1e-6F) : INFINITY;
 }
 
 /* What points know of all tetrahedra that have them. */
 static void look_around(Mesher *m)
 {
-    static const Around nothing = {0, INFINITY};
+    static const Around nothing = {.width = INFINITY};
     while (m->around.count < m->tets.points.count)
         array_push_large(&m->arena, &m->around, nothing);
     for (size_t i = 0; i < m->around.count; i++)
         m->around.items[i] = nothing;
     for (size_t i = 0; i < m->tets.list.count; i++) {
         const Tet *tet  = &m->tets.list.items[i];
-        float      miss = tet->state == TET_EMPTY ? 0 : tet->miss;
+        bool       none = tet->state == TET_EMPTY;
+        float      miss = none ? 0 : tet->miss, way = none ? 0 : way_of(tet);
         for (int k = 0; k < 4; k++) {
-            Around *around = &m->around.items[tet->points[k]];
-            around->miss   = miss > around->miss ? miss : around->miss;
-            around->width  = tet->width < around->width ? tet->width : around->width;
+            Around *around    = &m->around.items[tet->points[k]];
+            around->miss      = miss > around->miss ? miss : around->miss;
+            around->width     = tet->width < around->width ? tet->width : around->width;
+            around->way       = way > around->way ? way : around->way;
+            around->in_pieces = around->in_pieces || (!none && tet->steep > 0);
         }
     }
 }
 
-/* Whether no point of those around a tetrahedron is on the wrong side of the mesh by more than grows along the
-   error; and from none of its points one leaves them within that. */
+/* Whether no point of those around a tetrahedron is on the wrong side of the mesh by more than grows along the error; and from
+   none of its points one leaves them within that.  Pieces have the sign of the distance, but not its size.  So from
+   one to another only the way tells, which the surface is away at most. */
 static bool all_fit_around(const Mesher *m, const Tet *tet)
 {
-    float miss = 0, width = INFINITY;
+    float  miss = 0, width = INFINITY, way = 0;
+    bool   in_pieces = false;
+    double steep     = tet->steep > 0 ? tet->steep : 1;
     for (int k = 0; k < 4; k++) {
         const Around *around = &m->around.items[tet->points[k]];
         miss                 = around->miss > miss ? around->miss : miss;
         width                = around->width < width ? around->width : width;
+        way                  = around->way > way ? around->way : way;
+        in_pieces            = in_pieces || around->in_pieces;
     }
-    return miss <= tet->slope * fmin(proven_error(m), width);
+    double least = tet->slope * fmin(proven_error(m), width);
+    return in_pieces ? steep * way <= least && way <= proven_error(m) : miss <= least;
 }
 
 /* What needs no cells. */
@@ -361,7 +225,7 @@ static void forget_marked(Mesher *m)
     for (size_t i = 0; i < m->tets.list.count; i++) {
         Tet *tet = &m->tets.list.items[i];
         if ((tet->state == TET_PROVEN || tet->state == TET_UNRESOLVED) && is_marked(m, tet))
-            tet->state = (uint8_t)state_of_smooth(m, tet);
+            tet->state = (uint8_t)state_by_bounds(m, tet);
     }
 }
 
@@ -426,8 +290,11 @@ static void count_proven(Mesher *m)
     m->unresolved = 0;
     for (size_t i = 0; i < m->tets.list.count; i++) {
         int state = m->tets.list.items[i].state;
-        if (state == TET_UNRESOLVED && m->unresolved == 0)
-            tets_position(&m->tets, m->tets.list.items[i].points[0], m->unresolved_at);
+        if (state == TET_UNRESOLVED && m->unresolved == 0) {
+            double corners[4][3];
+            tets_corners(&m->tets, &m->tets.list.items[i], corners);
+            corners_ball((const double(*)[3])corners, m->unresolved_at);
+        }
         near += state != TET_EMPTY;
         proven += state == TET_PROVEN || state == TET_UNRESOLVED;
         m->unresolved += state == TET_UNRESOLVED;
@@ -440,7 +307,7 @@ static void count_proven(Mesher *m)
 static bool prove(Mesher *m)
 {
     find_groups(m, TET_NEW, TET_NEW);
-    if (!for_groups(m, look_at_group))
+    if (!for_groups(m, bound_group))
         return false;
     if (judge_smooth(m) == 0) {
         find_tree(m);
@@ -450,25 +317,6 @@ static bool prove(Mesher *m)
         bvh_free(&m->bvh, m->contour.triangles.count, &m->arena);
     }
     count_proven(m);
-    if (getenv("MDBG")) {
-        size_t n[8] = {0}, fin = 0, low = 0;
-        double sl = 0;
-        for (size_t i = 0; i < m->tets.list.count; i++) {
-            const Tet *t = &m->tets.list.items[i];
-            n[t->state]++;
-            if (t->state != TET_EMPTY) {
-                fin += t->miss < INFINITY;
-                low += t->miss < INFINITY && t->slope <= 0;
-                if (t->miss < INFINITY)
-                    sl += t->slope;
-            }
-        }
-        fprintf(stderr,
-                "tets %zu new %zu empty %zu fits %zu rough %zu proven %zu refuted %zu unres %zu; "
-                "smooth %zu noslope %zu mean slope %g tris %zu t %.2f\n",
-                m->tets.list.count, n[0], n[1], n[2], n[3], n[4], n[5], n[6], fin, low,
-                sl / (double)fin, m->contour.triangles.count, (double)clock() / CLOCKS_PER_SEC);
-    }
     return is_wanted(m);
 }
 

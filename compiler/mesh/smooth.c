@@ -12,23 +12,23 @@ static const int    ROW[6] = {0, 1, 2, 1, 0, 0}, COLUMN[6] = {0, 1, 2, 2, 2, 1};
 
 /* Those in the middle of the ranges, and what is added to the diagonal for the rest of them: |u_j u_k| is at
    most (u_j^2 + u_k^2) / 2.  It is the same for all points around, though their second derivatives differ. */
-static void find_forms(const LaneHessian *hessian, SmoothCell *cell)
+void smooth_forms(const LaneHessian *hessian, double above[6], double below[6])
 {
     double more[3] = {0, 0, 0}, size = 0;
     for (int i = 0; i < 6; i++) {
-        double middle  = 0.5 * (hessian->by[i].low + hessian->by[i].high);
-        double rest    = ROUNDING * fmax(hessian->by[i].high - middle, middle - hessian->by[i].low);
-        cell->above[i] = middle;
-        cell->below[i] = -middle;
-        size           = fmax(size, fabs(middle));
+        double middle = 0.5 * (hessian->by[i].low + hessian->by[i].high);
+        double rest   = ROUNDING * fmax(hessian->by[i].high - middle, middle - hessian->by[i].low);
+        above[i]      = middle;
+        below[i]      = -middle;
+        size          = fmax(size, fabs(middle));
         more[ROW[i]] += rest;
         if (i >= 3)
             more[COLUMN[i]] += rest;
     }
     for (int k = 0; k < 3; k++) {
         more[k] += 1e-12 * size;
-        cell->above[k] += more[k];
-        cell->below[k] += more[k];
+        above[k] += more[k];
+        below[k] += more[k];
     }
 }
 
@@ -90,7 +90,7 @@ void smooth_look(const MeshField *field, Box box, double error, SmoothCell *cell
     cell->empty = range.low > 0 || range.high < 0;
     if (!cell->known || cell->empty)
         return;
-    find_forms(&hessian, cell);
+    smooth_forms(&hessian, cell->above, cell->below);
     cell->slope = find_slope(field, box, 1e-2 * error, &hessian);
     if (find_gradient(&slope, &gradient))
         cell->slope = fmax(cell->slope, gradient.least / ROUNDING);
@@ -107,7 +107,7 @@ void smooth_look_closer(const MeshField *field, double error, int halvings, Smoo
     if (!find_hessian(field, box, halvings, &within) ||
         !find_hessian(field, cell->box, halvings, &around))
         return;
-    find_forms(&within, cell);
+    smooth_forms(&within, cell->above, cell->below);
     cell->slope = fmax(cell->slope, find_slope(field, cell->box, 1e-2 * error, &around));
 }
 
@@ -123,7 +123,7 @@ bool smooth_look_at_middle(const MeshField *field, const SmoothCell *cell, Smoot
     }
     if (!field_hessian(field, middle->box, &range, &slope, &hessian))
         return false;
-    find_forms(&hessian, middle);
+    smooth_forms(&hessian, middle->above, middle->below);
     double square = 0;
     for (int k = 0; k < 3; k++)
         square += slope.by[k].low * slope.by[k].low;
@@ -143,7 +143,7 @@ typedef struct Side {
 } Side;
 
 /* How much the form permits between two points. */
-static double bend(const double form[6], const double a[3], const double b[3])
+double smooth_bend(const double form[6], const double a[3], const double b[3])
 {
     double d[3];
     add_scaled3(d, a, -1, b);
@@ -156,7 +156,7 @@ static double bend(const double form[6], const double a[3], const double b[3])
    it is that of the radius of the smallest ball around the points. */
 static double most_of_pair(double q) { return 0.25 * q; }
 
-static double most_of_three(double a, double b, double c)
+double smooth_most_of_three(double a, double b, double c)
 {
     double longest = fmax(a, fmax(b, c)),
            square  = 2 * (a * b + b * c + c * a) - a * a - b * b - c * c;
@@ -217,22 +217,23 @@ static double most_on_mesh(const MeshPart *part, const double form[6])
     for (uint32_t i = 0; patch->fan && i < count; i++) {
         const double *a = part->crossings[i], *b = part->crossings[(i + 1) % count];
         const double *m = part->bends[i], *apex = patch->apex;
-        double        ab = bend(form, a, b), pa = bend(form, apex, a), pb = bend(form, apex, b);
-        most = fmax(most,
-                    m ? most_of_ring(ab, bend(form, apex, m),
-                                     fmax(fmax(pa, pb), fmax(bend(form, a, m), bend(form, b, m))))
-                      : most_of_three(ab, pa, pb));
+        double        ab = smooth_bend(form, a, b), pa = smooth_bend(form, apex, a),
+               pb = smooth_bend(form, apex, b);
+        most      = fmax(most, m ? most_of_ring(ab, smooth_bend(form, apex, m),
+                                                fmax(fmax(pa, pb), fmax(smooth_bend(form, a, m),
+                                                                        smooth_bend(form, b, m))))
+                                 : smooth_most_of_three(ab, pa, pb));
     }
     if (patch->fan)
         return most;
     const double *const *c = part->crossings;
     if (count == 3)
-        return most_of_three(bend(form, c[0], c[1]), bend(form, c[1], c[2]),
-                             bend(form, c[2], c[0]));
+        return smooth_most_of_three(smooth_bend(form, c[0], c[1]), smooth_bend(form, c[1], c[2]),
+                                    smooth_bend(form, c[2], c[0]));
     double sides = 0;
     for (int i = 0; i < 4; i++)
-        sides = fmax(sides, bend(form, c[i], c[(i + 1) % 4]));
-    return most_of_ring(bend(form, c[0], c[2]), bend(form, c[1], c[3]), sides);
+        sides = fmax(sides, smooth_bend(form, c[i], c[(i + 1) % 4]));
+    return most_of_ring(smooth_bend(form, c[0], c[2]), smooth_bend(form, c[1], c[3]), sides);
 }
 
 /* ---- one side ---- */
@@ -266,7 +267,7 @@ static double miss_of_side(const Side *side, const MeshPart *part, const double 
         double longest = 0, depth = depths[i - side->on_mesh];
         for (int j = 0; j < side->count; j++)
             if (j != i)
-                longest = fmax(longest, bend(side->form, side->at[i], side->at[j]));
+                longest = fmax(longest, smooth_bend(side->form, side->at[i], side->at[j]));
         double left = 0.5 * longest - depth;
         shallow[i]  = part->patch ? left > most : left >= 0;
         any         = any || shallow[i];
@@ -280,7 +281,7 @@ static double miss_of_side(const Side *side, const MeshPart *part, const double 
     for (int i = 0; i < side->count; i++)
         for (int j = 0; j < i; j++)
             if ((i < side->on_mesh || shallow[i]) && (j < side->on_mesh || shallow[j]))
-                pairs = fmax(pairs, bend(side->form, side->at[i], side->at[j]));
+                pairs = fmax(pairs, smooth_bend(side->form, side->at[i], side->at[j]));
     return fmax(deep, 0.5 * 0.375 * pairs - least);
 }
 
@@ -289,6 +290,7 @@ bool smooth_measure(const Contour *contour, const SmoothCell *cell, Tet *tet)
     MeshPart part = mesh_part(contour, tet);
     double   corners[4][3], depths[2][4], miss = -INFINITY;
     tet->miss  = INFINITY;
+    tet->steep = 0;
     tet->slope = (float)(cell->slope * (1 - 1e-6));
     if (!cell->known)
         return false;

@@ -22,6 +22,13 @@ typedef struct SmoothCell {
     double above[6], below[6], slope;
 } SmoothCell;
 
+/* The forms of second derivatives. */
+void smooth_forms(const LaneHessian *hessian, double above[6], double below[6]);
+/* How much a form permits between two points, not below 0. */
+double smooth_bend(const double form[6], const double a[3], const double b[3]);
+/* The most that w0 w1 a + w1 w2 b + w2 w0 c is, for weights w >= 0 whose sum is 1. */
+double smooth_most_of_three(double a, double b, double c);
+
 /* `error`: differences are over small parts of it. */
 void smooth_look(const MeshField *field, Box box, double error, SmoothCell *cell);
 

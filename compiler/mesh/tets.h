@@ -40,6 +40,8 @@ typedef struct Tet {
     uint32_t patch;       /* of the contour, where it has triangles */
     float    width;       /* a point of one face or edge is no nearer to the one across */
     float    miss, slope; /* smooth.h */
+    float    reach;       /* how far from its centre a proof by cells asks for the mesh */
+    float    steep;       /* pieces.h; 0 where it is by smooth.h */
 } Tet;
 
 typedef struct Tets {

@@ -49,20 +49,26 @@ bool verify_is_empty(const Verifier *verifier, const Tet *tet)
 
 /* ---- from the surface to the mesh ---- */
 
-static bool is_flat_by_balls(const Verifier *verifier, const double corners[4][3],
-                             const double center[3], double radius, double distance,
-                             const double direction[3])
+/* Whether the mesh fills a lens that a proof needs. */
+static bool fills_lens(Verifier *verifier, const Lens *lens)
+{
+    double reach    = distance3(lens->center, verifier->center) + lens_reach(verifier, lens);
+    verifier->reach = fmax(verifier->reach, ROUNDING * reach);
+    return mesh_fills_lens(verifier, lens);
+}
+
+static bool is_flat_by_balls(Verifier *verifier, const double corners[4][3], const double center[3],
+                             double radius, double distance, const double direction[3])
 {
     Lens lens = {.radius = radius};
     memcpy(lens.normal, direction, sizeof lens.normal);
     add_scaled3(lens.center, center, -distance, lens.normal);
     return find_lens_by_balls(verifier, &lens) &&
-           (is_beside_lens(&lens, corners) || mesh_fills_lens(verifier, &lens));
+           (is_beside_lens(&lens, corners) || fills_lens(verifier, &lens));
 }
 
-static bool is_flat_by_slope(const Verifier *verifier, const double corners[4][3],
-                             const double center[3], double radius, double distance,
-                             bool *has_gradient)
+static bool is_flat_by_slope(Verifier *verifier, const double corners[4][3], const double center[3],
+                             double radius, double distance, bool *has_gradient)
 {
     Lens      lens = {.radius = radius};
     Box       box  = corners_box(corners, 4, 0);
@@ -77,7 +83,7 @@ static bool is_flat_by_slope(const Verifier *verifier, const double corners[4][3
         return false;
     find_lens_by_slope(&gradient, center, distance, &lens);
     return is_beside_lens(&lens, corners) ||
-           (lens.above < verifier->error && mesh_fills_lens(verifier, &lens));
+           (lens.above < verifier->error && fills_lens(verifier, &lens));
 }
 
 /* At a place that is farther from the mesh than permitted, and nearer to the surface: goes on through
@@ -165,7 +171,7 @@ static void halve_cell(Cells *cells, const Cell *cell, double lens)
 }
 
 /* Balls cost less than slopes, and tell where distances are exact. */
-static bool is_flat(const Verifier *verifier, const Cell *cell, CellView *view)
+static bool is_flat(Verifier *verifier, const Cell *cell, CellView *view)
 {
     return (normalize3(view->direction) &&
             is_flat_by_balls(verifier, cell->corners, view->center, view->radius, view->distance,
@@ -374,7 +380,7 @@ static TetState verify_parts(Verifier *verifier, const Tet *tet, const Cell *who
 }
 
 /* Small ones need no proof where the mesh goes through: so does the surface.  They are not made smaller. */
-TetState verify_tet(Verifier *verifier, const Tet *tet)
+TetState verify_tet(Verifier *verifier, Tet *tet)
 {
     int  side  = find_side(verifier->tets, tet);
     Cell whole = {.tag = tet->tag, .lens = INFINITY};
@@ -384,7 +390,10 @@ TetState verify_tet(Verifier *verifier, const Tet *tet)
     Box box = corners_box((const double(*)[3])whole.corners, 4, verifier->error);
     if (!field_enter(verifier->field, box))
         return TET_EMPTY;
+    verifier->reach = corners_ball((const double(*)[3])whole.corners, verifier->center) +
+                      2 * verifier->error;
     TetState state = verify_parts(verifier, tet, &whole, side);
+    tet->reach     = (float)(verifier->reach * (1 + 1e-6));
     field_leave(verifier->field);
     return state;
 }

@@ -191,11 +191,25 @@ static void meshes_are_closed_and_near(void **context)
     }
 }
 
-/* ---- smooth surfaces, by their distances in closed form ---- */
+/* ---- surfaces whose distances have a closed form ---- */
 
 /* Of a torus of radii 1 and 0.4 about y, and of a ball of radius 1. */
 static double ring_distance(const double p[3]) { return hypot(hypot(p[0], p[2]) - 1, p[1]) - 0.4; }
 static double ball_distance(const double p[3]) { return length3(p) - 1; }
+
+/* With edges: of a box with sides 1, 0.6 and 0.8, and of a cylinder of radius and height 0.5. */
+static double block_distance(const double p[3])
+{
+    double q[3]      = {fabs(p[0]) - 0.5, fabs(p[1]) - 0.3, fabs(p[2]) - 0.4};
+    double beyond[3] = {fmax(q[0], 0), fmax(q[1], 0), fmax(q[2], 0)};
+    return length3(beyond) + fmin(fmax(q[0], fmax(q[1], q[2])), 0);
+}
+
+static double can_distance(const double p[3])
+{
+    double side = hypot(p[0], p[2]) - 0.5, end = fabs(p[1]) - 0.25;
+    return hypot(fmax(side, 0), fmax(end, 0)) + fmin(fmax(side, end), 0);
+}
 
 typedef struct Judged {
     KrsMesh *mesh;
@@ -216,7 +230,9 @@ static void check_points_of_triangles(const Judged *j)
                     p[k] = (a * corners[0][k] + b * corners[1][k] +
                             (STEPS - a - b) * corners[2][k]) /
                            STEPS;
-                assert_true(fabs(j->distance(p)) <= j->mesh->error);
+                if (!(fabs(j->distance(p)) <= j->mesh->error))
+                    fail_msg("triangle %zu is %g errors away at %g %g %g", i,
+                             fabs(j->distance(p)) / j->mesh->error, p[0], p[1], p[2]);
             }
     }
 }
@@ -242,7 +258,7 @@ static void check_points_of_surface(const Judged *j)
     }
 }
 
-static void smooth_surfaces_are_near(void **context)
+static void known_surfaces_are_near(void **context)
 {
     static const struct {
         const char *text;
@@ -250,7 +266,9 @@ static void smooth_surfaces_are_near(void **context)
         double (*distance)(const double p[3]);
     } known[] = {{"show torus(1, 0.4);", 0.01, ring_distance},
                  {"show sphere(1);", 0.006, ball_distance},
-                 {"show field(x^2 + y^2 + z^2 - 1) & sphere(1.5);", 0.015, ball_distance}};
+                 {"show field(x^2 + y^2 + z^2 - 1) & sphere(1.5);", 0.015, ball_distance},
+                 {"show box([1, 0.6, 0.8]);", 0.006, block_distance},
+                 {"show cylinder(0.5, 0.5);", 0.005, can_distance}};
     (void)context;
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         Scene  s      = scene_of(known[i].text);
@@ -447,7 +465,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(meshes_are_closed_and_near),
-        cmocka_unit_test(smooth_surfaces_are_near),
+        cmocka_unit_test(known_surfaces_are_near),
         cmocka_unit_test(bounds_of_distances_are_enough),
         cmocka_unit_test(solids_that_touch_leave_no_bubbles),
         cmocka_unit_test(sharp_corners_are_kept),

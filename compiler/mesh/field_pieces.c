@@ -1,0 +1,240 @@
+/*
+ * field_pieces.c: the distance in a box, as minima and maxima of pieces.
+ *
+ * Only its sign is kept.  So the distance to a box, whose part outside is a length and whose part inside a
+ * maximum, is the maximum of what its faces cut.
+ */
+#include <string.h>
+
+#include "compiler/mesh/field.h"
+
+typedef struct Finding {
+    const MeshField *field;
+    const LaneTape  *tape;
+    FieldPieces     *pieces;
+    uint32_t         outputs[MOST_PIECES];
+    int              depth;
+} Finding;
+
+static const LaneStep *step_of(const Finding *f, uint32_t operand)
+{
+    return (operand & LANE_SCALAR) || operand < LANE_INPUTS
+               ? NULL
+               : &f->tape->steps[operand - LANE_INPUTS];
+}
+
+static Range range_of_operand(const Finding *f, uint32_t operand)
+{
+    return operand & LANE_SCALAR ? range_of(f->tape->scalars[operand & ~LANE_SCALAR])
+                                 : f->field->ranges.ranges[operand];
+}
+
+static bool add_step(Finding *f, int step)
+{
+    if (f->pieces->step_count == MOST_PIECE_STEPS)
+        return false;
+    f->pieces->steps[f->pieces->step_count++] = step;
+    return true;
+}
+
+static bool add_piece(Finding *f, uint32_t operand, double sign, double offset)
+{
+    FieldPieces *pieces = f->pieces;
+    if ((operand & LANE_SCALAR) || !f->field->hessians[operand].known ||
+        !f->field->ranges.sure[operand])
+        return false;
+    size_t i = 0;
+    while (i < pieces->count &&
+           (f->outputs[i] != operand || pieces->signs[i] != sign || pieces->offsets[i] != offset))
+        i++;
+    if (i == MOST_PIECES)
+        return false;
+    if (i == pieces->count) {
+        f->outputs[i]       = operand;
+        pieces->signs[i]    = sign;
+        pieces->offsets[i]  = offset;
+        pieces->slopes[i]   = f->field->slopes[operand];
+        pieces->hessians[i] = f->field->hessians[operand];
+        for (int j = 0; j < 3; j++)
+            if (!isfinite(pieces->slopes[i].by[j].low) || !isfinite(pieces->slopes[i].by[j].high))
+                return false;
+        pieces->count++;
+    }
+    return add_step(f, (int)i);
+}
+
+static bool is_greater(const LaneStep *step)
+{
+    return step->op == OP_max || step->op == LANE_GREATER;
+}
+static bool is_lesser(const LaneStep *step)
+{
+    return step->op == OP_min || step->op == LANE_LESSER;
+}
+
+static bool is_zero(const Finding *f, uint32_t operand)
+{
+    return range_is_zero(range_of_operand(f, operand));
+}
+
+/* ---- distances to boxes ---- */
+
+typedef struct Faces {
+    uint32_t operands[8];
+    size_t   count;
+} Faces;
+
+static bool has_face(const Faces *faces, uint32_t operand)
+{
+    for (size_t i = 0; i < faces->count; i++)
+        if (faces->operands[i] == operand)
+            return true;
+    return false;
+}
+
+static bool add_face(Faces *faces, uint32_t operand)
+{
+    if (faces->count == 8 || (operand & LANE_SCALAR))
+        return false;
+    faces->operands[faces->count++] = operand;
+    return true;
+}
+
+/* max(q, 0) of all of a length. */
+static bool find_outside(const Finding *f, uint32_t operand, Faces *faces)
+{
+    const LaneStep *step = step_of(f, operand);
+    if (step && step->op == OP_length) {
+        for (uint32_t k = 0; k < step->operand_count; k++)
+            if (!is_zero(f, step->operands[k]) && !find_outside(f, step->operands[k], faces))
+                return false;
+        return true;
+    }
+    for (int k = 0; step && is_greater(step) && k < 2; k++)
+        if (is_zero(f, step->operands[1 - k]))
+            return add_face(faces, step->operands[k]);
+    return false;
+}
+
+static bool find_greatest(const Finding *f, uint32_t operand, Faces *faces)
+{
+    const LaneStep *step = step_of(f, operand);
+    if (step && is_greater(step))
+        return find_greatest(f, step->operands[0], faces) &&
+               find_greatest(f, step->operands[1], faces);
+    return add_face(faces, operand);
+}
+
+/* length(max(q, 0)) + min(greatest q, 0) is above 0 where some q is, and else the greatest, if all that are not in the
+   length are nowhere above 0. */
+static bool find_faces(const Finding *f, const LaneStep *step, Faces *inside)
+{
+    for (int k = 0; k < 2; k++) {
+        const LaneStep *least   = step_of(f, step->operands[1 - k]);
+        Faces           outside = {.count = 0};
+        inside->count           = 0;
+        if (!least || !is_lesser(least) || !find_outside(f, step->operands[k], &outside))
+            continue;
+        int  zero = is_zero(f, least->operands[0]) ? 0 : is_zero(f, least->operands[1]) ? 1 : -1;
+        bool fits = zero >= 0 && find_greatest(f, least->operands[1 - zero], inside);
+        for (size_t i = 0; fits && i < outside.count; i++)
+            fits = has_face(inside, outside.operands[i]);
+        for (size_t i = 0; fits && i < inside->count; i++)
+            fits = has_face(&outside, inside->operands[i]) ||
+                   range_of_operand(f, inside->operands[i]).high <= 0;
+        if (fits)
+            return true;
+    }
+    return false;
+}
+
+/* ---- all ---- */
+
+/* sign times an operand, and the offset. */
+static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset);
+
+static bool add_choice(Finding *f, const LaneStep *step, double sign, double offset, bool greater)
+{
+    return find_pieces(f, step->operands[0], sign, offset) &&
+           find_pieces(f, step->operands[1], sign, offset) &&
+           add_step(f, greater == (sign > 0) ? PIECE_MAX : PIECE_MIN);
+}
+
+/* The greater of a number and its complement. */
+static bool add_size(Finding *f, const LaneStep *step, double sign, double offset)
+{
+    return find_pieces(f, step->operands[0], sign, offset) &&
+           find_pieces(f, step->operands[0], -sign, offset) &&
+           add_step(f, sign > 0 ? PIECE_MAX : PIECE_MIN);
+}
+
+static bool add_box(Finding *f, const Faces *faces, double sign)
+{
+    for (size_t i = 0; i < faces->count; i++)
+        if (!find_pieces(f, faces->operands[i], sign, 0) ||
+            (i > 0 && !add_step(f, sign > 0 ? PIECE_MAX : PIECE_MIN)))
+            return false;
+    return faces->count > 0;
+}
+
+/* An operand that is the same everywhere is added to, or taken off, the other one. */
+static bool add_shifted(Finding *f, const LaneStep *step, double sign, double offset)
+{
+    double way = step->op == OP_sub ? -1 : 1;
+    if (step->operands[1] & LANE_SCALAR) {
+        double shift = way * f->tape->scalars[step->operands[1] & ~LANE_SCALAR];
+        return find_pieces(f, step->operands[0], sign, offset + sign * shift);
+    }
+    if (!(step->operands[0] & LANE_SCALAR))
+        return false;
+    double shift = f->tape->scalars[step->operands[0] & ~LANE_SCALAR];
+    return find_pieces(f, step->operands[1], sign * way, offset + sign * shift);
+}
+
+static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset)
+{
+    enum { MOST_DEPTH = 40 };
+    const LaneStep *step = step_of(f, operand);
+    Faces           faces;
+    bool            found = false;
+    if (!step || f->field->hessians[operand].known || f->depth == MOST_DEPTH)
+        return add_piece(f, operand, sign, offset);
+    f->depth++;
+    if (step->op == OP_neg)
+        found = find_pieces(f, step->operands[0], -sign, offset);
+    else if (step->op == OP_abs)
+        found = add_size(f, step, sign, offset);
+    else if (is_greater(step) || is_lesser(step))
+        found = add_choice(f, step, sign, offset, is_greater(step));
+    else if (step->op == OP_add && offset == 0 && find_faces(f, step, &faces))
+        found = add_box(f, &faces, sign);
+    else if (step->op == OP_add || step->op == OP_sub)
+        found = add_shifted(f, step, sign, offset);
+    f->depth--;
+    return found;
+}
+
+bool field_pieces(MeshField *field, Box box, FieldPieces *pieces)
+{
+    LaneSlope   slope;
+    LaneHessian hessian;
+    Finding     f = {.field = field, .pieces = pieces};
+    if (field->region_count == 0 || field_is_cut(field, box))
+        return false;
+    f.tape = &field->regions[field->region_count - 1].tape;
+    lane_ranges_run(f.tape, &field->ranges, box);
+    lane_slopes_run(f.tape, &field->ranges, field->slopes, &slope);
+    lane_hessians_run(f.tape, &field->ranges, field->slopes, field->hessians, &hessian);
+    pieces->count = pieces->step_count = 0;
+    return find_pieces(&f, f.tape->outputs[0], 1, 0) && field_keep(field, f.outputs, pieces->count);
+}
+
+void field_piece_values(const MeshField *field, const FieldPieces *pieces,
+                        const double (*points)[3], size_t point_count, double *values)
+{
+    lane_run(&field->pieces.tape, &field->work, LANE_DOUBLE,
+             (LanePoints){.points = points, .count = point_count}, 0, pieces->count, values);
+    for (size_t i = 0; i < point_count * pieces->count; i++)
+        values[i] = pieces->signs[i % pieces->count] * values[i] +
+                    pieces->offsets[i % pieces->count];
+}
