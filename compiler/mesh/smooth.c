@@ -188,7 +188,7 @@ typedef struct MeshPart {
 
 static MeshPart mesh_part(const Contour *contour, const Tet *tet)
 {
-    MeshPart part = {NULL};
+    MeshPart part = {.patch = NULL};
     if (tet->triangle_count == 0)
         return part;
     part.patch = &contour->patches.items[tet->patch];
