@@ -176,13 +176,6 @@ void gui_backdrop(unsigned texture, float part)
     ImGui::GetBackgroundDrawList()->AddImage(id, ImVec2(0, 0), ImVec2(part * size.x, size.y));
 }
 
-void gui_mark(float x, float y)
-{
-    ImDrawList *list = ImGui::GetBackgroundDrawList();
-    list->AddCircle(ImVec2(x, y), 5, IM_COL32(0, 0, 0, 160), 0, 3);
-    list->AddCircle(ImVec2(x, y), 5, IM_COL32(255, 255, 255, 230), 0, 1.5f);
-}
-
 void gui_panel(const char *name, GuiCorner corner, float below, float width, bool quiet)
 {
     const ImVec2 size  = ImGui::GetIO().DisplaySize;

@@ -30,8 +30,6 @@ bool gui_is_inside(void); /* of an item of the panel, which Esc leaves first */
 
 /* A texture behind all panels, over this part of the window's width from the left. */
 void gui_backdrop(unsigned texture, float part);
-/* A cross in the picture, for a moment, in pixels of the window. */
-void gui_mark(float x, float y);
 
 typedef enum GuiCorner {
     GUI_TOP_LEFT,
