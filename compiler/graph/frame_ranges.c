@@ -42,8 +42,8 @@ static bool is_defined_nowhere(Op op, const Range *divisor, uint32_t size)
 }
 
 /* A MAP row, and what vectors are made of; false: another one. */
-static bool common_range(Op op, uint32_t index, uint32_t size, Range *const *o, uint32_t first_size,
-                         Range *result)
+static bool common_range(Op op, uint32_t index, uint32_t size, Range *const *o,
+                         uint32_t operand_count, Range *result)
 {
     switch (op) {
 #define MAP(name, arity, called, glsl_, value_, range, da, db, dc, norm, meaning) \
@@ -57,36 +57,13 @@ static bool common_range(Op op, uint32_t index, uint32_t size, Range *const *o, 
         return true;
 #include "compiler/graph/ops.def"
     case OP_COMPONENT: result[0] = o[0][index]; return true;
-    case OP_splat2:
-    case OP_splat3:
-    case OP_splat4:
-        for (uint32_t i = 0; i < size; i++)
-            result[i] = o[0][0];
-        return true;
-    case OP_vec2:
-    case OP_vec3:
-    case OP_vec4:
-        for (uint32_t i = 0; i < size; i++)
-            result[i] = o[i][0];
-        return true;
-    case OP_scale:
-        for (uint32_t i = 0; i < size; i++)
-            result[i] = range_mul(o[0][i], o[1][0]);
-        return true;
-    case OP_dot:
-        result[0] = range_mul(o[0][0], o[1][0]);
-        for (uint32_t i = 1; i < first_size; i++)
-            result[0] = range_add(result[0], range_mul(o[0][i], o[1][i]));
-        return true;
-    case OP_cross:
-        for (uint32_t i = 0; i < 3; i++) {
-            const uint32_t y = (i + 1) % 3, z = (i + 2) % 3;
-            const Range    right = range_mul(range_mul(o[0][z], o[1][y]), MINUS_ONE);
-            result[i]            = range_add(range_mul(o[0][y], o[1][z]), right);
-        }
-        return true;
-    default: return false;
+    default: break;
     }
+    if (!op_promises(op, BUILDS))
+        return false;
+    for (uint32_t i = 0; i < size; i++)
+        result[i] = o[operand_count > 1 ? i : 0][0];
+    return true;
 }
 
 /* By the rule of the row, as if nothing depended on the point. */
@@ -114,14 +91,13 @@ static void find_range(const Graph *graph, Node node, Range *result)
     for (uint32_t k = 0; k < e->operand_count; k++)
         o[k] = graph->frame_ranges->items[e->operands[k]];
     /* Rules do not know that two operands are the same number; a square is not negative. */
-    const bool     same  = e->operand_count == 2 && e->operands[0] == e->operands[1];
-    const Op       op    = same && e->op == OP_mul ? OP_square : (Op)e->op;
-    const uint32_t size  = type_size(e->type);
-    const uint32_t first = type_size(graph->items[e->operands[0]].type);
+    const bool     same = e->operand_count == 2 && e->operands[0] == e->operands[1];
+    const Op       op   = same && e->op == OP_mul ? OP_square : (Op)e->op;
+    const uint32_t size = type_size(e->type);
     if (is_defined_nowhere(op, o[1 % e->operand_count], size))
         for (uint32_t i = 0; i < size; i++)
             result[i] = ANYTHING;
-    else if (!common_range(op, e->index, size, o, first, result))
+    else if (!common_range(op, e->index, size, o, e->operand_count, result))
         range_by_rule(graph, e, op, o, result);
     for (uint32_t i = 0; i < size; i++)
         if (!(result[i].low <= result[i].high))
