@@ -3,10 +3,9 @@
 # turned, a slider pulled, and two edits saved.  It needs Xvfb, xdotool and ffmpeg.
 build=$(cd "$1" && pwd)
 cd "$(dirname "$0")/.." || exit 1
-width=800 height=420 rate=10
+width=960 height=500 rate=10
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
-# What is shown stands beside the panel.
-sed "s/target: \[0.15, 0.8, 0\]/target: [1.05, 0.8, -0.35]/" examples/01-hello.krs >"$work/hello.krs"
+cp examples/01-hello.krs "$work/hello.krs"
 export XDG_CACHE_HOME="$work/caches"
 unset WAYLAND_DISPLAY
 
@@ -49,6 +48,6 @@ kill -INT "$recorder"
 wait "$recorder"
 kill "$viewer" "$server"
 wait
-ffmpeg -loglevel error -y -i "$work/recording.mkv" -c:v libwebp_anim -loop 0 -quality 70 \
+ffmpeg -loglevel error -y -i "$work/recording.mkv" -c:v libwebp_anim -loop 0 -quality 82 \
     docs/pictures/view.webp
 ls -l docs/pictures/view.webp
