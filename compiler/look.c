@@ -1,5 +1,6 @@
 /*
- * look.c: warns of components that no camera has in its picture, and of cameras inside of a solid.
+ * look.c: warns of components that no camera has in its picture, of cameras inside of a solid, and of lights that
+ * are too dim to be seen.
  *
  * Only what holds for all parameters and times is said of components: their boxes do, and cameras
  * that move are left out.
@@ -170,6 +171,47 @@ static void warn_of_inside(Compilation *c, KrsFrame *frame)
     }
 }
 
+/* The part of the light that white sends back where less than this arrives is as good as black. */
+static const double DIM = 0.02;
+
+/* The largest value that a light gives to white: that is 1 for an intensity of pi at a distance of 1. */
+static double brightest_value(const KrsView *view, const KrsLight *light, double distance)
+{
+    double color = fmax(light->color[0], fmax(light->color[1], light->color[2]));
+    return color * exp2(view->image.exposure) / (distance * distance * acos(-1));
+}
+
+/* A bound on the distance makes a light brighter than it is, so it is not blamed without cause. */
+static void warn_of_dim_light(Compilation *c, KrsFrame *frame, const KrsView *view, size_t index)
+{
+    const SceneLight *light = &c->elaborated.lights.items[index];
+    const Graph      *graph = c->elaborated.graph;
+    double            distance;
+    if (!light->positional || !graph_is_constant(graph, light->vector) ||
+        !graph_is_constant(graph, light->color) ||
+        krs_distance(frame, &view->lights[index].vector, 1, &distance) != KRS_OK ||
+        !(distance > 0) || !isfinite(distance))
+        return;
+    double value = brightest_value(view, &view->lights[index], distance);
+    if (!(value > 0) || value >= DIM)
+        return;
+    Diag *diag  = diag_add(&c->diags, DIAG_DIM_LIGHT, light->span,
+                           "this light is too dim to be seen: the nearest surface is %.3g away",
+                           distance);
+    diag->label = "its light falls with the square of the distance";
+    diag->help  = diag_text(&c->diags, "`intensity: %.2g` is as bright there as a good sun",
+                            3 * distance * distance);
+}
+
+static void warn_of_dim_lights(Compilation *c, KrsFrame *frame)
+{
+    KrsView view;
+    if (c->elaborated.cameras.count == 0 || frame_view(frame, 0, &view) != KRS_OK)
+        return;
+    for (size_t i = 0; i < c->elaborated.lights.count; i++)
+        warn_of_dim_light(c, frame, &view, i);
+}
+
 KrsStatus pass_look(Compilation *c)
 {
     Pyramid  *pyramids = arena_new_array(&c->scratch, Pyramid, c->elaborated.cameras.count + 1);
@@ -179,6 +221,7 @@ KrsStatus pass_look(Compilation *c)
         return status;
     warn_of_unseen(c, pyramids, find_pyramids(c, frame, pyramids));
     warn_of_inside(c, frame);
+    warn_of_dim_lights(c, frame);
     frame_free(frame);
     return KRS_OK;
 }
@@ -186,10 +229,11 @@ KrsStatus pass_look(Compilation *c)
 void print_look(Compilation *c, Text *out)
 {
     size_t before = out->length;
-    for (size_t i = 0; i < c->diags.count; i++)
-        if (c->diags.items[i]->code == DIAG_OUT_OF_VIEW ||
-            c->diags.items[i]->code == DIAG_CAMERA_INSIDE)
+    for (size_t i = 0; i < c->diags.count; i++) {
+        DiagCode code = c->diags.items[i]->code;
+        if (code == DIAG_OUT_OF_VIEW || code == DIAG_CAMERA_INSIDE || code == DIAG_DIM_LIGHT)
             text_format(out, "%s\n", c->diags.items[i]->message);
+    }
     if (out->length == before)
-        text_add(out, "all cameras are free, and see all components\n");
+        text_add(out, "all cameras are free, and see all components; no light is too dim\n");
 }

@@ -71,6 +71,7 @@ static void add_light(Elaboration *e, const Environment *env, const Syntax *synt
 {
     const Syntax *direction = find_property(syntax, "direction");
     const Syntax *position  = find_property(syntax, "position");
+    const Syntax *intensity = find_property(syntax, "intensity");
     SceneLight    light = {.name = syntax->name, .positional = position != NULL, .shadow = true};
     if (!direction == !position) {
         Diag *diag = diag_add(e->diags, direction ? DIAG_TOO_MANY_ARGUMENTS : DIAG_MISSING_ARGUMENT,
@@ -79,6 +80,7 @@ static void add_light(Elaboration *e, const Environment *env, const Syntax *synt
         diag->help = "for example `light sun { direction: [-1, 2, 1], intensity: 3 }`";
         return;
     }
+    light.span      = (intensity ? intensity : position ? position : direction)->span;
     light.vector    = position ? position_property(e, env, syntax, "position", UP)
                                : vector_property(e, env, syntax, "direction", UP);
     Node color      = vector_property(e, env, syntax, "color", WHITE);

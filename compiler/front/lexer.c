@@ -302,6 +302,8 @@ static void lex_stray(Lexer *lexer)
         help = "to choose between two values write `if a < b then a else b`";
     else if (lexer->text[start] == '$')
         help = form_help(lexer->diags, FORM_DOLLAR);
+    else if (lexer->text[start] == '~')
+        help = form_help(lexer->diags, FORM_TILDE);
     report_from(lexer, DIAG_STRAY_BYTES, start,
                 utf8 ? "characters that mean nothing here" : "bytes that are not UTF-8", help);
     add_token(lexer, TOKEN_ERROR, start);

@@ -85,11 +85,9 @@ static void parse_parameters(Parser *p, const char *what, const char *example)
     expect_closer(p, TOKEN_RIGHT_PAREN, opener, "`,` or `)` after a parameter");
 }
 
-/* What follows the name of a function. */
-static Syntax *finish_def(Parser *p, Span start, size_t first, const Token *name)
+/* What follows the parameters of a function. */
+static Syntax *finish_value(Parser *p, Span start, size_t first, const Token *name)
 {
-    parse_parameters(p, "`(` after the name of a function",
-                     "for example `def ball(r = 1) = sphere(r);`; without parameters write `let`");
     if (kind_here(p) == TOKEN_LEFT_BRACE)
         expected(p, "`=` before the value of a function")->help = form_help(p->diags,
                                                                             FORM_DEF_BODY);
@@ -97,6 +95,14 @@ static Syntax *finish_def(Parser *p, Span start, size_t first, const Token *name
     add_child(p, parse_expression(p));
     expect_semicolon(p, "a `def`");
     return finish_named(p, SYNTAX_DEF, start, first, name);
+}
+
+/* What follows the name of a function. */
+static Syntax *finish_def(Parser *p, Span start, size_t first, const Token *name)
+{
+    parse_parameters(p, "`(` after the name of a function",
+                     "for example `def ball(r = 1) = sphere(r);`; without parameters write `let`");
+    return finish_value(p, start, first, name);
 }
 
 /* def = "def" NAME parameters "=" expression ";" ; */
@@ -108,13 +114,12 @@ Syntax *parse_def(Parser *p)
     return finish_def(p, start, first, expect_name(p, "of a function"));
 }
 
-/* Parses `let f(x) = ...;` as a `def`, after reporting that it is one. */
-static Syntax *mend_function(Parser *p, Span start, size_t first, const Token *name)
+/* `let f(x) = ...;` and `shape f(x) = ...;` go on as a `def`, after reporting that they are one. */
+static void report_function(Parser *p, Span start, SynonymForm form)
 {
     Diag *diag = report_at(p, DIAG_UNEXPECTED_TOKEN, start, "a function is defined by `def`");
-    diag->help = form_help(p->diags, FORM_LET_FUNCTION);
+    diag->help = form_help(p->diags, form);
     diag->replacement = "def";
-    return finish_def(p, start, first, name);
 }
 
 /* let = "let" NAME "=" expression ";" ; */
@@ -124,8 +129,10 @@ Syntax *parse_let(Parser *p)
     size_t first = begin_children(p);
     accept(p, TOKEN_LET); /* it may be missing: see parse_forgotten_let */
     const Token *name = expect_name(p, "of a `let`");
-    if (name && kind_here(p) == TOKEN_LEFT_PAREN)
-        return mend_function(p, start, first, name);
+    if (name && kind_here(p) == TOKEN_LEFT_PAREN) {
+        report_function(p, start, FORM_LET_FUNCTION);
+        return finish_def(p, start, first, name);
+    }
     expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` after the name of a `let`");
     add_child(p, parse_expression(p));
     if (kind_here(p) == TOKEN_IN)
@@ -215,6 +222,10 @@ Syntax *parse_shape(Parser *p)
     advance(p);
     const Token *name = expect_name(p, "of a shape");
     parse_parameters(p, "`(` after the name of a shape", example);
+    if (name && kind_here(p) == TOKEN_ASSIGN) {
+        report_function(p, start, FORM_SHAPE_FUNCTION);
+        return finish_value(p, start, first, name);
+    }
     parse_properties(p, "`{` and the properties of the shape", example);
     return finish_named(p, SYNTAX_SHAPE, start, first, name);
 }

@@ -42,6 +42,7 @@ typedef struct SceneLight {
     Node        vector, color, softness, intensity;
     Node        target, angle, edge; /* of a spot: the whole angle, and the part of it that fades */
     Node        size;                /* of a rectangle */
+    Span        span;                /* of its `intensity`, if that is given, or of where it is */
 } SceneLight;
 
 typedef struct SceneImage {
