@@ -2,9 +2,10 @@
  * dispatch.c: long dispatches are cut into slices, short ones are joined into chains.
  *
  * A slice is so short that no watchdog of the driver ends it, and that an interruption takes effect
- * at once.  How many workgroups that is, is learned from the time of former slices; the results do
- * not depend on it.  In a chain no dispatch has more workgroups than a slice.  Where one would have
- * more, the chain stops, and the host runs that dispatch in slices.
+ * at once.  How many items that is, is learned from the time of former slices; the results do not
+ * depend on it.  Workgroups would not do: those of small pictures have fewer items, so that there are
+ * enough of them.  In a chain no dispatch has more items than a slice.  Where one would have more, the
+ * chain stops, and the host runs that dispatch in slices.
  */
 #include "runtime/tracer/dispatch.h"
 
@@ -30,12 +31,17 @@ bool dispatch_chains(const Job *job)
 
 /* ---- Slices ---- */
 
-/* The workgroups of the next slice, after `groups` workgroups took `ms`. */
-static uint32_t next_slice(double groups, double ms, double target_ms)
+/* The items of the next slice, after `items` of them took `ms`. */
+static double next_slice(double items, double ms, double target_ms)
 {
     double factor = ms > 0 ? target_ms / ms : 4;
-    double next   = groups * fmin(fmax(factor, 0.1), 4);
-    return next < 1 ? 1 : next > MOST_GROUPS ? MOST_GROUPS : (uint32_t)next;
+    return fmax(items * fmin(fmax(factor, 0.1), 4), 1);
+}
+
+/* The workgroups that have so many items. */
+static uint32_t groups_of_slice(double items, double in_group)
+{
+    return (uint32_t)fmin(fmax(items / in_group, 1), MOST_GROUPS);
 }
 
 /* A phase may turn out to have more passes than was expected, but reported progress never
@@ -59,33 +65,33 @@ static bool has_scene(const Job *job, const Kernel *kernel)
     return !is_pixels;
 }
 
-/* How many workgroups of this kernel make a slice, as learned so far.  Kernels without the scene
-   cost next to nothing, so they are counted apart from the others of a phase. */
-static uint32_t *groups_at_once(Job *job, KrsPhase phase, const Kernel *kernel)
+/* How many items of this kernel make a slice, as learned so far.  Kernels without the scene cost next
+   to nothing, so they are counted apart from the others of a phase. */
+static double *items_at_once(Job *job, KrsPhase phase, const Kernel *kernel)
 {
-    return &job->rendering->groups_at_once[phase][has_scene(job, kernel)];
+    return &job->rendering->items_at_once[phase][has_scene(job, kernel)];
 }
 
-static bool run_groups(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
-                       uint32_t groups)
+static bool run_groups(Job *job, const Dispatch *dispatch, WorkBlock *work, uint32_t groups)
 {
-    uint32_t *at_once = groups_at_once(job, phase, kernel);
+    double *at_once = items_at_once(job, dispatch->phase, dispatch->kernel);
     for (uint32_t first = 0; first < groups;) {
-        uint32_t count = *at_once < groups - first ? *at_once : groups - first;
-        double   ms    = 0;
-        work->first    = first;
-        work->groups   = count;
-        work->stride   = rendering_spread(job->rendering, count);
+        const uint32_t most  = groups_of_slice(*at_once, dispatch->in_group);
+        const uint32_t count = most < groups - first ? most : groups - first;
+        double         ms    = 0;
+        work->first          = first;
+        work->groups         = count;
+        work->stride         = rendering_spread(job->rendering, count);
         if (!rendering_begin(job->rendering))
             return false;
-        rendering_dispatch(job->rendering, kernel, job->rendering->band_set, work, sizeof *work,
-                           count);
+        rendering_dispatch(job->rendering, dispatch->kernel, job->rendering->band_set, work,
+                           sizeof *work, count);
         if (!rendering_finish(job->rendering, &ms))
             return false;
-        job->stats->phase_ms[phase] += ms;
+        job->stats->phase_ms[dispatch->phase] += ms;
         /* The last slice may be too small to learn much from. */
-        if (count == *at_once || ms > job->options.slice_ms)
-            *at_once = next_slice(count, ms, job->options.slice_ms);
+        if (count == most || ms > job->options.slice_ms)
+            *at_once = next_slice((double)count * dispatch->in_group, ms, job->options.slice_ms);
         first += count;
         if (!report(job, (double)first / groups))
             return false;
@@ -162,24 +168,23 @@ static bool run_in_slices(Job *job, const Dispatch *dispatch)
         *word_of(job, dispatch->clears) = 0;
     if (dispatch->clears_shared && !clear_shared(job, dispatch))
         return false;
-    return run_groups(job, dispatch->phase, dispatch->kernel, &work, groups_of(dispatch, items));
+    return run_groups(job, dispatch, &work, groups_of(dispatch, items));
 }
 
 /* ---- Chains ---- */
 
-/* The cost of a workgroup, relative to others of its phase: later passes of rays have more
-   steps. */
+/* The cost of a workgroup, in items: later passes of rays have more steps. */
 static double weight_of(const Job *job, const Dispatch *dispatch)
 {
     double steps = job->options.steps_at_once;
-    return dispatch->phase == KRS_PHASE_PRIMARY ? fmax(dispatch->work.steps / steps, 1) : 1;
+    return dispatch->in_group *
+           (dispatch->phase == KRS_PHASE_PRIMARY ? fmax(dispatch->work.steps / steps, 1) : 1);
 }
 
 static uint32_t most_groups(Job *job, const Dispatch *dispatch)
 {
-    uint32_t at_once = *groups_at_once(job, dispatch->phase, dispatch->kernel);
-    double   most    = at_once / weight_of(job, dispatch);
-    return most < 1 ? 1 : (uint32_t)most;
+    const double at_once = *items_at_once(job, dispatch->phase, dispatch->kernel);
+    return groups_of_slice(at_once, weight_of(job, dispatch));
 }
 
 static void record(Job *job, uint32_t i)
@@ -213,16 +218,16 @@ static void learn(Job *job, uint32_t first, uint32_t end, double ms)
 {
     const ControlBlock *control = job->rendering->control.bytes;
     const Dispatch     *list = job->chain.list, *measured = &list[first];
-    double              groups = 0, target_ms = job->options.slice_ms;
+    double              items = 0, target_ms = job->options.slice_ms;
     for (uint32_t i = first; i < end; i++)
         if (has_scene(job, list[i].kernel))
             measured = &list[i];
     for (uint32_t i = first; i < end; i++)
         if (has_scene(job, list[i].kernel) == has_scene(job, measured->kernel))
-            groups += control->ran[i] * weight_of(job, &list[i]);
-    uint32_t *at_once = groups_at_once(job, measured->phase, measured->kernel);
-    uint32_t  next    = next_slice(groups, ms, target_ms);
-    if (groups > 0 && (ms > target_ms || next > *at_once))
+            items += control->ran[i] * weight_of(job, &list[i]);
+    double      *at_once = items_at_once(job, measured->phase, measured->kernel);
+    const double next    = next_slice(items, ms, target_ms);
+    if (items > 0 && (ms > target_ms || next > *at_once))
         *at_once = next;
     job->stats->phase_ms[measured->phase] += ms;
 }
@@ -312,13 +317,12 @@ bool dispatch_run(Job *job, const Dispatch *dispatch)
 
 bool dispatch_together(Job *job, const Dispatch *dispatches, size_t count)
 {
-    KrsPhase  phase   = dispatches[0].phase;
-    uint32_t *at_once = groups_at_once(job, phase, dispatches[0].kernel), groups = 0;
-    double    ms   = 0;
-    bool      good = true;
+    KrsPhase phase   = dispatches[0].phase;
+    double  *at_once = items_at_once(job, phase, dispatches[0].kernel), items = 0, ms = 0;
+    bool     good = true;
     for (size_t i = 0; i < count; i++)
-        groups += groups_of(&dispatches[i], items_now(job, dispatches[i].items));
-    if (dispatch_chains(job) || groups == 0 || groups > *at_once) {
+        items += items_now(job, dispatches[i].items);
+    if (dispatch_chains(job) || items == 0 || items > *at_once) {
         for (size_t i = 0; i < count && good; i++)
             good = dispatch_run(job, &dispatches[i]);
         return good;
@@ -345,7 +349,7 @@ bool dispatch_together(Job *job, const Dispatch *dispatches, size_t count)
         return false;
     job->stats->phase_ms[phase] += ms;
     if (ms > job->options.slice_ms)
-        *at_once = next_slice(groups, ms, job->options.slice_ms);
+        *at_once = next_slice(items, ms, job->options.slice_ms);
     return report(job, 1);
 }
 

@@ -131,8 +131,8 @@ struct KrsRendering {
     HeldBand held;                        /* what the buffers of `band` hold */
     Buffer   points, answers;             /* for point_query.comp */
     Buffer   query_rays, ray_hits, taken; /* for query.comp */
-    /* The workgroups of a slice, as learned, for each phase; [1]: for kernels with the scene. */
-    uint32_t groups_at_once[KRS_PHASE_COUNT][2];
+    /* The items of a slice, as learned, for each phase; [1]: for kernels with the scene. */
+    double items_at_once[KRS_PHASE_COUNT][2];
 };
 
 #endif

@@ -111,20 +111,20 @@ static const double distances_of_item[KRS_PHASE_COUNT] = {
 };
 #define FLOPS_WITHOUT_SCENE 1000
 
-/* The workgroups of the first slice: 50 ms on a slow device of its kind, until times are known.
-   Waiting for a processor costs little, so its first slice may be short. */
-static uint32_t guess_slice(const KrsRendering *rendering, int phase, bool has_scene)
+/* The items of the first slice: 50 ms on a slow device of its kind, until times are known.  Waiting
+   for a processor costs little, so its first slice may be short. */
+static double guess_slice(const KrsRendering *rendering, int phase, bool has_scene)
 {
     static const double slow[] = {
         /* Operations in 50 ms at a tenth of the promised speed. */
         [KRS_DEVICE_OTHER] = 5e8,      [KRS_DEVICE_CPU] = 5e8,       [KRS_DEVICE_VIRTUAL] = 5e8,
         [KRS_DEVICE_INTEGRATED] = 1e9, [KRS_DEVICE_DISCRETE] = 1e10,
     };
-    const Gpu *gpu    = &rendering->renderer->gpu;
-    double     flops  = has_scene ? rendering->program->flops * distances_of_item[phase]
-                                  : FLOPS_WITHOUT_SCENE;
-    double     groups = slow[gpu_describe(gpu->physical).kind] / (64 * fmax(flops, 1));
-    return gpu_is_cpu(gpu) ? 8 : (uint32_t)fmin(fmax(groups, 1), MOST_GROUPS);
+    const Gpu *gpu   = &rendering->renderer->gpu;
+    double     flops = has_scene ? rendering->program->flops * distances_of_item[phase]
+                                 : FLOPS_WITHOUT_SCENE;
+    double     items = slow[gpu_describe(gpu->physical).kind] / fmax(flops, 1);
+    return gpu_is_cpu(gpu) ? 8192 : fmax(items, 1);
 }
 
 static void set_scene(KrsRendering *rendering, const KrsScene *scene)
@@ -157,7 +157,7 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
     set_scene(rendering, scene);
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         for (int has_scene = 0; has_scene < 2; has_scene++)
-            rendering->groups_at_once[phase][has_scene] = guess_slice(rendering, phase, has_scene);
+            rendering->items_at_once[phase][has_scene] = guess_slice(rendering, phase, has_scene);
     if (!sets_create(rendering) || !buffers_create(rendering) ||
         !kernels_create(rendering, purpose)) {
         KrsStatus status = renderer->gpu.status;
