@@ -5,11 +5,13 @@
  * and until they are there the version before is shown, from wherever the camera is by then.
  *
  * Coarse pictures are not interrupted by a change, unless they take far too long: while something
- * moves, each is shown.  Whole ones are interrupted at once.
+ * moves, each is shown.  Whole ones are interrupted at once, though what the device has begun must
+ * end first.  So none is begun while the next change is to be expected at any moment.
  */
 #include "live/painter.h"
 
 #include "live/builder.h"
+#include "live/resolution.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -21,6 +23,9 @@
 
 /* A coarse picture is interrupted after so many times its budget. */
 #define PATIENCE 6
+/* Something moves if one view follows another so soon; then the next one is waited for. */
+#define MOVING_MS 250.0
+#define QUIET_MS  30.0
 /* Samples are added in portions that take about this long. */
 #define PORTION_MS 400.0
 
@@ -40,13 +45,14 @@ struct Painter {
     atomic_bool     prepares; /* the builder's last order is for later */
     Builder        *builder;
     /* of the thread alone */
-    Canvas  *canvas;
-    View     view;
-    unsigned shown;                  /* number of `view` */
-    double   ms_per_pixel, fixed_ms; /* what a picture costs; 0: not known yet */
-    double   divisor;                /* of the sides of coarse pictures */
-    double   begun;                  /* when the picture that is being made was begun */
-    FilmKind making;
+    Canvas    *canvas;
+    View       view;
+    unsigned   shown; /* number of `view` */
+    Resolution resolution;
+    double     changed_at; /* when the last view came */
+    bool       moving;
+    double     begun; /* when the picture that is being made was begun */
+    FilmKind   making;
 };
 
 static double now_ms(void)
@@ -220,14 +226,12 @@ static KrsStatus publish(Painter *painter, FilmKind kind, double ms)
     return KRS_OK;
 }
 
-/* A picture costs something even if it has few pixels: passes wait for each other.  Whole pictures
-   tell what a pixel costs, coarse ones the rest. */
 static void learn_cost(Painter *painter, FilmKind kind, double ms, double pixels)
 {
-    if (kind == FILM_FULL || painter->ms_per_pixel <= 0)
-        painter->ms_per_pixel = ms / pixels;
-    if (kind == FILM_COARSE)
-        painter->fixed_ms = fmax(ms - pixels * painter->ms_per_pixel, 0);
+    if (kind == FILM_FULL)
+        resolution_learn_whole(&painter->resolution, ms, pixels);
+    else
+        resolution_learn_coarse(&painter->resolution, ms, pixels);
 }
 
 /* Adds samples and shows them. */
@@ -245,25 +249,6 @@ static KrsStatus make(Painter *painter, FilmKind kind, uint32_t width, uint32_t 
     return publish(painter, kind, ms);
 }
 
-/* How many times fewer pixels each side of a coarse picture has, for it to be in time. */
-static double choose_divisor(const Painter *painter)
-{
-    static const double steps[] = {1, 1.5, 2, 3, 4, 6, 8, 12, 16, 24, 32};
-    const double        pixels  = (double)painter->view.width * painter->view.height;
-    /* What pixels do not cause, fewer of them do not mend: they have half of the time in any case. */
-    const double budget = painter->options.budget;
-    const double left   = fmax(budget - painter->fixed_ms, budget / 2);
-    const double needed = painter->ms_per_pixel > 0 ? sqrt(pixels * painter->ms_per_pixel / left)
-                                                    : 8;
-    /* It stays where it would do, so that the picture does not flicker. */
-    if (painter->divisor > needed && painter->divisor < 2.2 * needed)
-        return painter->divisor;
-    size_t i = 0;
-    while (i + 1 < sizeof steps / sizeof *steps && steps[i] < needed)
-        i++;
-    return steps[i];
-}
-
 static uint32_t divide(uint32_t side, double divisor)
 {
     const double less = floor(side / divisor);
@@ -272,19 +257,31 @@ static uint32_t divide(uint32_t side, double divisor)
 
 static KrsStatus show_coarse(Painter *painter)
 {
-    painter->divisor = choose_divisor(painter);
-    if (painter->divisor <= 1)
+    const uint32_t width = painter->view.width, height = painter->view.height;
+    const double   divisor = resolution_divide(&painter->resolution, (double)width * height,
+                                               painter->options.budget);
+    if (divisor <= 1)
         return KRS_OK;
-    return make(painter, FILM_COARSE, divide(painter->view.width, painter->divisor),
-                divide(painter->view.height, painter->divisor), 1, true);
+    return make(painter, FILM_COARSE, divide(width, divisor), divide(height, divisor), 1, true);
 }
 
 /* Samples that take about as long as it may be until the picture is seen to improve. */
 static uint32_t choose_portion(const Painter *painter, uint32_t missing)
 {
-    const double ms      = painter->ms_per_pixel * painter->view.width * painter->view.height;
+    const double ms      = painter->resolution.whole_ms;
     const double portion = ms > 0 ? fmin(fmax(PORTION_MS / ms, 1), 64) : 1;
     return portion < missing ? (uint32_t)portion : missing;
+}
+
+/* Waits, while something moves, for the next view. */
+static void wait_for_quiet(Painter *painter)
+{
+    const double          until = now_ms() + (painter->moving ? QUIET_MS : 0);
+    const struct timespec limit = {(time_t)(until / 1e3), (long)(fmod(until, 1e3) * 1e6)};
+    pthread_mutex_lock(&painter->lock);
+    while (!painter->quit && !is_outdated(painter) && now_ms() < until)
+        pthread_cond_clockwait(&painter->changed, &painter->lock, CLOCK_MONOTONIC, &limit);
+    pthread_mutex_unlock(&painter->lock);
 }
 
 /* Makes the picture of a new view, up to its last sample or until there is another one. */
@@ -292,6 +289,7 @@ static KrsStatus show_view(Painter *painter)
 {
     const View *view   = &painter->view;
     KrsStatus   status = show_coarse(painter);
+    wait_for_quiet(painter);
     if (status == KRS_OK && !is_outdated(painter))
         status = make(painter, FILM_FULL, view->width, view->height, 1, true);
     while (status == KRS_OK && !is_outdated(painter)) {
@@ -325,8 +323,8 @@ static void change_canvas(Painter *painter, Canvas *built)
 {
     if (painter->canvas)
         canvas_rest(painter->canvas);
-    painter->canvas       = built;
-    painter->ms_per_pixel = painter->fixed_ms = 0;
+    painter->canvas     = built;
+    painter->resolution = (Resolution){.divisor = painter->resolution.divisor};
 }
 
 /* Whether a canvas has the shaders of a view: the one that is shown, or the one that was built.  If
@@ -404,6 +402,8 @@ static bool wait_for_view(Painter *painter, View *next)
         painter->shown          = atomic_load(&painter->number);
         painter->options.budget = painter->budget;
         painter->state.busy     = true;
+        painter->moving         = now_ms() - painter->changed_at < MOVING_MS;
+        painter->changed_at     = now_ms();
         taken                   = true;
     }
     pthread_mutex_unlock(&painter->lock);

@@ -1,0 +1,50 @@
+/*
+ * resolution.c: how large pictures of what moves may be, to be in time.
+ *
+ * A coarse picture alone does not tell which part of its time its pixels took.  A whole picture of the
+ * same view does.  While something moves there are no whole ones, and what pixels cost changes with
+ * the view, much more than the rest: so longer times are blamed on pixels first.  If the next picture
+ * has fewer of them and takes as long, more of its time is of the other kind.
+ */
+#include "live/resolution.h"
+
+#include <math.h>
+
+/* What pixels do not cause may be found to be so many times longer by a single picture, and this much. */
+#define MOST_GROWTH 1.5
+#define MOST_STEP   1.0
+
+void resolution_learn_coarse(Resolution *resolution, double ms, double pixels)
+{
+    const double most    = MOST_GROWTH * resolution->fixed_ms + MOST_STEP;
+    const double rest    = ms - pixels * resolution->pixel_ms;
+    resolution->fixed_ms = resolution->pixel_ms > 0 ? fmin(fmax(rest, 0), most) : 0;
+    resolution->pixel_ms = (ms - resolution->fixed_ms) / pixels;
+}
+
+void resolution_learn_whole(Resolution *resolution, double ms, double pixels)
+{
+    Resolution  *r       = resolution;
+    const double divided = r->divisor > 1 ? pixels / (r->divisor * r->divisor) : pixels;
+    const double coarse  = r->fixed_ms + r->pixel_ms * divided; /* ms of the coarse picture */
+    r->whole_ms          = ms;
+    if (r->pixel_ms <= 0 || divided >= pixels || ms / pixels < r->pixel_ms) {
+        r->pixel_ms = ms / pixels;
+        r->fixed_ms = divided < pixels ? fmax(coarse - divided * r->pixel_ms, 0) : r->fixed_ms;
+    }
+}
+
+double resolution_divide(Resolution *resolution, double pixels, double budget)
+{
+    static const double steps[] = {1, 1.5, 2, 3, 4, 6, 8, 12, 16, 24, 32};
+    /* What pixels do not cause, fewer of them do not mend: they have half of the time in any case. */
+    const double left   = fmax(budget - resolution->fixed_ms, budget / 2);
+    const double needed = resolution->pixel_ms > 0 ? sqrt(pixels * resolution->pixel_ms / left) : 8;
+    /* It stays where it would do, so that the picture does not flicker. */
+    if (resolution->divisor > needed && resolution->divisor < 2.2 * needed)
+        return resolution->divisor;
+    int i = 0;
+    while (i + 1 < (int)(sizeof steps / sizeof *steps) && steps[i] < needed)
+        i++;
+    return resolution->divisor = steps[i];
+}
