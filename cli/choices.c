@@ -39,6 +39,10 @@ const Choice starts_choices[] = {
 #define KRS_STARTS(id, name, about) {name, about},
 #include "runtime/choices.def"
     LAST};
+const Choice catcher_choices[] = {
+#define KRS_CATCHER(id, name, about) {name, about},
+#include "runtime/choices.def"
+    LAST};
 const Choice pixel_filter_choices[] = {
 #define KRS_PIXEL_FILTER(id, name, reach, integral, about) {name, about},
 #include "runtime/choices.def"

@@ -35,9 +35,10 @@ static const PlaneArray plane_arrays[] = {
 };
 #undef KRS_PLANE
 enum {
-    PLANE_ARRAYS = sizeof plane_arrays / sizeof *plane_arrays,
-    CHANNELS     = 4 * PLANE_ARRAYS + MATTE_CHANNELS, /* at most */
-    TEXTS        = 8 + MATTE_TEXTS
+    PLANE_ARRAYS    = sizeof plane_arrays / sizeof *plane_arrays,
+    CHANNELS        = 4 * PLANE_ARRAYS + MATTE_CHANNELS, /* at most */
+    CAUGHT_CHANNELS = 3,
+    TEXTS           = 8 + MATTE_TEXTS
 };
 
 FileForm file_form(const char *path)
@@ -176,13 +177,25 @@ static bool add_mattes(const Options *options, const KrsPicture *source, const P
     return true;
 }
 
+/* Adds the channels of what a plate has caught. */
+static void add_caught(const Options *options, const KrsPicture *source, PictureChannel *channels,
+                       Picture *picture)
+{
+    static const char *const names[CAUGHT_CHANNELS] = {"caught.R", "caught.G", "caught.B"};
+    for (size_t i = 0; source->caught && options->aovs && i < CAUGHT_CHANNELS; i++)
+        channels[picture->channel_count++] = (PictureChannel){.name    = names[i],
+                                                              .type    = SAMPLE_HALF,
+                                                              .samples = source->caught[0] + i,
+                                                              .stride  = CAUGHT_CHANNELS};
+}
+
 static KrsStatus write_exr(const Options *options, const KrsPicture *source,
                            const PictureNotes *notes, PictureText *texts, Picture *picture,
                            const char *path)
 {
     const LightGroups *groups   = &notes->groups;
     PictureChannel    *channels = arena_new_array(options->arena, PictureChannel,
-                                                  CHANNELS + groups->channel_count);
+                                                  CHANNELS + groups->channel_count + CAUGHT_CHANNELS);
     PictureMatrix      to_camera, to_ndc;
     float             *values = NULL;
     memcpy(to_camera.m, source->world_to_camera, sizeof to_camera.m);
@@ -193,6 +206,7 @@ static KrsStatus write_exr(const Options *options, const KrsPicture *source,
     picture->world_to_ndc    = options->stereo >= 0 ? NULL : &to_ndc;
     for (size_t i = 0; i < groups->channel_count; i++)
         channels[picture->channel_count++] = groups->channels[i];
+    add_caught(options, source, channels, picture);
     if (!add_mattes(options, source, notes, channels, texts, picture, &values))
         return say_status(KRS_OUT_OF_MEMORY, path);
     KrsStatus status = write_output(path, fill_exr, picture);

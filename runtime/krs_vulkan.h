@@ -12,6 +12,7 @@
 #define KRS_VULKAN_H
 
 #include "compiler/krs.h"
+#include "runtime/krs_choices.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -166,77 +167,6 @@ typedef struct KrsWindow {
 /* Called between slices of work; `done` rises from 0 to 1.  False interrupts the render. */
 typedef bool KrsProgressCallback(void *user, double done);
 
-/* What there is to choose from has its rows, with what they mean, in choices.def. */
-
-/* How light is found: KRS_INTEGRATOR_PREVIEW and so on. */
-typedef enum KrsIntegrator {
-    KRS_INTEGRATOR_DEFAULT, /* as the scene says, or preview */
-#define KRS_INTEGRATOR(id, name, about) KRS_INTEGRATOR_##id,
-#include "runtime/choices.def"
-    KRS_INTEGRATOR_COUNT
-} KrsIntegrator;
-extern const char *const krs_integrator_names[KRS_INTEGRATOR_COUNT]; /* "default", "preview", ... */
-
-/* How rays advance: KRS_TRACE_DEFAULT, KRS_TRACE_PLAIN and so on. */
-typedef enum KrsTrace {
-#define KRS_TRACE(id, name, about) KRS_TRACE_##id,
-#include "runtime/choices.def"
-    KRS_TRACE_COUNT
-} KrsTrace;
-extern const char *const krs_trace_names[KRS_TRACE_COUNT]; /* "default", "plain", ... */
-
-/* How rays are assigned to the lanes of the device: KRS_SCHEDULE_PIXEL and so on. */
-typedef enum KrsSchedule {
-#define KRS_SCHEDULE(id, name, about) KRS_SCHEDULE_##id,
-#include "runtime/choices.def"
-    KRS_SCHEDULE_COUNT
-} KrsSchedule;
-extern const char *const krs_schedule_names[KRS_SCHEDULE_COUNT];
-
-/* Whether heavy components of a scene are marched by one distance, or each by itself:
-   KRS_COMPONENTS_TOGETHER and so on. */
-typedef enum KrsComponents {
-#define KRS_COMPONENTS(id, name, about) KRS_COMPONENTS_##id,
-#include "runtime/choices.def"
-    KRS_COMPONENTS_COUNT
-} KrsComponents;
-extern const char *const krs_components_names[KRS_COMPONENTS_COUNT];
-
-/* Where the distance is looked at around a hit for its normal: KRS_NORMALS_FORWARD and so on.
-   KRS_NORMALS_ANALYTIC wants a scene that was compiled with `gradients`; where points are relative
-   to the camera it is the octahedron.  Neither this nor KRS_NORMALS_FORWARD tells what is finer
-   than a pixel: as with no_filter. */
-typedef enum KrsNormals {
-#define KRS_NORMALS(id, name, about) KRS_NORMALS_##id,
-#include "runtime/choices.def"
-    KRS_NORMALS_COUNT
-} KrsNormals;
-extern const char *const krs_normals_names[KRS_NORMALS_COUNT];
-
-/* The shadows of lights that have a size: KRS_SHADOWS_SOFT, KRS_SHADOWS_AREA. */
-typedef enum KrsShadows {
-#define KRS_SHADOWS(id, name, about) KRS_SHADOWS_##id,
-#include "runtime/choices.def"
-    KRS_SHADOWS_COUNT
-} KrsShadows;
-extern const char *const krs_shadows_names[KRS_SHADOWS_COUNT];
-
-/* How far above surfaces rays of paths begin: KRS_STARTS_PIXELS, KRS_STARTS_DISTANCE. */
-typedef enum KrsStarts {
-#define KRS_STARTS(id, name, about) KRS_STARTS_##id,
-#include "runtime/choices.def"
-    KRS_STARTS_COUNT
-} KrsStarts;
-extern const char *const krs_starts_names[KRS_STARTS_COUNT];
-
-/* How the rays of a pixel are weighed by their place: KRS_PIXEL_FILTER_BOX and so on. */
-typedef enum KrsPixelFilter {
-#define KRS_PIXEL_FILTER(id, name, reach, integral, about) KRS_PIXEL_FILTER_##id,
-#include "runtime/choices.def"
-    KRS_PIXEL_FILTER_COUNT
-} KrsPixelFilter;
-extern const char *const krs_pixel_filter_names[KRS_PIXEL_FILTER_COUNT];
-
 /* Which eye of a camera sees, for stereo; KrsCamera.eyes is their distance. */
 typedef enum KrsEye { KRS_EYE_OF_BOTH, KRS_EYE_ON_LEFT, KRS_EYE_ON_RIGHT } KrsEye;
 
@@ -286,9 +216,11 @@ typedef struct KrsRenderOptions {
     /* Of another renderer, a number and a colour for each pixel of the whole picture, from the top;
        NULL: none.  Rays end at the depths, which are as those of the depth plane; what is not a number
        is no limit.  What rays do not hit shows the plate: premultiplied light and alpha.  Both must
-       live as long as the film. */
+       live as long as the film.  Where both are known, the plate catches shadows of the scene, as a
+       dull surface whose normals follow from the depths: see KrsPicture.caught. */
     const float *depth;
     const float (*plate)[4];
+    KrsCatcher    catcher;       /* anything but KRS_CATCHER_NONE needs depths */
     uint32_t      planes;        /* bits of KrsPlane; 0: all but noise, which is there where samples
                                     end by it */
     uint32_t      most_steps;    /* of a primary ray; 0: 16384, which is also the most */
@@ -373,6 +305,9 @@ typedef struct KrsPicture {
     float (*lights)
         [3]; /* with light_groups: of each light, pixel by pixel; the rest is sky, fog, emission */
     uint32_t light_count, samples; /* of lights; of rays of each pixel, at most */
+    /* Where a plate catches shadows: its light with the scene, relative to that without, by which
+       the plate is multiplied; 1 where it has no depth.  Else NULL. */
+    float (*caught)[3];
     /* Without a camera these change nothing.  For row vectors, v * M.  Camera space has x to the right, y up, z along the view axis.  NDC
        has x and y from -1 to 1; in perspective z goes from 0 at distance 0.001 to 1 at infinity.
        For a panorama NDC is camera space. */

@@ -12,7 +12,7 @@ layers="compiler/base compiler/image compiler/outline compiler/graph compiler/sh
         runtime/writer runtime live cli"
 api="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h compiler/krs_mesh.h
      compiler/shape/surface.def compiler/print/variant.h compiler/target/spirv.h
-     runtime/krs_vulkan.h runtime/krs_film.h runtime/planes.def runtime/choices.def"
+     runtime/krs_vulkan.h runtime/krs_film.h runtime/krs_choices.h runtime/planes.def runtime/choices.def"
 
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 

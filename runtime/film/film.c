@@ -17,6 +17,7 @@
 #include "runtime/film/mattes.h"
 #include "runtime/film/noise.h"
 #include "runtime/film/picture.h"
+#include "runtime/film/plate.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
 #include "runtime/film/settings.h"
@@ -199,13 +200,15 @@ static bool add_to_band(Job *job, const Plan *plan, const KrsFilm *film, uint32_
     *control = (ControlBlock){
         .projection    = job->rays ? LISTED : (uint32_t)job->view.camera.projection,
         .lights        = (uint32_t)job->view.light_count,
-        .apart         = film->lights != NULL,
+        .apart         = film->options.light_groups,
         .seed          = (uint32_t)(job->options.seed ^ job->options.seed >> 32),
         .no_occlusion  = job->options.no_occlusion,
         .no_background = job->options.plate != NULL,
         .most_radiance = job->options.most_radiance > 0 ? (float)job->options.most_radiance
                                                         : INFINITY,
     };
+    if (plate_catches(film))
+        control->caught = ROW_OF_LIGHTS + film->light_count - CAUGHT_ROWS;
     job->later_rows = 1u << ROW_COLORS | (job->options.mattes ? MATTE_ROWS : 0);
     job->first_rows = (picture_rows(film->sums) & ~(1u << ROW_NOISE)) | job->later_rows;
     inputs_upload(job, traced);
@@ -320,8 +323,9 @@ static KrsStatus add_moment(KrsFilm *film, const Addition *a)
                .stats          = &film->sums->stats};
     if (!job_read_frame(&job, a->frame, a->camera))
         return job.gpu->status;
-    Plan plan = {.gpu = job.gpu};
-    bool good = integrators[job.options.integrator](&job, &plan) &&
+    film->rendering->catches = plate_catches(film);
+    Plan plan                = {.gpu = job.gpu};
+    bool good                = integrators[job.options.integrator](&job, &plan) &&
                 run(&job, &plan, film, a->samples);
     plan_free(&plan);
     if (!good) {
@@ -440,7 +444,7 @@ static bool finish(const KrsFilm *film, KrsPicture *picture)
     stats->peak_memory_bytes += gpu->memory_peak;
     memcpy(stats->device, gpu->properties.deviceName, sizeof stats->device);
     picture->samples = film->samples;
-    if (!lights_finish(film, picture))
+    if (!lights_finish(film, picture) || !plate_finish(film, picture))
         return false;
     picture_divide(picture, film->sums->pixel_samples, film->samples);
     noise_finish(picture);

@@ -17,7 +17,7 @@ struct KrsFilm {
     /* Sums of the light of each light, where they are apart: all pixels of the crop for the first,
        then for the next.  The sums of `sums` are those of the rest. */
     float (*lights)[4];
-    uint32_t light_count;      /* 0: they are not apart */
+    uint32_t light_count;      /* 0: they are not apart; the last CAUGHT_ROWS are of the plate */
     uint32_t samples;          /* of each pixel so far, unless it has ended by noise */
     uint32_t rows;             /* of a band; 0: no band has been made */
     double   rebase_origin[3]; /* positions of the first sample are relative to it */

@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "runtime/film/plate.h"
 #include "runtime/tracer/rendering.h"
 
 /* Copies the listed rays of a band to the device, behind the lights. */
@@ -26,14 +27,26 @@ static void upload_rays(const Job *job, const KrsWindow *traced)
         }
 }
 
-/* Copies the depths at which rays of a band end to the device, behind the listed rays. */
+/* Depths have the room of so many rays of a list. */
+static size_t rays_of_limits(const Job *job)
+{
+    const size_t in_ray = sizeof(ListedRayBlock) / sizeof(float);
+    return (job->rendering->band.pixels + in_ray - 1) / in_ray;
+}
+
+/* Copies the depths at which rays of a band end to the device, behind the listed rays, and the planes
+   of a plate behind them. */
 static void upload_limits(const Job *job, const KrsWindow *traced)
 {
-    const size_t  listed  = job->rays ? job->rendering->band.pixels : 0;
-    ControlBlock *control = job->rendering->control.bytes;
-    float *to = (float *)(rendering_listed_rays(job->rendering, job->view.light_count) + listed);
-    control->limits = LIGHTS_AT + 2 * (uint32_t)listed +
+    const size_t    listed  = job->rays ? job->rendering->band.pixels : 0;
+    ControlBlock   *control = job->rendering->control.bytes;
+    ListedRayBlock *limits  = rendering_listed_rays(job->rendering, job->view.light_count) + listed;
+    float          *to      = (float *)limits;
+    control->limits         = LIGHTS_AT + 2 * (uint32_t)listed +
                       LIGHT_ROWS * ((uint32_t)job->view.light_count + LIGHTS_AT_ONCE);
+    control->plate_planes = control->limits + 2 * (uint32_t)rays_of_limits(job);
+    if (job->rendering->catches)
+        plate_find_planes(job, traced, (float(*)[4])(limits + rays_of_limits(job)));
     for (uint32_t y = traced->y; y < traced->y + traced->height; y++)
         for (uint32_t x = traced->x; x < traced->x + traced->width; x++, to++) {
             *to = job->options.depth[(size_t)y * job->options.width + x];
@@ -43,9 +56,9 @@ static void upload_limits(const Job *job, const KrsWindow *traced)
 
 size_t inputs_room(const Job *job)
 {
-    const size_t pixels = job->rendering->band.pixels,
-                 in_ray = sizeof(ListedRayBlock) / sizeof(float);
-    return (job->rays ? pixels : 0) + (job->options.depth ? (pixels + in_ray - 1) / in_ray : 0);
+    const size_t pixels = job->rendering->band.pixels;
+    return (job->rays ? pixels : 0) + (job->options.depth ? rays_of_limits(job) : 0) +
+           (job->rendering->catches ? (pixels + 1) / 2 : 0);
 }
 
 void inputs_upload(const Job *job, const KrsWindow *traced)

@@ -1,10 +1,12 @@
 /*
  * lights.c: the light of each light: sums in a film, and means in a picture.
  *
- * On the device each light has a row of results, and the row of colours has the rest.
+ * On the device each light has a row of results, and the row of colours has the rest.  Rows of light
+ * on a plate (plate.c) are kept with them.
  */
 #include "runtime/film/lights.h"
 
+#include "runtime/film/plate.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
 
@@ -20,9 +22,10 @@ bool lights_make(KrsFilm *film)
     Gpu *gpu = &film->rendering->renderer->gpu;
     gpu_release(gpu, film->lights);
     film->lights      = NULL;
-    film->light_count = film->options.light_groups
-                            ? (uint32_t)krs_light_count(film->rendering->scene)
-                            : 0;
+    film->light_count = (film->options.light_groups
+                             ? (uint32_t)krs_light_count(film->rendering->scene)
+                             : 0) +
+                        (plate_catches(film) ? CAUGHT_ROWS : 0);
     if (film->light_count == 0)
         return true;
     film->lights = gpu_alloc(gpu, lights_numbers(film), sizeof *film->lights,
@@ -32,14 +35,15 @@ bool lights_make(KrsFilm *film)
 
 bool lights_finish(const KrsFilm *film, KrsPicture *picture)
 {
-    const size_t pixels = pixels_of(film), count = film->light_count;
+    const size_t pixels = pixels_of(film);
+    const size_t count  = film->light_count - (plate_catches(film) ? CAUGHT_ROWS : 0);
     if (count == 0)
         return true;
     picture->lights = gpu_alloc(&film->rendering->renderer->gpu, count * pixels,
                                 sizeof *picture->lights, "make a picture");
     if (!picture->lights)
         return false;
-    picture->light_count = film->light_count;
+    picture->light_count = (uint32_t)count;
     picture->stats.peak_memory_bytes += count * pixels * sizeof *picture->lights;
     for (size_t light = 0; light < count; light++)
         for (size_t k = 0; k < pixels; k++)

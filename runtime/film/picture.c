@@ -194,8 +194,10 @@ void picture_compose(KrsPicture *picture, const float *depth, const float (*plat
         size_t whole = y * picture->width + x;
         float *color = picture->color ? &picture->color[4 * k] : NULL;
         float  left  = color ? 1 - color[3] : 0;
-        for (int i = 0; plate && color && i < 4; i++)
-            color[i] += left * plate[whole][i];
+        for (int i = 0; plate && color && i < 4; i++) {
+            const float caught = picture->caught && i < 3 ? picture->caught[k][i] : 1;
+            color[i] += left * caught * plate[whole][i];
+        }
         if (depth && picture->depth && isinf(picture->depth[k]))
             picture->depth[k] = depth[whole];
     }
@@ -212,7 +214,7 @@ static bool can_join(const KrsPicture *a, const KrsPicture *b)
 {
     bool same = is_whole(a) && is_whole(b) && a->width == b->width && a->height == b->height &&
                 a->samples == b->samples && !a->mattes[0] == !b->mattes[0] && !a->lights &&
-                !b->lights;
+                !b->lights && !a->caught && !b->caught;
     for (int i = 0; i < PLANE_COUNT; i++)
         same = same && !plane_get(a, i) == !plane_get(b, i);
     return same;
@@ -295,5 +297,6 @@ void krs_picture_free(KrsPicture *picture)
     for (int kind = 0; kind < KRS_MATTE_COUNT; kind++)
         gpu_release(&allocating, picture->mattes[kind]);
     gpu_release(&allocating, picture->lights);
+    gpu_release(&allocating, picture->caught);
     gpu_release(&allocating, picture);
 }

@@ -45,8 +45,8 @@ static bool choose(KrsRendering *rendering, KrsRenderOptions *o, KrsSchedule *as
         (unsigned)o->components >= KRS_COMPONENTS_COUNT ||
         (unsigned)o->normals >= KRS_NORMALS_COUNT ||
         (unsigned)o->pixel_filter >= KRS_PIXEL_FILTER_COUNT ||
-        (unsigned)o->starts >= KRS_STARTS_COUNT || o->even_hits > KRS_MOST_EVEN_HITS ||
-        (unsigned)o->integrator >= KRS_INTEGRATOR_COUNT)
+        (unsigned)o->starts >= KRS_STARTS_COUNT || (unsigned)o->catcher >= KRS_CATCHER_COUNT ||
+        o->even_hits > KRS_MOST_EVEN_HITS || (unsigned)o->integrator >= KRS_INTEGRATOR_COUNT)
         return refuse(rendering, "there is no such method, schedule, stencil, kind of shadow, "
                                  "filter or integrator");
     if (o->normals == KRS_NORMALS_ANALYTIC && !rendering->program->gradients)
@@ -98,6 +98,8 @@ static void put_defaults(const KrsImage *image, KrsRenderOptions *o)
     o->slice_ms = o->slice_ms != 0 ? o->slice_ms : 50;
     if (o->integrator == KRS_INTEGRATOR_DEFAULT)
         o->integrator = find_integrator(image->integrator);
+    if (o->catcher == KRS_CATCHER_DEFAULT)
+        o->catcher = o->depth && o->plate ? KRS_CATCHER_SHADOWS : KRS_CATCHER_NONE;
     if (o->crop.width == 0)
         o->crop = (KrsWindow){0, 0, o->width, o->height};
 }
@@ -121,6 +123,8 @@ static bool check(KrsRendering *rendering, const KrsRenderOptions *o)
         return refuse(rendering, "what is clamped, or ends by noise, has no groups of lights");
     if (o->light_groups && krs_light_count(rendering->scene) > KRS_MOST_LIGHT_GROUPS)
         return refuse(rendering, "there are groups for at most 240 lights");
+    if (o->catcher != KRS_CATCHER_NONE && !o->depth)
+        return refuse(rendering, "shadows fall on a plate whose depths are known");
     if (!(o->most_radiance >= 0))
         return refuse(rendering, "the most radiance of a ray must be above 0");
     if (!(o->slice_ms > 0) || o->most_steps > MOST_STEPS || o->steps_at_once > MOST_STEPS_AT_ONCE)

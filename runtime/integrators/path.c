@@ -17,11 +17,12 @@
 #define WEIGHT_BOUNCES 0.7f
 
 typedef struct Paths {
-    Job        *job;
-    Plan       *plan;
-    PathKernels kernels;
-    uint32_t    bounces;
-    float       weight; /* of the passes of a bounce */
+    Job          *job;
+    Plan         *plan;
+    PathKernels   kernels;
+    const Kernel *plate; /* NULL: no plate catches shadows */
+    uint32_t      bounces;
+    float         weight; /* of the passes of a bounce */
 } Paths;
 
 static void add_items(const Paths *paths, KrsPhase phase, const Kernel *kernel, ListId in,
@@ -44,9 +45,12 @@ static void add_surface(const Paths *paths, uint32_t number)
     const bool         ends      = number == paths->bounces;
     PassConstants      constants = {.phase = ends ? PATHS_END : PATHS_GO_ON, .value = number};
     add_items(paths, KRS_PHASE_RESOLVE, &renderer->escapes[rays],
-              number == 0 ? LIST_OF_BAND : LIST_OF_PATHS, LIST_ALL, (PassConstants){0});
+              number == 0 ? LIST_OF_BAND : LIST_OF_PATHS, LIST_ALL,
+              (PassConstants){.value = number});
     add_items(paths, KRS_PHASE_NORMALS, paths->kernels.normals, LIST_ALL, NO_LIST,
               (PassConstants){0});
+    if (number == 0 && paths->plate)
+        add_items(paths, KRS_PHASE_NORMALS, paths->plate, LIST_ALL, NO_LIST, (PassConstants){0});
     add_items(paths, KRS_PHASE_SHADING, paths->kernels.scatter, LIST_ALL, LIST_OF_PATHS, constants);
     if (!ends && (paths->job->view.light_count > 0 || paths->job->view.sky.map))
         plan_add(paths->plan, (Pass){.kind      = PASS_RAYS,
@@ -67,7 +71,8 @@ static bool add_paths(Job *job, Plan *plan, uint32_t bounces)
     plan->has_paths               = true;
     if (!primary_add_marches(job, plan, WEIGHT_PRIMARY, NULL) ||
         !renderer_create_escapes(r->renderer, r->rays, &r->spirv_ms, &r->pipeline_ms) ||
-        !rendering_paths(r, o, KRS_FOR_PATHS, &paths.kernels))
+        !rendering_paths(r, o, KRS_FOR_PATHS, &paths.kernels) ||
+        !primary_find_plate(job, &paths.plate))
         return false;
     const March march = primary_march_of_paths(job, paths.kernels.march);
     for (uint32_t number = 0; number <= bounces; number++) {

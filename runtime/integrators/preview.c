@@ -312,9 +312,13 @@ bool preview_plan(Job *job, Plan *plan)
     if (!renderer_create_pixels(r->renderer, r->rays, &r->spirv_ms, &r->pipeline_ms) ||
         !primary_add_marches(job, plan, WEIGHT_MARCH, &primary) || !find_secondary(&p))
         return false;
-    const Kernel *shade = rendering_shade(job->rendering);
+    const Kernel *shade = rendering_shade(job->rendering), *plate;
     add_background(&p);
     primary_add_normals(plan, WEIGHT_NORMALS, &primary);
+    if (!primary_find_plate(job, &plate))
+        return false;
+    if (plate)
+        add_items(&p, KRS_PHASE_NORMALS, plate, LIST_ALL, NO_LIST, (PassConstants){0}, 0);
     add_occlusion(&p);
     add_lights(&p, shade);
     return shade && (!plan->has_paths || add_mirrors(&p)) && !plan->failed;

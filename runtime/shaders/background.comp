@@ -59,7 +59,8 @@ void store_more(uint quarter, uint exist, uint hits)
         RayEnd  ray = find_end(index);
         if (keeps_counts)
             results[ROW_COUNTS * band_pixels() + index] = uvec4(0u, ray.steps, 0u, 0u);
-        if (by_march_group && (hits & left & ~left + 1u) != 0u) {
+        bool    listed = by_march_group && ray.march_group != MARCH_GROUP_OF_PLATE;
+        if (listed && (hits & left & ~left + 1u) != 0u) {
             uint first_of_list = (LIST_OF_MARCH_GROUP + ray.march_group) * band_pixels();
             pixel_lists[first_of_list + atomicAdd(counts.of_march_group[ray.march_group], 1u)] =
                 slot;

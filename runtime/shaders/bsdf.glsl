@@ -370,3 +370,21 @@ vec4 scatter(Bsdf bsdf, vec3 light)
     }
     return vec4(sum, density);
 }
+
+// A dull white surface in place of another: the plate, and where light leaves from below a surface.
+Bsdf make_dull(Bsdf bsdf)
+{
+    bsdf.color = vec3(1.0);
+    bsdf.metallic = bsdf.glass = bsdf.coat = bsdf.head_on = bsdf.grazing = 0.0;
+    bsdf.sheen = vec3(0.0);
+    bsdf.under_coat = bsdf.under_sheen = 1.0;
+#ifdef SUBSURFACE
+    bsdf.upon = 1.0;
+#endif
+    bsdf.diffuse = PART(1.0);
+#ifdef FILM
+    bsdf.film = 0.0;
+#endif
+    bsdf.shares = vec4(0.0, 0.0, 0.0, 1.0);
+    return bsdf;
+}

@@ -23,6 +23,7 @@
 struct Path {
     vec3  origin, direction, weight;
     float density;
+    bool  caught; // it began at the plate; its density is stored as a negative number
 };
 
 // The part of a light that counts where rays find it as well as points of it are chosen, so that
@@ -47,8 +48,9 @@ vec3 find_sources(Path path, float end, uint index, vec3 shown)
         float share = share_of_rays(path.density, chance * density);
         bool  shows = !from_camera || (light.kind & LIGHT_POSITIONAL) == 0u;
         vec3  own = shows && density > 0.0 ? share * radiance : vec3(0.0);
-        sum += control.apart != 0u ? vec3(0.0) : own;
-        for (uint once = 0u; once < control.apart; once++) // as in planes.glsl
+        uint apart = path.caught ? 0u : control.apart;
+        sum += apart != 0u ? vec3(0.0) : own;
+        for (uint once = 0u; once < apart; once++) // as in planes.glsl
             add_light_to(ROW_OF_LIGHTS + i, index, finite_or_black(shown * own));
     }
     return sum;
@@ -76,13 +78,56 @@ Path load(uvec2 pixel, uint index, out float base, out float slope)
 #ifdef PATH_RAYS
     vec4 weight = load_path(PATH_WEIGHT, index);
     path.weight = weight.xyz;
-    path.density = weight.w;
+    path.density = abs(weight.w);
+    path.caught = weight.w < 0.0;
 #else
     path.weight = vec3(1.0);
     path.density = 0.0;
+    path.caught = false;
 #endif
     return path;
 }
+
+// The light of sources and of the sky that a ray brings, which ends at a surface or hits nothing.
+vec3 find_light_before(Path path, bool hits, bool lost, float end, uint index)
+{
+    vec3  found = vec3(0.0);
+    float left = let_through(path.origin.y, path.direction.y, FARTHEST);
+    // Fog does not dim lights, but it hides the sun's disc as it hides the sky.
+    float shown = hits ? 1.0 : lost ? 0.0 : path.density == 0.0 ? left : 1.0;
+#ifndef PATH_RAYS
+    shown = !hits && control.no_background != 0u ? 0.0 : shown;
+#endif
+    if (control.phase == ESCAPE_TO_LIGHTS)
+        found = find_sources(path, hits ? end : INFINITE, index, path.weight * shown);
+    if (!hits) {
+        vec3  behind = find_sky(path), light = found;
+        if (path.density == 0.0) {
+            behind += found;
+            light = vec3(0.0);
+        }
+        found = lost ? vec3(0.0) : through_fog(behind, left, true) + light;
+#ifndef PATH_RAYS
+        found = control.no_background != 0u ? vec3(0.0) : found;
+#endif
+    }
+    return finite_or_black(path.weight * found);
+}
+
+#ifdef PATH_RAYS
+// Adds the light of a path that began at the plate.  Its first ray also adds what it would bring if
+// nothing were in its way.
+void add_caught(Path path, vec3 found, bool hits, uint index)
+{
+    add_light_to(control.caught, index, found);
+    if (control.value != 1u)
+        return;
+    vec3 without = found;
+    for (uint once = 0u; once < uint(hits); once++) // as in planes.glsl
+        without = find_light_before(path, false, false, INFINITE, index);
+    add_light_to(control.caught + 1u, index, clamp_factor(without) * without);
+}
+#endif
 
 // Begins or ends a path whose ray has ended.  Returns whether it hits a surface.
 bool follow(uvec2 pixel, uint index, inout uint unresolved)
@@ -98,31 +143,16 @@ bool follow(uvec2 pixel, uint index, inout uint unresolved)
 #endif
     unresolved += ray.unresolved ? 1u : 0u;
     bool lost = ray.unresolved && path.density > 0.0;
-    vec3 found = vec3(0.0);
-    float left = let_through(path.origin.y, path.direction.y, FARTHEST);
-    // Fog does not dim lights, but it hides the sun's disc as it hides the sky.
-    float shown = hits ? 1.0 : lost ? 0.0 : path.density == 0.0 ? left : 1.0;
-#ifndef PATH_RAYS
-    shown = !hits && control.no_background != 0u ? 0.0 : shown;
-#endif
-    if (control.phase == ESCAPE_TO_LIGHTS)
-        found = find_sources(path, hits ? ray.t : INFINITE, index, path.weight * shown);
-    if (!hits) {
-        vec3  behind = find_sky(path), light = found;
-        if (path.density == 0.0) {
-            behind += found;
-            light = vec3(0.0);
-        }
-        found = lost ? vec3(0.0) : through_fog(behind, left, true) + light;
-#ifndef PATH_RAYS
-        found = control.no_background != 0u ? vec3(0.0) : found;
-#endif
-    }
-    add_light(index, clamped(finite_or_black(path.weight * found)));
+    vec3 found = clamped(find_light_before(path, hits, lost, ray.t, index));
 #ifdef PATH_RAYS
     float begun = abs(load_path(PATH_TOWARD, index).w); // in a medium
+    if (path.caught)
+        add_caught(path, found, hits, index);
+    else
+        add_light(index, found);
 #else
     float begun = 1.0;
+    add_light(index, found);
 #endif
     store_path(PATH_TOWARD, index, vec4(0.0, 0.0, 0.0, hits ? begun * ray.side : 0.0));
     return hits;

@@ -2,21 +2,26 @@
 #extension GL_GOOGLE_include_directive : enable
 /*
  * limit.comp: rays that hit something behind the depth that the caller has given for their pixel
- * hit nothing.
+ * hit nothing.  Where a plate catches shadows, they and rays that miss hit the plate, if the depth is
+ * finite.
  *
  * An item is a quarter of a tile of 8x8 pixels.
  */
 #include "frame.glsl"
 #include "hit_lists.glsl"
 #include "limits.glsl"
+#include "plate.glsl"
 
-// The depth of a hit, for each unit along its ray.
-float find_rate_of_pixel(uvec2 pixel)
+// Where a ray meets the plane of the plate in its pixel.  At an edge of the plate that may be far from
+// the pixel's own depth, which holds then.
+const float MOST_TILTED = 1.25;
+float find_plate(uint index, vec3 origin, vec3 direction, float at_depth)
 {
-    vec3  origin, direction;
-    float base, slope;
-    find_ray(vec2(work.corner + pixel) + work.offset, origin, direction, base, slope);
-    return find_depth_rate(direction);
+    vec4  plane = find_plate_plane(index);
+    float along = dot(plane.xyz, direction);
+    float t = (plane.w - dot(plane.xyz, origin)) / (abs(along) > 1e-6 ? along : 1e-6);
+    bool  near = t * MOST_TILTED > at_depth && t < at_depth * MOST_TILTED;
+    return near ? t : at_depth;
 }
 
 void begin_group() {}
@@ -30,9 +35,17 @@ void do_item(uint quarter)
         bool   exists = all(lessThan(pixel, work.extent));
         uint   index = index_of(exists ? pixel : uvec2(0u));
         RayEnd ray = find_end(index);
-        bool   behind = ray.t * find_rate_of_pixel(pixel) > find_limit(index);
-        if (exists && ray.state == STATE_HIT && behind) {
-            ray.state = STATE_MISS;
+        vec3   origin, direction;
+        float  base, slope, limit = find_limit(index);
+        find_ray(vec2(work.corner + pixel) + work.offset, origin, direction, base, slope);
+        float  rate = find_depth_rate(direction);
+        bool   hits = ray.state == STATE_HIT, behind = ray.t * rate > limit;
+        bool   catches = control.caught != 0u && limit > 0.0 && limit < INFINITE;
+        if (exists && (hits ? behind : catches)) {
+            ray.state = catches ? STATE_HIT : STATE_MISS;
+            ray.march_group = catches ? MARCH_GROUP_OF_PLATE : ray.march_group;
+            if (catches)
+                ray.t = find_plate(index, origin, direction, limit / max(rate, 1e-6));
             ends[index] = uvec2(floatBitsToUint(ray.t), pack_ray(ray));
         }
         bit++;

@@ -35,13 +35,20 @@ void store_earlier(uint index, vec4 numbers)
 
 uvec4 load_noise(uint index) { return load_result(ROW_NOISE * band_pixels() + index); }
 
+// The sums of which the error is estimated.  Light on a plate counts as on a white surface.
+vec3 find_sum(uint index)
+{
+    vec3 caught = control.caught != 0u ? load_color(control.caught, index).rgb : vec3(0.0);
+    return find_color(index).rgb + caught;
+}
+
 float mean_of(vec3 v) { return (v.x + v.y + v.z) / 3.0; }
 
 // Estimates the error of a pixel.  `count`: its samples so far, which have doubled.
 float find_error(uint index, float count)
 {
     vec4  earlier = load_earlier(index);
-    vec3  sum = find_color(index).rgb, difference = (sum - 2.0 * earlier.rgb) / count;
+    vec3  sum = find_sum(index), difference = (sum - 2.0 * earlier.rgb) / count;
     float variance = mean_of(difference * difference);
     if (uint(count) > 2u * FIRST_NOISE_SAMPLES)
         variance = 0.5 * variance + 0.25 * earlier.w;
@@ -112,7 +119,7 @@ void begin_quarter(uvec2 corner, uint exist)
     for (uint left = exist; left != 0u; left &= left - 1u) {
         uint number = uint(findLSB(left));
         uint index = index_of(corner + uvec2(number & 3u, number >> 2u));
-        store_earlier(index, vec4(find_color(index).rgb, 0.0));
+        store_earlier(index, vec4(find_sum(index), 0.0));
     }
 }
 

@@ -7,6 +7,8 @@
  * if it is visible (secondary.comp).  And it goes on in a direction from which much of the light
  * comes that the surface scatters to the eye.  Paths whose light counts little end early, and the
  * others count more for it (Russian roulette).
+ *
+ * CATCHES: a plate catches shadows.  Paths that begin there have rows of results of their own.
  */
 #include "scene.glsl"
 #include "frame.glsl"
@@ -23,6 +25,9 @@
 #include "lights.glsl"
 #include "emissive.glsl"
 #include "boundary.glsl"
+#ifdef CATCHES
+#include "plate.glsl"
+#endif
 
 const uint CHOICES = 3u;      // points of the unit square for each surface of a path
 const uint FIRST_ROULETTE = 3u;
@@ -84,6 +89,20 @@ void begin_group()
     rows = control.value == 0u ? control.rows : 0u;
 }
 
+// Whether the path began at the plate: densities are negative then.
+bool  caught;
+float sign_of_path() { return caught ? -1.0 : 1.0; }
+
+void find_whether_caught(uint index)
+{
+#ifdef CATCHES
+    caught = control.value == 0u ? is_of_plate(find_end(index))
+                                 : load_path(PATH_WEIGHT, index).w < 0.0;
+#else
+    caught = false;
+#endif
+}
+
 // Chooses a point of a light, and what it adds if it is visible.  Returns the direction to it, and the
 // row of results to which it is added.
 vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec3 facing,
@@ -120,8 +139,13 @@ vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, v
     bool  along = is_sky && abs(rise) < LEAST_RISE;
     bool  sees = rise * light.z > 0.0 && all > 0.0 && !along;
     vec3  added = sees ? weight * scattered.rgb * point.light * share : vec3(0.0);
-    store_path(PATH_LIGHT, index, vec4(finite_or_black(added), point.end));
+    added = finite_or_black(added);
+    store_path(PATH_LIGHT, index, vec4(added, point.end));
     row = control.apart != 0u && !is_sky ? ROW_OF_LIGHTS + number : ROW_COLORS;
+    if (caught)
+        row = control.caught;
+    if (caught && control.value == 0u)
+        add_light_to(control.caught + 1u, index, clamp_factor(added) * added);
     return point.toward;
 }
 
@@ -159,7 +183,7 @@ float go_on(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 fa
     spread = max(spread, min(1.0 + 2.0 * roughness, MOST_SPREAD) * frame.pixel_slope);
     store_path(PATH_ORIGIN, index, vec4(find_start(hit, direction, facing, side, off), hit.width));
     store_path(PATH_DIRECTION, index, vec4(direction, spread));
-    store_path(PATH_WEIGHT, index, vec4(weight, scattered.w));
+    store_path(PATH_WEIGHT, index, vec4(weight, sign_of_path() * scattered.w));
     return !goes_on ? 0.0 : side > 0.0 ? boundary.code : boundary.beyond;
 }
 
@@ -187,6 +211,33 @@ Boundary meet_boundary(inout HitPoint hit, uint index, vec3 facing, out KrsSurfa
     return boundary;
 }
 
+// Adds what the surface itself sends, and stores what is known of it.
+void store_seen(uint index, vec3 radiance, HitPoint hit, vec3 normal, KrsSurface surface)
+{
+    radiance = clamped(finite_or_black(radiance));
+    if (caught) {
+        add_light_to(control.caught, index, control.value == 0u ? vec3(0.0) : radiance);
+        return;
+    }
+    vec4 sum = find_color(index) + vec4(radiance, control.value == 0u ? 1.0 : 0.0);
+    store_planes(index, rows | 1u << ROW_COLORS, sum, hit, hit.side * normal, albedo_of(surface),
+                 surface);
+}
+
+// How the surface scatters light.
+Bsdf find_bsdf(KrsSurface surface, HitPoint hit, Boundary boundary, Axes axes)
+{
+    Bsdf bsdf = make_bsdf(surface, hit.side > 0.0, into(axes, -hit.direction));
+    bsdf.eta = boundary.eta;
+    if (caught && control.value == 0u) {
+        bsdf = make_dull(bsdf);
+#ifdef SUBSURFACE
+        bsdf.chance_below = 0.0;
+#endif
+    }
+    return bsdf;
+}
+
 void do_item(uint number)
 {
     HitPoint   hit = find_hit_point(number);
@@ -196,6 +247,7 @@ void do_item(uint number)
 #endif
     uvec2 pixel = pixel_of(hit.slot);
     uint  index = index_of(pixel);
+    find_whether_caught(index);
     KrsSurface surface;
     Boundary   boundary = meet_boundary(hit, index, facing.xyz, surface);
     float t = find_end(index).t;
@@ -205,15 +257,13 @@ void do_item(uint number)
     vec3  radiance = weight * through_fog(surface.emission, left, true);
     weight *= left;
     vec3 normal = find_normal(hit, surface, facing.xyz);
-    radiance = clamped(finite_or_black(radiance));
-    vec4 sum = find_color(index) + vec4(radiance, control.value == 0u ? 1.0 : 0.0);
-    store_planes(index, rows | 1u << ROW_COLORS, sum, hit, hit.side * normal, albedo_of(surface),
-                 surface);
+    if (caught && control.value == 0u)
+        normal = facing.xyz;
+    store_seen(index, radiance, hit, normal, surface);
     if (control.phase == PATHS_END)
         return;
     Axes axes = find_axes(normal, surface.tangent);
-    Bsdf   bsdf = make_bsdf(surface, hit.side > 0.0, into(axes, -hit.direction));
-    bsdf.eta = boundary.eta;
+    Bsdf bsdf = find_bsdf(surface, hit, boundary, axes);
 #ifdef SUBSURFACE
     if (bsdf.chance_below > 0.0)
         weight *= go_below(pixel, hit, facing, bsdf, axes, surface);

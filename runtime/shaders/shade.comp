@@ -9,6 +9,8 @@
  * those of the camera's rays or of these (MIXED_RAYS).
  *
  * LAYERS: materials have coats, sheen, or mirrors other than usual.
+ *
+ * CATCHES: a plate catches shadows.  Its light is added to rows of results of its own.
  */
 #include "scene.glsl"
 #include "frame.glsl"
@@ -25,6 +27,10 @@
 #endif
 #ifdef MEDIA
 #include "tints.glsl"
+#endif
+#ifdef CATCHES
+#include "discs.glsl"
+#include "plate.glsl"
 #endif
 
 // Less evenness comes from detail, not from curvature.  Mirrors make things so small that curvature
@@ -195,9 +201,45 @@ void begin_group()
     rows = first ? control.rows : 1u << ROW_COLORS;
 }
 
-void do_item(uint number)
+#ifdef CATCHES
+// The irradiance over pi by a light at the plate, if nothing is in its way.
+vec3 light_on_plate(Light light, HitPoint hit, vec3 normal, out float above)
 {
-    HitPoint      hit = find_hit_point(number);
+    Disc  disc = find_disc(light, hit);
+    vec3  color = light.color, difference = light.vector - hit.position;
+    float rise = dot(normal, disc.toward);
+    if ((light.kind & LIGHT_POSITIONAL) != 0u)
+        color *= find_share(light, -disc.toward) / max(dot(difference, difference), 1e-12);
+    above = (light.kind & LIGHT_CASTS_SHADOWS) != 0u ? find_fraction_above(disc, rise) : 1.0;
+    return color * max(rise, 0.0) / PI;
+}
+
+// Adds the light on the plate, as it is and as it would be without the scene: that of the sky, and of
+// the lights of this pass.
+void catch_light(HitPoint hit, uint index, vec3 normal, vec4 lighting)
+{
+    float openness = control.no_occlusion != 0u ? 1.0 : lighting.x;
+    vec3  sky = first ? find_sky_around(normal) : vec3(0.0);
+    vec3  found = openness * sky, without = sky;
+    for (uint i = 0u; i < control.count; i++) {
+        float above;
+        vec3  light = light_on_plate(lights[i], hit, normal, above);
+        bool  casts = (lights[i].kind & LIGHT_CASTS_SHADOWS) != 0u;
+        float visible = casts ? i == 0u ? lighting.y : i == 1u ? lighting.z : lighting.w : 1.0;
+        without += above * light;
+#ifdef MEDIA
+        if (visible > 0.0)
+            light *= find_tint(lights[i], hit, normal);
+#endif
+        found += visible * light;
+    }
+    add_light_to(control.caught, index, finite_or_black(found));
+    add_light_to(control.caught + 1u, index, finite_or_black(without));
+}
+#endif
+
+void shade_item(HitPoint hit)
+{
     vec4       facing = load_hit(FACING, hit.slot), lighting = load_hit(LIGHTING, hit.slot);
 #ifdef KRS_VIEW // materials see how long the pixel is on the surface
     krs_view = hit.direction;
@@ -265,6 +307,19 @@ void do_item(uint number)
         add_light(index, added);
     else
         store_planes(index, rows, sum, hit, hit.side * coat.normal, albedo, surface);
+}
+
+void do_item(uint number)
+{
+    HitPoint hit = find_hit_point(number);
+#ifdef CATCHES
+    uint index = index_of(pixel_of(hit.slot));
+    if (!are_of_paths() && is_of_plate(find_end(index))) {
+        catch_light(hit, index, load_hit(FACING, hit.slot).xyz, load_hit(LIGHTING, hit.slot));
+        return;
+    }
+#endif
+    shade_item(hit);
 }
 
 #include "pixels.glsl"

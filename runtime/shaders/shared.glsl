@@ -5,14 +5,7 @@
  * alone gives the hit's position.  The lower 8 bits are a code.  A pixel without a ray has the word
  * 0.
  */
-#include "sines.glsl"
-
-// The radius of a light's disc; a directional light is at distance 1.
-float light_radius(Light light)
-{
-    bool positional = (light.kind & LIGHT_POSITIONAL) != 0u;
-    return max(positional ? light.softness : krs_tan(0.5 * min(light.softness, 3.0)), 0.0);
-}
+#include "discs.glsl"
 
 // Codes of rays to a light.  LIT: nothing is in between.  BELOW_HORIZON: the point of the light
 // lies behind the surface itself.  NARROWEST to WIDEST: the ray is blocked, and this is the width

@@ -205,18 +205,3 @@ Walk walk_below(HitPoint hit, vec3 facing, vec3 color, vec3 radius)
     walk.position = hit.position;
     return walk;
 }
-
-// What is seen of a place where light leaves: it is dull, and has no colour of its own.
-Bsdf make_dull(Bsdf bsdf)
-{
-    bsdf.color = vec3(1.0);
-    bsdf.metallic = bsdf.glass = bsdf.coat = bsdf.head_on = bsdf.grazing = 0.0;
-    bsdf.sheen = vec3(0.0);
-    bsdf.under_coat = bsdf.under_sheen = bsdf.upon = 1.0;
-    bsdf.diffuse = PART(1.0);
-#ifdef FILM
-    bsdf.film = 0.0;
-#endif
-    bsdf.shares = vec4(0.0, 0.0, 0.0, 1.0);
-    return bsdf;
-}

@@ -171,7 +171,9 @@ static_assert(sizeof(PointWorkBlock) == 8, "std430");
     uint  of_paths;       /* 1: the rays are those of paths that have begun (MIXED_RAYS) */       \
     uint  color_row;      /* the row of results to which light is added: ROW_... */               \
     uint  apart;          /* 1: the light of each light has a row of results of its own */        \
-    uint  count;          /* of the lights that a pass of shade.comp adds */
+    uint  count;          /* of the lights that a pass of shade.comp adds */                      \
+    uint  caught;         /* the row of results of light on the plate; 0: it catches none */      \
+    uint  plate_planes;   /* where planes of the plate begin in the inputs (plate.glsl) */
 
 /* What the kernels count, and what next_dispatch.comp says of the next dispatch. */
 #define COUNTER_MEMBERS                                                                            \
@@ -199,16 +201,16 @@ struct Control {
 
 /* Indices of some words of the control block, for next_dispatch.comp. */
 CONSTANT(ITEMS_WORD, 10);
-CONSTANT(GROUPS_WORD, 52);
-CONSTANT(STOPPED_WORD, 55);
-CONSTANT(RAN_WORD, 56);
+CONSTANT(GROUPS_WORD, 54);
+CONSTANT(STOPPED_WORD, 57);
+CONSTANT(RAN_WORD, 58);
 
 #ifdef __STDC_VERSION__
 typedef struct ControlBlock {
     CONTROL_MEMBERS
     COUNTER_MEMBERS
 } ControlBlock;
-static_assert(sizeof(ControlBlock) == (32 + 26 + MOST_CHAINED) * sizeof(uint32_t), "std430");
+static_assert(sizeof(ControlBlock) == (34 + 26 + MOST_CHAINED) * sizeof(uint32_t), "std430");
 static_assert(sizeof(struct Control) == offsetof(ControlBlock, queued), "the host's part");
 #endif
 
@@ -270,6 +272,8 @@ CONSTANT(STATE_HIT, 1);
 /* This is also what pack_ray (frame.glsl) makes of a miss without a step. */
 CONSTANT(STATE_MISS, 2);
 CONSTANT(STATE_REFINING, 3);
+/* In place of the march group of what a ray has hit: it is the plate of another renderer. */
+CONSTANT(MARCH_GROUP_OF_PLATE, 15);
 
 /* The rows of a hit, of four numbers each.  FACING: the normal, towards the side that the ray comes
    from, and how even the surface is within the pixel (1: flat).  LIGHTING: openness to the sky
@@ -325,8 +329,10 @@ CONSTANT(ROW_NOISE, 5);     /* estimated error; the samples of a pixel that has 
 CONSTANT(ROW_EARLIER, 6);
 CONSTANT(RESULT_ROWS, 7);
 /* Behind these is a row for each light, where they are apart: floats, summed over the rays.  Then
-   ROW_COLORS has the rest. */
+   ROW_COLORS has the rest.  Last are two rows of light on a white plate, where that catches shadows:
+   as it is, and as it would be without the scene. */
 CONSTANT(ROW_OF_LIGHTS, 7);
+CONSTANT(CAUGHT_ROWS, 2);
 /* The least samples of a pixel, which may end when they are a power of two.  The error is estimated
    from half as many on, by means of two halves. */
 CONSTANT(LEAST_NOISE_SAMPLES, 16);

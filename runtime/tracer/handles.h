@@ -54,6 +54,7 @@ struct KrsRenderer {
     Kernel limits[RAY_KINDS];     /* limit.comp, made when it is needed */
     Kernel escapes[RAY_KINDS];    /* escape.comp, made when paths are traced */
     Kernel noise;                 /* noise.comp, likewise */
+    Kernel plate;                 /* plate.comp, likewise */
     Kernel next_dispatch;         /* on graphics cards only (dispatch.c), */
     Kernel clear_shared;          /* and likewise */
     double spirv_ms, pipeline_ms; /* the time to make these kernels */
@@ -112,6 +113,7 @@ struct KrsRendering {
     KrsPurpose purpose;
     RayKind    scene_rays; /* the kind for the scene's own cameras */
     RayKind    rays;       /* the kind for this frame */
+    bool       catches;    /* this frame's plate catches shadows */
     double     spirv_ms, pipeline_ms;
 
     VkDescriptorPool pool;

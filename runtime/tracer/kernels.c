@@ -327,6 +327,7 @@ size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelStats *kern
         list_kernel(&listing, &renderer->escapes[kind]);
     }
     list_kernel(&listing, &renderer->noise);
+    list_kernel(&listing, &renderer->plate);
     list_kernel(&listing, &renderer->next_dispatch);
     list_kernel(&listing, &renderer->clear_shared);
     for (const KernelEntry *entry = rendering->kernels.first; entry; entry = entry->next)

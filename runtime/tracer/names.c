@@ -44,6 +44,11 @@ const char *const krs_starts_names[KRS_STARTS_COUNT] = {
 #include "runtime/choices.def"
 };
 
+const char *const krs_catcher_names[KRS_CATCHER_COUNT] = {
+#define KRS_CATCHER(id, name, about) name,
+#include "runtime/choices.def"
+};
+
 const char *const krs_pixel_filter_names[KRS_PIXEL_FILTER_COUNT] = {
 #define KRS_PIXEL_FILTER(id, name, reach, integral, about) name,
 #include "runtime/choices.def"

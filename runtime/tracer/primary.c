@@ -187,6 +187,16 @@ static bool add_limit(Job *job, Plan *plan)
     return kernel != NULL;
 }
 
+bool primary_find_plate(Job *job, const Kernel **kernel)
+{
+    KrsRendering *r = job->rendering;
+    *kernel         = NULL;
+    if (!r->catches)
+        return true;
+    *kernel = renderer_plate(r->renderer, &r->spirv_ms, &r->pipeline_ms);
+    return *kernel != NULL;
+}
+
 bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary)
 {
     KrsRendering *r             = job->rendering;

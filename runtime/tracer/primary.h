@@ -24,6 +24,9 @@ typedef struct Primary {
 bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary);
 /* The march of rays that surfaces have sent on, which may begin anywhere, by this kernel. */
 March primary_march_of_paths(const Job *job, Kernel *kernel);
+/* The kernel that stores normals of a plate, or NULL in *kernel where none catches shadows.  False
+   with the failure noted. */
+bool primary_find_plate(Job *job, const Kernel **kernel);
 /* Adds the passes that find normals.  The pass that lists the hits must be added before. */
 void primary_add_normals(Plan *plan, float weight, const Primary *primary);
 

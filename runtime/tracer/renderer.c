@@ -100,6 +100,7 @@ void krs_renderer_free(KrsRenderer *renderer)
             kernel_destroy(gpu, &renderer->escapes[kind]);
         }
         kernel_destroy(gpu, &renderer->noise);
+        kernel_destroy(gpu, &renderer->plate);
         kernel_destroy(gpu, &renderer->next_dispatch);
         kernel_destroy(gpu, &renderer->clear_shared);
         layouts_destroy(renderer);
@@ -164,5 +165,11 @@ const Kernel *renderer_limit(KrsRenderer *renderer, RayKind kind, double *spirv_
 const Kernel *renderer_noise(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms)
 {
     return make_ready(renderer, &renderer->noise, "noise.comp", RAYS_OF_CAMERAS, spirv_ms,
+                      pipeline_ms);
+}
+
+const Kernel *renderer_plate(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms)
+{
+    return make_ready(renderer, &renderer->plate, "plate.comp", RAYS_OF_CAMERAS, spirv_ms,
                       pipeline_ms);
 }

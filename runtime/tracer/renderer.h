@@ -20,6 +20,8 @@ bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_
 /* The kernel that ends rays at given depths, for rays of a kind; NULL with the failure noted. */
 const Kernel *renderer_limit(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
                              double *pipeline_ms);
+/* The kernel of normals of a plate; NULL with the failure noted. */
+const Kernel *renderer_plate(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms);
 /* The kernel that ends samples of pixels whose error is small; NULL with the failure noted. */
 const Kernel *renderer_noise(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms);
 /* Clears the status and the message of the last failure. */

@@ -103,6 +103,16 @@ static void want_sky(KernelVariant *to, const KrsRendering *rendering)
     want(to, KRS_FUNCTION_ARCS);
 }
 
+/* Where the plate of another renderer catches shadows, discs of lights need a tangent. */
+static void want_plate(KernelVariant *to, const KrsRendering *rendering)
+{
+    if (!rendering->catches)
+        return;
+    define(to, "#define CATCHES\n");
+    if (!wants(to, KRS_FUNCTION_SINES))
+        want(to, KRS_FUNCTION_SINES);
+}
+
 /* What is known of materials before one is looked at.  Phases of waves need cosines. */
 static void want_materials(KernelVariant *to, const KrsRendering *rendering)
 {
@@ -252,6 +262,7 @@ KernelVariant variant_of_shade(const KrsRendering *rendering)
     if (rendering->program->layers)
         define(&to, "#define LAYERS\n");
     want_materials(&to, rendering);
+    want_plate(&to, rendering);
     want_sky(&to, rendering);
     define_choices(&to);
     return to;
@@ -270,6 +281,7 @@ KernelVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts
     if (rendering->program->subsurface)
         want(&to, KRS_FUNCTION_SUBSURFACE);
     want_materials(&to, rendering);
+    want_plate(&to, rendering);
     want_media(&to, rendering);
     want_sky(&to, rendering);
     define_choices(&to);

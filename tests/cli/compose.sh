@@ -2,7 +2,7 @@
 # compose.sh: what is rendered in front of another renderer's picture.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 10
+plan 12
 "${CC:-cc}" -std=c17 -D_GNU_SOURCE -o exr_text "$root/tests/cli/exr_text.c" -lOpenEXRCore-3_1 || exit 1
 view='camera { eye: [0, 1.2, 6], target: [0, 0.5, 0], fov: 40deg }
 image { size: [64, 36] }
@@ -33,6 +33,23 @@ render front --depth-in back.exr -o alone.exr
 [ "$(./exr_text alone.exr id.component | awk '$4 > 0' | wc -l)" = \
     "$(./exr_text one.exr id.component | awk '$4 > 0' | wc -l)" ]
 result $? "without a plate the rays end as well"
+# A light with shadows, on a floor alone, which mirrors nothing as no plate does.
+dark=$(echo "$view" | sed 's/, shadow: false//; s/-1, 2, 1/-2, 2, -1/')
+dull='material dull { color: #808080, roughness: 1, specular: 0 }'
+floor='show plane([0, 1, 0], 0).paint(dull);'
+ball='show sphere(0.6).move([-0.1, 0.6, -0.2]).paint(dull);'
+echo "$dark $dull $floor" >floor.krs
+echo "$dark $dull $ball" >front-dark.krs
+echo "$dark $dull $floor $ball" >both-dark.krs
+render floor -o floor.exr
+render both-dark -o both-dark.exr
+render front-dark --depth-in floor.exr --plate floor.exr -o dark.exr
+same R both-dark.exr dark.exr 4 && ! same R floor.exr dark.exr 85
+result $? "shadows fall on the plate where they would fall on the floor"
+./exr_text dark.exr caught.R | awk '$4 < 0.5 { dark++ } $4 == 1 { lit++ } END { exit !(dark > 15 && lit > 1500) }' &&
+    render front-dark --depth-in floor.exr --plate floor.exr --catcher none -o lit.exr &&
+    [ -z "$(./exr_text lit.exr caught.R)" ] && same R floor.exr lit.exr 80
+result $? "and the factors are channels, unless nothing is to fall on it"
 for frame in 1 2; do
     render back --time $frame -o back-$frame.exr
 done

@@ -340,6 +340,7 @@ static void check_limits(Stage *stage, size_t camera)
     KrsPicture      *plain   = stage_render(stage, options);
     options.depth            = depth;
     options.plate            = (const float(*)[4])plate;
+    options.catcher          = KRS_CATCHER_NONE; /* plates.c has shadows */
     options.crop             = (KrsWindow){3, 5, 50, 30};
     for (int scale = 0; scale < SCALES; scale++) {
         for (int i = 0; i < PIXELS; i++) {

@@ -140,6 +140,8 @@ static void wrong_use_is_refused(void **state)
         {.schedule = KRS_SCHEDULE_COUNT},
         {.shadows = KRS_SHADOWS_COUNT},
         {.starts = KRS_STARTS_COUNT},
+        {.catcher = KRS_CATCHER_COUNT},
+        {.catcher = KRS_CATCHER_SHADOWS}, /* on what? */
         {.even_hits = KRS_MOST_EVEN_HITS + 1},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {

@@ -1,0 +1,18 @@
+/*
+ * plate.h: the plate of another renderer, on which shadows fall.
+ */
+#ifndef KRS_PLATE_H
+#define KRS_PLATE_H
+
+#include "runtime/film/held.h"
+#include "runtime/tracer/job.h"
+
+/* Whether the plate of a film catches shadows. */
+bool plate_catches(const KrsFilm *film);
+/* Writes the planes of the plate in the pixels of a band, four numbers each: the unit normal, and its
+   product with the points of the plane. */
+void plate_find_planes(const Job *job, const KrsWindow *traced, float (*planes)[4]);
+/* Gives a picture of the sums of a film what the plate has caught.  False with the failure noted. */
+bool plate_finish(const KrsFilm *film, KrsPicture *picture);
+
+#endif
