@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/krs_camera.h"
 #include "live/camera_text.h"
-#include "live/orbit.h"
 #include "live/saving.h"
 #include "live/text_edit.h"
 
@@ -34,13 +34,13 @@ static void changed(Viewing *viewing)
 
 static void turn(Viewing *viewing, double right, double up)
 {
-    orbit_turn(&viewing->view.camera, right, up);
+    krs_camera_turn(&viewing->view.camera, right, up);
     changed(viewing);
 }
 
 static void pan(Viewing *viewing, double right, double up)
 {
-    orbit_pan(&viewing->view.camera, right, up);
+    krs_camera_pan(&viewing->view.camera, right, up);
     changed(viewing);
 }
 
@@ -52,9 +52,9 @@ static void act_frame(Viewing *viewing)
     const double aspect = viewing->view.height > 0
                               ? (double)viewing->view.width / viewing->view.height
                               : 1;
-    if (!orbit_box(version_scene(viewing->view.version), low, high))
+    if (!krs_scene_box(version_scene(viewing->view.version), low, high))
         return;
-    orbit_frame(&viewing->view.camera, low, high, aspect);
+    krs_camera_fit(&viewing->view.camera, low, high, aspect);
     changed(viewing);
 }
 
@@ -67,12 +67,12 @@ static void act_frame_part(Viewing *viewing)
     double       low[3], high[3];
     if (!found.hit)
         return;
-    if (!orbit_part_box(version_scene(view->version), found.component - 1, low, high))
+    if (!krs_component_box(version_scene(view->version), found.component - 1, low, high))
         for (int i = 0; i < 3; i++) {
             low[i]  = found.position[i] - NEAR_PART * found.depth;
             high[i] = found.position[i] + NEAR_PART * found.depth;
         }
-    orbit_frame(&view->camera, low, high, aspect);
+    krs_camera_fit(&view->camera, low, high, aspect);
     changed(viewing);
 }
 
@@ -89,7 +89,7 @@ static void act_center(Viewing *viewing)
     const Found found = viewing_find(viewing);
     if (!found.hit)
         return;
-    orbit_target(&viewing->view.camera, found.position);
+    krs_camera_aim(&viewing->view.camera, found.position);
     changed(viewing);
 }
 
@@ -114,7 +114,7 @@ static void act_focus(Viewing *viewing)
 
 static void look_along(Viewing *viewing, double x, double y, double z)
 {
-    orbit_axis(&viewing->view.camera, (double[]){x, y, z});
+    krs_camera_axis(&viewing->view.camera, (double[]){x, y, z});
     changed(viewing);
 }
 
@@ -127,7 +127,7 @@ static void act_bottom(Viewing *viewing) { look_along(viewing, 0, -1, 0); }
 
 static void act_perspective(Viewing *viewing)
 {
-    orbit_toggle_perspective(&viewing->view.camera);
+    krs_camera_toggle_perspective(&viewing->view.camera);
     changed(viewing);
 }
 
@@ -142,13 +142,13 @@ static void act_move_down(Viewing *viewing) { pan(viewing, 0, -STEP_MOVE); }
 
 static void act_nearer(Viewing *viewing)
 {
-    orbit_dolly(&viewing->view.camera, NULL, WHEEL_FACTOR);
+    krs_camera_dolly(&viewing->view.camera, NULL, WHEEL_FACTOR);
     changed(viewing);
 }
 
 static void act_farther(Viewing *viewing)
 {
-    orbit_dolly(&viewing->view.camera, NULL, 1 / WHEEL_FACTOR);
+    krs_camera_dolly(&viewing->view.camera, NULL, 1 / WHEEL_FACTOR);
     changed(viewing);
 }
 
@@ -271,7 +271,7 @@ static void measure_scene(Viewing *viewing)
 {
     const KrsCamera *camera = &viewing->view.camera;
     double           low[3], high[3], sum = 0;
-    const bool       bounded = orbit_box(version_scene(viewing->view.version), low, high);
+    const bool       bounded = krs_scene_box(version_scene(viewing->view.version), low, high);
     for (int i = 0; i < 3; i++)
         sum += bounded ? pow(high[i] - low[i], 2) : pow(camera->target[i] - camera->eye[i], 2);
     viewing->cut.size = fmax(sqrt(sum), 1e-9);
@@ -375,7 +375,8 @@ void act_scroll(void *user, double steps)
 {
     Viewing    *viewing = user;
     const Found found   = viewing_find(viewing);
-    orbit_dolly(&viewing->view.camera, found.hit ? found.position : NULL, pow(WHEEL_FACTOR, steps));
+    krs_camera_dolly(&viewing->view.camera, found.hit ? found.position : NULL,
+                     pow(WHEEL_FACTOR, steps));
     changed(viewing);
 }
 
@@ -393,7 +394,7 @@ void act_drag(void *user, int button, int modifiers, double right, double down)
     else if (button == GLFW_MOUSE_BUTTON_LEFT)
         turn(viewing, -x * DRAG_TURN, y * DRAG_TURN);
     else {
-        orbit_look(&viewing->view.camera, x * DRAG_TURN / 2, -y * DRAG_TURN / 2);
+        krs_camera_look(&viewing->view.camera, x * DRAG_TURN / 2, -y * DRAG_TURN / 2);
         changed(viewing);
     }
 }
@@ -423,7 +424,7 @@ bool act_fly_step(Viewing *viewing, int key)
     const double up    = key == GLFW_KEY_E ? step : key == GLFW_KEY_Q ? -step : 0;
     if (ahead == 0 && right == 0 && up == 0)
         return false;
-    orbit_fly(&viewing->view.camera, ahead, right, up);
+    krs_camera_fly(&viewing->view.camera, ahead, right, up);
     changed(viewing);
     return true;
 }
@@ -448,7 +449,7 @@ static bool fly(Viewing *viewing, double now)
     viewing->grounded    = viewing->grounded && any;
     if (viewing->grounded || !any)
         return false;
-    orbit_fly(&viewing->view.camera, ahead * seconds, right * seconds, up * seconds);
+    krs_camera_fly(&viewing->view.camera, ahead * seconds, right * seconds, up * seconds);
     changed(viewing);
     return true;
 }

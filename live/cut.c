@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "live/orbit.h"
+#include "compiler/krs_camera.h"
 
 /* Radius of the ball that stands for a plane, in sizes of the scene.  Over one size it deviates from a
    plane by a thousandth of it; single precision still tells a ten thousandth. */
@@ -15,7 +15,7 @@
 void cut_face(Cut *cut, const KrsCamera *camera, const double point[3])
 {
     double forward[3], right[3], up[3];
-    orbit_axes(camera, forward, right, up);
+    krs_camera_axes(camera, forward, right, up);
     for (int i = 0; i < 3; i++)
         cut->normal[i] = -forward[i];
     memcpy(cut->point, point, sizeof cut->point);
@@ -36,7 +36,7 @@ static double height_at(const KrsCamera *camera, const double forward[3], const 
 void cut_drag(Cut *cut, const KrsCamera *camera, double right, double up)
 {
     double forward[3], side[3], top[3];
-    orbit_axes(camera, forward, side, top);
+    krs_camera_axes(camera, forward, side, top);
     if (cut->ball) {
         const double height = height_at(camera, forward, cut->center);
         for (int i = 0; i < 3; i++)

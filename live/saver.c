@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "live/orbit.h"
+#include "compiler/krs_camera.h"
 #include "live/picture_file.h"
 
 /* Of an order, how much is done when its shaders are compiled; not more than a frame is. */
@@ -75,7 +75,7 @@ static void aim(const Saver *saver, View *view)
     const SaveOrder *order = &saver->order;
     const double     i     = saver->frame;
     if (order->kind == SAVE_TURN)
-        orbit_turn(&view->camera, 2 * M_PI * i / frames_of(order), 0);
+        krs_camera_turn(&view->camera, 2 * M_PI * i / frames_of(order), 0);
     if (order->kind != SAVE_TIME)
         return;
     view->time          = order->view.time + i / order->fps;

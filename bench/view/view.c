@@ -14,7 +14,7 @@
 
 #include "bench/sheet.h"
 #include "bench/stage.h"
-#include "live/orbit.h"
+#include "compiler/krs_camera.h"
 #include "live/painter.h"
 #include "live/text_file.h"
 
@@ -215,7 +215,7 @@ static double count_pictures(Trial *trial, void (*step)(Trial *trial, int i), ui
 static void turn(Trial *trial, int i)
 {
     (void)i;
-    orbit_turn(&trial->view.camera, 0.02, 0);
+    krs_camera_turn(&trial->view.camera, 0.02, 0);
 }
 
 /* The first parameter with a range, or else the time. */

@@ -6,7 +6,7 @@
 export XDG_CACHE_HOME="$work/caches"
 unset WAYLAND_DISPLAY
 "${CC:-cc}" -std=c17 -o screen_check "$root/tests/cli/screen_check.c" -lpng || exit 1
-plan 34
+plan 35
 : >out
 
 scene() { # radius
@@ -180,6 +180,8 @@ printf 'camera { eye: [4, 3, 6] } show sphere(1);' >own.krs
 (cd "$root" && "${CC:-cc}" -Wall -Wextra -Werror -I. -o "$work/own" examples/c/view.c "${B:-build}/libkrs.a" \
     $(make --no-print-directory -s libs) -lglfw -lGL) >out 2>&1
 result $? "the viewer of examples/c compiles"
+[ "$(wc -l <"$root/examples/c/view.c")" -le 200 ]
+result $? "it has 200 lines at most"
 other=$viewer
 ./own own.krs >said 2>err.view &
 viewer=$!

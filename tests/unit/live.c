@@ -14,10 +14,10 @@
 #include <cmocka.h>
 #include <png.h>
 
+#include "compiler/krs_camera.h"
 #include "live/cut.h"
 #include "live/document.h"
 #include "live/history.h"
-#include "live/orbit.h"
 #include "live/presets.h"
 #include "live/text_edit.h"
 
@@ -36,7 +36,7 @@ static double apart(const double a[3], const double b[3])
 static void project(const KrsCamera *camera, const double point[3], double out[2])
 {
     double forward[3], right[3], up[3], x = 0, y = 0, z = 0;
-    orbit_axes(camera, forward, right, up);
+    krs_camera_axes(camera, forward, right, up);
     for (int i = 0; i < 3; i++) {
         const double d = point[i] - camera->eye[i];
         x += d * right[i];
@@ -55,8 +55,8 @@ static void turns_keep_the_target(void **state)
     KrsCamera camera = start;
     for (int i = 0; i < 200; i++) {
         double forward[3], right[3], up[3];
-        orbit_turn(&camera, 0.3 * sin(i), 0.5 * cos(0.7 * i));
-        orbit_axes(&camera, forward, right, up);
+        krs_camera_turn(&camera, 0.3 * sin(i), 0.5 * cos(0.7 * i));
+        krs_camera_axes(&camera, forward, right, up);
         assert_true(fabs(apart(camera.eye, camera.target) - apart(start.eye, start.target)) < 1e-9);
         assert_true(fabs(right[1]) < 1e-9 && up[1] > 0); /* upright */
     }
@@ -70,15 +70,15 @@ static void what_is_grabbed_stays_under_the_mouse(void **state)
     double       before[2], after[2];
     KrsCamera    camera = start;
     project(&camera, start.target, before);
-    orbit_pan(&camera, 0.25, -0.125);
+    krs_camera_pan(&camera, 0.25, -0.125);
     project(&camera, start.target, after);
     assert_true(fabs(after[0] - before[0] - 0.25) < 1e-9);
     assert_true(fabs(after[1] - before[1] + 0.125) < 1e-9);
     for (int orthographic = 0; orthographic < 2; orthographic++) {
         if (orthographic)
-            orbit_toggle_perspective(&camera);
+            krs_camera_toggle_perspective(&camera);
         project(&camera, point, before);
-        orbit_dolly(&camera, point, 0.6);
+        krs_camera_dolly(&camera, point, 0.6);
         project(&camera, point, after);
         assert_true(fabs(after[0] - before[0]) < 1e-9 && fabs(after[1] - before[1]) < 1e-9);
     }
@@ -92,8 +92,8 @@ static void boxes_are_framed(void **state)
     for (int orthographic = 0; orthographic < 2; orthographic++) {
         double largest = 0;
         if (orthographic)
-            orbit_toggle_perspective(&camera);
-        orbit_frame(&camera, low, high, aspect);
+            krs_camera_toggle_perspective(&camera);
+        krs_camera_fit(&camera, low, high, aspect);
         for (int corner = 0; corner < 8; corner++) {
             const double at[3] = {corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1],
                                   corner & 4 ? high[2] : low[2]};
@@ -225,7 +225,7 @@ static void planes_cut_what_is_before_them(void **state)
     (void)state;
     Cut    cut = {.size = 10};
     double forward[3], right[3], up[3];
-    orbit_axes(&start, forward, right, up);
+    krs_camera_axes(&start, forward, right, up);
     cut_face(&cut, &start, start.target);
     for (int i = 0; i < 1000; i++) {
         const double x = 5 * sin(i), y = 5 * cos(1.7 * i), z = 3 * sin(2.3 * i);
@@ -249,7 +249,7 @@ static void balls_follow_the_mouse(void **state)
     for (int orthographic = 0; orthographic < 2; orthographic++) {
         KrsCamera camera = start;
         if (orthographic)
-            orbit_toggle_perspective(&camera);
+            krs_camera_toggle_perspective(&camera);
         project(&camera, cut.center, before);
         cut_drag(&cut, &camera, 0.2, -0.1);
         project(&camera, cut.center, after);

@@ -1,7 +1,7 @@
 /*
- * orbit.c: moves a camera as a mouse and keys do.
+ * camera_moves.c: moves a camera as a mouse and keys do.
  */
-#include "live/orbit.h"
+#include "compiler/krs_camera.h"
 
 #include <math.h>
 #include <string.h>
@@ -63,7 +63,7 @@ static double height_at_target(const KrsCamera *camera)
                                                   : 2 * distance(camera) * tan(camera->fov / 2);
 }
 
-void orbit_axes(const KrsCamera *camera, double forward[3], double right[3], double up[3])
+void krs_camera_axes(const KrsCamera *camera, double forward[3], double right[3], double up[3])
 {
     for (int i = 0; i < 3; i++)
         forward[i] = camera->target[i] - camera->eye[i];
@@ -87,12 +87,12 @@ static void turn_sight(const KrsCamera *camera, double sight[3], double right, d
     double upright[3], forward[3], side[3], top[3];
     memcpy(upright, camera->up, sizeof upright);
     normalize(upright);
-    orbit_axes(camera, forward, side, top);
+    krs_camera_axes(camera, forward, side, top);
     turn(sight, side, limit_up(forward, upright, up));
     turn(sight, upright, -right);
 }
 
-void orbit_turn(KrsCamera *camera, double right, double up)
+void krs_camera_turn(KrsCamera *camera, double right, double up)
 {
     double sight[3];
     for (int i = 0; i < 3; i++)
@@ -102,7 +102,7 @@ void orbit_turn(KrsCamera *camera, double right, double up)
         camera->eye[i] = camera->target[i] - sight[i];
 }
 
-void orbit_look(KrsCamera *camera, double right, double up)
+void krs_camera_look(KrsCamera *camera, double right, double up)
 {
     double sight[3];
     for (int i = 0; i < 3; i++)
@@ -118,16 +118,16 @@ static void shift(KrsCamera *camera, double factor, const double direction[3])
     add(camera->target, factor, direction);
 }
 
-void orbit_pan(KrsCamera *camera, double right, double up)
+void krs_camera_pan(KrsCamera *camera, double right, double up)
 {
     double       forward[3], side[3], top[3];
     const double height = height_at_target(camera);
-    orbit_axes(camera, forward, side, top);
+    krs_camera_axes(camera, forward, side, top);
     shift(camera, -right * height, side);
     shift(camera, -up * height, top);
 }
 
-void orbit_dolly(KrsCamera *camera, const double *point, double factor)
+void krs_camera_dolly(KrsCamera *camera, const double *point, double factor)
 {
     double target[3];
     factor = fmax(factor, LEAST_FACTOR);
@@ -140,20 +140,20 @@ void orbit_dolly(KrsCamera *camera, const double *point, double factor)
     camera->focus *= factor;
 }
 
-void orbit_fly(KrsCamera *camera, double forward, double right, double up)
+void krs_camera_fly(KrsCamera *camera, double forward, double right, double up)
 {
     double       ahead[3], side[3], top[3];
     const double size = distance(camera);
-    orbit_axes(camera, ahead, side, top);
+    krs_camera_axes(camera, ahead, side, top);
     shift(camera, forward * size, ahead);
     shift(camera, right * size, side);
     shift(camera, up * size, top);
 }
 
-void orbit_roll(KrsCamera *camera, double angle)
+void krs_camera_roll(KrsCamera *camera, double angle)
 {
     double forward[3], side[3], top[3];
-    orbit_axes(camera, forward, side, top);
+    krs_camera_axes(camera, forward, side, top);
     turn(top, forward, angle);
     memcpy(camera->up, top, sizeof top);
 }
@@ -163,7 +163,7 @@ static double distance_for(const KrsCamera *camera, const double half[3], double
 {
     double       forward[3], side[3], top[3], farthest = 0;
     const double tall = tan(camera->fov / 2), wide = tall * aspect;
-    orbit_axes(camera, forward, side, top);
+    krs_camera_axes(camera, forward, side, top);
     for (int corner = 0; corner < 8; corner++) {
         const double at[3] = {corner & 1 ? half[0] : -half[0], corner & 2 ? half[1] : -half[1],
                               corner & 4 ? half[2] : -half[2]};
@@ -177,7 +177,7 @@ static double distance_for(const KrsCamera *camera, const double half[3], double
 static double height_for(const KrsCamera *camera, const double half[3], double aspect)
 {
     double forward[3], side[3], top[3], tall = 0, wide = 0;
-    orbit_axes(camera, forward, side, top);
+    krs_camera_axes(camera, forward, side, top);
     for (int i = 0; i < 3; i++) {
         tall += 2 * half[i] * fabs(top[i]);
         wide += 2 * half[i] * fabs(side[i]);
@@ -185,11 +185,11 @@ static double height_for(const KrsCamera *camera, const double half[3], double a
     return fmax(tall, wide / aspect);
 }
 
-void orbit_frame(KrsCamera *camera, const double low[3], const double high[3], double aspect)
+void krs_camera_fit(KrsCamera *camera, const double low[3], const double high[3], double aspect)
 {
     const double margin = 1.08;
     double       forward[3], side[3], top[3], half[3];
-    orbit_axes(camera, forward, side, top);
+    krs_camera_axes(camera, forward, side, top);
     for (int i = 0; i < 3; i++)
         half[i] = fmax((high[i] - low[i]) / 2, 1e-9);
     const double away = camera->projection == KRS_PERSPECTIVE ? distance_for(camera, half, aspect)
@@ -210,14 +210,14 @@ static void make_orthographic(KrsCamera *camera)
     camera->projection = KRS_ORTHOGRAPHIC;
 }
 
-void orbit_toggle_perspective(KrsCamera *camera)
+void krs_camera_toggle_perspective(KrsCamera *camera)
 {
     if (camera->projection == KRS_PERSPECTIVE) {
         make_orthographic(camera);
         return;
     }
     double forward[3], side[3], top[3];
-    orbit_axes(camera, forward, side, top);
+    krs_camera_axes(camera, forward, side, top);
     if (!(camera->fov > 0))
         camera->fov = 40 * M_PI / 180;
     const double away = camera->projection == KRS_ORTHOGRAPHIC
@@ -228,7 +228,7 @@ void orbit_toggle_perspective(KrsCamera *camera)
     camera->projection = KRS_PERSPECTIVE;
 }
 
-void orbit_axis(KrsCamera *camera, const double from[3])
+void krs_camera_axis(KrsCamera *camera, const double from[3])
 {
     /* From above or below, a little to the front: the picture needs to know what is up. */
     const double aside = fabs(from[1]) > 0.5 ? 1e-4 : 0, up[3] = {0, 1, 0};
@@ -240,13 +240,13 @@ void orbit_axis(KrsCamera *camera, const double from[3])
     memcpy(camera->up, up, sizeof up);
 }
 
-void orbit_target(KrsCamera *camera, const double point[3])
+void krs_camera_aim(KrsCamera *camera, const double point[3])
 {
     memcpy(camera->target, point, sizeof camera->target);
     camera->focus = 0;
 }
 
-bool orbit_part_box(const KrsScene *scene, size_t component, double low[3], double high[3])
+bool krs_component_box(const KrsScene *scene, size_t component, double low[3], double high[3])
 {
     KrsComponent found;
     bool         finite = krs_component(scene, component, &found) == KRS_OK;
@@ -258,12 +258,12 @@ bool orbit_part_box(const KrsScene *scene, size_t component, double low[3], doub
     return finite;
 }
 
-bool orbit_box(const KrsScene *scene, double low[3], double high[3])
+bool krs_scene_box(const KrsScene *scene, double low[3], double high[3])
 {
     bool any = false;
     for (size_t i = 0; i < krs_component_count(scene); i++) {
         double     least[3], most[3];
-        const bool finite = orbit_part_box(scene, i, least, most);
+        const bool finite = krs_component_box(scene, i, least, most);
         for (int k = 0; finite && k < 3; k++) {
             low[k]  = any ? fmin(low[k], least[k]) : least[k];
             high[k] = any ? fmax(high[k], most[k]) : most[k];
