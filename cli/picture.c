@@ -35,10 +35,9 @@ static const PlaneArray plane_arrays[] = {
 };
 #undef KRS_PLANE
 enum {
-    PLANE_ARRAYS    = sizeof plane_arrays / sizeof *plane_arrays,
-    CHANNELS        = 4 * PLANE_ARRAYS + MATTE_CHANNELS, /* at most */
-    CAUGHT_CHANNELS = 3,
-    TEXTS           = 8 + MATTE_TEXTS
+    PLANE_ARRAYS = sizeof plane_arrays / sizeof *plane_arrays,
+    CHANNELS     = 4 * PLANE_ARRAYS + MATTE_CHANNELS, /* at most */
+    TEXTS        = 8 + MATTE_TEXTS
 };
 
 FileForm file_form(const char *path)
@@ -176,6 +175,8 @@ static bool add_mattes(const Options *options, const KrsPicture *source, const P
     *values = matte.values;
     return true;
 }
+
+enum { CAUGHT_CHANNELS = 3 };
 
 /* Adds the channels of what a plate has caught. */
 static void add_caught(const Options *options, const KrsPicture *source, PictureChannel *channels,
