@@ -92,7 +92,7 @@ bool filters_detail() { return frame.normal_reach > LEAST_NORMAL_REACH; }
 Coat find_coat(HitPoint hit, KrsSurface surface, float evenness)
 {
     float even = are_of_paths() ? EVEN_IN_MIRRORS : EVEN;
-    float mean_length = filters_detail() ? min(evenness / even, 1.0) : 1.0;
+    float mean_length = filters_detail() || are_of_paths() ? min(evenness / even, 1.0) : 1.0;
     vec3  mean = mean_normal(hit.side * surface.normal, mean_length, -hit.direction);
     vec4  coat = saturate(vec4(surface.color, surface.roughness), 1.0);
     float size = length(mean);
@@ -169,6 +169,17 @@ vec3 ambient(Coat coat, float openness)
 }
 
 #ifdef MIRRORS
+// How much wider a ray gets with each unit of its way beyond a rough mirror, relative to the width of
+// the mirror's lobe.  So what it shows is as blurred as the mirror would make it, without noise.
+const float LOBE = 2.0;
+float find_lobe(KrsSurface surface)
+{
+    float roughness = clamp(surface.roughness, 0.0, 1.0);
+    if (surface.coat > 0.0)
+        roughness = min(roughness, clamp(surface.coat_roughness, 0.0, 1.0));
+    return LOBE * roughness * roughness;
+}
+
 // Follows what the surface mirrors or lets through.  `weight` is that of the ray that hit it.
 void send_on(HitPoint hit, uint index, KrsSurface surface, Boundary boundary, Coat coat,
              vec4 facing, vec3 weight)
@@ -183,6 +194,7 @@ void send_on(HitPoint hit, uint index, KrsSurface surface, Boundary boundary, Co
     float spread = are_of_paths() ? load_path(PATH_DIRECTION, index).w : frame.pixel_slope;
     if (filters_detail())
         spread += find_widening(hit, facing, onward.side < 0.0, boundary.eta);
+    spread += find_lobe(surface);
     follow_onward(hit, index, onward, facing, weight * onward.part, spread);
 }
 #endif
