@@ -53,7 +53,7 @@ PRINT    := $(addprefix compiler/print/, frame_values.c media.c lines.c signatur
                 prepare.c crowds.c textures.c distances.c shared.c surfaces.c boxes.c early_outs.c march.c \
                 module_print.c) \
             $(sort $(wildcard compiler/print/*/*.c))
-TARGET   := compiler/target/spirv.c compiler/target/flatten.c
+TARGET   := $(addprefix compiler/target/, instructions.c inline.c dominators.c forward.c live.c flatten.c spirv.c)
 BORDER   := compiler/target/glslang_border.cpp
 API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c find_emissive.c find_assembly.c retain.c tables.c facts.c \
                 march_groups.c make_module.c program.c scene_text.c framing.c look.c daylight.c frame.c frame_emissive.c points.c query.c \

@@ -1,10 +1,9 @@
 /*
- * flatten.h: leaves of a module what its entry point needs, once all calls are inlined.
+ * flatten.h: makes one function of a module.
  */
 #ifndef KRS_FLATTEN_H
 #define KRS_FLATTEN_H
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -12,11 +11,14 @@
 extern "C" {
 #endif
 
-/* Drops all functions but the entry point, with what names or decorates their values, and makes
-   private globals its local variables.  A module whose entry point still calls functions stays as it
-   is.  The words are changed in place; *count becomes smaller.  Returns false without memory, or if
-   these are no SPIR-V. */
-bool flatten_module(uint32_t *words, size_t *count);
+typedef enum Flattening { FLATTEN_OK, FLATTEN_REFUSED, FLATTEN_NO_MEMORY } Flattening;
+
+/* Copies all functions to where they are called, makes private globals local variables of the entry
+   point, replaces loads of variables by what is stored where that is known, and leaves out what
+   nothing depends on, with the names of values.  FLATTEN_REFUSED: a function that is called returns
+   anywhere but at its end, or the module is none that glslang makes.  The words are changed; on
+   FLATTEN_OK *made is malloc'ed. */
+Flattening flatten_module(uint32_t *words, size_t count, uint32_t **made, size_t *made_count);
 
 #ifdef __cplusplus
 }

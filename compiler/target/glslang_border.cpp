@@ -42,32 +42,33 @@ struct Work {
     }
 };
 
-/* Larger modules are not inlined, since that would take more time than it saves. */
-static const size_t MOST_WORDS = 1 << 19;
-
-/* Inlines all functions, makes globals locals, and removes variables that only copy values.
-   Otherwise drivers do so at every start.  They copy a body once for each call above it, and
-   compare each access to a global with all before it.  When a kernel is compiled this takes as long
-   as it saves.  It saves half of what a driver does at each later start before it finds its code,
-   and with hundreds of globals more.  Results are the same but for the last digit, which a driver
-   may round differently. */
-static bool inline_calls(std::vector<uint32_t> &words)
+/* Lets all functions return at their ends alone, where some do not. */
+static bool merge_returns(std::vector<uint32_t> &words)
 {
-    spvtools::Optimizer        inlining(SPV_ENV_VULKAN_1_1), cleaning(SPV_ENV_VULKAN_1_1);
+    spvtools::Optimizer        merging(SPV_ENV_VULKAN_1_1);
     spvtools::OptimizerOptions options;
     options.set_run_validator(false); /* spirv.c validates the result */
-    inlining.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
-        .RegisterPass(spvtools::CreateMergeReturnPass())
-        .RegisterPass(spvtools::CreateInlineExhaustivePass());
-    cleaning.RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
-        .RegisterPass(spvtools::CreateAggressiveDCEPass());
-    if (!inlining.Run(words.data(), words.size(), &words, options))
-        return false;
-    size_t count = words.size();
-    if (!flatten_module(words.data(), &count))
-        throw std::bad_alloc();
-    words.resize(count);
-    return cleaning.Run(words.data(), words.size(), &words, options);
+    merging.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+        .RegisterPass(spvtools::CreateMergeReturnPass());
+    return merging.Run(words.data(), words.size(), &words, options);
+}
+
+/* Makes one function of a module, or leaves it as it is.  Otherwise drivers do so at every start.
+   They copy a body once for each call above it, and compare each access to a global with all before
+   it.  Results are the same but for the last digit, which a driver may round differently. */
+static BorderResult flatten(std::vector<uint32_t> &words, uint32_t **made, size_t *count)
+{
+    Flattening result = flatten_module(words.data(), words.size(), made, count);
+    if (result == FLATTEN_REFUSED && merge_returns(words))
+        result = flatten_module(words.data(), words.size(), made, count);
+    if (result != FLATTEN_REFUSED)
+        return result == FLATTEN_OK ? BORDER_OK : BORDER_NO_MEMORY;
+    *made = static_cast<uint32_t *>(malloc(words.size() * sizeof **made));
+    if (!*made)
+        return BORDER_NO_MEMORY;
+    memcpy(*made, words.data(), words.size() * sizeof **made);
+    *count = words.size();
+    return BORDER_OK;
 }
 
 static BorderResult compile(const char *glsl, uint32_t **words, size_t *word_count, char **log)
@@ -105,14 +106,7 @@ static BorderResult compile(const char *glsl, uint32_t **words, size_t *word_cou
 
     std::vector<uint32_t> made(glslang_program_SPIRV_get_size(work.program));
     glslang_program_SPIRV_get(work.program, made.data());
-    if (made.size() <= MOST_WORDS && !inline_calls(made))
-        return refuse("its functions cannot be inlined", log);
-    *words = static_cast<uint32_t *>(malloc(made.size() * sizeof **words));
-    if (!*words)
-        return BORDER_NO_MEMORY;
-    memcpy(*words, made.data(), made.size() * sizeof **words);
-    *word_count = made.size();
-    return BORDER_OK;
+    return flatten(made, words, word_count);
 }
 
 /* Calls `work` and returns its result; an exception becomes BORDER_NO_MEMORY or BORDER_REFUSED. */

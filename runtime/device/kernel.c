@@ -79,7 +79,7 @@ static CacheKey make_key(const KernelSource *source, const char *text)
     uint64_t           variant = s ? krs_variant_hash(&s->variant, s->wanted, s->wanted_count) : 0;
     char               maker[192];
     snprintf(maker, sizeof maker,
-             "%s: krs %s, glslang %s, SPIRV-Tools %s, flattened, variant %016" PRIx64, source->file,
+             "%s: krs %s, glslang %s, SPIRV-Tools %s, flat, variant %016" PRIx64, source->file,
              KRS_VERSION, spirv_glslang_version(), spirv_tools_version(), variant);
     return cache_key(maker, text, strlen(text));
 }
