@@ -74,7 +74,8 @@ SHADERS  := $(sort $(wildcard runtime/shaders/*.comp runtime/shaders/*.glsl runt
 # Kernels without a scene are compiled here and now, not on every machine again; what is optimized
 # here, drivers need not.
 MODULES  := $(shell grep -L 'include "scene.glsl"' runtime/shaders/*.comp)
-MODULES  := $(MODULES:runtime/shaders/%=$(B)/modules/%.spv) $(B)/modules/escape.comp-PATH_RAYS.spv
+MODULES  := $(MODULES:runtime/shaders/%=$(B)/modules/%.spv) \
+            $(addprefix $(B)/modules/, escape.comp-PATH_RAYS.spv background.comp-SKY_MAP.spv)
 EXAMPLES := $(sort $(wildcard examples/*.krs))
 
 STYLE    := -std=c17 -D_GNU_SOURCE -Wall -Wextra -Wpedantic -Wshadow -Werror -I. -MMD -MP -pthread
@@ -143,6 +144,8 @@ $(B)/modules/%.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
 	$(call MAKE_MODULE)
 $(B)/modules/%-PATH_RAYS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
 	$(call MAKE_MODULE,-DPATH_RAYS)
+$(B)/modules/%-SKY_MAP.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
+	$(call MAKE_MODULE,-DSKY_MAP)
 $(B)/embed: compiler/base/embed/embed.c
 	@mkdir -p $(@D)
 	@$(CC) $(STYLE) -O1 -o $@ $<

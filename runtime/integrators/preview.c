@@ -88,14 +88,15 @@ static uint32_t row_of_light(const Preview *p, uint32_t light)
    the first sun, and lists the hits; each further one adds another sun. */
 static void add_background(Preview *p)
 {
-    const KrsView *view  = &p->job->view;
-    const uint32_t count = (uint32_t)view->light_count;
-    uint32_t       sun   = find_sun(view, 0);
-    const bool     apart = p->job->options.light_groups;
-    add_pixels(p, KRS_PHASE_RESOLVE, PIXELS_BACKGROUND, LIST_OF_BAND, NO_LIST,
+    const KrsView    *view   = &p->job->view;
+    const uint32_t    count  = (uint32_t)view->light_count;
+    uint32_t          sun    = find_sun(view, 0);
+    const bool        apart  = p->job->options.light_groups;
+    const PixelKernel kernel = renderer_background(p->job->rendering);
+    add_pixels(p, KRS_PHASE_RESOLVE, kernel, LIST_OF_BAND, NO_LIST,
                (PassConstants){BACKGROUND_FIRST, .light = apart ? count : sun}, WEIGHT_BACKGROUND);
     for (sun = apart ? sun : find_sun(view, sun + 1); sun < count; sun = find_sun(view, sun + 1))
-        add_pixels(p, KRS_PHASE_RESOLVE, PIXELS_BACKGROUND, LIST_OF_BAND, NO_LIST,
+        add_pixels(p, KRS_PHASE_RESOLVE, kernel, LIST_OF_BAND, NO_LIST,
                    (PassConstants){BACKGROUND_SUN, .light = sun, .color_row = row_of_light(p, sun)},
                    0);
 }
@@ -309,8 +310,8 @@ bool preview_plan(Job *job, Plan *plan)
     plan->halo        = shares ? TILE : 0;
     plan->has_paths   = job->rendering->program->mirrors;
     KrsRendering *r   = job->rendering;
-    if (!renderer_create_pixels(r->renderer, r->rays, &r->spirv_ms, &r->pipeline_ms) ||
-        !primary_add_marches(job, plan, WEIGHT_MARCH, &primary) || !find_secondary(&p))
+    if (!renderer_create_pixels(r) || !primary_add_marches(job, plan, WEIGHT_MARCH, &primary) ||
+        !find_secondary(&p))
         return false;
     const Kernel *shade = rendering_shade(job->rendering), *plate;
     add_background(&p);

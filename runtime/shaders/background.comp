@@ -10,12 +10,15 @@
 #include "frame.glsl"
 #include "hit_lists.glsl"
 #include "light.glsl"
+#ifdef SKY_MAP
 #include "sky_map.glsl"
+#endif
 #include "results.glsl"
 
 Light sun;
 float sky; // 1: the sky is added; 0: the sun alone
 bool  keeps_counts;
+bool  begins; // there is no light of the pixels yet
 
 void begin_group()
 {
@@ -23,6 +26,7 @@ void begin_group()
     if (control.light >= control.lights || control.no_background != 0u)
         sun.softness = 0.0; // there is no sun
     sky = control.phase == BACKGROUND_FIRST && control.no_background == 0u ? 1.0 : 0.0;
+    begins = control.phase == BACKGROUND_FIRST && control.first_ray != 0u;
     keeps_counts = control.phase == BACKGROUND_FIRST && control.first_ray != 0u &&
                    is_wanted(ROW_COUNTS);
 }
@@ -49,23 +53,37 @@ void list_hits(uint quarter, uint hits)
     } while (hits != 0u);
 }
 
-// Stores what is seldom wanted: the number of steps, and lists by march group.
-void store_more(uint quarter, uint exist, uint hits)
+// Stores the number of steps of each pixel of a quarter.
+void store_counts(uint quarter, uint exist)
 {
-    bool by_march_group = control.by_march_group != 0u;
-    uint first = slot_of_quarter(quarter), left = by_march_group || keeps_counts ? exist : 0u;
+    uint first = slot_of_quarter(quarter), left = keeps_counts ? exist : 0u;
     for (; left != 0u; left &= left - 1u) {
-        uint slot = slot_of_bit(first, left), index = index_of(pixel_of(slot));
-        RayEnd  ray = find_end(index);
-        if (keeps_counts)
-            results[ROW_COUNTS * band_pixels() + index] = uvec4(0u, ray.steps, 0u, 0u);
-        bool    listed = by_march_group && ray.march_group != MARCH_GROUP_OF_PLATE;
-        if (listed && (hits & left & ~left + 1u) != 0u) {
-            uint first_of_list = (LIST_OF_MARCH_GROUP + ray.march_group) * band_pixels();
-            pixel_lists[first_of_list + atomicAdd(counts.of_march_group[ray.march_group], 1u)] =
-                slot;
-        }
+        uint index = index_of(pixel_of(slot_of_bit(first, left)));
+        results[ROW_COUNTS * band_pixels() + index] = uvec4(0u, find_end(index).steps, 0u, 0u);
     }
+}
+
+// Lists the hits of a quarter by march group, those of one group at a time.  `groups` has the four
+// bits of their numbers, each as a bit for every pixel.
+void list_by_group(uint quarter, uint hits, uvec4 groups)
+{
+    uint first = slot_of_quarter(quarter), left = control.by_march_group != 0u ? hits : 0u;
+    do { // do-while, as in pixels.glsl
+        uvec4 own = groups >> uint(findLSB(left | 0x10000u)) & 1u, differ = groups ^ uvec4(-ivec4(own));
+        uint  same = left & ~(differ.x | differ.y | differ.z | differ.w), at = 0u;
+        uint  group = own.x | own.y << 1u | own.z << 2u | own.w << 3u;
+        left &= ~same;
+        same = group == MARCH_GROUP_OF_PLATE ? 0u : same;
+        if (same != 0u) {
+            at = (LIST_OF_MARCH_GROUP + group) * band_pixels() +
+                 atomicAdd(counts.of_march_group[group], bitCount(same));
+        }
+        do {
+            if (same != 0u)
+                pixel_lists[at++] = slot_of_bit(first, same);
+            same &= same - 1u;
+        } while (same != 0u);
+    } while (left != 0u);
 }
 
 vec3 find_radiance(uvec2 pixel)
@@ -73,46 +91,65 @@ vec3 find_radiance(uvec2 pixel)
     vec3  origin, direction;
     float base, slope;
     find_ray(vec2(work.corner + pixel) + work.offset, origin, direction, base, slope);
+#ifdef SKY_MAP
+    vec3 seen = sky_map_radiance(direction);
+#else
     vec3 seen = sky_radiance(direction);
-    if (has_sky_map())
-        seen = sky_map_radiance(direction);
+#endif
     vec3 radiance = sky * seen +
                     sun_radiance(direction, sun.vector, sun.color, sun.softness);
     float left = let_through(origin.y, direction.y, FARTHEST);
     return finite_or_black(through_fog(radiance, left, sky > 0.0));
 }
 
+// Adds the light of the sky to pixels of a quarter.
+void add_sky(uvec2 corner, uint misses)
+{
+    uint clamped = 0u, row = control.color_row * band_pixels();
+    do { // do-while, as in pixels.glsl
+        uint  bit = uint(findLSB(misses | 0x10000u)) & 15u;
+        uvec2 pixel = corner + uvec2(bit & 3u, bit >> 2u);
+        vec3  radiance = find_radiance(pixel);
+        float factor = clamp_factor(radiance);
+        // What is 0 so far is not fetched: all lanes fetch the first pixel.
+        uint  index = index_of(pixel), fetched = begins ? 0u : index;
+        vec3  before = begins ? vec3(0.0) : load_color(control.color_row, fetched).rgb;
+        if (misses != 0u) {
+            clamped += uint(factor < 1.0);
+            colors[row + index] = before + factor * radiance;
+        }
+        misses &= misses - 1u;
+    } while (misses != 0u);
+    if (clamped != 0u)
+        atomicAdd(counts.clamped, clamped);
+}
+
 void do_item(uint quarter)
 {
     uvec2 corner = pixel_of(slot_of_quarter(quarter));
-    uint  exist = find_existing(corner) & find_sampled(quarter), hits = 0u, unresolved = 0u, clamped = 0u, bit = 0u;
+    uint  exist = find_existing(corner) & find_sampled(quarter), hits = 0u, unresolved = 0u, bit = 0u;
+    uvec4 groups = uvec4(0u);
     do {
-        uvec2 pixel = corner + uvec2(bit & 3u, bit >> 2u);
-        uint  index = index_of(pixel);
-        bool  exists = (exist >> bit & 1u) != 0u;
-        RayEnd   ray = find_end(exists ? index : 0u);
-        vec3  radiance = find_radiance(pixel);
+        uvec2  pixel = corner + uvec2(bit & 3u, bit >> 2u);
+        RayEnd ray = find_end((exist >> bit & 1u) != 0u ? index_of(pixel) : 0u);
         hits |= uint(ray.state == STATE_HIT) << bit;
         unresolved |= uint(ray.unresolved) << bit;
-        float factor = clamp_factor(radiance);
-        clamped += uint(exists && ray.state != STATE_HIT && factor < 1.0);
-        if (exists && ray.state != STATE_HIT)
-            add_light(index, factor * radiance);
+        groups |= (uvec4(ray.march_group) >> uvec4(0u, 1u, 2u, 3u) & 1u) << bit;
         bit++;
     } while (bit < 16u);
+    add_sky(corner, exist & ~hits);
     exist = control.phase == BACKGROUND_FIRST ? exist : 0u;
     unresolved &= exist;
     hits &= exist;
     if (unresolved != 0u)
         atomicAdd(counts.unresolved, bitCount(unresolved));
-    if (clamped != 0u)
-        atomicAdd(counts.clamped, clamped);
     if (control.phase == BACKGROUND_FIRST) {
         pixel_lists[quarter_at(HITS_OF_QUARTERS, quarter)] = hits;
         pixel_lists[quarter_at(LIGHT_OF_QUARTERS, quarter)] = 0u; // it stays 0 where nothing is hit
     }
     list_hits(quarter, hits);
-    store_more(quarter, exist, hits);
+    list_by_group(quarter, hits, groups);
+    store_counts(quarter, exist);
 }
 
 #include "pixels.glsl"

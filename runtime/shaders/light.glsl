@@ -2,6 +2,8 @@
  * light.glsl: the sky, fog, and how a surface reflects light.
  */
 
+const float FARTHEST = 1e30; // the sky is behind all fog
+
 // Radiance of the sky: the horizon's colour fades to the zenith's above and the ground's below.
 vec3 sky_radiance(vec3 direction)
 {

@@ -15,12 +15,15 @@ void main()
     // The stride spreads neighbours, which cost the same, over a device that assigns workgroups in
     // contiguous halves.
     uint group = work.first + gl_WorkGroupID.x * work.stride % work.groups;
-    uint number = group * 64u * control.items_per_lane + gl_LocalInvocationIndex;
+    // Eight lanes, which lavapipe runs together, take items in their order.  So memory is read in
+    // its order, and arrives before it is asked for.
+    uint lane = gl_LocalInvocationIndex & 7u;
+    uint number = (group * 64u + gl_LocalInvocationIndex - lane) * control.items_per_lane + lane;
     uint done = 0u;
     do { // do-while: lavapipe executes the body of other loops once more than needed
         if (number < control.items)
             do_item(number);
-        number += 64u;
+        number += 8u;
         done++;
     } while (done < control.items_per_lane);
 }

@@ -19,8 +19,6 @@ layout(set = 0, binding = SKY_BINDING) uniform samplerBuffer sky_texels;
 vec4 load_sky(uint number) { return texelFetch(sky_texels, int(number)); }
 #endif
 
-const float FARTHEST = 1e30; // the sky is behind all fog
-
 bool has_sky_map() { return frame.sky_map.x > 0.0; }
 
 uvec2 sky_size() { return uvec2(frame.sky_map.xy); }

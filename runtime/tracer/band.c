@@ -8,10 +8,10 @@
 #include "runtime/tracer/rendering.h"
 
 /* The most pixels of a band.  On a graphics card that is a whole picture of a common size, in 560
-   MB of buffers.  On a processor bands are small, so that they stay in its caches; the pages of
-   their buffers must be cleared, too. */
+   MB of buffers.  On a processor bands are half as large, as the pages of their buffers must be
+   cleared.  Smaller ones would not be in its caches either, and more rows would be of their halos. */
 #define BAND_PIXELS     (UINT64_C(1) << 21)
-#define BAND_PIXELS_CPU (UINT64_C(1) << 19)
+#define BAND_PIXELS_CPU (UINT64_C(1) << 20)
 /* The buffers of a band take at most this fraction of the device's memory: 1 / PART_OF_MEMORY. */
 #define PART_OF_MEMORY 4
 /* When the device lacks memory bands are halved, down to this many pixels. */

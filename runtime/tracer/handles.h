@@ -14,6 +14,7 @@
    of a tile.  Each task has its own kernel because lavapipe executes all branches of a kernel. */
 typedef enum PixelKernel {
     PIXELS_BACKGROUND,
+    PIXELS_BACKGROUND_OF_MAP, /* where the sky is a picture */
     PIXELS_UNPROVEN,
     PIXELS_PENUMBRAE,
     PIXELS_SHADOW,

@@ -238,8 +238,7 @@ static void request_sceneless(Requests *requests, KrsPurpose purpose)
     KrsRendering *rendering = requests->rendering;
     KrsRenderer  *renderer  = rendering->renderer;
     if (purpose == KRS_FOR_PICTURES)
-        requests->count += renderer_request_pixels(renderer, rendering->rays,
-                                                   requests->items + requests->count);
+        requests->count += renderer_request_pixels(rendering, requests->items + requests->count);
     const bool paths = purpose == KRS_FOR_PATHS;
     if (paths || (purpose == KRS_FOR_PICTURES && rendering->program->mirrors))
         requests->count += renderer_request_escapes(

@@ -27,6 +27,13 @@ static const char *const ray_defines[RAY_KINDS][2] = {
     [RAYS_OF_LISTS]     = {LISTED_RAYS NO_TEXELS, LISTED_RAYS},
     [RAYS_OF_PATHS]     = {PATH_RAYS NO_TEXELS, PATH_RAYS},
 };
+/* The same where the sky is a picture. */
+static const char *const map_defines[RAYS_OF_PATHS][2] = {
+    [RAYS_OF_CAMERAS]   = {SKY_MAP NO_TEXELS, SKY_MAP},
+    [RAYS_OF_PANORAMAS] = {SKY_MAP PANORAMIC NO_TEXELS, SKY_MAP PANORAMIC},
+    [RAYS_OF_LENSES]    = {SKY_MAP LENS NO_TEXELS, SKY_MAP LENS},
+    [RAYS_OF_LISTS]     = {SKY_MAP LISTED_RAYS NO_TEXELS, SKY_MAP LISTED_RAYS},
+};
 
 /* A kernel without a scene, for rays of a kind. */
 static KernelRequest request_kernel(KrsRenderer *renderer, Kernel *kernel, const char *file,
@@ -36,18 +43,32 @@ static KernelRequest request_kernel(KrsRenderer *renderer, Kernel *kernel, const
                            {.file = file, .defines = ray_defines[kind][renderer->gpu.texels]}};
 }
 
-size_t renderer_request_pixels(KrsRenderer *renderer, RayKind kind, KernelRequest *requests)
+PixelKernel renderer_background(const KrsRendering *rendering)
+{
+    return rendering->program->sky_map ? PIXELS_BACKGROUND_OF_MAP : PIXELS_BACKGROUND;
+}
+
+size_t renderer_request_pixels(const KrsRendering *rendering, KernelRequest *requests)
 {
     static const char *const files[PIXEL_KERNELS] = {
-        [PIXELS_BACKGROUND] = "background.comp", [PIXELS_UNPROVEN] = "unproven.comp",
-        [PIXELS_PENUMBRAE] = "penumbrae.comp",   [PIXELS_SHADOW] = "shadow.comp",
-        [PIXELS_OCCLUSION] = "occlusion.comp",
+        [PIXELS_BACKGROUND] = "background.comp", [PIXELS_BACKGROUND_OF_MAP] = "background.comp",
+        [PIXELS_UNPROVEN] = "unproven.comp",     [PIXELS_PENUMBRAE] = "penumbrae.comp",
+        [PIXELS_SHADOW] = "shadow.comp",         [PIXELS_OCCLUSION] = "occlusion.comp",
     };
-    size_t count = 0;
-    for (int i = 0; i < PIXEL_KERNELS; i++)
-        if (!renderer->pixels[kind][i].pipeline)
-            requests[count++] = request_kernel(renderer, &renderer->pixels[kind][i], files[i],
-                                               kind);
+    static const PixelKernel backgrounds[] = {
+        [false] = PIXELS_BACKGROUND_OF_MAP, [true] = PIXELS_BACKGROUND};
+    KrsRenderer      *renderer = rendering->renderer;
+    const RayKind     kind     = rendering->rays;
+    const PixelKernel other    = backgrounds[rendering->program->sky_map];
+    size_t            count    = 0;
+    for (int i = 0; i < PIXEL_KERNELS; i++) {
+        if (renderer->pixels[kind][i].pipeline || i == (int)other)
+            continue;
+        requests[count] = request_kernel(renderer, &renderer->pixels[kind][i], files[i], kind);
+        if (i == PIXELS_BACKGROUND_OF_MAP)
+            requests[count].source.defines = map_defines[kind][renderer->gpu.texels];
+        count++;
+    }
     return count;
 }
 
@@ -130,12 +151,12 @@ KrsDevice krs_renderer_device(const KrsRenderer *renderer)
 
 uint64_t krs_renderer_complaints(const KrsRenderer *renderer) { return renderer->gpu.complaints; }
 
-bool renderer_create_pixels(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
-                            double *pipeline_ms)
+bool renderer_create_pixels(KrsRendering *rendering)
 {
     KernelRequest requests[PIXEL_KERNELS];
-    const size_t  count = renderer_request_pixels(renderer, kind, requests);
-    return kernels_make(renderer, VK_NULL_HANDLE, requests, count, spirv_ms, pipeline_ms);
+    const size_t  count = renderer_request_pixels(rendering, requests);
+    return kernels_make(rendering->renderer, VK_NULL_HANDLE, requests, count, &rendering->spirv_ms,
+                        &rendering->pipeline_ms);
 }
 
 bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_ms,

@@ -6,17 +6,18 @@
 
 #include "runtime/tracer/handles.h"
 
-/* Lists the kernels of previews without a scene for rays of a kind, PIXEL_KERNELS at most, that do
-   not exist.  Returns how many. */
-size_t renderer_request_pixels(KrsRenderer *renderer, RayKind kind, KernelRequest *requests);
+/* Lists the kernels of previews without a scene for a rendering, PIXEL_KERNELS at most, that do not
+   exist.  Returns how many. */
+size_t renderer_request_pixels(const KrsRendering *rendering, KernelRequest *requests);
 /* Likewise the kernels of escape.comp for a kind of primary rays, and for paths; 2 at most. */
 size_t renderer_request_escapes(KrsRenderer *renderer, RayKind kind, KernelRequest *requests);
-/* Makes these kernels of previews.  Adds the time that this takes. */
-bool renderer_create_pixels(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
-                            double *pipeline_ms);
+/* Makes these kernels of previews.  Adds the time that this takes to that of the rendering. */
+bool renderer_create_pixels(KrsRendering *rendering);
 /* Likewise those of escape.comp. */
 bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
                              double *pipeline_ms);
+/* The kernel for pixels without a hit. */
+PixelKernel renderer_background(const KrsRendering *rendering);
 /* The kernel that ends rays at given depths, for rays of a kind; NULL with the failure noted. */
 const Kernel *renderer_limit(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
                              double *pipeline_ms);

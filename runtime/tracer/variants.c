@@ -97,7 +97,7 @@ static void want_sky(KernelVariant *to, const KrsRendering *rendering)
 {
     if (!rendering->program->sky_map)
         return;
-    define(to, "#define SKY_MAP\n");
+    define(to, SKY_MAP);
     if (!wants(to, KRS_FUNCTION_SINES))
         want(to, KRS_FUNCTION_SINES);
     want(to, KRS_FUNCTION_ARCS);

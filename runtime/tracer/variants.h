@@ -22,6 +22,8 @@ typedef struct KernelVariant {
 #define LISTED_RAYS "#define LISTED_RAYS\n"
 /* Rays are those of paths that have begun (frame.glsl). */
 #define PATH_RAYS "#define PATH_RAYS\n"
+/* The sky is a picture (sky_map.glsl). */
+#define SKY_MAP "#define SKY_MAP\n"
 /* Rays are those of the picture or those of paths, as the pass says. */
 #define MIXED_RAYS "#define MIXED_RAYS\n"
 
