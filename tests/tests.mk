@@ -14,12 +14,12 @@ ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c prod
                deformed.c methods.c primitive_solids.c primitive_figures.c random_scene.c \
                device_answers.c known_solid.c mesh_distance.c mesh_shape.c outline_truth.c path_stage.c rooms.c shadow_stage.c shadow_truth.c twigs.c)
 UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c queried.c \
-               cache_folder.c compiled_files.c crowd_scene.c)
+               cache_folder.c compiled_files.c crowd_scene.c closed_forms.c)
 PROPERTY_SHARED := $(addprefix tests/property/, crowd_parts.c garden.c op_trial.c reach_crowd.c)
 UNIT        := specks texts front synonyms look diagnostics shape parts passes display devices tracer film plates saved noise pixel_filters lens rendering lights light_groups sky_table daylight methods schedules paths writer \
                image_files image_reading memory validate search refute frame query zones surroundings cache cache_limits \
                compiled pipelines per_component stencils glslang flatten loader watcher drivers grid crowd_grid crowds \
-               crowd_kernels crowd_pictures tables device_tables table_files printing printers answers alike update reload live camera_text resolution painter saver edits values mesh mesh_bounds assembly
+               crowd_kernels crowd_pictures tables device_tables table_files printing printers answers alike update reload live camera_text resolution painter saver edits values mesh mesh_bounds mesh_proofs assembly
 PROPERTY    := ops noise textures graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees crowds crowds_apart moving_crowds lanes
 ORACLES     := self patterns bumps primitives krs_expand folds trees maps moebius moebius_images operators cells \
