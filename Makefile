@@ -56,7 +56,7 @@ PRINT    := $(addprefix compiler/print/, frame_values.c media.c lines.c signatur
 TARGET   := $(addprefix compiler/target/, instructions.c inline.c dominators.c forward.c live.c flatten.c spirv.c)
 BORDER   := compiler/target/glslang_border.cpp
 API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c find_emissive.c find_assembly.c retain.c tables.c facts.c \
-                march_groups.c make_module.c program.c scene_text.c framing.c look.c daylight.c frame.c frame_emissive.c points.c query.c \
+                march_groups.c make_module.c program.c scene_text.c framing.c look.c daylight.c frame.c frame_emissive.c points.c query.c texture_places.c \
                 update.c camera_moves.c search_pairs.c search_targets.c search_starts.c search.c refuter.c \
                 refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)
 MESH     := $(addprefix compiler/mesh/, solid.c field.c field_pieces.c numbering.c tets.c quadric.c roots.c contour.c bvh.c groups.c gradient.c lens.c verify.c smooth.c pieces.c voids.c bounds.c rounds.c mesh.c placing.c assemble.c crossing.c slivers.c simplify.c)

@@ -325,7 +325,10 @@ static bool fill_mesh(const void *user, OutputFile *file, OutputError *error)
     writer->vertex_count   = (size_t)output->all.vertices;
     writer->triangle_count = (size_t)output->all.triangles;
     writer->file           = file;
-    bool written           = mesh_file_write(writer, output->format);
+    if (output->parts->corner_places)
+        writer->places = arena_new_array(output->meshing->options->arena, ObjPlace,
+                                         parts_vertex_count(output->parts));
+    bool written = mesh_file_write(writer, output->format);
     if (!written && error->status == KRS_OK) {
         error->status = KRS_OUT_OF_MEMORY;
         snprintf(error->message, sizeof error->message, "not enough memory for this file");
@@ -386,8 +389,14 @@ static KrsStatus write_mesh(const Meshing *meshing, const char *path)
     if (status != KRS_OK)
         return status;
     find_parts(meshing, bodies, &parts);
+    if (format->has_places)
+        status = find_places(meshing, &parts);
+    if (status != KRS_OK)
+        return status;
     if (format->has_copies && copies_in(meshing->options, format) == COPIES_FLAT)
         flatten_parts(meshing, &parts);
+    if (format->places_of_vertices)
+        split_places(meshing->options->arena, &parts);
     set_units(meshing, format, &parts);
     return write_output(path, fill_mesh, &output);
 }

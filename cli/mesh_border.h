@@ -39,7 +39,12 @@ typedef struct MeshParts {
     const double (*vertices)[3];
     const unsigned char (*colors)[3]; /* of vertices, sRGB */
     const uint32_t (*triangles)[3];   /* numbers count from the first vertex of all */
-    const uint32_t     *material_of;  /* of triangles */
+    const uint32_t *material_of;      /* of triangles */
+    const double (*in_scene)[3];      /* where vertices are there: in one of the copies */
+    /* Where corners of triangles are in a texture, v upwards; NULL: there is none.  After split_places that is
+       told of vertices. */
+    const double (*corner_places)[3][2];
+    const double (*vertex_places)[2];
     const MeshPart     *parts;
     const MeshBody     *bodies;
     const MeshMaterial *materials;

@@ -44,12 +44,22 @@ void mesh_copy_vertex(const MeshParts *parts, const MeshCopy *copy, size_t numbe
         at[i] = copy->matrix ? dot3(copy->matrix[i], vertex) + copy->matrix[i][3] : vertex[i];
 }
 
+/* Mirrored triangles are turned, so that they face outwards again. */
+static int corner_of(const MeshCopy *copy, int k) { return copy->mirrored && k > 0 ? 3 - k : k; }
+
 void mesh_copy_triangle(const MeshParts *parts, const MeshCopy *copy, size_t number, size_t base,
                         uint32_t triangle[3])
 {
     const uint32_t *from = parts->triangles[copy->part->first_triangle + number];
-    for (int k = 0; k < 3; k++) {
-        int corner  = copy->mirrored && k > 0 ? 3 - k : k;
-        triangle[k] = (uint32_t)(from[corner] - copy->part->first_vertex + base);
-    }
+    for (int k = 0; k < 3; k++)
+        triangle[k] = (uint32_t)(from[corner_of(copy, k)] - copy->part->first_vertex + base);
+}
+
+void mesh_copy_places(const MeshParts *parts, const MeshCopy *copy, size_t number,
+                      double places[3][2])
+{
+    for (int k = 0; k < 3; k++)
+        memcpy(places[k],
+               parts->corner_places[copy->part->first_triangle + number][corner_of(copy, k)],
+               sizeof places[k]);
 }

@@ -141,14 +141,25 @@ static bool write_stl(MeshFile *file)
 
 /* ---- PLY ---- */
 
-static bool add_ply_vertices(void *user, const MeshCopy *copy)
+static bool count_vertices(void *user, const MeshCopy *copy)
 {
     MeshFile *file = user;
+    file->vertex_count += copy->part->vertex_count;
+    return true;
+}
+
+static bool add_ply_vertices(void *user, const MeshCopy *copy)
+{
+    MeshFile        *file  = user;
+    const MeshParts *parts = file->parts;
     for (size_t i = 0; i < copy->part->vertex_count; i++) {
+        size_t number = copy->part->first_vertex + i;
         double at[3];
         vertex_of(file, copy, i, at);
-        if (!add_vector(file, at) ||
-            !add_bytes(file, file->parts->colors[copy->part->first_vertex + i], 3))
+        if (!add_vector(file, at) || !add_bytes(file, parts->colors[number], 3))
+            return false;
+        if (parts->vertex_places && (!add_float(file, parts->vertex_places[number][0]) ||
+                                     !add_float(file, parts->vertex_places[number][1])))
             return false;
     }
     return true;
@@ -168,14 +179,19 @@ static bool add_ply_faces(void *user, const MeshCopy *copy)
     return true;
 }
 
+/* Vertices on seams of a texture count as often as they are written. */
 static bool write_ply(MeshFile *file)
 {
+    file->vertex_count = 0;
+    visit_copies(file, count_vertices);
     return add_line(file,
                     "ply\nformat binary_little_endian 1.0\ncomment made by krs\n"
                     "element vertex %zu\nproperty float x\nproperty float y\nproperty float z\n",
                     file->vertex_count) &&
-           add_line(file, "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-                          "element face ") &&
+           add_line(file,
+                    "property uchar red\nproperty uchar green\nproperty uchar blue\n%s"
+                    "element face ",
+                    file->parts->vertex_places ? "property float s\nproperty float t\n" : "") &&
            add_line(file, "%zu\nproperty list uchar uint vertex_indices\nend_header\n",
                     file->triangle_count) &&
            visit_copies(file, add_ply_vertices) && visit_copies(file, add_ply_faces);
@@ -208,6 +224,35 @@ static bool add_obj_vertices(void *user, const MeshCopy *copy)
     return true;
 }
 
+/* A line for a place of a corner, unless the vertex has the same from the triangle before. */
+static bool add_obj_place(MeshFile *file, uint32_t vertex, const double place[2])
+{
+    ObjPlace *last = &file->places[vertex];
+    if (last->number > 0 && last->at[0] == place[0] && last->at[1] == place[1])
+        return true;
+    *last = (ObjPlace){{place[0], place[1]}, ++file->place_count};
+    return add_line(file, "vt %.9g %.9g\n", place[0], place[1]);
+}
+
+/* `triangle` has numbers of vertices in the file. */
+static bool add_obj_face(MeshFile *file, const MeshCopy *copy, size_t number,
+                         const uint32_t triangle[3])
+{
+    const uint32_t *t = triangle;
+    uint32_t        n[3];
+    double          places[3][2];
+    if (!file->parts->corner_places)
+        return add_line(file, "f %u %u %u\n", t[0], t[1], t[2]);
+    mesh_copy_places(file->parts, copy, number, places);
+    for (int k = 0; k < 3; k++) {
+        uint32_t vertex = (uint32_t)(t[k] - file->base - 1 + copy->part->first_vertex);
+        if (!add_obj_place(file, vertex, places[k]))
+            return false;
+        n[k] = file->places[vertex].number;
+    }
+    return add_line(file, "f %u/%u %u/%u %u/%u\n", t[0], n[0], t[1], n[1], t[2], n[2]);
+}
+
 static bool add_obj_faces(MeshFile *file, const MeshCopy *copy, uint32_t material)
 {
     const MeshParts *parts = file->parts;
@@ -220,7 +265,7 @@ static bool add_obj_faces(MeshFile *file, const MeshCopy *copy, uint32_t materia
             return false;
         file->material = material;
         mesh_copy_triangle(parts, copy, i, file->base + 1, triangle);
-        if (!add_line(file, "f %u %u %u\n", triangle[0], triangle[1], triangle[2]))
+        if (!add_obj_face(file, copy, i, triangle))
             return false;
     }
     return true;
@@ -264,11 +309,11 @@ static bool take_bytes(void *user, const void *bytes, size_t count)
 static bool write_glb(MeshFile *file) { return mesh_border_glb(file->parts, take_bytes, file); }
 static bool write_3mf(MeshFile *file) { return mesh_border_3mf(file->parts, take_bytes, file); }
 
-static const MeshFormat formats[] = {{".stl", false, false, write_stl},
-                                     {".ply", false, false, write_ply},
-                                     {".obj", true, false, write_obj},
-                                     {".glb", true, true, write_glb},
-                                     {".3mf", true, true, write_3mf}};
+static const MeshFormat formats[] = {{".stl", false, false, false, false, write_stl},
+                                     {".ply", false, false, true, true, write_ply},
+                                     {".obj", true, false, true, false, write_obj},
+                                     {".glb", true, true, true, true, write_glb},
+                                     {".3mf", true, true, false, false, write_3mf}};
 
 const MeshFormat *mesh_format(const char *path)
 {

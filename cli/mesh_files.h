@@ -7,6 +7,12 @@
 #include "cli/mesh_copies.h"
 #include "cli/supervise.h"
 
+/* Where a vertex was in a texture last, and the number of that line; 0: not yet. */
+typedef struct ObjPlace {
+    double   at[2];
+    uint32_t number;
+} ObjPlace;
+
 /* A mesh that is being written. */
 typedef struct MeshFile {
     const MeshParts *parts;
@@ -17,11 +23,14 @@ typedef struct MeshFile {
     size_t           base; /* vertices of the copies before this one */
     size_t           body;
     uint32_t         material; /* that was named last */
+    ObjPlace        *places;   /* of vertices of parts, if corners of triangles have places */
+    uint32_t         place_count;
 } MeshFile;
 
 typedef struct MeshFormat {
     const char *ending;
     bool        has_parts, has_copies;
+    bool        has_places, places_of_vertices; /* in textures: of corners, or of vertices only */
     bool (*write)(MeshFile *file);
 } MeshFormat;
 

@@ -90,6 +90,18 @@ int add_colors(tinygltf::Model &model, const MeshParts *parts, const MeshPart &p
     return end_accessor(model);
 }
 
+// There v goes down.
+int add_places(tinygltf::Model &model, const MeshParts *parts, const MeshPart &part)
+{
+    add_accessor(model, TINYGLTF_TARGET_ARRAY_BUFFER, TINYGLTF_COMPONENT_TYPE_FLOAT,
+                 TINYGLTF_TYPE_VEC2, part.vertex_count);
+    for (size_t i = part.first_vertex; i < part.first_vertex + part.vertex_count; i++) {
+        append(model.buffers[0].data, (float)parts->vertex_places[i][0]);
+        append(model.buffers[0].data, (float)(1 - parts->vertex_places[i][1]));
+    }
+    return end_accessor(model);
+}
+
 int add_triangles(tinygltf::Model &model, const MeshParts *parts, const MeshPart &part,
                   uint32_t material, bool mirrored)
 {
@@ -115,6 +127,7 @@ int add_mesh(tinygltf::Model &model, const MeshParts *parts, const MeshPart &par
     tinygltf::Mesh mesh;
     int            positions = add_positions(model, parts, part, mirrored);
     int            colors    = add_colors(model, parts, part);
+    int            places    = parts->vertex_places ? add_places(model, parts, part) : -1;
     for (uint32_t material = 0; material < parts->material_count; material++) {
         int triangles = add_triangles(model, parts, part, material, mirrored);
         if (triangles < 0)
@@ -122,9 +135,11 @@ int add_mesh(tinygltf::Model &model, const MeshParts *parts, const MeshPart &par
         tinygltf::Primitive primitive;
         primitive.attributes["POSITION"] = positions;
         primitive.attributes["COLOR_0"]  = colors;
-        primitive.indices                = triangles;
-        primitive.material               = (int)material;
-        primitive.mode                   = TINYGLTF_MODE_TRIANGLES;
+        if (places >= 0)
+            primitive.attributes["TEXCOORD_0"] = places;
+        primitive.indices  = triangles;
+        primitive.material = (int)material;
+        primitive.mode     = TINYGLTF_MODE_TRIANGLES;
         mesh.primitives.push_back(primitive);
     }
     mesh.name = name;

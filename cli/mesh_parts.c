@@ -195,10 +195,24 @@ static void find_materials(const Meshing *meshing, Joined *joined)
     joined->parts.material_count = list.count;
 }
 
+/* Parts are one behind the other. */
+size_t parts_vertex_count(const MeshParts *parts)
+{
+    const MeshPart *last = &parts->parts[parts->part_count - 1];
+    return parts->part_count ? last->first_vertex + last->vertex_count : 0;
+}
+
+size_t parts_triangle_count(const MeshParts *parts)
+{
+    const MeshPart *last = &parts->parts[parts->part_count - 1];
+    return parts->part_count ? last->first_triangle + last->triangle_count : 0;
+}
+
 void find_parts(const Meshing *meshing, const Bodies *bodies, MeshParts *parts)
 {
     Joined joined = {.parts = {.scale = meshing->scale}};
     join_bodies(meshing, bodies, &joined);
+    joined.parts.in_scene = (const double(*)[3])joined.places;
     find_colors(meshing, &joined);
     find_materials(meshing, &joined);
     *parts = joined.parts;
@@ -212,7 +226,8 @@ typedef struct Flat {
     unsigned char (*colors)[3];
     uint32_t (*triangles)[3];
     uint32_t *material_of;
-    size_t    vertex_count, triangle_count;
+    double (*corner_places)[3][2];
+    size_t vertex_count, triangle_count;
 } Flat;
 
 static bool count_copy(void *user, const MeshCopy *copy)
@@ -236,6 +251,8 @@ static bool flatten_copy(void *user, const MeshCopy *copy)
     for (size_t t = 0; t < part->triangle_count; t++) {
         mesh_copy_triangle(from, copy, t, base, flat->triangles[flat->triangle_count + t]);
         flat->material_of[flat->triangle_count + t] = from->material_of[part->first_triangle + t];
+        if (from->corner_places)
+            mesh_copy_places(from, copy, t, flat->corner_places[flat->triangle_count + t]);
     }
     return count_copy(flat, copy);
 }
@@ -248,10 +265,12 @@ void flatten_parts(const Meshing *meshing, MeshParts *parts)
     MeshBody *bodies = arena_new_array(arena, MeshBody, parts->body_count);
     for (size_t i = 0; i < parts->body_count; i++)
         mesh_body_visit(parts, i, count_copy, &flat);
-    flat.vertices     = arena_alloc(arena, flat.vertex_count, sizeof *flat.vertices);
-    flat.colors       = arena_alloc(arena, flat.vertex_count, sizeof *flat.colors);
-    flat.triangles    = arena_alloc(arena, flat.triangle_count, sizeof *flat.triangles);
-    flat.material_of  = arena_new_array(arena, uint32_t, flat.triangle_count);
+    flat.vertices    = arena_alloc(arena, flat.vertex_count, sizeof *flat.vertices);
+    flat.colors      = arena_alloc(arena, flat.vertex_count, sizeof *flat.colors);
+    flat.triangles   = arena_alloc(arena, flat.triangle_count, sizeof *flat.triangles);
+    flat.material_of = arena_new_array(arena, uint32_t, flat.triangle_count);
+    if (parts->corner_places)
+        flat.corner_places = arena_alloc(arena, flat.triangle_count, sizeof *flat.corner_places);
     flat.vertex_count = flat.triangle_count = 0;
     for (size_t i = 0; i < parts->body_count; i++) {
         MeshPart part = {.first_vertex = flat.vertex_count, .first_triangle = flat.triangle_count};
@@ -261,13 +280,14 @@ void flatten_parts(const Meshing *meshing, MeshParts *parts)
         list[i]             = part;
         bodies[i]           = (MeshBody){.name = parts->bodies[i].name, .first_part = i};
     }
-    parts->vertices    = (const double(*)[3])flat.vertices;
-    parts->colors      = (const unsigned char(*)[3])flat.colors;
-    parts->triangles   = (const uint32_t(*)[3])flat.triangles;
-    parts->material_of = flat.material_of;
-    parts->parts       = list;
-    parts->bodies      = bodies;
-    parts->part_count  = parts->body_count;
+    parts->vertices      = (const double(*)[3])flat.vertices;
+    parts->colors        = (const unsigned char(*)[3])flat.colors;
+    parts->triangles     = (const uint32_t(*)[3])flat.triangles;
+    parts->material_of   = flat.material_of;
+    parts->corner_places = (const double(*)[3][2])flat.corner_places;
+    parts->parts         = list;
+    parts->bodies        = bodies;
+    parts->part_count    = parts->body_count;
 }
 
 /* ---- units ---- */

@@ -139,6 +139,7 @@ void frame_refresh(KrsFrame *frame)
     tape_run_frame(&frame->scene->guarded, frame->parameters, frame->values);
     tape_run_frame(&frame->scene->ahead, frame->parameters, frame->values);
     tape_run_frame(&frame->scene->turned, frame->parameters, frame->values);
+    tape_run_frame(&frame->scene->places, frame->parameters, frame->values);
     tape_run_frame(&frame->scene->assembly.tape, frame->parameters, frame->values);
     tape_run_frame(&frame->scene->view, frame->parameters, frame->values);
     frame->fresh = true;

@@ -96,6 +96,15 @@ void      krs_assembly_free(KrsAssembly *assembly);
 typedef bool KrsVisitCopy(void *user, const KrsItem *item, const double matrix[3][4]);
 bool         krs_assembly_visit(const KrsAssembly *assembly, KrsVisitCopy *visit, void *user);
 
+/*
+ * Where the material of the surface reads its texture, the first if there are several, at some points: 0, 0 is
+ * the lower left corner of the picture and 1, 1 the upper right one.  Not a number: it reads none.  These are
+ * coordinates as meshes have them; they jump where those of the surface do.  The scene must have been compiled with
+ * KrsOptions.assembly.
+ */
+KrsStatus krs_texture_places(KrsFrame *frame, const double (*points)[3], size_t count,
+                             double (*places)[2]);
+
 #ifdef __cplusplus
 }
 #endif

@@ -31,6 +31,7 @@ typedef enum RootKind {
     ROOTS_GRADIENT,        /* GradientRoots of each component, then of all zones */
     ROOTS_SLOPE,           /* each slope that is computed per frame */
     ROOTS_ASSEMBLY,        /* what the assembly's items refer to */
+    ROOTS_PLACE,           /* for meshes: where each component reads its texture; or a FLOAT, if nowhere */
     ROOTS_CAMERA_RELATIVE, /* surfaces and plane again for camera-relative points, or none */
     ROOT_KINDS
 } RootKind;
@@ -175,6 +176,7 @@ struct KrsScene {
     Tape             ahead;    /* if there are sheets: ALONG_EXACT of all components, and zones */
     Tape             turned;   /* if there are sheets: gradients of all components */
     Tape             surface;  /* all roots of all components, and zones */
+    Tape             places;   /* ROOTS_PLACE; empty if nobody asks for meshes */
     Tape             view;     /* cameras, lights and sky */
     Tape             rows;     /* numbers of tables that depend on the frame */
 };

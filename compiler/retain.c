@@ -186,7 +186,8 @@ static void retain_tapes(Compilation *c)
     scene->surface = tape_of(scene, roots_from(roots, ROOTS_SURFACE, ROOTS_ZONE), arena);
     if (scene->assembly.items.count > 0)
         scene->assembly.tape = tape_of(scene, roots_of(roots, ROOTS_ASSEMBLY), arena);
-    scene->view = tape_of(scene, roots_from(roots, ROOTS_CAMERA, ROOTS_SKY), arena);
+    scene->places = tape_of(scene, roots_of(roots, ROOTS_PLACE), arena);
+    scene->view   = tape_of(scene, roots_from(roots, ROOTS_CAMERA, ROOTS_SKY), arena);
 
     const Crowds *crowds = scene->graph->crowds;
     if (crowds)

@@ -35,6 +35,7 @@ static void allocate_roots(Compilation *c, RootRange assembly)
         [ROOTS_GRADIENT]        = (components + 1) * NODES_OF(GradientRoots),
         [ROOTS_SLOPE]           = s->slopes.count,
         [ROOTS_ASSEMBLY]        = assembly.count,
+        [ROOTS_PLACE]           = c->options->assembly ? components : 0,
         [ROOTS_CAMERA_RELATIVE] = components * ROOT_COUNT + NODES_OF(PlaneRoots)};
     for (RootKind kind = 0; kind < ROOT_KINDS; kind++)
         roots->first[kind + 1] = roots->first[kind] + counts[kind];
@@ -46,14 +47,19 @@ static void allocate_roots(Compilation *c, RootRange assembly)
 
 static bool lower_components(Compilation *c, Graph *g, LoweredCrowds *crowds)
 {
-    const Scene *s = &c->elaborated;
-    for (size_t i = 0; i < s->components.count; i++)
+    const Scene *s      = &c->elaborated;
+    RootRange    places = roots_of(&c->scene->roots, ROOTS_PLACE);
+    for (size_t i = 0; i < s->components.count; i++) {
+        Node *place = places.count > 0 ? &places.items[i] : NULL;
         if (!lower_component(g, s->components.items[i].shape,
                              (uint32_t)s->components.items[i].first + 1, crowds, &c->scratch,
-                             surface_roots(&c->scene->roots, i))) {
+                             surface_roots(&c->scene->roots, i), place)) {
             refuse_component(c, i, 0);
             return false;
         }
+        if (place && *place == NODE_NONE)
+            *place = graph_number(g, 0);
+    }
     return true;
 }
 

@@ -20,8 +20,8 @@ const Shape *make_smooth(ShapeBuilder *builder, const Shape *shape, Node width, 
     return smooth;
 }
 
-/* Whether a material uses `u` or `v` (OP_UV), or `orbit_trap` (OP_TRAP). */
-static bool material_needs(ShapeBuilder *builder, const Material *material, Op leaf)
+/* All that a material computes, its colour first. */
+static Tape material_tape(const Graph *graph, const Material *material, Arena *arena)
 {
     const Node all[] = {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) material->name,
@@ -33,8 +33,14 @@ static bool material_needs(ShapeBuilder *builder, const Material *material, Op l
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (all[i] != NODE_NONE)
             roots[count++] = all[i];
+    return tape_new(graph, roots, count, arena);
+}
+
+/* Whether a material uses `u` or `v` (OP_UV), or `orbit_trap` (OP_TRAP). */
+static bool material_needs(ShapeBuilder *builder, const Material *material, Op leaf)
+{
     bool needed = false;
-    Tape tape   = tape_new(builder->graph, roots, count, builder->scratch);
+    Tape tape   = material_tape(builder->graph, material, builder->scratch);
     for (size_t i = 0; i < tape.count; i++)
         needed = needed || builder->graph->items[tape.nodes[i]].op == leaf;
     arena_free(builder->scratch);
@@ -104,6 +110,21 @@ static void paint_tangent(Lowering *l, const Material *material, Node point, Sur
         surface->tangent = tangent_of_uv(l->graph, surface->uv, l->scratch);
 }
 
+/* Where a material reads the first of its textures.  What paints a colour without one hides that below. */
+static void paint_place(Lowering *l, const Material *material, Substitution with, Surface *surface)
+{
+    Tape tape = material_tape(l->graph, material, l->scratch);
+    if (material->color != NODE_NONE)
+        surface->place = NODE_NONE;
+    for (size_t i = 0; i < tape.count; i++) {
+        const Expr *e = &l->graph->items[tape.nodes[i]];
+        if (e->op != OP_texture && e->op != OP_texture_gray)
+            continue;
+        paint_with(l, &surface->place, e->operands[0], with);
+        return;
+    }
+}
+
 /* The outermost paint counts, as the last method of a chain does. */
 Lowered lower_paint(Lowering *l, const Shape *shape, LowerContext context)
 {
@@ -119,6 +140,8 @@ Lowered lower_paint(Lowering *l, const Shape *shape, LowerContext context)
     paint_with(l, &result.surface.name, material->name, with);
 #include "compiler/shape/surface.def"
     paint_tangent(l, material, context.point, &result.surface);
+    if (l->places)
+        paint_place(l, material, with, &result.surface);
     Node height = NODE_NONE;
     paint_with(l, &height, material->bump, with);
     if (height != NODE_NONE)

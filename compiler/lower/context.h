@@ -53,6 +53,7 @@ typedef struct Lowering {
     struct LoweredCrowds *crowds;   /* crowd.h; NULL: each part is lowered for itself */
     Nodes         *held_constant;   /* for lower_gradient: nodes that count as constants; or NULL */
     LoweredShapes *lowered_shapes;  /* gets all shapes, children first; or NULL */
+    bool           places;          /* find Surface.place */
 } Lowering;
 
 /* Where a shape is lowered: the point in the space of the shape, and the sequence around it.

@@ -29,14 +29,15 @@ Node root_otherwise(Graph *graph, ComponentRoot root)
 static Node or_else(Node node, Node otherwise) { return node == NODE_NONE ? otherwise : node; }
 
 bool lower_component(Graph *graph, const Shape *shape, uint32_t number,
-                     struct LoweredCrowds *crowds, Arena *scratch, Node *roots)
+                     struct LoweredCrowds *crowds, Arena *scratch, Node *roots, Node *place)
 {
     Lowering     l       = {.graph    = graph,
                             .scratch  = scratch,
                             .surfaces = true,
                             .thin     = true,
                             .most     = graph->count + MOST_LOWERED,
-                            .crowds   = crowds};
+                            .crowds   = crowds,
+                            .places   = place != NULL};
     LowerContext context = context_new(graph_leaf(graph, OP_POINT), false);
     context.normal       = graph_leaf(graph, OP_NORMAL);
     context.footprint    = graph_leaf(graph, OP_FOOTPRINT);
@@ -50,6 +51,8 @@ bool lower_component(Graph *graph, const Shape *shape, uint32_t number,
 #include "compiler/shape/surface.def"
     if (all.surface.component == NODE_NONE)
         roots[ROOT_component] = graph_uint(graph, number);
+    if (place)
+        *place = all.surface.place;
     Node normal        = or_else(all.surface.normal, context.normal);
     roots[ROOT_NORMAL] = unit_normal(graph, normal, context.normal);
     return !l.overflow;

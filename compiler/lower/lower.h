@@ -35,10 +35,11 @@ Node root_otherwise(Graph *graph, ComponentRoot root);
 /* In all of these `crowds` are those of the scene (crowd.h), or NULL. */
 
 /* Lowers a shape at the point OP_POINT and sets roots[ROOT_COUNT].  `number` is that of the component,
-   from 1, where the shape's parts have none of their own (Shape.shown).  False when that needs more
-   than MOST_LOWERED nodes, for example for copies of copies. */
+   from 1, where the shape's parts have none of their own (Shape.shown).  *place, unless NULL, is where its
+   material reads a texture, a VEC2, or NODE_NONE.  False when that needs more than MOST_LOWERED nodes, for
+   example for copies of copies. */
 bool lower_component(Graph *graph, const Shape *shape, uint32_t number,
-                     struct LoweredCrowds *crowds, Arena *scratch, Node *roots);
+                     struct LoweredCrowds *crowds, Arena *scratch, Node *roots, Node *place);
 
 /* Its distance alone, and nothing else of it; as ROOT_DISTANCE. */
 bool lower_solid(Graph *graph, const Shape *shape, struct LoweredCrowds *crowds, Arena *scratch,
