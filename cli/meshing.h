@@ -57,7 +57,7 @@ double  longest_side(const Bodies *bodies);
 /* mesh_parts.c: what files have of bodies. */
 size_t parts_vertex_count(const MeshParts *parts);
 size_t parts_triangle_count(const MeshParts *parts);
-void find_parts(const Meshing *meshing, const Bodies *bodies, MeshParts *parts);
+void   find_parts(const Meshing *meshing, const Bodies *bodies, MeshParts *parts);
 /* The same without copies: a part has all triangles of a body. */
 void flatten_parts(const Meshing *meshing, MeshParts *parts);
 /* mesh_places.c: where triangles are in textures, if there are any; and vertices, by doubling those on seams. */

@@ -88,7 +88,7 @@ typedef struct KrsOptions {
                                             and as krs_gradient in the GLSL */
     bool studio;   /* a bounded scene without lights and sky gets some, and a floor, whose component
                     is the last and named `floor`; for pictures */
-    bool assembly; /* keep what krs_assemble and krs_texture_places need, which costs some time of compiling */
+    bool assembly; /* keep what krs_assemble and krs_texture_places need, which takes some time */
     /* Only files in this folder, and below it, are read; others are E0504, also behind symbolic
        links.  That includes the scene itself in krs_compile_file.  With krs_compile_text, `name`
        must be in the folder for `use` to work.  NULL: all files may be read. */

@@ -31,7 +31,7 @@ typedef enum RootKind {
     ROOTS_GRADIENT,        /* GradientRoots of each component, then of all zones */
     ROOTS_SLOPE,           /* each slope that is computed per frame */
     ROOTS_ASSEMBLY,        /* what the assembly's items refer to */
-    ROOTS_PLACE,           /* for meshes: where each component reads its texture; or a FLOAT, if nowhere */
+    ROOTS_PLACE,           /* for meshes: where each component reads its texture; FLOAT: nowhere */
     ROOTS_CAMERA_RELATIVE, /* surfaces and plane again for camera-relative points, or none */
     ROOT_KINDS
 } RootKind;
