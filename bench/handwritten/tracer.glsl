@@ -86,10 +86,10 @@ void main()
         vec3 p = EYE + t * direction;
         vec3 n = normal_at(p, 0.5 * width * t);
         vec4 m = material(p);
-        color = m.rgb * (1.0 - METALLIC) * sky_light(n) +
-                find_sky_mirrored(n, -direction, m.a) *
-                    find_mirrored(n, -direction, m.rgb, m.a, METALLIC) +
-                SUN_COLOR * reflected(n, -direction, SUN_DIRECTION, m.rgb, m.a, METALLIC);
+        Mirror mirror = find_mirror(n, -direction, m.rgb, m.a, METALLIC);
+        color = mirror.below * m.rgb * sky_light(n) +
+                find_sky_mirrored(n, -direction, m.a) * mirror.around +
+                SUN_COLOR * reflected(n, -direction, SUN_DIRECTION, m.rgb, m.a, mirror);
     }
 #ifdef COUNT_STEPS
     color = vec3(min(steps + (hit ? 1 : 0), MOST_STEPS));

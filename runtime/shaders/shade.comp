@@ -51,6 +51,8 @@ struct Coat {
     vec2  traced; // the parts of what the body mirrors, and its clear coat, that a ray finds
 #ifdef LAYERS
     Layers layers;
+#else
+    Mirror mirror;
 #endif
 };
 
@@ -116,22 +118,22 @@ Coat find_coat(HitPoint hit, KrsSurface surface, float evenness)
     surface.coat_roughness = roughen(saturate(vec4(surface.coat_roughness), 1.0).x, mean_length);
     found.layers = find_layers(surface, hit.side > 0.0, found.normal, found.toward_eye, glass);
     found.layers.bsdf.diffuse *= found.mean_length;
+#else
+    // Normals that vary are not microfacets: light does not bounce between them.
+    found.mirror = find_mirror(found.normal, found.toward_eye, found.color, coat.a, found.metallic);
 #endif
     return found;
 }
 
-// Scattered light is in proportion to the cosine, and so to the mean of the normals, which is
-// shorter than each.  What a coat mirrors is the same amount at any roughness.
-vec3 mean_color(Coat coat) { return coat.color * mix(coat.mean_length, 1.0, coat.metallic); }
-
-// Reflectance times cosine.
+// Reflectance times cosine.  Scattered light is in proportion to the cosine, and so to the mean of the
+// normals, which is shorter than each.  What a coat mirrors is the same amount at any roughness.
 vec3 find_reflected(Coat coat, vec3 toward)
 {
 #ifdef LAYERS
     return reflected_by_layers(coat.layers, toward);
 #else
-    return reflected(coat.normal, coat.toward_eye, toward, mean_color(coat), coat.roughness,
-                     coat.metallic);
+    return reflected(coat.normal, coat.toward_eye, toward, coat.mean_length * coat.color,
+                     coat.roughness, coat.mirror);
 #endif
 }
 
@@ -159,11 +161,10 @@ vec3 ambient(Coat coat, float openness)
     return ambient_of_layers(coat.layers, coat.toward_eye, coat.mean_length * coat.normal, openness,
                              bounce, coat.traced);
 #else
-    vec3 scattered = coat.color * (1.0 - coat.metallic) *
+    vec3 scattered = coat.mirror.below * coat.color *
                      find_sky_around(coat.mean_length * coat.normal) * bounce;
-    vec3 mirrored =
-        find_sky_mirrored(coat.normal, coat.toward_eye, coat.roughness) *
-        find_mirrored(coat.normal, coat.toward_eye, coat.color, coat.roughness, coat.metallic);
+    vec3 mirrored = find_sky_mirrored(coat.normal, coat.toward_eye, coat.roughness) *
+                    coat.mirror.around;
     return scattered + mirrored * openness * (1.0 - coat.traced.x);
 #endif
 }
@@ -187,8 +188,7 @@ void send_on(HitPoint hit, uint index, KrsSurface surface, Boundary boundary, Co
 #ifdef LAYERS
     vec3 mirrored = traced_by_layers(coat.layers, coat.traced);
 #else
-    vec3 mirrored = coat.traced.x * find_mirrored(coat.normal, coat.toward_eye, coat.color,
-                                                  coat.roughness, coat.metallic);
+    vec3 mirrored = coat.traced.x * coat.mirror.around;
 #endif
     Onward onward = find_onward(hit, surface, boundary, coat.normal, mirrored);
     float spread = are_of_paths() ? load_path(PATH_DIRECTION, index).w : frame.pixel_slope;

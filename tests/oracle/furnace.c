@@ -307,6 +307,69 @@ static void previews_show_a_lamp_as_paths_do(void **state)
     assert_int_equal(wrong, 0);
 }
 
+/* ---- A material that has no layers ---- */
+
+/* Such ones have shaders of their own. */
+static const char unlayered[] =
+    "param rough = 0.5 in [0, 1]; param metal = 0 in [0, 1]; param shade = [1, 1, 1];\n"
+    "param day = 1 in [0, 1]; param bright = 0 in [0, 100];\n"
+    "camera { eye: [0, 0, 5], projection: \"orthographic\", height: 2 }\n"
+    "sky { zenith: [day, day, day], horizon: [day, day, day], ground: [day, day, day] }\n"
+    "light sun { direction: [0.6, 0.64, 0.48], intensity: bright }\n"
+    "material m { color: shade, roughness: rough, metallic: metal }\n"
+    "show sphere(1).paint(m);\n";
+
+/* The largest part of the light in a pixel by which preview and direct differ: the preview has a fit in
+   place of the table. */
+static double most_different(const PathStage *plain)
+{
+    KrsRenderOptions options = PREVIEW_OPTIONS;
+    double           most    = 0;
+    KrsPicture      *preview = path_stage_render(plain, &options);
+    options.integrator       = KRS_INTEGRATOR_DIRECT;
+    KrsPicture *direct       = path_stage_render(plain, &options);
+    for (unsigned y = 4; y < 60; y++)
+        for (unsigned x = 4; x < 60; x++) {
+            const float *a = &preview->color[4 * (64 * y + x)],
+                        *b = &direct->color[4 * (64 * y + x)];
+            bool inside    = hypot(x - 31.5, y - 31.5) < 27;
+            for (int k = 0; k < 3 && inside && b[k] > 0.02F; k++)
+                most = fmax(most, fabs(a[k] / (double)b[k] - 1));
+        }
+    krs_picture_free(preview);
+    krs_picture_free(direct);
+    return most;
+}
+
+static void unlayered_previews_lose_nothing(void **state)
+{
+    (void)state;
+    PathStage plain = path_stage_open(unlayered);
+    size_t    wrong = 0;
+    for (int i = 0; i < 16; i++) {
+        const double rough = i / 4 / 3.0, metal = i % 4 / 3.0;
+        char         name[100];
+        snprintf(name, sizeof name, "preview of metal %.2f, roughness %.2f", metal, rough);
+        path_stage_set(&plain, "rough", rough);
+        path_stage_set(&plain, "metal", metal);
+        Estimate white = path_stage_estimate(&plain, PREVIEW_OPTIONS, everywhere, 1);
+        wrong += !must_be_near(white, 1, 0.001, name);
+        if (i < 4)
+            continue; /* a lamp in a mirror is a point */
+        path_stage_set(&plain, "day", 0);
+        path_stage_set(&plain, "bright", IRRADIANCE);
+        path_stage_set_all(&plain, "shade", 0.9, 0.5, 0.2);
+        const double most = most_different(&plain);
+        print_message("# %s: %.3f of a pixel's light\n", name, most);
+        wrong += !(most < 0.08);
+        path_stage_set_all(&plain, "shade", 1, 1, 1);
+        path_stage_set(&plain, "bright", 0);
+        path_stage_set(&plain, "day", 1);
+    }
+    path_stage_close(&plain);
+    assert_int_equal(wrong, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -316,6 +379,7 @@ int main(void)
         cmocka_unit_test(nothing_bounces_from_a_ball),
         cmocka_unit_test(previews_lose_no_sky),
         cmocka_unit_test(previews_show_a_lamp_as_paths_do),
+        cmocka_unit_test(unlayered_previews_lose_nothing),
     };
     spirv_start(); /* held for all, so that the shader compiler is not started anew */
     int failed = cmocka_run_group_tests_name("furnace", tests, open_furnace, close_furnace);

@@ -60,15 +60,65 @@ Setting setting_choose(const Room *room, Random *random)
     return setting;
 }
 
-/* Reflectance times cosine of white at roughness 1, where the lobe is as wide as it can be. */
+/* What a mirror of microfacets as rough as can be sends from one direction to another, times the cosine
+   of the light's: GGX with Smith's masking, where `head_on` of the light is mirrored head-on. */
+static double mirror_of(double light, double eye, double to_halfway, double head_on)
+{
+    double mirrored = head_on + (1 - head_on) * pow(1 - to_halfway, 5);
+    return light * mirrored / M_PI * 0.5 / (light + eye);
+}
+
+/* The part of light from all sides that it sends to the eye, by sums over the half sky. */
+static double sum_mirrored(double eye, double head_on)
+{
+    enum { RISES = 200, TURNS = 50 };
+    Vec    toward_eye = {sqrt(1 - eye * eye), 0, eye};
+    double sum        = 0;
+    for (int i = 0; i < RISES; i++)
+        for (int k = 0; k < TURNS; k++) {
+            double light = (i + 0.5) / RISES, across = sqrt(1 - light * light);
+            double turn         = (k + 0.5) * M_PI / TURNS;
+            Vec    toward_light = {across * cos(turn), across * sin(turn), light};
+            Vec    halfway      = vec_unit(vec_add(toward_eye, toward_light));
+            sum += mirror_of(light, eye, vec_dot(toward_eye, halfway), head_on);
+        }
+    return sum * 2 * M_PI / (RISES * TURNS);
+}
+
+#define HEAD_ON 0.04 /* of a body */
+
+/* How often light bounces between microfacets, as a factor, and what the mirror leaves to the body below. */
+typedef struct Leaves {
+    double bounces, below;
+} Leaves;
+
+static Leaves find_leaves(double eye)
+{
+    enum { STEPS = 64 };
+    static Leaves known[STEPS + 1];
+    static bool   found;
+    for (int i = 0; i <= STEPS && !found; i++) {
+        double at = fmax((double)i / STEPS, 1e-3), all = sum_mirrored(at, 1);
+        known[i].bounces = 1 + HEAD_ON * (1 - all) / all;
+        known[i].below   = 1 - known[i].bounces * sum_mirrored(at, HEAD_ON);
+    }
+    found        = true;
+    double place = fmin(eye, 1) * STEPS, part = place - floor(fmin(place, STEPS - 1));
+    Leaves low = known[(int)fmin(place, STEPS - 1)], high = known[(int)fmin(place, STEPS - 1) + 1];
+    return (Leaves){low.bounces + part * (high.bounces - low.bounces),
+                    low.below + part * (high.below - low.below)};
+}
+
+/* Reflectance times cosine of what is white and as rough as can be: Lambert below that mirror. */
 static double reflect_white(Vec normal, Vec toward_eye, Vec toward_light)
 {
     double light = vec_dot(normal, toward_light), eye = fmax(vec_dot(normal, toward_eye), 1e-3);
-    Vec    halfway  = vec_unit(vec_add(toward_eye, toward_light));
-    double mirrored = 0.04 + 0.96 * pow(1 - vec_dot(toward_eye, halfway), 5);
+    Vec    halfway = vec_unit(vec_add(toward_eye, toward_light));
+    Leaves leaves  = find_leaves(eye);
     if (light <= 0)
         return 0;
-    return light * ((1 - mirrored) / M_PI + mirrored / M_PI * 0.5 / (light + eye));
+    return leaves.below * light / M_PI +
+           leaves.bounces * mirror_of(light, eye, vec_dot(toward_eye, halfway), HEAD_ON);
 }
 
 /* The part of the light's disc that nothing hides from a point. */
