@@ -13,6 +13,12 @@ struct Boundary {
     float code, beyond; // of rays that stay on this side, and of those that go on beyond
 };
 
+// The part of a surface that lets light through.
+float find_glass(KrsSurface surface)
+{
+    return clamp(surface.transmission, 0.0, 1.0) * (1.0 - clamp(surface.metallic, 0.0, 1.0));
+}
+
 // Nothing refracts less than this.
 const float LEAST_ETA = 1.001;
 

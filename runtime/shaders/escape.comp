@@ -18,12 +18,14 @@
 #define SKY_MAP
 #include "sky_map.glsl"
 #include "lights.glsl"
+#include "media.glsl"
 
 // What a path is when its ray ends.
 struct Path {
     vec3  origin, direction, weight;
     float density;
     bool  caught; // it began at the plate; its density is stored as a negative number
+    bool  knows_lights; // what lights send here is known already
 };
 
 // The part of a light that counts where rays find it as well as points of it are chosen, so that
@@ -80,10 +82,12 @@ Path load(uvec2 pixel, uint index, out float base, out float slope)
     path.weight = weight.xyz;
     path.density = abs(weight.w);
     path.caught = weight.w < 0.0;
+    path.knows_lights = fract(abs(load_path(PATH_TOWARD, index).w)) == SCATTERED;
 #else
     path.weight = vec3(1.0);
     path.density = 0.0;
     path.caught = false;
+    path.knows_lights = false;
 #endif
     return path;
 }
@@ -98,10 +102,11 @@ vec3 find_light_before(Path path, bool hits, bool lost, float end, uint index)
 #ifndef PATH_RAYS
     shown = !hits && control.no_background != 0u ? 0.0 : shown;
 #endif
-    if (control.phase == ESCAPE_TO_LIGHTS)
+    if (control.phase == ESCAPE_TO_LIGHTS && !path.knows_lights)
         found = find_sources(path, hits ? end : INFINITE, index, path.weight * shown);
     if (!hits) {
-        vec3  behind = find_sky(path), light = found;
+        vec3  behind = path.knows_lights && has_sky_map() ? vec3(0.0) : find_sky(path);
+        vec3  light = found;
         if (path.density == 0.0) {
             behind += found;
             light = vec3(0.0);

@@ -15,11 +15,6 @@
 const vec2 SMOOTH_METAL = vec2(0.15, 0.3), SMOOTH_BODY = vec2(0.06, 0.12);
 const float LEAST_WEIGHT = 0.004; // rays that count less are not followed
 
-float find_glass(KrsSurface surface)
-{
-    return clamp(surface.transmission, 0.0, 1.0) * (1.0 - clamp(surface.metallic, 0.0, 1.0));
-}
-
 // The part of what a surface mirrors that a ray finds, and of what its clear coat mirrors.
 vec2 find_traced(KrsSurface surface)
 {

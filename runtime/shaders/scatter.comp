@@ -8,6 +8,9 @@
  * comes that the surface scatters to the eye.  Paths whose light counts little end early, and the
  * others count more for it (Russian roulette).
  *
+ * DIRECT: paths end at the second surface, but glass is none.  They go on through it, and light of lights
+ * comes through it straight.
+ *
  * CATCHES: a plate catches shadows.  Paths that begin there have rows of results of their own.
  */
 #include "scene.glsl"
@@ -28,15 +31,22 @@
 #ifdef CATCHES
 #include "plate.glsl"
 #endif
+#ifdef DIRECT
+#include "tints.glsl"
+#endif
 
 const uint CHOICES = 3u;      // points of the unit square for each surface of a path
 const uint FIRST_ROULETTE = 3u;
 // How much the width of a ray grows where rough surfaces scatter it, relative to a camera's.
 const float MOST_SPREAD = 3.0;
 
-// Rays towards the sky that rise less go along a plane for too many steps.  They bring a
-// hundred thousandth of the light on a dull surface; smooth ones find it by their own rays.
-const float LEAST_RISE = 2e-3;
+// Rays that rise less go along a plane for too many steps.  They bring a hundred thousandth of the light
+// on a dull surface; smooth ones mirror rays that come as low.
+const float LEAST_RISE = 2e-3, LOW = 0.05;
+bool goes_along(float rise, HitPoint hit, vec3 facing)
+{
+    return rise < LEAST_RISE && -dot(hit.direction, facing) > LOW;
+}
 
 // The number of the choice at surface `control.value` of a path.
 vec2 choose(uvec2 pixel, uint choice)
@@ -89,6 +99,39 @@ void begin_group()
     rows = control.value == 0u ? control.rows : 0u;
 }
 
+// What glass leaves of the light of a point; 1: there is none in between.
+vec3 find_tint_to(LightPoint point, HitPoint hit, vec3 facing)
+{
+    vec3 tint = vec3(1.0);
+#ifdef DIRECT
+    uint  medium = krs_medium;
+    vec3  start = find_start_of_way(hit, facing);
+    float end = min(point.end, clip_ray(start, point.toward, frame.farthest).y);
+    tint = find_tint_of_way(start, point.toward, end, hit.width, point.end > 0.0);
+    krs_medium = medium;
+#endif
+    return tint;
+}
+
+// How the path has come here (media.glsl).
+float come_by;
+
+// How a path of direct light goes on from glass, or from a surface.
+float go_by(Bsdf bsdf, Boundary boundary, bool beyond)
+{
+    bool stays = bsdf.glass > 0.0 && (beyond || boundary.absorbs);
+    return !stays ? 0.0 : come_by == 0.0 ? SCATTERED : come_by;
+}
+
+#ifdef DIRECT
+bool is_direct() { return true; }
+#else
+bool is_direct() { return false; }
+#endif
+
+// Whether a path of direct light ends here.
+bool ends_here(Bsdf bsdf) { return is_direct() && come_by != STRAIGHT && bsdf.glass == 0.0; }
+
 // Whether the path began at the plate: densities are negative then.
 bool  caught;
 float sign_of_path() { return caught ? -1.0 : 1.0; }
@@ -132,13 +175,14 @@ vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, v
 #endif
     vec3 light = into(axes, point.toward);
     vec4 scattered = scatter(bsdf, light);
-    // Both methods together count once (escape.comp).
-    float by_rays = mixed_density(cones, point.toward, scattered.w);
+    vec3 tint = find_tint_to(point, hit, facing);
+    // Both methods together count once (escape.comp).  Rays do not find lights behind glass.
+    float by_rays = tint == vec3(1.0) ? mixed_density(cones, point.toward, scattered.w) : 0.0;
     float share = point.density > 0.0 ? 1.0 / (1.0 + square(by_rays / point.density)) : 1.0;
     float rise = dot(point.toward, facing);
     bool  along = is_sky && abs(rise) < LEAST_RISE;
     bool  sees = rise * light.z > 0.0 && all > 0.0 && !along;
-    vec3  added = sees ? weight * scattered.rgb * point.light * share : vec3(0.0);
+    vec3  added = sees ? weight * scattered.rgb * point.light * share * tint : vec3(0.0);
     added = finite_or_black(added);
     store_path(PATH_LIGHT, index, vec4(added, point.end));
     row = control.apart != 0u && !is_sky ? ROW_OF_LIGHTS + number : ROW_COLORS;
@@ -170,7 +214,8 @@ float go_on(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 fa
     float kept = largest(scattered.rgb) / max(scattered.w, 1e-30);
     scattered.w = mixed_density(cones, direction, scattered.w);
     weight *= scattered.rgb / max(scattered.w, 1e-30);
-    bool  goes_on = dot(direction, facing.xyz) * light.z > 0.0 && scattered.w > 0.0 &&
+    float rise = dot(direction, facing.xyz) * sign(light.z);
+    bool  goes_on = rise > 0.0 && !goes_along(rise, hit, facing.xyz) && scattered.w > 0.0 &&
                     largest(weight) > 0.0 && largest(weight) < 1e30;
     if (control.value >= FIRST_ROULETTE) {
         float chance = min(find_survival(weight, kept), 0.95);
@@ -184,7 +229,13 @@ float go_on(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 fa
     store_path(PATH_ORIGIN, index, vec4(find_start(hit, direction, facing, side, off), hit.width));
     store_path(PATH_DIRECTION, index, vec4(direction, spread));
     store_path(PATH_WEIGHT, index, vec4(weight, sign_of_path() * scattered.w));
-    return !goes_on ? 0.0 : side > 0.0 ? boundary.code : boundary.beyond;
+    float code = side > 0.0 ? boundary.code : boundary.beyond;
+#ifdef DIRECT
+    float by = go_by(bsdf, boundary, side < 0.0);
+    goes_on = goes_on && (come_by == STRAIGHT || by != 0.0);
+    code = code_through(code, by);
+#endif
+    return goes_on ? code : 0.0;
 }
 
 // The colour of a body, with what comes from below its surface; metals have none.
@@ -249,6 +300,9 @@ void do_item(uint number)
     uint  index = index_of(pixel);
     find_whether_caught(index);
     KrsSurface surface;
+    come_by = fract(abs(load_path(PATH_TOWARD, index).w));
+    if (control.value == 0u)
+        come_by = STRAIGHT;
     Boundary   boundary = meet_boundary(hit, index, facing.xyz, surface);
     float t = find_end(index).t;
     vec3  origin = load_path(PATH_ORIGIN, index).xyz, weight = load_path(PATH_WEIGHT, index).xyz;
@@ -264,6 +318,10 @@ void do_item(uint number)
         return;
     Axes axes = find_axes(normal, surface.tangent);
     Bsdf bsdf = find_bsdf(surface, hit, boundary, axes);
+    if (ends_here(bsdf)) {
+        store_path(PATH_LIGHT, index, vec4(0.0)); // secondary.comp has this pixel as well
+        return;
+    }
 #ifdef SUBSURFACE
     if (bsdf.chance_below > 0.0)
         weight *= go_below(pixel, hit, facing, bsdf, axes, surface);
@@ -272,7 +330,8 @@ void do_item(uint number)
     float dull = mix(surface.roughness * (1.0 - bsdf.glass), 1.0, bsdf.shares.w);
     Cones cones = find_cones(hit.position, facing.xyz, hit.side > 0.0 ? dull : 0.0);
     uint  row;
-    vec3  toward = choose_light(pixel, index, hit, bsdf, axes, facing.xyz, weight, cones, row);
+    vec3  of_lights = is_direct() && come_by != STRAIGHT ? vec3(0.0) : weight;
+    vec3  toward = choose_light(pixel, index, hit, bsdf, axes, facing.xyz, of_lights, cones, row);
     float side = go_on(pixel, index, hit, bsdf, axes, facing, weight, surface.roughness,
                        surface.distance, boundary, cones);
     store_path(PATH_TOWARD, index, vec4(toward, side));

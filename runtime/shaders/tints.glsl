@@ -1,10 +1,11 @@
 /*
- * tints.glsl: what glass between a surface and a light leaves of the light, in previews.
+ * tints.glsl: what glass between a surface and a light leaves of the light, in previews and in direct
+ * light.
  *
  * The way to the light is straight, as if nothing refracted, and each boundary reflects what it does
  * of light that meets it head on.  Where bodies of glass overlap they count as one.
  */
-const uint  MOST_STEPS = 256u;
+const uint  MOST_TINT_STEPS = 256u;
 // The least step in pixels, by which a boundary is found too late, and how it grows.
 const float LEAST_STEP = 0.5, GROWTH = 1.03;
 
@@ -33,23 +34,29 @@ vec3 find_way_to(Light light, vec3 start, out float end)
     return toward;
 }
 
-vec3 find_tint(Light light, HitPoint hit, vec3 facing)
+// Where such a way starts.
+vec3 find_start_of_way(HitPoint hit, vec3 facing)
 {
-    float end, t = 0.0, entered = 0.0, least = LEAST_STEP * hit.width;
-    vec3  start = hit.position + (0.5 * hit.width + 4.0 * hit.rounding) * facing;
-    vec3  toward = find_way_to(light, start, end), tint = vec3(1.0);
-    bool  inside = false, casts = (light.kind & LIGHT_CASTS_SHADOWS) != 0u;
+    return hit.position + (0.5 * hit.width + 4.0 * hit.rounding) * facing;
+}
+
+// The tint of a way that is `end` long, if it casts a shadow; `width`: that of the pixel.
+vec3 find_tint_of_way(vec3 start, vec3 toward, float end, float width, bool casts)
+{
+    float t = 0.0, entered = 0.0, least = LEAST_STEP * width;
+    vec3  tint = vec3(1.0);
+    bool  inside = false;
     Glass glass = Glass(vec3(1.0), vec3(0.0), 1.0);
-    for (uint step = 0u; casts && step < MOST_STEPS && t <= end; step++) {
+    for (uint step = 0u; casts && step < MOST_TINT_STEPS && t <= end; step++) {
         vec3  position = start + t * toward;
         float distance = krs_glass(position);
         if (distance < 0.0 && !inside) {
-            glass = find_glass_at(position, toward, hit.width);
-            entered = t;
+            glass = find_glass_at(position, toward, width);
+            entered = t + distance; // it is so deep inside at least
             tint *= glass.color * (step > 0u ? glass.kept : 1.0);
             inside = true;
         } else if (distance >= 0.0 && inside) {
-            tint *= glass.kept * exp(-glass.absorption * (t - entered));
+            tint *= glass.kept * exp(-glass.absorption * (t - distance - entered));
             inside = false;
         }
         t += max(abs(distance), least);
@@ -57,4 +64,12 @@ vec3 find_tint(Light light, HitPoint hit, vec3 facing)
     }
     // The box around the scene may end the way where the glass does.
     return inside ? tint * glass.kept * exp(-glass.absorption * max(end - entered, 0.0)) : tint;
+}
+
+vec3 find_tint(Light light, HitPoint hit, vec3 facing)
+{
+    float end;
+    vec3  start = find_start_of_way(hit, facing), toward = find_way_to(light, start, end);
+    return find_tint_of_way(start, toward, end, hit.width,
+                            (light.kind & LIGHT_CASTS_SHADOWS) != 0u);
 }

@@ -88,16 +88,16 @@ Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule sch
 }
 
 static KernelVariant variant_of_rays(const KrsRendering *rendering, KrsSchedule schedule,
-                                     bool by_roots, KrsPurpose purpose)
+                                     bool by_roots, KrsIntegrator integrator)
 {
     return variant_of_secondary(rendering, by_roots ? KRS_TRACE_EXACT : KRS_TRACE_PLAIN,
-                                schedule_of_kernel(schedule), purpose);
+                                schedule_of_kernel(schedule), integrator);
 }
 
 Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots)
 {
     return find_kernel(rendering, "secondary.comp",
-                       variant_of_rays(rendering, schedule, by_roots, KRS_FOR_PICTURES));
+                       variant_of_rays(rendering, schedule, by_roots, KRS_INTEGRATOR_PREVIEW));
 }
 
 Kernel *rendering_normals_kernel(KrsRendering *rendering, KrsNormals normals, uint32_t march_group)
@@ -158,11 +158,11 @@ bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, K
     kernels->normals = rendering_normals_kernel(rendering, options->normals, 0);
     if (purpose == KRS_FOR_PATHS)
         kernels->scatter = find_kernel(rendering, "scatter.comp",
-                                       variant_of_scatter(rendering, options->starts));
+                                       variant_of_scatter(rendering, options->starts, options->integrator));
     else
         rendering->rays = rays; /* the kernels of the picture are for its paths, too */
     kernels->shadows = find_kernel(rendering, "secondary.comp",
-                                   variant_of_rays(rendering, options->schedule, roots, purpose));
+                                   variant_of_rays(rendering, options->schedule, roots, options->integrator));
     if (purpose != KRS_FOR_PATHS)
         kernels->scatter = rendering_shade(rendering);
     rendering->rays = rays;
@@ -224,10 +224,10 @@ static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedu
     request(requests, "normals.comp",
             variant_of_normals(rendering, rendering_normals(rendering, KRS_NORMALS_DEFAULT), 0));
     if (rendering->purpose == KRS_FOR_PATHS) {
-        request(requests, "scatter.comp", variant_of_scatter(rendering, KRS_STARTS_PIXELS));
+        request(requests, "scatter.comp", variant_of_scatter(rendering, KRS_STARTS_PIXELS, KRS_INTEGRATOR_PATH));
         request(requests, "secondary.comp",
                 variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace),
-                                KRS_FOR_PATHS));
+                                KRS_INTEGRATOR_PATH));
     }
     rendering->rays = rays;
 }
@@ -257,7 +257,7 @@ static void request_pictures(Requests *requests, KrsTrace trace, KrsSchedule sch
     request(requests, "shade.comp", variant_of_shade(rendering));
     request(requests, "secondary.comp",
             variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace),
-                            KRS_FOR_PICTURES));
+                            KRS_INTEGRATOR_PREVIEW));
     request_marches(requests, trace, schedule);
     if (rendering->program->mirrors)
         request_paths(requests, trace, schedule);

@@ -233,14 +233,15 @@ KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals norma
     return to;
 }
 
-/* The random directions of rays need sines.  Rays of previews pass through glass. */
+/* The random directions of rays need sines.  Rays of previews and of direct light pass through glass. */
 KernelVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace,
-                                   KrsSchedule schedule, KrsPurpose purpose)
+                                   KrsSchedule schedule, KrsIntegrator integrator)
 {
     KernelVariant to = begin_variant(rendering, trace, schedule);
     if (rendering->program->media)
-        to.scene.variant.glass = purpose == KRS_FOR_PATHS ? KRS_GLASS_NESTED : KRS_GLASS_LEFT_OUT;
-    if (rendering->program->mirrors && purpose != KRS_FOR_PATHS)
+        to.scene.variant.glass = integrator == KRS_INTEGRATOR_PATH ? KRS_GLASS_NESTED
+                                                                   : KRS_GLASS_LEFT_OUT;
+    if (rendering->program->mirrors && integrator == KRS_INTEGRATOR_PREVIEW)
         define(&to, MIXED_RAYS);
     want(&to, KRS_FUNCTION_SINES);
     if (!want_along(&to, rendering, trace))
@@ -269,7 +270,8 @@ KernelVariant variant_of_shade(const KrsRendering *rendering)
 }
 
 /* The random directions of paths need sines. */
-KernelVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts)
+KernelVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts,
+                                 KrsIntegrator integrator)
 {
     KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     want(&to, KRS_FUNCTION_SURFACE);
@@ -278,6 +280,10 @@ KernelVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts
         define(&to, "#define EMISSIVE\n");
     if (starts == KRS_STARTS_DISTANCE)
         define(&to, "#define STARTS_BY_DISTANCE\n");
+    if (rendering->program->media && integrator == KRS_INTEGRATOR_DIRECT) {
+        define(&to, "#define DIRECT\n");
+        want(&to, KRS_FUNCTION_GLASS);
+    }
     if (rendering->program->subsurface)
         want(&to, KRS_FUNCTION_SUBSURFACE);
     want_materials(&to, rendering);

@@ -32,9 +32,10 @@ KernelVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, Kr
                                uint32_t group);
 KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals normals, uint32_t group);
 KernelVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace,
-                                   KrsSchedule schedule, KrsPurpose purpose);
+                                   KrsSchedule schedule, KrsIntegrator integrator);
 KernelVariant variant_of_shade(const KrsRendering *rendering);
-KernelVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts);
+KernelVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts,
+                                 KrsIntegrator integrator);
 KernelVariant variant_of_even_hits(const KrsRendering *rendering);
 KernelVariant variant_of_query(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule);
 KernelVariant variant_of_point_query(const KrsRendering *rendering);
