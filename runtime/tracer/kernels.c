@@ -157,12 +157,14 @@ bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, K
                                        group_of_paths(rendering));
     kernels->normals = rendering_normals_kernel(rendering, options->normals, 0);
     if (purpose == KRS_FOR_PATHS)
-        kernels->scatter = find_kernel(rendering, "scatter.comp",
-                                       variant_of_scatter(rendering, options->starts, options->integrator));
+        kernels->scatter = find_kernel(
+            rendering, "scatter.comp",
+            variant_of_scatter(rendering, options->starts, options->integrator));
     else
         rendering->rays = rays; /* the kernels of the picture are for its paths, too */
-    kernels->shadows = find_kernel(rendering, "secondary.comp",
-                                   variant_of_rays(rendering, options->schedule, roots, options->integrator));
+    kernels->shadows = find_kernel(
+        rendering, "secondary.comp",
+        variant_of_rays(rendering, options->schedule, roots, options->integrator));
     if (purpose != KRS_FOR_PATHS)
         kernels->scatter = rendering_shade(rendering);
     rendering->rays = rays;
@@ -224,7 +226,8 @@ static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedu
     request(requests, "normals.comp",
             variant_of_normals(rendering, rendering_normals(rendering, KRS_NORMALS_DEFAULT), 0));
     if (rendering->purpose == KRS_FOR_PATHS) {
-        request(requests, "scatter.comp", variant_of_scatter(rendering, KRS_STARTS_PIXELS, KRS_INTEGRATOR_PATH));
+        request(requests, "scatter.comp",
+                variant_of_scatter(rendering, KRS_STARTS_PIXELS, KRS_INTEGRATOR_PATH));
         request(requests, "secondary.comp",
                 variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace),
                                 KRS_INTEGRATOR_PATH));
