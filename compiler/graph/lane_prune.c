@@ -2,10 +2,11 @@
  * lane_prune.c: what a lane tape need not do in a box.
  *
  * A step whose result is one number all over the box, or always that of one operand, is not needed;
- * nor is what only such steps need.  Results stay the same, bit for bit: an operand is taken only
+ * nor is what only such steps need.  In one sector of repeat_polar the angle is known: no call is needed.  Results stay the same, bit for bit: an operand is taken only
  * where it is sure to be a number, and a blend only where nothing is taken off.
  */
 #include <assert.h>
+#include <math.h>
 #include <string.h>
 
 #include "compiler/graph/lane_call.h"
@@ -127,7 +128,8 @@ typedef struct Pruning {
     const LaneTape   *from;
     const LaneRanges *ranges;
     LaneSteps         to;
-    uint32_t         *same; /* of each value: the operand that stands for it */
+    uint32_t         *same;    /* of each value: the operand that stands for it */
+    uint32_t          call_at; /* the value of the last call in `to` */
 } Pruning;
 
 static uint32_t stand_in(const Pruning *p, uint32_t operand)
@@ -143,6 +145,15 @@ static bool is_single(const Pruning *p, size_t value, double *number)
     return p->ranges->sure[value] && range_is_single(range) && isfinite(range.low);
 }
 
+/* A finite number in every point of the box. */
+static bool number_at(const Pruning *p, uint32_t operand, Range *range)
+{
+    bool scalar = operand & LANE_SCALAR;
+    *range      = scalar ? range_of(p->from->scalars[operand & ~LANE_SCALAR])
+                         : p->ranges->ranges[operand];
+    return (scalar || p->ranges->sure[operand]) && isfinite(range->low) && isfinite(range->high);
+}
+
 static void prune_step(Pruning *p, size_t i)
 {
     LaneStep step  = p->from->steps[i];
@@ -152,16 +163,64 @@ static void prune_step(Pruning *p, size_t i)
     bool     call   = step.op == LANE_CALL || step.op == LANE_PART;
     bool     single = is_single(p, value, &number);
     uint32_t other  = call || single ? NODE_NONE : same_operand(&q);
-    p->same[value]  = single               ? lane_steps_number(&p->to, number)
-                      : other != NODE_NONE ? stand_in(p, other)
-                                           : value;
-    if (step.op != LANE_CALL)
-        for (uint32_t k = 0; k < step.operand_count; k++)
-            step.operands[k] = step.op == LANE_PART ? step.operands[k]
-                                                    : stand_in(p, step.operands[k]);
+    for (uint32_t k = 0; k < step.operand_count && !call; k++)
+        step.operands[k] = stand_in(p, step.operands[k]);
+    if (step.op == LANE_PART)
+        step.operands[0] = p->call_at;
     if (is_complement(&q))
         step.op = OP_neg;
-    lane_steps_add(&p->to, step);
+    uint32_t added = lane_steps_add(&p->to, step);
+    if (step.op == LANE_CALL)
+        p->call_at = added;
+    p->same[value] = single               ? lane_steps_number(&p->to, number)
+                     : other != NODE_NONE ? stand_in(p, other)
+                                          : added;
+}
+
+/* ---- turns ---- */
+
+/* Within one sector cell_polar is a turn by an angle that is known. */
+static bool is_turn(const Pruning *p, const LaneCall *call, double *cosine, double *sine)
+{
+    const Expr *e = &p->from->tape->graph->items[call->node];
+    if (e->op != OP_cell_polar || !(call->operands[1][0] & LANE_SCALAR))
+        return false;
+    Range  x, z;
+    double count = p->from->scalars[call->operands[1][0] & ~LANE_SCALAR];
+    if (!(count >= 1) || isinf(count) || !number_at(p, call->operands[0][0], &x) ||
+        !number_at(p, call->operands[0][2], &z))
+        return false;
+    double sector = 2 * acos(-1) / count;
+    Range  turns  = range_round(range_div(range_atan2(z, x), range_of(sector)));
+    double angle  = sector * (turns.low + 0.0);
+    *cosine       = cos(angle);
+    *sine         = sin(angle);
+    return range_is_single(turns) && isfinite(angle);
+}
+
+/* a c + b s, or a c - b s */
+static uint32_t add_turned(Pruning *p, uint16_t op, uint32_t a, uint32_t c, uint32_t b, uint32_t s)
+{
+    LaneStep first  = {OP_mul, 2, {c, a}};
+    LaneStep second = {OP_mul, 2, {s, b}};
+    LaneStep sum    = {op, 2, {lane_steps_add(&p->to, first), lane_steps_add(&p->to, second)}};
+    return lane_steps_add(&p->to, sum);
+}
+
+/* The steps of its three components; false: it stays a call. */
+static bool prune_turn(Pruning *p, size_t i)
+{
+    const LaneStep *step = &p->from->steps[i];
+    double          cosine, sine;
+    if (step->op != LANE_CALL || !is_turn(p, &p->from->calls[step->operands[0]], &cosine, &sine))
+        return false;
+    const LaneCall *call = &p->from->calls[step->operands[0]];
+    uint32_t x = stand_in(p, call->operands[0][0]), z = stand_in(p, call->operands[0][2]);
+    uint32_t c = lane_steps_number(&p->to, cosine), s = lane_steps_number(&p->to, sine);
+    p->same[LANE_INPUTS + i]     = add_turned(p, OP_add, x, c, z, s);
+    p->same[LANE_INPUTS + i + 1] = stand_in(p, call->operands[0][1]);
+    p->same[LANE_INPUTS + i + 2] = add_turned(p, OP_sub, z, c, x, s);
+    return true;
 }
 
 static void prune_calls(Pruning *p)
@@ -179,9 +238,9 @@ static void prune_calls(Pruning *p)
 static void reserve(Pruning *p)
 {
     Arena *arena           = p->to.arena;
-    p->to.steps.capacity   = p->from->count + 1;
+    p->to.steps.capacity   = p->from->count + LANE_STEPS_OF_CALL * p->from->call_count + 1;
     p->to.steps.items      = arena_new_array(arena, LaneStep, p->to.steps.capacity);
-    p->to.sources.capacity = p->from->scalar_count + p->from->count + 1;
+    p->to.sources.capacity = p->from->scalar_count + p->from->count + 2 * p->from->call_count + 1;
     p->to.sources.items    = arena_new_array(arena, LaneScalar, p->to.sources.capacity);
     p->same                = arena_new_array(arena, uint32_t, LANE_INPUTS + p->from->count);
 }
@@ -196,7 +255,10 @@ LaneTape lane_prune(const LaneTape *tape, const LaneRanges *ranges, size_t outpu
     for (size_t i = 0; i < tape->scalar_count; i++)
         lane_steps_number(&p.to, tape->scalars[i]);
     for (size_t i = 0; i < tape->count; i++)
-        prune_step(&p, i);
+        if (prune_turn(&p, i))
+            i += 2;
+        else
+            prune_step(&p, i);
     prune_calls(&p);
     for (size_t i = 0; i < outputs; i++)
         array_push(arena, &p.to.outputs, stand_in(&p, tape->outputs[i]));

@@ -16,8 +16,8 @@
 
 LaneRanges lane_ranges_new(const LaneTape *tape, Arena *arena)
 {
-    return (LaneRanges){arena_new_array(arena, Range, LANE_INPUTS + tape->count),
-                        arena_new_array(arena, bool, LANE_INPUTS + tape->count)};
+    return (LaneRanges){arena_new_array(arena, Range, LANE_INPUTS + lane_most_steps(tape)),
+                        arena_new_array(arena, bool, LANE_INPUTS + lane_most_steps(tape))};
 }
 
 /* ---- operands ---- */

@@ -81,7 +81,7 @@ enum { ROW_ALIGNMENT = 64 };
 
 size_t lane_work_bytes(const LaneTape *tape)
 {
-    return (size_t)tape->rows * LANES * sizeof(double) + ROW_ALIGNMENT;
+    return lane_most_rows(tape) * LANES * sizeof(double) + ROW_ALIGNMENT;
 }
 
 LaneWork lane_work_in(void *memory, NodeValue *values)

@@ -29,7 +29,7 @@ typedef struct Run {
 
 LaneSlope *lane_slopes_new(const LaneTape *tape, Arena *arena)
 {
-    return arena_new_array(arena, LaneSlope, LANE_INPUTS + tape->count);
+    return arena_new_array(arena, LaneSlope, LANE_INPUTS + lane_most_steps(tape));
 }
 
 /* ---- operands ---- */

@@ -102,6 +102,18 @@ typedef struct LaneWork {
         values; /* those of the frame, for calls that read tables, which change others; else NULL */
 } LaneWork;
 
+/* A call may become that many steps when it is pruned, which work on as many rows. */
+enum { LANE_STEPS_OF_CALL = 6 };
+/* The most steps of a lane tape and of all that it is pruned to, and the most rows. */
+static inline size_t lane_most_steps(const LaneTape *tape)
+{
+    return tape->count + LANE_STEPS_OF_CALL * tape->call_count;
+}
+static inline size_t lane_most_rows(const LaneTape *tape)
+{
+    return tape->rows + LANE_STEPS_OF_CALL * tape->call_count;
+}
+
 /* Bytes of rows, and the rows within a block of memory of that size. */
 size_t   lane_work_bytes(const LaneTape *tape);
 LaneWork lane_work_in(void *memory, NodeValue *values);

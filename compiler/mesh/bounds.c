@@ -8,7 +8,8 @@
 
 /* The rest of the error is for rounding: files may have single precision. */
 static const double PROVEN_ERROR = 0.999;
-/* Edges, in errors, of the smallest tetrahedra that need not be tried by cells if pieces do not fit. */
+/* Edges, in errors, of the largest tetrahedra that are tried by cells where nothing else is known: cells are as many as
+   squares of the error, and are looked at again with each tetrahedron that is smaller. */
 static const double LEAST_SHARP = 4;
 /* Edges, in errors, below which what curves too much for second derivatives is left to cells. */
 static const double LEAST_SMOOTH = 12;
@@ -76,7 +77,8 @@ TetState state_by_bounds(const Mesher *m, const Tet *tet)
 {
     if (tet->miss <= tet->slope * proven_error(m))
         return TET_FITS;
-    return tet->miss < INFINITY && tets_longest_edge(&m->tets, tet) > LEAST_SMOOTH * m->error
+    double by_cells = tet->miss < INFINITY ? LEAST_SMOOTH : LEAST_SHARP;
+    return tets_longest_edge(&m->tets, tet) > by_cells * m->error
                ? TET_REFUTED
                : TET_ROUGH;
 }

@@ -23,7 +23,7 @@ static LaneTape make_tape(const MeshField *field, Arena *arena)
 static size_t bytes_of_region(const LaneTape *tape)
 {
     return 65536 +
-           2 * (tape->count + tape->scalar_count) *
+           2 * (lane_most_steps(tape) + tape->scalar_count) *
                (sizeof(LaneStep) + sizeof(LaneCode) + 4 * sizeof(LaneScalar)) +
            2 * tape->call_count * sizeof(LaneCall);
 }
@@ -86,7 +86,7 @@ bool field_keep(MeshField *field, uint32_t *outputs, size_t count)
     LaneTape tape     = *outer_tape(field);
     tape.outputs      = outputs;
     tape.output_count = count;
-    return prune(field, &tape, &field->pieces) && field->pieces.tape.rows <= field->tape.rows;
+    return prune(field, &tape, &field->pieces) && field->pieces.tape.rows <= lane_most_rows(&field->tape);
 }
 
 static bool box_has(const Box *box, const double point[3])

@@ -202,7 +202,7 @@ static bool holds(Range range, double number)
 
 /* What is known of many graphs in many boxes. */
 typedef struct Tally {
-    size_t steps, left, outside, different, unsure;
+    size_t steps, left, calls, outside, different, unsure;
 } Tally;
 
 /* Ranges and a pruned tape of one box, looked at in the points of another one. */
@@ -215,7 +215,8 @@ static void try_box(Bench *b, Pair *pair, Box known, Box looked, Tally *tally)
     double    *pruned  = arena_new_array(&b->arena, double, POINTS *outputs);
     lane_ranges_run(&pair->lanes, &ranges, known);
     LaneTape shorter = lane_prune(&pair->lanes, &ranges, outputs, &b->arena);
-    assert_true(shorter.rows <= pair->lanes.rows);
+    assert_true(shorter.rows <= lane_most_rows(&pair->lanes));
+    assert_true(shorter.count <= lane_most_steps(&pair->lanes));
     points_in(b, looked, points);
     LanePoints all = {.points = (const double(*)[3])points, .count = POINTS};
     lane_run(&pair->lanes, &pair->work, LANE_DOUBLE, all, 0, outputs, whole);
@@ -229,6 +230,7 @@ static void try_box(Bench *b, Pair *pair, Box known, Box looked, Tally *tally)
     }
     tally->steps += pair->lanes.count;
     tally->left += shorter.count;
+    tally->calls += shorter.call_count;
 }
 
 static void ranges_hold_and_pruning_changes_nothing(void **state)
@@ -248,7 +250,17 @@ static void ranges_hold_and_pruning_changes_nothing(void **state)
     assert_true(tally.left < 0.9 * (double)tally.steps);
 }
 
-/* Copies around an axis are a call, whose rule knows values only where their number is the same everywhere. */
+static const double tau = 6.283185307179586;
+
+/* A box about a place that is this far around the y axis, from x to z. */
+static Box box_around(double angle, double half)
+{
+    double x = 1.05 * cos(angle), z = 1.05 * sin(angle);
+    return (Box){{{x - half, x + half}, {-0.1, 0.1}, {z - half, z + half}}};
+}
+
+/* Copies around an axis are a call, whose rule knows values only where their number is the same everywhere.
+   Within one sector it is a turn, and no call is left. */
 static void copies_around_an_axis_have_ranges(void **state)
 {
     Bench *b    = *state;
@@ -267,7 +279,14 @@ static void copies_around_an_axis_have_ranges(void **state)
     }
     Tally tally = {0};
     try_box(b, &pair, box, box, &tally);
+    for (int i = 0; i < 7; i++)
+        try_box(b, &pair, box_around(i * tau / 7, 0.2), box_around(i * tau / 7, 0.2), &tally);
     assert_true(tally.outside + tally.different + tally.unsure == 0);
+    assert_true(tally.calls == 0);
+    Box border = box_around(0.5 * tau / 7, 0.2);
+    try_box(b, &pair, border, border, &tally);
+    assert_true(tally.outside + tally.different + tally.unsure == 0);
+    assert_true(tally.calls > 0);
 }
 
 static void what_is_pruned_for_less_is_seen(void **state)
