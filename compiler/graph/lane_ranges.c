@@ -8,6 +8,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "compiler/graph/crowd.h"
 #include "compiler/graph/facts.h"
 #include "compiler/graph/lane_call.h"
 #include "compiler/graph/op_values.h"
@@ -16,8 +17,8 @@
 
 LaneRanges lane_ranges_new(const LaneTape *tape, Arena *arena)
 {
-    return (LaneRanges){arena_new_array(arena, Range, LANE_INPUTS + lane_most_steps(tape)),
-                        arena_new_array(arena, bool, LANE_INPUTS + lane_most_steps(tape))};
+    return (LaneRanges){.ranges = arena_new_array(arena, Range, LANE_INPUTS + lane_most_steps(tape)),
+                        .sure   = arena_new_array(arena, bool, LANE_INPUTS + lane_most_steps(tape))};
 }
 
 /* ---- operands ---- */
@@ -223,6 +224,36 @@ static bool is_scalar(const LaneCall *call, uint32_t operand, GraphType type)
     return scalars == type_size(type);
 }
 
+/* The distance to an outline changes no faster than the point moves; its table has single precision, and the
+   nearest place on a curve is found by some steps only.  False: it is no outline. */
+static bool range_of_outline(const LaneTape *tape, const LaneRanges *ranges, const LaneCall *call,
+                             const Fact *facts, Range *range)
+{
+    static const double UNCERTAIN = 1e-5;
+    const Graph        *graph     = tape->tape->graph;
+    const Expr         *e         = &graph->items[call->node];
+    NodeValue           operands[2];
+    double              radius = 0, size = 0;
+    if (e->op != OP_crowd_distance || !ranges->values || tape->tape->by_cells)
+        return false;
+    operands[0].v[0] = graph->items[e->operands[0]].number[0];
+    if (!graph->crowds->functions.items[(size_t)operands[0].v[0]].either)
+        return false;
+    for (int k = 0; k < 3; k++) {
+        Range at         = facts[1].value[k];
+        operands[1].v[k] = 0.5 * (at.low + at.high);
+        radius           = hypot_upward(radius, fmax(at.high - operands[1].v[k],
+                                                     operands[1].v[k] - at.low));
+        size             = fmax(size, range_largest(at));
+    }
+    if (!isfinite(radius))
+        return false;
+    double value = lane_call(tape->tape, ranges->values, call->node, operands).v[0];
+    radius += UNCERTAIN * (radius + size + fabs(value));
+    *range = (Range){value - radius, value + radius};
+    return isfinite(value);
+}
+
 static void run_call(const LaneTape *tape, const LaneRanges *ranges, size_t step)
 {
     const LaneCall *call  = &tape->calls[tape->steps[step].operands[0]];
@@ -243,6 +274,8 @@ static void run_call(const LaneTape *tape, const LaneRanges *ranges, size_t step
     Fact fact = is_texture((Op)e->op)
                     ? texture_fact_of(graph, e, facts)
                     : op_fact((Op)e->op, (GraphType)e->type, e->index, types, facts, NULL);
+    if (range_of_outline(tape, ranges, call, facts, &fact.value[0]))
+        sure = true;
     for (uint32_t c = 0; c < call->parts; c++) {
         ranges->ranges[LANE_INPUTS + step + c] = fact.value[c];
         ranges->sure[LANE_INPUTS + step + c]   = sure;

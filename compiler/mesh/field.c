@@ -34,6 +34,7 @@ void field_open(MeshField *field, Arena *arena)
     field->work         = lane_work_in(arena_alloc(arena, lane_work_bytes(&field->tape), 1),
                                        field->frame->values);
     field->ranges       = lane_ranges_new(&field->tape, arena);
+    field->ranges.values = field->frame->values;
     field->slopes       = lane_slopes_new(&field->tape, arena);
     field->hessians     = lane_hessians_new(&field->tape, arena);
     field->region_bytes = bytes_of_region(&field->tape);

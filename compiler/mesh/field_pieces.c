@@ -126,8 +126,9 @@ static bool find_greatest(const Finding *f, uint32_t operand, Faces *faces)
 }
 
 /* length(max(q, 0)) + min(greatest q, 0) is above 0 where some q is, and else the greatest, if all that are not in the
-   length are nowhere above 0. */
-static bool find_faces(const Finding *f, const LaneStep *step, Faces *inside)
+   length are nowhere above 0.  So its sum with an offset has the sign of that of the greatest, unless the offset is below 0
+   and the length has several: then it is rounded. */
+static bool find_faces(const Finding *f, const LaneStep *step, double offset, Faces *inside)
 {
     for (int k = 0; k < 2; k++) {
         const LaneStep *least   = step_of(f, step->operands[1 - k]);
@@ -136,7 +137,8 @@ static bool find_faces(const Finding *f, const LaneStep *step, Faces *inside)
         if (!least || !is_lesser(least) || !find_outside(f, step->operands[k], &outside))
             continue;
         int  zero = is_zero(f, least->operands[0]) ? 0 : is_zero(f, least->operands[1]) ? 1 : -1;
-        bool fits = zero >= 0 && find_greatest(f, least->operands[1 - zero], inside);
+        bool fits = zero >= 0 && (offset >= 0 || outside.count == 1) &&
+                    find_greatest(f, least->operands[1 - zero], inside);
         for (size_t i = 0; fits && i < outside.count; i++)
             fits = has_face(inside, outside.operands[i]);
         for (size_t i = 0; fits && i < inside->count; i++)
@@ -168,10 +170,10 @@ static bool add_size(Finding *f, const LaneStep *step, double sign, double offse
            add_step(f, sign > 0 ? PIECE_MAX : PIECE_MIN);
 }
 
-static bool add_box(Finding *f, const Faces *faces, double sign)
+static bool add_box(Finding *f, const Faces *faces, double sign, double offset)
 {
     for (size_t i = 0; i < faces->count; i++)
-        if (!find_pieces(f, faces->operands[i], sign, 0) ||
+        if (!find_pieces(f, faces->operands[i], sign, offset) ||
             (i > 0 && !add_step(f, sign > 0 ? PIECE_MAX : PIECE_MIN)))
             return false;
     return faces->count > 0;
@@ -206,8 +208,8 @@ static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset
         found = add_size(f, step, sign, offset);
     else if (is_greater(step) || is_lesser(step))
         found = add_choice(f, step, sign, offset, is_greater(step));
-    else if (step->op == OP_add && offset == 0 && find_faces(f, step, &faces))
-        found = add_box(f, &faces, sign);
+    else if (step->op == OP_add && find_faces(f, step, sign * offset, &faces))
+        found = add_box(f, &faces, sign, offset);
     else if (step->op == OP_add || step->op == OP_sub)
         found = add_shifted(f, step, sign, offset);
     f->depth--;
