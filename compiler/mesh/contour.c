@@ -3,39 +3,54 @@
 
 #include <string.h>
 
-#include "compiler/base/parallel.h"
 #include "compiler/base/vec.h"
+#include "compiler/mesh/batches.h"
 #include "compiler/mesh/quadric.h"
 #include "compiler/mesh/roots.h"
+#include "compiler/mesh/weights.h"
 
-/* Parts of an edge at its ends where no vertex is, so that vertices of other edges are elsewhere;
-   and the same for vertices in faces and inside. */
-static const double END_OF_EDGE = 1e-4, END_OF_BODY = 0.02;
+/* Part of an edge at its ends where no vertex is, so that vertices of other edges are elsewhere. */
+static const double END_OF_EDGE = 1e-4;
 /* Part of the error by which a line or a triangle may miss the surface without a further vertex. */
 static const double STRAIGHT = 0.1;
 
 /* ---- distances of points ---- */
 
-static void find_distances(void *task, size_t part, size_t parts)
+static void box_of_points(const Contour *contour, const uint32_t *points, size_t count,
+                          double low[3], double high[3])
 {
-    const Contour *contour = task;
-    size_t         count   = contour->tets->points.count - contour->known_points;
-    TetPoint      *points  = contour->tets->points.items + contour->known_points;
-    size_t         end     = part_begin(count, part + 1, parts);
-    for (size_t i = part_begin(count, part, parts), now; i < end; i += now) {
-        double positions[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
-        now = end - i < MOST_FIELD_POINTS ? end - i : MOST_FIELD_POINTS;
-        for (size_t k = 0; k < now; k++)
-            tets_position(contour->tets, (uint32_t)(contour->known_points + i + k), positions[k]);
-        field_distances(&contour->fields[part], (const double(*)[3])positions, now, distances);
-        for (size_t k = 0; k < now; k++)
-            points[i + k].distance = distances[k];
+    tets_position(contour->tets, points[0], low);
+    memcpy(high, low, 3 * sizeof *low);
+    for (size_t i = 1; i < count; i++) {
+        double at[3];
+        tets_position(contour->tets, points[i], at);
+        for (int k = 0; k < 3; k++) {
+            low[k]  = fmin(low[k], at[k]);
+            high[k] = fmax(high[k], at[k]);
+        }
     }
+}
+
+static void box_of_point(const Contour *contour, size_t number, double low[3], double high[3])
+{
+    box_of_points(contour, (uint32_t[]){(uint32_t)number}, 1, low, high);
+}
+
+static void find_distances(const Contour *contour, const MeshField *field, const uint32_t *numbers,
+                           size_t count)
+{
+    double positions[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
+    for (size_t i = 0; i < count; i++)
+        tets_position(contour->tets, numbers[i], positions[i]);
+    field_distances(field, (const double(*)[3])positions, count, distances);
+    for (size_t i = 0; i < count; i++)
+        contour->tets->points.items[numbers[i]].distance = distances[i];
 }
 
 void contour_distances(Contour *contour)
 {
-    run_in_parallel(find_distances, contour);
+    static const Batches points = {box_of_point, find_distances, 1, NULL};
+    contour_batches(contour, &points, contour->known_points, contour->tets->points.count);
     contour->known_points = contour->tets->points.count;
 }
 
@@ -54,16 +69,16 @@ static RootSearch root_search(const Contour *contour, const Crossing *crossing)
     return search;
 }
 
-static void find_some_crossings(const Contour *contour, const MeshField *field, Crossing *crossings,
-                                size_t count)
+static void find_places(const Contour *contour, const MeshField *field, const uint32_t *numbers,
+                        size_t count)
 {
     RootSearch searches[MOST_FIELD_POINTS];
     for (size_t i = 0; i < count; i++)
-        searches[i] = root_search(contour, &crossings[i]);
+        searches[i] = root_search(contour, &contour->crossings.items[numbers[i]]);
     find_roots(field, searches, count, 1e-4 * contour->error);
     for (size_t i = 0; i < count; i++) {
         const RootSearch *search   = &searches[i];
-        Crossing         *crossing = &crossings[i];
+        Crossing         *crossing = &contour->crossings.items[numbers[i]];
         double            part     = 0.5 * (search->low + search->high);
         part                       = fmin(fmax(part, END_OF_EDGE), 1 - END_OF_EDGE);
         add_scaled3(crossing->at, search->from, part, search->along);
@@ -73,8 +88,8 @@ static void find_some_crossings(const Contour *contour, const MeshField *field, 
 }
 
 /* Values and normals, by differences; without those the normals are along the edges. */
-static void look_at_crossings(const Contour *contour, const MeshField *field, Crossing *crossings,
-                              size_t count)
+static void look_at_crossings(const Contour *contour, const MeshField *field,
+                              const uint32_t *numbers, size_t count)
 {
     enum { EACH = 7, AT_ONCE = MOST_FIELD_POINTS / EACH };
     double step = 1e-3 * contour->error;
@@ -83,80 +98,36 @@ static void look_at_crossings(const Contour *contour, const MeshField *field, Cr
         now = count - i < AT_ONCE ? count - i : AT_ONCE;
         for (size_t k = 0; k < now * EACH; k++) {
             size_t beside = k % EACH;
-            memcpy(points[k], crossings[i + k / EACH].at, sizeof points[k]);
+            memcpy(points[k], contour->crossings.items[numbers[i + k / EACH]].at, sizeof points[k]);
             if (beside < 6)
                 points[k][beside / 2] += beside % 2 ? step : -step;
         }
         field_distances(field, (const double(*)[3])points, now * EACH, values);
         for (size_t k = 0; k < now; k++) {
             const double *own       = &values[k * EACH];
+            Crossing     *crossing  = &contour->crossings.items[numbers[i + k]];
             double        normal[3] = {own[1] - own[0], own[3] - own[2], own[5] - own[4]};
-            crossings[i + k].value  = own[6];
+            crossing->value         = own[6];
             if (normalize3(normal))
-                memcpy(crossings[i + k].normal, normal, sizeof normal);
+                memcpy(crossing->normal, normal, sizeof normal);
         }
     }
 }
 
-static void find_crossings(void *task, size_t part, size_t parts)
+static void box_of_crossing(const Contour *contour, size_t number, double low[3], double high[3])
 {
-    const Contour *contour = task;
-    Crossing      *fresh   = contour->crossings.items + contour->known_crossings;
-    size_t         count   = contour->crossings.count - contour->known_crossings;
-    size_t         end     = part_begin(count, part + 1, parts);
-    for (size_t i = part_begin(count, part, parts), now; i < end; i += now) {
-        now = end - i < MOST_FIELD_POINTS ? end - i : MOST_FIELD_POINTS;
-        find_some_crossings(contour, &contour->fields[part], fresh + i, now);
-        look_at_crossings(contour, &contour->fields[part], fresh + i, now);
-    }
+    const Crossing *crossing = &contour->crossings.items[number];
+    box_of_points(contour, (uint32_t[]){crossing->from, crossing->to}, 2, low, high);
+}
+
+static void find_crossings(const Contour *contour, const MeshField *field, const uint32_t *numbers,
+                           size_t count)
+{
+    find_places(contour, field, numbers, count);
+    look_at_crossings(contour, field, numbers, count);
 }
 
 /* ---- vertices in faces ---- */
-
-/* Moves a point of a convex body towards one inside of it, so far that all its weights of the
-   corners are at least END_OF_BODY. */
-static void keep_inside(const double *weights, const double *inner, int count, double point[3],
-                        const double center[3])
-{
-    double share = 1;
-    for (int i = 0; i < count; i++)
-        if (weights[i] < END_OF_BODY)
-            share = fmin(share, fmax(0, (inner[i] - END_OF_BODY) / (inner[i] - weights[i])));
-    for (int k = 0; k < 3; k++)
-        point[k] = center[k] + share * (point[k] - center[k]);
-}
-
-/* Solves for the point with these products with three vectors; false: they are in a plane. */
-static bool solve3(const double rows[3][3], const double right[3], double point[3])
-{
-    double cross[3][3];
-    for (int i = 0; i < 3; i++)
-        cross3(rows[(i + 1) % 3], rows[(i + 2) % 3], cross[i]);
-    double volume = dot3(rows[0], cross[0]);
-    if (fabs(volume) < 1e-3)
-        return false;
-    for (int k = 0; k < 3; k++)
-        point[k] = (right[0] * cross[0][k] + right[1] * cross[1][k] + right[2] * cross[2][k]) /
-                   volume;
-    return true;
-}
-
-/* Areas of the parts of a triangle around a point of its plane, over all of it. */
-static void face_weights(const double corners[3][3], const double normal[3], const double point[3],
-                         double weights[3])
-{
-    double sum = 0;
-    for (int i = 0; i < 3; i++) {
-        double edge[3], to_point[3], product[3];
-        add_scaled3(edge, corners[(i + 2) % 3], -1, corners[(i + 1) % 3]);
-        add_scaled3(to_point, point, -1, corners[(i + 1) % 3]);
-        cross3(edge, to_point, product);
-        weights[i] = dot3(product, normal);
-        sum += weights[i];
-    }
-    for (int i = 0; i < 3; i++)
-        weights[i] /= sum;
-}
 
 /* Where the surface's planes at both crossings meet the face. */
 static void find_line(const Contour *contour, const MeshField *field, double missed, FaceLine *line)
@@ -184,48 +155,29 @@ static void find_line(const Contour *contour, const MeshField *field, double mis
     line->bent  = fabs(line->value) < 0.5 * missed;
 }
 
+static void box_of_line(const Contour *contour, size_t number, double low[3], double high[3])
+{
+    box_of_points(contour, contour->lines.items[number].points, 3, low, high);
+}
+
 /* Most are straight. */
-static void find_some_lines(const Contour *contour, const MeshField *field, FaceLine *lines,
-                            size_t count)
+static void find_lines(const Contour *contour, const MeshField *field, const uint32_t *numbers,
+                       size_t count)
 {
     double middles[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i++) {
+        const FaceLine *line = &contour->lines.items[numbers[i]];
         for (int k = 0; k < 3; k++)
-            middles[i][k] = 0.5 * (contour->crossings.items[lines[i].crossings[0]].at[k] +
-                                   contour->crossings.items[lines[i].crossings[1]].at[k]);
+            middles[i][k] = 0.5 * (contour->crossings.items[line->crossings[0]].at[k] +
+                                   contour->crossings.items[line->crossings[1]].at[k]);
+    }
     field_distances(field, (const double(*)[3])middles, count, distances);
     for (size_t i = 0; i < count; i++)
         if (fabs(distances[i]) > STRAIGHT * contour->error)
-            find_line(contour, field, fabs(distances[i]), &lines[i]);
-}
-
-static void find_lines(void *task, size_t part, size_t parts)
-{
-    const Contour *contour = task;
-    FaceLine      *fresh   = contour->lines.items + contour->known_lines;
-    size_t         count   = contour->lines.count - contour->known_lines;
-    size_t         end     = part_begin(count, part + 1, parts);
-    for (size_t i = part_begin(count, part, parts), now; i < end; i += now) {
-        now = end - i < MOST_FIELD_POINTS ? end - i : MOST_FIELD_POINTS;
-        find_some_lines(contour, &contour->fields[part], fresh + i, now);
-    }
+            find_line(contour, field, fabs(distances[i]), &contour->lines.items[numbers[i]]);
 }
 
 /* ---- vertices inside ---- */
-
-static void tet_weights(const double corners[4][3], const double point[3], double weights[4])
-{
-    double edges[3][3], offset[3], cross[3];
-    for (int i = 0; i < 3; i++)
-        add_scaled3(edges[i], corners[i + 1], -1, corners[0]);
-    add_scaled3(offset, point, -1, corners[0]);
-    weights[0] = 1;
-    for (int i = 0; i < 3; i++) {
-        cross3(edges[(i + 1) % 3], edges[(i + 2) % 3], cross);
-        weights[i + 1] = dot3(offset, cross) / dot3(edges[i], cross);
-        weights[0] -= weights[i + 1];
-    }
-}
 
 static void find_middle(const Contour *contour, const Patch *patch, double middle[3])
 {
@@ -260,31 +212,32 @@ static void find_apex(const Contour *contour, const MeshField *field, const doub
     patch->value = missed;
 }
 
-static void find_some_apexes(const Contour *contour, const MeshField *field, Patch *patches,
-                             size_t count)
+static void box_of_patch(const Contour *contour, size_t number, double low[3], double high[3])
+{
+    const Tet *tet = &contour->tets->list.items[contour->patches.items[number].tet];
+    box_of_points(contour, tet->points, 4, low, high);
+}
+
+static bool is_known_patch(const Contour *contour, size_t number)
+{
+    return contour->patches.items[number].known;
+}
+
+static void find_apexes(const Contour *contour, const MeshField *field, const uint32_t *numbers,
+                        size_t count)
 {
     double middles[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
     for (size_t i = 0; i < count; i++)
-        find_middle(contour, &patches[i], middles[i]);
+        find_middle(contour, &contour->patches.items[numbers[i]], middles[i]);
     field_distances(field, (const double(*)[3])middles, count, distances);
     for (size_t i = 0; i < count; i++) {
-        Patch *patch = &patches[i];
+        Patch *patch = &contour->patches.items[numbers[i]];
+        patch->known = true;
         patch->fan   = false;
         for (uint32_t k = 0; k < patch->corner_count; k++)
             patch->fan = patch->fan || contour->lines.items[patch->lines[k]].bent;
         if (patch->fan || fabs(distances[i]) > STRAIGHT * contour->error)
             find_apex(contour, field, middles[i], distances[i], patch);
-    }
-}
-
-static void find_apexes(void *task, size_t part, size_t parts)
-{
-    const Contour *contour = task;
-    size_t         count   = contour->patches.count;
-    size_t         end     = part_begin(count, part + 1, parts);
-    for (size_t i = part_begin(count, part, parts), now; i < end; i += now) {
-        now = end - i < MOST_FIELD_POINTS ? end - i : MOST_FIELD_POINTS;
-        find_some_apexes(contour, &contour->fields[part], contour->patches.items + i, now);
     }
 }
 
@@ -369,18 +322,30 @@ static void add_patch(Contour *contour, uint32_t number, const uint32_t points[4
 
 static void find_patches(Contour *contour)
 {
+    static const Batches crossings = {box_of_crossing, find_crossings, 12, NULL};
+    static const Batches lines     = {box_of_line, find_lines, 1, NULL};
+    static const Batches patches   = {box_of_patch, find_apexes, 1, is_known_patch};
     const Tets *tets       = contour->tets;
+    Patches swap           = contour->before;
+    contour->before        = contour->patches;
+    contour->patches       = swap;
     contour->patches.count = 0;
     for (size_t i = 0; i < tets->list.count; i++) {
-        uint32_t points[4], inside = inside_first(tets, &tets->list.items[i], points);
+        const Tet *tet = &tets->list.items[i];
+        uint32_t   points[4], inside;
+        if (tet->triangle_count > 0) {
+            array_push_large(contour->arena, &contour->patches, contour->before.items[tet->patch]);
+            continue;
+        }
+        inside = inside_first(tets, tet, points);
         if (inside > 0 && inside < 4)
             add_patch(contour, (uint32_t)i, points, inside);
     }
-    run_in_parallel(find_crossings, contour);
+    contour_batches(contour, &crossings, contour->known_crossings, contour->crossings.count);
     contour->known_crossings = contour->crossings.count;
-    run_in_parallel(find_lines, contour);
+    contour_batches(contour, &lines, contour->known_lines, contour->lines.count);
     contour->known_lines = contour->lines.count;
-    run_in_parallel(find_apexes, contour);
+    contour_batches(contour, &patches, 0, contour->patches.count);
 }
 
 /* ---- triangles ---- */

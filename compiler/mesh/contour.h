@@ -12,6 +12,7 @@
 #define KRS_MESH_CONTOUR_H
 
 #include "compiler/mesh/field.h"
+#include "compiler/mesh/groups.h"
 #include "compiler/mesh/tets.h"
 
 /* A vertex on an edge of the tetrahedra. */
@@ -32,15 +33,21 @@ typedef struct Patch {
     uint32_t tet, corner_count; /* 3 or 4 crossings */
     uint32_t crossings[4],
         lines[4]; /* in order around it, outside to the front; lines[i] follows */
-    bool   fan;
+    bool   known, fan;
     double apex[3], value;
 } Patch;
+
+typedef struct Patches {
+    Patch *items;
+    size_t count, capacity;
+} Patches;
 
 typedef struct Contour {
     Arena     *arena;
     Tets      *tets;
     MeshField *fields; /* for each part of run_in_parallel */
     double     error;
+    Groups     groups; /* of what is being computed */
     Numbering  crossing_numbers, line_numbers;
     struct {
         Crossing *items;
@@ -50,10 +57,7 @@ typedef struct Contour {
         FaceLine *items;
         size_t    count, capacity;
     } lines;
-    struct {
-        Patch *items;
-        size_t count, capacity;
-    } patches;
+    Patches patches, before; /* before: those of the last mesh, of which those of tetrahedra that are left stay */
     size_t known_crossings, known_lines, known_points; /* those that are computed */
     struct {
         double (*items)[3];

@@ -269,17 +269,29 @@ bool field_hessian(const MeshField *field, Box box, Range *range, LaneSlope *slo
            lane_hessians_run(tape, &field->ranges, field->slopes, field->hessians, hessian);
 }
 
+/* The ranges of the box are known. */
+static void enter(MeshField *field, const LaneTape *outer, Box box)
+{
+    FieldRegion *region = &field->regions[field->region_count];
+    region->box         = box;
+    prune(field, outer, region);
+    field->region_count++;
+}
+
 bool field_enter(MeshField *field, Box box)
 {
-    const LaneTape *outer  = outer_tape(field);
-    FieldRegion    *region = &field->regions[field->region_count];
+    const LaneTape *outer = outer_tape(field);
     Range range = range_max(lane_ranges_run(outer, &field->ranges, box), range_of_cuts(field, box));
     if (range.low > 0 || range.high < 0)
         return false;
-    region->box = box;
-    prune(field, outer, region);
-    field->region_count++;
+    enter(field, outer, box);
     return true;
+}
+
+void field_focus(MeshField *field, Box box)
+{
+    lane_ranges_run(outer_tape(field), &field->ranges, box);
+    enter(field, outer_tape(field), box);
 }
 
 void field_leave(MeshField *field) { field->region_count--; }

@@ -46,6 +46,8 @@ void field_open(MeshField *field, Arena *arena);
 /* Enters a box, of which only what is within the last one entered is looked at, and leaves it.  False: there is
    no surface in it, and it was not entered. */
 bool field_enter(MeshField *field, Box box);
+/* Enters it in any case. */
+void field_focus(MeshField *field, Box box);
 void field_leave(MeshField *field);
 
 /* At up to MOST_FIELD_POINTS points. */

@@ -1,0 +1,68 @@
+/* batches.c: groups of what is computed of a contour. */
+#include "compiler/mesh/batches.h"
+
+#include "compiler/base/parallel.h"
+
+/* Questions from which on pruning costs less than it saves. */
+enum { PRUNED_FROM = 64 };
+
+typedef struct BatchWork {
+    Contour       *contour;
+    const Batches *batches;
+} BatchWork;
+
+static Box box_of_group(const BatchWork *w, const Group *group)
+{
+    Box box = {{{INFINITY, -INFINITY}, {INFINITY, -INFINITY}, {INFINITY, -INFINITY}}};
+    for (uint32_t i = group->first; i < group->first + group->count; i++) {
+        double low[3], high[3];
+        w->batches->box(w->contour, w->contour->groups.order.items[i], low, high);
+        for (int k = 0; k < 3; k++)
+            box.axis[k] = range_hull(box.axis[k], (Range){low[k], high[k]});
+    }
+    for (int k = 0; k < 3; k++) {
+        box.axis[k].low -= 0.01 * w->contour->error;
+        box.axis[k].high += 0.01 * w->contour->error;
+    }
+    return box;
+}
+
+static void find_group(const BatchWork *w, MeshField *field, const Group *group)
+{
+    const uint32_t *numbers = w->contour->groups.order.items + group->first;
+    bool            pruned  = group->count * w->batches->questions >= PRUNED_FROM;
+    if (pruned)
+        field_focus(field, box_of_group(w, group));
+    for (uint32_t i = 0, now; i < group->count; i += now) {
+        now = group->count - i < MOST_FIELD_POINTS ? group->count - i : MOST_FIELD_POINTS;
+        w->batches->find(w->contour, field, numbers + i, now);
+    }
+    if (pruned)
+        field_leave(field);
+}
+
+static void find_part(void *task, size_t part, size_t parts)
+{
+    const BatchWork *w     = task;
+    size_t           count = w->contour->groups.list.count;
+    for (size_t i = part; i < count; i += parts)
+        find_group(w, &w->contour->fields[part], &w->contour->groups.list.items[i]);
+}
+
+void contour_batches(Contour *contour, const Batches *batches, size_t first, size_t end)
+{
+    BatchWork w = {contour, batches};
+    groups_clear(&contour->groups);
+    for (size_t i = first; i < end; i++) {
+        double low[3], high[3], at[3];
+        if (batches->is_known && batches->is_known(contour, i))
+            continue;
+        batches->box(contour, i, low, high);
+        for (int k = 0; k < 3; k++)
+            at[k] = (0.5 * (low[k] + high[k]) - contour->tets->origin[k]) /
+                    (contour->tets->step * CUBE_STEPS);
+        groups_add(&contour->groups, (uint32_t)i, at);
+    }
+    groups_finish(&contour->groups);
+    run_in_parallel(find_part, &w);
+}
