@@ -19,7 +19,7 @@ PROPERTY_SHARED := $(addprefix tests/property/, crowd_parts.c garden.c op_trial.
 UNIT        := specks texts front synonyms look diagnostics shape parts passes display devices tracer film plates saved noise pixel_filters lens rendering lights light_groups sky_table daylight methods schedules paths writer \
                image_files image_reading memory validate search refute frame query zones surroundings cache cache_limits \
                compiled pipelines per_component stencils glslang flatten loader watcher drivers grid crowd_grid crowds \
-               crowd_kernels crowd_pictures tables device_tables table_files printing printers answers alike update reload live camera_text resolution painter saver edits values mesh mesh_bounds mesh_proofs assembly
+               crowd_kernels crowd_pictures tables device_tables table_files printing printers answers alike update reload live camera_text resolution painter saver edits values mesh mesh_bounds mesh_fields mesh_proofs assembly
 PROPERTY    := ops noise textures graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees crowds crowds_apart moving_crowds lanes
 ORACLES     := self patterns bumps primitives krs_expand folds trees maps moebius moebius_images operators cells \

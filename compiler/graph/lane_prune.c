@@ -215,8 +215,8 @@ static bool prune_turn(Pruning *p, size_t i)
     if (step->op != LANE_CALL || !is_turn(p, &p->from->calls[step->operands[0]], &cosine, &sine))
         return false;
     const LaneCall *call = &p->from->calls[step->operands[0]];
-    uint32_t x = stand_in(p, call->operands[0][0]), z = stand_in(p, call->operands[0][2]);
-    uint32_t c = lane_steps_number(&p->to, cosine), s = lane_steps_number(&p->to, sine);
+    uint32_t        x = stand_in(p, call->operands[0][0]), z = stand_in(p, call->operands[0][2]);
+    uint32_t        c = lane_steps_number(&p->to, cosine), s = lane_steps_number(&p->to, sine);
     p->same[LANE_INPUTS + i]     = add_turned(p, OP_add, x, c, z, s);
     p->same[LANE_INPUTS + i + 1] = stand_in(p, call->operands[0][1]);
     p->same[LANE_INPUTS + i + 2] = add_turned(p, OP_sub, z, c, x, s);

@@ -17,8 +17,9 @@
 
 LaneRanges lane_ranges_new(const LaneTape *tape, Arena *arena)
 {
-    return (LaneRanges){.ranges = arena_new_array(arena, Range, LANE_INPUTS + lane_most_steps(tape)),
-                        .sure   = arena_new_array(arena, bool, LANE_INPUTS + lane_most_steps(tape))};
+    return (LaneRanges){
+        .ranges = arena_new_array(arena, Range, LANE_INPUTS + lane_most_steps(tape)),
+        .sure   = arena_new_array(arena, bool, LANE_INPUTS + lane_most_steps(tape))};
 }
 
 /* ---- operands ---- */
@@ -242,9 +243,8 @@ static bool range_of_outline(const LaneTape *tape, const LaneRanges *ranges, con
     for (int k = 0; k < 3; k++) {
         Range at         = facts[1].value[k];
         operands[1].v[k] = 0.5 * (at.low + at.high);
-        radius           = hypot_upward(radius, fmax(at.high - operands[1].v[k],
-                                                     operands[1].v[k] - at.low));
-        size             = fmax(size, range_largest(at));
+        radius = hypot_upward(radius, fmax(at.high - operands[1].v[k], operands[1].v[k] - at.low));
+        size   = fmax(size, range_largest(at));
     }
     if (!isfinite(radius))
         return false;

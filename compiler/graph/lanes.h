@@ -150,9 +150,10 @@ void lane_gradients(const LaneTape *tape, const LaneWork *work, const double (*p
 
 /* The ranges of values over a box, by one thread.  `sure`: it is a number in every point of the box. */
 typedef struct LaneRanges {
-    Range     *ranges;
-    bool      *sure;
-    NodeValue *values; /* those of the frame, as of LaneWork: then outlines have ranges; NULL: not */
+    Range *ranges;
+    bool  *sure;
+    NodeValue
+        *values; /* those of the frame, as of LaneWork: then outlines have ranges; NULL: not */
 } LaneRanges;
 
 /* Room for those of a lane tape, and of all that it is pruned to. */

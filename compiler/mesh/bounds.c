@@ -78,9 +78,7 @@ TetState state_by_bounds(const Mesher *m, const Tet *tet)
     if (tet->miss <= tet->slope * proven_error(m))
         return TET_FITS;
     double by_cells = tet->miss < INFINITY ? LEAST_SMOOTH : LEAST_SHARP;
-    return tets_longest_edge(&m->tets, tet) > by_cells * m->error
-               ? TET_REFUTED
-               : TET_ROUGH;
+    return tets_longest_edge(&m->tets, tet) > by_cells * m->error ? TET_REFUTED : TET_ROUGH;
 }
 
 static void measure_in_cell(Mesher *m, const Verifier *verifier, const SmoothCell *cell,

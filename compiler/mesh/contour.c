@@ -325,11 +325,11 @@ static void find_patches(Contour *contour)
     static const Batches crossings = {box_of_crossing, find_crossings, 12, NULL};
     static const Batches lines     = {box_of_line, find_lines, 1, NULL};
     static const Batches patches   = {box_of_patch, find_apexes, 1, is_known_patch};
-    const Tets *tets       = contour->tets;
-    Patches swap           = contour->before;
-    contour->before        = contour->patches;
-    contour->patches       = swap;
-    contour->patches.count = 0;
+    const Tets          *tets      = contour->tets;
+    Patches              swap      = contour->before;
+    contour->before                = contour->patches;
+    contour->patches               = swap;
+    contour->patches.count         = 0;
     for (size_t i = 0; i < tets->list.count; i++) {
         const Tet *tet = &tets->list.items[i];
         uint32_t   points[4], inside;

@@ -57,7 +57,8 @@ typedef struct Contour {
         FaceLine *items;
         size_t    count, capacity;
     } lines;
-    Patches patches, before; /* before: those of the last mesh, of which those of tetrahedra that are left stay */
+    Patches patches,
+        before; /* before: those of the last mesh, of which those of tetrahedra that are left stay */
     size_t known_crossings, known_lines, known_points; /* those that are computed */
     struct {
         double (*items)[3];

@@ -30,14 +30,14 @@ static size_t bytes_of_region(const LaneTape *tape)
 
 void field_open(MeshField *field, Arena *arena)
 {
-    field->tape         = make_tape(field, arena);
-    field->work         = lane_work_in(arena_alloc(arena, lane_work_bytes(&field->tape), 1),
-                                       field->frame->values);
-    field->ranges       = lane_ranges_new(&field->tape, arena);
+    field->tape          = make_tape(field, arena);
+    field->work          = lane_work_in(arena_alloc(arena, lane_work_bytes(&field->tape), 1),
+                                        field->frame->values);
+    field->ranges        = lane_ranges_new(&field->tape, arena);
     field->ranges.values = field->frame->values;
-    field->slopes       = lane_slopes_new(&field->tape, arena);
-    field->hessians     = lane_hessians_new(&field->tape, arena);
-    field->region_bytes = bytes_of_region(&field->tape);
+    field->slopes        = lane_slopes_new(&field->tape, arena);
+    field->hessians      = lane_hessians_new(&field->tape, arena);
+    field->region_bytes  = bytes_of_region(&field->tape);
     for (int i = 0; i < MOST_REGIONS; i++)
         field->regions[i].memory = arena_alloc(arena, field->region_bytes, 1);
     field->pieces.memory = arena_alloc(arena, field->region_bytes, 1);
@@ -87,7 +87,8 @@ bool field_keep(MeshField *field, uint32_t *outputs, size_t count)
     LaneTape tape     = *outer_tape(field);
     tape.outputs      = outputs;
     tape.output_count = count;
-    return prune(field, &tape, &field->pieces) && field->pieces.tape.rows <= lane_most_rows(&field->tape);
+    return prune(field, &tape, &field->pieces) &&
+           field->pieces.tape.rows <= lane_most_rows(&field->tape);
 }
 
 static bool box_has(const Box *box, const double point[3])

@@ -7,7 +7,7 @@
 static const double END_OF_BODY = 0.02;
 
 void keep_inside(const double *weights, const double *inner, int count, double point[3],
-                        const double center[3])
+                 const double center[3])
 {
     double share = 1;
     for (int i = 0; i < count; i++)
@@ -32,7 +32,7 @@ bool solve3(const double rows[3][3], const double right[3], double point[3])
 }
 
 void face_weights(const double corners[3][3], const double normal[3], const double point[3],
-                         double weights[3])
+                  double weights[3])
 {
     double sum = 0;
     for (int i = 0; i < 3; i++) {

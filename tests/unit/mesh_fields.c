@@ -1,0 +1,170 @@
+/* mesh_fields.c: what the mesher knows of a scene in a box, against the distances at points of the box. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "compiler/mesh/field.h"
+#include "compiler/program.h"
+#include "tests/support/random.h"
+
+enum { BOXES = 400, POINTS = 32 };
+
+static Random chance = {7};
+
+static double uniform(double low, double high) { return random_between(&chance, low, high); }
+
+typedef struct Opened {
+    KrsScene *scene;
+    MeshSolid solid;
+    Memory    memory;
+    Arena     arena;
+    MeshField field;
+} Opened;
+
+static void open_field(Opened *o, const char *text)
+{
+    memset(o, 0, sizeof *o);
+    KrsFrame *frame;
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &o->scene), KRS_OK);
+    assert_int_equal(krs_frame_new(o->scene, &frame), KRS_OK);
+    o->memory       = o->scene->memory;
+    o->memory.used  = 0;
+    o->memory.limit = (size_t)1 << 30;
+    o->arena.memory = &o->memory;
+    o->solid.roots  = malloc(solid_root_bytes(o->scene));
+    solid_of_components(o->scene, NULL, &o->solid);
+    o->field = (MeshField){.frame = frame, .solid = &o->solid};
+    frame_refresh(o->field.frame);
+    field_open(&o->field, &o->arena);
+}
+
+static void close_field(Opened *o)
+{
+    arena_free(&o->arena);
+    free(o->solid.roots);
+    krs_frame_free(o->field.frame);
+    krs_scene_free(o->scene);
+}
+
+static Box random_box(double size, double most)
+{
+    Box    box;
+    double half = most * exp(uniform(-4, 0));
+    for (int k = 0; k < 3; k++) {
+        double at   = uniform(-size, size);
+        box.axis[k] = (Range){at - half * uniform(0.2, 1), at + half * uniform(0.2, 1)};
+    }
+    return box;
+}
+
+static void points_in(Box box, double points[POINTS][3])
+{
+    for (int i = 0; i < POINTS; i++)
+        for (int k = 0; k < 3; k++)
+            points[i][k] = i < 8 ? (i >> k & 1 ? box.axis[k].high : box.axis[k].low)
+                                 : uniform(box.axis[k].low, box.axis[k].high);
+}
+
+/* Text is an outline of a table, with curves. */
+static void ranges_of_outlines_hold(void **context)
+{
+    Opened *o     = malloc(sizeof *o);
+    size_t  sided = 0;
+    double  worst = 0;
+    (void)context;
+    assert_non_null(o);
+    open_field(o, "show text(\"S8&\", size: 2).extrude(0.3);");
+    for (int i = 0; i < BOXES; i++) {
+        double points[POINTS][3], distances[POINTS], diagonal = 0;
+        Box    box   = random_box(2, 0.5);
+        Range  range = field_range(&o->field, box);
+        points_in(box, points);
+        for (int k = 0; k < 3; k++)
+            diagonal = hypot(diagonal, box.axis[k].high - box.axis[k].low);
+        field_distances(&o->field, (const double(*)[3])points, POINTS, distances);
+        for (int k = 0; k < POINTS; k++) {
+            double middle = 0.5 * (range.low + range.high);
+            assert_true(distances[k] >= range.low && distances[k] <= range.high);
+            worst = fmax(worst, fabs(distances[k] - middle) / (0.5 * diagonal));
+        }
+        sided += range.low > 0 || range.high < 0;
+    }
+    /* They are narrow, and points use what they permit. */
+    assert_true(sided > BOXES / 4 && worst > 0.6);
+    close_field(o);
+    free(o);
+}
+
+static double value_of(const FieldPieces *pieces, const double *values)
+{
+    double stack[MOST_PIECE_STEPS];
+    int    depth = 0;
+    for (size_t i = 0; i < pieces->step_count; i++) {
+        int step = pieces->steps[i];
+        if (step >= 0) {
+            stack[depth++] = values[step];
+        } else {
+            double b = stack[--depth], a = stack[depth - 1];
+            stack[depth - 1] = step == PIECE_MAX ? fmax(a, b) : fmin(a, b);
+        }
+    }
+    assert_int_equal(depth, 1);
+    return stack[0];
+}
+
+/* Returns in how many boxes there are several. */
+static size_t try_pieces(const char *text)
+{
+    Opened *o       = malloc(sizeof *o);
+    size_t  several = 0;
+    assert_non_null(o);
+    open_field(o, text);
+    for (int i = 0; i < BOXES; i++) {
+        double      points[POINTS][3], distances[POINTS], values[POINTS * MOST_PIECES];
+        FieldPieces pieces;
+        Box         box = random_box(1.2, 0.7);
+        if (!field_enter(&o->field, box))
+            continue;
+        if (field_pieces(&o->field, box, &pieces)) {
+            points_in(box, points);
+            field_distances(&o->field, (const double(*)[3])points, POINTS, distances);
+            field_piece_values(&o->field, &pieces, (const double(*)[3])points, POINTS, values);
+            for (int k = 0; k < POINTS; k++) {
+                double value = value_of(&pieces, values + (size_t)k * pieces.count);
+                if (fabs(distances[k]) > 1e-9)
+                    assert_true((value > 0) == (distances[k] > 0));
+            }
+            several += pieces.count > 1;
+        }
+        field_leave(&o->field);
+    }
+    close_field(o);
+    free(o);
+    return several;
+}
+
+static void pieces_have_the_sign_of_the_distance(void **context)
+{
+    (void)context;
+    assert_true(try_pieces("show box([2, 1, 1.5]);") > 20);
+    assert_true(try_pieces("show box([2, 1, 1.5]).offset(-0.2);") > 20);
+    try_pieces("show box([2, 1, 1.5]).round(0.2);");
+    assert_true(try_pieces("show rectangle([2, 1]).extrude(1.5).offset(0.05);") > 0);
+    assert_true(try_pieces("show box([2, 1, 1.5]).round(0.2) - cylinder(0.5, 3).offset(0.1);") > 0);
+    assert_true(try_pieces("show cylinder(0.2, 3).move([0.8, 0, 0]).repeat_polar(5);") > 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ranges_of_outlines_hold),
+        cmocka_unit_test(pieces_have_the_sign_of_the_distance),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
