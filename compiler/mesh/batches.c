@@ -1,4 +1,4 @@
-/* batches.c: groups of what is computed of a contour. */
+/* batches.c: things are computed by groups. */
 #include "compiler/mesh/batches.h"
 
 #include "compiler/base/parallel.h"
@@ -7,8 +7,9 @@
 enum { PRUNED_FROM = 64 };
 
 typedef struct BatchWork {
-    Contour       *contour;
-    const Batches *batches;
+    const BatchPlace *place;
+    const Batches    *batches;
+    const void       *user;
 } BatchWork;
 
 static Box box_of_group(const BatchWork *w, const Group *group)
@@ -16,26 +17,26 @@ static Box box_of_group(const BatchWork *w, const Group *group)
     Box box = {{{INFINITY, -INFINITY}, {INFINITY, -INFINITY}, {INFINITY, -INFINITY}}};
     for (uint32_t i = group->first; i < group->first + group->count; i++) {
         double low[3], high[3];
-        w->batches->box(w->contour, w->contour->groups.order.items[i], low, high);
+        w->batches->box(w->user, w->place->groups->order.items[i], low, high);
         for (int k = 0; k < 3; k++)
             box.axis[k] = range_hull(box.axis[k], (Range){low[k], high[k]});
     }
     for (int k = 0; k < 3; k++) {
-        box.axis[k].low -= 0.01 * w->contour->error;
-        box.axis[k].high += 0.01 * w->contour->error;
+        box.axis[k].low -= w->place->margin;
+        box.axis[k].high += w->place->margin;
     }
     return box;
 }
 
 static void find_group(const BatchWork *w, MeshField *field, const Group *group)
 {
-    const uint32_t *numbers = w->contour->groups.order.items + group->first;
+    const uint32_t *numbers = w->place->groups->order.items + group->first;
     bool            pruned  = group->count * w->batches->questions >= PRUNED_FROM;
     if (pruned)
         field_focus(field, box_of_group(w, group));
     for (uint32_t i = 0, now; i < group->count; i += now) {
         now = group->count - i < MOST_FIELD_POINTS ? group->count - i : MOST_FIELD_POINTS;
-        w->batches->find(w->contour, field, numbers + i, now);
+        w->batches->find(w->user, field, numbers + i, now);
     }
     if (pruned)
         field_leave(field);
@@ -44,25 +45,25 @@ static void find_group(const BatchWork *w, MeshField *field, const Group *group)
 static void find_part(void *task, size_t part, size_t parts)
 {
     const BatchWork *w     = task;
-    size_t           count = w->contour->groups.list.count;
+    size_t           count = w->place->groups->list.count;
     for (size_t i = part; i < count; i += parts)
-        find_group(w, &w->contour->fields[part], &w->contour->groups.list.items[i]);
+        find_group(w, &w->place->fields[part], &w->place->groups->list.items[i]);
 }
 
-void contour_batches(Contour *contour, const Batches *batches, size_t first, size_t end)
+void batches_find(const BatchPlace *place, const Batches *batches, const void *user, size_t first,
+                  size_t end)
 {
-    BatchWork w = {contour, batches};
-    groups_clear(&contour->groups);
+    BatchWork w = {place, batches, user};
+    groups_clear(place->groups);
     for (size_t i = first; i < end; i++) {
         double low[3], high[3], at[3];
-        if (batches->is_known && batches->is_known(contour, i))
+        if (batches->is_known && batches->is_known(user, i))
             continue;
-        batches->box(contour, i, low, high);
+        batches->box(user, i, low, high);
         for (int k = 0; k < 3; k++)
-            at[k] = (0.5 * (low[k] + high[k]) - contour->tets->origin[k]) /
-                    (contour->tets->step * CUBE_STEPS);
-        groups_add(&contour->groups, (uint32_t)i, at);
+            at[k] = (0.5 * (low[k] + high[k]) - place->origin[k]) / place->side;
+        groups_add(place->groups, (uint32_t)i, at);
     }
-    groups_finish(&contour->groups);
+    groups_finish(place->groups);
     run_in_parallel(find_part, &w);
 }

@@ -31,15 +31,17 @@ static void box_of_points(const Contour *contour, const uint32_t *points, size_t
     }
 }
 
-static void box_of_point(const Contour *contour, size_t number, double low[3], double high[3])
+static void box_of_point(const void *user, size_t number, double low[3], double high[3])
 {
+    const Contour *contour = user;
     box_of_points(contour, (uint32_t[]){(uint32_t)number}, 1, low, high);
 }
 
-static void find_distances(const Contour *contour, const MeshField *field, const uint32_t *numbers,
+static void find_distances(const void *user, const MeshField *field, const uint32_t *numbers,
                            size_t count)
 {
-    double positions[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
+    const Contour *contour = user;
+    double         positions[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
     for (size_t i = 0; i < count; i++)
         tets_position(contour->tets, numbers[i], positions[i]);
     field_distances(field, (const double(*)[3])positions, count, distances);
@@ -47,10 +49,22 @@ static void find_distances(const Contour *contour, const MeshField *field, const
         contour->tets->points.items[numbers[i]].distance = distances[i];
 }
 
+static void find_all(Contour *contour, const Batches *batches, size_t first, size_t end)
+{
+    const Tets *tets      = contour->tets;
+    BatchPlace  place     = {.fields = contour->fields,
+                             .origin = {tets->origin[0], tets->origin[1], tets->origin[2]},
+                             .side   = tets->step * CUBE_STEPS,
+                             .margin = 0.01 * contour->error,
+                             .groups = &contour->groups};
+    contour->groups.arena = contour->arena;
+    batches_find(&place, batches, contour, first, end);
+}
+
 void contour_distances(Contour *contour)
 {
-    static const Batches points = {box_of_point, find_distances, 1, NULL};
-    contour_batches(contour, &points, contour->known_points, contour->tets->points.count);
+    static const Batches points = {box_of_point, find_distances, NULL, 1};
+    find_all(contour, &points, contour->known_points, contour->tets->points.count);
     contour->known_points = contour->tets->points.count;
 }
 
@@ -114,15 +128,17 @@ static void look_at_crossings(const Contour *contour, const MeshField *field,
     }
 }
 
-static void box_of_crossing(const Contour *contour, size_t number, double low[3], double high[3])
+static void box_of_crossing(const void *user, size_t number, double low[3], double high[3])
 {
+    const Contour  *contour  = user;
     const Crossing *crossing = &contour->crossings.items[number];
     box_of_points(contour, (uint32_t[]){crossing->from, crossing->to}, 2, low, high);
 }
 
-static void find_crossings(const Contour *contour, const MeshField *field, const uint32_t *numbers,
+static void find_crossings(const void *user, const MeshField *field, const uint32_t *numbers,
                            size_t count)
 {
+    const Contour *contour = user;
     find_places(contour, field, numbers, count);
     look_at_crossings(contour, field, numbers, count);
 }
@@ -155,16 +171,18 @@ static void find_line(const Contour *contour, const MeshField *field, double mis
     line->bent  = fabs(line->value) < 0.5 * missed;
 }
 
-static void box_of_line(const Contour *contour, size_t number, double low[3], double high[3])
+static void box_of_line(const void *user, size_t number, double low[3], double high[3])
 {
+    const Contour *contour = user;
     box_of_points(contour, contour->lines.items[number].points, 3, low, high);
 }
 
 /* Most are straight. */
-static void find_lines(const Contour *contour, const MeshField *field, const uint32_t *numbers,
+static void find_lines(const void *user, const MeshField *field, const uint32_t *numbers,
                        size_t count)
 {
-    double middles[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
+    const Contour *contour = user;
+    double         middles[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
     for (size_t i = 0; i < count; i++) {
         const FaceLine *line = &contour->lines.items[numbers[i]];
         for (int k = 0; k < 3; k++)
@@ -212,21 +230,24 @@ static void find_apex(const Contour *contour, const MeshField *field, const doub
     patch->value = missed;
 }
 
-static void box_of_patch(const Contour *contour, size_t number, double low[3], double high[3])
+static void box_of_patch(const void *user, size_t number, double low[3], double high[3])
 {
-    const Tet *tet = &contour->tets->list.items[contour->patches.items[number].tet];
+    const Contour *contour = user;
+    const Tet     *tet     = &contour->tets->list.items[contour->patches.items[number].tet];
     box_of_points(contour, tet->points, 4, low, high);
 }
 
-static bool is_known_patch(const Contour *contour, size_t number)
+static bool is_known_patch(const void *user, size_t number)
 {
+    const Contour *contour = user;
     return contour->patches.items[number].known;
 }
 
-static void find_apexes(const Contour *contour, const MeshField *field, const uint32_t *numbers,
+static void find_apexes(const void *user, const MeshField *field, const uint32_t *numbers,
                         size_t count)
 {
-    double middles[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
+    const Contour *contour = user;
+    double         middles[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
     for (size_t i = 0; i < count; i++)
         find_middle(contour, &contour->patches.items[numbers[i]], middles[i]);
     field_distances(field, (const double(*)[3])middles, count, distances);
@@ -322,9 +343,9 @@ static void add_patch(Contour *contour, uint32_t number, const uint32_t points[4
 
 static void find_patches(Contour *contour)
 {
-    static const Batches crossings = {box_of_crossing, find_crossings, 12, NULL};
-    static const Batches lines     = {box_of_line, find_lines, 1, NULL};
-    static const Batches patches   = {box_of_patch, find_apexes, 1, is_known_patch};
+    static const Batches crossings = {box_of_crossing, find_crossings, NULL, 12};
+    static const Batches lines     = {box_of_line, find_lines, NULL, 1};
+    static const Batches patches   = {box_of_patch, find_apexes, is_known_patch, 1};
     const Tets          *tets      = contour->tets;
     Patches              swap      = contour->before;
     contour->before                = contour->patches;
@@ -341,11 +362,11 @@ static void find_patches(Contour *contour)
         if (inside > 0 && inside < 4)
             add_patch(contour, (uint32_t)i, points, inside);
     }
-    contour_batches(contour, &crossings, contour->known_crossings, contour->crossings.count);
+    find_all(contour, &crossings, contour->known_crossings, contour->crossings.count);
     contour->known_crossings = contour->crossings.count;
-    contour_batches(contour, &lines, contour->known_lines, contour->lines.count);
+    find_all(contour, &lines, contour->known_lines, contour->lines.count);
     contour->known_lines = contour->lines.count;
-    contour_batches(contour, &patches, 0, contour->patches.count);
+    find_all(contour, &patches, 0, contour->patches.count);
 }
 
 /* ---- triangles ---- */

@@ -331,7 +331,6 @@ bool find_proven_mesh(Mesher *m)
                                 .tets             = &m->tets,
                                 .fields           = m->fields,
                                 .error            = m->error,
-                                .groups           = {.arena = &m->arena},
                                 .crossing_numbers = {.arena = &m->arena},
                                 .line_numbers     = {.arena = &m->arena}};
     m->groups.arena = &m->arena;
