@@ -3,9 +3,13 @@
  */
 #include "compiler/compilation.h"
 
-/* Least flops of a component that is marched by itself, and of a scene where this is done.  Scenes
-   whose boxes overlap need more, since they gain less.  Measured by bench/krs.c. */
+/* Least flops of a component that counts as expensive, and of a scene where such are marched by
+   themselves.  Scenes whose boxes overlap need more, since they gain less.  Measured by bench/krs.c. */
 static const double EXPENSIVE_FLOPS = 100, SCATTERED_FLOPS = 1000, MIXED_FLOPS = 2000;
+/* A group has kernels of its own, which take longer to compile than they save in a small picture.  So
+   where groups are marched by themselves, components below APART_FLOPS share one, as long as that
+   stays below SHARED_FLOPS. */
+static const double APART_FLOPS = 300, SHARED_FLOPS = 1000;
 
 static double component_flops(Compilation *c, size_t component)
 {
@@ -16,9 +20,12 @@ static double component_flops(Compilation *c, size_t component)
 
 /* The index of a component's group: a new one if the component is expensive and bounded, and groups
    are left.  Else that of the last group, which has all other components. */
-static size_t choose_march_group(const KrsProgram *program, double flops, Box box)
+static size_t choose_march_group(const KrsProgram *program, double flops, double rest_flops,
+                                 Box box)
 {
-    bool own = flops >= EXPENSIVE_FLOPS && box_is_finite(box) && !box_is_empty(box);
+    const bool shares = flops < APART_FLOPS && program->flops >= SCATTERED_FLOPS &&
+                        rest_flops + flops <= SHARED_FLOPS;
+    bool own = flops >= EXPENSIVE_FLOPS && !shares && box_is_finite(box) && !box_is_empty(box);
     return own && program->march_group_count < KRS_MOST_MARCH_GROUPS - 1
                ? program->march_group_count
                : KRS_MOST_MARCH_GROUPS - 1;
@@ -64,7 +71,7 @@ void form_march_groups(Compilation *c)
         for (size_t k = 0; k < component->count; k++)
             c->scene->components[component->first + k].flops = flops / (double)component->count;
         program->expensive += flops >= EXPENSIVE_FLOPS;
-        size_t group    = choose_march_group(program, flops, component->shape->box);
+        size_t group    = choose_march_group(program, flops, rest_flops, component->shape->box);
         march_groups[i] = (uint32_t)group + 1;
         if (group < KRS_MOST_MARCH_GROUPS - 1) {
             add_march_group(program, flops, component->shape->box);

@@ -24,7 +24,7 @@ static void find_blocks(Flow *flow, Dominators *dominators)
 {
     const Instructions *body = &flow->module->body;
     for (size_t i = 0; i < body->count; i++) {
-        if (body->items[i].opcode == OP_LABEL)
+        if (body->items[i].opcode == SPIRV_LABEL)
             flow->of_label[result_of(&body->items[i])] = ++flow->count;
         dominators->block[i]       = flow->count - 1;
         flow->end[flow->count - 1] = i;

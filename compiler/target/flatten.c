@@ -60,7 +60,7 @@ static void write_globals(Writing *writing)
     const Instructions *globals   = &writing->module->globals;
     bool                decorated = false;
     for (size_t i = 0; i < globals->count; i++) {
-        if (globals->items[i].opcode == OP_DECORATE && !decorated) {
+        if (globals->items[i].opcode == SPIRV_DECORATE && !decorated) {
             write_all(writing, &writing->module->decorations);
             decorated = true;
         }
@@ -70,10 +70,10 @@ static void write_globals(Writing *writing)
 
 static void write_module(Writing *writing)
 {
-    uint32_t            end_words[] = {1u << 16 | OP_FUNCTION_END};
-    const Instruction   end         = {.words = end_words, .opcode = OP_FUNCTION_END, .length = 1};
-    const ShaderModule *module      = writing->module;
-    writing->count                  = HEADER_WORDS;
+    uint32_t            end_words[] = {1u << 16 | SPIRV_FUNCTION_END};
+    const Instruction   end    = {.words = end_words, .opcode = SPIRV_FUNCTION_END, .length = 1};
+    const ShaderModule *module = writing->module;
+    writing->count             = HEADER_WORDS;
     write_globals(writing);
     write(writing, &module->entry);
     write(writing, &module->body.items[0]); /* the label */

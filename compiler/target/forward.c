@@ -33,7 +33,8 @@ typedef struct Forwarding {
 
 static bool is_chain(const Instruction *instruction)
 {
-    return instruction->opcode == OP_ACCESS_CHAIN || instruction->opcode == OP_IN_BOUNDS_CHAIN;
+    return instruction->opcode == SPIRV_ACCESS_CHAIN ||
+           instruction->opcode == SPIRV_IN_BOUNDS_CHAIN;
 }
 
 /* Notes what an instruction does with a pointer, which is its word `at`. */
@@ -43,9 +44,9 @@ static void note_use(Forwarding *forwarding, size_t index, uint16_t at)
     const Instruction *instruction = &module->body.items[index];
     const uint32_t     pointer = instruction->words[at], root = module->root[pointer];
     Usage             *usage = &forwarding->usage[root];
-    if (root == 0 || instruction->opcode == OP_LOAD)
+    if (root == 0 || instruction->opcode == SPIRV_LOAD)
         return;
-    if (instruction->opcode == OP_STORE && at == 1) {
+    if (instruction->opcode == SPIRV_STORE && at == 1) {
         usage->change = index + 1;
         usage->whole  = pointer == root;
     } else if (is_chain(instruction) && at == 3) {
@@ -64,7 +65,7 @@ static void note_uses(Forwarding *forwarding)
         module->root[result_of(variable)] = result_of(variable);
     }
     for (size_t i = 0; i < module->globals.count; i++)
-        if (module->globals.items[i].opcode == OP_CONSTANT)
+        if (module->globals.items[i].opcode == SPIRV_CONSTANT)
             forwarding->constant[result_of(&module->globals.items[i])] =
                 module->globals.items[i].words;
     for (size_t i = 0; i < module->body.count; i++)
@@ -108,7 +109,7 @@ static void forward(Forwarding *forwarding, Instruction *load, uint32_t value)
     }
     memcpy(operands, (uint32_t[]){load->words[1], result_of(load), value}, 3 * sizeof *operands);
     memcpy(operands + 3, members + MOST_MEMBERS - count, count * sizeof *members);
-    *load = module_make(module, OP_COMPOSITE_EXTRACT, operands, count + 3, 2, ids, 2);
+    *load = module_make(module, SPIRV_COMPOSITE_EXTRACT, operands, count + 3, 2, ids, 2);
 }
 
 void forward_stores(ShaderModule *module)
@@ -123,7 +124,7 @@ void forward_stores(ShaderModule *module)
     Dominators dominators = dominators_find(module);
     for (size_t i = 0; i < module->body.count; i++) {
         Instruction *load = &module->body.items[i];
-        if (load->opcode != OP_LOAD)
+        if (load->opcode != SPIRV_LOAD)
             continue;
         const Usage *usage = &forwarding.usage[module->root[load->words[3]]];
         if (usage->whole && !usage->other && dominators_order(&dominators, usage->change - 1, i))

@@ -42,11 +42,11 @@ static void index_module(Inliner *inliner)
     inliner->decorated   = arena_new_array(module->arena, size_t, module->bound);
     inliner->before      = arena_new_array(module->arena, size_t, module->globals.count + 1);
     for (size_t i = 0; i < module->functions.count; i++)
-        if (module->functions.items[i].opcode == OP_FUNCTION)
+        if (module->functions.items[i].opcode == SPIRV_FUNCTION)
             inliner->function_at[result_of(&module->functions.items[i])] = i + 1;
     for (size_t i = 0; i < module->globals.count; i++) {
         const Instruction *global = &module->globals.items[i];
-        if (global->opcode != OP_DECORATE)
+        if (global->opcode != SPIRV_DECORATE)
             continue;
         inliner->before[i]                   = inliner->decorated[global->words[1]];
         inliner->decorated[global->words[1]] = i + 1;
@@ -88,9 +88,9 @@ static void decorate_copy(Inliner *inliner, uint32_t value, uint32_t copy)
 /* Chooses new ids for all that a function defines. */
 static void name_copies(Inliner *inliner, const Instruction *from)
 {
-    for (; from->opcode != OP_FUNCTION_END; from++) {
+    for (; from->opcode != SPIRV_FUNCTION_END; from++) {
         uint32_t result = result_of(from);
-        if (result == 0 || from->opcode == OP_PARAMETER)
+        if (result == 0 || from->opcode == SPIRV_PARAMETER)
             continue;
         inliner->copy_of[result] = inliner->module->bound++;
         decorate_copy(inliner, result, inliner->copy_of[result]);
@@ -121,10 +121,10 @@ static void copy_variable(Inliner *inliner, const Instruction *variable, bool ca
     Instruction           copy   = copy_of(inliner, variable);
     if (called && copy.length > 4) {
         const uint32_t operands[] = {copy.words[2], copy.words[4]};
-        emit(inliner, module_make(module, OP_STORE, operands, 2, 0, ids, 2));
+        emit(inliner, module_make(module, SPIRV_STORE, operands, 2, 0, ids, 2));
         copy.length = 4;
         copy.id_count--;
-        copy.words[0] = 4u << 16 | OP_VARIABLE;
+        copy.words[0] = 4u << 16 | SPIRV_VARIABLE;
     }
     array_push_large(module->arena, &module->variables, copy);
 }
@@ -132,10 +132,10 @@ static void copy_variable(Inliner *inliner, const Instruction *variable, bool ca
 /* The value of a call is what the function returns. */
 static void copy_return(Inliner *inliner, const Instruction *from, const Instruction *call)
 {
-    inliner->refused = inliner->refused || from[1].opcode != OP_FUNCTION_END;
+    inliner->refused = inliner->refused || from[1].opcode != SPIRV_FUNCTION_END;
     if (!call)
         emit(inliner, copy_of(inliner, from));
-    else if (from->opcode == OP_RETURN_VALUE)
+    else if (from->opcode == SPIRV_RETURN_VALUE)
         array_push_large(
             inliner->module->arena, &inliner->values,
             ((Pair){copied(inliner, result_of(call)), copied(inliner, from->words[1])}));
@@ -153,7 +153,7 @@ static void copy_label(Inliner *inliner, const Instruction *from, bool first)
 
 static bool is_branch(const Instruction *instruction)
 {
-    return instruction->opcode >= OP_BRANCH && instruction->opcode <= OP_SWITCH;
+    return instruction->opcode >= SPIRV_BRANCH && instruction->opcode <= SPIRV_SWITCH;
 }
 
 /* Copies an instruction of a block, and of a function that is called, or NULL. */
@@ -161,11 +161,11 @@ static void copy_instruction(Inliner *inliner, const Instruction *from, const In
                              uint32_t block)
 {
     switch (from->opcode) {
-    case OP_CALL: copy_call(inliner, from); return;
-    case OP_VARIABLE: copy_variable(inliner, from, call != NULL); return;
-    case OP_RETURN:
-    case OP_RETURN_VALUE: copy_return(inliner, from, call); return;
-    case OP_LOOP_MERGE: /* loops go back to this block, which must still be whole */
+    case SPIRV_CALL: copy_call(inliner, from); return;
+    case SPIRV_VARIABLE: copy_variable(inliner, from, call != NULL); return;
+    case SPIRV_RETURN:
+    case SPIRV_RETURN_VALUE: copy_return(inliner, from, call); return;
+    case SPIRV_LOOP_MERGE: /* loops go back to this block, which must still be whole */
         inliner->refused = inliner->refused || inliner->label != block;
         break;
     default: break;
@@ -183,10 +183,10 @@ static void copy_function(Inliner *inliner, size_t at, const Instruction *call)
     uint32_t           block = 0;
     if (call)
         name_copies(inliner, from);
-    for (uint16_t word = 4; from->opcode == OP_PARAMETER; from++, word++)
+    for (uint16_t word = 4; from->opcode == SPIRV_PARAMETER; from++, word++)
         inliner->copy_of[result_of(from)] = copied(inliner, call->words[word]);
-    for (; from->opcode != OP_FUNCTION_END && !inliner->refused; from++) {
-        if (from->opcode == OP_LABEL) {
+    for (; from->opcode != SPIRV_FUNCTION_END && !inliner->refused; from++) {
+        if (from->opcode == SPIRV_LABEL) {
             copy_label(inliner, from, call && block == 0);
             block = copied(inliner, result_of(from));
         } else {
@@ -194,7 +194,7 @@ static void copy_function(Inliner *inliner, size_t at, const Instruction *call)
         }
     }
     uint16_t last    = from[-1].opcode;
-    inliner->refused = inliner->refused || (last != OP_RETURN && last != OP_RETURN_VALUE) ||
+    inliner->refused = inliner->refused || (last != SPIRV_RETURN && last != SPIRV_RETURN_VALUE) ||
                        inliner->module->body.count > MOST_INSTRUCTIONS;
 }
 
@@ -209,7 +209,7 @@ static void correct_phis(Inliner *inliner)
         ends[inliner->ends.items[i].id] = inliner->ends.items[i].other;
     for (size_t i = 0; i < module->body.count; i++) {
         const Instruction *phi = &module->body.items[i];
-        for (uint16_t word = 4; phi->opcode == OP_PHI && word < phi->length; word += 2)
+        for (uint16_t word = 4; phi->opcode == SPIRV_PHI && word < phi->length; word += 2)
             if (ends[phi->words[word]])
                 phi->words[word] = ends[phi->words[word]];
     }
@@ -229,13 +229,13 @@ static void move_private_globals(ShaderModule *module)
     size_t kept = 0;
     for (size_t i = 0; i < module->globals.count; i++) {
         Instruction global = module->globals.items[i];
-        uint32_t *class    = global.opcode == OP_VARIABLE       ? &global.words[3]
-                             : global.opcode == OP_TYPE_POINTER ? &global.words[2]
-                                                                : NULL;
+        uint32_t *class    = global.opcode == SPIRV_VARIABLE       ? &global.words[3]
+                             : global.opcode == SPIRV_TYPE_POINTER ? &global.words[2]
+                                                                   : NULL;
         bool is_private    = class && *class == CLASS_PRIVATE;
         if (is_private)
             *class = CLASS_FUNCTION;
-        if (is_private && global.opcode == OP_VARIABLE)
+        if (is_private && global.opcode == SPIRV_VARIABLE)
             array_push_large(module->arena, &module->variables, global);
         else
             module->globals.items[kept++] = global;
@@ -248,7 +248,7 @@ static size_t find_entry(const Inliner *inliner)
 {
     const ShaderModule *module = inliner->module;
     for (size_t i = 0; i < module->globals.count; i++)
-        if (module->globals.items[i].opcode == OP_ENTRY_POINT)
+        if (module->globals.items[i].opcode == SPIRV_ENTRY_POINT)
             return inliner->function_at[module->globals.items[i].words[2]];
     return 0;
 }

@@ -55,7 +55,7 @@ bool module_read(ShaderModule *module, uint32_t *words, size_t count)
                   spvBinaryParse(context, &reading, words, count, NULL, note, NULL) == SPV_SUCCESS;
     spvContextDestroy(context);
     size_t first = 0;
-    while (first < all->count && all->items[first].opcode != OP_FUNCTION)
+    while (first < all->count && all->items[first].opcode != SPIRV_FUNCTION)
         first++;
     module->functions = (Instructions){all->items + first, all->count - first, 0};
     all->count        = first;

@@ -18,24 +18,25 @@ typedef struct Marking {
 
 static bool is_about_another(const Instruction *instruction)
 {
-    return instruction->opcode == OP_NAME || instruction->opcode == OP_MEMBER_NAME ||
-           instruction->opcode == OP_DECORATE || instruction->opcode == OP_MEMBER_DECORATE;
+    return instruction->opcode == SPIRV_NAME || instruction->opcode == SPIRV_MEMBER_NAME ||
+           instruction->opcode == SPIRV_DECORATE || instruction->opcode == SPIRV_MEMBER_DECORATE;
 }
 
 static bool is_source_text(const Instruction *instruction)
 {
-    return instruction->opcode >= OP_SOURCE_CONTINUED && instruction->opcode <= OP_SOURCE_EXTENSION;
+    return instruction->opcode >= SPIRV_SOURCE_CONTINUED &&
+           instruction->opcode <= SPIRV_SOURCE_EXTENSION;
 }
 
 static bool is_atomic(const Instruction *instruction)
 {
-    return instruction->opcode >= OP_ATOMIC_FIRST && instruction->opcode <= OP_ATOMIC_LAST;
+    return instruction->opcode >= SPIRV_ATOMIC_FIRST && instruction->opcode <= SPIRV_ATOMIC_LAST;
 }
 
 /* The variable of the entry point in which an instruction stores, or 0. */
 static uint32_t stored_variable(const ShaderModule *module, const Instruction *instruction)
 {
-    return instruction->opcode == OP_STORE ? module->root[instruction->words[1]] : 0;
+    return instruction->opcode == SPIRV_STORE ? module->root[instruction->words[1]] : 0;
 }
 
 static void mark(Marking *marking, uint32_t id)
@@ -76,7 +77,7 @@ static void mark_roots(Marking *marking, const Instructions *instructions)
 {
     for (size_t i = 0; i < instructions->count; i++) {
         const Instruction *instruction   = &instructions->items[i];
-        bool               is_block_size = instruction->opcode == OP_DECORATE &&
+        bool               is_block_size = instruction->opcode == SPIRV_DECORATE &&
                              instruction->words[2] == DECORATION_BUILTIN;
         if (is_block_size || is_atomic(instruction))
             mark(marking, is_block_size ? instruction->words[1] : result_of(instruction));
@@ -127,6 +128,6 @@ bool is_live(const ShaderModule *module, const bool *live, const Instruction *in
         return live[instruction->words[1]];
     if (variable != 0)
         return live[variable];
-    return result_of(instruction) == 0 || instruction->opcode == OP_LABEL ||
-           instruction->opcode == OP_IMPORT || live[result_of(instruction)];
+    return result_of(instruction) == 0 || instruction->opcode == SPIRV_LABEL ||
+           instruction->opcode == SPIRV_IMPORT || live[result_of(instruction)];
 }

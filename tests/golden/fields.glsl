@@ -86,7 +86,8 @@ float krs_slope_3(uint h, vec3 d)
 {
     float u = mix(d.y, d.x, h < 8u);
     float v = mix(mix(d.z, d.x, (h | 2u) == 14u), d.y, h < 4u);
-    return mix(u, -u, (h & 1u) != 0u) + mix(v, -v, (h & 2u) != 0u);
+    return uintBitsToFloat(floatBitsToUint(u) ^ h << 31) +
+           uintBitsToFloat(floatBitsToUint(v) ^ h >> 1u << 31);
 }
 
 uint krs_lattice_bits(uint x) { return krs_lattice(x) >> 28; }

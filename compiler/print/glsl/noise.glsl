@@ -1,7 +1,8 @@
 /*
  * noise.glsl: gradient noise: the same hashes as in graph/op_values.c, so the same hills.
  *
- * A lane takes both sides of a choice, so directions are chosen by arithmetic on what is there.
+ * A lane takes both sides of a choice, so directions are chosen by arithmetic on what is there, and
+ * their signs by the bits of the hash.
  */
 
 uint krs_lattice(uint x)
@@ -18,14 +19,15 @@ float krs_slope_2(uint h, vec2 d)
     bool second = (h & 2u) != 0u;
     float straight = mix(d.x, d.y, second) * 1.41421356237;
     float along = mix(d.x + mix(d.y, -d.y, second), straight, (h & 4u) != 0u);
-    return mix(along, -along, (h & 1u) != 0u);
+    return uintBitsToFloat(floatBitsToUint(along) ^ h << 31);
 }
 
 float krs_slope_3(uint h, vec3 d)
 {
     float u = mix(d.y, d.x, h < 8u);
     float v = mix(mix(d.z, d.x, (h | 2u) == 14u), d.y, h < 4u);
-    return mix(u, -u, (h & 1u) != 0u) + mix(v, -v, (h & 2u) != 0u);
+    return uintBitsToFloat(floatBitsToUint(u) ^ h << 31) +
+           uintBitsToFloat(floatBitsToUint(v) ^ h >> 1u << 31);
 }
 
 float krs_noise2(vec2 p)
