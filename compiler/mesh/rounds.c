@@ -283,6 +283,19 @@ static void find_tree(Mesher *m)
             &m->arena);
 }
 
+/* Where the first tetrahedron that is unresolved is so: that is found again, since few are. */
+static void find_unresolved(Mesher *m)
+{
+    size_t i = 0;
+    while (i < m->tets.list.count && m->tets.list.items[i].state != TET_UNRESOLVED)
+        i++;
+    if (i == m->tets.list.count)
+        return;
+    Tet tet = m->tets.list.items[i];
+    verify_tet(&m->verifiers[0], &tet);
+    memcpy(m->unresolved_at, m->verifiers[0].place, sizeof m->unresolved_at);
+}
+
 /* Counts what is decided. */
 static void count_proven(Mesher *m)
 {
@@ -290,11 +303,6 @@ static void count_proven(Mesher *m)
     m->unresolved = 0;
     for (size_t i = 0; i < m->tets.list.count; i++) {
         int state = m->tets.list.items[i].state;
-        if (state == TET_UNRESOLVED && m->unresolved == 0) {
-            double corners[4][3];
-            tets_corners(&m->tets, &m->tets.list.items[i], corners);
-            corners_ball((const double(*)[3])corners, m->unresolved_at);
-        }
         near += state != TET_EMPTY;
         proven += state == TET_PROVEN || state == TET_UNRESOLVED;
         m->unresolved += state == TET_UNRESOLVED;
@@ -314,6 +322,7 @@ static bool prove(Mesher *m)
         find_groups(m, TET_FITS, TET_ROUGH);
         if (!for_groups(m, verify_group))
             return false;
+        find_unresolved(m);
         bvh_free(&m->bvh, m->contour.triangles.count, &m->arena);
     }
     count_proven(m);

@@ -22,6 +22,8 @@ enum { MOST_UNRESOLVED = 16, MOST_HALVINGS = 80 };
 static const double LESS_FLAT = 0.7, LESS_STEEP = 0.35;
 /* Parts of the error: what is smaller is not divided further. */
 static const double TINY_CELL = 0.25, TINY_TRIANGLE = 0.125;
+/* Of a side, in errors, that is not thinner than the error: about as deep is one that a right angle leaves. */
+static const double DEEP = 0.2;
 
 bool verify_is_far(const Tets *tets, const Tet *tet)
 {
@@ -86,6 +88,26 @@ static bool is_flat_by_slope(Verifier *verifier, const double corners[4][3], con
            (lens.above < verifier->error && fills_lens(verifier, &lens));
 }
 
+/* Whether, so far from a place, there is another side that is deep: beyond an edge it is in none of the directions
+   of its faces, but between them. */
+static bool is_deep_beyond(const Verifier *verifier, const double center[3], double distance,
+                           double step)
+{
+    enum { AROUND = 27, MIDDLE = 13 };
+    double places[AROUND][3], distances[AROUND];
+    for (int i = 0; i < AROUND; i++) {
+        double direction[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+        if (i != MIDDLE)
+            normalize3(direction);
+        add_scaled3(places[i], center, step, direction);
+    }
+    field_distances(verifier->field, (const double(*)[3])places, AROUND, distances);
+    for (int i = 0; i < AROUND; i++)
+        if ((distances[i] < 0) != (distance < 0) && fabs(distances[i]) > DEEP * verifier->error)
+            return true;
+    return false;
+}
+
 /* At a place that is farther from the mesh than permitted, and nearer to the surface: goes on through
    the surface.  False: there is another side, so the mesh is wrong. */
 static bool leave_unresolved(Verifier *verifier, const double center[3], double distance)
@@ -97,7 +119,10 @@ static bool leave_unresolved(Verifier *verifier, const double center[3], double 
         if ((field_distance(verifier->field, beyond) < 0) != (distance < 0))
             return false;
     }
+    if (is_deep_beyond(verifier, center, distance, step))
+        return false;
     verifier->unresolved++;
+    memcpy(verifier->place, center, sizeof verifier->place);
     return true;
 }
 
@@ -392,6 +417,7 @@ TetState verify_tet(Verifier *verifier, Tet *tet)
         return TET_EMPTY;
     verifier->reach = corners_ball((const double(*)[3])whole.corners, verifier->center) +
                       2 * verifier->error;
+    memcpy(verifier->place, verifier->center, sizeof verifier->place);
     TetState state = verify_parts(verifier, tet, &whole, side);
     tet->reach     = (float)(verifier->reach * (1 + 1e-6));
     field_leave(verifier->field);

@@ -375,6 +375,9 @@ static void thin_walls_are_found_or_reported(void **context)
     assert_int_equal(fine->unresolved, 0);
     check_closed(coarse);
     assert_true(coarse->unresolved > 0);
+    double distance, *place = coarse->unresolved_at;
+    assert_int_equal(krs_distance(sheet.frame, (const double(*)[3])place, 1, &distance), KRS_OK);
+    assert_true(fabs(distance) < 0.25 * coarse->error); /* the wall is there */
     krs_mesh_free(fine);
     krs_mesh_free(coarse);
     scene_close(s);
