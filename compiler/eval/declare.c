@@ -189,13 +189,33 @@ bool needs_check(Elaboration *e, const Syntax *syntax)
     return true;
 }
 
-/* Two coordinates on the surface, which materials know as `u` and `v`. */
+/* Materials use these coordinates by the names `u` and `v`, or are anisotropic along them. */
+static bool mentions_uv(const Syntax *syntax)
+{
+    const char *name  = syntax->name;
+    bool        found = name && (strcmp(name, "u") == 0 || strcmp(name, "v") == 0 ||
+                          strstr(name, "anisotrop") != NULL);
+    for (uint32_t i = 0; i < syntax->count && !found; i++)
+        found = mentions_uv(syntax->children[i]);
+    return found;
+}
+
+bool files_mention_uv(const Files *files)
+{
+    bool found = false;
+    for (size_t i = 0; i < files->count && !found; i++)
+        found = mentions_uv(files->items[i]->syntax);
+    return found;
+}
+
+/* Two coordinates on the surface, which materials know as `u` and `v`.  Thousands of shapes need not
+   compute what none asks for; the first of a declaration shows its mistakes. */
 static bool uv_property(Elaboration *e, const Environment *env, const Syntax *declaration,
-                        Shape *shape)
+                        bool first, Shape *shape)
 {
     const Syntax *syntax = find_property(declaration, "uv");
     shape->without_uv    = syntax ? NULL : shape;
-    if (!syntax)
+    if (!syntax || !(first || e->uses_uv))
         return true;
     Value value = evaluate(e, env, syntax);
     if (value_size(e, value) == 2)
@@ -248,7 +268,7 @@ static bool outline_property(Elaboration *e, const Environment *env, const Synta
 
 /* What the shape is, out of its properties. */
 static bool read_properties(Elaboration *e, const Environment *env, const Syntax *declaration,
-                            Shape *shape)
+                            bool first, Shape *shape)
 {
     const Syntax *bound = find_property(declaration, "bound");
     shape->distance     = field_property(e, env, find_property(declaration, "distance"));
@@ -259,7 +279,7 @@ static bool read_properties(Elaboration *e, const Environment *env, const Syntax
     bool good = within_property(e, env, declaration, &shape->box) &&
                 plane_property(e, env, declaration, shape) &&
                 ball_property(e, env, declaration, shape) &&
-                uv_property(e, env, declaration, shape) && shape->distance != NODE_NONE &&
+                uv_property(e, env, declaration, first, shape) && shape->distance != NODE_NONE &&
                 (!bound || shape->bound != NODE_NONE);
     if (good)
         warn_if_empty(e, shape);
@@ -347,9 +367,11 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
     Shape *shape       = shape_new(e->builder, SHAPE_PRIMITIVE, function->name, span, NULL, 0);
     Span   caller      = e->graph->here;
     shape->declaration = declaration_new(e, function, env);
-    if (!read_properties(e, env, declaration, shape) ||
+    if (!read_properties(e, env, declaration, first, shape) ||
         !settle_slope(e, env, declaration, first, shape))
         return value_error();
+    if (!e->uses_uv)
+        shape->uv = NODE_NONE; /* of the first as of the others: they are alike */
     arena_free(e->scratch);
     if (first && shape->declaration->core && !try_core(e, shape))
         return value_error();

@@ -114,6 +114,7 @@ struct Elaboration {
     uint32_t            depth, calls; /* how deep expressions and calls are nested now */
     Node                rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
     bool                in_material;  /* level, instance, u, v and normal have a meaning */
+    bool                uses_uv;      /* a material may need the coordinates on surfaces */
 };
 
 /* What a shape knows of the declaration that made it. */
@@ -301,6 +302,8 @@ Value call_with(Elaboration *e, const Function *function, Value first, const Syn
 Value call_library(Elaboration *e, const char *name, Value first, const Syntax *call);
 
 /* ---- declare.c: shapes declared in the language ---- */
+/* Whether a material of these files may need the coordinates on surfaces. */
+bool files_mention_uv(const Files *files);
 /* The shape of a declaration whose parameters `env` binds; `span` is the call. */
 Value declare_instance(Elaboration *e, const Function *function, const Environment *env, Span span);
 /* Whether a declaration or property has not been put to the test yet; it counts as tested from

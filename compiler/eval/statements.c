@@ -475,6 +475,7 @@ static void run_params(Elaboration *e, Scope *scope)
 void elaborate(Elaboration *e)
 {
     e->rounding = NODE_NONE;
+    e->uses_uv  = files_mention_uv(e->files);
     scopes_make(e);
     Scope *scope = e->scopes.items[0];
     for (size_t i = 0; i < e->scopes.count; i++)

@@ -6,6 +6,7 @@
  * here, so the rules of facts are used for their values alone.
  */
 #include <assert.h>
+#include <math.h>
 #include <string.h>
 
 #include "compiler/graph/facts.h"
@@ -189,6 +190,9 @@ static Range range_of_varying(const Graph *graph, Node node, uint32_t component,
 Range graph_frame_range(const Graph *graph, Node node, uint32_t component, Arena *scratch)
 {
     assert(graph->items[node].time != TIME_POINT);
+    double number; /* most are known, and need no place in the table */
+    if (graph_known_component(graph, node, component, &number) && isfinite(number))
+        return range_of(number);
     keep_ranges(graph, node, scratch);
     const Range *kept = graph->frame_ranges->items[node];
     return kept != &varies ? kept[component] : range_of_varying(graph, node, component, scratch);

@@ -16,6 +16,7 @@ typedef struct OpInfo {
     const char *name, *glsl;
     const char *signature; /* NULL for leaves and componentwise rows */
     uint8_t     arity;     /* of componentwise rows */
+    uint8_t     operands;  /* of rows with a signature */
     GraphType   type;      /* of leaves; ANY_TYPE: each has its own */
 } OpInfo;
 
@@ -28,7 +29,10 @@ static const OpInfo op_info[OP_COUNT] = {
 #define MAP(name_, arity_, called, glsl_, value, range, da, db, dc, norm, meaning) \
     [OP_##name_] = {.name = #name_, .glsl = glsl_, .arity = arity_},
 #define OP(name_, signature_, glsl_, evaluate, facts, meaning) \
-    [OP_##name_] = {.name = #name_, .glsl = glsl_, .signature = signature_},
+    [OP_##name_] = {.name      = #name_,                       \
+                    .glsl      = glsl_,                        \
+                    .signature = signature_,                   \
+                    .operands  = sizeof signature_ - sizeof ">t"},
 #include "compiler/graph/ops.def"
 };
 
@@ -147,8 +151,7 @@ static uint32_t op_arity(Op op)
 {
     if (op == OP_COMPONENT)
         return 1;
-    const char *signature = op_info[op].signature;
-    return signature ? (uint32_t)(strchr(signature, '>') - signature) : op_info[op].arity;
+    return op_info[op].signature ? op_info[op].operands : op_info[op].arity;
 }
 
 /* ---- leaves ---- */
@@ -260,15 +263,16 @@ bool graph_known_finite(const Graph *graph, Node node)
 /* The constant that e is when all its operands are; NODE_NONE when it is not a finite one. */
 static Node fold_constant(Graph *graph, const Expr *e)
 {
+    for (int i = 0; i < e->operand_count; i++)
+        if (graph->items[e->operands[i]].op != OP_CONSTANT)
+            return NODE_NONE;
     if (op_promises(e->op, READS_TABLES))
         return NODE_NONE;
     GraphType types[MAX_OPERANDS]    = {0};
     NodeValue operands[MAX_OPERANDS] = {0};
     for (int i = 0; i < e->operand_count; i++) {
         const Expr *operand = &graph->items[e->operands[i]];
-        if (operand->op != OP_CONSTANT)
-            return NODE_NONE;
-        types[i] = operand->type;
+        types[i]            = operand->type;
         memcpy(operands[i].v, operand->number, sizeof operands[i].v);
     }
     NodeValue value = op_evaluate(e->op, e->type, e->index, types, operands);

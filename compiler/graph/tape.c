@@ -49,6 +49,24 @@ static int compare_nodes(const void *a, const void *b)
     return (*(const Node *)a > *(const Node *)b) - (*(const Node *)a < *(const Node *)b);
 }
 
+/* Most lists are short: they are sorted as cards are. */
+enum { MOST_CARDS = 32 };
+
+static void sort_nodes(Node *nodes, size_t count)
+{
+    if (count > MOST_CARDS) {
+        qsort(nodes, count, sizeof *nodes, compare_nodes);
+        return;
+    }
+    for (size_t i = 1; i < count; i++) {
+        const Node node = nodes[i];
+        size_t     at   = i;
+        for (; at > 0 && nodes[at - 1] > node; at--)
+            nodes[at] = nodes[at - 1];
+        nodes[at] = node;
+    }
+}
+
 /* The frame's numbers in the column that OP_row reads. */
 static void add_column(NodeSet *set, const Graph *graph, const Expr *row, Arena *arena)
 {
@@ -72,8 +90,7 @@ static NodeSet find_needed(const Graph *graph, const Node *roots, size_t root_co
         if (e->op == OP_row && graph->crowds)
             add_column(&set, graph, e, arena);
     }
-    if (set.count)
-        qsort(set.nodes, set.count, sizeof *set.nodes, compare_nodes);
+    sort_nodes(set.nodes, set.count);
     return set;
 }
 
@@ -127,7 +144,7 @@ static Tape *find_functions(const Graph *graph, NodeSet *set, Arena *arena)
     for (size_t id = count; id-- > 0;)
         if (functions[id].graph)
             fill_function(functions, (uint32_t)id, graph, set, arena);
-    qsort(set->nodes, set->count, sizeof *set->nodes, compare_nodes);
+    sort_nodes(set->nodes, set->count);
     return functions;
 }
 

@@ -107,33 +107,23 @@ void krs_prepare()
 {
     // tests/golden/sequence.krs:6
     vec3 v0 = vec3(krs_cos(krs_parameter[1].x), krs_sin(krs_parameter[1].x), 0.2);
-    // library:solids.krs
     krs_frame0 = krs_normalize(v0);
-    // tests/golden/sequence.krs:6
     krs_frame1 = 0.3 / length(v0);
     float t1 = krs_parameter[1].x * 2.0;
     vec3 v2 = vec3(krs_cos(t1), krs_sin(t1), 0.2);
-    // library:solids.krs
     krs_frame2 = krs_normalize(v2);
-    // tests/golden/sequence.krs:6
     krs_frame3 = 0.3 / length(v2);
     float t3 = krs_parameter[1].x * 3.0;
     vec3 v4 = vec3(krs_cos(t3), krs_sin(t3), 0.2);
-    // library:solids.krs
     krs_frame4 = krs_normalize(v4);
-    // tests/golden/sequence.krs:6
     krs_frame5 = 0.3 / length(v4);
     float t5 = krs_parameter[1].x * 4.0;
     vec3 v6 = vec3(krs_cos(t5), krs_sin(t5), 0.2);
-    // library:solids.krs
     krs_frame6 = krs_normalize(v6);
-    // tests/golden/sequence.krs:6
     krs_frame7 = 0.3 / length(v6);
     float t7 = krs_parameter[1].x * 5.0;
     vec3 v8 = vec3(krs_cos(t7), krs_sin(t7), 0.2);
-    // library:solids.krs
     krs_frame8 = krs_normalize(v8);
-    // tests/golden/sequence.krs:6
     krs_frame9 = 0.3 / length(v8);
 }
 

@@ -16,6 +16,7 @@
 
 #include "compiler/compile.h"
 #include "tests/support/random.h"
+#include "tests/support/same_scene.h"
 #include "tests/support/scarce.h"
 
 typedef struct Heard {
@@ -100,60 +101,6 @@ static const char *edited(const char *text, const char *from, const char *to)
     assert_non_null(at);
     snprintf(result, sizeof result, "%.*s%s%s", (int)(at - text), text, to, at + strlen(from));
     return result;
-}
-
-/* The text of the functions that kernels call, without comments. */
-static void print_kernels(const KrsScene *scene, bool card, char *to, size_t capacity)
-{
-    const KrsVariant  variant  = {.values = true, .many_threads = card};
-    const KrsFunction wanted[] = {card ? KRS_FUNCTION_DISTANCE_LOD : KRS_FUNCTION_DISTANCE,
-                                  KRS_FUNCTION_SURFACE, KRS_FUNCTION_SCENE_PART_BOX};
-    char  *text   = krs_scene_text(scene, &variant, wanted, 3, NULL);
-    size_t length = 0;
-    assert_non_null(text);
-    for (const char *from = text; *from && length + 1 < capacity;) {
-        if (from[0] == '/' && from[1] == '/')
-            from += strcspn(from, "\n");
-        else
-            to[length++] = *from++;
-    }
-    to[length] = '\0';
-    free(text);
-}
-
-static bool same_kernels(const KrsScene *a, const KrsScene *b)
-{
-    static char x[1 << 16], y[1 << 16];
-    bool        same = true;
-    for (int card = 0; card < 2; card++) {
-        print_kernels(a, card, x, sizeof x);
-        print_kernels(b, card, y, sizeof y);
-        same = same && strcmp(x, y) == 0;
-    }
-    return same;
-}
-
-/* Distances at many points, and the first camera, are equal to the last bit. */
-static void assert_same_scene(const KrsScene *a, const KrsScene *b)
-{
-    KrsFrame *first, *second;
-    KrsCamera x, y;
-    Random    random = {7};
-    assert_int_equal(krs_frame_new(a, &first), KRS_OK);
-    assert_int_equal(krs_frame_new(b, &second), KRS_OK);
-    for (int i = 0; i < 200; i++) {
-        double point[1][3], near[1], same[1];
-        random_vector(&random, 4, point[0]);
-        assert_int_equal(krs_distance(first, (const double(*)[3])point, 1, near), KRS_OK);
-        assert_int_equal(krs_distance(second, (const double(*)[3])point, 1, same), KRS_OK);
-        assert_true(near[0] == same[0]);
-    }
-    assert_int_equal(krs_frame_camera(first, 0, &x), KRS_OK);
-    assert_int_equal(krs_frame_camera(second, 0, &y), KRS_OK);
-    assert_memory_equal(x.eye, y.eye, sizeof x.eye);
-    assert_int_equal(krs_value_slots(a), krs_value_slots(b));
-    krs_frame_free(first);
-    krs_frame_free(second);
 }
 
 static void assert_changes(const Edit *edit, const KrsChanges *changes)

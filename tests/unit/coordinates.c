@@ -1,0 +1,88 @@
+/*
+ * coordinates.c: shapes compute `u` and `v` only if some material may ask for them.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "tests/support/same_scene.h"
+
+static KrsScene *compile(const char *text)
+{
+    KrsScene *scene;
+    assert_int_equal(krs_compile_text(text, strlen(text), "coordinates.krs", NULL, &scene), KRS_OK);
+    return scene;
+}
+
+static KrsScene *compile_after(const char *material, const char *rest)
+{
+    char text[1000];
+    snprintf(text, sizeof text, "%s %s", material, rest);
+    return compile(text);
+}
+
+#define CROWD(part)                                                            \
+    "show union([" part ".move([i % 10, 0, floor(i / 10)]) for i in 0..100]);" \
+    "camera { eye: [4, 3, 15] }"
+
+/* Whether they do, nothing else is another: the same crowd, from the first part on. */
+static void coordinates_that_none_asks_for_change_nothing(void **state)
+{
+    (void)state;
+    const char *balls   = CROWD("sphere(0.1 + 0.001 * i)");
+    KrsScene   *without = compile_after("material unused { color: [0, 0, 0] }", balls);
+    KrsScene   *with    = compile_after("material unused { color: [u, v, 0] }", balls);
+    assert_true(krs_table_rows(with) > 0);
+    assert_same_scene(with, without);
+    krs_scene_free(with);
+    krs_scene_free(without);
+}
+
+/* Where they have numbers of their own, tables have fewer columns without them. */
+static void coordinates_that_none_asks_for_need_no_columns(void **state)
+{
+    (void)state;
+    const char *rods    = CROWD("capsule([0, 0, 0], [0, 1, 0.01 * i], 0.2)");
+    KrsScene   *without = compile_after("material unused { color: [0, 0, 0] }", rods);
+    KrsScene   *with    = compile_after("material unused { color: [u, v, 0] }", rods);
+    assert_true(krs_table_rows(without) > 0);
+    assert_true(krs_table_rows(without) < krs_table_rows(with));
+    assert_same_distances(with, without);
+    krs_scene_free(with);
+    krs_scene_free(without);
+}
+
+/* A material asks by a name, or as it is anisotropic without a tangent, also in a function. */
+static void coordinates_that_some_ask_for_are_there(void **state)
+{
+    (void)state;
+    static const char *const asks[][2] = {
+        {"material m { color: [0, 0, 0] }", "material m { color: [u, 0, 0] }"},
+        {"material m { color: [0, 0, 0] }", "def f(a) = a * v; material m { color: [f(1), 0, 0] }"},
+        {"material m { specular_roughness_anisotropy: 0.5, tangent: [1, 0, 0] }",
+         "material m { specular_roughness_anisotropy: 0.5 }"}};
+    for (size_t i = 0; i < sizeof asks / sizeof *asks; i++) {
+        KrsScene *scenes[2];
+        for (int k = 0; k < 2; k++)
+            scenes[k] = compile_after(asks[i][k],
+                                      "show sphere(1).paint(m); camera { eye: [4, 3, 15] }");
+        assert_false(same_kernels(scenes[0], scenes[1]));
+        krs_scene_free(scenes[0]);
+        krs_scene_free(scenes[1]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(coordinates_that_none_asks_for_change_nothing),
+        cmocka_unit_test(coordinates_that_none_asks_for_need_no_columns),
+        cmocka_unit_test(coordinates_that_some_ask_for_are_there),
+    };
+    return cmocka_run_group_tests_name("coordinates", tests, NULL, NULL);
+}
