@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "tests/support/device.h"
 #include "tests/unit/tracer_stage.h"
 
 /* The ball alone is in the scene; the floor, y = 0, is known by the depths alone. */
@@ -344,6 +345,53 @@ static void noise_and_groups_have_plates(void **state)
     krs_picture_free(together);
 }
 
+static void open_as(Stage *stage, unsigned pretence)
+{
+    const KrsRendererOptions options = {.device     = tested_device(),
+                                        .validation = true,
+                                        .complaint  = note_complaint,
+                                        .user       = stage,
+                                        .pretence   = pretence};
+    *stage                           = (Stage){0};
+    assert_int_equal(krs_renderer_new(&options, &stage->renderer), KRS_OK);
+    assert_int_equal(
+        krs_compile_text(ball_text, strlen(ball_text), "plates.krs", NULL, &stage->scene), KRS_OK);
+    assert_int_equal(krs_frame_new(stage->scene, &stage->frame), KRS_OK);
+    assert_int_equal(krs_rendering_new(stage->renderer, stage->scene, &stage->rendering), KRS_OK);
+}
+
+/* Graphics cards chain their passes; with the least limits there are several bands, without texels. */
+static void every_device_finds_the_same(void **state)
+{
+    static const unsigned pretences[] = {KRS_PRETEND_CARD, KRS_PRETEND_LEAST_LIMITS,
+                                         KRS_PRETEND_CARD | KRS_PRETEND_LEAST_LIMITS};
+    Stage                *plain       = *state;
+    KrsRenderOptions      options     = on_floor(0);
+    make_floor(0);
+    options.no_occlusion = false;
+    options.samples      = 2;
+    set(plain, "day", 1);
+    set(plain, "at_lamp", 1);
+    set(plain, "at_sun", 0);
+    for (int i = 0; i < 2; i++) {
+        options.integrator   = i ? KRS_INTEGRATOR_PATH : KRS_INTEGRATOR_PREVIEW;
+        KrsPicture *expected = stage_render(plain, options);
+        for (size_t k = 0; k < sizeof pretences / sizeof *pretences; k++) {
+            Stage stage;
+            open_as(&stage, pretences[k]);
+            set(&stage, "day", 1);
+            set(&stage, "at_lamp", 1);
+            set(&stage, "at_sun", 0);
+            KrsPicture *seen = stage_render(&stage, options);
+            assert_same_caught(expected, seen);
+            assert_int_equal(krs_renderer_complaints(stage.renderer), 0);
+            krs_picture_free(seen);
+            stage_close(&stage);
+        }
+        krs_picture_free(expected);
+    }
+}
+
 static int open_ball(void **state)
 {
     static Stage stage;
@@ -368,6 +416,7 @@ int main(void)
         cmocka_unit_test(lists_of_rays_have_plates),
         cmocka_unit_test(catchers_are_chosen),
         cmocka_unit_test(noise_and_groups_have_plates),
+        cmocka_unit_test(every_device_finds_the_same),
     };
     return cmocka_run_group_tests(tests, open_ball, close_ball);
 }
