@@ -108,16 +108,16 @@ layout(local_size_x = 64) in;
 void work_on_items(uint group, uint steps_allowed, inout uint steps)
 {
     uint number = group * 64u + gl_LocalInvocationIndex;
-    if (number >= control.items)
-        return;
-    exchange_item(number);
-    begin_item(number, SAVES != 0 && control.source == ITEMS_QUEUED);
-    for (; may_take_step(steps, steps_allowed); steps++)
-        take_distance(item_distance(item_position()));
-    if (item_needs_step())
-        save_item();
-    else
-        end_item();
+    if (number < control.items) {
+        exchange_item(number);
+        begin_item(number, SAVES != 0 && control.source == ITEMS_QUEUED);
+        for (; may_take_step(steps, steps_allowed); steps++)
+            take_distance(item_distance(item_position()));
+        if (item_needs_step())
+            save_item();
+        else
+            end_item();
+    }
 }
 #endif
 
