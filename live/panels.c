@@ -237,6 +237,8 @@ static void draw_controls(Viewing *viewing)
     if (gui_drag("frame", &viewing->budget, 1, 0.5, 5, 1000, "%.0f ms"))
         painter_set_budget(viewing->painter, viewing->budget);
     gui_tip("How long a picture may take while something moves. More: finer, and slower.");
+    if (gui_button("Keys and mouse: F1", false))
+        viewing->help = true;
     gui_panel_end();
 }
 
@@ -317,8 +319,11 @@ static void draw_found(Viewing *viewing)
     snprintf(line, sizeof line, "%s   %s   %s", component.name,
              viewing_shape(viewing, found.component), where ? where : "");
     gui_text(GUI_STRONG, line);
-    snprintf(line, sizeof line, "%.4g, %.4g, %.4g   distance %.4g   level %u   instance %u",
-             found.position[0], found.position[1], found.position[2], found.depth, found.level,
+    snprintf(line, sizeof line, "%.4g, %.4g, %.4g", found.position[0], found.position[1],
+             found.position[2]);
+    gui_text(GUI_FAINT, line);
+    /* In a line of its own: the panel is to fit below that of the controls, beside the picture. */
+    snprintf(line, sizeof line, "distance %.4g   level %u   instance %u", found.depth, found.level,
              found.instance);
     gui_text(GUI_FAINT, line);
     gui_panel_end();
