@@ -1,5 +1,5 @@
 #!/bin/sh
-# demo.sh BUILD: renders the examples to BUILD/demo/, EXR and PNG.
+# demo.sh BUILD: renders the examples to BUILD/demo/, EXR and PNG, and makes meshes of a gear and a bearing block.
 build=$1
 mkdir -p "$build/demo" || exit 1
 for scene in examples/*.krs; do
@@ -8,4 +8,13 @@ for scene in examples/*.krs; do
     "$build/krs" render "$scene" --quiet -o "$build/demo/$name.exr" -o "$build/demo/$name.png" ||
         exit 1
 done
-echo "the pictures are in $build/demo/"
+mesh() { # example, name, options
+    scene=examples/$1.krs name=$2
+    shift 2
+    echo "mesh $scene -> $build/demo/$name.stl, $build/demo/$name.glb"
+    "$build/krs" mesh "$scene" --quiet "$@" -o "$build/demo/$name.stl" -o "$build/demo/$name.glb" ||
+        exit 1
+}
+mesh 02-gear gear --component "component 1"
+mesh 03-machined-part bearing-block --within=-3,0.05,-3,3,3,3 --error 0.1
+echo "the pictures and meshes are in $build/demo/"
