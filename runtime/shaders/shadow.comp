@@ -61,6 +61,17 @@ float find_radius(ivec2 pixel)
     return lit > 0.0 && hidden > 0.0 ? radius * inversesqrt(float(control.rays)) : 0.0;
 }
 
+// The same for a pixel with a code.  Behind an edge of its own surface the blocker is near, and the
+// penumbra narrow.  Its neighbours in front of the edge see the light, and tell nothing of it.
+const float LEAST_OWN_RADIUS = 0.5;
+float find_own_radius(ivec2 pixel, uint own)
+{
+    float radius = find_radius(pixel);
+    bool  blocked = own >= NARROWEST && own <= WIDEST;
+    float widest = max(RADIUS_OF_PENUMBRA * width_of_code(own), LEAST_OWN_RADIUS);
+    return blocked ? min(radius, widest) : radius;
+}
+
 // Of a neighbour: whether it is visible, and whether that is known.
 vec2 find_seen(uint list, Neighbour there)
 {
@@ -126,7 +137,7 @@ void do_item(uint number)
     HitPoint hit = hit_point_of_slot(slot);
     ivec2 pixel = ivec2(pixel_of(slot));
     uint  word = find_shared(RAYS_SHARED, slot), own = word & 255u;
-    float radius = find_radius(pixel), visible = own == BELOW_HORIZON || own == LIT ? 1.0 : 0.0;
+    float radius = find_own_radius(pixel, own), visible = own == BELOW_HORIZON || own == LIT ? 1.0 : 0.0;
     Disc  disc = find_disc(find_light(control.light), hit);
     uint  list = wide ? MEANS_SHARED : RAYS_SHARED;
     float mean = find_mean(list, pixel, hit, disc, wide ? 2 : 1, radius);
