@@ -27,7 +27,7 @@ ORACLES     := self patterns bumps primitives krs_expand folds trees maps moebiu
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
                albedo furnace thin_film anisotropy tangents subsurface paths direct_glass enhanced emissive sky sky_means detail media cornell touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling \
                occlusion curves sweeps hulls lofts places underestimates bounds stencils light sides steep scales agree far sheets ray_lists specialize outlines drawings \
-               imports imports_csg imports_pov meshes mesh_forms
+               imports imports_csg imports_pov meshes mesh_forms mesh_examples
 FUZZ        := sentences
 # On SwiftShader, unless another device is tested: what shows that drivers agree.
 DRIVERS     := tests/oracle/drivers
@@ -93,11 +93,12 @@ CGAL        := $(wildcard /usr/include/CGAL/Surface_mesh.h)
 JUDGE       := $(if $(CGAL),$(B)/tests/oracle/mesh_judge)
 $(B)/tests/oracle/mesh_judge: $(B)/tests/oracle/mesh_judge.o
 	@$(CXX) $(CFLAGS) -o $@ $^ -lgmp -lmpfr
-# Meshes of 300 random scenes, and a Menger sponge of three levels, by all judges: half an hour.
-test-meshes: $(B)/krs $(B)/tests/oracle/meshes $(B)/tests/oracle/mesh_forms $(JUDGE)
+# Meshes of 300 random scenes, of all examples, and a Menger sponge of three levels, by all judges: an hour.
+test-meshes: $(B)/krs $(addprefix $(B)/tests/oracle/, meshes mesh_forms mesh_examples) $(JUDGE)
 	@mkdir -p $(B)/meshes && rm -f $(B)/meshes/*.off
 	@$(B)/tests/oracle/meshes 300 $(B)/meshes
 	@$(B)/tests/oracle/mesh_forms $(B)/meshes
+	@$(B)/tests/oracle/mesh_examples 60 examples/*.krs
 	@$(if $(JUDGE),$(JUDGE) $(B)/meshes/*.off,echo "no CGAL: nothing else looked at the meshes")
 # It runs the command.
 $(B)/tests/unit/table_files: | $(B)/krs

@@ -1,7 +1,7 @@
 #!/bin/sh
 # mesh.sh: `krs mesh`: files that other programs accept, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 25
+plan 27
 
 echo 'show sphere(0.5).paint(#ff8800);' >ball.krs
 echo 'let floor = half_space([0, 1, 0], 0); show floor; let ball = sphere(1); show ball;' >floor.krs
@@ -133,3 +133,11 @@ result $? "no more memory is taken than is permitted"
 timeout -s INT 0.5 "$krs" mesh --quiet ball.krs --error 1e-5 -o kept.stl >out 2>err
 grep -q 'interrupted' err && [ "$(cat kept.stl)" = old ] && no_temporaries
 result $? "Ctrl C ends it and leaves the file as it was"
+# A ball of radius 0.5 has the volume 0.5236; its mesh within 0.02 of it, at most 0.063 more or less.
+# shellcheck disable=SC2046 # many words
+(cd "$root" && "${CC:-cc}" -Wall -Wextra -Werror -I. -o "$work/own" examples/c/mesh.c "${B:-build}/libkrs.a" \
+    $(make --no-print-directory -s libs)) >out 2>&1
+result $? "the mesher of examples/c compiles"
+[ -x own ] && ./own ball.krs 0.02 >out 2>err && awk '/closed, within 0.02$/ && $4 + 0 > 0.4606 && $4 + 0 < 0.5866 { good = 1 }
+    END { exit !good }' out
+result $? "and its mesh is closed, with the volume of the ball"

@@ -1,8 +1,8 @@
 /*
  * mesh_forms.c: genus, parts and volume of meshes against closed forms and against counts of small cubes.
  *
- * mesh_forms [FOLDER SCENE...]: a Menger sponge of three levels as well, and what is bounded of these scenes within
- * the error; meshes are left in the folder, for tests/oracle/mesh_judge.
+ * mesh_forms [FOLDER]: a Menger sponge of three levels as well; meshes are left in the folder, for
+ * tests/oracle/mesh_judge.
  */
 #include "tests/oracle/mesh_distance.h"
 #include "tests/oracle/mesh_shape.h"
