@@ -8,9 +8,11 @@
 
 /* The rest of the error is for rounding: files may have single precision. */
 static const double PROVEN_ERROR = 0.999;
-/* Edges, in errors, of the largest tetrahedra that are tried by cells where nothing else is known: cells are as many as
-   squares of the error, and are looked at again with each tetrahedron that is smaller. */
+/* Edges, in errors, of the smallest tetrahedra that need not be tried by cells if pieces do not fit. */
 static const double LEAST_SHARP = 4;
+/* Edges, in errors, of the largest that are tried by cells where nothing else is known: cells are as many as squares of
+   the error, and are looked at again with each tetrahedron that is smaller. */
+static const double LEAST_KNOWN = 8;
 /* Edges, in errors, below which what curves too much for second derivatives is left to cells. */
 static const double LEAST_SMOOTH = 12;
 
@@ -77,7 +79,7 @@ TetState state_by_bounds(const Mesher *m, const Tet *tet)
 {
     if (tet->miss <= tet->slope * proven_error(m))
         return TET_FITS;
-    double by_cells = tet->miss < INFINITY ? LEAST_SMOOTH : LEAST_SHARP;
+    double by_cells = tet->miss < INFINITY ? LEAST_SMOOTH : LEAST_KNOWN;
     return tets_longest_edge(&m->tets, tet) > by_cells * m->error ? TET_REFUTED : TET_ROUGH;
 }
 
