@@ -255,8 +255,9 @@ static KrsStatus check_merged(Meshing *meshing)
     progress_end(&meshing->progress);
     return say_usage(meshing->options,
                      "a mesh of `%s` as one would have about %.3g triangles; .glb and .3mf have "
-                     "instances, --copies flat writes all, and a larger --error needs fewer",
-                     meshing->options->files.items[0], triangles);
+                     "instances, %sa larger --error needs fewer",
+                     meshing->options->files.items[0], triangles,
+                     triangles <= UINT32_MAX ? "--copies flat writes all, and " : "and ");
 }
 
 /* Without copies what is assembled is what would be merged; as well where nothing has been assembled. */
