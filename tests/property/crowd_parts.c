@@ -130,7 +130,7 @@ Seen lower(const Shape *shape, LoweredCrowds *crowds)
 {
     Graph *g = builder.graph;
     Seen   seen;
-    assert_true(lower_component(g, shape, 1, crowds, &scratch, seen.roots));
+    assert_true(lower_component(g, shape, 1, crowds, &scratch, seen.roots, NULL));
     seen.tape = tape_new(g, seen.roots, ROOT_COUNT, &arena);
     return seen;
 }

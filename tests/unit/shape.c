@@ -69,7 +69,7 @@ static Distance lower(const Shape *shape)
 {
     Graph *graph = builder.graph;
     Node   roots[ROOT_COUNT];
-    assert_true(lower_component(graph, shape, 1, NULL, &scratch, roots));
+    assert_true(lower_component(graph, shape, 1, NULL, &scratch, roots, NULL));
     Distance   lowered = {.tape     = tape_new(graph, roots, 1, &scratch),
                           .distance = roots[ROOT_DISTANCE],
                           .values   = arena_new_array(&scratch, NodeValue, graph->count)};
