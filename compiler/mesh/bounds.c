@@ -12,7 +12,7 @@ static const double PROVEN_ERROR = 0.999;
 static const double LEAST_SHARP = 4;
 /* Edges, in errors, of the largest that are tried by cells where nothing else is known: cells are as many as squares of
    the error, and are looked at again with each tetrahedron that is smaller. */
-static const double LEAST_KNOWN = 8;
+static const double LEAST_KNOWN = 6;
 /* Edges, in errors, below which what curves too much for second derivatives is left to cells. */
 static const double LEAST_SMOOTH = 12;
 
