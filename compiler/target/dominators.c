@@ -6,7 +6,7 @@
  */
 #include "compiler/target/dominators.h"
 
-enum { NO_BLOCK = UINT32_MAX };
+static const uint32_t NO_BLOCK = UINT32_MAX;
 
 typedef struct Flow {
     const ShaderModule *module;
