@@ -189,12 +189,13 @@ bool needs_check(Elaboration *e, const Syntax *syntax)
     return true;
 }
 
-/* Materials use these coordinates by the names `u` and `v`, or are anisotropic along them. */
+/* Materials use these coordinates by the names `u` and `v`, or are anisotropic along them.  What a scene declares as `uv` is
+   put to the test. */
 static bool mentions_uv(const Syntax *syntax)
 {
     const char *name  = syntax->name;
     bool        found = name && (strcmp(name, "u") == 0 || strcmp(name, "v") == 0 ||
-                          strstr(name, "anisotrop") != NULL);
+                          strcmp(name, "uv") == 0 || strstr(name, "anisotrop") != NULL);
     for (uint32_t i = 0; i < syntax->count && !found; i++)
         found = mentions_uv(syntax->children[i]);
     return found;

@@ -108,7 +108,7 @@ passed "1,000 parameters"
 { repeated 200 "material m# { color: [0.#, 0.5, 0.5] }"
     repeated 200 "show sphere(0.4).move([#, 0, 0]).paint(m#);"; } >scene.krs
 passed "200 materials"
-{ echo "show sphere(1);"; repeated 64 "light l# { position: [#, 5, 5], intensity: 1 }"; } >scene.krs
+{ echo "show sphere(1);"; repeated 64 "light l# { position: [#, 5, 5], intensity: 500 }"; } >scene.krs
 passed "64 lights"
 name=$(head -c 10000 /dev/zero | tr '\0' n)
 echo "let $name = sphere(1); show $name;" >scene.krs

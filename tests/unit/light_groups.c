@@ -116,7 +116,7 @@ static void lights_are_what_they_make_alone(void **state)
         double        pixel, mean; /* permitted differences */
     } trials[]   = {{KRS_INTEGRATOR_PREVIEW, 1, 1e-4, 1e-5},
                     {KRS_INTEGRATOR_PREVIEW, 3, 1e-4, 1e-5},
-                    {KRS_INTEGRATOR_DIRECT, 64, INFINITY, 0.06},
+                    {KRS_INTEGRATOR_DIRECT, 64, INFINITY, 0.1},
                     {KRS_INTEGRATOR_PATH, 64, INFINITY, 0.1}};
     size_t wrong = 0;
     for (size_t i = 0; i < sizeof trials / sizeof *trials; i++) {
