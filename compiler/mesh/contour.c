@@ -7,6 +7,7 @@
 #include "compiler/mesh/batches.h"
 #include "compiler/mesh/quadric.h"
 #include "compiler/mesh/roots.h"
+#include "compiler/mesh/settle.h"
 #include "compiler/mesh/weights.h"
 
 /* Part of an edge at its ends where no vertex is, so that vertices of other edges are elsewhere. */
@@ -150,7 +151,7 @@ static void find_line(const Contour *contour, const MeshField *field, double mis
 {
     const Crossing *a = &contour->crossings.items[line->crossings[0]];
     const Crossing *b = &contour->crossings.items[line->crossings[1]];
-    double          corners[3][3], edges[2][3], middle[3], rows[3][3], weights[3], inner[3];
+    double          corners[3][3], edges[2][3], middle[3], rows[3][3];
     for (int i = 0; i < 3; i++) {
         tets_position(contour->tets, line->points[i], corners[i]);
         middle[i] = 0.5 * (a->at[i] + b->at[i]);
@@ -161,14 +162,15 @@ static void find_line(const Contour *contour, const MeshField *field, double mis
     normalize3(rows[2]);
     memcpy(rows[0], a->normal, sizeof rows[0]);
     memcpy(rows[1], b->normal, sizeof rows[1]);
-    double right[3] = {dot3(rows[0], a->at), dot3(rows[1], b->at), dot3(rows[2], corners[0])};
-    if (!solve3((const double(*)[3])rows, right, line->at))
-        return;
-    face_weights((const double(*)[3])corners, rows[2], line->at, weights);
-    face_weights((const double(*)[3])corners, rows[2], middle, inner);
-    keep_inside(weights, inner, 3, line->at, middle);
-    line->value = field_distance(field, line->at);
-    line->bent  = fabs(line->value) < 0.5 * missed;
+    double   right[3] = {dot3(rows[0], a->at), dot3(rows[1], b->at), dot3(rows[2], corners[0])};
+    Settling settling = {(const double(*)[3])corners, 3, rows[2], middle, missed, contour->error};
+    bool     meet     = solve3((const double(*)[3])rows, right, line->at);
+    line->bent        = settle_nearby(field, &settling, meet, line->at, &line->value);
+    line->off         = fabs(missed);
+    if (line->bent) {
+        const double *ends[2] = {a->at, b->at};
+        line->off             = most_off(field, line->at, ends, 2);
+    }
 }
 
 static void box_of_line(const void *user, size_t number, double low[3], double high[3])
@@ -192,7 +194,7 @@ static void find_lines(const void *user, const MeshField *field, const uint32_t 
     field_distances(field, (const double(*)[3])middles, count, distances);
     for (size_t i = 0; i < count; i++)
         if (fabs(distances[i]) > STRAIGHT * contour->error)
-            find_line(contour, field, fabs(distances[i]), &contour->lines.items[numbers[i]]);
+            find_line(contour, field, distances[i], &contour->lines.items[numbers[i]]);
 }
 
 /* ---- vertices inside ---- */
@@ -205,11 +207,25 @@ static void find_middle(const Contour *contour, const Patch *patch, double middl
                     contour->crossings.items[patch->crossings[i]].at);
 }
 
+/* In the middles of the lines from the vertex inside to those around it. */
+static double off_of_fan(const Contour *contour, const MeshField *field, const Patch *patch)
+{
+    const double *around[8];
+    size_t        count = 0;
+    for (uint32_t i = 0; i < patch->corner_count; i++) {
+        const FaceLine *line = &contour->lines.items[patch->lines[i]];
+        around[count++]      = contour->crossings.items[patch->crossings[i]].at;
+        if (line->bent)
+            around[count++] = line->at;
+    }
+    return fmax(fabs(patch->value), most_off(field, patch->apex, around, count));
+}
+
 /* `missed` is the distance at the middle of the crossings. */
 static void find_apex(const Contour *contour, const MeshField *field, const double middle[3],
                       double missed, Patch *patch)
 {
-    double corners[4][3], points[4][3], normals[4][3], weights[4], inner[4];
+    double corners[4][3], points[4][3], normals[4][3];
     for (uint32_t i = 0; i < patch->corner_count; i++) {
         const Crossing *crossing = &contour->crossings.items[patch->crossings[i]];
         memcpy(points[i], crossing->at, sizeof points[i]);
@@ -218,16 +234,14 @@ static void find_apex(const Contour *contour, const MeshField *field, const doub
     tets_corners(contour->tets, &contour->tets->list.items[patch->tet], corners);
     quadric_point((const double(*)[3])points, (const double(*)[3])normals, patch->corner_count,
                   patch->apex);
-    tet_weights((const double(*)[3])corners, patch->apex, weights);
-    tet_weights((const double(*)[3])corners, middle, inner);
-    keep_inside(weights, inner, 4, patch->apex, middle);
-    patch->value = field_distance(field, patch->apex);
-    if (fabs(patch->value) < 0.5 * fabs(missed)) {
+    Settling settling = {(const double(*)[3])corners, 4, NULL, middle, missed, contour->error};
+    if (settle_nearby(field, &settling, true, patch->apex, &patch->value)) {
         patch->fan = true;
-        return;
+    } else {
+        memcpy(patch->apex, middle, 3 * sizeof *middle);
+        patch->value = missed;
     }
-    memcpy(patch->apex, middle, 3 * sizeof *middle);
-    patch->value = missed;
+    patch->off = patch->fan ? off_of_fan(contour, field, patch) : fabs(missed);
 }
 
 static void box_of_patch(const void *user, size_t number, double low[3], double high[3])
@@ -450,6 +464,15 @@ static void add_triangles(Contour *contour, const Patch *patch)
     add_triangle(contour, tet, loop[turn], loop[turn + 1], loop[turn + 2]);
     if (count == 4)
         add_triangle(contour, tet, loop[turn], loop[turn + 2], loop[(turn + 3) % 4]);
+}
+
+bool patch_is_astray(const Contour *contour, const Patch *patch)
+{
+    static const double ASTRAY = 0.15; /* parts of the error */
+    double              most   = patch->off;
+    for (uint32_t i = 0; i < patch->corner_count; i++)
+        most = fmax(most, contour->lines.items[patch->lines[i]].off);
+    return most > ASTRAY * contour->error;
 }
 
 void contour_find(Contour *contour)

@@ -26,6 +26,8 @@ typedef struct FaceLine {
     uint32_t points[3], crossings[2];
     bool     bent; /* there is a vertex in the face */
     double   at[3], value;
+    double
+        off; /* the most that middles of its parts are off the surface, as far as that is of interest */
 } FaceLine;
 
 /* A tetrahedron with inside and outside corners. */
@@ -35,6 +37,7 @@ typedef struct Patch {
         lines[4]; /* in order around it, outside to the front; lines[i] follows */
     bool   known, fan;
     double apex[3], value;
+    double off; /* as of lines */
 } Patch;
 
 typedef struct Patches {
@@ -78,6 +81,10 @@ void contour_find(Contour *contour);
 
 /* All triangles of a patch that is no fan have this crossing of it. */
 uint32_t patch_turn(const Contour *contour, const Patch *patch);
+
+/* Whether middles of its lines are far off the surface for the error: it goes through the tetrahedron or a face more often than
+   its corners tell. */
+bool patch_is_astray(const Contour *contour, const Patch *patch);
 
 static inline bool point_is_inside(const Tets *tets, uint32_t point)
 {

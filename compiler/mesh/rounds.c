@@ -193,6 +193,17 @@ static bool all_fit_around(const Mesher *m, const Tet *tet)
     return in_pieces ? steep * way <= least && way <= proven_error(m) : miss <= least;
 }
 
+/* Edges, in errors, of the smallest tetrahedra that are bisected since their mesh is not on the surface, where it is within the
+   error of it. */
+static const double LEAST_FAIR = 1;
+
+static bool is_fair(const Mesher *m, const Tet *tet)
+{
+    return tet->triangle_count == 0 ||
+           !patch_is_astray(&m->contour, &m->contour.patches.items[tet->patch]) ||
+           tets_longest_edge(&m->tets, tet) <= LEAST_FAIR * m->error;
+}
+
 /* What needs no cells. */
 static size_t judge_smooth(Mesher *m)
 {
@@ -200,7 +211,9 @@ static size_t judge_smooth(Mesher *m)
     look_around(m);
     for (size_t i = 0; i < m->tets.list.count; i++) {
         Tet *tet = &m->tets.list.items[i];
-        if (tet->state == TET_FITS && all_fit_around(m, tet))
+        if ((tet->state == TET_FITS || tet->state == TET_ROUGH) && !is_fair(m, tet))
+            tet->state = TET_REFUTED;
+        else if (tet->state == TET_FITS && all_fit_around(m, tet))
             tet->state = TET_PROVEN;
         refuted += tet->state == TET_REFUTED && tets_can_bisect(&m->tets, i);
     }

@@ -182,7 +182,7 @@ static double value_of_ring(const void *user, Vec p)
 
 static double value_of_both(const void *user, Vec p)
 {
-    return fmin(value_of_ring(user, p), vec_distance(p, vec(0, 0.1, 0)) - 0.1);
+    return fmin(value_of_ring(user, p), vec_distance(p, vec(0, 0.1, 0)) - 0.2);
 }
 
 /* Each vertex away from the middle of the ring's tube. */
