@@ -103,12 +103,14 @@ static void open_trial(Trial *t, const Subject *subject, const double focus[3], 
     for (int k = 0; k < 3; k++)
         origin[k] = uniform(-2.1, -2);
     tets_new(&t->tets, origin, 4.2, &t->arena);
-    t->contour = (Contour){.arena            = &t->arena,
-                           .tets             = &t->tets,
-                           .fields           = t->fields,
-                           .error            = t->error,
-                           .crossing_numbers = {.arena = &t->arena},
-                           .line_numbers     = {.arena = &t->arena}};
+    /* What a contour of a larger error leaves straight is farther from the surface: bounds come nearer to the truth. */
+    const double blunt = random_below(&chance, 2) ? 20 : 1;
+    t->contour         = (Contour){.arena            = &t->arena,
+                                   .tets             = &t->tets,
+                                   .fields           = t->fields,
+                                   .error            = t->error * blunt,
+                                   .crossing_numbers = {.arena = &t->arena},
+                                   .line_numbers     = {.arena = &t->arena}};
     memcpy(t->focus, focus, sizeof t->focus);
     bisect_around(&t->tets, t->focus, length);
     if (poked)
@@ -432,7 +434,7 @@ static void bounds_of_pieces_hold(void **context)
     try_kind(&kind, &bounds);
     say("pieces", &bounds.pieces);
     assert_true(bounds.pieces.cells > 1000 && bounds.pieces.empty > 10);
-    assert_true(bounds.pieces.way > 0.7 && bounds.pieces.steep > 0.95);
+    assert_true(bounds.pieces.way > 0.95 && bounds.pieces.steep > 0.95);
 }
 
 int main(void)
