@@ -419,9 +419,8 @@ static void report(const Meshing *meshing, const Bodies *bodies)
     if (all.estimate)
         say("warning: the distance is an estimate, so the error is one as well");
     if (all.unresolved > 0)
-        say("warning: %zu cells may hold what is thinner than the error, or solids that touch; the "
-            "first "
-            "is at [%g, %g, %g] of the %s; a smaller --error tells",
+        say("warning: %zu cells may hold what is thinner than the error, or solids that touch; "
+            "the first is at [%g, %g, %g] of the %s; a smaller --error tells",
             all.unresolved, at[0], at[1], at[2], all.copies > 1 ? "kernel" : "scene");
     if (bodies == &meshing->assembled && all.copies > (double)bodies->count)
         say("%.0f copies with %.0f triangles, within %.4g of the surface", all.copies,

@@ -26,8 +26,7 @@ typedef struct FaceLine {
     uint32_t points[3], crossings[2];
     bool     bent; /* there is a vertex in the face */
     double   at[3], value;
-    double
-        off; /* the most that middles of its parts are off the surface, as far as that is of interest */
+    double   off; /* of the middles of its parts from the surface, at most; 0: little */
 } FaceLine;
 
 /* A tetrahedron with inside and outside corners. */

@@ -106,7 +106,8 @@ static bool leaves_the_rest(const KrsPicture *groups, const KrsPicture *dark, do
     return right > 1 && rest >= right * (1 - part);
 }
 
-/* Rays of previews are the same however many lights there are; those of paths choose others. */
+/* Rays of previews are the same however many lights there are; those of paths choose others, and so do those of `direct`,
+   which go through glass or are mirrored by it by chance. */
 static void lights_are_what_they_make_alone(void **state)
 {
     (void)state;
