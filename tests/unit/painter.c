@@ -23,6 +23,15 @@ enum { WIDTH = 64, HEIGHT = 48, BYTES = 4 * WIDTH * HEIGHT, PATIENCE = 60 };
 static const char one_ball[]  = "param r = 1 in [0.5, 2]; show sphere(r);";
 static const char two_boxes[] = "param r = 1 in [0.5, 2]; show union([box([r, 2, 1]), box([3, 0.5, "
                                 "r])], blend: 0.2).rotate([0, 1, 0], 20deg);";
+/* Its shaders take long. */
+static const char many_solids[] =
+    "param r = 1 in [0.5, 2];\n"
+    "show union([box([r, 2, 1]), torus(r, 0.2), cone(0.5, r).move([1, 0, 0]), cylinder(0.3, "
+    "r).move([-1, 0, 0]),\n"
+    "            capsule([0, 0, 0], [r, 1, 0], 0.2), ellipsoid([r, 0.4, 0.3]).twist([0, 1, 0], "
+    "0.5)], blend: 0.2)\n"
+    "    .rotate([0, 1, 0], 20deg);\n"
+    "show (sphere(r) & box([r, 1, 1]).bend([0, 0, 1], 0.2)).move([0, 2, 0]);\n";
 
 typedef struct Stage {
     char      path[32];
@@ -94,8 +103,8 @@ static void tear_down(Stage *stage)
     remove(stage->path);
 }
 
-/* The next picture with all pixels, of this version, of this view or a later one. */
-static Shot take_whole(Stage *stage, unsigned version, unsigned view)
+/* The next picture with all pixels, of one of these versions, of this view or a later one. */
+static Shot take_one_of(Stage *stage, unsigned first, unsigned last, unsigned view)
 {
     for (const double begun = now(); now() - begun < PATIENCE; usleep(2000)) {
         Shot shot;
@@ -103,12 +112,17 @@ static Shot take_whole(Stage *stage, unsigned version, unsigned view)
             fail_msg("%s", painter_state(stage->painter).message);
         if (!painter_take(stage->painter, &shot))
             continue;
-        if (shot.whole && shot.version == version && shot.view >= view)
+        if (shot.whole && shot.version >= first && shot.version <= last && shot.view >= view)
             return shot;
         free(shot.pixels);
     }
     fail_msg("there is no picture");
     return (Shot){0};
+}
+
+static Shot take_whole(Stage *stage, unsigned version, unsigned view)
+{
+    return take_one_of(stage, version, version, view);
 }
 
 /* What krs_render makes of a text, from the view's camera. */
@@ -150,27 +164,33 @@ static uint64_t assert_shows(Stage *stage, unsigned version, unsigned view, cons
     return shown.stats.kernels;
 }
 
+/* How many views are shown before shaders are ready is for the machine to say, but the first is. */
 static void what_there_was_is_turned_meanwhile(void **state)
 {
+    enum { VIEWS = 3 };
     (void)state;
     Stage    stage;
-    uint8_t *turned[3];
+    uint8_t *turned[VIEWS];
+    int      shown = 0;
     set_up(&stage, one_ball);
     assert_shows(&stage, 1, 1, one_ball, 1);
-    for (int i = 0; i < 3; i++) { /* before the processor is busy */
+    for (int i = 0; i < VIEWS; i++) { /* before the processor is busy */
         stage.view.camera.eye[0] = i;
         turned[i]                = render(&stage, one_ball, 1);
     }
-    edit(&stage, two_boxes);
-    for (int i = 0; i < 3; i++) {
-        const unsigned view  = show(&stage, i);
-        const Shot     shown = take_whole(&stage, 1, view);
-        assert_true(painter_state(stage.painter).compiling);
-        assert_memory_equal(shown.pixels, turned[i], BYTES);
-        free(shown.pixels);
-        free(turned[i]);
+    edit(&stage, many_solids);
+    for (bool ready = false; !ready && shown < VIEWS;) {
+        const unsigned view = show(&stage, shown);
+        const Shot     shot = take_one_of(&stage, 1, 2, view);
+        ready               = shot.version == 2;
+        if (!ready)
+            assert_memory_equal(shot.pixels, turned[shown++], BYTES);
+        free(shot.pixels);
     }
-    assert_shows(&stage, 2, 0, two_boxes, 1);
+    assert_true(shown > 0);
+    for (int i = 0; i < VIEWS; i++)
+        free(turned[i]);
+    assert_shows(&stage, 2, 0, many_solids, 1);
     assert_false(painter_state(stage.painter).compiling);
     tear_down(&stage);
 }
