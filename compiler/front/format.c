@@ -304,7 +304,7 @@ static void write_piece(const Piece *piece, const char *text, Text *out)
         const char *newline = memchr(text + at, '\n', piece->end - at);
         end                 = newline ? (uint32_t)(newline - text) + 1 : piece->end;
         uint32_t last       = newline ? end - 1 : end;
-        while (newline && last > at && strchr(" \t\r", text[last - 1]))
+        while (newline && last > at && is_line_blank(text[last - 1]))
             last--;
         text_add_bytes(out, text + at, last - at);
         text_add_bytes(out, "\n", newline ? 1 : 0);

@@ -15,6 +15,8 @@ typedef struct Reader {
     Arena      *arena;
 } Reader;
 
+bool is_line_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
 /* The characters of bytes [start, end), which are UTF-8. */
 static uint32_t count_characters(const char *text, uint32_t start, uint32_t end)
 {
@@ -46,7 +48,7 @@ static uint32_t line_comment_end(const Reader *r, uint32_t limit)
 {
     const char *newline = memchr(r->text + r->at, '\n', limit - r->at);
     uint32_t    end     = newline ? (uint32_t)(newline - r->text) : limit;
-    while (r->text[end - 1] == ' ' || r->text[end - 1] == '\t' || r->text[end - 1] == '\r')
+    while (is_line_blank(r->text[end - 1]))
         end--;
     return end;
 }
@@ -59,7 +61,8 @@ static void read_blank(Reader *r, uint32_t limit)
         if (c == '/' && r->text[r->at + 1] == '/') {
             add_piece(r, PIECE_LINE_COMMENT, line_comment_end(r, limit));
         } else if (c == '/') {
-            const char *closer = strstr(r->text + r->at + 2, "*/");
+            const char *inner  = r->text + r->at + 2;
+            const char *closer = memmem(inner, limit - r->at - 2, "*/", 2);
             add_piece(r, PIECE_BLOCK_COMMENT, (uint32_t)(closer - r->text) + 2);
         } else {
             r->newlines += c == '\n';
@@ -93,7 +96,7 @@ Pieces read_pieces(uint32_t source, const Sources *sources, Arena *arena)
 static uint32_t skip_last_blanks(const char *text, uint32_t at, uint32_t end)
 {
     uint32_t behind = at;
-    while (behind < end && strchr(" \t\r", text[behind]))
+    while (behind < end && is_line_blank(text[behind]))
         behind++;
     return behind < end && text[behind] == '\n' ? behind : at;
 }

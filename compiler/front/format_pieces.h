@@ -29,6 +29,9 @@ typedef struct Pieces {
     size_t      count, capacity;
 } Pieces;
 
+/* Whether nothing is seen of a character at the end of a line. */
+bool is_line_blank(char c);
+
 /* The pieces of a source without mistakes. */
 Pieces read_pieces(uint32_t source, const Sources *sources, Arena *arena);
 /* Whether both texts have the same words and comments. */

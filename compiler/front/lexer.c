@@ -88,8 +88,9 @@ void skip_text(Lexer *lexer, uint32_t end)
         uint32_t character, start = lexer->at;
         size_t   length = text_character(lexer->text + start, end - start, &character);
         lexer->at += length ? (uint32_t)length : 1;
-        if (length == 0 && !reported) {
-            report_from(lexer, DIAG_STRAY_BYTES, start, "bytes that are not UTF-8",
+        if ((length == 0 || character == 0) && !reported) {
+            report_from(lexer, DIAG_STRAY_BYTES, start,
+                        length == 0 ? "bytes that are not UTF-8" : "a zero byte, which no text has",
                         "save the file as UTF-8");
             reported = true;
         }

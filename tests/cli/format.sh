@@ -2,7 +2,7 @@
 # format.sh: `krs format` gives scenes the canonical layout, and changes nothing else.
 # shellcheck source-path=SCRIPTDIR disable=SC2016
 . "$(dirname "$0")/common.sh"
-plan 14
+plan 15
 
 cat >wild.krs <<'END_OF_SCENE'
 
@@ -101,6 +101,12 @@ result $? "a file that is not there is an error of its own"
 run format --check empty.krs
 [ "$status" -eq 0 ]
 result $? "an empty text has the canonical layout"
+# A text ends at a zero byte, so one that has it in a comment would lose the rest.
+printf '/* a\000b */ show sphere(1);\n' >zero.krs
+cp zero.krs kept.krs
+run format zero.krs
+[ "$status" -eq 1 ] && grep -q 'E0102.*zero byte' err && cmp -s zero.krs kept.krs
+result $? "a zero byte in a comment is a mistake"
 
 # Scenes of all kinds, with their blanks spoilt: the trees stay, and the layout is its own.
 tree() { "$krs" dump --quiet --after=parse "$1" 2>/dev/null | sed 's/ [0-9]*:[0-9]*$//'; }
