@@ -90,6 +90,8 @@ static const Shape *bend_upright(ShapeBuilder *builder, const Shape *shape,
     /* Segments overlap by the depth of the solid, so that they have no walls between them. */
     double depth  = 0.5 * (shape->box.axis[2].high - shape->box.axis[2].low);
     bent->overlap = fmin(depth, 0.6 / fmax(range_largest(rate), 1e-9));
+    double least  = fmin(1 - range_mul(rate, shape->box.axis[2]).high, 1); /* of lengths */
+    bent->divided = (1 + COST_OF_WEIGHT) / least;
     return bent;
 }
 

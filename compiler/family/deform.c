@@ -18,15 +18,15 @@
  * where that makes it smaller, g is m(c) d(T(c)) / L: the weight m evens out where T is steep and
  * where it is not, and L >= m |T'| + |m'| most.  What depends on parameters in this is a frame-time
  * node, so it follows them from frame to frame, and no range of them is needed for the slope.
+ *
+ * A smaller d that is still positive makes a smaller bound.  So d must be right near the surface alone,
+ * and a crowd in there may leave out all parts that are far from T(c).
  */
 #include "compiler/family/deform.h"
 
 #include <math.h>
 
 #include "compiler/graph/build.h"
-
-/* Slopes of weights may cost so much: a quarter of the step. */
-static const double COST_OF_WEIGHT = 0.25;
 
 /* ---- how they are made ---- */
 
@@ -126,7 +126,8 @@ Lowered lower_undone(Lowering *l, const Shape *shape, LowerContext context,
 {
     Graph       *g     = l->graph;
     const Shape *child = shape->children[0];
-    LowerContext inner = context_lipschitz(context_at(context, inverse->point));
+    LowerContext inner = context_divided(context_at(context, inverse->point),
+                                         shape->divided * child->slope);
     if (l->surfaces) {
         inner.normal = graph_op1(g, OP_normalize, times_rows(g, inverse->in, context.normal));
         if (inverse->shrink != NODE_NONE)

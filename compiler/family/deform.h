@@ -12,6 +12,9 @@
 /* Into how many cells a range is cut where the box of a deformed shape is looked for. */
 enum { DEFORM_CELLS = 64 };
 
+/* Slopes of weights may cost so much: a quarter of the step. */
+#define COST_OF_WEIGHT 0.25
+
 /* A solid, whose distance is one; false: reported. */
 bool check_solid(ShapeBuilder *builder, const Shape *shape, const DeformArguments *asked);
 /* A solid with an end in every direction. */

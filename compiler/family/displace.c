@@ -91,13 +91,16 @@ const Shape *make_displace(ShapeBuilder *builder, const Shape *shape, Node formu
     bump.graph           = graph_simplify(builder->graph, &bump.root, 1, builder->scratch);
     displaced->reach     = bump_reach(builder, &bump, shape->box);
     double grown         = product_upward(range_largest(bump.amplitude), displaced->reach);
+    displaced->moved     = grown;
     displaced->box       = isfinite(grown) ? box_grow(shape->box, grown) : box_infinite;
     Steepness slope;
     bool      bounded = bound_bump(builder, displaced, formula_span, &slope);
     if (bounded) {
         displaced->values[1] = steepness_node(builder->graph, &slope);
         displaced->per_frame = displaced->per_frame || slope.slot != NODE_NONE;
-        note_slope(displaced, 1 + range_largest(bump.amplitude) * slope.bound);
+        double steep         = range_largest(bump.amplitude) * slope.bound;
+        displaced->divided   = slope.slot == NODE_NONE ? steep + shape->slope : HUGE_VAL;
+        note_slope(displaced, 1 + steep);
     }
     arena_free(builder->scratch);
     return bounded ? displaced : NULL;
@@ -162,7 +165,8 @@ Lowered lower_displace(Lowering *l, const Shape *shape, LowerContext context)
     Node point = context.point;
     if (ends)
         point = graph_op3(g, OP_clamp, context.point, sides.below, sides.above);
-    Lowered result = lower_shape(l, child, context_lipschitz(context_at(context, point)));
+    LowerContext inner  = context_divided(context_at(context, point), shape->divided);
+    Lowered      result = lower_shape(l, child, context_lipschitz_within(inner, shape->moved));
     if (result.distance == NODE_NONE)
         return result;
     Node bump       = graph_substitute(g, shape->formula, substitute_point(point), l->scratch);

@@ -19,8 +19,10 @@ static const Shape *taper_upright(ShapeBuilder *builder, const Shape *shape,
                                     node_range(builder, asked->numbers[1], 0));
     for (int i = 0; i < 3; i += 2)
         tapered->box.axis[i] = range_mul(shape->box.axis[i], scale);
-    double height = shape->box.axis[1].high - shape->box.axis[1].low;
-    note_slope(tapered, shear_slope((scale.high - scale.low) / height * box_radius(shape->box)));
+    double height    = shape->box.axis[1].high - shape->box.axis[1].low;
+    double shear     = shear_slope((scale.high - scale.low) / height * box_radius(shape->box));
+    tapered->divided = (shear + COST_OF_WEIGHT) / fmin(fmax(scale.low, 0), 1);
+    note_slope(tapered, shear);
     return tapered;
 }
 

@@ -31,7 +31,8 @@ static const Shape *twist_upright(ShapeBuilder *builder, const Shape *shape,
     twisted->values[0] = asked->numbers[0];
     Range rate         = node_range(builder, asked->numbers[0], 0);
     twisted->box       = twist_box(shape->box, rate);
-    note_slope(twisted, shear_slope(range_largest(rate) * box_radius(shape->box)));
+    twisted->divided   = shear_slope(range_largest(rate) * box_radius(shape->box));
+    note_slope(twisted, twisted->divided);
     return twisted;
 }
 

@@ -53,6 +53,14 @@ LowerContext context_lipschitz_within(LowerContext context, double more)
     return context;
 }
 
+LowerContext context_divided(LowerContext context, double factor)
+{
+    context.lipschitz = true;
+    if (context.reach > 0) /* 0 stays 0, even where the factor has no bound */
+        context.reach = isfinite(factor) ? context.reach * factor : HUGE_VAL;
+    return context;
+}
+
 double reach_behind(const Graph *graph, double reach, Node scale)
 {
     if (reach == 0 || !isfinite(reach))

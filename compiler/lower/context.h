@@ -79,6 +79,8 @@ extern const Lowered lowered_nothing;
 LowerContext context_at(LowerContext context, Node point);
 LowerContext context_lipschitz(LowerContext context);
 LowerContext context_lipschitz_within(LowerContext context, double more);
+/* With `lipschitz` set, where distances are divided by `factor`, at most, before they are used. */
+LowerContext context_divided(LowerContext context, double factor);
 /* The reach behind a map that enlarges by `scale`. */
 double reach_behind(const Graph *graph, double reach, Node scale);
 

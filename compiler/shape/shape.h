@@ -170,6 +170,8 @@ struct Shape {
     double overlap;  /* BEND: by how much the segments reach beyond their ends */
     double reach;    /* DISPLACE: largest size of the formula in the box; OFFSET, SHELL: how far
                          they take the surface, at most */
+    double divided;  /* DISPLACE, TWIST, TAPER, BEND: what distances are divided by, at most */
+    double moved;    /* DISPLACE: how far the surface moves, at most */
     const FieldFacts   *field; /* zeros where there is nothing to know; never NULL */
     Node                distance, bound, uv, trap;
     const struct Shape *without_uv; /* a primitive in the tree that has none, or NULL */
