@@ -176,18 +176,26 @@ static bool add_mattes(const Options *options, const KrsPicture *source, const P
     return true;
 }
 
-enum { CAUGHT_CHANNELS = 3 };
+enum { CAUGHT_CHANNELS = 6 };
+
+static void add_colors(const char *const names[3], const float (*colors)[3],
+                       PictureChannel *channels, Picture *picture)
+{
+    for (size_t i = 0; colors && i < 3; i++)
+        channels[picture->channel_count++] = (PictureChannel){
+            .name = names[i], .type = SAMPLE_HALF, .samples = colors[0] + i, .stride = 3};
+}
 
 /* Adds the channels of what a plate has caught. */
 static void add_caught(const Options *options, const KrsPicture *source, PictureChannel *channels,
                        Picture *picture)
 {
-    static const char *const names[CAUGHT_CHANNELS] = {"caught.R", "caught.G", "caught.B"};
-    for (size_t i = 0; source->caught && options->aovs && i < CAUGHT_CHANNELS; i++)
-        channels[picture->channel_count++] = (PictureChannel){.name    = names[i],
-                                                              .type    = SAMPLE_HALF,
-                                                              .samples = source->caught[0] + i,
-                                                              .stride  = CAUGHT_CHANNELS};
+    static const char *const caught[3]   = {"caught.R", "caught.G", "caught.B"};
+    static const char *const mirrored[3] = {"mirrored.R", "mirrored.G", "mirrored.B"};
+    if (!options->aovs)
+        return;
+    add_colors(caught, (const float(*)[3])source->caught, channels, picture);
+    add_colors(mirrored, (const float(*)[3])source->mirrored, channels, picture);
 }
 
 static KrsStatus write_exr(const Options *options, const KrsPicture *source,

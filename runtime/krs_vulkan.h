@@ -184,6 +184,8 @@ typedef enum KrsEye { KRS_EYE_OF_BOTH, KRS_EYE_ON_LEFT, KRS_EYE_ON_RIGHT } KrsEy
 #define KRS_DEFAULT_BOUNCES       10
 #define KRS_MOST_BOUNCES          1000
 #define KRS_MOST_EVEN_HITS        16
+#define KRS_DEFAULT_REFLECTANCE   0.04
+#define KRS_MOST_REFLECTANCE      0.99
 #define KRS_NO_LIGHT              UINT32_MAX
 #define KRS_MOST_LIGHT_GROUPS     240
 
@@ -217,10 +219,13 @@ typedef struct KrsRenderOptions {
        NULL: none.  Rays end at the depths, which are as those of the depth plane; what is not a number
        is no limit.  What rays do not hit shows the plate: premultiplied light and alpha.  Both must
        live as long as the film.  Where both are known, the plate catches shadows of the scene, as a
-       dull surface whose normals follow from the depths: see KrsPicture.caught. */
+       surface whose normals follow from the depths: see KrsPicture.caught.  Shapes mirror the plate, and
+       lie in its shadow, where a camera that is no panorama shows what rays meet of it. */
     const float *depth;
     const float (*plate)[4];
-    KrsCatcher    catcher;       /* anything but KRS_CATCHER_NONE needs depths */
+    KrsCatcher    catcher;             /* anything but KRS_CATCHER_NONE needs depths */
+    double        catcher_roughness;   /* of a glossy one, from 0 to 1; 0: as a mirror */
+    double        catcher_reflectance; /* head on, from 0 to KRS_MOST_REFLECTANCE; 0: 0.04 */
     uint32_t      planes;        /* bits of KrsPlane; 0: all but noise, which is there where samples
                                     end by it */
     uint32_t      most_steps;    /* of a primary ray; 0: 16384, which is also the most */
@@ -308,6 +313,9 @@ typedef struct KrsPicture {
     /* Where a plate catches shadows: its light with the scene, relative to that without, by which
        the plate is multiplied; 1 where it has no depth.  Else NULL. */
     float (*caught)[3];
+    /* Where it is glossy: what its surface mirrors of the scene, less what that hides from it, which is
+       added to the plate.  It may be negative.  Else NULL. */
+    float (*mirrored)[3];
     /* Without a camera these change nothing.  For row vectors, v * M.  Camera space has x to the right, y up, z along the view axis.  NDC
        has x and y from -1 to 1; in perspective z goes from 0 at distance 0.001 to 1 at infinity.
        For a panorama NDC is camera space. */

@@ -207,8 +207,7 @@ static bool add_to_band(Job *job, const Plan *plan, const KrsFilm *film, uint32_
         .most_radiance = job->options.most_radiance > 0 ? (float)job->options.most_radiance
                                                         : INFINITY,
     };
-    if (plate_catches(film))
-        control->caught = ROW_OF_LIGHTS + film->light_count - CAUGHT_ROWS;
+    plate_tell(film, control);
     job->later_rows = 1u << ROW_COLORS | (job->options.mattes ? MATTE_ROWS : 0);
     job->first_rows = (picture_rows(film->sums) & ~(1u << ROW_NOISE)) | job->later_rows;
     inputs_upload(job, traced);
@@ -274,6 +273,7 @@ static bool make_room(Job *job, const Plan *plan, KrsFilm *film)
                               job->options.light, job->rebase_origin, inputs_room(job)))
         return false;
     rendering_set_emissive(rendering, job->emissive, job->frame.emissive_count);
+    inputs_upload_map(job);
     return true;
 }
 

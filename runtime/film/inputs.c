@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "runtime/film/plate.h"
+#include "runtime/film/plate_map.h"
 #include "runtime/tracer/rendering.h"
 
 /* Copies the listed rays of a band to the device, behind the lights. */
@@ -34,8 +35,19 @@ static size_t rays_of_limits(const Job *job)
     return (job->rendering->band.pixels + in_ray - 1) / in_ray;
 }
 
+/* Likewise the planes of a plate in the pixels of a band, and its map. */
+static size_t rays_of_planes(const Job *job)
+{
+    return job->rendering->catches ? (job->rendering->band.pixels + 1) / 2 : 0;
+}
+
+static size_t rays_of_map(const Job *job)
+{
+    return plate_map_exists(job) ? (plate_map_rows(job) + 1) / 2 : 0;
+}
+
 /* Copies the depths at which rays of a band end to the device, behind the listed rays, and the planes
-   of a plate behind them. */
+   of a plate behind them.  The map of the plate is there already. */
 static void upload_limits(const Job *job, const KrsWindow *traced)
 {
     const size_t    listed  = job->rays ? job->rendering->band.pixels : 0;
@@ -47,6 +59,8 @@ static void upload_limits(const Job *job, const KrsWindow *traced)
     control->plate_planes = control->limits + 2 * (uint32_t)rays_of_limits(job);
     if (job->rendering->catches)
         plate_find_planes(job, traced, (float(*)[4])(limits + rays_of_limits(job)));
+    if (plate_map_exists(job))
+        control->plate_map = control->plate_planes + 2 * (uint32_t)rays_of_planes(job);
     for (uint32_t y = traced->y; y < traced->y + traced->height; y++)
         for (uint32_t x = traced->x; x < traced->x + traced->width; x++, to++) {
             *to = job->options.depth[(size_t)y * job->options.width + x];
@@ -58,7 +72,15 @@ size_t inputs_room(const Job *job)
 {
     const size_t pixels = job->rendering->band.pixels;
     return (job->rays ? pixels : 0) + (job->options.depth ? rays_of_limits(job) : 0) +
-           (job->rendering->catches ? (pixels + 1) / 2 : 0);
+           rays_of_planes(job) + rays_of_map(job);
+}
+
+void inputs_upload_map(const Job *job)
+{
+    const size_t    before = inputs_room(job) - rays_of_map(job);
+    ListedRayBlock *rays   = rendering_listed_rays(job->rendering, job->view.light_count);
+    if (plate_map_exists(job))
+        plate_map_make(job, (uint32_t(*)[4])(rays + before));
 }
 
 void inputs_upload(const Job *job, const KrsWindow *traced)

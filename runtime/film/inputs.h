@@ -10,5 +10,7 @@
 size_t inputs_room(const Job *job);
 /* Copies those of a band to the device, behind the lights, and says in the control block where. */
 void inputs_upload(const Job *job, const KrsWindow *traced);
+/* Copies the map of a plate, which is the same for all bands. */
+void inputs_upload_map(const Job *job);
 
 #endif

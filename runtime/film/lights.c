@@ -25,7 +25,7 @@ bool lights_make(KrsFilm *film)
     film->light_count = (film->options.light_groups
                              ? (uint32_t)krs_light_count(film->rendering->scene)
                              : 0) +
-                        (plate_catches(film) ? CAUGHT_ROWS : 0);
+                        plate_rows(film);
     if (film->light_count == 0)
         return true;
     film->lights = gpu_alloc(gpu, lights_numbers(film), sizeof *film->lights,
@@ -36,7 +36,7 @@ bool lights_make(KrsFilm *film)
 bool lights_finish(const KrsFilm *film, KrsPicture *picture)
 {
     const size_t pixels = pixels_of(film);
-    const size_t count  = film->light_count - (plate_catches(film) ? CAUGHT_ROWS : 0);
+    const size_t count  = film->light_count - plate_rows(film);
     if (count == 0)
         return true;
     picture->lights = gpu_alloc(&film->rendering->renderer->gpu, count * pixels,

@@ -195,8 +195,9 @@ void picture_compose(KrsPicture *picture, const float *depth, const float (*plat
         float *color = picture->color ? &picture->color[4 * k] : NULL;
         float  left  = color ? 1 - color[3] : 0;
         for (int i = 0; plate && color && i < 4; i++) {
-            const float caught = picture->caught && i < 3 ? picture->caught[k][i] : 1;
-            color[i] += left * caught * plate[whole][i];
+            const float caught   = picture->caught && i < 3 ? picture->caught[k][i] : 1;
+            const float mirrored = picture->mirrored && i < 3 ? picture->mirrored[k][i] : 0;
+            color[i] += fmaxf(left * caught * plate[whole][i] + mirrored, 0);
         }
         if (depth && picture->depth && isinf(picture->depth[k]))
             picture->depth[k] = depth[whole];
@@ -298,5 +299,6 @@ void krs_picture_free(KrsPicture *picture)
         gpu_release(&allocating, picture->mattes[kind]);
     gpu_release(&allocating, picture->lights);
     gpu_release(&allocating, picture->caught);
+    gpu_release(&allocating, picture->mirrored);
     gpu_release(&allocating, picture);
 }

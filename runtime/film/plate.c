@@ -4,7 +4,8 @@
  *
  * A plate shows light that has been reflected, so its colours are in proportion to the light that
  * falls on it.  The picture of it with shadows is the plate times the ratio of light on a dull surface
- * with the scene and without it (Debevec 1998, as a ratio).
+ * with the scene and without it (Debevec 1998, as a ratio).  What a glossy plate mirrors is known by
+ * its radiance.  So it is taken from the plate before, and what is mirrored with the scene is added.
  */
 #include "runtime/film/plate.h"
 
@@ -15,7 +16,23 @@
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
 
-bool plate_catches(const KrsFilm *film) { return film->options.catcher == KRS_CATCHER_SHADOWS; }
+bool plate_catches(const KrsFilm *film) { return film->options.catcher != KRS_CATCHER_NONE; }
+
+static bool is_glossy(const KrsFilm *film) { return film->options.catcher == KRS_CATCHER_GLOSSY; }
+
+uint32_t plate_rows(const KrsFilm *film)
+{
+    return !plate_catches(film) ? 0 : is_glossy(film) ? 2 * CAUGHT_ROWS : CAUGHT_ROWS;
+}
+
+void plate_tell(const KrsFilm *film, ControlBlock *control)
+{
+    if (!plate_catches(film))
+        return;
+    control->caught            = ROW_OF_LIGHTS + film->light_count - plate_rows(film);
+    control->plate_roughness   = (float)film->options.catcher_roughness;
+    control->plate_reflectance = is_glossy(film) ? (float)film->options.catcher_reflectance : 0;
+}
 
 /* ---- planes ---- */
 
@@ -134,20 +151,40 @@ void plate_find_planes(const Job *job, const KrsWindow *traced, float (*planes)[
 /* Light on the plate without the scene is nothing where it is black: nothing is darker than that. */
 static float ratio_of(float caught, float without) { return without > 0 ? caught / without : 1; }
 
+/* Makes a plane of a picture; false with the failure noted. */
+static bool make_plane(const KrsFilm *film, KrsPicture *picture, float (**plane)[3])
+{
+    const size_t pixels = (size_t)picture->window.width * picture->window.height;
+    *plane = gpu_alloc(&film->rendering->renderer->gpu, pixels, sizeof **plane, "make a picture");
+    picture->stats.peak_memory_bytes += *plane ? pixels * sizeof **plane : 0;
+    return *plane != NULL;
+}
+
+/* What a glossy plate mirrors counts for the part of the pixel that shows the plate, as its sums do. */
+static void put_pixel(const KrsFilm *film, KrsPicture *picture, const float (*sums)[4],
+                      size_t pixels, size_t k)
+{
+    const uint32_t *ended   = film->sums->pixel_samples;
+    const float     samples = (float)(ended && ended[k] > 0 ? ended[k] : film->samples);
+    for (int i = 0; i < 3; i++) {
+        const float caught    = ratio_of(sums[k][i], sums[pixels + k][i]);
+        picture->caught[k][i] = caught;
+        if (picture->mirrored)
+            picture->mirrored[k][i] = (sums[2 * pixels + k][i] - caught * sums[3 * pixels + k][i]) /
+                                      samples;
+    }
+}
+
 bool plate_finish(const KrsFilm *film, KrsPicture *picture)
 {
     const size_t pixels = (size_t)picture->window.width * picture->window.height;
+    const size_t before = film->light_count - plate_rows(film);
     if (!plate_catches(film))
         return true;
-    picture->caught = gpu_alloc(&film->rendering->renderer->gpu, pixels, sizeof *picture->caught,
-                                "make a picture");
-    if (!picture->caught)
+    if (!make_plane(film, picture, &picture->caught) ||
+        (is_glossy(film) && !make_plane(film, picture, &picture->mirrored)))
         return false;
-    picture->stats.peak_memory_bytes += pixels * sizeof *picture->caught;
-    const float(*rows)[4] = (const float(*)[4])film->lights +
-                            (film->light_count - CAUGHT_ROWS) * pixels;
     for (size_t k = 0; k < pixels; k++)
-        for (int i = 0; i < 3; i++)
-            picture->caught[k][i] = ratio_of(rows[k][i], rows[pixels + k][i]);
+        put_pixel(film, picture, (const float(*)[4])film->lights + before * pixels, pixels, k);
     return true;
 }

@@ -1,5 +1,5 @@
 /*
- * plate.h: the plate of another renderer, on which shadows fall.
+ * plate.h: the plate of another renderer, on which shadows and reflections fall.
  */
 #ifndef KRS_PLATE_H
 #define KRS_PLATE_H
@@ -9,6 +9,10 @@
 
 /* Whether the plate of a film catches shadows. */
 bool plate_catches(const KrsFilm *film);
+/* So many rows of results are of the plate: 0, 2 or 4. */
+uint32_t plate_rows(const KrsFilm *film);
+/* Tells the kernels what falls on the plate, and where its rows are. */
+void plate_tell(const KrsFilm *film, ControlBlock *control);
 /* Writes the planes of the plate in the pixels of a band, four numbers each: the unit normal, and its
    product with the points of the plane. */
 void plate_find_planes(const Job *job, const KrsWindow *traced, float (*planes)[4]);

@@ -100,6 +100,8 @@ static void put_defaults(const KrsImage *image, KrsRenderOptions *o)
         o->integrator = find_integrator(image->integrator);
     if (o->catcher == KRS_CATCHER_DEFAULT)
         o->catcher = o->depth && o->plate ? KRS_CATCHER_SHADOWS : KRS_CATCHER_NONE;
+    if (o->catcher_reflectance == 0)
+        o->catcher_reflectance = KRS_DEFAULT_REFLECTANCE;
     if (o->crop.width == 0)
         o->crop = (KrsWindow){0, 0, o->width, o->height};
 }
@@ -125,6 +127,11 @@ static bool check(KrsRendering *rendering, const KrsRenderOptions *o)
         return refuse(rendering, "there are groups for at most 240 lights");
     if (o->catcher != KRS_CATCHER_NONE && !o->depth)
         return refuse(rendering, "shadows fall on a plate whose depths are known");
+    if (o->catcher == KRS_CATCHER_GLOSSY && o->integrator == KRS_INTEGRATOR_PREVIEW)
+        return refuse(rendering, "a plate is glossy with the integrators direct and path");
+    if (!(o->catcher_roughness >= 0) || !(o->catcher_roughness <= 1) ||
+        !(o->catcher_reflectance > 0) || !(o->catcher_reflectance <= KRS_MOST_REFLECTANCE))
+        return refuse(rendering, "the roughness of a plate is at most 1, its reflectance 0.99");
     if (!(o->most_radiance >= 0))
         return refuse(rendering, "the most radiance of a ray must be above 0");
     if (!(o->slice_ms > 0) || o->most_steps > MOST_STEPS || o->steps_at_once > MOST_STEPS_AT_ONCE)

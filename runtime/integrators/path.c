@@ -20,7 +20,8 @@ typedef struct Paths {
     Job          *job;
     Plan         *plan;
     PathKernels   kernels;
-    const Kernel *plate; /* NULL: no plate catches shadows */
+    const Kernel *plate;  /* NULL: no plate catches shadows */
+    const Kernel *escape; /* of rays that surfaces have scattered */
     uint32_t      bounces;
     float         weight; /* of the passes of a bounce */
 } Paths;
@@ -41,10 +42,10 @@ static void add_items(const Paths *paths, KrsPhase phase, const Kernel *kernel, 
 static void add_surface(const Paths *paths, uint32_t number)
 {
     const KrsRenderer *renderer  = paths->job->rendering->renderer;
-    const RayKind      rays      = number == 0 ? paths->job->rendering->rays : RAYS_OF_PATHS;
+    const RayKind      rays      = paths->job->rendering->rays;
     const bool         ends      = number == paths->bounces;
     PassConstants      constants = {.phase = ends ? PATHS_END : PATHS_GO_ON, .value = number};
-    add_items(paths, KRS_PHASE_RESOLVE, &renderer->escapes[rays],
+    add_items(paths, KRS_PHASE_RESOLVE, number == 0 ? &renderer->escapes[rays] : paths->escape,
               number == 0 ? LIST_OF_BAND : LIST_OF_PATHS, LIST_ALL,
               (PassConstants){.value = number});
     add_items(paths, KRS_PHASE_NORMALS, paths->kernels.normals, LIST_ALL, NO_LIST,
@@ -74,6 +75,7 @@ static bool add_paths(Job *job, Plan *plan, uint32_t bounces)
         !rendering_paths(r, o, KRS_FOR_PATHS, &paths.kernels) ||
         !primary_find_plate(job, &paths.plate))
         return false;
+    paths.escape      = renderer_escape_of_paths(r);
     const March march = primary_march_of_paths(job, paths.kernels.march);
     for (uint32_t number = 0; number <= bounces; number++) {
         add_surface(&paths, number);
@@ -82,7 +84,7 @@ static bool add_paths(Job *job, Plan *plan, uint32_t bounces)
         else if (number < bounces)
             plan_add_march_again(plan, 0.4f * paths.weight);
     }
-    return !plan->failed;
+    return paths.escape && !plan->failed;
 }
 
 /* Glass does not count as a surface, but paths go through so many boundaries at most. */

@@ -256,14 +256,14 @@ static bool add_mirrors(Preview *p)
     Job                    *job    = p->job;
     KrsRendering           *r      = job->rendering;
     const KrsRenderOptions *o      = &job->options;
-    const Kernel           *escape = &r->renderer->escapes[RAYS_OF_PATHS];
     const float             each   = WEIGHT_MIRRORS / MIRRORED_SURFACES;
     const float             weight = 0.2f * each;
     PathKernels             kernels;
     if (!renderer_create_escapes(r->renderer, RAYS_OF_PATHS, &r->spirv_ms, &r->pipeline_ms) ||
         !rendering_paths(r, o, KRS_FOR_PICTURES, &kernels))
         return false;
-    const March march = primary_march_of_paths(job, kernels.march);
+    const March   march  = primary_march_of_paths(job, kernels.march);
+    const Kernel *escape = renderer_escape_of_paths(r);
     for (int i = 0; i < MIRRORED_SURFACES; i++) {
         if (i == 0)
             plan_add_march(p->plan, &march, 0.4f * each);
@@ -275,7 +275,7 @@ static bool add_mirrors(Preview *p)
                   weight);
         add_mirrored_lights(p, &kernels, i + 1 == MIRRORED_SURFACES, weight);
     }
-    return true;
+    return escape != NULL;
 }
 
 /* ---- the plan ---- */

@@ -371,6 +371,23 @@ vec4 scatter(Bsdf bsdf, vec3 light)
     return vec4(sum, density);
 }
 
+#ifdef CATCHES
+// What the surface of a plate mirrors, and nothing else, in place of a surface within limits.
+Bsdf make_glossy(KrsSurface surface, float roughness, float head_on, vec3 eye)
+{
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    surface.name *= 0.0;
+#include "compiler/shape/surface.def"
+    float root = sqrt(head_on);
+    surface.ior = (1.0 + root) / (1.0 - root);
+    surface.specular = 1.0;
+    surface.roughness = roughness;
+    Bsdf bsdf = make_bsdf(surface, true, eye);
+    bsdf.shares = vec4(0.0, 1.0, 0.0, 0.0);
+    return bsdf;
+}
+#endif
+
 // A dull white surface in place of another: the plate, and where light leaves from below a surface.
 Bsdf make_dull(Bsdf bsdf)
 {

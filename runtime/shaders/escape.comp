@@ -6,6 +6,8 @@
  *
  * PATH_RAYS: the rays of paths that have begun.  Else these are rays of a camera, and paths begin.
  *
+ * CATCHES: paths may meet the plate of another renderer, and end there with the light that it shows.
+ *
  * An item is a pixel whose path goes on, or a quarter of a tile of 8x8 pixels.
  */
 #include "frame.glsl"
@@ -19,12 +21,17 @@
 #include "sky_map.glsl"
 #include "lights.glsl"
 #include "media.glsl"
+#ifdef CATCHES
+#include "path_samples.glsl"
+#include "plate_rays.glsl"
+#endif
 
 // What a path is when its ray ends.
 struct Path {
     vec3  origin, direction, weight;
     float density;
     bool  caught; // it began at the plate; its density is stored as a negative number
+    bool  mirrored; // by the plate
     bool  knows_lights; // what lights send here is known already
 };
 
@@ -82,11 +89,16 @@ Path load(uvec2 pixel, uint index, out float base, out float slope)
     path.weight = weight.xyz;
     path.density = abs(weight.w);
     path.caught = weight.w < 0.0;
+    path.mirrored = false;
+#ifdef CATCHES
+    path.mirrored = path.caught && is_mirrored(pixel);
+#endif
     path.knows_lights = fract(abs(load_path(PATH_TOWARD, index).w)) == SCATTERED;
 #else
     path.weight = vec3(1.0);
     path.density = 0.0;
     path.caught = false;
+    path.mirrored = false;
     path.knows_lights = false;
 #endif
     return path;
@@ -119,18 +131,39 @@ vec3 find_light_before(Path path, bool hits, bool lost, float end, uint index)
     return finite_or_black(path.weight * found);
 }
 
-#ifdef PATH_RAYS
-// Adds the light of a path that began at the plate.  Its first ray also adds what it would bring if
-// nothing were in its way.
-void add_caught(Path path, vec3 found, bool hits, uint index)
+#ifdef CATCHES
+// How far along its ray a path meets the plate; INFINITE: nowhere.  The first ray of what the plate scatters
+// as a dull surface does not: that light is the same with the scene and without it.
+float find_plate_of_path(Path path)
 {
-    add_light_to(control.caught, index, found);
+    bool begins = path.caught && control.value == 1u;
+    bool meets = control.plate_map != 0u && (!begins || path.mirrored);
+    return meets ? find_plate_ahead(path.origin, path.direction, INFINITE, begins) : INFINITE;
+}
+
+// Light of sources, and of the plate at `plate`, where a path ends there before it hits anything else.
+vec3 find_light_with_plate(Path path, bool hits, bool lost, float end, float plate, uint index)
+{
+    bool at_plate = plate < (hits || lost ? end : INFINITE);
+    vec3 found = find_light_before(path, hits || at_plate, lost && !at_plate, at_plate ? plate : end,
+                                   index);
+    float left = let_through(path.origin.y, path.direction.y, plate);
+    vec3  shown = at_plate ? find_plate_color(path.origin, path.direction, plate) : vec3(0.0);
+    return found + finite_or_black(path.weight * (at_plate ? through_fog(shown, left, true) : vec3(0.0)));
+}
+
+// Adds the light of a path that began at the plate.  Its first ray also adds what it would bring if
+// nothing of the scene were in its way.
+void add_caught(Path path, vec3 found, bool hits, float plate, uint index)
+{
+    uint row = row_of_plate(path.mirrored);
+    add_light_to(row, index, found);
     if (control.value != 1u)
         return;
     vec3 without = found;
     for (uint once = 0u; once < uint(hits); once++) // as in planes.glsl
-        without = find_light_before(path, false, false, INFINITE, index);
-    add_light_to(control.caught + 1u, index, clamp_factor(without) * without);
+        without = find_light_with_plate(path, false, false, INFINITE, plate, index);
+    add_light_to(row + 1u, index, clamp_factor(without) * without);
 }
 #endif
 
@@ -148,16 +181,22 @@ bool follow(uvec2 pixel, uint index, inout uint unresolved)
 #endif
     unresolved += ray.unresolved ? 1u : 0u;
     bool lost = ray.unresolved && path.density > 0.0;
-    vec3 found = clamped(find_light_before(path, hits, lost, ray.t, index));
 #ifdef PATH_RAYS
     float begun = abs(load_path(PATH_TOWARD, index).w); // in a medium
-    if (path.caught)
-        add_caught(path, found, hits, index);
-    else
-        add_light(index, found);
 #else
     float begun = 1.0;
-    add_light(index, found);
+#endif
+#ifdef CATCHES
+    float plate = find_plate_of_path(path);
+    vec3  found = clamped(find_light_with_plate(path, hits, lost, ray.t, plate, index));
+    bool  hits_scene = hits && ray.t <= plate;
+    if (path.caught)
+        add_caught(path, found, hits_scene, plate, index);
+    else
+        add_light(index, found);
+    hits = hits_scene;
+#else
+    add_light(index, clamped(find_light_before(path, hits, lost, ray.t, index)));
 #endif
     store_path(PATH_TOWARD, index, vec4(0.0, 0.0, 0.0, hits ? begun * ray.side : 0.0));
     return hits;

@@ -39,6 +39,8 @@ uvec4 load_noise(uint index) { return load_result(ROW_NOISE * band_pixels() + in
 vec3 find_sum(uint index)
 {
     vec3 caught = control.caught != 0u ? load_color(control.caught, index).rgb : vec3(0.0);
+    if (control.plate_reflectance > 0.0)
+        caught += load_color(control.caught + CAUGHT_ROWS, index).rgb;
     return find_color(index).rgb + caught;
 }
 

@@ -11,7 +11,8 @@
  * DIRECT: paths end at the second surface, but glass is none.  They go on through it, and light of lights
  * comes through it straight.
  *
- * CATCHES: a plate catches shadows.  Paths that begin there have rows of results of their own.
+ * CATCHES: a plate catches shadows.  Paths that begin there have rows of results of their own.  What the
+ * plate shows may hide lights from surfaces of the scene.
  */
 #include "scene.glsl"
 #include "frame.glsl"
@@ -30,6 +31,7 @@
 #include "boundary.glsl"
 #ifdef CATCHES
 #include "plate.glsl"
+#include "plate_rays.glsl"
 #endif
 #ifdef DIRECT
 #include "tints.glsl"
@@ -132,18 +134,33 @@ bool is_direct() { return false; }
 // Whether a path of direct light ends here.
 bool ends_here(Bsdf bsdf) { return is_direct() && come_by != STRAIGHT && bsdf.glass == 0.0; }
 
-// Whether the path began at the plate: densities are negative then.
-bool  caught;
+// Whether the path began at the plate: densities are negative then.  If it is there now, it begins.
+bool  caught, begins_at_plate;
+bool  mirrored;      // by the plate, where the path began
+uint  row_of_caught; // of results, where the path began at the plate
 float sign_of_path() { return caught ? -1.0 : 1.0; }
 
-void find_whether_caught(uint index)
+void find_whether_caught(uvec2 pixel, uint index)
 {
+    caught = begins_at_plate = mirrored = false;
+    row_of_caught = 0u;
 #ifdef CATCHES
     caught = control.value == 0u ? is_of_plate(find_end(index))
                                  : load_path(PATH_WEIGHT, index).w < 0.0;
-#else
-    caught = false;
+    begins_at_plate = caught && control.value == 0u;
+    mirrored = caught && is_mirrored(pixel);
+    row_of_caught = row_of_plate(mirrored);
 #endif
+}
+
+// Whether the plate is before a point of a light.  What it casts on itself it shows already.
+bool is_behind_plate(LightPoint point, HitPoint hit)
+{
+#ifdef CATCHES
+    if (control.plate_map != 0u && point.end > 0.0 && (!begins_at_plate || mirrored))
+        return find_plate_ahead(hit.position, point.toward, point.end, begins_at_plate) < INFINITE;
+#endif
+    return false;
 }
 
 // Chooses a point of a light, and what it adds if it is visible.  Returns the direction to it, and the
@@ -184,12 +201,14 @@ vec3 choose_light(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, v
     bool  sees = rise * light.z > 0.0 && all > 0.0 && !along;
     vec3  added = sees ? weight * scattered.rgb * point.light * share * tint : vec3(0.0);
     added = finite_or_black(added);
+    if (largest(added) > 0.0 && is_behind_plate(point, hit))
+        added = vec3(0.0);
     store_path(PATH_LIGHT, index, vec4(added, point.end));
     row = control.apart != 0u && !is_sky ? ROW_OF_LIGHTS + number : ROW_COLORS;
     if (caught)
-        row = control.caught;
-    if (caught && control.value == 0u)
-        add_light_to(control.caught + 1u, index, clamp_factor(added) * added);
+        row = row_of_caught;
+    if (begins_at_plate)
+        add_light_to(row + 1u, index, clamp_factor(added) * added);
     return point.toward;
 }
 
@@ -267,7 +286,7 @@ void store_seen(uint index, vec3 radiance, HitPoint hit, vec3 normal, KrsSurface
 {
     radiance = clamped(finite_or_black(radiance));
     if (caught) {
-        add_light_to(control.caught, index, control.value == 0u ? vec3(0.0) : radiance);
+        add_light_to(row_of_caught, index, begins_at_plate ? vec3(0.0) : radiance);
         return;
     }
     vec4 sum = find_color(index) + vec4(radiance, control.value == 0u ? 1.0 : 0.0);
@@ -280,12 +299,17 @@ Bsdf find_bsdf(KrsSurface surface, HitPoint hit, Boundary boundary, Axes axes)
 {
     Bsdf bsdf = make_bsdf(surface, hit.side > 0.0, into(axes, -hit.direction));
     bsdf.eta = boundary.eta;
-    if (caught && control.value == 0u) {
+    if (begins_at_plate) {
         bsdf = make_dull(bsdf);
 #ifdef SUBSURFACE
         bsdf.chance_below = 0.0;
 #endif
     }
+#ifdef CATCHES
+    if (begins_at_plate && mirrored)
+        bsdf = make_glossy(surface, control.plate_roughness, control.plate_reflectance,
+                           into(axes, -hit.direction));
+#endif
     return bsdf;
 }
 
@@ -298,7 +322,7 @@ void do_item(uint number)
 #endif
     uvec2 pixel = pixel_of(hit.slot);
     uint  index = index_of(pixel);
-    find_whether_caught(index);
+    find_whether_caught(pixel, index);
     KrsSurface surface;
     come_by = fract(abs(load_path(PATH_TOWARD, index).w));
     if (control.value == 0u)
@@ -311,8 +335,15 @@ void do_item(uint number)
     vec3  radiance = weight * through_fog(surface.emission, left, true);
     weight *= left;
     vec3 normal = find_normal(hit, surface, facing.xyz);
-    if (caught && control.value == 0u)
+    if (begins_at_plate) {
         normal = facing.xyz;
+        surface.roughness = control.plate_roughness;
+#ifdef CATCHES
+        weight /= control.plate_reflectance == 0.0 ? 1.0
+                  : mirrored                       ? MIRRORED_LOBE
+                                                   : 1.0 - MIRRORED_LOBE;
+#endif
+    }
     store_seen(index, radiance, hit, normal, surface);
     if (control.phase == PATHS_END)
         return;

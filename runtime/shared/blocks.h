@@ -173,7 +173,10 @@ static_assert(sizeof(PointWorkBlock) == 8, "std430");
     uint  apart;          /* 1: the light of each light has a row of results of its own */        \
     uint  count;          /* of the lights that a pass of shade.comp adds */                      \
     uint  caught;         /* the row of results of light on the plate; 0: it catches none */      \
-    uint  plate_planes;   /* where planes of the plate begin in the inputs (plate.glsl) */
+    uint  plate_planes;   /* where planes of the plate begin in the inputs (plate.glsl) */        \
+    uint  plate_map;      /* where its map begins there (plate_rays.glsl); 0: there is none */    \
+    float plate_roughness;                                                                        \
+    float plate_reflectance; /* head on; 0: the plate mirrors nothing of the scene */
 
 /* What the kernels count, and what next_dispatch.comp says of the next dispatch. */
 #define COUNTER_MEMBERS                                                                            \
@@ -201,16 +204,16 @@ struct Control {
 
 /* Indices of some words of the control block, for next_dispatch.comp. */
 CONSTANT(ITEMS_WORD, 10);
-CONSTANT(GROUPS_WORD, 54);
-CONSTANT(STOPPED_WORD, 57);
-CONSTANT(RAN_WORD, 58);
+CONSTANT(GROUPS_WORD, 57);
+CONSTANT(STOPPED_WORD, 60);
+CONSTANT(RAN_WORD, 61);
 
 #ifdef __STDC_VERSION__
 typedef struct ControlBlock {
     CONTROL_MEMBERS
     COUNTER_MEMBERS
 } ControlBlock;
-static_assert(sizeof(ControlBlock) == (34 + 26 + MOST_CHAINED) * sizeof(uint32_t), "std430");
+static_assert(sizeof(ControlBlock) == (37 + 26 + MOST_CHAINED) * sizeof(uint32_t), "std430");
 static_assert(sizeof(struct Control) == offsetof(ControlBlock, queued), "the host's part");
 #endif
 
@@ -330,9 +333,16 @@ CONSTANT(ROW_EARLIER, 6);
 CONSTANT(RESULT_ROWS, 7);
 /* Behind these is a row for each light, where they are apart: floats, summed over the rays.  Then
    ROW_COLORS has the rest.  Last are two rows of light on a white plate, where that catches shadows:
-   as it is, and as it would be without the scene. */
+   as it is, and as it would be without the scene.  Behind them are two of what a glossy plate mirrors. */
 CONSTANT(ROW_OF_LIGHTS, 7);
 CONSTANT(CAUGHT_ROWS, 2);
+
+/* The map of a plate is a row for each pixel of the whole picture: three floats of its colour, and how
+   near its surface is, a float whose lowest bits say which neighbours belong to the same surface.
+   Behind them is a row for each block of pixels, with how near the nearest of them is. */
+CONSTANT(PLATE_JOINS_RIGHT, 1);
+CONSTANT(PLATE_JOINS_BELOW, 2);
+CONSTANT(PLATE_BLOCK, 16); /* side of a block, in pixels */
 /* The least samples of a pixel, which may end when they are a power of two.  The error is estimated
    from half as many on, by means of two halves. */
 CONSTANT(LEAST_NOISE_SAMPLES, 16);

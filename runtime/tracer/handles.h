@@ -54,6 +54,7 @@ struct KrsRenderer {
     Kernel pixels[RAY_KINDS][PIXEL_KERNELS];
     Kernel limits[RAY_KINDS];     /* limit.comp, made when it is needed */
     Kernel escapes[RAY_KINDS];    /* escape.comp, made when paths are traced */
+    Kernel escapes_to_plate;      /* the same for paths that may meet a plate */
     Kernel noise;                 /* noise.comp, likewise */
     Kernel plate;                 /* plate.comp, likewise */
     Kernel next_dispatch;         /* on graphics cards only (dispatch.c), */

@@ -328,6 +328,7 @@ size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelStats *kern
             list_kernel(&listing, &renderer->pixels[kind][i]);
         list_kernel(&listing, &renderer->escapes[kind]);
     }
+    list_kernel(&listing, &renderer->escapes_to_plate);
     list_kernel(&listing, &renderer->noise);
     list_kernel(&listing, &renderer->plate);
     list_kernel(&listing, &renderer->next_dispatch);

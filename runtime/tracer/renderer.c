@@ -35,6 +35,9 @@ static const char *const map_defines[RAYS_OF_PATHS][2] = {
     [RAYS_OF_LISTS]     = {SKY_MAP LISTED_RAYS NO_TEXELS, SKY_MAP LISTED_RAYS},
 };
 
+/* The same for paths that may meet the plate of another renderer. */
+static const char *const plate_defines[2] = {PATH_RAYS CATCHES NO_TEXELS, PATH_RAYS CATCHES};
+
 /* A kernel without a scene, for rays of a kind. */
 static KernelRequest request_kernel(KrsRenderer *renderer, Kernel *kernel, const char *file,
                                     RayKind kind)
@@ -120,6 +123,7 @@ void krs_renderer_free(KrsRenderer *renderer)
             kernel_destroy(gpu, &renderer->limits[kind]);
             kernel_destroy(gpu, &renderer->escapes[kind]);
         }
+        kernel_destroy(gpu, &renderer->escapes_to_plate);
         kernel_destroy(gpu, &renderer->noise);
         kernel_destroy(gpu, &renderer->plate);
         kernel_destroy(gpu, &renderer->next_dispatch);
@@ -193,4 +197,17 @@ const Kernel *renderer_plate(KrsRenderer *renderer, double *spirv_ms, double *pi
 {
     return make_ready(renderer, &renderer->plate, "plate.comp", RAYS_OF_CAMERAS, spirv_ms,
                       pipeline_ms);
+}
+
+const Kernel *renderer_escape_of_paths(KrsRendering *rendering)
+{
+    KrsRenderer  *renderer = rendering->renderer;
+    Kernel       *kernel   = &renderer->escapes_to_plate;
+    KernelRequest request  = {
+         kernel, {.file = "escape.comp", .defines = plate_defines[renderer->gpu.texels]}};
+    if (!rendering->catches)
+        return &renderer->escapes[RAYS_OF_PATHS];
+    bool made = kernel->pipeline || kernels_make(renderer, VK_NULL_HANDLE, &request, 1,
+                                                 &rendering->spirv_ms, &rendering->pipeline_ms);
+    return made ? kernel : NULL;
 }

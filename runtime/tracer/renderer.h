@@ -16,6 +16,9 @@ bool renderer_create_pixels(KrsRendering *rendering);
 /* Likewise those of escape.comp. */
 bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
                              double *pipeline_ms);
+/* The kernel of escape.comp for rays of paths, which renderer_create_escapes has made; where paths may
+   meet a plate it is made here.  NULL with the failure noted. */
+const Kernel *renderer_escape_of_paths(KrsRendering *rendering);
 /* The kernel for pixels without a hit. */
 PixelKernel renderer_background(const KrsRendering *rendering);
 /* The kernel that ends rays at given depths, for rays of a kind; NULL with the failure noted. */

@@ -108,7 +108,7 @@ static void want_plate(KernelVariant *to, const KrsRendering *rendering)
 {
     if (!rendering->catches)
         return;
-    define(to, "#define CATCHES\n");
+    define(to, CATCHES);
     if (!wants(to, KRS_FUNCTION_SINES))
         want(to, KRS_FUNCTION_SINES);
 }

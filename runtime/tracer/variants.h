@@ -24,6 +24,7 @@ typedef struct KernelVariant {
 #define PATH_RAYS "#define PATH_RAYS\n"
 /* The sky is a picture (sky_map.glsl). */
 #define SKY_MAP "#define SKY_MAP\n"
+#define CATCHES "#define CATCHES\n"
 /* Rays are those of the picture or those of paths, as the pass says. */
 #define MIXED_RAYS "#define MIXED_RAYS\n"
 

@@ -20,13 +20,14 @@ static const double middle[3] = {0.2, 1, -0.3};
 static const double lamp[3] = {2.5, 4, 1}, sun[3] = {-1 / 1.5, 1 / 1.5, 0.5 / 1.5};
 static const char   ball_text[] =
     "param at_lamp = 1 in [0, 1]; param at_sun = 1 in [0, 1]; param day = 0 in [0, 1];\n"
+    "param shine = 0 in [0, 1];\n"
     "camera { eye: [0, 3, 6], target: [0, 0, 0], fov: 50deg }\n"
     "camera flat { eye: [0, 3, 6], target: [0, 0, 0], projection: \"orthographic\", height: 4 }\n"
     "camera round { eye: [0.5, 1.5, 2.5], target: [0.5, 1.5, 0], projection: \"panorama\" }\n"
     "sky { zenith: [day, day, day], horizon: [day, day, day], ground: [day, day, day] }\n"
     "light lamp { position: [2.5, 4, 1], intensity: 20 * at_lamp }\n"
     "light sun { direction: [-1, 1, 0.5], intensity: 2 * at_sun }\n"
-    "material soot { color: black, specular: 0 }\n"
+    "material soot { color: [shine, shine, shine], specular: 0, metallic: shine, roughness: 0.2 }\n"
     "show sphere(0.6).move([0.2, 1, -0.3]).paint(soot);\n";
 enum { ACROSS = 90, DOWN = 60, PIXELS = ACROSS * DOWN, CAMERAS = 3 };
 
@@ -228,12 +229,30 @@ static void lights_add_up(void **state)
     krs_picture_free(seen);
 }
 
+/* The part of a whole picture that another shows is the same. */
 static void assert_same_caught(const KrsPicture *a, const KrsPicture *b)
 {
     const KrsWindow *window = &b->window;
-    for (uint32_t y = 0; y < window->height; y++)
-        assert_memory_equal(a->caught[(y + window->y) * ACROSS + window->x],
-                            b->caught[y * window->width], window->width * sizeof *b->caught);
+    for (uint32_t y = 0; y < window->height; y++) {
+        const size_t from = (y + window->y) * ACROSS + window->x, to = y * window->width;
+        assert_memory_equal(a->caught[from], b->caught[to], window->width * sizeof *b->caught);
+        assert_memory_equal(&a->color[4 * from], &b->color[4 * to],
+                            4 * window->width * sizeof *b->color);
+        assert_true(!a->mirrored == !b->mirrored);
+        if (a->mirrored)
+            assert_memory_equal(a->mirrored[from], b->mirrored[to],
+                                window->width * sizeof *b->mirrored);
+    }
+}
+
+/* Makes the ball a mirror, and the plate, where paths find what it mirrors. */
+static void make_shiny(Stage *stage, KrsRenderOptions *options)
+{
+    set(stage, "shine", 1);
+    if (options->integrator == KRS_INTEGRATOR_PREVIEW)
+        return;
+    options->catcher           = KRS_CATCHER_GLOSSY;
+    options->catcher_roughness = 0.1;
 }
 
 /* Bands and crops find the same.  Rays of a list do, but for rounding. */
@@ -246,13 +265,15 @@ static void slices_change_nothing(void **state)
     for (int i = 0; i < 2; i++) {
         options.integrator = i ? KRS_INTEGRATOR_PATH : KRS_INTEGRATOR_PREVIEW;
         options.samples    = 2;
-        part               = options;
-        part.crop          = (KrsWindow){21, 13, 40, 30};
+        make_shiny(stage, &options);
+        part              = options;
+        part.crop         = (KrsWindow){21, 13, 40, 30};
         KrsPicture *whole = stage_render(stage, options), *cut = stage_render(stage, part);
         assert_same_caught(whole, cut);
         krs_picture_free(whole);
         krs_picture_free(cut);
     }
+    set(stage, "shine", 0);
 }
 
 static void lists_of_rays_have_plates(void **state)
@@ -305,6 +326,12 @@ static void catchers_are_chosen(void **state)
         if (!isfinite(ground.depth[k]))
             assert_true(caught->caught[k][0] == 1);
     options.depth = NULL;
+    assert_int_equal(krs_film_new(stage->rendering, &options, &film), KRS_BAD_ARGUMENT);
+    options.depth   = ground.depth;
+    options.catcher = KRS_CATCHER_GLOSSY; /* not with previews */
+    assert_int_equal(krs_film_new(stage->rendering, &options, &film), KRS_BAD_ARGUMENT);
+    options.integrator          = KRS_INTEGRATOR_PATH;
+    options.catcher_reflectance = 1;
     assert_int_equal(krs_film_new(stage->rendering, &options, &film), KRS_BAD_ARGUMENT);
     krs_picture_free(plain);
     krs_picture_free(alone);
@@ -374,7 +401,8 @@ static void every_device_finds_the_same(void **state)
     set(plain, "at_lamp", 1);
     set(plain, "at_sun", 0);
     for (int i = 0; i < 2; i++) {
-        options.integrator   = i ? KRS_INTEGRATOR_PATH : KRS_INTEGRATOR_PREVIEW;
+        options.integrator = i ? KRS_INTEGRATOR_PATH : KRS_INTEGRATOR_PREVIEW;
+        make_shiny(plain, &options);
         KrsPicture *expected = stage_render(plain, options);
         for (size_t k = 0; k < sizeof pretences / sizeof *pretences; k++) {
             Stage stage;
@@ -382,6 +410,7 @@ static void every_device_finds_the_same(void **state)
             set(&stage, "day", 1);
             set(&stage, "at_lamp", 1);
             set(&stage, "at_sun", 0);
+            set(&stage, "shine", 1);
             KrsPicture *seen = stage_render(&stage, options);
             assert_same_caught(expected, seen);
             assert_int_equal(krs_renderer_complaints(stage.renderer), 0);
@@ -390,6 +419,7 @@ static void every_device_finds_the_same(void **state)
         }
         krs_picture_free(expected);
     }
+    set(plain, "shine", 0);
 }
 
 static int open_ball(void **state)
