@@ -124,6 +124,19 @@ static LaneHessian hessian_by_partials(const Run *run, const Partials *p)
 
 /* ---- length ---- */
 
+/* The operand that is not 0 all over the box, if there is one only; NODE_NONE: there is not. */
+static uint32_t only_operand(const Run *run, const LaneStep *step)
+{
+    uint32_t only = NODE_NONE;
+    for (uint32_t k = 0; k < step->operand_count; k++)
+        if (!range_is_zero(range_at(run, step->operands[k]))) {
+            if (only != NODE_NONE)
+                return NODE_NONE;
+            only = step->operands[k];
+        }
+    return only;
+}
+
 /* The step that an operand is the result of; NULL: none. */
 static const LaneStep *step_of(const Run *run, uint32_t operand)
 {
@@ -162,12 +175,28 @@ static Range unit_part(const Run *run, uint32_t operand, Range length)
     return corner ? range_hull(unit, minus(unit)) : unit;
 }
 
+/* Of one number alone, whose sign is known, it is that number or its complement. */
+static bool length_of_one(const Run *run, LaneHessian *hessian)
+{
+    uint32_t only = only_operand(run, run->step);
+    if (only == NODE_NONE || !hessian_at(run, only)->known)
+        return false;
+    Range range = range_at(run, only);
+    if (range.low < 0 && range.high > 0)
+        return false;
+    *hessian = NO_BEND;
+    add_hessian(hessian, range_of(range.high > 0 ? 1 : -1), hessian_at(run, only));
+    return true;
+}
+
 /* (sum of a_k^2) - l^2, a_k the derivatives of the components and l those of the length, is at least 0 in all
    directions (Cauchy). */
 static LaneHessian hessian_of_length(const Run *run)
 {
     Range       length = result(run);
     LaneHessian bend = {.known = length.low > 0 && isfinite(length.high)}, sum = NO_BEND;
+    if (length_of_one(run, &sum))
+        return sum;
     if (!bend.known)
         return UNKNOWN_BEND;
     for (uint32_t k = 0; k < run->step->operand_count; k++) {
@@ -230,19 +259,6 @@ static LaneHessian hessian_of_blend(const Run *run)
 }
 
 /* ---- max(a, 0) + min(a, 0) ---- */
-
-/* The operand that is not 0 all over the box, if there is one only; NODE_NONE: there is not. */
-static uint32_t only_operand(const Run *run, const LaneStep *step)
-{
-    uint32_t only = NODE_NONE;
-    for (uint32_t k = 0; k < step->operand_count; k++)
-        if (!range_is_zero(range_at(run, step->operands[k]))) {
-            if (only != NODE_NONE)
-                return NODE_NONE;
-            only = step->operands[k];
-        }
-    return only;
-}
 
 /* What the step, or the length of it alone, cuts at 0: above, for a minimum, or below. */
 static uint32_t cut_at_zero(const Run *run, uint32_t operand, Op least, uint32_t lane)

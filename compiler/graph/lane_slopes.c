@@ -156,9 +156,31 @@ static Range unit_part(Range component, Range length)
     return length.low > 0 ? range_intersect(range_div(component, length), sides) : sides;
 }
 
+/* The operand of a length that alone is not 0 all over the box, if its sign is known: the length is that number, or its
+   complement.  -1: there is none. */
+static int only_component(const Run *run)
+{
+    int only = -1;
+    for (uint32_t k = 0; k < run->step->operand_count; k++) {
+        Range range = range_in(run, (int)k);
+        if (range_is_zero(range))
+            continue;
+        if (only >= 0 || (range.low < 0 && range.high > 0))
+            return -1;
+        only = (int)k;
+    }
+    return only;
+}
+
 /* It is no longer than the derivative of the vector. */
 static LaneSlope slope_of_length(const Run *run)
 {
+    int only = only_component(run);
+    if (only >= 0) {
+        LaneSlope slope = NO_SLOPE;
+        add_times(&slope, range_of(range_in(run, only).high > 0 ? 1 : -1), slope_in(run, only));
+        return slope;
+    }
     double    longest[3] = {0, 0, 0};
     LaneSlope sum        = NO_SLOPE;
     for (uint32_t k = 0; k < run->step->operand_count; k++) {

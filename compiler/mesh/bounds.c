@@ -125,8 +125,8 @@ static void look_closer(Mesher *m, Verifier *verifier, SmoothCell *cell, const P
     }
 }
 
-/* The surface has edges there. */
-static void measure_pieces(Mesher *m, Verifier *verifier, Box box, const Placed *placed,
+/* The surface has edges there.  False: it is made of no pieces. */
+static bool measure_pieces(Mesher *m, Verifier *verifier, Box box, const Placed *placed,
                            size_t count)
 {
     PieceCell cell;
@@ -145,6 +145,14 @@ static void measure_pieces(Mesher *m, Verifier *verifier, Box box, const Placed 
                 tet->state = TET_REFUTED;
         }
     }
+    return cell.known;
+}
+
+/* What all of a cell lacks some of its tetrahedra may have: those that are large are looked at one by one. */
+static bool is_worth_another_look(const Mesher *m, const Placed *placed, size_t count)
+{
+    const Tet *tet = &m->tets.list.items[placed[0].tet];
+    return count > 1 && tets_longest_edge(&m->tets, tet) > LEAST_KNOWN * m->error;
 }
 
 static void look_at_cell(Mesher *m, Verifier *verifier, const Placed *placed, size_t count)
@@ -160,7 +168,7 @@ static void look_at_cell(Mesher *m, Verifier *verifier, const Placed *placed, si
         }
     }
     Box  box = box_and_margin(m->error, low, high), wide = box_and_margin(2 * m->error, low, high);
-    bool entered = field_enter(verifier->field, wide);
+    bool entered = field_enter(verifier->field, wide), known = true;
     if (!entered) {
         for (size_t i = 0; i < count; i++)
             m->tets.list.items[placed[i].tet].state = TET_EMPTY;
@@ -171,8 +179,12 @@ static void look_at_cell(Mesher *m, Verifier *verifier, const Placed *placed, si
     if (cell.known)
         look_closer(m, verifier, &cell, placed, count);
     else if (!cell.empty)
-        measure_pieces(m, verifier, wide, placed, count);
+        known = measure_pieces(m, verifier, wide, placed, count);
     field_leave(verifier->field);
+    if (!known && is_worth_another_look(m, placed, count))
+        for (size_t i = 0; i < count; i++)
+            if (m->tets.list.items[placed[i].tet].state != TET_EMPTY)
+                look_at_cell(m, verifier, &placed[i], 1);
 }
 
 void bound_group(Mesher *m, Verifier *verifier, const Group *group)

@@ -155,28 +155,55 @@ static bool find_faces(const Finding *f, const LaneStep *step, double offset, Fa
 /* sign times an operand, and the offset. */
 static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset);
 
+/* A number below 0 decides no sign of a maximum, and one above 0 none of a minimum. */
+static bool decides_nothing(const Finding *f, uint32_t operand, double sign, double offset,
+                            int choice)
+{
+    Range range = range_of_operand(f, operand);
+    Range value = range_add(range_mul(range_of(sign), range), range_of(offset));
+    bool  sure  = (operand & LANE_SCALAR) ? !isnan(range.low) : f->field->ranges.sure[operand];
+    return sure && (choice == PIECE_MAX ? value.high < 0 : value.low > 0);
+}
+
+/* A minimum or maximum of two, of which one may be left out. */
+static bool add_pair(Finding *f, const uint32_t operands[2], const double signs[2], double offset,
+                     int choice)
+{
+    for (int k = 0; k < 2; k++)
+        if (decides_nothing(f, operands[k], signs[k], offset, choice))
+            return find_pieces(f, operands[1 - k], signs[1 - k], offset);
+    return find_pieces(f, operands[0], signs[0], offset) &&
+           find_pieces(f, operands[1], signs[1], offset) && add_step(f, choice);
+}
+
 static bool add_choice(Finding *f, const LaneStep *step, double sign, double offset, bool greater)
 {
-    return find_pieces(f, step->operands[0], sign, offset) &&
-           find_pieces(f, step->operands[1], sign, offset) &&
-           add_step(f, greater == (sign > 0) ? PIECE_MAX : PIECE_MIN);
+    const double signs[2] = {sign, sign};
+    return add_pair(f, step->operands, signs, offset,
+                    greater == (sign > 0) ? PIECE_MAX : PIECE_MIN);
 }
 
 /* The greater of a number and its complement. */
 static bool add_size(Finding *f, const LaneStep *step, double sign, double offset)
 {
-    return find_pieces(f, step->operands[0], sign, offset) &&
-           find_pieces(f, step->operands[0], -sign, offset) &&
-           add_step(f, sign > 0 ? PIECE_MAX : PIECE_MIN);
+    const uint32_t operands[2] = {step->operands[0], step->operands[0]};
+    const double   signs[2]    = {sign, -sign};
+    return add_pair(f, operands, signs, offset, sign > 0 ? PIECE_MAX : PIECE_MIN);
 }
 
 static bool add_box(Finding *f, const Faces *faces, double sign, double offset)
 {
-    for (size_t i = 0; i < faces->count; i++)
+    int    choice = sign > 0 ? PIECE_MAX : PIECE_MIN;
+    size_t added  = 0;
+    for (size_t i = 0; i < faces->count; i++) {
+        bool last = added == 0 && i + 1 == faces->count;
+        if (!last && decides_nothing(f, faces->operands[i], sign, offset, choice))
+            continue;
         if (!find_pieces(f, faces->operands[i], sign, offset) ||
-            (i > 0 && !add_step(f, sign > 0 ? PIECE_MAX : PIECE_MIN)))
+            (added++ > 0 && !add_step(f, choice)))
             return false;
-    return faces->count > 0;
+    }
+    return added > 0;
 }
 
 /* An operand that is the same everywhere is added to, or taken off, the other one. */

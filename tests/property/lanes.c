@@ -399,6 +399,7 @@ typedef enum Form {
     BLEND_CUBIC,
     BLEND_EXPONENTIAL,
     FACE,
+    LENGTH_OF_ONE,
     QUOTIENT,
     POWER,
     FORMS
@@ -432,6 +433,10 @@ static Node form_node(Graph *g, Form form, Box box)
                                  graph_op2(g, OP_min, q[0], zero));
         return graph_op2(g, OP_add, bent, a);
     }
+    case LENGTH_OF_ONE: {
+        Node one[3] = {zero, graph_op1(g, OP_neg, graph_op1(g, OP_square, far)), zero};
+        return graph_op2(g, OP_add, graph_op1(g, OP_length, graph_op(g, OP_vec3, one)), a);
+    }
     case QUOTIENT: return graph_op2(g, OP_div, a, far);
     default: return graph_op2(g, OP_pow, far, graph_number(g, 2.5));
     }
@@ -450,6 +455,8 @@ static void hessians_of_forms_hold(void **state)
             for (int i = 0; i < ROOTS; i++)
                 pair.roots[i] = form_node(b->graph, (Form)form, box);
             pair_finish(b, &pair, NULL);
+            if (try_slopes(b, &pair, box, box, &known))
+                fail_msg("form %d grows faster than its derivatives", form);
             if (try_hessians(b, &pair, box, box, 1, &known))
                 fail_msg("form %d bends more than its second derivatives", form);
             bounded += known;

@@ -118,11 +118,11 @@ static double value_of(const FieldPieces *pieces, const double *values)
     return stack[0];
 }
 
-/* Returns in how many boxes there are several. */
+/* Returns in how many boxes there are some, and points on both sides. */
 static size_t try_pieces(const char *text)
 {
     Opened *o       = malloc(sizeof *o);
-    size_t  several = 0;
+    size_t  crossed = 0;
     assert_non_null(o);
     open_field(o, text);
     for (int i = 0; i < BOXES; i++) {
@@ -132,6 +132,7 @@ static size_t try_pieces(const char *text)
         if (!field_enter(&o->field, box))
             continue;
         if (field_pieces(&o->field, box, &pieces)) {
+            bool sides[2] = {false, false};
             points_in(box, points);
             field_distances(&o->field, (const double(*)[3])points, POINTS, distances);
             field_piece_values(&o->field, &pieces, (const double(*)[3])points, POINTS, values);
@@ -139,14 +140,15 @@ static size_t try_pieces(const char *text)
                 double value = value_of(&pieces, values + (size_t)k * pieces.count);
                 if (fabs(distances[k]) > 1e-9)
                     assert_true((value > 0) == (distances[k] > 0));
+                sides[distances[k] > 0] = true;
             }
-            several += pieces.count > 1;
+            crossed += sides[0] && sides[1];
         }
         field_leave(&o->field);
     }
     close_field(o);
     free(o);
-    return several;
+    return crossed;
 }
 
 static void pieces_have_the_sign_of_the_distance(void **context)
@@ -154,10 +156,32 @@ static void pieces_have_the_sign_of_the_distance(void **context)
     (void)context;
     assert_true(try_pieces("show box([2, 1, 1.5]);") > 20);
     assert_true(try_pieces("show box([2, 1, 1.5]).offset(-0.2);") > 20);
-    try_pieces("show box([2, 1, 1.5]).round(0.2);");
+    assert_true(try_pieces("show box([2, 1, 1.5]).round(0.2);") > 0);
     assert_true(try_pieces("show rectangle([2, 1]).extrude(1.5).offset(0.05);") > 0);
     assert_true(try_pieces("show box([2, 1, 1.5]).round(0.2) - cylinder(0.5, 3).offset(0.1);") > 0);
     assert_true(try_pieces("show cylinder(0.2, 3).move([0.8, 0, 0]).repeat_polar(5);") > 0);
+}
+
+/* In one half of a plate, beyond its middle plane, only one of its faces decides. */
+static void faces_that_are_far_are_no_pieces(void **context)
+{
+    static const char *const PLATES[] = {"show box([2, 0.4, 1.5]);",
+                                         "show box([2, 0.4, 1.5]).round(0.1);",
+                                         "show box([2, 0.4, 1.5]) | sphere(0.2).move([0, -2, 0]);"};
+    static const Box         HALF     = {{{-0.3, 0.3}, {-0.1, 0.4}, {-0.3, 0.3}}};
+    (void)context;
+    for (size_t i = 0; i < sizeof PLATES / sizeof *PLATES; i++) {
+        Opened     *o = malloc(sizeof *o);
+        FieldPieces pieces;
+        assert_non_null(o);
+        open_field(o, PLATES[i]);
+        assert_true(field_enter(&o->field, HALF));
+        assert_true(field_pieces(&o->field, HALF, &pieces));
+        assert_int_equal(pieces.count, 1);
+        close_field(o);
+        free(o);
+    }
+    assert_true(try_pieces("show box([2, 0.4, 1.5]).round(0.1) - box([0.3, 1, 0.3]);") > 20);
 }
 
 int main(void)
@@ -165,6 +189,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ranges_of_outlines_hold),
         cmocka_unit_test(pieces_have_the_sign_of_the_distance),
+        cmocka_unit_test(faces_that_are_far_are_no_pieces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
