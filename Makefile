@@ -76,6 +76,8 @@ SHADERS  := $(sort $(wildcard runtime/shaders/*.comp runtime/shaders/*.glsl runt
 MODULES  := $(shell grep -L 'include "scene.glsl"' runtime/shaders/*.comp)
 MODULES  := $(MODULES:runtime/shaders/%=$(B)/modules/%.spv) \
             $(addprefix $(B)/modules/, escape.comp-PATH_RAYS.spv background.comp-SKY_MAP.spv)
+# lavapipe reads the frame as texels (frame.glsl).
+MODULES  += $(MODULES:%.spv=%-FRAME_TEXELS.spv)
 EXAMPLES := $(sort $(wildcard examples/*.krs))
 
 STYLE    := -std=c17 -D_GNU_SOURCE -Wall -Wextra -Wpedantic -Wshadow -Werror -I. -MMD -MP -pthread
@@ -132,20 +134,26 @@ $(B)/shader_files.c: $(B)/embed $(SHADERS)
 	@$(B)/embed shader_files runtime/shaders/ $(SHADERS) >$@
 $(B)/module_files.c: $(B)/embed $(MODULES)
 	@$(B)/embed module_files $(B)/modules/ $(MODULES) >$@
-# A module of a kernel, without defines and with one.
+# A module of a kernel: FILE.spv, or FILE-NAME-NAME.spv with these names defined.
 define MAKE_MODULE
 	@mkdir -p $(@D)
-	@echo "shader $<$(if $(1), $(1))"
-	@glslangValidator -V --target-env vulkan1.1 $(1) -I. -Iruntime/shaders -Icompiler/print/glsl -o $@ $< >/dev/null
+	@echo "shader $<$(addprefix -D,$(1))"
+	@glslangValidator -V --target-env vulkan1.1 $(addprefix -D,$(1)) -I. -Iruntime/shaders -Icompiler/print/glsl -o $@ $< >/dev/null
 	@spirv-opt --target-env=vulkan1.1 -O $@ -o $@
 	@spirv-val --target-env vulkan1.1 $@
 endef
 $(B)/modules/%.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
 	$(call MAKE_MODULE)
+$(B)/modules/%-FRAME_TEXELS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
+	$(call MAKE_MODULE,FRAME_TEXELS)
 $(B)/modules/%-PATH_RAYS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
-	$(call MAKE_MODULE,-DPATH_RAYS)
+	$(call MAKE_MODULE,PATH_RAYS)
+$(B)/modules/%-PATH_RAYS-FRAME_TEXELS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
+	$(call MAKE_MODULE,PATH_RAYS FRAME_TEXELS)
 $(B)/modules/%-SKY_MAP.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
-	$(call MAKE_MODULE,-DSKY_MAP)
+	$(call MAKE_MODULE,SKY_MAP)
+$(B)/modules/%-SKY_MAP-FRAME_TEXELS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
+	$(call MAKE_MODULE,SKY_MAP FRAME_TEXELS)
 $(B)/embed: compiler/base/embed/embed.c
 	@mkdir -p $(@D)
 	@$(CC) $(STYLE) -O1 -o $@ $<

@@ -13,6 +13,9 @@ for kernel in runtime/shaders/*.comp; do
     glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl -DNO_TEXELS \
         -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL without texels" $?
+    glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl -DFRAME_TEXELS \
+        -o /dev/null "$kernel" >/dev/null
+    report "$kernel is valid GLSL with the frame as texels" $?
     glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl -DSUBGROUPS \
         -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL with sums of subgroups" $?

@@ -54,18 +54,21 @@ static void *compile(void *user)
     return NULL;
 }
 
-/* The SPIR-V that the program carries of a kernel without a scene: FILE.spv, or FILE-NAME.spv of a
-   kernel for which this name alone is defined. */
+/* The SPIR-V that the program carries of a kernel without a scene: FILE.spv, or FILE-NAME-NAME.spv of
+   a kernel for which these names are defined. */
 static const EmbeddedFile *find_module(const KernelSource *source)
 {
-    char wanted[96], defined[32] = "";
-    int  length = 0; /* of the defines, if there is one alone */
-    if (source->defines)
-        sscanf(source->defines, "#define %31s%n", defined, &length);
-    if (source->scene || (source->defines && strcmp(source->defines + length, "\n") != 0))
+    char        wanted[128], defined[32];
+    const char *defines = source->defines ? source->defines : "";
+    size_t      length  = (size_t)snprintf(wanted, sizeof wanted, "%s", source->file);
+    if (source->scene)
         return NULL;
-    snprintf(wanted, sizeof wanted, "%s%s%s.spv", source->file, source->defines ? "-" : "",
-             defined);
+    for (int end = 0;
+         length < sizeof wanted && sscanf(defines, "#define %31s%n", defined, &end) == 1;
+         defines += end)
+        length += (size_t)snprintf(wanted + length, sizeof wanted - length, "-%s", defined);
+    if (length < sizeof wanted)
+        snprintf(wanted + length, sizeof wanted - length, ".spv");
     for (const EmbeddedFile *file = module_files; file->name; file++)
         if (strcmp(file->name, wanted) == 0)
             return file;

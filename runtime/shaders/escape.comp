@@ -213,7 +213,7 @@ void list_hits(uint first, uint hits)
 #ifdef PATH_RAYS
 void do_item(uint number)
 {
-    uint slot = tiles[number], unresolved = 0u;
+    uint slot = load_tile_word(number), unresolved = 0u;
     uvec2 pixel = pixel_of(slot);
     if (follow(pixel, index_of(pixel), unresolved))
         pixel_lists[atomicAdd(counts.hit_count, 1u)] = slot;

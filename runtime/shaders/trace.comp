@@ -162,7 +162,7 @@ TileStart load_tile(uint number)
     bool  small = control.phase == TRACE_BEAMS_4;
     bool  exists = control.source != ITEMS_QUEUED && number <= tile_of_item(control.items - 1u);
     if (exists && (is_ray || small) && control.listed != 0u)
-        number = tiles[number];
+        number = load_tile_word(number);
     uvec2 cell = is_ray || small ? find_cell(number, count_8.x) : cell_of_beam(number);
     uvec2 tile = cell + (large ? first_32 : first_8);
     vec4  starts = vec4(0.0);
@@ -305,7 +305,7 @@ void begin_item(uint number, bool saved)
     uvec2 pixel = 8u * item_tile + 4u * half_tile + uvec2(number & 3u, number >> 2u & 3u);
     uvec2 local = pixel - work.corner;
 #ifdef PATH_RAYS
-    local = pixel_of(saved ? 0u : tiles[number]);
+    local = pixel_of(saved ? 0u : load_tile_word(number));
     pixel = work.corner + local;
 #endif
     uint  index = local.y * work.extent.x + local.x;

@@ -45,7 +45,10 @@ CONSTANT(END_TEXELS_BINDING, 10);
 CONSTANT(HIT_TEXELS_BINDING, 11);
 CONSTANT(PIXEL_LIST_TEXELS_BINDING, 12);
 CONSTANT(RESULT_TEXELS_BINDING, 13);
-CONSTANT(FRAME_BINDINGS, 14); /* how many */
+CONSTANT(TILE_TEXELS_BINDING, 14);
+CONSTANT(FRAME_TEXELS_BINDING, 15); /* with FRAME_TEXELS (frame.glsl) */
+CONSTANT(CONTROL_TEXELS_BINDING, 16);
+CONSTANT(FRAME_BINDINGS, 17); /* how many */
 
 /* ---- Binding in set 0, of pictures: the table of a sky that is a picture ---- */
 
@@ -68,34 +71,51 @@ CONSTANT(SKY_ITSELF, 512 + 4 * 2048 + 8192 + 32768);
 
 /* ---- The frame and the dispatch ---- */
 
-/* uniform FrameBlock, std140. */
+/* The rows of four numbers of the frame: the number of the row, then its members.  ONE is a vec4, TWO
+   a vec3 and a float, THREE a vec2 and two floats; and there are rows of FLOATS and of UINTS. */
+#define FRAME_ROWS(ONE, TWO, THREE, FLOATS, UINTS)                                                     \
+    /* Of a sky that is a picture: its columns and rows, or 0; its rotation in radians; a factor. */   \
+    /* It comes first: lavapipe compiles kernels anew for each value of a block's first number. */     \
+    ONE(0, sky_map)                                                                                    \
+    TWO(1, eye, farthest) /* no ray goes farther */                                                    \
+    ONE(2, right)         /* to the edges of the picture; at distance 1 in perspective */              \
+    ONE(3, up)                                                                                         \
+    ONE(4, forward) /* unit */                                                                         \
+    ONE(5, low)     /* a box around the scene */                                                       \
+    ONE(6, high)                                                                                       \
+    ONE(7, zenith)                                                                                     \
+    ONE(8, horizon)                                                                                    \
+    ONE(9, ground)                                                                                     \
+    ONE(10, fog)       /* its color, its density at its base */                                        \
+    ONE(11, fog_level) /* how fast it falls with the height, height of its base, 0, 0 */               \
+    /* The size of the picture in pixels; a pixel at distance t is base + slope t wide. */             \
+    THREE(12, size, pixel_base, pixel_slope)                                                           \
+    /* Permitted distance of a hit from the surface, in pixels; the longest ray for occlusion; */      \
+    /* radius of the taps for a normal, in pixels; mean irradiance by the sky, which paths use. */     \
+    FLOATS(13, error, occlusion_reach, normal_reach, sky_power)                                        \
+    /* Most steps of a ray; balls around what emits light. */                                          \
+    UINTS(14, most_steps, emissive_count, gap_a, gap_b)                                                \
+    /* With LENS: the radius of the lens in `right` and in `up`, 1 / the distance of what is sharp, */ \
+    /* corners of the aperture; 0: it is round. */                                                     \
+    ONE(15, lens)                                                                                      \
+    /* Of the picture in half widths and half heights; how far the eye of a panorama is to the */      \
+    /* right, for stereo; 0. */                                                                        \
+    ONE(16, shift)
+
+/* Members of a struct, of rows. */
+#define MEMBER_OF_ONE(row, a) vec4 a;
+#define MEMBERS_OF_TWO(row, a, b) \
+    vec3  a;                      \
+    float b;
+#define MEMBERS_OF_THREE(row, a, b, c) \
+    vec2  a;                           \
+    float b, c;
+#define MEMBERS_OF_FLOATS(row, a, b, c, d) float a, b, c, d;
+#define MEMBERS_OF_UINTS(row, a, b, c, d)  uint a, b, c, d;
+
+/* uniform FrameBlock, std140; lavapipe reads it as texels (frame.glsl). */
 struct Frame {
-    /* Of a sky that is a picture: its columns and rows, or 0; its rotation in radians; a factor.  It
-       comes first: lavapipe compiles kernels anew for each value of a block's first number. */
-    vec4  sky_map;
-    vec3  eye;
-    float farthest;  /* no ray goes farther */
-    vec4  right, up; /* to the edges of the picture; at distance 1 in perspective */
-    vec4  forward;   /* unit */
-    vec4  low, high; /* a box around the scene */
-    vec4  zenith, horizon, ground;
-    vec4  fog;        /* its color, its density at its base */
-    vec4  fog_level;  /* how fast it falls with the height, height of its base, 0, 0 */
-    vec2  size;       /* of the picture in pixels */
-    float pixel_base; /* a pixel at distance t is base + slope t wide */
-    float pixel_slope;
-    float error;           /* permitted distance of a hit from the surface, in pixels */
-    float occlusion_reach; /* the longest ray for occlusion */
-    uint  most_steps;
-    float normal_reach; /* radius of the taps for a normal, in pixels */
-    /* With LENS: the radius of the lens in `right` and in `up`, 1 / the distance of what is sharp,
-       corners of the aperture; 0: it is round. */
-    vec4  lens;
-    float sky_power; /* the mean irradiance by the sky, by which paths choose it */
-    uint  emissive_count;
-    uint  gap_a, gap_b;
-    vec4  shift; /* of the picture in half widths and half heights; how far the eye of a panorama is
-                   to the right, for stereo; 0 */
+    FRAME_ROWS(MEMBER_OF_ONE, MEMBERS_OF_TWO, MEMBERS_OF_THREE, MEMBERS_OF_FLOATS, MEMBERS_OF_UINTS)
 };
 
 /* push_constant WorkBlock, std430. */
@@ -124,8 +144,13 @@ struct PointWork {
 
 #ifdef __STDC_VERSION__
 typedef struct Frame FrameBlock;
+#define ROW_BEGINS(row, a)                  static_assert(offsetof(FrameBlock, a) == 16 * (row), "std140");
+#define ROW_OF_TWO_BEGINS(row, a, b)        ROW_BEGINS(row, a)
+#define ROW_OF_THREE_BEGINS(row, a, b, c)   ROW_BEGINS(row, a)
+#define ROW_OF_FOUR_BEGINS(row, a, b, c, d) ROW_BEGINS(row, a)
+FRAME_ROWS(ROW_BEGINS, ROW_OF_TWO_BEGINS, ROW_OF_THREE_BEGINS, ROW_OF_FOUR_BEGINS,
+           ROW_OF_FOUR_BEGINS)
 static_assert(sizeof(FrameBlock) == 272, "std140");
-static_assert(offsetof(FrameBlock, sky_map) == 0, "what no camera changes comes first");
 typedef struct Work WorkBlock;
 static_assert(sizeof(WorkBlock) == 40, "std430");
 typedef struct NextDispatch NextDispatchBlock;
@@ -136,47 +161,56 @@ static_assert(sizeof(PointWorkBlock) == 8, "std430");
 
 /* ---- The control block ---- */
 
-/* What the host tells a kernel.  Values that decide branches are here, not among the constants of a
-   dispatch.  For each set of constants that decides a branch lavapipe would compile the kernel
-   again, and keep it. */
-#define CONTROL_MEMBERS                                                                           \
-    uint  projection;     /* PERSPECTIVE and so on */                                             \
-    uint  phase;          /* of the kernel, see below */                                          \
-    uint  first_ray;      /* 1: this is the first ray of each pixel */                            \
-    uint  light;          /* number of the light that a dispatch is about */                      \
-    uint  lights;         /* number of all lights */                                              \
-    uint  ray;            /* number of the ray within its pixel */                                \
-    uint  seed;           /* of random numbers */                                                 \
-    uint  starts_from;    /* rays start at 1: the ends of beams of tiles, 2: of their quarters */ \
-    uint  listed;         /* 1: only listed tiles have rays */                                    \
-    uint  source;         /* of the items: ITEMS_... */                                           \
-    uint  items;          /* number of items */                                                   \
-    uint  items_per_lane; /* at most */                                                           \
-    uint  reading;        /* where the queue or list that is read begins */                       \
-    uint  writing;        /* where the queue that is written begins */                            \
-    uint  value;          /* VALUE_...: the number of LIGHTING that is computed */                \
-    uint  rows;           /* wanted rows of results: bit ROW_... of each */                       \
-    uint  by_march_group; /* 1: hits know their march group, and are listed by it */              \
-    uint  no_occlusion;   /* 1: there is no occlusion */                                          \
-    uint  window;         /* column | row << 16 of the first tile with a beam, in the band */     \
-    uint  across;         /* tiles with beams in a row */                                         \
-    uint  rays;           /* of each pixel */                                                     \
-    uint  filters;        /* 1: neighbours share what their rays find (shared.glsl) */            \
-    float most_radiance;  /* of a ray: more is clamped */                                         \
-    uint  no_background;  /* 1: where nothing is hit there is no light */                         \
-    uint  limits;         /* where depths of pixels begin in the inputs (limit.comp) */           \
-    uint  sampled_at;     /* where words of quarters begin in `tiles`; 0: all pixels get rays */  \
-    float noise;          /* error at which samples of a pixel end */                             \
-    float noise_floor;    /* light to which the error of black pixels is relative */              \
-    uint  of_paths;       /* 1: the rays are those of paths that have begun (MIXED_RAYS) */       \
-    uint  color_row;      /* the row of results to which light is added: ROW_... */               \
-    uint  apart;          /* 1: the light of each light has a row of results of its own */        \
-    uint  count;          /* of the lights that a pass of shade.comp adds */                      \
-    uint  caught;         /* the row of results of light on the plate; 0: it catches none */      \
-    uint  plate_planes;   /* where planes of the plate begin in the inputs (plate.glsl) */        \
-    uint  plate_map;      /* where its map begins there (plate_rays.glsl); 0: there is none */    \
-    float plate_roughness;                                                                        \
-    float plate_reflectance; /* head on; 0: the plate mirrors nothing of the scene */
+/* What the host tells a kernel, in rows of four numbers as above.  Values that decide branches are
+   here, not among the constants of a dispatch.  For each set of constants that decides a branch
+   lavapipe would compile the kernel again, and keep it. */
+#define CONTROL_ROWS(FLOATS, UINTS)                                                        \
+    /* projection: PERSPECTIVE and so on */                                                \
+    /* phase: of the kernel, see below */                                                  \
+    /* first_ray: 1: this is the first ray of each pixel */                                \
+    /* light: number of the light that a dispatch is about */                              \
+    UINTS(0, projection, phase, first_ray, light)                                          \
+    /* lights: number of all lights */                                                     \
+    /* ray: number of the ray within its pixel */                                          \
+    /* seed: of random numbers */                                                          \
+    /* starts_from: rays start at 1: the ends of beams of tiles, 2: of their quarters */   \
+    UINTS(1, lights, ray, seed, starts_from)                                               \
+    /* listed: 1: only listed tiles have rays */                                           \
+    /* source: of the items: ITEMS_... */                                                  \
+    /* items: number of items */                                                           \
+    /* items_per_lane: at most */                                                          \
+    UINTS(2, listed, source, items, items_per_lane)                                        \
+    /* reading: where the queue or list that is read begins */                             \
+    /* writing: where the queue that is written begins */                                  \
+    /* value: VALUE_...: the number of LIGHTING that is computed */                        \
+    /* rows: wanted rows of results: bit ROW_... of each */                                \
+    UINTS(3, reading, writing, value, rows)                                                \
+    /* by_march_group: 1: hits know their march group, and are listed by it */             \
+    /* no_occlusion: 1: there is no occlusion */                                           \
+    /* window: column | row << 16 of the first tile with a beam, in the band */            \
+    /* across: tiles with beams in a row */                                                \
+    UINTS(4, by_march_group, no_occlusion, window, across)                                 \
+    /* rays: of each pixel */                                                              \
+    /* filters: 1: neighbours share what their rays find (shared.glsl) */                  \
+    /* no_background: 1: where nothing is hit there is no light */                         \
+    /* limits: where depths of pixels begin in the inputs (limit.comp) */                  \
+    UINTS(5, rays, filters, no_background, limits)                                         \
+    /* sampled_at: where words of quarters begin in `tiles`; 0: all pixels get rays */     \
+    /* of_paths: 1: the rays are those of paths that have begun (MIXED_RAYS) */            \
+    /* color_row: the row of results to which light is added: ROW_... */                   \
+    /* apart: 1: the light of each light has a row of results of its own */                \
+    UINTS(6, sampled_at, of_paths, color_row, apart)                                       \
+    /* count: of the lights that a pass of shade.comp adds */                              \
+    /* caught: the row of results of light on the plate; 0: it catches none */             \
+    /* plate_planes: where planes of the plate begin in the inputs (plate.glsl) */         \
+    /* plate_map: where its map begins there (plate_rays.glsl); 0: there is none */        \
+    UINTS(7, count, caught, plate_planes, plate_map)                                       \
+    /* most_radiance: of a ray: more is clamped */                                         \
+    /* noise: error at which samples of a pixel end */                                     \
+    /* noise_floor: light to which the error of black pixels is relative */                \
+    /* plate_roughness, plate_reflectance: of the plate; head on, 0: it mirrors nothing */ \
+    FLOATS(8, most_radiance, noise, noise_floor, plate_roughness)                          \
+    FLOATS(9, plate_reflectance, gap_a, gap_b, gap_c)
 
 /* What the kernels count, and what next_dispatch.comp says of the next dispatch. */
 #define COUNTER_MEMBERS                                                                            \
@@ -199,21 +233,24 @@ static_assert(sizeof(PointWorkBlock) == 8, "std430");
 
 /* buffer ControlBlock, std430: the counters follow these members. */
 struct Control {
-    CONTROL_MEMBERS
+    CONTROL_ROWS(MEMBERS_OF_FLOATS, MEMBERS_OF_UINTS)
 };
 
 /* Indices of some words of the control block, for next_dispatch.comp. */
 CONSTANT(ITEMS_WORD, 10);
-CONSTANT(GROUPS_WORD, 57);
-CONSTANT(STOPPED_WORD, 60);
-CONSTANT(RAN_WORD, 61);
+CONSTANT(GROUPS_WORD, 60);
+CONSTANT(STOPPED_WORD, 63);
+CONSTANT(RAN_WORD, 64);
 
 #ifdef __STDC_VERSION__
 typedef struct ControlBlock {
-    CONTROL_MEMBERS
+    CONTROL_ROWS(MEMBERS_OF_FLOATS, MEMBERS_OF_UINTS)
     COUNTER_MEMBERS
 } ControlBlock;
-static_assert(sizeof(ControlBlock) == (37 + 26 + MOST_CHAINED) * sizeof(uint32_t), "std430");
+static_assert(sizeof(ControlBlock) == (40 + 26 + MOST_CHAINED) * sizeof(uint32_t), "std430");
+#define ROW_OF_CONTROL_BEGINS(row, a, b, c, d) \
+    static_assert(offsetof(ControlBlock, a) == 16 * (row), "std430");
+CONTROL_ROWS(ROW_OF_CONTROL_BEGINS, ROW_OF_CONTROL_BEGINS)
 static_assert(sizeof(struct Control) == offsetof(ControlBlock, queued), "the host's part");
 #endif
 

@@ -47,7 +47,7 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths, bo
     const bool         read_in_place = gpu_is_cpu(gpu); /* the host reads the device's buffer */
     const Where        shared        = read_in_place ? SHARED : ON_DEVICE;
     const VkDeviceSize hit           = HIT_BYTES + (paths ? PATH_BYTES : 0);
-    const VkDeviceSize beams = most_beams(pixels), tiles = paths ? pixels : beams;
+    const VkDeviceSize beams = most_beams(pixels), tiles = ((paths ? pixels : beams) + 3) / 4 * 4;
     const VkDeviceSize results = pixels * rows_of_results(noise, lights) * RESULT_BYTES;
     const struct {
         Buffer      *buffer;
@@ -63,8 +63,8 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels, bool paths, bo
         {&band->queue, QUEUE_BINDING, PIXEL_LIST_TEXELS_BINDING, 2 * pixels * MARCH_BYTES,
          ON_DEVICE, "queue of rays"},
         {&band->taken, TAKEN_BINDING, 0, beams * sizeof(uint32_t), ON_DEVICE, "shares of groups"},
-        {&band->tiles, TILES_BINDING, 0, (tiles + (noise ? beams : 0)) * sizeof(uint32_t),
-         ON_DEVICE, "tiles"},
+        {&band->tiles, TILES_BINDING, TILE_TEXELS_BINDING,
+         (tiles + (noise ? beams : 0)) * sizeof(uint32_t), ON_DEVICE, "tiles"},
         {&band->fetched, 0, 0, read_in_place ? 0 : results, SHARED, "pixels to read"},
     };
     if (band->pixels >= pixels && (band->has_paths || !paths) && (band->has_noise || !noise) &&

@@ -24,7 +24,7 @@ bool point_query_prepare(KrsRendering *rendering)
         !buffer_create(gpu, &rendering->answers, POINTS_AT_ONCE * sizeof(AnswerBlock), SHARED,
                        "answers"))
         return false;
-    rendering_bind(rendering, rendering->points_set, FRAME_BINDING, &rendering->frame);
+    rendering_bind_frame(rendering, rendering->points_set);
     rendering_bind(rendering, rendering->points_set, POINTS_BINDING, &rendering->points);
     rendering_bind(rendering, rendering->points_set, ANSWERS_BINDING, &rendering->answers);
     return true;

@@ -117,7 +117,6 @@ static bool prepare(KrsRendering *rendering)
             return false;
         rendering_bind(rendering, rendering->points_set, wanted[i].binding, wanted[i].buffer);
     }
-    rendering_bind(rendering, rendering->points_set, CONTROL_BINDING, rendering_control(rendering));
     return true;
 }
 

@@ -19,31 +19,33 @@ KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
     return gpu_list(&gpu, devices, capacity, count) ? KRS_OK : gpu.status;
 }
 
-/* Defines of kernels without a scene: without texels, and with them. */
-static const char *const ray_defines[RAY_KINDS][2] = {
-    [RAYS_OF_CAMERAS]   = {NO_TEXELS, NULL},
-    [RAYS_OF_PANORAMAS] = {PANORAMIC NO_TEXELS, PANORAMIC},
-    [RAYS_OF_LENSES]    = {LENS NO_TEXELS, LENS},
-    [RAYS_OF_LISTS]     = {LISTED_RAYS NO_TEXELS, LISTED_RAYS},
-    [RAYS_OF_PATHS]     = {PATH_RAYS NO_TEXELS, PATH_RAYS},
+/* Defines of kernels without a scene, by how they read. */
+#define ALL_READS(own)                          \
+    {                                           \
+        own NO_TEXELS, own "", own FRAME_TEXELS \
+    }
+static const char *const ray_defines[RAY_KINDS][KERNEL_READS] = {
+    [RAYS_OF_CAMERAS] = ALL_READS(),        [RAYS_OF_PANORAMAS] = ALL_READS(PANORAMIC),
+    [RAYS_OF_LENSES] = ALL_READS(LENS),     [RAYS_OF_LISTS] = ALL_READS(LISTED_RAYS),
+    [RAYS_OF_PATHS] = ALL_READS(PATH_RAYS),
 };
 /* The same where the sky is a picture. */
-static const char *const map_defines[RAYS_OF_PATHS][2] = {
-    [RAYS_OF_CAMERAS]   = {SKY_MAP NO_TEXELS, SKY_MAP},
-    [RAYS_OF_PANORAMAS] = {SKY_MAP PANORAMIC NO_TEXELS, SKY_MAP PANORAMIC},
-    [RAYS_OF_LENSES]    = {SKY_MAP LENS NO_TEXELS, SKY_MAP LENS},
-    [RAYS_OF_LISTS]     = {SKY_MAP LISTED_RAYS NO_TEXELS, SKY_MAP LISTED_RAYS},
+static const char *const map_defines[RAYS_OF_PATHS][KERNEL_READS] = {
+    [RAYS_OF_CAMERAS]   = ALL_READS(SKY_MAP),
+    [RAYS_OF_PANORAMAS] = ALL_READS(SKY_MAP PANORAMIC),
+    [RAYS_OF_LENSES]    = ALL_READS(SKY_MAP LENS),
+    [RAYS_OF_LISTS]     = ALL_READS(SKY_MAP LISTED_RAYS),
 };
 
 /* The same for paths that may meet the plate of another renderer. */
-static const char *const plate_defines[2] = {PATH_RAYS CATCHES NO_TEXELS, PATH_RAYS CATCHES};
+static const char *const plate_defines[KERNEL_READS] = ALL_READS(PATH_RAYS CATCHES);
 
 /* A kernel without a scene, for rays of a kind. */
 static KernelRequest request_kernel(KrsRenderer *renderer, Kernel *kernel, const char *file,
                                     RayKind kind)
 {
-    return (KernelRequest){kernel,
-                           {.file = file, .defines = ray_defines[kind][renderer->gpu.texels]}};
+    const KernelReads reads = variants_reads(&renderer->gpu);
+    return (KernelRequest){kernel, {.file = file, .defines = ray_defines[kind][reads]}};
 }
 
 PixelKernel renderer_background(const KrsRendering *rendering)
@@ -69,7 +71,7 @@ size_t renderer_request_pixels(const KrsRendering *rendering, KernelRequest *req
             continue;
         requests[count] = request_kernel(renderer, &renderer->pixels[kind][i], files[i], kind);
         if (i == PIXELS_BACKGROUND_OF_MAP)
-            requests[count].source.defines = map_defines[kind][renderer->gpu.texels];
+            requests[count].source.defines = map_defines[kind][variants_reads(&renderer->gpu)];
         count++;
     }
     return count;
@@ -204,7 +206,7 @@ const Kernel *renderer_escape_of_paths(KrsRendering *rendering)
     KrsRenderer  *renderer = rendering->renderer;
     Kernel       *kernel   = &renderer->escapes_to_plate;
     KernelRequest request  = {
-         kernel, {.file = "escape.comp", .defines = plate_defines[renderer->gpu.texels]}};
+         kernel, {.file = "escape.comp", .defines = plate_defines[variants_reads(&renderer->gpu)]}};
     if (!rendering->catches)
         return &renderer->escapes[RAYS_OF_PATHS];
     bool made = kernel->pipeline || kernels_make(renderer, VK_NULL_HANDLE, &request, 1,

@@ -66,6 +66,15 @@ failed:
     return false;
 }
 
+void rendering_bind_frame(KrsRendering *rendering, VkDescriptorSet set)
+{
+    const Buffer *control = rendering_control(rendering);
+    rendering_bind(rendering, set, FRAME_BINDING, &rendering->frame);
+    rendering_bind(rendering, set, FRAME_TEXELS_BINDING, &rendering->frame);
+    rendering_bind(rendering, set, CONTROL_BINDING, control);
+    rendering_bind(rendering, set, CONTROL_TEXELS_BINDING, control);
+}
+
 static void bind_scene(KrsRendering *rendering)
 {
     layouts_bind_scene(&rendering->renderer->gpu, rendering->scene_set, PARAMETERS_BINDING,
@@ -97,8 +106,11 @@ static bool buffers_create(KrsRendering *rendering)
         (!gpu_is_cpu(gpu) && !buffer_create(gpu, &rendering->device_control, sizeof(ControlBlock),
                                             ON_DEVICE, "control block")))
         return false;
-    rendering_bind(rendering, rendering->band_set, FRAME_BINDING, &rendering->frame);
-    rendering_bind(rendering, rendering->band_set, CONTROL_BINDING, rendering_control(rendering));
+    Buffer *control = gpu_is_cpu(gpu) ? &rendering->control : &rendering->device_control;
+    if (!layouts_view_texels(gpu, FRAME_TEXELS_BINDING, &rendering->frame, "camera") ||
+        !layouts_view_texels(gpu, CONTROL_TEXELS_BINDING, control, "control block"))
+        return false;
+    rendering_bind_frame(rendering, rendering->band_set);
     return true;
 }
 

@@ -30,6 +30,8 @@ uint32_t rendering_spread(const KrsRendering *rendering, uint32_t count);
 /* Points a binding of set 1 at a buffer. */
 void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding,
                     const Buffer *buffer);
+/* Points the bindings of the frame and of the control block at those of the rendering. */
+void rendering_bind_frame(KrsRendering *rendering, VkDescriptorSet set);
 /* As gpu_begin and gpu_finish.  They also copy the control block to the kernels, and the counters
    back. */
 bool rendering_begin(KrsRendering *rendering);

@@ -129,6 +129,12 @@ static void want_materials(KernelVariant *to, const KrsRendering *rendering)
 
 /* ---- variants for a rendering ---- */
 
+/* A graphics card has registers for what all lanes read from a block. */
+KernelReads variants_reads(const Gpu *gpu)
+{
+    return !gpu->texels ? READ_BUFFERS : gpu_is_cpu(gpu) ? READ_FRAME_TEXELS : READ_TEXELS;
+}
+
 /* Not on lavapipe, which compiles a sum over the lanes to a loop. */
 static bool sums_lanes(const Gpu *gpu) { return !gpu_is_cpu(gpu) && gpu->sums_lanes; }
 
@@ -139,6 +145,8 @@ static KernelVariant begin_variant(const KrsRendering *rendering, KrsTrace trace
         [RAYS_OF_CAMERAS] = "",        [RAYS_OF_PANORAMAS] = PANORAMIC, [RAYS_OF_LENSES] = LENS,
         [RAYS_OF_LISTS] = LISTED_RAYS, [RAYS_OF_PATHS] = PATH_RAYS,
     };
+    static const char *const read_defines[KERNEL_READS] = {
+        [READ_BUFFERS] = NO_TEXELS, [READ_TEXELS] = "", [READ_FRAME_TEXELS] = FRAME_TEXELS};
     const Gpu    *gpu             = &rendering->renderer->gpu;
     bool          camera_relative = rendering->camera_relative;
     bool          by_ray          = trace >= KRS_TRACE_EXACT;
@@ -152,7 +160,7 @@ static KernelVariant begin_variant(const KrsRendering *rendering, KrsTrace trace
     };
     define(&to, "#define TRACE %du\n#define REFILL %d\n", (int)(by_ray ? KRS_TRACE_PLAIN : trace),
            schedule == KRS_SCHEDULE_REFILL ? (int)gpu->refill_lanes : 0);
-    define(&to, "%s%s%s%s", gpu->texels ? "" : NO_TEXELS,
+    define(&to, "%s%s%s%s", read_defines[variants_reads(gpu)],
            sums_lanes(gpu) ? "#define SUBGROUPS\n" : "", ray_defines[rendering->rays],
            rendering->program->sheets ? "#define SHEETS\n" : "");
     return to;

@@ -13,7 +13,11 @@ typedef struct KernelVariant {
 } KernelVariant;
 
 /* Defines of kernels with or without a scene. */
-#define NO_TEXELS "#define NO_TEXELS\n" /* see Gpu.texels */
+#define NO_TEXELS    "#define NO_TEXELS\n"    /* see Gpu.texels */
+#define FRAME_TEXELS "#define FRAME_TEXELS\n" /* frame.glsl */
+/* How kernels read on a device: buffers only, texels too, or the blocks of the frame as texels too. */
+typedef enum KernelReads { READ_BUFFERS, READ_TEXELS, READ_FRAME_TEXELS, KERNEL_READS } KernelReads;
+KernelReads variants_reads(const Gpu *gpu);
 /* Only scenes with a panorama have kernels for its rays, which cost more. */
 #define PANORAMIC "#define PANORAMIC\n"
 /* Cameras have an aperture, a shift or two eyes. */
