@@ -8,8 +8,29 @@
 #include "compiler/lower/crowd.h"
 #include "compiler/lower/join.h"
 #include "compiler/lower/surface.h"
+#include "compiler/shape/overlap.h"
 
 /* ---- how it is made ---- */
+
+/* How many operands of a blend can act at one point.  One that is farther than `most` widths acts only as the
+   least of all, alone; and no distance is less than that to the box (lower_operand). */
+static uint32_t acting_together(ShapeBuilder *builder, const Shape *joint)
+{
+    const BlendInfo *info  = &blend_info[joint->blend.kind];
+    double           far   = info->most * joint->blend.widest;
+    uint32_t         count = joint->child_count;
+    bool             joins = joint->kind == SHAPE_UNION || joint->kind == SHAPE_DIFFERENCE;
+    if (!joins || !isfinite(far) || count < 3)
+        return count;
+    uint32_t  solid = joint->kind == SHAPE_DIFFERENCE; /* acts in all of its inside */
+    ArenaMark mark  = arena_mark(builder->scratch);
+    Box      *boxes = arena_new_array(builder->scratch, Box, count);
+    for (uint32_t i = solid; i < count; i++)
+        boxes[i - solid] = joint->children[i]->box;
+    uint32_t most = most_overlap(boxes, count - solid, fmax(far, 0), builder->scratch);
+    arena_rewind(builder->scratch, mark);
+    return solid + most;
+}
 
 const Shape *make_joint(ShapeBuilder *builder, ShapeKind kind, const Shape *const *shapes,
                         uint32_t count, Blend blend, Span span)
@@ -34,7 +55,8 @@ const Shape *make_joint(ShapeBuilder *builder, ShapeKind kind, const Shape *cons
         const BlendInfo *info = &blend_info[blend.kind];
         /* Each further operand adds a partial derivative; their squares sum to 1, so the sum of
            n of them is at most sqrt(n): for two operands the factor of the table. */
-        joint->slope *= info->slope > 1 ? pow(info->slope, log2(count)) : 1;
+        if (info->slope > 1)
+            joint->slope *= pow(info->slope, log2(acting_together(builder, joint)));
         if (kind != SHAPE_INTERSECTION && kind != SHAPE_DIFFERENCE)
             joint->box = box_grow(joint->box, blend_bulge(blend.kind, count) * joint->blend.widest);
     }
