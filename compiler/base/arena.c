@@ -144,6 +144,36 @@ void arena_free(Arena *arena)
     arena->left = 0;
 }
 
+#ifdef KRS_ARENA_SEPARATE
+
+void arena_clear(Arena *arena) { arena_free(arena); }
+
+#else
+
+/* The oldest block is the smallest as a rule. */
+void arena_clear(Arena *arena)
+{
+    ArenaBlock *first = arena->newest;
+    while (first && first->older)
+        first = first->older;
+    if (!first || first->size > FIRST_BLOCK_BYTES) {
+        arena_free(arena);
+        return;
+    }
+    const size_t all = first->size - HEADER_BYTES;
+    const bool only = arena->newest == first;
+    memset(block_bytes(first), 0, only ? all - arena->left : all);
+    while (arena->newest != first) {
+        ArenaBlock *block = arena->newest;
+        arena->newest = block->older;
+        block_free(arena->memory, block);
+    }
+    arena->next = block_bytes(first);
+    arena->left = all;
+}
+
+#endif
+
 ArenaMark arena_mark(const Arena *arena)
 {
     return (ArenaMark){arena->newest, arena->newest ? arena->newest->older : NULL, arena->next,

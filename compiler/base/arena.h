@@ -39,6 +39,9 @@ void *arena_alloc(Arena *arena, size_t count, size_t size);
 
 /* Frees all blocks; the arena can be used again. */
 void arena_free(Arena *arena);
+/* The same, but a small block stays for what follows: of arenas that are used for one thing after the
+   other. */
+void arena_clear(Arena *arena);
 
 /* What was allocated since a mark can be freed again.  Marks are rewound in the reverse order. */
 typedef struct ArenaMark {

@@ -12,7 +12,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { SLOTS_OF_LINE = 8, LEAST_SLOTS = 64 };
+/* A table that is full becomes so many times as large: what is put into a larger one again is a third
+   of what there is at last. */
+enum { SLOTS_OF_LINE = 8, LEAST_SLOTS = 64, SLOTS_GROWTH = 4 };
 
 /* A look at the hash is cheaper than one at the entry. */
 typedef struct NearSlot {

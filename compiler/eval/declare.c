@@ -375,7 +375,7 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
         return value_error();
     if (!e->uses_uv)
         shape->uv = NODE_NONE; /* of the first as of the others: they are alike */
-    arena_free(e->scratch);
+    arena_clear(e->scratch);
     if (first && shape->declaration->core && !try_core(e, shape))
         return value_error();
     if (shape->plane_normal != NODE_NONE && !is_of_library(e, shape))

@@ -43,7 +43,7 @@ static bool material_needs(ShapeBuilder *builder, const Material *material, Op l
     Tape tape   = material_tape(builder->graph, material, builder->scratch);
     for (size_t i = 0; i < tape.count; i++)
         needed = needed || builder->graph->items[tape.nodes[i]].op == leaf;
-    arena_free(builder->scratch);
+    arena_clear(builder->scratch);
     return needed;
 }
 

@@ -96,12 +96,12 @@ Range loosened(Range range, double scale)
     return (Range){range.low - slack, range.high + slack};
 }
 
-Range fact_size(const Fact *fact, uint32_t size)
+Range length_range(const Range *sides, uint32_t size)
 {
     double least = 0, largest = 0;
     for (uint32_t i = 0; i < size; i++) {
-        least   = hypot(least, range_least(fact->value[i]));
-        largest = hypot_upward(largest, range_largest(fact->value[i]));
+        least   = hypot(least, range_least(sides[i]));
+        largest = hypot_upward(largest, range_largest(sides[i]));
     }
     return (Range){size > 1 && isfinite(least) ? least - least * 0x1p-50 : least, largest};
 }

@@ -7,12 +7,16 @@
 
 #include <string.h>
 
-/* What makes expressions equal: all but where they were written. */
+static bool has_number(const Expr *e) { return e->op == OP_CONSTANT || e->op == OP_HOISTED; }
+
+/* What makes expressions equal: all but where they were written.  They have operands or numbers, or
+   neither. */
 static bool expr_equal(const Expr *a, const Expr *b)
 {
-    return a->op == b->op && a->type == b->type && a->index == b->index &&
-           !memcmp(a->operands, b->operands, sizeof a->operands) &&
-           !memcmp(a->number, b->number, sizeof a->number);
+    if (a->op != b->op || a->type != b->type || a->index != b->index)
+        return false;
+    return has_number(a) ? !memcmp(a->number, b->number, sizeof a->number)
+                         : !memcmp(a->operands, b->operands, sizeof a->operands);
 }
 
 static uint64_t hash_word(uint64_t hash, uint64_t word)
@@ -21,11 +25,10 @@ static uint64_t hash_word(uint64_t hash, uint64_t word)
     return hash ^ (hash >> 32);
 }
 
-/* An expression has operands or numbers, or neither. */
 static uint32_t expr_hash(const Expr *e)
 {
     uint64_t hash  = hash_word(e->op | (uint64_t)e->type << 8, e->index);
-    int      count = e->op == OP_CONSTANT || e->op == OP_HOISTED ? MAX_OPERANDS : 0;
+    int      count = has_number(e) ? MAX_OPERANDS : 0;
     for (int i = 0; i < e->operand_count; i++)
         hash = hash_word(hash, e->operands[i]);
     for (int i = 0; i < count; i++) {
@@ -66,7 +69,7 @@ static void slot_take(Graph *graph, Node node, uint32_t hash)
 static void slots_grow(Graph *graph)
 {
     const NearSlots old = graph->slots;
-    graph->slots.count  = old.count ? 2 * old.count : LEAST_SLOTS;
+    graph->slots.count  = old.count ? SLOTS_GROWTH * old.count : LEAST_SLOTS;
     graph->slots.items  = arena_new_array(graph->arena, NearSlot, graph->slots.count);
     for (size_t i = 0; i < old.count; i++)
         if (old.items[i].number)
@@ -82,13 +85,13 @@ void graph_drop_older(Graph *graph)
 
 /* An old array stays until the next one is full, since functions refer to nodes while they make a
    few more. */
-static void add_item(Graph *graph, Expr e)
+static void add_item(Graph *graph, const Expr *e)
 {
     if (graph->count == graph->capacity) {
         graph_drop_older(graph);
         graph->older = graph->items;
     }
-    array_push(graph->arena, graph, e);
+    array_push(graph->arena, graph, *e);
 }
 
 Node node_intern(Graph *graph, Expr e)
@@ -97,13 +100,13 @@ Node node_intern(Graph *graph, Expr e)
         slots_grow(graph);
     for (int i = e.operand_count; i < MAX_OPERANDS; i++)
         e.operands[i] = NODE_NONE;
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < 4 && has_number(&e); i++)
         e.number[i] += 0.0; /* -0 and 0 are one constant */
     uint32_t  hash = expr_hash(&e);
     NearSlot *slot = slot_find(graph, &e, hash);
     if (!slot->number) {
         e.span = graph->here;
-        add_item(graph, e);
+        add_item(graph, &e);
         *slot = (NearSlot){hash, (uint32_t)graph->count};
     }
     Node node = slot->number - 1;

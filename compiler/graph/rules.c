@@ -41,8 +41,9 @@ static Fact fact_vector(const RuleInput *input)
 static double slope_product(const RuleInput *input)
 {
     const Fact *u = &input->operands[0], *v = &input->operands[1];
-    double      left  = product_upward(fact_size(u, type_size(input->types[0])).high, v->slope);
-    double      right = product_upward(fact_size(v, type_size(input->types[1])).high, u->slope);
+    double left = product_upward(length_range(u->value, type_size(input->types[0])).high, v->slope);
+    double right = product_upward(length_range(v->value, type_size(input->types[1])).high,
+                                  u->slope);
     return sum_upward(left, right);
 }
 
@@ -75,10 +76,10 @@ static Fact fact_scale(const RuleInput *input)
 }
 
 /* Component i of the unit vector along v, whose length is in `whole`. */
-static Range unit_component(const Fact *v, uint32_t i, Range whole)
+static Range unit_component(Range side, Range whole)
 {
-    Range sides = {v->value[i].low < 0 ? -1 : 0, v->value[i].high > 0 ? 1 : 0};
-    return whole.low > 0 ? range_intersect(range_div(v->value[i], whole), sides) : sides;
+    Range sides = {side.low < 0 ? -1 : 0, side.high > 0 ? 1 : 0};
+    return whole.low > 0 ? range_intersect(range_div(side, whole), sides) : sides;
 }
 
 /* The derivative is that of v seen along the unit vector, so it is no longer than that of v:
@@ -86,12 +87,12 @@ static Range unit_component(const Fact *v, uint32_t i, Range whole)
 static Fact fact_length(const RuleInput *input)
 {
     const Fact *v     = &input->operands[0];
-    Range       whole = fact_size(v, input->size);
+    Range       whole = length_range(v->value, input->size);
     Jet         jet   = {.value = whole};
     for (int j = 0; j < 3; j++) {
         double longest = 0;
         for (uint32_t i = 0; i < input->size; i++) {
-            Range unit      = unit_component(v, i, whole);
+            Range unit      = unit_component(v->value[i], whole);
             jet.gradient[j] = range_add(jet.gradient[j], range_mul(unit, v->gradient[i][j]));
             longest         = hypot_upward(longest, range_largest(v->gradient[i][j]));
         }
@@ -106,12 +107,12 @@ static Fact fact_length(const RuleInput *input)
 static Fact fact_normalize(const RuleInput *input)
 {
     const Fact *v        = &input->operands[0];
-    Range       whole    = fact_size(v, input->size);
+    Range       whole    = length_range(v->value, input->size);
     Fact        fact     = fact_unknown(input->size);
     double      steepest = whole.low > 0 ? 1 / whole.low * (1 + 0x1p-50) : HUGE_VAL;
     fact.slope           = product_upward(v->slope, steepest);
     for (uint32_t i = 0; i < input->size; i++)
-        fact.value[i] = loosened(unit_component(v, i, whole), 1);
+        fact.value[i] = loosened(unit_component(v->value[i], whole), 1);
     for (uint32_t i = 0; whole.low > 0 && i < input->size; i++)
         for (int j = 0; j < 3; j++) {
             Range along = range_of(0);
@@ -215,6 +216,29 @@ static Fact fact_guard(const RuleInput *input)
     else
         fact.slope = fmax(input->operands[0].slope, input->operands[1].slope);
     return fact;
+}
+
+/* ---- values alone ---- */
+
+bool vector_range(Op op, uint32_t size, Range *const *o, Range *result)
+{
+    const Range *u     = o[0];
+    Range        whole = {0};
+    if (op == OP_normalize)
+        whole = length_range(u, size);
+    for (uint32_t i = 0; i < size; i++) {
+        const uint32_t y = (i + 1) % 3, z = (i + 2) % 3;
+        switch (op) {
+        case OP_scale: result[i] = range_mul(u[i], o[1][0]); break;
+        case OP_cross:
+            result[i] = range_add(range_mul(u[y], o[1][z]),
+                                  range_mul(range_mul(u[z], o[1][y]), MINUS_ONE));
+            break;
+        case OP_normalize: result[i] = loosened(unit_component(u[i], whole), 1); break;
+        default: return false;
+        }
+    }
+    return true;
 }
 
 /* ---- one operation ---- */

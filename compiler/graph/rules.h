@@ -43,7 +43,7 @@ Jet jet_dot(const Fact *a, const Fact *b, uint32_t size);
 /* Nothing is known of `size` components; rules put in what they can say. */
 Fact fact_unknown(uint32_t size);
 /* Range of the Euclidean length of a vector. */
-Range fact_size(const Fact *fact, uint32_t size);
+Range length_range(const Range *sides, uint32_t size);
 /* Room for the rounding of a computation with numbers of this size. */
 Range loosened(Range range, double scale);
 /* Whether the operands from `first` up to `count` are the same all over the box. */
@@ -67,6 +67,10 @@ Fact fact_agreed(Fact fact, uint32_t size);
 Fact fact_truth(const RuleInput *input, uint32_t count, bool always, bool never);
 
 /* ---- rules of rows ---- */
+
+/* rules.c: what the rule of a row says of the value alone, of `size` components, for the rows that
+   maps of space are computed by; false: of another row. */
+bool vector_range(Op op, uint32_t size, Range *const *o, Range *result);
 
 /* What the columns of derivatives are written in. */
 #define ZERO      range_of(0)

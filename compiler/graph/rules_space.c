@@ -12,7 +12,7 @@
 Fact fact_turn(const RuleInput *input)
 {
     const Fact *p    = &input->operands[0];
-    double      size = fact_size(p, 3).high, rows = 0;
+    double      size = length_range(p->value, 3).high, rows = 0;
     Fact        fact = {0};
     for (uint32_t i = 0; i < 3; i++) {
         Jet jet   = jet_dot(&input->operands[i + 1], p, 3);
@@ -94,7 +94,7 @@ Fact fact_cell(const RuleInput *input)
 static void sector_bounds(const Fact *p, Range count, Fact *fact)
 {
     Fact   plane   = {.value = {p->value[0], p->value[2]}};
-    Range  radius  = fact_size(&plane, 2);
+    Range  radius  = length_range(plane.value, 2);
     double half    = acos(-1) / count.low;
     bool   narrow  = count.low >= 2;
     Range  x       = {narrow ? radius.low * cos(half) : -radius.high, radius.high};
@@ -227,7 +227,7 @@ Fact fact_julia(const RuleInput *input)
 {
     Fact        fact  = fact_unknown(1);
     const Fact *point = &input->operands[0];
-    Range       size = fact_size(point, 3), radius = input->operands[3].value[1];
+    Range       size = length_range(point->value, 3), radius = input->operands[3].value[1];
     double      middle, reach;
     fact.value[0] = (Range){size.low - radius.high, sum_upward(size.high, radius.high)};
     if (fractal_middle(input, 3, &middle, &reach)) {
@@ -244,7 +244,7 @@ Fact fact_mandelbulb(const RuleInput *input)
 {
     Fact        fact  = fact_unknown(1);
     const Fact *point = &input->operands[0];
-    Range       size = fact_size(point, 3), radius = input->operands[2].value[1];
+    Range       size = length_range(point->value, 3), radius = input->operands[2].value[1];
     Range       power = input->operands[1].value[0];
     if (!range_is_single(power) || !(power.low >= 2) || !(radius.low > 0))
         return fact; /* what no scene can write */

@@ -1,6 +1,8 @@
 /*
  * substitute.c: copies of expressions with other leaves.
  */
+#include <string.h>
+
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/graph.h"
 
@@ -21,7 +23,15 @@ static Node substitute_leaf(const Expr *e, Node node, Substitution with)
     return other == NODE_NONE ? node : other;
 }
 
-/* The graph grows meanwhile, so the expression is handed over as a copy. */
+/* The operation on other operands.  The graph grows meanwhile, so the expression is handed over as a
+   copy. */
+static Node with_operands(Graph *graph, Expr e)
+{
+    graph->here = e.span;
+    return e.op == OP_COMPONENT ? graph_component(graph, e.operands[0], e.index)
+                                : graph_op(graph, e.op, e.operands);
+}
+
 static Node substitute_operands(Graph *graph, Expr e, Node node, const Tape *tape,
                                 const Node *copies)
 {
@@ -31,11 +41,7 @@ static Node substitute_operands(Graph *graph, Expr e, Node node, const Tape *tap
         changed       = changed || copy != e.operands[i];
         e.operands[i] = copy;
     }
-    if (!changed)
-        return node;
-    graph->here = e.span;
-    return e.op == OP_COMPONENT ? graph_component(graph, e.operands[0], e.index)
-                                : graph_op(graph, e.op, e.operands);
+    return changed ? with_operands(graph, e) : node;
 }
 
 /* Copies what a tape has; copies of leaves are given. */
@@ -50,8 +56,129 @@ static void copy_operations(Graph *graph, const Tape *tape, Node *copies)
     graph->here = here;
 }
 
+/*
+ * Most expressions are small, and their nodes were made one after the other: what they need is found
+ * among the last nodes up to the root, but for a few that many share, such as the coordinates.  What
+ * does not depend on the point stays as it is.
+ */
+enum { WINDOW = 256, WORD = 64, MOST_EARLIER = 16 };
+
+typedef struct Window {
+    Node     first; /* the root is among the WINDOW nodes from this one on */
+    uint64_t needed[WINDOW / WORD];
+    Node     copies[WINDOW];
+    Node     earlier[MOST_EARLIER], earlier_copies[MOST_EARLIER]; /* before the window, ascending */
+    uint32_t earlier_count;
+} Window;
+
+static bool is_needed(const Window *window, uint32_t at)
+{
+    return window->needed[at / WORD] >> at % WORD & 1;
+}
+
+/* Where an earlier node is, or belongs. */
+static uint32_t earlier_place(const Window *window, Node node)
+{
+    uint32_t at = 0;
+    while (at < window->earlier_count && window->earlier[at] < node)
+        at++;
+    return at;
+}
+
+static bool note_earlier(Window *window, Node node)
+{
+    const uint32_t at = earlier_place(window, node), count = window->earlier_count;
+    if (at < count && window->earlier[at] == node)
+        return true;
+    if (count == MOST_EARLIER)
+        return false;
+    memmove(&window->earlier[at + 1], &window->earlier[at], (count - at) * sizeof(Node));
+    window->earlier[at] = node;
+    window->earlier_count++;
+    return true;
+}
+
+/* Notes an operation that depends on the point; false: there are too many before the window. */
+static bool note_operation(Window *window, const Graph *graph, Node node)
+{
+    const Expr *e = &graph->items[node];
+    if (e->time != TIME_POINT || e->operand_count == 0)
+        return true;
+    if (node < window->first)
+        return note_earlier(window, node);
+    window->needed[(node - window->first) / WORD] |= (uint64_t)1 << (node - window->first) % WORD;
+    return true;
+}
+
+/* False also where more is needed than operands. */
+static bool note_operands(Window *window, const Graph *graph, Node node)
+{
+    const Expr *e    = &graph->items[node];
+    bool        good = e->op != OP_row;
+    for (int k = 0; good && k < e->operand_count; k++)
+        good = note_operation(window, graph, e->operands[k]);
+    return good;
+}
+
+/* Finds the operations that the root needs; false: it is no such expression. */
+static bool find_operations(Window *window, const Graph *graph, Node root)
+{
+    bool good = note_operation(window, graph, root);
+    for (uint32_t at = root - window->first + 1; good && at-- > 0;)
+        if (is_needed(window, at))
+            good = note_operands(window, graph, window->first + at);
+    /* Operands stand before: what they add is at the same place or at one that is yet to come. */
+    for (uint32_t left = window->earlier_count; good && left > 0;) {
+        const uint32_t before = window->earlier_count;
+        good                  = note_operands(window, graph, window->earlier[left - 1]);
+        left += window->earlier_count - before - 1;
+    }
+    return good;
+}
+
+static Node window_copy(const Window *window, const Graph *graph, Node node, Substitution with)
+{
+    const Expr *e = &graph->items[node];
+    if (e->time != TIME_POINT)
+        return node;
+    if (e->operand_count == 0)
+        return substitute_leaf(e, node, with);
+    return node < window->first ? window->earlier_copies[earlier_place(window, node)]
+                                : window->copies[node - window->first];
+}
+
+static Node substitute_operation(Graph *graph, const Window *window, Node node, Substitution with)
+{
+    Expr e       = graph->items[node];
+    bool changed = false;
+    for (int k = 0; k < e.operand_count; k++) {
+        Node copy     = window_copy(window, graph, e.operands[k], with);
+        changed       = changed || copy != e.operands[k];
+        e.operands[k] = copy;
+    }
+    return changed ? with_operands(graph, e) : node;
+}
+
+static Node substitute_in_window(Graph *graph, Window *window, Node root, Substitution with)
+{
+    Span here = graph->here;
+    for (uint32_t i = 0; i < window->earlier_count; i++)
+        window->earlier_copies[i] = substitute_operation(graph, window, window->earlier[i], with);
+    for (uint32_t at = 0; at <= root - window->first; at++)
+        if (is_needed(window, at))
+            window->copies[at] = substitute_operation(graph, window, window->first + at, with);
+    graph->here = here;
+    return window_copy(window, graph, root, with);
+}
+
 Node graph_substitute(Graph *graph, Node root, Substitution with, Arena *scratch)
 {
+    Window window;
+    window.first = root < WINDOW ? 0 : root - (WINDOW - 1);
+    memset(window.needed, 0, sizeof window.needed);
+    window.earlier_count = 0;
+    if (find_operations(&window, graph, root))
+        return substitute_in_window(graph, &window, root, with);
     Tape  tape   = tape_new(graph, &root, 1, scratch);
     Node *copies = arena_new_array(scratch, Node, tape.count);
     for (size_t i = 0; i < tape.count; i++)

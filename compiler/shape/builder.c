@@ -46,7 +46,7 @@ Range node_range(ShapeBuilder *builder, Node node, uint32_t component)
     if (graph_known_component(builder->graph, node, component, &number))
         return range_of(number);
     Range range = graph_frame_range(builder->graph, node, component, builder->scratch);
-    arena_free(builder->scratch);
+    arena_clear(builder->scratch);
     return range;
 }
 

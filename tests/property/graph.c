@@ -193,6 +193,34 @@ static void substitution_moves_the_point(void **state)
     assert_int_equal(kept, unit);
 }
 
+/* Operands may stand thousands of nodes before the root, a few or many of them. */
+static void substitution_finds_what_is_far(void **state)
+{
+    Bench *b = *state;
+    for (int turn = 0; turn < 100; turn++) {
+        b->graph    = graph_new(&b->arena);
+        Node  point = graph_leaf(b->graph, OP_POINT), sum = graph_number(b->graph, 0);
+        Node  twice = graph_op2(b->graph, OP_add, point, point);
+        Place place = random_place(b), far = place;
+        for (uint32_t part = 1 + random_below(&b->random, 30); part > 0; part--) {
+            Garden garden = random_garden(b, 20);
+            Node   last   = garden.nodes[garden.count - 1 - random_below(&b->random, 5)];
+            for (uint32_t i = random_below(&b->random, 300); i > 0; i--)
+                graph_number(b->graph, part + i / 512.0);
+            if (b->graph->items[last].type == TYPE_FLOAT)
+                sum = graph_op2(b->graph, OP_add, sum, last);
+            sum = graph_op2(b->graph, OP_add, sum, graph_component(b->graph, point, part % 3));
+        }
+        Node moved = graph_substitute(b->graph, sum, substitute_point(twice), &b->arena);
+        for (int i = 0; i < 3; i++)
+            far.point[i] *= 2;
+        NodeValue expected = evaluate_plainly(b->graph, sum, &far);
+        NodeValue value    = evaluate_plainly(b->graph, moved, &place);
+        assert_true(values_same(TYPE_FLOAT, &expected, &value));
+        graph_validate(b->graph, "graph_substitute");
+    }
+}
+
 /* What the text of an operation calls is printed for some type of its first operand, with all that
    it calls before it. */
 static bool helper_is_there(Bench *b, Op op, const char *call)
@@ -242,11 +270,17 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, bench_start, bench_stop)
     const struct CMUnitTest tests[] = {
-        TEST(equal_expressions_are_one_node),         TEST(numbers_are_spread_over_vectors),
-        TEST(binding_time_is_the_latest_of_operands), TEST(constants_are_folded_when_finite),
-        TEST(spans_are_those_of_the_author),          TEST(powers_are_products),
-        TEST(tapes_give_what_recursion_gives),        TEST(folding_gives_what_evaluation_gives),
-        TEST(substitution_moves_the_point),           TEST(every_row_can_be_emitted),
+        TEST(equal_expressions_are_one_node),
+        TEST(numbers_are_spread_over_vectors),
+        TEST(binding_time_is_the_latest_of_operands),
+        TEST(constants_are_folded_when_finite),
+        TEST(spans_are_those_of_the_author),
+        TEST(powers_are_products),
+        TEST(tapes_give_what_recursion_gives),
+        TEST(folding_gives_what_evaluation_gives),
+        TEST(substitution_moves_the_point),
+        TEST(substitution_finds_what_is_far),
+        TEST(every_row_can_be_emitted),
     };
     return cmocka_run_group_tests_name("graph", tests, NULL, NULL);
 }

@@ -125,6 +125,36 @@ static void parameters_count_with_their_range_or_value(void **state)
     assert_true(doubled.low == -2 && doubled.high == 6);
 }
 
+/* A turn about an axis, both of the frame, and what it does to a vector: ranges of the values alone,
+   which have rules of their own, are those of the values with their gradients. */
+static void values_of_the_frame_have_the_same_ranges(void **state)
+{
+    Bench *b = *state;
+    Graph *g = b->graph;
+    for (int turn = 0; turn < 500; turn++) {
+        GraphParameter range = {{0}, {0}};
+        for (int i = 0; i < 4; i++) {
+            range.low[i]  = random_between(&b->random, -2, 2);
+            range.high[i] = range.low[i] + (turn % 3 ? random_between(&b->random, 0, 2) : 0);
+        }
+        array_push(g->arena, &g->parameters, range);
+        const uint32_t slot  = (uint32_t)g->parameters.count - 1;
+        Node           axis  = graph_parameter(g, slot, TYPE_VEC3);
+        Node           whole = graph_parameter(g, slot, TYPE_VEC4);
+        Node           angle = graph_component(g, whole, 3);
+        Node           unit  = graph_op1(g, OP_normalize, axis);
+        Node           arm   = graph_vec3(g, turn % 5 - 2, 1, turn % 2);
+        Node           moved = graph_op2(g, OP_scale, graph_op2(g, OP_cross, arm, unit), angle);
+        Node           sum   = graph_op2(g, OP_add, moved, graph_op2(g, OP_scale, unit, angle));
+        const Fact    *facts = graph_facts(g, everywhere, NULL, &b->arena);
+        for (uint32_t i = 0; i < 3; i++) {
+            Range found = graph_frame_range(g, sum, i, &b->arena);
+            assert_true(found.low == facts[sum].value[i].low);
+            assert_true(found.high == facts[sum].value[i].high);
+        }
+    }
+}
+
 /* One task, run for several values, gives what each would have got by itself. */
 static void tasks_follow_their_parameters(void **state)
 {
@@ -196,6 +226,7 @@ int main(void)
         TEST(cutting_finds_what_a_whole_box_hides),
         TEST(jumps_are_found_on_the_seam_of_parts),
         TEST(parameters_count_with_their_range_or_value),
+        TEST(values_of_the_frame_have_the_same_ranges),
         TEST(tasks_follow_their_parameters),
         TEST(blame_goes_to_the_unbounded_operand),
         TEST(facts_of_a_graph_hold),

@@ -73,6 +73,29 @@ static void arena_goes_back_to_a_mark(void **state)
     assert_int_equal(memory.used, 0);
 }
 
+/* Whatever was in it, it is zero again, and one small block stays at most. */
+static void arena_is_cleared(void **state)
+{
+    (void)state;
+    enum { SMALL = 100, LARGE = 3 * LARGEST_BLOCK_BYTES, MOST = 4096 };
+    static const char zeros[SMALL];
+    Memory            memory = {0};
+    Arena             arena  = {.memory = &memory};
+    for (int turn = 0; turn < 400; turn++) {
+        for (int i = 0; i < turn % 97; i++) {
+            char *object = arena_alloc(&arena, SMALL, 1);
+            assert_memory_equal(object, zeros, SMALL);
+            memset(object, 2, SMALL);
+            if (turn % 7 == 0 && i == turn % 11)
+                memset(arena_alloc(&arena, LARGE, 1), 3, LARGE);
+        }
+        arena_clear(&arena);
+        assert_true(memory.used <= MOST);
+    }
+    arena_free(&arena);
+    assert_int_equal(memory.used, 0);
+}
+
 static void arena_refuses_products_that_overflow(void **state)
 {
     (void)state;
@@ -228,6 +251,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(arena_counts_and_limits),
         cmocka_unit_test(arena_goes_back_to_a_mark),
+        cmocka_unit_test(arena_is_cleared),
         cmocka_unit_test(arena_refuses_products_that_overflow),
         cmocka_unit_test(numbers_are_short_and_exact),
         cmocka_unit_test(json_is_escaped),
