@@ -5,22 +5,40 @@
  * picture of the whole box the scene would be tiny.  So a few hundred rays are cast from a sphere
  * around the box to points inside of it, and the camera frames what they hit.
  *
+ * Such rays miss most of what is thin.  So what lies outside of the box around the hits is divided
+ * into cells, down to small ones, and a cell is left out when the distance at its middle shows that it
+ * is empty.  Further rays go to the cells that remain.
+ *
  * The picture does not depend on whether parts are a crowd: rays and their number are as without.
  */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/vec.h"
 #include "compiler/compilation.h"
+#include "compiler/shape/box.h"
 
 enum { RAYS = 512, FEWEST_RAYS = 64, ROUNDS = 3, BATCH = 8, MOST_UNRESOLVED = 4 };
+/* Cells are halved this many times, along their longest side; and so many are tried at once for each
+   ray that is cast. */
+enum { HALVINGS = 15, CELLS_A_RAY = 4, MOST_CELLS = RAYS * CELLS_A_RAY };
+/* The ball of the picture is larger than that of the hits by this, since rays miss some of the
+   surface. */
+static const double MARGIN = 0.06, GOLDEN_ANGLE = 2.399963229728653; /* pi (3 - sqrt 5) */
 
 /* If the distance has more flops, fewer rays are cast, so that placing a camera takes little
    time. */
 static const double FLOPS_OF_ALL_RAYS = 2500;
 
-typedef struct Sphere {
-    double centre[3], radius;
-} Sphere;
+/* Rays of one round, and what those of all rounds have hit of bounded components. */
+typedef struct Rays {
+    double origins[RAYS][3], directions[RAYS][3];
+    KrsHit hits[RAYS];
+    double seen[2 * ROUNDS * RAYS][3];
+    size_t seen_count;
+    Box    box; /* around what is seen */
+} Rays;
 
 static bool is_bounded(const KrsComponent *component)
 {
@@ -30,23 +48,21 @@ static bool is_bounded(const KrsComponent *component)
     return true;
 }
 
-/* The ball around the boxes of the bounded components; false when there is none. */
-static bool outer_ball(const KrsScene *scene, Sphere *ball)
+static Box box_of_point(const double point[3])
 {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (size_t i = 0; i < scene->shown_count; i++) {
-        const KrsComponent *component = &scene->components[i];
-        for (int k = 0; is_bounded(component) && k < 3; k++) {
-            low[k]  = fmin(low[k], component->low[k]);
-            high[k] = fmax(high[k], component->high[k]);
+    return (Box){{range_of(point[0]), range_of(point[1]), range_of(point[2])}};
+}
+
+/* The box around those of the bounded components; empty when there is none. */
+static Box outer_box(const KrsScene *scene)
+{
+    Box box = box_empty;
+    for (size_t i = 0; i < scene->shown_count; i++)
+        if (is_bounded(&scene->components[i])) {
+            box = box_hull(box, box_of_point(scene->components[i].low));
+            box = box_hull(box, box_of_point(scene->components[i].high));
         }
-    }
-    ball->radius = 0;
-    for (int k = 0; k < 3; k++) {
-        ball->centre[k] = 0.5 * (low[k] + high[k]);
-        ball->radius    = hypot(ball->radius, 0.5 * (high[k] - low[k]));
-    }
-    return isfinite(ball->radius) && ball->radius > 0;
+    return box;
 }
 
 /* The number of rays: a power of two, so that it has no factor in common with the strides of
@@ -60,100 +76,230 @@ static int count_rays(const KrsScene *scene)
     return count;
 }
 
-/* Makes rays from points that are spread evenly on a sphere (a Fibonacci lattice) to the points of
-   a second lattice inside of the ball. */
-static void make_rays(const Sphere *ball, int count, double (*origins)[3], double (*directions)[3])
+/* Makes a ray from a lattice of `count` points that are spread evenly on a sphere around the ball
+   (Fibonacci's) to a point, which is given in radii of the ball from its centre. */
+static void make_ray(const Ball *ball, int i, int count, const double to[3], Rays *rays)
 {
-    const double golden = 2.399963229728653; /* pi (3 - sqrt 5) */
-    for (int i = 0; i < count; i++) {
-        double y = 1 - (2 * i + 1.0) / count, ring = sqrt(1 - y * y), angle = golden * i;
-        double from[3] = {ring * cos(angle), y, ring * sin(angle)};
-        double depth = 0.9 * cbrt((i * 89 % count + 0.5) / count), turn = golden * (i * 37 % count);
-        double up = 1 - (2 * (i * 53 % count) + 1.0) / count, side = sqrt(1 - up * up);
-        double to[3] = {depth * side * cos(turn), depth * up, depth * side * sin(turn)};
-        for (int k = 0; k < 3; k++) {
-            origins[i][k]    = ball->centre[k] + 1.01 * ball->radius * from[k];
-            directions[i][k] = to[k] - 1.01 * from[k];
-        }
+    double y = 1 - (2 * i + 1.0) / count, ring = sqrt(1 - y * y), angle = GOLDEN_ANGLE * i;
+    double from[3] = {ring * cos(angle), y, ring * sin(angle)};
+    for (int k = 0; k < 3; k++) {
+        rays->origins[i][k]    = ball->centre[k] + 1.01 * ball->radius * from[k];
+        rays->directions[i][k] = to[k] - 1.01 * from[k];
     }
 }
 
-/* The box around all hits of bounded components so far. */
-typedef struct Extent {
-    double low[3], high[3];
-} Extent;
-
-/* Casts rays; false after a few unresolved ones.  Distances that are much too short need many
-   steps, and then the camera is placed by the ball so far, to save time. */
-static bool cast_rays(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
-                      int count, double radius, KrsHit *hits)
+/* Makes rays to the points of a second lattice inside of the ball. */
+static void make_rays(const Ball *ball, int count, Rays *rays)
 {
-    int unresolved = 0;
+    for (int i = 0; i < count; i++) {
+        double depth = 0.9 * cbrt((i * 89 % count + 0.5) / count);
+        double turn  = GOLDEN_ANGLE * (i * 37 % count);
+        double up = 1 - (2 * (i * 53 % count) + 1.0) / count, side = sqrt(1 - up * up);
+        make_ray(ball, i, count,
+                 (double[]){depth * side * cos(turn), depth * up, depth * side * sin(turn)}, rays);
+    }
+}
+
+/* Casts rays and notes what they hit of bounded components; false after a few unresolved ones.
+   Distances that are much too short need many steps, and then the camera is placed by what is seen
+   so far, to save time. */
+static bool cast_rays(KrsFrame *frame, Rays *rays, int count, double radius)
+{
+    const KrsScene *scene      = frame->scene;
+    int             unresolved = 0;
     for (int i = 0; i < count && unresolved <= MOST_UNRESOLVED; i++) {
+        const KrsHit *hit = &rays->hits[i];
         if (i % BATCH == 0)
-            frame_raycast(frame, origins + i, directions + i,
+            frame_raycast(frame, (const double(*)[3])rays->origins + i,
+                          (const double(*)[3])rays->directions + i,
                           (size_t)(count - i < BATCH ? count - i : BATCH), 4 * radius,
-                          1e-3 * radius, hits + i);
-        unresolved += hits[i].unresolved;
+                          1e-3 * radius, rays->hits + i);
+        unresolved += hit->unresolved;
+        if (hit->hit && is_bounded(&scene->components[hit->component - 1])) {
+            memcpy(rays->seen[rays->seen_count++], hit->point, sizeof hit->point);
+            rays->box = box_hull(rays->box, box_of_point(hit->point));
+        }
     }
     return unresolved <= MOST_UNRESOLVED;
 }
 
-static void add_hits(const KrsScene *scene, const KrsHit *hits, int count, Extent *seen)
+/* The ball around the box of what is seen, with a margin, no larger than `ball` was; false where
+   there is too little to be seen. */
+static bool shrink_ball(Box seen, Ball *ball)
 {
-    for (int i = 0; i < count; i++) {
-        if (!hits[i].hit || !is_bounded(&scene->components[hits[i].component - 1]))
-            continue;
-        for (int k = 0; k < 3; k++) {
-            seen->low[k]  = fmin(seen->low[k], hits[i].point[k]);
-            seen->high[k] = fmax(seen->high[k], hits[i].point[k]);
-        }
-    }
-}
-
-/* The ball around all hits, a little larger since rays miss some of the surface. */
-static bool inner_ball(const Extent *seen, Sphere *ball)
-{
-    double radius = 0;
-    for (int k = 0; k < 3; k++)
-        radius = hypot(radius, 0.5 * (seen->high[k] - seen->low[k]));
-    if (!isfinite(radius) || !(radius > 1e-3 * ball->radius))
+    Ball inner = ball_around(seen);
+    if (!(inner.radius > 1e-3 * ball->radius))
         return false;
-    for (int k = 0; k < 3; k++)
-        ball->centre[k] = 0.5 * (seen->low[k] + seen->high[k]);
-    ball->radius = fmin(ball->radius, 1.06 * radius);
+    inner.radius = fmin(ball->radius, (1 + MARGIN) * inner.radius);
+    *ball        = inner;
     return true;
 }
 
-/* Sets eye and target of the default camera by casting rays to the bounded components, with the
-   defaults of parameters.  Its direction and field of view are fixed.  Without bounded components
-   nothing is changed. */
+/* Moves the ball to the middle of what is seen, and makes it as large as is needed there.  A ball that
+   nothing has made smaller yet tells nothing. */
+static void grow_ball(const Rays *rays, double most, Ball *ball)
+{
+    if (!(ball->radius < most))
+        ball->radius = 0;
+    box_centre(rays->box, ball->centre);
+    for (size_t i = 0; i < rays->seen_count; i++)
+        ball->radius = fmax(ball->radius, (1 + MARGIN) * distance3(rays->seen[i], ball->centre));
+    ball->radius = fmin(ball->radius, most);
+}
+
+/* ---- what rays have missed ---- */
+
+/* Cells that may not be empty, and what is asked of them. */
+typedef struct Cells {
+    Box    boxes[2 * MOST_CELLS];
+    double middles[2 * MOST_CELLS][3], distances[2 * MOST_CELLS];
+    size_t count;
+} Cells;
+
+static bool is_inside(const Box *cell, const Box *box)
+{
+    for (int k = 0; k < 3; k++)
+        if (cell->axis[k].low < box->axis[k].low || cell->axis[k].high > box->axis[k].high)
+            return false;
+    return true;
+}
+
+static double width_of(Range range) { return range.high - range.low; }
+
+/* Halves all cells along their longest sides. */
+static void halve_cells(Cells *cells)
+{
+    for (size_t i = 0; i < cells->count; i++) {
+        Box *low = &cells->boxes[i], *high = &cells->boxes[cells->count + i];
+        int  axis = 0;
+        for (int k = 1; k < 3; k++)
+            if (width_of(low->axis[k]) > width_of(low->axis[axis]))
+                axis = k;
+        *high                = *low;
+        low->axis[axis].high = high->axis[axis].low = 0.5 *
+                                                      (low->axis[axis].low + low->axis[axis].high);
+    }
+    cells->count *= 2;
+}
+
+/* Leaves out the cells that are inside of a box, and those that the distance at their middle shows
+   to be empty. */
+static void reduce_cells(KrsFrame *frame, const Box *known, Cells *cells)
+{
+    size_t outside = 0, kept = 0;
+    for (size_t i = 0; i < cells->count; i++)
+        if (!is_inside(&cells->boxes[i], known)) {
+            cells->boxes[outside] = cells->boxes[i];
+            box_centre(cells->boxes[i], cells->middles[outside++]);
+        }
+    if (krs_distance(frame, (const double(*)[3])cells->middles, outside, cells->distances) !=
+        KRS_OK)
+        outside = 0;
+    for (size_t i = 0; i < outside; i++)
+        if (!(cells->distances[i] > 0.5 * box_diagonal(cells->boxes[i]))) {
+            memcpy(cells->middles[kept], cells->middles[i], sizeof *cells->middles);
+            cells->boxes[kept++] = cells->boxes[i];
+        }
+    cells->count = kept;
+}
+
+/* Finds cells of a box that may not be empty and are not inside of another one.  Where there are too
+   many they remain larger. */
+static void find_cells(KrsFrame *frame, Box box, const Box *known, size_t most, Cells *cells)
+{
+    cells->count    = 1;
+    cells->boxes[0] = box;
+    for (int i = 0; i < HALVINGS && cells->count <= most; i++) {
+        halve_cells(cells);
+        reduce_cells(frame, known, cells);
+    }
+}
+
+/* Makes a ray from around the ball to the point of a surface that is next to the middle of a cell, as
+   far as distance and normal there tell it. */
+static void make_ray_to_cell(KrsFrame *frame, const Ball *ball, int i, int count,
+                             const double middle[3], Rays *rays)
+{
+    KrsHit near = {.distance = 0};
+    double to[3];
+    krs_probe(frame, (const double(*)[3])middle, 1, &near);
+    for (int k = 0; k < 3; k++)
+        to[k] = (middle[k] - near.distance * near.normal[k] - ball->centre[k]) / ball->radius;
+    make_ray(ball, i, count, to, rays);
+}
+
+/* Casts rays to cells in which there may be something that is not seen yet, until none hits anything
+   outside of what is seen and a margin. */
+static void search_beyond(KrsFrame *frame, Box box, int most, double margin, Cells *cells,
+                          Rays *rays)
+{
+    Ball outer = ball_around(box);
+    bool more  = true;
+    for (int round = 0; round < ROUNDS && more; round++) {
+        Box known = box_grow(rays->box, margin);
+        find_cells(frame, box, &known, (size_t)most * CELLS_A_RAY, cells);
+        int count = cells->count < (size_t)most ? (int)cells->count : most;
+        for (int i = 0; i < count; i++) /* if there are more cells than rays, to some */
+            make_ray_to_cell(frame, &outer, i, count,
+                             cells->middles[(size_t)i * cells->count / (size_t)count], rays);
+        more = cast_rays(frame, rays, count, outer.radius) && !is_inside(&rays->box, &known);
+    }
+}
+
+/* The ball around what rays hit: each round makes it smaller, and so the rays of the next one
+   denser.  False when rays cost too much. */
+static bool cast_rounds(KrsFrame *frame, int count, Rays *rays, Ball *ball)
+{
+    for (int round = 0; round < ROUNDS; round++) {
+        make_rays(ball, count, rays);
+        if (!cast_rays(frame, rays, count, ball->radius))
+            return false;
+        if (!shrink_ball(rays->box, ball))
+            return true;
+    }
+    return true;
+}
+
+/* Finds the ball that the picture shows, within the one of the box: around what rays hit, and around
+   what they have missed. */
+static void find_ball(KrsFrame *frame, Box box, Rays *rays, Cells *cells, Ball *ball)
+{
+    double most      = ball->radius;
+    int    count     = count_rays(frame->scene);
+    rays->seen_count = 0;
+    rays->box        = box_empty;
+    if (!cast_rounds(frame, count, rays, ball))
+        return;
+    double margin = MARGIN * ball->radius;
+    Box    first  = box_grow(rays->box, margin);
+    search_beyond(frame, box, count, margin, cells, rays);
+    if (!is_inside(&rays->box, &first))
+        grow_ball(rays, most, ball);
+}
+
+/* Sets eye and target of the default camera, with the defaults of parameters.  Its direction and
+   field of view are fixed.  Without bounded components nothing is changed. */
 static KrsStatus frame_scene(KrsScene *scene)
 {
     static const double towards[3] = {0.53, 0.37, 0.76};
-    double              origins[RAYS][3], directions[RAYS][3];
-    KrsHit              hits[RAYS];
     KrsFrame           *frame;
     KrsView             view;
-    Sphere              ball;
-    Extent              seen = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    if (!outer_ball(scene, &ball))
+    Box                 box  = outer_box(scene);
+    Ball                ball = ball_around(box);
+    if (!(ball.radius > 0 && isfinite(ball.radius)))
         return KRS_OK;
     KrsStatus status = frame_new(scene, &frame);
     if (status != KRS_OK)
         return status;
     frame->exact = true;
-    int rays     = count_rays(scene);
-    /* Each round makes the ball smaller, and so the rays of the next round denser. */
-    for (int round = 0; round < ROUNDS; round++) {
-        make_rays(&ball, rays, origins, directions);
-        if (!cast_rays(frame, (const double(*)[3])origins, (const double(*)[3])directions, rays,
-                       ball.radius, hits))
-            break;
-        add_hits(scene, hits, rays, &seen);
-        if (!inner_ball(&seen, &ball))
-            break;
-    }
+    Rays  *rays  = malloc(sizeof *rays);
+    Cells *cells = malloc(sizeof *cells);
+    if (rays && cells)
+        find_ball(frame, box, rays, cells, &ball);
+    else
+        status = KRS_OUT_OF_MEMORY;
+    free(rays);
+    free(cells);
     frame_view(frame, 0, &view);
     frame_free(frame);
     scene->framed = true;
@@ -161,7 +307,7 @@ static KrsStatus frame_scene(KrsScene *scene)
     for (int k = 0; k < 3; k++)
         scene->framed_eye[k] = ball.centre[k] +
                                towards[k] * ball.radius / sin(0.5 * view.camera.fov);
-    return KRS_OK;
+    return status;
 }
 
 KrsStatus pass_frame(Compilation *c)
