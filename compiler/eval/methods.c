@@ -57,6 +57,12 @@ static Value method_rotate(Elaboration *e, const Shape *shape, Call *call)
 {
     if (shape->figure)
         give_axis(e, call);
+    const Argument *axis = &call->arguments[0];
+    if (is_given(call, 0) && is_given(call, 1) && value_size(e, axis->value) == 1) {
+        explain_usage(e, type_error(e, axis->syntax, axis->value, "an axis, a vector of 3"),
+                      call->syntax, "rotate");
+        return value_error();
+    }
     if (is_given(call, 0) && is_given(call, 1))
         return moved(e, shape, want_rotation(e, call), call);
     Diag *diag = missing_argument(e, call->syntax, "rotate",

@@ -143,9 +143,22 @@ static bool lex_directive(Lexer *lexer, uint32_t start)
     return true;
 }
 
+/* Reports a comment of another language and skips it: a `#` with nothing behind it, or a blank. */
+static void lex_foreign_comment(Lexer *lexer, uint32_t start)
+{
+    report_from(lexer, DIAG_UNEXPECTED_TOKEN, start, "`#` begins colours",
+                "comments begin with `//`");
+    while (peek(lexer, 0) != '\n' && peek(lexer, 0) != '\0')
+        lexer->at++;
+}
+
 void lex_colour(Lexer *lexer)
 {
     uint32_t start = lexer->at++;
+    if (strchr(" \t\r\n#", peek(lexer, 0))) { /* or the end of the text */
+        lex_foreign_comment(lexer, start);
+        return;
+    }
     while (is_word(peek(lexer, 0)))
         lexer->at++;
     const char *digits = lexer->text + start + 1;
