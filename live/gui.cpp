@@ -176,19 +176,19 @@ void gui_backdrop(unsigned texture, float part)
     ImGui::GetBackgroundDrawList()->AddImage(id, ImVec2(0, 0), ImVec2(part * size.x, size.y));
 }
 
-void gui_panel(const char *name, GuiCorner corner, float below, float width, bool quiet)
+void gui_panel(const char *name, GuiPlace where, bool quiet)
 {
-    const ImVec2 size  = ImGui::GetIO().DisplaySize;
-    const float  most  = size.y - 2 * margin - below;
-    int          flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+    const float high  = gui_window_height() - where.below - where.spare;
+    const float wide  = where.width > 0 ? where.width : where.most > 0 ? where.most : 1e9f;
+    int         flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                 ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
                 ImGuiWindowFlags_AlwaysAutoResize;
     if (quiet)
         flags |= ImGuiWindowFlags_NoInputs; // of keys as well
     else
         flags &= ~ImGuiWindowFlags_NoScrollbar;
-    place(corner, below);
-    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width > 0 ? width : size.x, most));
+    place(where.corner, where.below);
+    ImGui::SetNextWindowSizeConstraints(ImVec2(where.width, 0), ImVec2(wide, high));
     if (quiet)
         ImGui::SetNextWindowBgAlpha(0.72f);
     if (navigated && std::strcmp(navigated, name) == 0) {
@@ -196,6 +196,8 @@ void gui_panel(const char *name, GuiCorner corner, float below, float width, boo
         navigated = nullptr;
     }
     ImGui::Begin(name, nullptr, flags);
+    const float padding = ImGui::GetStyle().WindowPadding.x;
+    ImGui::PushTextWrapPos(where.most > 0 ? where.most - padding : -1); // -1: lines are not broken
 }
 
 float gui_panel_space(float width) { return width + 2 * margin; }
@@ -203,9 +205,13 @@ float gui_panel_space(float width) { return width + 2 * margin; }
 float gui_panel_end(void)
 {
     const float height = ImGui::GetWindowHeight();
+    ImGui::PopTextWrapPos();
     ImGui::End();
-    return height;
+    return height + margin;
 }
+
+float gui_window_width(void) { return ImGui::GetIO().DisplaySize.x - 2 * margin; }
+float gui_window_height(void) { return ImGui::GetIO().DisplaySize.y - 2 * margin; }
 
 void gui_text(GuiTone tone, const char *text)
 {

@@ -41,12 +41,24 @@ typedef enum GuiCorner {
 
 typedef enum GuiTone { GUI_PLAIN, GUI_FAINT, GUI_STRONG, GUI_WARNING, GUI_ERROR } GuiTone;
 
-/* A panel in a corner, `below` pixels away from it, so wide (0: as its text needs).  It grows with
-   what it has.  Returns its height of the last frame through gui_panel_end. */
-void  gui_panel(const char *name, GuiCorner corner, float below, float width, bool quiet);
+/* Where a panel stands.  It grows with what it has, until it scrolls. */
+typedef struct GuiPlace {
+    GuiCorner corner;
+    float     below; /* pixels between the corner and the panel */
+    float     spare; /* pixels that stay free beyond it */
+    float     width; /* 0: as its text needs, */
+    float     most;  /* and at most this, where lines are broken; 0: the window's */
+} GuiPlace;
+
+/* A quiet one takes neither mouse nor keys.  gui_panel_end returns what it takes of the height, with a
+   margin. */
+void  gui_panel(const char *name, GuiPlace place, bool quiet);
 float gui_panel_end(void);
 /* What a panel of this width needs of the window's, with its margins. */
 float gui_panel_space(float width);
+/* How wide and high the window is, but for the margins. */
+float gui_window_width(void);
+float gui_window_height(void);
 
 void gui_text(GuiTone tone, const char *text);
 void gui_source(GuiTone tone, const char *text); /* in the monospaced font */

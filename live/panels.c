@@ -11,6 +11,8 @@
 #include "live/gui.h"
 
 #define PANEL_WIDTH 320
+/* Less is no panel to work with. */
+#define LEAST_CONTROLS 120
 /* Keys in the first column of the help, below the mouse. */
 #define FIRST_KEYS 12
 
@@ -203,9 +205,43 @@ static void draw_cut(Viewing *viewing)
         viewing_set_cut(viewing);
 }
 
+/*
+ * The status stands at the left, the controls at the right, and what is under the mouse below them.
+ * In a low window, where the controls need all of the height, that stands below the picture's left
+ * edge.  In a narrow window all three stand one below the other.
+ */
+static GuiPlace place_of_controls(const Viewing *viewing)
+{
+    GuiPlace place = {.corner = GUI_TOP_RIGHT, .width = PANEL_WIDTH};
+    if (window_has_room_beside(viewing->window))
+        return place;
+    const float left = gui_window_height() - viewing->heights.status;
+    place.below      = left >= LEAST_CONTROLS ? viewing->heights.status : 0;
+    if (left - viewing->heights.found >= LEAST_CONTROLS)
+        place.spare = viewing->heights.found;
+    return place;
+}
+
+/* False: there is no place. */
+static bool place_found(const Viewing *viewing, GuiPlace *place)
+{
+    const bool  beside = window_has_room_beside(viewing->window);
+    const float left   = gui_window_height() - viewing->heights.controls;
+    *place             = (GuiPlace){.corner = GUI_BOTTOM_RIGHT, .most = gui_window_width()};
+    if (!beside)
+        return gui_window_height() - viewing->heights.status - viewing->heights.found >=
+               LEAST_CONTROLS;
+    if (left >= viewing->heights.found)
+        return true;
+    place->corner = GUI_BOTTOM_LEFT;
+    place->below  = viewing->heights.remarks;
+    place->most   = gui_window_width() - gui_panel_space(PANEL_WIDTH);
+    return true;
+}
+
 static void draw_controls(Viewing *viewing)
 {
-    gui_panel("controls", GUI_TOP_RIGHT, 0, PANEL_WIDTH, false);
+    gui_panel("controls", place_of_controls(viewing), false);
     if (krs_parameter_count(version_scene(viewing->view.version)) > 0) {
         gui_heading("PARAMETERS");
         draw_parameters(viewing);
@@ -239,7 +275,7 @@ static void draw_controls(Viewing *viewing)
     gui_tip("How long a picture may take while something moves. More: finer, and slower.");
     if (gui_button("Keys and mouse: F1", false))
         viewing->help = true;
-    gui_panel_end();
+    viewing->heights.controls = gui_panel_end();
 }
 
 /* ---- what is going on ---- */
@@ -289,7 +325,7 @@ static void draw_status(Viewing *viewing)
     char        line[200];
     const char *slash = strrchr(viewing->options->path, '/');
     const Shot *shot  = &viewing->shot;
-    gui_panel("status", GUI_TOP_LEFT, 0, 0, true);
+    gui_panel("status", (GuiPlace){.corner = GUI_TOP_LEFT}, true);
     gui_text(GUI_STRONG, slash ? slash + 1 : viewing->options->path);
     if (shot->width > 0) {
         snprintf(line, sizeof line, "%u\u00d7%u   %u/%u   %.0f ms", shot->width, shot->height,
@@ -301,7 +337,7 @@ static void draw_status(Viewing *viewing)
     draw_doing(viewing);
     if (viewing->numbers)
         draw_numbers_of_shot(viewing);
-    gui_panel_end();
+    viewing->heights.status = gui_panel_end();
 }
 
 /* What is under the mouse. */
@@ -310,11 +346,14 @@ static void draw_found(Viewing *viewing)
     char         line[400], place[300];
     const Found  found = viewing_find(viewing);
     KrsComponent component;
+    GuiPlace     there;
     if (gui_has_mouse() || !found.hit ||
         krs_component(version_scene(viewing->view.version), found.component - 1, &component) !=
             KRS_OK)
         return;
-    gui_panel("found", GUI_BOTTOM_RIGHT, 0, 0, true);
+    if (!place_found(viewing, &there))
+        return;
+    gui_panel("found", there, true);
     const char *where = viewing_place(viewing, found.component, place);
     snprintf(line, sizeof line, "%s   %s   %s", component.name,
              viewing_shape(viewing, found.component), where ? where : "");
@@ -326,15 +365,16 @@ static void draw_found(Viewing *viewing)
     snprintf(line, sizeof line, "distance %.4g   level %u   instance %u", found.depth, found.level,
              found.instance);
     gui_text(GUI_FAINT, line);
-    gui_panel_end();
+    viewing->heights.found = gui_panel_end();
 }
 
 static void draw_remarks(Viewing *viewing)
 {
-    const Remarks *remarks = &viewing->remarks;
+    const Remarks *remarks   = &viewing->remarks;
+    viewing->heights.remarks = 0;
     if (remarks->count == 0)
         return;
-    gui_panel("remarks", GUI_BOTTOM_LEFT, 0, 0, false);
+    gui_panel("remarks", (GuiPlace){.corner = GUI_BOTTOM_LEFT}, false);
     for (size_t i = 0; i < remarks->count; i++) {
         const Remark *remark = &remarks->items[i];
         if (i > 0)
@@ -348,13 +388,13 @@ static void draw_remarks(Viewing *viewing)
     }
     if (remarks->errors > 0 && viewing->shot.width > 0)
         gui_text(GUI_FAINT, "The picture is that of the last text without a mistake.");
-    gui_panel_end();
+    viewing->heights.remarks = gui_panel_end();
 }
 
 /* Two columns, so that all of it is seen in a small window. */
 static void draw_help(Viewing *viewing)
 {
-    gui_panel("help", GUI_CENTER, 0, 0, false);
+    gui_panel("help", (GuiPlace){.corner = GUI_CENTER}, false);
     gui_scroll(viewing->scrolled);
     viewing->scrolled = 0;
     gui_columns(2);
@@ -392,8 +432,8 @@ void panels_draw(Viewing *viewing)
         return;
     }
     if (viewing->panels && viewing->view.version) {
-        draw_controls(viewing);
         draw_status(viewing);
+        draw_controls(viewing);
         draw_found(viewing);
     }
     if (viewing->panels || viewing->remarks.errors > 0)

@@ -54,6 +54,9 @@ typedef struct Viewing {
     double   noticed_at;
     bool     panels, help, numbers;
     int      scrolled; /* lines of the help, since it was drawn */
+    struct {
+        float status, controls, found, remarks; /* 0: it is not there */
+    } heights;                                  /* of panels in the last frame, with a margin */
     Cut      cut;
     Presets  presets;
     char     preset[64]; /* the name of the next one */

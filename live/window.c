@@ -223,13 +223,20 @@ void window_reserve(Window *window, double right) { window->reserved = right; }
 /* Less is no picture to work with. */
 enum { LEAST_PICTURE = 256 };
 
+bool window_has_room_beside(const Window *window)
+{
+    int width, height;
+    glfwGetWindowSize(window->glfw, &width, &height);
+    return width >= window->reserved + LEAST_PICTURE;
+}
+
 /* The part of the window's width that the picture has.  In a narrow window it has all, and lies
    behind what is to its right. */
 static double part_of_picture(const Window *window)
 {
     int width, height;
     glfwGetWindowSize(window->glfw, &width, &height);
-    return width >= window->reserved + LEAST_PICTURE ? 1 - window->reserved / width : 1;
+    return window_has_room_beside(window) ? 1 - window->reserved / width : 1;
 }
 
 static void framebuffer_size(const Window *window, uint32_t *width, uint32_t *height)

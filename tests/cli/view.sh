@@ -6,7 +6,7 @@
 export XDG_CACHE_HOME="$work/caches"
 unset WAYLAND_DISPLAY
 "${CC:-cc}" -std=c17 -o screen_check "$root/tests/cli/screen_check.c" -lpng || exit 1
-plan 35
+plan 36
 : >out
 
 scene() { # radius
@@ -67,6 +67,17 @@ for _ in $(seq 100); do
 done
 [ "$(cut -d ' ' -f 1 out)" -le 9880 ]
 result $? "the picture stands beside the panel"
+# What is under the mouse is told at the lower left where the controls need all of the height.
+xdotool mousemove 230 20
+sleep 1
+cp Xvfb_screen0 nothing.xwd
+xdotool mousemove 148 80
+for _ in $(seq 50); do
+    ./screen_check nothing.xwd Xvfb_screen0 0 296 >out || [ "$(cut -d ' ' -f 1 out)" -lt 3000 ] || break
+    sleep 0.1
+done
+[ "$(cut -d ' ' -f 1 out)" -ge 3000 ] && ./screen_check nothing.xwd Xvfb_screen0 300 640 >out
+result $? "what is under the mouse covers no controls"
 # Each letter is a key that cuts, turns, plays or shows something else; the clicks open the section
 # and go into its line.
 xdotool mousemove 360 75 click 1
