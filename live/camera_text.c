@@ -226,19 +226,26 @@ static char *add_property(char *block, const char *name, const char *value)
     return splice(block, brace, brace, label, value);
 }
 
+/* The comma before a property, which has one: it stands behind the value of the property before.
+   Others may stand in comments. */
+static size_t comma_before(const char *block, const Place *place)
+{
+    size_t at = strcspn(block, "{") + 1, comma = at;
+    Place  before;
+    while (next_property(block, &at, &before) && before.start < place->start)
+        comma = (size_t)(skip_blanks(block + before.end) - block);
+    return comma;
+}
+
 /* With the comma behind it, or before it. */
 static char *remove_property(char *block, const Place *place)
 {
-    const char *behind = skip_blanks(block + place->end);
-    size_t      start = place->start, end = place->end;
-    if (*behind == ',') {
-        end = (size_t)(skip_blanks(behind + 1) - block);
-    } else {
-        while (start > 0 && block[start - 1] != ',' && block[start - 1] != '{')
-            start--;
-        start -= start > 0 && block[start - 1] == ',';
-    }
-    return splice(block, start, end, "", "");
+    const char  *behind = skip_blanks(block + place->end);
+    const size_t start = place->start, comma = comma_before(block, place);
+    if (*behind == ',')
+        return splice(block, start, (size_t)(skip_blanks(behind + 1) - block), "", "");
+    block = splice(block, start, place->end, "", "");
+    return block && block[comma] == ',' ? splice(block, comma, comma + 1, "", "") : block;
 }
 
 static char *edit_property(char *block, Property property, const KrsCamera *before,

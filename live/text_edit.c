@@ -28,19 +28,33 @@ static bool print_color(FILE *out, const double *value)
     return true;
 }
 
+/* Six digits do, but for values at the end of a range: rounded, they would be outside. */
+static void print_number(FILE *out, const KrsParameter *parameter, uint32_t i, double value)
+{
+    enum { FEWEST_DIGITS = 6, MOST_DIGITS = 17 };
+    char text[40];
+    for (int digits = FEWEST_DIGITS; digits <= MOST_DIGITS; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits,
+                 parameter->degrees ? value / M_PI * 180 : value);
+        const double number = strtod(text, NULL);
+        const double read   = parameter->degrees ? number / 180 * M_PI : number;
+        if (read >= parameter->low[i] && read <= parameter->high[i])
+            break;
+    }
+    fprintf(out, "%s%s", text, parameter->degrees ? "deg" : "");
+}
+
 static void print_value(FILE *out, const KrsParameter *parameter, const double *value)
 {
-    const double unit = parameter->degrees ? 180 / M_PI : 1;
-    const char  *deg  = parameter->degrees ? "deg" : "";
     if (parameter->color && print_color(out, value))
         return;
-    if (parameter->components == 1) {
-        fprintf(out, "%.6g%s", value[0] * unit, deg);
-        return;
+    for (uint32_t i = 0; i < parameter->components; i++) {
+        if (parameter->components > 1)
+            fprintf(out, "%s", i == 0 ? "[" : ", ");
+        print_number(out, parameter, i, value[i]);
     }
-    for (uint32_t i = 0; i < parameter->components; i++)
-        fprintf(out, "%s%.6g%s", i == 0 ? "[" : ", ", value[i] * unit, deg);
-    fprintf(out, "]");
+    if (parameter->components > 1)
+        fprintf(out, "]");
 }
 
 /* ---- defaults ---- */

@@ -142,6 +142,25 @@ static KrsCamera random_camera(Random *random)
     return camera;
 }
 
+/* Commas of comments are no commas of the block. */
+static void comments_stay_where_a_property_goes(void **state)
+{
+    (void)state;
+    const char *block  = "camera { eye: [4, 3, 6] /* a, b */, // near, and low\n"
+                         "    shift: [0.1, 0.2] // wide, too\n}";
+    KrsCamera   before = camera_in(block), camera = before;
+    camera.shift[0] = camera.shift[1] = 0;
+    char *edited                      = camera_text_edit(block, &before, &camera);
+    assert_non_null(edited);
+    const KrsCamera after = camera_in(edited);
+    assert_camera(&after, &camera);
+    assert_null(strstr(edited, "shift"));
+    assert_non_null(strstr(edited, "/* a, b */"));
+    assert_non_null(strstr(edited, "// near, and low\n"));
+    assert_non_null(strstr(edited, "// wide, too\n}"));
+    free(edited);
+}
+
 /* A block is edited from camera to camera, with everything added and removed on the way. */
 static void any_camera_follows_any_other(void **state)
 {
@@ -249,6 +268,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_the_same_stays),
+        cmocka_unit_test(comments_stay_where_a_property_goes),
         cmocka_unit_test(any_camera_follows_any_other),
         cmocka_unit_test(the_rest_of_the_file_stays),
         cmocka_unit_test(a_scene_without_a_camera_gets_one),

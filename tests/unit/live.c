@@ -171,6 +171,37 @@ static void defaults_are_written(void **state)
     remove(path);
 }
 
+/* A slider at its end stays there: the text has as many digits as that needs. */
+static void ends_of_ranges_are_written(void **state)
+{
+    (void)state;
+    char             path[] = "/tmp/krs-live-XXXXXX";
+    const int        fd     = mkstemp(path);
+    const KrsOptions with   = {0};
+    double           values[3][4];
+    size_t           written;
+    assert_true(fd >= 0);
+    close(fd);
+    write_file(
+        path, "param a = 1 in [0, tau]; param b = 0 in [-2/3, 1]; param c = [0, 0] in [0, 200 / 3];"
+              "show sphere(1).move([a, b, c.x]);");
+    Document *document = document_new(path, &with);
+    assert_int_equal(document_read(document), KRS_OK);
+    Version  *version = document_version(document);
+    KrsScene *scene   = version_scene(version);
+    for (size_t i = 0; i < 3; i++) {
+        KrsParameter parameter;
+        assert_int_equal(krs_parameter(scene, i, &parameter), KRS_OK);
+        memcpy(values[i], i == 1 ? parameter.low : parameter.high, sizeof values[i]);
+    }
+    assert_int_equal(write_defaults(scene, (const double(*)[4])values, &written), KRS_OK);
+    assert_int_equal(written, 3);
+    assert_int_equal(document_read(document), KRS_OK);
+    version_release(version);
+    document_free(document);
+    remove(path);
+}
+
 /* A mistake leaves the version before, and what was said of it. */
 static void mistakes_leave_the_version(void **state)
 {
@@ -402,6 +433,7 @@ int main(void)
         cmocka_unit_test(what_is_grabbed_stays_under_the_mouse),
         cmocka_unit_test(boxes_are_framed),
         cmocka_unit_test(defaults_are_written),
+        cmocka_unit_test(ends_of_ranges_are_written),
         cmocka_unit_test(mistakes_leave_the_version),
         cmocka_unit_test(gestures_are_undone),
         cmocka_unit_test(planes_cut_what_is_before_them),
