@@ -67,6 +67,7 @@ struct Compilation {
     MirrorNodes      *mirror_nodes;
     Files             files;
     Scene             elaborated; /* its graph is extended by the pass `lower` */
+    Graph            *simplified; /* that of the scene, which the pass `prune` extends */
     Additions         additions;
     bool             *is_medium;     /* of each component: it may let light through */
     bool             *is_subsurface; /* likewise: light may go on below its surface */
@@ -83,6 +84,7 @@ static inline bool component_is_plane(const Component *component)
 /* Functions that assert what holds after a pass: a column of passes.def. */
 void validate_lowered(const Compilation *c);
 void validate_simplified(const Compilation *c);
+void validate_pruned(const Compilation *c);
 void validate_hoisted(const Compilation *c);
 void validate_facts(const Compilation *c);
 

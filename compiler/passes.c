@@ -6,6 +6,7 @@
 #include "compiler/compilation.h"
 #include "compiler/graph/crowd.h"
 #include "compiler/graph/hoist.h"
+#include "compiler/graph/joints.h"
 
 /* ---- the front end ---- */
 
@@ -139,11 +140,42 @@ KrsStatus pass_simplify(Compilation *c)
     Roots *roots    = &c->scene->roots;
     Graph *graph    = graph_simplify(c->elaborated.graph, roots->all, roots->first[ROOT_KINDS],
                                      &c->scene->arena);
-    c->scene->graph = graph;
+    c->scene->graph = c->simplified = graph;
     if (graph->crowds)
         crowds_keep(graph->crowds, &c->scene->arena);
     return KRS_OK;
 }
+
+/* Other roots may be the distance itself. */
+static bool prune_component(Compilation *c, size_t component)
+{
+    Roots     *roots = &c->scene->roots;
+    const Node old   = distance_root(roots, component);
+    const Box  box   = c->elaborated.components.items[component].shape->box;
+    Node new         = joints_prune(c->simplified, old, box, &c->scratch);
+    arena_free(&c->scratch);
+    for (size_t i = 0; new != old &&i < roots->first[ROOT_KINDS]; i++)
+        if (roots->all[i] == old)
+            roots->all[i] = new;
+    return new != old;
+}
+
+/* What is needed depends on numbers, so it stays where these are to be apart from the shaders. */
+KrsStatus pass_prune(Compilation *c)
+{
+    Roots *roots  = &c->scene->roots;
+    bool   pruned = false;
+    for (size_t i = 0; !hoists(c) && i < c->elaborated.components.count; i++)
+        pruned |= prune_component(c, i);
+    if (pruned)
+        c->scene->graph = graph_simplify(c->scene->graph, roots->all, roots->first[ROOT_KINDS],
+                                         &c->scene->arena);
+    return KRS_OK;
+}
+
+void print_prune(Compilation *c, Text *out) { print_graph(c, c->scene->graph, out); }
+
+void validate_pruned(const Compilation *c) { graph_validate(c->scene->graph, "prune"); }
 
 /* Only where numbers of the text are to be apart from the shaders. */
 KrsStatus pass_hoist(Compilation *c)

@@ -1,0 +1,72 @@
+/*
+ * joints.h: joints without what no surface needs.
+ *
+ * A blend of two shapes is more than their minimum only where both distances are about the same.  If
+ * that is nowhere near the surface of the whole, the minimum will do.  The tool that cuts a hole right
+ * through a plate may as well have no ends; and the distance around the edges of a tool is asked for inside
+ * of what it cuts only, where that to its sides will do.
+ *
+ * The distance is seen as a tree of minima, maxima and blends whose leaves are distances that are not
+ * looked into.  Boxes that the surface may pass are halved, down to a 48th of the whole; in each,
+ * intervals tell which leaves, blends and sides may have an influence.  What has none in any of them is
+ * left out.  So on the surface, and outside of it nearby, the distance is the same as before.  Elsewhere it
+ * is another one: but intervals prove as well that it has the same sign everywhere, and a tree of this
+ * kind is as steep as its steepest leaf.  Therefore it is a bound of the distance, too.
+ */
+#ifndef KRS_JOINTS_H
+#define KRS_JOINTS_H
+
+#include "compiler/graph/evaluate.h"
+#include "compiler/graph/range.h"
+
+/* The distance `root` of a solid in `box` without what its joints do not need; `root` itself where all
+   is needed, or where it depends on the frame. */
+Node joints_prune(Graph *graph, Node root, Box box, Arena *scratch);
+
+/* ---- for joints.c and joint_needs.c ---- */
+
+typedef enum JointKind {
+    JOINT_LEAF,
+    JOINT_NEGATIVE, /* of part a */
+    JOINT_ADD,      /* part a + number */
+    JOINT_SCALE,    /* part a * number, which is above 0 */
+    JOINT_MIN,
+    JOINT_MAX,
+    JOINT_BLEND, /* of parts a and b; their minimum where they differ by `number` or more */
+    JOINT_CORNER /* the distance to what is inside of all its sides, which are perpendicular */
+} JointKind;
+
+enum { MOST_SIDES = 3 };
+
+/* A node of the tree. */
+typedef struct JointPart {
+    JointKind kind;
+    Node      node;
+    uint32_t  a, b;              /* parts before it */
+    uint32_t  sides[MOST_SIDES]; /* of a corner: leaves, from a side's middle plane outwards */
+    uint32_t  side_count;
+    double    number;
+    bool      upwards;   /* the whole may grow with it */
+    bool      downwards; /* the whole may get less as it grows */
+    bool      blends;    /* the blend is needed */
+    uint32_t  needed;    /* the sides that are, as bits */
+    bool      is_round;  /* also what is nearest to an edge between two sides */
+} JointPart;
+
+typedef struct JointTree {
+    Graph     *graph;
+    JointPart *parts; /* operands first; the last is the whole */
+    uint32_t   count;
+} JointTree;
+
+/* Whether something of it may be left out.  A side may be where the whole gets larger by it: so a march
+   has no smaller steps. */
+static inline bool joint_is_candidate(const JointPart *part)
+{
+    return part->kind == JOINT_BLEND || (part->kind == JOINT_CORNER && !part->upwards);
+}
+
+/* Marks what the surface needs.  False: nothing may be left out. */
+bool joints_find_needs(JointTree *tree, Box box, Arena *scratch);
+
+#endif
