@@ -3,23 +3,40 @@
  *
  * A coarse picture alone does not tell which part of its time its pixels took.  A whole picture of the
  * same view does.  While something moves there are no whole ones, and what pixels cost changes with
- * the view, much more than the rest: so longer times are blamed on pixels first.  If the next picture
- * has fewer of them and takes as long, more of its time is of the other kind.
+ * the view, much more than the rest: so where a picture has as many as the one before, a longer time is
+ * blamed on them.  If the next picture has fewer of them and takes as long, more of its time is of the
+ * other kind.
  */
 #include "live/resolution.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 /* What pixels do not cause may be found to be so many times longer by a single picture, and this much. */
 #define MOST_GROWTH 1.5
 #define MOST_STEP   1.0
 
+/* Of a picture with as many pixels as the last one; a shorter time is shorter in all of its parts. */
+static double fixed_of_same(const Resolution *resolution, double ms, double pixels)
+{
+    const double expected = resolution->fixed_ms + pixels * resolution->pixel_ms;
+    return ms < expected ? resolution->fixed_ms * ms / expected : resolution->fixed_ms;
+}
+
+static double fixed_of_other(const Resolution *resolution, double ms, double pixels)
+{
+    const double most = MOST_GROWTH * resolution->fixed_ms + MOST_STEP;
+    const double rest = ms - pixels * resolution->pixel_ms;
+    return resolution->pixel_ms > 0 ? fmin(fmax(rest, 0), most) : 0;
+}
+
 void resolution_learn_coarse(Resolution *resolution, double ms, double pixels)
 {
-    const double most    = MOST_GROWTH * resolution->fixed_ms + MOST_STEP;
-    const double rest    = ms - pixels * resolution->pixel_ms;
-    resolution->fixed_ms = resolution->pixel_ms > 0 ? fmin(fmax(rest, 0), most) : 0;
-    resolution->pixel_ms = (ms - resolution->fixed_ms) / pixels;
+    const bool same           = pixels == resolution->coarse_pixels;
+    resolution->fixed_ms      = same ? fixed_of_same(resolution, ms, pixels)
+                                     : fixed_of_other(resolution, ms, pixels);
+    resolution->pixel_ms      = (ms - resolution->fixed_ms) / pixels;
+    resolution->coarse_pixels = pixels;
 }
 
 void resolution_learn_whole(Resolution *resolution, double ms, double pixels)
@@ -36,7 +53,7 @@ void resolution_learn_whole(Resolution *resolution, double ms, double pixels)
 
 double resolution_divide(Resolution *resolution, double pixels, double budget)
 {
-    static const double steps[] = {1, 1.5, 2, 3, 4, 6, 8, 12, 16, 24, 32};
+    static const double steps[] = {1, 1.5, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32};
     /* What pixels do not cause, fewer of them do not mend: they have half of the time in any case. */
     const double left   = fmax(budget - resolution->fixed_ms, budget / 2);
     const double needed = resolution->pixel_ms > 0 ? sqrt(pixels * resolution->pixel_ms / left) : 8;

@@ -86,6 +86,20 @@ static void the_view_gets_cheaper(void **state)
     assert_settles(&resolution, &slow, 6);
 }
 
+/* By and by, as a camera turns: pictures of one size do not tell what of their time is of the pixels. */
+static void the_view_gets_more_costly_slowly(void **state)
+{
+    (void)state;
+    Device     device     = slow;
+    Resolution resolution = {0};
+    show_coarse(&resolution, &device);
+    show_whole(&resolution, &device);
+    for (int i = 0; i < 150; i++) {
+        device.whole_ms *= 1.02;
+        assert_true(show_coarse(&resolution, &device) <= 1.25 * BUDGET);
+    }
+}
+
 /* Where the time is not of the pixels, fewer of them would not help. */
 static void waiting_is_not_mended_by_fewer_pixels(void **state)
 {
@@ -115,6 +129,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_still_view_begins_to_move),
         cmocka_unit_test(the_view_gets_more_costly),
+        cmocka_unit_test(the_view_gets_more_costly_slowly),
         cmocka_unit_test(the_view_gets_cheaper),
         cmocka_unit_test(waiting_is_not_mended_by_fewer_pixels),
         cmocka_unit_test(cheap_pictures_are_whole),
