@@ -60,6 +60,10 @@ KrsRendererOptions renderer_options(const Options *options);
 /* Opens the device that --device asks for.  On KRS_OK the caller owns *renderer,
    else it is NULL and the user knows why. */
 KrsStatus open_renderer(const Options *options, KrsRenderer **renderer);
+/* The same in two steps, for pictures: between them a scene is compiled, whose mistakes the user is to
+   know first.  The second step gets the status of the first. */
+KrsStatus open_renderer_ahead(const Options *options, KrsRenderer **renderer);
+KrsStatus opened_renderer(KrsStatus status, KrsRenderer **renderer);
 
 /* info.c: the members that `krs info --json` and `krs compile` have in common. */
 void info_add_json(Text *json, const KrsScene *scene);

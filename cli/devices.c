@@ -108,16 +108,33 @@ KrsRendererOptions renderer_options(const Options *options)
                                 .patience   = DEVICE_PATIENCE * options->deadline};
 }
 
-KrsStatus open_renderer(const Options *options, KrsRenderer **renderer)
+static KrsStatus begin(const KrsRendererOptions *with, KrsRenderer **renderer)
 {
-    const KrsRendererOptions with = renderer_options(options);
     stage_enter(STAGE_DEVICE);
-    KrsStatus status = krs_renderer_new(&with, renderer);
+    KrsStatus status = krs_renderer_new(with, renderer);
     stage_enter(STAGE_START);
+    return status;
+}
+
+KrsStatus open_renderer_ahead(const Options *options, KrsRenderer **renderer)
+{
+    KrsRendererOptions with = renderer_options(options);
+    with.pictures_ahead     = true;
+    return begin(&with, renderer);
+}
+
+KrsStatus opened_renderer(KrsStatus status, KrsRenderer **renderer)
+{
     if (status == KRS_OK)
         return KRS_OK;
     say("%s", *renderer ? krs_renderer_message(*renderer) : "out of memory");
     krs_renderer_free(*renderer);
     *renderer = NULL;
     return status;
+}
+
+KrsStatus open_renderer(const Options *options, KrsRenderer **renderer)
+{
+    const KrsRendererOptions with = renderer_options(options);
+    return opened_renderer(begin(&with, renderer), renderer);
 }

@@ -331,13 +331,14 @@ KrsStatus render_compile(Render *render)
 static KrsStatus make_ready(Render *render)
 {
     const Options *options = render->options;
+    KrsStatus      opened  = open_renderer_ahead(options, &render->renderer);
     KrsStatus      status  = scene_open(options, options->files.items[0], &render->scene);
     if (status == KRS_OK)
         status = render_choose(render);
     if (status == KRS_OK)
         status = specialize(render);
     if (status == KRS_OK)
-        status = open_renderer(options, &render->renderer);
+        status = opened_renderer(opened, &render->renderer);
     return status == KRS_OK ? render_compile(render) : status;
 }
 

@@ -79,6 +79,9 @@ typedef struct KrsRendererOptions {
        writable.  NULL: no cache, and nothing is written to disk. */
     const char  *cache;
     KrsEarlyOuts early_outs;
+    /* Shaders that all pictures need are compiled in the background from now on, on a device of
+       type CPU; for callers that have a scene to compile meanwhile. */
+    bool         pictures_ahead;
     unsigned     pretence;  /* bits of KrsPretence */
     KrsAllocator allocator; /* of the library; the driver and glslang have their own */
     double       patience;  /* seconds that the device may take for one of the many steps of

@@ -72,6 +72,12 @@ static void end_use(BorderResult result)
     pthread_rwlock_unlock(&glslang.lock);
 }
 
+void spirv_prepare(void)
+{
+    if (begin_use() == BORDER_OK)
+        end_use(BORDER_OK);
+}
+
 #define WORD(number)  #number
 #define WORDS(number) WORD(number)
 

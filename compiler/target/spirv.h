@@ -19,6 +19,8 @@ char *spirv_disassemble(const uint32_t *words, size_t word_count);
    which takes longer than to compile a kernel.  spirv_start itself takes no time. */
 void spirv_start(void);
 void spirv_stop(void);
+/* Makes these tables now.  It may fail silently: the first spirv_compile tries again. */
+void spirv_prepare(void);
 /* Versions of glslang and SPIRV-Tools. */
 const char *spirv_glslang_version(void);
 const char *spirv_tools_version(void);

@@ -43,8 +43,12 @@ typedef enum TexelKind {
     TEXEL_KINDS
 } TexelKind;
 
+/* Kernels that are made while the host does other work (ahead.c). */
+typedef struct KernelsAhead KernelsAhead;
+
 struct KrsRenderer {
     Gpu                   gpu;
+    KernelsAhead         *ahead; /* NULL: none are made at the moment */
     bool                  compiler_started;
     bool                  early_outs;   /* kernels skip far shapes by branches */
     VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters and tables */

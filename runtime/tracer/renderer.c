@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "runtime/tracer/ahead.h"
 #include "runtime/tracer/layouts.h"
 #include "runtime/tracer/warmup.h"
 #include "runtime/tracer/variants.h"
@@ -53,13 +54,14 @@ PixelKernel renderer_background(const KrsRendering *rendering)
     return rendering->program->sky_map ? PIXELS_BACKGROUND_OF_MAP : PIXELS_BACKGROUND;
 }
 
+static const char *const pixel_files[PIXEL_KERNELS] = {
+    [PIXELS_BACKGROUND] = "background.comp", [PIXELS_BACKGROUND_OF_MAP] = "background.comp",
+    [PIXELS_UNPROVEN] = "unproven.comp",     [PIXELS_PENUMBRAE] = "penumbrae.comp",
+    [PIXELS_SHADOW] = "shadow.comp",         [PIXELS_OCCLUSION] = "occlusion.comp",
+};
+
 size_t renderer_request_pixels(const KrsRendering *rendering, KernelRequest *requests)
 {
-    static const char *const files[PIXEL_KERNELS] = {
-        [PIXELS_BACKGROUND] = "background.comp", [PIXELS_BACKGROUND_OF_MAP] = "background.comp",
-        [PIXELS_UNPROVEN] = "unproven.comp",     [PIXELS_PENUMBRAE] = "penumbrae.comp",
-        [PIXELS_SHADOW] = "shadow.comp",         [PIXELS_OCCLUSION] = "occlusion.comp",
-    };
     static const PixelKernel backgrounds[] = {
         [false] = PIXELS_BACKGROUND_OF_MAP, [true] = PIXELS_BACKGROUND};
     KrsRenderer      *renderer = rendering->renderer;
@@ -69,7 +71,8 @@ size_t renderer_request_pixels(const KrsRendering *rendering, KernelRequest *req
     for (int i = 0; i < PIXEL_KERNELS; i++) {
         if (renderer->pixels[kind][i].pipeline || i == (int)other)
             continue;
-        requests[count] = request_kernel(renderer, &renderer->pixels[kind][i], files[i], kind);
+        requests[count] = request_kernel(renderer, &renderer->pixels[kind][i], pixel_files[i],
+                                         kind);
         if (i == PIXELS_BACKGROUND_OF_MAP)
             requests[count].source.defines = map_defines[kind][variants_reads(&renderer->gpu)];
         count++;
@@ -86,6 +89,18 @@ size_t renderer_request_escapes(KrsRenderer *renderer, RayKind kind, KernelReque
             requests[count++] = request_kernel(renderer, &renderer->escapes[kinds[i]],
                                                "escape.comp", kinds[i]);
     return count;
+}
+
+/* Begins to make the kernels of previews without a scene, for cameras of any scene. */
+static void start_ahead(KrsRenderer *renderer)
+{
+    KernelRequest requests[PIXEL_KERNELS];
+    size_t        count = 0;
+    for (int i = 0; i < PIXEL_KERNELS; i++)
+        if (i != PIXELS_BACKGROUND_OF_MAP)
+            requests[count++] = request_kernel(renderer, &renderer->pixels[RAYS_OF_CAMERAS][i],
+                                               pixel_files[i], RAYS_OF_CAMERAS);
+    ahead_start(renderer, requests, count);
 }
 
 KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
@@ -109,6 +124,8 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
     if (!layouts_create(renderer) || !kernels_make(renderer, VK_NULL_HANDLE, kernels, count,
                                                    &renderer->spirv_ms, &renderer->pipeline_ms))
         return renderer->gpu.status;
+    if (options && options->pictures_ahead)
+        start_ahead(renderer);
     return KRS_OK;
 }
 
@@ -117,6 +134,7 @@ void krs_renderer_free(KrsRenderer *renderer)
     if (!renderer)
         return;
     Gpu *gpu = &renderer->gpu;
+    ahead_end(renderer);
     if (gpu->device) {
         gpu_wait(gpu);
         for (int kind = 0; kind < RAY_KINDS; kind++) {

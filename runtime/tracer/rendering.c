@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "runtime/tracer/ahead.h"
 #include "runtime/tracer/kernels.h"
 #include "runtime/tracer/layouts.h"
 #include "runtime/tracer/renderer.h"
@@ -173,6 +174,7 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
     if (!sets_create(rendering) || !buffers_create(rendering) ||
         !kernels_create(rendering, purpose)) {
         KrsStatus status = renderer->gpu.status;
+        ahead_end(renderer); /* it may still use the queue */
         krs_rendering_free(rendering);
         return status;
     }

@@ -14,16 +14,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "runtime/tracer/ahead.h"
 #include "runtime/tracer/layouts.h"
-
-static bool warm_up(KrsRenderer *renderer, VkDescriptorSet scene_set, Kernel *kernel)
-{
-    const VkDescriptorSet sets[2] = {scene_set ? scene_set : renderer->idle_scene,
-                                     renderer->idle_frame};
-    const WorkBlock work     = {.groups = 1, .stride = 1};
-    return kernel->warmed_up = gpu_warm_up(&renderer->gpu, kernel->pipeline, renderer->layout, sets,
-                                           &work, sizeof work, &kernel->warm_up);
-}
 
 /* Kernels that two devices warm up.  Each takes the next one that the other has not taken. */
 typedef struct WarmUpQueue {
@@ -58,7 +50,7 @@ static void *warm_up_on_second_device(void *user)
         if (queue->codes[i].shared)
             continue;
         ready = kernel_load(&second.gpu, &kernel, &queue->codes[i], second.layout, &ms) &&
-                warm_up(&second, second.idle_scene, &kernel) && gpu_wait(&second.gpu);
+                kernel_warm_up(&second, second.idle_scene, &kernel) && gpu_wait(&second.gpu);
         queue->requests[i].kernel->pipeline_ms += kernel_driver_ms(&second.gpu, &kernel);
         kernel_destroy(&second.gpu, &kernel);
     }
@@ -96,15 +88,16 @@ static bool warm_up_all(KrsRenderer *renderer, VkDescriptorSet scene_set,
         size_t i = atomic_fetch_add(&queue.next, 1);
         if (i >= count)
             break;
-        taken[i] = ready = ready &&
-                           (codes[i].shared || warm_up(renderer, scene_set, requests[i].kernel));
+        taken[i] = ready = ready && (codes[i].shared ||
+                                     kernel_warm_up(renderer, scene_set, requests[i].kernel));
     }
     if (!ready)
         atomic_store(&queue.next, count);
     if (helped)
         pthread_join(thread, NULL);
     for (size_t i = 0; i < count && ready; i++)
-        ready = taken[i] || codes[i].shared || warm_up(renderer, scene_set, requests[i].kernel);
+        ready = taken[i] || codes[i].shared ||
+                kernel_warm_up(renderer, scene_set, requests[i].kernel);
     return ready;
 }
 
@@ -125,6 +118,21 @@ static void sort_by_size(KernelRequest *requests, KernelCode *codes, size_t coun
     }
 }
 
+/* Leaves out what has been made ahead meanwhile.  Returns how many are left. */
+static size_t drop_made(Gpu *gpu, KernelRequest *requests, KernelCode *codes, size_t count)
+{
+    size_t left = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (requests[i].kernel->pipeline) {
+            kernel_code_release(gpu, &codes[i]);
+            continue;
+        }
+        requests[left] = requests[i];
+        codes[left++]  = codes[i];
+    }
+    return left;
+}
+
 bool kernels_make(KrsRenderer *renderer, VkDescriptorSet scene_set, const KernelRequest *asked,
                   size_t count, double *spirv_ms, double *pipeline_ms)
 {
@@ -135,6 +143,8 @@ bool kernels_make(KrsRenderer *renderer, VkDescriptorSet scene_set, const Kernel
         return true;
     memcpy(requests, asked, count * sizeof *requests);
     bool ready = kernel_compile_all(gpu, requests, count, codes, spirv_ms);
+    ahead_end(renderer);
+    count = drop_made(gpu, requests, codes, count);
     sort_by_size(requests, codes, count);
     double start = clock_ms();
     for (size_t i = 0; i < count; i++)

@@ -107,6 +107,33 @@ static void compiling_is_interrupted(void **state)
     krs_renderer_free(renderer);
 }
 
+/* A renderer that makes kernels ahead may be freed while it does so, and makes the same picture. */
+static void kernels_are_made_ahead(void **state)
+{
+    Stage                   *stage   = *state;
+    const KrsRendererOptions options = {.device = tested_device(), .pictures_ahead = true};
+    const KrsRenderOptions   small   = {.width = WIDTH, .height = HEIGHT};
+    KrsRenderer             *renderer;
+    KrsRendering            *rendering;
+    KrsPicture              *picture, *meant = stage_render(stage, (KrsRenderOptions){0});
+    assert_int_equal(krs_renderer_new(&options, &renderer), KRS_OK);
+    krs_renderer_free(renderer);
+    for (int purpose = 0; purpose < 2; purpose++) {
+        assert_int_equal(krs_renderer_new(&options, &renderer), KRS_OK);
+        assert_int_equal(krs_rendering_new_for(renderer, stage->scene,
+                                               purpose ? KRS_FOR_PICTURES : KRS_FOR_QUESTIONS,
+                                               &rendering),
+                         KRS_OK);
+        assert_int_equal(krs_render(rendering, stage->frame, &small, &picture), KRS_OK);
+        assert_memory_equal(picture->color, meant->color,
+                            (size_t)WIDTH * HEIGHT * 4 * sizeof *picture->color);
+        krs_picture_free(picture);
+        krs_rendering_free(rendering);
+        krs_renderer_free(renderer);
+    }
+    krs_picture_free(meant);
+}
+
 /* ---- Counts, planes and refusals ---- */
 
 static void exhausted_rays_are_counted(void **state)
@@ -392,6 +419,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(interruption_is_heard, stage_set_up, stage_tear_down),
         cmocka_unit_test(progress_goes_forwards),
         cmocka_unit_test_setup_teardown(compiling_is_interrupted, stage_set_up, stage_tear_down),
+        cmocka_unit_test_setup_teardown(kernels_are_made_ahead, stage_set_up, stage_tear_down),
         cmocka_unit_test(materials_give_numbers),
         cmocka_unit_test_setup_teardown(exhausted_rays_are_counted, stage_set_up, stage_tear_down),
         cmocka_unit_test_setup_teardown(wrong_use_is_refused, stage_set_up, stage_tear_down),

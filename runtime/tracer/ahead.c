@@ -1,0 +1,105 @@
+/*
+ * ahead.c: kernels that all pictures need, made while the host still does other work.
+ *
+ * A scene is compiled by one thread, for a second if it is large, and lavapipe takes a quarter of a
+ * second for the kernels without a scene.  So they are made meanwhile.  The thread has copies of the
+ * renderer and of the kernels, which ahead_end takes over.
+ */
+#include "runtime/tracer/ahead.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "compiler/compile.h"
+
+struct KernelsAhead {
+    KrsRenderer   renderer; /* a copy: its device counts, and takes the note when something fails */
+    KernelRequest requests[MOST_AHEAD];
+    KernelCode    codes[MOST_AHEAD];
+    Kernel        kernels[MOST_AHEAD];
+    size_t        count, made;
+    pthread_t     thread;
+    atomic_bool   ends;
+};
+
+bool kernel_warm_up(KrsRenderer *renderer, VkDescriptorSet scene_set, Kernel *kernel)
+{
+    const VkDescriptorSet sets[2] = {scene_set ? scene_set : renderer->idle_scene,
+                                     renderer->idle_frame};
+    const WorkBlock work     = {.groups = 1, .stride = 1};
+    return kernel->warmed_up = gpu_warm_up(&renderer->gpu, kernel->pipeline, renderer->layout, sets,
+                                           &work, sizeof work, &kernel->warm_up);
+}
+
+/* Makes a kernel, and waits until the driver has compiled it. */
+static bool make(KernelsAhead *ahead, size_t i)
+{
+    Gpu   *gpu    = &ahead->renderer.gpu;
+    double unused = 0;
+    bool   ready  = kernel_load(gpu, &ahead->kernels[i], &ahead->codes[i], ahead->renderer.layout,
+                                &unused) &&
+                 kernel_warm_up(&ahead->renderer, VK_NULL_HANDLE, &ahead->kernels[i]);
+    if (i == 0)
+        spirv_prepare(); /* while the driver's own thread works */
+    ready = ready && gpu_wait(gpu);
+    if (!ready)
+        kernel_destroy(gpu, &ahead->kernels[i]);
+    return ready;
+}
+
+static void *make_all(void *user)
+{
+    KernelsAhead *ahead = user;
+    while (ahead->made < ahead->count && !atomic_load(&ahead->ends) && make(ahead, ahead->made))
+        ahead->made++;
+    return NULL;
+}
+
+/* Frees it; its thread has ended.  Memory is had and freed by the caller's thread alone. */
+static void free_ahead(KrsRenderer *renderer, KernelsAhead *ahead)
+{
+    for (size_t i = 0; i < ahead->count; i++)
+        kernel_code_release(&renderer->gpu, &ahead->codes[i]);
+    gpu_release(&renderer->gpu, ahead);
+}
+
+/* The program carries these kernels where texels are read, and has to compile them elsewhere.  The
+   callback of the validation layers works for one thread only. */
+void ahead_start(KrsRenderer *renderer, const KernelRequest *requests, size_t count)
+{
+    Gpu *gpu = &renderer->gpu;
+    if (!gpu_is_cpu(gpu) || !gpu->texels || gpu->messenger || sysconf(_SC_NPROCESSORS_ONLN) < 2)
+        return;
+    KernelsAhead *ahead  = gpu_alloc(gpu, 1, sizeof *ahead, "make kernels ahead");
+    double        unused = 0;
+    if (!ahead)
+        return;
+    ahead->renderer               = *renderer;
+    ahead->renderer.gpu.compiling = NULL; /* the caller's thread tells how far it is */
+    ahead->count                  = count;
+    memcpy(ahead->requests, requests, count * sizeof *requests);
+    if (kernel_compile_all(&ahead->renderer.gpu, ahead->requests, ahead->count, ahead->codes,
+                           &unused) &&
+        pthread_create(&ahead->thread, NULL, make_all, ahead) == 0)
+        renderer->ahead = ahead;
+    else
+        free_ahead(renderer, ahead);
+}
+
+void ahead_end(KrsRenderer *renderer)
+{
+    KernelsAhead *ahead = renderer->ahead;
+    if (!ahead)
+        return;
+    atomic_store(&ahead->ends, true);
+    pthread_join(ahead->thread, NULL);
+    for (size_t i = 0; i < ahead->made; i++)
+        *ahead->requests[i].kernel = ahead->kernels[i];
+    renderer->gpu.warm_ups = ahead->renderer.gpu.warm_ups;
+    renderer->gpu.stuck    = ahead->renderer.gpu.stuck;
+    renderer->gpu.kernels_made += ahead->made;
+    renderer->ahead = NULL;
+    free_ahead(renderer, ahead);
+}
