@@ -251,12 +251,6 @@ static void box_of_patch(const void *user, size_t number, double low[3], double 
     box_of_points(contour, tet->points, 4, low, high);
 }
 
-static bool is_known_patch(const void *user, size_t number)
-{
-    const Contour *contour = user;
-    return contour->patches.items[number].known;
-}
-
 static void find_apexes(const void *user, const MeshField *field, const uint32_t *numbers,
                         size_t count)
 {
@@ -267,7 +261,6 @@ static void find_apexes(const void *user, const MeshField *field, const uint32_t
     field_distances(field, (const double(*)[3])middles, count, distances);
     for (size_t i = 0; i < count; i++) {
         Patch *patch = &contour->patches.items[numbers[i]];
-        patch->known = true;
         patch->fan   = false;
         for (uint32_t k = 0; k < patch->corner_count; k++)
             patch->fan = patch->fan || contour->lines.items[patch->lines[k]].bent;
@@ -355,86 +348,45 @@ static void add_patch(Contour *contour, uint32_t number, const uint32_t points[4
     array_push_large(contour->arena, &contour->patches, patch);
 }
 
-static void find_patches(Contour *contour)
+/* How many triangles fill a patch. */
+static uint8_t triangles_of(const Contour *contour, const Patch *patch)
+{
+    uint32_t count = patch->fan ? patch->corner_count : patch->corner_count - 2;
+    for (uint32_t i = 0; i < patch->corner_count; i++)
+        count += contour->lines.items[patch->lines[i]].bent;
+    return (uint8_t)count;
+}
+
+static void find_patches(Contour *contour, size_t first)
 {
     static const Batches crossings = {box_of_crossing, find_crossings, NULL, 12};
     static const Batches lines     = {box_of_line, find_lines, NULL, 1};
-    static const Batches patches   = {box_of_patch, find_apexes, is_known_patch, 1};
-    const Tets          *tets      = contour->tets;
-    Patches              swap      = contour->before;
-    contour->before                = contour->patches;
-    contour->patches               = swap;
-    contour->patches.count         = 0;
-    for (size_t i = 0; i < tets->list.count; i++) {
-        const Tet *tet = &tets->list.items[i];
-        uint32_t   points[4], inside;
-        if (tet->triangle_count > 0) {
-            array_push_large(contour->arena, &contour->patches, contour->before.items[tet->patch]);
-            continue;
-        }
-        inside = inside_first(tets, tet, points);
-        if (inside > 0 && inside < 4)
-            add_patch(contour, (uint32_t)i, points, inside);
-    }
+    static const Batches patches   = {box_of_patch, find_apexes, NULL, 1};
     find_all(contour, &crossings, contour->known_crossings, contour->crossings.count);
     contour->known_crossings = contour->crossings.count;
     find_all(contour, &lines, contour->known_lines, contour->lines.count);
     contour->known_lines = contour->lines.count;
-    find_all(contour, &patches, 0, contour->patches.count);
+    find_all(contour, &patches, first, contour->patches.count);
 }
 
-/* ---- triangles ---- */
-
-static uint32_t add_vertex(Contour *contour, const double at[3])
+void contour_look(Contour *contour)
 {
-    if (contour->vertices.count == contour->vertices.capacity) {
-        size_t before           = contour->vertices.capacity * sizeof *contour->vertices.items;
-        void  *old              = contour->vertices.items;
-        contour->vertices.items = arena_grow(contour->arena, old, contour->vertices.count,
-                                             &contour->vertices.capacity,
-                                             sizeof *contour->vertices.items);
-        arena_release(contour->arena, old, before);
+    const Tets *tets  = contour->tets;
+    size_t      first = contour->patches.count;
+    for (size_t i = 0; i < tets->fresh.count; i++) {
+        uint32_t   number = tets->fresh.items[i], points[4];
+        const Tet *tet    = &tets->list.items[number];
+        uint32_t   inside = inside_first(tets, tet, points);
+        if (tet->triangle_count == 0 && inside > 0 && inside < 4)
+            add_patch(contour, number, points, inside);
     }
-    memcpy(contour->vertices.items[contour->vertices.count], at, 3 * sizeof *at);
-    return (uint32_t)contour->vertices.count++;
-}
-
-static void add_triangle(Contour *contour, Tet *tet, uint32_t a, uint32_t b, uint32_t c)
-{
-    if (contour->triangles.count == contour->triangles.capacity) {
-        size_t before            = contour->triangles.capacity * sizeof *contour->triangles.items;
-        void  *old               = contour->triangles.items;
-        contour->triangles.items = arena_grow(contour->arena, old, contour->triangles.count,
-                                              &contour->triangles.capacity,
-                                              sizeof *contour->triangles.items);
-        arena_release(contour->arena, old, before);
+    find_patches(contour, first);
+    for (size_t i = first; i < contour->patches.count; i++) {
+        Patch *patch        = &contour->patches.items[i];
+        Tet   *tet          = &tets->list.items[patch->tet];
+        tet->patch          = (uint32_t)i;
+        tet->triangle_count = triangles_of(contour, patch);
     }
-    uint32_t *triangle = contour->triangles.items[contour->triangles.count++];
-    triangle[0]        = a;
-    triangle[1]        = b;
-    triangle[2]        = c;
-    tet->triangle_count++;
-}
-
-static uint32_t vertex_for(Contour *contour, uint32_t *number, const double at[3])
-{
-    if (*number == NO_NUMBER)
-        *number = add_vertex(contour, at);
-    return *number;
-}
-
-static uint32_t find_loop(Contour *contour, const Patch *patch, uint32_t loop[8])
-{
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < patch->corner_count; i++) {
-        const Crossing *crossing = &contour->crossings.items[patch->crossings[i]];
-        const FaceLine *line     = &contour->lines.items[patch->lines[i]];
-        loop[count++] = vertex_for(contour, &contour->vertex_of[patch->crossings[i]], crossing->at);
-        if (line->bent)
-            loop[count++] = vertex_for(
-                contour, &contour->vertex_of[contour->crossings.count + patch->lines[i]], line->at);
-    }
-    return count;
 }
 
 /* The shorter diagonal of four crossings begins there: 0 or 1. */
@@ -448,24 +400,6 @@ uint32_t patch_turn(const Contour *contour, const Patch *patch)
     return distance3(at[1], at[3]) < distance3(at[0], at[2]);
 }
 
-static void add_triangles(Contour *contour, const Patch *patch)
-{
-    Tet *tet   = &contour->tets->list.items[patch->tet];
-    tet->patch = (uint32_t)(patch - contour->patches.items);
-    uint32_t loop[8], count = find_loop(contour, patch, loop);
-    tet->first_triangle = (uint32_t)contour->triangles.count;
-    if (patch->fan) {
-        uint32_t apex = add_vertex(contour, patch->apex);
-        for (uint32_t i = 0; i < count; i++)
-            add_triangle(contour, tet, loop[i], loop[(i + 1) % count], apex);
-        return;
-    }
-    uint32_t turn = patch_turn(contour, patch);
-    add_triangle(contour, tet, loop[turn], loop[turn + 1], loop[turn + 2]);
-    if (count == 4)
-        add_triangle(contour, tet, loop[turn], loop[turn + 2], loop[(turn + 3) % 4]);
-}
-
 bool patch_is_astray(const Contour *contour, const Patch *patch)
 {
     static const double ASTRAY = 0.15; /* parts of the error */
@@ -473,18 +407,4 @@ bool patch_is_astray(const Contour *contour, const Patch *patch)
     for (uint32_t i = 0; i < patch->corner_count; i++)
         most = fmax(most, contour->lines.items[patch->lines[i]].off);
     return most > ASTRAY * contour->error;
-}
-
-void contour_find(Contour *contour)
-{
-    find_patches(contour);
-    size_t numbers     = contour->crossings.count + contour->lines.count;
-    contour->vertex_of = arena_new_array(contour->arena, uint32_t, numbers + 1);
-    memset(contour->vertex_of, 0xff, (numbers + 1) * sizeof *contour->vertex_of);
-    contour->vertices.count = contour->triangles.count = 0;
-    for (size_t i = 0; i < contour->tets->list.count; i++)
-        contour->tets->list.items[i].triangle_count = 0;
-    for (size_t i = 0; i < contour->patches.count; i++)
-        add_triangles(contour, &contour->patches.items[i]);
-    arena_release(contour->arena, contour->vertex_of, (numbers + 1) * sizeof(uint32_t));
 }

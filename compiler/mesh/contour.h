@@ -34,7 +34,7 @@ typedef struct Patch {
     uint32_t tet, corner_count; /* 3 or 4 crossings */
     uint32_t crossings[4],
         lines[4]; /* in order around it, outside to the front; lines[i] follows */
-    bool   known, fan;
+    bool   fan;
     double apex[3], value;
     double off; /* as of lines */
 } Patch;
@@ -60,7 +60,7 @@ typedef struct Contour {
         size_t    count, capacity;
     } lines;
     Patches patches,
-        before; /* before: those of the last mesh, of which those of tetrahedra that are left stay */
+        before; /* patches: some are of tetrahedra that are no more, until triangles are found */
     size_t known_crossings, known_lines, known_points; /* those that are computed */
     struct {
         double (*items)[3];
@@ -75,7 +75,9 @@ typedef struct Contour {
 
 /* Distances of points that are new. */
 void contour_distances(Contour *contour);
-/* Finds vertices and triangles; those of each tetrahedron follow each other. */
+/* Finds the patches of tetrahedra that are fresh. */
+void contour_look(Contour *contour);
+/* Finds vertices and triangles of all patches; those of each tetrahedron follow each other. */
 void contour_find(Contour *contour);
 
 /* All triangles of a patch that is no fan have this crossing of it. */

@@ -35,6 +35,10 @@ typedef struct Mesher {
         Around *items;
         size_t  count, capacity;
     } around;
+    struct {
+        uint32_t *items;
+        size_t    count, capacity;
+    } last;               /* tetrahedra that were fresh before the last refinement */
     Groups        groups; /* of tetrahedra to be looked at */
     atomic_size_t next_group;
     size_t        unresolved; /* tetrahedra */

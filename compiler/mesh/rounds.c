@@ -82,6 +82,16 @@ static void add_to_groups(Mesher *m, size_t index)
     groups_add(&m->groups, (uint32_t)index, center);
 }
 
+static void find_fresh_groups(Mesher *m)
+{
+    groups_clear(&m->groups);
+    for (size_t i = 0; i < m->tets.fresh.count; i++)
+        if (m->tets.list.items[m->tets.fresh.items[i]].state == TET_NEW)
+            add_to_groups(m, m->tets.fresh.items[i]);
+    groups_finish(&m->groups);
+    atomic_store(&m->next_group, 0);
+}
+
 /* Tetrahedra of these states, by where they are. */
 static void find_groups(Mesher *m, TetState first, TetState last)
 {
@@ -204,20 +214,26 @@ static bool is_fair(const Mesher *m, const Tet *tet)
            tets_longest_edge(&m->tets, tet) <= LEAST_FAIR * m->error;
 }
 
-/* What needs no cells. */
-static size_t judge_smooth(Mesher *m)
+/* By bounds; and those whose mesh is not fair are refuted in any case. */
+static void judge_group(Mesher *m, Verifier *verifier, const Group *group)
 {
-    size_t refuted = 0;
+    bound_group(m, verifier, group);
+    for (uint32_t i = 0; i < group->count; i++) {
+        Tet *tet = tet_of_group(m, group, i);
+        if ((tet->state == TET_FITS || tet->state == TET_ROUGH) && !is_fair(m, tet))
+            tet->state = TET_REFUTED;
+    }
+}
+
+/* What needs no cells. */
+static void judge_smooth(Mesher *m)
+{
     look_around(m);
     for (size_t i = 0; i < m->tets.list.count; i++) {
         Tet *tet = &m->tets.list.items[i];
-        if ((tet->state == TET_FITS || tet->state == TET_ROUGH) && !is_fair(m, tet))
-            tet->state = TET_REFUTED;
-        else if (tet->state == TET_FITS && all_fit_around(m, tet))
+        if (tet->state == TET_FITS && all_fit_around(m, tet))
             tet->state = TET_PROVEN;
-        refuted += tet->state == TET_REFUTED && tets_can_bisect(&m->tets, i);
     }
-    return refuted;
 }
 
 /* ---- where it has edges ---- */
@@ -242,24 +258,36 @@ static void forget_marked(Mesher *m)
     }
 }
 
-/* Bisects what is refuted; false: there is nothing. */
-static bool refine(Mesher *m)
+static bool bisect_refuted(Mesher *m, size_t i)
 {
-    size_t count = m->tets.list.count, refuted = 0;
-    memset(m->marked, 0, sizeof m->marked);
-    for (size_t i = 0; i < count; i++) {
-        if (m->tets.list.items[i].state != TET_REFUTED || !tets_can_bisect(&m->tets, i))
-            continue;
-        refuted++;
-        tets_bisect(&m->tets, i);
-    }
-    if (refuted == 0)
+    if (m->tets.list.items[i].state != TET_REFUTED || !tets_can_bisect(&m->tets, i))
+        return false;
+    tets_bisect(&m->tets, i);
+    return true;
+}
+
+/* All that is refuted is among those that were fresh, or among all. */
+static size_t bisect_all_refuted(Mesher *m, bool fresh)
+{
+    size_t count = fresh ? m->last.count : m->tets.list.count, refuted = 0;
+    for (size_t i = 0; i < count; i++)
+        refuted += bisect_refuted(m, fresh ? m->last.items[i] : i);
+    return refuted;
+}
+
+/* Bisects what is refuted, and what then no longer meets its neighbours; false: there is nothing. */
+static bool refine(Mesher *m, bool fresh)
+{
+    m->last.count = 0;
+    for (size_t i = 0; i < m->tets.fresh.count; i++)
+        array_push_large(&m->arena, &m->last, m->tets.fresh.items[i]);
+    tets_forget_fresh(&m->tets);
+    if (bisect_all_refuted(m, fresh) == 0)
         return false;
     tets_close(&m->tets);
-    for (size_t i = 0; i < m->tets.list.count; i++)
-        if (m->tets.list.items[i].state == TET_NEW)
-            mark(m, &m->tets.list.items[i]);
-    forget_marked(m);
+    for (size_t i = 0; i < m->tets.fresh.count; i++)
+        if (m->tets.list.items[m->tets.fresh.items[i]].state == TET_NEW)
+            mark(m, &m->tets.list.items[m->tets.fresh.items[i]]);
     contour_distances(&m->contour);
     return true;
 }
@@ -309,7 +337,7 @@ static void find_unresolved(Mesher *m)
     memcpy(m->unresolved_at, m->verifiers[0].place, sizeof m->unresolved_at);
 }
 
-/* Counts what is decided. */
+/* Counts what is decided: half of the work is to get to where nothing is refuted by bounds. */
 static void count_proven(Mesher *m)
 {
     size_t near = 0, proven = 0;
@@ -321,23 +349,43 @@ static void count_proven(Mesher *m)
         m->unresolved += state == TET_UNRESOLVED;
     }
     if (near > 0)
-        m->fraction = fmax(m->fraction, (double)proven / (double)near);
+        m->fraction = fmax(m->fraction, 0.5 + 0.5 * (double)proven / (double)near);
+}
+
+static void count_refuted(Mesher *m)
+{
+    size_t count = m->tets.fresh.count, refuted = 0;
+    for (size_t i = 0; i < count; i++)
+        refuted += m->tets.list.items[m->tets.fresh.items[i]].state == TET_REFUTED;
+    if (count > 0)
+        m->fraction = fmax(m->fraction, 0.5 * (double)(count - refuted) / (double)count);
+}
+
+/* Until nothing is refuted by bounds; only what is fresh is looked at.  False: it was stopped. */
+static bool refine_by_bounds(Mesher *m)
+{
+    do {
+        contour_look(&m->contour);
+        find_fresh_groups(m);
+        if (!for_groups(m, judge_group))
+            return false;
+        count_refuted(m);
+    } while (refine(m, true));
+    return true;
 }
 
 /* False: it was stopped. */
 static bool prove(Mesher *m)
 {
-    find_groups(m, TET_NEW, TET_NEW);
-    if (!for_groups(m, bound_group))
+    forget_marked(m);
+    memset(m->marked, 0, sizeof m->marked);
+    judge_smooth(m);
+    find_tree(m);
+    find_groups(m, TET_FITS, TET_ROUGH);
+    if (!for_groups(m, verify_group))
         return false;
-    if (judge_smooth(m) == 0) {
-        find_tree(m);
-        find_groups(m, TET_FITS, TET_ROUGH);
-        if (!for_groups(m, verify_group))
-            return false;
-        find_unresolved(m);
-        bvh_free(&m->bvh, m->contour.triangles.count, &m->arena);
-    }
+    find_unresolved(m);
+    bvh_free(&m->bvh, m->contour.triangles.count, &m->arena);
     count_proven(m);
     return is_wanted(m);
 }
@@ -358,9 +406,11 @@ bool find_proven_mesh(Mesher *m)
     m->groups.arena = &m->arena;
     bisect_evenly(m);
     do {
+        if (!refine_by_bounds(m))
+            return false;
         contour_find(&m->contour);
         if (!prove(m))
             return false;
-    } while (refine(m));
+    } while (refine(m, false));
     return true;
 }

@@ -43,6 +43,28 @@ static float find_width(const Tets *tets, const Tet *tet)
     return (float)((1 - 1e-6) / most);
 }
 
+static void add_tet(Tets *tets, Tet tet)
+{
+    tet.fresh = true;
+    array_push_large(tets->arena, &tets->fresh, (uint32_t)tets->list.count);
+    array_push_large(tets->arena, &tets->list, tet);
+}
+
+static void replace_tet(Tets *tets, size_t index, Tet tet)
+{
+    if (!tet.fresh)
+        array_push_large(tets->arena, &tets->fresh, (uint32_t)index);
+    tet.fresh               = true;
+    tets->list.items[index] = tet;
+}
+
+void tets_forget_fresh(Tets *tets)
+{
+    for (size_t i = 0; i < tets->fresh.count; i++)
+        tets->list.items[tets->fresh.items[i]].fresh = false;
+    tets->fresh.count = 0;
+}
+
 /* The six paths from one corner of the cube to the opposite one. */
 void tets_new(Tets *tets, const double origin[3], double side, Arena *arena)
 {
@@ -60,7 +82,7 @@ void tets_new(Tets *tets, const double origin[3], double side, Arena *arena)
                 at[orders[i][k]] = CUBE_STEPS;
         }
         tet.width = find_width(tets, &tet);
-        array_push_large(arena, &tets->list, tet);
+        add_tet(tets, tet);
     }
 }
 
@@ -101,8 +123,8 @@ void tets_bisect(Tets *tets, size_t index)
     first.triangle_count = second.triangle_count = 0;
     first.width                                  = find_width(tets, &first);
     second.width                                 = find_width(tets, &second);
-    tets->list.items[index]                      = first;
-    array_push_large(tets->arena, &tets->list, second);
+    replace_tet(tets, index, first);
+    add_tet(tets, second);
 }
 
 /* Whether an edge has been bisected by a neighbour, which was after all met last. */

@@ -36,6 +36,7 @@ typedef struct Tet {
     uint8_t  tag;   /* the edge that is bisected next is that of points 0 and `tag` */
     uint8_t  state; /* TetState */
     uint8_t  triangle_count;
+    bool     fresh; /* it is among those */
     uint32_t first_triangle;
     uint32_t patch;       /* of the contour, where it has triangles */
     float    width;       /* a point of one face or edge is no nearer to the one across */
@@ -55,6 +56,10 @@ typedef struct Tets {
         Tet   *items;
         size_t count, capacity;
     } list;
+    struct {
+        uint32_t *items;
+        size_t    count, capacity;
+    } fresh;                  /* those that are new since they were forgotten */
     uint32_t closures;        /* how often all neighbours were made to meet, and 1 */
     double   origin[3], step; /* where the cube's corner is, and the length of a step */
 } Tets;
@@ -64,6 +69,8 @@ void tets_new(Tets *tets, const double origin[3], double side, Arena *arena);
 void tets_bisect(Tets *tets, size_t index);
 /* Whether it is so large that it can be bisected. */
 bool tets_can_bisect(const Tets *tets, size_t index);
+/* From now on none is fresh. */
+void tets_forget_fresh(Tets *tets);
 /* Bisects until all neighbours meet in whole faces. */
 void tets_close(Tets *tets);
 

@@ -116,6 +116,7 @@ static void open_trial(Trial *t, const Subject *subject, const double focus[3], 
     if (poked)
         poke_edge(t);
     contour_distances(&t->contour);
+    contour_look(&t->contour);
     contour_find(&t->contour);
 }
 
