@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "compiler/graph/build.h"
 #include "compiler/graph/texture.h"
 #include "compiler/image/image.h"
 
@@ -122,15 +123,22 @@ Value builtin_footprint(Elaboration *e, Call *call)
 
 /* ---- samples ---- */
 
-/* Of a pixel in the direction in which it has more texels. */
-static Node width_in_texels(Graph *g, const Texture *texture, Node uv)
+/* What a texture needs to know of a pixel (graph/texture.h).  Its taps need be no narrower than a texel. */
+static Node pixel_on_texture(Graph *g, const Texture *texture, Node uv)
 {
     const double sides[2] = {texture->levels[0].width, texture->levels[0].height};
     Node         size     = graph_constant(g, TYPE_VEC2, sides);
-    Node         width    = footprint_of(g, uv);
-    Node         texels   = graph_op2(g, OP_mul, width, size);
-    Node         across = graph_component(g, texels, 0), up = graph_component(g, texels, 1);
-    return graph_op2(g, OP_max, across, up);
+    Node         axes     = graph_op1(g, OP_footprint_axes, mul(g, uv, size));
+    Node         across = graph_component(g, axes, 0), up = graph_component(g, axes, 1);
+    Node         along  = graph_op2(g, OP_vec2, across, up);
+    Node         length = graph_op1(g, OP_length, along), width = graph_component(g, axes, 2);
+    Node         wanted = graph_op1(g, OP_ceil, over(g, length, at_least(g, width, 1)));
+    Node         most   = graph_number(g, MOST_TEXTURE_TAPS);
+    Node         taps   = at_least(g, graph_op2(g, OP_min, wanted, most), 1);
+    Node         wide   = graph_op2(g, OP_max, width, over(g, length, taps));
+    Node         place  = over(g, along, size);
+    Node         u = graph_component(g, place, 0), v = graph_component(g, place, 1);
+    return graph_op4(g, OP_vec4, u, v, taps, wide);
 }
 
 /* An argument that is a number, or both as a vector; NODE_NONE: reported. */
@@ -176,12 +184,12 @@ static Value sample(Elaboration *e, uint32_t number, const Call *call, bool alph
     g->here = call->syntax->span;
     if (graph_known_finite(g, uv))
         return known_sample(e, texture, uv, alpha);
-    Node width = width_in_texels(g, texture, uv);
+    Node pixel = pixel_on_texture(g, texture, uv);
     if (texture->gray && !alpha) {
-        Node gray = graph_texture(g, OP_texture_gray, number, uv, width);
+        Node gray = graph_texture(g, OP_texture_gray, number, uv, pixel);
         return value_of_node(e, graph_op1(g, OP_splat3, gray));
     }
-    Node all = graph_texture(g, OP_texture, number, uv, width);
+    Node all = graph_texture(g, OP_texture, number, uv, pixel);
     if (alpha)
         return value_of_node(e, graph_component(g, all, 3));
     Node red = graph_component(g, all, 0), green = graph_component(g, all, 1);

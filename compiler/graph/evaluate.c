@@ -176,8 +176,7 @@ static NodeValue read_table(const Graph *graph, const Expr *e, const NodeValue *
 
 static NodeValue read_texture(const Graph *graph, const Expr *e, const NodeValue *values)
 {
-    return texture_value(texture_of(graph, e), values[e->operands[0]].v,
-                         values[e->operands[1]].v[0]);
+    return texture_mean(texture_of(graph, e), values[e->operands[0]].v, values[e->operands[1]].v);
 }
 
 static void run_points(const Tape *tape, const Inputs *in, NodeValue *values);

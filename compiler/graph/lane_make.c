@@ -159,7 +159,11 @@ static void emit_operation(Builder *b, Node node, const Operands *o, uint32_t *t
     case OP_fold: emit_fold(b, o, to); return;
     case OP_front: to[0] = emit2(b, OP_less, o->z[0], emit_dot(b, o->y, o->x, 3)); return;
     case OP_length: to[0] = emit(b, OP_length, o->size, o->x); return;
-    case OP_footprint: to[0] = lane_steps_number(b->to, 0); return;
+    case OP_footprint:
+    case OP_footprint_axes:
+        for (uint32_t k = 0; k < components(e->type); k++)
+            to[k] = lane_steps_number(b->to, 0);
+        return;
     case OP_normalize: {
         uint32_t length = emit(b, OP_length, o->size, o->x);
         for (uint32_t k = 0; k < o->size; k++)

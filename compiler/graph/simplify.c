@@ -328,7 +328,11 @@ static Node simplify_smin(const Rewrite *s)
 }
 
 /* What is left of it when materials have been lowered is of distances. */
-static Node simplify_footprint(const Rewrite *s) { return graph_number(s->graph, 0); }
+static Node simplify_footprint(const Rewrite *s)
+{
+    const double nothing[4] = {0};
+    return graph_constant(s->graph, s->type, nothing);
+}
 
 /* There is no rule. */
 static Node simplify_none(const Rewrite *s)

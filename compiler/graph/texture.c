@@ -304,6 +304,28 @@ NodeValue texture_value(const Texture *texture, const double uv[2], double width
     return value;
 }
 
+/* Of several taps, as large a share reads the coarser level as a mixture would have. */
+NodeValue texture_mean(const Texture *texture, const double uv[2], const double pixel[4])
+{
+    const double asked = pixel[TEXTURE_TAPS];
+    const int    taps = asked > 1 ? (int)fmin(asked, MOST_TEXTURE_TAPS) : 1; /* also of no number */
+    const double level = fmin(level_of(pixel[TEXTURE_WIDTH]), texture->level_count - 1);
+    const double fine = floor(level), share = level - fine;
+    NodeValue    mean = {{0}};
+    if (taps == 1 || isnan(uv[0]) || isnan(uv[1]))
+        return texture_value(texture, uv, pixel[TEXTURE_WIDTH]);
+    for (int i = 0; i < taps; i++) {
+        const double    aside    = (i + 0.5) / taps - 0.5;
+        const bool      coarse   = floor((i + 1) * share + 0.5) > floor(i * share + 0.5);
+        const double    place[2] = {wrapped(texture->wrap, uv[0] + aside * pixel[TEXTURE_LONG_U]),
+                                    wrapped(texture->wrap, uv[1] + aside * pixel[TEXTURE_LONG_V])};
+        const NodeValue value    = level_value(texture, (uint32_t)fine + coarse, place);
+        for (int k = 0; k < TEXTURE_CHANNELS; k++)
+            mean.v[k] += value.v[k] / taps;
+    }
+    return mean;
+}
+
 /* ---- nodes ---- */
 
 const Texture *texture_of(const Graph *graph, const Expr *e)
@@ -313,8 +335,8 @@ const Texture *texture_of(const Graph *graph, const Expr *e)
     return &graph->textures->list.items[number];
 }
 
-Node graph_texture(Graph *graph, Op op, uint32_t texture, Node uv, Node width)
+Node graph_texture(Graph *graph, Op op, uint32_t texture, Node uv, Node pixel)
 {
     Node number = graph_uint(graph, texture);
-    return graph_op3(graph, op, uv, width, number);
+    return graph_op3(graph, op, uv, pixel, number);
 }

@@ -4,7 +4,8 @@
  * A texture is a pyramid of levels: level 0 is the picture, and each further one has half the width
  * and height of the one before, down to a single texel.  A texel of a level is the mean of what it
  * covers.  Between the middles of texels values are bilinear.  Where a pixel is wider than a texel,
- * the two levels whose texels are about as wide are mixed.
+ * the two levels whose texels are about as wide are mixed.  A pixel that is longer than wide is a mean
+ * of several places along its long side, the taps, each as wide as the pixel is across.
  *
  * Texels are stored as kernels read them, in 64 bits.  Those of gray textures are two floats, the
  * gray and the alpha, since heights need all digits.  Those of colours are four halves: red, green,
@@ -26,6 +27,11 @@ typedef uint32_t TexelBits[2];
 /* Red, green, blue and alpha. */
 enum { TEXTURE_CHANNELS = 4 };
 enum { MOST_TEXTURE_LEVELS = 16, MOST_TEXTURE_SIDE = 1 << 15, MOST_TEXELS = 1 << 24 };
+
+/* What a node of OP_texture knows of the pixel: its long side, in u and v; how many taps it has; and the
+   width of each, in texels of level 0. */
+enum { TEXTURE_LONG_U, TEXTURE_LONG_V, TEXTURE_TAPS, TEXTURE_WIDTH };
+enum { MOST_TEXTURE_TAPS = 3 };
 
 /* How many texels of krs_cells the header of a texture has for kernels. */
 enum { TEXTURE_HEADER = 1 + MOST_TEXTURE_LEVELS };
@@ -69,8 +75,10 @@ Texture texture_new(const float *samples, uint32_t width, uint32_t height, bool 
 const Texture *texture_of(const Graph *graph, const Expr *e);
 /* The value at a place, for pixels of a width in texels of level 0. */
 NodeValue texture_value(const Texture *texture, const double uv[2], double width);
+/* The same for a pixel with a long side. */
+NodeValue texture_mean(const Texture *texture, const double uv[2], const double pixel[4]);
 /* Nodes: a VEC4, or the first channel of a gray texture as a FLOAT. */
-Node               graph_texture(Graph *graph, Op op, uint32_t texture, Node uv, Node width);
+Node               graph_texture(Graph *graph, Op op, uint32_t texture, Node uv, Node pixel);
 static inline bool is_texture(Op op) { return op == OP_texture || op == OP_texture_gray; }
 
 #endif

@@ -20,12 +20,12 @@ static Jet channel_jet(const Texture *texture, int channel, const Fact *uv)
 }
 
 /* Coarser levels have the same range; of their slopes nothing is needed. */
-static Fact texture_fact(const Texture *texture, bool one, const Fact *uv, const Fact *width)
+static Fact texture_fact(const Texture *texture, bool one, const Fact *uv, const Fact *pixel)
 {
     Fact fact = fact_unknown(TEXTURE_CHANNELS);
     for (int k = 0; k < TEXTURE_CHANNELS; k++)
         fact.value[k] = texture->range[k];
-    if (!range_is_zero(width->value[0]))
+    if (!range_is_zero(pixel->value[TEXTURE_WIDTH]))
         return fact;
     for (int k = 0; k < TEXTURE_CHANNELS; k++)
         fact_set(&fact, (uint32_t)k, channel_jet(texture, k, uv));

@@ -7,10 +7,14 @@
  *     h = g - n (g.d) / (d.n),
  * and h is across the ray.  So from one side of the pixel to the other it changes by 2 r |h|.
  *
+ * Two expressions together, with h and k, map the disc to an ellipse.  Its sides are 2 r times the roots
+ * of the eigenvalues of the matrix of h.h, h.k and k.k.
+ *
  * Where no ray is known, as of members of crowds, the surface is taken to be seen from its front.
  */
 #include "compiler/lower/footprint.h"
 
+#include "compiler/graph/build.h"
 #include "compiler/graph/crowd.h"
 #include "compiler/graph/derive.h"
 #include "compiler/graph/evaluate.h"
@@ -66,6 +70,32 @@ static Node width_of(Graph *g, Node expression, Arena *scratch)
     return graph_op2(g, OP_mul, width, length);
 }
 
+/* The long side of that ellipse, and its width across. */
+static Node axes_of(Graph *g, Node place, Arena *scratch)
+{
+    Pixel pixel = pixel_of(g, place, scratch);
+    Node  seen[2];
+    for (uint32_t i = 0; i < 2; i++) {
+        Node part = graph_component(g, place, i);
+        seen[i]   = seen_gradient(g, pixel, graph_known_gradient(g, part, scratch));
+    }
+    Node hh = graph_op2(g, OP_dot, seen[0], seen[0]), kk = graph_op2(g, OP_dot, seen[1], seen[1]);
+    Node hk   = graph_op2(g, OP_dot, seen[0], seen[1]);
+    Node half = graph_number(g, 0.5), one = graph_number(g, 1);
+    Node mean = mul(g, half, add(g, hh, kk)), apart = mul(g, half, sub(g, hh, kk));
+    Node root = root_of(g, add(g, mul(g, apart, apart), mul(g, hk, hk)), 2);
+    /* Twice the angle of the long side has the cosine `turn`; there is none where it is a circle. */
+    Node turn   = over(g, apart, at_least(g, root, 1e-30));
+    Node cosine = root_of(g, at_least(g, mul(g, half, add(g, one, turn)), 0), 2);
+    Node sine   = root_of(g, at_least(g, mul(g, half, sub(g, one, turn)), 0), 2);
+    Node falls  = graph_op2(g, OP_less, hk, graph_number(g, 0));
+    sine        = graph_op3(g, OP_select, falls, neg(g, sine), sine);
+    Node width  = add(g, pixel.radius, pixel.radius);
+    Node length = mul(g, width, root_of(g, add(g, mean, root), 2));
+    Node across = mul(g, width, root_of(g, at_least(g, sub(g, mean, root), 0), 2));
+    return graph_op3(g, OP_vec3, mul(g, length, cosine), mul(g, length, sine), across);
+}
+
 Node lower_footprints(Graph *graph, Node root, Arena *scratch)
 {
     Tape  tape = tape_new(graph, &root, 1, scratch);
@@ -73,12 +103,13 @@ Node lower_footprints(Graph *graph, Node root, Arena *scratch)
     Span  here = graph->here;
     for (size_t i = 0; i < tape.count; i++) {
         Expr e = graph->items[tape.nodes[i]];
-        if (e.op != OP_footprint)
+        if (e.op != OP_footprint && e.op != OP_footprint_axes)
             continue;
         graph->here = e.span;
         if (!by)
             by = arena_new_array(scratch, Node, tape.count);
-        by[i] = 1 + width_of(graph, e.operands[0], scratch);
+        by[i] = 1 + (e.op == OP_footprint ? width_of(graph, e.operands[0], scratch)
+                                          : axes_of(graph, e.operands[0], scratch));
     }
     graph->here = here;
     return by ? graph_replace_nodes(graph, root, &tape, by, scratch) : root;

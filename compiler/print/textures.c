@@ -65,10 +65,10 @@ void emit_texture_reads(Emitter *e)
 }
 
 /* Where the width of a pixel is nothing, one level is enough. */
-static bool is_sharp(const Emitter *e, Node width)
+static bool is_sharp(const Emitter *e, Node pixel)
 {
-    const Expr *expr = &e->graph->items[width];
-    return expr->op == OP_CONSTANT && expr->number[0] == 0;
+    const Expr *expr = &e->graph->items[pixel];
+    return expr->op == OP_CONSTANT && expr->number[TEXTURE_WIDTH] == 0;
 }
 
 const char *emit_texture(Emitter *e, const Expr *texture)

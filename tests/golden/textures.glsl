@@ -73,22 +73,20 @@ vec4 krs_texel(uint i, bool gray)
     return mix(color, number.xxxy, bvec4(gray));
 }
 
-// Bilinear between four texels of a level.
-vec4 krs_texture_level(vec2 place, uint level, KrsTexture picture)
+// Bilinear between four texels of a level, whose texel in the list is `found`.
+vec4 krs_texture_level(vec2 place, uvec2 found, KrsTexture picture)
 {
-    uvec2 found = krs_cell_texel(picture.list + level);
+    bool round = picture.wrap == 0u;
     uvec2 size = uvec2(found.y & 0xffffu, found.y >> 16);
     vec2 at = place * vec2(size) - 0.5;
     vec2 whole = floor(at), part = at - whole, end = vec2(size) - 1.0;
-    bool round = picture.wrap == 0u;
     vec2 low = mix(max(whole, 0.0), end, bvec2(whole.x < 0.0 && round, whole.y < 0.0 && round));
     vec2 high = mix(min(whole + 1.0, end), vec2(0.0),
                     bvec2(whole.x >= end.x && round, whole.y >= end.y && round));
     uvec2 a = min(uvec2(low), size - 1u), b = min(uvec2(high), size - 1u);
     uint row = found.x + a.y * size.x, above = found.x + b.y * size.x;
     vec4 below = mix(krs_texel(row + a.x, picture.gray), krs_texel(row + b.x, picture.gray), part.x);
-    vec4 over = mix(krs_texel(above + a.x, picture.gray), krs_texel(above + b.x, picture.gray),
-                    part.x);
+    vec4 over = mix(krs_texel(above + a.x, picture.gray), krs_texel(above + b.x, picture.gray), part.x);
     return mix(below, over, part.y);
 }
 
@@ -103,7 +101,7 @@ vec2 krs_wrapped(vec2 uv, uint wrap)
 
 vec4 krs_texture_sharp(vec2 uv, KrsTexture picture)
 {
-    return krs_texture_level(krs_wrapped(uv, picture.wrap), 0u, picture);
+    return krs_texture_level(krs_wrapped(uv, picture.wrap), krs_cell_texel(picture.list), picture);
 }
 
 float krs_atan_unit(float x)
@@ -127,16 +125,34 @@ float krs_atan2(float a, float b)
     return mix(s, -s, a < 0.0);
 }
 
-// For pixels of a width in texels: the two levels whose texels are about as wide.
-vec4 krs_texture(vec2 uv, float width, KrsTexture picture)
+// Tap i of some, whose places advance along a pixel.  `found` are two levels; of the taps as large a share
+// reads the second as it has.  A single tap mixes both, and is two.
+vec4 krs_texture_tap(float i, float taps, vec2 middle, vec2 advance, uvec4 found, float share,
+                     KrsTexture picture)
 {
-    vec2 place = krs_wrapped(uv, picture.wrap);
+    bool single = taps < 1.5;
+    bool coarse = single ? i > 0.0 : floor((i + 1.0) * share + 0.5) > floor(i * share + 0.5);
+    float weight = single ? (coarse ? share : 1.0 - share) : 1.0 / taps;
+    vec2 at = middle + (single ? 0.0 : i + 0.5 - 0.5 * taps) * advance;
+    uvec2 own = uvec2(coarse ? found.z : found.x, coarse ? found.w : found.y);
+    vec4 color = krs_texture_level(krs_wrapped(at, picture.wrap), own, picture);
+    return (i < max(taps, 2.0) ? weight : 0.0) * color;
+}
+
+// For a pixel: its long side in u and v, how many taps that has, and the width of each in texels.  There is
+// no loop over taps, in which lavapipe would be slow.
+vec4 krs_texture(vec2 uv, vec4 pixel, KrsTexture picture)
+{
     float most = float(picture.levels - 1u);
-    width = mix(65536.0, max(width, 1.0), width < 65536.0); // also where it is no number
-    float level = min(log2(width), most), fine = floor(level);
-    vec4 first = krs_texture_level(place, uint(fine), picture);
-    vec4 second = krs_texture_level(place, uint(min(fine + 1.0, most)), picture);
-    return mix(first, second, level - fine);
+    float width = mix(65536.0, max(pixel.w, 1.0), pixel.w < 65536.0); // also where it is no number
+    float level = min(log2(width), most), fine = floor(level), share = level - fine;
+    uvec4 found = uvec4(krs_cell_texel(picture.list + uint(fine)),
+                        krs_cell_texel(picture.list + uint(min(fine + 1.0, most))));
+    float taps = pixel.z > 1.0 ? min(pixel.z, 3.0) : 1.0;
+    vec2 advance = taps > 1.0 ? pixel.xy / taps : vec2(0.0);
+    return krs_texture_tap(0.0, taps, uv, advance, found, share, picture) +
+           krs_texture_tap(1.0, taps, uv, advance, found, share, picture) +
+           krs_texture_tap(2.0, taps, uv, advance, found, share, picture);
 }
 
 float krs_inverse_length(float square)
@@ -216,20 +232,44 @@ KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
     float t8 = (t1 * t1) + (s0.y * s0.y);
     float t9 = t1 / t8;
     float t10 = (-s0.y) / t8;
+    vec2 v11 = vec2(((v3.z * t5) + (v3.x * t6)), ((v3.y * t9) + ((dot(v0, vec2(v3.x, v3.z)) / t7) * t10)));
     // tests/golden/textures.krs:7
-    vec3 v11 = v2 * vec3(0.0, 1.0, 0.0);
-    vec3 v12 = v2 * vec3(0.0, 0.0, 1.0);
-    vec3 v13 = vec3(((v3.z * t5) + (v3.x * t6)), ((t5 * v11.z) + (t6 * v11.x)), ((t5 * v12.z) + (t6 * v12.x)));
-    float t14 = dot(normal, krs_view);
-    float t15 = max((t14 * t14), 1e-06);
-    float t16 = length((v13 - (normal * ((t14 * dot(v13, krs_view)) / t15))));
-    float t17 = footprint + footprint;
-    vec3 v18 = vec3(((v3.y * t9) + ((dot(v0, vec2(v3.x, v3.z)) / t7) * t10)), ((t9 * v11.y) + (t10 * (dot(v0, vec2(v11.x, v11.z)) / t7))), ((t9 * v12.y) + (t10 * (dot(v0, vec2(v12.x, v12.z)) / t7))));
-    float t19 = length((v18 - (normal * ((t14 * dot(krs_view, v18)) / t15))));
-    vec2 v20 = vec2((t16 * t17), (t17 * t19)) * vec2(96.0, 288.0);
-    vec4 v21 = krs_texture(vec2(krs_atan2(s0.z, s0.x), krs_atan2(s0.y, t1)), max(v20.x, v20.y), krs_texture0);
-    vec3 v22 = vec3(v21.x, v21.y, v21.z) + vec3((1.0 - v21.w));
-    return KrsSurface(d, v22, 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 0.0, vec3(0.8), vec3(1.0), 1u, uint(0.0), 1u, 1u, normal);
+    vec2 v12 = v11 * vec2(96.0, 288.0);
+    vec3 v13 = v2 * vec3(0.0, 1.0, 0.0);
+    // library:solids.krs
+    vec2 v14 = vec2(((t5 * v13.z) + (t6 * v13.x)), ((t9 * v13.y) + (t10 * (dot(v0, vec2(v13.x, v13.z)) / t7))));
+    // tests/golden/textures.krs:7
+    vec2 v15 = v14 * vec2(96.0, 288.0);
+    vec3 v16 = v2 * vec3(0.0, 0.0, 1.0);
+    // library:solids.krs
+    vec2 v17 = vec2(((t5 * v16.z) + (t6 * v16.x)), ((t9 * v16.y) + (t10 * (dot(v0, vec2(v16.x, v16.z)) / t7))));
+    // tests/golden/textures.krs:7
+    vec2 v18 = v17 * vec2(96.0, 288.0);
+    vec3 v19 = vec3(v12.x, v15.x, v18.x);
+    float t20 = dot(normal, krs_view);
+    float t21 = max((t20 * t20), 1e-06);
+    vec3 v22 = v19 - (normal * ((t20 * dot(krs_view, v19)) / t21));
+    vec3 v23 = vec3(v12.y, v15.y, v18.y);
+    vec3 v24 = v23 - (normal * ((t20 * dot(krs_view, v23)) / t21));
+    float t25 = dot(v22, v22);
+    float t26 = dot(v24, v24);
+    float t27 = dot(v22, v24);
+    float t28 = (t25 + t26) * 0.5;
+    float t29 = (t25 - t26) * 0.5;
+    float t30 = length(vec2(t27, t29));
+    float t31 = t29 / max(t30, 1e-30);
+    float t32 = sqrt(max(((1.0 - t31) * 0.5), 0.0));
+    float t33 = footprint + footprint;
+    float t34 = t33 * sqrt((t28 + t30));
+    float t35 = t33 * sqrt(max((t28 - t30), 0.0));
+    vec2 v36 = vec2((sqrt(max(((t31 + 1.0) * 0.5), 0.0)) * t34), (mix(t32, (-t32), t27 < 0.0) * t34));
+    float t37 = length(v36);
+    float t38 = max(min(ceil((t37 / max(t35, 1.0))), 3.0), 1.0);
+    float t39 = t37 / t38;
+    vec2 v40 = v36 * vec2(0.010416667, 0.0034722222);
+    vec4 v41 = krs_texture(vec2(krs_atan2(s0.z, s0.x), krs_atan2(s0.y, t1)), vec4(v40.x, v40.y, t38, max(t35, t39)), krs_texture0);
+    vec3 v42 = vec3(v41.x, v41.y, v41.z) + vec3((1.0 - v41.w));
+    return KrsSurface(d, v42, 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 0.0, vec3(0.8), vec3(1.0), 1u, uint(0.0), 1u, 1u, normal);
 }
 
 KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
@@ -244,29 +284,43 @@ KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
     float t4 = length((v3 - (normal * ((t0 * dot(krs_view, v3)) / t1))));
     float t5 = t2 * t4;
     vec3 v6 = vec3(t5, t5, ((t5 * 0.7841395) + 0.2158605));
-    vec3 v7 = vec3(1.0, 0.0, 0.0) - (normal * ((t0 * dot(krs_view, vec3(1.0, 0.0, 0.0))) / t1));
-    vec3 v8 = vec3(0.0, 0.0, 1.0) - (normal * ((t0 * dot(krs_view, vec3(0.0, 0.0, 1.0))) / t1));
-    vec2 v9 = vec2((t2 * length(v7)), (t2 * length(v8))) * vec2(8.0, 4.0);
-    float t10 = max(v9.x, v9.y);
+    vec3 v7 = vec3(8.0, 0.0, 0.0) - (normal * ((t0 * dot(krs_view, vec3(8.0, 0.0, 0.0))) / t1));
+    vec3 v8 = vec3(0.0, 0.0, 4.0) - (normal * ((t0 * dot(krs_view, vec3(0.0, 0.0, 4.0))) / t1));
+    float t9 = dot(v7, v7);
+    float t10 = dot(v8, v8);
+    float t11 = dot(v7, v8);
+    float t12 = (t9 + t10) * 0.5;
+    float t13 = (t9 - t10) * 0.5;
+    float t14 = length(vec2(t11, t13));
+    float t15 = t13 / max(t14, 1e-30);
+    float t16 = sqrt(max(((1.0 - t15) * 0.5), 0.0));
+    float t17 = t2 * sqrt((t12 + t14));
+    float t18 = t2 * sqrt(max((t12 - t14), 0.0));
+    vec2 v19 = vec2((sqrt(max(((t15 + 1.0) * 0.5), 0.0)) * t17), (mix(t16, (-t16), t11 < 0.0) * t17));
+    float t20 = length(v19);
+    float t21 = max(min(ceil((t20 / max(t18, 1.0))), 3.0), 1.0);
+    float t22 = t20 / t21;
+    vec2 v23 = v19 * vec2(0.125, 0.25);
+    vec4 v24 = vec4(v23.x, v23.y, t21, max(t18, t22));
     // tests/golden/textures.krs:9
-    float t11 = (length(p) + 1.0) * 0.0001;
-    float t12 = max(footprint, t11);
-    vec3 v13 = mix(vec3(0.0, 1.0, 0.0), vec3(1.0, 0.0, 0.0), bvec3(abs(normal.x) < 0.6));
-    vec3 v14 = krs_normalize(cross(v13, normal));
-    vec3 v15 = v14 * t12;
-    vec3 v16 = p + v15;
-    vec3 v17 = p - v15;
-    float t18 = (krs_texture(vec2(v16.x, v16.z), t10, krs_texture1).x * 0.01) - (krs_texture(vec2(v17.x, v17.z), t10, krs_texture1).x * 0.01);
-    vec3 v19 = v16 - v17;
-    vec3 v20 = cross(normal, v14) * t12;
-    vec3 v21 = p + v20;
-    vec3 v22 = p - v20;
-    float t23 = (krs_texture(vec2(v21.x, v21.z), t10, krs_texture1).x * 0.01) - (krs_texture(vec2(v22.x, v22.z), t10, krs_texture1).x * 0.01);
-    vec3 v24 = v21 - v22;
-    vec3 v25 = (normal - (v19 * (t18 / max(dot(v19, v19), 1e-30)))) - (v24 * (t23 / max(dot(v24, v24), 1e-30)));
-    vec3 v26 = krs_normalize(v25);
-    vec3 v27 = mix(krs_normalize(v26), normal, bvec3(dot(v26, v26) < 1e-08));
-    return KrsSurface(d, v6, 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 0.0, vec3(0.8), vec3(1.0), 2u, uint(0.0), 1u, 2u, v27);
+    float t25 = (length(p) + 1.0) * 0.0001;
+    float t26 = max(footprint, t25);
+    vec3 v27 = mix(vec3(0.0, 1.0, 0.0), vec3(1.0, 0.0, 0.0), bvec3(abs(normal.x) < 0.6));
+    vec3 v28 = krs_normalize(cross(v27, normal));
+    vec3 v29 = v28 * t26;
+    vec3 v30 = p + v29;
+    vec3 v31 = p - v29;
+    float t32 = (krs_texture(vec2(v30.x, v30.z), v24, krs_texture1).x * 0.01) - (krs_texture(vec2(v31.x, v31.z), v24, krs_texture1).x * 0.01);
+    vec3 v33 = v30 - v31;
+    vec3 v34 = cross(normal, v28) * t26;
+    vec3 v35 = p + v34;
+    vec3 v36 = p - v34;
+    float t37 = (krs_texture(vec2(v35.x, v35.z), v24, krs_texture1).x * 0.01) - (krs_texture(vec2(v36.x, v36.z), v24, krs_texture1).x * 0.01);
+    vec3 v38 = v35 - v36;
+    vec3 v39 = (normal - (v33 * (t32 / max(dot(v33, v33), 1e-30)))) - (v38 * (t37 / max(dot(v38, v38), 1e-30)));
+    vec3 v40 = krs_normalize(v39);
+    vec3 v41 = mix(krs_normalize(v40), normal, bvec3(dot(v40, v40) < 1e-08));
+    return KrsSurface(d, v6, 0.6, 0.0, vec3(0.0), 1.0, 1.5, 0.0, vec3(0.0), 0.0, 0.0, vec3(0.0), 0.5, 0.0, 0.5, 1.4, 0.0, vec3(0.0), 0.0, vec3(0.8), vec3(1.0), 2u, uint(0.0), 1u, 2u, v41);
 }
 
 float krs_distance(vec3 p)

@@ -229,7 +229,7 @@ static bool only_jumps(Op op)
 /* Whether breaking a rule in this way changes anything. */
 static bool is_broken_by(Row row, Mutation mutation)
 {
-    if (row.op == OP_footprint)
+    if (row.op == OP_footprint || row.op == OP_footprint_axes)
         return false; /* it is 0, whatever is changed */
     if (mutation == SMALLER_SLOPE || mutation == SMALLER_GRADIENT)
         return !only_jumps(row.op);

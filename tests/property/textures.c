@@ -177,6 +177,29 @@ static void widths_between_levels_mix_them(void **state)
         assert_true(fabs(blurred.v[k] - mean_of_picture(k)) < 5e-4);
 }
 
+/* Where both levels are the same, a pixel is the mean of places along its long side. */
+static void long_pixels_are_means_of_taps(void **state)
+{
+    Bench *bench = *state;
+    draw(bench, 16, 12, false);
+    Texture texture = make(bench, WRAP_REPEAT);
+    for (int i = 0; i < TRIALS; i++) {
+        double uv[2] = {random_between(&bench->random, 0, 1), random_between(&bench->random, 0, 1)};
+        double u = random_between(&bench->random, -1, 1), v = random_between(&bench->random, -1, 1);
+        int    taps = 1 + i % MOST_TEXTURE_TAPS, level = i % 4;
+        NodeValue mean   = texture_mean(&texture, uv, (double[4]){u, v, taps, pow(2, level)});
+        double    sum[4] = {0};
+        for (int tap = 0; tap < taps; tap++) {
+            double at[2] = {uv[0] + u * ((2 * tap + 1.0) / (2 * taps) - 0.5),
+                            uv[1] + v * ((2 * tap + 1.0) / (2 * taps) - 0.5)};
+            for (int k = 0; k < 4; k++)
+                sum[k] += texture_value(&texture, at, pow(2, level)).v[k] / taps;
+        }
+        for (int k = 0; k < 4; k++)
+            assert_true(fabs(mean.v[k] - sum[k]) < 1e-9);
+    }
+}
+
 /* ---- facts ---- */
 
 static Node node_of(Bench *bench, const Texture *texture, double turn)
@@ -191,7 +214,7 @@ static Node node_of(Bench *bench, const Texture *texture, double turn)
     Node u    = graph_op2(g, OP_sub, a, b);
     Node v    = graph_op2(g, OP_add, d, e);
     Node uv   = graph_op2(g, OP_vec2, u, v);
-    Node none = graph_number(g, 0);
+    Node none = graph_constant(g, TYPE_VEC4, (const double[4]){0});
     return graph_texture(g, texture->gray ? OP_texture_gray : OP_texture, 0, uv, none);
 }
 
@@ -287,6 +310,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_texel_of_a_level_is_the_mean_of_what_it_covers,
                                         bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(widths_between_levels_mix_them, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(long_pixels_are_means_of_taps, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(slopes_are_bounded_and_nearly_reached, bench_start,
                                         bench_stop),
         cmocka_unit_test_setup_teardown(a_smaller_bound_is_refuted, bench_start, bench_stop),

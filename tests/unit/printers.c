@@ -79,7 +79,7 @@ static const EmbeddedFile helpers[] = {
              "fn krs_atan2(y: f32, x: f32) -> f32 {\n}\n\n"
              "fn krs_read_texture(header: u32) -> KrsTexture {\n}\n\n"
              "fn krs_texture_sharp(uv: vec2f, read: KrsTexture) -> vec4f {\n}\n\n"
-             "fn krs_texture(uv: vec2f, width: f32, read: KrsTexture) -> vec4f {\n}\n"},
+             "fn krs_texture(uv: vec2f, pixel: vec4f, read: KrsTexture) -> vec4f {\n}\n"},
     {0},
 };
 
