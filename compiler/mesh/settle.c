@@ -46,7 +46,7 @@ static void settle(const MeshField *field, const Settling *settling, double at[3
         add_scaled3(next, at, -*value / square, gradient);
         keep_settling(settling, next);
         double there = field_distance(field, next);
-        if (fabs(there) >= fabs(*value))
+        if (!(fabs(there) < fabs(*value))) /* nor what is no number */
             return;
         memcpy(at, next, sizeof next);
         *value = there;

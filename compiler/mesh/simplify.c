@@ -13,7 +13,10 @@
 #include "compiler/krs.h"
 #include "compiler/mesh/slivers.h"
 
-enum { MOST_CUTS = 12, MOST_TRIALS = 4 };
+enum { MOST_CUTS = 12, MOST_TRIALS = 14 };
+/* From trial to trial triangles are kept so many times as far around faults.  Most faults are single
+   triangles that cross others, and what is proposed next may have some elsewhere.  So steps are small. */
+static const double GROWTH = 1.25;
 
 typedef struct Simplifier {
     Memory         memory;
@@ -185,7 +188,7 @@ static bool try_error(Simplifier *s, double error)
 {
     double radius = s->error;
     memset(s->kept, 0, s->best_count * sizeof *s->kept);
-    for (int trial = 0; trial < MOST_TRIALS; trial++, radius *= 2) {
+    for (int trial = 0; trial < MOST_TRIALS; trial++, radius *= GROWTH) {
         propose(s, error);
         if (s->triangle_count == 0 || s->triangle_count >= s->best_count)
             return false;

@@ -464,6 +464,22 @@ static void simplified_meshes_are_near(void **context)
     }
 }
 
+/* Where flat faces meet a hole, single triangles of what is proposed cross others: those go back, and not
+   the whole. */
+static void flat_faces_with_a_hole_are_simplified(void **context)
+{
+    (void)context;
+    Scene    s    = scene_of("show box([2, 1, 2]) - cylinder(0.5, 3);");
+    KrsMesh *mesh = mesh_of(s, 0.025), *few;
+    assert_int_equal(krs_mesh_simplify(mesh, 0.025, &few), KRS_OK);
+    assert_true(100 * few->triangle_count < mesh->triangle_count);
+    check_closed(few);
+    check_crossings(few);
+    krs_mesh_free(few);
+    krs_mesh_free(mesh);
+    scene_close(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -476,6 +492,7 @@ int main(void)
         cmocka_unit_test(what_cannot_be_meshed_is_refused),
         cmocka_unit_test(components_and_empty_scenes),
         cmocka_unit_test(simplified_meshes_are_near),
+        cmocka_unit_test(flat_faces_with_a_hole_are_simplified),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
