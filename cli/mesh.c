@@ -63,45 +63,28 @@ static bool find_end(const Meshing *meshing, double *longest)
     return true;
 }
 
-/* A floor without an end is common, so the components that have one are named. */
+/* A floor without an end is common, so the components that have one are named, unless they are many. */
 static KrsStatus refuse_endless(const Meshing *meshing)
 {
-    Text others = {.arena = meshing->options->arena};
-    for (size_t i = 0; i < krs_component_count(meshing->scene); i++) {
+    enum { MOST_NAMED = 8 };
+    Text   others = {.arena = meshing->options->arena};
+    size_t named  = 0;
+    for (size_t i = 0; i < krs_component_count(meshing->scene) && named <= MOST_NAMED; i++) {
         KrsComponent component;
         krs_component(meshing->scene, i, &component);
         const double *low = component.low, *high = component.high;
-        if (isfinite((high[0] - low[0]) + (high[1] - low[1]) + (high[2] - low[2])))
+        if (!isfinite((high[0] - low[0]) + (high[1] - low[1]) + (high[2] - low[2])))
+            continue;
+        if (named++ < MOST_NAMED)
             text_format(&others, "%s`%s`", others.length ? ", " : "", component.name);
+        else
+            text_add(&others, " and others");
     }
     return say_usage(meshing->options,
                      "`%s` has no end; say which box is wanted, as in --within=-1,-1,-1,1,1,1%s%s",
                      meshing->options->files.items[0],
                      others.length ? ", or by --component one that has: " : "",
                      others.length ? others.bytes : "");
-}
-
-static KrsStatus check_wishes(Meshing *meshing)
-{
-    const Options *options = meshing->options;
-    const char    *path    = options->files.items[0];
-    double         longest;
-    KrsStatus      status = find_component(meshing);
-    if (status != KRS_OK)
-        return status;
-    if (options->within.given) {
-        meshing->how.within = true;
-        memcpy(meshing->how.low, options->within.low, sizeof meshing->how.low);
-        memcpy(meshing->how.high, options->within.high, sizeof meshing->how.high);
-    }
-    if (krs_scene_program(meshing->scene)->sheets)
-        return say_usage(options,
-                         "`%s` has surfaces without thickness, which enclose nothing; .shell "
-                         "makes a solid of them",
-                         path);
-    if (!find_end(meshing, &longest))
-        return refuse_endless(meshing);
-    return KRS_OK;
 }
 
 static const char *output_path(const Meshing *meshing, size_t index)
@@ -117,6 +100,39 @@ static const char *output_path(const Meshing *meshing, size_t index)
 static size_t output_count(const Meshing *meshing)
 {
     return meshing->options->outputs.count ? meshing->options->outputs.count : 1;
+}
+
+static bool can_have_lods(const Meshing *meshing)
+{
+    for (size_t i = 0; i < output_count(meshing); i++)
+        if (mesh_format(output_path(meshing, i))->has_lods)
+            return true;
+    return false;
+}
+
+static KrsStatus check_wishes(Meshing *meshing)
+{
+    const Options *options = meshing->options;
+    const char    *path    = options->files.items[0];
+    double         longest;
+    KrsStatus      status = find_component(meshing);
+    if (status != KRS_OK)
+        return status;
+    if (options->mesh_lods > 0 && !can_have_lods(meshing))
+        return say_usage(options, "--lods makes levels of detail for .glb, and none is written");
+    if (options->within.given) {
+        meshing->how.within = true;
+        memcpy(meshing->how.low, options->within.low, sizeof meshing->how.low);
+        memcpy(meshing->how.high, options->within.high, sizeof meshing->how.high);
+    }
+    if (krs_scene_program(meshing->scene)->sheets)
+        return say_usage(options,
+                         "`%s` has surfaces without thickness, which enclose nothing; .shell "
+                         "makes a solid of them",
+                         path);
+    if (!find_end(meshing, &longest))
+        return refuse_endless(meshing);
+    return KRS_OK;
 }
 
 /* ---- the mesh ---- */

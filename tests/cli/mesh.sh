@@ -31,6 +31,9 @@ fi
 run mesh floor.krs
 said 2 "floor.krs\` has no end" "what has no end is refused"
 said 2 "one that has: \`ball\`" "and what has one is named"
+echo 'show plane(); for i in 0..20 { show sphere(0.4).move([i, 0, 0]); }' >row.krs
+run mesh row.krs
+said 2 "\`component 9\` and others" "not all of many"
 run mesh --quiet floor.krs --component ball --error 0.2 -o ball.stl
 ended 0 "but not its component"
 run mesh floor.krs --component bowl
@@ -125,6 +128,8 @@ result $? "within the error"
 run mesh --quiet two.krs --error 0.05 --lods 2 -o lods.glb
 [ "$status" -eq 0 ] && grep -a -q '"MSFT_lod":{"ids":\[[0-9]*,[0-9]*\]}' lods.glb
 result $? "GLB has levels of detail"
+run mesh two.krs --error 0.05 --lods 2 -o lods.stl
+said 2 "for .glb, and none is written" "other files have none"
 # What is there stays, whatever ends the command.
 echo old >kept.stl
 run mesh --quiet ball.krs --error 1e-4 --limit memory=4M -o kept.stl
