@@ -64,7 +64,7 @@ static const EmbeddedFile *find_module(const KernelSource *source)
     if (source->scene)
         return NULL;
     for (int end = 0;
-         length < sizeof wanted && sscanf(defines, "#define %31s%n", defined, &end) == 1;
+         length < sizeof wanted && sscanf(defines, " #define %31s%n", defined, &end) == 1;
          defines += end)
         length += (size_t)snprintf(wanted + length, sizeof wanted - length, "-%s", defined);
     if (length < sizeof wanted)
