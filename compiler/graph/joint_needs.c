@@ -19,11 +19,11 @@
 
 /* Relative to the longest side of all: the smallest boxes; those where only edges of tools are in
    question; what counts as the surface on both of its sides. */
-static const double LEAST_SIDE = 1.0 / 48, LEAST_AT_EDGES = 1.0 / 192, MARGIN = 1.0 / 256;
+static const double LEAST_SIDE = 1.0 / 96, LEAST_AT_EDGES = 1.0 / 192, MARGIN = 1.0 / 256;
 
 /* Steps of lane tapes that are run over boxes, about ten milliseconds of them, before all others are taken
    for smallest ones. */
-enum { MOST_STEPS = 800000 };
+enum { MOST_STEPS = 1000000 };
 
 typedef struct Search {
     JointTree *tree;

@@ -7,7 +7,7 @@
  * of what it cuts only, where that to its sides will do.
  *
  * The distance is seen as a tree of minima, maxima and blends whose leaves are distances that are not
- * looked into.  Boxes that the surface may pass are halved, down to a 48th of the whole; in each,
+ * looked into.  Boxes that the surface may pass are halved, down to a 96th of the whole; in each,
  * intervals tell which leaves, blends and sides may have an influence.  What has none in any of them is
  * left out.  So on the surface, and outside of it nearby, the distance is the same as before.  Elsewhere it
  * is another one: but intervals prove as well that it has the same sign everywhere, and a tree of this

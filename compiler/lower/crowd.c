@@ -33,6 +33,8 @@ struct LoweredCrowds {
     JointCrowds *joints[BUCKETS];
 };
 
+uint32_t least_of_crowds(const LoweredCrowds *crowds) { return crowds ? crowds->least : 0; }
+
 LoweredCrowds *lowered_crowds_new(Graph *graph, Arena *arena, Arena *tables, uint32_t least)
 {
     LoweredCrowds *crowds = arena_new(arena, LoweredCrowds);

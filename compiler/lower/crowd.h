@@ -13,6 +13,7 @@ enum { LEAST_CROWD = 64 };
    same.  What tables have is made in an arena of its own.  `least` is LEAST_CROWD, but in tests. */
 typedef struct LoweredCrowds LoweredCrowds;
 LoweredCrowds *lowered_crowds_new(Graph *graph, Arena *arena, Arena *tables, uint32_t least);
+uint32_t       least_of_crowds(const LoweredCrowds *crowds);
 
 /* Says that the graph's nodes are needed for something else than the shape that is lowered. */
 void lowered_crowds_made(LoweredCrowds *crowds);

@@ -64,7 +64,8 @@ static bool lower_part(const PartFinder *finder, uint32_t part, Node roots[PART_
                                .surfaces = true,
                                .method   = outer->method,
                                .most     = outer->most,
-                               .crowds   = outer->crowds};
+                               .crowds   = outer->crowds,
+                               .least    = outer->least};
     ArenaMark       mark    = arena_mark(outer->scratch);
     Lowered         lowered = finder->operands ? lower_operand(&l, shape, finder->context)
                                                : lower_shape(&l, shape, finder->context);

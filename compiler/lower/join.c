@@ -35,13 +35,35 @@ Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b)
     return joined;
 }
 
+/* Whether outside of its box a distance is that to the sides of the box or more, whatever it is a bound of.
+   Operands of blends are made so (lower_operand), and blends that are no steeper are less than their
+   operands by no more than their boxes grow.  A difference is no less than what it is taken from.  What
+   is nowhere is far from no place. */
+static bool keeps_to_box(const Lowering *l, const Shape *shape)
+{
+    const bool difference = shape->kind == SHAPE_DIFFERENCE;
+    const bool joins      = difference || shape->kind == SHAPE_UNION ||
+                       shape->kind == SHAPE_INTERSECTION;
+    const bool sharp = shape->blend.width == NODE_NONE;
+    if (shape->exact)
+        return true;
+    if (!joins || shape->sheets || (l->crowds && shape->child_count >= l->least) ||
+        (!sharp && blend_info[shape->blend.kind].slope > 1))
+        return false;
+    for (uint32_t i = 0; i < (difference ? 1 : shape->child_count); i++)
+        if (box_is_empty(shape->children[i]->box) ||
+            (sharp && !keeps_to_box(l, shape->children[i])))
+            return false;
+    return true;
+}
+
 /* A bound may be small far from its shape.  The distance to the sides of the shape's box is a bound
    too, and the larger of both is used.  Then points where it is r lie within r of the box, which
    the boxes of csg.c assume. */
 Lowered lower_operand(Lowering *l, const Shape *shape, LowerContext context)
 {
     Lowered result = lower_shape(l, shape, context_lipschitz_within(context, 0));
-    if (result.distance == NODE_NONE || shape->exact)
+    if (result.distance == NODE_NONE || keeps_to_box(l, shape))
         return result;
     Node excess = sides_excess(l->graph, context.point, shape->box);
     if (excess != NODE_NONE)

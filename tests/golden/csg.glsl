@@ -60,23 +60,16 @@ float krs_distance_1(vec3 p)
     vec3 v0 = abs(p) - vec3(1.0, 0.5, 0.5);
     float t1 = max(v0.y, v0.z);
     float t2 = length(vec2(p.x, p.z)) - 0.3;
-    float t3 = abs(p.y);
-    float t4 = t3 - 1.5;
-    float t5 = length(vec2(max(t2, 0.0), max(t4, 0.0))) + min(max(t2, t4), 0.0);
-    float t6 = length((p - vec3(1.0, 0.5, 0.5))) - 0.6;
+    float t3 = abs(p.y) - 1.5;
+    float t4 = length(vec2(max(t2, 0.0), max(t3, 0.0))) + min(max(t2, t3), 0.0);
+    float t5 = length((p - vec3(1.0, 0.5, 0.5))) - 0.6;
     // tests/golden/csg.krs:2
-    float t7 = -(length(max(v0, vec3(0.0))) + min(max(v0.x, t1), 0.0));
-    float t8 = -min(t6, t7);
-    float t9 = abs(p.x) - 1.0;
-    float t10 = t3 - 0.5;
-    float t11 = max(t9, t10);
-    float t12 = abs(p.z) - 0.5;
-    float t13 = max(t11, t12);
-    float t14 = max(t8, t13);
+    float t6 = -(length(max(v0, vec3(0.0))) + min(max(v0.x, t1), 0.0));
+    float t7 = -min(t5, t6);
     // tests/golden/csg.krs:3
-    float t15 = max(0.2 - abs(t14 - t5), 0.0);
-    float t16 = min(t14, t5) - t15 * (t15 * (0.25 / max(0.2, 1e-30)));
-    return t16;
+    float t8 = max(0.2 - abs(t7 - t4), 0.0);
+    float t9 = min(t7, t4) - t8 * (t8 * (0.25 / max(0.2, 1e-30)));
+    return t9;
 }
 
 float krs_distance_2(vec3 p)

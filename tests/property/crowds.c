@@ -102,6 +102,55 @@ static void lowered_again(void **state)
     assert_int_equal(guarded, first.roots[0]);
 }
 
+/* How far a point is outside of the sides of a box. */
+static double outside_of(Box box, const double p[3])
+{
+    double most = -HUGE_VAL;
+    for (int k = 0; k < 3; k++)
+        most = fmax(most, fmax(box.axis[k].low - p[k], p[k] - box.axis[k].high));
+    return most;
+}
+
+/* A joint of joints of a few parts.  Parts of intersections overlap: what is nowhere has no box. */
+static const Shape *random_joint(int depth)
+{
+    static const ShapeKind kinds[]  = {SHAPE_UNION, SHAPE_UNION, SHAPE_DIFFERENCE,
+                                       SHAPE_INTERSECTION};
+    static const BlendKind blends[] = {BLEND_quadratic, BLEND_cubic, BLEND_exponential};
+    const Shape           *parts[5];
+    const uint32_t         count = 2 + (uint32_t)random_below(&randomness, 4);
+    const Blend            blend = {blends[random_below(&randomness, 3)],
+                                    graph_number(builder.graph, between(0.1, 0.6)), 0, NODE_NONE};
+    for (uint32_t i = 0; i < count; i++)
+        parts[i] = depth > 0 ? random_joint(depth - 1)
+                             : placed(ball(between(1, 2)), between(-1, 1), between(-1, 1), 0, 1, 1);
+    return make_joint(&builder, kinds[random_below(&randomness, 4)], parts, count,
+                      random_below(&randomness, 3) ? blend : blend_sharp, no_place);
+}
+
+/* What they join by blends may count on it that operands are so far away. */
+static void joints_keep_to_their_boxes(void **state)
+{
+    (void)state;
+    size_t outside = 0;
+    for (int i = 0; i < 60; i++) {
+        const Shape *joint = random_joint(i % 3);
+        Seen         seen  = lower(joint, NULL);
+        prepare(&seen);
+        for (int k = 0; k < POINTS; k++) {
+            double p[3];
+            random_vector(&randomness, 5, p);
+            const double apart = outside_of(joint->box, p);
+            if (!(apart > 0))
+                continue;
+            assert_true(isfinite(apart));
+            assert_true(look(&seen, p) >= apart - 1e-9);
+            outside++;
+        }
+    }
+    assert_true(outside > 20 * POINTS);
+}
+
 /* The text of many parts is as long as that of a few. */
 static void many_parts_need_few_nodes(void **state)
 {
@@ -399,6 +448,7 @@ int main(void)
         TEST(below_offsets),
         TEST(lowered_again),
         TEST(many_parts_need_few_nodes),
+        TEST(joints_keep_to_their_boxes),
         TEST(blends),
         TEST(reach_is_needed),
         TEST(reach_of_two),
