@@ -59,7 +59,7 @@ static Likeness compare_nodes(const Tape *a, const Tape *b, size_t at)
     for (uint32_t k = 0; k < x->operand_count; k++)
         if (tape_index(a, x->operands[k]) != tape_index(b, y->operands[k]))
             return DIFFERENT;
-    bool same_number = memcmp(x->number, y->number, sizeof x->number) == 0;
+    bool same_number = x->operand_count > 0 || memcmp(x->number, y->number, sizeof x->number) == 0;
     if (x->op == OP_HOISTED)
         return same_number ? EQUAL : ALIKE_BUT_NUMBERS;
     return equal_if(x->index == y->index && same_number);

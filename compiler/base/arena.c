@@ -228,12 +228,21 @@ char *arena_copy_text(Arena *arena, const char *bytes, size_t length)
     return copy;
 }
 
+/* The system has given no memory yet for what is never touched, so that larger steps cost nothing
+   there, and less is copied. */
+static bool is_large(size_t capacity, size_t size)
+{
+    enum { LARGE = 1 << 20, MOST = 16 << 20 };
+    return capacity >= LARGE / size && capacity < MOST / size;
+}
+
 void *arena_grow(Arena *arena, void *items, size_t count, size_t *capacity, size_t size)
 {
-    if (*capacity > SIZE_MAX / 2)
+    if (*capacity > SIZE_MAX / 4)
         out_of_memory(arena->memory);
-    size_t larger = *capacity < 4 ? 8 : 2 * *capacity;
-    void  *grown  = arena_alloc(arena, larger, size);
+    const size_t times  = is_large(*capacity, size) ? 4 : 2;
+    size_t       larger = *capacity < 4 ? 8 : times * *capacity;
+    void        *grown  = arena_alloc(arena, larger, size);
     if (count > 0)
         memcpy(grown, items, count * size);
     *capacity = larger;

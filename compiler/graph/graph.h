@@ -65,9 +65,11 @@ typedef struct Expr {
     uint8_t  op, type, time;
     uint8_t  operand_count;
     uint32_t index; /* OP_COMPONENT, OP_PARAMETER, OP_HOISTED, leaves of crowds */
-    Node     operands[MAX_OPERANDS];
-    double   number[4]; /* OP_CONSTANT */
-    Span     span;      /* where the author wrote it, for blame */
+    union {
+        Node   operands[MAX_OPERANDS];
+        double number[4]; /* OP_CONSTANT, OP_HOISTED */
+    };
+    Span span; /* where the author wrote it, for blame */
 } Expr;
 
 /* The range a parameter may have, for slopes that must hold over all of it. */

@@ -98,7 +98,7 @@ Node node_intern(Graph *graph, Expr e)
 {
     if (2 * (graph->count + 1) > graph->slots.count)
         slots_grow(graph);
-    for (int i = e.operand_count; i < MAX_OPERANDS; i++)
+    for (int i = e.operand_count; i < MAX_OPERANDS && !has_number(&e); i++)
         e.operands[i] = NODE_NONE;
     for (int i = 0; i < 4 && has_number(&e); i++)
         e.number[i] += 0.0; /* -0 and 0 are one constant */
