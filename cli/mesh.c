@@ -285,12 +285,25 @@ static bool has_copies(const Bodies *assembled)
     return found;
 }
 
+static KrsStatus refuse_lods_of_copies(Meshing *meshing)
+{
+    progress_end(&meshing->progress);
+    return say_usage(
+        meshing->options,
+        "`%s` has copies, and meshes with copies have no --lods; --copies merged makes "
+        "one mesh of all, which has",
+        meshing->options->files.items[0]);
+}
+
 static KrsStatus make_all(Meshing *meshing)
 {
     bool      assembled = is_any(meshing, false);
     KrsStatus status    = find_error(meshing, assembled ? make_assembled : make_merged);
     if (status == KRS_OK && assembled)
         status = make_bodies(meshing, make_assembled, &meshing->assembled);
+    if (status == KRS_OK && assembled && meshing->options->mesh_lods > 0 &&
+        has_copies(&meshing->assembled))
+        return refuse_lods_of_copies(meshing);
     if (status == KRS_OK)
         status = check_merged(meshing);
     if (status == KRS_OK && is_any(meshing, true) && has_copies(&meshing->assembled))

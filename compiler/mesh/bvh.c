@@ -100,12 +100,32 @@ static double square_to_box(const BvhNode *node, const double point[3])
     return square;
 }
 
+/* Whether a triangle's box or its plane is farther away: most are, which costs less than to find the nearest point. */
+static bool is_clearly_far(const double corners[3][3], const double point[3], double radius)
+{
+    double edges[2][3], offset[3], normal[3];
+    for (int k = 0; k < 3; k++) {
+        double a = corners[0][k] - point[k], b = corners[1][k] - point[k],
+               c = corners[2][k] - point[k];
+        if ((a > radius && b > radius && c > radius) || (a < -radius && b < -radius && c < -radius))
+            return true;
+    }
+    add_scaled3(edges[0], corners[1], -1, corners[0]);
+    add_scaled3(edges[1], corners[2], -1, corners[0]);
+    add_scaled3(offset, point, -1, corners[0]);
+    cross3(edges[0], edges[1], normal);
+    double height = dot3(offset, normal);
+    return height * height > (1 + 1e-9) * radius * radius * dot3(normal, normal);
+}
+
 static bool visit_node(const Bvh *bvh, const BvhNode *node, const double point[3], double radius,
                        BvhVisit *visit, void *user)
 {
     for (uint32_t i = node->first; i < node->first + node->count; i++) {
         double corners[3][3], nearest[3];
         triangle_corners(bvh, bvh->order[i], corners);
+        if (is_clearly_far((const double(*)[3])corners, point, radius))
+            continue;
         triangle_nearest((const double(*)[3])corners, point, nearest);
         if (distance3(nearest, point) <= radius &&
             !visit(user, bvh->order[i], (const double(*)[3])corners))

@@ -2,7 +2,7 @@
 # mesh_copies.sh: `krs mesh` of sequences: instances and the triangles of each copy are the same solid.
 . "$(dirname "$0")/common.sh"
 triangles=$root/tests/cli/mesh_triangles.py
-plan 12
+plan 13
 
 cat >bush.krs <<'END'
 show krs {
@@ -62,6 +62,8 @@ said 2 "triangles; .glb and .3mf have instances" \
     "but no mesh of all as one"
 run mesh bush.krs --copies instances -o a.stl
 said 2 "has no instances" "STL has none"
+run mesh --quiet bush.krs --error 0.05 --lods 2 -o lods.glb
+said 2 "have no --lods" "nor have copies levels of detail"
 run mesh --quiet cut.krs --error 0.05 -o a.glb -o a.stl --units m
 /usr/bin/python3 "$triangles" a.glb a.stl >out 2>err
 result $? "what mirrors cut is one mesh in all formats"

@@ -142,21 +142,21 @@ static void check_form(const Form *form)
 static void genus_and_volume_are_those_of_closed_forms(void **state)
 {
     const Form forms[] = {
-        {"torus", "show torus(0.7, 0.25);", 0.03, 1, 1, 1, 2 * PI * PI * 0.7 * 0.25 * 0.25, 0.03,
+        {"torus", "show torus(0.7, 0.25);", 0.03, 1, 1, 1, 2 * PI * PI * 0.7 * 0.25 * 0.25, 0.015,
          value_of_torus, 50, false},
         {"links",
          "show torus(0.7, 0.2).move([-0.35, 0, 0]); "
          "show torus(0.7, 0.2).rotate([1, 0, 0], 90deg).move([0.35, 0, 0]);",
-         0.02, 1.3, 2, 2, 4 * PI * PI * 0.7 * 0.2 * 0.2, 0.03, value_of_links, 65, false},
+         0.02, 1.3, 2, 2, 4 * PI * PI * 0.7 * 0.2 * 0.2, 0.01, value_of_links, 65, false},
         {"gyroid",
          "let k = tau; show box([1, 1, 1]) & field(sin(k * x) * cos(k * y) + "
          "sin(k * y) * cos(k * z) + sin(k * z) * cos(k * x)).move([-0.11, -0.07, -0.19]);",
-         0.05, 0.5, 1, 3, 0.5, 0.03, value_of_gyroid, 64, true},
+         0.05, 0.5, 1, 3, 0.5, 0.01, value_of_gyroid, 64, true},
         {"sponge-1", "show difference(box([1, 1, 1])" BARS("1", "1/3") ");", 0.05, 0.5, 1,
          genus_of_sponge(1), 20. / 27, 0.005, value_of_sponge_1, 27, false},
         /* Faces meet at right angles about three errors apart, which is not thin. */
         {"sponge-2", "show difference(box([1, 1, 1])" BARS("1", "1/3") BARS("3", "1/9") ");", 0.04,
-         0.5, 1, genus_of_sponge(2), pow(20. / 27, 2), 0.03, value_of_sponge_2, 27, false},
+         0.5, 1, genus_of_sponge(2), pow(20. / 27, 2), 0.005, value_of_sponge_2, 27, false},
         {"sponge-3",
          "show difference(box([1, 1, 1])" BARS("1", "1/3") BARS("3", "1/9") BARS("9", "1/27") ");",
          0.012, 0.5, 1, genus_of_sponge(3), pow(20. / 27, 3), 0.005, value_of_sponge_3, 27, false},
