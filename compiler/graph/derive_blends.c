@@ -127,8 +127,8 @@ static Weights by_steps(Blending *x)
     return weights;
 }
 
-#define BLEND(name, signature, slope, bulge, most, reach, acts, cost, facts, glsl, value, weights, \
-              meaning)                                                                             \
+#define BLEND(name, signature, slope, bulge, most, reach, acts, fades, cost, facts, glsl, value, \
+              weights, meaning)                                                                  \
     static Weights weights_of_##name(Blending *x) { return weights; }
 #include "compiler/graph/blends.def"
 

@@ -382,6 +382,28 @@ void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, doub
     build(&b, arena);
 }
 
+/* Large cells, if there are few enough boxes. */
+static bool place_coarse(Builder *b)
+{
+    b->coarse = true;
+    if (!begin(b) || (double)LEAST_REFINED * b->present > MANY_REFINED)
+        return false;
+    place_cells(b, least_side(b));
+    return true;
+}
+
+bool grid_place_coarse(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
+                       Arena *scratch)
+{
+    Builder b = {.grid         = grid,
+                 .boxes        = boxes,
+                 .count        = count,
+                 .reach        = reach,
+                 .given_margin = margin,
+                 .scratch      = scratch};
+    return place_coarse(&b);
+}
+
 bool grid_build_coarse(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
                        Arena *arena, Arena *scratch)
 {
@@ -391,11 +413,9 @@ bool grid_build_coarse(Grid *grid, const Box *boxes, uint32_t count, double reac
                  .count        = count,
                  .reach        = reach,
                  .given_margin = margin,
-                 .coarse       = true,
                  .scratch      = scratch};
-    if (!begin(&b) || (double)LEAST_REFINED * b.present > MANY_REFINED)
+    if (!place_coarse(&b))
         return false;
-    place_cells(&b, least_side(&b));
     if (count_entries(&b) > MANY_TO_REFINE)
         return false;
     fill(&b, arena);

@@ -50,6 +50,10 @@ Cover grid_cover_in_slab(Cover cover, Slab slab);
 void grid_begin_lists(Grid *grid, Arena *arena);
 void grid_end_lists(Grid *grid);
 
+/* Where the cells of a grid are that will be refined; false: there are too many boxes, or one is endless. */
+bool grid_place_coarse(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
+                       Arena *scratch);
+
 /* When all lists are filled. */
 void grid_find_clearances(const Builder *b, Arena *arena);
 

@@ -109,6 +109,10 @@ void grid_near(const Grid *grid, const double point[3], double radius, double cl
 {
     uint32_t first[3], last[3];
     memset(near->bits, 0, (near->count + 63) / 64 * sizeof near->bits[0]);
+    if (isinf(grid->size)) { /* one cell for all of space */
+        add_list(grid, 0, near);
+        return;
+    }
     for (int k = 1; k < 3; k++) {
         first[k] = grid_cell_along(grid, k, point[k] - radius);
         last[k]  = grid_cell_along(grid, k, point[k] + radius);

@@ -5,20 +5,7 @@
 #ifndef KRS_GRID_REFINE_H
 #define KRS_GRID_REFINE_H
 
-#include "compiler/graph/grid.h"
-#include "compiler/graph/lanes.h"
-
-/* How the members of a grid are joined, one after the other. */
-typedef struct GridBlend {
-    Op              op;      /* a smooth minimum of which the slope is 1 (blends.def), */
-    double          width;   /* and its width */
-    const LaneTape *tape;    /* its output is the distance of a member, */
-    double         *scalars; /* with these scalars: tape->scalar_count for each */
-    double          slope;   /* of all distances */
-    double acts;   /* a member that is farther above what those before it make changes nothing */
-    double reach;  /* as of the grid */
-    double margin; /* likewise, as it was given */
-} GridBlend;
+#include "compiler/graph/grid_blend.h"
 
 /*
  * Each cell of a coarse grid becomes GRID_REFINED cells.  In each of them the members of its list make the
@@ -27,5 +14,8 @@ typedef struct GridBlend {
  */
 void grid_refine(Grid *refined, const Grid *coarse, const GridBlend *blend, Arena *arena,
                  Arena *scratch);
+
+/* Lists of refined cells are empty where results are no less than this. */
+double grid_empty_from(const GridBlend *blend, const Grid *coarse);
 
 #endif

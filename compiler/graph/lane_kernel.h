@@ -98,13 +98,13 @@ static void LOCAL(call)(const LaneTape *tape, const LaneWork *work, const LaneCa
 
 /* ---- blends ---- */
 
-#define BLEND(name, signature, slope, bulge, most, reach, acts, cost, facts, glsl, value, weights, \
-              meaning)                                                                             \
-    static inline REAL LOCAL(smin_##name)(REAL a, REAL b, REAL k, REAL n)                          \
-    {                                                                                              \
-        REAL t = a == b ? 0 : fabs(a - b) / k, h = fmax(1 - t, 0);                                 \
-        (void)h, (void)n;                                                                          \
-        return !(k > 0) ? fmin(a, b) : (REAL)(value);                                              \
+#define BLEND(name, signature, slope, bulge, most, reach, acts, fades, cost, facts, glsl, value, \
+              weights, meaning)                                                                  \
+    static inline REAL LOCAL(smin_##name)(REAL a, REAL b, REAL k, REAL n)                        \
+    {                                                                                            \
+        REAL t = a == b ? 0 : fabs(a - b) / k, h = fmax(1 - t, 0);                               \
+        (void)h, (void)n;                                                                        \
+        return !(k > 0) ? fmin(a, b) : (REAL)(value);                                            \
     }
 #include "compiler/graph/blends.def"
 
@@ -184,8 +184,8 @@ static void LOCAL(step)(uint16_t op, REAL *to, const REAL *const *x, uint32_t si
 #define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning) \
     ROW(OP_##name, value)
 #include "compiler/graph/ops.def"
-#define BLEND(name, signature, slope, bulge, most, reach, acts, cost, facts, glsl, value, weights, \
-              meaning)                                                                             \
+#define BLEND(name, signature, slope, bulge, most, reach, acts, fades, cost, facts, glsl, value, \
+              weights, meaning)                                                                  \
     ROW(OP_smin_##name, LOCAL(smin_##name)(a, b, c, d))
 #include "compiler/graph/blends.def"
     case OP_length:

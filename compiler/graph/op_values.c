@@ -275,18 +275,18 @@ static double widths_apart(double a, double b, double width)
     return a == b ? 0 : fabs(a - b) / width;
 }
 
-#define BLEND(name, signature, slope, bulge, most, reach, acts, cost, facts, glsl, value, weights, \
-              meaning)                                                                             \
-    static NodeValue evaluate_smin_##name(const NodeValue *o, uint32_t size)                       \
-    {                                                                                              \
-        (void)size;                                                                                \
-        double a = o[0].v[0], b = o[1].v[0], k = o[2].v[0];                                        \
-        if (!(k > 0))                                                                              \
-            return number(fmin(a, b));                                                             \
-        double t = widths_apart(a, b, k), h = fmax(1 - t, 0);                                      \
-        double n = sizeof signature > sizeof "fff>f" ? o[3].v[0] : 0;                              \
-        (void)h, (void)n;                                                                          \
-        return number(value);                                                                      \
+#define BLEND(name, signature, slope, bulge, most, reach, acts, fades, cost, facts, glsl, value, \
+              weights, meaning)                                                                  \
+    static NodeValue evaluate_smin_##name(const NodeValue *o, uint32_t size)                     \
+    {                                                                                            \
+        (void)size;                                                                              \
+        double a = o[0].v[0], b = o[1].v[0], k = o[2].v[0];                                      \
+        if (!(k > 0))                                                                            \
+            return number(fmin(a, b));                                                           \
+        double t = widths_apart(a, b, k), h = fmax(1 - t, 0);                                    \
+        double n = sizeof signature > sizeof "fff>f" ? o[3].v[0] : 0;                            \
+        (void)h, (void)n;                                                                        \
+        return number(value);                                                                    \
     }
 #include "compiler/graph/blends.def"
 

@@ -117,10 +117,10 @@ static bool make_crowd(const PartFinder *finder, CrowdGroup *group, const GroupJ
         return false;
     double factor = for_bounds(finder, group);
     double reach  = factor * blended_reach(group, join);
-    double margin = isfinite(reach) ? factor * right : HUGE_VAL;
+    double margin = factor * right;
     Crowd  table  = {.stretch = factor, .span = join->span};
     group->slope  = largest_slope(finder, group);
-    group_make_table(group, join, boxes, isfinite(reach) ? reach : 0, margin, table);
+    group_make_table(group, join, boxes, reach, margin, table);
     return true;
 }
 

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "compiler/graph/grid_refine.h"
+#include "compiler/graph/grid_sift.h"
 #include "compiler/lower/crowd_group.h"
 #include "compiler/lower/join.h"
 
@@ -68,21 +69,62 @@ static bool may_refine(const CrowdGroup *group, const GroupJoin *join, const Gri
            isfinite(group->slope) && !join->complement && !table->frame_columns;
 }
 
+/* Entries of lists that kernels do not read are few: as if each had so many texels. */
+enum { TEXELS_OF_HOST = 64 };
+
+/* Most texels of all entries of refined lists, and by how much those are more than the coarse ones. */
+enum { MOST_TEXELS = 1 << 23, LISTS_GROW = 16 };
+
+/* False: that would take too long, or too much memory. */
+static bool sift(const GridBlend *blend, const Box *boxes, Grid *coarse, const Crowd *table,
+                 Arena *scratch)
+{
+    double most = (double)MOST_TEXELS / LISTS_GROW / fmax((double)row_texels(table), 1);
+    return grid_sift(coarse, boxes, table->rows, blend, scratch) &&
+           coarse->first[grid_cell_count(coarse)] <= most;
+}
+
+/* The grid, and large cells with lists of the members that act there: by their boxes if that is possible. */
+static bool make_coarse(const GridBlend *blend, const Box *boxes, Grid *coarse, Crowd *table,
+                        Arena *scratch)
+{
+    double reach = blend->reach * table->stretch;
+    bool   far   = blend->fades || !isfinite(reach);
+    if (far && sift(blend, boxes, coarse, table, scratch)) {
+        grid_build(&table->grid, boxes, table->rows, reach, blend->margin, TEXELS_OF_HOST,
+                   table->arena, scratch);
+        return true;
+    }
+    if (!isfinite(reach) || !grid_build_coarse(&table->grid, boxes, table->rows, reach,
+                                               blend->margin, table->arena, scratch))
+        return false;
+    *coarse = table->grid;
+    return true;
+}
+
 /* The grid is made and refined for what `blend` has already. */
-static bool refine(const CrowdGroup *group, const GroupJoin *join, const Box *boxes, double reach,
+static bool refine(const CrowdGroup *group, const GroupJoin *join, const Box *boxes,
                    GridBlend *blend, Crowd *table)
 {
     Arena         *scratch  = join->scratch;
     MemberDistance distance = distance_of_columns(group, join);
-    if (!is_of_columns(join->graph, &distance) ||
-        !grid_build_coarse(&table->grid, boxes, table->rows, reach, blend->margin, table->arena,
-                           scratch))
+    Grid           coarse;
+    if (!is_of_columns(join->graph, &distance))
         return false;
     LaneTape lanes = lane_tape_new(&distance.tape, &distance.root, 1, false, 0, scratch);
     blend->tape    = &lanes;
     blend->scalars = scalars_of(&distance, &lanes, table, scratch);
-    grid_refine(&table->cells, &table->grid, blend, table->arena, scratch);
+    if (!make_coarse(blend, boxes, &coarse, table, scratch))
+        return false;
+    grid_refine(&table->cells, &coarse, blend, table->arena, scratch);
     return true;
+}
+
+/* How far above a result of 0 all of n operands in a row can be, in widths.  They stop acting when the running
+   value is `acts` below all of them. */
+static double widths_above(BlendKind kind, uint32_t n)
+{
+    return fmin(blend_bulge(kind, n), blend_acts(kind, n) + blend_info[kind].bulge);
 }
 
 static bool make_refined(const CrowdGroup *group, const GroupJoin *join, const Box *boxes,
@@ -90,14 +132,17 @@ static bool make_refined(const CrowdGroup *group, const GroupJoin *join, const B
 {
     const Blend *of    = &join->blend;
     GridBlend    blend = {.slope = group->slope, .reach = reach / table->stretch, .margin = margin};
-    if (of->width == NODE_NONE || !graph_known_component(join->graph, of->width, 0, &blend.width))
+    if (of->width == NODE_NONE || !graph_known_component(join->graph, of->width, 0, &blend.width) ||
+        (of->steps != NODE_NONE && !graph_known_component(join->graph, of->steps, 0, &blend.steps)))
         return false;
-    blend.op   = blend_info[of->kind].op;
-    blend.acts = blend.width * blend_acts(of->kind, table->rows);
+    blend.op    = blend_info[of->kind].op;
+    blend.acts  = blend.width * blend_acts(of->kind, table->rows);
+    blend.fades = blend_fades(of->kind) && !group_varies(group, join);
+    blend.swell = table->stretch * blend.width * widths_above(of->kind, table->rows);
     if (!may_refine(group, join, &blend, table))
         return false;
     GraphMark mark    = graph_mark(join->graph);
-    bool      refined = refine(group, join, boxes, reach, &blend, table);
+    bool      refined = refine(group, join, boxes, &blend, table);
     graph_release(join->graph, mark);
     return refined;
 }

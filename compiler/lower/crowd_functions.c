@@ -67,6 +67,14 @@ bool group_mixes(const CrowdGroup *group, const GroupJoin *join)
     return false;
 }
 
+bool group_varies(const CrowdGroup *group, const GroupJoin *join)
+{
+    for (uint32_t root = PART_SURFACE; root < PART_ROOTS; root++)
+        if (root_varies(group, root, join->scratch))
+            return true;
+    return false;
+}
+
 bool group_has_functions(const CrowdGroup *group, const GroupJoin *join)
 {
     for (uint32_t root = PART_SURFACE; root < PART_ROOTS; root++) {

@@ -108,6 +108,8 @@ void group_slots_of_parameters(const CrowdGroup *group, Graph *graph, uint32_t f
 bool group_has_functions(const CrowdGroup *group, const GroupJoin *join);
 /* Whether a blend mixes something in which the members differ. */
 bool group_mixes(const CrowdGroup *group, const GroupJoin *join);
+/* Whether its members differ in anything but their distances. */
+bool group_varies(const CrowdGroup *group, const GroupJoin *join);
 /* The members of a group, joined, where the context is. */
 Lowered group_lower(CrowdGroup *group, const GroupJoin *join, bool surfaces, LowerContext context);
 

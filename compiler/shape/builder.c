@@ -38,6 +38,16 @@ double blend_acts(BlendKind kind, double n)
     return acts_within[kind];
 }
 
+bool blend_fades(BlendKind kind)
+{
+    const bool fading[BLEND_COUNT] = {
+#define BLEND(name, signature, slope, bulge, most, reach, acts, fades, ...) \
+    [BLEND_##name] = (fades),
+#include "compiler/graph/blends.def"
+    };
+    return fading[kind];
+}
+
 const Blend blend_sharp = {.width = NODE_NONE, .steps = NODE_NONE};
 
 Range node_range(ShapeBuilder *builder, Node node, uint32_t component)

@@ -85,6 +85,8 @@ double blend_bulge(BlendKind kind, uint32_t count);
 double blend_reach(BlendKind kind, double n);
 /* How far above what those before it make one of them changes nothing. */
 double blend_acts(BlendKind kind, double n);
+/* Whether the order of operands means nothing, and what one adds falls by e with each width. */
+bool blend_fades(BlendKind kind);
 
 /* How the shapes of a metasurface fade; falloffs.def has a row for each. */
 typedef enum FalloffKind {

@@ -1,0 +1,24 @@
+/*
+ * grid_blend.h: how the members of a grid are joined, one after the other.
+ */
+#ifndef KRS_GRID_BLEND_H
+#define KRS_GRID_BLEND_H
+
+#include "compiler/graph/grid.h"
+#include "compiler/graph/lanes.h"
+
+typedef struct GridBlend {
+    Op              op;      /* a smooth minimum of which the slope is 1 (blends.def), */
+    double          width;   /* and its width, */
+    double          steps;   /* and of some their number */
+    const LaneTape *tape;    /* its output is the distance of a member, */
+    double         *scalars; /* with these scalars: tape->scalar_count for each */
+    double          slope;   /* of all distances */
+    bool            fades;   /* as blends.def says, and only distances count */
+    double acts;   /* a member that is farther above what those before it make changes nothing */
+    double reach;  /* as of the grid; infinite where any member may change a result */
+    double swell;  /* how far the least member may be above a result of 0 */
+    double margin; /* likewise, as it was given */
+} GridBlend;
+
+#endif
