@@ -7,8 +7,8 @@
 #include "cli/commands.h"
 #include "runtime/writer/picture.h"
 
-/* Channels of a picture: light.NAME.R and so on for each light, and rest.R for sky, fog and what
-   things emit.  Together they are the picture. */
+/* Channels of a picture: light.NAME.R and so on for each light, or all of one name, and rest.R for
+   sky, fog and what things emit.  Together they are the picture. */
 typedef struct LightGroups {
     PictureChannel *channels;
     size_t          channel_count;

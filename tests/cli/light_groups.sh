@@ -44,6 +44,21 @@ result $? "without the lamp the picture is what the others make"
 [ "$(./exr_text a.exr light.lamp.R | awk '$4 < -0.001' | wc -l)" = 0 ] &&
     [ "$(./exr_text a.exr light.sun.G | awk '$4 > 0.3' | wc -l)" -gt 100 ]
 result $? "no light is negative"
+# Lights of a loop have one name.
+cat >row.krs <<'EOF'
+show sphere(1);
+show plane([0, 1, 0], -1);
+camera { eye: [0, 2, 6] }
+for i in 0..3 { light row { position: [2 * i - 2, 3, 2], intensity: 4 + i } }
+light { direction: [1, 2, 1], intensity: 0.5 }
+image { size: [48, 32] }
+EOF
+run render row.krs --quiet --light-groups --aov none -o row.exr
+ended 0 "lights of one name"
+[ "$(./exr_text row.exr | cut -d' ' -f1 | sort -u | tr '\n' ' ')" = "A B G R light.4.B light.4.G \
+light.4.R light.row.B light.row.G light.row.R rest.B rest.G rest.R " ] &&
+    below "$(apart row.exr row.exr light.row light.4 rest)" 0.004
+result $? "are one group"
 run render lights.krs --light-groups --clamp-radiance 1 -o b.exr
 said 2 "with --clamp-radiance they do not" "what is clamped does not add up"
 run render lights.krs --light-groups --stereo over-under -o b.exr
