@@ -130,6 +130,13 @@ void load_frame()
 #endif
 }
 
+// The workgroup whose items this one takes.  The stride spreads neighbours, which cost the same, over
+// a device that assigns workgroups in contiguous halves.
+uint find_group()
+{
+    return work.first + find_cell(gl_WorkGroupID.x * work.stride, work.groups).x;
+}
+
 Light find_light(uint number)
 {
     uint  row = LIGHTS_AT + LIGHT_ROWS * number;

@@ -12,9 +12,7 @@ void main()
 {
     load_frame();
     begin_group();
-    // The stride spreads neighbours, which cost the same, over a device that assigns workgroups in
-    // contiguous halves.
-    uint group = work.first + gl_WorkGroupID.x * work.stride % work.groups;
+    uint group = find_group();
     // Eight lanes, which lavapipe runs together, take items in their order.  So memory is read in
     // its order, and arrives before it is asked for.
     uint lane = gl_LocalInvocationIndex & 7u;

@@ -125,7 +125,7 @@ void main()
 {
     load_frame();
     krs_prepare();
-    uint steps = 0u, group = work.first + gl_WorkGroupID.x * work.stride % work.groups;
+    uint steps = 0u, group = find_group();
     begin_group(group * gl_WorkGroupSize.x * (REFILL != 0 ? control.items_per_lane : 1u));
     work_on_items(group, work.steps, steps);
     end_group(steps);
