@@ -4,6 +4,7 @@
 # usage: bench/large/large.sh KRS [COUNTS] [TURNS]
 #
 # Balls of one size are spread evenly in a cube, as sharp union and, for krs alone, as a blended one.
+# Of 1,000 and 10,000 also the other kinds of blends, and a sharp union that is twisted: their frames.
 # Both programs get the same centres, camera and light, and write a PNG file.  Printed in Markdown,
 # medians of TURNS runs:
 #   first    the whole process, nothing cached: a picture of 640x360, seconds
@@ -22,12 +23,12 @@ export XDG_CACHE_HOME="$work/cache" MESA_SHADER_CACHE_DIR="$work/cache"
 # ---- scenes ----
 
 # A quasi-random sequence: multiples of powers of 1 / 1.2207..., without their whole parts.
-krs_scene() { # count, "blend: ..." or nothing, whether the light throws shadows, radius
+krs_scene() { # count, "blend: ..." or nothing, whether the light throws shadows, radius, a method or nothing
     cat <<END
 camera { eye: [9, 8, 16], target: [0, 0, 0], fov: 40deg }
 light sun { direction: [1, 2, 1.5], intensity: 3, shadow: $3 }
 def place(i) = 10 * ([0.8191725133961645 * i, 0.6710436067037893 * i, 0.5497004779019703 * i] % 1 - 0.5);
-show union([sphere($4).move(place(i)) for i in 0..$1]$2).paint(#c8553d);
+show union([sphere($4).move(place(i)) for i in 0..$1]$2)${5-}.paint(#c8553d);
 END
 }
 
@@ -107,6 +108,27 @@ measure_krs() { # count, kind, blend
     row krs "$1" "$2" "$(median edited 2)"
 }
 
+# The frame alone.
+measure_frame() { # count, kind, blend, method
+    krs_scene "$1" "$3" false "$(radius "$1")" "$4" >"$work/plain.krs"
+    of_krs warm "$work/plain.krs" 16x9 --occlusion off -o "$work/krs.png"
+    : >"$work/runs"
+    for _ in $(seq "$turns"); do
+        of_krs small "$work/plain.krs" 16x9 --occlusion off -o "$work/krs.png"
+        of_krs frame "$work/plain.krs" 1280x720 --occlusion off -o "$work/krs.png"
+    done
+    printf '| %s | %s | krs | - | %s | - | - | - | %.0f |\n' "$1" "$2" "$(difference frame small)" \
+        "$(median frame 4)"
+}
+
+measure_others() { # count, width
+    for kind in cubic exponential circular chamfer stairs; do
+        steps="" && [ $kind = stairs ] && steps=", steps: 3"
+        measure_frame "$1" $kind ", blend: $2, kind: \"$kind\"$steps" ""
+    done
+    measure_frame "$1" twisted "" ".twist([0, 1, 0], 6deg)"
+}
+
 measure_pov() { # count
     command -v povray >/dev/null || return
     pov_scene "$1" shadowless "$(radius "$1")" >"$work/plain.pov"
@@ -129,6 +151,8 @@ echo "| parts | joint | program | first | frame, CPU | EXR, CPU | lit, CPU | edi
 echo "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
 for count in $counts; do
     measure_krs "$count" sharp ""
-    measure_krs "$count" blended ", blend: $(awk -v r="$(radius "$count")" 'BEGIN { print r / 2 }')"
+    width=$(awk -v r="$(radius "$count")" 'BEGIN { print r / 2 }')
+    measure_krs "$count" blended ", blend: $width"
+    [ "$count" -gt 10000 ] || measure_others "$count" "$width"
     measure_pov "$count"
 done
