@@ -98,12 +98,13 @@ static void put_pixel(const Map *map, size_t x, size_t y)
     map->rows[k][3] = (bits & ~(PLATE_JOINS_RIGHT | PLATE_JOINS_BELOW)) | find_joins(map, x, y);
 }
 
-/* The nearest pixel of a block, or of the next column and row, which cells of the block reach. */
+/* The nearest pixel of a block, or of those around it, which a ray reads that has just left it. */
 static float nearest_of_block(const Map *map, size_t left, size_t top)
 {
-    float nearest = NOWHERE;
-    for (size_t y = top; y <= top + PLATE_BLOCK && y < map->height; y++)
-        for (size_t x = left; x <= left + PLATE_BLOCK && x < map->width; x++)
+    const size_t from_x = left > 0 ? left - 1 : 0, from_y = top > 0 ? top - 1 : 0;
+    float        nearest = NOWHERE;
+    for (size_t y = from_y; y <= top + PLATE_BLOCK + 1 && y < map->height; y++)
+        for (size_t x = from_x; x <= left + PLATE_BLOCK + 1 && x < map->width; x++)
             nearest = fmaxf(nearest, nearness_of(map, x, y));
     return nearest;
 }

@@ -77,7 +77,9 @@ ivec2 nearest_pixel(vec2 place)
     return clamp(ivec2(floor(place + 0.5)), ivec2(0), ivec2(frame.size) - 1);
 }
 
-// How many steps stay within the block of a place, and how near its nearest pixel is.
+// How many steps, and a part of one, leave the block of a place; and how near the nearest pixel is of the
+// block and of those around it.
+const float BEYOND_BLOCK = 1e-3;
 float count_steps_in_block(vec2 place, vec2 step_across, out float nearest)
 {
     ivec2 block = clamp(ivec2(floor(place)), ivec2(0), ivec2(frame.size) - 1) / int(PLATE_BLOCK);
@@ -88,7 +90,7 @@ float count_steps_in_block(vec2 place, vec2 step_across, out float nearest)
     vec2  low = vec2(block) * float(PLATE_BLOCK), room = place - low;
     room = mix(room, float(PLATE_BLOCK) - room, greaterThan(step_across, vec2(0.0)));
     vec2  count = room / max(abs(step_across), vec2(1e-6));
-    return floor(max(min(count.x, count.y), 0.0));
+    return max(min(count.x, count.y), 0.0) + BEYOND_BLOCK;
 }
 
 // The part of a ray whose points are before the eye; in perspective their depths are positive.
@@ -134,16 +136,17 @@ float find_plate_ahead(vec3 origin, vec3 direction, float end, bool left)
     while (at < count) {
         vec3  here = start + at * advance;
         float nearest, room = count_steps_in_block(here.xy, advance.xy, nearest);
-        room = min(room, count - at);
-        if (room >= 1.0 && min(here.z, here.z + room * advance.z) >= nearest) {
+        if (min(here.z, here.z + room * advance.z) >= nearest) {
             at += room;
             continue;
         }
-        vec3  next = here + advance;
+        float each_step = min(1.0, count - at);
+        vec3  next = here + each_step * advance;
         float before = here.z - find_plate_at(here.xy).w, behind = next.z - find_plate_at(next.xy).w;
         if (before >= 0.0 && behind < 0.0 &&
             are_joined(nearest_pixel(here.xy), nearest_pixel(next.xy)))
-            return place_on_ray(range, from, to, seen.x + each * (at + before / (before - behind)));
+            return place_on_ray(range, from, to,
+                                seen.x + each * (at + each_step * before / (before - behind)));
         at += 1.0;
     }
     return INFINITE;

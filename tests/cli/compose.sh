@@ -2,7 +2,7 @@
 # compose.sh: what is rendered in front of another renderer's picture.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 12
+plan 14
 "${CC:-cc}" -std=c17 -D_GNU_SOURCE -o exr_text "$root/tests/cli/exr_text.c" -lOpenEXRCore-3_1 || exit 1
 view='camera { eye: [0, 1.2, 6], target: [0, 0.5, 0], fov: 40deg }
 image { size: [64, 36] }
@@ -50,6 +50,13 @@ result $? "shadows fall on the plate where they would fall on the floor"
     render front-dark --depth-in floor.exr --plate floor.exr --catcher none -o lit.exr &&
     [ -z "$(./exr_text lit.exr caught.R)" ] && same R floor.exr lit.exr 80
 result $? "and the factors are channels, unless nothing is to fall on it"
+render front-dark --depth-in floor.exr --plate floor.exr --catcher glossy -o a.exr
+said 2 "a plate is glossy with the integrators direct and path" "what a preview does not find"
+render front-dark --depth-in floor.exr --plate floor.exr --catcher glossy --catcher-reflectance 0.5 \
+    --integrator path --samples 4 -o glossy.exr
+./exr_text glossy.exr mirrored.R | awk '$4 < -0.01 || $4 > 0.01 { some++ } END { exit !(some > 15) }' &&
+    [ -z "$(./exr_text dark.exr mirrored.R)" ]
+result $? "what a glossy plate mirrors is in channels"
 for frame in 1 2; do
     render back --time $frame -o back-$frame.exr
 done
