@@ -2,7 +2,7 @@
 # light_groups.sh: the channels of lights add up to the picture, and each is what its light makes.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 9
+plan 11
 "${CC:-cc}" -std=c17 -D_GNU_SOURCE -o exr_text "$root/tests/cli/exr_text.c" -lOpenEXRCore-3_1 || exit 1
 cat >lights.krs <<'END'
 param power = 2 in [0, 9];

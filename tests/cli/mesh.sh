@@ -1,7 +1,7 @@
 #!/bin/sh
 # mesh.sh: `krs mesh`: files that other programs accept, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 27
+plan 29
 
 echo 'show sphere(0.5).paint(#ff8800);' >ball.krs
 echo 'let floor = half_space([0, 1, 0], 0); show floor; let ball = sphere(1); show ball;' >floor.krs
