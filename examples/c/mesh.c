@@ -73,7 +73,7 @@ static bool go_on(void *user, double fraction)
 static void say(void *user, const KrsDiagnostic *diagnostic)
 {
     (void)user;
-    fprintf(stderr, "%s\n", diagnostic->message);
+    fputs(diagnostic->text, stderr);
 }
 
 int main(int argc, char **argv)
@@ -83,9 +83,11 @@ int main(int argc, char **argv)
     KrsMesh       *mesh    = NULL;
     KrsMeshOptions options = {.error = argc > 2 ? atof(argv[2]) : 0, .go_on = go_on};
     KrsOptions     how     = {.diagnostic = say};
-    KrsStatus      status  = KRS_BAD_ARGUMENT;
-    if (argc > 1)
-        status = krs_compile_file(argv[1], &how, &scene);
+    if (argc != 3) {
+        fputs("usage: mesh SCENE.krs ERROR\n", stderr);
+        return KRS_BAD_ARGUMENT;
+    }
+    KrsStatus status = krs_compile_file(argv[1], &how, &scene);
     if (status == KRS_OK)
         status = krs_frame_new(scene, &frame);
     if (status == KRS_OK)
