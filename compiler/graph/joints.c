@@ -105,14 +105,15 @@ static uint32_t sides_of_corner(const Making *m, Node node, Node sides[MOST_SIDE
 
 /* ---- the tree ---- */
 
-/* A minimum where its operands differ by its width or more, and as steep as they are. */
+/* A minimum where its operands differ by its width or more, and as steep as they are.  Not stairs, whose number is a
+   fourth operand. */
 static bool is_narrow_blend(Op op)
 {
     const double n = 2;
     (void)n;
 #define BLEND(name, signature, slope, bulge, most, reach, acts, ...) \
     if (op == OP_smin_##name)                                        \
-        return (slope) == 1 && (acts) <= 1;
+        return (slope) == 1 && (acts) <= 1 && sizeof(signature) == sizeof "fff>f";
 #include "compiler/graph/blends.def"
     return false;
 }
