@@ -20,7 +20,7 @@ for name in "$@"; do
     night) size=640x360 samples=96 ;;
     direct-*)
         scene=$(ls examples/??-"${name#direct-}".krs)
-        size=640x360 samples=48 more="--integrator direct" ;;
+        size=640x360 samples=128 more="--integrator direct" ;;
     dusk) scene=examples/07-grove.krs size=640x360 samples=8 more="--set dusk=1" ;;
     esac
     picture=docs/pictures/$name.png
