@@ -148,11 +148,11 @@ static bool measure_pieces(Mesher *m, Verifier *verifier, Box box, const Placed 
     return cell.known;
 }
 
-/* What all of a cell lacks some of its tetrahedra may have: those that are large are looked at one by one. */
+/* What all of a cell lacks some of its tetrahedra may have: those so large that this pays are looked at one by one. */
 static bool is_worth_another_look(const Mesher *m, const Placed *placed, size_t count)
 {
     const Tet *tet = &m->tets.list.items[placed[0].tet];
-    return count > 1 && tets_longest_edge(&m->tets, tet) > LEAST_KNOWN * m->error;
+    return count > 1 && tets_longest_edge(&m->tets, tet) > LEAST_SMOOTH * m->error;
 }
 
 static void look_at_cell(Mesher *m, Verifier *verifier, const Placed *placed, size_t count)
