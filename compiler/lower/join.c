@@ -37,8 +37,8 @@ Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b)
 
 /* Whether outside of its box a distance is that to the sides of the box or more, whatever it is a bound of.
    Operands of blends are made so (lower_operand), and blends that are no steeper are less than their
-   operands by no more than their boxes grow.  A difference is no less than what it is taken from.  What
-   is nowhere is far from no place. */
+   operands by no more than their boxes grow.  A difference is no less than what it is taken from.  A
+   sharp joint may have a part that is nowhere, which is far from no place. */
 static bool keeps_to_box(const Lowering *l, const Shape *shape)
 {
     const bool difference = shape->kind == SHAPE_DIFFERENCE;
@@ -59,9 +59,11 @@ static bool keeps_to_box(const Lowering *l, const Shape *shape)
 
 /* A bound may be small far from its shape.  The distance to the sides of the shape's box is a bound
    too, and the larger of both is used.  Then points where it is r lie within r of the box, which
-   the boxes of csg.c assume. */
+   the boxes of csg.c assume.  What is nowhere has no box to be far from, and is left out. */
 Lowered lower_operand(Lowering *l, const Shape *shape, LowerContext context)
 {
+    if (box_is_empty(shape->box))
+        return lowered_nothing;
     Lowered result = lower_shape(l, shape, context_lipschitz_within(context, 0));
     if (result.distance == NODE_NONE || keeps_to_box(l, shape))
         return result;

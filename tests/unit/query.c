@@ -65,6 +65,42 @@ static void an_empty_scene_is_far_from_everything(void **context)
     scene_close(s);
 }
 
+/* A bound is not far from zero between parts that nearly touch, although nothing is there.  A blend
+   with it must not swell: the box of the joint has no place for that. */
+static void what_is_nowhere_adds_nothing(void **context)
+{
+#define NOWHERE "(sphere(1) & sphere(1).move([0, 2.02, 0]))"
+#define BALL    "sphere(1).move([1.6, 1.01, 0])"
+    static const char *const pairs[][2] = {
+        {"show union(" BALL ", " NOWHERE ", blend: 0.9);", "show " BALL ";"},
+        {"show union(" NOWHERE ", " BALL ", blend: 0.9, kind: \"cubic\");", "show " BALL ";"},
+        {"show difference(" BALL ", " NOWHERE ", blend: 0.9);", "show " BALL ";"},
+        {"show xor(" BALL ", " NOWHERE ", blend: 0.9);", "show " BALL ";"},
+        {"show " BALL " | " NOWHERE ".round(0.4);", "show " BALL ";"},
+        {"show " BALL " | " NOWHERE ".shell(0.4);", "show " BALL ";"},
+    };
+    enum { POINTS = 300 };
+    (void)context;
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+        Scene with = scene_of(pairs[i][0]), without = scene_of(pairs[i][1]);
+        for (int k = 0; k < POINTS; k++) {
+            double point[1][3], distances[2];
+            random_vector(&chance, 2.5, point[0]);
+            assert_int_equal(krs_distance(with.frame, (const double(*)[3])point, 1, distances),
+                             KRS_OK);
+            assert_int_equal(
+                krs_distance(without.frame, (const double(*)[3])point, 1, distances + 1), KRS_OK);
+            if (distances[0] != distances[1])
+                fail_msg("%s: %.17g instead of %.17g at %g, %g, %g", pairs[i][0], distances[0],
+                         distances[1], point[0][0], point[0][1], point[0][2]);
+        }
+        scene_close(with);
+        scene_close(without);
+    }
+#undef NOWHERE
+#undef BALL
+}
+
 static void wrong_arguments_are_refused(void **context)
 {
     (void)context;
@@ -238,6 +274,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(arrays_are_answered_in_order),
         cmocka_unit_test(an_empty_scene_is_far_from_everything),
+        cmocka_unit_test(what_is_nowhere_adds_nothing),
         cmocka_unit_test(wrong_arguments_are_refused),
         cmocka_unit_test(rays_start_anywhere),
         cmocka_unit_test(thin_things_keep_their_width),
