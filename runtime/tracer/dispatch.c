@@ -202,7 +202,7 @@ static void record(Job *job, uint32_t i)
                                         dispatch->clears};
     WorkBlock               work     = dispatch->work;
     work.first                       = 0;
-    work.groups                      = UINT32_MAX; /* all groups, in their order */
+    work.groups                      = INT32_MAX; /* all groups, in their order (find_cell) */
     work.stride                      = 1;
     vkCmdUpdateBuffer(job->gpu->commands, control, 0, offsetof(ControlBlock, queued),
                       &dispatch->control);
