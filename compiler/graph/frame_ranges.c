@@ -98,8 +98,9 @@ static void find_range(const Graph *graph, Node node, Range *result)
     if (is_defined_nowhere(op, o[1 % e->operand_count], size))
         for (uint32_t i = 0; i < size; i++)
             result[i] = ANYTHING;
-    else if (!common_range(op, e->index, size, o, e->operand_count, result) &&
-             !vector_range(op, size, o, result))
+    else if (range_rule(op))
+        range_rule(op)(size, o, result);
+    else if (!common_range(op, e->index, size, o, e->operand_count, result))
         range_by_rule(graph, e, op, o, result);
     for (uint32_t i = 0; i < size; i++)
         if (!(result[i].low <= result[i].high))

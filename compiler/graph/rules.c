@@ -220,25 +220,35 @@ static Fact fact_guard(const RuleInput *input)
 
 /* ---- values alone ---- */
 
-bool vector_range(Op op, uint32_t size, Range *const *o, Range *result)
+void range_scale(uint32_t size, Range *const *o, Range *result)
 {
-    const Range *u     = o[0];
-    Range        whole = {0};
-    if (op == OP_normalize)
-        whole = length_range(u, size);
+    for (uint32_t i = 0; i < size; i++)
+        result[i] = range_mul(o[0][i], o[1][0]);
+}
+
+void range_cross(uint32_t size, Range *const *o, Range *result)
+{
+    const Range *u = o[0], *v = o[1];
     for (uint32_t i = 0; i < size; i++) {
         const uint32_t y = (i + 1) % 3, z = (i + 2) % 3;
-        switch (op) {
-        case OP_scale: result[i] = range_mul(u[i], o[1][0]); break;
-        case OP_cross:
-            result[i] = range_add(range_mul(u[y], o[1][z]),
-                                  range_mul(range_mul(u[z], o[1][y]), MINUS_ONE));
-            break;
-        case OP_normalize: result[i] = loosened(unit_component(u[i], whole), 1); break;
-        default: return false;
-        }
+        result[i] = range_add(range_mul(u[y], v[z]), range_mul(range_mul(u[z], v[y]), MINUS_ONE));
     }
-    return true;
+}
+
+void range_normalize(uint32_t size, Range *const *o, Range *result)
+{
+    const Range whole = length_range(o[0], size);
+    for (uint32_t i = 0; i < size; i++)
+        result[i] = loosened(unit_component(o[0][i], whole), 1);
+}
+
+RangeRule *range_rule(Op op)
+{
+    static RangeRule *const rules[OP_COUNT] = {
+#define RANGES(name, function) [OP_##name] = (function),
+#include "compiler/graph/ops.def"
+    };
+    return rules[op];
 }
 
 /* ---- one operation ---- */

@@ -68,9 +68,11 @@ Fact fact_truth(const RuleInput *input, uint32_t count, bool always, bool never)
 
 /* ---- rules of rows ---- */
 
-/* rules.c: what the rule of a row says of the value alone, of `size` components, for the rows that
-   maps of space are computed by; false: of another row. */
-bool vector_range(Op op, uint32_t size, Range *const *o, Range *result);
+/* What a rule says of the value alone, of `size` components, from those of the operands; NULL: the row
+   has no RANGES. */
+typedef void RangeRule(uint32_t size, Range *const *operands, Range *result);
+RangeRule   *range_rule(Op op);
+RangeRule    range_scale, range_cross, range_normalize;
 
 /* What the columns of derivatives are written in. */
 #define ZERO      range_of(0)

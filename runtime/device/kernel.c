@@ -55,7 +55,7 @@ static void *compile(void *user)
 }
 
 /* The SPIR-V that the program carries of a kernel without a scene: FILE.spv, or FILE-NAME-NAME.spv of
-   a kernel for which these names are defined. */
+   a kernel for which these names are defined, and nothing else is. */
 static const EmbeddedFile *find_module(const KernelSource *source)
 {
     char        wanted[128], defined[32];
@@ -67,8 +67,9 @@ static const EmbeddedFile *find_module(const KernelSource *source)
          length < sizeof wanted && sscanf(defines, " #define %31s%n", defined, &end) == 1;
          defines += end)
         length += (size_t)snprintf(wanted + length, sizeof wanted - length, "-%s", defined);
-    if (length < sizeof wanted)
-        snprintf(wanted + length, sizeof wanted - length, ".spv");
+    if (length >= sizeof wanted || strspn(defines, " \n") != strlen(defines))
+        return NULL;
+    snprintf(wanted + length, sizeof wanted - length, ".spv");
     for (const EmbeddedFile *file = module_files; file->name; file++)
         if (strcmp(file->name, wanted) == 0)
             return file;
