@@ -5,7 +5,8 @@
  * same view does.  While something moves there are no whole ones, and what pixels cost changes with
  * the view, much more than the rest: so where a picture has as many as the one before, a longer time is
  * blamed on them.  If the next picture has fewer of them and takes as long, more of its time is of the
- * other kind.
+ * other kind.  What is late although its size should do is tried with fewer of them: pictures of one size
+ * would never tell that their pixels are underrated.
  */
 #include "live/resolution.h"
 
@@ -15,6 +16,11 @@
 /* What pixels do not cause may be found to be so many times longer by a single picture, and this much. */
 #define MOST_GROWTH 1.5
 #define MOST_STEP   1.0
+
+/* A picture is late from so many budgets on.  Where its pixels take less than this part of a budget, fewer
+   of them are not tried. */
+#define LATE         1.15
+#define WORTH_TRYING 0.25
 
 /* Of a picture with as many pixels as the last one; a shorter time is shorter in all of its parts. */
 static double fixed_of_same(const Resolution *resolution, double ms, double pixels)
@@ -37,6 +43,7 @@ void resolution_learn_coarse(Resolution *resolution, double ms, double pixels)
                                      : fixed_of_other(resolution, ms, pixels);
     resolution->pixel_ms      = (ms - resolution->fixed_ms) / pixels;
     resolution->coarse_pixels = pixels;
+    resolution->coarse_ms     = ms;
 }
 
 void resolution_learn_whole(Resolution *resolution, double ms, double pixels)
@@ -56,7 +63,10 @@ double resolution_divide(Resolution *resolution, double pixels, double budget)
     static const double steps[] = {1, 1.5, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32};
     /* What pixels do not cause, fewer of them do not mend: they have half of the time in any case. */
     const double left   = fmax(budget - resolution->fixed_ms, budget / 2);
-    const double needed = resolution->pixel_ms > 0 ? sqrt(pixels * resolution->pixel_ms / left) : 8;
+    double       needed = resolution->pixel_ms > 0 ? sqrt(pixels * resolution->pixel_ms / left) : 8;
+    if (resolution->coarse_ms > LATE * budget &&
+        resolution->coarse_pixels * resolution->pixel_ms > WORTH_TRYING * budget)
+        needed = fmax(needed, 1.01 * resolution->divisor);
     /* It stays where it would do, so that the picture does not flicker. */
     if (resolution->divisor > needed && resolution->divisor < 2.2 * needed)
         return resolution->divisor;

@@ -10,6 +10,7 @@
 typedef struct Resolution {
     double pixel_ms, fixed_ms; /* of coarse pictures; 0: not known yet */
     double coarse_pixels;      /* of the last coarse picture */
+    double coarse_ms;          /* what it took */
     double whole_ms;           /* of a sample of a whole picture; 0: not known yet */
     double divisor;            /* of the sides of coarse pictures; 0: none was made yet */
 } Resolution;

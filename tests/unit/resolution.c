@@ -114,6 +114,17 @@ static void waiting_is_not_mended_by_fewer_pixels(void **state)
     }
 }
 
+/* Then pictures of one size alone would not tell that fewer pixels help. */
+static void what_is_taken_for_waiting_is_tried(void **state)
+{
+    (void)state;
+    const Device device     = {12, 400, 1.6};
+    Resolution   resolution = {
+          .divisor = 4, .fixed_ms = 37, .pixel_ms = 20 * 16 / PIXELS, .coarse_pixels = PIXELS / 16};
+    assert_settles(&resolution, &device, 4);
+    assert_true(coarse_ms(&device, resolution.divisor) <= 1.2 * BUDGET);
+}
+
 static void cheap_pictures_are_whole(void **state)
 {
     (void)state;
@@ -132,6 +143,7 @@ int main(void)
         cmocka_unit_test(the_view_gets_more_costly_slowly),
         cmocka_unit_test(the_view_gets_cheaper),
         cmocka_unit_test(waiting_is_not_mended_by_fewer_pixels),
+        cmocka_unit_test(what_is_taken_for_waiting_is_tried),
         cmocka_unit_test(cheap_pictures_are_whole),
     };
     return cmocka_run_group_tests_name("resolution", tests, NULL, NULL);
