@@ -140,15 +140,6 @@ static void add_cell(Cells *cells, Box box, size_t first, size_t count)
     cells->items[cells->count++] = cell;
 }
 
-static int longest_side(Box box)
-{
-    int longest = 0;
-    for (int k = 1; k < 3; k++)
-        if (box.axis[k].high - box.axis[k].low > box.axis[longest].high - box.axis[longest].low)
-            longest = k;
-    return longest;
-}
-
 /* Puts two cells in place of one. */
 static void cut_cell(Cells *cells, size_t number)
 {
@@ -160,7 +151,7 @@ static void cut_cell(Cells *cells, size_t number)
         add_cell(cells, hull_of(cells, cell.first + half, rest), cell.first + half, rest);
         return;
     }
-    const int axis = longest_side(cell.box);
+    const int axis = box_longest_axis(&cell.box);
     Box       low = cell.box, high = cell.box;
     low.axis[axis].high = cell.middle[axis];
     high.axis[axis].low = cell.middle[axis];

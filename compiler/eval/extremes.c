@@ -68,18 +68,9 @@ static void open_cell(Extremes *x, Box box, uint32_t cuts)
     array_push(x->arena, &x->open, cell);
 }
 
-static int longest_axis(Box box)
-{
-    int longest = 0;
-    for (int i = 1; i < 3; i++)
-        if (box.axis[i].high - box.axis[i].low > box.axis[longest].high - box.axis[longest].low)
-            longest = i;
-    return longest;
-}
-
 static void cut_cell(Extremes *x, const Cell *cell)
 {
-    int    axis = longest_axis(cell->box);
+    int    axis = box_longest_axis(&cell->box);
     Box    low = cell->box, high = cell->box;
     double middle       = 0.5 * (low.axis[axis].low + low.axis[axis].high);
     low.axis[axis].high = high.axis[axis].low = middle;

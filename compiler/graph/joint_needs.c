@@ -292,19 +292,10 @@ static void visit_halves(Search *s, const Cell *cell, bool *matters, int axis, A
     visit(s, &half);
 }
 
-static int longest_axis(Box box)
-{
-    int longest = 0;
-    for (int k = 1; k < 3; k++)
-        if (box.axis[k].high - box.axis[k].low > box.axis[longest].high - box.axis[longest].low)
-            longest = k;
-    return longest;
-}
-
 static void visit(Search *s, const Cell *cell)
 {
     const Range  whole  = find_ranges(s, cell);
-    const int    axis   = longest_axis(cell->box);
+    const int    axis   = box_longest_axis(&cell->box);
     const double side   = cell->box.axis[axis].high - cell->box.axis[axis].low;
     const double margin = MARGIN * s->longest;
     const bool   late   = s->steps > MOST_STEPS;

@@ -26,6 +26,15 @@ double range_largest(Range a) { return fmax(fabs(a.low), fabs(a.high)); }
 
 double range_least(Range a) { return a.low > 0 ? a.low : a.high < 0 ? -a.high : 0; }
 
+int box_longest_axis(const Box *box)
+{
+    int longest = 0;
+    for (int k = 1; k < 3; k++)
+        if (box->axis[k].high - box->axis[k].low > box->axis[longest].high - box->axis[longest].low)
+            longest = k;
+    return longest;
+}
+
 /* ---- directed rounding ---- */
 
 /* The next number below.  Those of one sign are in the order of their bits. */

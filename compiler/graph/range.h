@@ -19,6 +19,9 @@ typedef struct Box {
     Range axis[3];
 } Box;
 
+/* The axis along which it is longest, the first of those: 0, 1 or 2. */
+int box_longest_axis(const Box *box);
+
 #define ANYTHING ((Range){-HUGE_VAL, HUGE_VAL})
 
 static inline Range range_of(double number) { return (Range){number, number}; }

@@ -39,16 +39,6 @@ static bool box_holds(const Box *outer, const Box *inner)
     return true;
 }
 
-static int longest_axis(const Box *region)
-{
-    int longest = 0;
-    for (int k = 1; k < 3; k++)
-        if (region->axis[k].high - region->axis[k].low >
-            region->axis[longest].high - region->axis[longest].low)
-            longest = k;
-    return longest;
-}
-
 static void search(OverlapSearch *s, const Box *boxes, uint32_t count, Box region, int depth)
 {
     uint32_t holding = 0;
@@ -62,7 +52,7 @@ static void search(OverlapSearch *s, const Box *boxes, uint32_t count, Box regio
         return;
     }
     ArenaMark mark            = arena_mark(s->scratch);
-    int       axis            = longest_axis(&region);
+    int       axis            = box_longest_axis(&region);
     double    middle          = 0.5 * (region.axis[axis].low + region.axis[axis].high);
     Box       halves[2]       = {region, region}, *lists[2];
     uint32_t  counts[2]       = {0, 0};
