@@ -87,4 +87,16 @@ void arena_release(Arena *arena, void *object, size_t bytes);
             arena_release(arena, old_, before_);                     \
     } while (0)
 
+/* Room for one more item in such an array, for items that cannot be assigned: rows of numbers. */
+#define array_reserve_large(arena, array)                                                  \
+    do {                                                                                   \
+        size_t before_ = (array)->capacity * sizeof *(array)->items;                       \
+        void  *old_    = (array)->items;                                                   \
+        if ((array)->count == (array)->capacity) {                                         \
+            (array)->items = arena_grow((arena), old_, (array)->count, &(array)->capacity, \
+                                        sizeof *(array)->items);                           \
+            arena_release(arena, old_, before_);                                           \
+        }                                                                                  \
+    } while (0)
+
 #endif

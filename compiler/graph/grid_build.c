@@ -382,10 +382,21 @@ void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, doub
     build(&b, arena);
 }
 
+static Builder coarse_builder(Grid *grid, const Box *boxes, uint32_t count, double reach,
+                              double margin, Arena *scratch)
+{
+    return (Builder){.grid         = grid,
+                     .boxes        = boxes,
+                     .count        = count,
+                     .reach        = reach,
+                     .given_margin = margin,
+                     .coarse       = true,
+                     .scratch      = scratch};
+}
+
 /* Large cells, if there are few enough boxes. */
 static bool place_coarse(Builder *b)
 {
-    b->coarse = true;
     if (!begin(b) || (double)LEAST_REFINED * b->present > MANY_REFINED)
         return false;
     place_cells(b, least_side(b));
@@ -395,12 +406,7 @@ static bool place_coarse(Builder *b)
 bool grid_place_coarse(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
                        Arena *scratch)
 {
-    Builder b = {.grid         = grid,
-                 .boxes        = boxes,
-                 .count        = count,
-                 .reach        = reach,
-                 .given_margin = margin,
-                 .scratch      = scratch};
+    Builder b = coarse_builder(grid, boxes, count, reach, margin, scratch);
     return place_coarse(&b);
 }
 
@@ -408,12 +414,7 @@ bool grid_build_coarse(Grid *grid, const Box *boxes, uint32_t count, double reac
                        Arena *arena, Arena *scratch)
 {
     assert(count > 0);
-    Builder b = {.grid         = grid,
-                 .boxes        = boxes,
-                 .count        = count,
-                 .reach        = reach,
-                 .given_margin = margin,
-                 .scratch      = scratch};
+    Builder b = coarse_builder(grid, boxes, count, reach, margin, scratch);
     if (!place_coarse(&b))
         return false;
     if (count_entries(&b) > MANY_TO_REFINE)

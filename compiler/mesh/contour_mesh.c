@@ -23,28 +23,14 @@ static void arrange_patches(Contour *contour)
 
 static uint32_t add_vertex(Contour *contour, const double at[3])
 {
-    if (contour->vertices.count == contour->vertices.capacity) {
-        size_t before           = contour->vertices.capacity * sizeof *contour->vertices.items;
-        void  *old              = contour->vertices.items;
-        contour->vertices.items = arena_grow(contour->arena, old, contour->vertices.count,
-                                             &contour->vertices.capacity,
-                                             sizeof *contour->vertices.items);
-        arena_release(contour->arena, old, before);
-    }
+    array_reserve_large(contour->arena, &contour->vertices);
     memcpy(contour->vertices.items[contour->vertices.count], at, 3 * sizeof *at);
     return (uint32_t)contour->vertices.count++;
 }
 
 static void add_triangle(Contour *contour, uint32_t a, uint32_t b, uint32_t c)
 {
-    if (contour->triangles.count == contour->triangles.capacity) {
-        size_t before            = contour->triangles.capacity * sizeof *contour->triangles.items;
-        void  *old               = contour->triangles.items;
-        contour->triangles.items = arena_grow(contour->arena, old, contour->triangles.count,
-                                              &contour->triangles.capacity,
-                                              sizeof *contour->triangles.items);
-        arena_release(contour->arena, old, before);
-    }
+    array_reserve_large(contour->arena, &contour->triangles);
     uint32_t *triangle = contour->triangles.items[contour->triangles.count++];
     triangle[0]        = a;
     triangle[1]        = b;
