@@ -1,7 +1,7 @@
 /*
  * checkpoint.c: a file beside the first output that says how far `krs render --resume` has come.
  *
- * It has a key, which is a hash of the command line, the scene and the device; the number of the
+ * It has a key, which is a hash of the options that change pictures, the scene and the device; the number of the
  * frame at hand; and the film of that frame, unless the frame has not begun.  A hash of all stands at
  * the end.  The file is written whenever rendering has gone on for some seconds, as every output: it
  * appears whole or not at all.
@@ -13,7 +13,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 #define XXH_STATIC_LINKING_ONLY /* for the size of a state */
 #include <xxhash.h>
@@ -39,13 +38,6 @@ typedef struct Header {
 
 static const char magic[8] = "krspart";
 
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + (double)time.tv_nsec * 1e-9;
-}
-
 KrsStatus checkpoint_begin(Checkpoint *checkpoint, const Options *options, const char *output)
 {
     *checkpoint = (Checkpoint){.options = options, .share = 1};
@@ -70,14 +62,24 @@ static void hash_word(XXH64_state_t *hash, const char *word)
     XXH64_update(hash, word, strlen(word) + 1);
 }
 
+/* Options in any order, but those that may repeat in theirs. */
+static void hash_options(XXH64_state_t *hash, const Options *options)
+{
+    for (OptionId id = 0; id < OPTION_COUNT; id++)
+        for (size_t i = 0; option_changes_pictures(id) && i < options->given.count; i++)
+            if (options->given.items[i].id == id) {
+                hash_word(hash, option_info[id].name);
+                hash_word(hash, options->given.items[i].value ? options->given.items[i].value : "");
+            }
+}
+
 static uint64_t key_of(const Options *options, const KrsScene *scene, const KrsRenderer *renderer)
 {
     const KrsDevice device = krs_renderer_device(renderer);
     XXH64_state_t   hash;
     XXH64_reset(&hash, 0);
     hash_word(&hash, KRS_VERSION);
-    for (int i = 1; i < options->argc; i++)
-        hash_word(&hash, options->argv[i]);
+    hash_options(&hash, options);
     hash_word(&hash, krs_scene_hash(scene));
     hash_word(&hash, device.name);
     return XXH64_digest(&hash);
@@ -241,20 +243,20 @@ static KrsStatus add_samples(Checkpoint *checkpoint, const CheckpointFrame *fram
     const double   between = seconds_between();
     const uint32_t all     = frame->samples;
     double         seconds = between; /* of one sample */
-    double         written = now();
+    double         written = clock_now();
     KrsStatus      status  = KRS_OK;
     while (status == KRS_OK && krs_film_samples(film) < all) {
-        const double   start = now(), due = between / seconds;
+        const double   start = clock_now(), due = between / seconds;
         const uint32_t before = krs_film_samples(film), left = all - before;
         const uint32_t portion = due < 1 ? 1 : due < left ? (uint32_t)due : left;
         checkpoint->done       = (double)before / all;
         checkpoint->share      = (double)portion / all;
         status                 = krs_film_add(film, frame->frame, NULL, portion);
-        const double end       = now();
+        const double end       = clock_now();
         seconds                = fmax((end - start) / portion, 1e-9);
         if (status == KRS_OK && portion < left && end - written >= between) {
             status  = write_checkpoint(checkpoint, frame->number, frame->how, film);
-            written = now();
+            written = clock_now();
         }
     }
     checkpoint->done  = 0;

@@ -9,7 +9,7 @@
 typedef struct Checkpoint {
     const Options *options;
     const char    *path;
-    uint64_t       key;    /* of the command line, the scene and the device */
+    uint64_t       key;    /* of the options, the scene and the device */
     bool           found;  /* there is one, which has not been read */
     bool           failed; /* it cannot be written, which has been said */
     double done, share;    /* of the samples: before those that are added at present, and these */

@@ -25,7 +25,8 @@ static const char *find_endings(CommandId command)
 {
     if (command == COMMAND_IMPORT)
         return import_endings();
-    return command_table[command].files == 0 ? "" : ".krs";
+    int files = command_table[command].files;
+    return files == 0 || files == MAYBE_A_WORD ? "" : ".krs";
 }
 
 /* What stands between single quotes: characters of `special` get a backslash. */
@@ -41,10 +42,13 @@ static void print_inside(FILE *out, const char *text, const char *special, const
     }
 }
 
-static void print_codes(FILE *out)
+/* The words, a blank between two, of which the command takes one. */
+static void print_words(FILE *out, CommandId command)
 {
-    for (size_t i = 0; i < DIAG_CODE_COUNT; i++)
+    for (size_t i = 0; command == COMMAND_EXPLAIN && i < DIAG_CODE_COUNT; i++)
         fprintf(out, "%s%s", i > 0 ? " " : "", diag_info[i].code);
+    for (CommandId i = 0; command == COMMAND_HELP && i < COMMAND_COUNT; i++)
+        fprintf(out, "%s%s", i > 0 ? " " : "", command_table[i].name);
 }
 
 /* ---- bash ---- */
@@ -109,10 +113,14 @@ static void print_bash(FILE *out)
         fprintf(out, " %s", command_table[command].name);
     fputs("' ;;\n", out);
     print_bash_values(out);
-    fputs("    explain) words='", out);
-    print_codes(out);
-    fputs("' ;;\n"
-          "    *)\n"
+    for (CommandId command = 0; command < COMMAND_COUNT; command++) {
+        if (command_table[command].files != MAYBE_A_WORD)
+            continue;
+        fprintf(out, "    %s) words='", command_table[command].name);
+        print_words(out, command);
+        fputs("' ;;\n", out);
+    }
+    fputs("    *)\n"
           "        case ${COMP_WORDS[1]} in\n",
           out);
     print_bash_options(out);
@@ -164,9 +172,9 @@ static void print_zsh_option(FILE *out, const OptionInfo *option)
 static void print_zsh_files(FILE *out, CommandId command)
 {
     const CommandInfo *info = &command_table[command];
-    if (command == COMMAND_EXPLAIN) {
-        fputs(" \\\n        '1:code:(", out);
-        print_codes(out);
+    if (info->files == MAYBE_A_WORD) {
+        fprintf(out, " \\\n        '1:%s:(", command == COMMAND_EXPLAIN ? "code" : "command");
+        print_words(out, command);
         fputs(")'", out);
     } else if (info->files != 0) {
         fprintf(out, " \\\n        '%s:file:_files -g \"", info->files == MANY_FILES ? "*" : "1");
@@ -232,9 +240,9 @@ static void print_fish_files(FILE *out, CommandId command)
 {
     char        ending[16];
     const char *name = command_table[command].name;
-    if (command == COMMAND_EXPLAIN) {
+    if (command_table[command].files == MAYBE_A_WORD) {
         fprintf(out, "complete -c krs -n '__fish_seen_subcommand_from %s' -a '", name);
-        print_codes(out);
+        print_words(out, command);
         fputs("'\n", out);
         return;
     }

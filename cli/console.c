@@ -57,6 +57,17 @@ KrsStatus say_usage(const Options *options, const char *format, ...)
     return KRS_BAD_ARGUMENT;
 }
 
+KrsStatus say_no_command(const char *word)
+{
+    const char *nearest = nearest_command(word);
+    if (nearest)
+        say("there is no command `%s`; did you mean `%s`?", word, nearest);
+    else
+        say("there is no command `%s`", word);
+    say("`krs help` lists the commands");
+    return KRS_BAD_ARGUMENT;
+}
+
 bool console_color(const Options *options)
 {
     const char *refused = getenv("NO_COLOR");

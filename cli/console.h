@@ -14,6 +14,9 @@ void say(const char *format, ...) __attribute__((format(printf, 1, 2)));
 KrsStatus say_usage(const Options *options, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
+/* That there is no such command, and which one may be meant; returns KRS_BAD_ARGUMENT. */
+KrsStatus say_no_command(const char *word);
+
 /* Empties the line of a terminal that shows what is being done. */
 void console_clear(void);
 /* On a terminal: what is being done, until a line is printed, or this is called with NULL. */

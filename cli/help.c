@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#include "cli/commands.h"
+#include "cli/console.h"
 #include "compiler/compile.h"
 
 const char exit_statuses[] =
@@ -22,7 +24,7 @@ void help_print(FILE *out)
     for (CommandId command = 0; command < COMMAND_COUNT; command++)
         fprintf(out, "    %-10s %s\n", command_table[command].name, command_table[command].summary);
     fprintf(out,
-            "\n`krs COMMAND --help` shows examples and options, `krs --version` the version.\n"
+            "\n`krs help COMMAND` shows examples and options, `krs --version` the version.\n"
             "Exit status: %s",
             exit_statuses);
 }
@@ -54,4 +56,17 @@ void help_print_command(CommandId command, FILE *out)
         fprintf(out, "    %-28s%s %s\n", form, wide ? "\n                                " : "",
                 option_help(option, text));
     }
+}
+
+KrsStatus command_help(Options *options)
+{
+    if (options->files.count == 0) {
+        help_print(stdout);
+        return KRS_OK;
+    }
+    CommandId command = find_command(options->files.items[0]);
+    if (command == COMMAND_COUNT)
+        return say_no_command(options->files.items[0]);
+    help_print_command(command, stdout);
+    return KRS_OK;
 }

@@ -40,7 +40,7 @@ KrsStatus input_open(Options *options)
     KrsStatus status = KRS_OK;
     for (size_t i = 0; i < options->files.count && status == KRS_OK; i++) {
         if (strcmp(options->files.items[i], "-") != 0 || options->command == COMMAND_IMPORT ||
-            options->command == COMMAND_EXPLAIN)
+            command_table[options->command].files == MAYBE_A_WORD)
             continue;
         if (options->command == COMMAND_QUERY)
             return say_usage(options, "standard input has the questions, so the scene is a file");

@@ -74,12 +74,9 @@ static bool print_installed(int argc, char **argv, int *status)
     if (argc < 2 || argc > 3 || strcmp(argv[1], "--manual") != 0)
         return false;
     if (argc == 3)
-        for (command = 0; command < COMMAND_COUNT; command++)
-            if (strcmp(argv[2], command_table[command].name) == 0)
-                break;
+        command = find_command(argv[2]);
     if (argc == 3 && command == COMMAND_COUNT) {
-        say("there is no command `%s`", argv[2]);
-        *status = KRS_BAD_ARGUMENT;
+        *status = say_no_command(argv[2]);
         return true;
     }
     manual_print(command, stdout);
@@ -133,10 +130,6 @@ int main(int argc, char **argv)
     signal(SIGXFSZ, SIG_IGN);
     if (argc == 2 && (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0))
         return print_version();
-    if (argc == 2 && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)) {
-        help_print(stdout);
-        return console_finish();
-    }
     int status;
     if (print_installed(argc, argv, &status))
         return status;

@@ -6,12 +6,14 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "compiler/base/text.h"
+
 #define ON(command)     (1u << COMMAND_##command)
 #define ON_ALL          ((1u << COMMAND_COUNT) - 1)
 #define ON_PICTURES     (ON(RENDER) | ON(WATCH))
 #define ON_SHOWN        (ON_PICTURES | ON(VIEW))
 #define ON_SCENE        (ON_SHOWN | ON(VALIDATE) | ON(QUERY))
-#define ON_COMPILING    (ON_ALL & ~(ON(DEVICES) | ON(EXPLAIN) | ON(IMPORT)))
+#define ON_COMPILING    (ON_ALL & ~(ON(DEVICES) | ON(EXPLAIN) | ON(HELP) | ON(IMPORT)))
 #define TEXT_OF(macro)  TEXT_OF_(macro)
 #define TEXT_OF_(words) #words
 
@@ -21,6 +23,22 @@ const CommandInfo command_table[COMMAND_COUNT] = {
 #include "cli/commands.def"
 #undef COMMAND
 };
+
+CommandId find_command(const char *name)
+{
+    CommandId command = 0;
+    while (command < COMMAND_COUNT && strcmp(name, command_table[command].name) != 0)
+        command++;
+    return command;
+}
+
+const char *nearest_command(const char *name)
+{
+    const char *names[COMMAND_COUNT];
+    for (CommandId command = 0; command < COMMAND_COUNT; command++)
+        names[command] = command_table[command].name;
+    return nearest_name(name, names, COMMAND_COUNT);
+}
 
 const OptionInfo option_info[OPTION_COUNT] = {
 #define NO_MEMBER                  ""
@@ -40,6 +58,18 @@ const OptionInfo option_info[OPTION_COUNT] = {
 bool option_belongs(OptionId id, CommandId command)
 {
     return command < COMMAND_COUNT && (option_info[id].commands & (1u << command)) != 0;
+}
+
+bool option_changes_pictures(OptionId id)
+{
+    switch (id) {
+    case OPTION_CACHE:
+    case OPTION_RESUME:
+    case OPTION_SCHEDULE:
+    case OPTION_SKIP_EXISTING:
+    case OPTION_STATS: return false;
+    default: return !option_belongs(id, COMMAND_CHECK); /* which makes no picture */
+    }
 }
 
 static void add(char text[OPTION_TEXT], const char *words)

@@ -15,6 +15,7 @@
 
 enum {
     MANY_FILES      = -1,  /* a command that takes one or more files */
+    MAYBE_A_WORD    = -2,  /* one that takes a word, which is no file, or nothing */
     MOST_LODS       = 8,   /* of --lods */
     OPTION_TEXT     = 256, /* bytes of what is said about an option, at most */
     DEVICE_PATIENCE = 5    /* deadlines that one step of a device may take */
@@ -29,11 +30,16 @@ typedef enum CommandId {
 
 typedef struct CommandInfo {
     const char *name, *arguments;
-    int         files; /* how many scenes, or MANY_FILES */
+    int         files; /* how many scenes, MANY_FILES or MAYBE_A_WORD */
     const char *summary, *examples;
 } CommandInfo;
 
 extern const CommandInfo command_table[COMMAND_COUNT];
+
+/* The command of this name, or COMMAND_COUNT. */
+CommandId find_command(const char *name);
+/* The one whose name is most like this, or NULL. */
+const char *nearest_command(const char *name);
 
 typedef enum OptionId {
 #define OPTION(id, letter, name, argument, commands, member, value, help) OPTION_##id,
@@ -60,6 +66,8 @@ const char *option_help(const OptionInfo *option, char text[OPTION_TEXT]);
 const char *option_words(const OptionInfo *option, char text[OPTION_TEXT]);
 
 bool option_belongs(OptionId id, CommandId command);
+/* False: whatever its value, samples of pictures are the same. */
+bool option_changes_pictures(OptionId id);
 
 typedef enum When { WHEN_AUTO, WHEN_ALWAYS, WHEN_NEVER } When;
 typedef enum StatsForm { STATS_NONE, STATS_TEXT, STATS_JSON } StatsForm;
@@ -70,6 +78,12 @@ typedef struct Setting {
     double      values[4];
     size_t      count;
 } Setting;
+
+/* An option of the command line. */
+typedef struct GivenOption {
+    OptionId    id;
+    const char *value; /* NULL: none */
+} GivenOption;
 
 typedef struct ExitPair {
     int from, to;
@@ -100,6 +114,10 @@ typedef struct Options {
         const char **items;
         size_t       count, capacity;
     } files, outputs;
+    struct {
+        GivenOption *items;
+        size_t       count, capacity;
+    } given;
     struct {
         Setting *items;
         size_t   count, capacity;

@@ -61,6 +61,7 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
     KrsStatus         status = check_number(options, id);
     if (status != KRS_OK)
         return status;
+    array_push(options->arena, &options->given, ((GivenOption){id, value}));
     if (choice >= 0 && take_value(options, id, value, choice))
         return KRS_OK;
     return say_usage(options, "--%s wants %s, not `%s`", info->name, option_wants(info, wants),
@@ -142,20 +143,12 @@ static KrsStatus take_option(Options *options, int *next)
     return take_with_argument(options, id, word[2] ? word + 2 : NULL, next);
 }
 
-static KrsStatus find_command(Options *options, const char *word)
+/* `krs --help` is `krs help`, as programs of either habit have it. */
+static KrsStatus take_command(Options *options, const char *word)
 {
-    const char *names[COMMAND_COUNT];
-    for (CommandId command = 0; command < COMMAND_COUNT; command++) {
-        names[command] = command_table[command].name;
-        if (strcmp(word, names[command]) == 0) {
-            options->command = command;
-            return KRS_OK;
-        }
-    }
-    const char *nearest = nearest_name(word, names, COMMAND_COUNT);
-    if (nearest)
-        return say_usage(options, "there is no command `%s`; did you mean `%s`?", word, nearest);
-    return say_usage(options, "there is no command `%s`", word);
+    bool asks        = strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0;
+    options->command = asks ? COMMAND_HELP : find_command(word);
+    return options->command < COMMAND_COUNT ? KRS_OK : say_no_command(word);
 }
 
 /* What an untrusted scene may, unless options say otherwise. */
@@ -173,9 +166,10 @@ static KrsStatus check_together(Options *options)
 {
     const CommandInfo *info  = &command_table[options->command];
     size_t             files = options->files.count;
-    if (options->command == COMMAND_EXPLAIN) {
+    if (info->files == MAYBE_A_WORD) {
         if (files > 1)
-            return say_usage(options, "explain takes one code, not %zu", files);
+            return say_usage(options, "%s takes one word, not %zu: krs %s %s", info->name, files,
+                             info->name, info->arguments);
     } else if (info->files == MANY_FILES ? files == 0 : files != (size_t)info->files) {
         if (files == 0)
             return say_usage(options, "%s needs a %s: krs %s %s", info->name,
@@ -220,7 +214,7 @@ KrsStatus options_parse(Options *options, int argc, char **argv)
 #include "cli/options.def"
     if (argc < 2)
         return say_usage(options, "no command is given");
-    KrsStatus status     = find_command(options, argv[1]);
+    KrsStatus status     = take_command(options, argv[1]);
     bool      words_only = false; /* after "--" */
     for (int next = 2; next < argc && status == KRS_OK;) {
         const char *word = argv[next];

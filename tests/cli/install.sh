@@ -68,6 +68,7 @@ if command -v bash >/dev/null; then
         [ "$(complete_line krs import ba)" = ball.vm ] &&
         [ -z "$(complete_line krs devices ba)" ] &&
         [ "$(complete_line krs explain E0203)" = E0203 ] &&
+        [ "$(complete_line krs help val)" = validate ] &&
         [ -z "$(complete_line krs check --samp)" ]
     result $? "bash completes commands, options, their values and files"
 else
@@ -91,7 +92,8 @@ done
 result $? "zsh and fish have each command and each option$missing"
 grep -qF ':(neutral aces agx none)' $zsh && grep -qF "tone-map -x -a 'neutral aces agx none'" $fish &&
     grep -qF '_files -g "*.jsurf *.vm ' $zsh && grep -qF '(__fish_complete_suffix .vm)' $fish &&
-    grep -q '1:code:(.*E0203' $zsh && grep -q "from explain' -a '.*E0203" $fish
+    grep -q '1:code:(.*E0203' $zsh && grep -q "from explain' -a '.*E0203" $fish &&
+    grep -q '1:command:(render ' $zsh && grep -q "from help' -a 'render " $fish
 result $? "and values, files and codes"
 if command -v zsh >/dev/null; then
     zsh -n $zsh >out 2>err && [ ! -s err ]

@@ -3,7 +3,7 @@
 # not, byte by byte.
 # shellcheck source-path=SCRIPTDIR disable=SC2016,SC2086
 . "$(dirname "$0")/common.sh"
-plan 17
+plan 18
 
 cat >scene.krs <<'END'
 param radius = 1 in [0.1, 2];
@@ -52,6 +52,13 @@ cmp -s part.exr whole.exr && cmp -s part.png whole.png
 result $? "the pictures are those of a render without an interruption"
 [ ! -e part.exr.part ] && no_temporaries
 result $? "the checkpoint is gone, and so is what the killed one left"
+
+# What changes no picture changes no checkpoint, and the order of options tells nothing.
+other="scene.krs --integrator path --size 160x120 --aov all"
+cp second.part part.exr.part
+run render --samples=240 --cryptomatte -o part.exr -o part.png $other --stats --color never --resume
+[ "$status" -eq 0 ] && grep -q "going on after" err && cmp -s part.exr whole.exr
+result $? "options that change no picture, in another order, go on"
 
 # What is no checkpoint of this command is not used.
 run render $scene --samples 1 -o one.exr --quiet

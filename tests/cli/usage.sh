@@ -2,7 +2,7 @@
 # usage.sh: command lines that are wrong, and the pages of help.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 61
+plan 64
 
 run
 said 2 "no command is given" "no command"
@@ -106,12 +106,23 @@ said 2 "there is no command" "an option without a command"
 run --help
 [ "$status" -eq 0 ] && [ ! -s err ] && grep -q 'render' out
 result $? "krs --help"
+cp out page
+run help
+[ "$status" -eq 0 ] && cmp -s out page
+result $? "krs help is the same"
+run render --help
+cp out page
+run help render
+[ "$status" -eq 0 ] && cmp -s out page && run --help render && cmp -s out page
+result $? "krs help render is krs render --help"
+run help rendr
+said 2 "did you mean \`render\`?" "help of a misspelt command"
 run --version
 [ "$status" -eq 0 ] && grep -q '^krs [0-9]' out && grep -q 'OpenEXRCore [0-9]' out &&
     grep -q 'glslang [0-9]' out
 result $? "krs --version names the libraries"
 incomplete=""
-for command in render compile validate query info devices check dump import explain; do
+for command in render compile validate query info devices check dump import explain help; do
     run "$command" --help
     [ "$status" -eq 0 ] && [ "$(sed -n 3p out | cut -c1-8)" = "    krs " ] ||
         incomplete="$incomplete $command"
