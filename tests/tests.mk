@@ -140,6 +140,10 @@ list-programs:
 	@echo $(PROGRAMS) $(DRIVERS)
 lint:
 	@tests/lint.sh
+layers:
+	@tests/layers.sh
+docs: $(B)/krs
+	@tests/docs.sh
 format:
 	@clang-format-14 -i $$(find bench cli compiler examples live runtime tests -name '*.[ch]' -o -name '*.cpp')
 bless: $(B)/krs
@@ -154,4 +158,4 @@ test: deps
 	    JOBS=1 $(SCRIPTS) JOBS=$(TEST_JOBS) \
 	    $(if $(DEVICE),$(DRIVERS:%=$(B)/%),KRS_DEVICE=swiftshader $(SECOND:%=$(B)/%))
 .PHONY: test test-meshes golden list-programs test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers \
-        fuzz-programs lint format bless
+        fuzz-programs lint layers docs format bless
