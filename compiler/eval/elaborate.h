@@ -249,6 +249,10 @@ Value builtin_constant(Elaboration *e, const char *name, Span span);
 /* All names that need no definition, for names_check; returns how many, at most `capacity`. */
 size_t builtin_names(const char **names, size_t capacity);
 
+/* ---- indices.c ---- */
+/* `list[index]`, also of vectors and records. */
+Value value_index(Elaboration *e, const Syntax *syntax, Value list, Value index);
+
 /* ---- lists.c ---- */
 BuiltinFunction builtin_sum, builtin_product, builtin_any, builtin_all, builtin_least,
     builtin_greatest, builtin_len, builtin_range;

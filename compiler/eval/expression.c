@@ -78,7 +78,7 @@ static Value evaluate_list(Elaboration *e, const Environment *env, const Syntax 
     return wrong ? value_error() : value_list(e, items, syntax->count);
 }
 
-/* A number that is known now: bounds of ranges, indices. */
+/* A number that is known now: a bound of a range. */
 static bool constant_number(Elaboration *e, const Environment *env, const Syntax *syntax,
                             const char *what, double *number)
 {
@@ -230,46 +230,10 @@ static Value evaluate_if(Elaboration *e, const Environment *env, const Syntax *s
     return value_select(e, syntax, condition, yes, no);
 }
 
-static Value index_record(Elaboration *e, const Environment *env, const Syntax *syntax,
-                          const Record *record)
-{
-    const Syntax *index = syntax->children[1];
-    Value         name  = evaluate(e, env, index);
-    if (name.type == VALUE_STRING)
-        return record_member(e, record, name.string, index->span);
-    type_error(e, index, name, "the name of a member, a string");
-    return value_error();
-}
-
 static Value evaluate_index(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    Value  list = evaluate(e, env, syntax->children[0]);
-    double index;
-    if (list.type == VALUE_RECORD)
-        return index_record(e, env, syntax, list.record);
-    if (list.type == VALUE_ERROR ||
-        !constant_number(e, env, syntax->children[1], "an index", &index))
-        return value_error();
-    bool node = list.type == VALUE_EXPRESSION && e->graph->items[list.node].type >= TYPE_VEC2 &&
-                e->graph->items[list.node].type <= TYPE_VEC4;
-    size_t count = node                      ? e->graph->items[list.node].type
-                   : list.type == VALUE_LIST ? list.list->count
-                                             : 0;
-    if (!node && list.type != VALUE_LIST) {
-        type_error(e, syntax->children[0], list, "a list");
-        return value_error();
-    }
-    if (!(index >= 0 && index < (double)count) || index != floor(index)) {
-        Diag *diag  = diag_add(e->diags, DIAG_INDEX_RANGE, syntax->children[1]->span,
-                               "index %g of a list of %zu", index, count);
-        diag->label = count ? diag_text(e->diags, "whole numbers from 0 to %zu are possible",
-                                        count - 1)
-                            : "the list is empty";
-        return value_error();
-    }
-    if (!node)
-        return list.list->items[(size_t)index];
-    return value_of_node(e, graph_component(e->graph, list.node, (uint32_t)index));
+    Value list = evaluate(e, env, syntax->children[0]);
+    return value_index(e, syntax, list, evaluate(e, env, syntax->children[1]));
 }
 
 static Value evaluate_call(Elaboration *e, const Environment *env, const Syntax *syntax)

@@ -180,7 +180,7 @@ static Fact fact_steps(const RuleInput *input, uint32_t count, double most)
 
 Fact fact_identity(const RuleInput *input) { return fact_steps(input, 2, UINT32_MAX); }
 Fact fact_to_uint(const RuleInput *input) { return fact_steps(input, 1, UINT32_MAX); }
-Fact fact_id_unit(const RuleInput *input) { return fact_steps(input, 1, 1); }
+Fact fact_id_unit(const RuleInput *input) { return fact_steps(input, 1, 1 - 0x1p-24); }
 
 /* Rules do not look into tables. */
 Fact fact_of_table(const RuleInput *input)

@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -63,6 +64,45 @@ static void parameters_move_the_scene(void **state)
     assert_int_equal(krs_frame_set_time(frame, INFINITY), KRS_BAD_ARGUMENT);
     assert_true(fabs(distance_at(frame, 4, 0, 0) - 3) < 1e-12);
     close_scene(frame, scene);
+}
+
+/* The distance of a scene that chooses a radius and a place by `index`, which may use `k`. */
+static double chosen_at(const char *index, double k)
+{
+    char text[600];
+    snprintf(text, sizeof text,
+             "param k = 0 in [-100, 100]; let radii = [0.5, 0.7, 0.6 + 0.001 * k, 0.9, 0.8];"
+             "let at = [[1, 0, 0], [0, 2, 0], [k, 0, 3], [4, 4, 0], [0, 0, 5]];"
+             "let i = %s; show sphere(radii[i]).move(at[i] + [0, 0, [7, 8, 9][clamp(i, 0, 2)]]);",
+             index);
+    KrsScene *scene;
+    KrsFrame *frame = open_scene(text, &scene);
+    assert_int_equal(krs_frame_set(frame, "k", (double[]){k}, 1), KRS_OK);
+    const double distance = distance_at(frame, 0.3, -0.4, 0.2);
+    close_scene(frame, scene);
+    return distance;
+}
+
+/* An index that frames know chooses what the same number would, and is rounded down. */
+static void lists_are_indexed_by_what_frames_know(void **state)
+{
+    (void)state;
+    static const char *const whole[] = {"0", "1", "2", "3", "4"};
+    double                   seen[5];
+    bool                     found[5] = {false};
+    for (int i = 0; i < 5; i++) {
+        seen[i] = chosen_at(whole[i], i + 0.75);
+        assert_true(chosen_at("clamp(k, 0, 4.9)", i + 0.75) == seen[i]);
+    }
+    for (int k = -20; k <= 20; k++) {
+        const double distance = chosen_at("floor(5 * random(k))", k);
+        int          number   = 0;
+        while (number < 5 && fabs(distance - chosen_at(whole[number], k)) > 1e-12)
+            number++;
+        assert_true(number < 5);
+        found[number] = true;
+    }
+    assert_true(found[0] && found[1] && found[2] && found[3] && found[4]);
 }
 
 static void frames_that_are_not_finite_are_refused(void **state)
@@ -283,6 +323,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parameters_move_the_scene),
+        cmocka_unit_test(lists_are_indexed_by_what_frames_know),
         cmocka_unit_test(frames_that_are_not_finite_are_refused),
         cmocka_unit_test(values_of_frames_are_found),
         cmocka_unit_test(frames_without_a_slope_are_refused),

@@ -1,0 +1,143 @@
+/*
+ * indices.c: `list[i]`, of an index that is known now or in each frame.
+ */
+#include <math.h>
+
+#include "compiler/eval/elaborate.h"
+
+/* An index of frames chooses from all elements, which are all computed. */
+enum { MOST_CHOSEN = 256 };
+
+static Value index_record(Elaboration *e, const Record *record, Value name, const Syntax *index)
+{
+    if (name.type == VALUE_STRING)
+        return record_member(e, record, name.string, index->span);
+    type_error(e, index, name, "the name of a member, a string");
+    return value_error();
+}
+
+/* One element of a list, or of a vector known only as a node. */
+static Value element(Elaboration *e, Value list, size_t index)
+{
+    if (list.type == VALUE_LIST)
+        return list.list->items[index];
+    return value_of_node(e, graph_component(e->graph, list.node, (uint32_t)index));
+}
+
+static void label_possible(Elaboration *e, Diag *diag, size_t count)
+{
+    diag->label = count ? diag_text(e->diags, "whole numbers from 0 to %zu are possible", count - 1)
+                        : "the list is empty";
+}
+
+static Value known_index(Elaboration *e, const Syntax *syntax, Value list, size_t count,
+                         double index)
+{
+    if (index >= 0 && index < (double)count && index == floor(index))
+        return element(e, list, (size_t)index);
+    label_possible(e,
+                   diag_add(e->diags, DIAG_INDEX_RANGE, syntax->children[1]->span,
+                            "index %g of a list of %zu", index, count),
+                   count);
+    return value_error();
+}
+
+/* ---- an index that frames know ---- */
+
+/* Nodes of all elements, of one type; false: reported. */
+static bool element_nodes(Elaboration *e, const Syntax *syntax, Value list, size_t count,
+                          Node *nodes)
+{
+    for (size_t i = 0; i < count; i++) {
+        const Value value = element(e, list, i);
+        nodes[i]          = value_node(e, value);
+        if (nodes[i] == NODE_NONE) {
+            constant_error(e, syntax->children[1],
+                           diag_text(e->diags,
+                                     "an index must be known at compile time to choose %s",
+                                     value_type_name(e, value)));
+            return false;
+        }
+        if (e->graph->items[nodes[i]].type != e->graph->items[nodes[0]].type) {
+            Diag *diag  = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->children[0]->span,
+                                   "the elements have different types: %s and %s",
+                                   value_type_name(e, element(e, list, 0)),
+                                   value_type_name(e, value));
+            diag->label = "an index that frames know chooses among values of one type";
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Whether the index, rounded down, is one of the list in all frames; false: reported. */
+static bool check_index_range(Elaboration *e, const Syntax *syntax, Node index, size_t count)
+{
+    const Range range = graph_frame_range(e->graph, index, 0, e->scratch);
+    arena_clear(e->scratch);
+    if (range.low >= 0 && range.high < (double)count)
+        return true;
+    const char *limits = isfinite(range.low) && isfinite(range.high)
+                             ? diag_text(e->diags, "from %g to %g", range.low, range.high)
+                             : "without limits";
+    Diag       *diag   = diag_add(e->diags, DIAG_INDEX_RANGE, syntax->children[1]->span,
+                                  "an index %s of a list of %zu", limits, count);
+    label_possible(e, diag, count);
+    if (count > 0)
+        diag->help = diag_text(e->diags, "`clamp(..., 0, %zu)` keeps it in the list", count - 1);
+    return false;
+}
+
+/* Elements from..to-1, by halves.  A whole number needs no rounding down to be compared with. */
+static Node choose_element(Graph *g, Node index, const Node *nodes, size_t from, size_t to)
+{
+    if (to - from == 1)
+        return nodes[from];
+    const size_t middle = from + (to - from) / 2;
+    Node         low    = choose_element(g, index, nodes, from, middle);
+    Node         high   = choose_element(g, index, nodes, middle, to);
+    Node         bound  = graph_number(g, (double)middle);
+    Node         below  = graph_op2(g, OP_less, index, bound);
+    return graph_op3(g, OP_select, below, low, high);
+}
+
+/* An index that may change with the frames. */
+static Value frame_index(Elaboration *e, const Syntax *syntax, Value list, size_t count, Node index)
+{
+    const Syntax *where = syntax->children[1];
+    if (e->graph->items[index].time == TIME_POINT) {
+        point_error(e, where, "an index");
+        return value_error();
+    }
+    if (count > MOST_CHOSEN) {
+        constant_error(e, where,
+                       "an index of a list of more than 256 must be known at compile time");
+        return value_error();
+    }
+    Node *nodes = arena_new_array(e->values, Node, count + 1);
+    if (!count_steps(e, count, syntax->span) || !check_index_range(e, syntax, index, count) ||
+        !element_nodes(e, syntax, list, count, nodes))
+        return value_error();
+    e->graph->here = syntax->span;
+    return value_of_node(e, choose_element(e->graph, index, nodes, 0, count));
+}
+
+Value value_index(Elaboration *e, const Syntax *syntax, Value list, Value index)
+{
+    if (list.type == VALUE_ERROR || index.type == VALUE_ERROR)
+        return value_error();
+    if (list.type == VALUE_RECORD)
+        return index_record(e, list.record, index, syntax->children[1]);
+    const uint32_t size = list.type == VALUE_LIST ? 0 : value_size(e, list);
+    if (list.type != VALUE_LIST && size < 2) {
+        type_error(e, syntax->children[0], list, "a list");
+        return value_error();
+    }
+    const size_t count = size ? size : list.list->count;
+    if (index.type == VALUE_NUMBER)
+        return known_index(e, syntax, list, count, index.number);
+    if (index.type == VALUE_EXPRESSION && e->graph->items[index.node].type == TYPE_FLOAT)
+        return frame_index(e, syntax, list, count, index.node);
+    type_error(e, syntax->children[1], index, "a number");
+    return value_error();
+}
