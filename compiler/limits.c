@@ -11,6 +11,7 @@
 
 #include "compiler/compilation.h"
 #include "compiler/graph/crowd.h"
+#include "compiler/graph/facts.h"
 
 enum { MOST_OPERATIONS = 20000, MOST_GLSL_BYTES = 1500000 };
 
@@ -224,9 +225,64 @@ static bool check_numbers(Compilation *c)
     return false;
 }
 
+/* ---- what is a number nowhere ---- */
+
+/* Roots and logarithms of what differs from point to point, which are no numbers below 0. */
+static bool needs_positive(const Expr *expr)
+{
+    bool root = expr->op == OP_sqrt || expr->op == OP_inversesqrt;
+    return (root || expr->op == OP_log || expr->op == OP_log2) && expr->time == TIME_POINT &&
+           expr->type == TYPE_FLOAT;
+}
+
+/* What an expression can be, at all points and for all values of the parameters. */
+static Range range_everywhere(Compilation *c, Node node)
+{
+    RangeTask task = range_task(c->scene->graph, &node, 1, &c->scratch);
+    range_task_run(&task, box_infinite);
+    return range_task_value(&task, node);
+}
+
+/* The first root or logarithm of a tape that is a number nowhere, or NODE_NONE; few are looked at, for
+   a mistake like this is soon met with. */
+static Node first_undefined(Compilation *c, const Tape *tape, double *most)
+{
+    enum { MOST_LOOKED_AT = 64 };
+    size_t looked_at = 0;
+    for (size_t i = tape->frame_count; i < tape->count && looked_at < MOST_LOOKED_AT; i++) {
+        const Expr *expr = &tape->graph->items[tape->nodes[i]];
+        if (!needs_positive(expr))
+            continue;
+        looked_at++;
+        *most = range_everywhere(c, expr->operands[0]).high;
+        if (*most < 0)
+            return tape->nodes[i];
+    }
+    return NODE_NONE;
+}
+
+static bool check_domains(Compilation *c)
+{
+    const Graph *graph = c->scene->graph;
+    double       most  = 0;
+    Tape         tape  = tape_new(graph, surface_roots(&c->scene->roots, 0),
+                                  c->elaborated.components.count * ROOT_COUNT, &c->scratch);
+    Node         node  = first_undefined(c, &tape, &most);
+    arena_free(&c->scratch);
+    if (node == NODE_NONE)
+        return true;
+    Diag *diag  = diag_add(&c->diags, DIAG_NOT_A_NUMBER, graph->items[node].span,
+                           "`%s` of what is negative at all points",
+                           graph_op_name((Op)graph->items[node].op));
+    diag->label = diag_text(&c->diags, "a number nowhere: what it is taken of is at most %.3g",
+                            most);
+    return false;
+}
+
 KrsStatus pass_limits(Compilation *c)
 {
-    return check_operations(c) && check_numbers(c) && check_tables(c) ? KRS_OK : KRS_BAD_SCENE;
+    bool good = check_operations(c) && check_numbers(c) && check_tables(c) && check_domains(c);
+    return good ? KRS_OK : KRS_BAD_SCENE;
 }
 
 void print_limits(Compilation *c, Text *out)

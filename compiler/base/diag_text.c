@@ -169,6 +169,8 @@ static void add_mark(Excerpt *excerpt, Span span, const char *label, bool primar
     uint32_t      line   = source_position(source, span.start).line - 1;
     uint32_t      end    = line_end(source, line);
     Mark          mark   = {span, label, primary, line, span.start, span.end, false};
+    if (mark.start < source->lines[line])
+        mark.start = source->lines[line];
     if (mark.start > end)
         mark.start = end;
     if (mark.end > end)

@@ -11,6 +11,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+static const char byte_order_mark[] = "\xEF\xBB\xBF";
+
+/* The first line begins behind a byte order mark, which is no character of the scene. */
 static void find_lines(Arena *arena, Source *source)
 {
     uint32_t count = 1;
@@ -18,6 +21,8 @@ static void find_lines(Arena *arena, Source *source)
         count += source->text[i] == '\n';
     source->lines      = arena_new_array(arena, uint32_t, count);
     source->line_count = 1;
+    if (strncmp(source->text, byte_order_mark, sizeof byte_order_mark - 1) == 0)
+        source->lines[0] = sizeof byte_order_mark - 1;
     for (uint32_t i = 0; i < source->length; i++)
         if (source->text[i] == '\n')
             source->lines[source->line_count++] = i + 1;
@@ -86,9 +91,10 @@ uint32_t source_line(const Source *source, uint32_t offset)
 
 Position source_position(const Source *source, uint32_t offset)
 {
-    uint32_t line   = source_line(source, offset);
-    uint32_t column = 1 + characters_before(source, offset) -
-                      characters_before(source, source->lines[line - 1]);
+    uint32_t line = source_line(source, offset), first = source->lines[line - 1];
+    uint32_t column = 1;
+    if (offset > first)
+        column += characters_before(source, offset) - characters_before(source, first);
     /* An offset in the middle of a character has the column of that character. */
     if (offset < source->length && !begins_character(source->text[offset]) && column > 1)
         column--;

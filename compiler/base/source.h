@@ -20,7 +20,7 @@ typedef struct Source {
     const char *text; /* NUL-terminated; may hold NUL bytes before its end */
     uint32_t    length;
     bool        library; /* part of the standard library */
-    uint32_t   *lines;   /* offset of the first byte of each line */
+    uint32_t   *lines;   /* offset of the first byte of each line, behind a byte order mark */
     uint32_t    line_count;
     uint32_t   *characters; /* number of characters that begin before each block */
 } Source;

@@ -113,6 +113,7 @@ struct Elaboration {
     uint32_t            printed;      /* notes by `print`, so far */
     uint32_t            depth, calls; /* how deep expressions and calls are nested now */
     Node                rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
+    const Syntax       *block;        /* the last one whose properties were looked at, or NULL */
     bool                in_material;  /* level, instance, u, v and normal have a meaning */
     bool                uses_uv;      /* a material may need the coordinates on surfaces */
 };

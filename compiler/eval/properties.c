@@ -124,6 +124,7 @@ static bool check_property(Elaboration *e, const Syntax *block, const Syntax *pr
 bool check_block(Elaboration *e, const Syntax *block)
 {
     bool known = true;
+    e->block   = block;
     for (uint32_t i = 0; i < block->count; i++) {
         const Syntax *property = block->children[i];
         if (property->kind != SYNTAX_PROPERTY || !check_property(e, block, property)) {

@@ -46,13 +46,25 @@ void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax)
     }
 }
 
+/* What is wanted of a value; a property whose whole value it is has a name. */
+static const char *wanted_of(Elaboration *e, const Syntax *syntax, const char *wanted)
+{
+    for (uint32_t i = 0; e->block && i < e->block->count; i++) {
+        const Syntax *property = e->block->children[i];
+        if (property->kind == SYNTAX_PROPERTY && property->children[0] == syntax)
+            return diag_text(e->diags, "`%s` of %s must be %s", property->name,
+                             block_name(e->block->kind), wanted);
+    }
+    return diag_text(e->diags, "expected %s", wanted);
+}
+
 Diag *type_error(Elaboration *e, const Syntax *syntax, Value found, const char *wanted)
 {
     if (found.type == VALUE_ERROR)
         return &e->diags->scrap;
     const char *name = value_type_name(e, found);
-    Diag       *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span, "expected %s, found %s",
-                                wanted, name);
+    Diag       *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span, "%s, found %s",
+                                wanted_of(e, syntax, wanted), name);
     diag->label      = diag_text(e->diags, "this is %s", name);
     point_at_definition(e, diag, syntax);
     return diag;

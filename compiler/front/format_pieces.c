@@ -81,9 +81,7 @@ Pieces read_pieces(uint32_t source, const Sources *sources, Arena *arena)
     Diags         diags  = {.arena = arena, .sources = sources};
     Tokens        tokens = lex(source, sources, &names, &diags, arena);
     Pieces        pieces = {.text = text->text};
-    Reader        r      = {.text = text->text, .pieces = &pieces, .arena = arena};
-    if (strncmp(text->text, "\xEF\xBB\xBF", 3) == 0) /* a byte order mark */
-        r.at = 3;
+    Reader        r = {.text = text->text, .pieces = &pieces, .arena = arena, .at = text->lines[0]};
     for (size_t i = 0; i < tokens.count; i++) {
         read_blank(&r, tokens.items[i].span.start);
         if (tokens.items[i].kind != TOKEN_END)

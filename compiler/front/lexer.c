@@ -330,14 +330,13 @@ Tokens lex(uint32_t source, const Sources *sources, Names *names, Diags *diags, 
     const Source *text  = &sources->items[source];
     Lexer         lexer = {.text    = text->text,
                            .length  = text->length,
+                           .at      = text->lines[0],
                            .source  = source,
                            .names   = names,
                            .diags   = diags,
                            .arena   = arena,
                            .doc     = {.arena = arena},
                            .scratch = {.arena = arena}};
-    if (is_next(&lexer, "\xEF\xBB\xBF")) /* a byte order mark */
-        lexer.at = 3;
     find_beginnings(&lexer);
     skip_blank(&lexer);
     while (lexer.at < lexer.length && !diags_full(diags)) {

@@ -108,6 +108,32 @@ static void odd_text_is_drawn(void **state)
                       "1 error\n");
 }
 
+static void a_byte_order_mark_is_no_character(void **state)
+{
+    (void)state;
+    static const char scene[] = "\xEF\xBB\xBFshow a;";
+    Reading          *r       = read_text("");
+    uint32_t          file    = source_add(&r->sources, "bom.krs", scene, sizeof scene - 1, false);
+    add(r, DIAG_UNKNOWN_NAME, file, 8, 9);
+    expect_picture(r, "error[E0201]: a message\n"
+                      " --> bom.krs:1:6\n"
+                      "  |\n"
+                      "1 | show a;\n"
+                      "  |      ^\n"
+                      "\n"
+                      "1 error\n");
+    r    = read_text("");
+    file = source_add(&r->sources, "bom.krs", scene, sizeof scene - 1, false);
+    add(r, DIAG_UNKNOWN_NAME, file, 0, 0); /* of the whole file */
+    expect_picture(r, "error[E0201]: a message\n"
+                      " --> bom.krs:1:1\n"
+                      "  |\n"
+                      "1 | show a;\n"
+                      "  | ^\n"
+                      "\n"
+                      "1 error\n");
+}
+
 static void long_lines_are_cut(void **state)
 {
     (void)state;
@@ -204,6 +230,7 @@ int main(void)
         cmocka_unit_test(a_diagnostic_is_drawn),
         cmocka_unit_test(several_places_are_drawn),
         cmocka_unit_test(odd_text_is_drawn),
+        cmocka_unit_test(a_byte_order_mark_is_no_character),
         cmocka_unit_test(long_lines_are_cut),
         cmocka_unit_test(a_diagnostic_without_a_place_is_drawn),
         cmocka_unit_test(colours_are_terminal_codes),

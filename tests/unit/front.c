@@ -33,7 +33,7 @@ static void tokens_are_split(void **state)
                                  "1:10 a name n\n1:11 `;`\n1:12 the end of the file\n");
     expect_tokens("1.5.round//x\n/* \n */ <==", "1:1 a number 1.5\n1:4 `.`\n1:5 a name round\n"
                                                 "3:5 `<=`\n3:7 `=`\n3:8 the end of the file\n");
-    expect_tokens("\xEF\xBB\xBF#c8553d", "1:2 a colour #c8553d\n1:9 the end of the file\n");
+    expect_tokens("\xEF\xBB\xBF#c8553d", "1:1 a colour #c8553d\n1:8 the end of the file\n");
 }
 
 static void numbers_are_read(void **state)
