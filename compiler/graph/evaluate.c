@@ -9,9 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "compiler/base/bits.h"
-#include "compiler/base/far.h"
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/crowd_walk.h"
 #include "compiler/graph/op_values.h"
 #include "compiler/graph/texture.h"
 
@@ -207,70 +205,20 @@ static void loop_over(Loop *loop, uint32_t member)
         loop->states[k] = loop->values[loop->bodies[k]];
 }
 
-/* What is farther than this cannot be nearer than what is found. */
-static double how_far(const Loop *loop)
-{
-    double distance = loop->states[loop->function->distance].v[0];
-    return (loop->function->either ? fabs(distance) : distance) * loop->table->stretch;
-}
-
-/* Whether a member may be nearer than what is found. */
-static bool may_count(const Loop *loop, uint32_t member)
-{
-    const Box *boxes = loop->table->boxes;
-    return !boxes || distance_to_box(&boxes[member], loop->in.point) <= how_far(loop);
-}
-
-static void loop_over_near(Loop *loop, double radius, double clear)
-{
-    NearMembers near;
-    uint32_t    rows = loop->table->rows;
-    begin_loop(loop);
-    for (near.first = 0; near.first < rows; near.first += near.count) {
-        near.count = rows - near.first < NEAR_AT_ONCE ? rows - near.first : NEAR_AT_ONCE;
-        grid_near(&loop->table->grid, loop->in.point, radius, clear, &near);
-        for (uint32_t word = 0; word < (near.count + 63) / 64; word++)
-            for (uint64_t bits = near.bits[word]; bits; bits &= bits - 1)
-                if (may_count(loop, near.first + 64 * word + lowest_bit(bits)))
-                    loop_over(loop, near.first + 64 * word + lowest_bit(bits));
-    }
-}
-
-/* From the list of the cell to all that may be as near as what is found.  The second time that is
-   enough: each further member only makes a distance less. */
-static void loop_to_the_nearest(Loop *loop, double clearance)
-{
-    const Grid   *grid     = &loop->table->grid;
-    const double *distance = loop->states[loop->function->distance].v;
-    double        radius = fabs(clearance), more = grid->size;
-    double        clear = loop->function->either ? radius * (1 - 0x1p-20) : 0;
-    while (how_far(loop) > radius && radius < NOWHERE &&
-           !grid_is_within(grid, loop->in.point, radius)) {
-        radius = fabs(*distance) < NOWHERE ? how_far(loop) : radius + more;
-        more *= 2;
-        loop_over_near(loop, radius, clear);
-    }
-}
-
-static double cleared(const CrowdFunction *function, double distance, double clearance)
-{
-    if (function->either)
-        return fabs(distance) < fabs(clearance) ? distance : clearance;
-    return fmin(distance, clearance);
-}
-
 static NodeValue run_loop(Loop *loop)
 {
-    double          clearance;
-    uint32_t        listed;
-    const uint32_t *list = grid_find(&loop->table->cells, loop->in.point, &listed, &clearance);
+    CrowdWalk     walk;
+    CrowdStep     step;
+    uint32_t      member, distance = loop->function->distance;
+    const double *found = loop->states[distance != NO_DISTANCE ? distance : 0].v;
+    crowd_walk_begin(&walk, loop->function, loop->table, loop->in.point, loop->in.by_cells);
     begin_loop(loop);
-    for (uint32_t i = 0; i < listed; i++)
-        loop_over(loop, list[i]);
-    if (loop->function->distance != NO_DISTANCE && !loop->in.by_cells)
-        loop_to_the_nearest(loop, clearance);
-    else if (loop->function->clear)
-        return number(cleared(loop->function, loop->states[0].v[0], clearance));
+    while ((step = crowd_walk_next(&walk, *found, &member)) != CROWD_DONE)
+        if (step == CROWD_MEMBER)
+            loop_over(loop, member);
+        else
+            begin_loop(loop);
+    loop->states[0].v[0] = crowd_walk_result(&walk, loop->states[0].v[0]);
     return loop->states[0];
 }
 

@@ -79,6 +79,10 @@ static void LOCAL(call)(const LaneTape *tape, const LaneWork *work, const LaneCa
 {
     REAL       *rows = work->rows;
     const Expr *e    = &tape->tape->graph->items[call->node];
+    if (call->body && sizeof(REAL) == sizeof(double)) {
+        lane_crowd_call(tape, work, call, points, LANE_KERNEL);
+        return;
+    }
     for (size_t i = 0; i < points; i++) {
         NodeValue operands[MAX_OPERANDS] = {0};
         for (uint32_t k = 0; k < e->operand_count; k++)
@@ -242,6 +246,8 @@ void LANE_KERNEL(const LaneTape *tape, const LaneWork *work, size_t points)
     for (const LaneCode *code = tape->code, *end = code + tape->count; code < end; code++) {
         if (code->op == LANE_CALL)
             LOCAL(call)(tape, work, &tape->calls[code->from[0]], points);
+        else if (code->op >= LANE_MEMBER)
+            lane_member_step(work, code, points);
         else if (code->op != LANE_PART &&
                  !(code->operand_count == 2 && (code->scalars == 1 || code->scalars == 2) &&
                    LOCAL(mixed_step)(tape, code, rows, blocks)))

@@ -22,6 +22,9 @@ typedef struct Builder {
     Arena       *arena;
     LaneSteps   *to;
     Parts *parts; /* by place on the tape; a frame's node that nobody has asked for is all 0 */
+    const LaneBody **bodies; /* of crowd functions, by their numbers */
+    bool             in_body;
+    Parts            of_frame; /* in a body, whose tape has no nodes of the frame: the last one */
 } Builder;
 
 static uint32_t add_scalar(LaneSteps *to, LaneScalar scalar)
@@ -59,8 +62,9 @@ static uint32_t emit2(Builder *b, uint16_t op, uint32_t x, uint32_t y)
 static const Parts *parts_of(Builder *b, Node node)
 {
     const Expr *e     = &b->graph->items[node];
-    Parts      *parts = &b->parts[tape_index(b->tape, node)];
-    if (e->time == TIME_POINT || (parts->of[0] & LANE_SCALAR))
+    bool        place = !b->in_body || e->time == TIME_POINT;
+    Parts      *parts = place ? &b->parts[tape_index(b->tape, node)] : &b->of_frame;
+    if (place && (e->time == TIME_POINT || (parts->of[0] & LANE_SCALAR)))
         return parts;
     for (uint32_t k = 0; k < 4; k++)
         parts->of[k] = k < components(e->type) ? add_scalar(b->to, (LaneScalar){node, k, 0})
@@ -128,6 +132,8 @@ static void emit_call(Builder *b, Node node, uint32_t *to)
 {
     const Expr *e    = &b->graph->items[node];
     LaneCall    call = {.node = node, .parts = components(e->type)};
+    if (is_call((Op)e->op))
+        call.body = b->bodies[(size_t)b->graph->items[e->operands[0]].number[0]];
     for (uint32_t k = 0; k < e->operand_count; k++)
         memcpy(call.operands[k], parts_of(b, e->operands[k])->of, sizeof call.operands[k]);
     array_push(b->arena, &b->to->calls, call);
@@ -190,18 +196,40 @@ static void emit_operation(Builder *b, Node node, const Operands *o, uint32_t *t
     }
 }
 
+/* A step of a body that has no operands, but a number. */
+static uint32_t emit_of_member(Builder *b, uint16_t op, uint32_t number)
+{
+    return lane_steps_add(b->to, (LaneStep){.op = op, .operands = {number}});
+}
+
+/* In a body, a number of the member's own row. */
+static bool emit_row(Builder *b, const Expr *e, uint32_t *to)
+{
+    if (e->op != OP_row || !b->in_body || b->graph->items[e->operands[1]].op != OP_MEMBER)
+        return false;
+    uint32_t id = (uint32_t)b->graph->items[e->operands[0]].number[0];
+    to[0]       = emit_of_member(b, LANE_ROW, row_column(id));
+    return true;
+}
+
 /* Leaves that are known at a point alone; the others have the same value everywhere (ops.def). */
 static void emit_leaf(Builder *b, const Expr *e, uint32_t *to)
 {
-    uint32_t first = e->op == OP_POINT ? LANE_POINT : LANE_NORMAL;
-    assert(!is_of_crowd((Op)e->op));
+    bool     point = e->op == OP_POINT || e->op == OP_CROWD_POINT;
+    uint32_t first = point ? LANE_POINT : LANE_NORMAL;
+    assert(b->in_body || !is_of_crowd((Op)e->op));
     for (uint32_t k = 0; k < components(e->type); k++)
         switch ((Op)e->op) {
         case OP_POINT:
+        case OP_CROWD_POINT:
         case OP_NORMAL:
+        case OP_CROWD_NORMAL:
         case OP_VIEW:
         case OP_DIRECTION: to[k] = first + k; break;
-        case OP_FOOTPRINT: to[k] = LANE_FOOTPRINT; break;
+        case OP_FOOTPRINT:
+        case OP_CROWD_FOOTPRINT: to[k] = LANE_FOOTPRINT; break;
+        case OP_MEMBER: to[k] = emit_of_member(b, LANE_MEMBER, 0); break;
+        case OP_STATE: to[k] = emit_of_member(b, LANE_STATE, 4 * state_of(e->index) + k); break;
         default: to[k] = lane_steps_number(b->to, e->op == OP_INSTANCE && k == 0);
         }
 }
@@ -218,7 +246,7 @@ static void emit_node(Builder *b, size_t place)
     Operands operands = {o[0].of, o[1].of, o[2].of, o[3].of, 0};
     if (e->operand_count == 0) {
         emit_leaf(b, e, to);
-    } else {
+    } else if (!emit_row(b, e, to)) {
         operands.size = components(b->graph->items[e->operands[0]].type);
         emit_operation(b, node, &operands, to);
     }
@@ -246,20 +274,71 @@ static uint32_t emit_least(Builder *b, const Node *roots, size_t count, size_t c
     return least;
 }
 
+static void emit_nodes(Builder *b)
+{
+    b->parts = arena_new_array(b->arena, Parts, b->tape->count + 1);
+    for (size_t i = b->tape->frame_count; i < b->tape->count; i++)
+        emit_node(b, i);
+}
+
+/* ---- bodies ---- */
+
+/* Of a crowd function; those that it calls have smaller numbers, and bodies already. */
+static LaneBody *make_body(const Tape *tape, uint32_t id, const LaneBody **bodies, Arena *arena)
+{
+    const Crowds        *crowds   = tape->graph->crowds;
+    const CrowdFunction *function = &crowds->functions.items[id];
+    LaneBody            *body     = arena_new(arena, LaneBody);
+    LaneSteps            steps    = {.arena = arena};
+    Builder              b        = {.graph   = tape->graph,
+                                     .tape    = &tape->functions[id],
+                                     .arena   = arena,
+                                     .to      = &steps,
+                                     .bodies  = bodies,
+                                     .in_body = true};
+    emit_nodes(&b);
+    for (uint32_t k = 0; k < function->state_count; k++)
+        add_outputs(&b, crowds->bodies.items[function->first_body + k]);
+    body->tape     = lane_steps_finish(&steps, b.tape);
+    body->function = id;
+    body->table    = function->crowd;
+    return body;
+}
+
+/* Gives bodies rows behind those of the tape.  Returns where they end. */
+static uint32_t place_bodies(const LaneTape *made, const Tape *tape, LaneBody **bodies)
+{
+    uint32_t end = (uint32_t)lane_most_rows(made);
+    for (uint32_t id = 0; id < tape->function_count; id++)
+        if (bodies[id]) {
+            bodies[id]->first_row = end;
+            end += bodies[id]->tape.rows + (uint32_t)bodies[id]->tape.scalar_count / LANES + 1;
+        }
+    return tape->function_count ? end : 0;
+}
+
 LaneTape lane_tape_new(const Tape *tape, const Node *roots, size_t root_count, bool least,
                        size_t cuts, Arena *arena)
 {
-    LaneSteps steps = {.arena = arena};
-    Builder   b     = {.graph = tape->graph, .tape = tape, .arena = arena, .to = &steps};
+    LaneSteps  steps  = {.arena = arena};
+    LaneBody **bodies = arena_new_array(arena, LaneBody *, tape->function_count + 1);
+    Builder    b      = {.graph  = tape->graph,
+                         .tape   = tape,
+                         .arena  = arena,
+                         .to     = &steps,
+                         .bodies = (const LaneBody **)bodies};
     assert(!tape->skips);
-    b.parts = arena_new_array(arena, Parts, tape->count + 1);
-    for (size_t i = tape->frame_count; i < tape->count; i++)
-        emit_node(&b, i);
+    for (uint32_t id = 0; id < tape->function_count; id++)
+        if (tape->functions[id].graph)
+            bodies[id] = make_body(tape, id, b.bodies, arena);
+    emit_nodes(&b);
     if (least)
         array_push(arena, &steps.outputs, emit_least(&b, roots, root_count, cuts));
     for (size_t i = 0; i < root_count; i++)
         add_outputs(&b, roots[i]);
-    return lane_steps_finish(&steps, tape);
+    LaneTape made   = lane_steps_finish(&steps, tape);
+    made.bodies_end = place_bodies(&made, tape, bodies);
+    return made;
 }
 
 void lane_tape_scalars(const LaneTape *tape, const NodeValue *values, double *scalars)

@@ -262,8 +262,9 @@ LaneTape lane_prune(const LaneTape *tape, const LaneRanges *ranges, size_t outpu
     prune_calls(&p);
     for (size_t i = 0; i < outputs; i++)
         array_push(arena, &p.to.outputs, stand_in(&p, tape->outputs[i]));
-    LaneTape pruned = lane_steps_finish(&p.to, tape->tape);
-    pruned.scalars  = arena_new_array(arena, double, pruned.scalar_count + 1);
+    LaneTape pruned   = lane_steps_finish(&p.to, tape->tape);
+    pruned.bodies_end = tape->bodies_end;
+    pruned.scalars    = arena_new_array(arena, double, pruned.scalar_count + 1);
     for (size_t i = 0; i < pruned.scalar_count; i++)
         pruned.scalars[i] = pruned.sources[i].number;
     return pruned;

@@ -186,6 +186,8 @@ static void free_unread(const LaneSteps *steps, Rows *rows, size_t i)
 static LaneCode locate_step(const Rows *rows, const LaneStep *step)
 {
     LaneCode code = {.op = step->op, .operand_count = (uint8_t)step->operand_count};
+    if (step->operand_count == 0)
+        code.from[0] = step->operands[0];
     for (uint32_t k = 0; k < step->operand_count; k++) {
         bool scalar = step->operands[k] & LANE_SCALAR;
         code.scalars |= (uint8_t)(scalar << k);

@@ -81,13 +81,15 @@ enum { ROW_ALIGNMENT = 64 };
 
 size_t lane_work_bytes(const LaneTape *tape)
 {
-    return lane_most_rows(tape) * LANES * sizeof(double) + ROW_ALIGNMENT;
+    size_t rows = lane_most_rows(tape) > tape->bodies_end ? lane_most_rows(tape) : tape->bodies_end;
+    return rows * LANES * sizeof(double) + ROW_ALIGNMENT;
 }
 
 LaneWork lane_work_in(void *memory, NodeValue *values)
 {
     size_t past = (uintptr_t)memory % ROW_ALIGNMENT;
-    return (LaneWork){(char *)memory + (past ? ROW_ALIGNMENT - past : 0), values};
+    void  *rows = (char *)memory + (past ? ROW_ALIGNMENT - past : 0);
+    return (LaneWork){.rows = rows, .values = values, .whole = rows};
 }
 
 static void put(const LaneWork *work, LanePrecision precision, size_t at, double number)

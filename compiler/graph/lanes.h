@@ -26,7 +26,10 @@ enum {
     LANE_CALL = OP_COUNT, /* an operation that is evaluated point by point: calls[operands[0]] */
     LANE_PART,            /* a further component of the call right before */
     LANE_LESSER,          /* b where b < a, else a */
-    LANE_GREATER          /* b where b > a, else a */
+    LANE_GREATER,         /* b where b > a, else a */
+    LANE_MEMBER,          /* in bodies of crowd functions: the number of the member */
+    LANE_ROW,             /* its number in the column operands[0] of the table */
+    LANE_STATE            /* component operands[0] of the states, which have four each */
 };
 
 /* What a step works on: the number of a value, or this bit and the number of a scalar.  Values are the
@@ -49,12 +52,13 @@ typedef struct LaneCode {
     uint32_t to, from[MAX_OPERANDS];
 } LaneCode;
 
-/* An operation that is evaluated point by point. */
+/* An operation that is evaluated point by point; a crowd function is not where it has a body. */
 typedef struct LaneCall {
-    Node     node;
-    uint32_t parts; /* components of the result, each a step */
-    uint32_t operands[MAX_OPERANDS][4];
-    uint32_t from[MAX_OPERANDS][4], to[4]; /* rows */
+    Node                   node;
+    const struct LaneBody *body;  /* in double precision; or NULL */
+    uint32_t               parts; /* components of the result, each a step */
+    uint32_t               operands[MAX_OPERANDS][4];
+    uint32_t               from[MAX_OPERANDS][4], to[4]; /* rows */
 } LaneCall;
 
 /* Where a scalar comes from: a component of a node of the frame, or, with NODE_NONE, a number. */
@@ -78,8 +82,16 @@ typedef struct LaneTape {
     uint32_t   *outputs; /* operands as of steps */
     uint32_t   *output_rows;
     size_t      output_count;
-    uint32_t    rows; /* those of inputs are the first */
+    uint32_t    rows;       /* those of inputs are the first */
+    uint32_t    bodies_end; /* behind the rows of all bodies; 0: there are none */
 } LaneTape;
+
+/* What a crowd function does at a member: its outputs are the components of its states. */
+typedef struct LaneBody {
+    LaneTape tape;
+    uint32_t function, table; /* their numbers */
+    uint32_t first_row;       /* of its rows in the work space; its scalars lie behind them */
+} LaneBody;
 
 /* Outputs are the components of the roots, one root after the other; the tape has these roots, no guards
    that skip, and lives as long.  With `least`, output 0 is the least of all roots but the last
@@ -100,6 +112,8 @@ typedef struct LaneWork {
     void *rows; /* aligned to 64 bytes */
     NodeValue *
         values; /* those of the frame, for calls that read tables, which change others; else NULL */
+    double                *whole; /* rows of the work space, where bodies have theirs */
+    const struct LaneLoop *loop;  /* while a body is run */
 } LaneWork;
 
 /* A call may become that many steps when it is pruned, which work on as many rows. */

@@ -1,0 +1,114 @@
+/*
+ * crowd_walk.c: which members of a crowd count at a point.
+ */
+#include "compiler/graph/crowd_walk.h"
+
+#include <math.h>
+
+#include "compiler/base/bits.h"
+#include "compiler/base/far.h"
+
+void crowd_walk_begin(CrowdWalk *walk, const CrowdFunction *function, const Crowd *table,
+                      const double point[3], bool by_cells)
+{
+    walk->function   = function;
+    walk->table      = table;
+    walk->to_nearest = function->distance != NO_DISTANCE && !by_cells;
+    walk->by_list    = true;
+    for (int k = 0; k < 3; k++)
+        walk->point[k] = point[k];
+    walk->list   = grid_find(&table->cells, point, &walk->left, &walk->clearance);
+    walk->radius = fabs(walk->clearance);
+    walk->clear  = function->either ? walk->radius * (1 - 0x1p-20) : 0;
+    walk->wider  = table->grid.size;
+}
+
+/* What is farther than this cannot be nearer than what is found. */
+static double how_far(const CrowdWalk *walk, double distance)
+{
+    return (walk->function->either ? fabs(distance) : distance) * walk->table->stretch;
+}
+
+/* Whether a member may be nearer than what is found. */
+static bool may_count(const CrowdWalk *walk, uint32_t member, double distance)
+{
+    const Box *boxes = walk->table->boxes;
+    return !boxes || distance_to_box(&boxes[member], walk->point) <= how_far(walk, distance);
+}
+
+/* Members from near.first on.  False: there are none. */
+static bool find_near(CrowdWalk *walk)
+{
+    uint32_t rows = walk->table->rows;
+    if (walk->near.first >= rows)
+        return false;
+    walk->near.count = rows - walk->near.first < NEAR_AT_ONCE ? rows - walk->near.first
+                                                              : NEAR_AT_ONCE;
+    grid_near(&walk->table->grid, walk->point, walk->radius, walk->clear, &walk->near);
+    walk->word = 0;
+    walk->bits = walk->near.bits[0];
+    return true;
+}
+
+/* The next bits that are not all 0; false: there are none. */
+static bool find_bits(CrowdWalk *walk)
+{
+    while (walk->bits == 0)
+        if (++walk->word < (walk->near.count + 63) / 64) {
+            walk->bits = walk->near.bits[walk->word];
+        } else {
+            walk->near.first += walk->near.count;
+            if (!find_near(walk))
+                return false;
+        }
+    return true;
+}
+
+static bool next_near(CrowdWalk *walk, double distance, uint32_t *member)
+{
+    while (find_bits(walk)) {
+        *member = walk->near.first + 64 * walk->word + lowest_bit(walk->bits);
+        walk->bits &= walk->bits - 1;
+        if (may_count(walk, *member, distance))
+            return true;
+    }
+    return false;
+}
+
+/* From what was looked at to all that may be as near as what is found.  The second time that is
+   enough: each further member only makes a distance less. */
+static CrowdStep widen(CrowdWalk *walk, double distance)
+{
+    if (!(how_far(walk, distance) > walk->radius && walk->radius < NOWHERE) ||
+        grid_is_within(&walk->table->grid, walk->point, walk->radius))
+        return CROWD_DONE;
+    walk->radius = fabs(distance) < NOWHERE ? how_far(walk, distance) : walk->radius + walk->wider;
+    walk->wider *= 2;
+    walk->near.first = 0;
+    walk->by_list    = false;
+    find_near(walk);
+    return CROWD_AGAIN;
+}
+
+CrowdStep crowd_walk_next(CrowdWalk *walk, double distance, uint32_t *member)
+{
+    if (walk->left > 0) {
+        walk->left--;
+        *member = *walk->list++;
+        return CROWD_MEMBER;
+    }
+    if (!walk->to_nearest)
+        return CROWD_DONE;
+    if (!walk->by_list && next_near(walk, distance, member))
+        return CROWD_MEMBER;
+    return widen(walk, distance);
+}
+
+double crowd_walk_result(const CrowdWalk *walk, double state)
+{
+    if (walk->to_nearest || !walk->function->clear)
+        return state;
+    if (walk->function->either)
+        return fabs(state) < fabs(walk->clearance) ? state : walk->clearance;
+    return fmin(state, walk->clearance);
+}
