@@ -79,43 +79,43 @@ static bool slope_property(Elaboration *e, const Environment *env, const Syntax 
     return false;
 }
 
-/* Where a corner of `within` may be, for all values of the parameters; false: reported. */
-static bool corner(Elaboration *e, Value value, const Syntax *syntax, Box *where)
+/* A corner of `within`, for all values of the parameters; false: reported. */
+static bool corner_property(Elaboration *e, Value value, const Syntax *syntax, uint32_t side,
+                            Shape *shape)
 {
-    double numbers[4];
-    if (value_numbers(value, numbers) == 3) { /* needs no node */
-        for (uint32_t i = 0; i < 3; i++)
-            where->axis[i] = range_of(numbers[i]);
-        return true;
+    double     numbers[4];
+    const bool known = value_numbers(value, numbers) == 3; /* needs no node */
+    const Node node  = known ? NODE_NONE : to_vector(e, value, syntax, "`within`");
+    if (!known && node == NODE_NONE)
+        return false;
+    for (uint32_t i = 0; i < 3; i++) {
+        const Range where = known ? range_of(numbers[i]) : node_range(e->builder, node, i);
+        if (side == 0)
+            shape->box.axis[i].low = where.low;
+        else
+            shape->box.axis[i].high = where.high;
     }
-    Node node = to_vector(e, value, syntax, "`within`");
-    for (uint32_t i = 0; node != NODE_NONE && i < 3; i++)
-        where->axis[i] = node_range(e->builder, node, i);
-    return node != NODE_NONE;
+    shape->corners[side] = node;
+    return true;
 }
 
 /* `within`: a shape, or two corners. */
 static bool within_property(Elaboration *e, const Environment *env, const Syntax *declaration,
-                            Box *box)
+                            Shape *shape)
 {
     const Syntax *syntax = find_property(declaration, "within");
-    *box                 = box_infinite;
+    shape->box           = box_infinite;
     if (!syntax)
         return true;
     Value value = evaluate(e, env, syntax);
     if (value.type == VALUE_SHAPE) {
-        *box = value.shape->box;
+        shape->within = value.shape;
+        shape->box    = builder_box(e->builder, shape);
         return true;
     }
-    if (value.type == VALUE_LIST && value.list->count == 2) {
-        Box low, high;
-        if (!corner(e, value.list->items[0], syntax, &low) ||
-            !corner(e, value.list->items[1], syntax, &high))
-            return false;
-        for (uint32_t i = 0; i < 3; i++)
-            box->axis[i] = (Range){low.axis[i].low, high.axis[i].high};
-        return true;
-    }
+    if (value.type == VALUE_LIST && value.list->count == 2)
+        return corner_property(e, value.list->items[0], syntax, 0, shape) &&
+               corner_property(e, value.list->items[1], syntax, 1, shape);
     type_error(e, syntax, value, "a shape or a list of two corners");
     return false;
 }
@@ -147,9 +147,8 @@ static bool ball_property(Elaboration *e, const Environment *env, const Syntax *
     shape->ball_radius = to_number(e, evaluate(e, env, syntax), syntax, "the radius of a ball");
     if (shape->ball_radius == NODE_NONE)
         return false;
-    double radius = node_range(e->builder, shape->ball_radius, 0).high;
-    for (uint32_t i = 0; i < 3 && !find_property(declaration, "within"); i++)
-        shape->box.axis[i] = (Range){-radius, radius};
+    shape->ball_box = !find_property(declaration, "within");
+    shape->box      = builder_box(e->builder, shape);
     return true;
 }
 
@@ -279,7 +278,7 @@ static bool read_properties(Elaboration *e, const Environment *env, const Syntax
     shape->exact        = flag_property(e, env, declaration, "exact");
     if (bound)
         shape->bound = field_property(e, env, bound);
-    bool good = within_property(e, env, declaration, &shape->box) &&
+    bool good = within_property(e, env, declaration, shape) &&
                 plane_property(e, env, declaration, shape) &&
                 ball_property(e, env, declaration, shape) &&
                 uv_property(e, env, declaration, first, shape) && shape->distance != NODE_NONE &&

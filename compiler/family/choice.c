@@ -15,7 +15,7 @@ const Shape *make_choice(ShapeBuilder *builder, Node condition, const Shape *yes
     const Shape *children[] = {yes, no};
     Shape       *choice     = shape_new(builder, SHAPE_CHOICE, "if", span, children, 2);
     choice->values[0]       = condition;
-    choice->box             = box_hull(yes->box, no->box);
+    choice->box             = builder_box(builder, choice);
     return choice;
 }
 

@@ -43,22 +43,13 @@ const Shape *make_joint(ShapeBuilder *builder, ShapeKind kind, const Shape *cons
     }
     /* Outside, the least of exact distances is exact; every other joint only bounds it. */
     joint->exact = joint->exact && kind == SHAPE_UNION && blend.width == NODE_NONE;
-    for (uint32_t i = 0; i < count; i++) {
-        if (i == 0)
-            joint->box = shapes[0]->box;
-        else if (kind == SHAPE_INTERSECTION)
-            joint->box = box_common(joint->box, shapes[i]->box);
-        else if (kind != SHAPE_DIFFERENCE)
-            joint->box = box_hull(joint->box, shapes[i]->box);
-    }
+    joint->box   = builder_box(builder, joint);
     if (blend.width != NODE_NONE && count > 1) {
         const BlendInfo *info = &blend_info[blend.kind];
         /* Each further operand adds a partial derivative; their squares sum to 1, so the sum of
            n of them is at most sqrt(n): for two operands the factor of the table. */
         if (info->slope > 1)
             joint->slope *= pow(info->slope, log2(acting_together(builder, joint)));
-        if (kind != SHAPE_INTERSECTION && kind != SHAPE_DIFFERENCE)
-            joint->box = box_grow(joint->box, blend_bulge(blend.kind, count) * joint->blend.widest);
     }
     return joint;
 }
@@ -70,8 +61,7 @@ const Shape *make_morph(ShapeBuilder *builder, const Shape *a, const Shape *b, N
     morph->values[0]        = t;
     check_lipschitz(builder, morph, "`morph`", span);
     morph->exact = false;
-    /* Where the mix is 0 one of the distances is at most 0, or both are. */
-    morph->box = box_hull(a->box, b->box);
+    morph->box   = builder_box(builder, morph);
     return morph;
 }
 

@@ -287,7 +287,8 @@ typedef const Shape *Restrict(ShapeBuilder *builder, const Shape *shape, Box box
 const Shape *restrict_shape(ShapeBuilder *builder, const Shape *shape, Box box, bool uniform)
 {
     static Restrict *const rules[SHAPE_COUNT] = {
-#define SHAPE(KIND, name, parts, curved, divided, own, leaves, rays, step, image, restrict, rule) \
+#define SHAPE(KIND, name, parts, curved, divided, own, leaves, box, rays, step, image, restrict, \
+              rule)                                                                              \
     restrict_##restrict,
 #include "compiler/shape/shapes.def"
     };

@@ -11,13 +11,12 @@
 
 const Shape *make_extrude(ShapeBuilder *builder, const Shape *figure, Node height, Span span)
 {
-    Graph *g           = builder->graph;
-    Shape *solid       = shape_around(builder, SHAPE_EXTRUDE, "extrude", figure, span);
-    Node   half        = graph_number(g, 0.5);
-    solid->values[0]   = graph_op2(g, OP_mul, height, half);
-    double most        = node_range(builder, solid->values[0], 0).high;
-    solid->box.axis[2] = (Range){-most, most};
-    solid->figure      = false;
+    Graph *g         = builder->graph;
+    Shape *solid     = shape_around(builder, SHAPE_EXTRUDE, "extrude", figure, span);
+    Node   half      = graph_number(g, 0.5);
+    solid->values[0] = graph_op2(g, OP_mul, height, half);
+    solid->box       = builder_box(builder, solid);
+    solid->figure    = false;
     return solid;
 }
 
@@ -26,11 +25,10 @@ const Shape *make_revolve(ShapeBuilder *builder, const Shape *figure, Node offse
     Shape *solid     = shape_around(builder, SHAPE_REVOLVE, "revolve", figure, span);
     solid->values[0] = offset;
     solid->figure    = false;
-    Range  x         = range_add(figure->box.axis[0], node_range(builder, offset, 0));
-    double most      = fmax(x.high, 0);
+    Range x          = range_add(figure->box.axis[0], node_range(builder, offset, 0));
     /* What crosses the axis is cut by it: the distance inside the cut is only a bound. */
-    solid->exact       = figure->exact && x.low >= 0;
-    solid->box.axis[0] = solid->box.axis[2] = (Range){-most, most};
+    solid->exact = figure->exact && x.low >= 0;
+    solid->box   = builder_box(builder, solid);
     return solid;
 }
 

@@ -49,10 +49,7 @@ const Shape *make_meta(ShapeBuilder *builder, const Shape *const *shapes, uint32
     meta->values[1] = reach;
     meta->falloff   = falloff;
     meta->exact     = false;
-    meta->box       = box_empty;
-    for (uint32_t i = 0; i < count; i++)
-        meta->box = box_hull(meta->box,
-                             box_grow(shapes[i]->box, node_range(builder, reach, 0).high));
+    meta->box       = builder_box(builder, meta);
     check_lipschitz(builder, meta, "`meta`", span);
     return meta;
 }

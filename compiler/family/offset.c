@@ -16,7 +16,7 @@ static Shape *new_offset(ShapeBuilder *builder, const Shape *shape, Node radius,
     Range  range      = node_range(builder, radius, 0);
     offset->values[0] = radius;
     offset->reach     = fmax(fabs(range.low), fabs(range.high));
-    offset->box       = box_grow(shape->box, fmax(range.high, 0));
+    offset->box       = builder_box(builder, offset);
     offset->exact     = shape->exact && range.low >= 0;
     check_lipschitz(builder, offset, "an offset", span);
     return offset;
@@ -40,7 +40,7 @@ const Shape *make_shell(ShapeBuilder *builder, const Shape *shape, Node thicknes
     Shape *shell     = shape_around(builder, SHAPE_SHELL, "shell", shape, span);
     shell->values[0] = thickness;
     shell->reach     = 0.5 * node_range(builder, thickness, 0).high;
-    shell->box       = box_grow(shape->box, shell->reach);
+    shell->box       = builder_box(builder, shell);
     check_lipschitz(builder, shell, "a shell", span);
     return shell;
 }

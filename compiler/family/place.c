@@ -47,7 +47,7 @@ static const Shape *transform_by(ShapeBuilder *builder, const Shape *shape, cons
         return make_inversion(builder, shape, map, span);
     Shape *moved = shape_around(builder, SHAPE_TRANSFORM, "transform", shape, span);
     moved->map   = *map;
-    moved->box   = map_box(builder, map, shape->box);
+    moved->box   = builder_box(builder, moved);
     return moved;
 }
 
@@ -73,8 +73,7 @@ const Shape *make_stretch(ShapeBuilder *builder, const Shape *shape, Node factor
     Shape *stretched     = shape_around(builder, SHAPE_STRETCH, "scale", shape, span);
     stretched->values[0] = factors;
     stretched->exact     = false;
-    for (uint32_t i = 0; i < 3 && !box_is_empty(shape->box); i++)
-        stretched->box.axis[i] = range_mul(shape->box.axis[i], node_range(builder, factors, i));
+    stretched->box       = builder_box(builder, stretched);
     return stretched;
 }
 
@@ -85,10 +84,7 @@ const Shape *make_mirror(ShapeBuilder *builder, const Shape *shape, Node normal,
     mirror->values[0] = normal;
     mirror->values[1] = offset;
     mirror->exact     = false;
-    Range u[3];
-    for (uint32_t i = 0; i < 3; i++)
-        u[i] = node_range(builder, normal, i);
-    mirror->box = box_fold(shape->box, u, node_range(builder, offset, 0));
+    mirror->box       = builder_box(builder, mirror);
     return mirror;
 }
 
@@ -96,12 +92,7 @@ const Shape *make_elongate(ShapeBuilder *builder, const Shape *shape, Node half,
 {
     Shape *longer     = shape_around(builder, SHAPE_ELONGATE, "elongate", shape, span);
     longer->values[0] = half;
-    Range sides[3];
-    for (uint32_t i = 0; i < 3; i++) {
-        double most = node_range(builder, half, i).high;
-        sides[i]    = (Range){-most, most};
-    }
-    longer->box = box_move(shape->box, sides);
+    longer->box       = builder_box(builder, longer);
     return longer;
 }
 

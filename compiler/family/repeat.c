@@ -43,10 +43,8 @@ const Shape *make_repeat(ShapeBuilder *builder, const Shape *shape, Node period,
                                 "less differ";
             return NULL;
         }
-        double reach        = cells[i] ? 0.5 * (cells[i] - 1) * range.high : INFINITY;
-        repeat->box.axis[i] = (Range){shape->box.axis[i].low - reach,
-                                      shape->box.axis[i].high + reach};
     }
+    repeat->box = builder_box(builder, repeat);
     return repeat;
 }
 
@@ -57,10 +55,7 @@ const Shape *make_repeat_polar(ShapeBuilder *builder, const Shape *shape, uint32
     Shape *repeat    = shape_around(builder, SHAPE_REPEAT_POLAR, "repeat_polar", shape, span);
     repeat->cells[0] = count;
     repeat->exact    = false;
-    double most      = 0;
-    for (int i = 0; i < 3; i += 2)
-        most = hypot(most, fmax(fabs(shape->box.axis[i].low), fabs(shape->box.axis[i].high)));
-    repeat->box.axis[0] = repeat->box.axis[2] = (Range){-most, most};
+    repeat->box      = builder_box(builder, repeat);
     return repeat;
 }
 

@@ -47,6 +47,20 @@ Graph *graph_extract(const Graph *graph, Node *roots, size_t root_count, Arena *
     return part;
 }
 
+Graph *graph_extract_along(const Graph *graph, const Node *roots, size_t root_count, Node leaf,
+                           Node *copies, Arena *arena)
+{
+    Tape   tape = tape_new(graph, roots, root_count, arena);
+    Node  *all  = arena_new_array(arena, Node, tape.count + 1);
+    Graph *part = graph_new(arena);
+    for (size_t i = 0; i < tape.count; i++)
+        all[i] = tape.nodes[i] == leaf ? graph_component(part, graph_leaf(part, OP_POINT), 0)
+                                       : copy_node(part, &tape, all, tape.nodes[i]);
+    for (size_t i = 0; i < root_count; i++)
+        copies[i] = all[tape_index(&tape, roots[i])];
+    return part;
+}
+
 Graph *graph_extract_with_crowds(const Graph *graph, Node *roots, size_t root_count, Arena *arena)
 {
     size_t count;

@@ -192,6 +192,11 @@ Graph *graph_extract(const Graph *graph, Node *roots, size_t root_count, Arena *
 /* The same with all functions of crowds, so that it can be evaluated. */
 Graph *graph_extract_with_crowds(const Graph *graph, Node *roots, size_t root_count, Arena *arena);
 
+/* The same of roots that do not depend on the point, with its x in the place of a leaf; the copies of
+   the roots go to `copies`. */
+Graph *graph_extract_along(const Graph *graph, const Node *roots, size_t root_count, Node leaf,
+                           Node *copies, Arena *arena);
+
 /* Algebraic simplification of everything `roots` need, into a new graph (same parameters):
    the roots are renumbered in place.  Rules keep values: x+0, x*1, x*0 (x finite), --x,
    min(x,x), component of a built vector, a built vector of all components of one vector, select

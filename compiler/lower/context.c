@@ -101,7 +101,7 @@ static const struct {
     LowerShape *lower;
     bool (*rays)(const Shape *shape);
 } rules[SHAPE_COUNT] = {
-#define SHAPE(KIND, name, parts, curved, divided, own, leaves, rays, ...) \
+#define SHAPE(KIND, name, parts, curved, divided, own, leaves, box, rays, ...) \
     {lower_##name, rays_##rays},
 #include "compiler/shape/shapes.def"
 };

@@ -360,7 +360,7 @@ static const ImageRule rule_part      = {reaches_in_parts, image_part};
 static const ImageRule *rule_of(const Shape *shape)
 {
     static const ImageRule *const rules[SHAPE_COUNT] = {
-#define SHAPE(KIND, name, parts, curved, divided, own, leaves, rays, step, image, ...) \
+#define SHAPE(KIND, name, parts, curved, divided, own, leaves, box, rays, step, image, ...) \
     &rule_##image,
 #include "compiler/shape/shapes.def"
     };

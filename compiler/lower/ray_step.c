@@ -421,7 +421,7 @@ static const StepRule step_part       = {reaches_in_part, value_part, along_part
 static const StepRule *rule_of(const Shape *shape)
 {
     static const StepRule *const rules[SHAPE_COUNT] = {
-#define SHAPE(KIND, name, parts, curved, divided, own, leaves, rays, step, ...) &step_##step,
+#define SHAPE(KIND, name, parts, curved, divided, own, leaves, box, rays, step, ...) &step_##step,
 #include "compiler/shape/shapes.def"
     };
     return rules[shape->kind];

@@ -60,6 +60,22 @@ Range node_range(ShapeBuilder *builder, Node node, uint32_t component)
     return range;
 }
 
+static Range range_in_frames(const BoxNumbers *numbers, Node node, uint32_t component)
+{
+    return node_range(((const BuilderNumbers *)numbers)->builder, node, component);
+}
+
+BuilderNumbers builder_numbers(ShapeBuilder *builder)
+{
+    return (BuilderNumbers){{range_in_frames}, builder};
+}
+
+Box builder_box(ShapeBuilder *builder, const Shape *shape)
+{
+    const BuilderNumbers all = builder_numbers(builder);
+    return shape_box(&(BoxInput){&all.numbers, shape, NULL, 0});
+}
+
 /* ---- kinds ---- */
 
 static bool curved_always(const Shape *shape)
@@ -79,7 +95,8 @@ static bool curved_by_parts(const Shape *shape)
 }
 
 const ShapeInfo shape_info[SHAPE_COUNT] = {
-#define SHAPE(KIND, name, parts, curved, divided, own, leaves, rays, step, image, restrict, rule) \
+#define SHAPE(KIND, name, parts, curved, divided, own, leaves, box, rays, step, image, restrict, \
+              rule)                                                                              \
     {#name, rule, parts, divided, own, LEAVES_##leaves, curved_##curved},
 #include "compiler/shape/shapes.def"
 };
@@ -149,7 +166,7 @@ Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span s
     shape->blend       = blend_sharp;
     shape->field       = &nothing_known;
     shape->distance = shape->bound = shape->uv = shape->trap = NODE_NONE;
-    shape->formula = shape->declared = NODE_NONE;
+    shape->formula = shape->declared = shape->corners[0] = shape->corners[1] = NODE_NONE;
     shape->plane_normal = shape->plane_offset = shape->ball_radius = NODE_NONE;
     shape->values[0] = shape->values[1] = shape->map.scale = NODE_NONE;
     for (uint32_t i = 0; i < count; i++) {

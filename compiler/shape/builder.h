@@ -8,6 +8,7 @@
 #define KRS_BUILDER_H
 
 #include "compiler/base/diag.h"
+#include "compiler/shape/box_rules.h"
 #include "compiler/shape/parameters.h"
 #include "compiler/shape/shape.h"
 
@@ -37,6 +38,13 @@ FieldFacts *own_field_facts(ShapeBuilder *builder, Shape *shape);
 
 /* Ranges of frame-time nodes over all values of the parameters. */
 Range node_range(ShapeBuilder *builder, Node node, uint32_t component);
+/* The same, for the rules of boxes; and the box by the rule of its kind. */
+typedef struct BuilderNumbers {
+    BoxNumbers    numbers;
+    ShapeBuilder *builder;
+} BuilderNumbers;
+BuilderNumbers builder_numbers(ShapeBuilder *builder);
+Box            builder_box(ShapeBuilder *builder, const Shape *shape);
 
 /* Reports a distance of which nothing is proven, below something (`what`) that moves a surface. */
 void check_lipschitz(ShapeBuilder *builder, const Shape *shape, const char *what, Span span);

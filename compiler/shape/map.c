@@ -8,7 +8,6 @@
  */
 #include "compiler/shape/map.h"
 
-#include <assert.h>
 #include <math.h>
 
 static const double ZERO[3] = {0, 0, 0};
@@ -290,31 +289,14 @@ const Map *map_inverse(ShapeBuilder *builder, const Map *f)
 
 /* ---- boxes ---- */
 
-/* Entries of an orthonormal matrix never leave [-1, 1], whatever their range was derived as. */
-static Range cosine_range(Range range)
-{
-    return (Range){fmax(-1, fmin(range.low, 1)), fmin(1, fmax(range.high, -1))};
-}
-
 MapRange map_range(ShapeBuilder *builder, const Map *f)
 {
-    MapRange range = {.inverts = f->pole != NODE_NONE, .scale = node_range(builder, f->scale, 0)};
-    for (uint32_t i = 0; i < 3; i++) {
-        for (uint32_t j = 0; j < 3; j++)
-            range.rows[i][j] = cosine_range(node_range(builder, f->rows[i], j));
-        range.shift[i] = node_range(builder, f->shift, i);
-        if (range.inverts)
-            range.pole[i] = node_range(builder, f->pole, i);
-    }
-    return range;
+    const BuilderNumbers all = builder_numbers(builder);
+    return map_range_of(&all.numbers, f);
 }
 
 Box map_box(ShapeBuilder *builder, const Map *f, Box box)
 {
-    MapRange range = map_range(builder, f);
-    assert(!range.inverts);
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            range.rows[i][j] = range_mul(range.scale, range.rows[i][j]);
-    return box_move(box_turn(box, range.rows), range.shift);
+    const MapRange range = map_range(builder, f);
+    return map_box_of(&range, box);
 }

@@ -147,7 +147,7 @@ struct Shape {
 
     uint32_t shown;   /* number from 1 of the component that it is, where it has been gathered with
                        others; else 0 */
-    Box      box;     /* around the solid, for all values of the parameters */
+    Box      box;     /* around the solid, for all values of the parameters: by box_rules.h */
     double   slope;   /* Lipschitz constant of what it lowers to */
     double   derived; /* PRIMITIVE: the slope of its expression, by which it is divided; else the
                        largest in the tree */
@@ -174,7 +174,12 @@ struct Shape {
                          they take the surface, at most */
     double divided;  /* DISPLACE, TWIST, TAPER, BEND: what distances are divided by, at most */
     double moved;    /* DISPLACE: how far the surface moves, at most */
-    const FieldFacts   *field; /* zeros where there is nothing to know; never NULL */
+    const FieldFacts *field; /* zeros where there is nothing to know; never NULL */
+    /* PRIMITIVE of a declaration: its box is that of the ball, or of a shape, or has two corners,
+       the least and the greatest; NODE_NONE: it stands in `box`. */
+    bool                ball_box;
+    const struct Shape *within;
+    Node                corners[2];
     Node                distance, bound, uv, trap;
     const struct Shape *without_uv; /* a primitive in the tree that has none, or NULL */
     Node                values[2];  /* see ShapeKind; NODE_NONE where there are fewer */

@@ -1,0 +1,22 @@
+/*
+ * turns.h: numbers of the frame that depend on the turn of a loop.
+ *
+ * A loop whose turns differ in numbers only is evaluated once (eval/turns.c).  Its variable is then a
+ * leaf of frame time, a parameter that nobody sets.  What depends on it never gets into kernels: tables
+ * have the numbers of all turns.
+ */
+#ifndef KRS_TURNS_H
+#define KRS_TURNS_H
+
+#include "compiler/graph/evaluate.h"
+
+/* Marks what depends on a leaf: depends[n - leaf] of the nodes n from the leaf on. */
+void graph_mark_turned(const Graph *graph, Node leaf, bool *depends);
+/* The components of roots, one root after the other, for each of these values of the leaf.  The roots
+   are of frame time, and need no parameter but the leaf. */
+void graph_at_turns(const Graph *graph, const Node *roots, size_t root_count, Node leaf,
+                    const double *turns, size_t turn_count, double *results, Arena *scratch);
+/* How many numbers that are for each turn. */
+size_t graph_numbers_of(const Graph *graph, const Node *roots, size_t root_count);
+
+#endif

@@ -1,0 +1,275 @@
+/*
+ * turn_boxes.c: boxes of a shape in each turn of a loop, by the rules of its kinds.
+ *
+ * Only what depends on the turn is looked at.  Its numbers are found for all turns at once, where
+ * they need no other parameter; else their ranges are found for one turn after the other.
+ */
+#include "compiler/shape/turn_boxes.h"
+
+#include <math.h>
+
+#include "compiler/graph/facts.h"
+#include "compiler/graph/op_values.h"
+#include "compiler/graph/turns.h"
+
+enum {
+    MOST_NUMBERS = 11, /* of one shape */
+    BLOCK        = 64  /* turns whose boxes are found together */
+};
+
+/* What a node from the leaf on depends on. */
+enum { ON_TURN = 1, ON_OTHERS = 2 };
+
+/* A number of a shape: a column of the table, or ranges. */
+typedef struct TurnNumber {
+    Node   node;
+    int    depends;
+    size_t column;   /* ON_TURN alone: of its first component */
+    Range  known[4]; /* not ON_TURN */
+} TurnNumber;
+
+/* A shape whose box is found in each turn; without parts and numbers: it is the same in all. */
+typedef struct TurnShape {
+    const Shape      *shape;
+    TurnNumber       *numbers;
+    struct TurnShape *parts;
+    uint32_t          number_count, part_count;
+} TurnShape;
+
+typedef struct Turns {
+    BoxNumbers     numbers; /* those of `current` in turn `row` */
+    const Graph   *graph;
+    Arena         *scratch;
+    Node           turn;
+    unsigned char *depends; /* of node n: depends[n - turn] */
+    struct {
+        Node  *items;
+        size_t count, capacity;
+    } roots; /* of the table */
+    size_t           columns;
+    double          *table;
+    GraphParameter  *parameter; /* of the leaf */
+    const double    *values;    /* that it has */
+    const TurnShape *current;
+    size_t           row;
+    bool             failed;
+} Turns;
+
+/* ---- what depends on the turn ---- */
+
+/* A node before the leaf: those that need parameters are not told from others that frames know. */
+static int depends_before(const Graph *graph, Node node)
+{
+    const Expr *e = &graph->items[node];
+    return e->time == TIME_COMPILE || e->op == OP_HOISTED ? 0 : ON_OTHERS;
+}
+
+static int depends_on(const Turns *t, Node node)
+{
+    return node < t->turn ? depends_before(t->graph, node) : t->depends[node - t->turn];
+}
+
+static void mark_nodes(Turns *t)
+{
+    t->depends    = arena_new_array(t->scratch, unsigned char, t->graph->count - t->turn);
+    t->depends[0] = ON_TURN;
+    for (Node node = t->turn + 1; node < t->graph->count; node++) {
+        const Expr *e     = &t->graph->items[node];
+        int         found = e->op == OP_PARAMETER ? ON_OTHERS : 0;
+        for (int k = 0; k < e->operand_count; k++)
+            found |= depends_on(t, e->operands[k]);
+        t->depends[node - t->turn] = (unsigned char)found;
+    }
+}
+
+/* ---- the numbers of a shape ---- */
+
+static uint32_t add_node(Node node, Node *nodes, uint32_t count)
+{
+    nodes[count] = node;
+    return count + (node != NODE_NONE);
+}
+
+static uint32_t map_nodes(const Map *map, Node *nodes, uint32_t count)
+{
+    if (map->scale == NODE_NONE)
+        return count;
+    for (int i = 0; i < 3; i++)
+        nodes[count++] = map->rows[i];
+    count = add_node(map->scale, nodes, count);
+    return add_node(map->shift, nodes, count);
+}
+
+/* All that rules ask for. */
+static uint32_t rule_nodes(const Shape *shape, Node nodes[MOST_NUMBERS + 1])
+{
+    uint32_t count = map_nodes(&shape->map, nodes, 0);
+    for (int i = 0; i < 2; i++) {
+        count = add_node(shape->values[i], nodes, count);
+        count = add_node(shape->corners[i], nodes, count);
+    }
+    count = add_node(shape->ball_radius, nodes, count);
+    return add_node(shape->blend.width, nodes, count);
+}
+
+static bool any_turned(const Turns *t, const Node *nodes, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        if (nodes[i] != NODE_NONE && depends_on(t, nodes[i]) & ON_TURN)
+            return true;
+    return false;
+}
+
+static bool stage_is_turned(const Turns *t, const SequenceStage *stage)
+{
+    Node     nodes[MOST_NUMBERS + 1];
+    uint32_t count = 0;
+    switch (stage->kind) {
+    case SEQUENCE_REFLECT: return any_turned(t, (Node[]){stage->normal, stage->offset}, 2);
+    case SEQUENCE_SPHERE: return any_turned(t, (Node[]){stage->centre, stage->radius}, 2);
+    case SEQUENCE_MAP:
+        count = map_nodes(&stage->map, nodes, 0);
+        count = add_node(stage->map.pole, nodes, count);
+        return any_turned(t, nodes, count);
+    default: return false;
+    }
+}
+
+/* Whether anything in the tree of a shape without a rule depends on the turn. */
+static bool is_turned(const Turns *t, const Shape *shape)
+{
+    const Node others[] = {shape->distance, shape->bound, shape->formula, shape->blend.steps,
+                           shape->map.scale != NODE_NONE ? shape->map.pole : NODE_NONE};
+    Node       nodes[MOST_NUMBERS + 1];
+    bool       found = any_turned(t, nodes, rule_nodes(shape, nodes)) ||
+                 any_turned(t, others, sizeof others / sizeof *others);
+    for (uint32_t i = 0; i < shape->stage_count && !found; i++)
+        found = stage_is_turned(t, &shape->stages[i]);
+    for (uint32_t i = 0; i < box_part_count(shape) && !found; i++)
+        found = is_turned(t, box_part(shape, i));
+    return found;
+}
+
+/* ---- the plan ---- */
+
+static TurnNumber plan_number(Turns *t, Node node)
+{
+    TurnNumber     number = {.node = node, .depends = depends_on(t, node)};
+    const uint32_t size   = components((GraphType)t->graph->items[node].type);
+    if (number.depends == ON_TURN) {
+        number.column = t->columns;
+        t->columns += size;
+        array_push(t->scratch, &t->roots, node);
+    } else if (!(number.depends & ON_TURN))
+        for (uint32_t i = 0; i < size; i++)
+            number.known[i] = graph_frame_range(t->graph, node, i, t->scratch);
+    return number;
+}
+
+/* False: some box is not known. */
+static bool plan_shape(Turns *t, const Shape *shape, TurnShape *plan)
+{
+    *plan = (TurnShape){.shape = shape};
+    if (!has_box_rule(shape))
+        return !is_turned(t, shape);
+    Node      nodes[MOST_NUMBERS + 1];
+    uint32_t  count = rule_nodes(shape, nodes), parts = box_part_count(shape);
+    bool      turned = any_turned(t, nodes, count);
+    ArenaMark mark   = arena_mark(t->scratch);
+    plan->parts      = arena_new_array(t->scratch, TurnShape, parts);
+    for (uint32_t i = 0; i < parts; i++) {
+        if (!plan_shape(t, box_part(shape, i), &plan->parts[i]))
+            return false;
+        turned = turned || plan->parts[i].parts;
+    }
+    if (!turned) {
+        arena_rewind(t->scratch, mark);
+        plan->parts = NULL;
+        return true;
+    }
+    plan->part_count   = parts;
+    plan->number_count = count;
+    plan->numbers      = arena_new_array(t->scratch, TurnNumber, count);
+    for (uint32_t i = 0; i < count; i++)
+        plan->numbers[i] = plan_number(t, nodes[i]);
+    return true;
+}
+
+/* ---- boxes ---- */
+
+/* As found when a shape is made, where a quarter turn's cosine is 0 and other roundings differ. */
+static Range rounded(const double *vector, uint32_t size, uint32_t component)
+{
+    double largest = 0, value = vector[component];
+    for (uint32_t i = 0; i < size; i++)
+        largest = fmax(largest, fabs(vector[i]));
+    if (value == 0)
+        return range_of(0);
+    return (Range){value - 0x1p-50 * largest, value + 0x1p-50 * largest};
+}
+
+static Range range_in_turn(const BoxNumbers *numbers, Node node, uint32_t component)
+{
+    Turns            *t      = (Turns *)numbers;
+    const TurnNumber *number = t->current->numbers;
+    while (number->node != node)
+        number++;
+    if (!(number->depends & ON_TURN))
+        return number->known[component];
+    const Expr *e = &t->graph->items[node];
+    if (number->depends == ON_TURN) {
+        const double *vector = t->table + t->row * t->columns + number->column;
+        t->failed            = t->failed || !isfinite(vector[component]);
+        return e->type == TYPE_BOOL ? range_of(vector[0])
+                                    : rounded(vector, components((GraphType)e->type), component);
+    }
+    t->parameter->low[0] = t->parameter->high[0] = t->values[t->row];
+    return graph_frame_range(t->graph, node, component, t->scratch);
+}
+
+static void find_boxes(Turns *t, const TurnShape *plan, size_t first, size_t count, Box *boxes)
+{
+    if (!plan->parts) {
+        for (size_t i = 0; i < count; i++)
+            boxes[i] = plan->shape->box;
+        return;
+    }
+    const ArenaMark mark  = arena_mark(t->scratch);
+    Box            *parts = arena_new_array(t->scratch, Box, plan->part_count * count);
+    for (uint32_t i = 0; i < plan->part_count; i++)
+        find_boxes(t, &plan->parts[i], first, count, parts + i * count);
+    t->current = plan;
+    for (size_t i = 0; i < count; i++) {
+        t->row   = first + i;
+        boxes[i] = shape_box(&(BoxInput){&t->numbers, plan->shape, parts + i, count});
+    }
+    arena_rewind(t->scratch, mark);
+}
+
+bool turn_boxes(ShapeBuilder *builder, const Shape *shape, Node turn, const double *turns,
+                size_t count, Box *boxes)
+{
+    Graph          *graph     = builder->graph;
+    GraphParameter *parameter = &graph->parameters.items[graph->items[turn].index];
+    const double    low = parameter->low[0], high = parameter->high[0];
+    const ArenaMark mark = arena_mark(builder->scratch);
+    Turns           t    = {.numbers   = {range_in_turn},
+                            .graph     = graph,
+                            .scratch   = builder->scratch,
+                            .turn      = turn,
+                            .parameter = parameter,
+                            .values    = turns};
+    TurnShape       plan;
+    mark_nodes(&t);
+    t.failed = !plan_shape(&t, shape, &plan);
+    if (!t.failed) {
+        t.table = arena_new_array(t.scratch, double, count *t.columns);
+        graph_at_turns(graph, t.roots.items, t.roots.count, turn, turns, count, t.table, t.scratch);
+    }
+    for (size_t first = 0; first < count && !t.failed; first += BLOCK)
+        find_boxes(&t, &plan, first, count - first < BLOCK ? count - first : BLOCK, boxes + first);
+    parameter->low[0]  = low;
+    parameter->high[0] = high;
+    arena_rewind(builder->scratch, mark);
+    return !t.failed;
+}
