@@ -277,15 +277,90 @@ static void find_ball(KrsFrame *frame, Box box, Rays *rays, Cells *cells, Ball *
         grow_ball(rays, most, ball);
 }
 
+/* ---- the camera ---- */
+
+/* How much of the height of the picture is filled: by what is wide, by what is tall, and by the mean of
+   both.  Pictures are wider than high, but may be square.  The eye comes no nearer than a part of the
+   distance from which the ball fills the height, for things would look distorted from there. */
+static const double WIDE = 0.95, TALL = 0.86, FILLED = 0.68, NEAREST = 0.65;
+
+/* Where the default camera is, and the axes of its picture. */
+typedef struct DefaultCamera {
+    double eye[3], target[3], to_eye[3], right[3], up[3];
+    double away;  /* from the target to the eye */
+    double slope; /* from the middle of the picture to its upper edge */
+} DefaultCamera;
+
+static void set_axes(DefaultCamera *camera)
+{
+    memcpy(camera->to_eye, (double[]){0.53, 0.37, 0.76}, sizeof camera->to_eye);
+    normalize3(camera->to_eye);
+    cross3((double[]){0, 1, 0}, camera->to_eye, camera->right);
+    normalize3(camera->right);
+    cross3(camera->to_eye, camera->right, camera->up);
+}
+
+/* From where to where the points reach along an axis of the picture; 1 is half its height. */
+static Range reach_along(const Rays *rays, const DefaultCamera *camera, const double axis[3])
+{
+    Range reach = {HUGE_VAL, -HUGE_VAL};
+    for (size_t i = 0; i < rays->seen_count; i++) {
+        double from[3];
+        add_scaled3(from, rays->seen[i], -1, camera->target);
+        double depth = camera->away - dot3(from, camera->to_eye);
+        double at    = dot3(from, axis) / (fmax(depth, 1e-3 * camera->away) * camera->slope);
+        reach        = (Range){fmin(reach.low, at), fmax(reach.high, at)};
+    }
+    return reach;
+}
+
+/* Moves the target to the middle of what is seen, and the eye to where that fills the picture, until
+   both hardly change. */
+static void fill_picture(const Rays *rays, DefaultCamera *camera)
+{
+    enum { ROUNDS_OF_FILLING = 12 };
+    const double least = NEAREST * camera->away;
+    for (int i = 0; i < ROUNDS_OF_FILLING; i++) {
+        Range  across = reach_along(rays, camera, camera->right);
+        Range  along  = reach_along(rays, camera, camera->up);
+        double wide = 0.5 * width_of(across), tall = 0.5 * width_of(along);
+        double unit = 0.5 * camera->away * camera->slope;
+        add_scaled3(camera->target, camera->target, unit * (across.low + across.high),
+                    camera->right);
+        add_scaled3(camera->target, camera->target, unit * (along.low + along.high), camera->up);
+        camera->away *= fmax(fmax(wide / WIDE, tall / TALL), sqrt(wide * tall) / FILLED);
+        camera->away = fmax(camera->away, least);
+    }
+}
+
+/* Where the ball fills the height; or, where enough is seen to tell, what is seen. */
+static DefaultCamera place_camera(const Rays *rays, const Ball *ball, double fov)
+{
+    enum { FEWEST_SEEN = 8 };
+    DefaultCamera camera = {.away = ball->radius / sin(0.5 * fov), .slope = tan(0.5 * fov)};
+    set_axes(&camera);
+    memcpy(camera.target, ball->centre, sizeof camera.target);
+    if (rays->seen_count >= FEWEST_SEEN)
+        fill_picture(rays, &camera);
+    add_scaled3(camera.eye, camera.target, camera.away, camera.to_eye);
+    return camera;
+}
+
+static void set_camera(KrsScene *scene, const DefaultCamera *camera)
+{
+    scene->framed = true;
+    memcpy(scene->framed_eye, camera->eye, sizeof camera->eye);
+    memcpy(scene->framed_target, camera->target, sizeof camera->target);
+}
+
 /* Sets eye and target of the default camera, with the defaults of parameters.  Its direction and
    field of view are fixed.  Without bounded components nothing is changed. */
 static KrsStatus frame_scene(KrsScene *scene)
 {
-    static const double towards[3] = {0.53, 0.37, 0.76};
-    KrsFrame           *frame;
-    KrsView             view;
-    Box                 box  = outer_box(scene);
-    Ball                ball = ball_around(box);
+    KrsFrame *frame;
+    KrsView   view;
+    Box       box  = outer_box(scene);
+    Ball      ball = ball_around(box);
     if (!(ball.radius > 0 && isfinite(ball.radius)))
         return KRS_OK;
     KrsStatus status = frame_new(scene, &frame);
@@ -294,19 +369,17 @@ static KrsStatus frame_scene(KrsScene *scene)
     frame->exact = true;
     Rays  *rays  = malloc(sizeof *rays);
     Cells *cells = malloc(sizeof *cells);
-    if (rays && cells)
+    if (rays && cells) {
         find_ball(frame, box, rays, cells, &ball);
-    else
+        frame_view(frame, 0, &view);
+        DefaultCamera camera = place_camera(rays, &ball, view.camera.fov);
+        set_camera(scene, &camera);
+    } else {
         status = KRS_OUT_OF_MEMORY;
+    }
     free(rays);
     free(cells);
-    frame_view(frame, 0, &view);
     frame_free(frame);
-    scene->framed = true;
-    memcpy(scene->framed_target, ball.centre, sizeof ball.centre);
-    for (int k = 0; k < 3; k++)
-        scene->framed_eye[k] = ball.centre[k] +
-                               towards[k] * ball.radius / sin(0.5 * view.camera.fov);
     return status;
 }
 

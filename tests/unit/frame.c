@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include "compiler/base/vec.h"
 #include "compiler/compile.h"
 
 static KrsFrame *open_scene(const char *text, KrsScene **scene)
@@ -262,6 +263,65 @@ static void a_missing_camera_frames_the_scene(void **state)
     close_scene(frame, scene);
 }
 
+/* Where a point is in the picture: upwards, or to the right; 1 is half the height. */
+static double place_of(const KrsCamera *camera, const double point[3], bool upwards)
+{
+    double out[3], right[3], up[3], to[3];
+    for (int k = 0; k < 3; k++) {
+        out[k] = camera->target[k] - camera->eye[k];
+        to[k]  = point[k] - camera->eye[k];
+    }
+    normalize3(out);
+    cross3(out, (double[]){0, 1, 0}, right);
+    normalize3(right);
+    cross3(right, out, up);
+    return dot3(to, upwards ? up : right) / (dot3(to, out) * tan(0.5 * camera->fov));
+}
+
+/* How much of the height of the picture a box fills by its corners, along one of its axes; and how far
+   its middle is from that of the picture. */
+static double box_fills(const char *text, const double size[3], bool upwards, double *middle)
+{
+    KrsScene *scene;
+    KrsView   view;
+    KrsFrame *frame = open_scene(text, &scene);
+    double    low = HUGE_VAL, high = -HUGE_VAL;
+    assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);
+    for (int i = 0; i < 8; i++) {
+        double corner[3];
+        for (int k = 0; k < 3; k++)
+            corner[k] = (i >> k & 1 ? 0.5 : -0.5) * size[k];
+        double at = place_of(&view.camera, corner, upwards);
+        low       = fmin(low, at);
+        high      = fmax(high, at);
+    }
+    close_scene(frame, scene);
+    *middle = 0.5 * (low + high);
+    return 0.5 * (high - low);
+}
+
+/* A ball fills two thirds of the height, what is tall or wide most of it, and a plate is in the middle. */
+static void the_scene_fills_the_picture(void **state)
+{
+    (void)state;
+    KrsScene *scene;
+    KrsView   view;
+    KrsFrame *frame = open_scene("show sphere(2).move([9, 1, 7]);", &scene);
+    assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);
+    double away = distance3(view.camera.eye, (double[]){9, 1, 7});
+    assert_float_equal(tan(asin(2 / away)) / tan(0.5 * view.camera.fov), 0.67, 0.04);
+    assert_true(angle_to(&view.camera, 9, 1, 7) < 0.02);
+    close_scene(frame, scene);
+
+    double middle,
+        tall = box_fills("show box([0.2, 5, 0.2]);", (double[]){0.2, 5, 0.2}, true, &middle);
+    assert_float_equal(tall, 0.86, 0.06);
+    double wide = box_fills("show box([4, 0.1, 4]);", (double[]){4, 0.1, 4}, false, &middle);
+    assert_float_equal(wide, 0.95, 0.06);
+    box_fills("show box([4, 0.1, 4]);", (double[]){4, 0.1, 4}, true, &middle);
+    assert_float_equal(middle, 0, 0.03);
+}
+
 /* Few rays hit what is thin, and the first that do may all hit one part of it.  Ends of rods are known. */
 static void thin_things_are_framed_whole(void **state)
 {
@@ -330,6 +390,7 @@ int main(void)
         cmocka_unit_test(nothing_over_nothing_has_no_slope),
         cmocka_unit_test(a_cut_field_has_one_slope),
         cmocka_unit_test(a_missing_camera_frames_the_scene),
+        cmocka_unit_test(the_scene_fills_the_picture),
         cmocka_unit_test(thin_things_are_framed_whole),
         cmocka_unit_test(endless_components_are_not_framed),
         cmocka_unit_test(rays_of_any_length_hit),
