@@ -282,7 +282,7 @@ static void find_ball(KrsFrame *frame, Box box, Rays *rays, Cells *cells, Ball *
 /* How much of the height of the picture is filled: by what is wide, by what is tall, and by the mean of
    both.  Pictures are wider than high, but may be square.  The eye comes no nearer than a part of the
    distance from which the ball fills the height, for things would look distorted from there. */
-static const double WIDE = 0.95, TALL = 0.86, FILLED = 0.68, NEAREST = 0.65;
+static const double WIDE = 0.95, TALL = 0.82, FILLED = 0.68, NEAREST = 0.65;
 
 /* Where the default camera is, and the axes of its picture. */
 typedef struct DefaultCamera {

@@ -382,6 +382,26 @@ static const struct {
 };
 enum { METHOD_COUNT = sizeof methods / sizeof *methods };
 
+static bool is_method(const char *name)
+{
+    for (size_t i = 0; i < METHOD_COUNT; i++)
+        if (strcmp(methods[i].name, name) == 0)
+            return true;
+    return false;
+}
+
+/* What helps where something other than a shape has no such method; NULL: nothing is known. */
+static const char *method_help(Elaboration *e, const Syntax *syntax, Value receiver)
+{
+    if (receiver.type == VALUE_FUNCTION)
+        return "call it first: write parentheses after the name";
+    if (receiver.type == VALUE_LIST && is_method(syntax->name))
+        return form_help(e->diags, FORM_LIST_METHOD);
+    if (value_size(e, receiver) >= 2)
+        return "components of a vector are `x y z w` or `r g b a`, as in `v.xz`";
+    return NULL;
+}
+
 static Value unknown_method(Elaboration *e, const Syntax *syntax, Value receiver)
 {
     static const char *const of_maps[] = {"inverse"};
@@ -401,14 +421,12 @@ static Value unknown_method(Elaboration *e, const Syntax *syntax, Value receiver
         diag->help = "a method with a similar name exists";
     diag_secondary(e->diags, diag, syntax->children[0]->span,
                    diag_text(e->diags, "this is %s", type));
-    if (receiver.type == VALUE_FUNCTION)
-        diag->help = "call it first: write parentheses after the name";
-    else if (receiver.type == VALUE_SHAPE && !diag->replacement && !explained)
+    if (receiver.type == VALUE_SHAPE && !diag->replacement && !explained)
         note_names(e, diag, "its methods", names, count);
     else if (receiver.type == VALUE_MAP)
         note_names(e, diag, "its methods", of_maps, 1);
-    else if (value_size(e, receiver) >= 2)
-        diag->help = "components of a vector are `x y z w` or `r g b a`, as in `v.xz`";
+    else if (receiver.type != VALUE_SHAPE)
+        diag->help = method_help(e, syntax, receiver);
     return value_error();
 }
 

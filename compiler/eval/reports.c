@@ -70,10 +70,28 @@ Diag *type_error(Elaboration *e, const Syntax *syntax, Value found, const char *
     return diag;
 }
 
+/* What helps where a value must be known: a `let`, if it is a `param` that it depends on. */
+static const char *constant_help(Elaboration *e, const Syntax *syntax)
+{
+    enum { LONGEST_CHAIN = 8 };
+    for (int i = 0; i < LONGEST_CHAIN && syntax; i++) {
+        const Syntax     *name       = find_late_name(e, syntax);
+        const Definition *definition = name ? definition_of(e, name) : NULL;
+        if (!definition || !definition->syntax)
+            return NULL;
+        if (definition->syntax->kind == SYNTAX_PARAM)
+            return diag_text(e->diags, "`let %s = ...;` in place of the `param` is known",
+                             name->name);
+        syntax = definition->syntax->children[0];
+    }
+    return NULL;
+}
+
 void constant_error(Elaboration *e, const Syntax *syntax, const char *message)
 {
     Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, syntax->span, "%s", message);
     diag->label = "this depends on a `param`, on `time` or on a coordinate";
+    diag->help  = constant_help(e, syntax);
     point_at_definition(e, diag, syntax);
 }
 

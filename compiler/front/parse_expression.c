@@ -469,6 +469,8 @@ static Syntax *no_expression(Parser *p)
         diag->help = form_help(p->diags, FORM_ANGLE_VECTOR);
     else if (found == TOKEN_GREATER)
         diag->help = form_help(p->diags, FORM_PIPE);
+    else if (found == TOKEN_FOR)
+        diag->help = form_help(p->diags, FORM_LOOP_AHEAD);
     else if (found == TOKEN_DOT_DOT)
         diag->help = "a range has both ends, as in `0..5`";
     else if (keyword)

@@ -315,7 +315,7 @@ static void the_scene_fills_the_picture(void **state)
 
     double middle,
         tall = box_fills("show box([0.2, 5, 0.2]);", (double[]){0.2, 5, 0.2}, true, &middle);
-    assert_float_equal(tall, 0.86, 0.06);
+    assert_float_equal(tall, 0.82, 0.06);
     double wide = box_fills("show box([4, 0.1, 4]);", (double[]){4, 0.1, 4}, false, &middle);
     assert_float_equal(wide, 0.95, 0.06);
     box_fills("show box([4, 0.1, 4]);", (double[]){4, 0.1, 4}, true, &middle);
