@@ -17,15 +17,15 @@ enum {
     BLOCK        = 64  /* turns whose boxes are found together */
 };
 
-/* What a node from the leaf on depends on. */
+/* What a node depends on. */
 enum { ON_TURN = 1, ON_OTHERS = 2 };
 
 /* A number of a shape: a column of the table, or ranges. */
 typedef struct TurnNumber {
     Node   node;
     int    depends;
-    size_t column;   /* ON_TURN alone: of its first component */
-    Range  known[4]; /* not ON_TURN */
+    size_t column;    /* ON_TURN alone: of its first component */
+    Range  ranges[4]; /* of its components, in the turn that is looked at */
 } TurnNumber;
 
 /* A shape whose box is found in each turn; without parts and numbers: it is the same in all. */
@@ -37,11 +37,11 @@ typedef struct TurnShape {
 } TurnShape;
 
 typedef struct Turns {
-    BoxNumbers     numbers; /* those of `current` in turn `row` */
+    BoxNumbers     numbers; /* those of `current` */
     const Graph   *graph;
     Arena         *scratch;
     Node           turn;
-    unsigned char *depends; /* of node n: depends[n - turn] */
+    unsigned char *depends; /* by nodes */
     struct {
         Node  *items;
         size_t count, capacity;
@@ -51,34 +51,20 @@ typedef struct Turns {
     GraphParameter  *parameter; /* of the leaf */
     const double    *values;    /* that it has */
     const TurnShape *current;
-    size_t           row;
     bool             failed;
 } Turns;
 
 /* ---- what depends on the turn ---- */
 
-/* A node before the leaf: those that need parameters are not told from others that frames know. */
-static int depends_before(const Graph *graph, Node node)
-{
-    const Expr *e = &graph->items[node];
-    return e->time == TIME_COMPILE || e->op == OP_HOISTED ? 0 : ON_OTHERS;
-}
-
-static int depends_on(const Turns *t, Node node)
-{
-    return node < t->turn ? depends_before(t->graph, node) : t->depends[node - t->turn];
-}
-
 static void mark_nodes(Turns *t)
 {
-    t->depends    = arena_new_array(t->scratch, unsigned char, t->graph->count - t->turn);
-    t->depends[0] = ON_TURN;
-    for (Node node = t->turn + 1; node < t->graph->count; node++) {
+    t->depends = arena_new_array(t->scratch, unsigned char, t->graph->count);
+    for (Node node = 0; node < t->graph->count; node++) {
         const Expr *e     = &t->graph->items[node];
         int         found = e->op == OP_PARAMETER ? ON_OTHERS : 0;
         for (int k = 0; k < e->operand_count; k++)
-            found |= depends_on(t, e->operands[k]);
-        t->depends[node - t->turn] = (unsigned char)found;
+            found |= t->depends[e->operands[k]];
+        t->depends[node] = (unsigned char)(node == t->turn ? ON_TURN : found);
     }
 }
 
@@ -115,7 +101,7 @@ static uint32_t rule_nodes(const Shape *shape, Node nodes[MOST_NUMBERS + 1])
 static bool any_turned(const Turns *t, const Node *nodes, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++)
-        if (nodes[i] != NODE_NONE && depends_on(t, nodes[i]) & ON_TURN)
+        if (nodes[i] != NODE_NONE && t->depends[nodes[i]] & ON_TURN)
             return true;
     return false;
 }
@@ -154,7 +140,7 @@ static bool is_turned(const Turns *t, const Shape *shape)
 
 static TurnNumber plan_number(Turns *t, Node node)
 {
-    TurnNumber     number = {.node = node, .depends = depends_on(t, node)};
+    TurnNumber     number = {.node = node, .depends = t->depends[node]};
     const uint32_t size   = components((GraphType)t->graph->items[node].type);
     if (number.depends == ON_TURN) {
         number.column = t->columns;
@@ -162,7 +148,7 @@ static TurnNumber plan_number(Turns *t, Node node)
         array_push(t->scratch, &t->roots, node);
     } else if (!(number.depends & ON_TURN))
         for (uint32_t i = 0; i < size; i++)
-            number.known[i] = graph_frame_range(t->graph, node, i, t->scratch);
+            number.ranges[i] = graph_frame_range(t->graph, node, i, t->scratch);
     return number;
 }
 
@@ -198,33 +184,41 @@ static bool plan_shape(Turns *t, const Shape *shape, TurnShape *plan)
 /* ---- boxes ---- */
 
 /* As found when a shape is made, where a quarter turn's cosine is 0 and other roundings differ. */
-static Range rounded(const double *vector, uint32_t size, uint32_t component)
+static void round_out(const double *vector, uint32_t size, Range *ranges)
 {
-    double largest = 0, value = vector[component];
+    double largest = 0;
     for (uint32_t i = 0; i < size; i++)
-        largest = fmax(largest, fabs(vector[i]));
-    if (value == 0)
-        return range_of(0);
-    return (Range){value - 0x1p-50 * largest, value + 0x1p-50 * largest};
+        largest = fabs(vector[i]) > largest ? fabs(vector[i]) : largest;
+    const double error = 0x1p-50 * largest;
+    for (uint32_t i = 0; i < size; i++)
+        ranges[i] = vector[i] == 0 ? range_of(0) : (Range){vector[i] - error, vector[i] + error};
+}
+
+static void set_ranges(Turns *t, TurnNumber *number, size_t row)
+{
+    const GraphType type = (GraphType)t->graph->items[number->node].type;
+    const uint32_t  size = components(type);
+    if (number->depends == ON_TURN) {
+        const double *vector = t->table + row * t->columns + number->column;
+        for (uint32_t i = 0; i < size; i++)
+            t->failed = t->failed || !isfinite(vector[i]);
+        if (type == TYPE_BOOL)
+            number->ranges[0] = range_of(vector[0]);
+        else
+            round_out(vector, size, number->ranges);
+    } else if (number->depends & ON_TURN) {
+        t->parameter->low[0] = t->parameter->high[0] = t->values[row];
+        for (uint32_t i = 0; i < size; i++)
+            number->ranges[i] = graph_frame_range(t->graph, number->node, i, t->scratch);
+    }
 }
 
 static Range range_in_turn(const BoxNumbers *numbers, Node node, uint32_t component)
 {
-    Turns            *t      = (Turns *)numbers;
-    const TurnNumber *number = t->current->numbers;
+    const TurnNumber *number = ((const Turns *)numbers)->current->numbers;
     while (number->node != node)
         number++;
-    if (!(number->depends & ON_TURN))
-        return number->known[component];
-    const Expr *e = &t->graph->items[node];
-    if (number->depends == ON_TURN) {
-        const double *vector = t->table + t->row * t->columns + number->column;
-        t->failed            = t->failed || !isfinite(vector[component]);
-        return e->type == TYPE_BOOL ? range_of(vector[0])
-                                    : rounded(vector, components((GraphType)e->type), component);
-    }
-    t->parameter->low[0] = t->parameter->high[0] = t->values[t->row];
-    return graph_frame_range(t->graph, node, component, t->scratch);
+    return number->ranges[component];
 }
 
 static void find_boxes(Turns *t, const TurnShape *plan, size_t first, size_t count, Box *boxes)
@@ -240,7 +234,8 @@ static void find_boxes(Turns *t, const TurnShape *plan, size_t first, size_t cou
         find_boxes(t, &plan->parts[i], first, count, parts + i * count);
     t->current = plan;
     for (size_t i = 0; i < count; i++) {
-        t->row   = first + i;
+        for (uint32_t k = 0; k < plan->number_count; k++)
+            set_ranges(t, &plan->numbers[k], first + i);
         boxes[i] = shape_box(&(BoxInput){&t->numbers, plan->shape, parts + i, count});
     }
     arena_rewind(t->scratch, mark);
