@@ -70,12 +70,34 @@ static bool element_nodes(Elaboration *e, const Syntax *syntax, Value list, size
     return true;
 }
 
+static Range range_of_node(Elaboration *e, Node node)
+{
+    const Range range = graph_frame_range(e->graph, node, 0, e->scratch);
+    arena_clear(e->scratch);
+    return range;
+}
+
+/* Whether it is `floor(n * random)`.  The range of the product ends at n, as ranges are rounded up;
+   in double precision n times the largest number below 1 is below n. */
+static bool is_part_of(Elaboration *e, Node index, size_t count)
+{
+    const Expr *product = &e->graph->items[index];
+    if (product->op == OP_floor)
+        product = &e->graph->items[product->operands[0]];
+    for (int k = 0; product->op == OP_mul && k < 2; k++) {
+        const Range number = range_of_node(e, product->operands[k]);
+        const Range part   = range_of_node(e, product->operands[1 - k]);
+        if (number.low >= 0 && number.high <= (double)count && part.low >= 0 && part.high < 1)
+            return true;
+    }
+    return false;
+}
+
 /* Whether the index, rounded down, is one of the list in all frames; false: reported. */
 static bool check_index_range(Elaboration *e, const Syntax *syntax, Node index, size_t count)
 {
-    const Range range = graph_frame_range(e->graph, index, 0, e->scratch);
-    arena_clear(e->scratch);
-    if (range.low >= 0 && range.high < (double)count)
+    const Range range = range_of_node(e, index);
+    if ((range.low >= 0 && range.high < (double)count) || is_part_of(e, index, count))
         return true;
     const char *limits = isfinite(range.low) && isfinite(range.high)
                              ? diag_text(e->diags, "from %g to %g", range.low, range.high)

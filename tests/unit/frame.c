@@ -106,6 +106,24 @@ static void lists_are_indexed_by_what_frames_know(void **state)
     assert_true(found[0] && found[1] && found[2] && found[3] && found[4]);
 }
 
+/* The largest number below 1, times the length of the list, is below that length. */
+static void an_index_may_come_near_to_the_length(void **state)
+{
+    (void)state;
+    char most[40], text[200];
+    snprintf(most, sizeof most, "%.17g", nextafter(1, 0));
+    for (int n = 1; n < 9; n++) {
+        snprintf(text, sizeof text,
+                 "param k = 0 in [0, %s]; show sphere([j for j in 1..%d][floor(%d * k)]);", most,
+                 n + 1, n);
+        KrsScene *scene;
+        KrsFrame *frame = open_scene(text, &scene);
+        assert_int_equal(krs_frame_set(frame, "k", (double[]){nextafter(1, 0)}, 1), KRS_OK);
+        assert_true(fabs(distance_at(frame, 20, 0, 0) - (20 - n)) < 1e-12);
+        close_scene(frame, scene);
+    }
+}
+
 static void frames_that_are_not_finite_are_refused(void **state)
 {
     (void)state;
@@ -384,6 +402,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parameters_move_the_scene),
         cmocka_unit_test(lists_are_indexed_by_what_frames_know),
+        cmocka_unit_test(an_index_may_come_near_to_the_length),
         cmocka_unit_test(frames_that_are_not_finite_are_refused),
         cmocka_unit_test(values_of_frames_are_found),
         cmocka_unit_test(frames_without_a_slope_are_refused),
