@@ -325,6 +325,23 @@ static void lex_token(Lexer *lexer)
         lex_stray(lexer);
 }
 
+/* Whether this is a picture or a program instead of a scene: near its beginning there are zero bytes
+   as well as bytes that are not UTF-8. */
+static bool is_binary(const Source *source)
+{
+    enum { BEGINNING = 4096 };
+    uint32_t end  = source->length < BEGINNING ? source->length : BEGINNING;
+    bool     zero = false, stray = false;
+    for (uint32_t at = 0; at < end && !(zero && stray);) {
+        uint32_t character;
+        size_t   length = text_character(source->text + at, source->length - at, &character);
+        zero            = zero || (length > 0 && character == 0);
+        stray           = stray || length == 0;
+        at += length ? (uint32_t)length : 1;
+    }
+    return zero && stray;
+}
+
 Tokens lex(uint32_t source, const Sources *sources, Names *names, Diags *diags, Arena *arena)
 {
     const Source *text  = &sources->items[source];
@@ -337,6 +354,11 @@ Tokens lex(uint32_t source, const Sources *sources, Names *names, Diags *diags, 
                            .arena   = arena,
                            .doc     = {.arena = arena},
                            .scratch = {.arena = arena}};
+    if (is_binary(text)) {
+        report_from(&lexer, DIAG_STRAY_BYTES, lexer.at, "this file is not a text",
+                    "a scene is a text, for example `show sphere(1);`");
+        lexer.at = lexer.length;
+    }
     find_beginnings(&lexer);
     skip_blank(&lexer);
     while (lexer.at < lexer.length && !diags_full(diags)) {

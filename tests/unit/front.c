@@ -119,6 +119,16 @@ static void bytes_of_zero_are_reported(void **state)
     reading_free(r);
 }
 
+/* Of a picture or a program nothing but the first byte is reported. */
+static void a_binary_file_is_one_mistake(void **state)
+{
+    (void)state;
+    static const char scene[] = "\x89PNG\r\n\x1A\n\0\0\0\x0DIHDR\0\0\0\x20 $$ \xFF\xFE\nshow ?;";
+    Reading          *r       = read_bytes(scene, sizeof scene - 1);
+    assert_string_equal(codes(r), "E0102@1:1");
+    reading_free(r);
+}
+
 /* ---- parser ---- */
 
 /* An expression with every operation in parentheses. */
@@ -434,6 +444,7 @@ int main(void)
         cmocka_unit_test(comments_document),
         cmocka_unit_test(bad_text_is_reported),
         cmocka_unit_test(bytes_of_zero_are_reported),
+        cmocka_unit_test(a_binary_file_is_one_mistake),
         cmocka_unit_test(operators_have_their_precedence),
         cmocka_unit_test(the_tree_is_printed),
         cmocka_unit_test(every_mistake_is_reported_once),
