@@ -96,7 +96,7 @@ typedef struct KrsProgram {
     uint32_t      expensive;         /* components that cost enough for a group of their own */
     size_t        table_rows;        /* texels of the tables (krs_frame_tables); 0: none */
     size_t        table_cells;
-    bool          rows_vary; /* rows depend on parameters or the time (krs_frame_rows) */
+    bool          rows_vary; /* tables depend on parameters or the time (krs_frame_table_inputs) */
     size_t        table_count, table_members; /* tables, and the rows of all of them */
     size_t        texture_count, texture_texels;
     bool          views;   /* krs_surface reads krs_view, the direction of the ray that sees it */
@@ -144,8 +144,12 @@ bool krs_needs_rebase(double coordinate, double pixel);
 /* Slots of the values that depend on the origin of camera-relative points, computed in double
    precision: camera_relative_slots vec4s. */
 void krs_frame_rebase(KrsFrame *frame, const double rebase_origin[3], float (*block)[4]);
-/* The rows of krs_frame_tables alone; for programs whose rows vary. */
-void krs_frame_rows(const KrsFrame *frame, float (*rows)[4]);
+/* krs_frame_tables, where kernels read only so many texels at the beginning of both; others may be left
+   as they are. */
+void krs_frame_tables_in_use(const KrsFrame *frame, float (*rows)[4], uint32_t (*cells)[2],
+                             size_t *row_count, size_t *cell_count);
+/* What tables depend on, as parameter_slots numbers; frames in which these are equal have equal tables. */
+void krs_frame_table_inputs(const KrsFrame *frame, double (*inputs)[4]);
 /* The caller's zones (center, radius), for the slots behind the parameter block.  Returns how many.
    In a variant with room for more the others must have a radius far below 0. */
 size_t krs_frame_zones(const KrsFrame *frame, float (*zones)[4]);

@@ -9,7 +9,6 @@
 #include "compiler/points.h"
 #include "compiler/program.h"
 #include "compiler/shape/slope.h"
-#include "compiler/tables.h"
 
 /* Zeroed memory from the scene's allocator, or NULL. */
 static void *frame_alloc(const KrsScene *scene, size_t count, size_t size)
@@ -88,7 +87,7 @@ KrsStatus frame_new(const KrsScene *scene, KrsFrame **result)
     frame->sky        = frame_alloc(scene, scene->daylight ? DAYLIGHT_WIDTH * DAYLIGHT_HEIGHT : 0,
                                     sizeof *frame->sky);
     if (!frame->parameters || !frame->values || !frame->lights || !frame->workspace ||
-        !frame->sky || !frame->lit) {
+        !frame->sky || !frame->lit || !frame_tables_new(frame)) {
         frame_free(frame);
         return KRS_OUT_OF_MEMORY;
     }
@@ -109,6 +108,7 @@ void frame_free(KrsFrame *frame)
         return;
     const KrsScene *scene = frame->scene;
     frame_lanes_free(frame);
+    frame_tables_free(frame);
     frame_release(scene, frame->parameters);
     frame_release(scene, frame->values);
     frame_release(scene, frame->lights);
@@ -143,7 +143,14 @@ void frame_refresh(KrsFrame *frame)
     tape_run_frame(&frame->scene->assembly.tape, frame->parameters, frame->values);
     tape_run_frame(&frame->scene->view, frame->parameters, frame->values);
     frame->fresh = true;
+    frame_tables_change(frame);
     frame_lanes_refresh(frame);
+}
+
+void frame_refresh_points(KrsFrame *frame)
+{
+    frame_refresh(frame);
+    frame_tables_refresh(frame);
 }
 
 Node frame_infinite(KrsFrame *frame)
@@ -284,22 +291,6 @@ void krs_frame_parameters(const KrsFrame *frame, float (*block)[4])
     for (uint32_t i = 0; i < frame->scene->program.parameter_slots; i++)
         for (int k = 0; k < 4; k++)
             block[i][k] = (float)frame->parameters[i].v[k];
-}
-
-void krs_frame_tables(const KrsFrame *frame, float (*rows)[4], uint32_t (*cells)[2])
-{
-    const KrsScene *scene = frame->scene;
-    if (scene->program.table_cells == 0)
-        return;
-    tape_run_frame(&scene->rows, frame->parameters, frame->values);
-    tables_pack(scene->graph->crowds, scene->graph->textures, frame->values, rows, cells);
-}
-
-void krs_frame_rows(const KrsFrame *frame, float (*rows)[4])
-{
-    const KrsScene *scene = frame->scene;
-    tape_run_frame(&scene->rows, frame->parameters, frame->values);
-    tables_pack_rows(scene->graph->crowds, frame->values, rows);
 }
 
 void frame_copy(const KrsFrame *frame, Node node, double to[3])

@@ -256,7 +256,7 @@ static double find_magnified(const Cells *cells, const double middle[3])
     double           most   = 1;
     if (!scene->module.is_medium)
         return 1;
-    tape_run_point(&scene->distance, middle, cells->frame->values);
+    tape_run_point(&cells->frame->tapes.distance, middle, cells->frame->values);
     for (size_t i = 0; i < scene->component_count; i++) {
         const Node ior = surface_roots(&scene->roots, i)[ROOT_ior];
         if (!scene->module.is_medium[i] || values[distance_root(&scene->roots, i)].v[0] >= 0)
@@ -318,7 +318,7 @@ size_t krs_frame_emissive(KrsFrame *frame, const double low[3], const double hig
     Cells cells = {.frame = frame};
     for (int k = 0; k < 3; k++)
         cells.region.axis[k] = (Range){low[k], high[k]};
-    frame_refresh(frame);
+    frame_refresh_points(frame);
     const size_t count = list_lit(&cells);
     for (size_t i = 0; i < count && count <= MOST_TIGHT; i++) {
         cells.tight[i]    = find_tight(&cells, i, CUTS_FOR_TIGHT / count);

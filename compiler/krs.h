@@ -237,7 +237,7 @@ void   krs_frame_values(const KrsFrame *frame, float (*block)[4]);
  * The texel buffers of that GLSL: numbers of parts that are alike but for numbers, and which of them
  * are near a point.  `rows` needs krs_table_rows texels, for krs_rows (RGBA32F), and `cells` needs
  * krs_table_cells, for krs_cells (RG32UI), which has the textures as well.  Both are 0 for scenes
- * without such parts and textures, whose GLSL has neither buffer.  Rows may depend on the parameters and the time, cells do not.
+ * without such parts and textures, whose GLSL has neither buffer.  Both may depend on the parameters and the time.
  */
 size_t krs_table_rows(const KrsScene *scene);
 size_t krs_table_cells(const KrsScene *scene);

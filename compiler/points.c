@@ -42,9 +42,9 @@ static void make_distance(struct FrameLanes *lanes, KrsFrame *frame)
         roots[i] = distance_root(&scene->roots, i);
     roots[count]          = zone;
     size_t cuts           = zone != NODE_NONE;
-    lanes->distance       = lane_tape_new(&scene->distance, roots, count + cuts, true, cuts,
+    lanes->distance       = lane_tape_new(&frame->tapes.distance, roots, count + cuts, true, cuts,
                                           &lanes->arena);
-    lanes->bound          = scene->distance;
+    lanes->bound          = frame->tapes.distance;
     lanes->bound.by_cells = true;
     room_for_scalars(lanes, &lanes->distance);
     lanes->distance_work = new_work(lanes, &lanes->distance, frame->values);
@@ -70,7 +70,7 @@ static void make_surface(struct FrameLanes *lanes, KrsFrame *frame)
             outputs += outputs_of(scene, of[k]);
         }
     }
-    lanes->surface = lane_tape_new(&scene->surface, roots, count * ROOT_COUNT, false, 0,
+    lanes->surface = lane_tape_new(&frame->tapes.surface, roots, count * ROOT_COUNT, false, 0,
                                    &lanes->arena);
     room_for_scalars(lanes, &lanes->surface);
     lanes->surface_work = new_work(lanes, &lanes->surface, frame->values);

@@ -181,6 +181,11 @@ struct KrsScene {
     Tape             rows;     /* numbers of tables that depend on the frame */
 };
 
+/* Those tapes of the scene that read tables, over the tables of a frame where these are its own. */
+typedef struct FrameTapes {
+    Tape distance, guarded, ahead, turned, surface, places;
+} FrameTapes;
+
 /* A frame: values of the parameters, and memory for the values of all nodes. */
 struct KrsFrame {
     const KrsScene *scene;
@@ -192,14 +197,16 @@ struct KrsFrame {
     frame */
     NodeValue      *values;     /* of every node */
     KrsLight       *lights;
-    float (*sky)[3];             /* of daylight, */
-    KrsSkyMap          sky_map;  /* which these texels are of, */
-    Daylight           sky_made; /* as it was made; turbidity 0: not yet */
-    struct FrameLanes *lanes;    /* points.h; NULL: nobody has asked for many points */
-    bool               exact;    /* rays are marched with exact distances of crowds */
-    bool               fresh;    /* the frame values in `values` belong to the parameters */
-    double             zones[KRS_MOST_ZONES][4];
-    size_t             zone_count; /* zones of the caller */
+    float (*sky)[3];              /* of daylight, */
+    KrsSkyMap           sky_map;  /* which these texels are of, */
+    Daylight            sky_made; /* as it was made; turbidity 0: not yet */
+    FrameTapes          tapes;
+    struct FrameTables *tables; /* NULL: they are those of the scene */
+    struct FrameLanes  *lanes;  /* points.h; NULL: nobody has asked for many points */
+    bool                exact;  /* rays are marched with exact distances of crowds */
+    bool                fresh;  /* the frame values in `values` belong to the parameters */
+    double              zones[KRS_MOST_ZONES][4];
+    size_t              zone_count; /* zones of the caller */
 };
 
 /* The functions of krs.h and compiled.h with the same names.  The compiler itself calls them, after
@@ -219,8 +226,18 @@ char *scene_plain_text(const KrsScene *scene, const KrsVariant *variant, Arena *
 
 /* Evaluates the nodes that depend on parameters only, unless their values are up to date. */
 void frame_refresh(KrsFrame *frame);
-/* The distance of a component, counted from 1, or of all (0), cut by the zones; frame_refresh was
-   called before. */
+/* The same, and the tables of the frame: for values at points. */
+void frame_refresh_points(KrsFrame *frame);
+
+/* frame_tables.c: tables where members of crowds move, and tapes over them.  False: memory has run out. */
+bool frame_tables_new(KrsFrame *frame);
+void frame_tables_free(KrsFrame *frame);
+/* Values of the frame have changed; the tables are found when they are needed. */
+void frame_tables_change(KrsFrame *frame);
+void frame_tables_refresh(const KrsFrame *frame);
+
+/* The distance of a component, counted from 1, or of all (0), cut by the zones; frame_refresh_points
+   was called before. */
 double frame_component_distance(KrsFrame *frame, size_t component, const double point[3]);
 /* A value of the frame, used by points or the view, that is not finite; NODE_NONE: there is
    none. */

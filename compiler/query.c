@@ -57,7 +57,7 @@ static double distance_by(KrsFrame *frame, const Tape *tape, const double point[
 
 static double distance_at(KrsFrame *frame, const double point[3], uint32_t *nearest)
 {
-    return distance_by(frame, &frame->scene->distance, point, nearest);
+    return distance_by(frame, &frame->tapes.distance, point, nearest);
 }
 
 double frame_component_distance(KrsFrame *frame, size_t component, const double point[3])
@@ -85,7 +85,7 @@ static double step_ahead(KrsFrame *frame, const double point[3], const double di
 {
     const KrsScene *scene = frame->scene;
     const Node     *exact = along_roots(&scene->roots, ALONG_EXACT);
-    Tape            ahead = march_tape(frame, &scene->ahead);
+    Tape            ahead = march_tape(frame, &frame->tapes.ahead);
     double          least = INFINITY;
     tape_run_surface(&ahead, point, direction, step, frame->values);
     for (size_t i = 0; i < scene->component_count; i++)
@@ -98,7 +98,7 @@ static double clearance_at(KrsFrame *frame, const double point[3])
 {
     const KrsScene *scene   = frame->scene;
     RootRange       roots   = roots_of(&scene->roots, ROOTS_GUARDED);
-    Tape            guarded = march_tape(frame, &scene->guarded);
+    Tape            guarded = march_tape(frame, &frame->tapes.guarded);
     double          least   = INFINITY;
     tape_run_point(&guarded, point, frame->values);
     for (size_t i = 0; i < roots.count; i++)
@@ -116,11 +116,11 @@ static KrsStatus find_distances(KrsFrame *frame, const double (*points)[3], size
                                 bool bound, double *distances)
 {
     uint32_t nearest = 0;
-    Tape     tape    = frame->scene->distance;
+    Tape     tape    = frame->tapes.distance;
     tape.by_cells    = bound;
     if (!are_finite(points, count))
         return KRS_BAD_ARGUMENT;
-    frame_refresh(frame);
+    frame_refresh_points(frame);
     if (by_lanes(frame, count))
         return points_distances(frame, points, count, bound, distances);
     for (size_t i = 0; i < count; i++)
@@ -150,7 +150,7 @@ static bool derived_normal(KrsFrame *frame, const double point[3], double normal
     Node gradient = gradient_roots(&scene->roots, nearest - 1)->gradient;
     if (scene->graph->items[gradient].type != TYPE_VEC3)
         return false;
-    tape_run_point(&scene->turned, point, frame->values);
+    tape_run_point(&frame->tapes.turned, point, frame->values);
     frame_copy(frame, gradient, normal);
     bool known = largest3(normal) > 0 && largest3(normal) < INFINITY;
     if (known)
@@ -181,7 +181,7 @@ KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count, d
 {
     if (!are_finite(points, count))
         return KRS_BAD_ARGUMENT;
-    frame_refresh(frame);
+    frame_refresh_points(frame);
     if (by_lanes(frame, count) && !frame->scene->program.sheets)
         return points_normals(frame, points, count, normals);
     for (size_t i = 0; i < count; i++)
@@ -231,7 +231,7 @@ static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
     hit->distance = distance_at(frame, point, &nearest);
     if (!nearest)
         return;
-    tape_run_surface(&frame->scene->surface, point, hit->normal, 0, frame->values);
+    tape_run_surface(&frame->tapes.surface, point, hit->normal, 0, frame->values);
     copy_surface(frame, nearest, hit);
 }
 
@@ -258,7 +258,7 @@ KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, Kr
 {
     if (!are_finite(points, count))
         return KRS_BAD_ARGUMENT;
-    frame_refresh(frame);
+    frame_refresh_points(frame);
     KrsStatus status = KRS_OK;
     size_t    i      = 0;
     for (size_t now; by_lanes(frame, count - i) && status == KRS_OK; i += now) {
@@ -471,7 +471,7 @@ KrsStatus frame_raycast(KrsFrame *frame, const double (*origins)[3], const doubl
 {
     if (!krs_rays_are_valid(origins, directions, count, farthest, tolerance))
         return KRS_BAD_ARGUMENT;
-    frame_refresh(frame);
+    frame_refresh_points(frame);
     for (size_t i = 0; i < count; i++)
         trace(frame, krs_ray(frame->scene, origins[i], directions[i], farthest), tolerance,
               &hits[i]);

@@ -20,16 +20,31 @@ static size_t cell_count(const Grid *grid)
     return (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
 }
 
-/* Of a table that begins at these texels; they move on to the next one. */
+/* Of a table that begins at these texels, with so many cells and entries; they move on to the next one. */
+static Place place_parts(const Crowd *table, size_t cells, size_t entries, TableSizes *next)
+{
+    size_t texels = row_texels(table);
+    Place  place  = {next->rows, next->rows + table->rows * texels, next->cells,
+                     next->cells + cells + 1};
+    next->rows    = place.copy + entries * texels;
+    next->cells   = place.list + (entries + 1) / 2;
+    return place;
+}
+
 static Place place_table(const Crowd *table, TableSizes *next)
 {
-    size_t cells   = cell_count(&table->cells);
-    size_t entries = table->cells.first[cells], texels = row_texels(table);
-    Place  place = {next->rows, next->rows + table->rows * texels, next->cells,
-                    next->cells + cells + 1};
-    next->rows   = place.copy + entries * texels;
-    next->cells  = place.list + (entries + 1) / 2;
-    return place;
+    size_t cells = cell_count(&table->cells);
+    return place_parts(table, cells, table->cells.first[cells], next);
+}
+
+/* Leaves room for the grids of all frames. */
+static void leave_room(const Crowd *table, TableSizes *next)
+{
+    GridLimits most = grid_limits_of_frame(table->rows);
+    if (table->places)
+        place_parts(table, (size_t)most.cells, (size_t)most.entries, next);
+    else
+        place_table(table, next);
 }
 
 static size_t table_count(const Crowds *crowds) { return crowds ? crowds->tables.count : 0; }
@@ -49,7 +64,7 @@ TableSizes tables_measure(const Crowds *crowds, const Textures *textures)
 {
     TableSizes sizes = after_headers(crowds, textures);
     for (size_t t = 0; t < table_count(crowds); t++)
-        place_table(&crowds->tables.items[t], &sizes);
+        leave_room(&crowds->tables.items[t], &sizes);
     for (size_t t = 0; t < texture_count(textures); t++)
         sizes.cells += textures->list.items[t].texel_count;
     if (sizes.cells > 0 && sizes.rows == 0)
@@ -158,11 +173,6 @@ static TableSizes pack_rows(const Crowds *crowds, const Textures *textures, cons
     return next;
 }
 
-void tables_pack_rows(const Crowds *crowds, const NodeValue *values, float (*rows)[4])
-{
-    pack_rows(crowds, NULL, values, rows);
-}
-
 /* ---- textures ---- */
 
 static void put_texture(const Texture *texture, size_t first, Texel *header, Texel *texels)
@@ -197,8 +207,8 @@ static void pack_textures(const Crowds *crowds, const Textures *textures, Texel 
     }
 }
 
-void tables_pack(const Crowds *crowds, const Textures *textures, const NodeValue *values,
-                 float (*rows)[4], uint32_t (*cells)[2])
+TableSizes tables_pack(const Crowds *crowds, const Textures *textures, const NodeValue *values,
+                       float (*rows)[4], uint32_t (*cells)[2])
 {
     TableSizes next = after_headers(crowds, textures);
     for (size_t t = 0; t < table_count(crowds); t++) {
@@ -208,6 +218,10 @@ void tables_pack(const Crowds *crowds, const Textures *textures, const NodeValue
         put_grid(&table->cells, cells + place.cell, cells + place.list);
     }
     pack_textures(crowds, textures, cells);
-    if (pack_rows(crowds, textures, values, rows).rows == 0)
-        memset(rows, 0, sizeof *rows);
+    next = pack_rows(crowds, textures, values, rows);
+    if (next.rows == 0)
+        memset(rows[next.rows++], 0, sizeof *rows);
+    if (texture_count(textures) > 0) /* they are the last of all */
+        next.cells = tables_measure(crowds, textures).cells;
+    return next;
 }

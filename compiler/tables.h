@@ -36,16 +36,14 @@ typedef struct TableSizes {
     size_t rows, cells;
 } TableSizes;
 
-/* 0 when there are neither tables nor textures; both may be NULL. */
+/* Room for those of all frames.  0 when there are neither tables nor textures; both may be NULL. */
 TableSizes tables_measure(const Crowds *crowds, const Textures *textures);
 /* Which texels of the cells the header of a texture and its finest level begin at. */
 void tables_place_texture(const Crowds *crowds, const Textures *textures, size_t index,
                           size_t *header, size_t *first);
 /* Fills arrays of these sizes; `values` of nodes has the numbers of the frame, and may be NULL where
-   there are none. */
-void tables_pack(const Crowds *crowds, const Textures *textures, const NodeValue *values,
-                 float (*rows)[4], uint32_t (*cells)[2]);
-/* Fills the rows alone, which may differ between frames. */
-void tables_pack_rows(const Crowds *crowds, const NodeValue *values, float (*rows)[4]);
+   there are none.  Returns how many texels at the beginning are in use: all, unless members move. */
+TableSizes tables_pack(const Crowds *crowds, const Textures *textures, const NodeValue *values,
+                       float (*rows)[4], uint32_t (*cells)[2]);
 
 #endif

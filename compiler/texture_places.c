@@ -20,7 +20,7 @@ static size_t nearest_component(KrsFrame *frame, const double point[3])
     size_t          nearest = 0;
     if (scene->component_count == 1)
         return 0;
-    tape_run_point(&scene->distance, point, frame->values);
+    tape_run_point(&frame->tapes.distance, point, frame->values);
     for (size_t i = 1; i < scene->component_count; i++)
         if (frame->values[distance_root(&scene->roots, i)].v[0] <
             frame->values[distance_root(&scene->roots, nearest)].v[0])
@@ -39,7 +39,7 @@ static bool place_at(KrsFrame *frame, const double point[3], bool normals, doubl
         return false;
     if (normals && krs_normal(frame, (const double(*)[3])point, 1, &normal) != KRS_OK)
         return false;
-    tape_run_surface(&scene->places, point, normal, 0, frame->values);
+    tape_run_surface(&frame->tapes.places, point, normal, 0, frame->values);
     memcpy(place, frame->values[root].v, 2 * sizeof *place);
     return true;
 }
@@ -53,7 +53,7 @@ KrsStatus krs_texture_places(KrsFrame *frame, const double (*points)[3], size_t 
     for (size_t i = 0; i < count; i++)
         if (!isfinite(points[i][0]) || !isfinite(points[i][1]) || !isfinite(points[i][2]))
             return KRS_BAD_ARGUMENT;
-    frame_refresh(frame);
+    frame_refresh_points(frame);
     for (size_t i = 0; i < count; i++)
         if (!any || !place_at(frame, points[i], normals, places[i]))
             places[i][0] = places[i][1] = NAN;

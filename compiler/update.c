@@ -112,11 +112,22 @@ static bool same_frame_columns(const Crowd *a, const Crowd *b)
     return memcmp(a->frame_columns, b->frame_columns, a->columns * sizeof *a->frame_columns) == 0;
 }
 
+static bool same_places(const Crowd *a, const Crowd *b)
+{
+    if (!a->places || !b->places)
+        return a->places == b->places;
+    bool same = a->first_place == b->first_place && a->reach == b->reach && a->margin == b->margin;
+    for (uint32_t i = 0; same && i < a->rows; i++)
+        same = a->places[i].kind == b->places[i].kind &&
+               memcmp(&a->places[i].box, &b->places[i].box, sizeof a->places[i].box) == 0;
+    return same;
+}
+
 static bool same_table(const Crowd *a, const Crowd *b)
 {
     const size_t numbers = (size_t)a->rows * a->columns;
     return a->rows == b->rows && a->columns == b->columns && a->stretch == b->stretch &&
-           same_frame_columns(a, b) &&
+           same_frame_columns(a, b) && same_places(a, b) &&
            memcmp(a->numbers, b->numbers, numbers * sizeof *a->numbers) == 0 &&
            same_grid(&a->grid, &b->grid) && same_grid(&a->cells, &b->cells);
 }

@@ -101,6 +101,8 @@ static void keep_table(Crowd *table, Arena *arena)
     table->numbers = COPY_ITEMS(arena, table->numbers, (size_t)table->rows * table->columns);
     if (table->boxes)
         table->boxes = COPY_ITEMS(arena, table->boxes, table->rows);
+    if (table->places)
+        table->places = COPY_ITEMS(arena, table->places, table->rows);
     if (table->frame_columns)
         table->frame_columns = COPY_ITEMS(arena, table->frame_columns, table->columns);
     keep_grid(&table->grid, arena);

@@ -33,20 +33,41 @@ enum { MOST_CROWD_STATES = 8, MOST_TABLE_COLUMNS = 64, NO_DISTANCE = MOST_CROWD_
 /* A column whose numbers are known. */
 #define KNOWN_COLUMN UINT32_MAX
 
+/* Where a member is in a frame: a box, moved by nodes of the frame. */
+typedef enum PlaceKind {
+    PLACE_FIXED,  /* not at all: it is around the member in all frames */
+    PLACE_SHIFT,  /* by a shift */
+    PLACE_TURNED, /* by a similarity: its scale, three rows and shift (shape.h: Map) */
+} PlaceKind;
+typedef struct MemberPlace {
+    Box       box;
+    PlaceKind kind;
+} MemberPlace;
+
 /* A table. */
 typedef struct Crowd {
-    Arena    *arena; /* of its numbers and its grid */
-    uint32_t  rows, columns;
-    double   *numbers;       /* rows x columns, row by row; 0 in columns of the frame */
-    uint32_t *frame_columns; /* of each column: KNOWN_COLUMN, or where its nodes begin in
+    Arena       *arena; /* of its numbers and its grid */
+    uint32_t     rows, columns;
+    double      *numbers;       /* rows x columns, row by row; 0 in columns of the frame */
+    uint32_t    *frame_columns; /* of each column: KNOWN_COLUMN, or where its nodes begin in
                                 Crowds.frame_numbers, one for each row; NULL: all are known */
-    Grid      grid;          /* its members are the rows */
-    Grid      cells;   /* the same, or refined (grid_refine.h): what kernels read; right as far as
+    Grid         grid;          /* its members are the rows */
+    Grid         cells;  /* the same, or refined (grid_refine.h): what kernels read; right as far as
                                 the clearance is */
-    Box      *boxes;   /* of members of which only the nearest counts; NULL: not known */
-    double    stretch; /* the distance of a member, times this, is at least that to its box */
-    Span      span;    /* of the join */
+    MemberPlace *places; /* NULL: no member is known to move.  Else the grid is one for all
+                                 frames, and crowd_frame.h builds those of a frame */
+    uint32_t     first_place;   /* where nodes of the places begin in Crowds.frame_numbers */
+    double       reach, margin; /* of these grids */
+    Box         *boxes;         /* of members of which only the nearest counts; NULL: not known */
+    double       stretch; /* the distance of a member, times this, is at least that to its box */
+    Span         span;    /* of the join */
 } Crowd;
+
+/* How many nodes a place has. */
+static inline uint32_t place_nodes(PlaceKind kind)
+{
+    return kind == PLACE_TURNED ? 5 : kind == PLACE_SHIFT;
+}
 
 /* How many texels of krs_cells the header of a table has for kernels. */
 enum { GRID_HEADER = 8 };

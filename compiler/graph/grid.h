@@ -36,6 +36,18 @@ typedef struct Grid {
 void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
                 uint32_t texels, Arena *arena, Arena *scratch);
 
+/* What a grid has at most: cells, and entries of all lists together. */
+typedef struct GridLimits {
+    double cells, entries;
+} GridLimits;
+
+/* Those of a grid that is built for each frame, of so many boxes. */
+GridLimits grid_limits_of_frame(uint32_t count);
+
+/* The same as grid_build, within limits that one cell for all is always within. */
+void grid_build_within(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
+                       GridLimits most, Arena *arena, Arena *scratch);
+
 /*
  * The same with large cells, for grid_refine.  False: all of space would be one cell, or lists would be so
  * long that refining them takes too long; then there is no grid.

@@ -32,7 +32,9 @@ enum {
     ENTRIES_OF_FEW     = 1024,    /* for each of few members */
     MANY_REFINED       = 1 << 17, /* cells of a refined grid */
     LEAST_REFINED      = 8,       /* of these for each member */
-    MANY_TO_REFINE     = 1 << 20  /* entries of a coarse one, whose members are evaluated */
+    MANY_TO_REFINE     = 1 << 20, /* entries of a coarse one, whose members are evaluated */
+    OF_FRAME           = 8, /* cells and entries of each member, if a grid is built each frame */
+    SPARE_OF_FRAME     = 4096
 };
 
 #define MARGIN_IN_CELLS 0.25  /* beyond what the caller gives */
@@ -134,6 +136,8 @@ static double placed_cells(const Grid *grid)
 
 static double most_cells(const Builder *b)
 {
+    if (b->most.cells > 0)
+        return b->most.cells;
     if (b->coarse)
         return fmin((double)MOST_OF_A_MEMBER * b->present, MANY_REFINED) / GRID_REFINED;
     double few = fmin((double)CELLS_OF_FEW * b->present, MANY_CELLS);
@@ -143,6 +147,8 @@ static double most_cells(const Builder *b)
 
 static double most_entries(const Builder *b)
 {
+    if (b->most.entries > 0)
+        return b->most.entries;
     double few = fmin((double)ENTRIES_OF_FEW * b->present, (double)MANY_TEXELS / b->texels);
     return fmax((double)ENTRIES_PER_MEMBER * b->present, few) + SPARE_ENTRIES;
 }
@@ -378,6 +384,28 @@ void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, doub
                  .reach        = reach,
                  .given_margin = margin,
                  .texels       = texels,
+                 .scratch      = scratch};
+    build(&b, arena);
+}
+
+/* Around few and large cells each member is in 8 of them at most. */
+GridLimits grid_limits_of_frame(uint32_t count)
+{
+    const double most = (double)OF_FRAME * count + SPARE_OF_FRAME;
+    return (GridLimits){most, most};
+}
+
+void grid_build_within(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
+                       GridLimits most, Arena *arena, Arena *scratch)
+{
+    assert(count > 0 && most.cells >= 8 && most.entries >= 8 * (double)count);
+    Builder b = {.grid         = grid,
+                 .boxes        = boxes,
+                 .count        = count,
+                 .reach        = reach,
+                 .given_margin = margin,
+                 .most         = most,
+                 .texels       = 1,
                  .scratch      = scratch};
     build(&b, arena);
 }

@@ -17,6 +17,7 @@ typedef struct Builder {
     double      given_margin;
     uint32_t    texels; /* of an entry */
     bool        coarse; /* it will be refined */
+    GridLimits  most;   /* 0: as for all frames */
     double      pad[3];
     double      listed, seen; /* boxes up to this distance are in the list, or are measured */
     float      *nearest;      /* of each cell: the square of the distance to the nearest box that is

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/graph/crowd_frame.h"
 #include "compiler/lower/crowd_group.h"
 #include "compiler/lower/join.h"
 
@@ -108,6 +109,72 @@ static double largest_slope(const PartFinder *finder, const CrowdGroup *group)
     return slope;
 }
 
+/* ---- members that move ---- */
+
+static bool is_of_frame(const Graph *g, Node node) { return g->items[node].time == TIME_FRAME; }
+
+static bool is_turned(const Graph *g, const Map *map)
+{
+    return is_of_frame(g, map->scale) || is_of_frame(g, map->rows[0]) ||
+           is_of_frame(g, map->rows[1]) || is_of_frame(g, map->rows[2]);
+}
+
+/* The transformation that moves a part, seen through what leaves boxes as they are; NULL: nothing that
+   depends on the frame does. */
+static const Shape *moved_by(const Graph *g, const Shape *part)
+{
+    while (part->kind == SHAPE_PAINT || part->kind == SHAPE_SMOOTH)
+        part = part->children[0];
+    const Map *map = &part->map;
+    if (part->kind != SHAPE_TRANSFORM)
+        return NULL;
+    return is_turned(g, map) || is_of_frame(g, map->shift) ? part : NULL;
+}
+
+/* A box that is turned and scaled by known numbers. */
+static Box turn_box(const Graph *g, const Map *map, Box box)
+{
+    const Node       nodes[]   = {map->scale, map->rows[0], map->rows[1], map->rows[2]};
+    NodeValue        values[5] = {{{0}}};
+    const NodeValue *by[5];
+    for (int i = 0; i < 5; i++)
+        by[i] = &values[i];
+    for (int i = 0; i < 4; i++)
+        memcpy(values[i].v, g->items[nodes[i]].number, sizeof values[i].v);
+    return box_under_map(&box, by);
+}
+
+static MemberPlace place_of(Graph *g, const Shape *part)
+{
+    const Shape *moved  = moved_by(g, part);
+    Crowds      *crowds = graph_crowds(g);
+    if (!moved)
+        return (MemberPlace){part->box, PLACE_FIXED};
+    const Map *map   = &moved->map;
+    const Box  box   = moved->children[0]->box;
+    const Node all[] = {map->scale, map->rows[0], map->rows[1], map->rows[2], map->shift};
+    for (int i = is_turned(g, map) ? 0 : 4; i < 5; i++)
+        array_push(crowds->arena, &crowds->frame_numbers, all[i]);
+    return is_turned(g, map) ? (MemberPlace){box, PLACE_TURNED}
+                             : (MemberPlace){turn_box(g, map, box), PLACE_SHIFT};
+}
+
+/* Where the members of a group are in each frame; nothing if none is known to move. */
+static void find_places(const PartFinder *finder, const CrowdGroup *group, const GroupJoin *join,
+                        Crowd *table)
+{
+    const size_t count = group->members.count;
+    bool         any   = false;
+    for (size_t i = 0; i < count && !join->complement; i++)
+        any = any || moved_by(join->graph, finder->parts[group->members.items[i]]);
+    if (!any)
+        return;
+    table->first_place = (uint32_t)graph_crowds(join->graph)->frame_numbers.count;
+    table->places      = arena_new_array(join->tables, MemberPlace, count);
+    for (size_t i = 0; i < count; i++)
+        table->places[i] = place_of(join->graph, finder->parts[group->members.items[i]]);
+}
+
 /* The distance is right up to `right`. */
 static bool make_crowd(const PartFinder *finder, CrowdGroup *group, const GroupJoin *join,
                        double right, const Box *boxes)
@@ -118,8 +185,9 @@ static bool make_crowd(const PartFinder *finder, CrowdGroup *group, const GroupJ
     double factor = for_bounds(finder, group);
     double reach  = factor * blended_reach(group, join);
     double margin = factor * right;
-    Crowd  table  = {.stretch = factor, .span = join->span};
-    group->slope  = largest_slope(finder, group);
+    Crowd  table  = {.stretch = factor, .span = join->span, .reach = reach, .margin = margin};
+    find_places(finder, group, join, &table);
+    group->slope = largest_slope(finder, group);
     group_make_table(group, join, boxes, reach, margin, table);
     return true;
 }

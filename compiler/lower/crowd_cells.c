@@ -151,6 +151,12 @@ void group_make_cells(const CrowdGroup *group, const GroupJoin *join, const Box 
                       double reach, double margin, Crowd *table)
 {
     size_t texels = row_texels(table);
+    if (table->places) {
+        grid_build_within(&table->grid, boxes, table->rows, reach, margin,
+                          grid_limits_of_frame(table->rows), table->arena, join->scratch);
+        table->cells = table->grid;
+        return;
+    }
     if (make_refined(group, join, boxes, reach, margin, table))
         return;
     grid_build(&table->grid, boxes, table->rows, reach, margin, texels > 0 ? (uint32_t)texels : 1,

@@ -11,10 +11,11 @@
 static LaneTape make_tape(const MeshField *field, Arena *arena)
 {
     const MeshSolid *solid = field->solid;
-    LaneTape tape = lane_tape_new(solid->tape, solid->roots, solid->root_count + solid->zoned, true,
-                                  solid->zoned, arena);
-    tape.output_count = 1;
-    tape.scalars      = arena_new_array(arena, double, tape.scalar_count + 1);
+    const Tape      *of    = solid->tape ? solid->tape : &field->frame->tapes.distance;
+    LaneTape         tape  = lane_tape_new(of, solid->roots, solid->root_count + solid->zoned, true,
+                                           solid->zoned, arena);
+    tape.output_count      = 1;
+    tape.scalars           = arena_new_array(arena, double, tape.scalar_count + 1);
     lane_tape_scalars(&tape, field->frame->values, tape.scalars);
     return tape;
 }

@@ -45,7 +45,7 @@ static KrsStatus open_fields(Mesher *m, KrsFrame *frame)
         memcpy(field->high, m->high, sizeof field->high);
         status = frame_copy_of(frame, &field->frame);
         if (status == KRS_OK) {
-            frame_refresh(field->frame);
+            frame_refresh_points(field->frame);
             field_open(field, &m->arena);
         }
     }

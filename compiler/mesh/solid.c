@@ -9,7 +9,7 @@ size_t solid_root_bytes(const KrsScene *scene)
 void solid_of_components(const KrsScene *scene, const bool *wanted, MeshSolid *solid)
 {
     Node zone   = zone_root(scene);
-    solid->tape = &scene->distance;
+    solid->tape = NULL;
     solid->box  = box_empty;
     for (size_t i = 0; i < scene->component_count; i++)
         if (!wanted || wanted[i])

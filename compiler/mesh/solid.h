@@ -7,7 +7,7 @@
 #include "compiler/program.h"
 
 typedef struct MeshSolid {
-    const Tape *tape;  /* has the roots */
+    const Tape *tape;  /* has the roots; NULL: that of the distance in the frame */
     Node       *roots; /* distances, whose least counts; room for all components and a zone */
     size_t      root_count;
     bool        zoned; /* behind them is the depth in zones */

@@ -246,7 +246,7 @@ static void emit_about_tables(Emitter *e)
     text_add(e->out,
              "// Parts that are alike are rows of krs_rows, a texel buffer of format RGBA32F.\n"
              "// krs_cells, of format RG32UI, says which of them are near a point.  ");
-    text_add(e->out, vary ? "Rows are\n// found for each frame: krs_frame_tables in krs.h.\n"
+    text_add(e->out, vary ? "Both are\n// found for each frame: krs_frame_tables in krs.h.\n"
                           : "Both are\n// equal in all frames: krs_frame_tables in krs.h.\n");
     text_add(e->out,
              "// Far from all of them krs_distance may be less than the distance, never more.\n");

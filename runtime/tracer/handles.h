@@ -126,12 +126,12 @@ struct KrsRendering {
     VkDescriptorSet  scene_set, band_set, points_set;
     Buffer           parameters, frame, control;
     Buffer           table_rows, table_cells; /* krs_frame_tables; none where there are no tables */
-    bool             has_tables;              /* they are on the device */
-    Buffer           sky_table;               /* sky_table.h; none for other skies */
-    uint64_t         sky_version;             /* of the map in it */
-    double           sky_irradiance;          /* by half of it, on the average */
-    float (*frame_rows)[4]; /* rows that vary, as they are on the device; NULL: not there yet */
-    Buffer inputs;          /* lights, then the rays of a list */
+    double (*table_inputs)
+        [4]; /* krs_frame_table_inputs of those on the device; NULL: there are none yet */
+    Buffer   sky_table;      /* sky_table.h; none for other skies */
+    uint64_t sky_version;    /* of the map in it */
+    double   sky_irradiance; /* by half of it, on the average */
+    Buffer   inputs;         /* lights, then the rays of a list */
     /* The control block that kernels use, copied from and to `control`; none where kernels use
        `control` itself. */
     Buffer   device_control;

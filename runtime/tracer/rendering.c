@@ -191,8 +191,7 @@ KrsStatus krs_rendering_update(KrsRendering *rendering, const KrsScene *scene)
         return gpu->status;
     rendering->kernels    = (KernelMap){0};
     rendering->parameters = rendering->table_rows = rendering->table_cells = (Buffer){0};
-    rendering->has_tables                                                  = false;
-    rendering->frame_rows                                                  = NULL;
+    rendering->table_inputs                                                = NULL;
     rendering->zone_slots = rendering->most_zone_slots = 0;
     rendering->camera_relative                         = false;
     set_scene(rendering, scene);
@@ -212,7 +211,7 @@ KrsStatus krs_rendering_update(KrsRendering *rendering, const KrsScene *scene)
     buffer_destroy(gpu, &dropped.parameters);
     buffer_destroy(gpu, &dropped.table_rows);
     buffer_destroy(gpu, &dropped.table_cells);
-    gpu_release(gpu, dropped.frame_rows);
+    gpu_release(gpu, dropped.table_inputs);
     return ready ? KRS_OK : status;
 }
 
@@ -248,7 +247,7 @@ void krs_rendering_free(KrsRendering *rendering)
     kernels_destroy(gpu, &rendering->kernels);
     if (!gpu->stuck)
         vkDestroyDescriptorPool(gpu->device, rendering->pool, NULL);
-    gpu_release(gpu, rendering->frame_rows);
+    gpu_release(gpu, rendering->table_inputs);
     gpu_release(gpu, rendering);
 }
 

@@ -58,66 +58,51 @@ void scene_tables_bind(KrsRendering *rendering)
                                : layouts_idle_table(rendering->renderer, binding));
 }
 
-static bool copy(Gpu *gpu, const Buffer *from, const Buffer *to)
+static bool copy(Gpu *gpu, const Buffer *from, const Buffer *to, VkDeviceSize bytes)
 {
     double ms = 0;
     if (!gpu_begin(gpu))
         return false;
-    vkCmdCopyBuffer(gpu->commands, from->buffer, to->buffer, 1, &(VkBufferCopy){0, 0, from->size});
+    vkCmdCopyBuffer(gpu->commands, from->buffer, to->buffer, 1, &(VkBufferCopy){0, 0, bytes});
     return gpu_finish(gpu, &ms);
 }
 
-static bool upload_all(KrsRendering *rendering, const KrsFrame *frame)
+static bool upload(KrsRendering *rendering, const KrsFrame *frame)
 {
     Gpu   *gpu  = &rendering->renderer->gpu;
     Buffer rows = {0}, cells = {0};
+    size_t row_count, cell_count;
+    bool   done = false;
     if (buffer_create(gpu, &rows, rendering->table_rows.size, SHARED, TABLES) &&
         buffer_create(gpu, &cells, rendering->table_cells.size, SHARED, TABLES)) {
-        krs_frame_tables(frame, rows.bytes, cells.bytes);
-        rendering->has_tables = copy(gpu, &rows, &rendering->table_rows) &&
-                                copy(gpu, &cells, &rendering->table_cells);
+        krs_frame_tables_in_use(frame, rows.bytes, cells.bytes, &row_count, &cell_count);
+        done = copy(gpu, &rows, &rendering->table_rows, row_count * ROW_BYTES) &&
+               copy(gpu, &cells, &rendering->table_cells, cell_count * CELL_BYTES);
     }
     buffer_destroy(gpu, &rows);
     buffer_destroy(gpu, &cells);
-    return rendering->has_tables;
-}
-
-static bool upload_rows(KrsRendering *rendering, const void *rows, size_t bytes)
-{
-    Gpu   *gpu    = &rendering->renderer->gpu;
-    Buffer staged = {0};
-    bool   done   = buffer_create(gpu, &staged, rendering->table_rows.size, SHARED, TABLES);
-    if (done) {
-        memcpy(staged.bytes, rows, bytes);
-        done = copy(gpu, &staged, &rendering->table_rows);
-    }
-    buffer_destroy(gpu, &staged);
     return done;
 }
 
-/* Rows are those of the frame, unless they are so already. */
-static bool renew_rows(KrsRendering *rendering, const KrsFrame *frame)
+/* The tables are those of the frame, unless they are so already. */
+static bool renew(KrsRendering *rendering, const KrsFrame *frame)
 {
-    Gpu   *gpu        = &rendering->renderer->gpu;
-    size_t texels     = rendering->program->table_rows;
-    float(*rows)[4]   = gpu_alloc(gpu, texels, sizeof *rows, "set the " TABLES);
-    float(*before)[4] = rendering->frame_rows;
-    if (!rows)
+    Gpu   *gpu         = &rendering->renderer->gpu;
+    size_t slots       = rendering->program->parameter_slots;
+    double(*inputs)[4] = gpu_alloc(gpu, slots, sizeof *inputs, "set the " TABLES);
+    double(*before)[4] = rendering->table_inputs;
+    if (!inputs)
         return false;
-    krs_frame_rows(frame, rows);
-    bool same = before && memcmp(before, rows, texels * sizeof *rows) == 0;
-    bool done = same || upload_rows(rendering, rows, texels * sizeof *rows);
-    gpu_release(gpu, done ? before : rows);
+    krs_frame_table_inputs(frame, inputs);
+    bool same = before && memcmp(before, inputs, slots * sizeof *inputs) == 0;
+    bool done = same || upload(rendering, frame);
+    gpu_release(gpu, done ? before : inputs);
     if (done)
-        rendering->frame_rows = rows;
+        rendering->table_inputs = inputs;
     return done;
 }
 
 bool scene_tables_upload(KrsRendering *rendering, const KrsFrame *frame)
 {
-    if (rendering->program->table_cells == 0)
-        return true;
-    if (!rendering->has_tables && !upload_all(rendering, frame))
-        return false;
-    return !rendering->program->rows_vary || renew_rows(rendering, frame);
+    return rendering->program->table_cells == 0 || renew(rendering, frame);
 }

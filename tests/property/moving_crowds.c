@@ -10,7 +10,23 @@
 
 #include <cmocka.h>
 
+#include "compiler/graph/crowd_frame.h"
 #include "tests/property/crowd_parts.h"
+
+/* In a colour that a number of the frame makes brighter. */
+static const Shape *tinted(const Shape *shape, Node number)
+{
+    Graph    *g        = builder.graph;
+    Node      bright   = graph_op2(g, OP_mul, number, number);
+    Material *material = arena_new(&arena, Material);
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    material->name = NODE_NONE;
+#include "compiler/shape/surface.def"
+    material->bump  = NODE_NONE;
+    material->name  = "moving";
+    material->color = graph_op3(g, OP_vec3, bright, graph_number(g, between(0, 1)), bright);
+    return make_paint(&builder, shape, material, no_place);
+}
 
 /* Its place, its turn and its colour depend on the time, or on the parameter as well; some of its
    numbers are known. */
@@ -31,17 +47,8 @@ static const Shape *moving_part(bool of_parameter)
            .shift = graph_op3(g, OP_vec3, graph_number(g, x),
                            of_parameter ? graph_op2(g, OP_mul, y, up) : y, graph_number(g, z)),
            .pole  = NODE_NONE};
-    Node      bright   = graph_op2(g, OP_mul, sine, sine);
-    Material *material = arena_new(&arena, Material);
-#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
-    material->name = NODE_NONE;
-#include "compiler/shape/surface.def"
-    material->bump     = NODE_NONE;
-    material->name     = "moving";
-    material->color    = graph_op3(g, OP_vec3, bright, graph_number(g, between(0, 1)), bright);
     const Shape *shape = ring(between(0.1, 0.3), between(0.02, 0.08));
-    return make_paint(&builder, make_transform(&builder, shape, &map, no_place), material,
-                      no_place);
+    return tinted(make_transform(&builder, shape, &map, no_place), sine);
 }
 
 static const Shape *moving_union(void)
@@ -69,6 +76,102 @@ static void moving_parts(void **state)
         height = i == 0 ? 1 : between(0, 1);
         assert_right(compare_lowered(all, apart, crowd, 3.5));
     }
+}
+
+/* ---- grids of a frame ---- */
+
+/* Moved as far as the time says, behind a turn that is known; or all of it is known. */
+static const Shape *shifted_part(bool known)
+{
+    Graph *g    = builder.graph;
+    double turn = between(0, 6), x = between(-3, 3), y = between(-3, 3), z = between(-3, 3);
+    Node   time = known ? graph_number(g, between(-20, 20)) : graph_parameter(g, 0, TYPE_FLOAT);
+    Node   sine = graph_op1(g, OP_sin, graph_op2(g, OP_add, time, graph_number(g, between(0, 6))));
+    Node   up   = graph_op2(g, OP_add, graph_op2(g, OP_mul, sine, graph_number(g, 2)),
+                            graph_number(g, y));
+    Map    map  = {.scale = graph_number(g, between(0.5, 1.5)),
+                   .rows  = {graph_vec3(g, cos(turn), sin(turn), 0),
+                             graph_vec3(g, -sin(turn), cos(turn), 0), graph_vec3(g, 0, 0, 1)},
+                   .shift = graph_op3(g, OP_vec3, graph_number(g, x), up, graph_number(g, z)),
+                   .pole  = NODE_NONE};
+    const Shape *shape = ring(between(0.1, 0.3), between(0.02, 0.08));
+    return tinted(make_transform(&builder, shape, &map, no_place), sine);
+}
+
+static const Shape *union_of_all_kinds(void)
+{
+    const Shape  **parts = arena_new_array(&arena, const Shape *, PARTS);
+    GraphParameter range = {{0}, {1}};
+    array_push(&arena, &builder.graph->parameters, range);
+    for (int i = 0; i < PARTS; i++)
+        parts[i] = i % 3 == 0 ? moving_part(i % 2) : shifted_part(i % 3 == 1);
+    return make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
+}
+
+static double mean_list(const Grid *grid)
+{
+    size_t cells = grid_cell_count(grid);
+    return grid->first[cells] / (double)cells;
+}
+
+/* At how many points lists of cells, and all else that may be nearest, make distances too large. */
+static int count_missed(const Seen *apart, const Seen *crowd, bool by_cells)
+{
+    Seen cells          = *crowd;
+    int  missed         = 0;
+    cells.tape.by_cells = by_cells;
+    for (int i = 0; i < POINTS; i++) {
+        double p[3];
+        random_vector(&randomness, 3.5, p);
+        missed += look(&cells, p) > look(apart, p) + 1e-12;
+    }
+    return missed;
+}
+
+/* The grids of the frame that is now. */
+static void enter_frame_now(Crowds *crowds)
+{
+    Graph     *g    = builder.graph;
+    Tape       tape = tape_new(g, crowds->frame_numbers.items, crowds->frame_numbers.count, &arena);
+    NodeValue *values = arena_new_array(&arena, NodeValue, g->count);
+    tape_run_frame(&tape, (NodeValue[]){{{now}}, {{height}}}, values);
+    crowds_enter_frame(crowds, values, &arena, &scratch);
+}
+
+/* Lists of a frame are shorter than those for all frames, and miss nobody in it; those of another frame
+   do. */
+static void frames_have_grids(void **state)
+{
+    (void)state;
+    Graph       *g      = builder.graph;
+    const Shape *all    = union_of_all_kinds();
+    Seen         apart  = lower(all, NULL);
+    Seen         crowd  = lower(all, lowered_crowds_new(g, &arena, &arena, LEAST));
+    Crowds      *always = g->crowds;
+    const size_t tables = always->tables.count;
+    int          others = 0;
+    assert_true(tables > 0 && crowds_move(always));
+    g->crowds = crowds_for_frames(always, &arena);
+    for (int i = 0; i < 6; i++) {
+        if (i > 0) {
+            prepare(&apart);
+            prepare(&crowd);
+            others += count_missed(&apart, &crowd, true) + count_missed(&apart, &crowd, false);
+        }
+        now    = between(-20, 20);
+        height = between(0, 1);
+        enter_frame_now(g->crowds);
+        prepare(&apart);
+        prepare(&crowd);
+        assert_right(compare_lowered(all, apart, crowd, 3.5));
+        assert_int_equal(count_missed(&apart, &crowd, true), 0);
+        for (size_t t = 0; t < tables; t++)
+            assert_true(!always->tables.items[t].places ||
+                        mean_list(&g->crowds->tables.items[t].cells) <
+                            0.7 * mean_list(&always->tables.items[t].cells));
+        now += 1.5;
+    }
+    assert_true(others > POINTS / 20);
 }
 
 /* A pass that makes a graph takes the frame's numbers along. */
@@ -134,6 +237,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(moving_parts),
+        TEST(frames_have_grids),
         TEST(moving_parts_are_simplified),
         TEST(infinite_numbers_are_found),
     };

@@ -1,0 +1,90 @@
+/*
+ * moving_scenes.c: crowds that parameters and the time move, turn and scale: in each frame they are those
+ * of a scene in which these numbers are known.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "compiler/compile.h"
+#include "tests/support/random.h"
+
+enum { POINTS = 2000 };
+
+static Random randomness = {1};
+
+static double between(double low, double high) { return random_between(&randomness, low, high); }
+
+static const char scene_text[] =
+    "%s"
+    "def place(i) = [gap * (i %% 20 - 10), sin(beat + i), 2 * floor(i / 20) - 10];"
+    "show union([union([sphere(0.3), box([0.4, 0.4, 0.4]).move([0.3, 0, 0])]).rotate([0, 1, 0], "
+    "turn * i)"
+    ".scale(0.5 + 0.1 * gap).move(place(i)).paint(#808080) for i in 0..400]);"
+    "show union([sphere(0.4).move([i - 100, gap, 3 * sin(beat)]) for i in 0..200], blend: 0.1);";
+
+static KrsFrame *frame_of(const char *declared, KrsScene **scene)
+{
+    char      text[1024];
+    KrsFrame *frame;
+    snprintf(text, sizeof text, scene_text, declared);
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, scene), KRS_OK);
+    assert_int_equal(krs_frame_new(*scene, &frame), KRS_OK);
+    return frame;
+}
+
+/* Whether answers in a frame are those of a scene in which its numbers are known. */
+static void assert_same_answers(KrsFrame *frame, KrsFrame *known)
+{
+    double points[POINTS][3], is[POINTS], wanted[POINTS], bounds[POINTS];
+    for (int i = 0; i < POINTS; i++)
+        random_vector(&randomness, 12, points[i]);
+    const double(*p)[3] = (const double(*)[3])points;
+    assert_int_equal(krs_distance(frame, p, POINTS, is), KRS_OK);
+    assert_int_equal(krs_distance(known, p, POINTS, wanted), KRS_OK);
+    assert_int_equal(krs_distance_bound(frame, p, POINTS, bounds), KRS_OK);
+    for (int i = 0; i < POINTS; i++) {
+        assert_true(fabs(is[i] - wanted[i]) < 1e-9);
+        assert_true(bounds[i] < wanted[i] + 1e-9);
+        double alone; /* without lanes */
+        assert_int_equal(krs_distance(frame, p + i, 1, &alone), KRS_OK);
+        assert_true(alone == is[i]);
+    }
+}
+
+static void frames_are_scenes(void **state)
+{
+    (void)state;
+    KrsScene *scene, *other;
+    KrsFrame *frame = frame_of(
+        "param gap = 1 in [0.5, 3]; param turn = 1 in [0, 6]; let beat = time;", &scene);
+    for (int i = 0; i < 4; i++) {
+        double gap = between(0.5, 3), turn = between(0, 6), beat = between(-9, 9);
+        char   declared[128];
+        snprintf(declared, sizeof declared, "let gap = %.17g; let turn = %.17g; let beat = %.17g;",
+                 gap, turn, beat);
+        KrsFrame *known = frame_of(declared, &other);
+        assert_int_equal(krs_frame_set(frame, "gap", &gap, 1), KRS_OK);
+        assert_int_equal(krs_frame_set(frame, "turn", &turn, 1), KRS_OK);
+        assert_int_equal(krs_frame_set_time(frame, beat), KRS_OK);
+        assert_same_answers(frame, known);
+        krs_frame_free(known);
+        krs_scene_free(other);
+    }
+    krs_frame_free(frame);
+    krs_scene_free(scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(frames_are_scenes),
+    };
+    return cmocka_run_group_tests_name("moving scenes", tests, NULL, NULL);
+}
