@@ -11,9 +11,9 @@ const char *const look_names[LOOK_COUNT] = {
 #undef LOOK
 };
 
-/* The least and the greatest of what a picture shows. */
+/* The least and the greatest of what a picture shows; and the depth in the middle. */
 typedef struct Range {
-    double low, high;
+    double low, high, middle;
 } Range;
 
 static void set(uint8_t *pixel, double r, double g, double b)
@@ -46,19 +46,35 @@ static void set_number(uint8_t *pixel, uint32_t number, double shade)
         shade * (0.6 + 0.35 * cos(hue + 2.1)));
 }
 
-static double value_at(const KrsPicture *picture, Look look, size_t at)
+/* The geometric mean of the depths, or 1. */
+static double middle_depth(const KrsPicture *picture)
 {
-    return look == LOOK_DEPTH    ? picture->depth[at]
+    double       sum = 0, used = 0;
+    const size_t count = (size_t)picture->window.width * picture->window.height;
+    for (size_t i = 0; i < count; i++)
+        if (isfinite(picture->depth[i]) && picture->depth[i] > 0) {
+            sum += log(picture->depth[i]);
+            used++;
+        }
+    return used > 0 ? exp(sum / used) : 1;
+}
+
+/* Of depths, a number that grows with them up to 1: a floor to the horizon leaves the differences of
+   what is near. */
+static double value_at(const KrsPicture *picture, Look look, double middle, size_t at)
+{
+    const double depth = fmax(picture->depth[at], 0);
+    return look == LOOK_DEPTH    ? depth / (depth + middle)
            : look == LOOK_LEVELS ? picture->level[at]
                                  : picture->steps[at];
 }
 
 static Range find_range(const KrsPicture *picture, Look look)
 {
-    Range        range = {INFINITY, -INFINITY};
+    Range        range = {INFINITY, -INFINITY, look == LOOK_DEPTH ? middle_depth(picture) : 1};
     const size_t count = (size_t)picture->window.width * picture->window.height;
     for (size_t i = 0; i < count; i++) {
-        const double value = value_at(picture, look, i);
+        const double value = value_at(picture, look, range.middle, i);
         if (!isfinite(value))
             continue;
         range.low  = fmin(range.low, value);
@@ -81,7 +97,7 @@ static void color_pixel(const KrsPicture *picture, Look look, Range range, size_
 {
     const float *n    = &picture->normal[3 * at];
     const double size = fmax(range.high - range.low, 1e-9);
-    const double part = (value_at(picture, look, at) - range.low) / size;
+    const double part = (value_at(picture, look, range.middle, at) - range.low) / size;
     if (look == LOOK_STEPS)
         set_heat(pixel, part);
     else if (picture->component[at] == 0)

@@ -94,15 +94,32 @@ void place(GuiCorner corner, float below)
         ImGui::SetNextWindowPos(at, ImGuiCond_Always, ImVec2(right ? 1 : 0, low ? 1 : 0));
 }
 
+// A text, or what of it fits into a width and three dots: then its tip has it all.
+void text_within(const char *text, const char *end, float width)
+{
+    const char *cut = end;
+    if (ImGui::CalcTextSize(text, end).x <= width) {
+        ImGui::TextUnformatted(text, end);
+        return;
+    }
+    width -= ImGui::CalcTextSize("...").x;
+    while (cut > text && ((*cut & 0xC0) == 0x80 || ImGui::CalcTextSize(text, cut).x > width))
+        cut--;
+    ImGui::Text("%.*s...", static_cast<int>(cut - text), text);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("%.*s", static_cast<int>(end - text), text);
+}
+
 // The label stands to the left; what is behind it takes the rest of the line.
 void label_left(const char *label)
 {
-    const char *end = label;
+    const float behind = labels * ImGui::GetWindowWidth();
+    const char *end    = label;
     while (*end && !(end[0] == '#' && end[1] == '#'))
         end++;
     ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(label, end);
-    ImGui::SameLine(labels * ImGui::GetWindowWidth());
+    text_within(label, end, behind - ImGui::GetCursorPosX() - ImGui::GetStyle().ItemSpacing.x);
+    ImGui::SameLine(behind);
     ImGui::SetNextItemWidth(-1);
     ImGui::PushID(label);
 }
@@ -191,6 +208,8 @@ void gui_panel(const char *name, GuiPlace where, bool quiet)
     ImGui::SetNextWindowSizeConstraints(ImVec2(where.width, 0), ImVec2(wide, high));
     if (quiet)
         ImGui::SetNextWindowBgAlpha(0.72f);
+    else if (where.corner == GUI_CENTER) // it is read, and much of it
+        ImGui::SetNextWindowBgAlpha(0.97f);
     if (navigated && std::strcmp(navigated, name) == 0) {
         ImGui::SetNextWindowFocus();
         navigated = nullptr;

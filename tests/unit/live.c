@@ -17,6 +17,7 @@
 #include "compiler/krs_camera.h"
 #include "live/cut.h"
 #include "live/document.h"
+#include "live/false_color.h"
 #include "live/history.h"
 #include "live/presets.h"
 #include "live/text_edit.h"
@@ -82,6 +83,28 @@ static void what_is_grabbed_stays_under_the_mouse(void **state)
         project(&camera, point, after);
         assert_true(fabs(after[0] - before[0]) < 1e-9 && fabs(after[1] - before[1]) < 1e-9);
     }
+}
+
+/* With a floor to the horizon in the picture, things at 5 and at 7 are told apart; near is bright. */
+static void depths_before_a_horizon_differ(void **state)
+{
+    (void)state;
+    enum { SIDE = 10, PIXELS = SIDE * SIDE };
+    float      depth[PIXELS], normal[3 * PIXELS] = {0};
+    uint32_t   component[PIXELS];
+    uint8_t    pixels[4 * PIXELS];
+    KrsPicture picture = {.window    = {.width = SIDE, .height = SIDE},
+                          .depth     = depth,
+                          .normal    = normal,
+                          .component = component};
+    for (int i = 0; i < PIXELS; i++) {
+        depth[i]     = i < 10 ? 900 * (float)(i + 1) : i < 50 ? 5 : 7;
+        component[i] = 1;
+    }
+    false_color(&picture, LOOK_DEPTH, NULL, pixels);
+    assert_true(pixels[4 * 10] > pixels[4 * 60] + 20);
+    assert_true(pixels[4 * 60] > pixels[4 * 9] + 20);
+    assert_int_equal(pixels[4 * 10], 255);
 }
 
 static void boxes_are_framed(void **state)
@@ -431,6 +454,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(turns_keep_the_target),
         cmocka_unit_test(what_is_grabbed_stays_under_the_mouse),
+        cmocka_unit_test(depths_before_a_horizon_differ),
         cmocka_unit_test(boxes_are_framed),
         cmocka_unit_test(defaults_are_written),
         cmocka_unit_test(ends_of_ranges_are_written),
