@@ -96,56 +96,80 @@ static uint32_t known_planes(const Options *options)
     return options->aovs == KRS_PLANE_ALL ? KRS_PLANE_ALL & ~KRS_PLANE_NOISE : KRS_PLANE_ALL;
 }
 
+/* The size of the picture and its samples, which --limit may be too few for. */
+static KrsStatus choose_size(Render *render, const KrsImage *image)
+{
+    const Options    *options = render->options;
+    const Limits     *limits  = &options->limits;
+    KrsRenderOptions *how     = &render->how;
+    const uint32_t    asked   = options->how.samples;
+    how->width                = first_of(how->width, image->width, KRS_DEFAULT_WIDTH);
+    how->height               = first_of(how->height, image->height, KRS_DEFAULT_HEIGHT);
+    render->samples           = first_of(asked, image->samples,
+                               render->noise ? KRS_DEFAULT_NOISY_SAMPLES : KRS_DEFAULT_SAMPLES);
+    KrsStatus status          = check_limit(options, "pixels", (uint64_t)how->width * how->height,
+                                            limits->pixels, options->how.width == 0);
+    if (status == KRS_OK)
+        status = check_limit(options, "samples", render->samples, limits->samples, asked == 0);
+    return status;
+}
+
+/* What does not go together; the size and the planes are chosen. */
+static KrsStatus check_how(const Render *render)
+{
+    const Options          *options = render->options;
+    const KrsRenderOptions *how     = &render->how;
+    const KrsWindow        *crop    = &how->crop;
+    if (crop->x + crop->width > how->width || crop->y + crop->height > how->height)
+        return say_usage(options, "--crop %u,%u,%u,%u is not inside of a picture of %ux%u", crop->x,
+                         crop->y, crop->width, crop->height, how->width, how->height);
+    if (options->light_groups && render->noise)
+        return say_usage(options,
+                         "--light-groups add up to the picture; where samples end by noise "
+                         "they do not");
+    if (options->light_groups && how->planes & KRS_PLANE_NOISE)
+        return say_usage(options, "--light-groups have no estimate of their noise");
+    return KRS_OK;
+}
+
+static bool writes_exr(const Render *render)
+{
+    for (size_t i = 0; i < render->output_count; i++)
+        if (file_form(render->outputs[i]) == FORM_EXR)
+            return true;
+    return false;
+}
+
 /* Size, crop and what else the options and the scene's image block say together. */
 static KrsStatus choose_how(Render *render)
 {
-    const Options *options = render->options;
-    KrsView        view;
-    size_t         camera;
-    KrsStatus      status = find_camera(options, render->scene, &camera);
+    const Options    *options = render->options;
+    KrsRenderOptions *how     = &render->how;
+    KrsView           view;
+    size_t            camera;
+    KrsStatus         status = find_camera(options, render->scene, &camera);
     if (status == KRS_OK)
         status = krs_frame_view(render->frame, camera, &view);
     if (status != KRS_OK)
         return status;
-    KrsRenderOptions *how     = &render->how;
-    const uint32_t    asked   = options->how.samples;
-    const bool        noise   = options->how.noise > 0 || view.image.noise > 0;
-    const uint32_t    samples = first_of(asked, view.image.samples,
-                                      noise ? KRS_DEFAULT_NOISY_SAMPLES : KRS_DEFAULT_SAMPLES);
-    const KrsWindow  *crop    = &options->how.crop;
-    *how                      = options->how;
-    how->width                = first_of(how->width, view.image.width, KRS_DEFAULT_WIDTH);
-    how->height               = first_of(how->height, view.image.height, KRS_DEFAULT_HEIGHT);
-    status                    = check_limit(options, "pixels", (uint64_t)how->width * how->height,
-                                            options->limits.pixels, options->how.width == 0);
-    if (status == KRS_OK)
-        status = check_limit(options, "samples", samples, options->limits.samples, asked == 0);
+    *how          = options->how;
+    render->noise = options->how.noise > 0 || view.image.noise > 0;
+    status        = choose_size(render, &view.image);
     if (status != KRS_OK)
         return status;
-    if (crop->x + crop->width > how->width || crop->y + crop->height > how->height)
-        return say_usage(options, "--crop %u,%u,%u,%u is not inside of a picture of %ux%u", crop->x,
-                         crop->y, crop->width, crop->height, how->width, how->height);
-    if (noise && options->light_groups)
-        return say_usage(options,
-                         "--light-groups add up to the picture; where samples end by noise "
-                         "they do not");
-    bool exr = false;
-    for (size_t i = 0; i < render->output_count; i++)
-        exr = exr || file_form(render->outputs[i]) == FORM_EXR;
-    render->samples    = samples;
     how->camera        = camera;
     how->seed          = options->seed;
     how->frame_seconds = 1 / options->fps;
-    how->planes = picture_planes(options, exr) & (noise ? UINT32_MAX : known_planes(options));
-    if (options->light_groups && how->planes & KRS_PLANE_NOISE)
-        return say_usage(options, "--light-groups have no estimate of their noise");
+    how->planes        = picture_planes(options, writes_exr(render));
+    if (!render->noise)
+        how->planes &= known_planes(options);
     if (!isnan(options->exposure))
         how->noise_floor = KRS_DEFAULT_NOISE_FLOOR * exp2(-options->exposure);
     how->light_groups = options->light_groups;
     how->integrator   = find_integrator(how->integrator, view.image.integrator);
     how->progress     = show_progress;
     how->user         = render;
-    return KRS_OK;
+    return check_how(render);
 }
 
 static void show_stats(Render *render, const KrsRenderStats *stats, uint32_t frame)

@@ -20,6 +20,7 @@ typedef struct Render {
     float           *depth; /* of another renderer, for the frame at hand; NULL: none */
     float (*plate)[4];
     uint32_t   samples; /* of a pixel, also where `how` leaves it to the scene */
+    bool       noise;   /* its samples end where their noise is low */
     Progress   progress;
     Checkpoint checkpoint;
     bool (*outdated)(
