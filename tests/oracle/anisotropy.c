@@ -375,8 +375,5 @@ int main(void)
         cmocka_unit_test(a_highlight_is_as_long_as_its_widths_say),
         cmocka_unit_test(no_light_is_lost),
     };
-    spirv_start(); /* held for all, so that the shader compiler is not started anew */
-    int failed = cmocka_run_group_tests_name("anisotropy", tests, open_plate, close_plate);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("anisotropy", tests, open_plate, close_plate);
 }

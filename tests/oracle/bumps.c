@@ -126,8 +126,5 @@ static void normals_are_those_of_a_wave(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(normals_are_those_of_a_wave)};
-    spirv_start();
-    int failed = cmocka_run_group_tests_name("bumps", tests, renderer_open, renderer_close);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("bumps", tests, renderer_open, renderer_close);
 }

@@ -342,9 +342,5 @@ int main(int count, char **words)
         cmocka_set_test_filter(words[1]);
     const struct CMUnitTest tests[] = {cmocka_unit_test(pictures_are_right),
                                        cmocka_unit_test(rays_are_right)};
-    spirv_start();
-    int failed = cmocka_run_group_tests_name("pictures of chains", tests, renderer_open,
-                                             renderer_close);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("pictures of chains", tests, renderer_open, renderer_close);
 }

@@ -367,8 +367,5 @@ int main(void)
         cmocka_unit_test(more_samples_have_less_noise),
         cmocka_unit_test(rays_of_each_layer_are_even),
     };
-    spirv_start(); /* held for all, so that the shader compiler is not started anew */
-    int failed = cmocka_run_group_tests_name("cornell", tests, renderer_open, renderer_close);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("cornell", tests, renderer_open, renderer_close);
 }

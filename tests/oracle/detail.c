@@ -121,23 +121,11 @@ static void small_mirrors_do_not_glitter(void **state)
     free_all(taken);
 }
 
-static int begin(void **state)
-{
-    spirv_start(); /* held for all, so that the shader compiler is not started anew */
-    return renderer_open(state);
-}
-
-static int end(void **state)
-{
-    spirv_stop();
-    return renderer_close(state);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(wires_do_not_glitter),
         cmocka_unit_test(small_mirrors_do_not_glitter),
     };
-    return cmocka_run_group_tests_name("detail", tests, begin, end);
+    return cmocka_run_group_tests_name("detail", tests, renderer_open, renderer_close);
 }

@@ -461,9 +461,6 @@ int main(void)
         cmocka_unit_test(inversions_agree), cmocka_unit_test(parameters_agree),
         cmocka_unit_test(frames_agree),     cmocka_unit_test(a_fault_is_found),
     };
-    spirv_start();
-    int failed = cmocka_run_group_tests_name("device and evaluator", tests, renderer_open,
-                                             renderer_close);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("device and evaluator", tests, renderer_open,
+                                       renderer_close);
 }

@@ -143,9 +143,7 @@ int main(int argc, char **argv)
     }
     for (int i = 1; i < argc && count <= MOST; i++)
         tests[count++] = (struct CMUnitTest){argv[i], an_example_agrees, NULL, NULL, argv[i]};
-    spirv_start();
     int failed = _cmocka_run_group_tests("drivers", tests, count, renderer_open, close_both);
-    spirv_stop();
     globfree(&examples);
     return failed;
 }

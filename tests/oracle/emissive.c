@@ -207,8 +207,5 @@ int main(void)
         cmocka_unit_test(a_ball_may_be_anywhere),      cmocka_unit_test(balls_may_be_far_away),
         cmocka_unit_test(paths_of_one_bounce_find_it), cmocka_unit_test(the_sky_stays_as_it_is),
     };
-    spirv_start(); /* held for all, so that the shader compiler is not started anew */
-    int failed = cmocka_run_group_tests_name("emissive", tests, open_floor, close_floor);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("emissive", tests, open_floor, close_floor);
 }

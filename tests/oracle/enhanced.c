@@ -132,8 +132,5 @@ int main(void)
         cmocka_unit_test(starts_bring_all_light),
         cmocka_unit_test(glass_loses_nothing),
     };
-    spirv_start(); /* held for all, so that the shader compiler is not started anew */
-    int failed = cmocka_run_group_tests_name("enhanced", tests, renderer_open, renderer_close);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("enhanced", tests, renderer_open, renderer_close);
 }

@@ -381,8 +381,5 @@ int main(void)
         cmocka_unit_test(previews_show_a_lamp_as_paths_do),
         cmocka_unit_test(unlayered_previews_lose_nothing),
     };
-    spirv_start(); /* held for all, so that the shader compiler is not started anew */
-    int failed = cmocka_run_group_tests_name("furnace", tests, open_furnace, close_furnace);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("furnace", tests, open_furnace, close_furnace);
 }

@@ -316,8 +316,5 @@ int main(void)
         cmocka_unit_test(rooms_are_lit_right),
         cmocka_unit_test(faults_are_found),
     };
-    spirv_start();
-    int failed = cmocka_run_group_tests_name("light", tests, renderer_open, renderer_close);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("light", tests, renderer_open, renderer_close);
 }

@@ -320,8 +320,5 @@ int main(void)
         cmocka_unit_test(hollows_are_empty),         cmocka_unit_test(solids_touch_glass),
         cmocka_unit_test(cameras_look_out_of_glass), cmocka_unit_test(previews_light_through_glass),
     };
-    spirv_start(); /* held for all, so that the shader compiler is not started anew */
-    int failed = cmocka_run_group_tests_name("media", tests, renderer_open, renderer_close);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("media", tests, renderer_open, renderer_close);
 }

@@ -447,8 +447,5 @@ int main(void)
         cmocka_unit_test(rooms_are_as_open_as_rays_say),
         cmocka_unit_test(wrong_openness_is_found),
     };
-    spirv_start();
-    int failed = cmocka_run_group_tests_name("occlusion", tests, renderer_open, renderer_close);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("occlusion", tests, renderer_open, renderer_close);
 }

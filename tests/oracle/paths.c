@@ -409,8 +409,5 @@ int main(void)
         cmocka_unit_test(water_mirrors_the_sky),   cmocka_unit_test(lights_light_a_floor),
         cmocka_unit_test(lights_add_up),
     };
-    spirv_start(); /* held for all, so that the shader compiler is not started anew */
-    int failed = cmocka_run_group_tests_name("paths", tests, renderer_open, renderer_close);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("paths", tests, renderer_open, renderer_close);
 }

@@ -459,8 +459,5 @@ int main(void)
         cmocka_unit_test_setup_teardown(without_a_filter_there_is_moire, enter_folder,
                                         leave_folder),
     };
-    spirv_start();
-    int failed = cmocka_run_group_tests_name("patterns", tests, renderer_open, renderer_close);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("patterns", tests, renderer_open, renderer_close);
 }

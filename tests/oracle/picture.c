@@ -225,9 +225,6 @@ int main(void)
         cmocka_unit_test(the_inside_of_solids_agrees),
         cmocka_unit_test(a_fault_is_found),
     };
-    spirv_start();
-    int failed = cmocka_run_group_tests_name("pictures against exact rays", tests, renderer_open,
-                                             renderer_close);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("pictures against exact rays", tests, renderer_open,
+                                       renderer_close);
 }

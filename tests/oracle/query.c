@@ -188,9 +188,5 @@ int main(void)
         cmocka_unit_test(zones_come_and_go),
         cmocka_unit_test(a_zone_looks_like_a_difference),
     };
-    spirv_start();
-    int failed = cmocka_run_group_tests_name("device queries", tests, renderer_open,
-                                             renderer_close);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("device queries", tests, renderer_open, renderer_close);
 }

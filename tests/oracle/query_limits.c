@@ -242,9 +242,6 @@ int main(void)
         cmocka_unit_test(wrong_questions_are_refused), cmocka_unit_test(wrong_answers_are_refused),
         cmocka_unit_test(memory_may_run_out),
     };
-    spirv_start();
-    int failed = cmocka_run_group_tests_name("limits of device queries", tests, renderer_open,
-                                             renderer_close);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("limits of device queries", tests, renderer_open,
+                                       renderer_close);
 }

@@ -200,8 +200,5 @@ int main(void)
         cmocka_unit_test(materials_on_the_device),
         cmocka_unit_test(only_fine_detail_is_filtered),
     };
-    spirv_start();
-    int failed = cmocka_run_group_tests_name("shading", tests, renderer_open, renderer_close);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("shading", tests, renderer_open, renderer_close);
 }

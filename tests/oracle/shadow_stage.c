@@ -248,8 +248,5 @@ static int close_all(void **state)
 
 int run_shadow_tests(const char *name, const struct CMUnitTest *tests, size_t count)
 {
-    spirv_start(); /* held for all, so that no renderer starts the shader compiler anew */
-    int failed = _cmocka_run_group_tests(name, tests, count, renderer_open, close_all);
-    spirv_stop();
-    return failed;
+    return _cmocka_run_group_tests(name, tests, count, renderer_open, close_all);
 }

@@ -297,8 +297,5 @@ int main(void)
         tests[count++] = (struct CMUnitTest){names[i], sheets_cast_shadows, NULL, NULL, sheet};
     }
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(thickness_is_given);
-    spirv_start(); /* held for all, so that no renderer starts the shader compiler anew */
-    int failed = _cmocka_run_group_tests("sheets", tests, count, renderer_open, renderer_close);
-    spirv_stop();
-    return failed;
+    return _cmocka_run_group_tests("sheets", tests, count, renderer_open, renderer_close);
 }

@@ -252,8 +252,5 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(normals_are_those_of_one_side),
     };
-    spirv_start();
-    int failed = cmocka_run_group_tests_name("sides", tests, renderer_open, renderer_close);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("sides", tests, renderer_open, renderer_close);
 }

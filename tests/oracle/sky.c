@@ -318,17 +318,9 @@ static void more_samples_err_less(void **state)
     assert_true(many < few / 3.5);
 }
 
-static int begin(void **state)
-{
-    spirv_start(); /* held for all, so that the shader compiler is not started anew */
-    return enter_folder(state) || renderer_open(state);
-}
+static int begin(void **state) { return enter_folder(state) || renderer_open(state); }
 
-static int end(void **state)
-{
-    spirv_stop();
-    return renderer_close(state) || leave_folder(state);
-}
+static int end(void **state) { return renderer_close(state) || leave_folder(state); }
 
 int main(void)
 {

@@ -154,23 +154,11 @@ static void rough_metal_mirrors_what_paths_find(void **state)
     path_stage_close(&stage);
 }
 
-static int begin(void **state)
-{
-    spirv_start(); /* held for all, so that the shader compiler is not started anew */
-    return renderer_open(state);
-}
-
-static int end(void **state)
-{
-    spirv_stop();
-    return renderer_close(state);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(dull_planes_see_the_mean),
         cmocka_unit_test(rough_metal_mirrors_what_paths_find),
     };
-    return cmocka_run_group_tests_name("means of the sky", tests, begin, end);
+    return cmocka_run_group_tests_name("means of the sky", tests, renderer_open, renderer_close);
 }

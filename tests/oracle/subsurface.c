@@ -425,8 +425,5 @@ int main(void)
         cmocka_unit_test(white_is_not_seen),
         cmocka_unit_test(previews_light_wax_as_a_body),
     };
-    spirv_start(); /* held for all, so that the shader compiler is not started anew */
-    int failed = cmocka_run_group_tests_name("subsurface", tests, open_slab, close_slab);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("subsurface", tests, open_slab, close_slab);
 }

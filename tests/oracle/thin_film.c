@@ -259,8 +259,5 @@ int main(void)
         cmocka_unit_test(paths_show_films_as_previews_do),
         cmocka_unit_test(a_wrong_thickness_is_seen),
     };
-    spirv_start(); /* held for all, so that the shader compiler is not started anew */
-    int failed = cmocka_run_group_tests_name("thin_film", tests, open_slab, close_slab);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("thin_film", tests, open_slab, close_slab);
 }

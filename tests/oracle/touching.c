@@ -120,8 +120,5 @@ int main(void)
         cmocka_unit_test(blocks_look_like_a_wall),
         cmocka_unit_test(a_heart_has_no_belt),
     };
-    spirv_start();
-    int failed = cmocka_run_group_tests_name("touching", tests, renderer_open, renderer_close);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("touching", tests, renderer_open, renderer_close);
 }

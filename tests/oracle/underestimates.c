@@ -209,9 +209,5 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shadows_end_where_roots_say),
     };
-    spirv_start(); /* held for all, so that no renderer starts the shader compiler anew */
-    int failed = cmocka_run_group_tests_name("underestimates", tests, renderer_open,
-                                             renderer_close);
-    spirv_stop();
-    return failed;
+    return cmocka_run_group_tests_name("underestimates", tests, renderer_open, renderer_close);
 }

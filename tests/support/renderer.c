@@ -12,6 +12,7 @@
 
 #include <cmocka.h>
 
+#include "compiler/compile.h"
 #include "tests/support/device.h"
 
 KrsRenderer *renderer;
@@ -19,6 +20,7 @@ KrsRenderer *renderer;
 int renderer_open(void **state)
 {
     (void)state;
+    spirv_start();
     KrsRendererOptions options = {.device = tested_device()};
     KrsStatus          status  = krs_renderer_new(&options, &renderer);
     if (status != KRS_OK && renderer)
@@ -31,6 +33,7 @@ int renderer_close(void **state)
     (void)state;
     krs_renderer_free(renderer);
     renderer = NULL;
+    spirv_stop();
     return 0;
 }
 

@@ -8,7 +8,8 @@
 
 extern KrsRenderer *renderer;
 
-/* For cmocka's groups: opens the device of the tests, or says why not and fails. */
+/* For cmocka's groups: opens the device of the tests, or says why not and fails.  The shader compiler is
+   held as long, so that it is not started anew by each rendering. */
 int renderer_open(void **state);
 int renderer_close(void **state);
 
