@@ -6,7 +6,7 @@
  * then found anew for each frame.
  * A crowd function is a loop over the members that are near.  It keeps states, which begin as
  * constants.  For each member every state becomes what its body says; all change at once.  The result is
- * the last value of the first state.
+ * the last value of the first state, or what `sums` makes of it.
  *
  * Kernels loop over the list of one cell, of which a distance is at most the clearance.  On the host the
  * loop is over all members that may count, as far as the state `distance` tells (evaluate.h).
@@ -80,11 +80,12 @@ typedef struct CrowdState {
 } CrowdState;
 
 typedef struct CrowdFunction {
-    uint32_t   crowd;  /* index of the table */
-    GraphType  type;   /* of the result */
-    bool       clear;  /* the result is at most the clearance: it is a distance */
-    bool       either; /* it is at most as far from 0 as the clearance, which has a sign: where no
+    uint32_t  crowd;  /* index of the table */
+    GraphType type;   /* of the result */
+    bool      clear;  /* the result is at most the clearance: it is a distance */
+    bool      either; /* it is at most as far from 0 as the clearance, which has a sign: where no
                           member is in a cell, that of all points in it */
+    bool sums; /* the result is the first state less the third times the logarithm of the second */
     CrowdState states[MOST_CROWD_STATES];
     uint32_t   state_count;
     uint32_t   distance;   /* the state that is a distance; NO_DISTANCE: there is none */

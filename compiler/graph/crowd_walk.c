@@ -104,8 +104,15 @@ CrowdStep crowd_walk_next(CrowdWalk *walk, double distance, uint32_t *member)
     return widen(walk, distance);
 }
 
-double crowd_walk_result(const CrowdWalk *walk, double state)
+/* Without a member the sum is 0. */
+static double end_of_states(const CrowdFunction *function, const double states[3])
 {
+    return function->sums ? states[0] - states[2] * log(fmax(states[1], 1)) : states[0];
+}
+
+double crowd_walk_result(const CrowdWalk *walk, const double states[3])
+{
+    const double state = end_of_states(walk->function, states);
     if (walk->to_nearest || !walk->function->clear)
         return state;
     if (walk->function->either)

@@ -34,8 +34,8 @@ void crowd_walk_begin(CrowdWalk *walk, const CrowdFunction *function, const Crow
                       const double point[3], bool by_cells);
 /* `distance` is the state that is one, after the last member; anything where there is none. */
 CrowdStep crowd_walk_next(CrowdWalk *walk, double distance, uint32_t *member);
-/* What the function is when its first state has ended at that number: by cells a distance is at most
-   the clearance. */
-double crowd_walk_result(const CrowdWalk *walk, double state);
+/* What the function is when its first three states have ended at these numbers: by cells a distance is at
+   most the clearance. */
+double crowd_walk_result(const CrowdWalk *walk, const double states[3]);
 
 #endif

@@ -218,7 +218,8 @@ static NodeValue run_loop(Loop *loop)
             loop_over(loop, member);
         else
             begin_loop(loop);
-    loop->states[0].v[0] = crowd_walk_result(&walk, loop->states[0].v[0]);
+    const double ends[]  = {loop->states[0].v[0], loop->states[1].v[0], loop->states[2].v[0]};
+    loop->states[0].v[0] = crowd_walk_result(&walk, ends);
     return loop->states[0];
 }
 

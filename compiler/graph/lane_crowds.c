@@ -95,8 +95,9 @@ static void put_result(const LaneLoop *loop, const LaneCall *call, double *rows,
 {
     for (uint32_t c = 0; c < call->parts; c++)
         rows[(size_t)call->to[c] * LANES + loop->points[lane]] = loop->states[c][lane];
-    rows[(size_t)call->to[0] * LANES + loop->points[lane]] = crowd_walk_result(
-        loop->walks[lane], loop->states[0][lane]);
+    const double ends[] = {loop->states[0][lane], loop->states[4][lane], loop->states[8][lane]};
+    rows[(size_t)call->to[0] * LANES + loop->points[lane]] = crowd_walk_result(loop->walks[lane],
+                                                                               ends);
 }
 
 static void take_states(LaneLoop *loop, const LaneTape *body, const double *rows)

@@ -118,8 +118,38 @@ static Member member_in_body(const CrowdGroup *group, const GroupJoin *join, uin
 
 static uint32_t next_function(Graph *g) { return (uint32_t)graph_crowds(g)->functions.count; }
 
+/* A blend that fades, -k log of the sum of e^(-d / k).  States are the least distance m, the sum of
+   e^((m - d) / k), and k: one power for each member, and one logarithm for all. */
+static uint32_t make_sum(const CrowdGroup *group, const GroupJoin *join)
+{
+    Graph *g               = join->graph;
+    Node   least           = graph_state(g, TYPE_FLOAT, next_function(g), 0);
+    Node   sum             = graph_state(g, TYPE_FLOAT, next_function(g), 1);
+    Member member          = member_in_body(group, join, PART_DISTANCE);
+    Node   width           = graph_op2(g, OP_max, join->blend.width, graph_number(g, 1e-30));
+    Node   apart           = graph_op2(g, OP_sub, member.distance, least);
+    Node   nearer          = graph_op2(g, OP_less, member.distance, least);
+    Node   away            = graph_op1(g, OP_neg, graph_op1(g, OP_abs, apart));
+    Node   power           = graph_op1(g, OP_exp, graph_op2(g, OP_div, away, width));
+    Node   others          = graph_op2(g, OP_mul, sum, power);
+    others                 = graph_op2(g, OP_add, others, graph_number(g, 1));
+    Node          more     = graph_op2(g, OP_add, sum, power);
+    Node          bodies[] = {graph_op2(g, OP_min, least, member.distance),
+                              graph_op3(g, OP_select, nearer, others, more), width};
+    CrowdFunction function = {
+        .crowd       = group->crowd,
+        .type        = TYPE_FLOAT,
+        .clear       = true,
+        .sums        = true,
+        .states      = {{TYPE_FLOAT, {NOWHERE}}, {TYPE_FLOAT, {0}}, {TYPE_FLOAT, {0}}},
+        .state_count = 3};
+    return graph_add_crowd_function(g, function, bodies);
+}
+
 static uint32_t make_distance(const CrowdGroup *group, const GroupJoin *join)
 {
+    if (join->blend.width != NODE_NONE && blend_fades(join->blend.kind))
+        return make_sum(group, join);
     Graph        *g        = join->graph;
     Node          state    = graph_state(g, TYPE_FLOAT, next_function(g), 0);
     Member        member   = member_in_body(group, join, PART_DISTANCE);

@@ -225,7 +225,10 @@ static void emit_function_of_crowd(Emitter *e, uint32_t id)
     emit_body(e, bodies, function->state_count);
     emit_next_states(e, function, bodies);
     indent_lines(e, body);
-    text_format(e->out, "    }\n    return %s;\n}\n\n",
+    text_add(e->out, "    }\n");
+    if (function->sums) /* without a member the sum is 0 */
+        emit_line(e, "    state0 -= state2 * log(max(state1, 1.0));\n");
+    text_format(e->out, "    return %s;\n}\n\n",
                 function->either ? "abs(state0) < abs(nearby.clearance) ? state0 : nearby.clearance"
                 : function->clear ? "min(state0, nearby.clearance)"
                                   : "state0");
