@@ -134,14 +134,7 @@ void frame_refresh(KrsFrame *frame)
 {
     if (frame->fresh)
         return;
-    tape_run_frame(&frame->scene->surface, frame->parameters, frame->values);
-    tape_run_frame(&frame->scene->distance, frame->parameters, frame->values);
-    tape_run_frame(&frame->scene->guarded, frame->parameters, frame->values);
-    tape_run_frame(&frame->scene->ahead, frame->parameters, frame->values);
-    tape_run_frame(&frame->scene->turned, frame->parameters, frame->values);
-    tape_run_frame(&frame->scene->places, frame->parameters, frame->values);
-    tape_run_frame(&frame->scene->assembly.tape, frame->parameters, frame->values);
-    tape_run_frame(&frame->scene->view, frame->parameters, frame->values);
+    tape_run_frame(&frame->scene->frame, frame->parameters, frame->values);
     frame->fresh = true;
     frame_tables_change(frame);
     frame_lanes_refresh(frame);

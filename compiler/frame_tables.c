@@ -127,7 +127,8 @@ void frame_tables_refresh(const KrsFrame *frame)
     const KrsScene     *scene  = frame->scene;
     if (!tables || tables->found)
         return;
-    tape_run_frame(&scene->rows, frame->parameters, frame->values);
+    if (!frame->fresh)
+        tape_run_frame(&scene->rows, frame->parameters, frame->values);
     find_grids(tables, scene->graph->crowds, frame->values);
     tables->found = true;
 }
@@ -139,7 +140,8 @@ void krs_frame_tables_in_use(const KrsFrame *frame, float (*rows)[4], uint32_t (
 {
     const KrsScene *scene  = frame->scene;
     const Crowds   *crowds = frame->tables ? frame->tables->crowds : scene->graph->crowds;
-    tape_run_frame(&scene->rows, frame->parameters, frame->values);
+    if (!frame->fresh)
+        tape_run_frame(&scene->rows, frame->parameters, frame->values);
     frame_tables_refresh(frame);
     TableSizes used = tables_pack(crowds, scene->graph->textures, frame->values, rows, cells);
     *row_count      = used.rows;

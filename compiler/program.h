@@ -179,6 +179,7 @@ struct KrsScene {
     Tape             places;   /* ROOTS_PLACE; empty if nobody asks for meshes */
     Tape             view;     /* cameras, lights and sky */
     Tape             rows;     /* numbers of tables that depend on the frame */
+    Tape             frame;    /* of all these, what does not depend on points */
 };
 
 /* Those tapes of the scene that read tables, over the tables of a frame where these are its own. */

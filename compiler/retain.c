@@ -195,6 +195,28 @@ static void retain_tapes(Compilation *c)
                                crowds->frame_numbers.count, arena);
 }
 
+/* Tapes have much of the frame in common, which is run once for all.  Operands have smaller numbers. */
+static void retain_frame(Compilation *c)
+{
+    KrsScene         *scene   = c->scene;
+    const Graph      *graph   = scene->graph;
+    const Tape *const tapes[] = {&scene->distance, &scene->guarded, &scene->ahead,
+                                 &scene->turned,   &scene->surface, &scene->places,
+                                 &scene->view,     &scene->rows,    &scene->assembly.tape};
+    bool             *needed  = arena_new_array(&c->scratch, bool, graph->count);
+    size_t            count   = 0;
+    for (size_t t = 0; t < sizeof tapes / sizeof *tapes; t++)
+        for (size_t i = 0; i < tapes[t]->frame_count; i++)
+            needed[tapes[t]->nodes[i]] = true;
+    for (Node n = 0; n < graph->count; n++)
+        count += needed[n];
+    Node *nodes  = arena_new_array(&scene->arena, Node, count + 1);
+    scene->frame = (Tape){.graph = graph, .nodes = nodes, .count = count, .frame_count = count};
+    for (Node n = 0; n < graph->count; n++)
+        if (needed[n])
+            *nodes++ = n;
+}
+
 /* What an update of the scene is compiled with. */
 static void retain_options(Compilation *c)
 {
@@ -209,6 +231,7 @@ KrsStatus pass_retain(Compilation *c)
     sources_hash(&c->sources, c->scene->hash);
     retain_scene(c);
     retain_tapes(c);
+    retain_frame(c);
     retain_emissive(c);
     return KRS_OK;
 }
