@@ -103,6 +103,8 @@ static void keep_table(Crowd *table, Arena *arena)
         table->boxes = COPY_ITEMS(arena, table->boxes, table->rows);
     if (table->places)
         table->places = COPY_ITEMS(arena, table->places, table->rows);
+    if (table->arcs)
+        table->arcs = COPY_ITEMS(arena, table->arcs, table->rows);
     if (table->frame_columns)
         table->frame_columns = COPY_ITEMS(arena, table->frame_columns, table->columns);
     keep_grid(&table->grid, arena);

@@ -44,6 +44,12 @@ typedef struct MemberPlace {
     PlaceKind kind;
 } MemberPlace;
 
+/* A member of an outline: the curve start + 2 way t + bend t^2, 0 <= t <= 1, in the plane z = 0.  The inside is
+   on its left; it turns only one way, and has no apex between its ends. */
+typedef struct CrowdArc {
+    double start[2], way[2], bend[2];
+} CrowdArc;
+
 /* A table. */
 typedef struct Crowd {
     Arena       *arena; /* of its numbers and its grid */
@@ -59,6 +65,7 @@ typedef struct Crowd {
     uint32_t     first_place;   /* where nodes of the places begin in Crowds.frame_numbers */
     double       reach, margin; /* of these grids */
     Box         *boxes;         /* of members of which only the nearest counts; NULL: not known */
+    CrowdArc    *arcs;          /* of members of an outline; NULL: it is none */
     double       stretch; /* the distance of a member, times this, is at least that to its box */
     Span         span;    /* of the join */
 } Crowd;
@@ -83,7 +90,8 @@ typedef struct CrowdFunction {
     uint32_t  crowd;  /* index of the table */
     GraphType type;   /* of the result */
     bool      clear;  /* the result is at most the clearance: it is a distance */
-    bool      either; /* it is at most as far from 0 as the clearance, which has a sign: where no
+    bool      either; /* the member nearest to 0 decides, the first of several, and the result is at
+                          most as far from 0 as the clearance, which has a sign: where no
                           member is in a cell, that of all points in it */
     bool sums; /* the result is the first state less the third times the logarithm of the second */
     CrowdState states[MOST_CROWD_STATES];

@@ -23,6 +23,17 @@ void crowd_walk_begin(CrowdWalk *walk, const CrowdFunction *function, const Crow
     walk->wider  = table->grid.size;
 }
 
+void crowd_walk_along(CrowdWalk *walk, const CrowdFunction *function, const uint32_t *members,
+                      uint32_t count)
+{
+    walk->function   = function;
+    walk->to_nearest = false;
+    walk->by_list    = true;
+    walk->list       = members;
+    walk->left       = count;
+    walk->clearance  = INFINITY;
+}
+
 /* What is farther than this cannot be nearer than what is found. */
 static double how_far(const CrowdWalk *walk, double distance)
 {
@@ -77,9 +88,9 @@ static bool next_near(CrowdWalk *walk, double distance, uint32_t *member)
 
 /* From what was looked at to all that may be as near as what is found.  The second time that is
    enough: each further member only makes a distance less. */
-static CrowdStep widen(CrowdWalk *walk, double distance)
+CrowdStep crowd_walk_widen(CrowdWalk *walk, double distance)
 {
-    if (!(how_far(walk, distance) > walk->radius && walk->radius < NOWHERE) ||
+    if (!walk->to_nearest || !(how_far(walk, distance) > walk->radius && walk->radius < NOWHERE) ||
         grid_is_within(&walk->table->grid, walk->point, walk->radius))
         return CROWD_DONE;
     walk->radius = fabs(distance) < NOWHERE ? how_far(walk, distance) : walk->radius + walk->wider;
@@ -90,18 +101,20 @@ static CrowdStep widen(CrowdWalk *walk, double distance)
     return CROWD_AGAIN;
 }
 
-CrowdStep crowd_walk_next(CrowdWalk *walk, double distance, uint32_t *member)
+bool crowd_walk_member(CrowdWalk *walk, double distance, uint32_t *member)
 {
     if (walk->left > 0) {
         walk->left--;
         *member = *walk->list++;
-        return CROWD_MEMBER;
+        return true;
     }
-    if (!walk->to_nearest)
-        return CROWD_DONE;
-    if (!walk->by_list && next_near(walk, distance, member))
-        return CROWD_MEMBER;
-    return widen(walk, distance);
+    return !walk->by_list && next_near(walk, distance, member);
+}
+
+CrowdStep crowd_walk_next(CrowdWalk *walk, double distance, uint32_t *member)
+{
+    return crowd_walk_member(walk, distance, member) ? CROWD_MEMBER
+                                                     : crowd_walk_widen(walk, distance);
 }
 
 /* Without a member the sum is 0. */

@@ -32,8 +32,15 @@ typedef enum CrowdStep {
 /* With `by_cells` only the list counts, as in kernels. */
 void crowd_walk_begin(CrowdWalk *walk, const CrowdFunction *function, const Crowd *table,
                       const double point[3], bool by_cells);
+/* Only these members count. */
+void crowd_walk_along(CrowdWalk *walk, const CrowdFunction *function, const uint32_t *members,
+                      uint32_t count);
 /* `distance` is the state that is one, after the last member; anything where there is none. */
 CrowdStep crowd_walk_next(CrowdWalk *walk, double distance, uint32_t *member);
+/* The same in two parts: a member, or none before it is known whether more may count; then whether the
+   function begins again.  An earlier distance serves for the first: it finds some members more. */
+bool      crowd_walk_member(CrowdWalk *walk, double distance, uint32_t *member);
+CrowdStep crowd_walk_widen(CrowdWalk *walk, double distance);
 /* What the function is when its first three states have ended at these numbers: by cells a distance is at
    most the clearance. */
 double crowd_walk_result(const CrowdWalk *walk, const double states[3]);

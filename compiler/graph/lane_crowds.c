@@ -5,7 +5,11 @@
  * at the same time: the body is run once for as many members as there are lanes.  So results are those of
  * the tape, bit for bit, wherever points are.  A lane that is done takes its result with it, and the last
  * lane moves to its place.
+ *
+ * Of outlines the member that is nearest to 0 decides, the first of several.  So lanes are pairs of a point and
+ * a member there: a few points fill all lanes.
  */
+#include <math.h>
 #include <string.h>
 
 #include "compiler/graph/crowd_walk.h"
@@ -15,7 +19,6 @@
 enum { STATE_NUMBERS = 4 * MOST_CROWD_STATES };
 
 typedef struct LaneLoop {
-    const LaneBody      *body;
     const Crowds        *crowds;
     const CrowdFunction *function;
     const Crowd         *table;
@@ -117,8 +120,6 @@ static void take_states(LaneLoop *loop, const LaneTape *body, const double *rows
         }
 }
 
-/* ---- calls ---- */
-
 /* An operand of the call becomes inputs of the body. */
 static void pass_operand(const LaneTape *tape, const double *rows, const uint32_t *from,
                          uint32_t size, double *inputs, size_t lanes)
@@ -129,16 +130,18 @@ static void pass_operand(const LaneTape *tape, const double *rows, const uint32_
                                                           : rows[(size_t)from[c] * LANES + i];
 }
 
-static void begin_lanes(LaneLoop *loop, CrowdWalk *walks, const double *inputs, size_t points)
+static void begin_lanes(LaneLoop *loop, const LaneCall *call, CrowdWalk *walks,
+                        const double *inputs, size_t points)
 {
     loop->active = points;
-    for (size_t i = 0; i < fill_up(points); i++)
-        begin_states(loop, i);
     for (size_t i = 0; i < points; i++) {
         const double point[3] = {inputs[i], inputs[LANES + i], inputs[2 * LANES + i]};
         loop->walks[i]        = &walks[i];
         loop->points[i]       = (uint32_t)i;
-        crowd_walk_begin(loop->walks[i], loop->function, loop->table, point, loop->by_cells);
+        if (call->members)
+            crowd_walk_along(&walks[i], loop->function, call->members, call->member_count);
+        else
+            crowd_walk_begin(&walks[i], loop->function, loop->table, point, loop->by_cells);
     }
 }
 
@@ -156,35 +159,136 @@ static void next_members(LaneLoop *loop, const LaneCall *call, double *outer, do
         loop->members[i] = loop->members[loop->active - 1];
 }
 
+static void run_lanes(LaneLoop *loop, const LaneCall *call, double *outer, const LaneTape *member,
+                      const LaneWork *work, LaneKernel *run)
+{
+    double *inputs = work->rows;
+    for (size_t i = 0; i < fill_up(loop->active); i++)
+        begin_states(loop, i);
+    for (next_members(loop, call, outer, inputs); loop->active > 0;
+         next_members(loop, call, outer, inputs)) {
+        run(member, work, loop->active);
+        take_states(loop, member, inputs);
+    }
+}
+
+/* ---- outlines ---- */
+
+/* Points that are not done, and what is nearest to 0 there so far. */
+typedef struct Pairs {
+    LaneLoop *loop;
+    double    points[3][LANES], found[LANES]; /* by the numbers of points */
+    uint32_t  owners[LANES];                  /* of each lane: its point */
+    size_t    lanes;
+} Pairs;
+
+/* Members of a point, as many as there are lanes for it; false: it is done. */
+static bool take_members(Pairs *pairs, size_t at, size_t most)
+{
+    LaneLoop *loop  = pairs->loop;
+    uint32_t  point = loop->points[at];
+    size_t    first = pairs->lanes;
+    do {
+        while (
+            pairs->lanes < first + most &&
+            crowd_walk_member(loop->walks[at], pairs->found[point], &loop->members[pairs->lanes]))
+            pairs->owners[pairs->lanes++] = point;
+        if (pairs->lanes > first)
+            return true;
+        if (crowd_walk_widen(loop->walks[at], pairs->found[point]) == CROWD_DONE)
+            return false;
+        pairs->found[point] = loop->function->states[0].first[0];
+    } while (true);
+}
+
+/* Gives all lanes a point and a member, as far as there are any. */
+static void fill_pairs(Pairs *pairs, const LaneCall *call, double *outer)
+{
+    LaneLoop *loop = pairs->loop;
+    size_t    most = LANES / (loop->active ? loop->active : 1);
+    pairs->lanes   = 0;
+    for (size_t i = 0; i < loop->active;) {
+        if (take_members(pairs, i, most)) {
+            i++;
+            continue;
+        }
+        uint32_t     point                         = loop->points[i];
+        const double ends[3]                       = {pairs->found[point]};
+        outer[(size_t)call->to[0] * LANES + point] = crowd_walk_result(loop->walks[i], ends);
+        loop->walks[i]                             = loop->walks[--loop->active];
+        loop->points[i]                            = loop->points[loop->active];
+    }
+}
+
+/* Each lane begins with the first state: the result is that or the distance to the member. */
+static void run_pairs(Pairs *pairs, const LaneTape *member, const LaneWork *work, LaneKernel *run)
+{
+    LaneLoop *loop = pairs->loop;
+    double   *rows = work->rows;
+    for (size_t i = pairs->lanes; i % LANE_BLOCK != 0; i++) {
+        loop->members[i] = loop->members[i - 1];
+        pairs->owners[i] = pairs->owners[i - 1];
+    }
+    for (int k = 0; k < 3; k++)
+        for (size_t i = 0; i < fill_up(pairs->lanes); i++)
+            rows[k * LANES + i] = pairs->points[k][pairs->owners[i]];
+    for (size_t i = 0; i < fill_up(pairs->lanes); i++)
+        begin_states(loop, i);
+    run(member, work, pairs->lanes);
+    uint32_t from = member->output_rows[0];
+    for (size_t i = 0; i < pairs->lanes; i++) {
+        double *found = &pairs->found[pairs->owners[i]];
+        double  is    = from & LANE_SCALAR ? member->scalars[from & ~LANE_SCALAR]
+                                           : rows[(size_t)from * LANES + i];
+        *found        = fabs(is) < fabs(*found) ? is : *found;
+    }
+}
+
+static void run_outline(LaneLoop *loop, const LaneCall *call, double *outer, const LaneTape *member,
+                        const LaneWork *work, LaneKernel *run)
+{
+    const double *inputs = work->rows;
+    Pairs         pairs  = {.loop = loop};
+    for (size_t i = 0; i < loop->active; i++) {
+        for (int k = 0; k < 3; k++)
+            pairs.points[k][i] = inputs[k * LANES + i];
+        pairs.found[i] = loop->function->states[0].first[0];
+    }
+    for (fill_pairs(&pairs, call, outer); pairs.lanes > 0; fill_pairs(&pairs, call, outer))
+        run_pairs(&pairs, member, work, run);
+}
+
+/* ---- calls ---- */
+
+static void pass_operands(const LaneTape *tape, const double *outer, const LaneCall *call,
+                          double *inputs, size_t lanes)
+{
+    memset(inputs, 0, LANE_INPUTS * LANES * sizeof *inputs);
+    pass_operand(tape, outer, call->from[1], 3, inputs, lanes);
+    if (tape->tape->graph->items[call->node].operand_count > 2) {
+        pass_operand(tape, outer, call->from[2], 3, inputs + LANE_NORMAL * LANES, lanes);
+        pass_operand(tape, outer, call->from[3], 1, inputs + LANE_FOOTPRINT * LANES, lanes);
+    }
+}
+
 void lane_crowd_call(const LaneTape *tape, const LaneWork *work, const LaneCall *call,
                      size_t points, LaneKernel *run)
 {
     CrowdWalk       walks[LANES];
+    LaneLoop        loop;
     const LaneBody *body   = call->body;
     LaneTape        member = body->tape;
     double         *outer = work->rows, *inputs = work->whole + (size_t)body->first_row * LANES;
-    const Crowds   *crowds = tape->tape->graph->crowds;
-    LaneLoop        loop   = {.body     = body,
-                              .crowds   = crowds,
-                              .function = &crowds->functions.items[body->function],
-                              .table    = &crowds->tables.items[body->table],
-                              .by_cells = work->loop ? work->loop->by_cells : tape->tape->by_cells};
-    LaneWork        inner  = {inputs, work->values, work->whole, &loop};
-    member.scalars         = inputs + (size_t)member.rows * LANES;
+    LaneWork        inner = {inputs, work->values, work->whole, &loop};
+    loop.crowds           = tape->tape->graph->crowds;
+    loop.function         = &loop.crowds->functions.items[body->function];
+    loop.table            = &loop.crowds->tables.items[body->table];
+    loop.by_cells         = work->loop ? work->loop->by_cells : tape->tape->by_cells;
+    member.scalars        = inputs + (size_t)member.rows * LANES;
     lane_tape_scalars(&member, work->values, member.scalars);
-    memset(inputs, 0, LANE_INPUTS * LANES * sizeof *inputs);
-    pass_operand(tape, outer, call->from[1], 3, inputs, fill_up(points));
-    if (call->from[2][0] != NODE_NONE && tape->tape->graph->items[call->node].operand_count > 2) {
-        pass_operand(tape, outer, call->from[2], 3, inputs + LANE_NORMAL * LANES, fill_up(points));
-        pass_operand(tape, outer, call->from[3], 1, inputs + LANE_FOOTPRINT * LANES,
-                     fill_up(points));
-    }
-    begin_lanes(&loop, walks, inputs, points);
-    for (next_members(&loop, call, outer, inputs); loop.active > 0;
-         next_members(&loop, call, outer, inputs)) {
-        run(&member, &inner, loop.active);
-        take_states(&loop, &member, inputs);
-    }
+    pass_operands(tape, outer, call, inputs, fill_up(points));
+    begin_lanes(&loop, call, walks, inputs, points);
+    (loop.function->either ? run_outline : run_lanes)(&loop, call, outer, &member, &inner, run);
     for (size_t i = points; i < fill_up(points); i++)
         for (uint32_t c = 0; c < call->parts; c++)
             outer[(size_t)call->to[c] * LANES + i] = 0;

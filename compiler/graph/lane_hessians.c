@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "compiler/graph/lane_call.h"
+#include "compiler/graph/lane_outlines.h"
 #include "compiler/graph/lane_partials.h"
 
 /* A run over a tape, and the step that it is at. */
@@ -337,6 +338,24 @@ static LaneHessian hessian_of_step(const Run *run)
     return hessian_by_partials(run, &p);
 }
 
+/* Of the distance to an outline. */
+static LaneHessian hessian_of_call(const Run *run)
+{
+    LaneHessian sum = NO_BEND;
+    if (run->step->op != LANE_CALL)
+        return UNKNOWN_BEND;
+    const uint32_t       *point = run->tape->calls[run->step->operands[0]].operands[1];
+    const OutlinePartials p     = lane_outline_partials(run->tape, run->ranges, run->at);
+    if (!p.known)
+        return UNKNOWN_BEND;
+    for (int k = 0; k < 2; k++) {
+        add_hessian(&sum, p.first[k], hessian_at(run, point[k]));
+        add_square(&sum, p.second[k][k], slope_at(run, point[k]));
+    }
+    add_product(&sum, p.second[0][1], slope_at(run, point[0]), slope_at(run, point[1]));
+    return sum;
+}
+
 static bool all_constant(const Run *run)
 {
     for (uint32_t k = 0; k < run->step->operand_count; k++)
@@ -355,7 +374,7 @@ static void run_step(Run *run)
         *hessian = NO_BEND;
         return;
     }
-    *hessian = call ? UNKNOWN_BEND : hessian_of_step(run);
+    *hessian = call ? hessian_of_call(run) : hessian_of_step(run);
     for (int i = 0; hessian->known && i < 6; i++)
         hessian->known = is_finite(hessian->by[i]);
 }

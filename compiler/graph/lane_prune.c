@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "compiler/graph/lane_call.h"
+#include "compiler/graph/lane_outlines.h"
 #include "compiler/graph/lane_rows.h"
 
 /* A step whose value is being looked for, and what is known of its operands. */
@@ -223,10 +224,25 @@ static bool prune_turn(Pruning *p, size_t i)
     return true;
 }
 
+/* Outlines keep the members that may be the nearest. */
+static void prune_members(Pruning *p, LaneCall *call, size_t step)
+{
+    uint32_t members[MOST_LANE_MEMBERS], count;
+    if (!lane_outline_members(p->from, p->ranges, step, members, &count))
+        return;
+    uint32_t *kept = arena_new_array(p->to.arena, uint32_t, MOST_LANE_MEMBERS);
+    memcpy(kept, members, count * sizeof *kept);
+    call->members      = kept;
+    call->member_count = count;
+}
+
 static void prune_calls(Pruning *p)
 {
-    for (size_t i = 0; i < p->from->call_count; i++) {
-        LaneCall call = p->from->calls[i];
+    for (size_t step = 0; step < p->from->count; step++) {
+        if (p->from->steps[step].op != LANE_CALL)
+            continue;
+        LaneCall call = p->from->calls[p->from->steps[step].operands[0]];
+        prune_members(p, &call, step);
         for (uint32_t k = 0; k < MAX_OPERANDS; k++)
             for (uint32_t c = 0; c < 4; c++)
                 call.operands[k][c] = stand_in(p, call.operands[k][c]);

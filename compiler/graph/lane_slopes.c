@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "compiler/graph/lane_call.h"
+#include "compiler/graph/lane_outlines.h"
 #include "compiler/graph/rules.h"
 #include "compiler/graph/texture.h"
 
@@ -250,6 +251,19 @@ static LaneSlope slope_by_rule(const Run *run)
     return slope_of_fact(&fact, 0);
 }
 
+/* False: it is no outline, or its derivatives are not known. */
+static bool run_outline(Run *run, const LaneCall *call)
+{
+    const OutlinePartials p     = lane_outline_partials(run->tape, run->ranges, run->at);
+    LaneSlope             slope = NO_SLOPE;
+    if (!p.known)
+        return false;
+    for (int k = 0; k < 2; k++)
+        add_times(&slope, p.first[k], slope_at(run, call->operands[1][k]));
+    run->slopes[LANE_INPUTS + run->at] = slope;
+    return true;
+}
+
 static void run_call(Run *run)
 {
     const LaneCall *call                = &run->tape->calls[run->step->operands[0]];
@@ -257,6 +271,8 @@ static void run_call(Run *run)
     const Expr     *e                   = &graph->items[call->node];
     Fact            facts[MAX_OPERANDS] = {0};
     GraphType       types[MAX_OPERANDS];
+    if (run_outline(run, call))
+        return;
     for (uint32_t k = 0; k < e->operand_count; k++) {
         types[k] = graph->items[e->operands[k]].type;
         for (uint32_t c = 0; c < type_size(types[k]); c++)

@@ -55,10 +55,12 @@ typedef struct LaneCode {
 /* An operation that is evaluated point by point; a crowd function is not where it has a body. */
 typedef struct LaneCall {
     Node                   node;
-    const struct LaneBody *body;  /* in double precision; or NULL */
-    uint32_t               parts; /* components of the result, each a step */
-    uint32_t               operands[MAX_OPERANDS][4];
-    uint32_t               from[MAX_OPERANDS][4], to[4]; /* rows */
+    const struct LaneBody *body; /* in double precision; or NULL */
+    const uint32_t *members;     /* of a pruned tape: the only ones that may count; NULL: any may */
+    uint32_t        member_count;
+    uint32_t        parts; /* components of the result, each a step */
+    uint32_t        operands[MAX_OPERANDS][4];
+    uint32_t        from[MAX_OPERANDS][4], to[4]; /* rows */
 } LaneCall;
 
 /* Where a scalar comes from: a component of a node of the frame, or, with NODE_NONE, a number. */
@@ -116,8 +118,13 @@ typedef struct LaneWork {
     const struct LaneLoop *loop;  /* while a body is run */
 } LaneWork;
 
-/* A call may become that many steps when it is pruned, which work on as many rows. */
-enum { LANE_STEPS_OF_CALL = 6 };
+/* A call may become that many steps when it is pruned, which work on as many rows; or it keeps a list of
+   members, which takes that many bytes. */
+enum {
+    LANE_STEPS_OF_CALL    = 6,
+    MOST_LANE_MEMBERS     = 32,
+    LANE_BYTES_OF_MEMBERS = 4 * MOST_LANE_MEMBERS + 16
+};
 /* The most steps of a lane tape and of all that it is pruned to, and the most rows. */
 static inline size_t lane_most_steps(const LaneTape *tape)
 {

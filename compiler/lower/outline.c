@@ -159,6 +159,18 @@ static Box box_of(const Curve *curve)
     return box;
 }
 
+static CrowdArc arc_of(const Curve *curve)
+{
+    CrowdArc arc;
+    for (int k = 0; k < 2; k++) {
+        double from = curve->from[k], to = curve->to[k], via = curve->via[k];
+        arc.start[k] = from;
+        arc.way[k]   = curve->straight ? 0.5 * (to - from) : via - from;
+        arc.bend[k]  = curve->straight ? 0 : from - 2 * via + to;
+    }
+    return arc;
+}
+
 /* The sign of clearances in cells that no member is in. */
 static void mark_inside(Grid *grid, const Outline *outline, Arena *scratch)
 {
@@ -182,10 +194,13 @@ static uint32_t add_table(Graph *g, const OutlineShape *shape, double margin, Ar
                                      .columns = members->columns,
                                      .numbers = members->numbers,
                                      .boxes   = arena_new_array(crowds->arena, Box, members->count),
+                                     .arcs = arena_new_array(crowds->arena, CrowdArc, members->count),
                                      .stretch = 1,
                                      .span    = shape->span};
-    for (uint32_t i = 0; i < members->count; i++)
+    for (uint32_t i = 0; i < members->count; i++) {
         table.boxes[i] = box_of(&members->pieces[i].curve);
+        table.arcs[i]  = arc_of(&members->pieces[i].curve);
+    }
     GridMembers near = {distance_to_piece, members};
     grid_build_flat(&table.grid, table.boxes, table.rows, margin, (uint32_t)row_texels(&table),
                     near, crowds->arena, scratch);

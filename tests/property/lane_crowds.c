@@ -111,25 +111,149 @@ static void compare(Subject *s, const char *name, bool surface)
     lane_use_set(NULL);
 }
 
-static void compare_scene(const char *name, const char *text, bool by_cells)
+static KrsScene *open_scene(Subject *s, const char *name, const char *text)
 {
-    Subject   s = {0};
-    jmp_buf   exhausted;
-    KrsScene *scene;
-    s.memory.exhausted = &exhausted;
-    s.arena.memory     = &s.memory;
-    assert_int_equal(setjmp(exhausted), 0);
-    if (compile_with_crowds(text, strlen(text), LEAST, NULL, &scene) != KRS_OK)
+    static jmp_buf exhausted;
+    KrsScene      *scene;
+    s->memory.exhausted = &exhausted;
+    s->arena.memory     = &s->memory;
+    if (setjmp(exhausted) != 0 ||
+        compile_with_crowds(text, strlen(text), LEAST, NULL, &scene) != KRS_OK)
         fail_msg("%s does not compile", name);
     assert_true(scene->program.table_count > 0);
-    assert_int_equal(krs_frame_new(scene, &s.frame), KRS_OK);
-    frame_refresh(s.frame);
+    assert_int_equal(krs_frame_new(scene, &s->frame), KRS_OK);
+    frame_refresh(s->frame);
+    return scene;
+}
+
+static void close_scene(Subject *s, KrsScene *scene)
+{
+    arena_free(&s->arena);
+    krs_frame_free(s->frame);
+    krs_scene_free(scene);
+}
+
+static void compare_scene(const char *name, const char *text, bool by_cells)
+{
+    Subject   s              = {0};
+    KrsScene *scene          = open_scene(&s, name, text);
     scene->distance.by_cells = scene->surface.by_cells = by_cells;
     compare(&s, name, false);
     compare(&s, name, true);
-    arena_free(&s.arena);
-    krs_frame_free(s.frame);
-    krs_scene_free(scene);
+    close_scene(&s, scene);
+}
+
+/* ---- outlines in boxes ---- */
+
+/* What is known of many small boxes about an outline. */
+typedef struct Tally {
+    size_t listed, bounded, different, steep, bent, halved;
+} Tally;
+
+static Box box_near(Subject *s)
+{
+    double points[POINTS][3], normals[POINTS][3], distances[POINTS];
+    Box    box;
+    int    nearest = 0;
+    place(s, points, normals);
+    lane_run(&s->lanes, &s->work, LANE_DOUBLE,
+             (LanePoints){.points = (const double(*)[3])points, .count = POINTS}, 0, 1, distances);
+    for (int i = 1; i < POINTS; i++)
+        nearest = fabs(distances[i]) < fabs(distances[nearest]) ? i : nearest;
+    double half = pow(2, -random_between(&randomness, 4, 10));
+    for (int k = 0; k < 3; k++)
+        box.axis[k] = (Range){points[nearest][k] - half, points[nearest][k] + half};
+    return box;
+}
+
+/* The second difference about the middle of two points is what second derivatives permit, and the first what the
+   first ones do. */
+static bool permits(const LaneSlope *slope, const LaneHessian *hessian, const double a[3],
+                    const double b[3], const double values[3], double share)
+{
+    static const int ROW[6] = {0, 1, 2, 1, 0, 0}, COLUMN[6] = {0, 1, 2, 2, 2, 1};
+    double           bend = values[0] + values[1] - 2 * values[2], slack = 1e-9;
+    Range            first = range_of(0), second = range_of(0);
+    for (int k = 0; k < 3; k++)
+        first = range_add(first, range_mul(slope->by[k], range_of(b[k] - a[k])));
+    for (int i = 0; i < 6; i++)
+        second = range_add(
+            second,
+            range_mul(hessian->by[i], range_of((i < 3 ? 0.25 : 0.5) * (b[ROW[i]] - a[ROW[i]]) *
+                                               (b[COLUMN[i]] - a[COLUMN[i]]))));
+    return values[1] - values[0] >= first.low - slack &&
+           values[1] - values[0] <= first.high + slack && bend >= share * second.low - slack &&
+           bend <= share * second.high + slack;
+}
+
+static void try_derivatives(Subject *s, const LaneTape *pruned, Box box, LaneRanges *ranges,
+                            Tally *tally)
+{
+    LaneSlope   *slopes   = lane_slopes_new(&s->lanes, &s->arena), slope;
+    LaneHessian *hessians = lane_hessians_new(&s->lanes, &s->arena), hessian;
+    bool         halved   = false;
+    lane_ranges_run(pruned, ranges, box);
+    if (!lane_slopes_run(pruned, ranges, slopes, &slope) ||
+        !lane_hessians_run(pruned, ranges, slopes, hessians, &hessian))
+        return;
+    tally->bounded++;
+    for (int i = 0; i < 20; i++) {
+        double at[3][3], values[3];
+        for (int k = 0; k < 3; k++) {
+            at[0][k] = random_between(&randomness, box.axis[k].low, box.axis[k].high);
+            at[1][k] = random_between(&randomness, box.axis[k].low, box.axis[k].high);
+            at[2][k] = 0.5 * (at[0][k] + at[1][k]);
+        }
+        lane_run(&s->lanes, &s->work, LANE_DOUBLE,
+                 (LanePoints){.points = (const double(*)[3])at, .count = 3}, 0, 1, values);
+        tally->bent += !permits(&slope, &hessian, at[0], at[1], values, 1);
+        halved = halved || !permits(&slope, &hessian, at[0], at[1], values, 0.25);
+    }
+    tally->halved += halved;
+}
+
+static void try_box(Subject *s, Tally *tally)
+{
+    double     points[LANES][3], whole[LANES], less[LANES];
+    Box        box    = box_near(s);
+    LaneRanges ranges = lane_ranges_new(&s->lanes, &s->arena);
+    ranges.values     = s->frame->values;
+    lane_ranges_run(&s->lanes, &ranges, box);
+    LaneTape pruned = lane_prune(&s->lanes, &ranges, 1, &s->arena);
+    for (int i = 0; i < LANES; i++)
+        for (int k = 0; k < 3; k++)
+            points[i][k] = random_between(&randomness, box.axis[k].low, box.axis[k].high);
+    LanePoints all = {.points = (const double(*)[3])points, .count = LANES};
+    lane_run(&s->lanes, &s->work, LANE_DOUBLE, all, 0, 1, whole);
+    lane_run(&pruned, &s->work, LANE_DOUBLE, all, 0, 1, less);
+    for (size_t i = 0; i < pruned.call_count; i++)
+        tally->listed += pruned.calls[i].members != NULL;
+    for (int i = 0; i < LANES; i++)
+        tally->different += whole[i] != less[i];
+    try_derivatives(s, &pruned, box, &ranges, tally);
+}
+
+/* Members that are left out never count; where one is left there are derivatives. */
+static void letters_are_pruned(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < 2; i++) {
+        Subject   s     = {0};
+        Tally     tally = {0};
+        KrsScene *scene = open_scene(&s, letters[i], letters[i]);
+        open_lanes(&s, false);
+        for (int turn = 0; turn < 400; turn++) {
+            ArenaMark mark = arena_mark(&s.arena);
+            try_box(&s, &tally);
+            arena_rewind(&s.arena, mark);
+        }
+        print_message("# %zu lists, %zu boxes with bounds, %zu wrong if a quarter\n", tally.listed,
+                      tally.bounded, tally.halved);
+        assert_int_equal(tally.different, 0);
+        assert_int_equal(tally.bent, 0);
+        assert_true(tally.listed > 100 && tally.bounded > 20 && tally.halved > 0);
+        close_scene(&s, scene);
+    }
 }
 
 static void crowds_over_lanes_are_as_on_tapes(void **state)
@@ -153,6 +277,7 @@ static void letters_over_lanes_are_as_on_tapes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(crowds_over_lanes_are_as_on_tapes),
-                                       cmocka_unit_test(letters_over_lanes_are_as_on_tapes)};
+                                       cmocka_unit_test(letters_over_lanes_are_as_on_tapes),
+                                       cmocka_unit_test(letters_are_pruned)};
     return cmocka_run_group_tests_name("crowds over lanes", tests, NULL, NULL);
 }

@@ -1,0 +1,189 @@
+/*
+ * lane_outlines.c: curves of outlines that are near a box.
+ *
+ * The range of the distance over the box says how far the nearest curve is at most.  Curves that are farther from the
+ * middle than that and the box's radius do not count.  Where one curve is left, and the nearest point is never an
+ * end of it, the gradient is its normal.  Off a curve by d, the normal turns by the curvature k as k / (1 - k d).
+ */
+#include "compiler/graph/lane_outlines.h"
+
+#include <math.h>
+
+#include "compiler/base/vec.h"
+#include "compiler/graph/crowd.h"
+#include "compiler/graph/lane_call.h"
+#include "compiler/graph/lane_partials.h"
+
+/* Widens what rounding may have changed: a share of all lengths. */
+static const double UNCERTAIN = 1e-9;
+
+/* The points of a call in a box of space, and how far the outline is from them. */
+typedef struct View {
+    const LaneCall *call;
+    const Crowd    *table;
+    double          middle[2], radius;
+    double          farthest; /* the nearest curve is not farther, anywhere */
+} View;
+
+static Range operand_range(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand)
+{
+    return operand & LANE_SCALAR ? range_of(tape->scalars[operand & ~LANE_SCALAR])
+                                 : ranges->ranges[operand];
+}
+
+/* False: it is no outline, or one does not know how far. */
+static bool look(const LaneTape *tape, const LaneRanges *ranges, size_t step, View *view)
+{
+    const Graph *graph = tape->tape->graph;
+    Range        value = ranges->ranges[LANE_INPUTS + step];
+    view->call         = &tape->calls[tape->steps[step].operands[0]];
+    if (!view->call->body || tape->tape->by_cells || !is_finite(value))
+        return false;
+    view->table    = &graph->crowds->tables.items[view->call->body->table];
+    view->radius   = 0;
+    view->farthest = range_largest(value);
+    double size    = view->farthest;
+    for (int k = 0; k < 2; k++) {
+        Range at        = operand_range(tape, ranges, view->call->operands[1][k]);
+        view->middle[k] = 0.5 * (at.low + at.high);
+        view->radius    = hypot_upward(view->radius, 0.5 * (at.high - at.low));
+        size            = fmax(size, range_largest(at));
+    }
+    view->radius += UNCERTAIN * size;
+    view->farthest += UNCERTAIN * size;
+    return view->table->arcs && isfinite(view->radius);
+}
+
+/* ---- which curves ---- */
+
+static double distance_to_point(const double a[2], const double b[2])
+{
+    return hypot(a[0] - b[0], a[1] - b[1]);
+}
+
+/* A curve is not farther from its chord than a quarter of its bend. */
+static double least_distance(const CrowdArc *arc, const double point[2])
+{
+    double chord[2], from[2], square = 0, along = 0;
+    for (int k = 0; k < 2; k++) {
+        chord[k] = 2 * arc->way[k] + arc->bend[k];
+        from[k]  = point[k] - arc->start[k];
+        square += chord[k] * chord[k];
+        along += chord[k] * from[k];
+    }
+    double t = square > 0 ? fmin(fmax(along / square, 0), 1) : 0;
+    return hypot(from[0] - t * chord[0], from[1] - t * chord[1]) -
+           0.25 * hypot(arc->bend[0], arc->bend[1]);
+}
+
+static bool may_be_nearest(const View *view, uint32_t member)
+{
+    return least_distance(&view->table->arcs[member], view->middle) <=
+           view->farthest + view->radius;
+}
+
+static bool find_members(const View *view, uint32_t *members, uint32_t *count)
+{
+    const uint32_t *known = view->call->members;
+    uint32_t        all   = known ? view->call->member_count : view->table->rows;
+    *count                = 0;
+    for (uint32_t i = 0; i < all; i++) {
+        uint32_t member = known ? known[i] : i;
+        if (!may_be_nearest(view, member))
+            continue;
+        if (*count == MOST_LANE_MEMBERS)
+            return false;
+        members[(*count)++] = member;
+    }
+    return *count > 0;
+}
+
+bool lane_outline_members(const LaneTape *tape, const LaneRanges *ranges, size_t step,
+                          uint32_t members[MOST_LANE_MEMBERS], uint32_t *count)
+{
+    View view;
+    return look(tape, ranges, step, &view) && find_members(&view, members, count);
+}
+
+/* ---- one curve ---- */
+
+static void point_at(const CrowdArc *arc, double t, double point[2])
+{
+    for (int k = 0; k < 2; k++)
+        point[k] = arc->start[k] + t * (2 * arc->way[k] + t * arc->bend[k]);
+}
+
+/* The unit tangent where the curve is nearest to the middle; false: that is not found. */
+static bool nearest_tangent(const View *view, const CrowdArc *arc, double tangent[2])
+{
+    enum { STEPS = 12 };
+    double t = 0.5, at[2], change = 1;
+    for (int i = 0; i < STEPS && fabs(change) > 1e-12; i++) {
+        double value = 0, slope = 0;
+        point_at(arc, t, at);
+        for (int k = 0; k < 2; k++) {
+            double half = arc->way[k] + t * arc->bend[k], from = at[k] - view->middle[k];
+            value += from * half;
+            slope += 2 * half * half + from * arc->bend[k];
+        }
+        change = slope > 0 ? fmin(fmax(t - value / slope, 0), 1) - t : INFINITY;
+        t += change;
+    }
+    for (int k = 0; k < 2; k++)
+        tangent[k] = arc->way[k] + t * arc->bend[k];
+    double length = hypot(tangent[0], tangent[1]);
+    tangent[0] /= length;
+    tangent[1] /= length;
+    return fabs(change) <= 1e-12 && length > 0;
+}
+
+/* Whether the nearest point is never an end. */
+static bool is_within_ends(const View *view, const CrowdArc *arc)
+{
+    double end[2];
+    point_at(arc, 1, end);
+    return fmin(distance_to_point(view->middle, arc->start), distance_to_point(view->middle, end)) -
+               view->radius >
+           view->farthest;
+}
+
+/* The most that it is curved: at an end, since it turns only one way and is not cut at an apex. */
+static double largest_curvature(const CrowdArc *arc)
+{
+    double cross = arc->way[0] * arc->bend[1] - arc->way[1] * arc->bend[0];
+    double speed = fmin(hypot(arc->way[0], arc->way[1]),
+                        hypot(arc->way[0] + arc->bend[0], arc->way[1] + arc->bend[1]));
+    return cross == 0 ? 0 : fabs(cross) / (2 * speed * speed * speed);
+}
+
+static Range about(double middle, double radius)
+{
+    return (Range){middle - radius, middle + radius};
+}
+
+OutlinePartials lane_outline_partials(const LaneTape *tape, const LaneRanges *ranges, size_t step)
+{
+    View            view;
+    uint32_t        members[MOST_LANE_MEMBERS], count;
+    double          tangent[2];
+    OutlinePartials p = {.known = false};
+    if (!look(tape, ranges, step, &view) || !view.call->members ||
+        !find_members(&view, members, &count) || count != 1)
+        return p;
+    const CrowdArc *arc       = &view.table->arcs[members[0]];
+    double          curvature = largest_curvature(arc);
+    if (!(2 * curvature * view.farthest < 1) || !is_within_ends(&view, arc) ||
+        !nearest_tangent(&view, arc, tangent))
+        return p;
+    double bend  = curvature / (1 - curvature * view.farthest);
+    double turn  = bend * view.radius + UNCERTAIN;
+    Range  along = about(tangent[0], turn), up = about(tangent[1], turn);
+    Range  bends   = (Range){-bend, bend};
+    p.known        = true;
+    p.first[0]     = up; /* the inside is on the left of the tangent */
+    p.first[1]     = minus(along);
+    p.second[0][0] = range_mul(bends, range_square(along));
+    p.second[0][1] = range_mul(bends, range_mul(along, up));
+    p.second[1][1] = range_mul(bends, range_square(up));
+    return p;
+}

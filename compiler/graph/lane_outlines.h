@@ -1,0 +1,21 @@
+/*
+ * lane_outlines.h: what is known of the distance to an outline in a box: which of its curves may be the nearest,
+ * and, where only one may, how the distance changes.
+ */
+#ifndef KRS_LANE_OUTLINES_H
+#define KRS_LANE_OUTLINES_H
+
+#include "compiler/graph/lanes.h"
+
+/* After a run over a box: those that may be the nearest in it, of the call that is step `step`.  False: it is no
+   outline, or there are more of them. */
+bool lane_outline_members(const LaneTape *tape, const LaneRanges *ranges, size_t step,
+                          uint32_t members[MOST_LANE_MEMBERS], uint32_t *count);
+/* Its derivatives by x and y of the point of the call. */
+typedef struct OutlinePartials {
+    Range first[2], second[2][2]; /* second[1][0] is not set */
+    bool  known;
+} OutlinePartials;
+OutlinePartials lane_outline_partials(const LaneTape *tape, const LaneRanges *ranges, size_t step);
+
+#endif
