@@ -77,9 +77,9 @@ static int compare_placed(const void *a, const void *b)
 
 TetState state_by_bounds(const Mesher *m, const Tet *tet)
 {
-    if (tet->miss <= tet->slope * proven_error(m))
+    if (tet->deviation <= tet->slope * proven_error(m))
         return TET_FITS;
-    double by_cells = tet->miss < INFINITY ? LEAST_SMOOTH : LEAST_KNOWN;
+    double by_cells = tet->deviation < INFINITY ? LEAST_SMOOTH : LEAST_KNOWN;
     return tets_longest_edge(&m->tets, tet) > by_cells * m->error ? TET_REFUTED : TET_ROUGH;
 }
 
@@ -102,9 +102,9 @@ static bool one_may_fit(Mesher *m, const SmoothCell *middle, double share, const
 {
     for (size_t i = 0; i < count; i++) {
         Tet tet = m->tets.list.items[placed[i].tet];
-        if ((tet.state == TET_REFUTED || tet.state == TET_ROUGH) && tet.miss < INFINITY) {
+        if ((tet.state == TET_REFUTED || tet.state == TET_ROUGH) && tet.deviation < INFINITY) {
             smooth_measure(&m->contour, middle, &tet);
-            if (tet.miss <= share * tet.slope * proven_error(m))
+            if (tet.deviation <= share * tet.slope * proven_error(m))
                 return true;
         }
     }
@@ -137,10 +137,10 @@ static bool measure_pieces(Mesher *m, Verifier *verifier, Box box, const Placed 
             continue;
         if (pieces_measure(&m->contour, verifier->field, &cell, proven_error(m), tet))
             tet->state = TET_EMPTY;
-        else if (tet->miss <= tet->slope * proven_error(m))
+        else if (tet->deviation <= tet->slope * proven_error(m))
             tet->state = TET_FITS;
         else {
-            tet->miss = INFINITY;
+            tet->deviation = INFINITY;
             if (tets_longest_edge(&m->tets, tet) > LEAST_SHARP * m->error)
                 tet->state = TET_REFUTED;
         }

@@ -12,9 +12,9 @@
 
 /* What a point of the tetrahedra knows of those around it: smooth.h. */
 typedef struct Around {
-    float miss, width; /* the largest and the least */
-    float way;         /* the largest miss over the slope */
-    bool  in_pieces;   /* some is bounded by pieces */
+    float deviation, width; /* the largest and the least */
+    float distance;         /* to the surface, at most: the largest deviation over the slope */
+    bool  in_pieces;        /* some is bounded by pieces */
 } Around;
 
 enum { MARKS = 160 }; /* cells along a side */

@@ -311,8 +311,8 @@ static void find_points(const Contour *contour, const MeshField *field, const Pi
         points->values[i / cell->pieces.count][i % cell->pieces.count] = values[i];
 }
 
-static double miss_of_side(const Contour *contour, const Tet *tet, const Points *points,
-                           const Measure *m)
+static double deviation_of_side(const Contour *contour, const Tet *tet, const Points *points,
+                                const Measure *m)
 {
     static const int FACES[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
     Cones            c           = {.m = *m, .points = points, .apex = 0, .most = -INFINITY};
@@ -337,17 +337,18 @@ bool pieces_measure(const Contour *contour, const MeshField *field, const PieceC
     tet->slope = (float)(cell->slope * (1 - 1e-6));
     tet->steep = (float)(cell->steep * (1 + 1e-6));
     find_points(contour, field, cell, tet, &points);
-    Measure m    = {.cell = cell, .budget = BUDGET, .enough = tet->slope * error};
-    double  miss = -INFINITY;
+    Measure m         = {.cell = cell, .budget = BUDGET, .enough = tet->slope * error};
+    double  deviation = -INFINITY;
     if (tet->triangle_count > 0 || points.inside[0]) {
-        m.side = 1;
-        miss   = fmax(miss, miss_of_side(contour, tet, &points, &m));
+        m.side    = 1;
+        deviation = fmax(deviation, deviation_of_side(contour, tet, &points, &m));
     }
     if (tet->triangle_count > 0 || !points.inside[0]) {
-        m.side = -1;
-        miss   = fmax(miss, miss_of_side(contour, tet, &points, &m));
+        m.side    = -1;
+        deviation = fmax(deviation, deviation_of_side(contour, tet, &points, &m));
     }
     /* what is more was not looked at to the end */
-    tet->miss = miss > m.enough ? INFINITY : (float)(miss * (1 + copysign(1e-6, miss)));
-    return miss < 0;
+    tet->deviation = deviation > m.enough ? INFINITY
+                                          : (float)(deviation * (1 + copysign(1e-6, deviation)));
+    return deviation < 0;
 }

@@ -21,7 +21,7 @@ typedef struct PieceCell {
 
 /* The field has entered the box last. */
 void pieces_look(MeshField *field, Box box, PieceCell *cell);
-/* As smooth_measure; a miss that fits the error is not looked at more closely. */
+/* As smooth_measure; a deviation that fits the error is not looked at more closely. */
 bool pieces_measure(const Contour *contour, const MeshField *field, const PieceCell *cell,
                     double error, Tet *tet);
 

@@ -157,9 +157,9 @@ static bool for_groups(Mesher *m, WorkOnGroup *work)
 
 /* ---- where no cells are needed ---- */
 
-static float way_of(const Tet *tet)
+static float distance_of(const Tet *tet)
 {
-    return tet->slope > 0 ? tet->miss / tet->slope * (1 + 1e-6F) : INFINITY;
+    return tet->slope > 0 ? tet->deviation / tet->slope * (1 + 1e-6F) : INFINITY;
 }
 
 /* What points know of all tetrahedra that have them. */
@@ -171,14 +171,14 @@ static void look_around(Mesher *m)
     for (size_t i = 0; i < m->around.count; i++)
         m->around.items[i] = nothing;
     for (size_t i = 0; i < m->tets.list.count; i++) {
-        const Tet *tet  = &m->tets.list.items[i];
-        bool       none = tet->state == TET_EMPTY;
-        float      miss = none ? 0 : tet->miss, way = none ? 0 : way_of(tet);
+        const Tet *tet       = &m->tets.list.items[i];
+        bool       none      = tet->state == TET_EMPTY;
+        float      deviation = none ? 0 : tet->deviation, distance = none ? 0 : distance_of(tet);
         for (int k = 0; k < 4; k++) {
             Around *around    = &m->around.items[tet->points[k]];
-            around->miss      = miss > around->miss ? miss : around->miss;
+            around->deviation = deviation > around->deviation ? deviation : around->deviation;
             around->width     = tet->width < around->width ? tet->width : around->width;
-            around->way       = way > around->way ? way : around->way;
+            around->distance  = distance > around->distance ? distance : around->distance;
             around->in_pieces = around->in_pieces || (!none && tet->steep > 0);
         }
     }
@@ -186,41 +186,43 @@ static void look_around(Mesher *m)
 
 /* Whether no point of those around a tetrahedron is on the wrong side of the mesh by more than grows along the error; and from
    none of its points one leaves them within that.  Pieces have the sign of the distance, but not its size.  So from
-   one to another only the way tells, which the surface is away at most. */
+   one to another only the greatest distance to the surface tells. */
 static bool all_fit_around(const Mesher *m, const Tet *tet)
 {
-    float  miss = 0, width = INFINITY, way = 0;
+    float  deviation = 0, width = INFINITY, distance = 0;
     bool   in_pieces = false;
     double steep     = tet->steep > 0 ? tet->steep : 1;
     for (int k = 0; k < 4; k++) {
         const Around *around = &m->around.items[tet->points[k]];
-        miss                 = around->miss > miss ? around->miss : miss;
+        deviation            = around->deviation > deviation ? around->deviation : deviation;
         width                = around->width < width ? around->width : width;
-        way                  = around->way > way ? around->way : way;
+        distance             = around->distance > distance ? around->distance : distance;
         in_pieces            = in_pieces || around->in_pieces;
     }
     double least = tet->slope * fmin(proven_error(m), width);
-    return in_pieces ? steep * way <= least && way <= proven_error(m) : miss <= least;
+    return in_pieces ? steep * distance <= least && distance <= proven_error(m)
+                     : deviation <= least;
 }
 
 /* Edges, in errors, of the smallest tetrahedra that are bisected since their mesh is not on the surface, where it is within the
    error of it. */
-static const double LEAST_FAIR = 1;
+static const double LEAST_ASTRAY = 1;
 
-static bool is_fair(const Mesher *m, const Tet *tet)
+/* Whether its mesh passes near the surface, or it is too small to be bisected for that. */
+static bool is_near_surface(const Mesher *m, const Tet *tet)
 {
     return tet->triangle_count == 0 ||
            !patch_is_astray(&m->contour, &m->contour.patches.items[tet->patch]) ||
-           tets_longest_edge(&m->tets, tet) <= LEAST_FAIR * m->error;
+           tets_longest_edge(&m->tets, tet) <= LEAST_ASTRAY * m->error;
 }
 
-/* By bounds; and those whose mesh is not fair are refuted in any case. */
+/* By bounds; and those whose mesh is astray are refuted in any case. */
 static void judge_group(Mesher *m, Verifier *verifier, const Group *group)
 {
     bound_group(m, verifier, group);
     for (uint32_t i = 0; i < group->count; i++) {
         Tet *tet = tet_of_group(m, group, i);
-        if ((tet->state == TET_FITS || tet->state == TET_ROUGH) && !is_fair(m, tet))
+        if ((tet->state == TET_FITS || tet->state == TET_ROUGH) && !is_near_surface(m, tet))
             tet->state = TET_REFUTED;
     }
 }

@@ -258,7 +258,7 @@ static Side start_side(const MeshPart *part, const double form[6])
 /* The most that the value may have the wrong sign on one side of the mesh; below 0: it has not.
    `depths` are those of its corners, whose signs are right.  A corner so deep that pairs with it add nothing
    leaves what the others permit; those that are not count as the mesh does, four points at most at once. */
-static double miss_of_side(const Side *side, const MeshPart *part, const double *depths)
+static double deviation_of_side(const Side *side, const MeshPart *part, const double *depths)
 {
     double most = part->patch ? part->value + 0.5 * most_on_mesh(part, side->form) : -INFINITY;
     double deep = -INFINITY, pairs = 0, least = part->patch ? -part->value : INFINITY;
@@ -288,10 +288,10 @@ static double miss_of_side(const Side *side, const MeshPart *part, const double 
 bool smooth_measure(const Contour *contour, const SmoothCell *cell, Tet *tet)
 {
     MeshPart part = mesh_part(contour, tet);
-    double   corners[4][3], depths[2][4], miss = -INFINITY;
-    tet->miss  = INFINITY;
-    tet->steep = 0;
-    tet->slope = (float)(cell->slope * (1 - 1e-6));
+    double   corners[4][3], depths[2][4], deviation = -INFINITY;
+    tet->deviation = INFINITY;
+    tet->steep     = 0;
+    tet->slope     = (float)(cell->slope * (1 - 1e-6));
     if (!cell->known)
         return false;
     Side inside = start_side(&part, cell->below), outside = start_side(&part, cell->above);
@@ -303,9 +303,9 @@ bool smooth_measure(const Contour *contour, const SmoothCell *cell, Tet *tet)
         add_point(side, corners[i]);
     }
     if (inside.count > inside.on_mesh)
-        miss = fmax(miss, miss_of_side(&inside, &part, depths[0]));
+        deviation = fmax(deviation, deviation_of_side(&inside, &part, depths[0]));
     if (outside.count > outside.on_mesh)
-        miss = fmax(miss, miss_of_side(&outside, &part, depths[1]));
-    tet->miss = (float)(miss * (1 + copysign(1e-6, miss)));
-    return miss < 0;
+        deviation = fmax(deviation, deviation_of_side(&outside, &part, depths[1]));
+    tet->deviation = (float)(deviation * (1 + copysign(1e-6, deviation)));
+    return deviation < 0;
 }

@@ -2,9 +2,9 @@
  * smooth.h: proofs where derivatives do not jump, by bounds of second derivatives.
  *
  * Between points with known values a function is as far from linear as its second derivatives permit.  So in a
- * tetrahedron no point that the mesh has inside is farther outside than `miss` (the value there is not above
+ * tetrahedron no point that the mesh has inside is farther outside than `deviation` (the value there is not above
  * it), and none that it has outside farther inside.  Let the value grow by at least `slope` along some direction n.
- * From a point of the surface both ways along n, by s = miss / slope, there are points that are outside
+ * From a point of the surface both ways along n, by s = deviation / slope, there are points that are outside
  * and inside of the mesh: so it is crossed within s.  From a point of the mesh likewise one meets the
  * surface.  Nothing is sampled, and neither triangles nor cells are searched.
  */
@@ -37,7 +37,7 @@ void smooth_look_closer(const MeshField *field, double error, int halvings, Smoo
 /* What is true in the middle: no bound, but what bounds may become at best. */
 bool smooth_look_at_middle(const MeshField *field, const SmoothCell *cell, SmoothCell *middle);
 
-/* Finds `miss` and `slope` of a tetrahedron within the cell; true: it has no surface. */
+/* Finds `deviation` and `slope` of a tetrahedron within the cell; true: it has no surface. */
 bool smooth_measure(const Contour *contour, const SmoothCell *cell, Tet *tet);
 
 #endif

@@ -38,11 +38,11 @@ typedef struct Tet {
     uint8_t  triangle_count;
     bool     fresh; /* it is among those */
     uint32_t first_triangle;
-    uint32_t patch;       /* of the contour, where it has triangles */
-    float    width;       /* a point of one face or edge is no nearer to the one across */
-    float    miss, slope; /* smooth.h */
-    float    reach;       /* how far from its centre a proof by cells asks for the mesh */
-    float    steep;       /* pieces.h; 0 where it is by smooth.h */
+    uint32_t patch;            /* of the contour, where it has triangles */
+    float    width;            /* a point of one face or edge is no nearer to the one across */
+    float    deviation, slope; /* smooth.h */
+    float    reach;            /* how far from its centre a proof by cells asks for the mesh */
+    float    steep;            /* pieces.h; 0 where it is by smooth.h */
 } Tet;
 
 typedef struct Tets {

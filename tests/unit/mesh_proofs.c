@@ -293,7 +293,7 @@ static void check_bends(const Subject *subject, const SmoothCell *cell, Box box,
 /* What no surface is said to be in, has none.  A way that leaves the box of the cell says nothing. */
 static void check_tet(const Trial *t, const Tet *tet, bool empty, Shares *shares)
 {
-    double worst = worst_in(t, tet), way = tet->miss / tet->slope;
+    double worst = worst_in(t, tet), way = tet->deviation / tet->slope;
     shares->cells++;
     shares->empty += empty;
     if (empty && (tet->triangle_count > 0 || worst > 0))
@@ -335,7 +335,7 @@ static void try_smooth(const Trial *t, SmoothCell *cell, Box own, Tet *tet, Boun
     }
 }
 
-/* A miss that fits is not looked at closely, so less and less is asked for. */
+/* A deviation that fits is not looked at closely, so less and less is asked for. */
 static void try_pieces(Trial *t, Box wide, Tet *tet, Bounds *bounds)
 {
     PieceCell cell;
@@ -343,9 +343,9 @@ static void try_pieces(Trial *t, Box wide, Tet *tet, Bounds *bounds)
     for (double error = t->error; cell.known && error > 1e-3 * t->error;) {
         bool empty = pieces_measure(&t->contour, &t->fields[0], &cell, error, tet);
         check_tet(t, tet, empty, &bounds->pieces);
-        if (empty || !(tet->miss < INFINITY))
+        if (empty || !(tet->deviation < INFINITY))
             break;
-        error = 0.98 * tet->miss / tet->slope;
+        error = 0.98 * tet->deviation / tet->slope;
     }
     if (cell.known) {
         assert_true(cell.steep >= 1 - 1e-9 && tet->steep >= 1 - 1e-6F);
