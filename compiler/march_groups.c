@@ -17,6 +17,9 @@ static const double APART_FLOPS = 300, SHARED_FLOPS = 1000;
    and 05-rock takes 3 % longer. */
 static const double NESTED_FLOPS = 450, NESTED_VOLUME = 1.25;
 
+/* Where one group has more than this part of all flops, marching it by itself saves nothing. */
+static const double MOST_OF_SCENE = 0.9;
+
 static double component_flops(Compilation *c, size_t component)
 {
     Node distance = distance_root(&c->scene->roots, component);
@@ -95,9 +98,13 @@ static void add_march_group(KrsProgram *program, double flops, Box box)
 
 static double flops_worth_splitting(const KrsProgram *program)
 {
-    double sum = 0, hull = 1;
-    for (size_t i = 0; i < program->march_group_count; i++)
+    double sum = 0, hull = 1, largest = 0;
+    for (size_t i = 0; i < program->march_group_count; i++) {
         sum += volume_of(box_of_group(&program->march_groups[i]));
+        largest = fmax(largest, program->march_groups[i].flops);
+    }
+    if (largest > MOST_OF_SCENE * program->flops)
+        return INFINITY;
     for (int k = 0; k < 3; k++)
         hull *= program->high[k] - program->low[k];
     return sum <= hull ? SCATTERED_FLOPS : MIXED_FLOPS;

@@ -271,8 +271,8 @@ static bool add_mirrors(Preview *p)
             plan_add_march_again(p->plan, 0.4f * each);
         add_items(p, KRS_PHASE_BOUNCES, escape, LIST_OF_PATHS, LIST_ALL,
                   (PassConstants){.phase = ESCAPE_TO_SKY}, weight);
-        add_items(p, KRS_PHASE_BOUNCES, kernels.normals, LIST_ALL, NO_LIST, (PassConstants){0},
-                  weight);
+        add_items(p, KRS_PHASE_BOUNCES, kernels.normals, LIST_ALL, NO_LIST,
+                  (PassConstants){.of_paths = 1}, weight);
         add_mirrored_lights(p, &kernels, i + 1 == MIRRORED_SURFACES, weight);
     }
     return escape != NULL;

@@ -13,7 +13,8 @@
 #include "frame.glsl"
 #include "hit_lists.glsl"
 #include "stencil.glsl"
-#ifdef PATH_RAYS
+#if defined(PATH_RAYS) || defined(MIXED_RAYS)
+#define FOLLOWS_PATHS
 #include "media.glsl"
 #endif
 
@@ -49,8 +50,9 @@ vec3 find_backwards()
 #if defined(LISTED_RAYS) || defined(PATH_RAYS) || defined(LENS)
     return -hit.direction;
 #else
-    return control.projection == ORTHOGRAPHIC ? -frame.forward.xyz
-                                              : normalize(frame.eye - hit.position);
+    vec3 backwards = control.projection == ORTHOGRAPHIC ? -frame.forward.xyz
+                                                        : normalize(frame.eye - hit.position);
+    return are_of_paths() ? -hit.direction : backwards;
 #endif
 }
 
@@ -106,8 +108,9 @@ void begin_item(uint number)
 {
     hit = find_hit_point(number);
     start = hit.position;
-#ifdef PATH_RAYS
-    enter_medium(load_path(PATH_TOWARD, index_of(pixel_of(hit.slot))).w);
+#ifdef FOLLOWS_PATHS
+    uint index = index_of(pixel_of(hit.slot));
+    enter_medium(are_of_paths() ? load_path(PATH_TOWARD, index).w : 0.0);
 #endif
     begin_normal();
 }

@@ -40,9 +40,11 @@
 #endif
 #include "scene.glsl"
 #include "frame.glsl"
-#ifdef PATH_RAYS
+#if defined(PATH_RAYS) || defined(MIXED_RAYS)
+#define FOLLOWS_PATHS
 #include "media.glsl"
-#else
+#endif
+#ifndef PATH_RAYS
 #include "limits.glsl"
 #endif
 
@@ -87,6 +89,8 @@ struct RayMarch {
 
 layout(std430, set = 1, binding = QUEUE_BINDING) buffer Queue { uvec4 queue[]; };
 
+#include "tile_starts.glsl"
+
 RayMarch march;
 bool  exists;                  // the item is in the band
 uint  tile_index;              // of the item, counted from the workgroup's first tile
@@ -99,16 +103,8 @@ float shrinking;               // of the clearance, since the beam gets wider: 1
 bool  ends_at_walls;           // all solids end at `end`
 float rounding;                // magnitude of coordinates at t = 0
 float tolerance_in_pixels;     // length that may stay unverified, in pixels
-uvec2 first_8, count_8, first_32, count_32; // the tiles of beams
 uint  most_steps;              // of a ray of this lane
 uint  found_tiles;             // bits of this lane's beams that find something
-
-// What the items of a tile have in common: 64 rays, or four beams of 4x4 pixels.  A beam of 8x8 or
-// of 32x32 pixels is the only item of its tile.
-struct TileStart {
-    uvec2 tile;   // its column and row in the picture, of tiles of 8x8 or of 32x32 pixels
-    vec4  starts; // for each quarter: where the larger beam around it ended; nothing is before
-};
 
 uint  first_tile; // of the workgroup
 uvec2 item_tile;  // of the item that is about to begin
@@ -117,65 +113,6 @@ float item_start; // where that item starts
 uvec2 kept_tiles;               // two tiles of each lane are all tiles of the workgroup
 vec4  kept_starts, more_starts; // starts of the first tile, and of the second
 #endif
-
-// The tile of an item.  Items are numbered tile by tile, and quarter by quarter in each.
-uint tile_of_item(uint number)
-{
-    return number >> (control.phase == TRACE_RAYS ? 6u : control.phase == TRACE_BEAMS_4 ? 2u : 0u);
-}
-
-uint quarter_of(uint number)
-{
-    return control.phase == TRACE_RAYS      ? number >> 4u & 3u
-           : control.phase == TRACE_BEAMS_4 ? number & 3u
-                                            : 0u;
-}
-
-// The tile of a beam, counted in the band.
-uvec2 cell_of_beam(uint number)
-{
-    return find_cell(number, control.across) +
-           uvec2(control.window & 0xffffu, control.window >> 16u);
-}
-
-// Indices in `ends` of the beams of tiles, which are counted in the band.
-uint end_of_8(uvec2 cell) { return work.extent.x * work.extent.y + cell.y * count_8.x + cell.x; }
-
-uint end_of_32(uvec2 cell)
-{
-    return end_of_8(uvec2(0u, count_8.y)) + cell.y * count_32.x + cell.x;
-}
-
-uint end_of_4(uvec2 cell, uint quarter)
-{
-    return end_of_32(uvec2(0u, count_32.y)) + 4u * (cell.y * count_8.x + cell.x) + quarter;
-}
-
-float load_start(uint end) { return uintBitsToFloat(load_end(end).x); }
-
-// Loads a tile, and where its rays or beam start.  Rays and beams of 4x4 pixels are those of all
-// tiles of the band, or of the listed ones.  Each starts where the next larger beam around it has
-// ended.  For rays that is one of 4x4 pixels, if there are such beams, else of 8x8.
-TileStart load_tile(uint number)
-{
-    bool  is_ray = control.phase == TRACE_RAYS, large = control.phase == TRACE_BEAMS_32;
-    bool  small = control.phase == TRACE_BEAMS_4;
-    bool  exists = control.source != ITEMS_QUEUED && number <= tile_of_item(control.items - 1u);
-    if (exists && (is_ray || small) && control.listed != 0u)
-        number = load_tile_word(number);
-    uvec2 cell = is_ray || small ? find_cell(number, count_8.x) : cell_of_beam(number);
-    uvec2 tile = cell + (large ? first_32 : first_8);
-    vec4  starts = vec4(0.0);
-    if (exists && !large && control.starts_from != 0u) {
-        bool quarters = is_ray && control.starts_from == 2u;
-        uint end = quarters ? end_of_4(cell, 0u)
-                 : is_ray || small ? end_of_8(cell) : end_of_32(tile / 4u - first_32);
-        starts = vec4(load_start(end));
-        if (quarters)
-            starts.yzw = vec3(load_start(end + 1u), load_start(end + 2u), load_start(end + 3u));
-    }
-    return TileStart(tile, starts);
-}
 
 void begin_group(uint first)
 {
@@ -304,16 +241,18 @@ void begin_item(uint number, bool saved)
     uvec2 half_tile = uvec2(quarter & 1u, quarter >> 1u);
     uvec2 pixel = 8u * item_tile + 4u * half_tile + uvec2(number & 3u, number >> 2u & 3u);
     uvec2 local = pixel - work.corner;
-#ifdef PATH_RAYS
-    local = pixel_of(saved ? 0u : load_tile_word(number));
-    pixel = work.corner + local;
+#ifdef FOLLOWS_PATHS
+    if (are_of_paths()) {
+        local = pixel_of(saved ? 0u : load_tile_word(number));
+        pixel = work.corner + local;
+    }
 #endif
     uint  index = local.y * work.extent.x + local.x;
     tile_index = tile_of_item(number) - first_tile;
     exists = !is_ray || local.x < work.extent.x && local.y < work.extent.y;
 #ifndef PATH_RAYS
     uint tile_number = (item_tile.y - first_8.y) * count_8.x + item_tile.x - first_8.x;
-    if (control.sampled_at != 0u && (is_ray || !large && !small))
+    if (control.sampled_at != 0u && !are_of_paths() && (is_ray || !large && !small))
         exists = exists && has_rays(tile_number, quarter, is_ray, number);
 #endif
 #if SAVES
@@ -336,8 +275,8 @@ void begin_item(uint number, bool saved)
     shrinking = 1.0 / (1.0 + width.y);
     if (saved && march.side < 0.0)
         width = inside_width();
-#ifdef PATH_RAYS
-    float code = load_path(PATH_TOWARD, index).w;
+#ifdef FOLLOWS_PATHS
+    float code = are_of_paths() ? load_path(PATH_TOWARD, index).w : 0.0;
     enter_medium(code);
     width = is_in_medium() ? inside_width() : width;
 #endif
@@ -351,7 +290,7 @@ void begin_item(uint number, bool saved)
     }
 #endif
 #ifndef PATH_RAYS // what is behind the caller's depth is not seen
-    if (is_ray && control.limits != 0u) {
+    if (is_ray && control.limits != 0u && !are_of_paths()) {
         float limit = find_end_by_limit(exists ? index : 0u, direction);
         ends_at_walls = ends_at_walls && !(limit < end);
         end = min(end, limit);
@@ -366,8 +305,8 @@ void begin_item(uint number, bool saved)
         uvec2 cell = item_tile - (large ? first_32 : first_8);
         uint  beam = large ? end_of_32(cell) : small ? end_of_4(cell, quarter) : end_of_8(cell);
         begin_march(is_ray ? index : beam, max(range.x, item_start), is_ray);
-#ifdef PATH_RAYS // it begins at a surface, so its first distance is too small to tell the side
-        march.side = sign(code);
+#ifdef FOLLOWS_PATHS // it begins at a surface, so its first distance is too small to tell the side
+        march.side = are_of_paths() ? sign(code) : march.side;
         width = march.side < 0.0 ? inside_width() : width;
 #endif
 #ifdef PACKED
@@ -425,7 +364,7 @@ void end_item()
     march.state = unresolved ? STATE_MISS : march.state;
     // A ray from inside of a solid that reaches the box around all solids hits a wall there.
     bool is_inside = march.side < 0.0;
-#ifdef PATH_RAYS
+#ifdef FOLLOWS_PATHS
     is_inside = is_inside || is_in_medium();
 #endif
     if (is_ray && !unresolved && march.state == STATE_MISS && is_inside && ends_at_walls) {

@@ -152,21 +152,20 @@ bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, K
 {
     const RayKind rays  = rendering->rays;
     const bool    roots = rendering_has_roots(rendering, options->trace);
-    rendering->rays     = RAYS_OF_PATHS;
+    const bool    paths = purpose == KRS_FOR_PATHS;
+    rendering->rays     = rendering_mixes_rays(rendering) ? rays : RAYS_OF_PATHS;
     kernels->march   = rendering_trace(rendering, trace_of_paths(options->trace), options->schedule,
                                        group_of_paths(rendering));
+    rendering->rays  = paths ? RAYS_OF_PATHS : rendering->rays;
     kernels->normals = rendering_normals_kernel(rendering, options->normals, 0);
-    if (purpose == KRS_FOR_PATHS)
-        kernels->scatter = find_kernel(
-            rendering, "scatter.comp",
-            variant_of_scatter(rendering, options->starts, options->integrator));
-    else
-        rendering->rays = rays; /* the kernels of the picture are for its paths, too */
+    rendering->rays  = paths ? RAYS_OF_PATHS : rays; /* those of pictures are for paths, too */
+    kernels->scatter = paths ? find_kernel(rendering, "scatter.comp",
+                                           variant_of_scatter(rendering, options->starts,
+                                                              options->integrator))
+                             : rendering_shade(rendering);
     kernels->shadows = find_kernel(
         rendering, "secondary.comp",
         variant_of_rays(rendering, options->schedule, roots, options->integrator));
-    if (purpose != KRS_FOR_PATHS)
-        kernels->scatter = rendering_shade(rendering);
     rendering->rays = rays;
     return kernels->march && kernels->normals && kernels->scatter && kernels->shadows;
 }
@@ -180,11 +179,19 @@ typedef struct Requests {
     bool          failed; /* the failure is noted */
 } Requests;
 
+static bool is_requested(const Requests *requests, const Kernel *kernel)
+{
+    bool found = false;
+    for (size_t i = 0; i < requests->count; i++)
+        found = found || requests->items[i].kernel == kernel;
+    return found;
+}
+
 static void request(Requests *requests, const char *file, KernelVariant variant)
 {
     KernelEntry *entry = find_entry(requests->rendering, file, variant);
     requests->failed   = requests->failed || !entry;
-    if (entry && !entry->kernel.pipeline)
+    if (entry && !entry->kernel.pipeline && !is_requested(requests, &entry->kernel))
         requests->items[requests->count++] = request_of(entry);
 }
 
@@ -219,13 +226,15 @@ static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedu
 {
     KrsRendering *rendering = requests->rendering;
     const RayKind rays      = rendering->rays;
-    rendering->rays         = RAYS_OF_PATHS;
+    const bool    paths     = rendering->purpose == KRS_FOR_PATHS;
+    rendering->rays         = rendering_mixes_rays(rendering) ? rays : RAYS_OF_PATHS;
     request(
         requests, "trace.comp",
         variant_of_trace(rendering, trace_of_paths(trace), schedule, group_of_paths(rendering)));
+    rendering->rays = paths ? RAYS_OF_PATHS : rendering->rays;
     request(requests, "normals.comp",
             variant_of_normals(rendering, rendering_normals(rendering, KRS_NORMALS_DEFAULT), 0));
-    if (rendering->purpose == KRS_FOR_PATHS) {
+    if (paths) {
         request(requests, "scatter.comp",
                 variant_of_scatter(rendering, KRS_STARTS_PIXELS, KRS_INTEGRATOR_PATH));
         request(requests, "secondary.comp",

@@ -224,6 +224,7 @@ bool march_run(Job *job, const March *march, const WorkBlock *work)
     choose_window(job, march);
     job->schedule        = march->schedule;
     control->starts_from = control->listed = 0;
+    control->of_paths                      = march->of_paths;
     job->progress_share                    = 0; /* beams are too short to show progress */
     bool good                              = !march->beams || run_beams(job, march, work);
     job->progress_share                    = progress_share;

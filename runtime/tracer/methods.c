@@ -7,6 +7,9 @@
 #define FLOPS_WORTH_REFILL 150
 /* For a march group the threshold is higher, as few rays of its tiles meet it. */
 #define FLOPS_WORTH_REFILL_OF_GROUP 350
+/* From so many on, kernels of march groups take longer to compile than they save in a hundred small
+   pictures with mirrors. */
+#define FLOPS_WORTH_MIXED_RAYS 1200
 
 void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule)
 {
@@ -59,14 +62,28 @@ bool rendering_knows_planes(const KrsRendering *rendering)
 }
 
 /* By default only on devices of type CPU: others skip far components by branches. */
+/* The rays of mirrors need kernels for the whole scene.  If those are for the picture, too, the first
+   picture is earlier; march groups make up for their own kernels where flops are few. */
+static bool prefers_mixed_rays(const KrsRendering *rendering)
+{
+    return rendering->program->mirrors && rendering->purpose == KRS_FOR_PICTURES &&
+           rendering->program->flops >= FLOPS_WORTH_MIXED_RAYS;
+}
+
 bool rendering_marches_per_component(const KrsRendering *rendering, KrsComponents components)
 {
     bool by_default = rendering->program->per_component && gpu_is_cpu(&rendering->renderer->gpu) &&
-                      !rendering->renderer->early_outs;
+                      !rendering->renderer->early_outs && !prefers_mixed_rays(rendering);
     bool holes = rendering->program->planes && !rendering_knows_planes(rendering);
     return rendering->program->march_group_count > 0 && !rendering->program->along && !holes &&
            !rendering->camera_relative &&
            (components == KRS_COMPONENTS_DEFAULT ? by_default : components == KRS_COMPONENTS_APART);
+}
+
+bool rendering_mixes_rays(const KrsRendering *rendering)
+{
+    return (rendering->program->mirrors || rendering->purpose == KRS_FOR_PATHS) &&
+           !rendering_marches_per_component(rendering, KRS_COMPONENTS_DEFAULT);
 }
 
 bool rendering_goes_along(const KrsRendering *rendering, KrsTrace trace)

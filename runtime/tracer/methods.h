@@ -25,6 +25,8 @@ bool rendering_marches_packed(const KrsRendering *rendering, KrsComponents compo
                               KrsTrace trace);
 /* Whether rays step by what lies ahead in their direction (krs_along), not by the distance. */
 bool rendering_goes_along(const KrsRendering *rendering, KrsTrace trace);
+/* Whether kernels for all march groups are for the rays of the picture and for those of its paths. */
+bool rendering_mixes_rays(const KrsRendering *rendering);
 /* The kind of normals to compute.  The default is by derivatives in algebraic scenes, else by the
    octahedron.  Scenes with sheets have no choice: by derivatives. */
 KrsNormals rendering_normals(const KrsRendering *rendering, KrsNormals normals);

@@ -193,6 +193,17 @@ static bool want_probe(KernelVariant *to, const KrsRendering *rendering, KrsTrac
     return true;
 }
 
+/* Rays of paths may be within glass.  Kernels for all march groups are for these, too, where the
+   picture has any. */
+static void want_paths(KernelVariant *to, const KrsRendering *rendering, bool whole)
+{
+    const bool mixed = whole && rendering->rays != RAYS_OF_PATHS && rendering_mixes_rays(rendering);
+    if (mixed)
+        define(to, MIXED_RAYS);
+    if (mixed || rendering->rays == RAYS_OF_PATHS)
+        want_media(to, rendering);
+}
+
 KernelVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
                                uint32_t group)
 {
@@ -200,8 +211,7 @@ KernelVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, Kr
     const bool    saves = group != MARCH_PACKED && rendering_saves_rays(rendering, schedule);
     define(&to, "#define SAVES %d\n", saves);
     want_rays(&to, rendering);
-    if (rendering->rays == RAYS_OF_PATHS)
-        want_media(&to, rendering);
+    want_paths(&to, rendering, group == 0 || group == MARCH_WITHOUT_PLANES);
     if (group > 0 && rendering_knows_planes(rendering)) {
         to.scene.variant.planes = true;
         want(&to, KRS_FUNCTION_PLANE_T);
@@ -225,8 +235,7 @@ KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals norma
     KernelVariant     to         = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     to.scene.variant.march_group = group;
     want_rays(&to, rendering);
-    if (rendering->rays == RAYS_OF_PATHS)
-        want_media(&to, rendering);
+    want_paths(&to, rendering, group == 0);
     want(&to, KRS_FUNCTION_DISTANCE);
     if (normals == KRS_NORMALS_ANALYTIC && !to.scene.variant.camera_relative)
         want(&to, KRS_FUNCTION_GRADIENT);

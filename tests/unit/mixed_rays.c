@@ -1,0 +1,157 @@
+/*
+ * mixed_rays.c: kernels that are for the rays of a picture and for those of its paths make the same
+ * pictures as kernels for one of both, and there are fewer of them.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "compiler/compile.h"
+#include "runtime/krs_vulkan.h"
+#include "tests/support/device.h"
+
+enum { WIDTH = 96, HEIGHT = 64, PIXELS = WIDTH * HEIGHT };
+
+#define CAMERA "camera { eye: [0, 1.5, 7], target: [0, 0.5, 0], fov: 0.7 }\n"
+/* No mirrors, so paths are followed by kernels of their own, unless pictures are of paths. */
+static const char dull[] = CAMERA
+    "show plane([0, 1, 0], 0); show sphere(0.7).move([-1, 0.7, 0]).paint(#cc8844);\n"
+    "show box([0.5, 1, 0.5]).move([0.8, 0.5, 0.4]);\n";
+/* Mirrors and glass of several march groups. */
+static const char bright[] = CAMERA
+    "def tree(seed) = krs { kernel capsule([0, 0, 0], [0, 0.3, 0], 0.04).move([0, 0.4, 0]);\n"
+    "    for i in 0..6 { reflect plane(random_direction(seed + i), 0.12 * i + 0.05);\n"
+    "        kernel capsule([0, 0, 0], [0.1 * i, 0.3, 0], 0.05 + 0.01 * i); } };\n"
+    "let bushes = [tree(1), tree(20), tree(40)];\n"
+    "material glass { color: white, transmission: 1, roughness: 0 }\n"
+    "material chrome { color: #ffeecc, metallic: 1, roughness: 0.05 }\n"
+    "show plane([0, 1, 0], -1);\n"
+    "show bushes[0].move([-2.5, 0, 0]).paint(chrome);\n"
+    "show bushes[1].move([0.5, 0, -1]);\n"
+    "show bushes[2].move([2.5, 0, 1]).paint(chrome);\n"
+    "show sphere(0.5).move([0, 0.2, 2]).paint(glass);\n";
+
+static KrsRenderer *renderer;
+
+static int open_renderer(void **state)
+{
+    (void)state;
+    return krs_renderer_new(&(KrsRendererOptions){.device = tested_device(), .validation = true},
+                            &renderer) != KRS_OK;
+}
+
+static int close_renderer(void **state)
+{
+    (void)state;
+    uint64_t complaints = krs_renderer_complaints(renderer);
+    krs_renderer_free(renderer);
+    return complaints > 0;
+}
+
+typedef struct Stage {
+    KrsScene     *scene;
+    KrsFrame     *frame;
+    KrsRendering *rendering;
+} Stage;
+
+static Stage open_stage(const char *text, KrsPurpose purpose)
+{
+    Stage stage;
+    assert_int_equal(krs_compile_text(text, strlen(text), "mixed", NULL, &stage.scene), KRS_OK);
+    assert_int_equal(krs_frame_new(stage.scene, &stage.frame), KRS_OK);
+    assert_int_equal(krs_rendering_new_for(renderer, stage.scene, purpose, &stage.rendering),
+                     KRS_OK);
+    return stage;
+}
+
+static void close_stage(Stage *stage)
+{
+    krs_rendering_free(stage->rendering);
+    krs_frame_free(stage->frame);
+    krs_scene_free(stage->scene);
+}
+
+static KrsPicture *render(const Stage *stage, KrsIntegrator integrator, KrsComponents components)
+{
+    const KrsRenderOptions options = {.width      = WIDTH,
+                                      .height     = HEIGHT,
+                                      .bounces    = 3,
+                                      .integrator = integrator,
+                                      .components = components};
+    KrsPicture            *picture;
+    if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(renderer));
+    return picture;
+}
+
+/* How many pixels of two pictures are apart by more than a twentieth. */
+static int count_different(const KrsPicture *a, const KrsPicture *b)
+{
+    int count = 0;
+    for (int i = 0; i < PIXELS; i++) {
+        float most = 0;
+        for (int k = 0; k < 3; k++)
+            most = fmaxf(most, fabsf(a->color[4 * i + k] - b->color[4 * i + k]));
+        count += !(most <= 0.05F);
+    }
+    return count;
+}
+
+static int count_kernels(const Stage *stage, const char *name)
+{
+    KrsKernelStats kernels[64];
+    const size_t   count = krs_rendering_kernels(stage->rendering, kernels, 64);
+    int            found = 0;
+    for (size_t i = 0; i < count && i < 64; i++)
+        found += strncmp(kernels[i].name, name, strlen(name)) == 0;
+    return found;
+}
+
+static void paths_are_as_by_kernels_of_their_own(void **state)
+{
+    (void)state;
+    Stage       own = open_stage(dull, KRS_FOR_PICTURES), mixed = open_stage(dull, KRS_FOR_PATHS);
+    KrsPicture *a = render(&own, KRS_INTEGRATOR_PATH, KRS_COMPONENTS_DEFAULT);
+    KrsPicture *b = render(&mixed, KRS_INTEGRATOR_PATH, KRS_COMPONENTS_DEFAULT);
+    assert_int_equal(count_kernels(&own, "trace.comp"), 2);
+    assert_int_equal(count_kernels(&mixed, "trace.comp"), 1);
+    assert_in_range(count_different(a, b), 0, PIXELS / 500);
+    krs_picture_free(a);
+    krs_picture_free(b);
+    close_stage(&own);
+    close_stage(&mixed);
+}
+
+/* Where march groups are asked for, the picture's rays have kernels of their own again. */
+static void mirrors_are_as_with_march_groups(void **state)
+{
+    (void)state;
+    Stage stage = open_stage(bright, KRS_FOR_PICTURES);
+    assert_true(krs_scene_program(stage.scene)->mirrors);
+    assert_true(krs_scene_program(stage.scene)->march_group_count > 2);
+    assert_int_equal(count_kernels(&stage, "trace.comp"), 1);
+    assert_int_equal(count_kernels(&stage, "normals.comp"), 1);
+    KrsPicture *a = render(&stage, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_DEFAULT);
+    assert_int_equal(count_kernels(&stage, "trace.comp"), 1);
+    KrsPicture *b = render(&stage, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_APART);
+    assert_true(count_kernels(&stage, "trace.comp") > 2);
+    assert_in_range(count_different(a, b), 0, PIXELS / 100);
+    krs_picture_free(a);
+    krs_picture_free(b);
+    close_stage(&stage);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(paths_are_as_by_kernels_of_their_own),
+        cmocka_unit_test(mirrors_are_as_with_march_groups),
+    };
+    return cmocka_run_group_tests_name("mixed rays", tests, open_renderer, close_renderer);
+}
