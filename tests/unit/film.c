@@ -14,7 +14,6 @@
 #include <cmocka.h>
 
 #include "compiler/compile.h"
-#include "tests/support/device.h"
 #include "tests/unit/tracer_stage.h"
 
 enum { SAMPLES = 4 };
@@ -31,29 +30,6 @@ static const char film_text[] =
     "light lamp { position: [1, 3, 2], intensity: 8, softness: 0.2 }\n"
     "show sphere(1).move([0, height, 0]); show box([0.9, 0.9, 0.9]).move([2, 0.5, 0.2]);\n"
     "show plane([0, 1, 0], 0);\n";
-
-/* ---- A stage ---- */
-
-static void open_as(Stage *stage, const char *text, unsigned pretence)
-{
-    const KrsRendererOptions options = {.device     = tested_device(),
-                                        .validation = true,
-                                        .complaint  = note_complaint,
-                                        .user       = stage,
-                                        .pretence   = pretence};
-    *stage                           = (Stage){0};
-    assert_int_equal(krs_renderer_new(&options, &stage->renderer), KRS_OK);
-    assert_int_equal(krs_compile_text(text, strlen(text), "film.krs", NULL, &stage->scene), KRS_OK);
-    assert_int_equal(krs_frame_new(stage->scene, &stage->frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(stage->renderer, stage->scene, &stage->rendering), KRS_OK);
-}
-
-static void close_watched(Stage *stage)
-{
-    assert_int_equal(krs_renderer_complaints(stage->renderer), 0);
-    assert_int_equal(stage->complaints, 0);
-    stage_close(stage);
-}
 
 static KrsFilm *new_film(Stage *stage, const KrsRenderOptions *options)
 {
@@ -128,7 +104,7 @@ static void portions_are_the_whole(void **state)
     (void)state;
     for (size_t k = 0; k < PRETENCES; k++) {
         Stage stage;
-        open_as(&stage, film_text, pretences[k]);
+        stage_open_as(&stage, film_text, pretences[k]);
         for (size_t i = 0; i < sizeof portions / sizeof portions[0]; i++)
             for (int reads = 0; reads < 2; reads++) { /* in between */
                 KrsFilm *film = new_film(&stage, &part);
@@ -140,7 +116,7 @@ static void portions_are_the_whole(void **state)
                 assert_same(read_film(&stage, film), stage_render(&stage, part));
                 krs_film_free(film);
             }
-        close_watched(&stage);
+        stage_close_watched(&stage);
     }
 }
 
@@ -151,13 +127,13 @@ static void bands_are_swapped(void **state)
     (void)state;
     for (size_t k = 0; k < PRETENCES; k++) {
         Stage stage;
-        open_as(&stage, film_text, pretences[k]);
+        stage_open_as(&stage, film_text, pretences[k]);
         KrsFilm *film = new_film(&stage, &large);
         for (int n = 0; n < 3; n++)
             add(&stage, film, NULL, 1);
         assert_same(read_film(&stage, film), stage_render(&stage, large));
         krs_film_free(film);
-        close_watched(&stage);
+        stage_close_watched(&stage);
     }
 }
 
@@ -170,7 +146,7 @@ static void films_take_turns(void **state)
         const double point[1][3] = {{0, 5, 0}};
         KrsHit       hit;
         Stage        stage;
-        open_as(&stage, film_text, pretences[k]);
+        stage_open_as(&stage, film_text, pretences[k]);
         KrsFilm *a = new_film(&stage, &part), *b = new_film(&stage, &other);
         add(&stage, a, NULL, 1);
         add(&stage, b, NULL, 1);
@@ -184,7 +160,7 @@ static void films_take_turns(void **state)
         assert_same(read_film(&stage, b), stage_render(&stage, other));
         krs_film_free(a);
         krs_film_free(b);
-        close_watched(&stage);
+        stage_close_watched(&stage);
     }
 }
 
@@ -276,8 +252,8 @@ static void cameras_are_the_callers(void **state)
     static const char plain[] = "show sphere(1).move([0, 1, 0]); show plane([0, 1, 0], 0);"
                                 "light sun { direction: [-1, 2, 1], intensity: 3, softness: 1deg }";
     Stage             there, here;
-    open_as(&there, text, 0);
-    open_as(&here, plain, 0);
+    stage_open_as(&there, text, 0);
+    stage_open_as(&here, plain, 0);
     const KrsCamera round = {
         .projection = KRS_PANORAMA, .eye = {0.5, 0.75, 4}, .target = {0, 0.5, 0}, .up = {0, 1, 0}};
     options.camera      = 0;
@@ -286,8 +262,8 @@ static void cameras_are_the_callers(void **state)
     assert_same(read_film(&here, all_around), stage_render(&there, options));
     krs_film_free(all_around);
     krs_film_free(film);
-    close_watched(&there);
-    close_watched(&here);
+    stage_close_watched(&there);
+    stage_close_watched(&here);
 }
 
 /* What exceeds the limit keeps its hue, and is counted; what does not is as it was, bit by bit. */
@@ -298,7 +274,7 @@ static void bright_rays_are_clamped(void **state)
     KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT};
     size_t           count   = 0;
     (void)state;
-    open_as(&stage, landscape_text, 0); /* all of its light comes in one pass */
+    stage_open_as(&stage, landscape_text, 0); /* all of its light comes in one pass */
     KrsPicture *plain     = stage_render(&stage, options);
     options.most_radiance = most;
     KrsPicture *clamped   = stage_render(&stage, options);
@@ -317,7 +293,7 @@ static void bright_rays_are_clamped(void **state)
     assert_int_equal(plain->stats.clamped, 0);
     krs_picture_free(plain);
     krs_picture_free(clamped);
-    close_watched(&stage);
+    stage_close_watched(&stage);
 }
 
 static uint64_t sum_of_steps(const KrsPicture *picture)
@@ -368,10 +344,10 @@ static void depths_end_rays(void **state)
     (void)state;
     for (size_t k = 0; k < PRETENCES; k += PRETENCES - 1) {
         Stage stage;
-        open_as(&stage, film_text, pretences[k]);
+        stage_open_as(&stage, film_text, pretences[k]);
         for (size_t camera = 0; camera < 3; camera++)
             check_limits(&stage, camera);
-        close_watched(&stage);
+        stage_close_watched(&stage);
     }
 }
 
@@ -451,7 +427,7 @@ static void planes_are_chosen_when_read(void **state)
 static int set_up(void **state)
 {
     static Stage stage;
-    open_as(&stage, film_text, 0);
+    stage_open_as(&stage, film_text, 0);
     *state = &stage;
     return 0;
 }

@@ -11,7 +11,6 @@
 
 #include <cmocka.h>
 
-#include "tests/support/device.h"
 #include "tests/unit/tracer_stage.h"
 
 /* The ball alone is in the scene; the floor, y = 0, is known by the depths alone. */
@@ -372,21 +371,6 @@ static void noise_and_groups_have_plates(void **state)
     krs_picture_free(together);
 }
 
-static void open_as(Stage *stage, unsigned pretence)
-{
-    const KrsRendererOptions options = {.device     = tested_device(),
-                                        .validation = true,
-                                        .complaint  = note_complaint,
-                                        .user       = stage,
-                                        .pretence   = pretence};
-    *stage                           = (Stage){0};
-    assert_int_equal(krs_renderer_new(&options, &stage->renderer), KRS_OK);
-    assert_int_equal(
-        krs_compile_text(ball_text, strlen(ball_text), "plates.krs", NULL, &stage->scene), KRS_OK);
-    assert_int_equal(krs_frame_new(stage->scene, &stage->frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(stage->renderer, stage->scene, &stage->rendering), KRS_OK);
-}
-
 /* Graphics cards chain their passes; with the least limits there are several bands, without texels. */
 static void every_device_finds_the_same(void **state)
 {
@@ -406,7 +390,7 @@ static void every_device_finds_the_same(void **state)
         KrsPicture *expected = stage_render(plain, options);
         for (size_t k = 0; k < sizeof pretences / sizeof *pretences; k++) {
             Stage stage;
-            open_as(&stage, pretences[k]);
+            stage_open_as(&stage, ball_text, pretences[k]);
             set(&stage, "day", 1);
             set(&stage, "at_lamp", 1);
             set(&stage, "at_sun", 0);

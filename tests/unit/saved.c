@@ -12,7 +12,6 @@
 #include <cmocka.h>
 
 #include "compiler/compile.h"
-#include "tests/support/device.h"
 #include "tests/unit/tracer_stage.h"
 
 enum { SAMPLES = 24 };
@@ -49,30 +48,6 @@ static bool give(void *user, void *bytes, size_t size)
     memcpy(bytes, file->bytes + file->at, size);
     file->at += size;
     return true;
-}
-
-/* ---- renderers ---- */
-
-static void open_stage(Stage *stage, unsigned pretence)
-{
-    const KrsRendererOptions options = {.device     = tested_device(),
-                                        .validation = true,
-                                        .complaint  = note_complaint,
-                                        .user       = stage,
-                                        .pretence   = pretence};
-    *stage                           = (Stage){0};
-    assert_int_equal(krs_renderer_new(&options, &stage->renderer), KRS_OK);
-    assert_int_equal(
-        krs_compile_text(saved_text, strlen(saved_text), "saved.krs", NULL, &stage->scene), KRS_OK);
-    assert_int_equal(krs_frame_new(stage->scene, &stage->frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(stage->renderer, stage->scene, &stage->rendering), KRS_OK);
-}
-
-static void close_watched(Stage *stage)
-{
-    assert_int_equal(krs_renderer_complaints(stage->renderer), 0);
-    assert_int_equal(stage->complaints, 0);
-    stage_close(stage);
 }
 
 static KrsFilm *film_with(Stage *stage, const KrsRenderOptions *options, uint32_t samples)
@@ -132,14 +107,14 @@ static void a_saved_film_goes_on(void **state)
         for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
             Stage one, other;
             Bytes file = {room, sizeof room, 0};
-            open_stage(&one, pretences[k]);
+            stage_open_as(&one, saved_text, pretences[k]);
             KrsFilm *film = film_with(&one, &kinds[i], first[(i + k) % 3]);
             assert_int_equal(krs_film_save(film, take, &file), KRS_OK);
             krs_film_free(film);
-            close_watched(&one);
+            stage_close_watched(&one);
 
             KrsPicture *picture;
-            open_stage(&other, pretences[k]);
+            stage_open_as(&other, saved_text, pretences[k]);
             film      = film_with(&other, &kinds[i], 2); /* what is replaced */
             file.size = file.at;
             file.at   = 0;
@@ -152,7 +127,7 @@ static void a_saved_film_goes_on(void **state)
             assert_int_equal(krs_film_read(film, 0, &picture), KRS_OK);
             assert_same(picture, stage_render(&other, kinds[i]));
             krs_film_free(film);
-            close_watched(&other);
+            stage_close_watched(&other);
         }
 }
 
@@ -165,7 +140,7 @@ static void what_is_no_film_is_refused(void **state)
     (void)state;
     wider.width += 8;
     other.planes = KRS_PLANE_DEPTH;
-    open_stage(&stage, 0);
+    stage_open_as(&stage, saved_text, 0);
     KrsFilm *film = film_with(&stage, &kinds[0], 0);
     assert_int_equal(krs_film_save(film, take, &file), KRS_BAD_ARGUMENT); /* without samples */
     assert_int_equal(file.at, 0);
@@ -189,7 +164,7 @@ static void what_is_no_film_is_refused(void **state)
     room[9] ^= 1;
     assert_int_equal(krs_film_load(film, give, &(Bytes){room, file.at, 0}), KRS_OK);
     krs_film_free(film);
-    close_watched(&stage);
+    stage_close_watched(&stage);
 }
 
 int main(void)

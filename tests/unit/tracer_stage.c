@@ -46,14 +46,15 @@ static void print_diagnostic(void *user, const KrsDiagnostic *diagnostic)
     fputs(diagnostic->text, stderr);
 }
 
-void stage_open(Stage *stage, const char *text, const KrsAllocator *allocator)
+static void open_with(Stage *stage, const char *text, KrsRendererOptions options)
 {
-    KrsRendererOptions options = {
-        .device = tested_device(), .validation = true, .complaint = note_complaint, .user = stage};
     KrsOptions compiling = {.diagnostic = print_diagnostic};
-    if (allocator)
-        options.allocator = *allocator;
-    KrsStatus status = krs_renderer_new(&options, &stage->renderer);
+    options.device       = tested_device();
+    options.validation   = true;
+    options.complaint    = note_complaint;
+    options.user         = stage;
+    *stage               = (Stage){0};
+    KrsStatus status     = krs_renderer_new(&options, &stage->renderer);
     if (status != KRS_OK)
         fail_msg("%s", krs_renderer_message(stage->renderer));
     assert_int_equal(krs_compile_text(text, strlen(text), "test.krs", &compiling, &stage->scene),
@@ -63,12 +64,32 @@ void stage_open(Stage *stage, const char *text, const KrsAllocator *allocator)
         fail_msg("%s", krs_renderer_message(stage->renderer));
 }
 
+void stage_open(Stage *stage, const char *text, const KrsAllocator *allocator)
+{
+    KrsRendererOptions options = {0};
+    if (allocator)
+        options.allocator = *allocator;
+    open_with(stage, text, options);
+}
+
+void stage_open_as(Stage *stage, const char *text, unsigned pretence)
+{
+    open_with(stage, text, (KrsRendererOptions){.pretence = pretence});
+}
+
 void stage_close(Stage *stage)
 {
     krs_rendering_free(stage->rendering);
     krs_frame_free(stage->frame);
     krs_scene_free(stage->scene);
     krs_renderer_free(stage->renderer);
+}
+
+void stage_close_watched(Stage *stage)
+{
+    assert_int_equal(krs_renderer_complaints(stage->renderer), 0);
+    assert_int_equal(stage->complaints, 0);
+    stage_close(stage);
 }
 
 KrsPicture *stage_render(Stage *stage, KrsRenderOptions options)
@@ -86,7 +107,6 @@ KrsPicture *stage_render(Stage *stage, KrsRenderOptions options)
 int stage_set_up(void **state)
 {
     static Stage stage;
-    stage = (Stage){0};
     stage_open(&stage, scene_text, NULL);
     *state = &stage;
     return 0;

@@ -30,9 +30,13 @@ typedef struct Stage {
     char          complaint[2048]; /* the last */
 } Stage;
 
-void        note_complaint(void *user, const char *message);
-void        stage_open(Stage *stage, const char *text, const KrsAllocator *allocator);
-void        stage_close(Stage *stage);
+void note_complaint(void *user, const char *message);
+void stage_open(Stage *stage, const char *text, const KrsAllocator *allocator);
+/* The same of another device, as far as that can be pretended: KRS_PRETEND_... */
+void stage_open_as(Stage *stage, const char *text, unsigned pretence);
+void stage_close(Stage *stage);
+/* The same; the test fails if the layers have complained. */
+void        stage_close_watched(Stage *stage);
 KrsPicture *stage_render(Stage *stage, KrsRenderOptions options);
 
 /* For cmocka: *state is a Stage with scene_text, until stage_tear_down, which hears the layers. */
