@@ -393,3 +393,32 @@ bool lane_hessians_run(const LaneTape *tape, const LaneRanges *ranges, const Lan
     *hessian        = *hessian_at(&run, output);
     return hessian->known && ((output & LANE_SCALAR) || ranges->sure[output]);
 }
+
+/* What is added does not tell. */
+static uint32_t without_scalar(const LaneStep *step)
+{
+    if (step->op == OP_neg)
+        return step->operands[0];
+    if (step->op != OP_add && step->op != OP_sub && step->op != OP_mul)
+        return NODE_NONE;
+    for (int k = 0; k < 2; k++)
+        if (step->operands[k] & LANE_SCALAR)
+            return step->operands[1 - k];
+    return NODE_NONE;
+}
+
+bool lane_is_undecided(const LaneTape *tape, const LaneRanges *ranges)
+{
+    Run run = {.tape = tape, .ranges = ranges};
+    for (uint32_t at = tape->outputs[0]; (run.step = step_of(&run, at));) {
+        Range a = range_in(&run, 0), b = run.step->operand_count > 1 ? range_in(&run, 1) : a;
+        switch (run.step->op) {
+        case OP_min:
+        case OP_max:
+        case LANE_LESSER:
+        case LANE_GREATER: return a.low < b.high && b.low < a.high;
+        default: at = without_scalar(run.step); break;
+        }
+    }
+    return false;
+}

@@ -25,6 +25,7 @@ typedef struct Builder {
     const LaneBody **bodies; /* of crowd functions, by their numbers */
     bool             in_body;
     Parts            of_frame; /* in a body, whose tape has no nodes of the frame: the last one */
+    const double    *steepest; /* by node, as of LaneStep; NULL: it is not asked for */
 } Builder;
 
 static uint32_t add_scalar(LaneSteps *to, LaneScalar scalar)
@@ -76,8 +77,20 @@ static const Parts *parts_of(Builder *b, Node node)
 
 typedef struct Operands {
     const uint32_t *x, *y, *z, *w;
-    uint32_t        size; /* components of the first */
+    uint32_t        size;     /* components of the first */
+    double          steepest; /* of the first */
 } Operands;
+
+/* How fast the result of a step changes at most. */
+static void bound_step(Builder *b, uint32_t value, double steepest)
+{
+    if (value == NODE_NONE || (value & LANE_SCALAR) || value < LANE_INPUTS || !isfinite(steepest))
+        return;
+    LaneStep *step  = &b->to->steps.items[value - LANE_INPUTS];
+    float     least = (float)(steepest * (1 + 1e-6));
+    if (step->steepest == 0 || least < step->steepest)
+        step->steepest = least;
+}
 
 static uint32_t emit_dot(Builder *b, const uint32_t *x, const uint32_t *y, uint32_t size)
 {
@@ -109,8 +122,9 @@ static void emit_turn(Builder *b, const Operands *o, uint32_t *to)
 static void emit_fold(Builder *b, const Operands *o, uint32_t *to)
 {
     uint32_t beyond = emit2(b, OP_sub, emit_dot(b, o->y, o->x, 3), o->z[0]);
-    uint32_t depth  = emit2(b, OP_max, beyond, lane_steps_number(b->to, 0));
-    uint32_t twice  = emit2(b, OP_mul, lane_steps_number(b->to, 2), depth);
+    bound_step(b, beyond, o->steepest); /* normals of mirrors are unit vectors */
+    uint32_t depth = emit2(b, OP_max, beyond, lane_steps_number(b->to, 0));
+    uint32_t twice = emit2(b, OP_mul, lane_steps_number(b->to, 2), depth);
     for (int k = 0; k < 3; k++)
         to[k] = emit2(b, OP_sub, o->x[k], emit2(b, OP_mul, twice, o->y[k]));
 }
@@ -243,12 +257,16 @@ static void emit_node(Builder *b, size_t place)
     Parts       o[MAX_OPERANDS] = {nothing, nothing, nothing, nothing};
     for (uint32_t k = 0; k < e->operand_count; k++)
         o[k] = *parts_of(b, e->operands[k]);
-    Operands operands = {o[0].of, o[1].of, o[2].of, o[3].of, 0};
+    Operands operands = {o[0].of, o[1].of, o[2].of, o[3].of, 0, HUGE_VAL};
     if (e->operand_count == 0) {
         emit_leaf(b, e, to);
     } else if (!emit_row(b, e, to)) {
         operands.size = components(b->graph->items[e->operands[0]].type);
+        if (b->steepest)
+            operands.steepest = b->steepest[e->operands[0]];
         emit_operation(b, node, &operands, to);
+        for (uint32_t k = 0; b->steepest && k < 4; k++)
+            bound_step(b, to[k], b->steepest[node]);
     }
     memcpy(b->parts[place].of, to, sizeof to);
 }
@@ -317,16 +335,17 @@ static uint32_t place_bodies(const LaneTape *made, const Tape *tape, LaneBody **
     return tape->function_count ? end : 0;
 }
 
-LaneTape lane_tape_new(const Tape *tape, const Node *roots, size_t root_count, bool least,
-                       size_t cuts, Arena *arena)
+static LaneTape make(const Tape *tape, const Node *roots, size_t root_count, bool least,
+                     size_t cuts, const double *steepest, Arena *arena)
 {
     LaneSteps  steps  = {.arena = arena};
     LaneBody **bodies = arena_new_array(arena, LaneBody *, tape->function_count + 1);
-    Builder    b      = {.graph  = tape->graph,
-                         .tape   = tape,
-                         .arena  = arena,
-                         .to     = &steps,
-                         .bodies = (const LaneBody **)bodies};
+    Builder    b      = {.graph    = tape->graph,
+                         .tape     = tape,
+                         .arena    = arena,
+                         .to       = &steps,
+                         .bodies   = (const LaneBody **)bodies,
+                         .steepest = steepest};
     assert(!tape->skips);
     for (uint32_t id = 0; id < tape->function_count; id++)
         if (tape->functions[id].graph)
@@ -339,6 +358,18 @@ LaneTape lane_tape_new(const Tape *tape, const Node *roots, size_t root_count, b
     LaneTape made   = lane_steps_finish(&steps, tape);
     made.bodies_end = place_bodies(&made, tape, bodies);
     return made;
+}
+
+LaneTape lane_tape_new(const Tape *tape, const Node *roots, size_t root_count, bool least,
+                       size_t cuts, Arena *arena)
+{
+    return make(tape, roots, root_count, least, cuts, NULL, arena);
+}
+
+LaneTape lane_tape_new_steep(const Tape *tape, const Node *roots, size_t root_count, bool least,
+                             size_t cuts, Arena *arena)
+{
+    return make(tape, roots, root_count, least, cuts, lane_steepest(tape->graph, arena), arena);
 }
 
 void lane_tape_scalars(const LaneTape *tape, const NodeValue *values, double *scalars)

@@ -98,6 +98,12 @@ static uint32_t blended(const Question *q)
     return width.high <= 0 || apart * (1 - 0x1p-50) > width.high ? lesser(q, 0, 1) : NODE_NONE;
 }
 
+/* Nothing changes when this is taken off. */
+static bool is_plus_zero(const Question *q, int k)
+{
+    return is_sure(q, k) && range_is_zero(range_at(q, k)) && !signbit(range_at(q, k).low);
+}
+
 /* The operand whose value the step has in every point; NODE_NONE: there is none. */
 static uint32_t same_operand(const Question *q)
 {
@@ -106,6 +112,7 @@ static uint32_t same_operand(const Question *q)
     case OP_max: return greater(q, 0, 1);
     case LANE_LESSER: return is_sure(q, 0) && is_sure(q, 1) ? lesser(q, 0, 1) : NODE_NONE;
     case LANE_GREATER: return is_sure(q, 0) && is_sure(q, 1) ? greater(q, 0, 1) : NODE_NONE;
+    case OP_sub: return is_plus_zero(q, 1) ? taken(q, 0) : NODE_NONE;
     case OP_abs: return range_at(q, 0).low >= 0 ? taken(q, 0) : NODE_NONE;
     case OP_clamp: return clamped(q);
     case OP_select: return selected(q);
@@ -202,9 +209,11 @@ static bool is_turn(const Pruning *p, const LaneCall *call, double *cosine, doub
 /* a c + b s, or a c - b s */
 static uint32_t add_turned(Pruning *p, uint16_t op, uint32_t a, uint32_t c, uint32_t b, uint32_t s)
 {
-    LaneStep first  = {OP_mul, 2, {c, a}};
-    LaneStep second = {OP_mul, 2, {s, b}};
-    LaneStep sum    = {op, 2, {lane_steps_add(&p->to, first), lane_steps_add(&p->to, second)}};
+    LaneStep first  = {.op = OP_mul, .operand_count = 2, .operands = {c, a}};
+    LaneStep second = {.op = OP_mul, .operand_count = 2, .operands = {s, b}};
+    LaneStep sum    = {.op            = op,
+                       .operand_count = 2,
+                       .operands = {lane_steps_add(&p->to, first), lane_steps_add(&p->to, second)}};
     return lane_steps_add(&p->to, sum);
 }
 

@@ -19,7 +19,8 @@ LaneRanges lane_ranges_new(const LaneTape *tape, Arena *arena)
 {
     return (LaneRanges){
         .ranges = arena_new_array(arena, Range, LANE_INPUTS + lane_most_steps(tape)),
-        .sure   = arena_new_array(arena, bool, LANE_INPUTS + lane_most_steps(tape))};
+        .sure   = arena_new_array(arena, bool, LANE_INPUTS + lane_most_steps(tape)),
+        .middle = arena_new_array(arena, Range, LANE_INPUTS + lane_most_steps(tape))};
 }
 
 /* ---- operands ---- */
@@ -366,7 +367,23 @@ static bool is_defined(const LaneStep *step, const Operand *o)
     }
 }
 
-static void run_step(const LaneTape *tape, const LaneRanges *ranges, size_t i)
+/* The ball around a box, and the largest coordinate in it. */
+typedef struct Ball {
+    double radius, size;
+} Ball;
+
+/* What changes no faster than that is as far from the value in the middle as that and the box permit.  Rounding is far
+   below these parts of the numbers around. */
+static Range range_around(Range middle, double steepest, double radius, double size)
+{
+    static const double UNCERTAIN = 1e-9, CANCELLED = 16;
+    double              reach = steepest * radius, value = range_largest(middle);
+    reach += UNCERTAIN * (reach + steepest * size + value);
+    reach += CANCELLED * (middle.high - middle.low);
+    return (Range){middle.low - reach, middle.high + reach};
+}
+
+static void run_step(const LaneTape *tape, const LaneRanges *ranges, const Ball *ball, size_t i)
 {
     const LaneStep *step            = &tape->steps[i];
     Operand         o[MAX_OPERANDS] = {0};
@@ -379,11 +396,15 @@ static void run_step(const LaneTape *tape, const LaneRanges *ranges, size_t i)
     Range range  = square ? range_square(o[0].range) : range_of_step(step, o);
     if (!(range.low <= range.high))
         range = ANYTHING; /* it is a number nowhere, or a rule gave up */
+    sure = sure && is_defined(step, o);
+    if (ball && sure && step->steepest > 0)
+        range = range_intersect(range, range_around(ranges->middle[LANE_INPUTS + i], step->steepest,
+                                                    ball->radius, ball->size));
     ranges->ranges[LANE_INPUTS + i] = range;
-    ranges->sure[LANE_INPUTS + i]   = sure && is_defined(step, o);
+    ranges->sure[LANE_INPUTS + i]   = sure;
 }
 
-Range lane_ranges_run(const LaneTape *tape, const LaneRanges *ranges, Box box)
+static Range run(const LaneTape *tape, const LaneRanges *ranges, Box box, const Ball *ball)
 {
     assert(tape->scalars);
     for (uint32_t k = 0; k < LANE_INPUTS; k++) {
@@ -395,8 +416,31 @@ Range lane_ranges_run(const LaneTape *tape, const LaneRanges *ranges, Box box)
         if (tape->steps[i].op == LANE_CALL)
             run_call(tape, ranges, i);
         else if (tape->steps[i].op != LANE_PART)
-            run_step(tape, ranges, i);
+            run_step(tape, ranges, ball, i);
     return lane_ranges_output(tape, ranges, 0);
+}
+
+Range lane_ranges_run(const LaneTape *tape, const LaneRanges *ranges, Box box)
+{
+    return run(tape, ranges, box, NULL);
+}
+
+Range lane_ranges_run_closer(const LaneTape *tape, const LaneRanges *ranges, Box box)
+{
+    LaneRanges middle = {ranges->middle, ranges->sure, ranges->values, NULL};
+    Ball       ball   = {0, 0};
+    Box        point;
+    for (int k = 0; k < 3; k++) {
+        Range  axis   = box.axis[k];
+        double at     = 0.5 * (axis.low + axis.high);
+        point.axis[k] = range_of(at);
+        ball.radius   = hypot_upward(ball.radius, fmax(axis.high - at, at - axis.low));
+        ball.size     = fmax(ball.size, range_largest(axis));
+    }
+    if (!isfinite(ball.radius))
+        return run(tape, ranges, box, NULL);
+    run(tape, &middle, point, NULL);
+    return run(tape, ranges, box, &ball);
 }
 
 Range lane_ranges_output(const LaneTape *tape, const LaneRanges *ranges, size_t output)

@@ -43,6 +43,8 @@ typedef struct LaneStep {
     uint16_t op;
     uint16_t operand_count;
     uint32_t operands[MAX_OPERANDS];
+    float
+        steepest; /* it changes no faster than that with the point, and jumps nowhere; 0: not known */
 } LaneStep;
 
 /* How a step is run: on rows and, where the bit of the operand is set, scalars. */
@@ -100,6 +102,9 @@ typedef struct LaneBody {
    `cuts`, which are numbers, cut by those: as far as the greatest of them is greater. */
 LaneTape lane_tape_new(const Tape *tape, const Node *roots, size_t root_count, bool least,
                        size_t cuts, Arena *arena);
+/* The same, and steps know how fast they change at most. */
+LaneTape lane_tape_new_steep(const Tape *tape, const Node *roots, size_t root_count, bool least,
+                             size_t cuts, Arena *arena);
 
 /* The values of its scalars: `values` is as tape_run_frame fills it; `scalars` has room for
    scalar_count. */
@@ -174,7 +179,8 @@ typedef struct LaneRanges {
     Range *ranges;
     bool  *sure;
     NodeValue
-        *values; /* those of the frame, as of LaneWork: then outlines have ranges; NULL: not */
+          *values; /* those of the frame, as of LaneWork: then outlines have ranges; NULL: not */
+    Range *middle; /* those in the middle of the box: for lane_ranges_run_closer */
 } LaneRanges;
 
 /* Room for those of a lane tape, and of all that it is pruned to. */
@@ -182,6 +188,9 @@ LaneRanges lane_ranges_new(const LaneTape *tape, Arena *arena);
 /* Returns that of output 0; it holds where the value is a number.  Normals and footprints may be
    anything. */
 Range lane_ranges_run(const LaneTape *tape, const LaneRanges *ranges, Box box);
+/* The same, but narrower where steps know how fast they change.  Turned boxes grow, so ranges of a chain of turns are
+   wide; balls do not.  It takes twice the time. */
+Range lane_ranges_run_closer(const LaneTape *tape, const LaneRanges *ranges, Box box);
 /* Of an output, after a run. */
 Range lane_ranges_output(const LaneTape *tape, const LaneRanges *ranges, size_t output);
 
@@ -208,6 +217,10 @@ LaneHessian *lane_hessians_new(const LaneTape *tape, Arena *arena);
    may, or there is no bound. */
 bool lane_hessians_run(const LaneTape *tape, const LaneRanges *ranges, const LaneSlope *slopes,
                        LaneHessian *hessians, LaneHessian *hessian);
+
+/* After a run over a box: whether output 0 is one of several numbers there and it is not known which.  Then it has no
+   second derivatives, and need not be asked for them. */
+bool lane_is_undecided(const LaneTape *tape, const LaneRanges *ranges);
 
 /* After a run over a box: the first `outputs` outputs without what has no influence in it. */
 LaneTape lane_prune(const LaneTape *tape, const LaneRanges *ranges, size_t outputs, Arena *arena);

@@ -12,10 +12,10 @@ static LaneTape make_tape(const MeshField *field, Arena *arena)
 {
     const MeshSolid *solid = field->solid;
     const Tape      *of    = solid->tape ? solid->tape : &field->frame->tapes.distance;
-    LaneTape         tape  = lane_tape_new(of, solid->roots, solid->root_count + solid->zoned, true,
-                                           solid->zoned, arena);
-    tape.output_count      = 1;
-    tape.scalars           = arena_new_array(arena, double, tape.scalar_count + 1);
+    LaneTape tape = lane_tape_new_steep(of, solid->roots, solid->root_count + solid->zoned, true,
+                                        solid->zoned, arena);
+    tape.output_count = 1;
+    tape.scalars      = arena_new_array(arena, double, tape.scalar_count + 1);
     lane_tape_scalars(&tape, field->frame->values, tape.scalars);
     return tape;
 }
@@ -206,8 +206,9 @@ static Range range_of_cuts(const MeshField *field, Box box)
 
 bool field_is_cut(const MeshField *field, Box box)
 {
-    return lane_ranges_run(tape_in(field, &box), &field->ranges, box).low <
-           range_of_cuts(field, box).high;
+    return (field->cut || field->frame->zone_count > 0) &&
+           lane_ranges_run(tape_in(field, &box), &field->ranges, box).low <
+               range_of_cuts(field, box).high;
 }
 
 Range field_range(const MeshField *field, Box box)
@@ -267,7 +268,8 @@ bool field_hessian(const MeshField *field, Box box, Range *range, LaneSlope *slo
     *hessian             = (LaneHessian){.known = true, .flat = true};
     if (own.high <= cut.low && field->frame->zone_count == 0)
         return slope_of_cut(field, box, slope);
-    return own.low >= cut.high && lane_slopes_run(tape, &field->ranges, field->slopes, slope) &&
+    return own.low >= cut.high && !lane_is_undecided(tape, &field->ranges) &&
+           lane_slopes_run(tape, &field->ranges, field->slopes, slope) &&
            lane_hessians_run(tape, &field->ranges, field->slopes, field->hessians, hessian);
 }
 
@@ -283,7 +285,8 @@ static void enter(MeshField *field, const LaneTape *outer, Box box)
 bool field_enter(MeshField *field, Box box)
 {
     const LaneTape *outer = outer_tape(field);
-    Range range = range_max(lane_ranges_run(outer, &field->ranges, box), range_of_cuts(field, box));
+    Range           own   = lane_ranges_run_closer(outer, &field->ranges, box);
+    Range           range = range_max(own, range_of_cuts(field, box));
     if (range.low > 0 || range.high < 0)
         return false;
     enter(field, outer, box);
@@ -292,7 +295,7 @@ bool field_enter(MeshField *field, Box box)
 
 void field_focus(MeshField *field, Box box)
 {
-    lane_ranges_run(outer_tape(field), &field->ranges, box);
+    lane_ranges_run_closer(outer_tape(field), &field->ranges, box);
     enter(field, outer_tape(field), box);
 }
 

@@ -243,6 +243,40 @@ static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset
     return found;
 }
 
+/* ---- how many there are at least ---- */
+
+/* Of what is not chosen all over the box each number is a piece, or several are.  Ranges tell that. */
+static bool count_pieces(Finding *f, uint32_t operand, double sign, double offset)
+{
+    const LaneStep *step = step_of(f, operand);
+    if (step && (is_greater(step) || is_lesser(step))) {
+        Range a    = range_of_operand(f, step->operands[0]),
+              b    = range_of_operand(f, step->operands[1]);
+        int choice = is_greater(step) == (sign > 0) ? PIECE_MAX : PIECE_MIN;
+        if (a.low < b.high && b.low < a.high) {
+            for (int k = 0; k < 2; k++)
+                if (decides_nothing(f, step->operands[k], sign, offset, choice))
+                    return count_pieces(f, step->operands[1 - k], sign, offset);
+            return count_pieces(f, step->operands[0], sign, offset) &&
+                   count_pieces(f, step->operands[1], sign, offset);
+        }
+    }
+    size_t i = 0;
+    while (i < f->pieces->count && f->outputs[i] != operand)
+        i++;
+    if (i == MOST_PIECES)
+        return false;
+    f->outputs[i] = operand;
+    f->pieces->count += i == f->pieces->count;
+    return true;
+}
+
+static bool may_be_few(Finding *f)
+{
+    f->pieces->count = 0;
+    return count_pieces(f, f->tape->outputs[0], 1, 0);
+}
+
 bool field_pieces(MeshField *field, Box box, FieldPieces *pieces)
 {
     LaneSlope   slope;
@@ -252,6 +286,8 @@ bool field_pieces(MeshField *field, Box box, FieldPieces *pieces)
         return false;
     f.tape = &field->regions[field->region_count - 1].tape;
     lane_ranges_run(f.tape, &field->ranges, box);
+    if (!may_be_few(&f))
+        return false;
     lane_slopes_run(f.tape, &field->ranges, field->slopes, &slope);
     lane_hessians_run(f.tape, &field->ranges, field->slopes, field->hessians, &hessian);
     pieces->count = pieces->step_count = 0;

@@ -20,6 +20,23 @@ void groups_add(Groups *groups, uint32_t number, const double at[3])
     array_push_large(groups->arena, &groups->cells, cell);
 }
 
+/* Cells are joined, eight to one, where they would have few things each: a group costs as much as the whole scene. */
+static uint32_t find_joinings(size_t count)
+{
+    static const size_t THINGS   = 64; /* of each square, were all on one side of the cube */
+    uint32_t            joinings = 0;
+    for (size_t cells = GROUP_CELLS; cells > 4 && cells * cells / 4 * THINGS >= count; cells /= 2)
+        joinings++;
+    return joinings;
+}
+
+static uint32_t joined(uint32_t cell, uint32_t joinings)
+{
+    uint32_t z = cell % GROUP_CELLS, y = cell / GROUP_CELLS % GROUP_CELLS,
+             x = cell / (GROUP_CELLS * GROUP_CELLS);
+    return ((x >> joinings) * GROUP_CELLS + (y >> joinings)) * GROUP_CELLS + (z >> joinings);
+}
+
 static void add_groups(Groups *groups, uint32_t first, uint32_t end)
 {
     while (first < end) {
@@ -33,9 +50,10 @@ static void add_groups(Groups *groups, uint32_t first, uint32_t end)
 void groups_finish(Groups *groups)
 {
     size_t    count  = groups->numbers.count;
-    uint32_t *begins = groups->begins;
+    uint32_t *begins = groups->begins, joinings = find_joinings(count);
     memset(begins, 0, sizeof groups->begins);
     for (size_t i = 0; i < count; i++) {
+        groups->cells.items[i] = joined(groups->cells.items[i], joinings);
         begins[groups->cells.items[i] + 1]++;
         array_push_large(groups->arena, &groups->order, 0);
     }

@@ -382,10 +382,10 @@ static bool is_near_focus(const Trial *t, const Tet *tet)
     return distance3(corners[0], t->focus) < 2 * t->length;
 }
 
-static void try_kind(const Kind *kind, Bounds *bounds)
+static void try_kind(const Kind *kind, int shapes, Bounds *bounds)
 {
-    enum { SHAPES = 80, APART = 3 };
-    for (int i = 0; i < SHAPES;) {
+    enum { APART = 3 };
+    for (int i = 0; i < shapes;) {
         Trial   t;
         Subject subject = random_subject(&chance, kind);
         double  focus[3];
@@ -414,8 +414,8 @@ static void smooth_bounds_hold(void **context)
     const Kind         blends = {forms, 2, joints, 2}, equations = {&forms[2], 1, joints, 1};
     Bounds             bounds = {0};
     (void)context;
-    try_kind(&blends, &bounds);
-    try_kind(&equations, &bounds);
+    try_kind(&blends, 80, &bounds);
+    try_kind(&equations, 80, &bounds);
     say("smooth", &bounds.smooth);
     say("closer", &bounds.closer);
     for (int i = 0; i < 2; i++) {
@@ -432,7 +432,7 @@ static void bounds_of_pieces_hold(void **context)
     const Kind         kind     = {forms, 5, joints, 4};
     Bounds             bounds   = {0};
     (void)context;
-    try_kind(&kind, &bounds);
+    try_kind(&kind, 200, &bounds);
     say("pieces", &bounds.pieces);
     assert_true(bounds.pieces.cells > 1000 && bounds.pieces.empty > 10);
     assert_true(bounds.pieces.way > 0.95 && bounds.pieces.steep > 0.95);

@@ -1,0 +1,51 @@
+/*
+ * lane_steepest.c: how fast expressions change with the point at most (Lipschitz constants).
+ *
+ * Facts of the whole space have slopes.  But those hold within a cell of a repetition, and across a choice
+ * they hold for its pieces.  So only what is made of operations that never jump has a bound here.
+ */
+#include <math.h>
+
+#include "compiler/graph/facts.h"
+#include "compiler/graph/lane_rows.h"
+#include "compiler/graph/rules.h"
+
+static bool op_never_jumps(uint16_t op)
+{
+    switch (op) {
+#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning) \
+    case OP_##name:                                                             \
+        return (norm) != NORM_NONE;
+#include "compiler/graph/ops.def"
+#define BLEND(name, ...) case OP_smin_##name:
+#include "compiler/graph/blends.def"
+    case OP_COMPONENT:
+    case OP_splat2:
+    case OP_splat3:
+    case OP_splat4:
+    case OP_vec2:
+    case OP_vec3:
+    case OP_vec4:
+    case OP_dot:
+    case OP_cross:
+    case OP_length:
+    case OP_scale:
+    case OP_turn:
+    case OP_fold: return true;
+    default: return false;
+    }
+}
+
+double *lane_steepest(const Graph *graph, Arena *arena)
+{
+    double     *steepest = arena_new_array(arena, double, graph->count + 1);
+    const Fact *facts    = graph_facts(graph, (Box){{ANYTHING, ANYTHING, ANYTHING}}, NULL, arena);
+    for (Node node = 0; node < graph->count; node++) {
+        const Expr *e      = &graph->items[node];
+        bool        steady = e->time != TIME_POINT || e->op == OP_POINT || op_never_jumps(e->op);
+        for (uint32_t k = 0; k < e->operand_count && e->time == TIME_POINT; k++)
+            steady = steady && isfinite(steepest[e->operands[k]]);
+        steepest[node] = steady ? facts[node].slope : HUGE_VAL;
+    }
+    return steepest;
+}
