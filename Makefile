@@ -42,10 +42,10 @@ GRAPH    := $(addprefix compiler/graph/, intern.c alike.c alike_copy.c graph.c c
                 regions.c squares.c grid_build.c grid_find.c grid_clearance.c grid_halve.c grid_refine.c grid_sift.c fractal.c op_values.c tape.c evaluate.c lane_rows.c lane_make.c lane_run.c lane_crowds.c lane_ranges.c \
                 lane_steepest.c lane_slopes.c lane_partials.c lane_outlines.c lane_hessians.c lane_prune.c joints.c joint_needs.c print.c) $(LANES)
 SHAPE    := $(addprefix compiler/shape/, turn_boxes.c box.c box_rules.c reach.c cover.c overlap.c map.c moebius.c builder.c sky_map.c slope.c print.c)
-LOWER    := $(addprefix compiler/lower/, footprint.c bump.c context.c box_distance.c surface.c join.c crowd_table.c crowd_cells.c crowd_functions.c crowd_find.c crowd.c normal.c tangent.c map_chain.c \
+LOWER    := $(addprefix compiler/lower/, footprint.c bump.c context.c box_distance.c surface.c join.c crowd_table.c crowd_cells.c crowd_functions.c crowd_turns.c crowd_find.c crowd.c normal.c tangent.c map_chain.c \
                 outline.c sphere_fold.c guards.c ray_images.c ray_step.c lower.c)
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
-EVAL     := $(addprefix compiler/eval/, scope.c forget.c expression.c arithmetic.c fold.c reports.c units.c arguments.c components.c records.c data.c csv.c json.c builtins.c indices.c lists.c \
+EVAL     := $(addprefix compiler/eval/, scope.c forget.c expression.c turns.c arithmetic.c fold.c reports.c units.c arguments.c components.c records.c data.c csv.c json.c builtins.c indices.c lists.c \
                 random.c files.c text.c drawing.c texture.c functions.c csg.c fractal.c declare.c extremes.c claim_pairs.c claims.c empty.c cells.c measure.c methods.c properties.c \
                 material.c camera.c view.c sky.c palette.c remarks.c statements.c shown.c studio.c hull.c hull_parts.c \
                 hull_supports.c hull_triangles.c)

@@ -83,6 +83,8 @@ static const char *rule_of(Listing *l, const Shape *shape)
 /* Whether two shapes were made in the same place of the text, all through. */
 static bool are_alike(const Shape *a, const Shape *b)
 {
+    a = shape_in_turns(a);
+    b = shape_in_turns(b);
     if (a == b)
         return true;
     if (a->kind != b->kind || a->child_count != b->child_count ||
@@ -133,7 +135,7 @@ static const KrsBound *lasting(Listing *l, const KrsBound *about)
     return copy;
 }
 
-static BoundEntry entry_for(Listing *l, const Shape *shape, uint32_t depth, uint32_t alike,
+static BoundEntry entry_for(Listing *l, const Shape *shape, Box box, uint32_t depth, uint32_t alike,
                             size_t same)
 {
     const Source *source = &l->sources->items[shape->span.source];
@@ -155,8 +157,8 @@ static BoundEntry entry_for(Listing *l, const Shape *shape, uint32_t depth, uint
     }
     BoundEntry entry = {.about = lasting(l, &about)};
     for (int i = 0; i < 3; i++) {
-        entry.low[i]  = shape->box.axis[i].low;
-        entry.high[i] = shape->box.axis[i].high;
+        entry.low[i]  = box.axis[i].low;
+        entry.high[i] = box.axis[i].high;
     }
     return entry;
 }
@@ -167,8 +169,10 @@ static void list_shape(Listing *l, const Shape *shape, uint32_t depth, uint32_t 
         l->more++;
         return;
     }
+    const Box box    = shape->box;
+    shape            = shape_in_turns(shape);
     size_t     same  = entry_of(l, shape);
-    BoundEntry entry = entry_for(l, shape, depth, alike, same);
+    BoundEntry entry = entry_for(l, shape, box, depth, alike, same);
     array_push(l->scratch, &l->entries, entry);
     array_push(l->scratch, &l->shapes, shape);
     for (uint32_t i = 0; i < shape->child_count && !same;) {

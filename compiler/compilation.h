@@ -28,14 +28,15 @@ typedef enum PassId {
 
 /* Results of a run other than the compiled scene. */
 typedef struct Request {
-    PassId   after;       /* the pass to dump; PASS_COUNT: none */
-    PassId   end;         /* the pass before which the run ends; PASS_COUNT: none */
-    char   **dump;        /* where the dump goes, unless NULL */
-    bool    *format;      /* unless NULL: the dump is the text in canonical layout, and *format is
+    PassId   after;        /* the pass to dump; PASS_COUNT: none */
+    PassId   end;          /* the pass before which the run ends; PASS_COUNT: none */
+    char   **dump;         /* where the dump goes, unless NULL */
+    bool    *format;       /* unless NULL: the dump is the text in canonical layout, and *format is
                              whether it was so before */
-    Inspect *inspect;     /* called with the elaborated scene, unless NULL */
-    void    *user;        /* passed to `inspect` */
-    uint32_t least_crowd; /* members of a crowd (lower/crowd.h); 0: LEAST_CROWD */
+    Inspect *inspect;      /* called with the elaborated scene, unless NULL */
+    void    *user;         /* passed to `inspect` */
+    uint32_t least_crowd;  /* members of a crowd (lower/crowd.h); 0: LEAST_CROWD */
+    bool     turn_by_turn; /* each turn of a loop is evaluated by itself (eval/turns.c) */
 } Request;
 
 /* Which optional roots are lowered, besides the surface and the march of each component.  `lower`
@@ -87,6 +88,9 @@ void validate_simplified(const Compilation *c);
 void validate_pruned(const Compilation *c);
 void validate_hoisted(const Compilation *c);
 void validate_facts(const Compilation *c);
+
+/* passes.c: members of a crowd, and turns of a loop that is evaluated once. */
+uint32_t least_crowd(const Compilation *c);
 
 /* precision.c: whether a camera may be so far from the origin, and so near to a surface, that
    points must be camera-relative. */

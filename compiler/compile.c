@@ -313,3 +313,11 @@ KrsStatus compile_with_crowds(const char *text, size_t length, uint32_t least,
     Request request = {.after = PASS_COUNT, .end = PASS_COUNT, .least_crowd = least};
     return load_and_compile(text, length, "scene.krs", options, &request, scene);
 }
+
+KrsStatus compile_turn_by_turn(const char *text, size_t length, uint32_t least,
+                               const KrsOptions *options, KrsScene **scene)
+{
+    Request request = {
+        .after = PASS_COUNT, .end = PASS_COUNT, .least_crowd = least, .turn_by_turn = true};
+    return load_and_compile(text, length, "scene.krs", options, &request, scene);
+}

@@ -29,7 +29,7 @@ static Tape tape_of_frame(const Tape *tape, struct FrameTables *tables)
     copy.functions  = functions;
     for (uint32_t i = 0; i < tape->function_count; i++) {
         functions[i]           = tape->functions[i];
-        functions[i].graph     = &tables->graph;
+        functions[i].graph     = functions[i].graph ? &tables->graph : NULL; /* not called */
         functions[i].functions = functions;
     }
     return copy;

@@ -7,6 +7,7 @@
 #include "compiler/graph/crowd.h"
 #include "compiler/graph/hoist.h"
 #include "compiler/graph/joints.h"
+#include "compiler/lower/crowd.h"
 
 /* ---- the front end ---- */
 
@@ -87,7 +88,12 @@ static bool hoists(const Compilation *c)
     return c->options->specialize == KRS_SPECIALIZE_STRUCTURE;
 }
 
-KrsStatus pass_elaborate(Compilation *c)
+uint32_t least_crowd(const Compilation *c)
+{
+    return c->request->least_crowd ? c->request->least_crowd : LEAST_CROWD;
+}
+
+static void elaborate_with(Compilation *c, TurnTrials *turns)
 {
     Graph *graph         = graph_new(&c->work);
     c->elaborated        = (Scene){.graph = graph,
@@ -110,11 +116,26 @@ KrsStatus pass_elaborate(Compilation *c)
                             .graph    = graph,
                             .scene    = &c->elaborated,
                             .loader   = c->loader,
+                            .turns    = turns,
                             .studio   = c->options->studio,
                             .hoists   = hoists(c),
                             .textures = {.arena = &c->scene->arena}};
     elaborate(&e);
     graph_drop_older(graph);
+}
+
+/* Where something asks for the numbers of single turns, all begins again, turn by turn. */
+KrsStatus pass_elaborate(Compilation *c)
+{
+    const Diags before = c->diags;
+    TurnTrials  turns  = {.least = least_crowd(c)};
+    elaborate_with(c, c->request->turn_by_turn ? NULL : &turns);
+    if (turns.refused) {
+        c->diags.count    = before.count;
+        c->diags.errors   = before.errors;
+        c->diags.warnings = before.warnings;
+        elaborate_with(c, NULL);
+    }
     if (!c->request->inspect) {
         arena_free(&c->syntax);
         arena_free(&c->values);

@@ -230,11 +230,6 @@ static bool any_thin_sheets(const Scene *s)
     return found;
 }
 
-static uint32_t least_crowd(const Compilation *c)
-{
-    return c->request->least_crowd ? c->request->least_crowd : LEAST_CROWD;
-}
-
 KrsStatus pass_lower(Compilation *c)
 {
     const Scene   *s      = &c->elaborated;

@@ -152,13 +152,40 @@ static bool ball_property(Elaboration *e, const Environment *env, const Syntax *
     return true;
 }
 
+static void require_order(Elaboration *e, Node low, Node high)
+{
+    const Node ordered = graph_op2(e->graph, OP_less, low, high);
+    if (!graph_is_constant(e->graph, ordered))
+        turns_require(e, ordered);
+}
+
+/* Where turns of a loop are evaluated at once, none may be empty: that one earns a warning. */
+static void require_sizes(Elaboration *e, const Shape *shape)
+{
+    if (shape->ball_box)
+        require_order(e, graph_number(e->graph, 0), shape->ball_radius);
+    for (uint32_t i = 0; !shape->ball_box && i < (shape->figure ? 2 : 3); i++) {
+        const double ends[2] = {shape->box.axis[i].low, shape->box.axis[i].high};
+        Node         nodes[2];
+        for (int k = 0; k < 2; k++)
+            nodes[k] = shape->corners[k] == NODE_NONE
+                           ? graph_number(e->graph, ends[k])
+                           : graph_component(e->graph, shape->corners[k], i);
+        require_order(e, nodes[0], nodes[1]);
+    }
+}
+
 /* A size of 0 or less leaves nothing to see, or a surface without an inside. */
 static void warn_if_empty(Elaboration *e, const Shape *shape)
 {
     bool flat = false;
     for (int i = 0; i < (shape->figure ? 2 : 3); i++)
         flat = flat || !(shape->box.axis[i].low < shape->box.axis[i].high);
-    if (!flat || e->sources->items[shape->span.source].library)
+    if (e->sources->items[shape->span.source].library)
+        return;
+    if (e->turn != NODE_NONE)
+        require_sizes(e, shape);
+    if (!flat)
         return;
     Diag *diag = diag_add(e->diags, DIAG_NO_EFFECT, shape->span, "this `%s` is empty", shape->name);
     diag->label = "a size is 0 or less";

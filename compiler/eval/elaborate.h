@@ -116,6 +116,9 @@ struct Elaboration {
     const Syntax       *block;        /* the last one whose properties were looked at, or NULL */
     bool                in_material;  /* level, instance, u, v and normal have a meaning */
     bool                uses_uv;      /* a material may need the coordinates on surfaces */
+    struct TurnTrials  *turns;   /* loops whose turns are made at once: turns.c; NULL: none is */
+    Node                turn;    /* what stands for the variable of such a loop, or NODE_NONE */
+    const Syntax       *joining; /* a call of `union` whose arguments are evaluated, or NULL */
 };
 
 /* What a shape knows of the declaration that made it. */
@@ -172,6 +175,44 @@ EvaluationMark evaluation_mark(const Elaboration *e);
 void evaluation_forget(Elaboration *e, EvaluationMark mark, Value *result);
 /* The names that `inner` adds to `outer`, so that they stay. */
 Environment keep_names(Elaboration *e, const Environment *inner, const Environment *outer);
+
+/* What the clauses of a comprehension hand on: the next clause, or the element itself. */
+typedef struct Comprehension {
+    const Environment *env;
+    const Syntax      *syntax;
+    uint32_t           clause;
+    Values            *result;
+    EvaluationMark     mark; /* before the innermost name was bound */
+    struct TurnLoop   *loop; /* its turns may be made at once; or NULL */
+} Comprehension;
+
+/* ---- turns.c: loops whose turns differ in numbers only are evaluated once ---- */
+typedef struct TurnTrials {
+    uint32_t least;   /* turns of such a loop */
+    bool     refused; /* something needs turns by themselves */
+    uint32_t loops,
+        depth; /* made so far; being tried now, one within a definition that another needs */
+    struct {
+        Definition **items;
+        size_t       count, capacity;
+    } defined; /* while any was tried: all this is dropped with it */
+    struct {
+        Node  *items;
+        size_t count, capacity;
+    } required; /* what must hold in each turn */
+} TurnTrials;
+typedef struct TurnLoop {
+    bool tried, made; /* all turns at once: tried; and done */
+} TurnLoop;
+/* Whether that may be tried: the shapes of this comprehension are joined. */
+bool turns_possible(const Elaboration *e, const Syntax *comprehension);
+/* Behind the first element tries to make all of them; true: they are made. */
+bool turns_made(Elaboration *e, const Comprehension *c);
+/* While a loop is tried, that a condition must hold in each turn; false: none is tried. */
+bool turns_require(Elaboration *e, Node condition);
+/* A definition that is evaluated now, and is no part of a loop that is tried.  Returns e->turn, to be set
+   again behind it. */
+Node turns_begin_definition(Elaboration *e, Definition *definition);
 
 /* ---- fold.c ---- */
 /* A number that the author of the scene may change without another program: it gets an identity, by

@@ -137,25 +137,18 @@ bool evaluate_each(Elaboration *e, const Environment *env, const Syntax *syntax,
     return true;
 }
 
-/* What the clauses of a comprehension hand on: the next clause, or the element itself. */
-typedef struct Comprehension {
-    const Environment *env;
-    const Syntax      *syntax;
-    uint32_t           clause;
-    Values            *result;
-    EvaluationMark     mark; /* before the innermost name was bound */
-} Comprehension;
-
 static bool run_clause(Elaboration *e, const Comprehension *c);
 
 static bool comprehend_each(Elaboration *e, Value element, void *user)
 {
     const Comprehension *outer  = user;
     const Syntax        *clause = outer->syntax->children[outer->clause];
-    Comprehension        inner  = *outer;
-    inner.mark                  = evaluation_mark(e);
-    Environment env             = bind(e, outer->env, clause->name, element);
-    inner.env                   = &env;
+    if (outer->loop && turns_made(e, outer))
+        return true;
+    Comprehension inner = *outer;
+    inner.mark          = evaluation_mark(e);
+    Environment env     = bind(e, outer->env, clause->name, element);
+    inner.env           = &env;
     inner.clause++;
     return run_clause(e, &inner);
 }
@@ -193,7 +186,13 @@ static bool run_clause(Elaboration *e, const Comprehension *c)
 static Value evaluate_comprehension(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     Values        result = {0};
-    Comprehension c      = {env, syntax, 1, &result, evaluation_mark(e)};
+    TurnLoop      loop   = {0};
+    Comprehension c      = {.env    = env,
+                            .syntax = syntax,
+                            .clause = 1,
+                            .result = &result,
+                            .mark   = evaluation_mark(e),
+                            .loop   = turns_possible(e, syntax) ? &loop : NULL};
     if (!run_clause(e, &c))
         return value_error();
     return value_list(e, result.items, result.count);

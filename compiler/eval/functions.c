@@ -358,8 +358,12 @@ static Value call_values(Elaboration *e, const Function *function, const Value *
 static Value call_builtin(Elaboration *e, const Environment *env, const Syntax *syntax,
                           const Builtin *builtin)
 {
-    Call call;
-    if (!bind_arguments(e, env, syntax, 1, builtin->name, builtin->parameters, &call))
+    Call          call;
+    const Syntax *outer = e->joining;
+    e->joining          = builtin->function == builtin_union ? syntax : NULL;
+    const bool bound = bind_arguments(e, env, syntax, 1, builtin->name, builtin->parameters, &call);
+    e->joining       = outer;
+    if (!bound)
         return value_error();
     if (builtin->function)
         return builtin->function(e, &call);

@@ -225,6 +225,7 @@ static bool add_shape(const Gathering *g, const Shape *shape, const Place *place
             return refuse_shape(g, shape);
         break;
     case SHAPE_PAINT: warn_of_paint(g, shape); break;
+    case SHAPE_TURN: g->e->turns->refused = true; return false;
     case SHAPE_EMPTY:
     case SHAPE_SMOOTH: break;
     default: return refuse_shape(g, shape);

@@ -93,9 +93,22 @@ static bool is_part_of(Elaboration *e, Node index, size_t count)
     return false;
 }
 
+/* Of an index that depends on the turn of a loop: turns in which it is none are made by themselves. */
+static bool is_required(Elaboration *e, Node index, size_t count)
+{
+    Graph     *g       = e->graph;
+    const Node whole   = graph_op2(g, OP_equal, index, graph_op1(g, OP_floor, index));
+    const Node from    = graph_op2(g, OP_less_equal, graph_number(g, 0), index);
+    const Node to      = graph_op2(g, OP_less, index, graph_number(g, (double)count));
+    const Node between = graph_op2(g, OP_and, from, to);
+    return turns_require(e, graph_op2(g, OP_and, whole, between));
+}
+
 /* Whether the index, rounded down, is one of the list in all frames; false: reported. */
 static bool check_index_range(Elaboration *e, const Syntax *syntax, Node index, size_t count)
 {
+    if (is_required(e, index, count))
+        return true;
     const Range range = range_of_node(e, index);
     if ((range.low >= 0 && range.high < (double)count) || is_part_of(e, index, count))
         return true;

@@ -6,30 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- random numbers: the same on every machine ---- */
-
-/* SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014) of
-   the bits of the seed; -0 and 0 are one seed. */
-static uint64_t hash_number(double seed, uint64_t stream)
-{
-    uint64_t bits;
-    seed += 0.0;
-    memcpy(&bits, &seed, sizeof bits);
-    bits += (stream + 1) * 0x9E3779B97F4A7C15u;
-    bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9u;
-    bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBu;
-    bits ^= bits >> 31;
-    bits += 0x9E3779B97F4A7C15u;
-    bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9u;
-    bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBu;
-    return bits ^ (bits >> 31);
-}
-
-/* In [0, 1). */
-static double unit_random(double seed, uint64_t stream)
-{
-    return (double)(hash_number(seed, stream) >> 11) * 0x1p-53;
-}
+/* ---- seeds that are cells ---- */
 
 /*
  * Seeds that are vectors, or not known when the scene is compiled, are cells of a lattice: their
@@ -62,20 +39,6 @@ static Node random_of_cell(Elaboration *e, const Call *call, uint32_t stream)
     return graph_op1(e->graph, OP_id_unit, id_of_cell(e->graph, cell, stream));
 }
 
-Value builtin_random(Elaboration *e, Call *call)
-{
-    double   seed = 0;
-    uint32_t stream;
-    if (!want_count(e, call, 1, 0, 1000000, 0, &stream))
-        return value_error();
-    if (is_cell(e, call->arguments[0].value))
-        return value_authored(e, value_of_node(e, random_of_cell(e, call, 2 * stream)));
-    if (!want_constant(e, call, 0, &seed))
-        return value_error();
-    uint64_t apart = stream ? stream + (UINT64_C(1) << 32) : 0; /* from random_direction's, too */
-    return value_authored(e, value_number(unit_random(seed, apart)));
-}
-
 /* As far up as evenly, and as far round (Archimedes: the sphere has the area of the cylinder). */
 static Value direction_of_cell(Elaboration *e, const Call *call, uint32_t stream)
 {
@@ -92,30 +55,71 @@ static Value direction_of_cell(Elaboration *e, const Call *call, uint32_t stream
     return value_of_node(e, graph_op3(g, OP_vec3, x, height, z));
 }
 
-/* Marsaglia (1972): a point of the unit disc gives a point of the sphere by products and roots
-   only, which every machine computes alike. */
+/* ---- seeds that are numbers ---- */
+
+/* What depends on the turn of a loop that is made at once (turns.c) is a number in each turn. */
+static bool is_of_turn(const Elaboration *e, Value seed)
+{
+    return e->turn != NODE_NONE && seed.type == VALUE_EXPRESSION &&
+           e->graph->items[seed.node].type == TYPE_FLOAT &&
+           e->graph->items[seed.node].time == TIME_FRAME;
+}
+
+static Value seeded_of_turn(Elaboration *e, const Call *call, Op op, uint32_t numbers,
+                            uint32_t stream)
+{
+    const uint32_t first = e->hoists ? e->number_count + 1 : 0;
+    e->number_count += e->hoists ? numbers : 0;
+    e->graph->here        = call->syntax->span;
+    const Node operands[] = {call->arguments[0].value.node, graph_uint(e->graph, stream),
+                             graph_uint(e->graph, first)};
+    return value_of_node(e, graph_op(e->graph, op, operands));
+}
+
+/* False: reported. */
+static bool seeded_of_number(Elaboration *e, const Call *call, Op op, GraphType type,
+                             uint32_t stream, NodeValue *result)
+{
+    const GraphType types[MAX_OPERANDS]    = {TYPE_FLOAT, TYPE_UINT, TYPE_UINT};
+    NodeValue       operands[MAX_OPERANDS] = {{{0}}, {{stream}}};
+    if (!want_constant(e, call, 0, &operands[0].v[0]))
+        return false;
+    *result = op_evaluate(op, type, 0, types, operands);
+    return true;
+}
+
+/* ---- the functions ---- */
+
+Value builtin_random(Elaboration *e, Call *call)
+{
+    NodeValue result;
+    uint32_t  stream;
+    if (!want_count(e, call, 1, 0, 1000000, 0, &stream))
+        return value_error();
+    if (is_of_turn(e, call->arguments[0].value))
+        return seeded_of_turn(e, call, OP_seeded, 1, stream);
+    if (is_cell(e, call->arguments[0].value))
+        return value_authored(e, value_of_node(e, random_of_cell(e, call, 2 * stream)));
+    if (!seeded_of_number(e, call, OP_seeded, TYPE_FLOAT, stream, &result))
+        return value_error();
+    return value_authored(e, value_number(result.v[0]));
+}
+
 Value builtin_random_direction(Elaboration *e, Call *call)
 {
-    double   seed = 0, a, b, s;
-    uint32_t apart;
+    NodeValue result;
+    uint32_t  apart;
     if (!want_count(e, call, 1, 0, 1000000, 0, &apart))
         return value_error();
+    if (is_of_turn(e, call->arguments[0].value))
+        return seeded_of_turn(e, call, OP_seeded_direction, 3, apart);
     if (is_cell(e, call->arguments[0].value))
         return direction_of_cell(e, call, apart);
-    if (!want_constant(e, call, 0, &seed))
+    if (!seeded_of_number(e, call, OP_seeded_direction, TYPE_VEC3, apart, &result))
         return value_error();
-    uint64_t stream = 1 + ((uint64_t)apart << 32);
-    do {
-        a = 2 * unit_random(seed, stream) - 1;
-        b = 2 * unit_random(seed, stream + 1) - 1;
-        s = a * a + b * b;
-        stream += 2;
-    } while (s >= 1);
-    double root  = 2 * sqrt(1 - s);
     Value *items = arena_new_array(e->values, Value, 3);
-    items[0]     = value_authored(e, value_number(a * root));
-    items[1]     = value_authored(e, value_number(1 - 2 * s));
-    items[2]     = value_authored(e, value_number(b * root));
+    for (int i = 0; i < 3; i++)
+        items[i] = value_authored(e, value_number(result.v[i]));
     return value_list(e, items, 3);
 }
 

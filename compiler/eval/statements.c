@@ -150,6 +150,7 @@ Value run_definition(Elaboration *e, Definition *definition, Span use)
     const Syntax *syntax = definition->syntax;
     Environment  *env    = &definition->scope->environment;
     Span          caller = e->graph->here;
+    Node          turn   = turns_begin_definition(e, definition);
     switch (syntax->kind) {
     case SYNTAX_LET: definition->value = evaluate(e, env, syntax->children[0]); break;
     case SYNTAX_PARAM: definition->value = define_param(e, env, syntax); break;
@@ -162,6 +163,7 @@ Value run_definition(Elaboration *e, Definition *definition, Span use)
     default: definition->value = value_number(0); break; /* cameras, lights: names */
     }
     e->graph->here    = caller;
+    e->turn           = turn;
     definition->state = DEFINITION_DONE;
     return definition->value;
 }
@@ -474,8 +476,8 @@ static void run_params(Elaboration *e, Scope *scope)
 
 void elaborate(Elaboration *e)
 {
-    e->rounding = NODE_NONE;
-    e->uses_uv  = files_mention_uv(e->files);
+    e->rounding = e->turn = NODE_NONE;
+    e->uses_uv            = files_mention_uv(e->files);
     scopes_make(e);
     Scope *scope = e->scopes.items[0];
     for (size_t i = 0; i < e->scopes.count; i++)

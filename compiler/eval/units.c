@@ -102,6 +102,8 @@ void warn_of_angle(Elaboration *e, const Syntax *syntax, Value value)
     bool          more = false, large = value.type == VALUE_NUMBER && fabs(value.number) >= 10;
     const Syntax *literal = NULL;
     warn_of_turns(e, syntax, value);
+    if (value.type == VALUE_EXPRESSION && degrees_in(e, syntax, DEEPEST_CHAIN, &more) && !more)
+        turns_require(e, graph_bool(e->graph, false)); /* turns with large numbers earn it */
     if (!large || is_literal(syntax) || e->sources->items[syntax->span.source].library)
         return;
     /* What has pi or degrees in it is no multiple of a half. */

@@ -81,6 +81,11 @@ bool shape_ball(ShapeBuilder *builder, const Shape *shape, Node *centre, Node *r
 const Shape *make_meta(ShapeBuilder *builder, const Shape *const *shapes, uint32_t count,
                        Node level, Node reach, FalloffKind falloff, Span span);
 
+/* ---- turn.c: shapes that a loop makes, which differ in numbers only ---- */
+/* In these turns the leaf is the number; the boxes are theirs. */
+void make_turns(ShapeBuilder *builder, const Shape *shared, Node leaf, const double *numbers,
+                const Box *boxes, size_t count, const Shape **turns);
+
 /* ---- fractal.c: iterations are a whole number of frame time, `most` the most there can be ---- */
 /* Of q -> q^power + c; c is a VEC4. */
 const Shape *make_julia(ShapeBuilder *builder, Node c, uint32_t power, Node iterations, double most,

@@ -28,15 +28,22 @@ bool content_varies(Lowering *l, const Shape *repeat)
     return depends_on_leaf(l->graph, inner.distance, repeat->values[1], l->scratch);
 }
 
-static void replace(Lowering *l, Node *node, Node leaf, Node by)
+/* How nodes are copied. */
+typedef struct Copying {
+    Lowering     *l;
+    CopyWithLeaf *copy;
+    const void   *user;
+} Copying;
+
+static void copy_node(const Copying *c, Node *node)
 {
     if (*node != NODE_NONE)
-        *node = graph_replace_leaf(l->graph, *node, leaf, by, l->scratch);
+        *node = c->copy(c->l, *node, c->user);
 }
 
-static void replace_in_surface(Lowering *l, Surface *surface, Node leaf, Node by)
+static void copy_surface(const Copying *c, Surface *surface)
 {
-#define KRS_INNER(name, blends) replace(l, &surface->name, leaf, by);
+#define KRS_INNER(name, blends) copy_node(c, &surface->name);
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     KRS_INNER(name, blends)
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) KRS_INNER(name, blends)
@@ -44,14 +51,34 @@ static void replace_in_surface(Lowering *l, Surface *surface, Node leaf, Node by
 }
 
 /* What counts as a constant in the content does so in its copies. */
-static void replace_held(Lowering *l, size_t first, Node leaf, Node by)
+static void copy_held(const Copying *c, size_t first)
 {
-    size_t end = l->held_constant ? l->held_constant->count : 0;
+    Nodes *held = c->l->held_constant;
+    size_t end  = held ? held->count : 0;
     for (size_t i = first; i < end; i++) {
-        Node copy = l->held_constant->items[i];
-        replace(l, &copy, leaf, by);
-        array_push(l->scratch, l->held_constant, copy);
+        Node copy = held->items[i];
+        copy_node(c, &copy);
+        array_push(c->l->scratch, held, copy);
     }
+}
+
+void copy_lowered(Lowering *l, Lowered *lowered, size_t held, CopyWithLeaf *copy, const void *user)
+{
+    const Copying c = {l, copy, user};
+    copy_node(&c, &lowered->distance);
+    if (l->surfaces)
+        copy_surface(&c, &lowered->surface);
+    copy_held(&c, held);
+}
+
+typedef struct CellNumbers {
+    Node leaf, numbers;
+} CellNumbers;
+
+static Node in_cell_with(Lowering *l, Node node, const void *user)
+{
+    const CellNumbers *cell = user;
+    return graph_replace_leaf(l->graph, node, cell->leaf, cell->numbers, l->scratch);
 }
 
 /* Tables of crowds are for all cells alike, so varied content has none. */
@@ -69,9 +96,6 @@ Lowered lower_in_cell(Lowering *l, const Shape *repeat, LowerContext context, No
     l->crowds      = crowds;
     if (leaf == NODE_NONE || result.distance == NODE_NONE)
         return result;
-    replace(l, &result.distance, leaf, numbers);
-    if (l->surfaces)
-        replace_in_surface(l, &result.surface, leaf, numbers);
-    replace_held(l, held, leaf, numbers);
+    copy_lowered(l, &result, held, in_cell_with, &(CellNumbers){leaf, numbers});
     return result;
 }

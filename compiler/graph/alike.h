@@ -47,7 +47,7 @@ typedef struct Template {
     uint64_t      hash;
     TemplateNode *nodes; /* what depends on the point, but leaves; operands first */
     uint32_t      node_count;
-    const Node  *slots; /* what the member of the template has there: FLOAT or a vector, and where a
+    Node        *slots; /* what the member of the template has there: FLOAT or a vector, and where a
                             root is a number also UINT */
     GraphType   *slot_types;
     uint32_t     slot_count;

@@ -47,7 +47,8 @@ typedef enum OpPromises {
     COMMUTES         = 2,
     BUILDS           = 4,
     READS_TABLES     = 8,
-    FIRST_SETTING    = 16 /* and three more: operand k is a setting, FIRST_SETTING << k */
+    FIRST_SETTING    = 16, /* and three more: operand k is a setting, FIRST_SETTING << k */
+    OF_HOST          = 256
 } OpPromises;
 
 /* All operands from this one on are settings. */

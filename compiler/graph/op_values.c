@@ -7,6 +7,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 #include "compiler/graph/fractal.h"
 
@@ -265,6 +266,56 @@ static NodeValue evaluate_id_unit(const NodeValue *o, uint32_t size)
 {
     (void)size;
     return number((scramble((uint32_t)o[0].v[0]) >> 8) / 16777216.0);
+}
+
+/* ---- random numbers of numbers: the same on every machine ---- */
+
+/* SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014) of
+   the bits of the seed; -0 and 0 are one seed. */
+static uint64_t hash_seed(double seed, uint64_t stream)
+{
+    uint64_t bits;
+    seed += 0.0;
+    memcpy(&bits, &seed, sizeof bits);
+    bits += (stream + 1) * 0x9E3779B97F4A7C15u;
+    bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9u;
+    bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBu;
+    bits ^= bits >> 31;
+    bits += 0x9E3779B97F4A7C15u;
+    bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9u;
+    bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBu;
+    return bits ^ (bits >> 31);
+}
+
+/* In [0, 1). */
+static double unit_of_seed(double seed, uint64_t stream)
+{
+    return (double)(hash_seed(seed, stream) >> 11) * 0x1p-53;
+}
+
+static NodeValue evaluate_seeded(const NodeValue *o, uint32_t size)
+{
+    const uint64_t stream = (uint64_t)o[1].v[0];
+    (void)size;
+    return number(unit_of_seed(o[0].v[0], stream ? stream + (UINT64_C(1) << 32) : 0));
+}
+
+/* Marsaglia (1972): a point of the unit disc gives a point of the sphere by products and roots
+   only, which every machine computes alike. */
+static NodeValue evaluate_seeded_direction(const NodeValue *o, uint32_t size)
+{
+    const double seed   = o[0].v[0];
+    uint64_t     stream = 1 + ((uint64_t)o[1].v[0] << 32);
+    double       a, b, s;
+    (void)size;
+    do {
+        a = 2 * unit_of_seed(seed, stream) - 1;
+        b = 2 * unit_of_seed(seed, stream + 1) - 1;
+        s = a * a + b * b;
+        stream += 2;
+    } while (s >= 1);
+    const double root = 2 * sqrt(1 - s);
+    return vector3(a * root, 1 - 2 * s, b * root);
 }
 
 /* ---- smooth minima (math.md, section 4); a width of 0 leaves min(a, b) ---- */

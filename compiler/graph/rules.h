@@ -84,8 +84,8 @@ RangeRule    range_scale, range_cross, range_normalize;
 
 /* rules_space.c */
 Rule fact_turn, fact_fold, fact_front, fact_cell, fact_cell_polar, fact_noise2, fact_noise3,
-    fact_identity, fact_to_uint, fact_id_unit, fact_julia, fact_mandelbulb, fact_trap,
-    fact_of_table, fact_footprint;
+    fact_identity, fact_to_uint, fact_id_unit, fact_seeded, fact_seeded_direction, fact_julia,
+    fact_mandelbulb, fact_trap, fact_of_table, fact_footprint;
 /* rules_blends.c */
 Rule fact_smin, fact_smin_endless, fact_smin_circular, fact_smin_chamfer, fact_smin_stairs,
     fact_blend_weight;

@@ -181,6 +181,16 @@ static Fact fact_steps(const RuleInput *input, uint32_t count, double most)
 Fact fact_identity(const RuleInput *input) { return fact_steps(input, 2, UINT32_MAX); }
 Fact fact_to_uint(const RuleInput *input) { return fact_steps(input, 1, UINT32_MAX); }
 Fact fact_id_unit(const RuleInput *input) { return fact_steps(input, 1, 1 - 0x1p-24); }
+Fact fact_seeded(const RuleInput *input) { return fact_steps(input, 1, 1 - 0x1p-53); }
+
+Fact fact_seeded_direction(const RuleInput *input)
+{
+    Fact fact = fact_unknown(3);
+    for (int i = 0; i < 3; i++)
+        fact.value[i] = (Range){-1, 1};
+    fact.slope = operands_constant(input, 0, 1) ? 0 : HUGE_VAL;
+    return fact;
+}
 
 /* Rules do not look into tables. */
 Fact fact_of_table(const RuleInput *input)

@@ -5,6 +5,8 @@
  */
 #include "compiler/graph/turns.h"
 
+#include <string.h>
+
 #include "compiler/graph/lanes.h"
 #include "compiler/graph/op_values.h"
 
@@ -60,4 +62,65 @@ void graph_at_turns(const Graph *graph, const Node *roots, size_t root_count, No
     lane_tape_scalars(&lanes, values, lanes.scalars);
     run(&lanes, turns, turn_count, results, scratch);
     arena_rewind(scratch, mark);
+}
+
+bool graph_needs_parameters(const Graph *graph, const Node *roots, size_t root_count, Node leaf,
+                            Arena *scratch)
+{
+    const ArenaMark mark  = arena_mark(scratch);
+    const Tape      tape  = tape_new(graph, roots, root_count, scratch);
+    bool            found = false;
+    for (size_t i = 0; i < tape.count; i++)
+        found = found || (tape.nodes[i] != leaf && graph->items[tape.nodes[i]].op == OP_PARAMETER);
+    arena_rewind(scratch, mark);
+    return found;
+}
+
+/* ---- one turn ---- */
+
+typedef struct NodeList {
+    Node  *items;
+    size_t count, capacity;
+} NodeList;
+
+/* What the host finds, as numbers of the text. */
+static Node settled(Graph *graph, Node node, NodeValue value)
+{
+    const Expr     e     = graph->items[node];
+    const uint32_t first = (uint32_t)graph->items[e.operands[2]].number[0];
+    Node           parts[3];
+    for (uint32_t k = 0; k < components((GraphType)e.type); k++)
+        parts[k] = graph_hoisted(graph, TYPE_FLOAT, &value.v[k], first + k);
+    return e.type == TYPE_FLOAT ? parts[0] : graph_op(graph, OP_vec3, parts);
+}
+
+static Node settle_random(Graph *graph, Node root, Arena *scratch)
+{
+    const Tape tape  = tape_new(graph, &root, 1, scratch);
+    NodeList   found = {0};
+    for (size_t i = 0; i < tape.frame_count; i++)
+        if (op_promises((Op)graph->items[tape.nodes[i]].op, OF_HOST))
+            array_push(scratch, &found, tape.nodes[i]);
+    if (found.count == 0)
+        return root;
+    Node *copies = arena_new_array(scratch, Node, found.count);
+    memcpy(copies, found.items, found.count * sizeof *copies);
+    const Graph *own    = graph_extract(graph, copies, found.count, scratch);
+    const Tape   alone  = tape_new(own, copies, found.count, scratch);
+    NodeValue   *values = arena_new_array(scratch, NodeValue, own->count);
+    Node        *by     = arena_new_array(scratch, Node, tape.count);
+    tape_run_frame(&alone, NULL, values);
+    for (size_t i = 0; i < found.count; i++)
+        by[tape_index(&tape, found.items[i])] = 1 +
+                                                settled(graph, found.items[i], values[copies[i]]);
+    return graph_replace_nodes(graph, root, &tape, by, scratch);
+}
+
+Node graph_in_turn(Graph *graph, Node root, Node leaf, double turn, Arena *scratch)
+{
+    const ArenaMark mark = arena_mark(scratch);
+    Node result = graph_replace_leaf(graph, root, leaf, graph_number(graph, turn), scratch);
+    result      = settle_random(graph, result, scratch);
+    arena_rewind(scratch, mark);
+    return result;
 }

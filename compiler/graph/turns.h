@@ -16,6 +16,11 @@ void graph_mark_turned(const Graph *graph, Node leaf, bool *depends);
    are of frame time, and need no parameter but the leaf. */
 void graph_at_turns(const Graph *graph, const Node *roots, size_t root_count, Node leaf,
                     const double *turns, size_t turn_count, double *results, Arena *scratch);
+/* A root in one turn.  Random numbers in it are numbers of the scene's text then, where that has some. */
+Node graph_in_turn(Graph *graph, Node root, Node leaf, double turn, Arena *scratch);
+/* Whether roots need a parameter but this leaf. */
+bool graph_needs_parameters(const Graph *graph, const Node *roots, size_t root_count, Node leaf,
+                            Arena *scratch);
 /* How many numbers that are for each turn. */
 size_t graph_numbers_of(const Graph *graph, const Node *roots, size_t root_count);
 

@@ -54,17 +54,16 @@ static PartMark part_mark(const Search *search)
     return (PartMark){graph_mark(search->graph), *search->finder->made};
 }
 
-/* False: it is empty, or too large. */
-static bool lower_part(const PartFinder *finder, uint32_t part, Node roots[PART_ROOTS])
+bool lower_part(const PartFinder *finder, const Shape *shape, struct LoweredCrowds *crowds,
+                Node roots[PART_ROOTS])
 {
     const Lowering *outer   = finder->outer;
-    const Shape    *shape   = finder->parts[part];
     Lowering        l       = {.graph    = outer->graph,
                                .scratch  = outer->scratch,
                                .surfaces = true,
                                .method   = outer->method,
                                .most     = outer->most,
-                               .crowds   = outer->crowds,
+                               .crowds   = crowds,
                                .least    = outer->least};
     ArenaMark       mark    = arena_mark(outer->scratch);
     Lowered         lowered = finder->operands ? lower_operand(&l, shape, finder->context)
@@ -73,6 +72,11 @@ static bool lower_part(const PartFinder *finder, uint32_t part, Node roots[PART_
     roots[PART_DISTANCE] = lowered.distance;
     memcpy(&roots[PART_SURFACE], &lowered.surface, sizeof lowered.surface);
     return lowered.distance != NODE_NONE && !l.overflow;
+}
+
+static bool lower_own(const PartFinder *finder, uint32_t part, Node roots[PART_ROOTS])
+{
+    return lower_part(finder, finder->parts[part], finder->outer->crowds, roots);
 }
 
 /* The nodes of the frame in the first `slots` slots. */
@@ -184,7 +188,7 @@ static void hash_part(Search *search, uint32_t part)
     bool     noted = false;
     uint64_t hash  = 0;
     PartMark mark  = part_mark(search);
-    if (lower_part(search->finder, part, roots)) {
+    if (lower_own(search->finder, part, roots)) {
         hash  = alike_hash(search->finder->alike, roots, PART_ROOTS) | 1;
         noted = note_numbers(search, hash, roots, mark.graph.count);
     }
@@ -250,7 +254,7 @@ static void group_part(Search *search, uint32_t part)
 {
     Node        roots[PART_ROOTS];
     PartMark    mark  = part_mark(search);
-    bool        there = lower_part(search->finder, part, roots);
+    bool        there = lower_own(search->finder, part, roots);
     CrowdGroup *group = there ? find_group(search, roots) : NULL;
     if (group || !there)
         drop_part(search, mark, group ? group->template->slot_count : 0);
@@ -286,8 +290,11 @@ CrowdGroups find_groups(const PartFinder *finder, Arena *arena)
                                 .hashes     = arena_new_array(scratch, uint64_t, count),
                                 .sorted     = arena_new_array(scratch, uint64_t, count),
                                 .candidates = arena_new_array(scratch, Candidate, MOST_CANDIDATES)};
+    bool *taken      = arena_new_array(scratch, bool, count + 1);
+    find_turn_groups(finder, &search->groups, taken, arena);
     for (uint32_t i = 0; i < count; i++)
-        hash_part(search, i);
+        if (!taken[i])
+            hash_part(search, i);
     qsort(search->sorted, count, sizeof *search->sorted, compare_hashes);
     for (uint32_t i = 0; i < count; i++) {
         if (!is_frequent(search, search->hashes[i]))

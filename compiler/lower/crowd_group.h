@@ -85,6 +85,11 @@ typedef struct CrowdGroups {
 
 /* What is needed later is made in the arena.  Groups may be smaller than asked for. */
 CrowdGroups find_groups(const PartFinder *finder, Arena *arena);
+/* Lowers what a part is where parts are, with these crowds.  False: it is empty, or too large. */
+bool lower_part(const PartFinder *finder, const Shape *shape, struct LoweredCrowds *crowds,
+                Node roots[PART_ROOTS]);
+/* crowd_turns.c: adds groups of turns of one loop, and marks their members. */
+void find_turn_groups(const PartFinder *finder, CrowdGroups *groups, bool *taken, Arena *arena);
 
 /* crowd_table.c: an empty group of what is like the template. */
 CrowdGroup group_new(Template *template, Arena *arena);

@@ -33,6 +33,8 @@ Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span s
 /* The same with one child. */
 Shape *shape_around(ShapeBuilder *builder, ShapeKind kind, const char *name, const Shape *child,
                     Span span);
+/* What it takes over from a part that is not among its children. */
+void shape_takes_over(Shape *shape, const Shape *part);
 /* What is known of its formula, to be changed: no other shape has the same. */
 FieldFacts *own_field_facts(ShapeBuilder *builder, Shape *shape);
 

@@ -133,7 +133,7 @@ static bool is_turned(const Turns *t, const Shape *shape)
         found = stage_is_turned(t, &shape->stages[i]);
     for (uint32_t i = 0; i < box_part_count(shape) && !found; i++)
         found = is_turned(t, box_part(shape, i));
-    return found;
+    return found || (shape->turned && is_turned(t, shape->turned));
 }
 
 /* ---- the plan ---- */

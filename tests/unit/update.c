@@ -256,6 +256,44 @@ static void tables_are_values(void **state)
     }
 }
 
+/* ---- loops that are evaluated once ---- */
+
+#define STREET                                                                                  \
+    "let wall = 1.5; let colors = [#efe3cf, #c9d2d3, #e3b7a0];"                                 \
+    "def house(i) = box([1 + 0.5 * random(2 * i), wall, 1]).rotate([0, 1, 0], 0.3 * random(i))" \
+    " .paint(colors[floor(len(colors) * random(i + 0.5))]);"                                    \
+    "show union([house(i).move([3 * (i % 10), 0, 2.5 * floor(i / 10)])"                         \
+    " for i in 0..100 if random(i + 0.7) < 0.9]); camera { eye: [4, 9, 15] }"
+
+static const char *const street_edits[][2] = {
+    {"0.5 * random", "0.6 * random"},
+    {"wall = 1.5", "wall = 1.6"},
+    {"#c9d2d3", "#d0d040"},
+    {"0.3 * random", "0.2 * random"},
+    {"3 * (", "3.1 * ("},
+    {"i + 0.5", "i + 0.25"},
+    {"< 0.9", "< 0.8"},
+};
+
+static void numbers_of_loops_are_values(void **state)
+{
+    (void)state;
+    KrsScene *scene = compile(STREET, KRS_SPECIALIZE_STRUCTURE);
+    for (size_t i = 0; i < sizeof street_edits / sizeof *street_edits; i++) {
+        KrsChanges  changes;
+        const char *text    = edited(STREET, street_edits[i][0], street_edits[i][1]);
+        KrsScene   *updated = update(scene, text, &changes);
+        KrsScene   *alone   = compile(text, KRS_SPECIALIZE_STRUCTURE);
+        if (changes.kind != KRS_CHANGE_VALUES)
+            fail_msg("%s: %d", street_edits[i][0], changes.kind);
+        assert_true(same_kernels(scene, updated));
+        assert_same_scene(updated, alone);
+        krs_scene_free(alone);
+        krs_scene_free(updated);
+    }
+    krs_scene_free(scene);
+}
+
 /* ---- mistakes, and what is kept of the first compilation ---- */
 
 static void mistakes_leave_the_scene(void **state)
@@ -412,6 +450,7 @@ int main(void)
         cmocka_unit_test(auto_takes_numbers_out_with_the_first_edit),
         cmocka_unit_test(auto_keeps_very_many_numbers),
         cmocka_unit_test(tables_are_values),
+        cmocka_unit_test(numbers_of_loops_are_values),
         cmocka_unit_test(mistakes_leave_the_scene),
         cmocka_unit_test(used_files_are_read_again),
         cmocka_unit_test(memory_may_run_out),

@@ -1,0 +1,410 @@
+/*
+ * turns.c: loops whose turns differ in numbers only are evaluated once.
+ *
+ * The first turn of a loop of shapes that are joined is evaluated as any other, and is the witness.  Then
+ * the body is evaluated with a leaf of frame time in the place of the variable, a parameter with the
+ * range of its values.  If that reports nothing, and gives a shape like the witness, it is what all
+ * turns have in common.  Their numbers, what the conditions of the loop leave, and their boxes are found
+ * by lanes.  Else all is as if nothing had been tried, and each turn is evaluated by itself.
+ */
+#include "compiler/eval/elaborate.h"
+
+#include <math.h>
+
+#include "compiler/graph/crowd.h"
+#include "compiler/graph/turns.h"
+#include "compiler/shape/turn_boxes.h"
+
+/* Of loops made at once: each takes a slot of the parameter block. */
+enum { MOST_LOOPS = 256, MOST_CONDITIONS = 8, MOST_SHARED_SHAPES = 4096 };
+
+/* ---- what may be tried ---- */
+
+static bool is_joined(const Elaboration *e, const Syntax *comprehension)
+{
+    for (uint32_t i = 1; e->joining && i < e->joining->count; i++) {
+        const Syntax *argument = e->joining->children[i];
+        if (argument->kind == SYNTAX_ARGUMENT && argument->children[0] == comprehension)
+            return true;
+    }
+    return false;
+}
+
+bool turns_possible(const Elaboration *e, const Syntax *comprehension)
+{
+    const Syntax *first = comprehension->children[1];
+    if (!e->turns || e->turns->loops >= MOST_LOOPS || e->turn != NODE_NONE ||
+        !is_joined(e, comprehension) || first->kind != SYNTAX_FOR_CLAUSE ||
+        first->children[0]->kind != SYNTAX_RANGE || comprehension->count > 2 + MOST_CONDITIONS)
+        return false;
+    for (uint32_t i = 2; i < comprehension->count; i++)
+        if (comprehension->children[i]->kind == SYNTAX_FOR_CLAUSE)
+            return false;
+    return true;
+}
+
+/* ---- what is put back ---- */
+
+typedef struct Before {
+    EvaluationMark values;
+    GraphMark      graph;
+    size_t said, errors, warnings, parameters, slopes, outlines, materials, half_spaces, checked,
+        functions, defined, required;
+    uint64_t steps;
+    uint32_t printed;
+    size_t   nodes_before;
+    Span     here;
+} Before;
+
+static size_t function_count(const Graph *graph)
+{
+    return graph->crowds ? graph->crowds->functions.count + graph->crowds->tables.count : 0;
+}
+
+static Before remember(Elaboration *e)
+{
+    e->turns->depth++;
+    return (Before){.values       = evaluation_mark(e),
+                    .graph        = graph_mark(e->graph),
+                    .said         = e->diags->count,
+                    .errors       = e->diags->errors,
+                    .warnings     = e->diags->warnings,
+                    .parameters   = e->graph->parameters.count,
+                    .slopes       = e->scene->slopes.count,
+                    .outlines     = e->builder->outlines.count,
+                    .materials    = e->scene->materials.count,
+                    .half_spaces  = e->scene->half_spaces.count,
+                    .checked      = e->checked.count,
+                    .functions    = function_count(e->graph),
+                    .defined      = e->turns->defined.count,
+                    .required     = e->turns->required.count,
+                    .steps        = e->steps,
+                    .printed      = e->printed,
+                    .nodes_before = e->builder->nodes_before,
+                    .here         = e->graph->here};
+}
+
+/* Nothing was reported, and nothing made that a turn by itself would not make. */
+static bool is_silent(const Elaboration *e, const Before *before)
+{
+    return !is_stopped(e) && e->diags->count == before->said &&
+           e->diags->errors == before->errors && e->diags->warnings == before->warnings &&
+           e->scene->slopes.count == before->slopes &&
+           e->scene->half_spaces.count == before->half_spaces &&
+           e->checked.count == before->checked && function_count(e->graph) == before->functions;
+}
+
+static void put_back(Elaboration *e, const Before *before)
+{
+    e->diags->count             = before->said;
+    e->diags->errors            = before->errors;
+    e->diags->warnings          = before->warnings;
+    e->graph->parameters.count  = before->parameters;
+    e->scene->slopes.count      = before->slopes;
+    e->scene->materials.count   = before->materials;
+    e->scene->half_spaces.count = before->half_spaces;
+    e->checked.count            = before->checked;
+    e->steps                    = before->steps;
+    e->printed                  = before->printed;
+    e->builder->nodes_before    = before->nodes_before;
+    e->builder->stopped         = false;
+    e->graph->here              = before->here;
+    for (size_t i = before->defined; i < e->turns->defined.count; i++)
+        e->turns->defined.items[i]->state = DEFINITION_NEW;
+    if (function_count(e->graph) != before->functions) {
+        graph_keep(e->graph); /* they have nodes */
+        return;
+    }
+    e->builder->outlines.count = before->outlines;
+    graph_release(e->graph, before->graph);
+}
+
+bool turns_require(Elaboration *e, Node condition)
+{
+    if (e->turn != NODE_NONE)
+        array_push(e->arena, &e->turns->required, condition);
+    return e->turn != NODE_NONE;
+}
+
+Node turns_begin_definition(Elaboration *e, Definition *definition)
+{
+    const Node turn = e->turn;
+    if (e->turns && e->turns->depth > 0)
+        array_push(e->arena, &e->turns->defined, definition);
+    e->turn = NODE_NONE;
+    return turn;
+}
+
+/* ---- what all turns have in common ---- */
+
+typedef struct Turned {
+    Node         leaf;
+    Nodes        roots; /* conditions of the loop; what must hold; what may not be finite */
+    size_t       conditions, required;
+    const Shape *shape;
+    double      *turns; /* values of the variable */
+    size_t       count;
+    Box         *boxes;
+} Turned;
+
+static Node turn_leaf(Elaboration *e, const Turned *t)
+{
+    const GraphParameter range = {{t->turns[0]}, {t->turns[t->count - 1]}};
+    const uint32_t       slot  = (uint32_t)e->graph->parameters.count;
+    array_push(e->arena, &e->graph->parameters, range);
+    return graph_parameter(e->graph, slot, TYPE_FLOAT);
+}
+
+/* False: it has a value of another kind, or never holds. */
+static bool take_condition(Elaboration *e, Turned *t, Value condition)
+{
+    if (condition.type == VALUE_BOOLEAN)
+        return condition.boolean;
+    if (condition.type != VALUE_EXPRESSION)
+        return false;
+    const Expr *expr = &e->graph->items[condition.node];
+    if (expr->type != TYPE_BOOL || expr->time != TIME_FRAME)
+        return false;
+    array_push(e->values, &t->roots, condition.node);
+    return true;
+}
+
+static bool evaluate_turned(Elaboration *e, const Comprehension *c, Turned *t)
+{
+    const Syntax *syntax  = c->syntax;
+    t->leaf               = turn_leaf(e, t);
+    e->turn               = t->leaf;
+    const size_t first    = e->turns->required.count;
+    const Value  variable = {.type = VALUE_EXPRESSION, .node = t->leaf};
+    Environment  env      = bind(e, c->env, syntax->children[1]->name, variable);
+    bool         good     = true;
+    for (uint32_t i = 2; good && i < syntax->count; i++)
+        good = take_condition(e, t, evaluate(e, &env, syntax->children[i]->children[0]));
+    t->conditions = t->roots.count;
+    Value value   = good ? evaluate(e, &env, syntax->children[0]) : value_error();
+    e->turn       = NODE_NONE;
+    t->shape      = value.type == VALUE_SHAPE ? value.shape : NULL;
+    for (size_t i = first; i < e->turns->required.count; i++)
+        array_push(e->values, &t->roots, e->turns->required.items[i]);
+    t->required = e->turns->required.count - first;
+    return t->shape;
+}
+
+/* ---- whether that is all ---- */
+
+/* Large joints in it would be crowds by themselves.  What a choice leaves is not the same in all
+   turns. */
+static bool may_be_shared(const Elaboration *e, const Shape *shape)
+{
+    if (shape->kind == SHAPE_CHOICE || shape->kind == SHAPE_TURN ||
+        shape->child_count >= e->turns->least)
+        return false;
+    for (uint32_t i = 0; i < shape->child_count; i++)
+        if (!may_be_shared(e, shape->children[i]))
+            return false;
+    return true;
+}
+
+/* What ranges over all turns make worse than the numbers of one is made turn by turn. */
+static bool is_like(const Shape *shape, const Shape *witness)
+{
+    return shape->kind == witness->kind && shape->figure == witness->figure &&
+           shape->tree_shapes == witness->tree_shapes &&
+           shape->slope <= witness->slope * (1 + 1e-9) &&
+           shape->derived <= witness->derived * (1 + 1e-9) && (shape->exact || !witness->exact) &&
+           shape->levels == witness->levels && !shape->fields && !shape->estimate &&
+           !shape->per_frame && !shape->sheets && box_is_finite(shape->box);
+}
+
+typedef struct Dependence {
+    const Graph *graph;
+    Node         leaf;
+    bool        *depends; /* of the nodes from the leaf on */
+} Dependence;
+
+static bool depends(const Dependence *d, Node node)
+{
+    return node >= d->leaf && d->depends[node - d->leaf];
+}
+
+/* An operand of something at points is a number of a table. */
+static bool can_be_in_table(const Dependence *d, const Expr *user, int operand)
+{
+    const Expr *expr = &d->graph->items[user->operands[operand]];
+    return !depends(d, user->operands[operand]) || expr->time == TIME_POINT ||
+           (expr->type <= TYPE_VEC4 && !op_has_setting((Op)user->op, operand));
+}
+
+static bool is_finite(Elaboration *e, Node node)
+{
+    const GraphType type = (GraphType)e->graph->items[node].type;
+    bool            good = true;
+    for (uint32_t k = 0; good && type <= TYPE_VEC4 && k < (uint32_t)type; k++) {
+        const Range range = graph_frame_range(e->graph, node, k, e->scratch);
+        good              = isfinite(range.low) && isfinite(range.high);
+    }
+    return good;
+}
+
+/* Gathers what numbers of turns are found with, and what must be finite; false: tables cannot have
+   it. */
+static bool gather_node(Elaboration *e, const Dependence *d, Node node, Nodes *others,
+                        Nodes *unbounded)
+{
+    const Expr *expr = &d->graph->items[node];
+    if (op_promises((Op)expr->op, OF_HOST) && !depends(d, node))
+        return false; /* of a seed that kernels know */
+    if (!depends(d, node))
+        return true;
+    for (int k = 0; k < expr->operand_count; k++) {
+        const Node operand = expr->operands[k];
+        if (expr->time == TIME_POINT && !can_be_in_table(d, expr, k))
+            return false;
+        if (expr->time == TIME_FRAME && !depends(d, operand) &&
+            d->graph->items[operand].time == TIME_FRAME)
+            array_push(e->values, others, operand);
+    }
+    if (expr->time == TIME_FRAME && !is_finite(e, node))
+        array_push(e->values, unbounded, node);
+    return true;
+}
+
+static bool gather_nodes(Elaboration *e, Turned *t)
+{
+    const size_t count  = e->graph->count;
+    Dependence   d      = {e->graph, t->leaf, arena_new_array(e->values, bool, count - t->leaf)};
+    Nodes        others = {0};
+    bool         good   = true;
+    graph_mark_turned(e->graph, t->leaf, d.depends);
+    for (Node node = t->leaf; good && node < count; node++)
+        good = gather_node(e, &d, node, &others, &t->roots);
+    for (size_t i = 0; i < t->roots.count; i++)
+        array_push(e->values, &others, t->roots.items[i]);
+    good = good &&
+           !graph_needs_parameters(e->graph, others.items, others.count, t->leaf, e->scratch);
+    arena_clear(e->scratch);
+    return good;
+}
+
+/* ---- turns ---- */
+
+static void set_turns(Elaboration *e, Turned *t, double from, double to)
+{
+    t->turns = arena_new_array(e->values, double, (size_t)ceil(to - from) + 1);
+    for (uint32_t i = 0; from + i < to; i++)
+        t->turns[t->count++] = from + i;
+}
+
+static bool all_hold(const double *truths, size_t count)
+{
+    bool hold = true;
+    for (size_t i = 0; i < count; i++)
+        hold = hold && truths[i] != 0;
+    return hold;
+}
+
+static bool all_finite(const double *numbers, size_t count)
+{
+    bool finite = true;
+    for (size_t i = 0; i < count; i++)
+        finite = finite && isfinite(numbers[i]);
+    return finite;
+}
+
+/* Leaves those for which the conditions hold.  False: one of them must be made by itself. */
+static bool choose_turns(Elaboration *e, Turned *t)
+{
+    const size_t width   = graph_numbers_of(e->graph, t->roots.items, t->roots.count);
+    double      *numbers = arena_new_array(e->values, double, t->count *width + 1);
+    size_t       left    = 0;
+    graph_at_turns(e->graph, t->roots.items, t->roots.count, t->leaf, t->turns, t->count, numbers,
+                   e->scratch);
+    for (size_t i = 0; i < t->count; i++) {
+        const double *of = numbers + i * width;
+        if (!all_hold(of, t->conditions))
+            continue;
+        const size_t truths = t->conditions + t->required;
+        if (!all_hold(of + t->conditions, t->required) || !all_finite(of + truths, width - truths))
+            return false;
+        t->turns[left++] = t->turns[i];
+    }
+    t->count = left;
+    return true;
+}
+
+/* The box that is found for the first turn is that of the witness. */
+static bool boxes_agree(const Box *box, const Box *witness)
+{
+    for (int k = 0; k < 3; k++) {
+        const Range  a = box->axis[k], b = witness->axis[k];
+        const double size = 1e-9 + 1e-6 * (fabs(b.low) + fabs(b.high));
+        if (!(fabs(a.low - b.low) <= size && fabs(a.high - b.high) <= size))
+            return false;
+    }
+    return true;
+}
+
+/* What a blend makes of a bound is cut to its box, part by part (crowd_turns.c). */
+static bool goes_with_joint(const Elaboration *e, const Shape *shape)
+{
+    return shape->exact || e->joining->count == 2;
+}
+
+static bool find_turns(Elaboration *e, const Comprehension *c, Turned *t, const Before *before)
+{
+    const Shape *witness = c->result->items[0].shape;
+    if (!evaluate_turned(e, c, t) || !is_silent(e, before) || !is_like(t->shape, witness) ||
+        !goes_with_joint(e, t->shape) || t->shape->tree_shapes > MOST_SHARED_SHAPES ||
+        !may_be_shared(e, t->shape) || !gather_nodes(e, t) || !choose_turns(e, t) ||
+        t->count < e->turns->least)
+        return false;
+    t->boxes = arena_new_array(e->values, Box, t->count);
+    return turn_boxes(e->builder, t->shape, t->leaf, t->turns, t->count, t->boxes) &&
+           boxes_agree(&t->boxes[0], &witness->box);
+}
+
+static void push_turns(Elaboration *e, const Comprehension *c, const Shape **turns, size_t count)
+{
+    c->result->items[0] = value_shape(turns[0]);
+    for (size_t i = 1; i < count; i++)
+        array_push_large(e->values, c->result, value_shape(turns[i]));
+}
+
+static bool try_turns(Elaboration *e, const Comprehension *c)
+{
+    const Syntax *range = c->syntax->children[1]->children[0];
+    const Value   from  = evaluate(e, c->env, range->children[0]);
+    const Value   to    = evaluate(e, c->env, range->children[1]);
+    if (c->result->items[0].type != VALUE_SHAPE || from.type != VALUE_NUMBER ||
+        to.type != VALUE_NUMBER || !(to.number - from.number >= e->turns->least))
+        return false;
+    const Before before = remember(e);
+    Turned       t      = {.leaf = NODE_NONE};
+    set_turns(e, &t, from.number, to.number);
+    const bool    found = find_turns(e, c, &t, &before);
+    const Shape **turns = arena_new_array(e->arena, const Shape *, found ? t.count : 1);
+    if (found) {
+        graph_keep(e->graph);
+        make_turns(e->builder, t.shape, t.leaf, t.turns, t.boxes, t.count, turns);
+        e->turns->loops++;
+    } else
+        put_back(e, &before);
+    e->turns->required.count = before.required;
+    e->turns->depth--;
+    if (e->turns->depth == 0)
+        e->turns->defined.count = 0;
+    evaluation_forget(e, before.values, NULL);
+    if (found)
+        push_turns(e, c, turns, t.count);
+    return found;
+}
+
+bool turns_made(Elaboration *e, const Comprehension *c)
+{
+    TurnLoop *loop = c->loop;
+    if (c->result->count == 0 || loop->tried)
+        return loop->made;
+    loop->tried = true;
+    loop->made  = try_turns(e, c);
+    return loop->made;
+}

@@ -1,0 +1,192 @@
+/*
+ * turns.c: loops that are evaluated once are what their turns are, evaluated one by one: distances,
+ * surfaces, tables and text; and those that must be evaluated turn by turn are.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "compiler/base/vec.h"
+#include "compiler/inspect.h"
+#include "compiler/program.h"
+#include "tests/support/random.h"
+
+enum { POINTS = 300, LEAST = 16, SEEDS = 3 };
+
+static const char prelude[] =
+    "let seed = %d;\n"
+    "def within(i, k) = 2 * random(seed + 3 * i + k) - 1;\n"
+    "def spot(i) = 3 * [within(i, 0), within(i, 1), within(i, 2)];\n"
+    "def size(i) = 0.2 + 0.2 * random(seed + 0.5 + i);\n"
+    "def hue(i) = random(seed + 0.25 + i);\n"
+    "let colors = [#d8433b, #f08a24, #f4c430, #4f9d4a, #2f7fc1];\n"
+    "def pick(i) = colors[floor(len(colors) * hue(i))];\n"
+    "def ball(i) = sphere(size(i)).move(spot(i));\n"
+    "def brick(i) = box(size(i) * [1, 2, 3]).round(0.03).rotate(random_direction(i), 6 * hue(i));\n"
+    "def gable(w, h) = polygon([[-w / 2, 0], [w / 2, 0], [0, h]]);\n"
+    "shape egg(radius = 1) { distance: length([x, y, z]) - radius, exact: true }\n"
+    "param wide = 0.3 in [0.1, 0.5];\n";
+
+typedef struct Loop {
+    const char *name, *text; /* what is shown */
+} Loop;
+
+static const Loop at_once[] = {
+    {"balls", "union([ball(i) for i in 0..40])"},
+    {"painted", "union([ball(i).paint(pick(i)) for i in 0..40])"},
+    {"bricks", "union([brick(i).move(spot(i)).paint(pick(i)) for i in 0..40])"},
+    {"filtered", "union([ball(i) for i in 0..60 if hue(i) < 0.6])"},
+    {"filtered twice", "union([ball(i) for i in 0..90 if hue(i) < 0.6 if i % 7 != 3])"},
+    {"chosen numbers", "union([box(if hue(i) < 0.5 then [1, 0.2, 0.2] else [0.2, 1, size(i)])"
+                       ".move(spot(i)) for i in 0..40])"},
+    {"loops within", "union([union([sphere(0.2).move(spot(i) + 0.2 * [k, 0, hue(i + k)]) "
+                     "for k in 0..3]) for i in 0..40])"},
+    {"blend within", "union([union([sphere(size(i)), sphere(0.2).move([0, size(i), 0])], "
+                     "blend: 0.1).move(spot(i)) for i in 0..40])"},
+    {"blended", "union([ball(i) for i in 0..40], blend: 0.05)"},
+    {"extruded",
+     "union([gable(0.3 + size(i), size(i)).extrude(0.5).move(spot(i)) for i in 0..40])"},
+    {"repeated",
+     "union([box([0.2, 0.2, 0.2]).repeat([0.4 + size(i), 1, 1], [3, 1, 1]).move(spot(i)) "
+     "for i in 0..40])"},
+    {"less", "union([(sphere(size(i)) - box([1, size(i), 0.2])).move(spot(i)) for i in 0..40])"},
+    {"of its point", "union([ball(i).paint([0.5 + 0.5 * sin(9 * x + i), hue(i), 0.5]) "
+                     "for i in 0..40])"},
+    {"an index", "union([ball(i).paint(colors[floor(i / 10)]) for i in 0..40])"},
+    {"from elsewhere", "union([ball(i) for i in 7..40.5])"},
+    {"below an offset", "union([ball(i) for i in 0..40]).round(0.05)"},
+    {"below a blend", "union(union([ball(i) for i in 0..40]), box([1, 1, 1]), blend: 0.1)"},
+    {"less a loop", "box([2, 2, 2]) - union([ball(i) for i in 0..40])"},
+    {"noise", "union([sphere(0.3).move(spot(i) + [noise(i + 0.3), 0, 0]) for i in 0..40])"},
+};
+
+static const Loop by_turns[] = {
+    {"few", "union([ball(i) for i in 0..15])"},
+    {"few are left", "union([ball(i) for i in 0..40 if i % 4 == 1])"},
+    {"two variables", "union([ball(i + 9 * k) for i in 0..20 for k in 0..2])"},
+    {"of a list", "union([ball(i) for i in [3, 1, 4, 1, 5, 9, 2, 6, 5, 3, 5, 8, 9, 7, 9, 3, 2]])"},
+    {"a shape is chosen", "union([if hue(i) < 0.5 then ball(i) else brick(i) for i in 0..40])"},
+    {"a number of parts", "union([union([ball(i + k) for k in 0..1 + floor(3 * hue(i))]) "
+                          "for i in 0..40])"},
+    {"by the time", "union([ball(i).move([sin(time + i), 0, 0]) for i in 0..40])"},
+    {"by a param", "union([sphere(wide * size(i)).move(spot(i)) for i in 0..40])"},
+    {"with a param", "union([capsule([0, 0, 0], [0, size(i), 0], wide).move(spot(i)) "
+                     "for i in 0..40])"},
+    {"declared", "union([egg(size(i)).move(spot(i)) for i in 0..40])"},
+    {"large joints within", "union([union([ball(i + 100 * k) for k in [0, 1, 2, 3, 4, 5, 6, 7, 8, "
+                            "9, 10, 11, 12, 13, 14, 15, 16]]) for i in 0..20])"},
+    {"a deformation", "union([box([0.2, 1, 0.2]).twist([0, 1, 0], size(i)).move(spot(i)) "
+                      "for i in 0..40])"},
+    {"not finite", "union([sphere(if i == 3 then 0.3 else 1 / (4 + abs(i - 3))).move([1 / "
+                   "(if i == 3 then 1 else i - 3), 0, 0]) for i in 0..40])"},
+    {"some are empty", "union([sphere(hue(i) - 0.5).move(spot(i)) for i in 0..40])"},
+    {"degrees forgotten", "union([ball(i).rotate([0, 1, 0], 90 * i) for i in 0..40])"},
+    {"asserted", "union([assert(hue(i) < 2) in ball(i) for i in 0..40])"},
+    {"a hull", "hull(union([sphere(0.2).move(spot(i)) for i in 0..40]))"},
+};
+
+typedef struct Asked {
+    KrsScene *scene;
+    KrsFrame *frame;
+    double    distances[POINTS];
+    KrsHit    hits[POINTS];
+} Asked;
+
+static void open_loop(Asked *asked, const Loop *loop, int seed, KrsSpecialize specialize,
+                      bool turns)
+{
+    char       text[4096];
+    KrsOptions options = {.specialize = specialize};
+    size_t     length  = (size_t)snprintf(text, sizeof text, prelude, seed);
+    length += (size_t)snprintf(text + length, sizeof text - length, "show %s;\n", loop->text);
+    assert_true(length < sizeof text);
+    KrsStatus status = turns ? compile_turn_by_turn(text, length, LEAST, &options, &asked->scene)
+                             : compile_with_crowds(text, length, LEAST, &options, &asked->scene);
+    if (status != KRS_OK)
+        fail_msg("%s does not compile:\n%s", loop->name, text);
+    assert_int_equal(krs_frame_new(asked->scene, &asked->frame), KRS_OK);
+}
+
+static void close_loop(Asked *asked)
+{
+    krs_frame_free(asked->frame);
+    krs_scene_free(asked->scene);
+}
+
+static void ask(Asked *asked, const double points[POINTS][3])
+{
+    assert_int_equal(krs_distance(asked->frame, points, POINTS, asked->distances), KRS_OK);
+    assert_int_equal(krs_probe(asked->frame, points, POINTS, asked->hits), KRS_OK);
+}
+
+static bool is_near(double a, double b) { return a == b || fabs(a - b) < 1e-9; }
+
+/* In the order of blends, and where numbers are rounded otherwise, both may differ a little. */
+static void compare(const Loop *loop, const Asked *a, const Asked *b)
+{
+    if (a->scene->program.table_count != b->scene->program.table_count)
+        fail_msg("%s: %zu and %zu tables", loop->name, (size_t)a->scene->program.table_count,
+                 (size_t)b->scene->program.table_count);
+    for (int k = 0; k < 3; k++)
+        assert_true(is_near(a->scene->program.low[k], b->scene->program.low[k]) &&
+                    is_near(a->scene->program.high[k], b->scene->program.high[k]));
+    for (int i = 0; i < POINTS; i++) {
+        const KrsHit *x = &a->hits[i], *y = &b->hits[i];
+        if (!(fabs(a->distances[i] - b->distances[i]) <= 1e-12) ||
+            !(distance3(x->color, y->color) <= 1e-9) || x->component != y->component ||
+            x->level != y->level || x->instance != y->instance ||
+            !(distance3(x->normal, y->normal) <= 1e-5))
+            fail_msg("%s: point %d: %.17g and %.17g", loop->name, i, a->distances[i],
+                     b->distances[i]);
+    }
+}
+
+/* A loop that is evaluated once has a leaf, which takes a slot of the parameter block. */
+static void hold_against_turns(const Loop *loop, int seed, KrsSpecialize specialize, uint32_t more)
+{
+    static Asked once, turns;
+    double       points[POINTS][3];
+    Random       random = {(uint64_t)seed};
+    for (int i = 0; i < POINTS; i++)
+        random_vector(&random, i % 8 ? 3.5 : 12, points[i]);
+    open_loop(&once, loop, seed, specialize, false);
+    open_loop(&turns, loop, seed, specialize, true);
+    if (once.scene->program.parameter_slots != turns.scene->program.parameter_slots + more)
+        fail_msg("%s: %s", loop->name, more ? "evaluated turn by turn" : "evaluated at once");
+    ask(&once, (const double(*)[3])points);
+    ask(&turns, (const double(*)[3])points);
+    compare(loop, &once, &turns);
+    close_loop(&once);
+    close_loop(&turns);
+}
+
+static void loops_are_as_their_turns(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof at_once / sizeof *at_once; i++)
+        for (int seed = 1; seed <= SEEDS; seed++) {
+            hold_against_turns(&at_once[i], seed, KRS_SPECIALIZE_NUMBERS, 1);
+            hold_against_turns(&at_once[i], seed, KRS_SPECIALIZE_STRUCTURE, 1);
+        }
+}
+
+static void others_are_evaluated_by_turns(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof by_turns / sizeof *by_turns; i++)
+        hold_against_turns(&by_turns[i], 1, KRS_SPECIALIZE_NUMBERS, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(loops_are_as_their_turns),
+                                       cmocka_unit_test(others_are_evaluated_by_turns)};
+    return cmocka_run_group_tests_name("loops that are evaluated once", tests, NULL, NULL);
+}
