@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.." || exit 1
 [ $# -gt 0 ] || set -- gear machined-part school rock temple grove reef palm olive fern fractals \
     lamps inversion cabinet sextic lattice town bath lighthouse \
     chess snow-globe gasket city sign logo bolt rope mug vase spring jewel dodecahedron \
-    jewels night dusk direct-mug direct-vase
+    bonsai jewels night dusk direct-mug direct-vase
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 for name in "$@"; do
     scene=$(ls examples/??-"$name".krs 2>/dev/null)
