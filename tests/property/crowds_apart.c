@@ -129,7 +129,7 @@ static Differences differences_of(const CrowdText *scene, bool by_cells)
     Differences      found = {0};
     open_scene(&apart, scene, true);
     open_scene(&crowd, scene, false);
-    crowd.scene->distance.by_cells = crowd.scene->surface.by_cells = by_cells;
+    crowd.frame->tapes.distance.by_cells = crowd.frame->tapes.surface.by_cells = by_cells;
     make_questions(&apart, &questions);
     ask(&apart, &questions);
     ask(&crowd, &questions);
