@@ -278,7 +278,7 @@ static void materials_give_numbers(void **state)
     Scene strange = {
         .name = "strange materials",
         .text = "param k = 0;\n"
-                "material m { color: [1 / (k * x), (k * x) / (k * y), sqrt(-1 - x * x)],\n"
+                "material m { color: [1 / (k * x), (k * x) / (k * y), sqrt(-x * x)],\n"
                 "    roughness: (k * z) / (k * x), metallic: sqrt(x), ior: 1 / (k * y),\n"
                 "    transmission: log(y), absorption: x / k, coat: 1 / (k * z),\n"
                 "    coat_roughness: sqrt(y), sheen: x / k, sheen_roughness: log(x),\n"

@@ -380,8 +380,8 @@ static void memory_that_runs_out_is_reported(void **state)
 static void materials_give_numbers(void **state)
 {
     static const char *const materials[] = {
-        "color: [1 / (k * x), (k * x) / (k * y), sqrt(-1 - x * x)], roughness: (k * z) / (k * x)",
-        "color: log(x), metallic: sqrt(-1 - y * y), emission: 1 / (k * x)",
+        "color: [1 / (k * x), (k * x) / (k * y), sqrt(-x * x)], roughness: (k * z) / (k * x)",
+        "color: log(x), metallic: sqrt(-y * y), emission: 1 / (k * x)",
         "color: red, emission: [x / k, sqrt(x), exp(1000 * y)]",
         "color: [1e30, -1e30, 0.5] * x / k, roughness: 1 / max(k, 0), emission: 1e38",
     };
