@@ -1,5 +1,6 @@
 #!/bin/sh
-# demo.sh BUILD: renders the examples to BUILD/demo/, EXR and PNG, and makes meshes of a gear and a bearing block.
+# demo.sh BUILD: renders the examples to BUILD/demo/, EXR and PNG, and makes meshes of a gear, a bearing block,
+# a bracket filled with a gyroid lattice, and a bonsai.
 build=$1
 mkdir -p "$build/demo" || exit 1
 for scene in examples/*.krs; do
@@ -17,4 +18,6 @@ mesh() { # example, name, options
 }
 mesh 02-gear gear --component "component 1"
 mesh 03-machined-part bearing-block --within=-3,0.05,-3,3,3,3 --error 0.1
+mesh 22-lattice lattice --component "component 1" --set wall=0.04 --set cell=0.9 --error 0.08
+mesh 39-bonsai bonsai --component "component 1" --error 0.05
 echo "the pictures and meshes are in $build/demo/"
