@@ -50,6 +50,14 @@ typedef struct Meshing {
     Bodies          merged, assembled; /* each is made if some file is of it */
 } Meshing;
 
+/* mesh_wishes.c: the files that are written. */
+size_t      output_count(const Meshing *meshing);
+const char *output_path(const Meshing *meshing, size_t index);
+/* How long what is meshed is; false: it has no end. */
+bool find_end(const Meshing *meshing, double *longest);
+/* Fills in what is meshed, and how. */
+KrsStatus check_wishes(Meshing *meshing);
+
 /* mesh_summary.c: of all bodies; lengths are those of the scene. */
 Summary summarize(const Bodies *bodies);
 double  longest_side(const Bodies *bodies);

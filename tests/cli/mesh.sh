@@ -1,7 +1,7 @@
 #!/bin/sh
 # mesh.sh: `krs mesh`: files that other programs accept, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 29
+plan 31
 
 echo 'show sphere(0.5).paint(#ff8800);' >ball.krs
 echo 'let floor = half_space([0, 1, 0], 0); show floor; let ball = sphere(1); show ball;' >floor.krs
@@ -34,6 +34,13 @@ said 2 "one that has: \`ball\`" "and what has one is named"
 echo 'show plane(); for i in 0..20 { show sphere(0.4).move([i, 0, 0]); }' >row.krs
 run mesh row.krs
 said 2 "\`component 9\` and others" "not all of many"
+echo 'show plane(); let nut = sphere(0.4); show nut; show nut.move([1, 0, 0]);' >nuts.krs
+run mesh nuts.krs
+grep -qF "one that has: \`nut\`" err && ! grep -qF "\`nut\`, \`nut\`" err
+result $? "a name that several have is told once"
+run mesh nuts.krs --component bolt
+grep -qF "it has \`component 1\`, \`nut\`" err && ! grep -qF "\`nut\`, \`nut\`" err
+result $? "and once among those that there are"
 run mesh --quiet floor.krs --component ball --error 0.2 -o ball.stl
 ended 0 "but not its component"
 run mesh floor.krs --component bowl

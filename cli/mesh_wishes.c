@@ -1,0 +1,133 @@
+/* mesh_wishes.c: what `krs mesh` is asked for, and what of it is refused. */
+#include <math.h>
+#include <string.h>
+
+#include "cli/meshing.h"
+
+/* Of several components with a name, --component takes the first, and the name is told once. */
+static bool is_first_of_name(const Meshing *meshing, size_t index)
+{
+    KrsComponent component, other;
+    krs_component(meshing->scene, index, &component);
+    for (size_t i = 0; i < index; i++) {
+        krs_component(meshing->scene, i, &other);
+        if (strcmp(other.name, component.name) == 0)
+            return false;
+    }
+    return true;
+}
+
+static KrsStatus find_component(Meshing *meshing)
+{
+    const char *wanted = meshing->options->component;
+    size_t      count  = krs_component_count(meshing->scene);
+    Text        known  = {.arena = meshing->options->arena};
+    for (size_t i = 0; wanted && i < count; i++) {
+        KrsComponent component;
+        krs_component(meshing->scene, i, &component);
+        if (strcmp(component.name, wanted) == 0) {
+            meshing->how.component = i + 1;
+            return KRS_OK;
+        }
+        if (is_first_of_name(meshing, i))
+            text_format(&known, "%s`%s`", i ? ", " : "", component.name);
+    }
+    if (!wanted)
+        return KRS_OK;
+    return say_usage(meshing->options, "the scene has no component `%s`; it has %s", wanted,
+                     count ? known.bytes : "none");
+}
+
+bool find_end(const Meshing *meshing, double *longest)
+{
+    const KrsProgram *program = krs_scene_program(meshing->scene);
+    KrsComponent      component;
+    const double     *low = program->low, *high = program->high;
+    if (meshing->how.component) {
+        krs_component(meshing->scene, meshing->how.component - 1, &component);
+        low  = component.low;
+        high = component.high;
+    }
+    *longest = 0;
+    for (int k = 0; k < 3; k++) {
+        double from = meshing->how.within ? fmax(low[k], meshing->how.low[k]) : low[k];
+        double to   = meshing->how.within ? fmin(high[k], meshing->how.high[k]) : high[k];
+        if (from < to && isinf(to - from))
+            return false;
+        *longest = fmax(*longest, to - from);
+    }
+    return true;
+}
+
+/* A floor without an end is common, so the components that have one are named, unless they are many. */
+static KrsStatus refuse_endless(const Meshing *meshing)
+{
+    enum { MOST_NAMED = 8 };
+    Text   others = {.arena = meshing->options->arena};
+    size_t named  = 0;
+    for (size_t i = 0; i < krs_component_count(meshing->scene) && named <= MOST_NAMED; i++) {
+        KrsComponent component;
+        krs_component(meshing->scene, i, &component);
+        const double *low = component.low, *high = component.high;
+        if (!isfinite((high[0] - low[0]) + (high[1] - low[1]) + (high[2] - low[2])) ||
+            !is_first_of_name(meshing, i))
+            continue;
+        if (named++ < MOST_NAMED)
+            text_format(&others, "%s`%s`", others.length ? ", " : "", component.name);
+        else
+            text_add(&others, " and others");
+    }
+    return say_usage(meshing->options,
+                     "`%s` has no end; say which box is wanted, as in --within=-1,-1,-1,1,1,1%s%s",
+                     meshing->options->files.items[0],
+                     others.length ? ", or by --component one that has: " : "",
+                     others.length ? others.bytes : "");
+}
+
+const char *output_path(const Meshing *meshing, size_t index)
+{
+    const Options *options = meshing->options;
+    Text           path    = {.arena = options->arena};
+    if (options->outputs.count > 0)
+        return options->outputs.items[index];
+    text_format(&path, "%s.stl", scene_name(options->arena, options->files.items[0]));
+    return path.bytes;
+}
+
+size_t output_count(const Meshing *meshing)
+{
+    return meshing->options->outputs.count ? meshing->options->outputs.count : 1;
+}
+
+static bool can_have_lods(const Meshing *meshing)
+{
+    for (size_t i = 0; i < output_count(meshing); i++)
+        if (mesh_format(output_path(meshing, i))->has_lods)
+            return true;
+    return false;
+}
+
+KrsStatus check_wishes(Meshing *meshing)
+{
+    const Options *options = meshing->options;
+    const char    *path    = options->files.items[0];
+    double         longest;
+    KrsStatus      status = find_component(meshing);
+    if (status != KRS_OK)
+        return status;
+    if (options->mesh_lods > 0 && !can_have_lods(meshing))
+        return say_usage(options, "--lods makes levels of detail for .glb, and none is written");
+    if (options->within.given) {
+        meshing->how.within = true;
+        memcpy(meshing->how.low, options->within.low, sizeof meshing->how.low);
+        memcpy(meshing->how.high, options->within.high, sizeof meshing->how.high);
+    }
+    if (krs_scene_program(meshing->scene)->sheets)
+        return say_usage(options,
+                         "`%s` has surfaces without thickness, which enclose nothing; .shell "
+                         "makes a solid of them",
+                         path);
+    if (!find_end(meshing, &longest))
+        return refuse_endless(meshing);
+    return KRS_OK;
+}
