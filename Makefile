@@ -10,6 +10,7 @@
 # make check-device DEVICE=...  what to know of a Vulkan device first, in ten minutes
 # make bench-registers  registers, waves and spills of each kernel on a graphics card
 # make bench-view       how fast the viewer follows edits, sliders and the camera
+# make bench-edits      how long a saved number takes to its picture, by krs watch and by krs render
 # make minify     how well one sample shows what is finer than a pixel
 # make fuzz       the front end under libFuzzer for FUZZ_SECONDS (20)
 # make golden     pictures under every option, bit for bit as they were: after changes that nobody should see

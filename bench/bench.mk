@@ -100,10 +100,17 @@ bench-large: deps
 	@bench/large/large.sh $(B)/krs
 
 # How fast the viewer follows edits, sliders and the camera (bench/README.md).
-$(B)/bench/view/view: $(B)/bench/view/view.o $(STAGE) $(B)/live.a $(B)/libkrs.a
+NUMBER_EDIT := $(B)/bench/view/number_edit.o
+$(B)/bench/view/view: $(B)/bench/view/view.o $(NUMBER_EDIT) $(STAGE) $(B)/live.a $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
 bench-view: $(B)/bench/view/view $(B)/krs
 	@REVISION=$(REVISION) bench/view/view.sh $(B) $(SCENES)
+
+# From a saved number to a written picture.
+$(B)/bench/edits/edits: $(B)/bench/edits/edits.o $(NUMBER_EDIT) $(STAGE) $(B)/live.a $(B)/libkrs.a
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+bench-edits: $(B)/bench/edits/edits $(B)/krs
+	@REVISION=$(REVISION) bench/edits/edits.sh $(B) $(SCENES)
 
 # How fast distances are evaluated, and meshes made.
 $(B)/bench/lanes/lanes: $(B)/bench/lanes/lanes.o $(B)/libkrs.a
@@ -120,7 +127,7 @@ clang-objects: $(BENCH:%.c=$(B)/%.o) $(STAGE) $(MINIFY) \
                $(B)/bench/iterations/iterations.o $(B)/bench/inverted/inverted.o \
                $(B)/bench/normals/normals.o $(ALGEBRAIC:%=$(B)/%) $(DEVICES) \
                $(B)/bench/registers/registers.o $(B)/bench/parts/parts.o \
-               $(B)/bench/view/view.o $(ENHANCED)
+               $(B)/bench/view/view.o $(NUMBER_EDIT) $(B)/bench/edits/edits.o $(ENHANCED)
 .PHONY: bench bench-quick minify iterations inverted bench-enhanced bench-normals bench-textures bench-paths bench-algebraic check-device \
         bench-registers bench-parts bench-large bench-radiosity bench-starts \
-        bench-lanes bench-mesh bench-view
+        bench-lanes bench-mesh bench-view bench-edits

@@ -13,7 +13,6 @@
 #include "cli/render.h"
 #include "cli/supervise.h"
 #include "live/document.h"
-#include "live/watcher.h"
 
 /* How long a signal may go unnoticed where the system does not end the wait for it. */
 #define LONGEST_WAIT 3600.0
@@ -114,8 +113,6 @@ static void wait_for_change(Watch *watch)
 {
     stage_enter(STAGE_WAIT);
     bool changed = false;
-    if (watch->changed) /* it may not be all that is saved now */
-        document_wait(watch->document, SETTLED_SECONDS);
     while (!watch->changed && !changed && !*interrupted())
         changed = document_wait(watch->document, LONGEST_WAIT);
     watch->changed = false;

@@ -31,7 +31,7 @@ struct Document {
     Watcher        *watcher;
     bool            refused; /* the system does not let us watch a file */
     int             woken;   /* an eventfd */
-    Remarks         heard;   /* by the reading that is under way */
+    Remarks         heard;   /* by the reading that is under way; told when it has ended */
     bool            quiet;   /* what is said now was said before */
     pthread_mutex_t lock;    /* of all below */
     Version        *version;
@@ -72,15 +72,24 @@ void remark_place(const Remark *remark, char place[300])
     snprintf(place, 300, "%s:%u", remark->source, remark->line);
 }
 
+static void remark_free(Remark *remark)
+{
+    free((char *)remark->code);
+    free((char *)remark->message);
+    free((char *)remark->source);
+    free((char *)remark->text);
+    free((char *)remark->json);
+}
+
 void remarks_free(Remarks *remarks)
 {
-    for (size_t i = 0; i < remarks->count; i++) {
-        free((char *)remarks->items[i].text);
-        free((char *)remarks->items[i].source);
-    }
+    for (size_t i = 0; i < remarks->count; i++)
+        remark_free(&remarks->items[i]);
     free(remarks->items);
     *remarks = (Remarks){0};
 }
+
+static char *copy(const char *words) { return strdup(words ? words : ""); }
 
 static void remarks_add(Remarks *remarks, const Remark *remark)
 {
@@ -90,26 +99,31 @@ static void remarks_add(Remarks *remarks, const Remark *remark)
     remarks->items = items;
     Remark *added  = &items[remarks->count];
     *added         = *remark;
-    added->text    = strdup(remark->text);
-    added->source  = strdup(remark->source ? remark->source : "");
+    added->code    = copy(remark->code);
+    added->message = copy(remark->message);
+    added->source  = copy(remark->source);
+    added->text    = copy(remark->text);
+    added->json    = copy(remark->json);
     remarks->errors += remark->error;
-    if (added->text && added->source)
+    if (added->code && added->message && added->source && added->text && added->json)
         remarks->count++;
+    else
+        remark_free(added);
 }
 
 static void hear(void *user, const KrsDiagnostic *diagnostic)
 {
     Document *document = user;
-    if (document->quiet)
-        return;
-    remarks_add(&document->heard, &(Remark){.error  = diagnostic->error,
-                                            .note   = diagnostic->note,
-                                            .text   = diagnostic->text,
-                                            .source = diagnostic->source,
-                                            .line   = diagnostic->line,
-                                            .column = diagnostic->column});
-    if (document->options.diagnostic)
-        document->options.diagnostic(document->options.user, diagnostic);
+    if (!document->quiet)
+        remarks_add(&document->heard, diagnostic);
+}
+
+/* Hands on what was heard: now it counts. */
+static void tell(const Document *document)
+{
+    const KrsOptions *options = &document->options;
+    for (size_t i = 0; options->diagnostic && i < document->heard.count; i++)
+        options->diagnostic(options->user, &document->heard.items[i]);
 }
 
 static void watch_file(void *user, const char *path)
@@ -210,13 +224,27 @@ static void publish(Document *document, Version *version)
     version_release(spare);
 }
 
+/* Compiles once more as long as there is a mistake, and files are saved. */
+static KrsStatus compile_settled(Document *document, KrsScene **scene, KrsChanges *changes)
+{
+    for (;;) {
+        document->refused = false;
+        watcher_settle(document->watcher);
+        const KrsStatus status = compile(document, scene, changes);
+        if (status == KRS_OK || document->refused ||
+            !watcher_wait(document->watcher, SETTLED_SECONDS))
+            return status;
+        remarks_free(&document->heard);
+    }
+}
+
 KrsStatus document_read(Document *document)
 {
     KrsScene  *scene   = NULL;
     Version   *version = NULL;
     KrsChanges changes;
-    document->refused = false;
-    KrsStatus status  = compile(document, &scene, &changes);
+    KrsStatus  status = compile_settled(document, &scene, &changes);
+    tell(document);
     if (status == KRS_OK) {
         version = version_new(scene, changes, version_before(document));
         status  = version ? KRS_OK : KRS_OUT_OF_MEMORY;

@@ -19,13 +19,8 @@ unsigned version_structure(const Version *version);
 /* Against the version before; of the first, everything is new. */
 KrsChanges version_changes(const Version *version);
 
-/* What was said of a text that was read. */
-typedef struct Remark {
-    bool        error, note;
-    const char *text; /* as the command prints it, with the marked source */
-    const char *source;
-    uint32_t    line, column;
-} Remark;
+/* What was said of a text that was read; its strings are its own. */
+typedef KrsDiagnostic Remark;
 
 /* "a.krs:3" */
 void remark_place(const Remark *remark, char place[300]);
@@ -44,7 +39,8 @@ Document *document_new(const char *path, const KrsOptions *options);
 void      document_free(Document *document);
 
 /* Reads and compiles the file.  On KRS_OK there is a new version; otherwise the last good one stays,
-   and the remarks say why.  KRS_CANNOT_CREATE: the system does not let a file be watched. */
+   and the remarks say why.  A mistake counts if nothing else is saved for SETTLED_SECONDS (watcher.h): an
+   editor may not be done.  KRS_CANNOT_CREATE: the system does not let a file be watched. */
 KrsStatus document_read(Document *document);
 
 /* Compiles the file once more, the way that edits of it are compiled, if that is another way than the
@@ -65,8 +61,7 @@ unsigned document_readings(Document *document);
 
 /* Whether the file, or one that it uses, has changed since the last call; waits for nothing. */
 bool document_changed(Document *document);
-/* Waits for that, and until nothing has happened for a moment.  False: a signal has come, the time is
-   over, or document_wake was called. */
+/* Waits for that.  False: a signal has come, the time is over, or document_wake was called. */
 bool document_wait(Document *document, double seconds);
 /* Ends a wait; for any thread. */
 void document_wake(Document *document);

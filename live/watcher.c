@@ -23,16 +23,15 @@ typedef struct Entry {
 
 struct Watcher {
     int    inotify;
+    bool   unfinished; /* the last change left no whole file */
     Entry *entries;
     size_t count, capacity;
 };
 
-/* IN_CREATE is for links and folders: they are complete when they are made. */
-#define CHANGES                                                                              \
-    (IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_CREATE | IN_DELETE | IN_DELETE_SELF | \
-     IN_MOVE_SELF)
-/* More than a settled file can keep a waiting caller. */
-#define MOST_SETTLING 20
+/* After these there is a whole file.  Links and folders are whole when they are made, but so are not
+   files, which only IN_CREATE tells of as well. */
+#define WHOLE   (IN_CLOSE_WRITE | IN_MOVED_TO)
+#define CHANGES (WHOLE | IN_MOVED_FROM | IN_CREATE | IN_DELETE | IN_DELETE_SELF | IN_MOVE_SELF)
 
 Watcher *watcher_new(void)
 {
@@ -130,8 +129,11 @@ bool watcher_changed(Watcher *watcher)
     while ((length = read(watcher->inotify, buffer, sizeof buffer)) > 0)
         for (char *at = buffer; at < buffer + length;) {
             const struct inotify_event *event = (const struct inotify_event *)(void *)at;
-            changed                           = concerns(watcher, event) || changed;
             at += sizeof *event + event->len;
+            if (!concerns(watcher, event))
+                continue;
+            changed             = true;
+            watcher->unfinished = !(event->mask & WHOLE);
         }
     return changed;
 }
@@ -148,7 +150,13 @@ bool watcher_wait(Watcher *watcher, double seconds)
     bool changed = false;
     while (!changed && wait_for_event(watcher, seconds))
         changed = watcher_changed(watcher);
-    for (int i = 0; changed && i < MOST_SETTLING && wait_for_event(watcher, SETTLED_SECONDS); i++)
-        watcher_changed(watcher);
     return changed;
+}
+
+void watcher_settle(Watcher *watcher)
+{
+    watcher_changed(watcher);
+    while (watcher->unfinished && wait_for_event(watcher, SETTLED_SECONDS))
+        watcher_changed(watcher);
+    watcher->unfinished = false;
 }

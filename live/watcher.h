@@ -23,9 +23,13 @@ int watcher_descriptor(const Watcher *watcher);
 /* Whether files have changed since the last call; waits for nothing. */
 bool watcher_changed(Watcher *watcher);
 
-/* Waits until files have changed, and then until they have not for SETTLED_SECONDS: editors write in
-   several steps.  False: `seconds` are over, or a signal has come. */
-#define SETTLED_SECONDS 0.05
+/* Waits until files have changed.  False: `seconds` are over, or a signal has come. */
 bool watcher_wait(Watcher *watcher, double seconds);
+
+/* How long editors take that save a file in several steps. */
+#define SETTLED_SECONDS 0.05
+/* Forgets the changes so far.  Where a file was only made or taken away, waits until something is written
+   or put in its place, for no longer than SETTLED_SECONDS. */
+void watcher_settle(Watcher *watcher);
 
 #endif

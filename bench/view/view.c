@@ -4,7 +4,6 @@
  * It drives what the window shows pictures of (live/painter.h), without the window.  IDLE in the
  * environment is what view.sh has measured of the window itself.
  */
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,15 +13,13 @@
 
 #include "bench/sheet.h"
 #include "bench/stage.h"
+#include "bench/view/number_edit.h"
 #include "compiler/krs_camera.h"
 #include "live/painter.h"
-#include "live/text_file.h"
 
-enum { WIDTH = 640, HEIGHT = 360, EDITS = 5, MOST_TRIES = 60 };
+enum { WIDTH = 640, HEIGHT = 360, EDITS = 5 };
 static const double SECONDS = 2; /* that the camera, and a slider, move */
 static const double BUDGET = 40, PATIENCE = 120;
-/* That a number to edit is looked for: some texts take seconds to compile. */
-static const double MOST_SEARCH = 30;
 
 typedef struct Trial {
     const char *path;
@@ -84,56 +81,6 @@ static void take_version(Trial *trial)
 
 /* ---- an edit of a number ---- */
 
-/* The next number with a point, outside of comments: the offset of its last digit, or 0. */
-static size_t find_number(const char *text, size_t from)
-{
-    for (size_t i = from; text[i]; i++) {
-        if (text[i] == '/' && text[i + 1] == '/')
-            i += strcspn(text + i, "\n");
-        if (text[i] == '.' && i > 0 && isdigit((unsigned char)text[i - 1]) &&
-            isdigit((unsigned char)text[i + 1])) {
-            while (isdigit((unsigned char)text[i + 1]))
-                i++;
-            return i;
-        }
-    }
-    return 0;
-}
-
-static bool reread(Trial *trial, const Bytes *text)
-{
-    return text_file_write(trial->path, text) && document_read(trial->document) == KRS_OK;
-}
-
-/* Edits a number so that no other shaders are needed: the offset of its last digit, and this digit
-   before the edit; 0: there is no such number. */
-static size_t find_edit(Trial *trial, Bytes *text, char *old)
-{
-    const double begun = now();
-    size_t       at    = 0;
-    for (int i = 0; i < MOST_TRIES && now() - begun < MOST_SEARCH &&
-                    (at = find_number(text->text, at + 1)) > 0;
-         i++) {
-        const char     digit = *old = text->text[at];
-        const unsigned before       = version_structure(trial->view.version);
-        text->text[at]              = digit == '9' ? '8' : (char)(digit + 1);
-        if (reread(trial, text)) {
-            Version   *version = document_version(trial->document);
-            const bool same    = version_structure(version) == before &&
-                              version_changes(version).kind == KRS_CHANGE_VALUES;
-            version_release(version);
-            take_version(trial);
-            if (same)
-                return at;
-        }
-        text->text[at] = digit;
-        if (!reread(trial, text))
-            give_up(trial->path, "the text does not compile again");
-        take_version(trial);
-    }
-    return 0;
-}
-
 static int compare(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
@@ -152,10 +99,11 @@ static double median(double ms[EDITS])
     return ms[EDITS / 2];
 }
 
-static void edit_once(Trial *trial, const Bytes *text, Edit *edit)
+static void edit_once(Trial *trial, NumberEdit *number, Edit *edit)
 {
     const double begun = now(), before = used_ms();
-    if (!reread(trial, text))
+    number_edit_write(number);
+    if (document_read(trial->document) != KRS_OK)
         give_up(trial->path, "the edited text does not compile");
     edit->text = used_ms() - before;
     take_version(trial);
@@ -169,26 +117,20 @@ static void edit_once(Trial *trial, const Bytes *text, Edit *edit)
 /* The medians of some edits; below 0: there is no number to edit. */
 static Edit time_edits(Trial *trial)
 {
-    Bytes  text = {0};
-    double clock[EDITS], used[EDITS], texts[EDITS];
-    if (!text_file_read(trial->path, &text))
-        give_up(trial->path, "it cannot be read");
-    char         digit = '0'; /* that was there before the last edit */
-    const size_t at    = find_edit(trial, &text, &digit);
+    double     clock[EDITS], used[EDITS], texts[EDITS];
+    NumberEdit number = number_edit_find(trial->document, trial->path, 0);
+    const bool found  = number.at > 0;
+    take_version(trial);
     show(trial);
     await(trial, true);
-    for (int i = 0; at > 0 && i < EDITS; i++) {
-        const char before = text.text[at]; /* both digits are known to compile */
-        Edit       edit;
-        text.text[at] = digit;
-        digit         = before;
-        edit_once(trial, &text, &edit);
+    for (int i = 0; found && i < EDITS; i++) {
+        Edit edit;
+        edit_once(trial, &number, &edit);
         clock[i] = edit.clock;
         used[i]  = edit.used;
         texts[i] = edit.text;
     }
-    free(text.text);
-    return at == 0 ? (Edit){-1, -1, -1} : (Edit){median(clock), median(used), median(texts)};
+    return found ? (Edit){median(clock), median(used), median(texts)} : (Edit){-1, -1, -1};
 }
 
 /* ---- what moves ---- */
@@ -293,7 +235,7 @@ int main(int argc, char **argv)
         &sheet,
         "\nAt %dx%d, by the preview, with %.0f ms for a picture of what moves. *first*: seconds "
         "until the first picture, with shaders; *edit*: milliseconds from a saved number to its "
-        "first picture, the median of %d, to which the watcher adds 50; *used*: milliseconds of "
+        "first picture, the median of %d; *used*: milliseconds of "
         "all processors for that, and of these *text*: what reading and compiling it takes (other "
         "work on the machine makes *edit* longer, but not these); then pictures a second "
         "while the camera turns and while a slider is pulled (or time runs), and how wide they "
