@@ -142,19 +142,30 @@ static size_t collect_channels(const Options *options, const KrsPicture *source,
     return count;
 }
 
-static bool fill_exr(const void *user, OutputFile *file, OutputError *error)
+typedef struct Contents {
+    const Options *options;
+    const Picture *picture;
+    const uint8_t *rgb; /* of a PNG */
+} Contents;
+
+/* The next edit replaces the pictures of `krs watch`: nobody should wait for the disk. */
+static void begin_file(const Contents *contents, OutputFile *file)
 {
-    return exr_write(user, file, error);
+    if (contents->options->command == COMMAND_WATCH)
+        output_is_fleeting(file);
 }
 
-typedef struct PngContents {
-    const Picture *picture;
-    const uint8_t *rgb;
-} PngContents;
+static bool fill_exr(const void *user, OutputFile *file, OutputError *error)
+{
+    const Contents *contents = user;
+    begin_file(contents, file);
+    return exr_write(contents->picture, file, error);
+}
 
 static bool fill_png(const void *user, OutputFile *file, OutputError *error)
 {
-    const PngContents *contents = user;
+    const Contents *contents = user;
+    begin_file(contents, file);
     return png_write(contents->picture, contents->rgb, file, error);
 }
 
@@ -218,7 +229,7 @@ static KrsStatus write_exr(const Options *options, const KrsPicture *source,
     add_caught(options, source, channels, picture);
     if (!add_mattes(options, source, notes, channels, texts, picture, &values))
         return say_status(KRS_OUT_OF_MEMORY, path);
-    KrsStatus status = write_output(path, fill_exr, picture);
+    KrsStatus status = write_output(path, fill_exr, &(Contents){options, picture, NULL});
     free(values);
     return status;
 }
@@ -263,14 +274,14 @@ KrsStatus picture_write_raw(const KrsPicture *picture, const DisplayOptions *dis
     return status;
 }
 
-static KrsStatus write_png(const KrsPicture *source, const Picture *picture,
+static KrsStatus write_png(const Options *options, const KrsPicture *source, const Picture *picture,
                            const DisplayOptions *display, const char *path)
 {
     size_t   length;
     uint8_t *rgb = screen_pixels(source, display, &length);
     if (!rgb)
         return say_status(KRS_OUT_OF_MEMORY, path);
-    KrsStatus status = write_output(path, fill_png, &(PngContents){picture, rgb});
+    KrsStatus status = write_output(path, fill_png, &(Contents){options, picture, rgb});
     free(rgb);
     return status;
 }
@@ -287,6 +298,7 @@ KrsStatus picture_write(const Options *options, const KrsPicture *source, const 
                            .crop_height = source->window.height,
                            .texts       = texts,
                            .text_count  = collect_texts(options, source, notes, texts)};
-    return file_form(path) == FORM_EXR ? write_exr(options, source, notes, texts, &picture, path)
-                                       : write_png(source, &picture, &notes->display, path);
+    return file_form(path) == FORM_EXR
+               ? write_exr(options, source, notes, texts, &picture, path)
+               : write_png(options, source, &picture, &notes->display, path);
 }

@@ -3,6 +3,7 @@
  */
 #include "compiler/compile.h"
 
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -151,6 +152,9 @@ static KrsStatus run_guarded(Compilation *c)
     return status;
 }
 
+/* So that each scene has kernels of its own, until it is found to have those of another. */
+static atomic_uint_fast64_t scenes_made;
+
 /* An empty scene in memory of the options' allocator; NULL if there is no memory. */
 static KrsScene *scene_new(const KrsOptions *options)
 {
@@ -160,13 +164,14 @@ static KrsScene *scene_new(const KrsOptions *options)
     if (!scene)
         return NULL;
     memset(scene, 0, sizeof *scene);
-    scene->memory = (Memory){allocator->allocate,
-                             allocator->release,
-                             allocator->user,
-                             0,
+    scene->memory          = (Memory){allocator->allocate,
+                                      allocator->release,
+                                      allocator->user,
+                                      0,
                              options->memory_limit ? options->memory_limit : DEFAULT_MEMORY,
-                             NULL};
-    scene->arena  = (Arena){.memory = &scene->memory};
+                                      NULL};
+    scene->arena           = (Arena){.memory = &scene->memory};
+    scene->program.kernels = atomic_fetch_add(&scenes_made, 1);
     return scene;
 }
 

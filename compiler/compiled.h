@@ -62,6 +62,7 @@ typedef struct KrsMarchGroup {
 enum { KRS_MOST_MARCH_GROUPS = 8 };
 
 typedef struct KrsProgram {
+    uint64_t      kernels; /* the same number: the same kernels (krs_scene_update found no other) */
     size_t        glsl_length;     /* bytes of the promised functions (krs_promised_functions) */
     uint32_t      parameter_slots; /* slots (vec4) of the parameter block */
     uint32_t      value_slots;     /* further slots, if the host computes values of the frame */

@@ -429,6 +429,8 @@ static KrsStatus update(const KrsScene *scene, const char *text, size_t length, 
     KrsStatus  status = compile_edited(scene, text, length, updated);
     if (status == KRS_OK)
         status = find_changes(scene, *updated, &found);
+    if (status == KRS_OK && found.kind != KRS_CHANGE_STRUCTURE)
+        (*updated)->program.kernels = scene->program.kernels;
     if (status != KRS_OK) {
         krs_scene_free(*updated);
         *updated = NULL;

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/parallel.h"
+
 const char *const tone_map_names[TONE_MAP_COUNT] = {
 #define TONE_MAP(id, name, about) name,
 #include "runtime/display/tone_maps.def"
@@ -189,30 +191,56 @@ void display_to_srgb8(const KrsPicture *picture, const DisplayOptions *options, 
     display_to_channels(picture, options, 3, rgb);
 }
 
+/* A picture that all processors convert, each some rows. */
+typedef struct Conversion {
+    const KrsPicture     *picture;
+    const DisplayOptions *options;
+    uint32_t              channels;
+    uint8_t              *pixels;
+    double                gain;
+    bool                  tinted;
+    ColorMatrix           balance;
+    Encoding              encoding;
+} Conversion;
+
+static void convert_pixel(const Conversion *c, uint32_t x, uint32_t y)
+{
+    const KrsWindow *window   = &c->picture->window;
+    const size_t     index    = (size_t)y * window->width + x;
+    const float     *from     = &c->picture->color[4 * index];
+    const double     light[3] = {c->gain * from[0], c->gain * from[1], c->gain * from[2]};
+    double           white[3], shown[3];
+    if (c->tinted)
+        multiply(c->balance.m, light, white);
+    tone_map_apply(c->options->tone_map, c->tinted ? white : light, shown);
+    for (int i = 0; i < 3; i++) {
+        /* The noise of each channel is shifted, so that greys are dithered more finely. */
+        double step = noise(window->x + x + 47.0 * i, window->y + y + 17.0 * i);
+        c->pixels[c->channels * index + i] = to_byte(&c->encoding, shown[i], step);
+    }
+    if (c->channels == 4)
+        c->pixels[4 * index + 3] = 255;
+}
+
+static void convert_rows(void *task, size_t part, size_t parts)
+{
+    const Conversion *c      = task;
+    const size_t      height = c->picture->window.height;
+    for (size_t y = part_begin(height, part, parts); y < part_begin(height, part + 1, parts); y++)
+        for (uint32_t x = 0; x < c->picture->window.width; x++)
+            convert_pixel(c, x, (uint32_t)y);
+}
+
 void display_to_channels(const KrsPicture *picture, const DisplayOptions *options,
                          uint32_t channels, uint8_t *pixels)
 {
-    const KrsWindow  *window  = &picture->window;
-    const double      gain    = exp2(options->exposure);
-    const bool        tinted  = options->white_balance.kelvins > 0;
-    const ColorMatrix balance = white_balance_matrix(options->white_balance);
-    Encoding          encoding;
-    encoding_fill(&encoding);
-    for (uint32_t y = 0; y < window->height; y++)
-        for (uint32_t x = 0; x < window->width; x++) {
-            size_t       index    = (size_t)y * window->width + x;
-            const float *from     = &picture->color[4 * index];
-            const double light[3] = {gain * from[0], gain * from[1], gain * from[2]};
-            double       white[3], shown[3];
-            if (tinted)
-                multiply(balance.m, light, white);
-            tone_map_apply(options->tone_map, tinted ? white : light, shown);
-            for (int i = 0; i < 3; i++) {
-                /* The noise of each channel is shifted, so that greys are dithered more finely. */
-                double step = noise(window->x + x + 47.0 * i, window->y + y + 17.0 * i);
-                pixels[channels * index + i] = to_byte(&encoding, shown[i], step);
-            }
-            if (channels == 4)
-                pixels[4 * index + 3] = 255;
-        }
+    Conversion conversion = {.picture  = picture,
+                             .options  = options,
+                             .channels = channels,
+                             .pixels   = pixels,
+                             .gain     = exp2(options->exposure),
+                             .tinted   = options->white_balance.kelvins > 0,
+                             .balance  = white_balance_matrix(options->white_balance)};
+    encoding_fill(&conversion.encoding);
+    run_in_parallel(convert_rows, &conversion);
 }

@@ -347,6 +347,25 @@ size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelStats *kern
     return listing.count;
 }
 
+/* A kernel that the scene before had already, as if it had been found. */
+static Kernel found_kernel(const Kernel *kernel)
+{
+    return (Kernel){.pipeline    = kernel->pipeline,
+                    .file        = kernel->file,
+                    .march_group = kernel->march_group,
+                    .glsl_bytes  = kernel->glsl_bytes,
+                    .cached      = true,
+                    .shared      = kernel->shared};
+}
+
+void kernels_adopt(KernelMap *map, const KrsScene *scene)
+{
+    for (KernelEntry *entry = map->first; entry; entry = entry->next) {
+        entry->variant.scene.scene = scene;
+        entry->kernel              = found_kernel(&entry->kernel);
+    }
+}
+
 void kernels_destroy(Gpu *gpu, KernelMap *map)
 {
     for (KernelEntry *entry = map->first, *next; entry; entry = next) {

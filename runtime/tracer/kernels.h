@@ -37,6 +37,8 @@ bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, K
 
 /* Makes the kernels for a purpose, pictures with default options or queries, unless they exist. */
 bool kernels_create(KrsRendering *rendering, KrsPurpose purpose);
+/* Makes a map that of an edited scene with the same kernels. */
+void kernels_adopt(KernelMap *map, const KrsScene *scene);
 void kernels_destroy(Gpu *gpu, KernelMap *map);
 
 #endif

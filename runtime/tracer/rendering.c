@@ -182,36 +182,61 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
     return KRS_OK;
 }
 
-KrsStatus krs_rendering_update(KrsRendering *rendering, const KrsScene *scene)
+/* Frees what is of one scene, but for its kernels. */
+static void drop_scene(Gpu *gpu, KrsRendering *dropped)
 {
-    Gpu         *gpu    = &rendering->renderer->gpu;
-    KrsRendering before = *rendering;
-    renderer_clear(rendering->renderer);
-    if (!gpu_wait(gpu)) /* kernels may still be warming up */
-        return gpu->status;
-    rendering->kernels    = (KernelMap){0};
+    buffer_destroy(gpu, &dropped->parameters);
+    buffer_destroy(gpu, &dropped->table_rows);
+    buffer_destroy(gpu, &dropped->table_cells);
+    gpu_release(gpu, dropped->table_inputs);
+}
+
+/* Takes the rendering over to a scene.  What the scene before has stays, for the case that this fails. */
+static bool change_scene(KrsRendering *rendering, const KrsScene *scene)
+{
     rendering->parameters = rendering->table_rows = rendering->table_cells = (Buffer){0};
     rendering->table_inputs                                                = NULL;
     rendering->zone_slots = rendering->most_zone_slots = 0;
     rendering->camera_relative                         = false;
     set_scene(rendering, scene);
-    const bool ready = scene_buffers_create(rendering) &&
-                       kernels_create(rendering, rendering->purpose);
+    return scene_buffers_create(rendering) && kernels_create(rendering, rendering->purpose);
+}
+
+/* Frees the kernels of one of two scenes that do not share them. */
+static void drop_kernels(Gpu *gpu, KrsRendering *dropped)
+{
+    gpu_wait(gpu);
+    kernels_destroy(gpu, &dropped->kernels);
+}
+
+KrsStatus krs_rendering_update(KrsRendering *rendering, const KrsScene *scene)
+{
+    Gpu         *gpu    = &rendering->renderer->gpu;
+    KrsRendering before = *rendering;
+    const bool   stay   = before.program->kernels == krs_scene_program(scene)->kernels;
+    renderer_clear(rendering->renderer);
+    if (!gpu_wait(gpu)) /* kernels may still be warming up */
+        return gpu->status;
+    if (stay)
+        kernels_adopt(&rendering->kernels, scene);
+    else
+        rendering->kernels = (KernelMap){0};
+    const bool      ready   = change_scene(rendering, scene);
     const KrsStatus status  = gpu->status;
     KrsRendering    dropped = ready ? before : *rendering;
-    gpu_wait(gpu);
-    kernels_destroy(gpu, &dropped.kernels);
+    if (!stay)
+        drop_kernels(gpu, &dropped);
+    else if (!ready)
+        before.kernels = rendering->kernels; /* with those that were made in vain */
     if (ready) {
         rendering->held = (HeldBand){0};
         rendering->updates++;
     } else {
         *rendering = before;
+        kernels_adopt(&rendering->kernels, before.scene);
         bind_scene(rendering);
     }
-    buffer_destroy(gpu, &dropped.parameters);
-    buffer_destroy(gpu, &dropped.table_rows);
-    buffer_destroy(gpu, &dropped.table_cells);
-    gpu_release(gpu, dropped.table_inputs);
+    drop_scene(gpu, &dropped);
     return ready ? KRS_OK : status;
 }
 
@@ -249,114 +274,6 @@ void krs_rendering_free(KrsRendering *rendering)
         vkDestroyDescriptorPool(gpu->device, rendering->pool, NULL);
     gpu_release(gpu, rendering->table_inputs);
     gpu_release(gpu, rendering);
-}
-
-/* Numbers of albedo_table.def, before the lights. */
-static const float albedos[ALBEDO_ROWS][RESULT_NUMBERS] = {
-#define KRS_ALBEDO(mirrored, at_the_edge, sheen) {mirrored, at_the_edge, sheen, 0},
-#include "runtime/shared/albedo_table.def"
-#undef KRS_ALBEDO
-};
-
-/* The same for microfacets that are wider along a tangent: in thousandths, two rows each. */
-enum { WIDE_SHARES = 8 };
-static const uint16_t wide_albedos[WIDE_ALBEDO_ROWS / 2][2 * WIDE_SHARES] = {
-#define KRS_ALBEDO(...) {__VA_ARGS__},
-#include "runtime/shared/anisotropic_albedo_table.def"
-#undef KRS_ALBEDO
-};
-
-static char *row_of_inputs(const KrsRendering *rendering, uint32_t row)
-{
-    return (char *)rendering->inputs.bytes + (size_t)row * RESULT_BYTES;
-}
-
-static LightBlock *lights_of(const KrsRendering *rendering)
-{
-    return (LightBlock *)row_of_inputs(rendering, LIGHTS_AT);
-}
-
-/* Copies the tables of albedos.  The second is in parts of 65535. */
-static void set_albedos(const KrsRendering *rendering)
-{
-    memcpy(rendering->inputs.bytes, albedos, sizeof albedos);
-    char *to = row_of_inputs(rendering, WIDE_ALBEDOS_AT);
-    for (size_t i = 0; i < WIDE_ALBEDO_ROWS / 2; i++) {
-        uint16_t parts[2 * WIDE_SHARES];
-        for (size_t k = 0; k < 2 * WIDE_SHARES; k++)
-            parts[k] = (uint16_t)((wide_albedos[i][k] * UINT16_MAX + 500) / 1000);
-        memcpy(to + i * sizeof parts, parts, sizeof parts);
-    }
-}
-
-/* Makes room for lights, and for listed rays behind them.  Kernels load several lights at a time,
-   also beyond the last one. */
-static bool make_room(KrsRendering *rendering, size_t lights, size_t rays)
-{
-    Gpu         *gpu    = &rendering->renderer->gpu;
-    Buffer      *buffer = &rendering->inputs;
-    VkDeviceSize bytes  = buffer_texel_bytes(LIGHTS_AT * RESULT_BYTES +
-                                             (lights + LIGHTS_AT_ONCE) * sizeof(LightBlock) +
-                                             rays * sizeof(ListedRayBlock));
-    if (buffer->size >= bytes)
-        return true;
-    buffer_destroy(gpu, buffer);
-    if (!buffer_create(gpu, buffer, bytes, UPLOADED, "lights and rays") ||
-        !layouts_view_texels(gpu, INPUT_TEXELS_BINDING, buffer, "lights and rays"))
-        return false;
-    set_albedos(rendering);
-    rendering_bind(rendering, rendering->band_set,
-                   gpu->texels ? INPUT_TEXELS_BINDING : INPUT_ROWS_BINDING, buffer);
-    return true;
-}
-
-static void aim_light(const KrsLight *light, LightBlock *block)
-{
-    for (int k = 0; k < 3; k++) {
-        block->right[k] = (float)(light->right[k] * (light->rectangle ? 0.5 * light->size[0] : 1));
-        block->up[k]    = (float)(light->up[k] * (light->rectangle ? 0.5 * light->size[1] : 1));
-    }
-    block->outer = (float)cos(0.5 * light->angle);
-    block->inner = (float)cos(0.5 * light->angle * (1 - light->edge));
-}
-
-/* The radius of a disc as large as a rectangle. */
-static double radius_of(const KrsLight *light)
-{
-    return light->rectangle ? sqrt(light->size[0] * light->size[1] / M_PI) : light->softness;
-}
-
-bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count,
-                          uint32_t only, const double rebase_origin[3], size_t rays)
-{
-    if (!make_room(rendering, count, rays))
-        return false;
-    LightBlock *blocks = lights_of(rendering);
-    for (size_t i = 0; i < count; i++) {
-        const KrsLight *light  = &lights[i];
-        const bool      shines = only == 0 || only == i + 1;
-        aim_light(light, &blocks[i]);
-        blocks[i].kind = (light->positional ? LIGHT_POSITIONAL : 0) |
-                         (light->shadow ? LIGHT_CASTS_SHADOWS : 0) |
-                         (light->rectangle ? LIGHT_RECTANGLE : 0) | (light->spot ? LIGHT_SPOT : 0);
-        blocks[i].softness = (float)radius_of(light);
-        for (int k = 0; k < 3; k++) {
-            blocks[i].vector[k] = (float)(light->vector[k] -
-                                          (light->positional ? rebase_origin[k] : 0));
-            blocks[i].color[k]  = shines ? (float)light->color[k] : 0;
-        }
-    }
-    return true;
-}
-
-void rendering_set_emissive(KrsRendering *rendering, const EmissiveBlock *balls, size_t count)
-{
-    memcpy(row_of_inputs(rendering, ALBEDO_ROWS), balls, count * sizeof *balls);
-}
-
-ListedRayBlock *rendering_listed_rays(KrsRendering *rendering, size_t lights)
-{
-    return (ListedRayBlock *)(lights_of(rendering) + lights + LIGHTS_AT_ONCE);
 }
 
 /* Chooses kernels with room for `count` zones: 1, 2, 4, 8 or 16.  Kernels that exist and have more

@@ -33,6 +33,7 @@ struct OutputFile {
     /* The target is no regular file: it is not renamed over, and the temporary file is in
        TMPDIR. */
     bool direct;
+    bool fleeting; /* it is not flushed */
     /* The target exists; the new file takes over owner and permissions from `before`. */
     bool        exists;
     struct stat before;
@@ -327,13 +328,15 @@ static bool put_in_place(OutputFile *file)
 {
     copy_mode(file);
     int  held = fcntl(file->fd, F_DUPFD_CLOEXEC, 0), fd = file->fd;
-    bool done = fsync(fd) == 0 || fail_write(file);
+    bool done = file->fleeting || fsync(fd) == 0 || fail_write(file);
     file->fd  = held;
     done      = (close(fd) == 0 || fail_write(file)) && done;
     if (done && file->cancelled && *file->cancelled)
         done = output_fail(file->error, KRS_INTERRUPTED, file->shown, 0);
     return done && (rename(file->temporary, file->target) == 0 || fail_write(file));
 }
+
+void output_is_fleeting(OutputFile *file) { file->fleeting = true; }
 
 KrsStatus output_commit(OutputFile *file)
 {
@@ -342,7 +345,8 @@ KrsStatus output_commit(OutputFile *file)
         if (file->direct) {
             copy_to_target(file);
         } else if (put_in_place(file)) {
-            flush_folder(file);
+            if (!file->fleeting)
+                flush_folder(file);
             output_free(file);
             return error->status;
         }

@@ -45,6 +45,9 @@ bool output_write(OutputFile *file, const void *bytes, size_t length, uint64_t o
 /* Writes bytes at the end of the file. */
 bool output_append(OutputFile *file, const void *bytes, size_t length);
 
+/* The file will soon be replaced: it need not survive a power failure, and is not flushed. */
+void output_is_fleeting(OutputFile *file);
+
 /* Both end the file: they free `file`, and no temporary file remains.  output_commit flushes the
    file, renames it and flushes the folder; it returns error->status. */
 KrsStatus output_commit(OutputFile *file);

@@ -138,6 +138,20 @@ static uint64_t kernels_made(Viewer *viewer)
     return made;
 }
 
+/* No text of a kernel was printed for the last edit: that would have taken time. */
+static void assert_kernels_stay(const Viewer *viewer)
+{
+    KrsKernelStats kernels[32];
+    size_t         with_scene = 0;
+    const size_t   count      = krs_rendering_kernels(viewer->rendering, kernels, 32);
+    assert_in_range(count, 1, 32);
+    for (size_t i = 0; i < count; i++) {
+        with_scene += kernels[i].glsl_bytes > 0;
+        assert_true(kernels[i].glsl_bytes == 0 || (kernels[i].cached && kernels[i].spirv_ms == 0));
+    }
+    assert_true(with_scene > 0);
+}
+
 static void an_edit_of_numbers_compiles_nothing(void **state)
 {
     (void)state;
@@ -147,6 +161,7 @@ static void an_edit_of_numbers_compiles_nothing(void **state)
     const uint64_t made = kernels_made(&viewer);
     assert_int_equal(edit(&viewer, numbers), KRS_CHANGE_VALUES);
     assert_int_equal(kernels_made(&viewer), made);
+    assert_kernels_stay(&viewer);
     KrsPicture *second = render(&viewer);
     assert_false(are_equal(first, second));
     assert_shows(&viewer, numbers);
@@ -209,6 +224,7 @@ static void rays_and_zones_follow(void **state)
     krs_picture_free(picture);
     assert_int_equal(edit(&viewer, numbers), KRS_CHANGE_VALUES);
     picture = render(&viewer);
+    assert_kernels_stay(&viewer);
     check(krs_frame_set_zones(viewer.frame, NULL, 0));
     KrsPicture *whole = render(&viewer);
     assert_false(are_equal(picture, whole));

@@ -74,6 +74,21 @@ static void a_folder_that_cannot_be_flushed_is_a_warning(void **state)
     assert_string_equal(error.warning, "");
 }
 
+static void a_fleeting_file_waits_for_no_disk(void **state)
+{
+    (void)state;
+    OutputError error;
+    faults.armed     = true;
+    OutputFile *file = output_open("new", NULL, &error);
+    assert_non_null(file);
+    output_append(file, "after", 5);
+    output_is_fleeting(file);
+    assert_int_equal(output_commit(file), KRS_OK);
+    assert_int_equal(faults.seen[CALL_FSYNC], 0);
+    assert_int_equal(faults.seen[CALL_RENAME], 1);
+    assert_holds("new", "after");
+}
+
 static mode_t mode_of(const char *path)
 {
     struct stat info;
@@ -277,6 +292,7 @@ int main(void)
         IN_FOLDER(dangling_links_are_followed),
         IN_FOLDER(paths_to_one_file_are_known),
         IN_FOLDER(a_folder_that_cannot_be_flushed_is_a_warning),
+        IN_FOLDER(a_fleeting_file_waits_for_no_disk),
         IN_FOLDER(permissions_are_kept),
         IN_FOLDER(the_owner_is_kept),
         IN_FOLDER(temporaries_are_private),

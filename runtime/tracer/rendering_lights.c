@@ -1,0 +1,117 @@
+/*
+ * rendering_lights.c: the buffer of a rendering that has tables of albedos, the lights, and listed rays.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "runtime/tracer/layouts.h"
+#include "runtime/tracer/renderer.h"
+#include "runtime/tracer/rendering.h"
+
+/* Numbers of albedo_table.def, before the lights. */
+static const float albedos[ALBEDO_ROWS][RESULT_NUMBERS] = {
+#define KRS_ALBEDO(mirrored, at_the_edge, sheen) {mirrored, at_the_edge, sheen, 0},
+#include "runtime/shared/albedo_table.def"
+#undef KRS_ALBEDO
+};
+
+/* The same for microfacets that are wider along a tangent: in thousandths, two rows each. */
+enum { WIDE_SHARES = 8 };
+static const uint16_t wide_albedos[WIDE_ALBEDO_ROWS / 2][2 * WIDE_SHARES] = {
+#define KRS_ALBEDO(...) {__VA_ARGS__},
+#include "runtime/shared/anisotropic_albedo_table.def"
+#undef KRS_ALBEDO
+};
+
+static char *row_of_inputs(const KrsRendering *rendering, uint32_t row)
+{
+    return (char *)rendering->inputs.bytes + (size_t)row * RESULT_BYTES;
+}
+
+static LightBlock *lights_of(const KrsRendering *rendering)
+{
+    return (LightBlock *)row_of_inputs(rendering, LIGHTS_AT);
+}
+
+/* Copies the tables of albedos.  The second is in parts of 65535. */
+static void set_albedos(const KrsRendering *rendering)
+{
+    memcpy(rendering->inputs.bytes, albedos, sizeof albedos);
+    char *to = row_of_inputs(rendering, WIDE_ALBEDOS_AT);
+    for (size_t i = 0; i < WIDE_ALBEDO_ROWS / 2; i++) {
+        uint16_t parts[2 * WIDE_SHARES];
+        for (size_t k = 0; k < 2 * WIDE_SHARES; k++)
+            parts[k] = (uint16_t)((wide_albedos[i][k] * UINT16_MAX + 500) / 1000);
+        memcpy(to + i * sizeof parts, parts, sizeof parts);
+    }
+}
+
+/* Makes room for lights, and for listed rays behind them.  Kernels load several lights at a time,
+   also beyond the last one. */
+static bool make_room(KrsRendering *rendering, size_t lights, size_t rays)
+{
+    Gpu         *gpu    = &rendering->renderer->gpu;
+    Buffer      *buffer = &rendering->inputs;
+    VkDeviceSize bytes  = buffer_texel_bytes(LIGHTS_AT * RESULT_BYTES +
+                                             (lights + LIGHTS_AT_ONCE) * sizeof(LightBlock) +
+                                             rays * sizeof(ListedRayBlock));
+    if (buffer->size >= bytes)
+        return true;
+    buffer_destroy(gpu, buffer);
+    if (!buffer_create(gpu, buffer, bytes, UPLOADED, "lights and rays") ||
+        !layouts_view_texels(gpu, INPUT_TEXELS_BINDING, buffer, "lights and rays"))
+        return false;
+    set_albedos(rendering);
+    rendering_bind(rendering, rendering->band_set,
+                   gpu->texels ? INPUT_TEXELS_BINDING : INPUT_ROWS_BINDING, buffer);
+    return true;
+}
+
+static void aim_light(const KrsLight *light, LightBlock *block)
+{
+    for (int k = 0; k < 3; k++) {
+        block->right[k] = (float)(light->right[k] * (light->rectangle ? 0.5 * light->size[0] : 1));
+        block->up[k]    = (float)(light->up[k] * (light->rectangle ? 0.5 * light->size[1] : 1));
+    }
+    block->outer = (float)cos(0.5 * light->angle);
+    block->inner = (float)cos(0.5 * light->angle * (1 - light->edge));
+}
+
+/* The radius of a disc as large as a rectangle. */
+static double radius_of(const KrsLight *light)
+{
+    return light->rectangle ? sqrt(light->size[0] * light->size[1] / M_PI) : light->softness;
+}
+
+bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count,
+                          uint32_t only, const double rebase_origin[3], size_t rays)
+{
+    if (!make_room(rendering, count, rays))
+        return false;
+    LightBlock *blocks = lights_of(rendering);
+    for (size_t i = 0; i < count; i++) {
+        const KrsLight *light  = &lights[i];
+        const bool      shines = only == 0 || only == i + 1;
+        aim_light(light, &blocks[i]);
+        blocks[i].kind = (light->positional ? LIGHT_POSITIONAL : 0) |
+                         (light->shadow ? LIGHT_CASTS_SHADOWS : 0) |
+                         (light->rectangle ? LIGHT_RECTANGLE : 0) | (light->spot ? LIGHT_SPOT : 0);
+        blocks[i].softness = (float)radius_of(light);
+        for (int k = 0; k < 3; k++) {
+            blocks[i].vector[k] = (float)(light->vector[k] -
+                                          (light->positional ? rebase_origin[k] : 0));
+            blocks[i].color[k]  = shines ? (float)light->color[k] : 0;
+        }
+    }
+    return true;
+}
+
+void rendering_set_emissive(KrsRendering *rendering, const EmissiveBlock *balls, size_t count)
+{
+    memcpy(row_of_inputs(rendering, ALBEDO_ROWS), balls, count * sizeof *balls);
+}
+
+ListedRayBlock *rendering_listed_rays(KrsRendering *rendering, size_t lights)
+{
+    return (ListedRayBlock *)(lights_of(rendering) + lights + LIGHTS_AT_ONCE);
+}
