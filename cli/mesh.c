@@ -21,10 +21,23 @@ static int copies_in(const Options *options, const MeshFormat *format)
 
 /* ---- the mesh ---- */
 
+void enter_step(Meshing *meshing, double goal)
+{
+    meshing->begun = meshing->done = meshing->goal;
+    meshing->goal                  = goal;
+}
+
+double step_of(const Meshing *meshing, double goal, double steps)
+{
+    return meshing->goal + (goal - meshing->goal) / steps;
+}
+
 static bool go_on(void *user, double fraction)
 {
     Meshing *meshing = user;
-    progress_show(&meshing->progress, fraction);
+    double   done    = meshing->begun + fraction * (meshing->goal - meshing->begun);
+    meshing->done    = fmax(meshing->done, done);
+    progress_show(&meshing->progress, meshing->done);
     return !*interrupted();
 }
 
@@ -47,13 +60,15 @@ static KrsStatus make_assembled(Meshing *meshing, Body *body)
 
 typedef KrsStatus MakeBody(Meshing *meshing, Body *body);
 
-static KrsStatus make_body(Meshing *meshing, MakeBody *make, Bodies *bodies)
+static KrsStatus make_body(Meshing *meshing, MakeBody *make, Bodies *bodies, double goal)
 {
-    const char *path   = meshing->options->files.items[0];
-    Body        body   = {.component = meshing->how.component};
-    KrsStatus   status = make(meshing, &body);
+    const char *path  = meshing->options->files.items[0];
+    bool        alone = !meshing->options->mesh_simplify && meshing->options->mesh_lods == 0;
+    Body        body  = {.component = meshing->how.component};
+    enter_step(meshing, step_of(meshing, goal, alone ? 1 : 2));
+    KrsStatus status = make(meshing, &body);
     if (status == KRS_OK)
-        status = simplify_body(meshing, &body);
+        status = simplify_body(meshing, &body, goal);
     if (status != KRS_OK)
         progress_end(&meshing->progress);
     if (status == KRS_BAD_ARGUMENT)
@@ -77,7 +92,7 @@ static void drop_bodies(Bodies *bodies)
 }
 
 /* One of all, or one for each component; many that are alike may be one. */
-static KrsStatus make_bodies(Meshing *meshing, MakeBody *make, Bodies *bodies)
+static KrsStatus make_bodies(Meshing *meshing, MakeBody *make, Bodies *bodies, double goal)
 {
     size_t    asked  = meshing->how.component;
     bool      split  = meshing->options->mesh_split == SPLIT_COMPONENTS && asked == 0;
@@ -88,13 +103,16 @@ static KrsStatus make_bodies(Meshing *meshing, MakeBody *make, Bodies *bodies)
             continue;
         if (split)
             meshing->how.component = i + 1;
-        status = make_body(meshing, make, bodies);
+        status = make_body(meshing, make, bodies, step_of(meshing, goal, (double)(count - i)));
     }
     meshing->how.component = asked;
     return status;
 }
 
 /* ---- which meshes are made ---- */
+
+/* The parts of the work that are done with a coarse mesh, and with what is assembled where all is merged as well. */
+static const double COARSE_DONE = 0.1, ASSEMBLED_DONE = 0.5;
 
 /* With --size: a coarse mesh tells how long the scene is, and so how much smaller the error is there.
    The final mesh is at most by the coarse one's error shorter.  Parts have one error. */
@@ -110,7 +128,7 @@ static KrsStatus find_error(Meshing *meshing, MakeBody *make)
     if (options->mesh_size == 0 || options->mesh_error == 0)
         return KRS_OK;
     meshing->how.error = 0;
-    KrsStatus status   = make_bodies(meshing, make, &coarse);
+    KrsStatus status   = make_bodies(meshing, make, &coarse, COARSE_DONE);
     if (status == KRS_OK) {
         longest            = longest_side(&coarse) - 2 * summarize(&coarse).error;
         meshing->how.error = mesher_part(options) * options->mesh_error * longest /
@@ -148,7 +166,7 @@ static KrsStatus check_merged(Meshing *meshing)
     if (!is_any(meshing, true) || count_instances(meshing) < few)
         return KRS_OK;
     if (meshing->assembled.count == 0)
-        status = make_bodies(meshing, make_assembled, &meshing->assembled);
+        status = make_bodies(meshing, make_assembled, &meshing->assembled, ASSEMBLED_DONE);
     double triangles = summarize(&meshing->assembled).triangles;
     if (status != KRS_OK || triangles <= MOST_TRIANGLES)
         return status;
@@ -182,16 +200,18 @@ static KrsStatus refuse_lods_of_copies(Meshing *meshing)
 static KrsStatus make_all(Meshing *meshing)
 {
     bool      assembled = is_any(meshing, false);
+    bool      merged    = is_any(meshing, true) && count_instances(meshing) > 0;
     KrsStatus status    = find_error(meshing, assembled ? make_assembled : make_merged);
     if (status == KRS_OK && assembled)
-        status = make_bodies(meshing, make_assembled, &meshing->assembled);
+        status = make_bodies(meshing, make_assembled, &meshing->assembled,
+                             merged ? ASSEMBLED_DONE : 1);
     if (status == KRS_OK && assembled && meshing->options->mesh_lods > 0 &&
         has_copies(&meshing->assembled))
         return refuse_lods_of_copies(meshing);
     if (status == KRS_OK)
         status = check_merged(meshing);
     if (status == KRS_OK && is_any(meshing, true) && has_copies(&meshing->assembled))
-        status = make_bodies(meshing, make_merged, &meshing->merged);
+        status = make_bodies(meshing, make_merged, &meshing->merged, 1);
     return status;
 }
 

@@ -47,6 +47,7 @@ typedef struct Meshing {
     KrsMeshOptions  how;
     double          scale; /* from the scene to the file */
     Progress        progress;
+    double          done, begun, goal; /* of all work: done, and before and after this step of it */
     Bodies          merged, assembled; /* each is made if some file is of it */
 } Meshing;
 
@@ -74,8 +75,12 @@ void      split_places(Arena *arena, MeshParts *parts);
 /* What a length of 1 is in the file. */
 void set_units(const Meshing *meshing, const MeshFormat *format, MeshParts *parts);
 
+/* mesh.c: the next step of the work, which is done to `goal` behind it; and the goal of the first of so many until one. */
+void   enter_step(Meshing *meshing, double goal);
+double step_of(const Meshing *meshing, double goal, double steps);
+
 /* mesh_simplify.c: leaves out triangles of a body, and makes its levels of detail, as options ask for. */
-KrsStatus simplify_body(const Meshing *meshing, Body *body);
+KrsStatus simplify_body(Meshing *meshing, Body *body, double goal);
 /* The part of the error that is the mesher's. */
 double mesher_part(const Options *options);
 

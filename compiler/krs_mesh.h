@@ -53,11 +53,12 @@ KrsStatus krs_mesh(KrsFrame *frame, const KrsMeshOptions *options, KrsMesh **mes
 void      krs_mesh_free(KrsMesh *mesh);
 
 /*
- * Leaves out triangles that are not needed for the mesh to stay within `error` of what it was, in both
- * directions.  That is proven, and so is that the mesh is still closed and does not cross itself; where
- * it cannot be, fewer are left out, or none.  mesh->error grows by `error`.  *simplified is a mesh of its own.
+ * Leaves out triangles that are not needed for the mesh to stay within an error of what it was, in both
+ * directions.  Of the options it asks for error, which must not be 0, go_on and user.  That is proven, and so is that the mesh is still closed and does not cross itself; where
+ * it cannot be, fewer are left out, or none.  mesh->error grows by it.  *simplified is a mesh of its own.
  */
-KrsStatus krs_mesh_simplify(const KrsMesh *mesh, double error, KrsMesh **simplified);
+KrsStatus krs_mesh_simplify(const KrsMesh *mesh, const KrsMeshOptions *options,
+                            KrsMesh **simplified);
 
 /* How an item is placed: x -> matrix (x, 1), which turns, moves, mirrors and scales evenly. */
 typedef struct KrsPlacing {

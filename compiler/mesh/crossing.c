@@ -168,19 +168,16 @@ static double size_of(const Bvh *bvh)
     return size;
 }
 
-void report_crossing(const Bvh *bvh, ReportTriangle *report, void *user)
+bool triangle_crosses(const Bvh *bvh, uint32_t triangle)
 {
-    Search search = {.bvh = bvh, .rounding = 1e-13 * size_of(bvh)};
-    for (uint32_t i = 0; i < bvh->triangle_count; i++) {
-        double center[3] = {0, 0, 0}, radius = 0;
-        search.triangle = i;
-        for (int c = 0; c < 3; c++) {
-            memcpy(search.corners[c], bvh->vertices[bvh->triangles[i][c]], sizeof *search.corners);
-            add_scaled3(center, center, 1.0 / 3, search.corners[c]);
-        }
-        for (int c = 0; c < 3; c++)
-            radius = fmax(radius, distance3(center, search.corners[c]));
-        if (!bvh_visit(bvh, center, radius * (1 + 1e-9) + search.rounding, is_apart, &search))
-            report(user, i);
+    Search search    = {.bvh = bvh, .triangle = triangle, .rounding = 1e-13 * size_of(bvh)};
+    double center[3] = {0, 0, 0}, radius = 0;
+    for (int c = 0; c < 3; c++) {
+        memcpy(search.corners[c], bvh->vertices[bvh->triangles[triangle][c]],
+               sizeof *search.corners);
+        add_scaled3(center, center, 1.0 / 3, search.corners[c]);
     }
+    for (int c = 0; c < 3; c++)
+        radius = fmax(radius, distance3(center, search.corners[c]));
+    return !bvh_visit(bvh, center, radius * (1 + 1e-9) + search.rounding, is_apart, &search);
 }

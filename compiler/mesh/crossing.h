@@ -21,8 +21,8 @@ typedef void ReportTriangle(void *user, uint32_t triangle);
 /* Reports triangles with an edge that is not in two triangles with opposite directions. */
 void report_open(const uint32_t (*triangles)[3], size_t count, ReportTriangle *report, void *user,
                  Arena *arena);
-/* Reports triangles that have points in common but corners and edges that both have; as well where
+/* Whether a triangle has points in common with another but corners and edges that both have; as well where
    rounding does not tell. */
-void report_crossing(const Bvh *bvh, ReportTriangle *report, void *user);
+bool triangle_crosses(const Bvh *bvh, uint32_t triangle);
 
 #endif

@@ -43,7 +43,9 @@ typedef struct Mesher {
     atomic_size_t next_group;
     size_t        unresolved; /* tetrahedra */
     double        unresolved_at[3];
-    double        fraction; /* of the work, as was last said */
+    double        fraction;    /* of the work, as was last said, */
+    double        begun, goal; /* where the round began, and will end */
+    double        looked;      /* tetrahedra that were looked at by bounds */
     atomic_bool   stopped;
 } Mesher;
 

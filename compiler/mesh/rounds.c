@@ -66,6 +66,30 @@ static bool is_marked(const Mesher *m, const Tet *tet)
 
 /* ---- groups ---- */
 
+/* ---- how far the work is ---- */
+
+/* The parts of the work that are done when nothing is refuted by bounds, and when all has been looked at by cells.  After
+   that, each round of cells does about half of what is left. */
+static const double BOUNDS_DONE = 0.35, CELLS_DONE = 0.8;
+/* Tetrahedra that are looked at by bounds for each that is refuted, until none is. */
+static const double FOLLOWING = 8;
+
+/* When so many have been looked at by bounds and so many are refuted. */
+static double fraction_by_bounds(double looked, double refuted)
+{
+    return looked > 0 ? BOUNDS_DONE * looked / (looked + FOLLOWING * refuted) : 0;
+}
+
+static double fraction_by_cells(const Mesher *m)
+{
+    return m->fraction <= BOUNDS_DONE ? CELLS_DONE : 0.5 * (1 + m->fraction);
+}
+
+static void advance(Mesher *m, double part)
+{
+    m->fraction = fmax(m->fraction, m->begun + part * (m->goal - m->begun));
+}
+
 /* The first part of a round runs in the thread of the caller, so it may ask. */
 static bool is_wanted(const Mesher *m)
 {
@@ -138,8 +162,11 @@ static void work_on_groups(void *task, size_t part, size_t parts)
         size_t next = atomic_fetch_add(&m->next_group, 1);
         if (next >= m->groups.list.count)
             return;
-        if (part == 0 && asked++ % PATIENCE == 0 && !is_wanted(m))
-            atomic_store(&m->stopped, true);
+        if (part == 0 && asked++ % PATIENCE == 0) {
+            advance(m, (double)next / (double)m->groups.list.count);
+            if (!is_wanted(m))
+                atomic_store(&m->stopped, true);
+        }
         const Group *group   = &m->groups.list.items[next];
         bool         entered = field_enter(verifier->field, box_of_group(m, group));
         w->work(m, verifier, group);
@@ -148,9 +175,12 @@ static void work_on_groups(void *task, size_t part, size_t parts)
     }
 }
 
-static bool for_groups(Mesher *m, WorkOnGroup *work)
+/* `goal`: the part of all work that is done then. */
+static bool for_groups(Mesher *m, WorkOnGroup *work, double goal)
 {
     GroupWork w = {m, work};
+    m->begun    = m->fraction;
+    m->goal     = goal;
     run_in_parallel(work_on_groups, &w);
     return !atomic_load(&m->stopped);
 }
@@ -339,19 +369,11 @@ static void find_unresolved(Mesher *m)
     memcpy(m->unresolved_at, m->verifiers[0].place, sizeof m->unresolved_at);
 }
 
-/* Counts what is decided: half of the work is to get to where nothing is refuted by bounds. */
-static void count_proven(Mesher *m)
+static void count_unresolved(Mesher *m)
 {
-    size_t near = 0, proven = 0;
     m->unresolved = 0;
-    for (size_t i = 0; i < m->tets.list.count; i++) {
-        int state = m->tets.list.items[i].state;
-        near += state != TET_EMPTY;
-        proven += state == TET_PROVEN || state == TET_UNRESOLVED;
-        m->unresolved += state == TET_UNRESOLVED;
-    }
-    if (near > 0)
-        m->fraction = fmax(m->fraction, 0.5 + 0.5 * (double)proven / (double)near);
+    for (size_t i = 0; i < m->tets.list.count; i++)
+        m->unresolved += m->tets.list.items[i].state == TET_UNRESOLVED;
 }
 
 static void count_refuted(Mesher *m)
@@ -359,8 +381,8 @@ static void count_refuted(Mesher *m)
     size_t count = m->tets.fresh.count, refuted = 0;
     for (size_t i = 0; i < count; i++)
         refuted += m->tets.list.items[m->tets.fresh.items[i]].state == TET_REFUTED;
-    if (count > 0)
-        m->fraction = fmax(m->fraction, 0.5 * (double)(count - refuted) / (double)count);
+    m->looked += (double)count;
+    m->fraction = fmax(m->fraction, fraction_by_bounds(m->looked, (double)refuted));
 }
 
 /* Until nothing is refuted by bounds; only what is fresh is looked at.  False: it was stopped. */
@@ -369,7 +391,8 @@ static bool refine_by_bounds(Mesher *m)
     do {
         contour_look(&m->contour);
         find_fresh_groups(m);
-        if (!for_groups(m, judge_group))
+        double count = (double)m->tets.fresh.count, few = count / 3;
+        if (!for_groups(m, judge_group, fraction_by_bounds(m->looked + count, few)))
             return false;
         count_refuted(m);
     } while (refine(m, true));
@@ -384,11 +407,13 @@ static bool prove(Mesher *m)
     judge_smooth(m);
     find_tree(m);
     find_groups(m, TET_FITS, TET_ROUGH);
-    if (!for_groups(m, verify_group))
+    double goal = fraction_by_cells(m);
+    if (!for_groups(m, verify_group, goal))
         return false;
+    m->fraction = goal;
     find_unresolved(m);
     bvh_free(&m->bvh, m->contour.triangles.count, &m->arena);
-    count_proven(m);
+    count_unresolved(m);
     return is_wanted(m);
 }
 

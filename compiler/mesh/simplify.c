@@ -6,29 +6,38 @@
  * cut into four.
  */
 #include <meshoptimizer.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/parallel.h"
 #include "compiler/base/vec.h"
 #include "compiler/krs.h"
+#include "compiler/mesh/numbering.h"
 #include "compiler/mesh/slivers.h"
 
 enum { MOST_CUTS = 12, MOST_TRIALS = 14 };
 /* From trial to trial triangles are kept so many times as far around faults.  Most faults are single
    triangles that cross others, and what is proposed next may have some elsewhere.  So steps are small. */
 static const double GROWTH = 1.25;
+/* The first error, in errors: with less, more trials leave no fewer triangles. */
+static const double FIRST_ERROR = 0.125;
 
 typedef struct Simplifier {
-    Memory         memory;
-    Arena          arena;
-    const KrsMesh *mesh;
-    double         error;
+    Memory                memory;
+    Arena                 arena, lasting; /* of a trial, and of all */
+    const KrsMesh        *mesh;
+    const KrsMeshOptions *options;
+    double                error;
     float (*positions)[3];
     uint32_t (*triangles)[3]; /* of the mesh's vertices */
     bool  *kept;              /* of the best triangles: to stay as they are */
     size_t triangle_count;
     uint32_t (*best)[3]; /* triangles that have been good */
-    size_t best_count;
+    size_t    best_count;
+    Numbering near; /* triangles that were proven to be within the error of the mesh */
+    double fraction, begun, goal; /* of the work: done, and before and after what is being done */
+    atomic_bool stopped;
 } Simplifier;
 
 /* ---- how far two meshes are from each other ---- */
@@ -97,18 +106,6 @@ static bool is_within(const Bvh *bvh, const double corners[3][3], double error, 
     return is_within(bvh, (const double(*)[3])middles, error, cuts - 1, last);
 }
 
-static void report_far(const Bvh *triangles, const Bvh *of, double error, ReportTriangle *report,
-                       void *user)
-{
-    uint32_t last = 0;
-    for (uint32_t i = 0; i < triangles->triangle_count; i++) {
-        double corners[3][3];
-        corners_of(triangles, i, corners);
-        if (!is_within(of, (const double(*)[3])corners, error, MOST_CUTS, &last))
-            report(user, i);
-    }
-}
-
 /* ---- what is proposed ---- */
 
 /* Those that are kept stay as they are; the others are simplified up to their border. */
@@ -163,43 +160,118 @@ static void note_fault(void *user, uint32_t triangle)
     judgement->faults++;
 }
 
-static size_t count_faults(Simplifier *s, double radius)
+/* All triangles of one mesh: whether they are far from another, or cross each other if there is none. */
+typedef struct Check {
+    Simplifier   *s;
+    const Bvh    *triangles, *of;
+    Numbering    *near; /* those that are known to be near; NULL: none */
+    bool         *wrong;
+    atomic_size_t next;
+} Check;
+
+static NumberKey key_of(const uint32_t triangle[3])
 {
-    Bvh            from, best, to;
+    return face_key(triangle[0], triangle[1], triangle[2]);
+}
+
+static bool is_wrong(const Check *check, uint32_t triangle, uint32_t *last)
+{
+    const Simplifier *s = check->s;
+    double            corners[3][3];
+    if (!check->of)
+        return triangle_crosses(check->triangles, triangle);
+    if (check->near &&
+        numbering_find(check->near, key_of(check->triangles->triangles[triangle])) != NO_NUMBER)
+        return false;
+    corners_of(check->triangles, triangle, corners);
+    return !is_within(check->of, (const double(*)[3])corners, s->error, MOST_CUTS, last);
+}
+
+static void ask(Simplifier *s, double part)
+{
+    const KrsMeshOptions *options = s->options;
+    s->fraction                   = s->begun + part * (s->goal - s->begun);
+    if (options->go_on && !options->go_on(options->user, s->fraction))
+        atomic_store(&s->stopped, true);
+}
+
+/* The first part runs in the thread of the caller, so it asks. */
+static void check_some(void *task, size_t part, size_t parts)
+{
+    enum { SOME = 64 };
+    Check   *check = task;
+    size_t   count = check->triangles->triangle_count;
+    uint32_t last  = 0;
+    (void)parts;
+    while (!atomic_load(&check->s->stopped)) {
+        size_t begin = atomic_fetch_add(&check->next, SOME);
+        if (begin >= count)
+            return;
+        if (part == 0)
+            ask(check->s, (double)begin / (double)count);
+        for (size_t i = begin; i < begin + SOME && i < count; i++)
+            check->wrong[i] = is_wrong(check, (uint32_t)i, &last);
+    }
+}
+
+/* `goal`: the part of the work that is done then. */
+static void check_all(Judgement *judgement, Check *check, double goal)
+{
+    Simplifier *s     = judgement->s;
+    size_t      count = check->triangles->triangle_count;
+    check->s          = s;
+    check->wrong      = arena_new_array(&s->arena, bool, count + 1);
+    s->begun          = s->fraction;
+    s->goal           = goal;
+    judgement->now    = check->triangles;
+    run_in_parallel(check_some, check);
+    for (uint32_t i = 0; i < count && !atomic_load(&s->stopped); i++)
+        if (check->wrong[i])
+            note_fault(judgement, i);
+        else if (check->near)
+            numbering_take(check->near, key_of(check->triangles->triangles[i]), 0);
+}
+
+static size_t count_faults(Simplifier *s, double radius, double goal)
+{
     const KrsMesh *mesh     = s->mesh;
     const double(*at)[3]    = (const double(*)[3])mesh->vertices;
     const uint32_t(*new)[3] = (const uint32_t(*)[3])s->triangles;
     ArenaMark mark          = arena_mark(&s->arena);
+    Bvh       from, best, to;
     bvh_new(&from, at, (const uint32_t(*)[3])mesh->triangles, mesh->triangle_count, &s->arena);
     bvh_new(&best, at, (const uint32_t(*)[3])s->best, s->best_count, &s->arena);
     bvh_new(&to, at, new, s->triangle_count, &s->arena);
     Judgement judgement = {s, &best, &to, radius, 0};
     report_open(new, s->triangle_count, note_fault, &judgement, &s->arena);
-    report_far(&to, &from, s->error, note_fault, &judgement);
-    report_crossing(&to, note_fault, &judgement);
-    judgement.now = &from;
-    report_far(&from, &to, s->error, note_fault, &judgement);
+    Check  checks[] = {{.triangles = &to, .of = &from, .near = &s->near},
+                       {.triangles = &to},
+                       {.triangles = &from, .of = &to}};
+    double begun    = s->fraction;
+    for (int i = 0; i < 3; i++)
+        check_all(&judgement, &checks[i], begun + (i + 1) / 3.0 * (goal - begun));
     arena_rewind(&s->arena, mark);
     return judgement.faults;
 }
 
-/* Simplifies the best further, unless all trials have faults. */
-static bool try_error(Simplifier *s, double error)
+/* Simplifies the best further, unless all trials have faults or it is stopped. */
+static void try_error(Simplifier *s, double error, double goal)
 {
     double radius = s->error;
     memset(s->kept, 0, s->best_count * sizeof *s->kept);
     for (int trial = 0; trial < MOST_TRIALS; trial++, radius *= GROWTH) {
         propose(s, error);
         if (s->triangle_count == 0 || s->triangle_count >= s->best_count)
-            return false;
-        size_t faults = count_faults(s, radius);
+            return;
+        size_t faults = count_faults(s, radius, 0.5 * (s->fraction + goal));
+        if (atomic_load(&s->stopped))
+            return;
         if (faults == 0) {
             memcpy(s->best, s->triangles, s->triangle_count * sizeof *s->best);
             s->best_count = s->triangle_count;
-            return true;
+            return;
         }
     }
-    return false;
 }
 
 /* With more and more error.  Where one step is too far, the next ones go on from the last that was good. */
@@ -217,8 +289,11 @@ static void find_triangles(Simplifier *s)
     s->best_count = count;
     if (count > 0)
         memcpy(s->best, mesh->triangles, count * sizeof *s->best);
-    for (double error = s->error / 32; error <= s->error && count > 0; error *= 2)
-        try_error(s, error);
+    for (double error = FIRST_ERROR * s->error; error <= s->error && count > 0; error *= 2) {
+        double goal = 0.5 * (s->fraction + 1);
+        try_error(s, error, goal);
+        s->fraction = goal;
+    }
 }
 
 /* Without vertices that no triangle has. */
@@ -259,17 +334,21 @@ static KrsStatus simplify(Simplifier *s, KrsMesh **simplified)
     if (setjmp(exhausted) != 0)
         return KRS_OUT_OF_MEMORY;
     find_triangles(s);
-    return copy_triangles(s, simplified);
+    return atomic_load(&s->stopped) ? KRS_INTERRUPTED : copy_triangles(s, simplified);
 }
 
-KrsStatus krs_mesh_simplify(const KrsMesh *mesh, double error, KrsMesh **simplified)
+KrsStatus krs_mesh_simplify(const KrsMesh *mesh, const KrsMeshOptions *options,
+                            KrsMesh **simplified)
 {
-    Simplifier s = {.mesh = mesh, .error = error};
+    Simplifier s = {.mesh = mesh, .options = options, .error = options->error};
     *simplified  = NULL;
-    if (!(error > 0) || isinf(error))
+    if (!(s.error > 0) || isinf(s.error))
         return KRS_BAD_ARGUMENT;
     s.arena.memory   = &s.memory;
+    s.lasting.memory = &s.memory;
+    s.near.arena     = &s.lasting;
     KrsStatus status = simplify(&s, simplified);
     arena_free(&s.arena);
+    arena_free(&s.lasting);
     return status;
 }

@@ -449,7 +449,7 @@ static void simplified_meshes_are_near(void **context)
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         Scene    s    = scene_of(texts[i]);
         KrsMesh *mesh = mesh_of(s, 0.04), *few;
-        assert_int_equal(krs_mesh_simplify(mesh, 0.04, &few), KRS_OK);
+        assert_int_equal(krs_mesh_simplify(mesh, &(KrsMeshOptions){.error = 0.04}, &few), KRS_OK);
         assert_true(2 * few->triangle_count < mesh->triangle_count);
         assert_true(fabs(few->error - 0.08) < 1e-12);
         assert_int_equal(euler_number(few), euler_number(mesh));
@@ -458,7 +458,7 @@ static void simplified_meshes_are_near(void **context)
         check_hits(s, few, 1.2);
         check_triangles(s, few);
         krs_mesh_free(few);
-        assert_int_equal(krs_mesh_simplify(mesh, 0, &few), KRS_BAD_ARGUMENT);
+        assert_int_equal(krs_mesh_simplify(mesh, &(KrsMeshOptions){0}, &few), KRS_BAD_ARGUMENT);
         krs_mesh_free(mesh);
         scene_close(s);
     }
@@ -471,7 +471,7 @@ static void flat_faces_with_a_hole_are_simplified(void **context)
     (void)context;
     Scene    s    = scene_of("show box([2, 1, 2]) - cylinder(0.5, 3);");
     KrsMesh *mesh = mesh_of(s, 0.025), *few;
-    assert_int_equal(krs_mesh_simplify(mesh, 0.025, &few), KRS_OK);
+    assert_int_equal(krs_mesh_simplify(mesh, &(KrsMeshOptions){.error = 0.025}, &few), KRS_OK);
     assert_true(100 * few->triangle_count < mesh->triangle_count);
     check_closed(few);
     check_crossings(few);
