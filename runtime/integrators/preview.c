@@ -213,13 +213,14 @@ static void add_lights(Preview *p, const Kernel *shade)
         for (uint32_t i = 0; i < lights.count; i++)
             if (view->lights[lights.first + i].shadow)
                 add_visibility(p, lights.first + i, VALUE_VISIBLE + i, 0.8f * each);
-        plan_add(p->plan, (Pass){.kind      = PASS_ITEMS,
-                                 .phase     = KRS_PHASE_SHADING,
-                                 .weight    = 0.2f * each,
-                                 .kernel    = shade,
-                                 .in        = LIST_ALL,
-                                 .out       = p->plan->has_paths ? LIST_OF_PATHS : NO_LIST,
-                                 .constants = constants_of(p, &lights, PATHS_GO_ON)});
+        plan_add(p->plan, (Pass){.kind        = PASS_ITEMS,
+                                 .phase       = KRS_PHASE_SHADING,
+                                 .weight      = 0.2f * each,
+                                 .kernel      = shade,
+                                 .in          = LIST_ALL,
+                                 .out         = p->plan->has_paths ? LIST_OF_PATHS : NO_LIST,
+                                 .short_items = !p->plan->has_paths,
+                                 .constants   = constants_of(p, &lights, PATHS_GO_ON)});
     } while (next_lights(p, &lights));
 }
 

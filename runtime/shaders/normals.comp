@@ -3,9 +3,8 @@
 /*
  * normals.comp: the normal of each hit, from the distance at a few taps around it.
  *
- * The number of taps is known before, so lanes that loop together end together, and a lane takes
- * pixel after pixel (pixels.glsl).  The exception is where more taps are needed
- * (edge_normals.glsl).
+ * Sets of taps are equally long, so lanes that loop together end them together.  Some pixels need
+ * more than one set (edge_normals.glsl).  Then their lane falls behind, and the others go on.
  *
  * ROOTS: rays go from root to root.
  */
@@ -235,8 +234,7 @@ void take_distance(float distance)
 #endif
 }
 
-// Further sets of taps have a loop of their own.  In a single loop their variables would have to be
-// kept through each step.
+// Ends a set of taps.  Returns whether another one has begun.
 bool item_needs_more_taps()
 {
 #if STENCIL == 3 && !defined(ROOTS)
@@ -250,19 +248,31 @@ bool item_needs_more_taps()
 #endif
 }
 
-void begin_group() { krs_prepare(); }
+layout(local_size_x = 64) in;
 
-void do_item(uint number)
+void main()
 {
-    begin_item(number);
+    load_frame();
+    krs_prepare();
+    uint group = find_group(), lane = gl_LocalInvocationIndex & 7u;
+    // A lane's items are those of pixels.glsl, in their order.
+    uint number = (group * 64u + gl_LocalInvocationIndex - lane) * control.items_per_lane + lane;
+    uint end = min(number + 8u * control.items_per_lane, control.items);
+    bool goes_on = false; // with another set of taps for the same item
+    taps = tap_limit = 0u;
     do { // do-while, as in pixels.glsl
+        bool exists = number < end;
+        if (exists && !goes_on)
+            begin_item(number);
         do {
             float distance = krs_distance(item_position());
             if (item_needs_step())
                 take_distance(distance);
         } while (item_needs_step());
-    } while (item_needs_more_taps());
-    store_normal();
+        goes_on = exists && item_needs_more_taps();
+        if (exists && !goes_on) {
+            store_normal();
+            number += 8u;
+        }
+    } while (number < end);
 }
-
-#include "pixels.glsl"

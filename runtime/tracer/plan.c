@@ -11,6 +11,10 @@
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/pixel_filter.h"
 
+/* Of short items; all loops of a lane together may have 32,768 turns. */
+#define SHORT_ITEMS_OF_LANE 64
+#define LEAST_GROUPS        64 /* enough for all cores of the device */
+
 /* ---- making a plan ---- */
 
 static bool make_room(Plan *plan)
@@ -99,8 +103,23 @@ static LaneBudget budget_of_rays(const Job *job, uint32_t count)
     /* Loops in the distance leave a lane steps for few items. */
     bool loops = job->rendering->program->loops > 0;
     while (budget.lanes * budget.items_per_lane > 64 &&
-           (loops || count / (budget.lanes * budget.items_per_lane) < 64))
-        budget.items_per_lane /= 2; /* enough groups for all cores of the device */
+           (loops || count / (budget.lanes * budget.items_per_lane) < LEAST_GROUPS))
+        budget.items_per_lane /= 2;
+    return budget;
+}
+
+/* The budget of a pass of `count` items that cost the same.  Where items are short a lane takes more
+   of them, as it loads the frame and the lights once. */
+static LaneBudget budget_of_items(const Job *job, const Pass *pass, uint32_t count)
+{
+    LaneBudget     budget = pixel_budget(job);
+    const uint32_t least  = budget.items_per_lane;
+    if (least == 1 || !pass->short_items || job->rendering->program->loops > 0)
+        return budget;
+    budget.items_per_lane = SHORT_ITEMS_OF_LANE;
+    while (budget.items_per_lane > least &&
+           count / (budget.lanes * budget.items_per_lane) < LEAST_GROUPS)
+        budget.items_per_lane /= 2;
     return budget;
 }
 
@@ -117,8 +136,9 @@ static Dispatch dispatch_of_pass(const Job *job, const Pass *pass, const WorkBlo
     control->color_row    = pass->constants.color_row;
     control->count        = pass->constants.count;
     control->reading      = list_at(work, pass->in);
-    LaneBudget budget     = pass->kind == PASS_RAYS ? budget_of_rays(job, items_now(job, items))
-                                                    : pixel_budget(job);
+    uint32_t   count      = items_now(job, items);
+    LaneBudget budget     = pass->kind == PASS_RAYS ? budget_of_rays(job, count)
+                                                    : budget_of_items(job, pass, count);
     Dispatch   dispatch   = dispatch_of(job, pass->phase, pass->kernel, work, items, budget);
     dispatch.clears       = counter_of(pass->out);
     return dispatch;

@@ -39,6 +39,7 @@ typedef struct Pass {
     ListId        in, out; /* the list that is read, and the one that is emptied and written */
     bool          with_previous; /* may share a submission with the previous pass */
     bool          clears_shared; /* the words of shared.glsl are cleared before */
+    bool          short_items;   /* PASS_ITEMS: no item goes through long loops but a distance's */
     PassConstants constants;
 } Pass;
 

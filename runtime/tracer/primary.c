@@ -216,12 +216,13 @@ bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary)
 
 void primary_add_normals(Plan *plan, float weight, const Primary *primary)
 {
-    Pass pass = {.kind   = PASS_ITEMS,
-                 .phase  = KRS_PHASE_NORMALS,
-                 .weight = weight,
-                 .kernel = primary->normals,
-                 .in     = LIST_ALL,
-                 .out    = NO_LIST};
+    Pass pass = {.kind        = PASS_ITEMS,
+                 .phase       = KRS_PHASE_NORMALS,
+                 .weight      = weight,
+                 .kernel      = primary->normals,
+                 .in          = LIST_ALL,
+                 .out         = NO_LIST,
+                 .short_items = true};
     /* At the surface of one group the distances of the others do not matter, so each group's own
        kernel finds the normals there. */
     plan->by_march_group = primary->group_count > 0;

@@ -139,6 +139,23 @@ static void loops_within_distances_count(void **state)
     close_scene(&scene);
 }
 
+/* Of a large picture lanes take more pixels each.  Those whose normal needs more taps at an edge fall
+   behind, so lanes are at different pixels of their lists. */
+static void pixels_of_a_lane_are_not_seen(void **state)
+{
+    (void)state;
+    const Scene     *scene   = &traced_scenes[INSIDE];
+    KrsRenderOptions options = {.width = 1000, .height = 600};
+    KrsPicture      *whole   = render_scene(scene, options);
+    double           covered = 0;
+    for (size_t i = 0; i < (size_t)whole->width * whole->height; i++)
+        covered += whole->color[4 * i + 3];
+    assert_true(covered > 2 * 64 * 8 * 64); /* else each has as few as in the crop */
+    options.crop = (KrsWindow){100, 50, 250, 110};
+    assert_true(is_part_of(scene, whole, render_scene(scene, options), words(&options)));
+    krs_picture_free(whole);
+}
+
 /* The comparison of planes sees a single bit. */
 static void a_flipped_bit_is_found(void **state)
 {
@@ -161,6 +178,7 @@ int main(void)
         cmocka_unit_test_teardown(the_shortest_slices_are_not_seen, hear_layers),
         cmocka_unit_test_teardown(bands_are_not_seen, hear_layers),
         cmocka_unit_test_teardown(loops_within_distances_count, hear_layers),
+        cmocka_unit_test_teardown(pixels_of_a_lane_are_not_seen, hear_layers),
         cmocka_unit_test_teardown(a_flipped_bit_is_found, hear_layers),
     };
     spirv_start(); /* held for all, so that no renderer starts the shader compiler anew */
