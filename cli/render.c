@@ -300,16 +300,18 @@ static KrsStatus render_frame(Render *render, uint32_t frame)
     return status;
 }
 
-/* Samples of all pixels in all frames. */
-static double count_samples(const Render *render)
+/* Samples of so many pixels in all frames. */
+static double count_samples(const Render *render, double pixels)
 {
-    const Options          *options = render->options;
-    const KrsRenderOptions *how     = &render->how;
-    const KrsWindow        *crop    = &how->crop;
-    const double            pixels  = crop->width > 0 ? (double)crop->width * crop->height
-                                                      : (double)how->width * how->height;
-    const double            frames  = (double)options->last_frame - options->first_frame + 1;
+    const Options *options = render->options;
+    const double   frames  = (double)options->last_frame - options->first_frame + 1;
     return pixels * frames * render->samples;
+}
+
+static double pixels_of_window(const KrsRenderOptions *how)
+{
+    const KrsWindow *crop = &how->crop;
+    return crop->width > 0 ? (double)crop->width * crop->height : (double)how->width * how->height;
 }
 
 /* The scene has literals so far. */
@@ -318,7 +320,8 @@ static KrsStatus specialize(Render *render)
     const Options *options = render->options;
     KrsScene      *edited  = NULL;
     if (options->specialize == KRS_SPECIALIZE_AUTO)
-        edited = specialize_edited(options, render->scene, count_samples(render));
+        edited = specialize_edited(options, render->scene,
+                                   count_samples(render, pixels_of_window(&render->how)));
     if (!edited)
         return KRS_OK;
     krs_frame_free(render->frame);
@@ -328,9 +331,19 @@ static KrsStatus specialize(Render *render)
     return scene_frame(options, edited, &render->frame);
 }
 
+/* With more samples, kernels that take longer to compile are better even if they are new.  Two pictures
+   of 640x360 take as much more time without them as compilation takes less, of examples/07-grove.krs
+   (bench/measurements.md); of most scenes four do. */
+#define SAMPLES_OF_SMALL_PICTURES (2.0 * 640 * 360)
+
+/* A crop has the kernels of the picture that it is a part of, so its pixels are the same. */
 static KrsPurpose purpose_of(const Render *render)
 {
-    return render->how.integrator == KRS_INTEGRATOR_PREVIEW ? KRS_FOR_PICTURES : KRS_FOR_PATHS;
+    const KrsRenderOptions *how   = &render->how;
+    const double            whole = count_samples(render, (double)how->width * how->height);
+    return how->integrator != KRS_INTEGRATOR_PREVIEW ? KRS_FOR_PATHS
+           : whole <= SAMPLES_OF_SMALL_PICTURES      ? KRS_FOR_SMALL_PICTURES
+                                                     : KRS_FOR_PICTURES;
 }
 
 KrsStatus render_choose(Render *render)

@@ -110,9 +110,11 @@ uint64_t krs_renderer_complaints(const KrsRenderer *renderer);
    first needed.  Empty zones (krs_frame_set_zones) need shaders of their own: for the first
    zone, and when there are more than 1, 2, 4 or 8 for the first time. */
 typedef enum KrsPurpose {
-    KRS_FOR_PICTURES,  /* krs_render, by the integrator preview */
-    KRS_FOR_QUESTIONS, /* krs_device_probe, krs_device_raycast */
-    KRS_FOR_PATHS      /* krs_render, by the integrators direct and path */
+    KRS_FOR_PICTURES,      /* krs_render, by the integrator preview */
+    KRS_FOR_QUESTIONS,     /* krs_device_probe, krs_device_raycast */
+    KRS_FOR_PATHS,         /* krs_render, by the integrators direct and path */
+    KRS_FOR_SMALL_PICTURES /* as KRS_FOR_PICTURES, of few rays in all: fewer shaders, which are ready
+                              earlier, and are slower.  Pictures differ within the permitted error */
 } KrsPurpose;
 
 /* Compiles the scene's shaders, for pictures.  The scene must outlive the rendering.  On any status

@@ -35,6 +35,7 @@ bool job_has_beams(const Job *job)
     const uint32_t least = MOST_BEAM_STEPS / 2;
     return !job->options.no_beams && !job->rays && job->view.camera.projection != KRS_PANORAMA &&
            job->view.camera.aperture == 0 && /* else the rays of a tile do not meet in the eye */
+           rendering_has_beams(job->rendering, job->options.trace) &&
            rendering_steps_within(job->rendering, least) == least;
 }
 

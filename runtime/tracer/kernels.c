@@ -195,6 +195,11 @@ static void request(Requests *requests, const char *file, KernelVariant variant)
         requests->items[requests->count++] = request_of(entry);
 }
 
+static bool is_for_pictures(KrsPurpose purpose)
+{
+    return purpose == KRS_FOR_PICTURES || purpose == KRS_FOR_SMALL_PICTURES;
+}
+
 /* Requests the kernels that march.  Where march groups are marched one after the other, each has
    its own kernel for rays and its own for normals. */
 static void request_marches(Requests *requests, KrsTrace trace, KrsSchedule schedule)
@@ -207,7 +212,7 @@ static void request_marches(Requests *requests, KrsTrace trace, KrsSchedule sche
                               : rendering_knows_planes(rendering) ? MARCH_WITHOUT_PLANES
                                                                   : 0;
     uint32_t groups         = per_component ? (uint32_t)rendering->program->march_group_count : 0;
-    if (trace == KRS_TRACE_EXACT)
+    if (trace == KRS_TRACE_EXACT && rendering_has_beams(rendering, trace))
         request(requests, "trace.comp",
                 variant_of_trace(rendering, KRS_TRACE_PLAIN, schedule, whole));
     if (!per_component)
@@ -216,7 +221,7 @@ static void request_marches(Requests *requests, KrsTrace trace, KrsSchedule sche
         KrsSchedule own = schedule_of_kernel(
             rendering_schedule_of_march_group(rendering, KRS_SCHEDULE_DEFAULT, march_group));
         request(requests, "trace.comp", variant_of_trace(rendering, trace, own, march_group));
-        if (rendering->purpose == KRS_FOR_PICTURES)
+        if (is_for_pictures(rendering->purpose))
             request(requests, "normals.comp", variant_of_normals(rendering, usual, march_group));
     }
 }
@@ -249,10 +254,10 @@ static void request_sceneless(Requests *requests, KrsPurpose purpose)
 {
     KrsRendering *rendering = requests->rendering;
     KrsRenderer  *renderer  = rendering->renderer;
-    if (purpose == KRS_FOR_PICTURES)
+    if (is_for_pictures(purpose))
         requests->count += renderer_request_pixels(rendering, requests->items + requests->count);
     const bool paths = purpose == KRS_FOR_PATHS;
-    if (paths || (purpose == KRS_FOR_PICTURES && rendering->program->mirrors))
+    if (paths || (is_for_pictures(purpose) && rendering->program->mirrors))
         requests->count += renderer_request_escapes(
             renderer, paths ? rendering->rays : RAYS_OF_PATHS, requests->items + requests->count);
 }
@@ -282,7 +287,7 @@ bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
     Requests    requests = {.rendering = rendering};
     rendering_choose(rendering, &trace, &schedule);
     request_sceneless(&requests, purpose);
-    if (purpose == KRS_FOR_PICTURES) {
+    if (is_for_pictures(purpose)) {
         request_pictures(&requests, trace, schedule_of_kernel(schedule));
     } else if (purpose == KRS_FOR_PATHS) {
         request_marches(&requests, trace, schedule_of_kernel(schedule));

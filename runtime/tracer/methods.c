@@ -10,6 +10,8 @@
 /* From so many on, kernels of march groups take longer to compile than they save in a hundred small
    pictures with mirrors. */
 #define FLOPS_WORTH_MIXED_RAYS 1200
+/* So many march groups take longer to compile than they save in a single small picture. */
+#define GROUPS_FOR_LARGE_PICTURES 3
 
 void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule)
 {
@@ -61,19 +63,27 @@ bool rendering_knows_planes(const KrsRendering *rendering)
     return rendering->program->planes && rendering->zone_slots == 0;
 }
 
-/* By default only on devices of type CPU: others skip far components by branches. */
 /* The rays of mirrors need kernels for the whole scene.  If those are for the picture, too, the first
    picture is earlier; march groups make up for their own kernels where flops are few. */
 static bool prefers_mixed_rays(const KrsRendering *rendering)
 {
-    return rendering->program->mirrors && rendering->purpose == KRS_FOR_PICTURES &&
-           rendering->program->flops >= FLOPS_WORTH_MIXED_RAYS;
+    return rendering->program->mirrors && (rendering->purpose == KRS_FOR_SMALL_PICTURES ||
+                                           (rendering->purpose == KRS_FOR_PICTURES &&
+                                            rendering->program->flops >= FLOPS_WORTH_MIXED_RAYS));
 }
 
+static bool prefers_few_kernels(const KrsRendering *rendering)
+{
+    return rendering->purpose == KRS_FOR_SMALL_PICTURES &&
+           rendering->program->march_group_count >= GROUPS_FOR_LARGE_PICTURES;
+}
+
+/* By default only on devices of type CPU: others skip far components by branches. */
 bool rendering_marches_per_component(const KrsRendering *rendering, KrsComponents components)
 {
     bool by_default = rendering->program->per_component && gpu_is_cpu(&rendering->renderer->gpu) &&
-                      !rendering->renderer->early_outs && !prefers_mixed_rays(rendering);
+                      !rendering->renderer->early_outs && !prefers_mixed_rays(rendering) &&
+                      !prefers_few_kernels(rendering);
     bool holes = rendering->program->planes && !rendering_knows_planes(rendering);
     return rendering->program->march_group_count > 0 && !rendering->program->along && !holes &&
            !rendering->camera_relative &&
@@ -84,6 +94,12 @@ bool rendering_mixes_rays(const KrsRendering *rendering)
 {
     return (rendering->program->mirrors || rendering->purpose == KRS_FOR_PATHS) &&
            !rendering_marches_per_component(rendering, KRS_COMPONENTS_DEFAULT);
+}
+
+/* Beams step by distances.  Where rays go from root to root that takes a kernel of its own. */
+bool rendering_has_beams(const KrsRendering *rendering, KrsTrace trace)
+{
+    return trace < KRS_TRACE_EXACT || rendering->purpose != KRS_FOR_SMALL_PICTURES;
 }
 
 bool rendering_goes_along(const KrsRendering *rendering, KrsTrace trace)

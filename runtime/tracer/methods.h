@@ -23,6 +23,8 @@ bool rendering_marches_per_component(const KrsRendering *rendering, KrsComponent
 /* Whether each ray marches scene part by scene part with this method; false where it cannot. */
 bool rendering_marches_packed(const KrsRendering *rendering, KrsComponents components,
                               KrsTrace trace);
+/* Whether rays by this method have beams before them. */
+bool rendering_has_beams(const KrsRendering *rendering, KrsTrace trace);
 /* Whether rays step by what lies ahead in their direction (krs_along), not by the distance. */
 bool rendering_goes_along(const KrsRendering *rendering, KrsTrace trace);
 /* Whether kernels for all march groups are for the rays of the picture and for those of its paths. */

@@ -2,7 +2,7 @@
 # pictures.sh: what is in the files that `krs render` writes.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 24
+plan 25
 "${CC:-cc}" -std=c17 -D_GNU_SOURCE -o exr_text "$root/tests/cli/exr_text.c" -lOpenEXRCore-3_1 ||
     exit 1
 
@@ -120,3 +120,11 @@ result $? "statistics have every member$missing"
 run render ball.krs --size 41x33 --stats -o a.exr
 [ "$status" -eq 0 ] && grep -q '^rays ' out && ! grep -q Progress out
 result $? "statistics as text"
+
+echo 'camera { eye: [1, 2, 5], target: [0, 0, 0] } show algebraic(x^4 + y^4 + z^4 == 1);' >quartic.krs
+traces() { # size; beams before roots have a kernel of their own
+    run render quartic.krs --quiet --stats json --crop 0,0,8,8 --size "$1" -o quartic.exr
+    grep -o '"trace.comp"' out | wc -l
+}
+[ "$(traces 640x360)" -eq 1 ] && [ "$(traces 1280x720)" -eq 2 ]
+result $? "few samples have few kernels, and a crop has those of its picture"

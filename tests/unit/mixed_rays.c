@@ -147,11 +147,57 @@ static void mirrors_are_as_with_march_groups(void **state)
     close_stage(&stage);
 }
 
+/* Trees of four march groups without mirrors, and rays that go from root to root. */
+static const char trees[] =
+    "camera { eye: [0, 2, 16], target: [0, 0.3, 0], fov: 0.6 }\n"
+    "def tree(seed) = krs { kernel capsule([0, 0, 0], [0, 0.3, 0], 0.04).move([0, 0.4, 0]);\n"
+    "    for i in 0..20 { reflect plane(random_direction(seed + i), 0.04 * i + 0.05);\n"
+    "        kernel capsule([0, 0, 0], [0.03 * i, 0.3, 0], 0.05 + 0.003 * i); } };\n"
+    "let bushes = [tree(1), tree(20), tree(40), tree(60)];\n"
+    "show bushes[0].move([-4.5, 0, 0]); show bushes[1].move([-1.5, 0, 0.7]);\n"
+    "show bushes[2].move([1.5, 0, 1.4]); show bushes[3].move([4.5, 0, 2.1]);\n";
+static const char roots[] = CAMERA
+    "show algebraic(x^4 + y^4 + z^4 == 1).paint(#cc8844); show plane([0, 1, 0], -1);\n";
+
+/* Kernels for small pictures are fewer, none is missing, and what they show is what is asked for by name
+   of a rendering for large ones. */
+static void small_pictures_have_fewer_kernels(const char *text, const char *name)
+{
+    Stage       small = open_stage(text, KRS_FOR_SMALL_PICTURES);
+    Stage       large = open_stage(text, KRS_FOR_PICTURES);
+    const int   few = count_kernels(&small, name), all = count_kernels(&large, "");
+    KrsPicture *a = render(&small, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_DEFAULT);
+    KrsPicture *b = render(&large, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_TOGETHER);
+    assert_int_equal(few, 1);
+    assert_int_equal(count_kernels(&small, name), few);
+    assert_true(count_kernels(&small, "") < all);
+    assert_in_range(count_different(a, b), 0, PIXELS / 100);
+    krs_picture_free(a);
+    krs_picture_free(b);
+    close_stage(&small);
+    close_stage(&large);
+}
+
+static void small_pictures_have_no_march_groups(void **state)
+{
+    (void)state;
+    small_pictures_have_fewer_kernels(trees, "normals.comp");
+    small_pictures_have_fewer_kernels(trees, "trace.comp");
+}
+
+static void small_pictures_have_no_beams_before_roots(void **state)
+{
+    (void)state;
+    small_pictures_have_fewer_kernels(roots, "trace.comp");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(paths_are_as_by_kernels_of_their_own),
         cmocka_unit_test(mirrors_are_as_with_march_groups),
+        cmocka_unit_test(small_pictures_have_no_march_groups),
+        cmocka_unit_test(small_pictures_have_no_beams_before_roots),
     };
     return cmocka_run_group_tests_name("mixed rays", tests, open_renderer, close_renderer);
 }
