@@ -101,13 +101,21 @@ $(B)/krs: $(CLI:%.c=$(B)/%.o) $(CLI_BORDER:%.cpp=$(B)/%.o) $(B)/live.a $(B)/libk
 	@echo "link   $@"
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(WINDOW_LIBS) $(MESH_LIBS) $(LIBS)
 # What the command has for scenes that are open: a client of the library, and no part of it.
-$(B)/live.a: $(LIVE:%.c=$(B)/%.o) $(LIVE_BORDER:%.cpp=$(B)/%.o)
+$(B)/live.a: $(LIVE:%.c=$(B)/%.o) $(LIVE_BORDER:%.cpp=$(B)/%.o) $(B)/members
 	@rm -f $@
-	@$(AR) rcs $@ $^
-$(B)/libkrs.a: $(OBJECTS)
+	@$(AR) rcs $@ $(filter %.o, $^)
+$(B)/libkrs.a: $(OBJECTS) $(B)/members
 	@echo "pack   $@"
 	@rm -f $@
-	@$(AR) rcs $@ $^
+	@$(AR) rcs $@ $(filter %.o, $^)
+# What archives hold: one whose list has changed is packed again, although a new member may be older.
+MEMBERS  := $(OBJECTS) $(LIVE:%.c=$(B)/%.o) $(LIVE_BORDER:%.cpp=$(B)/%.o)
+ifneq ($(file <$(B)/members),$(MEMBERS))
+.PHONY: $(B)/members
+endif
+$(B)/members:
+	@mkdir -p $(@D)
+	@echo '$(MEMBERS)' >$@
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
 	@echo "compile $<"
@@ -121,10 +129,11 @@ $(LANES:%.c=$(B)/%.o): FAST := $(if $(findstring -fsanitize,$(CFLAGS)),-Wno-pass
                                -ffp-contract=off -fno-math-errno -fno-trapping-math
 $(B)/compiler/graph/lanes_avx2.o: FAST += -mavx2
 $(B)/compiler/graph/lanes_avx512.o: FAST += -mavx512f -mavx512dq -mavx512vl -mprefer-vector-width=512
+# Headers of these borders are long: under the sanitizers -O1 would take three times as long as -O0.
 $(B)/%.o: %.cpp
 	@mkdir -p $(@D)
 	@echo "compile $<"
-	@$(CXX) -std=c++17 -Wall -Wextra -I. -I/usr/include/glslang -I/usr/include/imgui -I/usr/include/lib3mf -MMD -MP $(CFLAGS) -c -o $@ $<
+	@$(CXX) -std=c++17 -Wall -Wextra -I. -I/usr/include/glslang -I/usr/include/imgui -I/usr/include/lib3mf -MMD -MP $(CFLAGS) $(if $(findstring -fsanitize,$(CFLAGS)),-O0) -c -o $@ $<
 $(B)/%.o: $(B)/%.c
 	@$(CC) $(STYLE) $(CFLAGS) -c -o $@ $<
 $(B)/library_files.c: $(B)/embed $(LIBRARY)

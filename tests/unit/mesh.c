@@ -14,6 +14,7 @@
 
 #include "compiler/base/vec.h"
 #include "compiler/mesh/bvh.h"
+#include "tests/unit/crossings.h"
 #include "tests/unit/queried.h"
 
 static KrsMesh *mesh_of(Scene s, double error)
@@ -120,42 +121,23 @@ static void check_triangles(Scene s, const KrsMesh *mesh)
     }
 }
 
-/* Whether a segment goes through a triangle that has none of its ends. */
-static bool goes_through(const double a[3], const double b[3], const double corners[3][3])
-{
-    double edges[2][3], along[3], offset[3], cross[3], turn[3];
-    add_scaled3(edges[0], corners[1], -1, corners[0]);
-    add_scaled3(edges[1], corners[2], -1, corners[0]);
-    add_scaled3(along, b, -1, a);
-    add_scaled3(offset, a, -1, corners[0]);
-    cross3(along, edges[1], cross);
-    double size = dot3(edges[0], cross);
-    if (fabs(size) < 1e-15)
-        return false;
-    double first = dot3(offset, cross) / size;
-    cross3(offset, edges[0], turn);
-    double second = dot3(along, turn) / size, t = dot3(edges[1], turn) / size;
-    return first > 1e-9 && second > 1e-9 && first + second < 1 - 1e-9 && t > 1e-9 && t < 1 - 1e-9;
-}
-
-static void check_crossings(const KrsMesh *mesh)
-{
-    for (size_t i = 0; i < mesh->triangle_count; i++) {
-        double corners[3][3];
-        corners_of(mesh, i, corners);
-        for (size_t j = 0; j < mesh->triangle_count; j++)
-            for (int k = 0; k < 3; k++) {
-                const uint32_t *other = mesh->triangles[j], *own = mesh->triangles[i];
-                uint32_t        a = other[k], b = other[(k + 1) % 3];
-                if (a < b && a != own[0] && a != own[1] && a != own[2] && b != own[0] &&
-                    b != own[1] && b != own[2])
-                    assert_false(goes_through(mesh->vertices[a], mesh->vertices[b],
-                                              (const double(*)[3])corners));
-            }
-    }
-}
-
 /* ---- tests ---- */
+
+static void crossings_are_found(void **context)
+{
+    (void)context;
+    double   vertices[7][3]  = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1},
+                                {1, 1, 1}, {9, 9, 0}, {0, 0, 2}};
+    uint32_t crossing[2][3]  = {{0, 1, 2}, {3, 4, 5}};
+    uint32_t of_corner[2][3] = {{0, 1, 2}, {0, 6, 5}}; /* a common corner is no crossing */
+    KrsMesh  mesh            = {
+                    .vertices = vertices, .vertex_count = 7, .triangles = crossing, .triangle_count = 2};
+    assert_true(crosses_itself(&mesh));
+    vertices[3][2] = 0.5; /* the edge ends above the other */
+    assert_false(crosses_itself(&mesh));
+    mesh.triangles = of_corner;
+    assert_false(crosses_itself(&mesh));
+}
 
 typedef struct Known {
     const char *text;
@@ -180,7 +162,7 @@ static void meshes_are_closed_and_near(void **context)
         Scene    s    = scene_of(known[i].text);
         KrsMesh *mesh = mesh_of(s, known[i].error);
         check_closed(mesh);
-        check_crossings(mesh);
+        assert_false(crosses_itself(mesh));
         assert_int_equal(mesh->unresolved, 0);
         assert_int_equal(euler_number(mesh), known[i].euler);
         assert_true(fabs(volume_of(mesh) - known[i].volume) < 1.2 * known[i].area * known[i].error);
@@ -454,7 +436,7 @@ static void simplified_meshes_are_near(void **context)
         assert_true(fabs(few->error - 0.08) < 1e-12);
         assert_int_equal(euler_number(few), euler_number(mesh));
         check_closed(few);
-        check_crossings(few);
+        assert_false(crosses_itself(few));
         check_hits(s, few, 1.2);
         check_triangles(s, few);
         krs_mesh_free(few);
@@ -474,7 +456,7 @@ static void flat_faces_with_a_hole_are_simplified(void **context)
     assert_int_equal(krs_mesh_simplify(mesh, &(KrsMeshOptions){.error = 0.025}, &few), KRS_OK);
     assert_true(100 * few->triangle_count < mesh->triangle_count);
     check_closed(few);
-    check_crossings(few);
+    assert_false(crosses_itself(few));
     krs_mesh_free(few);
     krs_mesh_free(mesh);
     scene_close(s);
@@ -483,6 +465,7 @@ static void flat_faces_with_a_hole_are_simplified(void **context)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(crossings_are_found),
         cmocka_unit_test(meshes_are_closed_and_near),
         cmocka_unit_test(known_surfaces_are_near),
         cmocka_unit_test(bounds_of_distances_are_enough),

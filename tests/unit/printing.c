@@ -16,6 +16,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <xxhash.h>
+
 #include "compiler/print/module.h"
 #include "runtime/tracer/kernels.h"
 #include "runtime/tracer/variants.h"
@@ -148,6 +150,22 @@ static const char *const calls[KRS_FUNCTION_COUNT] = {
     [KRS_FUNCTION_ARCS]                = "krs_atan2(p.x, p.y)",
 };
 
+enum { MOST_KERNELS = 8192 };
+static uint64_t compiled_kernels[MOST_KERNELS];
+static size_t   compiled_count;
+
+/* Whether this very kernel was compiled before: most functions say the same in many variants. */
+static bool was_compiled(const char *kernel, size_t length)
+{
+    uint64_t hash = XXH3_64bits(kernel, length);
+    for (size_t i = 0; i < compiled_count; i++)
+        if (compiled_kernels[i] == hash)
+            return true;
+    assert_true(compiled_count < MOST_KERNELS);
+    compiled_kernels[compiled_count++] = hash;
+    return false;
+}
+
 /* A kernel around it, as a stranger would write one. */
 static void compile_text(const char *text, const KernelScene *of, const char *path)
 {
@@ -165,7 +183,8 @@ static void compile_text(const char *text, const KernelScene *of, const char *pa
     fputs("}\n", out);
     fclose(out);
     uint32_t *words = NULL;
-    if (spirv_compile(kernel, path, &words, &count, &log) != KRS_OK)
+    if (!was_compiled(kernel, length) &&
+        spirv_compile(kernel, path, &words, &count, &log) != KRS_OK)
         fail_msg("%s: %s\n%s", path, log ? log : "no memory", kernel);
     free(words);
     free(log);
