@@ -153,6 +153,17 @@ bool bvh_visit(const Bvh *bvh, const double point[3], double radius, BvhVisit *v
     return true;
 }
 
+bool bvh_triangle_is_near(const Bvh *bvh, uint32_t triangle, const double point[3], double radius,
+                          double nearest[3])
+{
+    double corners[3][3];
+    triangle_corners(bvh, triangle, corners);
+    if (is_clearly_far((const double(*)[3])corners, point, radius))
+        return false;
+    triangle_nearest((const double(*)[3])corners, point, nearest);
+    return distance3(nearest, point) <= radius;
+}
+
 static bool stop_at(void *user, uint32_t triangle, const double corners[3][3])
 {
     uint32_t *found = user;
@@ -161,18 +172,10 @@ static bool stop_at(void *user, uint32_t triangle, const double corners[3][3])
     return false;
 }
 
-static bool triangle_is_near(const Bvh *bvh, uint32_t triangle, const double point[3],
-                             double radius)
-{
-    double corners[3][3], nearest[3];
-    triangle_corners(bvh, triangle, corners);
-    triangle_nearest((const double(*)[3])corners, point, nearest);
-    return distance3(nearest, point) <= radius;
-}
-
 bool bvh_is_near(const Bvh *bvh, const double point[3], double radius, uint32_t *last)
 {
-    if (*last < bvh->triangle_count && triangle_is_near(bvh, *last, point, radius))
+    double nearest[3];
+    if (*last < bvh->triangle_count && bvh_triangle_is_near(bvh, *last, point, radius, nearest))
         return true;
     return !bvh_visit(bvh, point, radius, stop_at, last);
 }

@@ -33,8 +33,10 @@ void bvh_free(Bvh *bvh, size_t count, Arena *arena);
    whether none did. */
 typedef bool BvhVisit(void *user, uint32_t triangle, const double corners[3][3]);
 bool bvh_visit(const Bvh *bvh, const double point[3], double radius, BvhVisit *visit, void *user);
-/* Whether a triangle comes within the radius of a point.  `last` is one that may, which is tried first, and
-   becomes the one that does. */
+/* Whether a triangle comes within the radius of a point, and its nearest point then. */
+bool bvh_triangle_is_near(const Bvh *bvh, uint32_t triangle, const double point[3], double radius,
+                          double nearest[3]);
+/* Whether any does.  `last` is one that may, which is tried first, and becomes the one that does. */
 bool bvh_is_near(const Bvh *bvh, const double point[3], double radius, uint32_t *last);
 
 /* The nearest point of a triangle. */

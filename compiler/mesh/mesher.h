@@ -8,6 +8,7 @@
 
 #include "compiler/base/parallel.h"
 #include "compiler/mesh/groups.h"
+#include "compiler/mesh/marks.h"
 #include "compiler/mesh/verify.h"
 
 /* What a point of the tetrahedra knows of those around it: smooth.h. */
@@ -16,8 +17,6 @@ typedef struct Around {
     float distance;         /* to the surface, at most: the largest deviation over the slope */
     bool  in_pieces;        /* some is bounded by pieces */
 } Around;
-
-enum { MARKS = 160 }; /* cells along a side */
 
 typedef struct Mesher {
     Memory                memory;
@@ -30,7 +29,7 @@ typedef struct Mesher {
     Tets                  tets;
     Contour               contour;
     Bvh                   bvh;
-    bool                  marked[MARKS][MARKS][MARKS];
+    Marks                 marks; /* where the mesh is new, but for proofs of what is new */
     struct {
         Around *items;
         size_t  count, capacity;

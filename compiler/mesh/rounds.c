@@ -3,8 +3,9 @@
  *
  * Where the surface is smooth a proof takes no more than values that are known (smooth.h), so a mesh is
  * refined there first.  Then parts that have edges are proven by cells (verify.h).  Such a proof holds
- * until the mesh changes near to it: after each round those that were bisected mark the cells of a
- * coarse grid, and what touches no marked cell is not looked at again.
+ * until the mesh changes where it asked for it: those that were bisected mark the cells of a grid.  What is refuted
+ * is bisected and proven first.  When nothing is refuted any more, all proofs that touch marked cells are
+ * found again.
  */
 #include <string.h>
 
@@ -18,50 +19,30 @@ static const double CUBE_CORNER[3] = {0.04417, 0.04731, 0.04553};
 
 /* ---- marks ---- */
 
-typedef struct Marks {
-    int low[3], high[3];
-} Marks;
-
-static Marks marks_in(const Mesher *m, const double low[3], const double high[3])
-{
-    Marks marks;
-    for (int k = 0; k < 3; k++) {
-        double scale = MARKS / m->side, origin = m->tets.origin[k];
-        marks.low[k]  = (int)fmax(0, floor((low[k] - origin) * scale));
-        marks.high[k] = (int)fmin(MARKS - 1, floor((high[k] - origin) * scale));
-    }
-    return marks;
-}
-
-static void mark(Mesher *m, const Tet *tet)
+/* Where a tetrahedron is, and so far around. */
+static void add_place(const Mesher *m, const Tet *tet, double around, MarkBox *box)
 {
     double low[3], high[3];
     tet_box(m, tet, low, high);
-    Marks in = marks_in(m, low, high);
-    for (int x = in.low[0]; x <= in.high[0]; x++)
-        for (int y = in.low[1]; y <= in.high[1]; y++)
-            for (int z = in.low[2]; z <= in.high[2]; z++)
-                m->marked[x][y][z] = true;
+    for (int k = 0; k < 3; k++) {
+        low[k] -= around;
+        high[k] += around;
+    }
+    mark_box_add(&m->tets, low, high, box);
 }
 
-/* Whether what a proof asked for may be new. */
-static bool is_marked(const Mesher *m, const Tet *tet)
+/* What is fresh has triangles now, or had some before it was bisected. */
+static void mark_fresh(Mesher *m)
 {
-    double corners[4][3], center[3], low[3], high[3];
-    tets_corners(&m->tets, tet, corners);
-    double reach = fmax(corners_ball((const double(*)[3])corners, center) + 2 * m->error,
-                        tet->reach);
-    for (int k = 0; k < 3; k++) {
-        low[k]  = center[k] - reach;
-        high[k] = center[k] + reach;
+    for (size_t i = 0; i < m->tets.fresh.count; i++) {
+        Tet    *tet = &m->tets.list.items[m->tets.fresh.items[i]];
+        MarkBox box = mark_box_none();
+        if (tet->replaced || tet->triangle_count > 0) {
+            add_place(m, tet, 0, &box);
+            marks_set(&m->marks, &box);
+        }
+        tet->replaced = false;
     }
-    Marks in = marks_in(m, low, high);
-    for (int x = in.low[0]; x <= in.high[0]; x++)
-        for (int y = in.low[1]; y <= in.high[1]; y++)
-            for (int z = in.low[2]; z <= in.high[2]; z++)
-                if (m->marked[x][y][z])
-                    return true;
-    return false;
 }
 
 /* ---- groups ---- */
@@ -263,8 +244,11 @@ static void judge_smooth(Mesher *m)
     look_around(m);
     for (size_t i = 0; i < m->tets.list.count; i++) {
         Tet *tet = &m->tets.list.items[i];
-        if (tet->state == TET_FITS && all_fit_around(m, tet))
+        if (tet->state == TET_FITS && all_fit_around(m, tet)) {
             tet->state = TET_PROVEN;
+            tet->needs = mark_box_none();
+            add_place(m, tet, m->error, &tet->needs);
+        }
     }
 }
 
@@ -280,14 +264,20 @@ static void verify_group(Mesher *m, Verifier *verifier, const Group *group)
 
 /* ---- rounds ---- */
 
-/* Proofs end where the mesh is new. */
-static void forget_marked(Mesher *m)
+/* Proofs end where the mesh is new.  False: none did. */
+static bool forget_marked(Mesher *m)
 {
+    bool any = false;
     for (size_t i = 0; i < m->tets.list.count; i++) {
         Tet *tet = &m->tets.list.items[i];
-        if ((tet->state == TET_PROVEN || tet->state == TET_UNRESOLVED) && is_marked(m, tet))
+        if ((tet->state == TET_PROVEN || tet->state == TET_UNRESOLVED) &&
+            marks_touch(&m->marks, &tet->needs)) {
             tet->state = (uint8_t)state_by_bounds(m, tet);
+            any        = true;
+        }
     }
+    marks_clear(&m->marks);
+    return any;
 }
 
 static bool bisect_refuted(Mesher *m, size_t i)
@@ -317,9 +307,6 @@ static bool refine(Mesher *m, bool fresh)
     if (bisect_all_refuted(m, fresh) == 0)
         return false;
     tets_close(&m->tets);
-    for (size_t i = 0; i < m->tets.fresh.count; i++)
-        if (m->tets.list.items[m->tets.fresh.items[i]].state == TET_NEW)
-            mark(m, &m->tets.list.items[m->tets.fresh.items[i]]);
     contour_distances(&m->contour);
     return true;
 }
@@ -390,6 +377,7 @@ static bool refine_by_bounds(Mesher *m)
 {
     do {
         contour_look(&m->contour);
+        mark_fresh(m);
         find_fresh_groups(m);
         double count = (double)m->tets.fresh.count, few = count / 3;
         if (!for_groups(m, judge_group, fraction_by_bounds(m->looked + count, few)))
@@ -402,8 +390,6 @@ static bool refine_by_bounds(Mesher *m)
 /* False: it was stopped. */
 static bool prove(Mesher *m)
 {
-    forget_marked(m);
-    memset(m->marked, 0, sizeof m->marked);
     judge_smooth(m);
     find_tree(m);
     find_groups(m, TET_FITS, TET_ROUGH);
@@ -438,6 +424,6 @@ bool find_proven_mesh(Mesher *m)
         contour_find(&m->contour);
         if (!prove(m))
             return false;
-    } while (refine(m, false));
+    } while (refine(m, false) || forget_marked(m));
     return true;
 }

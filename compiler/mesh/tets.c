@@ -120,6 +120,7 @@ void tets_bisect(Tets *tets, size_t index)
     first.tag   = tet.tag > 1 ? (uint8_t)(tet.tag - 1) : 3;
     second.tag  = first.tag;
     first.state = second.state = tet.state == TET_EMPTY ? TET_EMPTY : TET_NEW;
+    first.replaced = second.replaced = tet.replaced || tet.triangle_count > 0;
     first.triangle_count = second.triangle_count = 0;
     first.width                                  = find_width(tets, &first);
     second.width                                 = find_width(tets, &second);

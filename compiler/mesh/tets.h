@@ -31,17 +31,23 @@ typedef enum TetState {
     TET_UNRESOLVED /* it may hold what is thinner than the error */
 } TetState;
 
+/* Cells of a grid (marks.h), none if the low ones are above the high ones. */
+typedef struct MarkBox {
+    uint16_t low[3], high[3];
+} MarkBox;
+
 typedef struct Tet {
     uint32_t points[4];
     uint8_t  tag;   /* the edge that is bisected next is that of points 0 and `tag` */
     uint8_t  state; /* TetState */
     uint8_t  triangle_count;
-    bool     fresh; /* it is among those */
+    bool     fresh;    /* it is among those */
+    bool     replaced; /* what it was bisected from had triangles */
     uint32_t first_triangle;
     uint32_t patch;            /* of the contour, where it has triangles */
     float    width;            /* a point of one face or edge is no nearer to the one across */
     float    deviation, slope; /* smooth.h */
-    float    reach;            /* how far from its centre a proof by cells asks for the mesh */
+    MarkBox  needs;            /* where its proof asks for the mesh of others */
     float    steep;            /* pieces.h; 0 where it is by smooth.h */
 } Tet;
 

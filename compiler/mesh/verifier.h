@@ -13,12 +13,12 @@ typedef struct Verifier {
     const Tets *tets;
     const Bvh  *mesh;
     double      error;
-    double      center[3],
-        reach;           /* of the tetrahedron; how far from there the proof asks for triangles */
-    double   budget;     /* cells that the proof may still look at */
-    uint32_t last;       /* the triangle that was found to be near to a place */
-    uint32_t unresolved; /* places of the tetrahedron where it has not been decided, */
-    double   place[3];   /* and one of them; else its centre */
+    Tet        *tet;
+    double      center[3];
+    double      budget;     /* cells that the proof may still look at */
+    uint32_t    last;       /* the triangle that was found to be near to a place */
+    uint32_t    unresolved; /* places of the tetrahedron where it has not been decided, */
+    double      place[3];   /* and one of them; else its centre */
 } Verifier;
 
 #endif

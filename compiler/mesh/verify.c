@@ -15,6 +15,7 @@
 #include "compiler/base/vec.h"
 #include "compiler/mesh/gradient.h"
 #include "compiler/mesh/lens.h"
+#include "compiler/mesh/marks.h"
 
 enum { MOST_UNRESOLVED = 16, MOST_HALVINGS = 80 };
 /* Parts of a cell's radius from where on a lens is worth another try: the last was too thick; or the surface had
@@ -51,11 +52,36 @@ bool verify_is_empty(const Verifier *verifier, const Tet *tet)
 
 /* ---- from the surface to the mesh ---- */
 
+/* The proof asks for the mesh so far around a place. */
+static void note_need(Verifier *verifier, const double place[3], double around)
+{
+    double low[3], high[3];
+    for (int k = 0; k < 3; k++) {
+        low[k]  = place[k] - around;
+        high[k] = place[k] + around;
+    }
+    mark_box_add(verifier->tets, low, high, &verifier->tet->needs);
+}
+
+/* Its own triangles are there as long as the tetrahedron; of others the proof needs that triangle. */
+static bool is_near_mesh(Verifier *verifier, const double place[3], double radius)
+{
+    const Tet *tet = verifier->tet;
+    double     nearest[3];
+    for (uint32_t i = 0; i < tet->triangle_count; i++)
+        if (bvh_triangle_is_near(verifier->mesh, tet->first_triangle + i, place, radius, nearest))
+            return true;
+    if (!bvh_is_near(verifier->mesh, place, radius, &verifier->last))
+        return false;
+    bvh_triangle_is_near(verifier->mesh, verifier->last, place, radius, nearest);
+    note_need(verifier, nearest, 0);
+    return true;
+}
+
 /* Whether the mesh fills a lens that a proof needs. */
 static bool fills_lens(Verifier *verifier, const Lens *lens)
 {
-    double reach    = distance3(lens->center, verifier->center) + lens_reach(verifier, lens);
-    verifier->reach = fmax(verifier->reach, ROUNDING * reach);
+    note_need(verifier, lens->center, ROUNDING * lens_reach(verifier, lens));
     return mesh_fills_lens(verifier, lens);
 }
 
@@ -121,6 +147,7 @@ static bool leave_unresolved(Verifier *verifier, const double center[3], double 
     }
     if (is_deep_beyond(verifier, center, distance, step))
         return false;
+    note_need(verifier, center, verifier->error);
     verifier->unresolved++;
     memcpy(verifier->place, center, sizeof verifier->place);
     return true;
@@ -155,8 +182,7 @@ static CellView cell_view(Verifier *verifier, const Cell *cell)
     CellView view  = {0};
     view.radius    = ROUNDING * corners_ball(cell->corners, view.center);
     view.near_mesh = view.radius < verifier->error &&
-                     bvh_is_near(verifier->mesh, view.center, verifier->error - view.radius,
-                                 &verifier->last);
+                     is_near_mesh(verifier, view.center, verifier->error - view.radius);
     view.may_be_flat = view.radius > verifier->error && view.radius <= cell->lens;
     return view;
 }
@@ -415,11 +441,11 @@ TetState verify_tet(Verifier *verifier, Tet *tet)
     Box box = corners_box((const double(*)[3])whole.corners, 4, verifier->error);
     if (!field_enter(verifier->field, box))
         return TET_EMPTY;
-    verifier->reach = corners_ball((const double(*)[3])whole.corners, verifier->center) +
-                      2 * verifier->error;
+    tet->needs    = mark_box_none();
+    verifier->tet = tet;
+    corners_ball((const double(*)[3])whole.corners, verifier->center);
     memcpy(verifier->place, verifier->center, sizeof verifier->place);
     TetState state = verify_parts(verifier, tet, &whole, side);
-    tet->reach     = (float)(verifier->reach * (1 + 1e-6));
     field_leave(verifier->field);
     return state;
 }
