@@ -41,8 +41,8 @@ static bool finds_no_cache(const KernelsAhead *ahead)
     return gpu_warm_up_ms(&ahead->renderer.gpu, ahead->kernels[0].warm_up) > compiled_ms;
 }
 
-/* Makes a kernel, and waits until the driver has compiled it.  To start glslang takes a quarter of the time
-   of a first picture with full caches, which need none. */
+/* Makes a kernel, and waits until the driver has compiled it.  To start glslang takes a quarter of the
+   time of a small scene's first picture with full caches, which needs none. */
 static bool make(KernelsAhead *ahead, size_t i)
 {
     Gpu   *gpu    = &ahead->renderer.gpu;
