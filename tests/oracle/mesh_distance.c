@@ -152,15 +152,43 @@ static Vec crossing(const Surface *surface, Vec outer, Vec inner)
     return vec_mix(outer, inner, 0.5);
 }
 
-static void judge_hit(const MeshGrid *grid, Vec hit, double error, Apart *apart)
+static bool ball_is_of_one_side(const Surface *surface, Vec center, double radius, bool inside,
+                                Random *random)
+{
+    enum { AROUND = 60 };
+    for (int i = 0; i < AROUND; i++)
+        if (is_inside(surface, vec_add(center, vec_scale(radius, random_unit(random)))) != inside)
+            return false;
+    return is_inside(surface, center) == inside;
+}
+
+/* Whether a ball as thick as the error fits on this side, no farther away than the error. */
+static bool is_thick(const Surface *surface, Vec hit, double error, bool inside, Random *random)
+{
+    enum { BALLS = 400 };
+    for (int i = 0; i < BALLS; i++) {
+        double away   = error * cbrt(random_between(random, 0, 1));
+        Vec    center = vec_add(hit, vec_scale(away, random_unit(random)));
+        if (ball_is_of_one_side(surface, center, 0.5 * error, inside, random))
+            return true;
+    }
+    return false;
+}
+
+static void judge_hit(const Surface *surface, const MeshGrid *grid, Vec hit, double error,
+                      Random *random, Apart *apart)
 {
     double distance     = mesh_grid_distance(grid, hit);
     apart->farthest_hit = fmax(apart->farthest_hit, distance / error);
     apart->hits++;
-    if (distance > error) {
-        apart->lost++;
+    if (distance <= error)
+        return;
+    bool thick = is_thick(surface, hit, error, true, random) &&
+                 is_thick(surface, hit, error, false, random);
+    if (thick || apart->thick == 0)
         apart->lost_at = hit;
-    }
+    apart->lost++;
+    apart->thick += thick;
 }
 
 static Vec random_in_box(const Surface *surface, Random *random)
@@ -207,8 +235,9 @@ static void cast_ray(const Surface *surface, const MeshGrid *grid, double error,
         Vec  here = vec_add(from, vec_scale(shift + i * step, direction));
         bool now  = is_inside(surface, here);
         if (now != inside) {
-            judge_hit(grid, now ? crossing(surface, before, here) : crossing(surface, here, before),
-                      error, apart);
+            judge_hit(surface, grid,
+                      now ? crossing(surface, before, here) : crossing(surface, here, before),
+                      error, random, apart);
             apart->crossings[inside]++;
         }
         before = here;

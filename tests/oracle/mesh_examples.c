@@ -1,28 +1,44 @@
 /*
  * mesh_examples.c: meshes of the examples are within the error of them, in both directions.
  *
- * mesh_examples [SECONDS SCENE...]: these scenes, each for so many seconds at most.  What has an end is meshed, within
- * the box of it, so that a floor is cut off there.  The error is a part of the box's longest side, twice as large
- * as long as a mesh takes too long.
+ * mesh_examples [SCENE...]: these scenes, as mesh_examples.def tells; one that is quick without any.
  */
 #include "tests/oracle/mesh_distance.h"
 #include "tests/oracle/mesh_shape.h"
 #include "tests/oracle/product.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
-static double       seconds = 20;
-static char       **scenes; /* NULL: one that is quick */
-static char *const  quick[] = {"examples/38-dodecahedron.krs", NULL};
-static const double FINEST = 1. / 100, COARSEST = 1. / 20; /* errors, in longest sides */
+enum { RAYS = 400, POINTS = 2000 };
+static const double LONGEST = 600; /* seconds for a mesh; beyond, it fails */
+
+typedef struct Row {
+    const char *name;
+    double      box[6], error;
+} Row;
+
+#define BOX(...)    \
+    {               \
+        __VA_ARGS__ \
+    }
+#define EXAMPLE(name, box, error) {name, box, error},
+static const Row rows[] = {
+#include "tests/oracle/mesh_examples.def"
+};
+static const size_t row_count = sizeof rows / sizeof *rows;
+
+static char      **scenes; /* NULL: one that is quick */
+static char *const quick[] = {"examples/38-dodecahedron.krs", NULL};
 
 typedef struct Example {
     Product        product;
     KrsMeshOptions options;
-    bool           estimate, floor; /* something of it has no end */
+    bool           estimate, endless;
+    double         start, seconds; /* of the mesh */
 } Example;
 
 static double now(void) { return (double)clock() / CLOCKS_PER_SEC; }
@@ -39,113 +55,129 @@ static double value_of_example(const void *user, Vec p)
     return value;
 }
 
-/* The box around all components that have an end; false: none has. */
-static bool find_box(Example *e)
+static void look_at_components(Example *e)
 {
-    bool any = false;
-    for (int k = 0; k < 3; k++) {
-        e->options.low[k]  = INFINITY;
-        e->options.high[k] = -INFINITY;
-    }
     for (size_t i = 0; i < krs_component_count(e->product.scene); i++) {
         KrsComponent component;
-        bool         ends = true;
         assert_int_equal(krs_component(e->product.scene, i, &component), KRS_OK);
-        for (int k = 0; k < 3; k++)
-            ends = ends && isfinite(component.low[k]) && isfinite(component.high[k]);
-        e->floor    = e->floor || !ends;
         e->estimate = e->estimate || component.estimate;
-        any         = any || ends;
-        for (int k = 0; ends && k < 3; k++) {
-            e->options.low[k]  = fmin(e->options.low[k], component.low[k]);
-            e->options.high[k] = fmax(e->options.high[k], component.high[k]);
-        }
+        for (int k = 0; k < 3; k++)
+            e->endless = e->endless || isinf(component.high[k] - component.low[k]);
     }
-    return any;
 }
 
 static bool go_on(void *user, double fraction)
 {
+    const Example *example = user;
     (void)fraction;
-    return now() < *(const double *)user;
+    return now() < example->start + LONGEST;
 }
 
-/* The finest mesh that takes no longer than is wanted. */
-static KrsStatus make_mesh(Example *e, double side, KrsMesh **mesh)
+static Example open_example(const char *path, const Row *row)
 {
-    KrsStatus status = KRS_INTERRUPTED;
-    double    end;
-    e->options.go_on = go_on;
-    e->options.user  = &end;
-    for (double part = FINEST; status == KRS_INTERRUPTED && part <= COARSEST; part *= 2) {
-        end              = now() + seconds;
-        e->options.error = part * side;
-        status           = krs_mesh(e->product.frame, &e->options, mesh);
-    }
-    return status;
+    Example e = {.start = now()};
+    memcpy(e.options.low, row->box, sizeof e.options.low);
+    memcpy(e.options.high, row->box + 3, sizeof e.options.high);
+    e.options.within = true;
+    e.options.error  = row->error;
+    assert_int_equal(krs_compile_file(path, NULL, &e.product.scene), KRS_OK);
+    assert_int_equal(krs_frame_new(e.product.scene, &e.product.frame), KRS_OK);
+    look_at_components(&e);
+    return e;
 }
 
-static void judge(const char *path, const Example *e, const KrsMesh *mesh, double start)
+/* Of what has no end there is no mesh without a box. */
+static void check_refusal(const Example *e)
 {
-    const KrsMeshOptions *o       = &e->options;
-    Random                random  = {7};
-    Surface               surface = {value_of_example, e, vec(o->low[0], o->low[1], o->low[2]),
-                                     vec(o->high[0], o->high[1], o->high[2])};
+    KrsMeshOptions options = {.error = e->options.error};
+    KrsMesh       *mesh;
+    if (e->endless)
+        assert_int_equal(krs_mesh(e->product.frame, &options, &mesh), KRS_BAD_ARGUMENT);
+}
+
+static void judge(const Row *row, const Example *e, const KrsMesh *mesh)
+{
+    const double *box     = row->box;
+    Random        random  = {7};
+    Surface       surface = {value_of_example, e, vec(box[0], box[1], box[2]),
+                             vec(box[3], box[4], box[5])};
     check_closed(mesh);
-    Apart apart = mesh_apart(mesh, &surface, o->error, 300, 1500, &random);
-    print_message("# %s%s%s: error %.3g, %zu triangles; %zu hits, at most %.3f errors away, %zu "
-                  "lost; %zu points, %zu astray; %zu reported; %.0f s\n",
-                  path, e->floor ? ", cut" : "", e->estimate ? ", an estimate" : "", o->error,
-                  mesh->triangle_count, apart.hits, apart.farthest_hit, apart.lost, apart.points,
-                  apart.astray, mesh->unresolved, now() - start);
+    Apart apart = mesh_apart(mesh, &surface, row->error, RAYS, POINTS, &random);
+    print_message("| %s%s | %g, %g, %g to %g, %g, %g | %g | %zu | %zu | %.3f | %zu | %zu | %zu | "
+                  "%zu | %.0f s "
+                  "|\n",
+                  row->name, e->estimate ? ", an estimate" : "", box[0], box[1], box[2], box[3],
+                  box[4], box[5], row->error, mesh->triangle_count, apart.hits, apart.farthest_hit,
+                  apart.lost, apart.points, apart.astray, mesh->unresolved, e->seconds);
+    if (apart.lost > 0)
+        print_message("# lost at (%.9g, %.9g, %.9g), %zu where nothing is thin\n", apart.lost_at.x,
+                      apart.lost_at.y, apart.lost_at.z, apart.thick);
+    if (apart.astray > 0)
+        print_message("# astray at (%.9g, %.9g, %.9g)\n", apart.astray_at.x, apart.astray_at.y,
+                      apart.astray_at.z);
+    assert_true(apart.hits > RAYS / 10 && mesh->triangle_count > 100);
     assert_true(e->estimate || apart.astray == 0);
+    assert_true(e->estimate || apart.thick == 0);
     assert_true(e->estimate || mesh->unresolved > 0 || apart.lost == 0);
 }
 
-static bool try_example(const char *path)
+static const Row *find_row(const char *path)
 {
-    Example  e     = {.options = {.within = true}};
-    KrsMesh *mesh  = NULL;
-    double   start = now(), side = 0;
-    bool     judged = false;
-    assert_int_equal(krs_compile_file(path, NULL, &e.product.scene), KRS_OK);
-    assert_int_equal(krs_frame_new(e.product.scene, &e.product.frame), KRS_OK);
-    if (!find_box(&e))
-        print_message("# %s: nothing of it has an end\n", path);
-    else {
-        for (int k = 0; k < 3; k++)
-            side = fmax(side, e.options.high[k] - e.options.low[k]);
-        KrsStatus status = make_mesh(&e, side, &mesh);
-        judged           = status == KRS_OK;
-        if (judged)
-            judge(path, &e, mesh, start);
-        else
-            print_message("# %s: not meshed: %s\n", path,
-                          status == KRS_INTERRUPTED     ? "it takes too long"
-                          : status == KRS_OUT_OF_MEMORY ? "it takes too much memory"
-                                                        : "it has surfaces without thickness");
-        krs_mesh_free(mesh);
-    }
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    size_t      length = strcspn(name, ".");
+    for (size_t i = 0; i < row_count; i++)
+        if (strlen(rows[i].name) == length && strncmp(rows[i].name, name, length) == 0)
+            return &rows[i];
+    fail_msg("mesh_examples.def has no row for %s", path);
+    return NULL;
+}
+
+static void try_example(const char *path)
+{
+    const Row *row = find_row(path);
+    Example    e   = open_example(path, row);
+    KrsMesh   *mesh;
+    e.options.go_on = go_on;
+    e.options.user  = &e;
+    assert_int_equal(krs_mesh(e.product.frame, &e.options, &mesh), KRS_OK);
+    e.seconds = now() - e.start;
+    check_refusal(&e);
+    judge(row, &e, mesh);
+    krs_mesh_free(mesh);
     product_free(&e.product);
-    return judged;
 }
 
 static void examples_are_within_the_error(void **state)
 {
-    size_t judged = 0, count = 0;
     (void)state;
-    for (char *const *path = scenes ? scenes : quick; *path; path++, count++)
-        judged += try_example(*path);
-    print_message("# %zu of %zu scenes\n", judged, count);
-    assert_true(judged > 0 && (scenes || judged == count));
+    for (char *const *path = scenes ? scenes : quick; *path; path++)
+        try_example(*path);
+}
+
+/* So none can be forgotten. */
+static void each_example_has_a_row(void **state)
+{
+    DIR   *folder = opendir("examples");
+    size_t found  = 0;
+    (void)state;
+    assert_non_null(folder);
+    for (struct dirent *entry = readdir(folder); entry; entry = readdir(folder)) {
+        const char *dot = strrchr(entry->d_name, '.');
+        if (!dot || strcmp(dot, ".krs") != 0)
+            continue;
+        find_row(entry->d_name);
+        found++;
+    }
+    closedir(folder);
+    assert_int_equal(found, row_count);
 }
 
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_example_has_a_row),
         cmocka_unit_test(examples_are_within_the_error),
     };
-    seconds = argc > 1 ? atof(argv[1]) : seconds;
-    scenes  = argc > 2 ? argv + 2 : NULL;
+    scenes = argc > 1 ? argv + 1 : NULL;
     return cmocka_run_group_tests_name("mesh_examples", tests, NULL, NULL);
 }

@@ -40,7 +40,7 @@ typedef struct Tally {
     double farthest;
 } Tally;
 
-/* Where nothing is reported, nothing may be lost; points of a mesh are never astray. */
+/* Where nothing is reported, nothing may be lost, and nowhere what is thick; points of a mesh are never astray. */
 static void judge_mesh(const KrsMesh *mesh, const Surface *surface, double error, Random *random,
                        const char *text, Tally *tally)
 {
@@ -55,6 +55,12 @@ static void judge_mesh(const KrsMesh *mesh, const Surface *surface, double error
         fail_msg("%s\n%zu of %zu hits are farther than %g from the mesh, as at (%.9g, %.9g, %.9g)",
                  text, apart.lost, apart.hits, error, apart.lost_at.x, apart.lost_at.y,
                  apart.lost_at.z);
+    if (apart.thick > 0)
+        fail_msg(
+            "%s\n%zu of %zu hits are farther than %g from the mesh where nothing is thin, as at "
+            "(%.9g, %.9g, %.9g)",
+            text, apart.thick, apart.hits, error, apart.lost_at.x, apart.lost_at.y,
+            apart.lost_at.z);
     if (mesh->unresolved == 0)
         tally->farthest = fmax(tally->farthest, apart.farthest_hit);
     tally->scenes++;
@@ -185,6 +191,12 @@ static double value_of_both(const void *user, Vec p)
     return fmin(value_of_ring(user, p), vec_distance(p, vec(0, 0.1, 0)) - 0.2);
 }
 
+/* With a plate that is thinner than the error. */
+static double value_of_ring_and_plate(const void *user, Vec p)
+{
+    return fmin(value_of_ring(user, p), fmax(fabs(p.y) - 0.015, hypot(p.x, p.z) - 0.3));
+}
+
 /* Each vertex away from the middle of the ring's tube. */
 static void grow_ring(KrsMesh *mesh, double by)
 {
@@ -213,6 +225,10 @@ static void what_is_farther_than_the_error_is_seen(void **state)
     assert_int_equal(good.lost + good.astray, 0);
     Apart without = mesh_apart(mesh, &both, error, rays, points, &random);
     assert_true(without.lost > 5 && without.astray == 0);
+    assert_int_equal(without.thick, without.lost);
+    Surface plate = {value_of_ring_and_plate, NULL, own.low, own.high};
+    without       = mesh_apart(mesh, &plate, error, rays, points, &random);
+    assert_true(without.lost > 5 && without.thick == 0);
     grow_ring(mesh, 1.5 * error);
     Apart grown = mesh_apart(mesh, &own, error, rays, points, &random);
     assert_true(grown.lost > good.hits / 2 && grown.astray > good.points / 2);
