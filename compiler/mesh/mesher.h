@@ -29,7 +29,7 @@ typedef struct Mesher {
     Tets                  tets;
     Contour               contour;
     Bvh                   bvh;
-    Marks                 marks; /* where the mesh is new, but for proofs of what is new */
+    Marks                 marks; /* where the mesh is new since proofs were found */
     struct {
         Around *items;
         size_t  count, capacity;

@@ -4,7 +4,7 @@
  * Where the surface is smooth a proof takes no more than values that are known (smooth.h), so a mesh is
  * refined there first.  Then parts that have edges are proven by cells (verify.h).  Such a proof holds
  * until the mesh changes where it asked for it: those that were bisected mark the cells of a grid.  What is refuted
- * is bisected and proven first.  When nothing is refuted any more, all proofs that touch marked cells are
+ * is bisected and proven first.  When nothing is refuted any more, proofs that have become stale are
  * found again.
  */
 #include <string.h>
@@ -264,19 +264,32 @@ static void verify_group(Mesher *m, Verifier *verifier, const Group *group)
 
 /* ---- rounds ---- */
 
-/* Proofs end where the mesh is new.  False: none did. */
-static bool forget_marked(Mesher *m)
+static bool has_proof(const Tet *tet)
+{
+    return tet->state == TET_PROVEN || tet->state == TET_UNRESOLVED;
+}
+
+/* Proofs are stale where the mesh has changed since they were found. */
+static void find_stale(Mesher *m)
+{
+    for (size_t i = 0; i < m->tets.list.count; i++) {
+        Tet *tet   = &m->tets.list.items[i];
+        tet->stale = has_proof(tet) && (tet->stale || marks_touch(&m->marks, &tet->needs));
+    }
+    marks_clear(&m->marks);
+}
+
+/* False: no proof was stale. */
+static bool forget_stale(Mesher *m)
 {
     bool any = false;
     for (size_t i = 0; i < m->tets.list.count; i++) {
         Tet *tet = &m->tets.list.items[i];
-        if ((tet->state == TET_PROVEN || tet->state == TET_UNRESOLVED) &&
-            marks_touch(&m->marks, &tet->needs)) {
+        if (has_proof(tet) && tet->stale) {
             tet->state = (uint8_t)state_by_bounds(m, tet);
             any        = true;
         }
     }
-    marks_clear(&m->marks);
     return any;
 }
 
@@ -390,6 +403,7 @@ static bool refine_by_bounds(Mesher *m)
 /* False: it was stopped. */
 static bool prove(Mesher *m)
 {
+    find_stale(m);
     judge_smooth(m);
     find_tree(m);
     find_groups(m, TET_FITS, TET_ROUGH);
@@ -424,6 +438,6 @@ bool find_proven_mesh(Mesher *m)
         contour_find(&m->contour);
         if (!prove(m))
             return false;
-    } while (refine(m, false) || forget_marked(m));
+    } while (refine(m, false) || forget_stale(m));
     return true;
 }

@@ -43,6 +43,7 @@ typedef struct Tet {
     uint8_t  triangle_count;
     bool     fresh;    /* it is among those */
     bool     replaced; /* what it was bisected from had triangles */
+    bool     stale;    /* the mesh has changed where its proof asked for it */
     uint32_t first_triangle;
     uint32_t patch;            /* of the contour, where it has triangles */
     float    width;            /* a point of one face or edge is no nearer to the one across */
