@@ -117,8 +117,12 @@ $(B)/bench/lanes/lanes: $(B)/bench/lanes/lanes.o $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
 bench-lanes: $(B)/bench/lanes/lanes
 	@$(B)/bench/lanes/lanes
-bench-mesh: $(B)/krs
-	@bench/mesh/mesh.sh $(B)/krs
+# CGAL meshes some surfaces, too, where it is installed.
+PEER := $(if $(wildcard /usr/include/CGAL/make_surface_mesh.h),$(B)/bench/mesh/peer)
+$(B)/bench/mesh/peer: $(B)/bench/mesh/peer.o
+	@$(CXX) $(CFLAGS) -o $@ $^ -lgmp -lmpfr
+bench-mesh: $(B)/krs $(PEER)
+	@bench/mesh/mesh.sh $(B)/krs $(PEER)
 
 # For `make test`.
 SCRIPTS += tests/bench.sh

@@ -157,7 +157,7 @@ bless: $(B)/krs
 test: deps
 	@$(MAKE) --no-print-directory -j$(JOBS) all test-programs clang-check fuzzers
 	@$(MAKE) --no-print-directory -j$(JOBS) sanitize
-	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=480 \
+	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=900 \
 	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") \
 	    JOBS=$(TEST_JOBS) $(BESIDE) $(PLAIN:%=$(B)/%) $(SANITIZED:%=$(B)/asan/%) \
 	    JOBS=1 $(SCRIPTS) JOBS=$(TEST_JOBS) \
