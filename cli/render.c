@@ -336,13 +336,16 @@ static KrsStatus specialize(Render *render)
    (bench/measurements.md); of most scenes four do. */
 #define SAMPLES_OF_SMALL_PICTURES (2.0 * 640 * 360)
 
-/* A crop has the kernels of the picture that it is a part of, so its pixels are the same. */
+/* A crop has the kernels of the picture that it is a part of, so its pixels are the same.  `krs watch` will
+   render more pictures by the same kernels. */
 static KrsPurpose purpose_of(const Render *render)
 {
     const KrsRenderOptions *how   = &render->how;
     const double            whole = count_samples(render, (double)how->width * how->height);
+    const bool              small = whole <= SAMPLES_OF_SMALL_PICTURES &&
+                       render->options->command != COMMAND_WATCH;
     return how->integrator != KRS_INTEGRATOR_PREVIEW ? KRS_FOR_PATHS
-           : whole <= SAMPLES_OF_SMALL_PICTURES      ? KRS_FOR_SMALL_PICTURES
+           : small                                   ? KRS_FOR_SMALL_PICTURES
                                                      : KRS_FOR_PICTURES;
 }
 

@@ -2,7 +2,7 @@
 # watch.sh: `krs watch` renders what `krs render` would, whenever the scene is saved.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 17
+plan 18
 export XDG_CACHE_HOME="$work/caches"
 : >out
 
@@ -88,3 +88,15 @@ kill -TERM "$watcher"
 wait "$watcher"
 status=$?
 ended 0 "to be asked to end is how it ends"
+# More pictures follow a small one, so it has the kernels of large ones: beams before roots have their own.
+echo 'show algebraic(x^4 + y^4 + z^4 == 1);' >scene.krs
+"$krs" watch scene.krs --size 24x16 --stats json -o a.png >out 2>err &
+watcher=$!
+for _ in $(seq 600); do
+    grep -q '"kernels"' out && break
+    sleep 0.05
+done
+[ "$(grep -o '"trace.comp"' out | wc -l)" -eq 2 ]
+result $? "small pictures have the kernels of large ones"
+kill -TERM "$watcher"
+wait "$watcher"
