@@ -331,10 +331,10 @@ static KrsStatus specialize(Render *render)
     return scene_frame(options, edited, &render->frame);
 }
 
-/* With more samples, kernels that take longer to compile are better even if they are new.  Two pictures
-   of 640x360 take as much more time without them as compilation takes less, of examples/07-grove.krs
-   (bench/measurements.md); of most scenes four do. */
-#define SAMPLES_OF_SMALL_PICTURES (2.0 * 640 * 360)
+/* With more samples, kernels that take longer to compile are better even if they are new.  What compilation takes
+   less, frames take more after ten pictures of 640x360 of examples/05-rock.krs and 06-temple.krs, after one and a half
+   of 08-reef.krs and 29-logo.krs, and at once of 07-grove.krs (bench/measurements.md). */
+#define SAMPLES_OF_SMALL_PICTURES (1.0 * 640 * 360)
 
 /* A crop has the kernels of the picture that it is a part of, so its pixels are the same.  `krs watch` will
    render more pictures by the same kernels. */
