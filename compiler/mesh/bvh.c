@@ -30,8 +30,8 @@ static void find_box(const Bvh *bvh, BvhNode *node, uint32_t first, uint32_t cou
         for (int c = 0; c < 3; c++)
             for (int k = 0; k < 3; k++) {
                 double at     = bvh->vertices[bvh->triangles[bvh->order[i]][c]][k];
-                node->low[k]  = fmin(node->low[k], at);
-                node->high[k] = fmax(node->high[k], at);
+                node->low[k]  = at < node->low[k] ? at : node->low[k];
+                node->high[k] = at > node->high[k] ? at : node->high[k];
             }
 }
 
@@ -149,6 +149,51 @@ bool bvh_visit(const Bvh *bvh, const double point[3], double radius, BvhVisit *v
             waiting[count++] = number + 1;
         } else if (!visit_node(bvh, node, point, radius, visit, user))
             return false;
+    }
+    return true;
+}
+
+static bool boxes_meet(const BvhNode *node, const double low[3], const double high[3])
+{
+    for (int k = 0; k < 3; k++)
+        if (node->low[k] > high[k] || node->high[k] < low[k])
+            return false;
+    return true;
+}
+
+static bool triangle_meets_box(const double corners[3][3], const double low[3],
+                               const double high[3])
+{
+    for (int k = 0; k < 3; k++) {
+        double a = corners[0][k], b = corners[1][k], c = corners[2][k];
+        if ((a > high[k] && b > high[k] && c > high[k]) || (a < low[k] && b < low[k] && c < low[k]))
+            return false;
+    }
+    return true;
+}
+
+bool bvh_visit_box(const Bvh *bvh, const double low[3], const double high[3], BvhVisit *visit,
+                   void *user)
+{
+    uint32_t waiting[MOST_DEPTH + 2], count = 0;
+    if (bvh->node_count > 0)
+        waiting[count++] = 0;
+    while (count > 0) {
+        uint32_t       number = waiting[--count];
+        const BvhNode *node   = &bvh->nodes[number];
+        if (!boxes_meet(node, low, high))
+            continue;
+        if (node->count == 0) {
+            waiting[count++] = node->second;
+            waiting[count++] = number + 1;
+        }
+        for (uint32_t i = node->first; i < node->first + node->count; i++) {
+            double corners[3][3];
+            triangle_corners(bvh, bvh->order[i], corners);
+            if (triangle_meets_box((const double(*)[3])corners, low, high) &&
+                !visit(user, bvh->order[i], (const double(*)[3])corners))
+                return false;
+        }
     }
     return true;
 }

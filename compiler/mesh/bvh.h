@@ -33,6 +33,9 @@ void bvh_free(Bvh *bvh, size_t count, Arena *arena);
    whether none did. */
 typedef bool BvhVisit(void *user, uint32_t triangle, const double corners[3][3]);
 bool bvh_visit(const Bvh *bvh, const double point[3], double radius, BvhVisit *visit, void *user);
+/* The same for those whose boxes meet a box. */
+bool bvh_visit_box(const Bvh *bvh, const double low[3], const double high[3], BvhVisit *visit,
+                   void *user);
 /* Whether a triangle comes within the radius of a point, and its nearest point then. */
 bool bvh_triangle_is_near(const Bvh *bvh, uint32_t triangle, const double point[3], double radius,
                           double nearest[3]);

@@ -6,49 +6,70 @@
  */
 #include "compiler/mesh/crossing.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "compiler/base/vec.h"
 
 /* ---- edges ---- */
 
-static int compare_edges(const void *a, const void *b)
-{
-    uint64_t first = ((const TriangleEdge *)a)->ends, second = ((const TriangleEdge *)b)->ends;
-    return (first > second) - (first < second);
-}
-
 static uint64_t ends_of(uint32_t from, uint32_t to) { return (uint64_t)from << 32 | to; }
 
-TriangleEdge *sort_edges(const uint32_t (*triangles)[3], size_t count, Arena *arena)
+static uint32_t from_of(const TriangleEdge *edge) { return (uint32_t)(edge->ends >> 32); }
+
+/* Few begin at the same vertex. */
+static void sort_of_vertex(TriangleEdge *edges, size_t count)
 {
-    TriangleEdge *edges = arena_new_array(arena, TriangleEdge, 3 * count + 1);
-    for (size_t i = 0; i < 3 * count; i++) {
-        const uint32_t *corners = triangles[i / 3];
-        edges[i] = (TriangleEdge){ends_of(corners[i % 3], corners[(i + 1) % 3]), (uint32_t)(i / 3)};
+    for (size_t i = 1; i < count; i++) {
+        TriangleEdge edge = edges[i];
+        size_t       k    = i;
+        for (; k > 0 && edges[k - 1].ends > edge.ends; k--)
+            edges[k] = edges[k - 1];
+        edges[k] = edge;
     }
-    qsort(edges, 3 * count, sizeof *edges, compare_edges);
+}
+
+TriangleEdges sort_edges(const uint32_t (*triangles)[3], size_t count, Arena *arena)
+{
+    TriangleEdges edges = {.count = 3 * count};
+    for (size_t i = 0; i < 3 * count; i++)
+        if (triangles[i / 3][i % 3] >= edges.vertex_count)
+            edges.vertex_count = (size_t)triangles[i / 3][i % 3] + 1;
+    edges.items     = arena_new_array(arena, TriangleEdge, edges.count + 1);
+    edges.begins    = arena_new_array(arena, uint32_t, edges.vertex_count + 2);
+    uint32_t *place = edges.begins + 1; /* becomes `begins` while edges are put there */
+    for (size_t i = 0; i < edges.count; i++)
+        place[triangles[i / 3][i % 3] + 1]++;
+    for (size_t i = 0; i < edges.vertex_count; i++)
+        place[i + 1] += place[i];
+    for (size_t i = 0; i < edges.count; i++) {
+        const uint32_t *corners    = triangles[i / 3];
+        uint32_t        from       = corners[i % 3];
+        edges.items[place[from]++] = (TriangleEdge){ends_of(from, corners[(i + 1) % 3]),
+                                                    (uint32_t)(i / 3)};
+    }
+    for (size_t i = 0; i < edges.vertex_count; i++)
+        sort_of_vertex(edges.items + edges.begins[i], edges.begins[i + 1] - edges.begins[i]);
     return edges;
 }
 
-const TriangleEdge *find_edge(const TriangleEdge *edges, size_t count, uint32_t from, uint32_t to)
+const TriangleEdge *find_edge(const TriangleEdges *edges, uint32_t from, uint32_t to)
 {
-    TriangleEdge wanted = {ends_of(from, to), 0};
-    return bsearch(&wanted, edges, 3 * count, sizeof *edges, compare_edges);
+    if (from < edges->vertex_count)
+        for (uint32_t i = edges->begins[from]; i < edges->begins[from + 1]; i++)
+            if (edges->items[i].ends == ends_of(from, to))
+                return &edges->items[i];
+    return NULL;
 }
 
-void report_open(const uint32_t (*triangles)[3], size_t count, ReportTriangle *report, void *user,
-                 Arena *arena)
+void report_open(const TriangleEdges *edges, ReportTriangle *report, void *user)
 {
-    const TriangleEdge *edges = sort_edges(triangles, count, arena);
-    for (size_t i = 0; i < 3 * count; i++) {
-        uint64_t ends = edges[i].ends;
-        uint32_t from = (uint32_t)(ends >> 32), to = (uint32_t)ends;
-        bool     twice = (i > 0 && edges[i - 1].ends == ends) ||
-                     (i + 1 < 3 * count && edges[i + 1].ends == ends);
-        if (twice || from == to || !find_edge(edges, count, to, from))
-            report(user, edges[i].triangle);
+    for (size_t i = 0; i < edges->count; i++) {
+        const TriangleEdge *edge = &edges->items[i];
+        uint32_t            from = from_of(edge), to = (uint32_t)edge->ends;
+        bool                twice = (i > 0 && edge[-1].ends == edge->ends) ||
+                     (i + 1 < edges->count && edge[1].ends == edge->ends);
+        if (twice || from == to || !find_edge(edges, to, from))
+            report(user, edge->triangle);
     }
 }
 
@@ -64,13 +85,13 @@ static bool separates(const Pair *pair, const double axis[3])
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (int i = 0; i < 3; i++) {
         double a = dot3(axis, pair->a[i]), b = dot3(axis, pair->b[i]);
-        low[0]  = fmin(low[0], a);
-        high[0] = fmax(high[0], a);
-        low[1]  = fmin(low[1], b);
-        high[1] = fmax(high[1], b);
+        low[0]  = a < low[0] ? a : low[0];
+        high[0] = a > high[0] ? a : high[0];
+        low[1]  = b < low[1] ? b : low[1];
+        high[1] = b > high[1] ? b : high[1];
     }
-    double length = length3(axis);
-    return length > 0 && fmax(low[1] - high[0], low[0] - high[1]) > pair->margin * length;
+    double length = length3(axis), gap = fmax(low[1] - high[0], low[0] - high[1]);
+    return length > 0 && gap > pair->margin * length;
 }
 
 static void edge_of(const double (*corners)[3], int i, double edge[3])
@@ -170,14 +191,16 @@ static double size_of(const Bvh *bvh)
 
 bool triangle_crosses(const Bvh *bvh, uint32_t triangle)
 {
-    Search search    = {.bvh = bvh, .triangle = triangle, .rounding = 1e-13 * size_of(bvh)};
-    double center[3] = {0, 0, 0}, radius = 0;
+    Search search  = {.bvh = bvh, .triangle = triangle, .rounding = 1e-13 * size_of(bvh)};
+    double low[3]  = {INFINITY, INFINITY, INFINITY};
+    double high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (int c = 0; c < 3; c++) {
         memcpy(search.corners[c], bvh->vertices[bvh->triangles[triangle][c]],
                sizeof *search.corners);
-        add_scaled3(center, center, 1.0 / 3, search.corners[c]);
+        for (int k = 0; k < 3; k++) {
+            low[k]  = fmin(low[k], search.corners[c][k] - 2 * search.rounding);
+            high[k] = fmax(high[k], search.corners[c][k] + 2 * search.rounding);
+        }
     }
-    for (int c = 0; c < 3; c++)
-        radius = fmax(radius, distance3(center, search.corners[c]));
-    return !bvh_visit(bvh, center, radius * (1 + 1e-9) + search.rounding, is_apart, &search);
+    return !bvh_visit_box(bvh, low, high, is_apart, &search);
 }

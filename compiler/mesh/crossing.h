@@ -13,14 +13,21 @@ typedef struct TriangleEdge {
 } TriangleEdge;
 
 /* All edges, in order of their ends. */
-TriangleEdge       *sort_edges(const uint32_t (*triangles)[3], size_t count, Arena *arena);
-const TriangleEdge *find_edge(const TriangleEdge *edges, size_t count, uint32_t from, uint32_t to);
+typedef struct TriangleEdges {
+    TriangleEdge *items;
+    size_t        count;
+    uint32_t     *begins; /* of each vertex, where those that begin there are; and one more */
+    size_t        vertex_count;
+} TriangleEdges;
+
+TriangleEdges sort_edges(const uint32_t (*triangles)[3], size_t count, Arena *arena);
+/* One of that direction, or NULL. */
+const TriangleEdge *find_edge(const TriangleEdges *edges, uint32_t from, uint32_t to);
 
 typedef void ReportTriangle(void *user, uint32_t triangle);
 
 /* Reports triangles with an edge that is not in two triangles with opposite directions. */
-void report_open(const uint32_t (*triangles)[3], size_t count, ReportTriangle *report, void *user,
-                 Arena *arena);
+void report_open(const TriangleEdges *edges, ReportTriangle *report, void *user);
 /* Whether a triangle has points in common with another but corners and edges that both have; as well where
    rounding does not tell. */
 bool triangle_crosses(const Bvh *bvh, uint32_t triangle);

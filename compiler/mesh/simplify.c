@@ -1,9 +1,8 @@
 /*
  * simplify.c: krs_mesh_simplify: meshoptimizer proposes, and a proof accepts.
  *
- * meshoptimizer's error is a mean of squares, so it may be exceeded.  A triangle is within an error of a
- * mesh if its corners are within it of the same triangle of that mesh, since that is convex; if they are not, it is
- * cut into four.
+ * meshoptimizer's error is a mean of squares, so it may be exceeded.  So each trial is judged: open edges, triangles that
+ * are far from the other mesh or that cross others.
  */
 #include <meshoptimizer.h>
 #include <stdatomic.h>
@@ -14,9 +13,10 @@
 #include "compiler/base/vec.h"
 #include "compiler/krs.h"
 #include "compiler/mesh/numbering.h"
+#include "compiler/mesh/near.h"
 #include "compiler/mesh/slivers.h"
 
-enum { MOST_CUTS = 12, MOST_TRIALS = 14 };
+enum { MOST_TRIALS = 14 };
 /* From trial to trial triangles are kept so many times as far around faults.  Most faults are single
    triangles that cross others, and what is proposed next may have some elsewhere.  So steps are small. */
 static const double GROWTH = 1.25;
@@ -36,75 +36,14 @@ typedef struct Simplifier {
     uint32_t (*best)[3]; /* triangles that have been good */
     size_t    best_count;
     Numbering near; /* triangles that were proven to be within the error of the mesh */
+    NearMesh  original;
+    /* Of each triangle of the mesh, one above or below it, by its vertices: of the last trial, and of the best;
+       all 0: none. */
+    uint32_t (*facing)[3], (*best_facing)[3];
+    NearLook *looks;              /* of each part */
     double fraction, begun, goal; /* of the work: done, and before and after what is being done */
     atomic_bool stopped;
 } Simplifier;
-
-/* ---- how far two meshes are from each other ---- */
-
-static void corners_of(const Bvh *bvh, uint32_t triangle, double corners[3][3])
-{
-    for (int c = 0; c < 3; c++)
-        memcpy(corners[c], bvh->vertices[bvh->triangles[triangle][c]], sizeof *corners);
-}
-
-static bool are_near(const Bvh *bvh, uint32_t triangle, const double corners[3][3], double error)
-{
-    double of[3][3];
-    corners_of(bvh, triangle, of);
-    for (int c = 0; c < 3; c++) {
-        double nearest[3];
-        triangle_nearest((const double(*)[3])of, corners[c], nearest);
-        if (distance3(nearest, corners[c]) > error)
-            return false;
-    }
-    return true;
-}
-
-typedef struct Nearness {
-    const double (*corners)[3];
-    double     error;
-    const Bvh *bvh;
-    uint32_t   found;
-} Nearness;
-
-/* Stops at a triangle to which all corners are near. */
-static bool look_on(void *user, uint32_t triangle, const double corners[3][3])
-{
-    Nearness *nearness = user;
-    (void)corners;
-    nearness->found = triangle;
-    return !are_near(nearness->bvh, triangle, nearness->corners, nearness->error);
-}
-
-/* `last`: a triangle that may be near. */
-static bool is_within(const Bvh *bvh, const double corners[3][3], double error, int cuts,
-                      uint32_t *last)
-{
-    Nearness nearness = {corners, error, bvh, 0};
-    if (are_near(bvh, *last, corners, error))
-        return true;
-    if (!bvh_visit(bvh, corners[0], error, look_on, &nearness)) {
-        *last = nearness.found;
-        return true;
-    }
-    if (cuts == 0)
-        return false;
-    double middles[3][3];
-    for (int c = 0; c < 3; c++)
-        for (int k = 0; k < 3; k++)
-            middles[c][k] = 0.5 * (corners[c][k] + corners[(c + 1) % 3][k]);
-    for (int c = 0; c < 3; c++) {
-        double corner[3][3];
-        memcpy(corner[0], corners[c], sizeof corner[0]);
-        memcpy(corner[1], middles[c], sizeof corner[1]);
-        memcpy(corner[2], middles[(c + 2) % 3], sizeof corner[2]);
-        if (!bvh_is_near(bvh, corner[0], error, last) ||
-            !is_within(bvh, (const double(*)[3])corner, error, cuts - 1, last))
-            return false;
-    }
-    return is_within(bvh, (const double(*)[3])middles, error, cuts - 1, last);
-}
 
 /* ---- what is proposed ---- */
 
@@ -136,10 +75,17 @@ static void propose(Simplifier *s, double error)
 
 typedef struct Judgement {
     Simplifier *s;
-    const Bvh  *best, *now; /* what was simplified, and the one whose triangles are reported */
+    const Bvh  *now;  /* whose triangles are reported */
+    Bvh         best; /* what was simplified, made when the first is reported */
     double      radius;
     size_t      faults;
 } Judgement;
+
+static void corners_of(const Bvh *bvh, uint32_t triangle, double corners[3][3])
+{
+    for (int c = 0; c < 3; c++)
+        memcpy(corners[c], bvh->vertices[bvh->triangles[triangle][c]], sizeof *corners);
+}
 
 static bool keep_triangle(void *user, uint32_t triangle, const double corners[3][3])
 {
@@ -152,39 +98,92 @@ static bool keep_triangle(void *user, uint32_t triangle, const double corners[3]
 /* Triangles of the mesh near to the corners of one that is wrong are kept, and more of them in each trial. */
 static void note_fault(void *user, uint32_t triangle)
 {
-    Judgement *judgement = user;
-    double     corners[3][3];
+    Judgement  *judgement = user;
+    Simplifier *s         = judgement->s;
+    double      corners[3][3];
+    if (judgement->faults == 0)
+        bvh_new(&judgement->best, (const double(*)[3])s->mesh->vertices,
+                (const uint32_t(*)[3])s->best, s->best_count, &s->arena);
     corners_of(judgement->now, triangle, corners);
     for (int c = 0; c < 3; c++)
-        bvh_visit(judgement->best, corners[c], judgement->radius, keep_triangle, judgement->s);
+        bvh_visit(&judgement->best, corners[c], judgement->radius, keep_triangle, s);
     judgement->faults++;
 }
 
-/* All triangles of one mesh: whether they are far from another, or cross each other if there is none. */
-typedef struct Check {
-    Simplifier   *s;
-    const Bvh    *triangles, *of;
-    Numbering    *near; /* those that are known to be near; NULL: none */
-    bool         *wrong;
-    atomic_size_t next;
-} Check;
+/* All triangles of one mesh. */
+typedef struct Check Check;
+typedef bool         IsWrong(const Check *check, uint32_t triangle, NearLook *look);
+struct Check {
+    Simplifier *s;
+    const Bvh  *triangles;
+    IsWrong    *is_wrong;
+    const NearMesh *new;
+    const uint32_t *facing;       /* of triangles of the mesh, new ones; NO_TRIANGLE: none */
+    atomic_uint    *found_facing; /* of triangles of the mesh, the first of the new ones */
+    bool           *wrong;
+    atomic_size_t   next;
+};
 
 static NumberKey key_of(const uint32_t triangle[3])
 {
     return face_key(triangle[0], triangle[1], triangle[2]);
 }
 
-static bool is_wrong(const Check *check, uint32_t triangle, uint32_t *last)
+static bool crosses(const Check *check, uint32_t triangle, NearLook *look)
 {
-    const Simplifier *s = check->s;
-    double            corners[3][3];
-    if (!check->of)
-        return triangle_crosses(check->triangles, triangle);
-    if (check->near &&
-        numbering_find(check->near, key_of(check->triangles->triangles[triangle])) != NO_NUMBER)
+    (void)look;
+    return triangle_crosses(check->triangles, triangle);
+}
+
+/* The first, whatever the threads do. */
+static void take_least(atomic_uint *least, uint32_t number)
+{
+    unsigned now = atomic_load_explicit(least, memory_order_relaxed);
+    while (number < now && !atomic_compare_exchange_weak_explicit(
+                               least, &now, number, memory_order_relaxed, memory_order_relaxed))
+        ;
+}
+
+/* New triangles have corners of the mesh. */
+static bool is_far_from_original(const Check *check, uint32_t triangle, NearLook *look)
+{
+    enum { MOST_AROUND = 32 };
+    const Simplifier    *s     = check->s;
+    const TriangleEdges *edges = &s->original.edges;
+    const uint32_t      *own   = check->triangles->triangles[triangle];
+    uint32_t             starts[MOST_AROUND];
+    size_t               count = 0;
+    double               corners[3][3];
+    if (numbering_find(&s->near, key_of(own)) != NO_NUMBER)
         return false;
+    for (int c = 0; c < 3; c++)
+        for (uint32_t i = edges->begins[own[c]]; i < edges->begins[own[c] + 1]; i++)
+            if (count < MOST_AROUND)
+                starts[count++] = edges->items[i].triangle;
     corners_of(check->triangles, triangle, corners);
-    return !is_within(check->of, (const double(*)[3])corners, s->error, MOST_CUTS, last);
+    bool far = !is_near_mesh(&s->original, (const double(*)[3])corners, s->error, starts, count,
+                             look);
+    for (size_t i = 0; i < look->faced_count; i++)
+        take_least(&check->found_facing[look->faced[i]], triangle);
+    return far;
+}
+
+static bool is_far_from_new(const Check *check, uint32_t triangle, NearLook *look)
+{
+    const Simplifier *s      = check->s;
+    uint32_t          facing = check->facing[triangle], starts[4];
+    size_t            count  = 0;
+    double            corners[3][3];
+    corners_of(check->triangles, triangle, corners);
+    if (facing != NO_TRIANGLE) {
+        if (is_near_triangle(check->new, facing, (const double(*)[3])corners, s->error))
+            return false;
+        starts[count++] = facing;
+        for (int c = 0; c < 3; c++)
+            if (check->new->beyond[facing][c] != NO_TRIANGLE)
+                starts[count++] = check->new->beyond[facing][c];
+    }
+    return !is_near_mesh(check->new, (const double(*)[3])corners, s->error, starts, count, look);
 }
 
 static void ask(Simplifier *s, double part)
@@ -199,9 +198,8 @@ static void ask(Simplifier *s, double part)
 static void check_some(void *task, size_t part, size_t parts)
 {
     enum { SOME = 64 };
-    Check   *check = task;
-    size_t   count = check->triangles->triangle_count;
-    uint32_t last  = 0;
+    Check *check = task;
+    size_t count = check->triangles->triangle_count;
     (void)parts;
     while (!atomic_load(&check->s->stopped)) {
         size_t begin = atomic_fetch_add(&check->next, SOME);
@@ -210,7 +208,7 @@ static void check_some(void *task, size_t part, size_t parts)
         if (part == 0)
             ask(check->s, (double)begin / (double)count);
         for (size_t i = begin; i < begin + SOME && i < count; i++)
-            check->wrong[i] = is_wrong(check, (uint32_t)i, &last);
+            check->wrong[i] = check->is_wrong(check, (uint32_t)i, &check->s->looks[part]);
     }
 }
 
@@ -219,37 +217,72 @@ static void check_all(Judgement *judgement, Check *check, double goal)
 {
     Simplifier *s     = judgement->s;
     size_t      count = check->triangles->triangle_count;
-    check->s          = s;
     check->wrong      = arena_new_array(&s->arena, bool, count + 1);
-    s->begun          = s->fraction;
-    s->goal           = goal;
-    judgement->now    = check->triangles;
+    atomic_store(&check->next, 0);
+    s->begun       = s->fraction;
+    s->goal        = goal;
+    judgement->now = check->triangles;
     run_in_parallel(check_some, check);
     for (uint32_t i = 0; i < count && !atomic_load(&s->stopped); i++)
         if (check->wrong[i])
             note_fault(judgement, i);
-        else if (check->near)
-            numbering_take(check->near, key_of(check->triangles->triangles[i]), 0);
+}
+
+/* New triangles: within the error of the mesh. */
+static void check_new(Judgement *judgement, const NearMesh *new, double goal)
+{
+    Simplifier *s     = judgement->s;
+    size_t      count = s->mesh->triangle_count;
+    Check check = {.s = s, .triangles = &new->bvh, .is_wrong = is_far_from_original, .new = new};
+    check.found_facing = arena_new_array(&s->arena, atomic_uint, count + 1);
+    for (size_t i = 0; i < count; i++)
+        atomic_init(&check.found_facing[i], NO_TRIANGLE);
+    check_all(judgement, &check, goal);
+    for (size_t i = 0; i < count; i++)
+        if (check.found_facing[i] != NO_TRIANGLE)
+            memcpy(s->facing[i], s->triangles[check.found_facing[i]], sizeof s->facing[i]);
+    for (uint32_t i = 0; i < s->triangle_count && !atomic_load(&s->stopped); i++)
+        if (!check.wrong[i])
+            numbering_take(&s->near, key_of(s->triangles[i]), 0);
+}
+
+static void check_crossings(Judgement *judgement, const NearMesh *new, double goal)
+{
+    Check check = {.s = judgement->s, .triangles = &new->bvh, .is_wrong = crosses, .new = new};
+    check_all(judgement, &check, goal);
+}
+
+/* Those of the mesh: within the error of the new ones. */
+static void check_original(Judgement *judgement, const NearMesh *new, double goal)
+{
+    Simplifier *s       = judgement->s;
+    size_t      count   = s->mesh->triangle_count;
+    Numbering   numbers = {.arena = &s->arena};
+    uint32_t   *facing  = arena_new_array(&s->arena, uint32_t, count + 1);
+    Check check  = {.s = s, .triangles = &s->original.bvh, .is_wrong = is_far_from_new, .new = new};
+    check.facing = facing;
+    for (uint32_t i = 0; i < s->triangle_count; i++)
+        numbering_take(&numbers, key_of(s->triangles[i]), i);
+    for (size_t i = 0; i < count; i++) {
+        facing[i] = numbering_find(&numbers, key_of(s->facing[i]));
+        if (facing[i] == NO_NUMBER)
+            facing[i] = numbering_find(&numbers, key_of(s->best_facing[i]));
+    }
+    check_all(judgement, &check, goal);
 }
 
 static size_t count_faults(Simplifier *s, double radius, double goal)
 {
-    const KrsMesh *mesh     = s->mesh;
-    const double(*at)[3]    = (const double(*)[3])mesh->vertices;
-    const uint32_t(*new)[3] = (const uint32_t(*)[3])s->triangles;
-    ArenaMark mark          = arena_mark(&s->arena);
-    Bvh       from, best, to;
-    bvh_new(&from, at, (const uint32_t(*)[3])mesh->triangles, mesh->triangle_count, &s->arena);
-    bvh_new(&best, at, (const uint32_t(*)[3])s->best, s->best_count, &s->arena);
-    bvh_new(&to, at, new, s->triangle_count, &s->arena);
-    Judgement judgement = {s, &best, &to, radius, 0};
-    report_open(new, s->triangle_count, note_fault, &judgement, &s->arena);
-    Check  checks[] = {{.triangles = &to, .of = &from, .near = &s->near},
-                       {.triangles = &to},
-                       {.triangles = &from, .of = &to}};
-    double begun    = s->fraction;
-    for (int i = 0; i < 3; i++)
-        check_all(&judgement, &checks[i], begun + (i + 1) / 3.0 * (goal - begun));
+    const double(*at)[3] = (const double(*)[3])s->mesh->vertices;
+    ArenaMark mark       = arena_mark(&s->arena);
+    double    begun      = s->fraction;
+    NearMesh new;
+    near_mesh_new(&new, at, (const uint32_t(*)[3])s->triangles, s->triangle_count, &s->arena);
+    Judgement judgement = {.s = s, .now = &new.bvh, .radius = radius};
+    report_open(&new.edges, note_fault, &judgement);
+    check_new(&judgement, &new, begun + (goal - begun) / 3);
+    check_crossings(&judgement, &new, begun + 2 * (goal - begun) / 3);
+    check_original(&judgement, &new, goal);
     arena_rewind(&s->arena, mark);
     return judgement.faults;
 }
@@ -269,6 +302,7 @@ static void try_error(Simplifier *s, double error, double goal)
         if (faults == 0) {
             memcpy(s->best, s->triangles, s->triangle_count * sizeof *s->best);
             s->best_count = s->triangle_count;
+            memcpy(s->best_facing, s->facing, s->mesh->triangle_count * sizeof *s->facing);
             return;
         }
     }
@@ -286,6 +320,11 @@ static void find_triangles(Simplifier *s)
     for (size_t i = 0; i < mesh->vertex_count; i++)
         for (int k = 0; k < 3; k++)
             s->positions[i][k] = (float)mesh->vertices[i][k];
+    s->facing      = arena_alloc(&s->arena, count + 1, sizeof *s->facing);
+    s->best_facing = arena_alloc(&s->arena, count + 1, sizeof *s->facing);
+    s->looks       = arena_new_array(&s->arena, NearLook, MOST_PARTS);
+    near_mesh_new(&s->original, (const double(*)[3])mesh->vertices,
+                  (const uint32_t(*)[3])mesh->triangles, count, &s->arena);
     s->best_count = count;
     if (count > 0)
         memcpy(s->best, mesh->triangles, count * sizeof *s->best);

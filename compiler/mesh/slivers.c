@@ -12,9 +12,8 @@ static const double THIN = 1e-6;
 typedef struct Flipping {
     const double (*vertices)[3];
     uint32_t (*triangles)[3];
-    size_t              count;
-    const TriangleEdge *edges;
-    bool               *changed; /* triangles that the edges no longer know */
+    TriangleEdges edges;
+    bool         *changed; /* triangles that the edges no longer know */
 } Flipping;
 
 /* The corner from which the longest edge begins, where the triangle is a sliver; -1: it is none. */
@@ -39,14 +38,14 @@ static bool flip(Flipping *f, uint32_t sliver, int longest)
 {
     uint32_t *own = f->triangles[sliver], a = own[longest], b = own[(longest + 1) % 3],
              c = own[(longest + 2) % 3], d = 0;
-    const TriangleEdge *back = find_edge(f->edges, f->count, b, a);
+    const TriangleEdge *back = find_edge(&f->edges, b, a);
     if (!back || f->changed[sliver] || f->changed[back->triangle])
         return false;
     uint32_t *other = f->triangles[back->triangle];
     for (int k = 0; k < 3; k++)
         if (other[k] != a && other[k] != b)
             d = other[k];
-    if (c == d || find_edge(f->edges, f->count, c, d) || find_edge(f->edges, f->count, d, c))
+    if (c == d || find_edge(&f->edges, c, d) || find_edge(&f->edges, d, c))
         return false;
     f->changed[sliver] = f->changed[back->triangle] = true;
     memcpy(own, (const uint32_t[3]){a, d, c}, sizeof f->triangles[0]);
@@ -56,7 +55,7 @@ static bool flip(Flipping *f, uint32_t sliver, int longest)
 
 void flip_slivers(const double (*vertices)[3], uint32_t (*triangles)[3], size_t count, Arena *arena)
 {
-    Flipping f   = {vertices, triangles, count, NULL, NULL};
+    Flipping f   = {.vertices = vertices, .triangles = triangles};
     bool     any = true;
     for (int round = 0; round < MOST_ROUNDS && any; round++) {
         ArenaMark mark = arena_mark(arena);
