@@ -7,6 +7,8 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "compiler/base/minmax.h"
+
 static inline double dot3(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -24,7 +26,7 @@ static inline double length3(const double v[3]) { return sqrt(dot3(v, v)); }
 /* The maximum norm: the largest absolute value of a component. */
 static inline double largest3(const double v[3])
 {
-    return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    return max2(fabs(v[0]), max2(fabs(v[1]), fabs(v[2])));
 }
 
 static inline double distance3(const double a[3], const double b[3])

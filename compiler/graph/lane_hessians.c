@@ -207,7 +207,7 @@ static LaneHessian hessian_of_length(const Run *run)
     }
     add_square(&bend, range_of(-1), &run->slopes[LANE_INPUTS + run->at]);
     for (int i = 0; bend.known && i < 3; i++)
-        bend.by[i] = (Range){fmax(bend.by[i].low, 0), fmax(bend.by[i].high, 0)};
+        bend.by[i] = (Range){max2(bend.by[i].low, 0), max2(bend.by[i].high, 0)};
     add_hessian(&sum, range_div(range_of(1), length), &bend);
     return sum;
 }

@@ -47,7 +47,7 @@ static bool look(const LaneTape *tape, const LaneRanges *ranges, size_t step, Vi
         Range at        = operand_range(tape, ranges, view->call->operands[1][k]);
         view->middle[k] = 0.5 * (at.low + at.high);
         view->radius    = hypot_upward(view->radius, 0.5 * (at.high - at.low));
-        size            = fmax(size, range_largest(at));
+        size            = max2(size, range_largest(at));
     }
     view->radius += UNCERTAIN * size;
     view->farthest += UNCERTAIN * size;
@@ -71,7 +71,7 @@ static double least_distance(const CrowdArc *arc, const double point[2])
         square += chord[k] * chord[k];
         along += chord[k] * from[k];
     }
-    double t = square > 0 ? fmin(fmax(along / square, 0), 1) : 0;
+    double t = square > 0 ? min2(max2(along / square, 0), 1) : 0;
     return hypot(from[0] - t * chord[0], from[1] - t * chord[1]) -
            0.25 * hypot(arc->bend[0], arc->bend[1]);
 }
@@ -126,7 +126,7 @@ static bool nearest_tangent(const View *view, const CrowdArc *arc, double tangen
             value += from * half;
             slope += 2 * half * half + from * arc->bend[k];
         }
-        change = slope > 0 ? fmin(fmax(t - value / slope, 0), 1) - t : INFINITY;
+        change = slope > 0 ? min2(max2(t - value / slope, 0), 1) - t : INFINITY;
         t += change;
     }
     for (int k = 0; k < 2; k++)
@@ -142,7 +142,7 @@ static bool is_within_ends(const View *view, const CrowdArc *arc)
 {
     double end[2];
     point_at(arc, 1, end);
-    return fmin(distance_to_point(view->middle, arc->start), distance_to_point(view->middle, end)) -
+    return min2(distance_to_point(view->middle, arc->start), distance_to_point(view->middle, end)) -
                view->radius >
            view->farthest;
 }
@@ -151,7 +151,7 @@ static bool is_within_ends(const View *view, const CrowdArc *arc)
 static double largest_curvature(const CrowdArc *arc)
 {
     double cross = arc->way[0] * arc->bend[1] - arc->way[1] * arc->bend[0];
-    double speed = fmin(hypot(arc->way[0], arc->way[1]),
+    double speed = min2(hypot(arc->way[0], arc->way[1]),
                         hypot(arc->way[0] + arc->bend[0], arc->way[1] + arc->bend[1]));
     return cross == 0 ? 0 : fabs(cross) / (2 * speed * speed * speed);
 }

@@ -94,7 +94,7 @@ static uint32_t blended(const Question *q)
     Range a = range_at(q, 0), b = range_at(q, 1), width = range_at(q, 2);
     if (!is_sure(q, 0) || !is_sure(q, 1) || !is_sure(q, 2))
         return NODE_NONE;
-    double apart = fmax(b.low - a.high, a.low - b.high);
+    double apart = max2(b.low - a.high, a.low - b.high);
     return width.high <= 0 || apart * (1 - 0x1p-50) > width.high ? lesser(q, 0, 1) : NODE_NONE;
 }
 

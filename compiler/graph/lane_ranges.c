@@ -174,7 +174,7 @@ static Range range_of_cell(Range a, Range period, Range first, Range last)
     double slack = 0x1p-48 * (range_largest(a) + period.high), half = period.high / 2 + slack;
     Range  before = range_sub(range_of(a.low), range_mul(period, first));
     Range  behind = range_sub(range_of(a.high), range_mul(period, last));
-    Range  folded = {fmin(-half, before.low - slack), fmax(half, behind.high + slack)};
+    Range  folded = {min2(-half, before.low - slack), max2(half, behind.high + slack)};
     return range_is_single(cell) || !is_finite(folded) ? moved : range_intersect(moved, folded);
 }
 
@@ -244,8 +244,8 @@ static bool range_of_outline(const LaneTape *tape, const LaneRanges *ranges, con
     for (int k = 0; k < 3; k++) {
         Range at         = facts[1].value[k];
         operands[1].v[k] = 0.5 * (at.low + at.high);
-        radius = hypot_upward(radius, fmax(at.high - operands[1].v[k], operands[1].v[k] - at.low));
-        size   = fmax(size, range_largest(at));
+        radius = hypot_upward(radius, max2(at.high - operands[1].v[k], operands[1].v[k] - at.low));
+        size   = max2(size, range_largest(at));
     }
     if (!isfinite(radius))
         return false;
@@ -434,8 +434,8 @@ Range lane_ranges_run_closer(const LaneTape *tape, const LaneRanges *ranges, Box
         Range  axis   = box.axis[k];
         double at     = 0.5 * (axis.low + axis.high);
         point.axis[k] = range_of(at);
-        ball.radius   = hypot_upward(ball.radius, fmax(axis.high - at, at - axis.low));
-        ball.size     = fmax(ball.size, range_largest(axis));
+        ball.radius   = hypot_upward(ball.radius, max2(axis.high - at, at - axis.low));
+        ball.size     = max2(ball.size, range_largest(axis));
     }
     if (!isfinite(ball.radius))
         return run(tape, ranges, box, NULL);

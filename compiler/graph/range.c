@@ -14,18 +14,6 @@
 
 static const double PI = 3.14159265358979323846;
 
-Range range_hull(Range a, Range b) { return (Range){fmin(a.low, b.low), fmax(a.high, b.high)}; }
-
-Range range_intersect(Range a, Range b)
-{
-    Range common = {fmax(a.low, b.low), fmin(a.high, b.high)};
-    return common.low <= common.high ? common : a;
-}
-
-double range_largest(Range a) { return fmax(fabs(a.low), fabs(a.high)); }
-
-double range_least(Range a) { return a.low > 0 ? a.low : a.high < 0 ? -a.high : 0; }
-
 int box_longest_axis(const Box *box)
 {
     int longest = 0;
@@ -56,17 +44,26 @@ static double sum_excess(double a, double b, double sum)
     return -((a - (sum - part)) + (b - part));
 }
 
-static double sum_low(double a, double b)
+static inline bool is_number(double a) { return a - a == 0; } /* nor infinite */
+
+static double sum_low_beyond(double a, double b)
 {
     double sum = a + b;
     if (isnan(sum))
         return -HUGE_VAL;
-    if (isinf(sum)) /* an overflow is not yet infinite inwards */
-        return isinf(a) || isinf(b) || sum < 0 ? sum : DBL_MAX;
+    /* an overflow is not yet infinite inwards */
+    return isinf(a) || isinf(b) || sum < 0 ? sum : DBL_MAX;
+}
+
+static inline double sum_low(double a, double b)
+{
+    double sum = a + b;
+    if (!is_number(sum))
+        return sum_low_beyond(a, b);
     return sum_excess(a, b, sum) > 0 ? step_down(sum) : sum;
 }
 
-static double sum_high(double a, double b) { return 0 - sum_low(-a, -b); }
+static inline double sum_high(double a, double b) { return 0 - sum_low(-a, -b); }
 
 static double product_low(double a, double b)
 {
@@ -123,12 +120,11 @@ static Range widened(double low, double high)
 static Range widened_within(double low, double high, double least, double most)
 {
     Range range = widened(low, high);
-    return (Range){fmin(fmax(range.low, least), most), fmax(fmin(range.high, most), least)};
+    return (Range){min2(max2(range.low, least), most), max2(min2(range.high, most), least)};
 }
 
 /* ---- one operand ---- */
 
-Range range_neg(Range a) { return (Range){-a.high, -a.low}; }
 Range range_abs(Range a) { return (Range){range_least(a), range_largest(a)}; }
 
 Range range_sign(Range a) { return (Range){a.low < 0 ? -1 : 1, a.high > 0 ? 1 : -1}; }
@@ -157,7 +153,7 @@ Range range_square(Range a)
 
 Range range_above(Range a, double least)
 {
-    return (Range){fmax(a.low, least) + 0.0, fmax(a.high, least) + 0.0}; /* 1 / sqrt(-0) is -inf */
+    return (Range){max2(a.low, least) + 0.0, max2(a.high, least) + 0.0}; /* 1 / sqrt(-0) is -inf */
 }
 
 Range range_sqrt(Range a)
@@ -206,7 +202,7 @@ static Range range_wave(Range a, double at_low, double at_high, double peak)
 {
     if (!isfinite(a.low) || !isfinite(a.high) || range_largest(a) > 1e9)
         return (Range){-1, 1};
-    Range wave = widened_within(fmin(at_low, at_high), fmax(at_low, at_high), -1, 1);
+    Range wave = widened_within(min2(at_low, at_high), max2(at_low, at_high), -1, 1);
     if (range_holds(a, peak, 2 * PI))
         wave.high = 1;
     if (range_holds(a, peak + PI, 2 * PI))
@@ -233,7 +229,7 @@ Range range_tan_slope(Range value)
     return range_add(range_of(1), range_square(value));
 }
 
-static double unit(double a) { return fmin(fmax(a, -1), 1); }
+static double unit(double a) { return min2(max2(a, -1), 1); }
 
 Range range_asin(Range a) { return widened(asin(unit(a.low)), asin(unit(a.high))); }
 Range range_acos(Range a) { return widened_within(acos(unit(a.high)), acos(unit(a.low)), 0, 4); }
@@ -275,10 +271,10 @@ Range range_sub(Range a, Range b) { return range_add(a, range_neg(b)); }
 
 static Range product_of_all(Range a, Range b)
 {
-    return (Range){fmin(fmin(product_low(a.low, b.low), product_low(a.low, b.high)),
-                        fmin(product_low(a.high, b.low), product_low(a.high, b.high))),
-                   fmax(fmax(product_high(a.low, b.low), product_high(a.low, b.high)),
-                        fmax(product_high(a.high, b.low), product_high(a.high, b.high)))};
+    return (Range){min2(min2(product_low(a.low, b.low), product_low(a.low, b.high)),
+                        min2(product_low(a.high, b.low), product_low(a.high, b.high))),
+                   max2(max2(product_high(a.low, b.low), product_high(a.low, b.high)),
+                        max2(product_high(a.high, b.low), product_high(a.high, b.high)))};
 }
 
 static bool is_ordered(Range a) { return a.low <= a.high; }
@@ -290,8 +286,8 @@ static Range product_across(Range a, Range b)
         return (Range){product_low(a.low, b.high), product_high(a.high, b.high)};
     if (b.high <= 0)
         return (Range){product_low(a.high, b.low), product_high(a.low, b.low)};
-    return (Range){fmin(product_low(a.low, b.high), product_low(a.high, b.low)),
-                   fmax(product_high(a.low, b.low), product_high(a.high, b.high))};
+    return (Range){min2(product_low(a.low, b.high), product_low(a.high, b.low)),
+                   max2(product_high(a.low, b.low), product_high(a.high, b.high))};
 }
 
 Range range_mul(Range a, Range b)
@@ -328,16 +324,16 @@ Range range_div(Range a, Range b)
         isfinite(b.high))
         return (Range){quotient_low(a.low, a.low >= 0 ? b.high : b.low),
                        quotient_high(a.high, a.high >= 0 ? b.low : b.high)};
-    return (Range){fmin(fmin(quotient_low(a.low, b.low), quotient_low(a.low, b.high)),
-                        fmin(quotient_low(a.high, b.low), quotient_low(a.high, b.high))),
-                   fmax(fmax(quotient_high(a.low, b.low), quotient_high(a.low, b.high)),
-                        fmax(quotient_high(a.high, b.low), quotient_high(a.high, b.high)))};
+    return (Range){min2(min2(quotient_low(a.low, b.low), quotient_low(a.low, b.high)),
+                        min2(quotient_low(a.high, b.low), quotient_low(a.high, b.high))),
+                   max2(max2(quotient_high(a.low, b.low), quotient_high(a.low, b.high)),
+                        max2(quotient_high(a.high, b.low), quotient_high(a.high, b.high)))};
 }
 
 /* Between 0 and b; less where the same multiple of b is taken off all over. */
 Range range_mod(Range a, Range b)
 {
-    Range whole = {fmin(b.low, 0), fmax(b.high, 0)};
+    Range whole = {min2(b.low, 0), max2(b.high, 0)};
     Range times = range_floor(range_div(a, b));
     if (!range_is_single(times) || !isfinite(times.low))
         return whole;
@@ -350,7 +346,7 @@ static Range range_corners(double f(double, double), Range a, Range b)
     double p = f(a.low, b.low), q = f(a.low, b.high), r = f(a.high, b.low), s = f(a.high, b.high);
     if (isnan(p) || isnan(q) || isnan(r) || isnan(s))
         return ANYTHING;
-    return widened(fmin(fmin(p, q), fmin(r, s)), fmax(fmax(p, q), fmax(r, s)));
+    return widened(min2(min2(p, q), min2(r, s)), max2(max2(p, q), max2(r, s)));
 }
 
 Range range_pow(Range a, Range b)
@@ -398,9 +394,6 @@ Range range_atan2_slope(Range a, Range b, Range numerator)
     return range_intersect(range_div(numerator, square), (Range){-bound.high, bound.high});
 }
 
-Range range_min(Range a, Range b) { return (Range){fmin(a.low, b.low), fmin(a.high, b.high)}; }
-Range range_max(Range a, Range b) { return (Range){fmax(a.low, b.low), fmax(a.high, b.high)}; }
-
 Range range_is_less(Range a, Range b)
 {
     if (a.high <= b.low)
@@ -433,7 +426,7 @@ static Range smoothstep_progress(Range a, Range b, Range c)
     if (width.low <= 0 && width.high >= 0)
         return (Range){0, 1};
     Range progress = range_div(range_sub(c, a), width);
-    return (Range){fmin(fmax(progress.low, 0), 1), fmax(fmin(progress.high, 1), 0)};
+    return (Range){min2(max2(progress.low, 0), 1), max2(min2(progress.high, 1), 0)};
 }
 
 static double smooth(double t) { return t * t * (3 - 2 * t); }
@@ -444,9 +437,9 @@ static bool smoothstep_is_flat(Range a, Range b, Range c, Range *value)
     bool rising = a.high <= b.low, falling = b.high < a.low;
     if (!rising && !falling)
         return false;
-    if (c.high < fmin(a.low, b.low))
+    if (c.high < min2(a.low, b.low))
         *value = range_of(rising ? 0 : 1);
-    else if (c.low > fmax(a.high, b.high))
+    else if (c.low > max2(a.high, b.high))
         *value = range_of(rising ? 1 : 0);
     else
         return false;
@@ -473,7 +466,7 @@ Range range_smoothstep_slope(Range a, Range b, Range c, int operand)
     Range  t   = smoothstep_progress(a, b, c);
     double low = 6 * t.low * (1 - t.low), high = 6 * t.high * (1 - t.high);
     bool   peak  = t.low <= 0.5 && t.high >= 0.5;
-    Range  rise  = widened_within(fmin(low, high), peak ? 1.5 : fmax(low, high), 0, 1.5);
+    Range  rise  = widened_within(min2(low, high), peak ? 1.5 : max2(low, high), 0, 1.5);
     Range  by[3] = {range_sub(t, range_of(1)), range_neg(t), range_of(1)};
     return range_div(range_mul(rise, by[operand]), width);
 }

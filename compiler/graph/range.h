@@ -11,6 +11,8 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "compiler/base/minmax.h"
+
 typedef struct Range {
     double low, high; /* low <= high; may be infinite; [-inf, inf] is "anything" */
 } Range;
@@ -27,45 +29,57 @@ int box_longest_axis(const Box *box);
 static inline Range range_of(double number) { return (Range){number, number}; }
 static inline bool  range_is_zero(Range a) { return a.low == 0 && a.high == 0; }
 static inline bool  range_is_single(Range a) { return a.low == a.high; }
-Range               range_hull(Range a, Range b);
-Range               range_intersect(Range a, Range b); /* of ranges that must overlap; else a */
-double              range_largest(Range a);            /* greatest size of a value */
-double              range_least(Range a);              /* least size of a value */
+
+static inline Range range_hull(Range a, Range b)
+{
+    return (Range){min2(a.low, b.low), max2(a.high, b.high)};
+}
+
+/* Of ranges that must overlap; else a. */
+static inline Range range_intersect(Range a, Range b)
+{
+    Range common = {max2(a.low, b.low), min2(a.high, b.high)};
+    return common.low <= common.high ? common : a;
+}
+
+/* The greatest and the least size of a value. */
+static inline double range_largest(Range a) { return max2(fabs(a.low), fabs(a.high)); }
+static inline double range_least(Range a) { return a.low > 0 ? a.low : a.high < 0 ? -a.high : 0; }
 
 /* Bounds that are never below the exact sum or product of numbers >= 0; 0 * inf is 0. */
 double sum_upward(double a, double b);
 double product_upward(double a, double b);
 double hypot_upward(double a, double b);
 
-Range range_neg(Range a);
-Range range_abs(Range a);
-Range range_sign(Range a);    /* derivative of abs */
-Range range_sign_of(Range a); /* value of sign, 0 for 0 */
-Range range_floor(Range a);
-Range range_ceil(Range a);
-Range range_round(Range a);
-Range range_fract(Range a);
-Range range_square(Range a);
-Range range_sqrt(Range a);
-Range range_inversesqrt(Range a);
-Range range_inversesqrt_slope(Range a, Range value);
-Range range_exp(Range a);
-Range range_exp2(Range a);
-Range range_log(Range a);
-Range range_log2(Range a);
-Range range_above(Range a, double least); /* the part of a that is not below */
-Range range_sin(Range a);
-Range range_cos(Range a);
-Range range_tan(Range a);
-Range range_tan_slope(Range value);
-Range range_asin(Range a);
-Range range_acos(Range a);
-Range range_asin_slope(Range a);
-Range range_atan(Range a);
-Range range_sinh(Range a);
-Range range_cosh(Range a);
-Range range_tanh(Range a);
-Range range_sech_square(Range a);
+static inline Range range_neg(Range a) { return (Range){-a.high, -a.low}; }
+Range               range_abs(Range a);
+Range               range_sign(Range a);    /* derivative of abs */
+Range               range_sign_of(Range a); /* value of sign, 0 for 0 */
+Range               range_floor(Range a);
+Range               range_ceil(Range a);
+Range               range_round(Range a);
+Range               range_fract(Range a);
+Range               range_square(Range a);
+Range               range_sqrt(Range a);
+Range               range_inversesqrt(Range a);
+Range               range_inversesqrt_slope(Range a, Range value);
+Range               range_exp(Range a);
+Range               range_exp2(Range a);
+Range               range_log(Range a);
+Range               range_log2(Range a);
+Range               range_above(Range a, double least); /* the part of a that is not below */
+Range               range_sin(Range a);
+Range               range_cos(Range a);
+Range               range_tan(Range a);
+Range               range_tan_slope(Range value);
+Range               range_asin(Range a);
+Range               range_acos(Range a);
+Range               range_asin_slope(Range a);
+Range               range_atan(Range a);
+Range               range_sinh(Range a);
+Range               range_cosh(Range a);
+Range               range_tanh(Range a);
+Range               range_sech_square(Range a);
 
 Range range_add(Range a, Range b);
 Range range_sub(Range a, Range b);
@@ -77,9 +91,15 @@ Range range_pow_slope(Range a, Range b);
 Range range_pow_slope_exponent(Range a, Range value);
 Range range_atan2(Range a, Range b);
 /* numerator / (a^2 + b^2) */
-Range range_atan2_slope(Range a, Range b, Range numerator);
-Range range_min(Range a, Range b);
-Range range_max(Range a, Range b);
+Range               range_atan2_slope(Range a, Range b, Range numerator);
+static inline Range range_min(Range a, Range b)
+{
+    return (Range){min2(a.low, b.low), min2(a.high, b.high)};
+}
+static inline Range range_max(Range a, Range b)
+{
+    return (Range){max2(a.low, b.low), max2(a.high, b.high)};
+}
 Range range_is_less(Range a, Range b); /* 1 where a is the lesser, 0 where b is; else [0, 1] */
 Range range_step(Range edge, Range a);
 Range range_mix(Range a, Range b, Range c);

@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 
+#include "compiler/base/minmax.h"
 #include "compiler/mesh/pieces.h"
 #include "compiler/mesh/smooth.h"
 
@@ -23,8 +24,8 @@ void tet_box(const Mesher *m, const Tet *tet, double low[3], double high[3])
     double corners[4][3];
     tets_corners(&m->tets, tet, corners);
     for (int k = 0; k < 3; k++) {
-        low[k]  = fmin(fmin(corners[0][k], corners[1][k]), fmin(corners[2][k], corners[3][k]));
-        high[k] = fmax(fmax(corners[0][k], corners[1][k]), fmax(corners[2][k], corners[3][k]));
+        low[k]  = min2(min2(corners[0][k], corners[1][k]), min2(corners[2][k], corners[3][k]));
+        high[k] = max2(max2(corners[0][k], corners[1][k]), max2(corners[2][k], corners[3][k]));
     }
 }
 
@@ -163,8 +164,8 @@ static void look_at_cell(Mesher *m, Verifier *verifier, const Placed *placed, si
     for (size_t i = 1; i < count; i++) {
         tet_box(m, &m->tets.list.items[placed[i].tet], least, most);
         for (int k = 0; k < 3; k++) {
-            low[k]  = fmin(low[k], least[k]);
-            high[k] = fmax(high[k], most[k]);
+            low[k]  = min2(low[k], least[k]);
+            high[k] = max2(high[k], most[k]);
         }
     }
     Box  box = box_and_margin(m->error, low, high), wide = box_and_margin(2 * m->error, low, high);

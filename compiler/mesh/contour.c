@@ -26,8 +26,8 @@ static void box_of_points(const Contour *contour, const uint32_t *points, size_t
         double at[3];
         tets_position(contour->tets, points[i], at);
         for (int k = 0; k < 3; k++) {
-            low[k]  = fmin(low[k], at[k]);
-            high[k] = fmax(high[k], at[k]);
+            low[k]  = min2(low[k], at[k]);
+            high[k] = max2(high[k], at[k]);
         }
     }
 }
@@ -95,7 +95,7 @@ static void find_places(const Contour *contour, const MeshField *field, const ui
         const RootSearch *search   = &searches[i];
         Crossing         *crossing = &contour->crossings.items[numbers[i]];
         double            part     = 0.5 * (search->low + search->high);
-        part                       = fmin(fmax(part, END_OF_EDGE), 1 - END_OF_EDGE);
+        part                       = min2(max2(part, END_OF_EDGE), 1 - END_OF_EDGE);
         add_scaled3(crossing->at, search->from, part, search->along);
         for (int k = 0; k < 3; k++)
             crossing->normal[k] = search->along[k] / search->length;
@@ -218,7 +218,7 @@ static double off_of_fan(const Contour *contour, const MeshField *field, const P
         if (line->bent)
             around[count++] = line->at;
     }
-    return fmax(fabs(patch->value), most_off(field, patch->apex, around, count));
+    return max2(fabs(patch->value), most_off(field, patch->apex, around, count));
 }
 
 /* `missed` is the distance at the middle of the crossings. */
@@ -405,6 +405,6 @@ bool patch_is_astray(const Contour *contour, const Patch *patch)
     static const double ASTRAY = 0.15; /* parts of the error */
     double              most   = patch->off;
     for (uint32_t i = 0; i < patch->corner_count; i++)
-        most = fmax(most, contour->lines.items[patch->lines[i]].off);
+        most = max2(most, contour->lines.items[patch->lines[i]].off);
     return most > ASTRAY * contour->error;
 }

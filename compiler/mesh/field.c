@@ -131,9 +131,9 @@ static double distance_to_cut(const MeshField *field, const double point[3])
 {
     double outside = 0, inside = -INFINITY;
     for (int k = 0; k < 3; k++) {
-        double excess = fmax(field->low[k] - point[k], point[k] - field->high[k]);
+        double excess = max2(field->low[k] - point[k], point[k] - field->high[k]);
         outside += excess > 0 ? excess * excess : 0;
-        inside = fmax(inside, excess);
+        inside = max2(inside, excess);
     }
     return outside > 0 ? sqrt(outside) : inside;
 }
@@ -141,7 +141,7 @@ static double distance_to_cut(const MeshField *field, const double point[3])
 static double cut_by_zones(const KrsFrame *frame, const double point[3], double distance)
 {
     for (size_t i = 0; i < frame->zone_count; i++)
-        distance = fmax(distance, frame->zones[i][3] - distance3(point, frame->zones[i]));
+        distance = max2(distance, frame->zones[i][3] - distance3(point, frame->zones[i]));
     return distance;
 }
 
@@ -153,7 +153,7 @@ void field_distances(const MeshField *field, const double (*points)[3], size_t c
     for (size_t i = 0; i < count; i++) {
         distances[i] = cut_by_zones(field->frame, points[i], distances[i]);
         if (field->cut)
-            distances[i] = fmax(distances[i], distance_to_cut(field, points[i]));
+            distances[i] = max2(distances[i], distance_to_cut(field, points[i]));
     }
 }
 
@@ -200,7 +200,7 @@ static Range range_of_cuts(const MeshField *field, Box box)
         middle[k] = 0.5 * (box.axis[k].low + box.axis[k].high);
     double cut = cut_by_zones(field->frame, middle, -INFINITY);
     if (field->cut)
-        cut = fmax(cut, distance_to_cut(field, middle));
+        cut = max2(cut, distance_to_cut(field, middle));
     return cut > -INFINITY ? range_around(cut, box) : range_of(-INFINITY);
 }
 

@@ -13,7 +13,7 @@ bool find_gradient(const LaneSlope *slope, Gradient *gradient)
     for (int k = 0; k < 3; k++) {
         gradient->middle[k]    = 0.5 * (slope->by[k].low + slope->by[k].high);
         gradient->direction[k] = gradient->middle[k];
-        half[k]                = ROUNDING * fmax(slope->by[k].high - gradient->middle[k],
+        half[k]                = ROUNDING * max2(slope->by[k].high - gradient->middle[k],
                                                  gradient->middle[k] - slope->by[k].low);
     }
     length = length3(gradient->middle);
@@ -33,8 +33,8 @@ Box corners_box(const double (*corners)[3], size_t count, double margin)
     for (int k = 0; k < 3; k++) {
         box.axis[k] = (Range){INFINITY, -INFINITY};
         for (size_t i = 0; i < count; i++) {
-            box.axis[k].low  = fmin(box.axis[k].low, corners[i][k] - margin);
-            box.axis[k].high = fmax(box.axis[k].high, corners[i][k] + margin);
+            box.axis[k].low  = min2(box.axis[k].low, corners[i][k] - margin);
+            box.axis[k].high = max2(box.axis[k].high, corners[i][k] + margin);
         }
     }
     return box;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/minmax.h"
 enum { ALL_CELLS = GROUP_CELLS * GROUP_CELLS * GROUP_CELLS };
 
 void groups_clear(Groups *groups)
@@ -15,7 +16,7 @@ void groups_add(Groups *groups, uint32_t number, const double at[3])
 {
     uint32_t cell = 0;
     for (int k = 0; k < 3; k++)
-        cell = cell * GROUP_CELLS + (uint32_t)fmin(fmax(at[k] * GROUP_CELLS, 0), GROUP_CELLS - 1);
+        cell = cell * GROUP_CELLS + (uint32_t)min2(max2(at[k] * GROUP_CELLS, 0), GROUP_CELLS - 1);
     array_push_large(groups->arena, &groups->numbers, number);
     array_push_large(groups->arena, &groups->cells, cell);
 }

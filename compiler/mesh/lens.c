@@ -15,7 +15,7 @@ static double height_under_ball(double height, double ball, double radius)
 /* So far that a lens under flat surfaces has half of the error. */
 static double lens_distance(const Verifier *verifier, double radius)
 {
-    return fmax(radius * radius / verifier->error, 2 * radius);
+    return max2(radius * radius / verifier->error, 2 * radius);
 }
 
 bool find_lens_by_balls(const Verifier *verifier, Lens *lens)
@@ -82,8 +82,8 @@ static bool fits_lens(void *user, uint32_t triangle, const double corners[3][3])
     (void)triangle;
     for (int i = 0; i < 3; i++) {
         add_scaled3(offset, corners[i], -1, lens->center);
-        low  = fmin(low, dot3(offset, lens->normal));
-        high = fmax(high, dot3(offset, lens->normal));
+        low  = min2(low, dot3(offset, lens->normal));
+        high = max2(high, dot3(offset, lens->normal));
     }
     add_scaled3(edges[0], corners[1], -1, corners[0]);
     add_scaled3(edges[1], corners[2], -1, corners[0]);
@@ -91,9 +91,9 @@ static bool fits_lens(void *user, uint32_t triangle, const double corners[3][3])
     double cosine = normalize3(normal) ? dot3(normal, lens->normal) : 0;
     if (cosine > 0) {
         double middle = dot3(normal, offset) / cosine;
-        double rise   = lens->radius * sqrt(fmax(0, 1 - cosine * cosine)) / cosine;
-        low           = fmax(low, middle - rise);
-        high          = fmin(high, middle + rise);
+        double rise   = lens->radius * sqrt(max2(0, 1 - cosine * cosine)) / cosine;
+        low           = max2(low, middle - rise);
+        high          = min2(high, middle + rise);
     }
     double farthest = 2 * mesh->error;
     if (low > farthest || high < -farthest)
@@ -121,8 +121,8 @@ bool is_beside_lens(const Lens *lens, const double corners[4][3])
     for (int i = 0; i < 4; i++) {
         double offset[3];
         add_scaled3(offset, corners[i], -1, lens->center);
-        low  = fmin(low, dot3(offset, lens->normal));
-        high = fmax(high, dot3(offset, lens->normal));
+        low  = min2(low, dot3(offset, lens->normal));
+        high = max2(high, dot3(offset, lens->normal));
     }
     return low > lens->above || high < -lens->below;
 }

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/minmax.h"
 void marks_clear(Marks *marks)
 {
     if (marks->any)
@@ -49,11 +50,11 @@ void mark_box_add(const Tets *tets, const double low[3], const double high[3], M
 {
     double scale = MARKS / (tets->step * CUBE_STEPS);
     for (int k = 0; k < 3; k++) {
-        double least = fmax(0, floor((low[k] - tets->origin[k]) * scale));
-        double most  = fmin(MARKS - 1, floor((high[k] - tets->origin[k]) * scale));
-        least        = fmin(least, MARKS - 1);
-        most         = fmax(most, 0);
-        box->low[k]  = (uint16_t)fmin(box->low[k], least);
-        box->high[k] = (uint16_t)fmax(box->high[k], most);
+        double least = max2(0, floor((low[k] - tets->origin[k]) * scale));
+        double most  = min2(MARKS - 1, floor((high[k] - tets->origin[k]) * scale));
+        least        = min2(least, MARKS - 1);
+        most         = max2(most, 0);
+        box->low[k]  = (uint16_t)min2(box->low[k], least);
+        box->high[k] = (uint16_t)max2(box->high[k], most);
     }
 }

@@ -16,7 +16,7 @@ static double growth(const FieldPieces *pieces, size_t i, const double direction
     for (int k = 0; k < 3; k++) {
         Range  by   = pieces->slopes[i].by[k];
         double step = pieces->signs[i] * direction[k];
-        sum += fmin(step * by.low, step * by.high);
+        sum += min2(step * by.low, step * by.high);
     }
     return sum;
 }
@@ -44,7 +44,7 @@ static double find_slope(const FieldPieces *pieces)
                 worst = i;
             }
         }
-        best = fmax(best, least);
+        best = max2(best, least);
         add_scaled3(direction, direction, 0.5 / (turn + 1), own[worst]);
     }
     return best / ROUNDING;
@@ -65,7 +65,7 @@ void pieces_look(MeshField *field, Box box, PieceCell *cell)
             double most = range_largest(cell->pieces.slopes[i].by[k]);
             square += most * most;
         }
-        cell->steep = fmax(cell->steep, ROUNDING * sqrt(square));
+        cell->steep = max2(cell->steep, ROUNDING * sqrt(square));
         smooth_forms(&cell->pieces.hessians[i], turned ? cell->below[i] : cell->above[i],
                      turned ? cell->above[i] : cell->below[i]);
     }
@@ -119,15 +119,15 @@ static double most_of_piece(const Measure *m, size_t piece, const Part *part)
         double pairs = 0;
         for (int i = 0; i < count; i++)
             for (int j = 0; j < i; j++)
-                pairs = fmax(pairs, q[i][j]);
+                pairs = max2(pairs, q[i][j]);
         double rest    = count == 3   ? smooth_most_of_three(q[0][1], q[1][2], q[2][0])
                          : count == 4 ? 0.375 * pairs
                                       : 0.25 * pairs;
-        least          = fmin(least, fmax(low, values[0] + 0.5 * rest));
+        least          = min2(least, max2(low, values[0] + 0.5 * rest));
         double longest = 0;
         for (int j = 0; j < 4; j++)
-            longest = fmax(longest, q[count - 1][j]);
-        low = fmax(low, values[count - 1] + 0.5 * longest);
+            longest = max2(longest, q[count - 1][j]);
+        low = max2(low, values[count - 1] + 0.5 * longest);
     }
     return least;
 }
@@ -147,7 +147,7 @@ static double most_of_part(const Measure *m, const Part *part)
         }
         double b = stack[--depth], a = stack[depth - 1];
         bool   greater   = (step == PIECE_MAX) == (m->side > 0);
-        stack[depth - 1] = greater ? fmax(a, b) : fmin(a, b);
+        stack[depth - 1] = greater ? max2(a, b) : min2(a, b);
     }
     return stack[0];
 }
@@ -188,8 +188,8 @@ static double measure_part(Measure *m, const Part *part, int halvings)
     halve_part(m, part, halves);
     parts = measure_part(m, &halves[0], halvings + 1);
     if (parts <= m->enough)
-        parts = fmax(parts, measure_part(m, &halves[1], halvings + 1));
-    return fmin(most, parts > m->enough ? INFINITY : parts);
+        parts = max2(parts, measure_part(m, &halves[1], halvings + 1));
+    return min2(most, parts > m->enough ? INFINITY : parts);
 }
 
 /* ---- cones ---- */
@@ -220,7 +220,7 @@ static void add_cone(Cones *c, int p, int q, int r)
         for (size_t k = 0; k < c->m.cell->pieces.count; k++)
             part.points[i].values[k] = c->m.side * c->points->values[numbers[i]][k];
     }
-    c->most = fmax(c->most, measure_part(&c->m, &part, 0));
+    c->most = max2(c->most, measure_part(&c->m, &part, 0));
 }
 
 /* A face of three corners, and where the mesh cuts it, from an edge of `single` and `a` to one of `single` and `b`. */
@@ -341,11 +341,11 @@ bool pieces_measure(const Contour *contour, const MeshField *field, const PieceC
     double  deviation = -INFINITY;
     if (tet->triangle_count > 0 || points.inside[0]) {
         m.side    = 1;
-        deviation = fmax(deviation, deviation_of_side(contour, tet, &points, &m));
+        deviation = max2(deviation, deviation_of_side(contour, tet, &points, &m));
     }
     if (tet->triangle_count > 0 || !points.inside[0]) {
         m.side    = -1;
-        deviation = fmax(deviation, deviation_of_side(contour, tet, &points, &m));
+        deviation = max2(deviation, deviation_of_side(contour, tet, &points, &m));
     }
     /* what is more was not looked at to the end */
     tet->deviation = deviation > m.enough ? INFINITY

@@ -58,7 +58,7 @@ void quadric_point(const double (*points)[3], const double (*normals)[3], size_t
     }
     find_eigenvectors(m, v);
     for (int k = 0; k < 3; k++)
-        largest = fmax(largest, m[k][k]);
+        largest = max2(largest, m[k][k]);
     memcpy(point, middle, sizeof middle);
     for (int k = 0; k < 3; k++) {
         double axis[3] = {v[0][k], v[1][k], v[2][k]};

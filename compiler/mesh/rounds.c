@@ -68,7 +68,7 @@ static double fraction_by_cells(const Mesher *m)
 
 static void advance(Mesher *m, double part)
 {
-    m->fraction = fmax(m->fraction, m->begun + part * (m->goal - m->begun));
+    m->fraction = max2(m->fraction, m->begun + part * (m->goal - m->begun));
 }
 
 /* The first part of a round runs in the thread of the caller, so it may ask. */
@@ -116,8 +116,8 @@ static Box box_of_group(Mesher *m, const Group *group)
     for (uint32_t i = 1; i < group->count; i++) {
         tet_box(m, tet_of_group(m, group, i), least, most);
         for (int k = 0; k < 3; k++) {
-            low[k]  = fmin(low[k], least[k]);
-            high[k] = fmax(high[k], most[k]);
+            low[k]  = min2(low[k], least[k]);
+            high[k] = max2(high[k], most[k]);
         }
     }
     return box_and_margin(2 * m->error, low, high);
@@ -210,7 +210,7 @@ static bool all_fit_around(const Mesher *m, const Tet *tet)
         distance             = around->distance > distance ? around->distance : distance;
         in_pieces            = in_pieces || around->in_pieces;
     }
-    double least = tet->slope * fmin(proven_error(m), width);
+    double least = tet->slope * min2(proven_error(m), width);
     return in_pieces ? steep * distance <= least && distance <= proven_error(m)
                      : deviation <= least;
 }
@@ -330,8 +330,8 @@ static void bisect_evenly(Mesher *m)
 {
     Verifier verifier = {.field = &m->fields[0], .tets = &m->tets, .error = m->error};
     double   even     = sqrt(m->error * m->side);
-    double   length   = fmin(2 * even, fmax(even, m->side / 8));
-    length            = fmin(fmax(length, m->side / 32), m->side / 4);
+    double   length   = min2(2 * even, max2(even, m->side / 8));
+    length            = min2(max2(length, m->side / 32), m->side / 4);
     bool any          = true;
     while (any) {
         any          = false;
@@ -382,7 +382,7 @@ static void count_refuted(Mesher *m)
     for (size_t i = 0; i < count; i++)
         refuted += m->tets.list.items[m->tets.fresh.items[i]].state == TET_REFUTED;
     m->looked += (double)count;
-    m->fraction = fmax(m->fraction, fraction_by_bounds(m->looked, (double)refuted));
+    m->fraction = max2(m->fraction, fraction_by_bounds(m->looked, (double)refuted));
 }
 
 /* Until nothing is refuted by bounds; only what is fresh is looked at.  False: it was stopped. */

@@ -79,6 +79,6 @@ double most_off(const MeshField *field, const double at[3], const double *const 
             middles[i][k] = 0.5 * (at[k] + others[i][k]);
     field_distances(field, (const double(*)[3])middles, count, values);
     for (size_t i = 0; i < count; i++)
-        most = fmax(most, fabs(values[i]));
+        most = max2(most, fabs(values[i]));
     return most;
 }

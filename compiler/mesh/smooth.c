@@ -17,10 +17,10 @@ void smooth_forms(const LaneHessian *hessian, double above[6], double below[6])
     double more[3] = {0, 0, 0}, size = 0;
     for (int i = 0; i < 6; i++) {
         double middle = 0.5 * (hessian->by[i].low + hessian->by[i].high);
-        double rest   = ROUNDING * fmax(hessian->by[i].high - middle, middle - hessian->by[i].low);
+        double rest   = ROUNDING * max2(hessian->by[i].high - middle, middle - hessian->by[i].low);
         above[i]      = middle;
         below[i]      = -middle;
-        size          = fmax(size, fabs(middle));
+        size          = max2(size, fabs(middle));
         more[ROW[i]] += rest;
         if (i >= 3)
             more[COLUMN[i]] += rest;
@@ -42,7 +42,7 @@ static double find_slope(const MeshField *field, Box box, double step, const Lan
         for (int k = 0; k < 3; k++)
             points[i][k] = 0.5 * (box.axis[k].low + box.axis[k].high);
         points[i][i / 2] += i % 2 ? step : -step;
-        size = fmax(size, range_largest(hessian->by[i]));
+        size = max2(size, range_largest(hessian->by[i]));
     }
     field_distances(field, (const double(*)[3])points, 6, values);
     for (int k = 0; k < 3; k++)
@@ -93,7 +93,7 @@ void smooth_look(const MeshField *field, Box box, double error, SmoothCell *cell
     smooth_forms(&hessian, cell->above, cell->below);
     cell->slope = find_slope(field, box, 1e-2 * error, &hessian);
     if (find_gradient(&slope, &gradient))
-        cell->slope = fmax(cell->slope, gradient.least / ROUNDING);
+        cell->slope = max2(cell->slope, gradient.least / ROUNDING);
 }
 
 void smooth_look_closer(const MeshField *field, double error, int halvings, SmoothCell *cell)
@@ -108,7 +108,7 @@ void smooth_look_closer(const MeshField *field, double error, int halvings, Smoo
         !find_hessian(field, cell->box, halvings, &around))
         return;
     smooth_forms(&within, cell->above, cell->below);
-    cell->slope = fmax(cell->slope, find_slope(field, cell->box, 1e-2 * error, &around));
+    cell->slope = max2(cell->slope, find_slope(field, cell->box, 1e-2 * error, &around));
 }
 
 bool smooth_look_at_middle(const MeshField *field, const SmoothCell *cell, SmoothCell *middle)
@@ -149,7 +149,7 @@ double smooth_bend(const double form[6], const double a[3], const double b[3])
     add_scaled3(d, a, -1, b);
     double sum = form[0] * d[0] * d[0] + form[1] * d[1] * d[1] + form[2] * d[2] * d[2] +
                  2 * (form[3] * d[1] * d[2] + form[4] * d[0] * d[2] + form[5] * d[0] * d[1]);
-    return fmax(sum, 0) * ROUNDING;
+    return max2(sum, 0) * ROUNDING;
 }
 
 /* The most that the sum of w_i w_j q_ij over all pairs is, for weights w >= 0 whose sum is 1.  With q the squares of lengths
@@ -158,7 +158,7 @@ static double most_of_pair(double q) { return 0.25 * q; }
 
 double smooth_most_of_three(double a, double b, double c)
 {
-    double longest = fmax(a, fmax(b, c)),
+    double longest = max2(a, max2(b, c)),
            square  = 2 * (a * b + b * c + c * a) - a * a - b * b - c * c;
     if (2 * longest >= a + b + c || square <= 0)
         return most_of_pair(longest);
@@ -169,10 +169,10 @@ double smooth_most_of_three(double a, double b, double c)
    the first pair it is at most s^2 a / 4 + (1 - s)^2 b / 4 + s (1 - s) c. */
 static double most_of_ring(double a, double b, double c)
 {
-    double curve = 0.25 * (a + b) - c, best = fmax(0.25 * a, 0.25 * b);
+    double curve = 0.25 * (a + b) - c, best = max2(0.25 * a, 0.25 * b);
     double s = curve < 0 ? 0.5 * (0.5 * b - c) / curve : 0;
     if (s > 0 && s < 1)
-        best = fmax(best,
+        best = max2(best,
                     ROUNDING * (0.25 * (s * s * a + (1 - s) * (1 - s) * b) + s * (1 - s) * c));
     return best;
 }
@@ -196,14 +196,14 @@ static MeshPart mesh_part(const Contour *contour, const Tet *tet)
         const Crossing *crossing = &contour->crossings.items[part.patch->crossings[i]];
         const FaceLine *line     = &contour->lines.items[part.patch->lines[i]];
         part.crossings[i]        = crossing->at;
-        part.value               = fmax(part.value, fabs(crossing->value));
+        part.value               = max2(part.value, fabs(crossing->value));
         if (line->bent) {
             part.bends[i] = line->at;
-            part.value    = fmax(part.value, fabs(line->value));
+            part.value    = max2(part.value, fabs(line->value));
         }
     }
     if (part.patch->fan)
-        part.value = fmax(part.value, fabs(part.patch->value));
+        part.value = max2(part.value, fabs(part.patch->value));
     return part;
 }
 
@@ -219,8 +219,8 @@ static double most_on_mesh(const MeshPart *part, const double form[6])
         const double *m = part->bends[i], *apex = patch->apex;
         double        ab = smooth_bend(form, a, b), pa = smooth_bend(form, apex, a),
                pb = smooth_bend(form, apex, b);
-        most      = fmax(most, m ? most_of_ring(ab, smooth_bend(form, apex, m),
-                                                fmax(fmax(pa, pb), fmax(smooth_bend(form, a, m),
+        most      = max2(most, m ? most_of_ring(ab, smooth_bend(form, apex, m),
+                                                max2(max2(pa, pb), max2(smooth_bend(form, a, m),
                                                                         smooth_bend(form, b, m))))
                                  : smooth_most_of_three(ab, pa, pb));
     }
@@ -232,7 +232,7 @@ static double most_on_mesh(const MeshPart *part, const double form[6])
                                     smooth_bend(form, c[2], c[0]));
     double sides = 0;
     for (int i = 0; i < 4; i++)
-        sides = fmax(sides, smooth_bend(form, c[i], c[(i + 1) % 4]));
+        sides = max2(sides, smooth_bend(form, c[i], c[(i + 1) % 4]));
     return most_of_ring(smooth_bend(form, c[0], c[2]), smooth_bend(form, c[1], c[3]), sides);
 }
 
@@ -267,22 +267,22 @@ static double deviation_of_side(const Side *side, const MeshPart *part, const do
         double longest = 0, depth = depths[i - side->on_mesh];
         for (int j = 0; j < side->count; j++)
             if (j != i)
-                longest = fmax(longest, smooth_bend(side->form, side->at[i], side->at[j]));
+                longest = max2(longest, smooth_bend(side->form, side->at[i], side->at[j]));
         double left = 0.5 * longest - depth;
         shallow[i]  = part->patch ? left > most : left >= 0;
         any         = any || shallow[i];
         if (shallow[i])
-            least = fmin(least, depth);
+            least = min2(least, depth);
         else
-            deep = fmax(deep, left);
+            deep = max2(deep, left);
     }
     if (!any)
-        return fmax(most, deep);
+        return max2(most, deep);
     for (int i = 0; i < side->count; i++)
         for (int j = 0; j < i; j++)
             if ((i < side->on_mesh || shallow[i]) && (j < side->on_mesh || shallow[j]))
-                pairs = fmax(pairs, smooth_bend(side->form, side->at[i], side->at[j]));
-    return fmax(deep, 0.5 * 0.375 * pairs - least);
+                pairs = max2(pairs, smooth_bend(side->form, side->at[i], side->at[j]));
+    return max2(deep, 0.5 * 0.375 * pairs - least);
 }
 
 bool smooth_measure(const Contour *contour, const SmoothCell *cell, Tet *tet)
@@ -303,9 +303,9 @@ bool smooth_measure(const Contour *contour, const SmoothCell *cell, Tet *tet)
         add_point(side, corners[i]);
     }
     if (inside.count > inside.on_mesh)
-        deviation = fmax(deviation, deviation_of_side(&inside, &part, depths[0]));
+        deviation = max2(deviation, deviation_of_side(&inside, &part, depths[0]));
     if (outside.count > outside.on_mesh)
-        deviation = fmax(deviation, deviation_of_side(&outside, &part, depths[1]));
+        deviation = max2(deviation, deviation_of_side(&outside, &part, depths[1]));
     tet->deviation = (float)(deviation * (1 + copysign(1e-6, deviation)));
     return deviation < 0;
 }

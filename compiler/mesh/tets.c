@@ -38,7 +38,7 @@ static float find_width(const Tets *tets, const Tet *tet)
     for (int i = 0; i < 4; i++) {
         double pair[3];
         add_scaled3(pair, shares[0], i > 0, shares[i]);
-        most = fmax(most, fmax(length3(shares[i]), length3(pair)));
+        most = max2(most, max2(length3(shares[i]), length3(pair)));
     }
     return (float)((1 - 1e-6) / most);
 }
@@ -173,7 +173,7 @@ double tets_longest_edge(const Tets *tets, const Tet *tet)
     tets_corners(tets, tet, corners);
     for (int i = 0; i < 4; i++)
         for (int j = i + 1; j < 4; j++)
-            longest = fmax(longest, distance3(corners[i], corners[j]));
+            longest = max2(longest, distance3(corners[i], corners[j]));
     return longest;
 }
 
@@ -183,7 +183,7 @@ double corners_ball(const double corners[4][3], double center[3])
     for (int k = 0; k < 3; k++)
         center[k] = 0.25 * (corners[0][k] + corners[1][k] + corners[2][k] + corners[3][k]);
     for (int i = 0; i < 4; i++)
-        radius = fmax(radius, distance3(center, corners[i]));
+        radius = max2(radius, distance3(center, corners[i]));
     return radius;
 }
 

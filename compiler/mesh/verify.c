@@ -33,7 +33,7 @@ bool verify_is_far(const Tets *tets, const Tet *tet)
     for (int i = 0; i < 4; i++) {
         double radius = 0;
         for (int j = 0; j < 4; j++)
-            radius = fmax(radius, distance3(corners[i], corners[j]));
+            radius = max2(radius, distance3(corners[i], corners[j]));
         if (fabs(tets->points.items[tet->points[i]].distance) > ROUNDING * radius)
             return true;
     }
@@ -340,7 +340,7 @@ static Nearness find_nearness(const Verifier *verifier, const double corners[3][
     for (int i = 0; i < 3; i++) {
         double offset[3];
         add_scaled3(offset, corners[i], -1, center);
-        most = fmax(most, fabs(distance + dot3(gradient.middle, offset)));
+        most = max2(most, fabs(distance + dot3(gradient.middle, offset)));
     }
     return ROUNDING * (most + gradient.across * radius) <= gradient.least * verifier->error
                ? NEAR_SURFACE
@@ -363,7 +363,7 @@ static bool triangle_is_near_surface(Verifier *verifier, const double corners[3]
     for (int k = 0; k < 3; k++)
         center[k] = (corners[0][k] + corners[1][k] + corners[2][k]) / 3;
     for (int i = 0; i < 3; i++)
-        radius = fmax(radius, ROUNDING * distance3(center, corners[i]));
+        radius = max2(radius, ROUNDING * distance3(center, corners[i]));
     double distance = field_distance(verifier->field, center);
     if (--verifier->budget < 0 || fabs(distance) > error)
         return false;

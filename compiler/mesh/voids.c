@@ -50,8 +50,8 @@ static void add_to_shell(Shell *shell, const double *const corners[3])
     shell->used = true;
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) {
-            shell->low[k]  = fmin(shell->low[k], corners[i][k]);
-            shell->high[k] = fmax(shell->high[k], corners[i][k]);
+            shell->low[k]  = min2(shell->low[k], corners[i][k]);
+            shell->high[k] = max2(shell->high[k], corners[i][k]);
         }
     cross3(corners[1], corners[2], cross);
     shell->volume += dot3(corners[0], cross);
@@ -73,8 +73,8 @@ static bool is_tiny_void(const Shell *shell, double error)
 {
     double least = INFINITY, most = 0;
     for (int k = 0; k < 3; k++) {
-        least = fmin(least, shell->high[k] - shell->low[k]);
-        most  = fmax(most, shell->high[k] - shell->low[k]);
+        least = min2(least, shell->high[k] - shell->low[k]);
+        most  = max2(most, shell->high[k] - shell->low[k]);
     }
     return shell->used && shell->volume <= 0 && least < error && most <= 2 * error;
 }

@@ -12,7 +12,7 @@ void keep_inside(const double *weights, const double *inner, int count, double p
     double share = 1;
     for (int i = 0; i < count; i++)
         if (weights[i] < END_OF_BODY)
-            share = fmin(share, fmax(0, (inner[i] - END_OF_BODY) / (inner[i] - weights[i])));
+            share = min2(share, max2(0, (inner[i] - END_OF_BODY) / (inner[i] - weights[i])));
     for (int k = 0; k < 3; k++)
         point[k] = center[k] + share * (point[k] - center[k]);
 }
