@@ -129,6 +129,8 @@ $(LANES:%.c=$(B)/%.o): FAST := $(if $(findstring -fsanitize,$(CFLAGS)),-Wno-pass
                                -ffp-contract=off -fno-math-errno -fno-trapping-math
 $(B)/compiler/graph/lanes_avx2.o: FAST += -mavx2
 $(B)/compiler/graph/lanes_avx512.o: FAST += -mavx512f -mavx512dq -mavx512vl -mprefer-vector-width=512
+# Intervals are two numbers that come in registers: joined into a vector they would go through memory, and wait there.
+$(B)/compiler/graph/range.o $(B)/compiler/graph/lane_ranges.o $(B)/compiler/graph/lane_slopes.o $(B)/compiler/graph/lane_hessians.o $(B)/compiler/graph/lane_partials.o: FAST := -fno-tree-slp-vectorize
 # Headers of these borders are long: under the sanitizers -O1 would take three times as long as -O0.
 $(B)/%.o: %.cpp
 	@mkdir -p $(@D)
