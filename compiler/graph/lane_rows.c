@@ -183,17 +183,19 @@ static void free_unread(const LaneSteps *steps, Rows *rows, size_t i)
             rows->free[rows->free_count++] = rows->row[LANE_INPUTS + i + c];
 }
 
-static LaneCode locate_step(const Rows *rows, const LaneStep *step)
+static void locate_step(const Rows *rows, const LaneStep *step, LaneCode *code)
 {
-    LaneCode code = {.op = step->op, .operand_count = (uint8_t)step->operand_count};
-    if (step->operand_count == 0)
-        code.from[0] = step->operands[0];
+    unsigned scalars = 0;
     for (uint32_t k = 0; k < step->operand_count; k++) {
         bool scalar = step->operands[k] & LANE_SCALAR;
-        code.scalars |= (uint8_t)(scalar << k);
-        code.from[k] = scalar ? step->operands[k] & ~LANE_SCALAR : rows->row[step->operands[k]];
+        scalars |= (unsigned)scalar << k;
+        code->from[k] = scalar ? step->operands[k] & ~LANE_SCALAR : rows->row[step->operands[k]];
     }
-    return code;
+    if (step->operand_count == 0)
+        code->from[0] = step->operands[0];
+    code->op            = step->op;
+    code->operand_count = (uint8_t)step->operand_count;
+    code->scalars       = (uint8_t)scalars;
 }
 
 static void locate(LaneSteps *steps, Rows *rows, LaneCode *code)
@@ -210,7 +212,7 @@ static void locate(LaneSteps *steps, Rows *rows, LaneCode *code)
         } else if (step->op == LANE_PART) {
             code[i] = (LaneCode){.op = LANE_PART};
         } else {
-            code[i] = locate_step(rows, step);
+            locate_step(rows, step, &code[i]);
             visit_operands(steps, step, free_if_last, rows);
             take_row(rows, value);
             code[i].to = rows->row[value];
