@@ -282,8 +282,35 @@ static void enter(MeshField *field, const LaneTape *outer, Box box)
     field->region_count++;
 }
 
+/* To enter a box takes several runs of the tape around it, so the new tape must be much shorter: it is not where it was
+   short, nor in boxes of about the same size. */
+static bool is_worth_entering(const MeshField *field, Box box)
+{
+    enum { SHORT = 40 };
+    static const double MUCH_SMALLER = 0.05;
+    double              part         = 1;
+    if (field->region_count == 0)
+        return true;
+    const FieldRegion *outer = &field->regions[field->region_count - 1];
+    for (int k = 0; k < 3; k++)
+        part *= (box.axis[k].high - box.axis[k].low) /
+                (outer->box.axis[k].high - outer->box.axis[k].low);
+    return outer->tape.count > SHORT && part < MUCH_SMALLER;
+}
+
+static void stay(MeshField *field)
+{
+    FieldRegion *region = &field->regions[field->region_count++];
+    region->box         = region[-1].box;
+    region->tape        = region[-1].tape;
+}
+
 bool field_enter(MeshField *field, Box box)
 {
+    if (!is_worth_entering(field, box)) {
+        stay(field);
+        return true;
+    }
     const LaneTape *outer = outer_tape(field);
     Range           own   = lane_ranges_run_closer(outer, &field->ranges, box);
     Range           range = range_max(own, range_of_cuts(field, box));

@@ -44,7 +44,8 @@ typedef struct MeshField {
 void field_open(MeshField *field, Arena *arena);
 
 /* Enters a box, of which only what is within the last one entered is looked at, and leaves it.  False: there is
-   no surface in it, and it was not entered. */
+   no surface in it, and it was not entered.  Where little would be pruned the tape stays, and true only means that
+   nothing is known. */
 bool field_enter(MeshField *field, Box box);
 /* Enters it in any case. */
 void field_focus(MeshField *field, Box box);
@@ -84,7 +85,7 @@ typedef struct FieldPieces {
     LaneHessian hessians[MOST_PIECES];
 } FieldPieces;
 
-/* In a box that was entered last; false: it is not made like that. */
+/* In the box that was entered last; false: it is not made like that. */
 bool field_pieces(MeshField *field, Box box, FieldPieces *pieces);
 /* Their values at up to MOST_FIELD_POINTS points in that box: values[i * count] and so on are those of point i. */
 void field_piece_values(const MeshField *field, const FieldPieces *pieces,

@@ -184,12 +184,47 @@ static void faces_that_are_far_are_no_pieces(void **context)
     assert_true(try_pieces("show box([2, 0.4, 1.5]).round(0.1) - box([0.3, 1, 0.3]);") > 20);
 }
 
+/* Answers in boxes within boxes are those of the whole, bit for bit.  Only one that is much smaller has a tape of its
+   own. */
+static void little_is_gained_in_boxes_of_the_same_size(void **context)
+{
+    static const Box OUTER = {{{-1, 1}, {-1, 1}, {-1, 1}}}, SAME = {{{-1, 0.9}, {-1, 1}, {-1, 1}}},
+                     SMALL = {{{0.4, 0.7}, {0.4, 0.7}, {0.4, 0.7}}};
+    Opened *o              = malloc(sizeof *o);
+    double  points[POINTS][3], whole[POINTS], within[POINTS];
+    (void)context;
+    assert_non_null(o);
+    open_field(
+        o,
+        "show union([sphere(0.2).move([a, b, c]) for a in [-0.5, 0, 0.5] for b in [-0.5, 0, 0.5] "
+        "for c in [-0.5, 0, 0.5]]);");
+    points_in(SMALL, points);
+    field_distances(&o->field, (const double(*)[3])points, POINTS, whole);
+    assert_true(field_enter(&o->field, OUTER));
+    size_t steps = o->field.regions[0].tape.count;
+    assert_true(field_enter(&o->field, SAME));
+    assert_int_equal(o->field.regions[1].tape.count, steps);
+    field_distances(&o->field, (const double(*)[3])points, POINTS, within);
+    assert_memory_equal(within, whole, sizeof whole);
+    field_leave(&o->field);
+    assert_true(field_enter(&o->field, SMALL));
+    assert_true(o->field.regions[1].tape.count < steps / 2);
+    field_distances(&o->field, (const double(*)[3])points, POINTS, within);
+    assert_memory_equal(within, whole, sizeof whole);
+    field_leave(&o->field);
+    field_leave(&o->field);
+    assert_int_equal(o->field.region_count, 0);
+    close_field(o);
+    free(o);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ranges_of_outlines_hold),
         cmocka_unit_test(pieces_have_the_sign_of_the_distance),
         cmocka_unit_test(faces_that_are_far_are_no_pieces),
+        cmocka_unit_test(little_is_gained_in_boxes_of_the_same_size),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
