@@ -232,19 +232,20 @@ static void segment_nearest(const double a[3], const double b[3], const double p
     double along[3], offset[3];
     add_scaled3(along, b, -1, a);
     add_scaled3(offset, point, -1, a);
-    double square = dot3(along, along);
-    double part   = square > 0 ? fmin(fmax(dot3(offset, along) / square, 0), 1) : 0;
-    add_scaled3(nearest, a, part, along);
+    double square = dot3(along, along), part = square > 0 ? dot3(offset, along) / square : 0;
+    add_scaled3(nearest, a, part < 0 ? 0 : part > 1 ? 1 : part, along);
 }
 
 static void nearest_of_edges(const double corners[3][3], const double point[3], double nearest[3])
 {
     double least = INFINITY;
     for (int i = 0; i < 3; i++) {
-        double candidate[3];
+        double candidate[3], offset[3];
         segment_nearest(corners[i], corners[(i + 1) % 3], point, candidate);
-        if (distance3(candidate, point) < least) {
-            least = distance3(candidate, point);
+        add_scaled3(offset, candidate, -1, point);
+        double square = dot3(offset, offset);
+        if (square < least) {
+            least = square;
             memcpy(nearest, candidate, sizeof candidate);
         }
     }

@@ -45,12 +45,6 @@ void near_mesh_new(NearMesh *mesh, const double (*vertices)[3], const uint32_t (
         }
 }
 
-static void corners_of(const Bvh *bvh, uint32_t triangle, double corners[3][3])
-{
-    for (int c = 0; c < 3; c++)
-        memcpy(corners[c], bvh->vertices[bvh->triangles[triangle][c]], sizeof *corners);
-}
-
 /* ---- by what it faces ---- */
 
 /* Coordinates of a triangle: shares of its corners, and the height above its plane. */
@@ -311,14 +305,10 @@ static Verdict face_from(const NearMesh *mesh, const double corners[3][3], doubl
 
 static bool are_near(const Bvh *bvh, uint32_t triangle, const double corners[3][3], double error)
 {
-    double of[3][3];
-    corners_of(bvh, triangle, of);
-    for (int c = 0; c < 3; c++) {
-        double nearest[3];
-        triangle_nearest((const double(*)[3])of, corners[c], nearest);
-        if (distance3(nearest, corners[c]) > error)
+    double nearest[3];
+    for (int c = 0; c < 3; c++)
+        if (!bvh_triangle_is_near(bvh, triangle, corners[c], error, nearest))
             return false;
-    }
     return true;
 }
 

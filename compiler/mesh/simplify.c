@@ -12,16 +12,19 @@
 #include "compiler/base/parallel.h"
 #include "compiler/base/vec.h"
 #include "compiler/krs.h"
-#include "compiler/mesh/numbering.h"
+#include "compiler/mesh/collapse.h"
 #include "compiler/mesh/near.h"
+#include "compiler/mesh/numbering.h"
 #include "compiler/mesh/slivers.h"
 
-enum { MOST_TRIALS = 14 };
-/* From trial to trial triangles are kept so many times as far around faults.  Most faults are single
-   triangles that cross others, and what is proposed next may have some elsewhere.  So steps are small. */
+enum { MOST_TRIALS = 14, MANY_FAULTS = 16 };
+/* From trial to trial triangles are kept so many times as far around faults. */
 static const double GROWTH = 1.25;
-/* The first error, in errors: with less, more trials leave no fewer triangles. */
-static const double FIRST_ERROR = 0.125;
+/* How far at first, in errors: around a collapse it is few triangles that matter. */
+static const double FIRST_RADIUS = 1, FIRST_RADIUS_OF_COLLAPSE = 0.25;
+/* The errors of meshoptimizer's mean, in errors.  With less it leaves out less, and with more it goes too far in many
+   places. */
+static const double FIRST_ERROR = 0.25, LAST_ERROR = 0.5;
 
 typedef struct Simplifier {
     Memory                memory;
@@ -35,7 +38,9 @@ typedef struct Simplifier {
     size_t triangle_count;
     uint32_t (*best)[3]; /* triangles that have been good */
     size_t    best_count;
-    Numbering near; /* triangles that were proven to be within the error of the mesh */
+    Numbering judged; /* new triangles: 1 where they are within the error of the mesh, else 0 */
+    Numbering noted;  /* those that are, and of which `facing` was written down */
+    size_t    judged_before;
     NearMesh  original;
     /* Of each triangle of the mesh, one above or below it, by its vertices: of the last trial, and of the best;
        all 0: none. */
@@ -48,8 +53,9 @@ typedef struct Simplifier {
 /* ---- what is proposed ---- */
 
 /* Those that are kept stay as they are; the others are simplified up to their border. */
-static void propose(Simplifier *s, double error)
+static void propose(Simplifier *s, double error, double goal)
 {
+    (void)goal;
     const KrsMesh *mesh = s->mesh;
     ArenaMark      mark = arena_mark(&s->arena);
     uint32_t(*rest)[3]  = arena_alloc(&s->arena, s->best_count + 1, sizeof *rest);
@@ -145,27 +151,32 @@ static void take_least(atomic_uint *least, uint32_t number)
 }
 
 /* New triangles have corners of the mesh. */
-static bool is_far_from_original(const Check *check, uint32_t triangle, NearLook *look)
+static bool is_near_original(const Simplifier *s, const uint32_t triangle[3], NearLook *look)
 {
     enum { MOST_AROUND = 32 };
-    const Simplifier    *s     = check->s;
     const TriangleEdges *edges = &s->original.edges;
-    const uint32_t      *own   = check->triangles->triangles[triangle];
     uint32_t             starts[MOST_AROUND];
     size_t               count = 0;
     double               corners[3][3];
-    if (numbering_find(&s->near, key_of(own)) != NO_NUMBER)
-        return false;
-    for (int c = 0; c < 3; c++)
-        for (uint32_t i = edges->begins[own[c]]; i < edges->begins[own[c] + 1]; i++)
+    for (int c = 0; c < 3; c++) {
+        memcpy(corners[c], s->mesh->vertices[triangle[c]], sizeof corners[c]);
+        for (uint32_t i = edges->begins[triangle[c]]; i < edges->begins[triangle[c] + 1]; i++)
             if (count < MOST_AROUND)
                 starts[count++] = edges->items[i].triangle;
-    corners_of(check->triangles, triangle, corners);
-    bool far = !is_near_mesh(&s->original, (const double(*)[3])corners, s->error, starts, count,
-                             look);
+    }
+    return is_near_mesh(&s->original, (const double(*)[3])corners, s->error, starts, count, look);
+}
+
+static bool is_far_from_original(const Check *check, uint32_t triangle, NearLook *look)
+{
+    const Simplifier *s   = check->s;
+    const uint32_t   *own = check->triangles->triangles[triangle];
+    if (numbering_find(&s->noted, key_of(own)) != NO_NUMBER)
+        return false;
+    bool near = is_near_original(s, own, look);
     for (size_t i = 0; i < look->faced_count; i++)
         take_least(&check->found_facing[look->faced[i]], triangle);
-    return far;
+    return !near;
 }
 
 static bool is_far_from_new(const Check *check, uint32_t triangle, NearLook *look)
@@ -241,9 +252,12 @@ static void check_new(Judgement *judgement, const NearMesh *new, double goal)
     for (size_t i = 0; i < count; i++)
         if (check.found_facing[i] != NO_TRIANGLE)
             memcpy(s->facing[i], s->triangles[check.found_facing[i]], sizeof s->facing[i]);
-    for (uint32_t i = 0; i < s->triangle_count && !atomic_load(&s->stopped); i++)
+    for (uint32_t i = 0; i < s->triangle_count && !atomic_load(&s->stopped); i++) {
+        NumberKey key = key_of(s->triangles[i]);
+        numbering_take(&s->judged, key, !check.wrong[i]);
         if (!check.wrong[i])
-            numbering_take(&s->near, key_of(s->triangles[i]), 0);
+            numbering_take(&s->noted, key, 0);
+    }
 }
 
 static void check_crossings(Judgement *judgement, const NearMesh *new, double goal)
@@ -271,7 +285,8 @@ static void check_original(Judgement *judgement, const NearMesh *new, double goa
     check_all(judgement, &check, goal);
 }
 
-static size_t count_faults(Simplifier *s, double radius, double goal)
+/* `most`: when there are more, they need not be counted. */
+static size_t count_faults(Simplifier *s, double radius, size_t most, double goal)
 {
     const double(*at)[3] = (const double(*)[3])s->mesh->vertices;
     ArenaMark mark       = arena_mark(&s->arena);
@@ -280,24 +295,68 @@ static size_t count_faults(Simplifier *s, double radius, double goal)
     near_mesh_new(&new, at, (const uint32_t(*)[3])s->triangles, s->triangle_count, &s->arena);
     Judgement judgement = {.s = s, .now = &new.bvh, .radius = radius};
     report_open(&new.edges, note_fault, &judgement);
-    check_new(&judgement, &new, begun + (goal - begun) / 3);
-    check_crossings(&judgement, &new, begun + 2 * (goal - begun) / 3);
-    check_original(&judgement, &new, goal);
+    check_crossings(&judgement, &new, begun + (goal - begun) / 3);
+    if (judgement.faults <= most) {
+        check_new(&judgement, &new, begun + 2 * (goal - begun) / 3);
+        check_original(&judgement, &new, goal);
+    }
     arena_rewind(&s->arena, mark);
     return judgement.faults;
 }
 
-/* Simplifies the best further, unless all trials have faults or it is stopped. */
-static void try_error(Simplifier *s, double error, double goal)
+/* ---- one vertex after the other ---- */
+
+/* About as many triangles are judged as this for each that there is. */
+enum { JUDGED_EACH = 4 };
+
+static bool is_good(void *user, const uint32_t triangle[3])
 {
-    double radius = s->error;
+    Simplifier *s   = user;
+    uint32_t    was = numbering_find(&s->judged, key_of(triangle));
+    if (was != NO_NUMBER)
+        return was;
+    if (s->judged.count % 64 == 0 && !atomic_load(&s->stopped))
+        ask(s, fmin(1, (double)(s->judged.count - s->judged_before) /
+                           (JUDGED_EACH * (double)s->best_count)));
+    if (atomic_load(&s->stopped))
+        return false;
+    bool near = is_near_original(s, triangle, &s->looks[0]);
+    numbering_take(&s->judged, key_of(triangle), near);
+    return near;
+}
+
+static void propose_collapses(Simplifier *s, double error, double goal)
+{
+    CollapseRules rules = {s->kept, is_good, s};
+    (void)error;
+    s->begun         = s->fraction;
+    s->goal          = goal;
+    s->judged_before = s->judged.count;
+    memcpy(s->triangles, s->best, s->best_count * sizeof *s->best);
+    s->triangle_count = collapse_edges((const double(*)[3])s->mesh->vertices, s->mesh->vertex_count,
+                                       s->triangles, s->best_count, &rules, &s->arena);
+}
+
+/* ---- trials ---- */
+
+typedef struct Trial {
+    void (*propose)(Simplifier *s, double error, double goal);
+    double error, radius; /* in errors */
+    size_t most_faults;   /* with more it is given up */
+} Trial;
+
+/* Simplifies the best further, unless all trials have faults or it is stopped. */
+static void try_all(Simplifier *s, Trial *trial, double goal)
+{
+    double radius = trial->radius * s->error;
     memset(s->kept, 0, s->best_count * sizeof *s->kept);
-    for (int trial = 0; trial < MOST_TRIALS; trial++, radius *= GROWTH) {
-        propose(s, error);
-        if (s->triangle_count == 0 || s->triangle_count >= s->best_count)
+    for (int i = 0; i < MOST_TRIALS; i++, radius *= GROWTH) {
+        trial->propose(s, trial->error * s->error, s->fraction + 0.25 * (goal - s->fraction));
+        if (atomic_load(&s->stopped) || s->triangle_count == 0 ||
+            s->triangle_count >= s->best_count)
             return;
-        size_t faults = count_faults(s, radius, 0.5 * (s->fraction + goal));
-        if (atomic_load(&s->stopped))
+        size_t faults = count_faults(s, radius, trial->most_faults, 0.5 * (s->fraction + goal));
+        if (atomic_load(&s->stopped) || faults > trial->most_faults)
             return;
         if (faults == 0) {
             memcpy(s->best, s->triangles, s->triangle_count * sizeof *s->best);
@@ -308,7 +367,9 @@ static void try_error(Simplifier *s, double error, double goal)
     }
 }
 
-/* With more and more error.  Where one step is too far, the next ones go on from the last that was good. */
+/* meshoptimizer leaves out most triangles in little time where the surface is smooth.  Single collapses leave out
+   half of what it leaves, and all where its proposals cross themselves, as flat faces do.  What was kept around faults is tried
+   once more. */
 static void find_triangles(Simplifier *s)
 {
     const KrsMesh *mesh  = s->mesh;
@@ -328,9 +389,13 @@ static void find_triangles(Simplifier *s)
     s->best_count = count;
     if (count > 0)
         memcpy(s->best, mesh->triangles, count * sizeof *s->best);
-    for (double error = FIRST_ERROR * s->error; error <= s->error && count > 0; error *= 2) {
+    Trial trials[] = {{propose, FIRST_ERROR, FIRST_RADIUS, MANY_FAULTS},
+                      {propose, LAST_ERROR, FIRST_RADIUS, MANY_FAULTS},
+                      {propose_collapses, 1, FIRST_RADIUS_OF_COLLAPSE, SIZE_MAX},
+                      {propose_collapses, 1, FIRST_RADIUS_OF_COLLAPSE, SIZE_MAX}};
+    for (size_t i = 0; i < sizeof trials / sizeof *trials && count > 0; i++) {
         double goal = 0.5 * (s->fraction + 1);
-        try_error(s, error, goal);
+        try_all(s, &trials[i], goal);
         s->fraction = goal;
     }
 }
@@ -385,7 +450,8 @@ KrsStatus krs_mesh_simplify(const KrsMesh *mesh, const KrsMeshOptions *options,
         return KRS_BAD_ARGUMENT;
     s.arena.memory   = &s.memory;
     s.lasting.memory = &s.memory;
-    s.near.arena     = &s.lasting;
+    s.judged.arena   = &s.lasting;
+    s.noted.arena    = &s.lasting;
     KrsStatus status = simplify(&s, simplified);
     arena_free(&s.arena);
     arena_free(&s.lasting);

@@ -1,0 +1,25 @@
+/*
+ * collapse.h: fewer triangles of a closed mesh, by leaving out one vertex after the other.
+ */
+#ifndef KRS_MESH_COLLAPSE_H
+#define KRS_MESH_COLLAPSE_H
+
+#include "compiler/base/arena.h"
+
+#include <stdint.h>
+
+/* Whether a new triangle may be. */
+typedef bool IsGoodTriangle(void *user, const uint32_t triangle[3]);
+
+typedef struct CollapseRules {
+    const bool     *kept; /* of triangles: those whose corners stay */
+    IsGoodTriangle *is_good;
+    void           *user;
+} CollapseRules;
+
+/* Moves vertices to one at the other end of an edge, the one that changes least first, where all triangles that
+   this makes are good and the mesh stays closed.  Returns how many triangles are left. */
+size_t collapse_edges(const double (*vertices)[3], size_t vertex_count, uint32_t (*triangles)[3],
+                      size_t count, const CollapseRules *rules, Arena *arena);
+
+#endif
