@@ -45,6 +45,8 @@ typedef struct LaneStep {
     uint32_t operands[MAX_OPERANDS];
     float
         steepest; /* it changes no faster than that with the point, and jumps nowhere; 0: not known */
+    uint32_t
+        origin; /* 1 and the step of the tape before all pruning that has the same value; 0: not known */
 } LaneStep;
 
 /* How a step is run: on rows and, where the bit of the operand is set, scalars. */

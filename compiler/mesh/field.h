@@ -62,6 +62,8 @@ bool field_normal(const MeshField *field, const double point[3], double step, do
 Range field_range(const MeshField *field, Box box);
 /* That and the ranges of its derivatives by x, y and z; false: there are none, or no value is 0. */
 bool field_slope(const MeshField *field, Box box, Range *range, LaneSlope *slope);
+/* Of the distance in a box that was entered last: as of LaneStep. */
+uint32_t field_origin(const MeshField *field, Box box);
 /* And the ranges of its second derivatives; false: there are none, or the first may jump. */
 bool field_hessian(const MeshField *field, Box box, Range *range, LaneSlope *slope,
                    LaneHessian *hessian);
@@ -77,9 +79,10 @@ enum { MOST_PIECES = 8, MOST_PIECE_STEPS = 32 };
    minima and maxima.  It is told in the order of a stack: a number of a piece, or one of these. */
 enum { PIECE_MIN = -1, PIECE_MAX = -2 };
 typedef struct FieldPieces {
-    size_t count, step_count;
-    int    steps[MOST_PIECE_STEPS];
-    double signs[MOST_PIECES],
+    uint32_t origin; /* if it is one piece: of its step, as of LaneStep; else 0 */
+    size_t   count, step_count;
+    int      steps[MOST_PIECE_STEPS];
+    double   signs[MOST_PIECES],
         offsets[MOST_PIECES]; /* a piece is sign times a value, and the offset */
     LaneSlope   slopes[MOST_PIECES];
     LaneHessian hessians[MOST_PIECES];

@@ -277,6 +277,18 @@ static bool may_be_few(Finding *f)
     return count_pieces(f, f->tape->outputs[0], 1, 0);
 }
 
+static uint32_t origin_of(const LaneTape *tape, uint32_t operand)
+{
+    bool step = !(operand & LANE_SCALAR) && operand >= LANE_INPUTS;
+    return step ? tape->steps[operand - LANE_INPUTS].origin : 0;
+}
+
+uint32_t field_origin(const MeshField *field, Box box)
+{
+    const LaneTape *tape = &field->regions[field->region_count - 1].tape;
+    return field_is_cut(field, box) ? 0 : origin_of(tape, tape->outputs[0]);
+}
+
 bool field_pieces(MeshField *field, Box box, FieldPieces *pieces)
 {
     LaneSlope   slope;
@@ -291,7 +303,11 @@ bool field_pieces(MeshField *field, Box box, FieldPieces *pieces)
     lane_slopes_run(f.tape, &field->ranges, field->slopes, &slope);
     lane_hessians_run(f.tape, &field->ranges, field->slopes, field->hessians, &hessian);
     pieces->count = pieces->step_count = 0;
-    return find_pieces(&f, f.tape->outputs[0], 1, 0) && field_keep(field, f.outputs, pieces->count);
+    if (!find_pieces(&f, f.tape->outputs[0], 1, 0))
+        return false;
+    bool one       = pieces->count == 1 && pieces->signs[0] > 0 && pieces->offsets[0] == 0;
+    pieces->origin = one ? origin_of(f.tape, f.outputs[0]) : 0;
+    return field_keep(field, f.outputs, pieces->count);
 }
 
 void field_piece_values(const MeshField *field, const FieldPieces *pieces,

@@ -11,13 +11,6 @@
 #include "compiler/mesh/marks.h"
 #include "compiler/mesh/verify.h"
 
-/* What a point of the tetrahedra knows of those around it: smooth.h. */
-typedef struct Around {
-    float deviation, width; /* the largest and the least */
-    float distance;         /* to the surface, at most: the largest deviation over the slope */
-    bool  in_pieces;        /* some is bounded by pieces */
-} Around;
-
 typedef struct Mesher {
     Memory                memory;
     Arena                 arena;
@@ -30,10 +23,7 @@ typedef struct Mesher {
     Contour               contour;
     Bvh                   bvh;
     Marks                 marks; /* where the mesh is new since proofs were found */
-    struct {
-        Around *items;
-        size_t  count, capacity;
-    } around;
+    Arounds               around;
     struct {
         uint32_t *items;
         size_t    count, capacity;

@@ -334,8 +334,9 @@ bool pieces_measure(const Contour *contour, const MeshField *field, const PieceC
 {
     enum { BUDGET = 200 };
     Points points;
-    tet->slope = (float)(cell->slope * (1 - 1e-6));
-    tet->steep = (float)(cell->steep * (1 + 1e-6));
+    tet->slope  = (float)(cell->slope * (1 - 1e-6));
+    tet->steep  = (float)(cell->steep * (1 + 1e-6));
+    tet->origin = cell->pieces.origin;
     find_points(contour, field, cell, tet, &points);
     Measure m         = {.cell = cell, .budget = BUDGET, .enough = tet->slope * error};
     double  deviation = -INFINITY;

@@ -168,53 +168,6 @@ static bool for_groups(Mesher *m, WorkOnGroup *work, double goal)
 
 /* ---- where no cells are needed ---- */
 
-static float distance_of(const Tet *tet)
-{
-    return tet->slope > 0 ? tet->deviation / tet->slope * (1 + 1e-6F) : INFINITY;
-}
-
-/* What points know of all tetrahedra that have them. */
-static void look_around(Mesher *m)
-{
-    static const Around nothing = {.width = INFINITY};
-    while (m->around.count < m->tets.points.count)
-        array_push_large(&m->arena, &m->around, nothing);
-    for (size_t i = 0; i < m->around.count; i++)
-        m->around.items[i] = nothing;
-    for (size_t i = 0; i < m->tets.list.count; i++) {
-        const Tet *tet       = &m->tets.list.items[i];
-        bool       none      = tet->state == TET_EMPTY;
-        float      deviation = none ? 0 : tet->deviation, distance = none ? 0 : distance_of(tet);
-        for (int k = 0; k < 4; k++) {
-            Around *around    = &m->around.items[tet->points[k]];
-            around->deviation = deviation > around->deviation ? deviation : around->deviation;
-            around->width     = tet->width < around->width ? tet->width : around->width;
-            around->distance  = distance > around->distance ? distance : around->distance;
-            around->in_pieces = around->in_pieces || (!none && tet->steep > 0);
-        }
-    }
-}
-
-/* Whether no point of those around a tetrahedron is on the wrong side of the mesh by more than grows along the error; and from
-   none of its points one leaves them within that.  Pieces have the sign of the distance, but not its size.  So from
-   one to another only the greatest distance to the surface tells. */
-static bool all_fit_around(const Mesher *m, const Tet *tet)
-{
-    float  deviation = 0, width = INFINITY, distance = 0;
-    bool   in_pieces = false;
-    double steep     = tet->steep > 0 ? tet->steep : 1;
-    for (int k = 0; k < 4; k++) {
-        const Around *around = &m->around.items[tet->points[k]];
-        deviation            = around->deviation > deviation ? around->deviation : deviation;
-        width                = around->width < width ? around->width : width;
-        distance             = around->distance > distance ? around->distance : distance;
-        in_pieces            = in_pieces || around->in_pieces;
-    }
-    double least = tet->slope * min2(proven_error(m), width);
-    return in_pieces ? steep * distance <= least && distance <= proven_error(m)
-                     : deviation <= least;
-}
-
 /* Edges, in errors, of the smallest tetrahedra that are bisected since their mesh is not on the surface, where it is within the
    error of it. */
 static const double LEAST_ASTRAY = 1;
@@ -241,10 +194,14 @@ static void judge_group(Mesher *m, Verifier *verifier, const Group *group)
 /* What needs no cells. */
 static void judge_smooth(Mesher *m)
 {
-    look_around(m);
+    Sure sure;
+    arounds_find(&m->around, &m->tets, &m->arena);
     for (size_t i = 0; i < m->tets.list.count; i++) {
         Tet *tet = &m->tets.list.items[i];
-        if (tet->state == TET_FITS && all_fit_around(m, tet)) {
+        if (tet->state != TET_FITS)
+            continue;
+        sure_find(&m->around, &m->tets, tet, proven_error(m), &sure);
+        if (sure.everywhere) {
             tet->state = TET_PROVEN;
             tet->needs = mark_box_none();
             add_place(m, tet, m->error, &tet->needs);
@@ -257,7 +214,10 @@ static void judge_smooth(Mesher *m)
 static void verify_group(Mesher *m, Verifier *verifier, const Group *group)
 {
     for (uint32_t i = 0; i < group->count; i++) {
-        Tet *tet   = tet_of_group(m, group, i);
+        Tet *tet       = tet_of_group(m, group, i);
+        verifier->sure = (Sure){.anywhere = false};
+        if (tet->state == TET_FITS)
+            sure_find(&m->around, &m->tets, tet, proven_error(m), &verifier->sure);
         tet->state = (uint8_t)verify_tet(verifier, tet);
     }
 }

@@ -91,7 +91,8 @@ void smooth_look(const MeshField *field, Box box, double error, SmoothCell *cell
     if (!cell->known || cell->empty)
         return;
     smooth_forms(&hessian, cell->above, cell->below);
-    cell->slope = find_slope(field, box, 1e-2 * error, &hessian);
+    cell->slope  = find_slope(field, box, 1e-2 * error, &hessian);
+    cell->origin = field_origin(field, box);
     if (find_gradient(&slope, &gradient))
         cell->slope = max2(cell->slope, gradient.least / ROUNDING);
 }
@@ -291,6 +292,7 @@ bool smooth_measure(const Contour *contour, const SmoothCell *cell, Tet *tet)
     double   corners[4][3], depths[2][4], deviation = -INFINITY;
     tet->deviation = INFINITY;
     tet->steep     = 0;
+    tet->origin    = cell->origin;
     tet->slope     = (float)(cell->slope * (1 - 1e-6));
     if (!cell->known)
         return false;

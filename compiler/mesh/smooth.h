@@ -17,9 +17,10 @@
 /* What is known of a box: d^T (second derivatives) d is at most d^T above d, and at least -d^T below d, for all d; the value
    grows by `slope` at least along some direction. */
 typedef struct SmoothCell {
-    Box    box;
-    bool   known, empty;
-    double above[6], below[6], slope;
+    Box      box;
+    bool     known, empty;
+    double   above[6], below[6], slope;
+    uint32_t origin; /* of the value: field.h */
 } SmoothCell;
 
 /* The forms of second derivatives. */

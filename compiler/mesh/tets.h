@@ -50,6 +50,7 @@ typedef struct Tet {
     float    deviation, slope; /* smooth.h */
     MarkBox  needs;            /* where its proof asks for the mesh of others */
     float    steep;            /* pieces.h; 0 where it is by smooth.h */
+    uint32_t origin;           /* of the function that is bounded; 0: not known */
 } Tet;
 
 typedef struct Tets {

@@ -4,6 +4,7 @@
 #ifndef KRS_MESH_VERIFIER_H
 #define KRS_MESH_VERIFIER_H
 
+#include "compiler/mesh/around.h"
 #include "compiler/mesh/bvh.h"
 #include "compiler/mesh/contour.h"
 
@@ -14,6 +15,7 @@ typedef struct Verifier {
     const Bvh  *mesh;
     double      error;
     Tet        *tet;
+    Sure        sure; /* where in it the surface is near without cells */
     double      center[3];
     double      budget;     /* cells that the proof may still look at */
     uint32_t    last;       /* the triangle that was found to be near to a place */

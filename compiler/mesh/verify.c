@@ -254,6 +254,16 @@ static bool cell_is_near_mesh(Verifier *verifier, Cells *cells, const Cell *cell
     return true;
 }
 
+/* By bounds, which ask for the mesh as far as the error around. */
+static bool is_sure(Verifier *verifier, const Cell *cell)
+{
+    if (!verifier->sure.anywhere || !sure_has(&verifier->sure, (const double(*)[3])cell->corners))
+        return false;
+    for (int i = 0; i < 4; i++)
+        note_need(verifier, cell->corners[i], verifier->error);
+    return true;
+}
+
 static bool surface_is_near_mesh(Verifier *verifier, const Cell *whole, int side)
 {
     Cells cells;
@@ -265,7 +275,9 @@ static bool surface_is_near_mesh(Verifier *verifier, const Cell *whole, int side
         CellView views[CELLS_AT_ONCE];
         size_t   count = 0;
         while (cells.count > 0 && count < CELLS_AT_ONCE) {
-            now[count]   = cells.items[--cells.count];
+            now[count] = cells.items[--cells.count];
+            if (is_sure(verifier, &now[count]))
+                continue;
             views[count] = cell_view(verifier, &now[count]);
             count++;
         }
