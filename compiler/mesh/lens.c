@@ -54,7 +54,7 @@ void find_lens_by_slope(const Gradient *gradient, const double center[3], double
 /* The triangles that are near to a lens. */
 typedef struct LensMesh {
     const Lens *lens;
-    double      error;
+    double      error, reach;
     bool        pierced; /* its axis meets one */
 } LensMesh;
 
@@ -69,6 +69,14 @@ static bool axis_meets(const Lens *lens, const double corners[3][3])
         turns[i] = dot3(cross, lens->normal);
     }
     return turns[0] >= 0 && turns[1] >= 0 && turns[2] >= 0;
+}
+
+/* That is the dearest question, and most triangles fit. */
+static bool is_beyond_reach(const LensMesh *mesh, const double corners[3][3])
+{
+    double nearest[3];
+    triangle_nearest(corners, mesh->lens->center, nearest);
+    return distance3(nearest, mesh->lens->center) > mesh->reach;
 }
 
 /* A triangle must face as the lens does and be within the error of all that is in the lens, or be
@@ -98,9 +106,10 @@ static bool fits_lens(void *user, uint32_t triangle, const double corners[3][3])
     double farthest = 2 * mesh->error;
     if (low > farthest || high < -farthest)
         return true;
+    if (cosine < STEEPEST || high + lens->below > mesh->error || lens->above - low > mesh->error)
+        return is_beyond_reach(mesh, corners);
     mesh->pierced = mesh->pierced || axis_meets(lens, corners);
-    return cosine >= STEEPEST && high + lens->below <= mesh->error &&
-           lens->above - low <= mesh->error;
+    return true;
 }
 
 double lens_reach(const Verifier *verifier, const Lens *lens)
@@ -108,11 +117,25 @@ double lens_reach(const Verifier *verifier, const Lens *lens)
     return hypot(lens->radius, 2 * verifier->error);
 }
 
+/* Around the disc of the lens, and twice the error to both sides of it.  Where the normal is about an axis its cosine is
+   rounded, so that the disc is a little larger. */
+static void box_of_lens(const Verifier *verifier, const Lens *lens, double low[3], double high[3])
+{
+    for (int k = 0; k < 3; k++) {
+        double cosine = lens->normal[k];
+        double extent = ROUNDING * (lens->radius * sqrt(max2(0, 1 - cosine * cosine)) +
+                                    2 * verifier->error * fabs(cosine) + 1e-7 * lens->radius);
+        low[k]        = lens->center[k] - extent;
+        high[k]       = lens->center[k] + extent;
+    }
+}
+
 bool mesh_fills_lens(const Verifier *verifier, const Lens *lens)
 {
-    LensMesh mesh = {.lens = lens, .error = verifier->error};
-    return bvh_visit(verifier->mesh, lens->center, lens_reach(verifier, lens), fits_lens, &mesh) &&
-           mesh.pierced;
+    LensMesh mesh = {.lens = lens, .error = verifier->error, .reach = lens_reach(verifier, lens)};
+    double   low[3], high[3];
+    box_of_lens(verifier, lens, low, high);
+    return bvh_visit_box(verifier->mesh, low, high, fits_lens, &mesh) && mesh.pierced;
 }
 
 bool is_beside_lens(const Lens *lens, const double corners[4][3])
