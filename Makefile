@@ -21,6 +21,8 @@
 # make install    to PREFIX (/usr/local), below DESTDIR; uninstall: takes it away
 
 B       ?= build
+# A folder of this one has one name only: those that the compiler writes into build/*.d are taken as they are.
+override B := $(patsubst $(CURDIR)/%,%,$(abspath $(B)))
 CFLAGS  ?= -g -O2
 FUZZ_SECONDS ?= 20
 CLANG   ?= clang-14
