@@ -225,6 +225,35 @@ bool bvh_is_near(const Bvh *bvh, const double point[3], double radius, uint32_t 
     return !bvh_visit(bvh, point, radius, stop_at, last);
 }
 
+typedef struct Nearest {
+    const double *point;
+    double        distance;
+    uint32_t      triangle;
+} Nearest;
+
+static bool take_nearest(void *user, uint32_t triangle, const double corners[3][3])
+{
+    Nearest *nearest = user;
+    double   place[3];
+    triangle_nearest(corners, nearest->point, place);
+    double distance = distance3(place, nearest->point);
+    if (distance < nearest->distance) {
+        nearest->distance = distance;
+        nearest->triangle = triangle;
+    }
+    return true;
+}
+
+bool bvh_find_nearest(const Bvh *bvh, const double point[3], double radius, uint32_t *found)
+{
+    Nearest nearest = {point, INFINITY, 0};
+    bvh_visit(bvh, point, radius, take_nearest, &nearest);
+    if (isinf(nearest.distance))
+        return false;
+    *found = nearest.triangle;
+    return true;
+}
+
 /* The nearest point of a segment. */
 static void segment_nearest(const double a[3], const double b[3], const double point[3],
                             double nearest[3])

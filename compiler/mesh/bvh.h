@@ -42,6 +42,9 @@ bool bvh_triangle_is_near(const Bvh *bvh, uint32_t triangle, const double point[
 /* Whether any does.  `last` is one that may, which is tried first, and becomes the one that does. */
 bool bvh_is_near(const Bvh *bvh, const double point[3], double radius, uint32_t *last);
 
+/* Whether any does, and the nearest then. */
+bool bvh_find_nearest(const Bvh *bvh, const double point[3], double radius, uint32_t *found);
+
 /* The nearest point of a triangle. */
 void triangle_nearest(const double corners[3][3], const double point[3], double nearest[3]);
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
+#include "compiler/mesh/bvh.h"
 
 enum { MOST_STAR = 48 };
 #define NO_VERTEX UINT32_MAX
@@ -35,6 +36,8 @@ typedef struct Collapse {
     uint32_t *marks, mark;
     bool     *fixed;
     Quadric  *quadrics;
+    uint32_t *points,
+        *other; /* of a triangle, the first vertex + 1 that is near to it, and of a vertex the next */
     struct {
         Candidate *items;
         size_t     count, capacity;
@@ -199,25 +202,92 @@ static void replace(const uint32_t old[3], uint32_t from, uint32_t to, uint32_t 
         new[k] = old[k] == from ? to : old[k];
 }
 
-static bool may_collapse(Collapse *c, const uint32_t *star, size_t count, uint32_t from,
-                         uint32_t to)
+/* The triangles that a collapse makes, with the numbers of those that they replace. */
+typedef struct Made {
+    uint32_t corners[MOST_STAR][3], numbers[MOST_STAR];
+    size_t   count;
+} Made;
+
+/* The nearest of them, if it is near enough. */
+static bool find_nearest(const Collapse *c, const Made *made, uint32_t vertex, size_t *found)
 {
-    uint32_t new[MOST_STAR][3];
-    size_t new_count = 0;
+    double least = c->rules->error;
+    bool   any   = false;
+    for (size_t i = 0; i < made->count; i++) {
+        double corners[3][3], nearest[3];
+        for (int k = 0; k < 3; k++)
+            memcpy(corners[k], c->at[made->corners[i][k]], sizeof corners[k]);
+        triangle_nearest((const double(*)[3])corners, c->at[vertex], nearest);
+        double distance = distance3(nearest, c->at[vertex]);
+        if (distance <= least) {
+            least  = distance;
+            *found = i;
+            any    = true;
+        }
+    }
+    return any;
+}
+
+static bool are_points_near(const Collapse *c, const uint32_t *star, size_t count, const Made *made,
+                            uint32_t from)
+{
+    size_t found;
+    if (!find_nearest(c, made, from, &found))
+        return false;
+    for (size_t i = 0; i < count; i++)
+        for (uint32_t point = c->points[star[i]]; point; point = c->other[point - 1])
+            if (!find_nearest(c, made, point - 1, &found))
+                return false;
+    return true;
+}
+
+static bool may_collapse(Collapse *c, const uint32_t *star, size_t count, uint32_t from,
+                         uint32_t to, Made *made)
+{
+    made->count = 0;
     if (!stays_closed(c, star, count, from, to))
         return false;
     for (size_t i = 0; i < count; i++) {
         const uint32_t *old = c->triangles[star[i]];
         if (has_corner(old, to))
             continue;
-        replace(old, from, to, new[new_count]);
-        if (!is_well_shaped(c, old, new[new_count++]))
+        replace(old, from, to, made->corners[made->count]);
+        if (!is_well_shaped(c, old, made->corners[made->count]))
             return false;
+        made->numbers[made->count++] = star[i];
     }
-    for (size_t i = 0; i < new_count; i++)
-        if (!c->rules->is_good(c->rules->user, new[i]))
+    for (size_t i = 0; i < made->count; i++)
+        if (!c->rules->is_good(c->rules->user, made->corners[i]))
             return false;
-    return true;
+    return are_points_near(c, star, count, made, from);
+}
+
+static void add_point(Collapse *c, uint32_t triangle, uint32_t vertex)
+{
+    c->other[vertex]    = c->points[triangle];
+    c->points[triangle] = vertex + 1;
+}
+
+/* Points go over to the nearest triangles that are made. */
+static void move_points(Collapse *c, const uint32_t *star, size_t count, const Made *made,
+                        uint32_t from)
+{
+    size_t   found = 0;
+    uint32_t all   = from + 1;
+    c->other[from] = 0;
+    for (size_t i = 0; i < count; i++) {
+        for (uint32_t point = c->points[star[i]], next; point; point = next) {
+            next                = c->other[point - 1];
+            c->other[point - 1] = all;
+            all                 = point;
+        }
+        c->points[star[i]] = 0;
+    }
+    for (uint32_t point = all, next; point; point = next) {
+        next = c->other[point - 1];
+        if (find_nearest(c, made, point - 1, &found))
+            add_point(c, made->numbers[found], point - 1);
+    }
 }
 
 /* What was proposed of vertices around is no longer so. */
@@ -260,12 +330,15 @@ static void collapse_all(Collapse *c)
     while (c->heap.count > 0) {
         Candidate candidate = pop(c);
         uint32_t  star[MOST_STAR];
+        Made      made;
         if (candidate.stamp != c->stamps[candidate.from])
             continue;
         size_t count = star_of(c, candidate.from, star);
-        if (count <= MOST_STAR && may_collapse(c, star, count, candidate.from, candidate.to))
+        if (count <= MOST_STAR &&
+            may_collapse(c, star, count, candidate.from, candidate.to, &made)) {
+            move_points(c, star, count, &made, candidate.from);
             collapse(c, star, count, candidate.from, candidate.to);
-        else
+        } else
             propose_vertex(c, candidate.from, &candidate);
     }
 }
@@ -278,6 +351,8 @@ static void begin(Collapse *c, size_t vertex_count, size_t count)
     c->stamps   = arena_new_array(c->arena, uint32_t, vertex_count + 1);
     c->marks    = arena_new_array(c->arena, uint32_t, vertex_count + 1);
     c->fixed    = arena_new_array(c->arena, bool, vertex_count + 1);
+    c->points   = arena_new_array(c->arena, uint32_t, count + 1);
+    c->other    = arena_new_array(c->arena, uint32_t, vertex_count + 1);
     c->quadrics = arena_new_array(c->arena, Quadric, vertex_count + 1);
     for (uint32_t i = 0; i < 3 * count; i++) {
         uint32_t vertex = c->triangles[i / 3][i % 3];
@@ -286,8 +361,11 @@ static void begin(Collapse *c, size_t vertex_count, size_t count)
         if (c->rules->kept[i / 3])
             c->fixed[vertex] = true;
     }
-    for (uint32_t i = 0; i < vertex_count; i++)
+    for (uint32_t i = 0; i < vertex_count; i++) {
         propose_vertex(c, i, NULL);
+        if (!c->first[i] && c->rules->below[i] < count)
+            add_point(c, c->rules->below[i], i);
+    }
 }
 
 size_t collapse_edges(const double (*vertices)[3], size_t vertex_count, uint32_t (*triangles)[3],

@@ -12,7 +12,11 @@
 typedef bool IsGoodTriangle(void *user, const uint32_t triangle[3]);
 
 typedef struct CollapseRules {
-    const bool     *kept; /* of triangles: those whose corners stay */
+    const bool *kept; /* of triangles: those whose corners stay */
+    const uint32_t *
+        below; /* of vertices that are no corners: a triangle to which they are near; UINT32_MAX: none is
+                              known.  What replaces it must be within the error of them. */
+    double          error;
     IsGoodTriangle *is_good;
     void           *user;
 } CollapseRules;

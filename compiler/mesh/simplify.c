@@ -17,7 +17,9 @@
 #include "compiler/mesh/numbering.h"
 #include "compiler/mesh/slivers.h"
 
-enum { MOST_TRIALS = 14, MANY_FAULTS = 16 };
+enum { MOST_TRIALS = 14 };
+/* Of meshoptimizer's proposals, those with more faults are given up: some, and a part of their triangles. */
+static const double MANY_FAULTS = 16, PART_OF_FAULTS = 0.005;
 /* From trial to trial triangles are kept so many times as far around faults. */
 static const double GROWTH = 1.25;
 /* How far at first, in errors: around a collapse it is few triangles that matter. */
@@ -325,16 +327,36 @@ static bool is_good(void *user, const uint32_t triangle[3])
     return near;
 }
 
+/* Of each vertex of the mesh that the best has not, its nearest triangle. */
+static void find_below(Simplifier *s, uint32_t *below)
+{
+    const double(*at)[3] = (const double(*)[3])s->mesh->vertices;
+    bool *used           = arena_new_array(&s->arena, bool, s->mesh->vertex_count + 1);
+    Bvh   best;
+    bvh_new(&best, at, (const uint32_t(*)[3])s->best, s->best_count, &s->arena);
+    for (size_t i = 0; i < 3 * s->best_count; i++)
+        used[s->best[i / 3][i % 3]] = true;
+    for (size_t i = 0; i < s->mesh->vertex_count; i++) {
+        below[i] = NO_TRIANGLE;
+        if (!used[i])
+            bvh_find_nearest(&best, at[i], s->error, &below[i]);
+    }
+}
+
 static void propose_collapses(Simplifier *s, double error, double goal)
 {
-    CollapseRules rules = {s->kept, is_good, s};
-    (void)error;
-    s->begun         = s->fraction;
-    s->goal          = goal;
-    s->judged_before = s->judged.count;
+    const KrsMesh *mesh  = s->mesh;
+    ArenaMark      mark  = arena_mark(&s->arena);
+    uint32_t      *below = arena_new_array(&s->arena, uint32_t, mesh->vertex_count + 1);
+    CollapseRules  rules = {s->kept, below, error, is_good, s};
+    s->begun             = s->fraction;
+    s->goal              = goal;
+    s->judged_before     = s->judged.count;
+    find_below(s, below);
     memcpy(s->triangles, s->best, s->best_count * sizeof *s->best);
-    s->triangle_count = collapse_edges((const double(*)[3])s->mesh->vertices, s->mesh->vertex_count,
+    s->triangle_count = collapse_edges((const double(*)[3])mesh->vertices, mesh->vertex_count,
                                        s->triangles, s->best_count, &rules, &s->arena);
+    arena_rewind(&s->arena, mark);
 }
 
 /* ---- trials ---- */
@@ -342,7 +364,7 @@ static void propose_collapses(Simplifier *s, double error, double goal)
 typedef struct Trial {
     void (*propose)(Simplifier *s, double error, double goal);
     double error, radius; /* in errors */
-    size_t most_faults;   /* with more it is given up */
+    bool   may_give_up, had_faults;
 } Trial;
 
 /* Simplifies the best further, unless all trials have faults or it is stopped. */
@@ -355,8 +377,11 @@ static void try_all(Simplifier *s, Trial *trial, double goal)
         if (atomic_load(&s->stopped) || s->triangle_count == 0 ||
             s->triangle_count >= s->best_count)
             return;
-        size_t faults = count_faults(s, radius, trial->most_faults, 0.5 * (s->fraction + goal));
-        if (atomic_load(&s->stopped) || faults > trial->most_faults)
+        double most   = MANY_FAULTS + PART_OF_FAULTS * (double)s->triangle_count;
+        size_t faults = count_faults(s, radius, trial->may_give_up ? (size_t)most : SIZE_MAX,
+                                     0.5 * (s->fraction + goal));
+        trial->had_faults |= faults > 0;
+        if (atomic_load(&s->stopped) || (trial->may_give_up && (double)faults > most))
             return;
         if (faults == 0) {
             memcpy(s->best, s->triangles, s->triangle_count * sizeof *s->best);
@@ -389,13 +414,14 @@ static void find_triangles(Simplifier *s)
     s->best_count = count;
     if (count > 0)
         memcpy(s->best, mesh->triangles, count * sizeof *s->best);
-    Trial trials[] = {{propose, FIRST_ERROR, FIRST_RADIUS, MANY_FAULTS},
-                      {propose, LAST_ERROR, FIRST_RADIUS, MANY_FAULTS},
-                      {propose_collapses, 1, FIRST_RADIUS_OF_COLLAPSE, SIZE_MAX},
-                      {propose_collapses, 1, FIRST_RADIUS_OF_COLLAPSE, SIZE_MAX}};
+    Trial trials[] = {{propose, FIRST_ERROR, FIRST_RADIUS, true, false},
+                      {propose, LAST_ERROR, FIRST_RADIUS, true, false},
+                      {propose_collapses, 1, FIRST_RADIUS_OF_COLLAPSE, false, false},
+                      {propose_collapses, 1, FIRST_RADIUS_OF_COLLAPSE, false, false}};
     for (size_t i = 0; i < sizeof trials / sizeof *trials && count > 0; i++) {
         double goal = 0.5 * (s->fraction + 1);
-        try_all(s, &trials[i], goal);
+        if (i < 3 || trials[2].had_faults)
+            try_all(s, &trials[i], goal);
         s->fraction = goal;
     }
 }

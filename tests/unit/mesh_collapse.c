@@ -26,6 +26,8 @@ typedef struct Ring {
     size_t   asked, most; /* triangles are good until so many were asked for */
     Random   random;
     double   chance; /* that one is good */
+    uint32_t below[COUNT];
+    double   error;
 } Ring;
 
 static uint32_t at(int u, int v) { return (uint32_t)(u % AROUND * AROUND + v % AROUND); }
@@ -37,6 +39,8 @@ static Ring *ring_new(void)
     ring->arena.memory = &ring->memory;
     ring->most         = SIZE_MAX;
     ring->chance       = 1;
+    ring->error        = INFINITY;
+    memset(ring->below, 0xff, sizeof ring->below);
     for (int u = 0; u < AROUND; u++)
         for (int v = 0; v < AROUND; v++) {
             double a = u * 6.283185307179586 / AROUND, b = v * 6.283185307179586 / AROUND,
@@ -74,7 +78,7 @@ static void count_report(void *user, uint32_t triangle)
 
 static size_t collapse(Ring *ring)
 {
-    CollapseRules rules = {ring->kept, may_be, ring};
+    CollapseRules rules = {ring->kept, ring->below, ring->error, may_be, ring};
     size_t        left  = collapse_edges((const double(*)[3])ring->vertices, COUNT, ring->triangles,
                                          TRIANGLES, &rules, &ring->arena),
            open = 0, used = 0;
@@ -123,6 +127,32 @@ static void what_is_kept_stays(void **state)
     ring_free(ring);
 }
 
+/* All vertices are within the error of the triangles that are left, by the nearest of all. */
+static void vertices_are_near(void **state)
+{
+    (void)state;
+    size_t last = 0;
+    for (double error = 0.3; error > 0.005; error /= 3) {
+        Ring *ring  = ring_new();
+        ring->error = error;
+        size_t left = collapse(ring);
+        for (size_t i = 0; i < COUNT; i++) {
+            double least = INFINITY;
+            for (size_t k = 0; k < left; k++) {
+                double corners[3][3], nearest[3];
+                for (int c = 0; c < 3; c++)
+                    memcpy(corners[c], ring->vertices[ring->triangles[k][c]], sizeof corners[c]);
+                triangle_nearest((const double(*)[3])corners, ring->vertices[i], nearest);
+                least = fmin(least, distance3(nearest, ring->vertices[i]));
+            }
+            assert_true(least <= error * (1 + 1e-9));
+        }
+        assert_true(left > last && left < TRIANGLES);
+        last = left;
+        ring_free(ring);
+    }
+}
+
 static void rules_by_chance_leave_it_closed(void **state)
 {
     (void)state;
@@ -144,6 +174,7 @@ int main(void)
         cmocka_unit_test(few_are_left),
         cmocka_unit_test(nothing_changes_that_may_not),
         cmocka_unit_test(what_is_kept_stays),
+        cmocka_unit_test(vertices_are_near),
         cmocka_unit_test(rules_by_chance_leave_it_closed),
     };
     return cmocka_run_group_tests_name("collapsed edges", tests, NULL, NULL);
