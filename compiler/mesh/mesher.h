@@ -22,7 +22,8 @@ typedef struct Mesher {
     Tets                  tets;
     Contour               contour;
     Bvh                   bvh;
-    Marks                 marks; /* where the mesh is new since proofs were found */
+    Marks                 marks;      /* where the mesh is new since proofs were found */
+    bool                  has_proofs; /* some were looked for */
     Arounds               around;
     struct {
         uint32_t *items;

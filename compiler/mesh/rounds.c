@@ -31,13 +31,13 @@ static void add_place(const Mesher *m, const Tet *tet, double around, MarkBox *b
     mark_box_add(&m->tets, low, high, box);
 }
 
-/* What is fresh has triangles now, or had some before it was bisected. */
+/* What is fresh has triangles now, or had some before it was bisected.  Until there are proofs none can become stale. */
 static void mark_fresh(Mesher *m)
 {
     for (size_t i = 0; i < m->tets.fresh.count; i++) {
         Tet    *tet = &m->tets.list.items[m->tets.fresh.items[i]];
         MarkBox box = mark_box_none();
-        if (tet->replaced || tet->triangle_count > 0) {
+        if (m->has_proofs && (tet->replaced || tet->triangle_count > 0)) {
             add_place(m, tet, 0, &box);
             marks_set(&m->marks, &box);
         }
@@ -364,6 +364,7 @@ static bool refine_by_bounds(Mesher *m)
 static bool prove(Mesher *m)
 {
     find_stale(m);
+    m->has_proofs = true;
     judge_smooth(m);
     find_tree(m);
     find_groups(m, TET_FITS, TET_ROUGH);
