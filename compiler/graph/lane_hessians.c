@@ -88,7 +88,7 @@ static void add_square(LaneHessian *sum, Range factor, const LaneSlope *a)
     sum->known = sum->known && is_finite(factor);
     sum->flat  = false;
     for (int i = 0; sum->known && i < 6; i++) {
-        Range product = i < 3 ? range_square(a->by[i]) : times(a->by[ROW[i]], a->by[COLUMN[i]]);
+        Range product = i < 3 ? squared(a->by[i]) : times(a->by[ROW[i]], a->by[COLUMN[i]]);
         sum->by[i]    = plus(sum->by[i], times(factor, product));
     }
 }

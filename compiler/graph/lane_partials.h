@@ -31,6 +31,13 @@ static inline Range times(Range a, Range b)
     return widened(s < low ? s : low, s > high ? s : high);
 }
 
+static inline Range squared(Range a)
+{
+    double least = range_least(a), most = range_largest(a);
+    double low = least * least * (1 - 0x1p-52) - 1e-300;
+    return (Range){low > 0 ? low : 0, most * most * (1 + 0x1p-52) + 1e-300};
+}
+
 static inline Range plus(Range a, Range b) { return widened(a.low + b.low, a.high + b.high); }
 static inline Range minus(Range a) { return (Range){-a.high, -a.low}; }
 static inline Range scaled(double factor, Range a)
