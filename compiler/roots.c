@@ -237,6 +237,8 @@ KrsStatus pass_lower(Compilation *c)
     Additions     *more   = &c->additions;
     LoweredCrowds *crowds = lowered_crowds_new(s->graph, &c->work, &c->scene->arena,
                                                least_crowd(c));
+    if (c->options->pictures && !c->request->least_crowd)
+        lowered_crowds_take_few(crowds);
     allocate_roots(c, find_assembly(c, crowds));
     if (!lower_components(c, s->graph, crowds))
         return KRS_BAD_SCENE;

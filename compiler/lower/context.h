@@ -51,7 +51,6 @@ typedef struct Lowering {
     size_t                most;     /* nodes that the graph may have */
     bool                  overflow; /* it would have more */
     struct LoweredCrowds *crowds;   /* crowd.h; NULL: each part is lowered for itself */
-    uint32_t              least;    /* parts of a crowd */
     Nodes         *held_constant;   /* for lower_gradient: nodes that count as constants; or NULL */
     LoweredShapes *lowered_shapes;  /* gets all shapes, children first; or NULL */
     bool           places;          /* find Surface.place */

@@ -30,11 +30,10 @@ struct LoweredCrowds {
     Alike       *alike;
     PartLeaves   leaves;
     uint32_t     least; /* members of a crowd */
+    uint32_t     few;   /* the same of sharp joints, if they are large */
     uint32_t     made;  /* joints with crowds, and functions of outlines */
     JointCrowds *joints[BUCKETS];
 };
-
-uint32_t least_of_crowds(const LoweredCrowds *crowds) { return crowds ? crowds->least : 0; }
 
 LoweredCrowds *lowered_crowds_new(Graph *graph, Arena *arena, Arena *tables, uint32_t least)
 {
@@ -42,8 +41,23 @@ LoweredCrowds *lowered_crowds_new(Graph *graph, Arena *arena, Arena *tables, uin
     crowds->graph         = graph;
     crowds->arena         = arena;
     crowds->tables        = tables;
-    crowds->least         = least;
+    crowds->least = crowds->few = least;
     return crowds;
+}
+
+void lowered_crowds_take_few(LoweredCrowds *crowds) { crowds->few = LEAST_OF_FEW; }
+
+uint32_t least_of_joint(const LoweredCrowds *crowds, bool sharp)
+{
+    return sharp ? crowds->few : crowds->least;
+}
+
+/* Whether a loop costs less than the members of a group one by one. */
+static bool is_worth_it(const PartFinder *finder, const CrowdGroup *group)
+{
+    const size_t count = group->members.count;
+    return count >= finder->many ||
+           (count >= finder->least && (count - 1) * group->template->node_count >= LEAST_SAVED);
 }
 
 void lowered_crowds_made(LoweredCrowds *crowds) { crowds->made++; }
@@ -179,7 +193,7 @@ static void find_places(const PartFinder *finder, const CrowdGroup *group, const
 static bool make_crowd(const PartFinder *finder, CrowdGroup *group, const GroupJoin *join,
                        double right, const Box *boxes)
 {
-    if (group->members.count < finder->least || !group_find_columns(group, join) ||
+    if (!is_worth_it(finder, group) || !group_find_columns(group, join) ||
         !group_has_functions(group, join))
         return false;
     double factor = for_bounds(finder, group);
@@ -258,7 +272,8 @@ static JointCrowds *find_joint(Lowering *l, const CrowdJoin *join, LowerContext 
                             .reach    = join->reach,
                             .operands = !sharp || context.reach > 0,
                             .alike    = crowds->alike,
-                            .least    = crowds->least,
+                            .least    = least_of_joint(crowds, sharp),
+                            .many     = crowds->least,
                             .made     = &crowds->made};
     GroupJoin    members = group_join(l, join);
     JointCrowds *made    = arena_new(crowds->arena, JointCrowds);
@@ -273,8 +288,10 @@ static JointCrowds *find_joint(Lowering *l, const CrowdJoin *join, LowerContext 
 
 Lowered lower_crowds(Lowering *l, CrowdJoin *join, LowerContext context)
 {
-    Lowered all = lowered_nothing;
-    if (!l->crowds || join->count < l->crowds->least || join->joint->sheets || l->overflow)
+    Lowered    all   = lowered_nothing;
+    const bool sharp = join->joint->blend.width == NODE_NONE;
+    if (!l->crowds || join->count < least_of_joint(l->crowds, sharp) || join->joint->sheets ||
+        l->overflow)
         return all;
     if (!l->crowds->alike) {
         l->crowds->alike  = alike_new(l->graph, l->crowds->arena);

@@ -8,12 +8,16 @@
 
 /* Fewer parts that are alike stay apart: a loop over a list costs as much as some. */
 enum { LEAST_CROWD = 64 };
+/* But large parts cost more.  So few are a crowd if all but one have so many operations.  Blends need a
+   loop for each property that is mixed. */
+enum { LEAST_OF_FEW = 6, LEAST_SAVED = 350 };
 
 /* The crowds of a scene, by the joints that they are parts of.  All lowerings of a joint use the
    same.  What tables have is made in an arena of its own.  `least` is LEAST_CROWD, but in tests. */
 typedef struct LoweredCrowds LoweredCrowds;
 LoweredCrowds *lowered_crowds_new(Graph *graph, Arena *arena, Arena *tables, uint32_t least);
-uint32_t       least_of_crowds(const LoweredCrowds *crowds);
+/* Lets few large parts of sharp joints become crowds, too. */
+void lowered_crowds_take_few(LoweredCrowds *crowds);
 
 /* Says that the graph's nodes are needed for something else than the shape that is lowered. */
 void lowered_crowds_made(LoweredCrowds *crowds);

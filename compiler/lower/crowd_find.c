@@ -63,8 +63,7 @@ bool lower_part(const PartFinder *finder, const Shape *shape, struct LoweredCrow
                                .surfaces = true,
                                .method   = outer->method,
                                .most     = outer->most,
-                               .crowds   = crowds,
-                               .least    = outer->least};
+                               .crowds   = crowds};
     ArenaMark       mark    = arena_mark(outer->scratch);
     Lowered         lowered = finder->operands ? lower_operand(&l, shape, finder->context)
                                                : lower_shape(&l, shape, finder->context);

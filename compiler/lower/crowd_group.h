@@ -75,6 +75,7 @@ typedef struct PartFinder {
     bool                operands; /* their distances are used away from the surface */
     Alike              *alike;
     uint32_t            least; /* members of a group */
+    uint32_t            many;  /* members that make a crowd, however small they are */
     const uint32_t     *made;  /* joints with crowds, so far */
 } PartFinder;
 
@@ -88,6 +89,8 @@ CrowdGroups find_groups(const PartFinder *finder, Arena *arena);
 /* Lowers what a part is where parts are, with these crowds.  False: it is empty, or too large. */
 bool lower_part(const PartFinder *finder, const Shape *shape, struct LoweredCrowds *crowds,
                 Node roots[PART_ROOTS]);
+/* crowd.c: how many parts a joint with crowds has at least. */
+uint32_t least_of_joint(const struct LoweredCrowds *crowds, bool sharp);
 /* crowd_turns.c: adds groups of turns of one loop, and marks their members. */
 void find_turn_groups(const PartFinder *finder, CrowdGroups *groups, bool *taken, Arena *arena);
 

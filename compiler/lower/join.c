@@ -4,6 +4,7 @@
 #include "compiler/lower/join.h"
 
 #include "compiler/lower/box_distance.h"
+#include "compiler/lower/crowd_group.h"
 #include "compiler/lower/surface.h"
 
 Node join_distances(Graph *g, Blend blend, Node a, Node b)
@@ -47,7 +48,8 @@ static bool keeps_to_box(const Lowering *l, const Shape *shape)
     const bool sharp = shape->blend.width == NODE_NONE;
     if (shape->exact)
         return true;
-    if (!joins || shape->sheets || (l->crowds && shape->child_count >= l->least) ||
+    if (!joins || shape->sheets ||
+        (l->crowds && shape->child_count >= least_of_joint(l->crowds, sharp)) ||
         (!sharp && blend_info[shape->blend.kind].slope > 1))
         return false;
     for (uint32_t i = 0; i < (difference ? 1 : shape->child_count); i++)

@@ -38,7 +38,6 @@ bool lower_component(Graph *graph, const Shape *shape, uint32_t number,
                             .thin     = true,
                             .most     = graph->count + MOST_LOWERED,
                             .crowds   = crowds,
-                            .least    = least_of_crowds(crowds),
                             .places   = place != NULL};
     LowerContext context = context_new(graph_leaf(graph, OP_POINT), false);
     context.normal       = graph_leaf(graph, OP_NORMAL);
@@ -67,8 +66,7 @@ bool lower_solid(Graph *graph, const Shape *shape, struct LoweredCrowds *crowds,
                     .scratch = scratch,
                     .thin    = true,
                     .most    = graph->count + MOST_LOWERED,
-                    .crowds  = crowds,
-                    .least   = least_of_crowds(crowds)};
+                    .crowds  = crowds};
     Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(graph, OP_POINT), false));
     *distance    = divide_by_slope(graph, or_else(all.distance, graph_number(graph, NOWHERE)),
                                    shape->slope);
@@ -84,8 +82,7 @@ Node lower_guarded(Graph *graph, const Shape *shape, Node plain, struct LoweredC
                     .thin    = true,
                     .unit    = graph_number(graph, 1),
                     .most    = graph->count + MOST_LOWERED,
-                    .crowds  = crowds,
-                    .least   = least_of_crowds(crowds)};
+                    .crowds  = crowds};
     Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(graph, OP_POINT), false));
     if (all.distance == NODE_NONE || l.overflow)
         return plain;
@@ -105,8 +102,7 @@ bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near
                               .held_constant = &held_constant,
                               .thin          = true,
                               .most          = graph->count + MOST_DERIVED,
-                              .crowds        = crowds,
-                              .least         = least_of_crowds(crowds)};
+                              .crowds        = crowds};
     Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(graph, OP_POINT), false));
     if (all.distance == NODE_NONE || l.overflow)
         return false;
