@@ -115,13 +115,27 @@ static void put_header(const Grid *grid, Place place, Texel *header)
     header[7][1] = (uint32_t)place.copy;
 }
 
+/* What loops that end by tails need. */
+static void put_fading(const Crowd *table, Texel *header)
+{
+    const Grid *grid = &table->cells;
+    memset(header[8], 0, 2 * sizeof *header);
+    if (!grid->tails)
+        return;
+    put_floats(header[8], table->fades, 1 / table->fades);
+    put_floats(header[9], table->slope / table->fades, table->margin);
+}
+
 static void put_grid(const Grid *grid, Texel *records, Texel *lists)
 {
     size_t   cells   = cell_count(grid);
     uint32_t entries = grid->first[cells];
     for (size_t c = 0; c <= cells; c++) {
-        records[c][0] = grid->first[c];
-        records[c][1] = bits_of(c < cells ? (double)grid->clearance[c] : 0);
+        const bool middle = grid->tails && c < cells && grid->first[c] < grid->first[c + 1];
+        records[c][0]     = grid->first[c];
+        records[c][1]     = bits_of(middle      ? (double)grid->middles[c]
+                                    : c < cells ? (double)grid->clearance[c]
+                                                : 0);
     }
     for (uint32_t i = 0; i < entries; i++)
         lists[i / 2][i % 2] = grid->members[i];
@@ -157,6 +171,8 @@ static void put_copies(const Crowd *table, const float (*rows)[4], float (*copie
                  entries = table->cells.first[cell_count(&table->cells)];
     for (size_t i = 0; i < entries; i++)
         memcpy(copies + i * texels, rows + table->cells.members[i] * texels, texels * sizeof *rows);
+    for (size_t i = 0; i < entries && table->cells.tails; i++)
+        copies[i * texels + table->columns / 4][table->columns % 4] = table->cells.tails[i];
 }
 
 /* Packs all rows; the sizes become those of all tables. */
@@ -215,6 +231,7 @@ TableSizes tables_pack(const Crowds *crowds, const Textures *textures, const Nod
         const Crowd *table = &crowds->tables.items[t];
         Place        place = place_table(table, &next);
         put_header(&table->cells, place, cells + GRID_HEADER * t);
+        put_fading(table, cells + GRID_HEADER * t);
         put_grid(&table->cells, cells + place.cell, cells + place.list);
     }
     pack_textures(crowds, textures, cells);

@@ -16,7 +16,10 @@
  *     center z, half x
  *     half y, half z
  *     texel of row 0 in `rows`, texel of the first copy
- * Each cell is a texel: where its list begins, counted in members, and its clearance.  One more says
+ *     width, 1 / width      (and these two only of tables with tails, grid_tails.h)
+ *     slope / width, distance up to which results are exact
+ * Each cell is a texel: where its list begins, counted in members, and its clearance; with tails, where there is a list, the result in
+ * its middle.  Copies of rows have the tail as one more column.  One more texel says
  * where the last list ends.  Behind them are the lists, two members a texel.  A grid of one infinite cell has 1 / size
  * 0, so that all points are in cell 0.
  *

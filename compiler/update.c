@@ -94,6 +94,15 @@ static bool same_lists(const Grid *a, const Grid *b, size_t cells)
            (entries == 0 || memcmp(a->members, b->members, entries * sizeof *a->members) == 0);
 }
 
+static bool same_tails(const Grid *a, const Grid *b, size_t cells)
+{
+    const size_t entries = a->first[cells];
+    if (!a->tails || !b->tails)
+        return a->tails == b->tails;
+    return memcmp(a->middles, b->middles, cells * sizeof *a->middles) == 0 &&
+           (entries == 0 || memcmp(a->tails, b->tails, entries * sizeof *a->tails) == 0);
+}
+
 static bool same_grid(const Grid *a, const Grid *b)
 {
     const size_t cells = (size_t)a->cells[0] * a->cells[1] * a->cells[2];
@@ -101,7 +110,7 @@ static bool same_grid(const Grid *a, const Grid *b)
            memcmp(a->low, b->low, sizeof a->low) == 0 && a->size == b->size &&
            memcmp(a->cells, b->cells, sizeof a->cells) == 0 &&
            memcmp(a->clearance, b->clearance, cells * sizeof *a->clearance) == 0 &&
-           same_lists(a, b, cells);
+           same_lists(a, b, cells) && same_tails(a, b, cells);
 }
 
 /* Their nodes are compared with the graph. */
@@ -127,16 +136,17 @@ static bool same_table(const Crowd *a, const Crowd *b)
 {
     const size_t numbers = (size_t)a->rows * a->columns;
     return a->rows == b->rows && a->columns == b->columns && a->stretch == b->stretch &&
-           same_frame_columns(a, b) && same_places(a, b) &&
-           memcmp(a->numbers, b->numbers, numbers * sizeof *a->numbers) == 0 &&
+           a->fades == b->fades && a->slope == b->slope && same_frame_columns(a, b) &&
+           same_places(a, b) && memcmp(a->numbers, b->numbers, numbers * sizeof *a->numbers) == 0 &&
            same_grid(&a->grid, &b->grid) && same_grid(&a->cells, &b->cells);
 }
 
 static bool same_function(const CrowdFunction *a, const CrowdFunction *b)
 {
     bool same = a->crowd == b->crowd && a->type == b->type && a->clear == b->clear &&
-                a->either == b->either && a->sums == b->sums && a->state_count == b->state_count &&
-                a->distance == b->distance && a->first_body == b->first_body;
+                a->either == b->either && a->sums == b->sums && a->ends == b->ends &&
+                a->state_count == b->state_count && a->distance == b->distance &&
+                a->first_body == b->first_body;
     for (uint32_t i = 0; same && i < a->state_count; i++)
         same = a->states[i].type == b->states[i].type &&
                memcmp(a->states[i].first, b->states[i].first, sizeof a->states[i].first) == 0;

@@ -19,7 +19,7 @@ PROPERTY_SHARED := $(addprefix tests/property/, crowd_parts.c garden.c op_trial.
 UNIT        := specks texts front synonyms look diagnostics shape parts passes display devices tracer film plates saved noise pixel_filters lens rendering lights light_groups sky_table daylight methods schedules paths writer \
                image_files image_reading memory validate search refute frame query zones surroundings cache cache_limits \
                compiled pipelines per_component mixed_rays stencils glslang flatten loader watcher drivers grid crowd_grid crowds \
-               crowd_kernels crowd_pictures few_parts tables device_tables table_files printing printers answers alike update coordinates reload live saved_texts camera_text resolution painter saver edits values mesh mesh_progress mesh_bounds mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_proofs assembly
+               crowd_kernels crowd_ends crowd_pictures few_parts tables device_tables table_files printing printers answers alike update coordinates reload live saved_texts camera_text resolution painter saver edits values mesh mesh_progress mesh_bounds mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_proofs assembly
 PROPERTY    := ops noise textures graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees turn_boxes crowds crowds_apart crowds_deformed crowd_sums moving_crowds moving_scenes overlaps lanes lane_crowds lane_balls joints turns
 ORACLES     := self patterns bumps primitives krs_expand folds trees maps moebius moebius_images operators cells \

@@ -90,6 +90,10 @@ static void keep_grid(Grid *grid, Arena *arena)
     grid->members   = COPY_ITEMS(arena, grid->members, grid->first[cells]);
     grid->first     = COPY_ITEMS(arena, grid->first, cells + 1);
     grid->clearance = COPY_ITEMS(arena, grid->clearance, cells);
+    if (grid->tails) {
+        grid->tails   = COPY_ITEMS(arena, grid->tails, grid->first[cells]);
+        grid->middles = COPY_ITEMS(arena, grid->middles, cells);
+    }
 }
 
 static void keep_table(Crowd *table, Arena *arena)

@@ -66,8 +66,9 @@ typedef struct Crowd {
     double       reach, margin; /* of these grids */
     Box         *boxes;         /* of members of which only the nearest counts; NULL: not known */
     CrowdArc    *arcs;          /* of members of an outline; NULL: it is none */
-    double       stretch; /* the distance of a member, times this, is at least that to its box */
-    Span         span;    /* of the join */
+    double fades, slope; /* of a blend with tails, its width, and the slope of all distances */
+    double stretch;      /* the distance of a member, times this, is at least that to its box */
+    Span   span;         /* of the join */
 } Crowd;
 
 /* How many nodes a place has. */
@@ -77,9 +78,12 @@ static inline uint32_t place_nodes(PlaceKind kind)
 }
 
 /* How many texels of krs_cells the header of a table has for kernels. */
-enum { GRID_HEADER = 8 };
-/* How many texels, of four numbers each, a row has for kernels. */
-static inline size_t row_texels(const Crowd *table) { return (table->columns + 3) / 4; }
+enum { GRID_HEADER = 10 };
+/* How many texels, of four numbers each, a row has for kernels.  Tails are one more column. */
+static inline size_t row_texels(const Crowd *table)
+{
+    return (table->columns + (table->cells.tails ? 1 : 0) + 3) / 4;
+}
 
 typedef struct CrowdState {
     GraphType type;
@@ -94,6 +98,8 @@ typedef struct CrowdFunction {
                           most as far from 0 as the clearance, which has a sign: where no
                           member is in a cell, that of all points in it */
     bool sums; /* the result is the first state less the third times the logarithm of the second */
+    bool
+        ends; /* and kernels add up the fourth state along lists with tails, as far as that counts */
     CrowdState states[MOST_CROWD_STATES];
     uint32_t   state_count;
     uint32_t   distance;   /* the state that is a distance; NO_DISTANCE: there is none */

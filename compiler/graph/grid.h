@@ -22,8 +22,9 @@ typedef struct Grid {
     uint32_t *first;        /* of each cell, where its list begins; one more: where the last ends */
     float    *clearance;    /* of each cell, above 0; rounded down.  A sign may be given to it: see
                                CrowdFunction.either */
-    uint32_t *members;      /* the lists, ascending */
+    uint32_t *members;      /* the lists, ascending where they have no tails */
     uint32_t  most_listed;  /* the length of the longest list */
+    float    *tails, *middles; /* of entries and cells: grid_tails.h; NULL: there are none */
 } Grid;
 
 /*

@@ -15,6 +15,7 @@ typedef struct GridBlend {
     double         *scalars; /* with these scalars: tape->scalar_count for each */
     double          slope;   /* of all distances */
     bool            fades;   /* as blends.def says, and only distances count */
+    bool            sifted;  /* listed members are all that count: no clearance ends their cells */
     double acts;   /* a member that is farther above what those before it make changes nothing */
     double reach;  /* as of the grid; infinite where any member may change a result */
     double swell;  /* how far the least member may be above a result of 0 */

@@ -139,7 +139,9 @@ static double most_cells(const Builder *b)
     if (b->most.cells > 0)
         return b->most.cells;
     if (b->coarse)
-        return fmin((double)MOST_OF_A_MEMBER * b->present, MANY_REFINED) / GRID_REFINED;
+        return fmin((double)MOST_OF_A_MEMBER * b->present,
+                    b->few ? MANY_REFINED / 2 : MANY_REFINED) /
+               GRID_REFINED;
     double few = fmin((double)CELLS_OF_FEW * b->present, MANY_CELLS);
     return fmin(fmax((double)CELLS_PER_MEMBER * b->present, few) + SPARE_CELLS,
                 (double)MOST_OF_A_MEMBER * b->present);
@@ -432,9 +434,10 @@ static bool place_coarse(Builder *b)
 }
 
 bool grid_place_coarse(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
-                       Arena *scratch)
+                       bool few, Arena *scratch)
 {
     Builder b = coarse_builder(grid, boxes, count, reach, margin, scratch);
+    b.few     = few;
     return place_coarse(&b);
 }
 

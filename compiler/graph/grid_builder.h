@@ -15,9 +15,9 @@ typedef struct Builder {
     uint32_t    count, present; /* boxes; those that are not empty */
     double      reach, margin;
     double      given_margin;
-    uint32_t    texels; /* of an entry */
-    bool        coarse; /* it will be refined */
-    GridLimits  most;   /* 0: as for all frames */
+    uint32_t    texels;      /* of an entry */
+    bool        coarse, few; /* it will be refined; with half the cells, since lists are long */
+    GridLimits  most;        /* 0: as for all frames */
     double      pad[3];
     double      listed, seen; /* boxes up to this distance are in the list, or are measured */
     float      *nearest;      /* of each cell: the square of the distance to the nearest box that is
@@ -51,9 +51,9 @@ Cover grid_cover_in_slab(Cover cover, Slab slab);
 void grid_begin_lists(Grid *grid, Arena *arena);
 void grid_end_lists(Grid *grid);
 
-/* Where the cells of a grid are that will be refined; false: there are too many boxes, or one is endless. */
+/* Where the cells, or few, of a grid are that will be refined; false: there are too many boxes, or one is endless. */
 bool grid_place_coarse(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
-                       Arena *scratch);
+                       bool few, Arena *scratch);
 
 /* When all lists are filled. */
 void grid_find_clearances(const Builder *b, Arena *arena);

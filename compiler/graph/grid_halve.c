@@ -22,6 +22,9 @@
 /* How much of the sum of a blend that fades may be left out: so many widths a result is wrong. */
 #define MOST_LEFT_OUT 1e-4
 
+/* e^-37 is 2^-53. */
+#define WIDTHS_OF_DOUBLES 37
+
 HalvingDesk halving_desk_new(const GridBlend *blend, uint32_t most, Arena *scratch)
 {
     HalvingDesk desk;
@@ -45,6 +48,16 @@ double halving_emptied(const Halving *h, int part)
     return fmin(h->least[part] * ROUNDED_DOWN, h->clearance);
 }
 
+void halving_distances(const Halver *halver, const HalvingDesk *desk, size_t member,
+                       const double (*points)[3], size_t count, double *distances)
+{
+    LaneTape tape = *halver->blend->tape;
+    LaneWork work = lane_work_in(desk->rows, NULL);
+    tape.scalars  = halver->blend->scalars + member * tape.scalar_count;
+    lane_run(&tape, &work, LANE_DOUBLE, (LanePoints){.points = points, .count = count}, 0, 1,
+             distances);
+}
+
 /* Running values after one more member, in the middle of each part. */
 static void join_member(const GridBlend *blend, double *running, const double *distances)
 {
@@ -64,6 +77,23 @@ static void join_member(const GridBlend *blend, double *running, const double *d
 #include "compiler/graph/blends.def"
     default: return;
     }
+}
+
+/* Results of a blend that fades, which is right in any order.  Powers that are no part of the sum in double precision are left
+   out. */
+static void sum_powers(const GridBlend *blend, const HalvingDesk *desk, uint32_t count,
+                       double *results)
+{
+    double sums[GRID_PARTS] = {0};
+    for (uint32_t i = 0; i < count; i++)
+        for (int part = 0; part < GRID_PARTS; part++) {
+            double above = (desk->distances[i][part] - results[part]) / blend->width;
+            if (above < WIDTHS_OF_DOUBLES)
+                sums[part] += exp(-above);
+        }
+    for (int part = 0; part < GRID_PARTS; part++)
+        if (sums[part] > 0)
+            results[part] -= blend->width * log(sums[part]);
 }
 
 /* Joins all members.  Those that never act, and those before one that begins anew, are not needed. */
@@ -93,7 +123,14 @@ static void join_all(const Halver *halver, const HalvingDesk *desk, uint8_t *nee
             begins[part] = -above >= blend->acts + 2 * away ? i : begins[part];
         }
         needs[i] = (uint8_t)needed;
-        join_member(blend, running, distances);
+        for (int part = 0; part < GRID_PARTS && blend->fades; part++)
+            running[part] = fmin(running[part], distances[part]);
+        if (!blend->fades)
+            join_member(blend, running, distances);
+    }
+    if (blend->fades) {
+        sum_powers(blend, desk, h->count, running);
+        return;
     }
     for (int part = 0; part < GRID_PARTS; part++)
         for (uint32_t i = 0; i < begins[part]; i++)

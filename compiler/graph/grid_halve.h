@@ -33,6 +33,10 @@ typedef struct Halving {
 HalvingDesk halving_desk_new(const GridBlend *blend, uint32_t most, Arena *scratch);
 double      halving_pad(const Grid *grid);
 
+/* The distances of a member at points. */
+void halving_distances(const Halver *halver, const HalvingDesk *desk, size_t member,
+                       const double (*points)[3], size_t count, double *distances);
+
 /* Sets bit k of needs[i] where part k needs member i of the list. */
 void grid_halve(const Halver *halver, const HalvingDesk *desk, uint8_t *needs, Halving *h);
 

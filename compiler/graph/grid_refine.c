@@ -13,6 +13,7 @@
 #include "compiler/base/parallel.h"
 #include "compiler/graph/grid_builder.h"
 #include "compiler/graph/grid_halve.h"
+#include "compiler/graph/grid_tails.h"
 
 /* Lists are empty where results are at least so many sides of a refined cell, beyond the margin.  Half and
    twice as many are no faster. */
@@ -114,14 +115,40 @@ typedef struct Cells {
     bool            fill;
 } Cells;
 
-/* The lists of the cells that a cell becomes. */
-static void fill_cell(const Refiner *r, const uint32_t *cell)
+/* Of a refined cell in a coarse one, along an axis. */
+static size_t refined_along(uint32_t number, int axis)
 {
+    return 2 * (number >> (3 + axis) & 1) + (number >> axis & 1);
+}
+
+/* The middles of the cells that a cell becomes. */
+static void find_middles(const Refiner *r, const uint32_t *cell, double (*middles)[3])
+{
+    for (uint32_t number = 0; number < GRID_REFINED; number++)
+        for (int k = 0; k < 3; k++)
+            middles[number][k] = r->from->low[k] + cell[k] * r->from->size +
+                                 ((double)refined_along(number, k) + 0.5) * r->to->size;
+}
+
+/* The lists of the cells that a cell becomes; where there are to be tails, distances in their place. */
+static void fill_cell(const Refiner *r, const Desk *desk, const uint32_t *cell)
+{
+    double middles[GRID_REFINED][3], distances[GRID_REFINED];
+    find_middles(r, cell, middles);
     const uint32_t *list  = &r->from->first[coarse_cell(r, cell)];
     uint32_t       *first = r->to->first + first_refined(r, cell);
-    for (uint32_t i = list[0]; i < list[1]; i++)
-        for (uint64_t bits = r->masks[i]; bits; bits &= bits - 1)
-            r->to->members[first[r->offsets[lowest_bit(bits)]]++] = r->from->members[i];
+    for (uint32_t i = list[0]; i < list[1]; i++) {
+        uint32_t member = r->from->members[i];
+        if (r->to->tails && r->masks[i])
+            halving_distances(&r->halver, &desk->halving, member, (const double(*)[3])middles,
+                              GRID_REFINED, distances);
+        for (uint64_t bits = r->masks[i]; bits; bits &= bits - 1) {
+            uint32_t number = lowest_bit(bits), at = first[r->offsets[number]]++;
+            r->to->members[at] = member;
+            if (r->to->tails)
+                r->to->tails[at] = (float)distances[number];
+        }
+    }
 }
 
 /* Rows of cells along x are dealt out to the processors. */
@@ -136,7 +163,7 @@ static void visit_rows(void *task, size_t part, size_t parts)
         cell[2] = (uint32_t)(row / count[1]);
         for (cell[0] = 0; cell[0] < count[0]; cell[0]++)
             if (cells->fill)
-                fill_cell(r, cell);
+                fill_cell(r, &r->desks[part], cell);
             else
                 refine_cell(r, &r->desks[part], cell, cells->all);
     }
@@ -147,7 +174,7 @@ static void find_offsets(Refiner *r)
     for (uint32_t number = 0; number < GRID_REFINED; number++) {
         size_t at[3];
         for (int k = 0; k < 3; k++)
-            at[k] = 2 * (number >> (3 + k) & 1) + (number >> k & 1);
+            at[k] = refined_along(number, k);
         r->offsets[number] = (at[2] * r->to->cells[1] + at[1]) * r->to->cells[0] + at[0];
     }
 }
@@ -190,7 +217,12 @@ void grid_refine(Grid *refined, const Grid *coarse, const GridBlend *blend, Aren
     Cells visit = {.refiner = &r, .all = all};
     run_in_parallel(visit_rows, &visit);
     grid_begin_lists(refined, arena);
+    if (blend->sifted && blend->fades && grid_may_have_tails(blend, refined->size))
+        refined->tails = arena_new_array(
+            arena, float, refined->first[cells - 1] + (size_t)refined->most_listed + 1);
     visit.fill = true;
     run_in_parallel(visit_rows, &visit);
     grid_end_lists(refined);
+    if (refined->tails)
+        grid_find_tails(refined, blend, r.halver.pad, arena, scratch);
 }

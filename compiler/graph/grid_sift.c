@@ -206,7 +206,8 @@ static void gather_lists(const Sifter *s, Arena *scratch)
 bool grid_sift(Grid *coarse, const Box *boxes, uint32_t count, const GridBlend *blend,
                Arena *scratch)
 {
-    if (!grid_place_coarse(coarse, boxes, count, blend->swell, blend->margin, scratch))
+    if (!grid_place_coarse(coarse, boxes, count, blend->swell, blend->margin, blend->fades,
+                           scratch))
         return false;
     size_t    cells   = grid_cell_count(coarse);
     Sifter    s       = {.grid   = coarse,

@@ -81,11 +81,11 @@ static bool sift(const GridBlend *blend, const Box *boxes, Grid *coarse, const C
 {
     double most = (double)MOST_TEXELS / LISTS_GROW / fmax((double)row_texels(table), 1);
     return grid_sift(coarse, boxes, table->rows, blend, scratch) &&
-           coarse->first[grid_cell_count(coarse)] <= most;
+           coarse->first[grid_cell_count(coarse)] <= 4 * most;
 }
 
 /* The grid, and large cells with lists of the members that act there: by their boxes if that is possible. */
-static bool make_coarse(const GridBlend *blend, const Box *boxes, Grid *coarse, Crowd *table,
+static bool make_coarse(GridBlend *blend, const Box *boxes, Grid *coarse, Crowd *table,
                         Arena *scratch)
 {
     double reach = blend->reach * table->stretch;
@@ -93,6 +93,7 @@ static bool make_coarse(const GridBlend *blend, const Box *boxes, Grid *coarse, 
     if (far && sift(blend, boxes, coarse, table, scratch)) {
         grid_build(&table->grid, boxes, table->rows, reach, blend->margin, TEXELS_OF_HOST,
                    table->arena, scratch);
+        blend->sifted = true;
         return true;
     }
     if (!isfinite(reach) || !grid_build_coarse(&table->grid, boxes, table->rows, reach,
@@ -117,6 +118,8 @@ static bool refine(const CrowdGroup *group, const GroupJoin *join, const Box *bo
     if (!make_coarse(blend, boxes, &coarse, table, scratch))
         return false;
     grid_refine(&table->cells, &coarse, blend, table->arena, scratch);
+    table->fades = blend->width;
+    table->slope = blend->slope;
     return true;
 }
 

@@ -119,7 +119,7 @@ static Member member_in_body(const CrowdGroup *group, const GroupJoin *join, uin
 static uint32_t next_function(Graph *g) { return (uint32_t)graph_crowds(g)->functions.count; }
 
 /* A blend that fades, -k log of the sum of e^(-d / k).  States are the least distance m, the sum of
-   e^((m - d) / k), and k: one power for each member, and one logarithm for all. */
+   e^((m - d) / k), k, and d for kernels: one power for each member, and one logarithm for all. */
 static uint32_t make_sum(const CrowdGroup *group, const GroupJoin *join)
 {
     Graph *g               = join->graph;
@@ -135,14 +135,18 @@ static uint32_t make_sum(const CrowdGroup *group, const GroupJoin *join)
     others                 = graph_op2(g, OP_add, others, graph_number(g, 1));
     Node          more     = graph_op2(g, OP_add, sum, power);
     Node          bodies[] = {graph_op2(g, OP_min, least, member.distance),
-                              graph_op3(g, OP_select, nearer, others, more), width};
-    CrowdFunction function = {
-        .crowd       = group->crowd,
-        .type        = TYPE_FLOAT,
-        .clear       = true,
-        .sums        = true,
-        .states      = {{TYPE_FLOAT, {NOWHERE}}, {TYPE_FLOAT, {0}}, {TYPE_FLOAT, {0}}},
-        .state_count = 3};
+                              graph_op3(g, OP_select, nearer, others, more), width, member.distance};
+    CrowdFunction function = {.crowd = group->crowd,
+                              .type  = TYPE_FLOAT,
+                              .clear = true,
+                              .sums  = true,
+                              .ends  = graph_crowds(g)->tables.items[group->crowd].cells.tails !=
+                                      NULL,
+                              .states      = {{TYPE_FLOAT, {NOWHERE}},
+                                              {TYPE_FLOAT, {0}},
+                                              {TYPE_FLOAT, {0}},
+                                              {TYPE_FLOAT, {0}}},
+                              .state_count = 4};
     return graph_add_crowd_function(g, function, bodies);
 }
 

@@ -110,14 +110,14 @@ static const char *find_texel(const Emitter *e, uint32_t crowd, uint32_t texel, 
 
 static const char *load_texel(Emitter *e, uint32_t crowd, uint32_t texel, Node member)
 {
-    uint32_t    columns = e->graph->crowds->tables.items[crowd].columns;
-    RowTexel    loaded  = {crowd, texel, member, numbered(e, "row", e->next++)};
-    Text        text    = {.arena = e->scratch};
-    bool        listed  = e->graph->items[member].op == OP_MEMBER; /* of the loop at hand */
-    const char *name    = listed ? "krs_listed_row" : "krs_row";
+    const Crowd *table  = &e->graph->crowds->tables.items[crowd];
+    RowTexel     loaded = {crowd, texel, member, numbered(e, "row", e->next++)};
+    Text         text   = {.arena = e->scratch};
+    bool         listed = e->graph->items[member].op == OP_MEMBER; /* of the loop at hand */
+    const char  *name   = listed ? "krs_listed_row" : "krs_row";
     emit_call(e, name, TYPE_UINT, 4);
     text_format(&text, "%s(%s, %uu, %uu, %s)", name, listed ? "i" : emit_bare(e, e->text[member]),
-                (unsigned)(columns + 3) / 4, (unsigned)texel, table_name(e, crowd));
+                (unsigned)row_texels(table), (unsigned)texel, table_name(e, crowd));
     emit_local(e, TYPE_VEC4, loaded.name, text.bytes);
     array_push(e->scratch, &e->row_texels, loaded);
     return loaded.name;
@@ -209,6 +209,62 @@ static void indent_lines(Emitter *e, size_t from)
     }
 }
 
+/* The tail of the entry at hand: in the last of its texels, which may be loaded. */
+static const char *tail_text(Emitter *e, uint32_t crowd)
+{
+    const Crowd *table = &e->graph->crowds->tables.items[crowd];
+    const char  *name  = NULL;
+    Text         text  = {.arena = e->scratch};
+    for (size_t i = 0; i < e->row_texels.count; i++)
+        if (e->row_texels.items[i].crowd == crowd &&
+            e->row_texels.items[i].texel == table->columns / 4)
+            name = e->row_texels.items[i].name;
+    if (name) {
+        text_add(&text, name);
+    } else {
+        emit_call(e, "krs_listed_row", TYPE_UINT, 4);
+        text_format(&text, "krs_listed_row(i, %uu, %uu, %s)", (unsigned)row_texels(table),
+                    (unsigned)table->columns / 4, table_name(e, crowd));
+    }
+    text_format(&text, ".%c", "xyzw"[table->columns % 4]);
+    return text.bytes;
+}
+
+/* A sum of powers, until what is left may lack.  The last power that counts is cut so that the result has no steps. */
+static void emit_sum_that_ends(Emitter *e, const CrowdFunction *function, const Node *bodies)
+{
+    const char *table = table_name(e, function->crowd);
+    Text        text  = {.arena = e->scratch};
+    emit_call(e, "krs_growth", TYPE_VEC3, 2);
+    emit_call(e, "krs_exact_from", TYPE_VEC3, 2);
+    emit_call(e, "krs_lack", TYPE_FLOAT, 2);
+    text_format(&text, "krs_growth(p, %s)", table);
+    emit_local(e, TYPE_FLOAT, "growth", text.bytes);
+    text.length = 0;
+    text_format(&text, "krs_exact_from(p, %s)", table);
+    emit_local(e, TYPE_FLOAT, "exact_from", text.bytes);
+    emit_local(e, TYPE_FLOAT, "sum", "0.0");
+    emit_local(e, TYPE_FLOAT, "whole", "0.0");
+    emit_phrase(e, PHRASE_EACH_LISTED, (Operands){table});
+    const size_t body = e->out->length;
+    emit_body(e, &bodies[3], 1);
+    text.length = 0;
+    emit_local(e, TYPE_FLOAT, "apart", emit_bare(e, e->text[bodies[3]]));
+    text_format(&text, "exp((nearby.clearance - apart) * %s.per_width)", table);
+    emit_local(e, TYPE_FLOAT, "power", text.bytes);
+    text.length = 0;
+    text_format(&text, "sum + %s * growth", tail_text(e, function->crowd));
+    emit_local(e, TYPE_FLOAT, "most", text.bytes);
+    emit_line(e, "    sum += power;\n");
+    emit_line(e, "    whole = sum + krs_lack(sum, exact_from);\n");
+    emit_line(e, "    nearby.end = most > whole ? nearby.end : i;\n");
+    emit_line(e, "    whole = min(whole, most);\n");
+    indent_lines(e, body);
+    text_add(e->out, "    }\n");
+    emit_line(e, "    float blended = nearby.clearance - %s.width * log(whole);\n", table);
+    text_add(e->out, "    return whole > 0.0 ? blended : nearby.clearance;\n}\n\n");
+}
+
 static void emit_function_of_crowd(Emitter *e, uint32_t id)
 {
     const CrowdFunction *function = &e->graph->crowds->functions.items[id];
@@ -219,6 +275,10 @@ static void emit_function_of_crowd(Emitter *e, uint32_t id)
     emit_call(e, "krs_near", TYPE_VEC3, 2);
     emit_call(e, "krs_listed", TYPE_UINT, 2);
     text_format(e->out, "%s\n{\n", phrase_text(e, PHRASE_FUNCTION, head));
+    if (function->ends) {
+        emit_sum_that_ends(e, function, bodies);
+        return;
+    }
     emit_first_states(e, function);
     emit_phrase(e, PHRASE_EACH_LISTED, (Operands){table});
     const size_t body = e->out->length;

@@ -77,9 +77,9 @@ static void numbers_are_read_back(void **state)
     for (int t = 0; t < TABLES; t++) {
         const Crowd *table = &packed.crowds.tables.items[t];
         const Grid  *grid  = &table->grid;
-        uint32_t     row_0 = packed.cells[8 * t + 7][0], texels = (table->columns + 3) / 4;
-        uint32_t     copy_0 = packed.cells[8 * t + 7][1];
-        uint32_t     listed = grid->first[grid->cells[0] * grid->cells[1] * grid->cells[2]];
+        uint32_t row_0 = packed.cells[GRID_HEADER * t + 7][0], texels = (table->columns + 3) / 4;
+        uint32_t copy_0 = packed.cells[GRID_HEADER * t + 7][1];
+        uint32_t listed = grid->first[grid->cells[0] * grid->cells[1] * grid->cells[2]];
         for (uint32_t r = 0; r < table->rows; r++)
             for (uint32_t c = 0; c < table->columns; c++)
                 assert_true(packed.rows[row_0 + r * texels + c / 4][c % 4] ==
@@ -99,10 +99,10 @@ static void numbers_are_read_back(void **state)
 static void grids_are_read_back(void **state)
 {
     Packed packed = pack(*state);
-    size_t next   = 8 * TABLES;
+    size_t next   = (size_t)GRID_HEADER * TABLES;
     for (int t = 0; t < TABLES; t++) {
         const Grid *grid       = &packed.crowds.tables.items[t].cells;
-        uint32_t(*header)[2]   = packed.cells + 8 * t;
+        uint32_t(*header)[2]   = packed.cells + GRID_HEADER * t;
         const uint32_t cells[] = {header[2][0], header[2][1], header[3][0]};
         uint32_t       first   = header[3][1];
         size_t         count = (size_t)cells[0] * cells[1] * cells[2], lists = first + count + 1;
@@ -128,7 +128,7 @@ static void places_of_grids_are_read_back(void **state)
     Packed packed = pack(*state);
     for (int t = 0; t < TABLES; t++) {
         const Grid *grid     = &packed.crowds.tables.items[t].cells;
-        uint32_t(*header)[2] = packed.cells + 8 * t;
+        uint32_t(*header)[2] = packed.cells + GRID_HEADER * t;
         const float low[]    = {float_of(header[0][0]), float_of(header[0][1]),
                                 float_of(header[1][0])};
         const float center[] = {float_of(header[4][0]), float_of(header[4][1]),

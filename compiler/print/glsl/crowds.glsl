@@ -1,19 +1,21 @@
 /*
  * crowds.glsl: tables of parts that are alike but for numbers, and which members are near a point.
  *
- * The header of a table has 8 texels of krs_cells; compiler/tables.c writes them.
+ * The header of a table has 10 texels of krs_cells; compiler/tables.c writes them.
  */
 
 // The header of a table.
 KrsTable krs_read_table(uint table)
 {
-    uvec2 texels[8];
-    for (int i = 0; i < 8; i++)
-        texels[i] = krs_cell_texel(8u * table + uint(i));
+    uvec2 texels[10];
+    for (int i = 0; i < 10; i++)
+        texels[i] = krs_cell_texel(10u * table + uint(i));
     return KrsTable(uintBitsToFloat(uvec3(texels[0], texels[1].x)), uintBitsToFloat(texels[1].y),
                     uvec3(texels[2], texels[3].x), texels[3].y,
                     uintBitsToFloat(uvec3(texels[4], texels[5].x)),
-                    uintBitsToFloat(uvec3(texels[5].y, texels[6])), texels[7].x, texels[7].y);
+                    uintBitsToFloat(uvec3(texels[5].y, texels[6])), texels[7].x, texels[7].y,
+                    uintBitsToFloat(texels[8].x), uintBitsToFloat(texels[8].y),
+                    uintBitsToFloat(texels[9].x), uintBitsToFloat(texels[9].y));
 }
 
 // The list of the cell where p is, and how far all else is at least.  Outside of the grid there is
@@ -49,4 +51,25 @@ vec4 krs_row(uint member, uint texels, uint texel, KrsTable table)
 vec4 krs_listed_row(uint i, uint texels, uint texel, KrsTable table)
 {
     return krs_row_texel(table.copies + i * texels + texel);
+}
+
+// Sums of powers grow by this factor at most on the way from the middle of the cell where p is.
+float krs_growth(vec3 p, KrsTable table)
+{
+    vec3 place = (p - table.low) * table.cells_per_length;
+    vec3 way = (place - floor(place) - 0.5) / table.cells_per_length;
+    return exp(table.slope_per_width * length(way));
+}
+
+// Above 1 over such a sum results need not be exact.
+float krs_exact_from(vec3 p, KrsTable table)
+{
+    return min(exp((table.exact_to - krs_near(p, table).clearance) * table.per_width), 1e30);
+}
+
+// What a sum may lack: a ten-thousandth, and a part more and more where results are far from 0.
+float krs_lack(float sum, float exact_from)
+{
+    float far = max(1.0 - sum * exact_from, 0.0);
+    return sum * max(1e-4, 0.2 * far * far);
 }

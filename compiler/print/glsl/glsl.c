@@ -90,6 +90,7 @@ static const char *const phrases[PHRASE_COUNT] = {
         "    uint records;\n"
         "    vec3 centre, half_sides;\n"
         "    uint rows, copies;\n"
+        "    float width, per_width, slope_per_width, exact_to;\n"
         "};\n\n"
         "// The list of members that are near a point, and how far others are at least.\n"
         "struct KrsNear {\n"
