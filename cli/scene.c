@@ -74,7 +74,7 @@ KrsOptions scene_options(DiagnosticSink *sink, const char *path)
                         .gradients    = options->how.normals == KRS_NORMALS_ANALYTIC,
                         .memory_limit = options->limits.memory,
                         .studio       = shows_pictures(options) && !options->no_studio,
-                        .pictures     = options->command == COMMAND_RENDER,
+                        .pictures     = shows_pictures(options),
                         .assembly     = options->command == COMMAND_MESH,
                         .root         = scene_root(options, path),
                         .text         = is_input(options, path) ? options->input : NULL,

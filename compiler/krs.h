@@ -86,11 +86,10 @@ typedef struct KrsOptions {
     KrsSpecialize          specialize;
     bool                   gradients; /* compile derivatives too: for KRS_NORMALS_ANALYTIC,
                                             and as krs_gradient in the GLSL */
-    bool studio; /* a bounded scene without lights and sky gets some, and a floor, whose component
+    bool studio;   /* a bounded scene without lights and sky gets some, and a floor, whose component
                     is the last and named `floor`; for pictures */
-    bool
-        pictures; /* for pictures alone: six large parts that are alike share code, too, which makes
-                      kernels shorter and frames faster, but meshes take longer */
+    bool pictures; /* six large parts that are alike share code, too: shorter kernels and faster
+                      frames, but meshes take longer; for pictures */
     bool assembly; /* keep what krs_assemble and krs_texture_places need, which takes some time */
     /* Only files in this folder, and below it, are read; others are E0504, also behind symbolic
        links.  That includes the scene itself in krs_compile_file.  With krs_compile_text, `name`
