@@ -36,7 +36,7 @@ measure_peer() { # shape, longest side
         cat "$work/time" "$work/peer" | tr '\n' ' ' |
             awk -v name="$1, CGAL" -v part=$part -v share=$share '{
                 printf "| %s | 1/%d | %s | %s | %s | %.0f |%s\n", name, part, $3, $1, $2, $3 / $2,
-                    $4 > share ? sprintf(" (not within the error: %.1f times as far)", $4 / share) : "" }'
+                    ($4 > share ? sprintf(" (not within the error: %.1f times as far)", $4 / share) : "") }'
     done
 }
 
