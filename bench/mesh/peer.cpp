@@ -1,9 +1,12 @@
 /*
- * peer.cpp: meshes by CGAL of surfaces that krs meshes as well: peer SHAPE ERROR.
+ * peer.cpp: meshes by CGAL of surfaces that krs meshes as well, and how far both are from the surface.
  *
- * Delaunay refinement of an implicit surface (Boissonnat and Oudot), which ends when the middle of each triangle is
- * within the error of the surface.  It proves nothing between, and knows no edges.  Printed are the triangles, and
- * the farthest from the surface of many points of them, in errors.
+ *     peer mesh SHAPE ERROR     mesh the shape by CGAL
+ *     peer judge SHAPE FILE     read a mesh of it, binary STL
+ *
+ * CGAL refines a Delaunay triangulation (Boissonnat and Oudot), until the middle of each triangle is within the error
+ * of the surface.  It proves nothing between, and knows no edges.  Printed are the number of triangles, and the
+ * farthest from the surface of many points of them.
  */
 #include <cmath>
 #include <cstdio>
@@ -21,13 +24,28 @@ using Traits        = Triangulation::Geom_traits;
 using Point         = Traits::Point_3;
 using Function      = double (*)(Point);
 
+/* By -20 degrees around (1, 2, 3), so that no axis is that of a grid (Rodrigues). */
+static Point turned(Point p)
+{
+    const double angle = -20 * M_PI / 180, c = std::cos(angle), s = std::sin(angle);
+    const double length = std::sqrt(14), n[3] = {1 / length, 2 / length, 3 / length};
+    double       along = n[0] * p.x() + n[1] * p.y() + n[2] * p.z();
+    return {c * p.x() + s * (n[1] * p.z() - n[2] * p.y()) + (1 - c) * along * n[0],
+            c * p.y() + s * (n[2] * p.x() - n[0] * p.z()) + (1 - c) * along * n[1],
+            c * p.z() + s * (n[0] * p.y() - n[1] * p.x()) + (1 - c) * along * n[2]};
+}
+
 /* Around the y axis. */
 static double ring(double x, double y, double z, double major, double minor)
 {
     return std::hypot(std::hypot(x, z) - major, y) - minor;
 }
 
-static double torus(Point p) { return ring(p.x(), p.y(), p.z(), 1, 0.4); }
+static double torus(Point p)
+{
+    p = turned(p);
+    return ring(p.x(), p.y(), p.z(), 1, 0.4);
+}
 
 static double links(Point p)
 {
@@ -35,12 +53,16 @@ static double links(Point p)
                      ring(p.x() - 0.35, p.z(), p.y(), 0.7, 0.2));
 }
 
+/* The distance from the gyroid to first order, then the cube's. */
 static double gyroid(Point p)
 {
-    double k = 2 * M_PI, x = k * p.x(), y = k * p.y(), z = k * p.z();
-    double wave = std::sin(x) * std::cos(y) + std::sin(y) * std::cos(z) + std::sin(z) * std::cos(x);
-    return std::fmax(
-        wave, std::fmax(std::fabs(p.x()), std::fmax(std::fabs(p.y()), std::fabs(p.z()))) - 0.5);
+    const double k = 2 * M_PI, sx = std::sin(k * p.x()), cx = std::cos(k * p.x()),
+                 sy = std::sin(k * p.y()), cy = std::cos(k * p.y()), sz = std::sin(k * p.z()),
+                 cz = std::cos(k * p.z());
+    double slope    = k * std::hypot(cx * cy - sz * sx, cy * cz - sx * sy, cz * cx - sy * sz);
+    return std::fmax((sx * cy + sy * cz + sz * cx) / std::fmax(slope, 1),
+                     std::fmax(std::fabs(p.x()), std::fmax(std::fabs(p.y()), std::fabs(p.z()))) -
+                         0.5);
 }
 
 static const struct Shape {
@@ -49,16 +71,6 @@ static const struct Shape {
     double      radius; /* of a ball that it is in */
 } shapes[] = {{"torus", torus, 1.5}, {"links", links, 1.5}, {"gyroid", gyroid, 1}};
 
-/* To first order. */
-static double distance(Function f, Point p)
-{
-    const double h  = 1e-5;
-    double       dx = f({p.x() + h, p.y(), p.z()}) - f({p.x() - h, p.y(), p.z()});
-    double       dy = f({p.x(), p.y() + h, p.z()}) - f({p.x(), p.y() - h, p.z()});
-    double       dz = f({p.x(), p.y(), p.z() + h}) - f({p.x(), p.y(), p.z() - h});
-    return std::fabs(f(p)) * 2 * h / std::hypot(dx, dy, dz);
-}
-
 static double farthest_of_triangle(Function f, const Point corners[3])
 {
     const int steps = 6;
@@ -66,8 +78,8 @@ static double farthest_of_triangle(Function f, const Point corners[3])
     for (int i = 0; i <= steps; i++)
         for (int k = 0; i + k <= steps; k++) {
             double a = double(i) / steps, b = double(k) / steps;
-            most = std::fmax(most, distance(f, CGAL::barycenter(corners[0], a, corners[1], b,
-                                                                corners[2], 1 - a - b)));
+            most = std::fmax(most, std::fabs(f(CGAL::barycenter(corners[0], a, corners[1], b,
+                                                                corners[2], 1 - a - b))));
         }
     return most;
 }
@@ -88,16 +100,43 @@ static void mesh(const Shape &shape, double error)
             corners[i] = facet->first->vertex((facet->second + 1 + i) % 4)->point();
         most = std::fmax(most, farthest_of_triangle(shape.function, corners));
     }
-    std::printf("%zu %.2f\n", std::size_t(complex.number_of_facets()), most / error);
+    std::printf("%zu %.3g\n", std::size_t(complex.number_of_facets()), most);
+}
+
+/* A triangle of binary STL: its normal, three corners of three numbers, and two bytes that mean nothing. */
+static int judge(const Shape &shape, const char *name)
+{
+    unsigned char triangle[50];
+    FILE         *file  = std::fopen(name, "rb");
+    double        most  = 0;
+    std::size_t   count = 0;
+    if (!file || std::fseek(file, 84, SEEK_SET) != 0) {
+        std::perror(name);
+        return 74;
+    }
+    for (; std::fread(triangle, sizeof triangle, 1, file) == 1; count++) {
+        float v[9];
+        std::memcpy(v, triangle + 12, sizeof v);
+        const Point corners[3] = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}};
+        most                   = std::fmax(most, farthest_of_triangle(shape.function, corners));
+    }
+    std::fclose(file);
+    std::printf("%zu %.3g\n", count, most);
+    return 0;
 }
 
 int main(int argc, char **argv)
 {
     for (const Shape &shape : shapes)
-        if (argc == 3 && std::strcmp(shape.name, argv[1]) == 0) {
-            mesh(shape, std::atof(argv[2]));
-            return 0;
+        if (argc == 4 && std::strcmp(shape.name, argv[2]) == 0) {
+            if (std::strcmp(argv[1], "judge") == 0)
+                return judge(shape, argv[3]);
+            if (std::strcmp(argv[1], "mesh") == 0) {
+                mesh(shape, std::atof(argv[3]));
+                return 0;
+            }
         }
-    std::fputs("usage: peer torus|links|gyroid ERROR\n", stderr);
+    std::fputs("usage: peer mesh SHAPE ERROR | peer judge SHAPE FILE, of torus, links or gyroid\n",
+               stderr);
     return 64;
 }
