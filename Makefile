@@ -44,7 +44,7 @@ GRAPH    := $(addprefix compiler/graph/, intern.c alike.c alike_copy.c graph.c c
                 simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c frame_ranges.c turns.c parity.c texture.c texture_facts.c \
                 regions.c squares.c grid_build.c grid_find.c grid_clearance.c grid_halve.c grid_refine.c grid_sift.c grid_tails.c fractal.c op_values.c tape.c evaluate.c lane_rows.c lane_make.c lane_run.c lane_crowds.c lane_ranges.c \
                 lane_steepest.c lane_slopes.c lane_partials.c lane_outlines.c lane_hessians.c lane_prune.c joints.c joint_needs.c print.c) $(LANES)
-SHAPE    := $(addprefix compiler/shape/, turn_boxes.c box.c box_rules.c reach.c cover.c overlap.c map.c moebius.c builder.c sky_map.c slope.c print.c)
+SHAPE    := $(addprefix compiler/shape/, turn_boxes.c frame_boxes.c box.c box_rules.c reach.c cover.c overlap.c map.c moebius.c builder.c sky_map.c slope.c print.c)
 LOWER    := $(addprefix compiler/lower/, footprint.c bump.c context.c box_distance.c surface.c join.c crowd_table.c crowd_cells.c crowd_functions.c crowd_turns.c crowd_find.c crowd.c normal.c tangent.c map_chain.c \
                 outline.c sphere_fold.c guards.c ray_images.c ray_step.c lower.c)
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
@@ -59,7 +59,7 @@ PRINT    := $(addprefix compiler/print/, frame_values.c media.c lines.c signatur
 TARGET   := $(addprefix compiler/target/, instructions.c inline.c dominators.c forward.c live.c flatten.c spirv.c)
 BORDER   := compiler/target/glslang_border.cpp
 API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c find_emissive.c find_assembly.c retain.c tables.c facts.c \
-                march_groups.c make_module.c program.c scene_text.c framing.c look.c daylight.c frame.c frame_tables.c frame_emissive.c points.c query.c texture_places.c \
+                march_groups.c make_module.c program.c scene_text.c framing.c look.c daylight.c frame.c frame_boxes.c frame_tables.c frame_emissive.c points.c query.c texture_places.c \
                 update.c camera_moves.c search_pairs.c search_targets.c search_starts.c search.c refuter.c \
                 refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)
 MESH     := $(addprefix compiler/mesh/, solid.c field.c field_pieces.c numbering.c batches.c weights.c tets.c marks.c quadric.c roots.c contour.c contour_mesh.c bvh.c groups.c gradient.c lens.c around.c verify.c smooth.c pieces.c voids.c bounds.c rounds.c mesh.c placing.c assemble.c crossing.c settle.c slivers.c near.c collapse.c simplify.c)

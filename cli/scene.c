@@ -267,6 +267,9 @@ KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsFrame **
                                      options->zone_count);
     if (status == KRS_OK)
         status = scene_set_time(options, *frame, options->time);
+    if (status == KRS_OK && shows_pictures(options) &&
+        (options->settings.count > 0 || options->time != 0))
+        status = krs_frame_place_camera(*frame);
     if (status != KRS_OK) {
         krs_frame_free(*frame);
         *frame = NULL;

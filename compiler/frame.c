@@ -30,8 +30,6 @@ static void frame_release(const KrsScene *scene, void *block)
         free(block);
 }
 
-#define ANY_SLOT UINT32_MAX
-
 static size_t slope_workspace(const KrsScene *scene)
 {
     size_t most = 0;
@@ -42,7 +40,7 @@ static size_t slope_workspace(const KrsScene *scene)
     return most;
 }
 
-static bool depends_on(const Tape *tape, uint32_t slot)
+bool tape_depends_on(const Tape *tape, uint32_t slot)
 {
     for (size_t i = 0; i < tape->frame_count; i++) {
         const Expr *e = &tape->graph->items[tape->nodes[i]];
@@ -52,7 +50,7 @@ static bool depends_on(const Tape *tape, uint32_t slot)
     return false;
 }
 
-/* Computes the slopes that depend on a slot.  False, and `unbounded` is set, if one has no
+/* Computes the slopes and the floor that depend on a slot.  False, and `unbounded` is set, if one has no
    bound. */
 static bool find_slopes(KrsFrame *frame, uint32_t changed)
 {
@@ -60,7 +58,7 @@ static bool find_slopes(KrsFrame *frame, uint32_t changed)
     frame->unbounded             = NULL;
     for (size_t i = 0; i < frame->scene->slope_count; i++) {
         const RetainedSlope *slope = &frame->scene->slopes[i];
-        if (!depends_on(&slope->task.tape, changed))
+        if (!tape_depends_on(&slope->task.tape, changed))
             continue;
         double found = slope_task_run(&slope->task, parameters, frame->workspace, NULL);
         found        = frame_slope_upward(found);
@@ -68,6 +66,7 @@ static bool find_slopes(KrsFrame *frame, uint32_t changed)
         if (!isfinite(found) && !frame->unbounded)
             frame->unbounded = slope->place;
     }
+    frame_find_floor(frame, changed);
     return !frame->unbounded;
 }
 
@@ -84,13 +83,16 @@ KrsStatus frame_new(const KrsScene *scene, KrsFrame **result)
     frame->lights     = frame_alloc(scene, scene->light_count, sizeof *frame->lights);
     frame->lit        = frame_alloc(scene, scene->emissive_count, sizeof *frame->lit);
     frame->workspace  = frame_alloc(scene, slope_workspace(scene), 1);
+    frame->boxes      = frame_alloc(scene, scene->boxes.shapes.count, sizeof *frame->boxes);
     frame->sky        = frame_alloc(scene, scene->daylight ? DAYLIGHT_WIDTH * DAYLIGHT_HEIGHT : 0,
                                     sizeof *frame->sky);
     if (!frame->parameters || !frame->values || !frame->lights || !frame->workspace ||
-        !frame->sky || !frame->lit || !frame_tables_new(frame)) {
+        !frame->boxes || !frame->sky || !frame->lit || !frame_tables_new(frame)) {
         frame_free(frame);
         return KRS_OUT_OF_MEMORY;
     }
+    memcpy(frame->framed_eye, scene->framed_eye, sizeof frame->framed_eye);
+    memcpy(frame->framed_target, scene->framed_target, sizeof frame->framed_target);
     for (size_t i = 0; i < scene->parameter_count; i++)
         memcpy(frame->parameters[scene->parameters[i].slot].v, scene->parameters[i].value,
                sizeof scene->parameters[i].value);
@@ -115,6 +117,7 @@ void frame_free(KrsFrame *frame)
     frame_release(scene, frame->sky);
     frame_release(scene, frame->lit);
     frame_release(scene, frame->workspace);
+    frame_release(scene, frame->boxes);
     frame_release(scene, frame);
 }
 
@@ -125,6 +128,8 @@ KrsStatus frame_copy_of(const KrsFrame *frame, KrsFrame **copy)
         return status;
     memcpy((*copy)->parameters, frame->parameters,
            frame->scene->program.parameter_slots * sizeof *frame->parameters);
+    memcpy((*copy)->framed_eye, frame->framed_eye, sizeof frame->framed_eye);
+    memcpy((*copy)->framed_target, frame->framed_target, sizeof frame->framed_target);
     memcpy((*copy)->zones, frame->zones, sizeof frame->zones);
     (*copy)->zone_count = frame->zone_count;
     return KRS_OK;
@@ -320,8 +325,8 @@ static void view_camera(const KrsFrame *frame, size_t index, KrsCamera *camera)
     frame_copy(frame, roots->target, camera->target);
     frame_copy(frame, roots->up, camera->up);
     if (scene->framed && index == 0) {
-        memcpy(camera->eye, scene->framed_eye, sizeof camera->eye);
-        memcpy(camera->target, scene->framed_target, sizeof camera->target);
+        memcpy(camera->eye, frame->framed_eye, sizeof camera->eye);
+        memcpy(camera->target, frame->framed_target, sizeof camera->target);
     }
 }
 

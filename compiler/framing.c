@@ -33,19 +33,24 @@ static const double FLOPS_OF_ALL_RAYS = 2500;
 
 /* Rays of one round, and what those of all rounds have hit of bounded components. */
 typedef struct Rays {
-    double origins[RAYS][3], directions[RAYS][3];
-    KrsHit hits[RAYS];
-    double seen[2 * ROUNDS * RAYS][3];
-    size_t seen_count;
-    Box    box; /* around what is seen */
+    double     origins[RAYS][3], directions[RAYS][3];
+    KrsHit     hits[RAYS];
+    double     seen[2 * ROUNDS * RAYS][3];
+    size_t     seen_count;
+    Box        box;   /* around what is seen */
+    const Box *boxes; /* of components in the frame: frame_find_boxes */
 } Rays;
 
-static bool is_bounded(const KrsComponent *component)
+/* The box of a component in the frame. */
+static Box box_of(const KrsFrame *frame, const Box *boxes, size_t component)
 {
+    const KrsComponent *all = &frame->scene->components[component];
+    Box                 box;
+    if (component < frame->scene->boxes.asked_for)
+        return boxes[component];
     for (int k = 0; k < 3; k++)
-        if (!isfinite(component->low[k]) || !isfinite(component->high[k]))
-            return false;
-    return true;
+        box.axis[k] = (Range){all->low[k], all->high[k]};
+    return box;
 }
 
 static Box box_of_point(const double point[3])
@@ -54,14 +59,14 @@ static Box box_of_point(const double point[3])
 }
 
 /* The box around those of the bounded components; empty when there is none. */
-static Box outer_box(const KrsScene *scene)
+static Box outer_box(const KrsFrame *frame, const Box *boxes)
 {
     Box box = box_empty;
-    for (size_t i = 0; i < scene->shown_count; i++)
-        if (is_bounded(&scene->components[i])) {
-            box = box_hull(box, box_of_point(scene->components[i].low));
-            box = box_hull(box, box_of_point(scene->components[i].high));
-        }
+    for (size_t i = 0; i < frame->scene->shown_count; i++) {
+        const Box one = box_of(frame, boxes, i);
+        if (box_is_finite(one))
+            box = box_hull(box, one);
+    }
     return box;
 }
 
@@ -105,8 +110,7 @@ static void make_rays(const Ball *ball, int count, Rays *rays)
    so far, to save time. */
 static bool cast_rays(KrsFrame *frame, Rays *rays, int count, double radius)
 {
-    const KrsScene *scene      = frame->scene;
-    int             unresolved = 0;
+    int unresolved = 0;
     for (int i = 0; i < count && unresolved <= MOST_UNRESOLVED; i++) {
         const KrsHit *hit = &rays->hits[i];
         if (i % BATCH == 0)
@@ -115,7 +119,7 @@ static bool cast_rays(KrsFrame *frame, Rays *rays, int count, double radius)
                           (size_t)(count - i < BATCH ? count - i : BATCH), 4 * radius,
                           1e-3 * radius, rays->hits + i);
         unresolved += hit->unresolved;
-        if (hit->hit && is_bounded(&scene->components[hit->component - 1])) {
+        if (hit->hit && box_is_finite(box_of(frame, rays->boxes, hit->component - 1))) {
             memcpy(rays->seen[rays->seen_count++], hit->point, sizeof hit->point);
             rays->box = box_hull(rays->box, box_of_point(hit->point));
         }
@@ -346,39 +350,61 @@ static DefaultCamera place_camera(const Rays *rays, const Ball *ball, double fov
     return camera;
 }
 
-static void set_camera(KrsScene *scene, const DefaultCamera *camera)
+/* Finds eye and target of the default camera for the values of a frame.  Its direction and field of
+   view are fixed.  Without bounded components nothing is changed: then `found` is false. */
+static KrsStatus find_camera(KrsFrame *frame, DefaultCamera *camera, bool *found)
 {
-    scene->framed = true;
-    memcpy(scene->framed_eye, camera->eye, sizeof camera->eye);
-    memcpy(scene->framed_target, camera->target, sizeof camera->target);
-}
-
-/* Sets eye and target of the default camera, with the defaults of parameters.  Its direction and
-   field of view are fixed.  Without bounded components nothing is changed. */
-static KrsStatus frame_scene(KrsScene *scene)
-{
-    KrsFrame *frame;
-    KrsView   view;
-    Box       box  = outer_box(scene);
-    Ball      ball = ball_around(box);
-    if (!(ball.radius > 0 && isfinite(ball.radius)))
+    KrsView    view;
+    const Box *boxes = frame_find_boxes(frame);
+    Box        box   = outer_box(frame, boxes);
+    Ball       ball  = ball_around(box);
+    *found           = ball.radius > 0 && isfinite(ball.radius);
+    if (!*found)
         return KRS_OK;
-    KrsStatus status = frame_new(scene, &frame);
-    if (status != KRS_OK)
-        return status;
-    frame->exact = true;
-    Rays  *rays  = malloc(sizeof *rays);
-    Cells *cells = malloc(sizeof *cells);
-    if (rays && cells) {
+    Rays     *rays   = malloc(sizeof *rays);
+    Cells    *cells  = malloc(sizeof *cells);
+    KrsStatus status = rays && cells ? KRS_OK : KRS_OUT_OF_MEMORY;
+    if (status == KRS_OK) {
+        rays->boxes = boxes;
         find_ball(frame, box, rays, cells, &ball);
         frame_view(frame, 0, &view);
-        DefaultCamera camera = place_camera(rays, &ball, view.camera.fov);
-        set_camera(scene, &camera);
-    } else {
-        status = KRS_OUT_OF_MEMORY;
+        *camera = place_camera(rays, &ball, view.camera.fov);
     }
     free(rays);
     free(cells);
+    return status;
+}
+
+KrsStatus krs_frame_place_camera(KrsFrame *frame)
+{
+    DefaultCamera camera;
+    bool          found;
+    if (!frame->scene->framed)
+        return KRS_OK;
+    frame->exact     = true;
+    KrsStatus status = find_camera(frame, &camera, &found);
+    frame->exact     = false;
+    if (status == KRS_OK && found) {
+        memcpy(frame->framed_eye, camera.eye, sizeof camera.eye);
+        memcpy(frame->framed_target, camera.target, sizeof camera.target);
+    }
+    return status;
+}
+
+/* With the defaults of parameters. */
+static KrsStatus frame_scene(KrsScene *scene)
+{
+    KrsFrame     *frame;
+    DefaultCamera camera;
+    KrsStatus     status = frame_new(scene, &frame);
+    if (status != KRS_OK)
+        return status;
+    frame->exact = true;
+    status       = find_camera(frame, &camera, &scene->framed);
+    if (status == KRS_OK && scene->framed) {
+        memcpy(scene->framed_eye, camera.eye, sizeof camera.eye);
+        memcpy(scene->framed_target, camera.target, sizeof camera.target);
+    }
     frame_free(frame);
     return status;
 }

@@ -214,6 +214,9 @@ KrsStatus krs_frame_update(KrsFrame *frame, const KrsScene *scene);
 KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values, size_t count);
 KrsStatus krs_frame_set_time(KrsFrame *frame, double time);
 double    krs_frame_time(const KrsFrame *frame);
+/* Places the camera of a scene that has none so that all is in the picture at the values and the time of
+   the frame; until then it is placed for the defaults and time 0.  Other scenes are left as they are. */
+KrsStatus krs_frame_place_camera(KrsFrame *frame);
 /* The location ("scene.krs:3:14") of an expression whose slope has no bound for the last value or
    time, which was refused for that reason.  NULL if it was accepted, or refused for another one. */
 const char *krs_frame_unbounded(const KrsFrame *frame);

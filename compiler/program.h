@@ -30,6 +30,7 @@ typedef enum RootKind {
     ROOTS_PLANE,           /* PlaneRoots of the nearest half-space */
     ROOTS_GRADIENT,        /* GradientRoots of each component, then of all zones */
     ROOTS_SLOPE,           /* each slope that is computed per frame */
+    ROOTS_BOX,             /* numbers by which boxes of a frame are found */
     ROOTS_ASSEMBLY,        /* what the assembly's items refer to */
     ROOTS_PLACE,           /* for meshes: where each component reads its texture; FLOAT: nowhere */
     ROOTS_CAMERA_RELATIVE, /* surfaces and plane again for camera-relative points, or none */
@@ -153,6 +154,9 @@ struct KrsScene {
     Assembly         assembly;   /* nothing unless the options ask for it */
     RetainedSlope   *slopes;     /* slopes that are computed per frame */
     size_t           slope_count;
+    FrameBoxes       boxes; /* of shown components in a frame, */
+    FrameFloor       floor; /* and what stands below them */
+    Tape             box_numbers;
     EmissivePart    *emissive;
     size_t           emissive_count;
     Parameter       *parameters;
@@ -194,9 +198,12 @@ struct KrsFrame {
                                    slopes always belong to the other values */
     size_t         *lit;        /* parts of the scene that may emit light (frame_emissive.c) */
     void           *workspace;  /* memory for the computation of slopes */
-    const char     *unbounded;  /* location of the slope without a bound in the last refused
+    Box            *boxes;      /* memory for those of planned shapes (FrameBoxes) */
+    double          framed_eye[3], framed_target[3]; /* if the scene is framed: as there, or placed
+                                                        for this frame */
+    const char     *unbounded; /* location of the slope without a bound in the last refused
     frame */
-    NodeValue      *values;     /* of every node */
+    NodeValue      *values;    /* of every node */
     KrsLight       *lights;
     float (*sky)[3];              /* of daylight, */
     KrsSkyMap           sky_map;  /* which these texels are of, */
@@ -229,6 +236,15 @@ char *scene_plain_text(const KrsScene *scene, const KrsVariant *variant, Arena *
 void frame_refresh(KrsFrame *frame);
 /* The same, and the tables of the frame: for values at points. */
 void frame_refresh_points(KrsFrame *frame);
+
+/* frame_boxes.c: the boxes of the shown components, but for a floor, at the values of the frame; NULL:
+   they are those of all frames. */
+const Box *frame_find_boxes(KrsFrame *frame);
+/* Puts the height of the floor into its slot, if it depends on another one. */
+void frame_find_floor(KrsFrame *frame, uint32_t changed);
+/* Whether a tape needs the value of a slot; ANY_SLOT: of any. */
+#define ANY_SLOT UINT32_MAX
+bool tape_depends_on(const Tape *tape, uint32_t slot);
 
 /* frame_tables.c: tables where members of crowds move, and tapes over them.  False: memory has run out. */
 bool frame_tables_new(KrsFrame *frame);

@@ -86,6 +86,17 @@ static void retain_slopes(Compilation *c)
     }
 }
 
+static void retain_boxes(Compilation *c)
+{
+    KrsScene    *scene      = c->scene;
+    const Scene *s          = &c->elaborated;
+    scene->boxes            = frame_boxes_copy(&s->boxes, &scene->arena);
+    scene->floor            = s->floor;
+    scene->floor.eyes.items = arena_new_array(&scene->arena, FrameNumber, s->floor.eyes.count + 1);
+    for (size_t i = 0; i < s->floor.eyes.count; i++)
+        scene->floor.eyes.items[i] = s->floor.eyes.items[i];
+}
+
 static RetainedPlace retain_place(Compilation *c, Span span)
 {
     const Source *source = &c->sources.items[span.source];
@@ -117,6 +128,7 @@ static void retain_scene(Compilation *c)
     retain_components(c);
     retain_lowered(c);
     retain_slopes(c);
+    retain_boxes(c);
     retain_parameters(c);
     scene->camera_count  = s->cameras.count;
     scene->cameras       = arena_new_array(arena, SceneCamera, s->cameras.count + 1);
@@ -186,8 +198,9 @@ static void retain_tapes(Compilation *c)
     scene->surface = tape_of(scene, roots_from(roots, ROOTS_SURFACE, ROOTS_ZONE), arena);
     if (scene->assembly.items.count > 0)
         scene->assembly.tape = tape_of(scene, roots_of(roots, ROOTS_ASSEMBLY), arena);
-    scene->places = tape_of(scene, roots_of(roots, ROOTS_PLACE), arena);
-    scene->view   = tape_of(scene, roots_from(roots, ROOTS_CAMERA, ROOTS_SKY), arena);
+    scene->places      = tape_of(scene, roots_of(roots, ROOTS_PLACE), arena);
+    scene->box_numbers = tape_of(scene, roots_of(roots, ROOTS_BOX), arena);
+    scene->view        = tape_of(scene, roots_from(roots, ROOTS_CAMERA, ROOTS_SKY), arena);
 
     const Crowds *crowds = scene->graph->crowds;
     if (crowds)

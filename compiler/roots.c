@@ -34,6 +34,7 @@ static void allocate_roots(Compilation *c, RootRange assembly)
         [ROOTS_PLANE]           = NODES_OF(PlaneRoots),
         [ROOTS_GRADIENT]        = (components + 1) * NODES_OF(GradientRoots),
         [ROOTS_SLOPE]           = s->slopes.count,
+        [ROOTS_BOX]             = s->boxes.nodes.count,
         [ROOTS_ASSEMBLY]        = assembly.count,
         [ROOTS_PLACE]           = c->options->assembly ? components : 0,
         [ROOTS_CAMERA_RELATIVE] = components * ROOT_COUNT + NODES_OF(PlaneRoots)};
@@ -255,6 +256,8 @@ KrsStatus pass_lower(Compilation *c)
     lower_gradients(c, s->graph, crowds);
     for (size_t i = 0; i < s->slopes.count; i++)
         roots_of(roots, ROOTS_SLOPE).items[i] = s->slopes.items[i].formula;
+    for (size_t i = 0; i < s->boxes.nodes.count; i++)
+        roots_of(roots, ROOTS_BOX).items[i] = s->boxes.nodes.items[i];
     if (more->camera_relative)
         lower_camera_relative(c, s->graph);
     else

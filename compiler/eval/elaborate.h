@@ -446,7 +446,9 @@ Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *s
 const Material *to_material(Elaboration *e, Value value, const Syntax *syntax);
 
 /* ---- studio.c ---- */
-/* Adds lights, a sky and a floor to a scene that has none. */
+/* Plans which boxes of components are to be found in each frame. */
+void plan_boxes(Elaboration *e);
+/* Then adds lights, a sky and a floor to a scene that has none, if that is wanted. */
 void run_studio(Elaboration *e, const Files *files);
 
 /* ---- sky.c ---- */

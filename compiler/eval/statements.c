@@ -485,8 +485,8 @@ void elaborate(Elaboration *e)
     for (size_t i = 1; i < e->scopes.count; i++)
         run_remarks(e, e->scopes.items[i]);
     run_file(e, scope);
-    if (e->studio)
-        run_studio(e, e->files);
+    plan_boxes(e);
+    run_studio(e, e->files);
     gather_shown(e);
     e->scene->box = box_empty;
     for (size_t i = 0; i < e->scene->components.count; i++)

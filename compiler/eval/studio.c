@@ -1,21 +1,51 @@
 /*
  * studio.c: lights, walls and a floor (compiler/library/studio.krs) for a scene that names neither
  * lights nor a sky nor fog.  Only bounded scenes get them, and only if no camera can be below the floor.
+ * The floor is below what is shown at the values of a frame.
  */
 #include <math.h>
 #include <string.h>
 
 #include "compiler/eval/elaborate.h"
 
-static bool box_of_scene(const Scene *scene, Box *box)
+void plan_boxes(Elaboration *e)
 {
-    *box = box_empty;
-    for (size_t i = 0; i < scene->components.count; i++) {
-        if (!box_is_finite(scene->components.items[i].shape->box))
-            return false;
-        *box = box_hull(*box, scene->components.items[i].shape->box);
+    const Scene  *scene  = e->scene;
+    const size_t  count  = scene->components.count;
+    const Shape **shapes = arena_new_array(e->arena, const Shape *, count + 1);
+    for (size_t i = 0; i < count; i++)
+        shapes[i] = scene->components.items[i].shape;
+    frame_boxes_plan(e->builder, shapes, count, &e->scene->boxes);
+}
+
+/* Around all boxes, or infinite where one of them is. */
+static Box box_around(const Box *boxes, size_t count)
+{
+    Box box = box_empty;
+    for (size_t i = 0; i < count; i++) {
+        if (!box_is_empty(boxes[i]) && !box_is_finite(boxes[i]))
+            return box_infinite;
+        box = box_hull(box, boxes[i]);
     }
-    return !box_is_empty(*box);
+    return box;
+}
+
+/* For all values of the parameters. */
+static Box box_of_all_frames(Elaboration *e)
+{
+    const Scene *scene = e->scene;
+    Box         *boxes = arena_new_array(e->arena, Box, scene->components.count + 1);
+    for (size_t i = 0; i < scene->components.count; i++)
+        boxes[i] = scene->components.items[i].shape->box;
+    return box_around(boxes, scene->components.count);
+}
+
+static Box box_of_defaults(Elaboration *e)
+{
+    const FrameBoxes *plan  = &e->scene->boxes;
+    Box              *boxes = arena_new_array(e->arena, Box, plan->shapes.count + 1);
+    frame_boxes_default(e->builder, plan, boxes);
+    return box_around(boxes, e->scene->components.count);
 }
 
 /* Whether all cameras are above a height, in all frames. */
@@ -29,6 +59,22 @@ static bool cameras_are_above(Elaboration *e, double height)
     return true;
 }
 
+/* A height that is found for each frame, in this box as a rule. */
+static Node frame_floor(Elaboration *e, Box box)
+{
+    FrameFloor          *floor = &e->scene->floor;
+    const GraphParameter range = {{box.axis[1].low}, {box.axis[1].high}};
+    floor->slot                = (uint32_t)e->graph->parameters.count;
+    floor->otherwise           = box.axis[1].low;
+    for (size_t i = 0; i < e->scene->cameras.count; i++) {
+        const Node        eye    = e->scene->cameras.items[i].eye;
+        const FrameNumber number = frame_number_plan(e->builder, eye, &e->scene->boxes);
+        array_push(e->arena, &floor->eyes, number);
+    }
+    array_push(e->builder->arena, &e->graph->parameters, range);
+    return graph_parameter(e->graph, floor->slot, TYPE_FLOAT);
+}
+
 /* The scope of the library's file, whose statements are run like those of the scene. */
 static Scope *find_studio(const Elaboration *e, const Files *files)
 {
@@ -38,28 +84,33 @@ static Scope *find_studio(const Elaboration *e, const Files *files)
     return NULL;
 }
 
-static void set_number(Scope *scope, const char *name, double number)
+static void set_value(Scope *scope, const char *name, Value value)
 {
     for (size_t i = 0; i < scope->definitions.count; i++) {
         Definition *definition = scope->definitions.items[i];
         if (strcmp(definition->name, name) != 0)
             continue;
-        definition->value = value_number(number);
+        definition->value = value;
         definition->state = DEFINITION_DONE;
     }
 }
 
 void run_studio(Elaboration *e, const Files *files)
 {
-    Scene *scene = e->scene;
-    Scope *scope = find_studio(e, files);
-    Box    box;
-    if (!scope || e->diags->errors > 0 || scene->lights.count > 0 ||
-        scene->sky.zenith != NODE_NONE || scene->fog.color != NODE_NONE ||
-        !box_of_scene(scene, &box) || !cameras_are_above(e, box.axis[1].low))
+    Scene     *scene  = e->scene;
+    Scope     *scope  = find_studio(e, files);
+    const bool varies = scene->boxes.nodes.count > 0;
+    if (!e->studio || !scope || e->diags->errors > 0 || scene->lights.count > 0 ||
+        scene->sky.zenith != NODE_NONE || scene->fog.color != NODE_NONE)
         return;
-    set_number(scope, "_bottom", box.axis[1].low);
-    set_number(scope, "_size", fmax(box_diagonal(box), 1e-9));
+    Box box = box_of_all_frames(e);
+    if (varies && !box_is_finite(box) && !box_is_empty(box))
+        box = box_of_defaults(e);
+    if (box_is_empty(box) || !box_is_finite(box) || !cameras_are_above(e, box.axis[1].low))
+        return;
+    set_value(scope, "_bottom",
+              varies ? value_of_node(e, frame_floor(e, box)) : value_number(box.axis[1].low));
+    set_value(scope, "_size", value_number(fmax(box_diagonal(box), 1e-9)));
     run_file(e, scope);
     scene->components.items[scene->components.count - 1].name = "floor";
 }

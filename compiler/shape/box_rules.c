@@ -13,6 +13,33 @@ const Shape *box_part(const Shape *shape, uint32_t index)
     return shape->within ? shape->within : shape->children[index];
 }
 
+static uint32_t add_node(Node node, Node *nodes, uint32_t count)
+{
+    nodes[count] = node;
+    return count + (node != NODE_NONE);
+}
+
+uint32_t map_box_nodes(const Map *map, Node *nodes, uint32_t count)
+{
+    if (map->scale == NODE_NONE)
+        return count;
+    for (int i = 0; i < 3; i++)
+        nodes[count++] = map->rows[i];
+    count = add_node(map->scale, nodes, count);
+    return add_node(map->shift, nodes, count);
+}
+
+uint32_t box_nodes(const Shape *shape, Node nodes[MOST_BOX_NODES])
+{
+    uint32_t count = map_box_nodes(&shape->map, nodes, 0);
+    for (int i = 0; i < 2; i++) {
+        count = add_node(shape->values[i], nodes, count);
+        count = add_node(shape->corners[i], nodes, count);
+    }
+    count = add_node(shape->ball_radius, nodes, count);
+    return add_node(shape->blend.width, nodes, count);
+}
+
 static Box part(const BoxInput *in, uint32_t index)
 {
     return in->parts ? in->parts[index * in->stride] : box_part(in->shape, index)->box;

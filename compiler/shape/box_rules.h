@@ -1,8 +1,8 @@
 /*
  * box_rules.h: how the box of a shape follows from those of its parts and from its numbers.
  *
- * One rule for each kind (shapes.def), for two that ask: what makes a shape knows its numbers for all
- * values of the parameters, turn_boxes.h knows them in each turn of a loop.
+ * One rule for each kind (shapes.def), for three that ask: what makes a shape knows its numbers for all
+ * values of the parameters, turn_boxes.h knows them in each turn of a loop, frame_boxes.h in a frame.
  */
 #ifndef KRS_BOX_RULES_H
 #define KRS_BOX_RULES_H
@@ -26,6 +26,10 @@ typedef struct BoxInput {
 /* The shapes that a box depends on: the children, or what a declaration lies within. */
 uint32_t     box_part_count(const Shape *shape);
 const Shape *box_part(const Shape *shape, uint32_t index);
+/* The numbers that the rule of a shape may ask for; and those of a similarity, behind others. */
+enum { MOST_BOX_NODES = 12 };
+uint32_t box_nodes(const Shape *shape, Node nodes[MOST_BOX_NODES]);
+uint32_t map_box_nodes(const Map *map, Node *nodes, uint32_t count);
 /* Whether there is a rule: else the box is found where the shape is made. */
 bool has_box_rule(const Shape *shape);
 Box  shape_box(const BoxInput *input);

@@ -4,6 +4,7 @@
 #ifndef KRS_SCENE_H
 #define KRS_SCENE_H
 
+#include "compiler/shape/frame_boxes.h"
 #include "compiler/shape/parameters.h"
 #include "compiler/shape/shape.h"
 #include "compiler/shape/sky_map.h"
@@ -69,6 +70,18 @@ typedef struct SceneFog {
     Node color, density, fall, base; /* fall: 1 / height, 0 where the fog is even */
 } SceneFog;
 
+/* The height of a floor below all components of a scene without surroundings: a slot of the parameter
+   block, found for the values of each frame.  It stays where it is for all of them (or, if that has no
+   end, for the defaults) while it would be above a camera. */
+typedef struct FrameFloor {
+    uint32_t slot;      /* 0: there is no floor, or its height is the same in all frames */
+    double   otherwise; /* where it stays */
+    struct {
+        FrameNumber *items;
+        size_t       count, capacity;
+    } eyes; /* of cameras */
+} FrameFloor;
+
 typedef struct Scene {
     Graph *graph;
     struct {
@@ -78,6 +91,8 @@ typedef struct Scene {
         shown; /* what is lowered; what has a number for the user: more, where many are alike */
     Parameters  parameters;
     FrameSlopes slopes;
+    FrameBoxes  boxes; /* of what is shown, in this order, but for a floor */
+    FrameFloor  floor;
     /* Declared half-spaces, which may be in no component: mirrors. */
     struct {
         const Shape **items;

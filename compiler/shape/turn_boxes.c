@@ -12,10 +12,7 @@
 #include "compiler/graph/op_values.h"
 #include "compiler/graph/turns.h"
 
-enum {
-    MOST_NUMBERS = 11, /* of one shape */
-    BLOCK        = 64  /* turns whose boxes are found together */
-};
+enum { BLOCK = 64 /* turns whose boxes are found together */ };
 
 /* What a node depends on. */
 enum { ON_TURN = 1, ON_OTHERS = 2 };
@@ -70,34 +67,6 @@ static void mark_nodes(Turns *t)
 
 /* ---- the numbers of a shape ---- */
 
-static uint32_t add_node(Node node, Node *nodes, uint32_t count)
-{
-    nodes[count] = node;
-    return count + (node != NODE_NONE);
-}
-
-static uint32_t map_nodes(const Map *map, Node *nodes, uint32_t count)
-{
-    if (map->scale == NODE_NONE)
-        return count;
-    for (int i = 0; i < 3; i++)
-        nodes[count++] = map->rows[i];
-    count = add_node(map->scale, nodes, count);
-    return add_node(map->shift, nodes, count);
-}
-
-/* All that rules ask for. */
-static uint32_t rule_nodes(const Shape *shape, Node nodes[MOST_NUMBERS + 1])
-{
-    uint32_t count = map_nodes(&shape->map, nodes, 0);
-    for (int i = 0; i < 2; i++) {
-        count = add_node(shape->values[i], nodes, count);
-        count = add_node(shape->corners[i], nodes, count);
-    }
-    count = add_node(shape->ball_radius, nodes, count);
-    return add_node(shape->blend.width, nodes, count);
-}
-
 static bool any_turned(const Turns *t, const Node *nodes, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++)
@@ -108,14 +77,15 @@ static bool any_turned(const Turns *t, const Node *nodes, uint32_t count)
 
 static bool stage_is_turned(const Turns *t, const SequenceStage *stage)
 {
-    Node     nodes[MOST_NUMBERS + 1];
+    Node     nodes[MOST_BOX_NODES];
     uint32_t count = 0;
     switch (stage->kind) {
     case SEQUENCE_REFLECT: return any_turned(t, (Node[]){stage->normal, stage->offset}, 2);
     case SEQUENCE_SPHERE: return any_turned(t, (Node[]){stage->centre, stage->radius}, 2);
     case SEQUENCE_MAP:
-        count = map_nodes(&stage->map, nodes, 0);
-        count = add_node(stage->map.pole, nodes, count);
+        count = map_box_nodes(&stage->map, nodes, 0);
+        if (stage->map.pole != NODE_NONE)
+            nodes[count++] = stage->map.pole;
         return any_turned(t, nodes, count);
     default: return false;
     }
@@ -126,8 +96,8 @@ static bool is_turned(const Turns *t, const Shape *shape)
 {
     const Node others[] = {shape->distance, shape->bound, shape->formula, shape->blend.steps,
                            shape->map.scale != NODE_NONE ? shape->map.pole : NODE_NONE};
-    Node       nodes[MOST_NUMBERS + 1];
-    bool       found = any_turned(t, nodes, rule_nodes(shape, nodes)) ||
+    Node       nodes[MOST_BOX_NODES];
+    bool       found = any_turned(t, nodes, box_nodes(shape, nodes)) ||
                  any_turned(t, others, sizeof others / sizeof *others);
     for (uint32_t i = 0; i < shape->stage_count && !found; i++)
         found = stage_is_turned(t, &shape->stages[i]);
@@ -158,8 +128,8 @@ static bool plan_shape(Turns *t, const Shape *shape, TurnShape *plan)
     *plan = (TurnShape){.shape = shape};
     if (!has_box_rule(shape))
         return !is_turned(t, shape);
-    Node      nodes[MOST_NUMBERS + 1];
-    uint32_t  count = rule_nodes(shape, nodes), parts = box_part_count(shape);
+    Node      nodes[MOST_BOX_NODES];
+    uint32_t  count = box_nodes(shape, nodes), parts = box_part_count(shape);
     bool      turned = any_turned(t, nodes, count);
     ArenaMark mark   = arena_mark(t->scratch);
     plan->parts      = arena_new_array(t->scratch, TurnShape, parts);

@@ -1,0 +1,215 @@
+/*
+ * frame_boxes.c: boxes of shapes at the values that parameters have in a frame, by the rules of their
+ * kinds.
+ */
+#include "compiler/shape/frame_boxes.h"
+
+#include <string.h>
+
+#include "compiler/graph/facts.h"
+#include "compiler/graph/op_values.h"
+
+/* Shapes that are looked at, each where it is used, and those that are planned: what a frame does for
+   them should take less than a millisecond. */
+enum { MOST_VISITED = 1 << 16, MOST_PLANNED = 1 << 12 };
+
+/* What a node depends on. */
+enum { ON_PARAMETERS = 1, ON_TIME = 2 };
+
+typedef struct Plan {
+    ShapeBuilder  *builder;
+    FrameBoxes    *boxes;
+    unsigned char *depends; /* by nodes, */
+    size_t *places; /* where they are among those that frames are asked for, from 1; 0: not yet */
+    size_t  visited;
+} Plan;
+
+/* ---- numbers ---- */
+
+static unsigned char *find_depends(const Graph *graph, Arena *arena)
+{
+    unsigned char *depends = arena_new_array(arena, unsigned char, graph->count);
+    for (Node node = 0; node < graph->count; node++) {
+        const Expr *e     = &graph->items[node];
+        int         found = e->op != OP_PARAMETER ? 0 : e->index == 0 ? ON_TIME : ON_PARAMETERS;
+        for (int k = 0; k < e->operand_count; k++)
+            found |= depends[e->operands[k]];
+        depends[node] = (unsigned char)found;
+    }
+    return depends;
+}
+
+static Plan plan_new(ShapeBuilder *builder, FrameBoxes *boxes)
+{
+    Arena *arena = builder->arena;
+    return (Plan){.builder = builder,
+                  .boxes   = boxes,
+                  .depends = find_depends(builder->graph, arena),
+                  .places  = arena_new_array(arena, size_t, builder->graph->count)};
+}
+
+static size_t place_of(const Plan *plan, Node node)
+{
+    if (plan->places[node] == 0) {
+        array_push(plan->builder->arena, &plan->boxes->nodes, node);
+        plan->places[node] = plan->boxes->nodes.count;
+    }
+    return plan->places[node] - 1;
+}
+
+static FrameNumber plan_number(const Plan *plan, Node node)
+{
+    ShapeBuilder  *builder = plan->builder;
+    FrameNumber    number  = {.node = node, .asked = plan->depends[node] == ON_PARAMETERS};
+    const uint32_t size    = components((GraphType)builder->graph->items[node].type);
+    if (number.asked)
+        number.place = place_of(plan, node);
+    else
+        for (uint32_t i = 0; i < size; i++)
+            number.ranges[i] = node_range(builder, node, i);
+    return number;
+}
+
+FrameNumber frame_number_plan(ShapeBuilder *builder, Node node, FrameBoxes *boxes)
+{
+    const Plan plan = plan_new(builder, boxes);
+    return plan_number(&plan, node);
+}
+
+Range frame_number_range(const FrameNumber *number, uint32_t component, const Node *nodes,
+                         const NodeValue *values)
+{
+    return number->asked ? range_of(values[nodes[number->place]].v[component])
+                         : number->ranges[component];
+}
+
+/* ---- shapes ---- */
+
+/* Places for shapes that are found one after the other: the first of them. */
+static size_t add_shapes(Plan *plan, size_t count)
+{
+    const FrameShape none  = {.number_count = 0};
+    const size_t     first = plan->boxes->shapes.count;
+    for (size_t i = 0; i < count; i++)
+        array_push(plan->builder->arena, &plan->boxes->shapes, none);
+    return first;
+}
+
+/* What rules look at, and nothing that is freed when the scene is made. */
+static Shape shape_for_rule(const Shape *shape)
+{
+    Shape copy       = *shape;
+    copy.children    = NULL;
+    copy.within      = shape->within ? shape : NULL; /* asked for, never followed */
+    copy.declaration = NULL;
+    return copy;
+}
+
+/* Whether the box depends on parameters alone; only then its parts and numbers are planned. */
+static bool plan_shape(Plan *plan, const Shape *shape, size_t at)
+{
+    FrameBoxes *boxes             = plan->boxes;
+    boxes->shapes.items[at].shape = shape_for_rule(shape);
+    plan->visited++;
+    const uint32_t parts = box_part_count(shape);
+    if (!has_box_rule(shape) || plan->visited > MOST_VISITED ||
+        boxes->shapes.count + parts > MOST_PLANNED)
+        return false;
+    Node           nodes[MOST_BOX_NODES];
+    const uint32_t count = box_nodes(shape, nodes);
+    const size_t   first = add_shapes(plan, parts);
+    bool           found = false;
+    for (uint32_t i = 0; i < count; i++)
+        found = found || plan->depends[nodes[i]] == ON_PARAMETERS;
+    for (uint32_t i = 0; i < parts; i++)
+        found |= plan_shape(plan, box_part(shape, i), first + i);
+    if (!found) {
+        boxes->shapes.count = first;
+        return false;
+    }
+    FrameShape *planned   = &boxes->shapes.items[at];
+    planned->first_part   = first;
+    planned->part_count   = parts;
+    planned->first_number = boxes->numbers.count;
+    planned->number_count = count;
+    for (uint32_t i = 0; i < count; i++) {
+        const FrameNumber number = plan_number(plan, nodes[i]);
+        array_push(plan->builder->arena, &boxes->numbers, number);
+    }
+    return true;
+}
+
+void frame_boxes_plan(ShapeBuilder *builder, const Shape *const *shapes, size_t count,
+                      FrameBoxes *boxes)
+{
+    *boxes = (FrameBoxes){.nodes.count = 0};
+    if (builder->parameters->count == 0 || count > MOST_PLANNED)
+        return;
+    Plan plan        = plan_new(builder, boxes);
+    boxes->asked_for = count;
+    add_shapes(&plan, count);
+    for (size_t i = 0; i < count; i++)
+        plan_shape(&plan, shapes[i], i);
+    if (boxes->nodes.count == 0)
+        boxes->shapes.count = boxes->asked_for = 0;
+}
+
+FrameBoxes frame_boxes_copy(const FrameBoxes *plan, Arena *arena)
+{
+    FrameBoxes copy    = *plan;
+    copy.nodes.items   = arena_new_array(arena, Node, plan->nodes.count + 1);
+    copy.numbers.items = arena_new_array(arena, FrameNumber, plan->numbers.count + 1);
+    copy.shapes.items  = arena_new_array(arena, FrameShape, plan->shapes.count + 1);
+    for (size_t i = 0; i < plan->nodes.count; i++)
+        copy.nodes.items[i] = plan->nodes.items[i];
+    for (size_t i = 0; i < plan->numbers.count; i++)
+        copy.numbers.items[i] = plan->numbers.items[i];
+    for (size_t i = 0; i < plan->shapes.count; i++)
+        copy.shapes.items[i] = plan->shapes.items[i];
+    return copy;
+}
+
+/* ---- boxes ---- */
+
+typedef struct Finding {
+    BoxNumbers         numbers; /* those of `current` */
+    const FrameNumber *current;
+    const Node        *nodes;
+    const NodeValue   *values;
+} Finding;
+
+static Range range_in_frame(const BoxNumbers *numbers, Node node, uint32_t component)
+{
+    const Finding     *finding = (const Finding *)numbers;
+    const FrameNumber *number  = finding->current;
+    while (number->node != node)
+        number++;
+    return frame_number_range(number, component, finding->nodes, finding->values);
+}
+
+void frame_boxes_find(const FrameBoxes *plan, const Node *nodes, const NodeValue *values,
+                      Box *boxes)
+{
+    Finding finding = {{range_in_frame}, NULL, nodes, values};
+    for (size_t i = plan->shapes.count; i-- > 0;) {
+        const FrameShape *planned = &plan->shapes.items[i];
+        finding.current           = plan->numbers.items + planned->first_number;
+        boxes[i]                  = planned->shape.box;
+        if (planned->part_count + planned->number_count > 0)
+            boxes[i] = shape_box(
+                &(BoxInput){&finding.numbers, &planned->shape, boxes + planned->first_part, 1});
+    }
+}
+
+void frame_boxes_default(ShapeBuilder *builder, const FrameBoxes *plan, Box *boxes)
+{
+    const Graph      *graph = builder->graph;
+    const Parameters *all   = builder->parameters;
+    NodeValue *parameters   = arena_new_array(builder->arena, NodeValue, graph->parameters.count);
+    NodeValue *values       = arena_new_array(builder->arena, NodeValue, graph->count);
+    const Tape tape         = tape_new(graph, plan->nodes.items, plan->nodes.count, builder->arena);
+    for (size_t i = 0; i < all->count; i++)
+        memcpy(parameters[all->items[i].slot].v, all->items[i].value, sizeof all->items[i].value);
+    tape_run_frame(&tape, parameters, values);
+    frame_boxes_find(plan, plan->nodes.items, values, boxes);
+}
