@@ -226,7 +226,7 @@ const char *krs_frame_unbounded(const KrsFrame *frame);
  * vec4; `block` needs krs_parameter_slots of them.  Slot 0 is (time, 0, 0, 0).  A slot for each
  * parameter follows, in the order of krs_parameter.  The last slots are slopes, in x, which are
  * computed for each frame.  Distances are divided by them where no constant is safe, as for
- * sin(time * x).
+ * sin(time * x).  With KrsOptions.studio the height of the floor may be behind them.
  */
 size_t krs_parameter_slots(const KrsScene *scene);
 void   krs_frame_parameters(const KrsFrame *frame, float (*block)[4]);
