@@ -247,6 +247,9 @@ void emit_media_globals(Emitter *e);
    boundaries of media, which are functions of this kind; and cut by zones. */
 void emit_media_steps(Emitter    *e, FunctionKind (*kind_of)(const Emitter *e, uint32_t component),
                       const char *variable);
+/* The same, left in the variable. */
+void emit_seen_steps(Emitter    *e, FunctionKind (*kind_of)(const Emitter *e, uint32_t component),
+                     const char *variable);
 /* The gradient `other` of a component, as the ray sees it. */
 void emit_media_gradient(Emitter *e, uint32_t component);
 void need_media_surface(Emitter *e);
@@ -258,7 +261,7 @@ void need_subsurface(Emitter *e);
 void emit_subsurface(Emitter *e);
 
 /* march.c: what some marches need beside a distance: krs_plane_t and krs_plane_cosine;
-   krs_scene_part_distance and krs_scene_part_box; krs_along and krs_probe. */
+   krs_scene_part_distance and krs_scene_part_box; krs_along, krs_steps and krs_probe. */
 void emit_plane_t(Emitter *e);
 void emit_plane_cosine(Emitter *e);
 void need_scene_parts(Emitter *e);
@@ -268,6 +271,7 @@ void need_along(Emitter *e);
 void need_probe(Emitter *e);
 void emit_along_of(Emitter *e, const ModuleFunction *function);
 void emit_along(Emitter *e);
+void emit_steps_apart(Emitter *e);
 void emit_probe(Emitter *e);
 
 /* ---- module_print.c ---- */

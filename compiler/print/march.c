@@ -147,6 +147,23 @@ void emit_along(Emitter *e)
     emit_media_steps(e, kind_of_step, "t");
 }
 
+/* Zones and media are lengths along the ray. */
+void emit_steps_apart(Emitter *e)
+{
+    const bool together = e->cuts || emit_has_media(e);
+    emit_local(e, TYPE_FLOAT, "t", NOWHERE_TEXT);
+    emit_local(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
+    for (uint32_t i = 0; i < e->module->components; i++) {
+        const FunctionKind kind = kind_of_step(e, i);
+        const char        *into = kind == OF_ALONG || together ? "t" : "d";
+        if (!emit_leaves_out(e, i) && !emit_is_medium(e, i))
+            text_format(e->out, "    %s = min(%s, %s);\n", into, into, emit_call_of(e, kind, i));
+    }
+    if (together)
+        emit_seen_steps(e, kind_of_step, "t");
+    text_format(e->out, "    return %s(t, d);\n", e->printer->types[TYPE_VEC2]);
+}
+
 void emit_probe(Emitter *e)
 {
     emit_steps(e, OF_PROBE);

@@ -29,8 +29,8 @@ static void emit_global(Emitter *e, GraphType type, const char *name)
 static bool reads_medium(const Emitter *e)
 {
     static const KrsFunction functions[] = {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_ALONG,
-                                            KRS_FUNCTION_DISTANCE_LOD, KRS_FUNCTION_GRADIENT,
-                                            KRS_FUNCTION_SURFACE};
+                                            KRS_FUNCTION_STEPS,    KRS_FUNCTION_DISTANCE_LOD,
+                                            KRS_FUNCTION_GRADIENT, KRS_FUNCTION_SURFACE};
     bool                     found       = false;
     for (size_t i = 0; i < sizeof functions / sizeof *functions; i++)
         found = found || e->wanted[functions[i]];
@@ -88,13 +88,9 @@ static const char *equals_text(Emitter *e, const char *variable, uint32_t compon
 
 /* ---- lengths ---- */
 
-void emit_media_steps(Emitter    *e, FunctionKind (*kind_of)(const Emitter *e, uint32_t component),
-                      const char *variable)
+void emit_seen_steps(Emitter    *e, FunctionKind (*kind_of)(const Emitter *e, uint32_t component),
+                     const char *variable)
 {
-    if (!emit_has_media(e)) {
-        text_format(e->out, "    return %s;\n", emit_cut(e, variable));
-        return;
-    }
     if (e->cuts)
         text_format(e->out, "    %s = %s;\n", variable, emit_cut(e, variable));
     for (uint32_t i = 0; i < e->module->components; i++) {
@@ -103,7 +99,14 @@ void emit_media_steps(Emitter    *e, FunctionKind (*kind_of)(const Emitter *e, u
             text_format(e->out, "    %s = min(%s, %s);\n", variable, variable,
                         seen_text(e, i, emit_cut(e, emit_call_of(e, kind, i))));
     }
-    text_format(e->out, "    return %s;\n", variable);
+}
+
+void emit_media_steps(Emitter    *e, FunctionKind (*kind_of)(const Emitter *e, uint32_t component),
+                      const char *variable)
+{
+    if (emit_has_media(e))
+        emit_seen_steps(e, kind_of, variable);
+    text_format(e->out, "    return %s;\n", emit_has_media(e) ? variable : emit_cut(e, variable));
 }
 
 /* From inside, the gradient and the distance are turned. */

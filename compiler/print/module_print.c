@@ -22,6 +22,7 @@ static const struct {
     [KRS_FUNCTION_PLANE_T]             = {NULL, emit_plane_t},
     [KRS_FUNCTION_PLANE_COSINE]        = {NULL, emit_plane_cosine},
     [KRS_FUNCTION_ALONG]               = {need_along, emit_along},
+    [KRS_FUNCTION_STEPS]               = {need_along, emit_steps_apart},
     [KRS_FUNCTION_PROBE]               = {need_probe, emit_probe},
     [KRS_FUNCTION_DISTANCE_LOD]        = {need_lod, emit_lod},
     [KRS_FUNCTION_SCENE_PART_DISTANCE] = {need_scene_parts, emit_scene_part_distance},
@@ -161,15 +162,11 @@ void module_lay_out(Module *module, uint32_t zone_slots, Arena *arena, Arena *sc
 /* Whether a function that is wanted is cut by zones. */
 static bool needs_cut(const Emitter *e)
 {
-    static const KrsFunction cut[]  = {KRS_FUNCTION_DISTANCE,
-                                       KRS_FUNCTION_ALONG,
-                                       KRS_FUNCTION_DISTANCE_LOD,
-                                       KRS_FUNCTION_PROBE,
-                                       KRS_FUNCTION_SCENE_PART_DISTANCE,
-                                       KRS_FUNCTION_MEDIUM_AT,
-                                       KRS_FUNCTION_GLASS,
-                                       KRS_FUNCTION_SUBSURFACE};
-    bool                     needed = e->wanted[KRS_FUNCTION_SURFACE] && e->module->components > 0;
+    static const KrsFunction cut[] = {
+        KRS_FUNCTION_DISTANCE,     KRS_FUNCTION_ALONG, KRS_FUNCTION_STEPS,
+        KRS_FUNCTION_DISTANCE_LOD, KRS_FUNCTION_PROBE, KRS_FUNCTION_SCENE_PART_DISTANCE,
+        KRS_FUNCTION_MEDIUM_AT,    KRS_FUNCTION_GLASS, KRS_FUNCTION_SUBSURFACE};
+    bool needed = e->wanted[KRS_FUNCTION_SURFACE] && e->module->components > 0;
     for (size_t i = 0; i < sizeof cut / sizeof *cut; i++)
         needed = needed || e->wanted[cut[i]];
     return needed;

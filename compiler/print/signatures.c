@@ -52,6 +52,12 @@ static const Signature of_scene[KRS_FUNCTION_COUNT] = {
          "// surface: at least the distance, and farther where polynomials or maps tell;\n"
          "// negative inside, and where a surface without thickness lies between p and the\n"
          "// last place, `footprint` behind.\n"},
+    [KRS_FUNCTION_STEPS] =
+        {"krs_steps",
+         TYPE_VEC2,
+         {&point, &direction, &footprint},
+         "// krs_along in two numbers, of which it is the least: how far a ray may go before\n"
+         "// it can meet what polynomials or maps tell of, and the distance to all else.\n"},
     [KRS_FUNCTION_PROBE] =
         {"krs_probe",
          TYPE_FLOAT,

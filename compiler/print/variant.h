@@ -25,6 +25,10 @@ typedef enum KrsFunction {
     /* float krs_along(vec3 p, vec3 direction, float footprint): how far a ray may go, by the
        variant's step. */
     KRS_FUNCTION_ALONG,
+    /* vec2 krs_steps(vec3 p, vec3 direction, float footprint): krs_along is the lesser of the two.
+       The second is a distance to all components of which rays know no more, as large as any may
+       be: what is known of empty balls holds for it. */
+    KRS_FUNCTION_STEPS,
     /* float krs_probe(vec3 p, float footprint): whether a ball is empty. */
     KRS_FUNCTION_PROBE,
     /* float krs_distance_lod(vec3 p, float footprint): what a graphics card should march by.  It is

@@ -13,16 +13,22 @@ float find_crossing(float clearance)
     return max(march.step * along, march.clearance);
 }
 
-// The next step from a position with this clearance, by the last slope and the mean slope.  The
-// balls at its ends should still meet.  Else the surface should be crossed, with no longer
-// unverified interval than is permitted.
+#ifdef STEPS
+const uint BALLS = AUTOMATIC;
+#else
+const uint BALLS = TRACE;
+#endif
+
+// The next step from a position with an empty ball of this radius, by the last slope of the radius
+// and the mean slope.  The balls at its ends should still meet.  Else the surface should be crossed,
+// with no longer unverified interval than is permitted.
 float find_step(float clearance, float last_slope, float slope, float permitted, float tolerance)
 {
     bool  crosses = OVERSHOOT * clearance <= -last_slope * (clearance + permitted);
     float factor = crosses ? OVERSHOOT / -last_slope : 2.0 / (1.0 - min(slope, 0.98));
     float automatic = max(clearance, factor * clearance);
-    return (TRACE == RELAXED     ? RELAXATION * clearance
-            : TRACE == AUTOMATIC ? automatic
+    return (BALLS == RELAXED     ? RELAXATION * clearance
+            : BALLS == AUTOMATIC ? automatic
                                  : clearance) +
            tolerance;
 }
@@ -79,24 +85,34 @@ void take_distance(float distance)
     float unverified = march.step - march.clearance; // a surface may hide in such an interval
     float permitted = is_ray ? frame.error * pixel : 0.0;
     march.steps++;
+    float last_radius = march.clearance, radius = clearance, ahead = INFINITE;
+#ifdef STEPS // from inside of one solid nothing is known of balls around others
+    last_radius = march_radius;
+    radius = march.side < 0.0 ? clearance : sampled.y;
+    ahead = march.side < 0.0 ? clearance : sampled.x;
+#endif
     bool found_surface = clearance <= least && (unverified <= permitted + tolerance || !is_ray) ||
                          refining;
     bool verified = !found_surface && clearance > least &&
-                    unverified <= clearance + 1.01 * tolerance;
+                    march.step - last_radius <= radius + 1.01 * tolerance;
     bool accurate = unverified <= 2.0 * tolerance || refining || !is_ray ||
-                    TRACE == AUTOMATIC && -clearance <= SHALLOW * march.clearance;
+                    BALLS == AUTOMATIC && -clearance <= SHALLOW * march.clearance;
     float crossing = find_crossing(clearance);
-    float last_slope = march.step > 0.0 ? (clearance - march.clearance) / march.step : 0.0;
+    float last_slope = march.step > 0.0 ? (radius - last_radius) / march.step : 0.0;
     float slope = (1.0 - LEARNING) * march.slope + LEARNING * last_slope;
 
     float shorter_step = max(0.4 * (march.step + march.clearance - max(clearance, 0.0)),
                              march.clearance + tolerance);
     float advance = found_surface && accurate ? is_ray ? crossing : march.clearance : 0.0;
     march.t = verified ? at : march.t + advance;
-    march.step = verified        ? find_step(clearance, last_slope, slope, permitted, tolerance)
+    float next = min(find_step(radius, last_slope, slope, permitted, tolerance), ahead + tolerance);
+    march.step = verified        ? next
                  : found_surface ? crossing
                                  : shorter_step;
     march.clearance = verified ? clearance : march.clearance;
+#ifdef STEPS
+    march_radius = verified ? radius : march_radius;
+#endif
     march.slope = verified ? slope : -1.0;
     march.state = found_surface                           ? (accurate ? STATE_HIT : STATE_REFINING)
                   : verified && at + clearance > end ? STATE_MISS

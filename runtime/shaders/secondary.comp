@@ -10,7 +10,7 @@
  * neighbours (shadow.comp, occlusion.comp).  A cone from a hit to the whole light saves rays if it
  * is empty.  Then all points of the light are visible, from the pixels around as well.
  *
- * ALONG: there is krs_along, by which rays go from root to root.
+ * STEPS: there is krs_steps, by which rays go from root to root of what has any.
  */
 #ifndef REFILL // chosen by the renderer; this choice suits every device
 #define REFILL 0
@@ -69,7 +69,10 @@ bool  below_horizon;            // its point of the light is behind the surface
 float last_distance, last_step; // the distance before the last step, and its length
 bool  took_least_step;          // the last step was the least one, not the distance
 float least_step;
-float slope;                  // of the distance along the ray: a running mean
+float slope;                  // of the radius along the ray: a running mean
+float radius_here;            // of the empty ball around the position; STEPS: of what has no roots
+float last_radius;            // the same before the last step
+float most_ahead;             // STEPS: how far it is to the next root, or less
 float start_ratio;            // distance at the start, relative to the true one
 uint  step_count, step_limit; // so far, and at most
 
@@ -234,7 +237,7 @@ void begin_item(uint number, bool saved)
     t = 0.0;
     slope = facing;
     step_count = 0u;
-    last_distance = last_step = 0.0;
+    last_distance = last_radius = last_step = 0.0;
     took_least_step = true;
     float least = min(LEAST_STEP * frame.error, LEAST_STEP_IN_PIXELS);
     least_step = (is_cone ? 1.0 : least) * hit.width + hit.rounding;
@@ -244,11 +247,16 @@ bool item_needs_step() { return step_count < step_limit; }
 
 float item_distance(vec3 position)
 {
-#ifdef ALONG
+#ifdef STEPS
     // Back to the last position and some roundings farther.  Else a point just before a surface
     // without thickness could count as behind it at this step.
     float some = 2.0 * ROUNDING * (largest(position) + t);
-    return krs_along(position, direction, last_step > 0.0 ? last_step + some : 0.0);
+    vec2  steps = krs_steps(position, direction, last_step > 0.0 ? last_step + some : 0.0);
+    // From inside of one solid nothing is known of balls around others.
+    float least = min(steps.x, steps.y);
+    most_ahead = hit.side < 0.0 ? -least : steps.x;
+    radius_here = hit.side < 0.0 ? -least : min(steps.y, end);
+    return least;
 #else
     return krs_distance(position);
 #endif
@@ -260,28 +268,24 @@ vec3 item_position() { return start + t * direction; }
 // there recedes only by the cosine.
 float clearance_needed(float at) { return spread * at + min(margin, 0.5 * facing * at); }
 
-// A step longer than the distance: the longest that is safe if the distance goes on as it did.
-float relax(float distance)
+// A step longer than the empty ball: the longest that is safe if its radius goes on as it did.
+float relax(float around)
 {
-#ifdef ALONG // krs_along gives what is free ahead, and tells nothing of what is behind
-    return distance;
-#endif
     float needed = clearance_needed(t);
-    float lateral = sqrt(max(distance * distance - needed * needed, 0.0));
-    return max(2.0 * SAFETY / (1.0 - clamp(slope, -1.0, STEEPEST)) * lateral, distance);
+    float lateral = sqrt(max(around * around - needed * needed, 0.0));
+    return max(2.0 * SAFETY / (1.0 - clamp(slope, -1.0, STEEPEST)) * lateral, around);
 }
 
 // Whether the empty balls of this step and the last are too narrow where they meet (math.md 6).
 // That is `behind` this position; `lateral` is how far they reach from the axis there, squared.
-bool has_overstepped(float distance, float per_gap)
+bool has_overstepped(float around, float per_gap)
 {
-    float behind = 0.5 *
-                   (last_step + (distance - last_distance) * (distance + last_distance) * per_gap);
-    float lateral = max(distance * distance - behind * behind, 0.0);
+    float behind = 0.5 * (last_step + (around - last_radius) * (around + last_radius) * per_gap);
+    float lateral = max(around * around - behind * behind, 0.0);
     float needed = clearance_needed(t - behind);
     bool  narrow = behind > 0.0 && behind < last_step && lateral < needed * needed;
-    return !took_least_step && last_step > last_distance &&
-           (narrow || last_step > last_distance + distance);
+    return !took_least_step && last_step > last_radius &&
+           (narrow || last_step > last_radius + around);
 }
 
 // Whether a ray is inside of a solid, or a cone is not empty.  Near the start the distance may be
@@ -295,13 +299,16 @@ bool is_blocked(float distance)
 void take_distance(float distance)
 {
     distance *= hit.side;
+#ifndef STEPS
+    radius_here = distance;
+#endif
     step_count++;
     float first = clamp(distance / lift, 0.0625, 1.0);
     start_ratio = step_count == 1u ? first : start_ratio;
     float per_gap = 1.0 / max(last_step, 1e-30);
     bool  inside = is_blocked(distance);
-    bool  steps_back = has_overstepped(distance, per_gap) && !(inside && !is_cone);
-    float risen = mix(slope, (distance - last_distance) * per_gap, LEARNING);
+    bool  steps_back = has_overstepped(radius_here, per_gap) && !(inside && !is_cone);
+    float risen = mix(slope, (radius_here - last_radius) * per_gap, LEARNING);
     slope = steps_back ? -1.0 : last_step > 0.0 ? risen : slope;
     blocked = blocked || inside && !steps_back;
     bool  arrives = t + max(distance, least_step) >= end;
@@ -309,12 +316,18 @@ void take_distance(float distance)
     took_least_step = !steps_back && distance < least_step;
     // Where the ray enters the solid, between the last position and this one.
     float crossing = last_step * distance / max(last_distance - distance, 1e-30);
-    float next = took_least_step ? least_step : max(relax(distance), least_step);
+    float relaxed = relax(radius_here);
+#ifdef STEPS // inside, the length tells how far it is to the other side
+    crossing = max(crossing, last_distance - last_step);
+    relaxed = min(relaxed, most_ahead);
+#endif
+    float next = took_least_step ? least_step : max(relaxed, least_step);
     next = min(next, max(end - t, 0.0));
     least_step *= STEP_GROWTH;
-    t += steps_back ? last_distance - last_step : inside && !is_cone ? min(crossing, 0.0) : next;
-    last_step = steps_back ? last_distance : next;
+    t += steps_back ? last_radius - last_step : inside && !is_cone ? min(crossing, 0.0) : next;
+    last_step = steps_back ? last_radius : next;
     last_distance = steps_back ? last_distance : distance;
+    last_radius = steps_back ? last_radius : radius_here;
 }
 
 // The width of the blocker's penumbra at the hit, in pixels.

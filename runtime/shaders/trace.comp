@@ -23,6 +23,9 @@
  * behind it.  A surface that has been crossed is found by the chord.  One that is only approached
  * takes ever shorter steps.
  *
+ * STEPS: there is krs_steps.  What rays know roots of is free up to the next root.  Balls are of all
+ * else, by the automatic method.
+ *
  * Planes that are components of their own need no march.  With PLANES a ray knows where it meets
  * the first plane, and marches the other components up to there.
  *
@@ -96,6 +99,10 @@ bool  exists;                  // the item is in the band
 uint  tile_index;              // of the item, counted from the workgroup's first tile
 vec3  origin, direction;
 float end;
+#ifdef STEPS
+vec2  sampled;                 // krs_steps at the next position
+float march_radius;            // of the ball at t: of what rays know no roots of
+#endif
 float plane_t;                 // with PLANES: where a ray meets a plane; INFINITE: nowhere
 float pixel_base, pixel_slope; // a pixel is as wide as base + slope t
 vec2  width;                   // of a beam, likewise; 0 for a ray; less: solids count as larger
@@ -204,7 +211,11 @@ void save_item()
     uint at = 2u * (control.writing + take_queue_index());
     uint bits = march.state | uint(march.side + 1.0) << 2u | march.steps << 4u;
     queue[at] = uvec4(march.index, bits, floatBitsToUint(vec2(march.t, march.clearance)));
+#ifdef STEPS
+    queue[at + 1u] = floatBitsToUint(vec4(march.step, march.slope, march_radius, 0.0));
+#else
     queue[at + 1u] = floatBitsToUint(vec4(march.step, march.slope, 0.0, 0.0));
+#endif
 }
 #else
 void save_item() {}
@@ -216,6 +227,9 @@ void begin_march(uint index, float start, bool is_ray)
     march.index = index;
     march.t = start;
     march.clearance = march.step = 0.0;
+#ifdef STEPS
+    march_radius = 0.0;
+#endif
     march.slope = -1.0 / (1.0 - LEARNING); // -1 after the first step
     // The side is not known before the first distance, unless empty space lies behind the ray.
     march.side = march.t > 0.0 || !is_ray ? 1.0 : 0.0;
@@ -259,6 +273,9 @@ void begin_item(uint number, bool saved)
     if (saved) {
         uint at = 2u * (control.reading + number);
         march = unpack_march(queue[at], queue[at + 1u]);
+#ifdef STEPS
+        march_radius = uintBitsToFloat(queue[at + 1u].z);
+#endif
         index = march.index;
         pixel = work.corner + find_cell(index, work.extent.x);
         exists = true;
@@ -322,7 +339,7 @@ bool item_needs_step()
            march.steps < most;
 }
 
-#ifdef ALONG
+#if defined(ALONG) || defined(STEPS)
 // The length back to the last position, and some roundings more.  Else a point just before a
 // surface without thickness could count as behind it at this step.
 float distance_behind()
@@ -342,6 +359,9 @@ float item_distance(vec3 position)
     return krs_scene_part_distance(scene_part, position);
 #elif defined(ALONG)
     return krs_along(position, direction, distance_behind());
+#elif defined(STEPS)
+    sampled = krs_steps(position, direction, distance_behind());
+    return min(sampled.x, sampled.y);
 #elif defined(EARLY_OUTS) && !defined(MARCH_GROUP)
     return krs_distance_lod(position, 0.0);
 #else

@@ -59,6 +59,7 @@ static void define_choices(KernelVariant *to)
     } choices[] = {
         {KRS_FUNCTION_DISTANCE_LOD, "#define EARLY_OUTS\n"},
         {KRS_FUNCTION_ALONG, "#define ALONG\n"},
+        {KRS_FUNCTION_STEPS, "#define STEPS\n"},
         {KRS_FUNCTION_PLANE_T, "#define PLANES\n"},
         {KRS_FUNCTION_SCENE_PART_DISTANCE, "#define PACKED\n"},
         {KRS_FUNCTION_SINES, "#define KRS_SINES\n"}, /* the scene's text has sines.glsl */
@@ -166,8 +167,9 @@ static KernelVariant begin_variant(const KrsRendering *rendering, KrsTrace trace
     return to;
 }
 
-/* Chooses how rays step by krs_along; false where they step by distances. */
-static bool want_along(KernelVariant *to, const KrsRendering *rendering, KrsTrace trace)
+/* Chooses how rays step by krs_along, or by krs_steps; false where they step by distances. */
+static bool want_steps(KernelVariant *to, const KrsRendering *rendering, KrsTrace trace,
+                       KrsFunction function)
 {
     static const KrsRayStep steps[KRS_TRACE_COUNT] = {
         [KRS_TRACE_EXACT]       = KRS_STEP_EXACT,
@@ -178,8 +180,13 @@ static bool want_along(KernelVariant *to, const KrsRendering *rendering, KrsTrac
     if (!rendering_goes_along(rendering, trace))
         return false;
     to->scene.variant.step = steps[trace];
-    want(to, KRS_FUNCTION_ALONG);
+    want(to, function);
     return true;
+}
+
+static bool want_along(KernelVariant *to, const KrsRendering *rendering, KrsTrace trace)
+{
+    return want_steps(to, rendering, trace, KRS_FUNCTION_ALONG);
 }
 
 /* Chooses krs_probe for methods that test whether balls are empty; false for others. */
@@ -221,7 +228,9 @@ KernelVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, Kr
     if (group == MARCH_PACKED) {
         want(&to, KRS_FUNCTION_SCENE_PART_DISTANCE);
         want(&to, KRS_FUNCTION_SCENE_PART_BOX);
-    } else if (!want_probe(&to, rendering, trace) && !want_along(&to, rendering, trace)) {
+    } else if (!want_probe(&to, rendering, trace) &&
+               !want_steps(&to, rendering, trace,
+                           trace == KRS_TRACE_EXACT ? KRS_FUNCTION_STEPS : KRS_FUNCTION_ALONG)) {
         want_distance_to_march(&to);
     }
     define_choices(&to);
@@ -261,7 +270,7 @@ KernelVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace
     if (rendering->program->mirrors && integrator == KRS_INTEGRATOR_PREVIEW)
         define(&to, MIXED_RAYS);
     want(&to, KRS_FUNCTION_SINES);
-    if (!want_along(&to, rendering, trace))
+    if (!want_steps(&to, rendering, trace, KRS_FUNCTION_STEPS))
         want(&to, KRS_FUNCTION_DISTANCE);
     define_choices(&to);
     return to;

@@ -137,6 +137,7 @@ static const char *const calls[KRS_FUNCTION_COUNT] = {
     [KRS_FUNCTION_PLANE_T]             = "krs_plane_t(p, p)",
     [KRS_FUNCTION_PLANE_COSINE]        = "krs_plane_cosine(p)",
     [KRS_FUNCTION_ALONG]               = "krs_along(p, p, 0.0)",
+    [KRS_FUNCTION_STEPS]               = "krs_steps(p, p, 0.0).y",
     [KRS_FUNCTION_PROBE]               = "krs_probe(p, 0.0)",
     [KRS_FUNCTION_DISTANCE_LOD]        = "krs_distance_lod(p, 0.0)",
     [KRS_FUNCTION_SCENE_PART_DISTANCE] = "krs_scene_part_distance(KRS_SCENE_PARTS - 1u, p)",
@@ -216,7 +217,8 @@ static bool can_want(const KernelScene *of, KrsFunction function)
     switch (function) {
     case KRS_FUNCTION_PLANE_T:
     case KRS_FUNCTION_PLANE_COSINE: return program->planes && v->march_group == 0;
-    case KRS_FUNCTION_ALONG: return !v->camera_relative;
+    case KRS_FUNCTION_ALONG:
+    case KRS_FUNCTION_STEPS: return !v->camera_relative;
     case KRS_FUNCTION_PROBE:
     case KRS_FUNCTION_DISTANCE_LOD:
     case KRS_FUNCTION_GRADIENT: return !v->camera_relative && v->march_group == 0;
