@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "compiler/graph/lane_call.h"
+#include "compiler/graph/lane_cuts.h"
 #include "compiler/graph/lane_outlines.h"
 #include "compiler/graph/lane_partials.h"
 
@@ -125,19 +126,6 @@ static LaneHessian hessian_by_partials(const Run *run, const Partials *p)
 
 /* ---- length ---- */
 
-/* The operand that is not 0 all over the box, if there is one only; NODE_NONE: there is not. */
-static uint32_t only_operand(const Run *run, const LaneStep *step)
-{
-    uint32_t only = NODE_NONE;
-    for (uint32_t k = 0; k < step->operand_count; k++)
-        if (!range_is_zero(range_at(run, step->operands[k]))) {
-            if (only != NODE_NONE)
-                return NODE_NONE;
-            only = step->operands[k];
-        }
-    return only;
-}
-
 /* The step that an operand is the result of; NULL: none. */
 static const LaneStep *step_of(const Run *run, uint32_t operand)
 {
@@ -179,7 +167,7 @@ static Range unit_part(const Run *run, uint32_t operand, Range length)
 /* Of one number alone, whose sign is known, it is that number or its complement. */
 static bool length_of_one(const Run *run, LaneHessian *hessian)
 {
-    uint32_t only = only_operand(run, run->step);
+    uint32_t only = lane_only_operand(run->tape, run->ranges, run->step);
     if (only == NODE_NONE || !hessian_at(run, only)->known)
         return false;
     Range range = range_at(run, only);
@@ -259,29 +247,6 @@ static LaneHessian hessian_of_blend(const Run *run)
     return sum;
 }
 
-/* ---- max(a, 0) + min(a, 0) ---- */
-
-/* What the step, or the length of it alone, cuts at 0: above, for a minimum, or below. */
-static uint32_t cut_at_zero(const Run *run, uint32_t operand, Op least, uint32_t lane)
-{
-    const LaneStep *step = step_of(run, operand);
-    if (step && step->op == OP_length)
-        step = step_of(run, only_operand(run, step));
-    return step && (step->op == least || step->op == lane) ? only_operand(run, step) : NODE_NONE;
-}
-
-/* The parts of a box's distance outside and inside, on one of its faces: together they are a. */
-static uint32_t sum_of_cuts(const Run *run)
-{
-    for (int k = 0; run->step->op == OP_add && k < 2; k++) {
-        uint32_t a = cut_at_zero(run, run->step->operands[k], OP_max, LANE_GREATER);
-        if (a != NODE_NONE &&
-            a == cut_at_zero(run, run->step->operands[1 - k], OP_min, LANE_LESSER))
-            return a;
-    }
-    return NODE_NONE;
-}
-
 /* ---- other steps ---- */
 
 static LaneHessian hessian_of_guard(const Run *run)
@@ -329,7 +294,7 @@ static LaneHessian hessian_of_step(const Run *run)
     }
     if (step->op == OP_mul && step->operands[0] == step->operands[1])
         return hessian_of_square(run);
-    uint32_t whole = sum_of_cuts(run);
+    uint32_t whole = lane_sum_of_cuts(run->tape, run->ranges, step);
     if (whole != NODE_NONE)
         return *hessian_at(run, whole);
     uint32_t count = step->operand_count;

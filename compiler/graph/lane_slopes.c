@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "compiler/graph/lane_call.h"
+#include "compiler/graph/lane_cuts.h"
 #include "compiler/graph/lane_outlines.h"
 #include "compiler/graph/rules.h"
 #include "compiler/graph/texture.h"
@@ -289,6 +290,9 @@ static void run_call(Run *run)
 
 static LaneSlope slope_of_step(const Run *run)
 {
+    uint32_t whole = lane_sum_of_cuts(run->tape, run->ranges, run->step);
+    if (whole != NODE_NONE)
+        return slope_at(run, whole);
     switch (run->step->op) {
     case OP_min:
     case LANE_LESSER: return slope_of_lesser(run, 1);

@@ -218,12 +218,43 @@ static void little_is_gained_in_boxes_of_the_same_size(void **context)
     free(o);
 }
 
+/* A number whose parts above and below 0 are added is as steep as it is, and no corner.  The length of the part below
+   has the other sign: with it there is a corner. */
+static void parts_of_a_number_are_that_number(void **context)
+{
+    static const struct {
+        const char *text;
+        bool        smooth;
+    } SUMS[]                = {{"show box([2, 2, 2]);", true},
+                               {"show field(max(x - 1, 0) + length([min(x - 1, 0), 0, 0]) - 0.01);", false}};
+    static const Box ACROSS = {{{0.9, 1.1}, {-0.1, 0.1}, {-0.1, 0.1}}};
+    (void)context;
+    for (size_t i = 0; i < sizeof SUMS / sizeof *SUMS; i++) {
+        Opened     *o = malloc(sizeof *o);
+        Range       range;
+        LaneSlope   slope;
+        LaneHessian hessian;
+        assert_non_null(o);
+        open_field(o, SUMS[i].text);
+        assert_true(field_enter(&o->field, ACROSS));
+        assert_true(field_slope(&o->field, ACROSS, &range, &slope));
+        assert_true(fabs(slope.by[0].low - (SUMS[i].smooth ? 1 : -1)) < 1e-9);
+        assert_true(fabs(slope.by[0].high - 1) < 1e-9 && slope.by[1].low == 0 &&
+                    slope.by[2].high == 0);
+        assert_int_equal(field_hessian(&o->field, ACROSS, &range, &slope, &hessian),
+                         SUMS[i].smooth);
+        close_field(o);
+        free(o);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ranges_of_outlines_hold),
         cmocka_unit_test(pieces_have_the_sign_of_the_distance),
         cmocka_unit_test(faces_that_are_far_are_no_pieces),
+        cmocka_unit_test(parts_of_a_number_are_that_number),
         cmocka_unit_test(little_is_gained_in_boxes_of_the_same_size),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
