@@ -118,7 +118,7 @@ struct Elaboration {
     bool                uses_uv;      /* a material may need the coordinates on surfaces */
     struct TurnTrials  *turns;   /* loops whose turns are made at once: turns.c; NULL: none is */
     Node                turn;    /* what stands for the variable of such a loop, or NODE_NONE */
-    const Syntax       *joining; /* a call of `union` whose arguments are evaluated, or NULL */
+    const Syntax       *joining; /* a call that joins shapes, whose arguments are evaluated, or NULL */
 };
 
 /* What a shape knows of the declaration that made it. */

@@ -64,6 +64,21 @@ static const Loop at_once[] = {
     {"below an offset", "union([ball(i) for i in 0..40]).round(0.05)"},
     {"below a blend", "union(union([ball(i) for i in 0..40]), box([1, 1, 1]), blend: 0.1)"},
     {"less a loop", "box([2, 2, 2]) - union([ball(i) for i in 0..40])"},
+    {"tools", "difference(box([3, 3, 3]), [ball(i) for i in 0..40])"},
+    {"tools, painted",
+     "difference(box([3, 3, 3]), ball(50), [ball(i).paint(pick(i)) for i in 0..40])"},
+    {"tools, blended", "difference(box([3, 3, 3]), [ball(i) for i in 0..40], blend: 0.05)"},
+    {"tools of a tool", "difference([sphere(4 - 0.1 * i).move(0.1 * spot(i)) for i in 0..40])"},
+    {"tools in a plane", "difference(rectangle([3, 3]), [circle(size(i)).move([within(i, 0), "
+                         "2 * within(i, 1)]) for i in 0..40]).extrude(1)"},
+    {"in common", "intersection([sphere(4 + size(i)).move(0.3 * spot(i)) for i in 0..40])"},
+    {"in common, painted", "intersection([sphere(4 + size(i)).move(0.3 * spot(i)).paint(pick(i)) "
+                           "for i in 0..40])"},
+    {"in common, blended", "intersection([sphere(4 + size(i)).move(0.3 * spot(i)) for i in 0..40], "
+                           "blend: 0.2)"},
+    {"in common with a box",
+     "intersection(box([5, 5, 5]), [sphere(4 + size(i)).move(0.3 * spot(i)) "
+     "for i in 0..40])"},
     {"noise", "union([sphere(0.3).move(spot(i) + [noise(i + 0.3), 0, 0]) for i in 0..40])"},
 };
 
