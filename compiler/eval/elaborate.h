@@ -118,7 +118,8 @@ struct Elaboration {
     bool                uses_uv;      /* a material may need the coordinates on surfaces */
     struct TurnTrials  *turns;   /* loops whose turns are made at once: turns.c; NULL: none is */
     Node                turn;    /* what stands for the variable of such a loop, or NODE_NONE */
-    const Syntax       *joining; /* a call that joins shapes, whose arguments are evaluated, or NULL */
+    const Syntax       *joining; /* a call that joins shapes, or a `show`, of which
+                                    the arguments are evaluated; or NULL */
 };
 
 /* What a shape knows of the declaration that made it. */
@@ -204,6 +205,8 @@ typedef struct TurnTrials {
 typedef struct TurnLoop {
     bool tried, made; /* all turns at once: tried; and done */
 } TurnLoop;
+/* What a statement shows. */
+Value evaluate_shown(Elaboration *e, const Environment *env, const Syntax *show);
 /* Whether that may be tried: the shapes of this comprehension are joined. */
 bool turns_possible(const Elaboration *e, const Syntax *comprehension);
 /* Behind the first element tries to make all of them; true: they are made. */
@@ -373,6 +376,8 @@ bool check_core(Elaboration *e, const Shape *shape, const Shape *core, Node roun
 bool check_hull(Elaboration *e, const Shape *shape, const Shape *hull);
 
 /* ---- empty.c ---- */
+/* Whether a shape can be empty though its parts are not. */
+bool may_vanish(const Shape *shape);
 /* Warns of a component, shown at `span`, that is known to be empty. */
 void warn_if_nothing_is_left(Elaboration *e, const Shape *shape, const char *name, Span span);
 

@@ -29,6 +29,8 @@ static bool can_vanish(const Shape *shape)
     return leaves == LEAVES_SOME || leaves == LEAVES_MIRRORED;
 }
 
+bool may_vanish(const Shape *shape) { return can_vanish(inside_wrappers(shape)); }
+
 static bool needs_frame(const Tape *tape)
 {
     for (size_t i = 0; i < tape->count; i++)

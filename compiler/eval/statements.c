@@ -365,9 +365,7 @@ static void run_statement(Elaboration *e, Environment *env, const Syntax *syntax
         if (!run_remark(e, env, syntax) && sequence)
             sequence->wrong = true;
         break;
-    case SYNTAX_SHOW:
-        show_one(e, evaluate(e, env, syntax->children[0]), syntax->children[0]);
-        break;
+    case SYNTAX_SHOW: show_one(e, evaluate_shown(e, env, syntax), syntax->children[0]); break;
     case SYNTAX_KERNEL: add_kernel(e, env, syntax, sequence); break;
     case SYNTAX_REFLECT: add_mirror(e, env, syntax, sequence); break;
     case SYNTAX_MOBIUS: add_map(e, env, syntax, sequence); break;

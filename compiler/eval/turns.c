@@ -20,8 +20,13 @@ enum { MOST_LOOPS = 256, MOST_CONDITIONS = 8, MOST_SHARED_SHAPES = 4096 };
 
 /* ---- what may be tried ---- */
 
+/* What a statement shows is joined if it is many (shown.c). */
+static bool is_shown(const Elaboration *e) { return e->joining && e->joining->kind == SYNTAX_SHOW; }
+
 static bool is_joined(const Elaboration *e, const Syntax *comprehension)
 {
+    if (is_shown(e))
+        return e->joining->children[0] == comprehension;
     for (uint32_t i = 1; e->joining && i < e->joining->count; i++) {
         const Syntax *argument = e->joining->children[i];
         if (argument->kind == SYNTAX_ARGUMENT && argument->children[0] == comprehension)
@@ -344,10 +349,21 @@ static bool boxes_agree(const Box *box, const Box *witness)
     return true;
 }
 
-/* What a blend makes of a bound is cut to its box, part by part (crowd_turns.c). */
+/* What a blend makes of a bound is cut to its box, part by part (crowd_turns.c).  Of what is shown each
+   that is empty is reported. */
 static bool goes_with_joint(const Elaboration *e, const Shape *shape)
 {
+    if (is_shown(e))
+        return !may_vanish(shape);
     return shape->exact || e->joining->count == 2;
+}
+
+static bool any_is_missed(const Elaboration *e, const Box *boxes, size_t count)
+{
+    bool found = false;
+    for (size_t i = 0; is_shown(e) && i < count; i++)
+        found = found || box_is_empty(boxes[i]);
+    return found;
 }
 
 static bool find_turns(Elaboration *e, const Comprehension *c, Turned *t, const Before *before)
@@ -360,7 +376,7 @@ static bool find_turns(Elaboration *e, const Comprehension *c, Turned *t, const 
         return false;
     t->boxes = arena_new_array(e->values, Box, t->count);
     return turn_boxes(e->builder, t->shape, t->leaf, t->turns, t->count, t->boxes) &&
-           boxes_agree(&t->boxes[0], &witness->box);
+           boxes_agree(&t->boxes[0], &witness->box) && !any_is_missed(e, t->boxes, t->count);
 }
 
 static void push_turns(Elaboration *e, const Comprehension *c, const Shape **turns, size_t count)
@@ -397,6 +413,15 @@ static bool try_turns(Elaboration *e, const Comprehension *c)
     if (found)
         push_turns(e, c, turns, t.count);
     return found;
+}
+
+Value evaluate_shown(Elaboration *e, const Environment *env, const Syntax *show)
+{
+    const Syntax *outer = e->joining;
+    e->joining          = show;
+    const Value value   = evaluate(e, env, show->children[0]);
+    e->joining          = outer;
+    return value;
 }
 
 bool turns_made(Elaboration *e, const Comprehension *c)

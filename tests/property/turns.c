@@ -79,6 +79,8 @@ static const Loop at_once[] = {
     {"in common with a box",
      "intersection(box([5, 5, 5]), [sphere(4 + size(i)).move(0.3 * spot(i)) "
      "for i in 0..40])"},
+    {"shown", "[ball(i) for i in 0..40]"},
+    {"shown and painted", "[brick(i).move(spot(i)).paint(pick(i)) for i in 0..60 if hue(i) < 0.8]"},
     {"noise", "union([sphere(0.3).move(spot(i) + [noise(i + 0.3), 0, 0]) for i in 0..40])"},
 };
 
@@ -104,6 +106,7 @@ static const Loop by_turns[] = {
     {"some are empty", "union([sphere(hue(i) - 0.5).move(spot(i)) for i in 0..40])"},
     {"degrees forgotten", "union([ball(i).rotate([0, 1, 0], 90 * i) for i in 0..40])"},
     {"asserted", "union([assert(hue(i) < 2) in ball(i) for i in 0..40])"},
+    {"shown, and may be empty", "[(ball(i) & box([5, 5, 5])) for i in 0..40]"},
     {"a hull", "hull(union([sphere(0.2).move(spot(i)) for i in 0..40]))"},
 };
 
