@@ -77,9 +77,9 @@ void emit_distance(Emitter *e)
 
 /* ---- gradients ---- */
 
-static bool has_gradient(const Emitter *e, Node gradient)
+bool emit_has_gradient(const Emitter *e, uint32_t component)
 {
-    return e->graph->items[gradient].type == TYPE_VEC3;
+    return e->graph->items[e->module->gradients[2 * component]].type == TYPE_VEC3;
 }
 
 /* Planes that rays know have gradients as well. */
@@ -94,7 +94,7 @@ void need_gradient(Emitter *e)
         if (!is_of_group(e, i))
             continue;
         e->needed_of[OF_GRADIENT][i] = true;
-        e->needed_of[OF_DISTANCE][i] |= !has_gradient(e, emit_root(e, OF_GRADIENT, i));
+        e->needed_of[OF_DISTANCE][i] |= !emit_has_gradient(e, i);
     }
 }
 
@@ -111,7 +111,7 @@ static const char *with_distance(Emitter *e, const Node *roots)
 void emit_gradient_of(Emitter *e, const ModuleFunction *function)
 {
     const Node *roots = function->roots;
-    if (!has_gradient(e, roots[0])) {
+    if (!emit_has_gradient(e, function->component)) {
         emit_helper_of(e, "krs_gradient_N", function->component);
         return;
     }

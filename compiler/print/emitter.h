@@ -187,11 +187,13 @@ const MirrorNodes *mirror_nodes(const Emitter *e, Node fold);
 const char *emit_cut(Emitter *e, const char *distance);
 void        need_distance(Emitter *e);
 void        need_gradient(Emitter *e);
-void        emit_distance_of(Emitter *e, const ModuleFunction *function);
-void        emit_gradient_of(Emitter *e, const ModuleFunction *function);
-void        emit_zones(Emitter *e);
-void        emit_distance(Emitter *e);
-void        emit_gradient(Emitter *e);
+/* Whether the gradient of a component is known by derivatives. */
+bool emit_has_gradient(const Emitter *e, uint32_t component);
+void emit_distance_of(Emitter *e, const ModuleFunction *function);
+void emit_gradient_of(Emitter *e, const ModuleFunction *function);
+void emit_zones(Emitter *e);
+void emit_distance(Emitter *e);
+void emit_gradient(Emitter *e);
 
 /* shared.c: what a component's distance and surface have in common. */
 /* The values that the distance hands over; false: each is computed by itself. */

@@ -72,6 +72,18 @@ const Node *emit_planes(const Emitter *e)
                : e->module->planes;
 }
 
+/* Of a surface, with the distance to the plane that has its gradient, if it has one. */
+static const Node *tangent_roots(const Emitter *e, uint32_t component, const Node *surface)
+{
+    const Node *gradient = e->module->gradients + 2 * component;
+    if (!e->variant->tangents || !emit_has_gradient(e, component))
+        return surface;
+    Node *roots = arena_new_array(e->scratch, Node, ROOT_COUNT);
+    memcpy(roots, surface, ROOT_COUNT * sizeof *roots);
+    roots[ROOT_DISTANCE] = gradient[1];
+    return roots;
+}
+
 ModuleFunction emit_function(const Emitter *e, FunctionKind kind, uint32_t component)
 {
     const Module *m     = e->module;
@@ -85,8 +97,9 @@ ModuleFunction emit_function(const Emitter *e, FunctionKind kind, uint32_t compo
     default: break;
     }
     const Node *surface = surface_roots(e) + component * ROOT_COUNT;
-    return kind == OF_SURFACE ? (ModuleFunction){kind, component, surface, ROOT_COUNT}
-                              : (ModuleFunction){kind, component, surface + ROOT_DISTANCE, 1};
+    if (kind == OF_SURFACE)
+        return (ModuleFunction){kind, component, tangent_roots(e, component, surface), ROOT_COUNT};
+    return (ModuleFunction){kind, component, surface + ROOT_DISTANCE, 1};
 }
 
 Node emit_root(const Emitter *e, FunctionKind kind, uint32_t component)
@@ -335,7 +348,7 @@ uint64_t krs_variant_hash(const KrsVariant *variant, const KrsFunction *wanted, 
     const uint64_t numbers[] = {variant->zones,  variant->march_group,     variant->step,
                                 variant->planes, variant->camera_relative, variant->many_threads,
                                 variant->values, variant->shares,          variant->buffers,
-                                variant->glass};
+                                variant->glass,  variant->tangents};
     uint64_t       set = 0, h = 0xcbf29ce484222325u; /* FNV-1a */
     for (size_t i = 0; i < count; i++)
         set |= (uint64_t)1 << wanted[i];

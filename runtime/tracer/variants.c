@@ -276,12 +276,21 @@ KernelVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace
     return to;
 }
 
+/* Whether normals at hits are by derivatives, which tell the nearest component as well.  Boundaries
+   of media are told by distances. */
+static bool knows_tangents(const KrsRendering *rendering)
+{
+    return rendering_normals(rendering, KRS_NORMALS_DEFAULT) == KRS_NORMALS_ANALYTIC &&
+           !rendering->camera_relative && !rendering->program->media;
+}
+
 KernelVariant variant_of_shade(const KrsRendering *rendering)
 {
     KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     want_rays(&to, rendering);
     want(&to, KRS_FUNCTION_SURFACE);
     want_media(&to, rendering);
+    to.scene.variant.tangents = knows_tangents(rendering);
     if (rendering->program->media)
         want(&to, KRS_FUNCTION_GLASS);
     if (rendering->program->mirrors)

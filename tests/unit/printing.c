@@ -268,6 +268,7 @@ static void look_at_variants(KrsScene *scene, const char *path, bool compiled)
          {.many_threads = true},
          {.many_threads = true, .shares = true},
          {.values = true},
+         {.values = true, .tangents = program->gradients},
          {.values = true, .zones = 2, .many_threads = true},
          {.step = KRS_STEP_TAYLOR},
          {.step = KRS_STEP_ROOT_FREE},
