@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 #include "cli/commands.h"
 #include "cli/console.h"
@@ -55,6 +56,19 @@ static KrsStatus write_scene(const Options *options, const Text *scene)
     return KRS_OK; /* the end of every command looks at the output */
 }
 
+/* What others make may be near to what can be read. */
+static const char *other_way(const char *path)
+{
+    static const char *const meshes[] = {".stl", ".ply", ".obj", ".glb", ".gltf", ".3mf", ".step"};
+    const char              *ending   = strrchr(path, '.');
+    if (ending && strcasecmp(ending, ".scad") == 0)
+        return "; `openscad -o part.csg part.scad` makes one of them";
+    for (size_t i = 0; ending && i < sizeof meshes / sizeof *meshes; i++)
+        if (strcasecmp(ending, meshes[i]) == 0)
+            return "; krs makes meshes, but reads none";
+    return "";
+}
+
 KrsStatus command_import(Options *options)
 {
     const char *path   = options->files.items[0];
@@ -62,7 +76,8 @@ KrsStatus command_import(Options *options)
     Import      import = {.path = path, .name = slash ? slash + 1 : path, .arena = options->arena};
     import.output      = options->outputs.count > 0 ? options->outputs.items[0] : NULL;
     if (!import_knows(path))
-        return say_usage(options, "`%s` ends in none of %s", path, import_endings());
+        return say_usage(options, "`%s` ends in none of %s%s", path, import_endings(),
+                         other_way(path));
     KrsStatus status = read_all(options, &import);
     if (status != KRS_OK)
         return status;

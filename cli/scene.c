@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <math.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -130,6 +131,21 @@ KrsStatus say_status(KrsStatus status, const char *path)
     return status; /* diagnostics have told of a wrong scene, or one that cannot be read */
 }
 
+/* What compiling may use is limited, so that a machine does not come to a standstill.  The system may
+   allow less. */
+static KrsStatus say_too_large(const Options *options, const char *path)
+{
+    const uint64_t usual = (uint64_t)2 << 30; /* KrsOptions.memory_limit of 0 */
+    const uint64_t limit = options->limits.memory ? options->limits.memory : usual;
+    struct rlimit  of_system;
+    if (getrlimit(RLIMIT_AS, &of_system) == 0 && of_system.rlim_cur < limit)
+        return say_status(KRS_OUT_OF_MEMORY, path);
+    say("out of memory with `%s`: compiling it takes more than %llu MiB; --limit memory=%lluM "
+        "allows more",
+        path, (unsigned long long)(limit >> 20), (unsigned long long)(limit >> 18));
+    return KRS_OUT_OF_MEMORY;
+}
+
 static long long file_size(const char *path)
 {
     struct stat info;
@@ -163,7 +179,7 @@ KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene)
         stage_size("`%s` makes %zu bytes of distance code in %zu components", path,
                    krs_scene_program(*scene)->glsl_length, krs_component_count(*scene));
     stage_enter(STAGE_START);
-    return say_status(status, path);
+    return status == KRS_OUT_OF_MEMORY ? say_too_large(options, path) : say_status(status, path);
 }
 
 const char *scene_name(Arena *arena, const char *path)

@@ -1,6 +1,6 @@
 /*
  * look.c: warns of components that no camera has in its picture, of cameras inside of a solid, and of lights that
- * are too dim to be seen.
+ * are too dim to be seen, or hidden.
  *
  * Only what holds for all parameters and times is said of components: their boxes do, and cameras
  * that move are left out.
@@ -203,13 +203,70 @@ static void warn_of_dim_light(Compilation *c, KrsFrame *frame, const KrsView *vi
                             3 * distance * distance);
 }
 
-static void warn_of_dim_lights(Compilation *c, KrsFrame *frame)
+/* What hides all that a light sends to one side. */
+static const Component *plane_before(const Compilation *c, const double direction[3])
+{
+    const Graph *graph = c->elaborated.graph;
+    for (size_t i = 0; i < c->elaborated.components.count && c->elaborated.zone_count == 0; i++) {
+        const Component *component = &c->elaborated.components.items[i];
+        double           along     = 0, normal;
+        if (!component_is_plane(component) || !graph_is_constant(graph, component->plane_normal))
+            continue;
+        for (uint32_t k = 0; k < 3; k++)
+            if (graph_known_component(graph, component->plane_normal, k, &normal))
+                along += normal * direction[k];
+        if (along < -1e-6)
+            return component;
+    }
+    return NULL;
+}
+
+/* The solid around a light, all of which is in it; what lets light through is none. */
+static const Component *solid_around(const Compilation *c, KrsFrame *frame, const KrsLight *light)
+{
+    const double reach = light->softness + 0.5 * hypot(light->size[0], light->size[1]);
+    double       distance;
+    KrsHit       hit;
+    if (krs_distance(frame, &light->vector, 1, &distance) != KRS_OK || !(distance < -reach) ||
+        krs_probe(frame, &light->vector, 1, &hit) != KRS_OK || hit.component == 0)
+        return NULL;
+    const Component *shown = &c->elaborated.shown.items[hit.component - 1];
+    return c->is_medium[shown->lowered] ? NULL : shown;
+}
+
+static void warn_of_hidden_light(Compilation *c, KrsFrame *frame, const KrsView *view, size_t index)
+{
+    const SceneLight *light = &c->elaborated.lights.items[index];
+    const KrsLight   *now   = &view->lights[index];
+    const Graph      *graph = c->elaborated.graph;
+    if (!light->shadow || !graph_is_constant(graph, light->vector) ||
+        !graph_is_constant(graph, light->softness) || !graph_is_constant(graph, light->size))
+        return;
+    const Component *before = light->positional ? solid_around(c, frame, now)
+                                                : plane_before(c, now->vector);
+    if (!before)
+        return;
+    Diag *diag  = diag_add(&c->diags, DIAG_HIDDEN_LIGHT, light->span,
+                          light->positional
+                               ? "this light lights nothing: it is inside of `%s`"
+                               : "this light lights nothing: it shines from behind `%s`",
+                           before->name);
+    diag->label = "so all is in its shadow";
+    diag->help  = light->positional
+                      ? "move it out of there, or give it `shadow: false`"
+                      : "`direction` goes to the light, as in `direction: [0, 1, 0]` of one above";
+    diag_secondary(&c->diags, diag, before->span, light->positional ? "this solid" : "this plane");
+}
+
+static void warn_of_lights(Compilation *c, KrsFrame *frame)
 {
     KrsView view;
     if (c->elaborated.cameras.count == 0 || frame_view(frame, 0, &view) != KRS_OK)
         return;
-    for (size_t i = 0; i < c->elaborated.lights.count; i++)
+    for (size_t i = 0; i < c->elaborated.lights.count; i++) {
         warn_of_dim_light(c, frame, &view, i);
+        warn_of_hidden_light(c, frame, &view, i);
+    }
 }
 
 KrsStatus pass_look(Compilation *c)
@@ -221,7 +278,7 @@ KrsStatus pass_look(Compilation *c)
         return status;
     warn_of_unseen(c, pyramids, find_pyramids(c, frame, pyramids));
     warn_of_inside(c, frame);
-    warn_of_dim_lights(c, frame);
+    warn_of_lights(c, frame);
     frame_free(frame);
     return KRS_OK;
 }
@@ -231,9 +288,11 @@ void print_look(Compilation *c, Text *out)
     size_t before = out->length;
     for (size_t i = 0; i < c->diags.count; i++) {
         DiagCode code = c->diags.items[i]->code;
-        if (code == DIAG_OUT_OF_VIEW || code == DIAG_CAMERA_INSIDE || code == DIAG_DIM_LIGHT)
+        if (code == DIAG_OUT_OF_VIEW || code == DIAG_CAMERA_INSIDE || code == DIAG_DIM_LIGHT ||
+            code == DIAG_HIDDEN_LIGHT)
             text_format(out, "%s\n", c->diags.items[i]->message);
     }
     if (out->length == before)
-        text_add(out, "all cameras are free, and see all components; no light is too dim\n");
+        text_add(out,
+                 "all cameras are free, and see all components; no light is too dim or hidden\n");
 }

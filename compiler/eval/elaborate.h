@@ -107,18 +107,19 @@ struct Elaboration {
     BuiltinName   builtins[MOST_BUILTIN_NAMES]; /* names looked up so far, by their addresses */
     bool     studio; /* a scene without lights and sky gets those of the library, and a floor */
     bool     hoists; /* numbers of the scene's own text are not those of the shaders' text */
-    uint32_t number_count;            /* of such numbers so far */
-    struct Derivations *derivations;  /* which of them were computed from others: fold.c */
-    uint64_t            steps;        /* of evaluation, so far */
-    uint32_t            printed;      /* notes by `print`, so far */
-    uint32_t            depth, calls; /* how deep expressions and calls are nested now */
-    Node                rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
-    const Syntax       *block;        /* the last one whose properties were looked at, or NULL */
-    bool                in_material;  /* level, instance, u, v and normal have a meaning */
-    bool                uses_uv;      /* a material may need the coordinates on surfaces */
-    struct TurnTrials  *turns;   /* loops whose turns are made at once: turns.c; NULL: none is */
-    Node                turn;    /* what stands for the variable of such a loop, or NODE_NONE */
-    const Syntax       *joining; /* a call that joins shapes, or a `show`, of which
+    uint32_t number_count;                     /* of such numbers so far */
+    struct Derivations          *derivations;  /* which of them were computed from others: fold.c */
+    uint64_t                     steps;        /* of evaluation, so far */
+    uint32_t                     printed;      /* notes by `print`, so far */
+    uint32_t                     depth, calls; /* how deep expressions and calls are nested now */
+    const struct CalledFunction *called;       /* the innermost of these calls, or NULL */
+    Node               rounding;    /* what the name `rounding` means in `core:`, or NODE_NONE */
+    const Syntax      *block;       /* the last one whose properties were looked at, or NULL */
+    bool               in_material; /* level, instance, u, v and normal have a meaning */
+    bool               uses_uv;     /* a material may need the coordinates on surfaces */
+    struct TurnTrials *turns;       /* loops whose turns are made at once: turns.c; NULL: none is */
+    Node               turn;        /* what stands for the variable of such a loop, or NODE_NONE */
+    const Syntax      *joining;     /* a call that joins shapes, or a `show`, of which
                                     the arguments are evaluated; or NULL */
 };
 

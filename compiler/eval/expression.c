@@ -179,7 +179,11 @@ static bool run_clause(Elaboration *e, const Comprehension *c)
         evaluation_forget(e, c->mark, NULL);
         return true;
     }
-    type_error(e, clause->children[0], condition, "a truth value that is known at compile time");
+    if (condition.type == VALUE_EXPRESSION)
+        constant_error(e, clause->children[0],
+                       "what a list leaves out must be known at compile time");
+    else
+        type_error(e, clause->children[0], condition, "a truth value");
     return false;
 }
 

@@ -332,14 +332,43 @@ static Value call_body(Elaboration *e, const Function *function, const Environme
     }
 }
 
+/* A call that is evaluated now. */
+typedef struct CalledFunction {
+    const Function              *function;
+    const Syntax                *syntax; /* of the call */
+    const struct CalledFunction *outer;
+} CalledFunction;
+
+/* The innermost call of a function that is called within itself: others may be met in the last of its
+   turns alone. */
+static const CalledFunction *call_within_itself(const CalledFunction *innermost)
+{
+    for (const CalledFunction *call = innermost; call; call = call->outer)
+        for (const CalledFunction *outer = call->outer; outer; outer = outer->outer)
+            if (outer->function->syntax == call->function->syntax)
+                return call;
+    return innermost;
+}
+
+static void report_depth(Elaboration *e, const CalledFunction *innermost)
+{
+    const CalledFunction *call = call_within_itself(innermost);
+    Diag                 *diag = diag_add(e->diags, DIAG_LIMIT, call->syntax->span,
+                                          "`%s` is called within itself more than 1,000 deep",
+                                          call->function->name);
+    diag->help =
+        "a function that calls itself ends by an `if`, as in `def tower(n) = if n == 0 then "
+        "sphere(1) else box([1, 1, 1]) | tower(n - 1).move([0, 1, 0]);`";
+}
+
 /* What a function, shape declaration or material gives for arguments in order. */
 static Value call_values(Elaboration *e, const Function *function, const Value *values,
                          const Syntax *const *origins, const Syntax *syntax)
 {
+    const CalledFunction call = {function, syntax, e->called};
     if (e->calls >= MOST_CALLS) {
         if (!is_stopped(e))
-            diag_add(e->diags, DIAG_LIMIT, syntax->span,
-                     "`%s` is called within itself more than 1,000 deep", function->name);
+            report_depth(e, &call);
         e->builder->stopped = true;
         return value_error();
     }
@@ -347,8 +376,10 @@ static Value call_values(Elaboration *e, const Function *function, const Value *
     size_t      said   = e->diags->count;
     Value       result = value_error();
     e->calls++;
+    e->called = &call;
     if (bind_parameters(e, function, values, origins, syntax, &env))
         result = call_body(e, function, &env, syntax->span);
+    e->called = call.outer;
     e->calls--;
     mark_call(e, said, syntax, function->name);
     blame_caller(e, said, syntax, function, values, origins);

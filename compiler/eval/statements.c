@@ -91,6 +91,8 @@ static bool param_range(Elaboration *e, const Environment *env, const Syntax *sy
     Diag *diag  = diag_add(e->diags, DIAG_RANGE_OF_PARAM, syntax->children[1]->span,
                            "the range of `%s` does not fit its default", syntax->name);
     diag->label = "[low, high] with low <= default <= high";
+    if (syntax->children[1]->kind == SYNTAX_RANGE)
+        diag->help = form_help(e->diags, FORM_RANGE_ENDS);
     diag_secondary(e->diags, diag, syntax->children[0]->span, "the default");
     return false;
 }

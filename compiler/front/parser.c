@@ -161,6 +161,9 @@ Diag *expected(Parser *p, const char *what)
         bool unit        = found->kind == TOKEN_NAME && strcmp(found->name, "deg") == 0;
         if (unit && p->here.at > 0 && token_before(p)->kind == TOKEN_NUMBER)
             diag->help = "`deg` touches its number: `30deg`";
+        else if (found->kind == TOKEN_LEFT_BRACE && p->here.at > 0 &&
+                 token_before(p)->kind == TOKEN_NAME)
+            diag->help = form_help(p->diags, FORM_BRACES);
         else if (p->here.at > 0 && token_before(p)->kind == TOKEN_RIGHT_PAREN)
             explain_call(p, diag, found->kind);
     }

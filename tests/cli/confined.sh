@@ -76,7 +76,7 @@ run render ball.krs --quiet --size 4000x4000 --samples 4096 --limit time=2 -o b.
 result $? "a picture that takes too long"
 awk 'BEGIN { for (i = 0; i < 300000; i++) printf "let a%d = [%d, %d, %d];\n", i, i, i, i }' >big.krs
 run check --limit memory=64M big.krs
-said 71 "out of memory" "a scene that takes too much memory"
+said 71 "takes more than 64 MiB; --limit memory=256M allows more" "a scene that takes too much memory"
 for limit in pixels=0 memory=1X speed=3 time; do
     run check --limit $limit ball.krs
     [ "$status" -eq 2 ] || break

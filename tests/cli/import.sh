@@ -3,7 +3,7 @@
 # with the line that is wrong; no file, whatever is in it, ends in a crash.
 # shellcheck source-path=SCRIPTDIR disable=SC2016
 . "$(dirname "$0")/common.sh"
-plan 55
+plan 57
 
 cat >ball.vm <<'END'
 # a ball of radius 0.75 with its upper half cut away, and a line that does not count
@@ -134,6 +134,10 @@ refused a.jsurf "surface_equation=$nested" '1: the equation is more than 60 deep
 
 run import ball.krs
 said 2 "ends in none of .jsurf .vm .csg .pov .svg" "a file of another kind"
+run import bolt.scad
+said 2 "of .jsurf .vm .csg .pov .svg; \`openscad -o part.csg part.scad\` makes one" "a text of OpenSCAD"
+run import bolt.STL
+said 2 "krs makes meshes, but reads none" "a mesh"
 run import missing.vm
 said 74 "cannot read \`missing.vm\`" "a missing file"
 run import ball.vm -o nowhere/ball.krs
