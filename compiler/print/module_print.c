@@ -99,7 +99,8 @@ ModuleFunction emit_function(const Emitter *e, FunctionKind kind, uint32_t compo
     const Node *surface = surface_roots(e) + component * ROOT_COUNT;
     if (kind == OF_SURFACE)
         return (ModuleFunction){kind, component, tangent_roots(e, component, surface), ROOT_COUNT};
-    return (ModuleFunction){kind, component, surface + ROOT_DISTANCE, 1};
+    return (ModuleFunction){kind, component, tangent_roots(e, component, surface) + ROOT_DISTANCE,
+                            1};
 }
 
 Node emit_root(const Emitter *e, FunctionKind kind, uint32_t component)

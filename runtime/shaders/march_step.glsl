@@ -21,10 +21,10 @@ const uint BALLS = TRACE;
 
 // The next step from a position with an empty ball of this radius, by the last slope of the radius
 // and the mean slope.  The balls at its ends should still meet.  Else the surface should be crossed,
-// with no longer unverified interval than is permitted.
+// with no longer unverified interval than is permitted; with STEPS none is left there.
 float find_step(float clearance, float last_slope, float slope, float permitted, float tolerance)
 {
-    bool  crosses = OVERSHOOT * clearance <= -last_slope * (clearance + permitted);
+    bool  crosses = BALLS == TRACE && OVERSHOOT * clearance <= -last_slope * (clearance + permitted);
     float factor = crosses ? OVERSHOOT / -last_slope : 2.0 / (1.0 - min(slope, 0.98));
     float automatic = max(clearance, factor * clearance);
     return (BALLS == RELAXED     ? RELAXATION * clearance
