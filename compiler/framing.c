@@ -23,6 +23,8 @@ enum { RAYS = 512, FEWEST_RAYS = 64, ROUNDS = 3, BATCH = 8, MOST_UNRESOLVED = 4 
 /* Cells are halved this many times, along their longest side; and so many are tried at once for each
    ray that is cast. */
 enum { HALVINGS = 15, CELLS_A_RAY = 4, MOST_CELLS = RAYS * CELLS_A_RAY };
+/* Fewer points do not tell how large something is. */
+enum { FEWEST_SEEN = 8 };
 /* The ball of the picture is larger than that of the hits by this, since rays miss some of the
    surface. */
 static const double MARGIN = 0.06, GOLDEN_ANGLE = 2.399963229728653; /* pi (3 - sqrt 5) */
@@ -39,6 +41,7 @@ typedef struct Rays {
     size_t     seen_count;
     Box        box;   /* around what is seen */
     const Box *boxes; /* of components in the frame: frame_find_boxes */
+    bool       apart; /* they keep away from what has no end, as a floor */
 } Rays;
 
 /* The box of a component in the frame. */
@@ -86,7 +89,7 @@ static int count_rays(const KrsScene *scene)
 static void make_ray(const Ball *ball, int i, int count, const double to[3], Rays *rays)
 {
     double y = 1 - (2 * i + 1.0) / count, ring = sqrt(1 - y * y), angle = GOLDEN_ANGLE * i;
-    double from[3] = {ring * cos(angle), y, ring * sin(angle)};
+    double from[3] = {ring * cos(angle), rays->apart ? fabs(y) : y, ring * sin(angle)};
     for (int k = 0; k < 3; k++) {
         rays->origins[i][k]    = ball->centre[k] + 1.01 * ball->radius * from[k];
         rays->directions[i][k] = to[k] - 1.01 * from[k];
@@ -207,15 +210,33 @@ static void reduce_cells(KrsFrame *frame, const Box *known, Cells *cells)
     cells->count = kept;
 }
 
+/* Leaves out the cells that are next to what has no end. */
+static void keep_apart(KrsFrame *frame, const Box *boxes, Cells *cells)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < cells->count; i++) {
+        KrsHit near = {.component = 0};
+        krs_probe(frame, (const double(*)[3])cells->middles + i, 1, &near);
+        if (near.component == 0 || !box_is_finite(box_of(frame, boxes, near.component - 1)))
+            continue;
+        memcpy(cells->middles[kept], cells->middles[i], sizeof *cells->middles);
+        cells->boxes[kept++] = cells->boxes[i];
+    }
+    cells->count = kept;
+}
+
 /* Finds cells of a box that may not be empty and are not inside of another one.  Where there are too
    many they remain larger. */
-static void find_cells(KrsFrame *frame, Box box, const Box *known, size_t most, Cells *cells)
+static void find_cells(KrsFrame *frame, Box box, const Rays *rays, const Box *known, size_t most,
+                       Cells *cells)
 {
     cells->count    = 1;
     cells->boxes[0] = box;
     for (int i = 0; i < HALVINGS && cells->count <= most; i++) {
         halve_cells(cells);
         reduce_cells(frame, known, cells);
+        if (rays->apart)
+            keep_apart(frame, rays->boxes, cells);
     }
 }
 
@@ -241,7 +262,7 @@ static void search_beyond(KrsFrame *frame, Box box, int most, double margin, Cel
     bool more  = true;
     for (int round = 0; round < ROUNDS && more; round++) {
         Box known = box_grow(rays->box, margin);
-        find_cells(frame, box, &known, (size_t)most * CELLS_A_RAY, cells);
+        find_cells(frame, box, rays, &known, (size_t)most * CELLS_A_RAY, cells);
         int count = cells->count < (size_t)most ? (int)cells->count : most;
         for (int i = 0; i < count; i++) /* if there are more cells than rays, to some */
             make_ray_to_cell(frame, &outer, i, count,
@@ -266,7 +287,7 @@ static bool cast_rounds(KrsFrame *frame, int count, Rays *rays, Ball *ball)
 
 /* Finds the ball that the picture shows, within the one of the box: around what rays hit, and around
    what they have missed. */
-static void find_ball(KrsFrame *frame, Box box, Rays *rays, Cells *cells, Ball *ball)
+static void look_for_ball(KrsFrame *frame, Box box, Rays *rays, Cells *cells, Ball *ball)
 {
     double most      = ball->radius;
     int    count     = count_rays(frame->scene);
@@ -279,6 +300,19 @@ static void find_ball(KrsFrame *frame, Box box, Rays *rays, Cells *cells, Ball *
     search_beyond(frame, box, count, margin, cells, rays);
     if (!is_inside(&rays->box, &first))
         grow_ball(rays, most, ball);
+}
+
+/* Of a box that is much too large a floor may be hit, and nothing else: then all is tried again. */
+static void find_ball(KrsFrame *frame, Box box, Rays *rays, Cells *cells, Ball *ball)
+{
+    const Ball outer = *ball;
+    rays->apart      = false;
+    look_for_ball(frame, box, rays, cells, ball);
+    if (rays->seen_count >= FEWEST_SEEN)
+        return;
+    rays->apart = true;
+    *ball       = outer;
+    look_for_ball(frame, box, rays, cells, ball);
 }
 
 /* ---- the camera ---- */
@@ -340,7 +374,6 @@ static void fill_picture(const Rays *rays, DefaultCamera *camera)
 /* Where the ball fills the height; or, where enough is seen to tell, what is seen. */
 static DefaultCamera place_camera(const Rays *rays, const Ball *ball, double fov)
 {
-    enum { FEWEST_SEEN = 8 };
     DefaultCamera camera = {.away = ball->radius / sin(0.5 * fov), .slope = tan(0.5 * fov)};
     set_axes(&camera);
     memcpy(camera.target, ball->centre, sizeof camera.target);

@@ -182,11 +182,37 @@ static void stays_below_cameras(void **state)
     close_scene(opened);
 }
 
+/* The box of mirrors that a parameter turns is ten times too large, and rays hit little but the floor. */
+static void camera_finds_a_small_thing_in_a_large_box(void **state)
+{
+    const char *const text     = "show krs {"
+                                 "kernel cylinder(0.1, 1).move([0, 0.5, 0]);"
+                                 "for i in 0..6 {"
+                                 "reflect plane([sin(h), cos(h), 0.2 * i], 0.9 * i + 0.8); } };";
+    const double      lower[3] = {-0.2, 0, -0.2}, upper[3] = {1.8, 5.4, 5.4};
+    const Opened      opened = open_scene("param h = 0.3 in [0, 1];", text, 0);
+    KrsComponent      component;
+    KrsCamera         camera;
+    double            away = 0;
+    (void)state;
+    assert_int_equal(krs_component(opened.scene, 0, &component), KRS_OK);
+    assert_true(component.low[0] < -10 && component.high[0] > 10);
+    assert_int_equal(krs_frame_camera(opened.frame, 0, &camera), KRS_OK);
+    for (int k = 0; k < 3; k++) {
+        assert_true(lower[k] < camera.target[k] && camera.target[k] < upper[k]);
+        away = hypot(away, camera.eye[k] - camera.target[k]);
+    }
+    assert_true(5 < away && away < 25);
+    close_scene(opened);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(follows_parameters), cmocka_unit_test(follows_parameters_without_a_range),
-        cmocka_unit_test(camera_follows_where_it_is_asked_to),
-        cmocka_unit_test(stays_with_the_time), cmocka_unit_test(stays_below_cameras)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(follows_parameters),
+                                       cmocka_unit_test(follows_parameters_without_a_range),
+                                       cmocka_unit_test(camera_follows_where_it_is_asked_to),
+                                       cmocka_unit_test(stays_with_the_time),
+                                       cmocka_unit_test(stays_below_cameras),
+                                       cmocka_unit_test(camera_finds_a_small_thing_in_a_large_box)};
     return cmocka_run_group_tests_name("frame_floor", tests, NULL, NULL);
 }
