@@ -43,6 +43,51 @@ static float find_width(const Tets *tets, const Tet *tet)
     return (float)((1 - 1e-6) / most);
 }
 
+/* ---- which have a point, and which are to be looked at ---- */
+
+static void link_point(Tets *tets, uint32_t point, uint32_t tet)
+{
+    TetLink link = {tet, tets->points.items[point].first};
+    array_push_large(tets->arena, &tets->links, link);
+    tets->points.items[point].first = (uint32_t)tets->links.count;
+}
+
+static bool has_point(const Tet *tet, uint32_t point)
+{
+    return tet->points[0] == point || tet->points[1] == point || tet->points[2] == point ||
+           tet->points[3] == point;
+}
+
+static void let_wait(Tets *tets, size_t tet)
+{
+    while (tets->waiting.count <= tet / 64)
+        array_push_large(tets->arena, &tets->waiting, 0);
+    tets->waiting.items[tet / 64] |= (uint64_t)1 << tet % 64;
+}
+
+/* The first from a number on; as many as there are words for: none. */
+static size_t first_waiting(const Tets *tets, size_t from)
+{
+    size_t end = 64 * tets->waiting.count;
+    while (from < end && !(tets->waiting.items[from / 64] >> from % 64 & 1))
+        from = tets->waiting.items[from / 64] >> from % 64 ? from + 1 : (from / 64 + 1) * 64;
+    return from;
+}
+
+/* Those with both points wait; of the lists, the second point's has `moved` where it had `from`. */
+static void wait_around(Tets *tets, uint32_t first, uint32_t second, uint32_t from, uint32_t moved)
+{
+    for (uint32_t at = tets->points.items[second].first; at; at = tets->links.items[at - 1].next) {
+        TetLink *link = &tets->links.items[at - 1];
+        if (has_point(&tets->list.items[link->tet], first))
+            let_wait(tets, link->tet);
+        if (link->tet == from)
+            link->tet = moved;
+    }
+}
+
+/* ---- bisection ---- */
+
 static void add_tet(Tets *tets, Tet tet)
 {
     tet.fresh = true;
@@ -82,6 +127,8 @@ void tets_new(Tets *tets, const double origin[3], double side, Arena *arena)
                 at[orders[i][k]] = CUBE_STEPS;
         }
         tet.width = find_width(tets, &tet);
+        for (int k = 0; k < 4; k++)
+            link_point(tets, tet.points[k], (uint32_t)tets->list.count);
         add_tet(tets, tet);
     }
 }
@@ -124,8 +171,15 @@ void tets_bisect(Tets *tets, size_t index)
     first.triangle_count = second.triangle_count = 0;
     first.width                                  = find_width(tets, &first);
     second.width                                 = find_width(tets, &second);
+    uint32_t added                               = (uint32_t)tets->list.count;
+    wait_around(tets, tet.points[0], tet.points[tet.tag], (uint32_t)index, added);
     replace_tet(tets, index, first);
     add_tet(tets, second);
+    let_wait(tets, added);
+    link_point(tets, point, (uint32_t)index);
+    for (int k = 0; k < 4; k++)
+        if (second.points[k] != tet.points[tet.tag])
+            link_point(tets, second.points[k], added);
 }
 
 /* Whether an edge has been bisected by a neighbour, which was after all met last. */
@@ -143,15 +197,21 @@ static bool has_hanging_point(const Tets *tets, const Tet *tet)
     return false;
 }
 
+/* What waits is looked at in the order of the list, again and again; so numbers are those that all would have, were all
+   looked at. */
 void tets_close(Tets *tets)
 {
-    size_t before;
-    do {
-        before = tets->list.count;
-        for (size_t i = 0; i < tets->list.count; i++)
+    bool any = true;
+    while (any) {
+        any = false;
+        for (size_t i = first_waiting(tets, 0); i < 64 * tets->waiting.count;
+             i        = first_waiting(tets, i + 1)) {
+            any = true;
             while (has_hanging_point(tets, &tets->list.items[i]))
                 tets_bisect(tets, i);
-    } while (tets->list.count > before);
+            tets->waiting.items[i / 64] &= ~((uint64_t)1 << i % 64);
+        }
+    }
     tets->closures++;
 }
 

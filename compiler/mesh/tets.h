@@ -18,8 +18,14 @@
 typedef struct TetPoint {
     uint32_t at[3]; /* in steps from the corner of the cube */
     uint32_t split; /* when an edge of it was last bisected: `closures` of the tetrahedra then */
+    uint32_t first; /* 1 and the link of a tetrahedron that has it; 0: none */
     double   distance;
 } TetPoint;
+
+/* Those that have a point are a list. */
+typedef struct TetLink {
+    uint32_t tet, next; /* as `first` */
+} TetLink;
 
 typedef enum TetState {
     TET_NEW,
@@ -64,6 +70,14 @@ typedef struct Tets {
         Tet   *items;
         size_t count, capacity;
     } list;
+    struct {
+        TetLink *items;
+        size_t   count, capacity;
+    } links;
+    struct {
+        uint64_t *items; /* a bit for each */
+        size_t    count, capacity;
+    } waiting; /* those that may not meet their neighbours in whole faces */
     struct {
         uint32_t *items;
         size_t    count, capacity;
