@@ -468,6 +468,9 @@ void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax
 /* Adds what the scene leaves out: a camera, a sun, a sky. */
 void complete_view(Elaboration *e);
 
+/* ---- params.c ---- */
+Value define_param(Elaboration *e, const Environment *env, const Syntax *syntax);
+
 /* ---- statements.c ---- */
 /* Runs the statements of a file. */
 void run_file(Elaboration *e, Scope *scope);
