@@ -90,37 +90,39 @@ static bool seeded_of_number(Elaboration *e, const Call *call, Op op, GraphType 
 
 /* ---- the functions ---- */
 
-Value builtin_random(Elaboration *e, Call *call)
+static Value number_of_cell(Elaboration *e, const Call *call, uint32_t stream)
+{
+    return value_authored(e, value_of_node(e, random_of_cell(e, call, 2 * stream)));
+}
+
+/* A number or a vector of a seed and a stream, whichever the seed is. */
+static Value seeded(Elaboration *e, const Call *call, Op op, GraphType type,
+                    Value (*of_cell)(Elaboration *e, const Call *call, uint32_t stream))
 {
     NodeValue result;
     uint32_t  stream;
     if (!want_count(e, call, 1, 0, 1000000, 0, &stream))
         return value_error();
     if (is_of_turn(e, call->arguments[0].value))
-        return seeded_of_turn(e, call, OP_seeded, 1, stream);
+        return seeded_of_turn(e, call, op, type, stream);
     if (is_cell(e, call->arguments[0].value))
-        return value_authored(e, value_of_node(e, random_of_cell(e, call, 2 * stream)));
-    if (!seeded_of_number(e, call, OP_seeded, TYPE_FLOAT, stream, &result))
+        return of_cell(e, call, stream);
+    if (!seeded_of_number(e, call, op, type, stream, &result))
         return value_error();
-    return value_authored(e, value_number(result.v[0]));
+    Value *items = arena_new_array(e->values, Value, type);
+    for (uint32_t i = 0; i < type; i++)
+        items[i] = value_authored(e, value_number(result.v[i]));
+    return type == TYPE_FLOAT ? items[0] : value_list(e, items, type);
+}
+
+Value builtin_random(Elaboration *e, Call *call)
+{
+    return seeded(e, call, OP_seeded, TYPE_FLOAT, number_of_cell);
 }
 
 Value builtin_random_direction(Elaboration *e, Call *call)
 {
-    NodeValue result;
-    uint32_t  apart;
-    if (!want_count(e, call, 1, 0, 1000000, 0, &apart))
-        return value_error();
-    if (is_of_turn(e, call->arguments[0].value))
-        return seeded_of_turn(e, call, OP_seeded_direction, 3, apart);
-    if (is_cell(e, call->arguments[0].value))
-        return direction_of_cell(e, call, apart);
-    if (!seeded_of_number(e, call, OP_seeded_direction, TYPE_VEC3, apart, &result))
-        return value_error();
-    Value *items = arena_new_array(e->values, Value, 3);
-    for (int i = 0; i < 3; i++)
-        items[i] = value_authored(e, value_number(result.v[i]));
-    return value_list(e, items, 3);
+    return seeded(e, call, OP_seeded_direction, TYPE_VEC3, direction_of_cell);
 }
 
 /* ---- noise ---- */

@@ -318,12 +318,19 @@ static void visit_all(void *task, size_t part, size_t parts)
             visit_cells(b, i, slab);
 }
 
+/* A distance for each cell, to be found. */
+static float *endless_distances(const Builder *b)
+{
+    const size_t cells     = grid_cell_count(b->grid);
+    float       *distances = arena_new_array(b->scratch, float, cells);
+    for (size_t c = 0; c < cells; c++)
+        distances[c] = HUGE_VALF;
+    return distances;
+}
+
 static void measure_centers(Builder *b)
 {
-    size_t cells = grid_cell_count(b->grid);
-    b->centers   = arena_new_array(b->scratch, float, cells);
-    for (size_t c = 0; c < cells; c++)
-        b->centers[c] = HUGE_VALF;
+    b->centers   = endless_distances(b);
     b->measuring = true;
     run_in_parallel(visit_all, b);
     b->measuring = false;
@@ -331,12 +338,9 @@ static void measure_centers(Builder *b)
 
 static void fill_lists(Builder *b, Arena *arena)
 {
-    Grid  *grid  = b->grid;
-    size_t cells = grid_cell_count(grid);
-    grid->first  = arena_new_array(arena, uint32_t, cells + 1);
-    b->nearest   = arena_new_array(b->scratch, float, cells);
-    for (size_t c = 0; c < cells; c++)
-        b->nearest[c] = HUGE_VALF;
+    Grid *grid  = b->grid;
+    grid->first = arena_new_array(arena, uint32_t, grid_cell_count(grid) + 1);
+    b->nearest  = endless_distances(b);
     if (b->flat.distance)
         measure_centers(b);
     run_in_parallel(visit_all, b);
@@ -376,17 +380,25 @@ static void build(Builder *b, Arena *arena)
     fill(b, arena);
 }
 
+static Builder builder_new(Grid *grid, const Box *boxes, uint32_t count, double reach,
+                           double margin, Arena *scratch)
+{
+    assert(count > 0);
+    return (Builder){.grid         = grid,
+                     .boxes        = boxes,
+                     .count        = count,
+                     .reach        = reach,
+                     .given_margin = margin,
+                     .texels       = 1,
+                     .scratch      = scratch};
+}
+
 void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
                 uint32_t texels, Arena *arena, Arena *scratch)
 {
-    assert(count > 0 && texels > 0);
-    Builder b = {.grid         = grid,
-                 .boxes        = boxes,
-                 .count        = count,
-                 .reach        = reach,
-                 .given_margin = margin,
-                 .texels       = texels,
-                 .scratch      = scratch};
+    Builder b = builder_new(grid, boxes, count, reach, margin, scratch);
+    assert(texels > 0);
+    b.texels = texels;
     build(&b, arena);
 }
 
@@ -400,33 +412,16 @@ GridLimits grid_limits_of_frame(uint32_t count)
 void grid_build_within(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
                        GridLimits most, Arena *arena, Arena *scratch)
 {
-    assert(count > 0 && most.cells >= 8 && most.entries >= 8 * (double)count);
-    Builder b = {.grid         = grid,
-                 .boxes        = boxes,
-                 .count        = count,
-                 .reach        = reach,
-                 .given_margin = margin,
-                 .most         = most,
-                 .texels       = 1,
-                 .scratch      = scratch};
+    Builder b = builder_new(grid, boxes, count, reach, margin, scratch);
+    assert(most.cells >= 8 && most.entries >= 8 * (double)count);
+    b.most = most;
     build(&b, arena);
-}
-
-static Builder coarse_builder(Grid *grid, const Box *boxes, uint32_t count, double reach,
-                              double margin, Arena *scratch)
-{
-    return (Builder){.grid         = grid,
-                     .boxes        = boxes,
-                     .count        = count,
-                     .reach        = reach,
-                     .given_margin = margin,
-                     .coarse       = true,
-                     .scratch      = scratch};
 }
 
 /* Large cells, if there are few enough boxes. */
 static bool place_coarse(Builder *b)
 {
+    b->coarse = true;
     if (!begin(b) || (double)LEAST_REFINED * b->present > MANY_REFINED)
         return false;
     place_cells(b, least_side(b));
@@ -436,7 +431,7 @@ static bool place_coarse(Builder *b)
 bool grid_place_coarse(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
                        bool few, Arena *scratch)
 {
-    Builder b = coarse_builder(grid, boxes, count, reach, margin, scratch);
+    Builder b = builder_new(grid, boxes, count, reach, margin, scratch);
     b.few     = few;
     return place_coarse(&b);
 }
@@ -444,8 +439,7 @@ bool grid_place_coarse(Grid *grid, const Box *boxes, uint32_t count, double reac
 bool grid_build_coarse(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
                        Arena *arena, Arena *scratch)
 {
-    assert(count > 0);
-    Builder b = coarse_builder(grid, boxes, count, reach, margin, scratch);
+    Builder b = builder_new(grid, boxes, count, reach, margin, scratch);
     if (!place_coarse(&b))
         return false;
     if (count_entries(&b) > MANY_TO_REFINE)
@@ -457,13 +451,9 @@ bool grid_build_coarse(Grid *grid, const Box *boxes, uint32_t count, double reac
 void grid_build_flat(Grid *grid, const Box *boxes, uint32_t count, double margin, uint32_t texels,
                      GridMembers members, Arena *arena, Arena *scratch)
 {
-    assert(count > 0 && texels > 0);
-    Builder b = {.grid         = grid,
-                 .boxes        = boxes,
-                 .count        = count,
-                 .given_margin = margin,
-                 .texels       = texels,
-                 .flat         = members,
-                 .scratch      = scratch};
+    Builder b = builder_new(grid, boxes, count, 0, margin, scratch);
+    assert(texels > 0);
+    b.texels = texels;
+    b.flat   = members;
     build(&b, arena);
 }
