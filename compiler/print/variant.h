@@ -101,13 +101,13 @@ typedef struct KrsVariant {
     bool many_threads; /* for devices with many threads: operations count, and branches save work.
                            Elsewhere what has to be waited for counts, and built-in min and max of
                            variables are three instructions, since they mind what is not a number */
-    bool shares; /* where both are wanted, krs_surface goes on from what krs_distance has found:
+    bool shares;  /* where both are wanted, krs_surface goes on from what krs_distance has found:
                            half the text, in which operations have another order */
-    bool
-        tangents; /* krs_surface finds the nearest component by the planes of krs_gradient: for points
-                      of surfaces, where polynomials cost less by these than by their distance */
     bool values;  /* the host fills in what depends on the frame alone (krs_frame_values) */
     bool buffers; /* tables are storage buffers, for devices that read too few texels */
+    /* Distances, also of krs_surface, are those to the planes of krs_gradient: for points beside
+       surfaces, where these cost less than the safe distances of polynomials. */
+    bool tangents;
 } KrsVariant;
 
 /* A number that tells texts apart, for caches. */

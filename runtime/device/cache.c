@@ -236,6 +236,16 @@ static bool next_entry(const Cache *cache, Kept *kept)
     return false;
 }
 
+bool cache_is_empty(const char *folder)
+{
+    Cache cache;
+    Kept  kept;
+    cache_open(&cache, folder, (KrsAllocator){0});
+    const bool empty = !cache.folder || !next_entry(&cache, &kept);
+    cache_close(&cache);
+    return empty;
+}
+
 static void count_entries(Cache *cache)
 {
     Kept kept;

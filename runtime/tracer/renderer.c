@@ -4,10 +4,12 @@
 #include "runtime/tracer/renderer.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "runtime/tracer/ahead.h"
 #include "runtime/tracer/layouts.h"
@@ -103,6 +105,26 @@ static void start_ahead(KrsRenderer *renderer)
     ahead_start(renderer, requests, count);
 }
 
+static void *start_glslang(void *unused)
+{
+    spirv_prepare();
+    return unused;
+}
+
+/* Opens the device.  Where pictures come next and no kernel is kept, glslang starts meanwhile: both take
+   as long, and use one processor each. */
+static bool open_device(KrsRenderer *renderer, const KrsRendererOptions *options)
+{
+    pthread_t  thread;
+    const bool helped = options && options->pictures_ahead && cache_is_empty(options->cache) &&
+                        sysconf(_SC_NPROCESSORS_ONLN) > 1 &&
+                        pthread_create(&thread, NULL, start_glslang, NULL) == 0;
+    const bool opened = gpu_open(&renderer->gpu, options);
+    if (helped)
+        pthread_join(thread, NULL);
+    return opened;
+}
+
 KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
 {
     Gpu          allocating = {.allocator = options ? options->allocator : (KrsAllocator){0}};
@@ -110,13 +132,14 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
     *out                    = renderer;
     if (!renderer)
         return KRS_OUT_OF_MEMORY;
-    if (!gpu_open(&renderer->gpu, options))
+    spirv_start();
+    const bool opened          = open_device(renderer, options);
+    renderer->compiler_started = true;
+    if (!opened)
         return renderer->gpu.status;
     KrsEarlyOuts early_outs = options ? options->early_outs : KRS_EARLY_OUTS_DEFAULT;
     renderer->early_outs    = early_outs == KRS_EARLY_OUTS_DEFAULT ? !gpu_is_cpu(&renderer->gpu)
                                                                    : early_outs == KRS_EARLY_OUTS_ON;
-    spirv_start();
-    renderer->compiler_started    = true;
     const KernelRequest kernels[] = {
         {&renderer->next_dispatch, {.file = "next_dispatch.comp"}},
         request_kernel(renderer, &renderer->clear_shared, "clear_shared.comp", RAYS_OF_CAMERAS)};

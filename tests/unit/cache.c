@@ -124,6 +124,15 @@ static void a_file_under_a_false_name_is_a_miss(void **state)
     assert_true(holds(key_of(2), "two"));
 }
 
+static void a_folder_is_empty_until_something_is_written(void **state)
+{
+    (void)state;
+    assert_true(cache_is_empty(NULL));
+    assert_true(cache_is_empty(folder));
+    put_entry(key_of(1), "one");
+    assert_false(cache_is_empty(folder));
+}
+
 static void what_is_no_file_is_a_miss(void **state)
 {
     char name[NAME_MAX + 1];
@@ -361,6 +370,7 @@ int main(void)
         cmocka_unit_test(keys_tell_everything_apart),
         in_cache(every_damage_is_found_and_repaired),
         in_cache(a_file_under_a_false_name_is_a_miss),
+        in_cache(a_folder_is_empty_until_something_is_written),
         in_cache(what_is_no_file_is_a_miss),
         in_cache(writers_do_not_disturb_each_other),
         in_cache(places_that_keep_nothing),
