@@ -1,19 +1,22 @@
 #!/bin/sh
 # demo.sh BUILD: renders the examples to BUILD/demo/, EXR and PNG, and makes meshes of a gear, a bearing block,
-# a bracket filled with a gyroid lattice, and a bonsai.
+# a bracket filled with a gyroid lattice, and a bonsai.  Pictures by paths of light take minutes: who looks on
+# sees how far they are.
 build=$1
+quiet=--quiet
+[ -t 2 ] && quiet=
 mkdir -p "$build/demo" || exit 1
 for scene in examples/*.krs; do
     name=$(basename "$scene" .krs)
     echo "render $scene -> $build/demo/$name.exr, $build/demo/$name.png"
-    "$build/krs" render "$scene" --quiet -o "$build/demo/$name.exr" -o "$build/demo/$name.png" ||
+    "$build/krs" render "$scene" $quiet -o "$build/demo/$name.exr" -o "$build/demo/$name.png" ||
         exit 1
 done
 mesh() { # example, name, options
     scene=examples/$1.krs name=$2
     shift 2
     echo "mesh $scene -> $build/demo/$name.stl, $build/demo/$name.glb"
-    "$build/krs" mesh "$scene" --quiet "$@" -o "$build/demo/$name.stl" -o "$build/demo/$name.glb" ||
+    "$build/krs" mesh "$scene" $quiet "$@" -o "$build/demo/$name.stl" -o "$build/demo/$name.glb" ||
         exit 1
 }
 mesh 02-gear gear --component "component 1"
