@@ -76,7 +76,11 @@ static void act_frame_part(Viewing *viewing)
     changed(viewing);
 }
 
-static void act_home(Viewing *viewing) { viewing_take_camera(viewing, viewing->camera); }
+static void act_home(Viewing *viewing)
+{
+    viewing_place_camera(viewing);
+    viewing_take_camera(viewing, viewing->camera);
+}
 
 static void act_next_camera(Viewing *viewing)
 {

@@ -131,6 +131,12 @@ void viewing_take_camera(Viewing *viewing, size_t camera)
     viewing_show(viewing);
 }
 
+void viewing_place_camera(Viewing *viewing)
+{
+    set_frame(viewing);
+    krs_frame_place_camera(viewing->frame);
+}
+
 static void set_defaults(Viewing *viewing)
 {
     const KrsScene *scene = version_scene(viewing->view.version);
@@ -272,8 +278,10 @@ void viewing_adopt(Viewing *viewing, Version *version)
     set_defaults(viewing);
     if (before.version)
         keep_values(viewing, &before);
-    else
+    else {
         begin_view(viewing);
+        viewing_place_camera(viewing);
+    }
     version_release(before.version);
     free(before.values);
     if (viewing->camera >= krs_camera_count(scene))

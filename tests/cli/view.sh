@@ -6,7 +6,7 @@
 export XDG_CACHE_HOME="$work/caches"
 unset WAYLAND_DISPLAY
 "${CC:-cc}" -std=c17 -o screen_check "$root/tests/cli/screen_check.c" -lpng || exit 1
-plan 36
+plan 38
 : >out
 
 scene() { # radius
@@ -246,6 +246,17 @@ xdotool key --window "$window" Escape
 wait "$viewer"
 status=$?
 ended 0 "a key closes it"
+printf 'param h = 1 in [0.5, 4];\nshow box([1, h, 1]);' >tall.krs
+"$krs" view tall.krs --size 96x64 --samples 2 --set h=4 >out.view 2>err.view &
+viewer=$!
+window=$(timeout 20 xdotool search --sync --onlyvisible --name tall.krs | head -n 1)
+xdotool mousemove 48 32 key Tab
+"$krs" render tall.krs --size 96x64 --samples 2 --set h=4 --specialize structure -q -o b.png && screen_is b.png
+result $? "the camera of a scene without one, and its floor, are for what is set"
+xdotool key --window "$window" Escape
+wait "$viewer"
+status=$?
+ended 0 "and it closes"
 kill "$manager"
 viewer=$other
 kill "$server"
