@@ -5,44 +5,7 @@
 
 #include <math.h>
 
-#include "compiler/shape/reach.h"
-
-/* A number that does not move in its range, or none. */
-static bool read_number(Range range, double *number)
-{
-    *number = 0.5 * (range.low + range.high);
-    return range.high - range.low <= 1e-12 * (1 + fabs(*number));
-}
-
-/* The numbers of a stage; false when some are not known when compiling. */
-static bool read_stage(ShapeBuilder *builder, const Shape *krs, const SequenceStage *stage,
-                       ReachStage *reach)
-{
-    bool known = true;
-    if (stage->kind == SEQUENCE_KERNEL) {
-        reach->kind   = REACH_KERNEL;
-        reach->kernel = krs->children[stage->kernel]->box;
-    } else if (stage->kind == SEQUENCE_REFLECT) {
-        reach->kind = REACH_REFLECT;
-        for (uint32_t i = 0; i < 3; i++)
-            known = read_number(node_range(builder, stage->normal, i), &reach->normal[i]) && known;
-        known = read_number(node_range(builder, stage->offset, 0), &reach->offset) && known;
-    } else {
-        double scale;
-        reach->kind = REACH_MAP;
-        known       = read_number(node_range(builder, stage->map.scale, 0), &scale);
-        for (uint32_t i = 0; i < 3; i++) {
-            for (uint32_t j = 0; j < 3; j++) {
-                double *entry = &reach->rows[i][j];
-                known = read_number(node_range(builder, stage->map.rows[i], j), entry) && known;
-                *entry *= scale;
-            }
-            known = read_number(node_range(builder, stage->map.shift, i), &reach->shift[i]) &&
-                    known;
-        }
-    }
-    return known;
-}
+#include "compiler/shape/sequence_box.h"
 
 /* Of a sequence with spheres or maps that invert: balls all the way (cover.h). */
 static Box bound_inverted(ShapeBuilder *builder, const Shape *krs, LevelBound *bounds)
@@ -82,46 +45,12 @@ static Box bound_inverted(ShapeBuilder *builder, const Shape *krs, LevelBound *b
     return cover_box(&cover);
 }
 
-/* Boxes and balls grow along the sequence side by side; each is tight where the other is not
-   (turned mirrors blow boxes up), so each is cut to the other's size at every level.  While all
-   numbers are known, a search then finds how far the set really reaches. */
+/* Of a sequence of reflections and similarities. */
 static Box bound_sequence(ShapeBuilder *builder, const Shape *krs, LevelBound *bounds)
 {
-    ReachStage *reach = arena_new_array(builder->arena, ReachStage, krs->stage_count + 1);
-    bool        known = true;
-    Box         box   = box_empty;
-    Ball        ball  = ball_around(box_empty);
-    for (uint32_t i = 0; i < krs->stage_count; i++) {
-        const SequenceStage *stage = &krs->stages[i];
-        if (stage->kind == SEQUENCE_KERNEL) {
-            Box kernel = krs->children[stage->kernel]->box;
-            box        = box_hull(box, kernel);
-            ball       = ball_hull(ball, ball_around(kernel));
-        } else if (stage->kind == SEQUENCE_REFLECT) {
-            Range u[3];
-            for (uint32_t k = 0; k < 3; k++)
-                u[k] = node_range(builder, stage->normal, k);
-            Range w = node_range(builder, stage->offset, 0);
-            box     = box_fold(box, u, w);
-            ball    = ball_fold(ball, u, w);
-        } else {
-            box  = map_box(builder, &stage->map, box);
-            ball = ball_around(map_box(builder, &stage->map, ball_box(ball)));
-        }
-        box          = box_common(box, ball_box(ball));
-        Ball tighter = ball_around(box);
-        if (tighter.radius < ball.radius)
-            ball = tighter;
-        known         = known && read_stage(builder, krs, stage, &reach[i]);
-        reach[i].box  = box;
-        reach[i].ball = ball;
-        if (known && stage->kind == SEQUENCE_REFLECT)
-            reach_tighten(reach, i + 1);
-        box       = reach[i].box;
-        ball      = reach[i].ball;
-        bounds[i] = (LevelBound){box, ball};
-    }
-    return box;
+    ReachStage          *reach = arena_new_array(builder->arena, ReachStage, krs->stage_count + 1);
+    const BuilderNumbers all   = builder_numbers(builder);
+    return sequence_box(&(BoxInput){&all.numbers, krs, NULL, 0}, reach, bounds);
 }
 
 static uint32_t count_inversions(const Shape *krs)

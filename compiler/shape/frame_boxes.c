@@ -8,10 +8,13 @@
 
 #include "compiler/graph/facts.h"
 #include "compiler/graph/op_values.h"
+#include "compiler/shape/sequence_box.h"
 
 /* Shapes that are looked at, each where it is used, and those that are planned: what a frame does for
    them should take less than a millisecond. */
 enum { MOST_VISITED = 1 << 16, MOST_PLANNED = 1 << 12 };
+/* Of a sequence: the search for its reach takes a frame some milliseconds, then. */
+enum { MOST_STAGES = 40 };
 
 /* What a node depends on. */
 enum { ON_PARAMETERS = 1, ON_TIME = 2 };
@@ -95,11 +98,28 @@ static size_t add_shapes(Plan *plan, size_t count)
     return first;
 }
 
+static bool is_sequence(const Shape *shape)
+{
+    return shape->kind == SHAPE_KRS && shape->stage_count <= MOST_STAGES &&
+           sequence_is_rigid(shape);
+}
+
+static const SequenceStage *copy_stages(const Shape *shape, Arena *arena)
+{
+    if (!is_sequence(shape))
+        return NULL;
+    SequenceStage *stages = arena_new_array(arena, SequenceStage, shape->stage_count + 1);
+    for (uint32_t i = 0; i < shape->stage_count; i++)
+        stages[i] = shape->stages[i];
+    return stages;
+}
+
 /* What rules look at, and nothing that is freed when the scene is made. */
-static Shape shape_for_rule(const Shape *shape)
+static Shape shape_for_rule(const Shape *shape, Arena *arena)
 {
     Shape copy       = *shape;
     copy.children    = NULL;
+    copy.stages      = copy_stages(shape, arena);
     copy.within      = shape->within ? shape : NULL; /* asked for, never followed */
     copy.declaration = NULL;
     return copy;
@@ -109,14 +129,15 @@ static Shape shape_for_rule(const Shape *shape)
 static bool plan_shape(Plan *plan, const Shape *shape, size_t at)
 {
     FrameBoxes *boxes             = plan->boxes;
-    boxes->shapes.items[at].shape = shape_for_rule(shape);
+    boxes->shapes.items[at].shape = shape_for_rule(shape, plan->builder->arena);
     plan->visited++;
     const uint32_t parts = box_part_count(shape);
-    if (!has_box_rule(shape) || plan->visited > MOST_VISITED ||
+    if (!(has_box_rule(shape) || is_sequence(shape)) || plan->visited > MOST_VISITED ||
         boxes->shapes.count + parts > MOST_PLANNED)
         return false;
-    Node           nodes[MOST_BOX_NODES];
-    const uint32_t count = box_nodes(shape, nodes);
+    Node           nodes[MOST_BOX_NODES + MOST_STAGES * MOST_STAGE_NODES];
+    const uint32_t count = is_sequence(shape) ? sequence_nodes(shape, nodes)
+                                              : box_nodes(shape, nodes);
     const size_t   first = add_shapes(plan, parts);
     bool           found = false;
     for (uint32_t i = 0; i < count; i++)
@@ -164,8 +185,11 @@ FrameBoxes frame_boxes_copy(const FrameBoxes *plan, Arena *arena)
         copy.nodes.items[i] = plan->nodes.items[i];
     for (size_t i = 0; i < plan->numbers.count; i++)
         copy.numbers.items[i] = plan->numbers.items[i];
-    for (size_t i = 0; i < plan->shapes.count; i++)
-        copy.shapes.items[i] = plan->shapes.items[i];
+    for (size_t i = 0; i < plan->shapes.count; i++) {
+        FrameShape *shape   = &copy.shapes.items[i];
+        *shape              = plan->shapes.items[i];
+        shape->shape.stages = shape->shape.stages ? copy_stages(&shape->shape, arena) : NULL;
+    }
     return copy;
 }
 
@@ -187,6 +211,12 @@ static Range range_in_frame(const BoxNumbers *numbers, Node node, uint32_t compo
     return frame_number_range(number, component, finding->nodes, finding->values);
 }
 
+static Box box_by_rule(const BoxInput *in)
+{
+    ReachStage reach[MOST_STAGES];
+    return in->shape->kind == SHAPE_KRS ? sequence_box(in, reach, NULL) : shape_box(in);
+}
+
 void frame_boxes_find(const FrameBoxes *plan, const Node *nodes, const NodeValue *values,
                       Box *boxes)
 {
@@ -196,7 +226,7 @@ void frame_boxes_find(const FrameBoxes *plan, const Node *nodes, const NodeValue
         finding.current           = plan->numbers.items + planned->first_number;
         boxes[i]                  = planned->shape.box;
         if (planned->part_count + planned->number_count > 0)
-            boxes[i] = shape_box(
+            boxes[i] = box_by_rule(
                 &(BoxInput){&finding.numbers, &planned->shape, boxes + planned->first_part, 1});
     }
 }

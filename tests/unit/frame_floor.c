@@ -84,6 +84,11 @@ static const char *const scenes[] = {
     "show union([box([1, h * (i + 1), 1]).move([2 * i, 0, 0]) for i in 0..5]);",
     "for i in 0..5 { show sphere(0.1 * h).move([i, h * i - 2, 0]); }",
     "show sphere(1).move([3, 1, 0]); show box([1, h, 1]).paint(#ff0000);",
+    "show krs { kernel cylinder(0.1, 1); for i in 0..5 {"
+    "  reflect plane([sin(0.2 * h), cos(0.2 * h), 0.3 * i], 0.7 * i + 0.3); } };",
+    "show krs { kernel sphere(0.1 * h); mobius translate([0, -h, 0]); reflect plane([1, 1, 0], "
+    "0.1);"
+    "  kernel box([0.3, h, 0.3]); reflect plane([0, 1, 0.2], 0.4 * h); };",
     "let base = 2 * h; show cone(1, base); show torus(h, 0.2 * h);",
 };
 
@@ -182,7 +187,7 @@ static void stays_below_cameras(void **state)
     close_scene(opened);
 }
 
-/* The box of mirrors that a parameter turns is ten times too large, and rays hit little but the floor. */
+/* The box of mirrors that turn with the time is ten times too large, and rays hit little but the floor. */
 static void camera_finds_a_small_thing_in_a_large_box(void **state)
 {
     const char *const text     = "show krs {"
@@ -190,7 +195,7 @@ static void camera_finds_a_small_thing_in_a_large_box(void **state)
                                  "for i in 0..6 {"
                                  "reflect plane([sin(h), cos(h), 0.2 * i], 0.9 * i + 0.8); } };";
     const double      lower[3] = {-0.2, 0, -0.2}, upper[3] = {1.8, 5.4, 5.4};
-    const Opened      opened = open_scene("param h = 0.3 in [0, 1];", text, 0);
+    const Opened      opened = open_scene("let h = clamp(0.3 + sin(time), 0, 1);", text, 0);
     KrsComponent      component;
     KrsCamera         camera;
     double            away = 0;
