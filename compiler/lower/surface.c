@@ -4,11 +4,29 @@
  */
 #include "compiler/lower/surface.h"
 
+/* Whether two values are the same costly operation, or vectors with such parts.  Then it is better to
+   choose between operands: each branch of a tree would have an arc of its own, and all would be computed. */
+static bool are_alike(const Graph *g, Node a, Node b)
+{
+    const Expr *x = &g->items[a], *y = &g->items[b];
+    if (x->op != y->op || x->type != y->type)
+        return false;
+    if (x->op != OP_vec2)
+        return x->op == OP_atan2 || x->op == OP_join_id;
+    return are_alike(g, x->operands[0], y->operands[0]) ||
+           are_alike(g, x->operands[1], y->operands[1]);
+}
+
 static Node choose(Graph *g, Node condition, Node a, Node b)
 {
     if (a == NODE_NONE || b == NODE_NONE || a == b)
         return a == NODE_NONE ? b : a;
-    return graph_op3(g, OP_select, condition, a, b);
+    if (!are_alike(g, a, b))
+        return graph_op3(g, OP_select, condition, a, b);
+    const Expr x = g->items[a], y = g->items[b];
+    Node       first  = choose(g, condition, x.operands[0], y.operands[0]);
+    Node       second = choose(g, condition, x.operands[1], y.operands[1]);
+    return graph_op2(g, (Op)x.op, first, second);
 }
 
 Surface choose_surface(Graph *g, Node condition, Surface a, Surface b)

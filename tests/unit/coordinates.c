@@ -6,10 +6,12 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
 
+#include "compiler/compiled.h"
 #include "tests/support/same_scene.h"
 
 static KrsScene *compile(const char *text)
@@ -77,12 +79,33 @@ static void coordinates_that_some_ask_for_are_there(void **state)
     }
 }
 
+/* An arc costs as much as a part: where it belongs to the nearer of two, that is asked once. */
+static void one_arc_is_enough_for_all_parts(void **state)
+{
+    (void)state;
+    KrsScene         *scene   = compile("material m { color: [u, v, 0] }"
+                                                  "show union([cylinder(1, 1), cone(2, 1).move([4, 0, 0]),"
+                                                  "            cylinder(1, 3).move([0, 5, 0])]).paint(m);"
+                                                  "camera { eye: [4, 3, 15] }");
+    const KrsFunction wanted  = KRS_FUNCTION_SURFACE;
+    const KrsVariant  variant = {0};
+    char             *text    = krs_scene_text(scene, &variant, &wanted, 1, NULL);
+    int               arcs    = 0;
+    assert_non_null(text);
+    for (const char *at = text; (at = strstr(at, "krs_atan2(")); at++)
+        arcs++;
+    assert_int_equal(arcs, 2); /* the function, and a call */
+    free(text);
+    krs_scene_free(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(coordinates_that_none_asks_for_change_nothing),
         cmocka_unit_test(coordinates_that_none_asks_for_need_no_columns),
         cmocka_unit_test(coordinates_that_some_ask_for_are_there),
+        cmocka_unit_test(one_arc_is_enough_for_all_parts),
     };
     return cmocka_run_group_tests_name("coordinates", tests, NULL, NULL);
 }
