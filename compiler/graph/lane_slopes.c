@@ -346,3 +346,71 @@ bool lane_slopes_run(const LaneTape *tape, const LaneRanges *ranges, LaneSlope *
         sure = sure && isfinite(slope->by[j].low) && isfinite(slope->by[j].high);
     return sure;
 }
+
+/* ---- what has no bounds ---- */
+
+/* A search through the steps before one; DAGs have many ways, so only so many steps are visited. */
+typedef struct Boundless {
+    Run run;
+    int visits;
+} Boundless;
+
+static bool is_boundless(Boundless *b, uint32_t operand);
+
+/* One of two, unless it is clear which. */
+static bool lesser_is_boundless(Boundless *b, const LaneStep *step, int sign)
+{
+    Range first  = range_at(&b->run, step->operands[0]),
+          second = range_at(&b->run, step->operands[1]);
+    if (sign > 0 ? first.high <= second.low : first.low >= second.high)
+        return is_boundless(b, step->operands[0]);
+    if (sign > 0 ? second.high <= first.low : second.low >= first.high)
+        return is_boundless(b, step->operands[1]);
+    return is_boundless(b, step->operands[0]) || is_boundless(b, step->operands[1]);
+}
+
+static bool factor_is_boundless(Boundless *b, const LaneStep *step)
+{
+    for (int k = 0; k < 2; k++)
+        if (!range_is_zero(range_at(&b->run, step->operands[1 - k])) &&
+            is_boundless(b, step->operands[k]))
+            return true;
+    return false;
+}
+
+static bool step_is_boundless(Boundless *b, const LaneStep *step, Range result)
+{
+    Range first = range_at(&b->run, step->operands[0]);
+    switch (step->op) {
+    case OP_sign: return true;
+    case OP_sqrt: return result.low <= 0 && !range_is_single(first);
+    case OP_neg: return is_boundless(b, step->operands[0]);
+    case OP_add:
+    case OP_sub: return is_boundless(b, step->operands[0]) || is_boundless(b, step->operands[1]);
+    case OP_mul: return factor_is_boundless(b, step);
+    case OP_min:
+    case LANE_LESSER: return lesser_is_boundless(b, step, 1);
+    case OP_max:
+    case LANE_GREATER: return lesser_is_boundless(b, step, -1);
+    case OP_select:
+        return first.low <= 0 && first.high > 0 &&
+               (is_boundless(b, step->operands[1]) || is_boundless(b, step->operands[2]));
+    default: return false;
+    }
+}
+
+static bool is_boundless(Boundless *b, uint32_t operand)
+{
+    if ((operand & LANE_SCALAR) || operand < LANE_INPUTS ||
+        range_is_single(range_at(&b->run, operand)) || b->visits-- == 0)
+        return false;
+    return step_is_boundless(b, &b->run.tape->steps[operand - LANE_INPUTS],
+                             range_at(&b->run, operand));
+}
+
+bool lane_is_boundless(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand)
+{
+    enum { MOST_VISITS = 64 };
+    Boundless b = {{.tape = tape, .ranges = ranges}, MOST_VISITS};
+    return is_boundless(&b, operand);
+}

@@ -207,6 +207,10 @@ LaneSlope *lane_slopes_new(const LaneTape *tape, Arena *arena);
 bool lane_slopes_run(const LaneTape *tape, const LaneRanges *ranges, LaneSlope *slopes,
                      LaneSlope *slope);
 
+/* After a run over a box: whether it is clear at once that lane_slopes_run finds no bound for an operand, which then need
+   not be asked.  So it is behind a sign, or behind a root of what may be 0. */
+bool lane_is_boundless(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand);
+
 /* Ranges of the second derivatives of a value: by xx, yy, zz, yz, xz and xy. */
 typedef struct LaneHessian {
     Range by[6];

@@ -251,7 +251,8 @@ bool field_slope(const MeshField *field, Box box, Range *range, LaneSlope *slope
         return false;
     if (own.high <= cut.low && field->frame->zone_count == 0)
         return slope_of_cut(field, box, slope);
-    if (!lane_slopes_run(tape, &field->ranges, field->slopes, slope))
+    if (lane_is_boundless(tape, &field->ranges, tape->outputs[0]) ||
+        !lane_slopes_run(tape, &field->ranges, field->slopes, slope))
         return false;
     for (int k = 0; own.low < cut.high && k < 3; k++)
         slope->by[k] = range_hull(slope->by[k], (Range){-1, 1});
@@ -269,6 +270,7 @@ bool field_hessian(const MeshField *field, Box box, Range *range, LaneSlope *slo
     if (own.high <= cut.low && field->frame->zone_count == 0)
         return slope_of_cut(field, box, slope);
     return own.low >= cut.high && !lane_is_undecided(tape, &field->ranges) &&
+           !lane_is_boundless(tape, &field->ranges, tape->outputs[0]) &&
            lane_slopes_run(tape, &field->ranges, field->slopes, slope) &&
            lane_hessians_run(tape, &field->ranges, field->slopes, field->hessians, hessian);
 }

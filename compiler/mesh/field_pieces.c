@@ -245,7 +245,15 @@ static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset
 
 /* ---- how many there are at least ---- */
 
-/* Of what is not chosen all over the box each number is a piece, or several are.  Ranges tell that. */
+/* Whether it is never taken apart: it is a piece, or there are none. */
+static bool is_whole(const LaneStep *step)
+{
+    return !is_greater(step) && !is_lesser(step) && step->op != OP_abs && step->op != OP_add &&
+           step->op != OP_sub;
+}
+
+/* Of what is not chosen all over the box each number is a piece, or several are, and has derivatives.  Ranges tell
+   that. */
 static bool count_pieces(Finding *f, uint32_t operand, double sign, double offset)
 {
     const LaneStep *step = step_of(f, operand);
@@ -261,10 +269,13 @@ static bool count_pieces(Finding *f, uint32_t operand, double sign, double offse
                    count_pieces(f, step->operands[1], sign, offset);
         }
     }
+    if (step && step->op == OP_neg)
+        return count_pieces(f, step->operands[0], -sign, offset);
     size_t i = 0;
     while (i < f->pieces->count && f->outputs[i] != operand)
         i++;
-    if (i == MOST_PIECES)
+    if (i == MOST_PIECES ||
+        (step && is_whole(step) && lane_is_boundless(f->tape, &f->field->ranges, operand)))
         return false;
     f->outputs[i] = operand;
     f->pieces->count += i == f->pieces->count;
