@@ -473,9 +473,10 @@ static Syntax *no_expression(Parser *p)
         diag->help = form_help(p->diags, FORM_LOOP_AHEAD);
     else if (found == TOKEN_DOT_DOT)
         diag->help = "a range has both ends, as in `0..5`";
-    else if (found == TOKEN_MATERIAL)
+    else if (found == TOKEN_MATERIAL) {
         diag->help = form_help(p->diags, FORM_MATERIAL_VALUE);
-    else if (keyword)
+        skip_declaration(p);
+    } else if (keyword)
         diag->help = "this is a word of the language, not a name";
     return error_node(p);
 }

@@ -292,6 +292,19 @@ bool block_is_left(const Parser *p, size_t opener, BlockKind kind)
     return (kind == KRS_BLOCK || !fits) && !brace_is_closed(p, opener);
 }
 
+void skip_declaration(Parser *p)
+{
+    const size_t outer = p->here.braces;
+    advance(p);
+    if (token_here(p)->kind == TOKEN_NAME)
+        advance(p);
+    if (token_here(p)->kind != TOKEN_LEFT_BRACE)
+        return;
+    do
+        advance(p);
+    while (p->here.braces > outer && token_here(p)->kind != TOKEN_END);
+}
+
 /* Whether recovery may end here, because a statement begins.  `let`, `for` and `if` may also begin
    parts of expressions.  So they must begin a line, outside of brackets opened after `start`. */
 static bool may_resume(const Parser *p, Level start)
