@@ -167,6 +167,8 @@ Node frame_infinite(KrsFrame *frame)
 static KrsStatus change_slot(KrsFrame *frame, uint32_t slot, const double *values, size_t count)
 {
     NodeValue before = frame->parameters[slot];
+    if (memcmp(before.v, values, count * sizeof *values) == 0)
+        return KRS_OK; /* viewers set all parameters when one changes */
     memcpy(frame->parameters[slot].v, values, count * sizeof *values);
     frame->fresh = false;
     if (find_slopes(frame, slot) && frame_infinite(frame) == NODE_NONE)
