@@ -85,11 +85,11 @@ void take_distance(float distance)
     float unverified = march.step - march.clearance; // a surface may hide in such an interval
     float permitted = is_ray ? frame.error * pixel : 0.0;
     march.steps++;
-    float last_radius = march.clearance, radius = clearance, ahead = INFINITE;
+    float last_radius = march.clearance, radius = clearance;
 #ifdef STEPS // from inside of one solid nothing is known of balls around others
     last_radius = march_radius;
     radius = march.side < 0.0 ? clearance : sampled.y;
-    ahead = march.side < 0.0 ? clearance : sampled.x;
+    float ahead = march.side < 0.0 ? clearance : sampled.x;
 #endif
     bool found_surface = clearance <= least && (unverified <= permitted + tolerance || !is_ray) ||
                          refining;
@@ -105,7 +105,10 @@ void take_distance(float distance)
                              march.clearance + tolerance);
     float advance = found_surface && accurate ? is_ray ? crossing : march.clearance : 0.0;
     march.t = verified ? at : march.t + advance;
-    float next = min(find_step(radius, last_slope, slope, permitted, tolerance), ahead + tolerance);
+    float next = find_step(radius, last_slope, slope, permitted, tolerance);
+#ifdef STEPS
+    next = min(next, ahead + tolerance);
+#endif
     march.step = verified        ? next
                  : found_surface ? crossing
                                  : shorter_step;

@@ -70,9 +70,13 @@ float last_distance, last_step; // the distance before the last step, and its le
 bool  took_least_step;          // the last step was the least one, not the distance
 float least_step;
 float slope;                  // of the radius along the ray: a running mean
-float radius_here;            // of the empty ball around the position; STEPS: of what has no roots
+#ifdef STEPS
+float most_ahead;             // how far it is to the next root, or less
+float radius_here;            // of the empty ball around the position, of what has no roots
 float last_radius;            // the same before the last step
-float most_ahead;             // STEPS: how far it is to the next root, or less
+#else
+#define last_radius last_distance
+#endif
 float start_ratio;            // distance at the start, relative to the true one
 uint  step_count, step_limit; // so far, and at most
 
@@ -237,7 +241,10 @@ void begin_item(uint number, bool saved)
     t = 0.0;
     slope = facing;
     step_count = 0u;
-    last_distance = last_radius = last_step = 0.0;
+    last_distance = last_step = 0.0;
+#ifdef STEPS
+    last_radius = 0.0;
+#endif
     took_least_step = true;
     float least = min(LEAST_STEP * frame.error, LEAST_STEP_IN_PIXELS);
     least_step = (is_cone ? 1.0 : least) * hit.width + hit.rounding;
@@ -299,16 +306,17 @@ bool is_blocked(float distance)
 void take_distance(float distance)
 {
     distance *= hit.side;
-#ifndef STEPS
-    radius_here = distance;
+    float around = distance;
+#ifdef STEPS
+    around = radius_here;
 #endif
     step_count++;
     float first = clamp(distance / lift, 0.0625, 1.0);
     start_ratio = step_count == 1u ? first : start_ratio;
     float per_gap = 1.0 / max(last_step, 1e-30);
     bool  inside = is_blocked(distance);
-    bool  steps_back = has_overstepped(radius_here, per_gap) && !(inside && !is_cone);
-    float risen = mix(slope, (radius_here - last_radius) * per_gap, LEARNING);
+    bool  steps_back = has_overstepped(around, per_gap) && !(inside && !is_cone);
+    float risen = mix(slope, (around - last_radius) * per_gap, LEARNING);
     slope = steps_back ? -1.0 : last_step > 0.0 ? risen : slope;
     blocked = blocked || inside && !steps_back;
     bool  arrives = t + max(distance, least_step) >= end;
@@ -316,7 +324,7 @@ void take_distance(float distance)
     took_least_step = !steps_back && distance < least_step;
     // Where the ray enters the solid, between the last position and this one.
     float crossing = last_step * distance / max(last_distance - distance, 1e-30);
-    float relaxed = relax(radius_here);
+    float relaxed = relax(around);
 #ifdef STEPS // inside, the length tells how far it is to the other side
     crossing = max(crossing, last_distance - last_step);
     relaxed = min(relaxed, most_ahead);
@@ -327,7 +335,9 @@ void take_distance(float distance)
     t += steps_back ? last_radius - last_step : inside && !is_cone ? min(crossing, 0.0) : next;
     last_step = steps_back ? last_radius : next;
     last_distance = steps_back ? last_distance : distance;
-    last_radius = steps_back ? last_radius : radius_here;
+#ifdef STEPS
+    last_radius = steps_back ? last_radius : around;
+#endif
 }
 
 // The width of the blocker's penumbra at the hit, in pixels.
