@@ -245,30 +245,3 @@ void krs_camera_aim(KrsCamera *camera, const double point[3])
     memcpy(camera->target, point, sizeof camera->target);
     camera->focus = 0;
 }
-
-bool krs_component_box(const KrsScene *scene, size_t component, double low[3], double high[3])
-{
-    KrsComponent found;
-    bool         finite = krs_component(scene, component, &found) == KRS_OK;
-    for (int k = 0; finite && k < 3; k++) {
-        low[k]  = found.low[k];
-        high[k] = found.high[k];
-        finite  = isfinite(low[k]) && isfinite(high[k]) && low[k] <= high[k];
-    }
-    return finite;
-}
-
-bool krs_scene_box(const KrsScene *scene, double low[3], double high[3])
-{
-    bool any = false;
-    for (size_t i = 0; i < krs_component_count(scene); i++) {
-        double     least[3], most[3];
-        const bool finite = krs_component_box(scene, i, least, most);
-        for (int k = 0; finite && k < 3; k++) {
-            low[k]  = any ? fmin(low[k], least[k]) : least[k];
-            high[k] = any ? fmax(high[k], most[k]) : most[k];
-        }
-        any = any || finite;
-    }
-    return any;
-}

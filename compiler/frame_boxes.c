@@ -3,6 +3,7 @@
  */
 #include <math.h>
 
+#include "compiler/krs_camera.h"
 #include "compiler/program.h"
 
 const Box *frame_find_boxes(KrsFrame *frame)
@@ -14,6 +15,48 @@ const Box *frame_find_boxes(KrsFrame *frame)
     frame_boxes_find(&scene->boxes, roots_of(&scene->roots, ROOTS_BOX).items, frame->values,
                      frame->boxes);
     return frame->boxes;
+}
+
+Box frame_box(const KrsFrame *frame, const Box *boxes, size_t component)
+{
+    const KrsComponent *all = &frame->scene->components[component];
+    Box                 box;
+    if (component < frame->scene->boxes.asked_for)
+        return boxes[component];
+    for (int k = 0; k < 3; k++)
+        box.axis[k] = (Range){all->low[k], all->high[k]};
+    return box;
+}
+
+Box frame_outer_box(const KrsFrame *frame, const Box *boxes)
+{
+    Box box = box_empty;
+    for (size_t i = 0; i < frame->scene->shown_count; i++) {
+        const Box one = frame_box(frame, boxes, i);
+        if (box_is_finite(one))
+            box = box_hull(box, one);
+    }
+    return box;
+}
+
+static bool copy_corners(Box box, double low[3], double high[3])
+{
+    for (int k = 0; k < 3; k++) {
+        low[k]  = box.axis[k].low;
+        high[k] = box.axis[k].high;
+    }
+    return box_is_finite(box);
+}
+
+bool krs_frame_component_box(KrsFrame *frame, size_t component, double low[3], double high[3])
+{
+    return component < frame->scene->shown_count &&
+           copy_corners(frame_box(frame, frame_find_boxes(frame), component), low, high);
+}
+
+bool krs_frame_box(KrsFrame *frame, double low[3], double high[3])
+{
+    return copy_corners(frame_outer_box(frame, frame_find_boxes(frame)), low, high);
 }
 
 /* The least height of all cameras. */

@@ -44,33 +44,9 @@ typedef struct Rays {
     bool       apart; /* they keep away from what has no end, as a floor */
 } Rays;
 
-/* The box of a component in the frame. */
-static Box box_of(const KrsFrame *frame, const Box *boxes, size_t component)
-{
-    const KrsComponent *all = &frame->scene->components[component];
-    Box                 box;
-    if (component < frame->scene->boxes.asked_for)
-        return boxes[component];
-    for (int k = 0; k < 3; k++)
-        box.axis[k] = (Range){all->low[k], all->high[k]};
-    return box;
-}
-
 static Box box_of_point(const double point[3])
 {
     return (Box){{range_of(point[0]), range_of(point[1]), range_of(point[2])}};
-}
-
-/* The box around those of the bounded components; empty when there is none. */
-static Box outer_box(const KrsFrame *frame, const Box *boxes)
-{
-    Box box = box_empty;
-    for (size_t i = 0; i < frame->scene->shown_count; i++) {
-        const Box one = box_of(frame, boxes, i);
-        if (box_is_finite(one))
-            box = box_hull(box, one);
-    }
-    return box;
 }
 
 /* The number of rays: a power of two, so that it has no factor in common with the strides of
@@ -122,7 +98,7 @@ static bool cast_rays(KrsFrame *frame, Rays *rays, int count, double radius)
                           (size_t)(count - i < BATCH ? count - i : BATCH), 4 * radius,
                           1e-3 * radius, rays->hits + i);
         unresolved += hit->unresolved;
-        if (hit->hit && box_is_finite(box_of(frame, rays->boxes, hit->component - 1))) {
+        if (hit->hit && box_is_finite(frame_box(frame, rays->boxes, hit->component - 1))) {
             memcpy(rays->seen[rays->seen_count++], hit->point, sizeof hit->point);
             rays->box = box_hull(rays->box, box_of_point(hit->point));
         }
@@ -217,7 +193,7 @@ static void keep_apart(KrsFrame *frame, const Box *boxes, Cells *cells)
     for (size_t i = 0; i < cells->count; i++) {
         KrsHit near = {.component = 0};
         krs_probe(frame, (const double(*)[3])cells->middles + i, 1, &near);
-        if (near.component == 0 || !box_is_finite(box_of(frame, boxes, near.component - 1)))
+        if (near.component == 0 || !box_is_finite(frame_box(frame, boxes, near.component - 1)))
             continue;
         memcpy(cells->middles[kept], cells->middles[i], sizeof *cells->middles);
         cells->boxes[kept++] = cells->boxes[i];
@@ -389,7 +365,7 @@ static KrsStatus find_camera(KrsFrame *frame, DefaultCamera *camera, bool *found
 {
     KrsView    view;
     const Box *boxes = frame_find_boxes(frame);
-    Box        box   = outer_box(frame, boxes);
+    Box        box   = frame_outer_box(frame, boxes);
     Ball       ball  = ball_around(box);
     *found           = ball.radius > 0 && isfinite(ball.radius);
     if (!*found)

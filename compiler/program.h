@@ -240,6 +240,9 @@ void frame_refresh_points(KrsFrame *frame);
 /* frame_boxes.c: the boxes of the shown components, but for a floor, at the values of the frame; NULL:
    they are those of all frames. */
 const Box *frame_find_boxes(KrsFrame *frame);
+/* With these boxes: that of a component, and that around all which have an end, empty if none has. */
+Box frame_box(const KrsFrame *frame, const Box *boxes, size_t component);
+Box frame_outer_box(const KrsFrame *frame, const Box *boxes);
 /* Puts the height of the floor into its slot, if it depends on another one. */
 void frame_find_floor(KrsFrame *frame, uint32_t changed);
 /* Whether a tape needs the value of a slot; ANY_SLOT: of any. */

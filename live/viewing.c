@@ -131,10 +131,10 @@ void viewing_take_camera(Viewing *viewing, size_t camera)
     viewing_show(viewing);
 }
 
-void viewing_place_camera(Viewing *viewing)
+KrsFrame *viewing_frame(Viewing *viewing)
 {
     set_frame(viewing);
-    krs_frame_place_camera(viewing->frame);
+    return viewing->frame;
 }
 
 static void set_defaults(Viewing *viewing)
@@ -280,7 +280,7 @@ void viewing_adopt(Viewing *viewing, Version *version)
         keep_values(viewing, &before);
     else {
         begin_view(viewing);
-        viewing_place_camera(viewing);
+        krs_frame_place_camera(viewing_frame(viewing));
     }
     version_release(before.version);
     free(before.values);

@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "compiler/compile.h"
+#include "compiler/krs_camera.h"
 
 enum { MOST_TEXT = 1024 };
 
@@ -92,6 +93,25 @@ static const char *const scenes[] = {
     "let base = 2 * h; show cone(1, base); show torus(h, 0.2 * h);",
 };
 
+static void compare_boxes(Opened asked, Opened fixed)
+{
+    double found[2][3], truth[2][3];
+    assert_true(krs_frame_box(asked.frame, found[0], found[1]));
+    assert_true(krs_frame_box(fixed.frame, truth[0], truth[1]));
+    for (int side = 0; side < 2; side++)
+        for (int k = 0; k < 3; k++)
+            assert_true(fabs(found[side][k] - truth[side][k]) < 1e-6);
+    for (size_t i = 0; i < krs_component_count(fixed.scene); i++) {
+        const bool ends = krs_frame_component_box(fixed.frame, i, truth[0], truth[1]);
+        assert_int_equal(krs_frame_component_box(asked.frame, i, found[0], found[1]), ends);
+        for (int k = 0; ends && k < 3; k++)
+            assert_true(fabs(found[0][k] - truth[0][k]) < 1e-6 &&
+                        fabs(found[1][k] - truth[1][k]) < 1e-6);
+    }
+    assert_false(
+        krs_frame_component_box(fixed.frame, krs_component_count(fixed.scene), found[0], found[1]));
+}
+
 /* Of a scene with a parameter, for some values of it: as of the text with these numbers. */
 static void compare_floors(const char *head, const char *text, uint32_t specialize)
 {
@@ -103,6 +123,7 @@ static void compare_floors(const char *head, const char *text, uint32_t speciali
         const Opened fixed = open_scene(number, text, KRS_SPECIALIZE_NUMBERS);
         set_height(asked, values[v]);
         const double found = floor_height(asked), truth = floor_height(fixed);
+        compare_boxes(asked, fixed);
         if (!(fabs(found - truth) < 1e-6))
             fail_msg("%s%s, h = %g: the floor is at %g, not at %g", head, text, values[v], found,
                      truth);
