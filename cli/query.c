@@ -279,6 +279,8 @@ KrsStatus command_query(Options *options)
         status = open_device(query, scene);
     if (status == KRS_OK) {
         stage_enter(STAGE_ANSWER);
+        if (isatty(STDIN_FILENO) && !options->quiet)
+            say("%s", "a line `x y z` is a point, `x y z dx dy dz` a ray; Ctrl D ends");
         status = answer_input(query, input);
     }
     krs_rendering_free(query->rendering);

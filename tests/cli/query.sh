@@ -3,7 +3,7 @@
 # of lines and records.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 35
+plan 36
 
 cat >plane.krs <<'END'
 show plane([0, 1, 0], 0);
@@ -122,3 +122,11 @@ result $? "also as JSON"
 run validate --points 2000 --zone 0.5,0,0,0.6 zoned.krs
 [ "$status" -eq 0 ] && grep -q 'balls are empty; .* agrees' out
 result $? "distances with zones are not refuted"
+
+if command -v script >/dev/null; then
+    (echo 0 2 0 && sleep 1) | script -qec "'$krs' query plane.krs" out >/dev/null 2>err
+    grep -q 'is a point, .* a ray' out && grep -q '^2 0 1 0' out
+    result $? "at a terminal it says what it waits for"
+else
+    skip "at a terminal it says what it waits for" "no script"
+fi
