@@ -77,13 +77,36 @@ static bool cells_are_empty(const Tape *tape, Node distance, Box box, NodeValue 
     return count == 0;
 }
 
+/* Whether a sharp union of distances has this one. */
+static bool least_has(const Graph *g, Node least, Node distance)
+{
+    const Expr *e = &g->items[least];
+    return least == distance || (e->op == OP_min && (least_has(g, e->operands[0], distance) ||
+                                                     least_has(g, e->operands[1], distance)));
+}
+
+/* Whether a shape is taken from itself: that leaves its surface, by which rays would be caught. */
+static bool is_cancelled(const Graph *g, Node distance)
+{
+    const Expr *e     = &g->items[distance];
+    const Expr *least = e->op == OP_neg ? &g->items[e->operands[0]] : e;
+    if (e->op != OP_neg || least->op != OP_min)
+        return false;
+    for (int k = 0; k < 2; k++) {
+        const Expr *from = &g->items[least->operands[k]];
+        if (from->op == OP_neg && least_has(g, least->operands[1 - k], from->operands[0]))
+            return true;
+    }
+    return false;
+}
+
 /* Known to be empty by the distance; only what no parameter changes is looked at. */
 static bool is_nowhere(Elaboration *e, const Shape *shape)
 {
     Graph   *g     = e->graph;
     Lowering l     = {.graph = g, .scratch = e->scratch, .most = g->count + MOST_LOWERED};
     Lowered  all   = lower_shape(&l, shape, context_new(graph_leaf(g, OP_POINT), true));
-    bool     empty = all.distance == NODE_NONE;
+    bool     empty = all.distance == NODE_NONE || is_cancelled(g, all.distance);
     if (!l.overflow && !empty) {
         Node       distance   = divide_by_slope(g, all.distance, shape->slope);
         Graph     *alone      = graph_extract_with_crowds(g, &distance, 1, e->scratch);
