@@ -36,8 +36,7 @@
 /* A ray in the space of a shape: point + t direction, with the same t everywhere. */
 typedef struct Ray {
     Node point, direction, speed; /* speed: the length of direction */
-    Node back;      /* how far backwards sheets are looked for: to the previous point of the ray */
-    bool both_ways; /* what is free ahead must be free behind, too */
+    Node back; /* how far backwards sheets are looked for: to the previous point of the ray */
 } Ray;
 
 /* By how much one term may decrease over the interval, in units of c0.  Of the values from 1 to 16,
@@ -218,13 +217,13 @@ static Node along_polynomial(Lowering *l, const Shape *shape, Ray ray)
 
 static Node along(Lowering *l, const Shape *shape, Ray ray);
 
-/* Where a ray meets the ball of radius r about the origin.  The point of the ray that is nearest to the
-   middle is at t = m, and the chord reaches as far to both of its sides.  The end that is farther from the
-   ray's point is found first; the other follows from the product of both, so that nothing cancels. */
+/* From outside: where a ray meets the ball of radius r about the origin.  The point of the ray that is
+   nearest to the middle is at t = m, and the chord reaches as far to both of its sides.  Its far end is
+   found first; the near one follows from the product of both, so that nothing cancels.  Inside it is the
+   distance, which is short behind the surface, as chords need it, and free behind the point as well. */
 static Node along_ball(Lowering *l, const Shape *shape, Ray ray)
 {
-    Graph *g    = l->graph;
-    Node   zero = graph_number(g, 0), never = graph_number(g, NOWHERE);
+    Graph *g      = l->graph;
     Node   r      = at_least(g, shape->ball_radius, 0);
     Node   square = graph_op2(g, OP_dot, ray.direction, ray.direction);
     Node   m      = neg(g, over(g, graph_op2(g, OP_dot, ray.point, ray.direction), square));
@@ -232,20 +231,19 @@ static Node along_ball(Lowering *l, const Shape *shape, Ray ray)
     Node   miss   = graph_op1(g, OP_length, add(g, ray.point, offset));
     Node   size   = graph_op1(g, OP_length, ray.point);
     Node   half   = at_least(g, mul(g, sub(g, r, miss), add(g, r, miss)), 0);
-    half          = root_of(g, over(g, half, square), 2);
-    Node behind   = graph_op2(g, OP_less, m, zero);
-    Node far      = graph_op3(g, OP_select, behind, sub(g, m, half), add(g, m, half));
-    Node product  = over(g, mul(g, sub(g, size, r), add(g, size, r)), square);
-    Node other    = over(g, product, far);
-    Node misses   = graph_op2(g, OP_or, behind, graph_op2(g, OP_less, r, miss));
-    Node enters   = graph_op3(g, OP_select, misses, never, other);
-    Node leaves   = neg(g, graph_op3(g, OP_select, behind, other, far));
-    return graph_op3(g, OP_select, graph_op2(g, OP_less, r, size), enters, leaves);
+    Node   end    = add(g, m, root_of(g, over(g, half, square), 2));
+    Node   height = sub(g, size, r);
+    Node   near = over(g, over(g, mul(g, height, add(g, size, r)), square), at_least(g, end, TINY));
+    Node   behind = graph_op2(g, OP_less, m, graph_number(g, 0));
+    Node   misses = graph_op2(g, OP_or, behind, graph_op2(g, OP_less, r, miss));
+    Node   enters = graph_op3(g, OP_select, misses, graph_number(g, NOWHERE), near);
+    Node   inside = over(g, height, ray.speed);
+    return graph_op3(g, OP_select, graph_op2(g, OP_less, r, size), enters, inside);
 }
 
 static Node along_distance(Lowering *l, const Shape *shape, Ray ray)
 {
-    if (shape->ball_radius != NODE_NONE && l->method == ALONG_EXACT && !ray.both_ways)
+    if (shape->ball_radius != NODE_NONE && l->method == ALONG_EXACT)
         return along_ball(l, shape, ray);
     Lowered ball = lower_shape(l, shape, context_new(ray.point, false));
     if (ball.distance == NODE_NONE)
@@ -319,8 +317,7 @@ static Node back_within(Lowering *l, const Shape *shape, Ray ray, Node ahead)
 /* Parts with sheets come last, since their sheets are looked for inside of the others only. */
 static Node along_intersection(Lowering *l, const Shape *shape, Ray ray)
 {
-    Node all      = NODE_NONE;
-    ray.both_ways = ray.both_ways || shape->sheets;
+    Node all = NODE_NONE;
     for (int sheets = 0; sheets < 2; sheets++) {
         if (sheets && shape->sheets && all != NODE_NONE)
             ray.back = back_within(l, shape, ray, all);
@@ -366,7 +363,7 @@ static Node along_map(Lowering *l, const Shape *shape, Ray ray)
     Map    linear = shape->map;
     linear.shift  = graph_vec3(g, 0, 0, 0);
     Ray inner     = {before_map(g, &shape->map, ray.point), before_map(g, &linear, ray.direction),
-                     over(g, ray.speed, shape->map.scale), ray.back, ray.both_ways};
+                     over(g, ray.speed, shape->map.scale), ray.back};
     return along(l, shape->children[0], inner);
 }
 
@@ -374,7 +371,7 @@ static Node along_stretch(Lowering *l, const Shape *shape, Ray ray)
 {
     Graph *g     = l->graph;
     Ray    inner = {over(g, ray.point, shape->values[0]), over(g, ray.direction, shape->values[0]),
-                    NODE_NONE, ray.back, ray.both_ways};
+                    NODE_NONE, ray.back};
     inner.speed  = graph_op1(g, OP_length, inner.direction);
     return along(l, shape->children[0], inner);
 }
@@ -488,7 +485,7 @@ Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod metho
                   .crowds  = crowds,
                   .thin    = true};
     Ray ray = {graph_leaf(graph, OP_POINT), graph_leaf(graph, OP_DIRECTION), graph_number(graph, 1),
-               graph_leaf(graph, OP_FOOTPRINT), false};
+               graph_leaf(graph, OP_FOOTPRINT)};
     Node all = along(&l, shape, ray);
     return l.overflow || all == NODE_NONE ? plain : all;
 }

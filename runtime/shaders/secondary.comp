@@ -325,7 +325,7 @@ void take_distance(float distance)
     // Where the ray enters the solid, between the last position and this one.
     float crossing = last_step * distance / max(last_distance - distance, 1e-30);
     float relaxed = relax(around);
-#ifdef STEPS // inside, the length tells how far it is to the other side
+#ifdef STEPS // inside of a polynomial the length may reach to its other side
     crossing = max(crossing, last_distance - last_step);
     relaxed = min(relaxed, most_ahead);
 #endif

@@ -110,6 +110,9 @@ static double along_at(KrsFrame *frame, const Tape *tape, Node root, const doubl
     return frame->values[root].v[0];
 }
 
+/* So far behind a surface, and the longest that a length may be there; bodies are ten times as wide. */
+static const double BEHIND = 1e-5, MOST_BEHIND = 0.2;
+
 static void steps_stay_before_the_surface(void **state)
 {
     const struct Case *c = *state;
@@ -149,6 +152,11 @@ static void steps_stay_before_the_surface(void **state)
             hits++;
             if (fabs(t - truth) > 1e-6)
                 fail_msg("%s: ray %d ends at %.9g, the surface is at %.9g", c->name, ray, t, truth);
+            /* Just behind it lengths are short: chords from before it cross 0 there. */
+            context_at(o, v, truth + BEHIND, p);
+            double behind = along_at(frame, &tape, root, p, v);
+            if (fabs(behind) > MOST_BEHIND)
+                fail_msg("%s: ray %d has %g ahead behind its surface", c->name, ray, behind);
         }
     }
     assert_true(hits > 60);
