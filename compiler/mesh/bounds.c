@@ -16,6 +16,8 @@ static const double LEAST_SHARP = 4;
 static const double LEAST_KNOWN = 6;
 /* Edges, in errors, below which what curves too much for second derivatives is left to cells. */
 static const double LEAST_SMOOTH = 12;
+/* Deviations, in those that fit, up to which parts of such a one fit so often that they are looked at before cells are. */
+static const double NEARLY = 2;
 
 double proven_error(const Mesher *m) { return PROVEN_ERROR * m->error; }
 
@@ -80,7 +82,8 @@ TetState state_by_bounds(const Mesher *m, const Tet *tet)
 {
     if (tet->deviation <= tet->slope * proven_error(m))
         return TET_FITS;
-    double by_cells = tet->deviation < INFINITY ? LEAST_SMOOTH : LEAST_KNOWN;
+    bool   parts_may = tet->deviation <= NEARLY * tet->slope * m->error;
+    double by_cells  = parts_may || tet->deviation == INFINITY ? LEAST_KNOWN : LEAST_SMOOTH;
     return tets_longest_edge(&m->tets, tet) > by_cells * m->error ? TET_REFUTED : TET_ROUGH;
 }
 
@@ -116,13 +119,25 @@ static bool one_may_fit(Mesher *m, const SmoothCell *middle, double share, const
 static void look_closer(Mesher *m, Verifier *verifier, SmoothCell *cell, const Placed *placed,
                         size_t count)
 {
-    static const double AT_BEST = 0.85;
-    enum { HALVINGS = 3 };
-    SmoothCell middle;
-    if (cell->known && !cell->empty && smooth_look_at_middle(verifier->field, cell, &middle) &&
+    static const double AT_BEST = 0.85, MOST_TURN = 3.5;
+    SmoothCell          middle;
+    if (!cell->empty && smooth_turn(cell) < MOST_TURN &&
+        smooth_look_at_middle(verifier->field, cell, &middle) &&
         one_may_fit(m, &middle, AT_BEST, placed, count)) {
-        smooth_look_closer(verifier->field, m->error, HALVINGS, cell);
+        smooth_look_closer(verifier->field, m->error, cell);
         measure_in_cell(m, verifier, cell, placed, count);
+    }
+}
+
+/* Large ones whose parts need not be looked at until they lie in cells half as large: in this one bounds are far too wide. */
+static void mark_hopeless(Mesher *m, const Placed *placed, size_t count)
+{
+    static const double FAR_TOO_WIDE = 6;
+    for (size_t i = 0; i < count; i++) {
+        Tet *tet      = &m->tets.list.items[placed[i].tet];
+        tet->hopeless = tet->state == TET_REFUTED &&
+                        tet->deviation > FAR_TOO_WIDE * tet->slope * m->error &&
+                        tets_longest_edge(&m->tets, tet) > LEAST_SMOOTH * m->error;
     }
 }
 
@@ -177,9 +192,10 @@ static void look_at_cell(Mesher *m, Verifier *verifier, const Placed *placed, si
     }
     smooth_look(verifier->field, box, m->error, &cell);
     measure_in_cell(m, verifier, &cell, placed, count);
-    if (cell.known)
+    if (cell.known) {
         look_closer(m, verifier, &cell, placed, count);
-    else if (!cell.empty)
+        mark_hopeless(m, placed, count);
+    } else if (!cell.empty)
         known = measure_pieces(m, verifier, wide, placed, count);
     field_leave(verifier->field);
     if (!known && is_worth_another_look(m, placed, count))

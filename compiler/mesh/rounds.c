@@ -270,6 +270,24 @@ static size_t bisect_all_refuted(Mesher *m, bool fresh)
     return refuted;
 }
 
+/* Parts that are refuted from the beginning, but not where there is clearly no surface. */
+static void bisect_hopeless(Mesher *m)
+{
+    bool any;
+    do {
+        any = false;
+        contour_distances(&m->contour);
+        for (size_t i = 0, count = m->tets.fresh.count; i < count; i++) {
+            size_t number = m->tets.fresh.items[i];
+            Tet   *tet    = &m->tets.list.items[number];
+            if (tet->hopeless && verify_is_far(&m->tets, tet))
+                tet->state = TET_EMPTY;
+            else if (tet->hopeless && bisect_refuted(m, number))
+                any = true;
+        }
+    } while (any);
+}
+
 /* Bisects what is refuted, and what then no longer meets its neighbours; false: there is nothing. */
 static bool refine(Mesher *m, bool fresh)
 {
@@ -279,6 +297,7 @@ static bool refine(Mesher *m, bool fresh)
     tets_forget_fresh(&m->tets);
     if (bisect_all_refuted(m, fresh) == 0)
         return false;
+    bisect_hopeless(m);
     tets_close(&m->tets);
     contour_distances(&m->contour);
     return true;

@@ -32,12 +32,11 @@ void smooth_forms(const LaneHessian *hessian, double above[6], double below[6])
     }
 }
 
-/* By the mean value theorem: what the value grows by along its gradient in the middle of the box, less what second
-   derivatives may change that by.  Differences there are as wrong as those permit. */
-static double find_slope(const MeshField *field, Box box, double step, const LaneHessian *hessian)
+/* Differences in the middle of the box; they are as wrong as second derivatives permit, at most by what is returned. */
+static double find_middle_gradient(const MeshField *field, Box box, double step,
+                                   const LaneHessian *hessian, double gradient[3])
 {
-    static const int PLACE[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
-    double           points[6][3], values[6], normal[3], slope, size = 0;
+    double points[6][3], values[6], size = 0;
     for (int i = 0; i < 6; i++) {
         for (int k = 0; k < 3; k++)
             points[i][k] = 0.5 * (box.axis[k].low + box.axis[k].high);
@@ -46,10 +45,17 @@ static double find_slope(const MeshField *field, Box box, double step, const Lan
     }
     field_distances(field, (const double(*)[3])points, 6, values);
     for (int k = 0; k < 3; k++)
-        normal[k] = (values[2 * k + 1] - values[2 * k]) / (2 * step);
-    slope = length3(normal) - step * size;
-    if (!normalize3(normal))
-        return 0;
+        gradient[k] = (values[2 * k + 1] - values[2 * k]) / (2 * step);
+    return step * size;
+}
+
+/* By the mean value theorem: what the value grows by along a normal in the middle of the box, less what second
+   derivatives may change that by. */
+static double slope_along(const double normal[3], const double gradient[3], double wrong, Box box,
+                          const LaneHessian *hessian)
+{
+    static const int PLACE[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
+    double           slope       = dot3(gradient, normal) - wrong;
     for (int j = 0; j < 3; j++) {
         Range change = range_of(0);
         for (int k = 0; k < 3; k++)
@@ -59,24 +65,12 @@ static double find_slope(const MeshField *field, Box box, double step, const Lan
     return slope / (1 + 1e-6);
 }
 
-/* The ranges in parts of a box are together narrower than those in the whole. */
-static bool find_hessian(const MeshField *field, Box box, int halvings, LaneHessian *hessian)
+static double find_slope(const MeshField *field, Box box, double step, const LaneHessian *hessian)
 {
-    Range       range;
-    LaneSlope   slope;
-    LaneHessian second;
-    Box         parts[2] = {box, box};
-    int         axis     = halvings % 3;
-    if (halvings == 0)
-        return field_hessian(field, box, &range, &slope, hessian);
-    double middle            = 0.5 * (box.axis[axis].low + box.axis[axis].high);
-    parts[0].axis[axis].high = parts[1].axis[axis].low = middle;
-    if (!find_hessian(field, parts[0], halvings - 1, hessian) ||
-        !find_hessian(field, parts[1], halvings - 1, &second))
-        return false;
-    for (int i = 0; i < 6; i++)
-        hessian->by[i] = range_hull(hessian->by[i], second.by[i]);
-    return true;
+    double gradient[3], normal[3];
+    double wrong = find_middle_gradient(field, box, step, hessian, gradient);
+    memcpy(normal, gradient, sizeof normal);
+    return normalize3(normal) ? slope_along(normal, gradient, wrong, box, hessian) : 0;
 }
 
 void smooth_look(const MeshField *field, Box box, double error, SmoothCell *cell)
@@ -97,19 +91,84 @@ void smooth_look(const MeshField *field, Box box, double error, SmoothCell *cell
         cell->slope = max2(cell->slope, gradient.least / ROUNDING);
 }
 
-void smooth_look_closer(const MeshField *field, double error, int halvings, SmoothCell *cell)
+double smooth_turn(const SmoothCell *cell)
 {
-    LaneHessian within, around;
-    Box         box = cell->box;
+    double most = 0;
+    for (int k = 0; k < 3; k++)
+        most = max2(most, (cell->above[k] + cell->below[k]) *
+                              (cell->box.axis[k].high - cell->box.axis[k].low));
+    return most;
+}
+
+/* ---- parts of cells ---- */
+
+enum { MOST_CELL_PARTS = 1 << SMOOTH_HALVINGS };
+
+/* The parts of a box where the value may be as small as the error, and what second derivatives are in all. */
+typedef struct CellParts {
+    double      error;
+    LaneHessian hull, hessians[MOST_CELL_PARTS];
+    Box         boxes[MOST_CELL_PARTS];
+    int         count;
+} CellParts;
+
+static bool look_at_parts(const MeshField *field, Box box, int halvings, CellParts *parts)
+{
+    Range       range;
+    LaneSlope   slope;
+    LaneHessian own;
+    if (halvings > 0) {
+        Box    halves[2]          = {box, box};
+        int    axis               = halvings % 3;
+        double middle             = 0.5 * (box.axis[axis].low + box.axis[axis].high);
+        halves[0].axis[axis].high = halves[1].axis[axis].low = middle;
+        return look_at_parts(field, halves[0], halvings - 1, parts) &&
+               look_at_parts(field, halves[1], halvings - 1, parts);
+    }
+    if (!field_hessian(field, box, &range, &slope, &own))
+        return false;
+    for (int i = 0; i < 6; i++)
+        parts->hull.by[i] = parts->hull.known ? range_hull(parts->hull.by[i], own.by[i])
+                                              : own.by[i];
+    parts->hull.known = true;
+    if (range.low <= parts->error && range.high >= -parts->error) {
+        parts->hessians[parts->count] = own;
+        parts->boxes[parts->count++]  = box;
+    }
+    return true;
+}
+
+/* Ways begin in one of the parts, and are no longer than the error: along them the slope changes by what is known of the
+   whole box. */
+static double slope_of_ways(const MeshField *field, const CellParts *parts, const SmoothCell *cell,
+                            const double normal[3])
+{
+    double gradient[3], zero[3] = {0, 0, 0}, least = 1;
+    for (int i = 0; i < parts->count; i++) {
+        double wrong = find_middle_gradient(field, parts->boxes[i], 1e-2 * parts->error,
+                                            &parts->hessians[i], gradient);
+        least        = min2(least,
+                            slope_along(normal, gradient, wrong, parts->boxes[i], &parts->hessians[i]));
+    }
+    return least - parts->error * max2(smooth_bend(cell->above, normal, zero),
+                                       smooth_bend(cell->below, normal, zero));
+}
+
+void smooth_look_closer(const MeshField *field, double error, SmoothCell *cell)
+{
+    CellParts parts = {.error = error};
+    Box       box   = cell->box;
+    double    middle[3], normal[3];
     for (int k = 0; k < 3; k++) {
+        middle[k] = 0.5 * (box.axis[k].low + box.axis[k].high);
         box.axis[k].low += error;
         box.axis[k].high -= error;
     }
-    if (!find_hessian(field, box, halvings, &within) ||
-        !find_hessian(field, cell->box, halvings, &around))
+    if (!look_at_parts(field, box, SMOOTH_HALVINGS, &parts) ||
+        !field_normal(field, middle, 1e-2 * error, normal))
         return;
-    smooth_forms(&within, cell->above, cell->below);
-    cell->slope = max2(cell->slope, find_slope(field, cell->box, 1e-2 * error, &around));
+    cell->slope = max2(cell->slope, slope_of_ways(field, &parts, cell, normal));
+    smooth_forms(&parts.hull, cell->above, cell->below);
 }
 
 bool smooth_look_at_middle(const MeshField *field, const SmoothCell *cell, SmoothCell *middle)
@@ -140,17 +199,23 @@ enum { MOST_MESH_POINTS = 9, MOST_POINTS = 12 };
 typedef struct Side {
     const double *at[MOST_POINTS];
     int           count, on_mesh;
-    const double *form; /* of a cell */
+    const double *form;      /* of a cell */
+    double        depths[4]; /* of its corners */
 } Side;
+
+/* The form between two points, which may be below 0. */
+static double form_between(const double form[6], const double a[3], const double b[3])
+{
+    double d[3];
+    add_scaled3(d, a, -1, b);
+    return form[0] * d[0] * d[0] + form[1] * d[1] * d[1] + form[2] * d[2] * d[2] +
+           2 * (form[3] * d[1] * d[2] + form[4] * d[0] * d[2] + form[5] * d[0] * d[1]);
+}
 
 /* How much the form permits between two points. */
 double smooth_bend(const double form[6], const double a[3], const double b[3])
 {
-    double d[3];
-    add_scaled3(d, a, -1, b);
-    double sum = form[0] * d[0] * d[0] + form[1] * d[1] * d[1] + form[2] * d[2] * d[2] +
-                 2 * (form[3] * d[1] * d[2] + form[4] * d[0] * d[2] + form[5] * d[0] * d[1]);
-    return max2(sum, 0) * ROUNDING;
+    return max2(form_between(form, a, b), 0) * ROUNDING;
 }
 
 /* The most that the sum of w_i w_j q_ij over all pairs is, for weights w >= 0 whose sum is 1.  With q the squares of lengths
@@ -257,15 +322,15 @@ static Side start_side(const MeshPart *part, const double form[6])
 }
 
 /* The most that the value may have the wrong sign on one side of the mesh; below 0: it has not.
-   `depths` are those of its corners, whose signs are right.  A corner so deep that pairs with it add nothing
-   leaves what the others permit; those that are not count as the mesh does, four points at most at once. */
-static double deviation_of_side(const Side *side, const MeshPart *part, const double *depths)
+   The signs of its corners are right.  A corner so deep that pairs with it add nothing
+   leaves what the others permit; those that are not count as the mesh does, four points at most at once.  `most` is
+   that on the mesh. */
+static double deviation_of_side(const Side *side, const MeshPart *part, double most)
 {
-    double most = part->patch ? part->value + 0.5 * most_on_mesh(part, side->form) : -INFINITY;
     double deep = -INFINITY, pairs = 0, least = part->patch ? -part->value : INFINITY;
     bool   shallow[MOST_POINTS] = {false}, any = false;
     for (int i = side->on_mesh; i < side->count; i++) {
-        double longest = 0, depth = depths[i - side->on_mesh];
+        double longest = 0, depth = side->depths[i - side->on_mesh];
         for (int j = 0; j < side->count; j++)
             if (j != i)
                 longest = max2(longest, smooth_bend(side->form, side->at[i], side->at[j]));
@@ -286,28 +351,71 @@ static double deviation_of_side(const Side *side, const MeshPart *part, const do
     return max2(deep, 0.5 * 0.375 * pairs - least);
 }
 
+/* How much a form permits between a corner and any point of the tetrahedron: of a mean of corners it is the mean, less the
+   sum of w_i w_j times the form between each pair. */
+static double most_from(const double form[6], const double (*corners)[3], int from)
+{
+    double most = 0, least = 0;
+    for (int i = 0; i < 4; i++) {
+        most = max2(most, smooth_bend(form, corners[from], corners[i]));
+        for (int j = 0; j < i; j++)
+            least = min2(least, form_between(form, corners[i], corners[j]));
+    }
+    return most - ROUNDING * 0.375 * least;
+}
+
+double smooth_level(const SmoothCell *cell, const double (*corners)[3], const double values[4],
+                    bool inside, double most)
+{
+    double least = INFINITY;
+    for (int i = 0; i < 4; i++) {
+        double depth = (inside ? values[i] : -values[i]) - most;
+        if (!(depth > 0))
+            continue;
+        double bend = most_from(inside ? cell->above : cell->below, corners, i);
+        double rest = max2(ROUNDING * sqrt(0.5 * bend) - sqrt(depth), 0);
+        least       = min2(least, most + ROUNDING * rest * rest);
+    }
+    return least;
+}
+
+/* The same of both sides: inside first. */
+static double deviation_of(const SmoothCell *cell, const MeshPart *part, const Side *sides,
+                           const double (*corners)[3], const double values[4])
+{
+    double worst = -INFINITY;
+    for (int k = 0; k < 2; k++) {
+        if (sides[k].count == sides[k].on_mesh)
+            continue;
+        double most      = part->patch ? part->value + 0.5 * most_on_mesh(part, sides[k].form)
+                                       : -INFINITY;
+        double deviation = deviation_of_side(&sides[k], part, most);
+        if (part->patch && deviation > most)
+            deviation = min2(deviation, smooth_level(cell, corners, values, k == 0, most));
+        worst = max2(worst, deviation);
+    }
+    return worst;
+}
+
 bool smooth_measure(const Contour *contour, const SmoothCell *cell, Tet *tet)
 {
     MeshPart part = mesh_part(contour, tet);
-    double   corners[4][3], depths[2][4], deviation = -INFINITY;
+    double   corners[4][3], values[4];
     tet->deviation = INFINITY;
     tet->steep     = 0;
     tet->origin    = cell->origin;
     tet->slope     = (float)(cell->slope * (1 - 1e-6));
     if (!cell->known)
         return false;
-    Side inside = start_side(&part, cell->below), outside = start_side(&part, cell->above);
+    Side sides[2] = {start_side(&part, cell->below), start_side(&part, cell->above)};
     tets_corners(contour->tets, tet, corners);
     for (int i = 0; i < 4; i++) {
-        double value = contour->tets->points.items[tet->points[i]].distance;
-        Side  *side  = value < 0 ? &inside : &outside;
-        depths[value >= 0][side->count - side->on_mesh] = fabs(value);
+        values[i]  = contour->tets->points.items[tet->points[i]].distance;
+        Side *side = &sides[values[i] >= 0];
+        side->depths[side->count - side->on_mesh] = fabs(values[i]);
         add_point(side, corners[i]);
     }
-    if (inside.count > inside.on_mesh)
-        deviation = max2(deviation, deviation_of_side(&inside, &part, depths[0]));
-    if (outside.count > outside.on_mesh)
-        deviation = max2(deviation, deviation_of_side(&outside, &part, depths[1]));
-    tet->deviation = (float)(deviation * (1 + copysign(1e-6, deviation)));
+    double deviation = deviation_of(cell, &part, sides, (const double(*)[3])corners, values);
+    tet->deviation   = (float)(deviation * (1 + copysign(1e-6, deviation)));
     return deviation < 0;
 }

@@ -14,8 +14,9 @@
 #include "compiler/mesh/gradient.h"
 #include "compiler/mesh/verifier.h"
 
-/* What is known of a box: d^T (second derivatives) d is at most d^T above d, and at least -d^T below d, for all d; the value
-   grows by `slope` at least along some direction. */
+/* What is known of a box: d^T (second derivatives) d is at most d^T above d, and at least -d^T below d, for all d; and along
+   some direction the value grows by `slope` at least.  After a closer look forms are those of the box without its margin, and
+   the slope is that of ways no longer than the error, from points there whose value is no larger. */
 typedef struct SmoothCell {
     Box      box;
     bool     known, empty;
@@ -29,12 +30,20 @@ void smooth_forms(const LaneHessian *hessian, double above[6], double below[6]);
 double smooth_bend(const double form[6], const double a[3], const double b[3]);
 /* The most that w0 w1 a + w1 w2 b + w2 w0 c is, for weights w >= 0 whose sum is 1. */
 double smooth_most_of_three(double a, double b, double c);
+/* Where the mesh in a tetrahedron has values of no more than `most` (or no less than -most): the largest value of what it has
+   inside (or the least of what it has outside, times -1), for what is beyond that sees a corner of the other side along a way
+   on which no mesh can be.  INFINITY: no corner is so deep. */
+double smooth_level(const SmoothCell *cell, const double (*corners)[3], const double values[4],
+                    bool inside, double most);
 
 /* `error`: differences are over small parts of it. */
 void smooth_look(const MeshField *field, Box box, double error, SmoothCell *cell);
 
+enum { SMOOTH_HALVINGS = 3 };
 /* Narrower bounds of one that is known, which has the error around what is measured, from parts of it. */
-void smooth_look_closer(const MeshField *field, double error, int halvings, SmoothCell *cell);
+void smooth_look_closer(const MeshField *field, double error, SmoothCell *cell);
+/* How much the gradient may turn in the box, for all that is known. */
+double smooth_turn(const SmoothCell *cell);
 /* What is true in the middle: no bound, but what bounds may become at best. */
 bool smooth_look_at_middle(const MeshField *field, const SmoothCell *cell, SmoothCell *middle);
 

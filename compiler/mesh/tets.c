@@ -164,9 +164,12 @@ void tets_bisect(Tets *tets, size_t index)
     second.points[tet.tag]                        = point;
     for (int k = 0; k < tet.tag; k++)
         second.points[k] = tet.points[k + 1];
-    first.tag   = tet.tag > 1 ? (uint8_t)(tet.tag - 1) : 3;
-    second.tag  = first.tag;
-    first.state = second.state = tet.state == TET_EMPTY ? TET_EMPTY : TET_NEW;
+    first.tag      = tet.tag > 1 ? (uint8_t)(tet.tag - 1) : 3;
+    second.tag     = first.tag;
+    first.hopeless = second.hopeless = tet.hopeless && tet.state == TET_REFUTED && first.tag < 3;
+    first.state = second.state = tet.state == TET_EMPTY ? TET_EMPTY
+                                 : first.hopeless       ? TET_REFUTED
+                                                        : TET_NEW;
     first.replaced = second.replaced = tet.replaced || tet.triangle_count > 0;
     first.triangle_count = second.triangle_count = 0;
     first.width                                  = find_width(tets, &first);

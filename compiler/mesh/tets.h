@@ -49,6 +49,7 @@ typedef struct Tet {
     uint8_t  triangle_count;
     bool     fresh;    /* it is among those */
     bool     replaced; /* what it was bisected from had triangles */
+    bool     hopeless; /* refuted, and so are its parts until they lie in a cube half as large */
     bool     stale;    /* the mesh has changed where its proof asked for it */
     uint32_t first_triangle;
     uint32_t patch;            /* of the contour, where it has triangles */

@@ -251,19 +251,50 @@ static double shortest_mean(const double (*gradients)[3], int count)
     return length3(x);
 }
 
-static void check_slope(const Subject *subject, Box box, double slope, Shares *shares)
+enum { SLOPE_POINTS = 30 };
+
+static void check_slope_at(const Subject *subject, const double (*points)[3], int count,
+                           double slope, Shares *shares)
 {
-    enum { POINTS = 30 };
-    double gradients[POINTS][3], p[3];
-    for (int i = 0; i < POINTS; i++) {
-        random_point(box, p);
-        for (int k = 0; i < 8 && k < 3; k++)
-            p[k] = i >> k & 1 ? box.axis[k].high : box.axis[k].low;
-        subject_gradient(subject, p, gradients[i]);
-    }
-    double most = shortest_mean((const double(*)[3])gradients, POINTS);
+    double gradients[SLOPE_POINTS][3];
+    for (int i = 0; i < count; i++)
+        subject_gradient(subject, points[i], gradients[i]);
+    double most = shortest_mean((const double(*)[3])gradients, count);
     assert_true(slope <= most + 1e-7);
     shares->slope = fmax(shares->slope, slope / most);
+}
+
+/* Of random points, and of corners. */
+static void check_slope(const Subject *subject, Box box, double slope, Shares *shares)
+{
+    double points[SLOPE_POINTS][3];
+    for (int i = 0; i < SLOPE_POINTS; i++) {
+        random_point(box, points[i]);
+        for (int k = 0; i < 8 && k < 3; k++)
+            points[i][k] = i >> k & 1 ? box.axis[k].high : box.axis[k].low;
+    }
+    check_slope_at(subject, (const double(*)[3])points, SLOPE_POINTS, slope, shares);
+}
+
+/* Of ways along the gradient in the middle, from points of a box that are near to the surface. */
+static void check_slope_of_ways(const Trial *t, Box box, double slope, Shares *shares)
+{
+    enum { TRIES = 200 };
+    double points[SLOPE_POINTS][3], middle[3], normal[3];
+    int    count = 0;
+    for (int k = 0; k < 3; k++)
+        middle[k] = 0.5 * (box.axis[k].low + box.axis[k].high);
+    subject_gradient(t->subject, middle, normal);
+    for (int i = 0; i < TRIES && count < SLOPE_POINTS; i++) {
+        random_point(box, points[count]);
+        if (fabs(subject_value(t->subject, points[count])) > t->error)
+            continue;
+        double way = i % 3 ? uniform(-1, 1) : i % 2 ? 1 : -1;
+        add_scaled3(points[count], points[count], way * t->error, normal);
+        count++;
+    }
+    if (count > 4)
+        check_slope_at(t->subject, (const double(*)[3])points, count, slope, shares);
 }
 
 static void check_bends(const Subject *subject, const SmoothCell *cell, Box box, Shares *shares)
@@ -291,13 +322,15 @@ static void check_bends(const Subject *subject, const SmoothCell *cell, Box box,
 }
 
 /* What no surface is said to be in, has none.  A way that leaves the box of the cell says nothing. */
-static void check_tet(const Trial *t, const Tet *tet, bool empty, Shares *shares)
+static void check_tet(const Trial *t, const Tet *tet, bool empty, bool exact, Shares *shares)
 {
     double worst = worst_in(t, tet), way = tet->deviation / tet->slope;
     shares->cells++;
     shares->empty += empty;
     if (empty && (tet->triangle_count > 0 || worst > 0))
         fail_msg("a surface, %g deep, where none is said to be", worst);
+    if (exact && worst > max2(tet->deviation, 0) + 1e-12)
+        fail_msg("a value of %g on the wrong side, not %g", worst, tet->deviation);
     if (empty || !(tet->slope > 0) || way > t->error)
         return;
     if (worst > way + 1e-12)
@@ -325,13 +358,16 @@ static void try_smooth(const Trial *t, SmoothCell *cell, Box own, Tet *tet, Boun
     for (int closer = 0; closer < 2; closer++) {
         Shares *shares = closer ? &bounds->closer : &bounds->smooth;
         if (closer)
-            smooth_look_closer(&t->fields[0], t->error, 3, cell);
+            smooth_look_closer(&t->fields[0], t->error, cell);
         if (exact) {
-            check_slope(t->subject, cell->box, cell->slope, shares);
+            if (closer)
+                check_slope_of_ways(t, own, cell->slope, shares);
+            else
+                check_slope(t->subject, cell->box, cell->slope, shares);
             check_bends(t->subject, cell, closer ? own : cell->box, shares);
         }
         bool empty = smooth_measure(&t->contour, cell, tet);
-        check_tet(t, tet, empty, shares);
+        check_tet(t, tet, empty, exact, shares);
     }
 }
 
@@ -342,7 +378,7 @@ static void try_pieces(Trial *t, Box wide, Tet *tet, Bounds *bounds)
     pieces_look(&t->fields[0], wide, &cell);
     for (double error = t->error; cell.known && error > 1e-3 * t->error;) {
         bool empty = pieces_measure(&t->contour, &t->fields[0], &cell, error, tet);
-        check_tet(t, tet, empty, &bounds->pieces);
+        check_tet(t, tet, empty, false, &bounds->pieces);
         if (empty || !(tet->deviation < INFINITY))
             break;
         error = 0.98 * tet->deviation / tet->slope;
