@@ -9,7 +9,8 @@
 
 #include <cmocka.h>
 
-#include "compiler/mesh/field.h"
+#include "compiler/base/vec.h"
+#include "compiler/mesh/smooth.h"
 #include "compiler/program.h"
 #include "tests/support/random.h"
 
@@ -248,6 +249,84 @@ static void parts_of_a_number_are_that_number(void **context)
     }
 }
 
+/* What the value grows by along a normal, by a difference. */
+static double growth_at(const MeshField *field, const double p[3], const double normal[3])
+{
+    const double step = 1e-5;
+    double       ends[2][3], values[2];
+    add_scaled3(ends[0], p, -step, normal);
+    add_scaled3(ends[1], p, step, normal);
+    field_distances(field, (const double(*)[3])ends, 2, values);
+    return (values[1] - values[0]) / (2 * step);
+}
+
+/* The least growth on ways along a normal that begin in a box, where the value is at most the error, and are as long. */
+static double least_growth(const MeshField *field, Box box, double error, const double normal[3])
+{
+    double points[POINTS][3], values[POINTS], least = INFINITY;
+    points_in(box, points);
+    field_distances(field, (const double(*)[3])points, POINTS, values);
+    for (int i = 0; i < POINTS; i++)
+        for (int way = -4; fabs(values[i]) <= error && way <= 4; way++) {
+            double p[3];
+            add_scaled3(p, points[i], 0.25 * way * error, normal);
+            least = fmin(least, growth_at(field, p, normal));
+        }
+    return least;
+}
+
+static Box wider(Box box, double margin)
+{
+    for (int k = 0; k < 3; k++) {
+        box.axis[k].low -= margin;
+        box.axis[k].high += margin;
+    }
+    return box;
+}
+
+/* What the slope of a box is of the least growth, which it must not exceed; 0: nothing is known of it. */
+static double slope_share(MeshField *field, Box inner, double error)
+{
+    SmoothCell cell;
+    double     middle[3], normal[3], least;
+    for (int k = 0; k < 3; k++)
+        middle[k] = 0.5 * (inner.axis[k].low + inner.axis[k].high);
+    smooth_look(field, wider(inner, error), error, &cell);
+    if (!cell.known || cell.empty || !field_normal(field, middle, 1e-2 * error, normal))
+        return 0;
+    cell.slope = 0; /* it is that along another normal */
+    smooth_look_closer(field, error, &cell);
+    least = least_growth(field, inner, error, normal);
+    return cell.slope > 0 && least < INFINITY ? cell.slope / least : 0;
+}
+
+/* After a closer look no value grows by less than the slope, also on ways that lead out of the box.  Gradients turn, and
+   change in length, along them. */
+static void slopes_of_ways_hold(void **context)
+{
+    static const double ERROR = 0.05;
+    Opened             *o     = malloc(sizeof *o);
+    double              most  = 0;
+    int                 known = 0;
+    (void)context;
+    assert_non_null(o);
+    open_field(o, "show field(sin(2 * x) + 0.4 * cos(1.5 * y) * sin(z) - 0.6);");
+    for (int i = 0; i < 10 * BOXES; i++) {
+        Box inner = random_box(1.2, 0.3);
+        if (!field_enter(&o->field, wider(inner, 2 * ERROR)))
+            continue;
+        double share = slope_share(&o->field, inner, ERROR);
+        field_leave(&o->field);
+        assert_true(share >= 0 && share <= 1 + 1e-6);
+        most = fmax(most, share);
+        known += share > 0;
+    }
+    print_message("# %d boxes, slopes of up to %.3f of the least growth\n", known, most);
+    assert_true(known > BOXES && most > 0.95);
+    close_field(o);
+    free(o);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -256,6 +335,7 @@ int main(void)
         cmocka_unit_test(faces_that_are_far_are_no_pieces),
         cmocka_unit_test(parts_of_a_number_are_that_number),
         cmocka_unit_test(little_is_gained_in_boxes_of_the_same_size),
+        cmocka_unit_test(slopes_of_ways_hold),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
