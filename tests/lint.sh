@@ -1,7 +1,7 @@
 #!/bin/sh
 # lint.sh: every kernel is GLSL by itself, every script passes shellcheck, and all C has the style of
 # .clang-format (`make format` brings it about).  Another version of clang-format has other tastes.
-# Files have at most 500 lines.
+# Files have at most 500 lines, and none is larger than a megabyte.
 cd "$(dirname "$0")/.." || exit 1
 failed=0
 report() { # name, status
@@ -89,4 +89,10 @@ found=$(find Makefile .ci bench cli compiler grammar live runtime tests tools -n
 status=$?
 [ $status -eq 0 ] || echo "$found" | sed 's/^/# more than 500 lines: /'
 report "no file has more than 500 lines" $status
+# Who clones the project gets each file that was ever in it: what programs wrote has no place there.
+heavy=$(git ls-files -z | xargs -0 du -k | awk '$1 > 1024 { print $2 }')
+[ -z "$heavy" ]
+status=$?
+[ $status -eq 0 ] || echo "$heavy" | sed 's/^/# more than a megabyte: /'
+report "no file of the project is larger than a megabyte" $status
 exit $failed
