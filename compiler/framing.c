@@ -190,10 +190,10 @@ static void reduce_cells(KrsFrame *frame, const Box *known, Cells *cells)
 static void keep_apart(KrsFrame *frame, const Box *boxes, Cells *cells)
 {
     size_t kept = 0;
+    frame_refresh_points(frame);
     for (size_t i = 0; i < cells->count; i++) {
-        KrsHit near = {.component = 0};
-        krs_probe(frame, (const double(*)[3])cells->middles + i, 1, &near);
-        if (near.component == 0 || !box_is_finite(frame_box(frame, boxes, near.component - 1)))
+        uint32_t nearest = frame_nearest_component(frame, cells->middles[i]);
+        if (nearest == 0 || !box_is_finite(frame_box(frame, boxes, nearest - 1)))
             continue;
         memcpy(cells->middles[kept], cells->middles[i], sizeof *cells->middles);
         cells->boxes[kept++] = cells->boxes[i];

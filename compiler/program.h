@@ -259,6 +259,8 @@ void frame_tables_refresh(const KrsFrame *frame);
 /* The distance of a component, counted from 1, or of all (0), cut by the zones; frame_refresh_points
    was called before. */
 double frame_component_distance(KrsFrame *frame, size_t component, const double point[3]);
+/* The component that is nearest, counted from 1; 0: there is none. */
+uint32_t frame_nearest_component(KrsFrame *frame, const double point[3]);
 /* A value of the frame, used by points or the view, that is not finite; NODE_NONE: there is
    none. */
 Node frame_infinite(KrsFrame *frame);

@@ -70,6 +70,13 @@ double frame_component_distance(KrsFrame *frame, size_t component, const double 
                 zone_depth(frame, point));
 }
 
+uint32_t frame_nearest_component(KrsFrame *frame, const double point[3])
+{
+    uint32_t nearest = 0;
+    distance_at(frame, point, &nearest);
+    return nearest;
+}
+
 /* Far from surfaces, short steps cost less than exact ones. */
 static Tape march_tape(const KrsFrame *frame, const Tape *tape)
 {

@@ -123,10 +123,22 @@ void emit_lod_of(Emitter *e, const ModuleFunction *function)
     emit_line(e, "    return %s;\n}\n\n", result);
 }
 
+const char *emit_box_distance(Emitter *e, uint32_t component)
+{
+    const Node *nodes = e->module->box_nodes.around;
+    Text        call  = {.arena = e->scratch};
+    double      centre[3], half[3];
+    module_box_vectors(e->module->boxes[component], centre, half);
+    emit_call(e, "krs_box_distance", TYPE_VEC3, 3);
+    text_format(&call, "krs_box_distance(p, %s, %s)",
+                emit_box_vector(e, nodes, (size_t)2 * component, centre),
+                emit_box_vector(e, nodes, (size_t)2 * component + 1, half));
+    return call.bytes;
+}
+
 /* A component whose box is not nearer than what has been found is left out. */
 static void emit_guarded_component(Emitter *e, uint32_t component, bool first)
 {
-    Box         box  = e->module->boxes[component];
     const char *call = emit_call_of(e, OF_LOD, component);
     if (first) {
         emit_local(e, TYPE_FLOAT, "d", call);
@@ -134,17 +146,11 @@ static void emit_guarded_component(Emitter *e, uint32_t component, bool first)
     }
     Text least = {.arena = e->scratch}, nearer = least;
     text_format(&least, "min(d, %s)", call);
-    double      centre[3], half[3];
-    const Node *nodes = e->module->box_nodes.around;
-    module_box_vectors(box, centre, half);
-    if (!box_is_finite(box)) {
+    if (!box_is_finite(e->module->boxes[component])) {
         text_format(e->out, "    d = %s;\n", least.bytes);
         return;
     }
-    emit_call(e, "krs_box_distance", TYPE_VEC3, 3);
-    text_format(&nearer, "krs_box_distance(p, %s, %s) < max(d, 1e-30)",
-                emit_box_vector(e, nodes, (size_t)2 * component, centre),
-                emit_box_vector(e, nodes, (size_t)2 * component + 1, half));
+    text_format(&nearer, "%s < max(d, 1e-30)", emit_box_distance(e, component));
     emit_phrase(e, PHRASE_SET_IF, (Operands){nearer.bytes, "d", least.bytes});
 }
 

@@ -72,11 +72,17 @@ const Node *emit_planes(const Emitter *e)
                : e->module->planes;
 }
 
-/* Of a surface, with the distance to the plane that has its gradient, if it has one. */
+bool emit_has_tangent(const Emitter *e, uint32_t component)
+{
+    return e->variant->tangents && emit_has_gradient(e, component) &&
+           box_is_finite(e->module->boxes[component]);
+}
+
+/* Of a surface, with the distance to the plane that has its gradient, if that is asked for. */
 static const Node *tangent_roots(const Emitter *e, uint32_t component, const Node *surface)
 {
     const Node *gradient = e->module->gradients + 2 * component;
-    if (!e->variant->tangents || !emit_has_gradient(e, component))
+    if (!emit_has_tangent(e, component))
         return surface;
     Node *roots = arena_new_array(e->scratch, Node, ROOT_COUNT);
     memcpy(roots, surface, ROOT_COUNT * sizeof *roots);
@@ -97,10 +103,9 @@ ModuleFunction emit_function(const Emitter *e, FunctionKind kind, uint32_t compo
     default: break;
     }
     const Node *surface = surface_roots(e) + component * ROOT_COUNT;
-    if (kind == OF_SURFACE)
-        return (ModuleFunction){kind, component, tangent_roots(e, component, surface), ROOT_COUNT};
-    return (ModuleFunction){kind, component, tangent_roots(e, component, surface) + ROOT_DISTANCE,
-                            1};
+    return kind == OF_SURFACE
+               ? (ModuleFunction){kind, component, tangent_roots(e, component, surface), ROOT_COUNT}
+               : (ModuleFunction){kind, component, surface + ROOT_DISTANCE, 1};
 }
 
 Node emit_root(const Emitter *e, FunctionKind kind, uint32_t component)

@@ -43,8 +43,8 @@ static void forget(Emitter *e, const Node *nodes, size_t count)
 
 bool emit_find_shared(Emitter *e, uint32_t component, NodeList *shared)
 {
-    if (!e->variant->shares || !e->needed_of[OF_DISTANCE][component] ||
-        !e->needed_of[OF_SURFACE][component])
+    if (!e->variant->shares || emit_has_tangent(e, component) ||
+        !e->needed_of[OF_DISTANCE][component] || !e->needed_of[OF_SURFACE][component])
         return false;
     ModuleFunction surface = emit_function(e, OF_SURFACE, component);
     NodeList       path    = {0};

@@ -45,6 +45,16 @@ static void add_value(Emitter *e, Text *fields, const RootInfo *info, const char
         text_format(fields, "%s(%s), ", e->printer->types[info->shown], value);
 }
 
+static const char *emit_distance_of_surface(Emitter *e, uint32_t component, const char *distance)
+{
+    if (!emit_has_tangent(e, component))
+        return distance;
+    emit_local(e, TYPE_FLOAT, "tangent", distance);
+    emit_local(e, TYPE_FLOAT, "outside", emit_box_distance(e, component));
+    emit_phrase(e, PHRASE_SET_IF, (Operands){"outside > 0.0", "tangent", "outside"});
+    return "tangent";
+}
+
 void emit_surface_of(Emitter *e, const ModuleFunction *function)
 {
     const Node *root   = function->roots;
@@ -57,7 +67,8 @@ void emit_surface_of(Emitter *e, const ModuleFunction *function)
     Text fields = {.arena = e->scratch};
     for (ComponentRoot r = FIRST_ROOT; r < ROOT_NORMAL; r++)
         add_value(e, &fields, &root_info[r], e->text[root[r]]);
-    emit_line(e, "    return KrsSurface(%s, %s%s);\n}\n\n", e->text[root[ROOT_DISTANCE]],
+    emit_line(e, "    return KrsSurface(%s, %s%s);\n}\n\n",
+              emit_distance_of_surface(e, function->component, e->text[root[ROOT_DISTANCE]]),
               fields.bytes, e->text[root[ROOT_NORMAL]]);
 }
 

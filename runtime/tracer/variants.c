@@ -237,14 +237,6 @@ KernelVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, Kr
     return to;
 }
 
-/* Whether normals at hits are by derivatives, which tell the nearest component as well.  Boundaries
-   of media are told by distances. */
-static bool knows_tangents(const KrsRendering *rendering)
-{
-    return rendering_normals(rendering, KRS_NORMALS_DEFAULT) == KRS_NORMALS_ANALYTIC &&
-           !rendering->camera_relative && !rendering->program->media;
-}
-
 /* The octahedron has no define: normals.comp uses it by default. */
 KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals normals, uint32_t group)
 {
@@ -260,7 +252,6 @@ KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals norma
         define(&to, "#define GRADIENT\n");
     else if (normals != KRS_NORMALS_OCTAHEDRON)
         define(&to, "#define STENCIL %d\n", (int)normals);
-    to.scene.variant.tangents = normals == KRS_NORMALS_ANALYTIC && knows_tangents(rendering);
     /* Properties of the scene's distance around a hit. */
     define(&to, "%s%s", program->along && !program->inverts ? "#define ROOTS\n" : "",
            program->plain ? "#define PLAIN\n" : "");
@@ -283,6 +274,14 @@ KernelVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace
         want(&to, KRS_FUNCTION_DISTANCE);
     define_choices(&to);
     return to;
+}
+
+/* Whether normals at hits are by derivatives, which tell the nearest component as well.  Boundaries
+   of media are told by distances. */
+static bool knows_tangents(const KrsRendering *rendering)
+{
+    return rendering_normals(rendering, KRS_NORMALS_DEFAULT) == KRS_NORMALS_ANALYTIC &&
+           !rendering->camera_relative && !rendering->program->media;
 }
 
 KernelVariant variant_of_shade(const KrsRendering *rendering)
