@@ -49,6 +49,12 @@ static Box box_of_point(const double point[3])
     return (Box){{range_of(point[0]), range_of(point[1]), range_of(point[2])}};
 }
 
+/* Even the fewest rays take longer than that. */
+static bool is_costly(const KrsScene *scene)
+{
+    return FEWEST_RAYS * tape_flops_apart(&scene->distance) > RAYS * FLOPS_OF_ALL_RAYS;
+}
+
 /* The number of rays: a power of two, so that it has no factor in common with the strides of
    make_rays, which are odd. */
 static int count_rays(const KrsScene *scene)
@@ -278,13 +284,14 @@ static void look_for_ball(KrsFrame *frame, Box box, Rays *rays, Cells *cells, Ba
         grow_ball(rays, most, ball);
 }
 
-/* Of a box that is much too large a floor may be hit, and nothing else: then all is tried again. */
+/* Of a box that is much too large a floor may be hit, and nothing else: then all is tried again, if that takes
+   little time. */
 static void find_ball(KrsFrame *frame, Box box, Rays *rays, Cells *cells, Ball *ball)
 {
     const Ball outer = *ball;
     rays->apart      = false;
     look_for_ball(frame, box, rays, cells, ball);
-    if (rays->seen_count >= FEWEST_SEEN)
+    if (rays->seen_count >= FEWEST_SEEN || is_costly(frame->scene))
         return;
     rays->apart = true;
     *ball       = outer;
