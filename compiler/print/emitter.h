@@ -194,11 +194,11 @@ bool emit_has_gradient(const Emitter *e, uint32_t component);
 bool emit_has_tangent(const Emitter *e, uint32_t component);
 /* The distance to the box around a component, which is finite; 0 inside. */
 const char *emit_box_distance(Emitter *e, uint32_t component);
-void emit_distance_of(Emitter *e, const ModuleFunction *function);
-void emit_gradient_of(Emitter *e, const ModuleFunction *function);
-void emit_zones(Emitter *e);
-void emit_distance(Emitter *e);
-void emit_gradient(Emitter *e);
+void        emit_distance_of(Emitter *e, const ModuleFunction *function);
+void        emit_gradient_of(Emitter *e, const ModuleFunction *function);
+void        emit_zones(Emitter *e);
+void        emit_distance(Emitter *e);
+void        emit_gradient(Emitter *e);
 
 /* shared.c: what a component's distance and surface have in common. */
 /* The values that the distance hands over; false: each is computed by itself. */
