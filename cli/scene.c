@@ -135,8 +135,7 @@ KrsStatus say_status(KrsStatus status, const char *path)
    allow less. */
 static KrsStatus say_too_large(const Options *options, const char *path)
 {
-    const uint64_t usual = (uint64_t)2 << 30; /* KrsOptions.memory_limit of 0 */
-    const uint64_t limit = options->limits.memory ? options->limits.memory : usual;
+    const uint64_t limit = options->limits.memory ? options->limits.memory : KRS_USUAL_MEMORY;
     struct rlimit  of_system;
     if (getrlimit(RLIMIT_AS, &of_system) == 0 && of_system.rlim_cur < limit)
         return say_status(KRS_OUT_OF_MEMORY, path);

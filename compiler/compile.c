@@ -11,8 +11,6 @@
 #include "compiler/compilation.h"
 #include "compiler/front/format.h"
 
-static const size_t DEFAULT_MEMORY = (size_t)2 << 30;
-
 static const Request scene_alone = {.after = PASS_COUNT, .end = PASS_COUNT};
 
 /* ---- the passes ---- */
@@ -168,7 +166,7 @@ static KrsScene *scene_new(const KrsOptions *options)
                                       allocator->release,
                                       allocator->user,
                                       0,
-                             options->memory_limit ? options->memory_limit : DEFAULT_MEMORY,
+                             options->memory_limit ? options->memory_limit : KRS_USUAL_MEMORY,
                                       NULL};
     scene->arena           = (Arena){.memory = &scene->memory};
     scene->program.kernels = atomic_fetch_add(&scenes_made, 1);

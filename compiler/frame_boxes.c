@@ -80,7 +80,7 @@ void frame_find_floor(KrsFrame *frame, uint32_t changed)
         return;
     const Box *boxes  = frame_find_boxes(frame);
     double     bottom = HUGE_VAL;
-    for (size_t i = 0; i + 1 < scene->shown_count; i++)
+    for (size_t i = 0; i + 1 < scene->shown_count; i++) /* the last one is the floor */
         if (!box_is_empty(boxes[i]))
             bottom = fmin(bottom, boxes[i].axis[1].low);
     const bool seen                     = isfinite(bottom) && bottom < lowest_eye(frame);

@@ -49,19 +49,17 @@ static Box box_of_point(const double point[3])
     return (Box){{range_of(point[0]), range_of(point[1]), range_of(point[2])}};
 }
 
-/* Even the fewest rays take longer than that. */
-static bool is_costly(const KrsScene *scene)
+static bool is_costly(const KrsScene *scene, int rays)
 {
-    return FEWEST_RAYS * tape_flops_apart(&scene->distance) > RAYS * FLOPS_OF_ALL_RAYS;
+    return rays * tape_flops_apart(&scene->distance) > RAYS * FLOPS_OF_ALL_RAYS;
 }
 
 /* The number of rays: a power of two, so that it has no factor in common with the strides of
    make_rays, which are odd. */
 static int count_rays(const KrsScene *scene)
 {
-    int    count = RAYS;
-    double flops = tape_flops_apart(&scene->distance);
-    while (count > FEWEST_RAYS && count * flops > RAYS * FLOPS_OF_ALL_RAYS)
+    int count = RAYS;
+    while (count > FEWEST_RAYS && is_costly(scene, count))
         count /= 2;
     return count;
 }
@@ -291,7 +289,7 @@ static void find_ball(KrsFrame *frame, Box box, Rays *rays, Cells *cells, Ball *
     const Ball outer = *ball;
     rays->apart      = false;
     look_for_ball(frame, box, rays, cells, ball);
-    if (rays->seen_count >= FEWEST_SEEN || is_costly(frame->scene))
+    if (rays->seen_count >= FEWEST_SEEN || is_costly(frame->scene, FEWEST_RAYS))
         return;
     rays->apart = true;
     *ball       = outer;

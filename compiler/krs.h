@@ -78,13 +78,16 @@ typedef enum KrsSpecialize {
                                  many that drivers would take minutes */
 } KrsSpecialize;
 
+/* What compiling a scene, or meshing a frame, may use where nothing else is asked for: 2 GiB. */
+#define KRS_USUAL_MEMORY ((size_t)2 << 30)
+
 typedef struct KrsOptions {
     KrsAllocator           allocator;
-    KrsDiagnosticCallback *diagnostic;   /* may be NULL */
-    void                  *user;         /* handed to `diagnostic` */
-    size_t                 memory_limit; /* bytes that compiling a scene may use; 0: 2 GiB */
-    KrsSpecialize          specialize;
-    bool                   gradients; /* compile derivatives too: for KRS_NORMALS_ANALYTIC,
+    KrsDiagnosticCallback *diagnostic; /* may be NULL */
+    void                  *user;       /* handed to `diagnostic` */
+    size_t        memory_limit; /* bytes that compiling a scene may use; 0: KRS_USUAL_MEMORY */
+    KrsSpecialize specialize;
+    bool          gradients; /* compile derivatives too: for KRS_NORMALS_ANALYTIC,
                                             and as krs_gradient in the GLSL */
     bool studio;   /* a bounded scene without lights and sky gets some, and a floor, whose component
                     is the last and named `floor`; for pictures */

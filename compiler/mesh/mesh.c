@@ -7,7 +7,6 @@
 #include "compiler/mesh/voids.h"
 #include "compiler/program.h"
 
-static const size_t DEFAULT_LIMIT = (size_t)2 << 30;
 static const double DEFAULT_ERROR = 1.0 / 200, LEAST_ERROR = 1.0 / 500000;
 static const double CUBE_SIDE = 1.0973; /* in longest sides of the box */
 
@@ -142,7 +141,7 @@ KrsStatus mesh_solid(KrsFrame *frame, const KrsMeshOptions *options, const MeshS
     m->solid         = solid;
     m->memory        = frame->scene->memory;
     m->memory.used   = 0;
-    m->memory.limit  = m->options->memory_limit ? m->options->memory_limit : DEFAULT_LIMIT;
+    m->memory.limit  = m->options->memory_limit ? m->options->memory_limit : KRS_USUAL_MEMORY;
     m->arena.memory  = &m->memory;
     KrsStatus status = options_are_valid(m) ? run(m, frame, mesh) : KRS_BAD_ARGUMENT;
     close_mesher(m);

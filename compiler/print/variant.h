@@ -105,8 +105,9 @@ typedef struct KrsVariant {
                            half the text, in which operations have another order */
     bool values;  /* the host fills in what depends on the frame alone (krs_frame_values) */
     bool buffers; /* tables are storage buffers, for devices that read too few texels */
-    /* Distances, also of krs_surface, are those to the planes of krs_gradient: for points beside
-       surfaces, where these cost less than the safe distances of polynomials. */
+    /* krs_surface finds the nearest component by the planes of krs_gradient: for points of surfaces,
+       where these cost less than the safe distances of polynomials.  Outside of the box around a
+       component it is the box that counts. */
     bool tangents;
 } KrsVariant;
 
