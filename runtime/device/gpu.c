@@ -181,7 +181,10 @@ bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
 
 bool gpu_open_beside(Gpu *gpu, const Gpu *other)
 {
-    *gpu = (Gpu){.physical = other->physical, .family = other->family, .patience = other->patience};
+    *gpu = (Gpu){.physical  = other->physical,
+                 .family    = other->family,
+                 .time_mask = other->time_mask,
+                 .patience  = other->patience};
     if (device_create(gpu, other->texels ? 0 : KRS_PRETEND_LEAST_LIMITS))
         return true;
     gpu_close(gpu);

@@ -20,8 +20,9 @@ struct KernelsAhead {
     KernelCode    codes[MOST_AHEAD];
     Kernel        kernels[MOST_AHEAD];
     size_t        count, made;
+    size_t        begun; /* after ahead_stop; all, before */
+    atomic_size_t next;  /* that is begun, unless there are no more */
     pthread_t     thread;
-    atomic_bool   ends;
 };
 
 bool kernel_warm_up(KrsRenderer *renderer, VkDescriptorSet scene_set, Kernel *kernel)
@@ -61,7 +62,7 @@ static bool make(KernelsAhead *ahead, size_t i)
 static void *make_all(void *user)
 {
     KernelsAhead *ahead = user;
-    while (ahead->made < ahead->count && !atomic_load(&ahead->ends) && make(ahead, ahead->made))
+    for (size_t i; (i = atomic_fetch_add(&ahead->next, 1)) < ahead->count && make(ahead, i);)
         ahead->made++;
     return NULL;
 }
@@ -87,7 +88,7 @@ void ahead_start(KrsRenderer *renderer, const KernelRequest *requests, size_t co
         return;
     ahead->renderer               = *renderer;
     ahead->renderer.gpu.compiling = NULL; /* the caller's thread tells how far it is */
-    ahead->count                  = count;
+    ahead->count = ahead->begun = count;
     memcpy(ahead->requests, requests, count * sizeof *requests);
     if (kernel_compile_all(&ahead->renderer.gpu, ahead->requests, ahead->count, ahead->codes,
                            &unused) &&
@@ -97,12 +98,30 @@ void ahead_start(KrsRenderer *renderer, const KernelRequest *requests, size_t co
         free_ahead(renderer, ahead);
 }
 
+void ahead_stop(KrsRenderer *renderer)
+{
+    KernelsAhead *ahead = renderer->ahead;
+    if (!ahead)
+        return;
+    const size_t begun = atomic_exchange(&ahead->next, MOST_AHEAD);
+    ahead->begun       = begun < ahead->begun ? begun : ahead->begun;
+}
+
+bool ahead_begun(const KrsRenderer *renderer, const Kernel *kernel)
+{
+    const KernelsAhead *ahead = renderer->ahead;
+    bool                found = false;
+    for (size_t i = 0; ahead && i < ahead->begun; i++)
+        found = found || ahead->requests[i].kernel == kernel;
+    return found;
+}
+
 void ahead_end(KrsRenderer *renderer)
 {
     KernelsAhead *ahead = renderer->ahead;
     if (!ahead)
         return;
-    atomic_store(&ahead->ends, true);
+    ahead_stop(renderer);
     pthread_join(ahead->thread, NULL);
     for (size_t i = 0; i < ahead->made; i++)
         *ahead->requests[i].kernel = ahead->kernels[i];

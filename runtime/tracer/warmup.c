@@ -24,16 +24,20 @@ typedef struct WarmUpQueue {
     const KernelCode    *codes;
     size_t               count;
     atomic_size_t        next;
+    double               second_ms[KERNELS_AT_ONCE]; /* that the second device's driver took */
+    pthread_t            thread;                     /* of the second device, */
+    bool                 helped;                     /* which runs */
 } WarmUpQueue;
 
 /* Whether a second device is worth its cost.  There must be a core for it, and more than one kernel
    that the driver probably does not have yet.  The callback of the validation layers works for one
    thread only. */
-static bool worth_second_device(const Gpu *gpu, const KernelCode *codes, size_t count)
+static bool worth_second_device(const WarmUpQueue *queue)
 {
-    size_t compiled = 0;
-    for (size_t i = 0; i < count; i++)
-        compiled += codes[i].compiled;
+    const Gpu *gpu      = queue->gpu;
+    size_t     compiled = 0;
+    for (size_t i = 0; i < queue->count; i++)
+        compiled += queue->codes[i].compiled;
     return compiled > 1 && gpu_is_cpu(gpu) && !gpu->messenger && sysconf(_SC_NPROCESSORS_ONLN) > 1;
 }
 
@@ -51,7 +55,7 @@ static void *warm_up_on_second_device(void *user)
             continue;
         ready = kernel_load(&second.gpu, &kernel, &queue->codes[i], second.layout, &ms) &&
                 kernel_warm_up(&second, second.idle_scene, &kernel) && gpu_wait(&second.gpu);
-        queue->requests[i].kernel->pipeline_ms += kernel_driver_ms(&second.gpu, &kernel);
+        queue->second_ms[i] = kernel_driver_ms(&second.gpu, &kernel);
         kernel_destroy(&second.gpu, &kernel);
     }
     layouts_destroy(&second);
@@ -67,37 +71,48 @@ static size_t taken_so_far(WarmUpQueue *queue)
 
 static bool tell_warmed_up(KrsRenderer *renderer, size_t warmed_up, size_t count)
 {
-    const double part = (double)warmed_up / (double)count;
+    const double part = count > 0 ? (double)warmed_up / (double)count : 1;
     return gpu_tell_compiled(&renderer->gpu, COMPILED_PART + (1 - COMPILED_PART) * part);
+}
+
+static void start_second_device(WarmUpQueue *queue)
+{
+    queue->helped = worth_second_device(queue) &&
+                    pthread_create(&queue->thread, NULL, warm_up_on_second_device, queue) == 0;
+}
+
+static void end_second_device(WarmUpQueue *queue)
+{
+    if (queue->helped)
+        pthread_join(queue->thread, NULL);
 }
 
 /* Warms up the kernels that the second device does not take, and then, from the disk, those that it
    took. */
-static bool warm_up_all(KrsRenderer *renderer, VkDescriptorSet scene_set,
-                        const KernelRequest *requests, const KernelCode *codes, size_t count)
+static bool warm_up_all(KrsRenderer *renderer, VkDescriptorSet scene_set, WarmUpQueue *queue)
 {
-    WarmUpQueue queue = {
-        .gpu = &renderer->gpu, .requests = requests, .codes = codes, .count = count};
-    pthread_t thread;
-    bool      ready = true, taken[KERNELS_AT_ONCE] = {false};
-    bool      helped = worth_second_device(&renderer->gpu, codes, count) &&
-                  pthread_create(&thread, NULL, warm_up_on_second_device, &queue) == 0;
-    while (helped && ready) {
+    const KernelRequest *requests = queue->requests;
+    const KernelCode    *codes    = queue->codes;
+    const size_t         count    = queue->count;
+    bool                 ready = true, taken[KERNELS_AT_ONCE] = {false};
+    while (queue->helped && ready) {
         /* It takes a kernel only when it can run it. */
-        ready = gpu_wait(&renderer->gpu) && tell_warmed_up(renderer, taken_so_far(&queue), count);
-        size_t i = atomic_fetch_add(&queue.next, 1);
+        ready    = gpu_wait(&renderer->gpu) && tell_warmed_up(renderer, taken_so_far(queue), count);
+        size_t i = atomic_fetch_add(&queue->next, 1);
         if (i >= count)
             break;
         taken[i] = ready = ready && (codes[i].shared ||
                                      kernel_warm_up(renderer, scene_set, requests[i].kernel));
     }
     if (!ready)
-        atomic_store(&queue.next, count);
-    if (helped)
-        pthread_join(thread, NULL);
-    for (size_t i = 0; i < count && ready; i++)
+        atomic_store(&queue->next, count);
+    end_second_device(queue);
+    queue->helped = false;
+    for (size_t i = 0; i < count && ready; i++) {
+        requests[i].kernel->pipeline_ms += queue->second_ms[i];
         ready = taken[i] || codes[i].shared ||
                 kernel_warm_up(renderer, scene_set, requests[i].kernel);
+    }
     return ready;
 }
 
@@ -118,13 +133,14 @@ static void sort_by_size(KernelRequest *requests, KernelCode *codes, size_t coun
     }
 }
 
-/* Leaves out what has been made ahead meanwhile.  Returns how many are left. */
-static size_t drop_made(Gpu *gpu, KernelRequest *requests, KernelCode *codes, size_t count)
+/* Leaves out the kernels that are made, or begun ahead.  Returns how many are left. */
+static size_t drop_made(KrsRenderer *renderer, KernelRequest *requests, KernelCode *codes,
+                        size_t count)
 {
     size_t left = 0;
     for (size_t i = 0; i < count; i++) {
-        if (requests[i].kernel->pipeline) {
-            kernel_code_release(gpu, &codes[i]);
+        if (requests[i].kernel->pipeline || ahead_begun(renderer, requests[i].kernel)) {
+            kernel_code_release(&renderer->gpu, &codes[i]);
             continue;
         }
         requests[left] = requests[i];
@@ -133,28 +149,55 @@ static size_t drop_made(Gpu *gpu, KernelRequest *requests, KernelCode *codes, si
     return left;
 }
 
-bool kernels_make(KrsRenderer *renderer, VkDescriptorSet scene_set, const KernelRequest *asked,
-                  size_t count, double *spirv_ms, double *pipeline_ms)
+/* Loads kernels and warms them up.  The second device begins at once, while the first still has a
+   kernel at hand that was begun ahead. */
+static bool load_and_warm_up(KrsRenderer *renderer, VkDescriptorSet scene_set,
+                             const KernelRequest *requests, const KernelCode *codes, size_t count)
+{
+    Gpu        *gpu   = &renderer->gpu;
+    WarmUpQueue queue = {.gpu = gpu, .requests = requests, .codes = codes, .count = count};
+    start_second_device(&queue);
+    bool ready = kernel_load_all(gpu, requests, codes, count, renderer->layout);
+    ahead_end(renderer);
+    if (!ready)
+        atomic_store(&queue.next, count);
+    if (ready && gpu_is_cpu(gpu))
+        return warm_up_all(renderer, scene_set, &queue);
+    end_second_device(&queue);
+    return ready;
+}
+
+/* The same, and compiles them before. */
+static bool make(KrsRenderer *renderer, VkDescriptorSet scene_set, const KernelRequest *asked,
+                 size_t count, double *spirv_ms, double *pipeline_ms)
 {
     Gpu          *gpu = &renderer->gpu;
     KernelRequest requests[KERNELS_AT_ONCE];
     KernelCode    codes[KERNELS_AT_ONCE];
-    if (count == 0)
-        return true;
     memcpy(requests, asked, count * sizeof *requests);
     bool ready = kernel_compile_all(gpu, requests, count, codes, spirv_ms);
-    ahead_end(renderer);
-    count = drop_made(gpu, requests, codes, count);
+    ahead_stop(renderer);
+    count = drop_made(renderer, requests, codes, count);
     sort_by_size(requests, codes, count);
     double start = clock_ms();
     for (size_t i = 0; i < count; i++)
         *requests[i].kernel = (Kernel){0};
-    ready = ready && kernel_load_all(gpu, requests, codes, count, renderer->layout);
-    if (gpu_is_cpu(gpu))
-        ready = ready && warm_up_all(renderer, scene_set, requests, codes, count);
+    ready = ready && load_and_warm_up(renderer, scene_set, requests, codes, count);
+    ahead_end(renderer);
     ready = ready && tell_warmed_up(renderer, count, count);
     for (size_t i = 0; i < count; i++)
         kernel_code_release(gpu, &codes[i]);
     *pipeline_ms += clock_ms() - start;
+    return ready;
+}
+
+bool kernels_make(KrsRenderer *renderer, VkDescriptorSet scene_set, const KernelRequest *asked,
+                  size_t count, double *spirv_ms, double *pipeline_ms)
+{
+    bool ready = count == 0 || make(renderer, scene_set, asked, count, spirv_ms, pipeline_ms);
+    /* What was begun ahead, and failed, is made now: nothing is made ahead any more. */
+    for (size_t i = 0; i < count && ready; i++)
+        ready = asked[i].kernel->pipeline ||
+                make(renderer, scene_set, &asked[i], 1, spirv_ms, pipeline_ms);
     return ready;
 }
