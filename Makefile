@@ -88,7 +88,7 @@ STYLE    := -std=c17 -D_GNU_SOURCE -Wall -Wextra -Wpedantic -Wshadow -Werror -I.
 FRONT_LIBS := -lharfbuzz -lfreetype -lfontconfig -lexpat -lOpenEXRCore-3_1 -lpng -lqhull_r -lmeshoptimizer
 LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLCompiler -lSPIRV \
             -lSPVRemapper -lglslang-default-resource-limits -lSPIRV-Tools-opt -lSPIRV-Tools \
-            $(FRONT_LIBS) -lxxhash -lvulkan -lstdc++ -lm -pthread
+            $(FRONT_LIBS) -ldeflate -lxxhash -lvulkan -lstdc++ -lm -pthread
 # Of the command alone.  Without libchafa `krs view --terminal` says so.
 CHAFA    := $(shell pkg-config --exists chafa && echo chafa)
 WINDOW_LIBS := $(if $(CHAFA),$(shell pkg-config --libs chafa)) -limgui -lstb -lglfw -lGL -lX11

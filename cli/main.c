@@ -7,6 +7,7 @@
 #include <OpenEXR/openexr.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <libdeflate.h>
 #include <png.h>
 #include <setjmp.h>
 #include <signal.h>
@@ -51,6 +52,7 @@ static KrsStatus print_version(void)
     printf("glslang %s\n", spirv_glslang_version());
     printf("SPIRV-Tools %s\n", spirv_tools_version());
     printf("OpenEXRCore %d.%d.%d%s\n", major, minor, patch, extra ? extra : "");
+    printf("libdeflate %s\n", LIBDEFLATE_VERSION_STRING);
     printf("libpng %s\n", png_get_libpng_ver(NULL));
     return console_finish();
 }

@@ -2,7 +2,7 @@
 # deps.sh: installs the Debian packages that building and testing need and that are missing.
 # Says what it does; uses sudo when it is not run by root; does nothing when nothing is missing.
 packages="g++ glslang-dev glslang-tools spirv-tools libvulkan-dev mesa-vulkan-drivers
-          vulkan-validationlayers libopenexr-dev libpng-dev libxxhash-dev libqhull-dev libfreetype-dev
+          vulkan-validationlayers libopenexr-dev libdeflate-dev libpng-dev libxxhash-dev libqhull-dev libfreetype-dev
           libharfbuzz-dev libfontconfig-dev libexpat1-dev fonts-dejavu-core libglfw3-dev libimgui-dev libgl-dev libchafa-dev
           libx11-dev libgl1-mesa-dri xvfb xdotool openbox libcmocka-dev clang-14
           clang-format-14 libclang-rt-14-dev shellcheck strace openexr patch pkgconf

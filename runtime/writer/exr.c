@@ -19,11 +19,9 @@
 #include <string.h>
 
 #include "compiler/base/half.h"
+#include "runtime/writer/exr_zip.h"
 
 enum {
-    /* zlib's level.  Files of level 2 are 3 % larger than those of 4, in two thirds of the time.
-       Files of level 4 are within 2 % of those of 9, in a quarter of the time. */
-    ZIP_LEVEL = 2,
     /* Only one thread writes at any time, and each needs memory for a chunk. */
     MOST_WORKERS = 8
 };
@@ -52,7 +50,8 @@ typedef struct Worker {
     uint32_t              chunk;    /* number of the chunk that it has taken */
     uint32_t             *block;    /* packed lines of all channels, in the picture's order */
     bool                  begun;    /* the pipeline is set up */
-    exr_encode_pipeline_t pipeline; /* keeps its buffers from chunk to chunk */
+    exr_encode_pipeline_t pipeline; /* keeps its buffers from chunk to chunk, */
+    ExrZip                zip;      /* but for these */
 } Worker;
 
 static int64_t write_callback(exr_const_context_t context, void *user, const void *bytes,
@@ -78,7 +77,7 @@ static bool exr_try(ExrWriter *writer, exr_result_t result)
     if (result == EXR_ERR_SUCCESS)
         return true;
     if (result == EXR_ERR_CORRUPT_CHUNK)
-        /* When writing, this means that zlib found no memory. */
+        /* When writing, this means that the library found no memory. */
         result = EXR_ERR_OUT_OF_MEMORY;
     if (writer->error->status == KRS_OK) {
         writer->error->status = result == EXR_ERR_OUT_OF_MEMORY ? KRS_OUT_OF_MEMORY : KRS_INTERNAL;
@@ -101,8 +100,7 @@ static bool write_layout(ExrWriter *writer)
     if (!exr_try(writer, exr_add_part(writer->context, "krs", EXR_STORAGE_SCANLINE, &part)) ||
         !exr_try(writer,
                  exr_initialize_required_attr(writer->context, 0, &display, &data, 1, &center, 1,
-                                              EXR_LINEORDER_INCREASING_Y, EXR_COMPRESSION_ZIP)) ||
-        !exr_try(writer, exr_set_zip_compression_level(writer->context, 0, ZIP_LEVEL)))
+                                              EXR_LINEORDER_INCREASING_Y, EXR_COMPRESSION_ZIP)))
         return false;
 
     static const exr_pixel_type_t types[] = {[SAMPLE_HALF]  = EXR_PIXEL_HALF,
@@ -207,6 +205,12 @@ static exr_result_t wait_for_turn(exr_encode_pipeline_t *pipeline)
     return result;
 }
 
+static exr_result_t compress(exr_encode_pipeline_t *pipeline)
+{
+    Worker *worker = pipeline->encoding_user_data;
+    return exr_zip(&worker->zip, pipeline);
+}
+
 /* Takes the next chunk; false when there is none. */
 static bool take_chunk(Worker *worker)
 {
@@ -240,6 +244,7 @@ static exr_result_t write_chunk(Worker *worker)
         if (result != EXR_ERR_SUCCESS)
             return result;
         pipeline->encoding_user_data   = worker;
+        pipeline->compress_fn          = compress;
         pipeline->yield_until_ready_fn = wait_for_turn;
     }
     return exr_encoding_run(context, 0, pipeline);
@@ -300,6 +305,7 @@ static void run_workers(Chunks *chunks)
     for (uint32_t i = 0; i < count; i++) {
         if (i > 0)
             pthread_join(workers[i].thread, NULL);
+        exr_zip_end(&workers[i].zip, &workers[i].pipeline);
         exr_encoding_destroy(chunks->writer->context, &workers[i].pipeline);
         free(workers[i].block);
     }

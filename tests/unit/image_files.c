@@ -179,10 +179,8 @@ static void check_exr_header(exr_context_t context, const Sample *sample)
     assert_string_equal(text, "0123456789abcdef");
 }
 
-static void exr_reads_back(void **state)
+static void check_exr(const Sample *sample)
 {
-    (void)state;
-    Sample       *sample = sample_new();
     exr_context_t context;
     assert_int_equal(write_sample(sample, EXR, "a.exr"), KRS_OK);
     assert_int_equal(exr_start_read(&context, "a.exr", NULL), 0);
@@ -202,6 +200,13 @@ static void exr_reads_back(void **state)
     free(depth);
     free(id);
     exr_finish(&context);
+}
+
+static void exr_reads_back(void **state)
+{
+    (void)state;
+    Sample *sample = sample_new();
+    check_exr(sample);
     free(sample);
 }
 
@@ -213,6 +218,34 @@ static size_t read_file(const char *path, char *bytes, size_t size)
     fclose(file);
     assert_true(length < size);
     return length;
+}
+
+/* Chunks that compression does not make smaller are stored as they are. */
+static void noise_reads_back(void **state)
+{
+    enum { SIZE = 1 << 20 };
+    (void)state;
+    Sample  *sample = sample_new();
+    char    *bytes  = malloc(SIZE);
+    uint64_t random = 1;
+    assert_non_null(bytes);
+    for (size_t i = 0; i < WIDTH * HEIGHT; i++)
+        for (int c = 0; c < 4; c++) {
+            random        = random * 6364136223846793005u + 1442695040888963407u;
+            uint16_t half = (uint16_t)(random >> 48);
+            if ((half & 0x7c00) == 0x7c00)
+                half ^= 0x4000; /* it was infinite, or no number */
+            if (c < 2)
+                sample->color[i][c] = (float)half_value(half);
+            else
+                memcpy(c == 2 ? (void *)&sample->depth[i] : &sample->id[i], (uint8_t *)&random + 4,
+                       4);
+        }
+    check_exr(sample);
+    assert_in_range(read_file("a.exr", bytes, SIZE), WIDTH * HEIGHT * 12,
+                    WIDTH * HEIGHT * 12 + 2000);
+    free(bytes);
+    free(sample);
 }
 
 /* With one processor there is one worker; the file must be that of any number. */
@@ -350,6 +383,7 @@ int main(void)
         cmocka_unit_test(halves_round_to_nearest_even),
         cmocka_unit_test(halves_of_extreme_numbers),
         IN_FOLDER(exr_reads_back),
+        IN_FOLDER(noise_reads_back),
         IN_FOLDER(workers_are_not_seen),
         IN_FOLDER(png_reads_back),
         IN_FOLDER(equal_pictures_are_equal_files),
