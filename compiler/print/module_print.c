@@ -200,6 +200,15 @@ static void find_needs(Emitter *e)
             scene_functions[f].need(e);
 }
 
+/* Around components whose planes are kept from overflow. */
+static void add_kept_boxes(Emitter *e, NodeList *list)
+{
+    const Node *nodes = e->module->box_nodes.around;
+    for (uint32_t i = 0; nodes && i < e->module->components; i++)
+        if (e->needed_of[OF_SURFACE][i] && emit_has_tangent(e, i))
+            add_nodes(e, list, nodes + (size_t)2 * i, 2);
+}
+
 /* Of all functions. */
 static NodeList gather_roots(Emitter *e)
 {
@@ -216,6 +225,7 @@ static NodeList gather_roots(Emitter *e)
               zones && e->wanted[KRS_FUNCTION_GRADIENT] ? 2 : 0);
     add_boxes(e, &roots, e->wanted[KRS_FUNCTION_DISTANCE_LOD],
               e->wanted[KRS_FUNCTION_SCENE_PART_BOX] && !e->variant->camera_relative);
+    add_kept_boxes(e, &roots);
     add_nodes(e, &roots, emit_planes(e), e->wanted[KRS_FUNCTION_PLANE_T]);
     add_nodes(e, &roots, emit_planes(e) + 1, e->wanted[KRS_FUNCTION_PLANE_COSINE]);
     emit_find_called(e, &roots);

@@ -330,6 +330,22 @@ static void look_at_glass(void)
     look_at_variants(scene, "glass.krs", true);
 }
 
+/* Boxes around polynomials that are numbers of the frame. */
+static void look_at_moved_boxes(void)
+{
+    static const char text[]  = "use \"std/surfaces.krs\";"
+                                "show barth_sextic(within: 1.5).move([0, 3, 0]);"
+                                "show heart().move([3, 0, 0]); show box([1, 1, 1]);";
+    const KrsOptions  options = {.specialize = KRS_SPECIALIZE_STRUCTURE};
+    KernelScene       of      = {
+                   .variant = {.tangents = true}, .wanted = {KRS_FUNCTION_SURFACE}, .wanted_count = 1};
+    KrsScene *scene;
+    assert_int_equal(krs_compile_text(text, strlen(text), "boxes.krs", &options, &scene), KRS_OK);
+    of.scene = scene;
+    look_at_text(&of, "boxes.krs", true);
+    krs_scene_free(scene);
+}
+
 static void texts_hold_what_is_called(void **state)
 {
     (void)state;
@@ -357,6 +373,7 @@ static void texts_are_glsl(void **state)
     compile_scene("bench/scenes/compound.krs");
     look_at_far_scene(true);
     look_at_glass();
+    look_at_moved_boxes();
     spirv_stop();
     assert_true(groups_seen > 0 && relative_seen > 0 && planes_seen > 0);
 }
