@@ -98,13 +98,55 @@ void need_gradient(Emitter *e)
     }
 }
 
+bool emit_wants_gradient(const Emitter *e)
+{
+    return e->wanted[KRS_FUNCTION_GRADIENT] || e->wanted[KRS_FUNCTION_TANGENT];
+}
+
+/* Whether overflow may make of the distance to the gradient's plane what it likes: of a polynomial's,
+   which is not the distance itself. */
+static bool may_overflow(const Emitter *e, uint32_t component)
+{
+    return e->wanted[KRS_FUNCTION_TANGENT] && e->needed_of[OF_GRADIENT][component] &&
+           emit_has_gradient(e, component) &&
+           e->module->gradients[2 * component + 1] != emit_root(e, OF_DISTANCE, component);
+}
+
+bool emit_keeps_plane(const Emitter *e, uint32_t component)
+{
+    return may_overflow(e, component) && box_is_finite(e->module->boxes[component]);
+}
+
+/* Where there is no box, the safe distance takes the place of the plane's. */
+static bool has_safe_distance(const Emitter *e, uint32_t component)
+{
+    return may_overflow(e, component) && !emit_keeps_plane(e, component);
+}
+
+void need_tangent(Emitter *e)
+{
+    need_gradient(e);
+    for (uint32_t i = 0; i < e->module->components; i++)
+        e->needed_of[OF_DISTANCE][i] |= has_safe_distance(e, i);
+}
+
 /* Four numbers: a gradient, and the distance. */
-static const char *with_distance(Emitter *e, const Node *roots)
+static const char *with_distance(Emitter *e, const char *gradient, const char *distance)
 {
     Text text = {.arena = e->scratch};
-    text_format(&text, "%s(%s, %s)", e->printer->types[TYPE_VEC4], e->text[roots[0]],
-                e->text[roots[1]]);
+    text_format(&text, "%s(%s, %s)", e->printer->types[TYPE_VEC4], gradient, distance);
     return text.bytes;
+}
+
+/* The distance to the plane, or to the box around the component where that is larger, or where the
+   other is not a number. */
+static const char *emit_kept_distance(Emitter *e, uint32_t component, const char *distance)
+{
+    emit_local(e, TYPE_FLOAT, "tangent", distance);
+    emit_local(e, TYPE_FLOAT, "outside", emit_box_distance(e, component));
+    emit_phrase(e, PHRASE_SET_IF,
+                (Operands){"outside > 0.0 && !(tangent > outside)", "tangent", "outside"});
+    return "tangent";
 }
 
 /* Of one component: the gradient, and the distance. */
@@ -115,9 +157,14 @@ void emit_gradient_of(Emitter *e, const ModuleFunction *function)
         emit_helper_of(e, "krs_gradient_N", function->component);
         return;
     }
-    emit_head_of(e, OF_GRADIENT, function->component);
-    emit_body(e, roots, 2);
-    emit_line(e, "    return %s;\n}\n\n", with_distance(e, roots));
+    const uint32_t component = function->component;
+    const bool     is_safe   = has_safe_distance(e, component);
+    emit_head_of(e, OF_GRADIENT, component);
+    emit_body(e, roots, is_safe ? 1 : 2);
+    const char *distance = is_safe ? emit_call_of(e, OF_DISTANCE, component) : e->text[roots[1]];
+    if (emit_keeps_plane(e, component))
+        distance = emit_kept_distance(e, component, distance);
+    emit_line(e, "    return %s;\n}\n\n", with_distance(e, e->text[roots[0]], distance));
 }
 
 /* Where zones cut, their walls are the surface. */
@@ -127,13 +174,16 @@ static void emit_zone_gradients(Emitter *e, const Node *roots)
         emit_body(e, roots, 2);
         Text deeper = {.arena = e->scratch};
         text_format(&deeper, "%s > nearest.w", e->text[roots[1]]);
-        emit_phrase(e, PHRASE_SET_IF, (Operands){deeper.bytes, "nearest", with_distance(e, roots)});
+        emit_phrase(e, PHRASE_SET_IF,
+                    (Operands){deeper.bytes, "nearest",
+                               with_distance(e, e->text[roots[0]], e->text[roots[1]])});
     }
     if (e->variant->zones > 0)
         emit_phrase(e, PHRASE_NEAREST_OF_ZONES, (Operands){emit_count(e, e->variant->zones)});
 }
 
-void emit_gradient(Emitter *e)
+/* Finds the `nearest` gradient, and the distance. */
+static void emit_nearest(Emitter *e)
 {
     const Operands nearer = {"other.w < nearest.w", "other", "nearest"};
     uint32_t       count  = (uint32_t)e->module->components;
@@ -146,5 +196,16 @@ void emit_gradient(Emitter *e)
         text_format(e->out, "    nearest = %s;\n", phrase_text(e, PHRASE_CHOICE, nearer));
     }
     emit_zone_gradients(e, e->module->gradients + 2 * count);
+}
+
+void emit_gradient(Emitter *e)
+{
+    emit_nearest(e);
     text_add(e->out, "    return nearest.xyz;\n");
+}
+
+void emit_tangent(Emitter *e)
+{
+    emit_nearest(e);
+    text_add(e->out, "    return nearest;\n");
 }

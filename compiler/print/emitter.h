@@ -187,6 +187,11 @@ const MirrorNodes *mirror_nodes(const Emitter *e, Node fold);
 const char *emit_cut(Emitter *e, const char *distance);
 void        need_distance(Emitter *e);
 void        need_gradient(Emitter *e);
+void        need_tangent(Emitter *e);
+/* Whether krs_tangent keeps the distance to a component's plane from overflow by the box around the component. */
+bool emit_keeps_plane(const Emitter *e, uint32_t component);
+/* Whether a function is wanted that finds the gradient of what is nearest. */
+bool emit_wants_gradient(const Emitter *e);
 /* Whether the gradient of a component is known by derivatives. */
 bool emit_has_gradient(const Emitter *e, uint32_t component);
 /* Whether krs_surface takes the plane of that gradient for the distance.  Outside of the box around the component the
@@ -199,6 +204,7 @@ void        emit_gradient_of(Emitter *e, const ModuleFunction *function);
 void        emit_zones(Emitter *e);
 void        emit_distance(Emitter *e);
 void        emit_gradient(Emitter *e);
+void        emit_tangent(Emitter *e);
 
 /* shared.c: what a component's distance and surface have in common. */
 /* The values that the distance hands over; false: each is computed by itself. */

@@ -28,6 +28,7 @@ static const struct {
     [KRS_FUNCTION_SCENE_PART_DISTANCE] = {need_scene_parts, emit_scene_part_distance},
     [KRS_FUNCTION_SCENE_PART_BOX]      = {NULL, emit_scene_part_box},
     [KRS_FUNCTION_GRADIENT]            = {need_gradient, emit_gradient},
+    [KRS_FUNCTION_TANGENT]             = {need_tangent, emit_tangent},
     [KRS_FUNCTION_SURFACE]             = {need_surface, emit_surface},
     [KRS_FUNCTION_MEDIUM_AT]           = {need_media, emit_medium_at},
     [KRS_FUNCTION_GLASS]               = {need_media, emit_glass},
@@ -205,7 +206,7 @@ static void add_kept_boxes(Emitter *e, NodeList *list)
 {
     const Node *nodes = e->module->box_nodes.around;
     for (uint32_t i = 0; nodes && i < e->module->components; i++)
-        if (e->needed_of[OF_SURFACE][i] && emit_has_tangent(e, i))
+        if ((e->needed_of[OF_SURFACE][i] && emit_has_tangent(e, i)) || emit_keeps_plane(e, i))
             add_nodes(e, list, nodes + (size_t)2 * i, 2);
 }
 
@@ -222,7 +223,7 @@ static NodeList gather_roots(Emitter *e)
     bool zones = e->module->zone != NODE_NONE && !e->variant->camera_relative;
     add_nodes(e, &roots, &e->module->zone, zones && e->cuts);
     add_nodes(e, &roots, e->module->gradients + 2 * e->module->components,
-              zones && e->wanted[KRS_FUNCTION_GRADIENT] ? 2 : 0);
+              zones && emit_wants_gradient(e) ? 2 : 0);
     add_boxes(e, &roots, e->wanted[KRS_FUNCTION_DISTANCE_LOD],
               e->wanted[KRS_FUNCTION_SCENE_PART_BOX] && !e->variant->camera_relative);
     add_kept_boxes(e, &roots);

@@ -120,7 +120,7 @@ static void emit_definitions(Emitter *e, const Node *set, size_t globals, const 
 
 bool emit_reads_zones(const Emitter *e)
 {
-    return e->variant->zones > 0 && (e->cuts || e->wanted[KRS_FUNCTION_GRADIENT]);
+    return e->variant->zones > 0 && (e->cuts || emit_wants_gradient(e));
 }
 
 /* Where zones of the caller are read from. */

@@ -87,6 +87,11 @@ static const Signature of_scene[KRS_FUNCTION_COUNT] = {
          {&point, &reach},
          "// The direction in which krs_distance rises fastest at a surface, of any\n"
          "// length, by derivatives; by differences over `reach` where there are none.\n"},
+    [KRS_FUNCTION_TANGENT] =
+        {"krs_tangent",
+         TYPE_VEC4,
+         {&point, &reach},
+         "// krs_gradient, and the distance to the plane that has it; negative inside.\n"},
     [KRS_FUNCTION_SURFACE] =
         {"krs_surface",
          SURFACE,

@@ -44,6 +44,11 @@ typedef enum KrsFunction {
     KRS_FUNCTION_SCENE_PART_BOX,
     /* vec3 krs_gradient(vec3 p, float reach): where krs_distance rises fastest at a surface. */
     KRS_FUNCTION_GRADIENT,
+    /* vec4 krs_tangent(vec3 p, float reach): that gradient of the nearest component, and how far the
+       plane is that has it: about the distance near surfaces, < 0 inside.  It costs less than the
+       safe distance of a polynomial.  Far away it is at least the distance to the box around a
+       component, since polynomials may be beyond all numbers there. */
+    KRS_FUNCTION_TANGENT,
     /* KrsSurface krs_surface(vec3 p, vec3 normal, float footprint): what is at p: the component
        with the least distance.  It is given the unit gradient of krs_distance at p, and the radius
        of the pixel's cone there in world units (0 for a point).  The normal that it returns is the

@@ -245,16 +245,17 @@ KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals norma
     to.scene.variant.march_group = group;
     want_rays(&to, rendering);
     want_paths(&to, rendering, group == 0);
-    want(&to, KRS_FUNCTION_DISTANCE);
-    if (normals == KRS_NORMALS_ANALYTIC && !to.scene.variant.camera_relative)
+    bool by_roots = program->along && !program->inverts;
+    bool derived  = normals == KRS_NORMALS_ANALYTIC && !to.scene.variant.camera_relative;
+    want(&to, derived && by_roots ? KRS_FUNCTION_TANGENT : KRS_FUNCTION_DISTANCE);
+    if (derived && !by_roots)
         want(&to, KRS_FUNCTION_GRADIENT);
-    if (normals == KRS_NORMALS_ANALYTIC)
-        define(&to, "#define GRADIENT\n");
-    else if (normals != KRS_NORMALS_OCTAHEDRON)
+    if (derived)
+        define(&to, by_roots ? "#define TANGENTS\n" : "#define GRADIENT\n");
+    else if (normals != KRS_NORMALS_OCTAHEDRON && normals != KRS_NORMALS_ANALYTIC)
         define(&to, "#define STENCIL %d\n", (int)normals);
     /* Properties of the scene's distance around a hit. */
-    define(&to, "%s%s", program->along && !program->inverts ? "#define ROOTS\n" : "",
-           program->plain ? "#define PLAIN\n" : "");
+    define(&to, "%s%s", by_roots ? "#define ROOTS\n" : "", program->plain ? "#define PLAIN\n" : "");
     define_choices(&to);
     return to;
 }

@@ -4,7 +4,7 @@
  * Rays start up to 100,000 units away, aimed at the surface or past it, and the root of each is
  * found here in long double precision, in the ball that the surface is known to be in: an answer
  * must be that root, whoever gives it, and none is unresolved.  And pictures of such surfaces over
- * an endless floor must show the floor, lit, up to the horizon: red light casts shadows, green
+ * an endless floor must show the floor, level and lit, up to the horizon: red light casts shadows, green
  * light does not, and far from the surface there is as much of both.
  */
 #include <math.h>
@@ -71,6 +71,10 @@ static const struct Form {
      sextic, 1.5},
 };
 enum { FORMS = sizeof forms / sizeof forms[0] };
+
+/* One without a box around it, from which no box tells how far it is; all around the vertical. */
+static const struct Form column = {"a column of 12th powers", "algebraic(x^12 + z^12 == 1)", NULL,
+                                   2};
 
 static const char golden[] = "let g = (1 + sqrt(5)) / 2;\n";
 
@@ -165,6 +169,17 @@ static int sees_floor(const Lens *lens, int k)
     return fabs(ray.direction.y) < pixel ? -1 : ray.direction.y < 0;
 }
 
+/* The ray passes the surface; of a column, as seen from above. */
+static bool passes(const struct Form *form, Line ray)
+{
+    if (form == &column) {
+        ray.origin.y    = 1;
+        ray.direction.y = 0;
+        ray.direction   = vec_unit(ray.direction);
+    }
+    return chord_is_empty(chord_of_ball(ray, vec(0, 1, 0), 1.02 * form->radius));
+}
+
 static void floors_are_plain(void **state)
 {
     const struct Form *form = *state;
@@ -182,7 +197,7 @@ static void floors_are_plain(void **state)
     KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1};
     KrsRendering    *rendering;
     KrsPicture      *picture = NULL;
-    int              floors = 0, strange = 0, dark = 0, shaded = 0;
+    int              floors = 0, strange = 0, dark = 0, tilted = 0, shaded = 0;
     if (krs_rendering_new(renderer, product.scene, &rendering) != KRS_OK ||
         krs_render(rendering, product.frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
@@ -194,15 +209,17 @@ static void floors_are_plain(void **state)
         shaded += picture->component[k] == 1 && color[0] < 0.5F * color[1];
         if (below < 0 || t < 25)
             continue;
-        bool clear = chord_is_empty(chord_of_ball(ray, vec(0, 1, 0), 1.02 * form->radius));
+        bool clear = passes(form, ray);
         floors += below && clear;
         strange += clear && (picture->component[k] == 1) != below;
-        dark += below && clear && picture->component[k] == 1 && !(color[0] > 0.99F * color[1]);
+        tilted += below && clear && !(picture->normal[3 * k + 1] > 0.9999F);
+        dark += form != &column && below && clear && picture->component[k] == 1 &&
+                !(color[0] > 0.99F * color[1]);
     }
-    if (floors < 500 || strange > 0 || dark > 0 || shaded < 10)
-        fail_msg("%s: of %d pixels of the floor far away %d show something else, %d are in shadow; "
-                 "%d near the surface",
-                 form->name, floors, strange, dark, shaded);
+    if (floors < 500 || strange > 0 || tilted > 0 || dark > 0 || shaded < 10)
+        fail_msg("%s: of %d pixels of the floor far away %d show something else, %d are not level, "
+                 "%d are in shadow; %d near the surface",
+                 form->name, floors, strange, tilted, dark, shaded);
     assert_int_equal(picture->stats.unresolved, 0);
     krs_picture_free(picture);
     krs_rendering_free(rendering);
@@ -211,7 +228,7 @@ static void floors_are_plain(void **state)
 
 int main(void)
 {
-    struct CMUnitTest tests[2 * FORMS];
+    struct CMUnitTest tests[2 * FORMS + 1];
     static char       names[FORMS][80];
     size_t            count = 0;
     for (size_t i = 0; i < FORMS; i++) {
@@ -220,5 +237,7 @@ int main(void)
         tests[count++] = (struct CMUnitTest){forms[i].name, rays_end_at_roots, NULL, NULL, form};
         tests[count++] = (struct CMUnitTest){names[i], floors_are_plain, NULL, NULL, form};
     }
+    tests[count++] = (struct CMUnitTest){column.name, floors_are_plain, NULL, NULL,
+                                         (void *)(uintptr_t)&column};
     return _cmocka_run_group_tests("far", tests, count, renderer_open, renderer_close);
 }

@@ -143,6 +143,7 @@ static const char *const calls[KRS_FUNCTION_COUNT] = {
     [KRS_FUNCTION_SCENE_PART_DISTANCE] = "krs_scene_part_distance(KRS_SCENE_PARTS - 1u, p)",
     [KRS_FUNCTION_SCENE_PART_BOX]      = "(krs_scene_part_box(0u, p, p), p.x)",
     [KRS_FUNCTION_GRADIENT]            = "krs_gradient(p, 0.1).x",
+    [KRS_FUNCTION_TANGENT]             = "krs_tangent(p, 0.1).w",
     [KRS_FUNCTION_SURFACE]             = "krs_surface(p, p, 0.0).roughness",
     [KRS_FUNCTION_MEDIUM_AT]           = "float(krs_medium_at(p))",
     [KRS_FUNCTION_GLASS]               = "krs_glass(p)",
@@ -221,7 +222,8 @@ static bool can_want(const KernelScene *of, KrsFunction function)
     case KRS_FUNCTION_STEPS: return !v->camera_relative;
     case KRS_FUNCTION_PROBE:
     case KRS_FUNCTION_DISTANCE_LOD:
-    case KRS_FUNCTION_GRADIENT: return !v->camera_relative && v->march_group == 0;
+    case KRS_FUNCTION_GRADIENT:
+    case KRS_FUNCTION_TANGENT: return !v->camera_relative && v->march_group == 0;
     case KRS_FUNCTION_SCENE_PART_DISTANCE:
     case KRS_FUNCTION_SCENE_PART_BOX: return program->scene_parts >= 2 && v->march_group == 0;
     case KRS_FUNCTION_MEDIUM_AT:
@@ -342,6 +344,8 @@ static void look_at_moved_boxes(void)
     KrsScene *scene;
     assert_int_equal(krs_compile_text(text, strlen(text), "boxes.krs", &options, &scene), KRS_OK);
     of.scene = scene;
+    look_at_text(&of, "boxes.krs", true);
+    of.wanted[0] = KRS_FUNCTION_TANGENT;
     look_at_text(&of, "boxes.krs", true);
     krs_scene_free(scene);
 }
