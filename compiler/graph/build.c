@@ -42,13 +42,17 @@ Node at_least(Graph *g, Node node, double least)
     return graph_op2(g, OP_max, node, graph_number(g, least));
 }
 
+Node log_of_root(Graph *g, Node number, uint32_t k)
+{
+    Node log = graph_op1(g, OP_log2, at_least(g, number, 1e-37));
+    return mul(g, log, graph_number(g, 1.0 / k));
+}
+
 Node root_of(Graph *g, Node number, uint32_t k)
 {
     if (k == 1)
         return number;
     if (k % 2 == 0)
         return root_of(g, graph_op1(g, OP_sqrt, number), k / 2);
-    Node exponent = graph_op1(g, OP_log2, at_least(g, number, 1e-37));
-    exponent      = mul(g, exponent, graph_number(g, 1.0 / k));
-    return graph_op1(g, OP_exp2, exponent);
+    return graph_op1(g, OP_exp2, log_of_root(g, number, k));
 }

@@ -26,6 +26,8 @@ Node stretch(Graph *g, Node vector, Node by);
 
 /* max(node, least) */
 Node at_least(Graph *g, Node node, double least);
+/* The binary logarithm of the k-th root of a number >= 0. */
+Node log_of_root(Graph *g, Node number, uint32_t k);
 /* The k-th root of a number >= 0. */
 Node root_of(Graph *g, Node number, uint32_t k);
 

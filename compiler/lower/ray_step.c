@@ -47,18 +47,27 @@ static const double TINY      = 1e-30;
 
 /* ---- polynomials ---- */
 
-/* The length w of the interval, limited so that its powers are finite in single precision. */
+/* The length w of the interval, limited so that its powers are finite in single precision.  Roots that
+   are no square roots are compared by their logarithms, of which one is raised in the end: drivers
+   write a power of 2 as some twenty instructions. */
 static Node interval_length(Lowering *l, const Series *s)
 {
-    Graph *g     = l->graph;
-    Node   least = graph_number(g, pow(10, 34.0 / s->degree));
-    Node   whole = mul(g, s->c[0], graph_number(g, MOST_FALL));
+    Graph *g        = l->graph;
+    Node   least    = graph_number(g, pow(10, 34.0 / s->degree));
+    Node   whole    = mul(g, s->c[0], graph_number(g, MOST_FALL));
+    Node   exponent = NODE_NONE;
     for (uint32_t k = 1; k <= s->degree; k++) {
-        Node fall  = at_least(g, neg(g, s->c[k]), TINY);
-        Node guess = root_of(g, over(g, whole, fall), k);
-        least      = graph_op2(g, OP_min, least, guess);
+        Node fall     = at_least(g, neg(g, s->c[k]), TINY);
+        Node quotient = over(g, whole, fall);
+        if ((k & (k - 1)) == 0) {
+            least = graph_op2(g, OP_min, least, root_of(g, quotient, k));
+            continue;
+        }
+        Node other = log_of_root(g, quotient, k);
+        exponent   = exponent == NODE_NONE ? other : graph_op2(g, OP_min, exponent, other);
     }
-    return least;
+    return exponent == NODE_NONE ? least
+                                 : graph_op2(g, OP_min, least, graph_op1(g, OP_exp2, exponent));
 }
 
 static double binomial(uint32_t n, uint32_t k)

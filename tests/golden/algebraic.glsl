@@ -240,9 +240,9 @@ float krs_along_1(vec3 p, vec3 direction, float footprint)
     float t52 = sqrt((t50 / max((-t47), 1e-30)));
     float t53 = min(t51, t52);
     float t54 = log2(max((t50 / max((-t48), 1e-30)), 1e-37)) * 0.33333334;
-    float t55 = exp2(t54);
+    float t55 = sqrt(sqrt((t50 / max((-t49), 1e-30))));
     float t56 = min(t53, t55);
-    float t57 = sqrt(sqrt((t50 / max((-t49), 1e-30))));
+    float t57 = exp2(t54);
     float t58 = min(t56, t57);
     float t59 = t46 * t58;
     float t60 = t58 * t58;
