@@ -135,11 +135,26 @@ static const char *bytes_instead(Elaboration *e, const double color[3])
 /* The largest part of a colour is at least this if it counts bytes; lights may be a little above 1. */
 enum { LEAST_BYTE = 16 };
 
+/* Turns with colours that earn the warning are made by themselves. */
+static void require_colour(Elaboration *e, Value value)
+{
+    const Node color = value_node(e, value);
+    if (e->turn == NODE_NONE || color == NODE_NONE || e->graph->items[color].time != TIME_FRAME ||
+        e->graph->items[color].type != TYPE_VEC3)
+        return;
+    const Node one = graph_number(e->graph, 1);
+    for (uint32_t i = 0; i < 3; i++)
+        turns_require(e,
+                      graph_op2(e->graph, OP_less_equal, graph_component(e->graph, color, i), one));
+}
+
 void warn_of_bright_colour(Elaboration *e, const Syntax *syntax, Value value, const char *help)
 {
     double color[3], most = 0;
-    if (value.type != VALUE_LIST || value.list->count != 3 ||
-        e->sources->items[syntax->span.source].library)
+    if (e->sources->items[syntax->span.source].library)
+        return;
+    require_colour(e, value);
+    if (value.type != VALUE_LIST || value.list->count != 3)
         return;
     for (int i = 0; i < 3; i++) {
         if (value.list->items[i].type != VALUE_NUMBER)
