@@ -194,6 +194,7 @@ typedef struct TurnTrials {
     bool     refused; /* something needs turns by themselves */
     uint32_t loops,
         depth; /* made so far; being tried now, one within a definition that another needs */
+    uint32_t statements; /* loops of statements around what runs now */
     struct {
         Definition **items;
         size_t       count, capacity;
@@ -212,6 +213,13 @@ Value evaluate_shown(Elaboration *e, const Environment *env, const Syntax *show)
 bool turns_possible(const Elaboration *e, const Syntax *comprehension);
 /* Behind the first element tries to make all of them; true: they are made. */
 bool turns_made(Elaboration *e, const Comprehension *c);
+/* ---- turn_statements.c: the same of a `for` that shows shapes ---- */
+/* Behind the first turn that shows something tries to show what all turns do, in their order; true: it is
+   shown.  `shown`: how many components were there before the loop. */
+typedef bool ShowShape(Elaboration *e, Value value, const Syntax *syntax);
+bool statement_turns_made(Elaboration *e, const Environment *env, const Syntax *loop, size_t shown,
+                          ShowShape *show);
+/* ---- turns.c ---- */
 /* While a loop is tried, that a condition must hold in each turn; false: none is tried. */
 bool turns_require(Elaboration *e, Node condition);
 /* A definition that is evaluated now, and is no part of a loop that is tried.  Returns e->turn, to be set
@@ -472,6 +480,8 @@ void complete_view(Elaboration *e);
 Value define_param(Elaboration *e, const Environment *env, const Syntax *syntax);
 
 /* ---- statements.c ---- */
+/* What an `if` among statements runs, a block or another `if`; or NULL. */
+const Syntax *branch_taken(const Syntax *syntax, bool condition);
 /* Runs the statements of a file. */
 void run_file(Elaboration *e, Scope *scope);
 /* The shape of a `krs` block. */

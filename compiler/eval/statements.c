@@ -93,15 +93,14 @@ static bool check_extent(Elaboration *e, const Shape *shape, const Syntax *synta
     return true;
 }
 
-/* An EachElement: shows a shape, or all shapes of a list; `user` is the expression shown. */
-static bool show_one(Elaboration *e, Value value, void *user)
+/* Shows a shape, or all shapes of a list; `syntax` is the expression shown. */
+static bool show_one(Elaboration *e, Value value, const Syntax *syntax)
 {
-    const Syntax *syntax = user;
     if (value.type == VALUE_LIST) {
         if (!check_shape_count(e, value.list, syntax->span))
             return false;
         for (size_t i = 0; i < value.list->count; i++)
-            if (!show_one(e, value.list->items[i], user))
+            if (!show_one(e, value.list->items[i], syntax))
                 return false;
         return true;
     }
@@ -224,7 +223,9 @@ static void add_map(Elaboration *e, const Environment *env, const Syntax *syntax
 typedef struct Loop {
     const Environment *env;
     const Syntax      *syntax;
-    Sequence          *sequence; /* NULL at the top level */
+    Sequence          *sequence;    /* NULL at the top level */
+    size_t             shown;       /* components before it */
+    bool               tries, made; /* to show all turns at once: is still possible; it is done */
 } Loop;
 
 static void run_block(Elaboration *e, const Environment *env, const Syntax *block,
@@ -232,12 +233,36 @@ static void run_block(Elaboration *e, const Environment *env, const Syntax *bloc
 
 static bool run_turn(Elaboration *e, Value element, void *user)
 {
-    const Loop    *loop = user;
+    Loop *loop = user;
+    if (loop->tries && e->scene->components.count > loop->shown) {
+        loop->tries = false;
+        loop->made  = statement_turns_made(e, loop->env, loop->syntax, loop->shown, show_one);
+    }
+    if (loop->made)
+        return !is_stopped(e);
     EvaluationMark mark = evaluation_mark(e);
     Environment    env  = bind(e, loop->env, loop->syntax->name, element);
     run_block(e, &env, loop->syntax->children[1], loop->sequence);
     evaluation_forget(e, mark, NULL);
     return !is_stopped(e) && !(loop->sequence && loop->sequence->wrong);
+}
+
+/* A loop in another is run turn by turn: all turns of both are to be one crowd. */
+static void run_for(Elaboration *e, const Environment *env, const Syntax *syntax,
+                    Sequence *sequence)
+{
+    Loop loop = {env,
+                 syntax,
+                 sequence,
+                 e->scene->components.count,
+                 !sequence && e->turns && e->turns->statements == 0,
+                 false};
+    if (e->turns)
+        e->turns->statements++;
+    if (!evaluate_each(e, env, syntax->children[0], run_turn, &loop) && sequence)
+        sequence->wrong = true;
+    if (e->turns)
+        e->turns->statements--;
 }
 
 static void run_if(Elaboration *e, const Environment *env, const Syntax *syntax,
@@ -246,17 +271,13 @@ static void run_if(Elaboration *e, const Environment *env, const Syntax *syntax,
 static void run_statement(Elaboration *e, Environment *env, const Syntax *syntax,
                           Sequence *sequence)
 {
-    Loop loop = {env, syntax, sequence};
     switch (syntax->kind) {
     case SYNTAX_LET:
         *env = bind(e, env, syntax->name, evaluate(e, env, syntax->children[0]));
         break;
     case SYNTAX_DEF:
     case SYNTAX_SHAPE: *env = bind(e, env, syntax->name, function_value(e, env, syntax)); break;
-    case SYNTAX_FOR:
-        if (!evaluate_each(e, env, syntax->children[0], run_turn, &loop) && sequence)
-            sequence->wrong = true;
-        break;
+    case SYNTAX_FOR: run_for(e, env, syntax, sequence); break;
     case SYNTAX_IF_STATEMENT: run_if(e, env, syntax, sequence); break;
     case SYNTAX_REMARK:
         if (!run_remark(e, env, syntax) && sequence)
@@ -284,12 +305,17 @@ static void run_block(Elaboration *e, const Environment *env, const Syntax *bloc
         run_statement(e, &inner, block->children[i], sequence);
 }
 
+const Syntax *branch_taken(const Syntax *syntax, bool condition)
+{
+    const uint32_t taken = condition ? 1 : 2;
+    return taken < syntax->count ? syntax->children[taken] : NULL;
+}
+
 static void run_if(Elaboration *e, const Environment *env, const Syntax *syntax, Sequence *sequence)
 {
     Value condition = evaluate(e, env, syntax->children[0]);
     if (condition.type == VALUE_BOOLEAN) {
-        uint32_t      taken  = condition.boolean ? 1 : 2;
-        const Syntax *branch = taken < syntax->count ? syntax->children[taken] : NULL;
+        const Syntax *branch = branch_taken(syntax, condition.boolean);
         if (branch && branch->kind == SYNTAX_IF_STATEMENT)
             run_if(e, env, branch, sequence);
         else if (branch)

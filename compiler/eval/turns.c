@@ -7,7 +7,7 @@
  * turns have in common.  Their numbers, what the conditions of the loop leave, and their boxes are found
  * by lanes.  Else all is as if nothing had been tried, and each turn is evaluated by itself.
  */
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/turns.h"
 
 #include <math.h>
 
@@ -35,11 +35,15 @@ static bool is_joined(const Elaboration *e, const Syntax *comprehension)
     return false;
 }
 
+bool turns_are_tried(const Elaboration *e)
+{
+    return e->turns && e->turns->loops < MOST_LOOPS && e->turn == NODE_NONE;
+}
+
 bool turns_possible(const Elaboration *e, const Syntax *comprehension)
 {
     const Syntax *first = comprehension->children[1];
-    if (!e->turns || e->turns->loops >= MOST_LOOPS || e->turn != NODE_NONE ||
-        !is_joined(e, comprehension) || first->kind != SYNTAX_FOR_CLAUSE ||
+    if (!turns_are_tried(e) || !is_joined(e, comprehension) || first->kind != SYNTAX_FOR_CLAUSE ||
         first->children[0]->kind != SYNTAX_RANGE || comprehension->count > 2 + MOST_CONDITIONS)
         return false;
     for (uint32_t i = 2; i < comprehension->count; i++)
@@ -142,16 +146,6 @@ Node turns_begin_definition(Elaboration *e, Definition *definition)
 
 /* ---- what all turns have in common ---- */
 
-typedef struct Turned {
-    Node         leaf;
-    Nodes        roots; /* conditions of the loop; what must hold; what may not be finite */
-    size_t       conditions, required;
-    const Shape *shape;
-    double      *turns; /* values of the variable */
-    size_t       count;
-    Box         *boxes;
-} Turned;
-
 static Node turn_leaf(Elaboration *e, const Turned *t)
 {
     const GraphParameter range = {{t->turns[0]}, {t->turns[t->count - 1]}};
@@ -160,39 +154,45 @@ static Node turn_leaf(Elaboration *e, const Turned *t)
     return graph_parameter(e->graph, slot, TYPE_FLOAT);
 }
 
-/* False: it has a value of another kind, or never holds. */
-static bool take_condition(Elaboration *e, Turned *t, Value condition)
+bool turn_condition(Elaboration *e, Turned *t, Value condition)
 {
+    t->early_required = e->turns->required.count - t->first_required;
+    t->early_end      = (Node)e->graph->count;
     if (condition.type == VALUE_BOOLEAN)
         return condition.boolean;
     if (condition.type != VALUE_EXPRESSION)
         return false;
     const Expr *expr = &e->graph->items[condition.node];
-    if (expr->type != TYPE_BOOL || expr->time != TIME_FRAME)
+    if (expr->type != TYPE_BOOL || expr->time != TIME_FRAME || t->roots.count == MOST_CONDITIONS)
         return false;
     array_push(e->values, &t->roots, condition.node);
     return true;
 }
 
-static bool evaluate_turned(Elaboration *e, const Comprehension *c, Turned *t)
+bool turn_shape(Elaboration *e, Turned *t, Value value)
 {
-    const Syntax *syntax  = c->syntax;
-    t->leaf               = turn_leaf(e, t);
-    e->turn               = t->leaf;
-    const size_t first    = e->turns->required.count;
-    const Value  variable = {.type = VALUE_EXPRESSION, .node = t->leaf};
-    Environment  env      = bind(e, c->env, syntax->children[1]->name, variable);
-    bool         good     = true;
-    for (uint32_t i = 2; good && i < syntax->count; i++)
-        good = take_condition(e, t, evaluate(e, &env, syntax->children[i]->children[0]));
-    t->conditions = t->roots.count;
-    Value value   = good ? evaluate(e, &env, syntax->children[0]) : value_error();
-    e->turn       = NODE_NONE;
-    t->shape      = value.type == VALUE_SHAPE ? value.shape : NULL;
-    for (size_t i = first; i < e->turns->required.count; i++)
+    (void)e;
+    if (value.type != VALUE_SHAPE || t->found == t->part_count)
+        return false;
+    t->parts[t->found++].shape = value.shape;
+    return true;
+}
+
+static bool evaluate_turned(Elaboration *e, Turned *t)
+{
+    const TurnBody *body = t->body;
+    t->leaf = t->early_end = turn_leaf(e, t);
+    e->turn                = t->leaf;
+    t->first_required      = e->turns->required.count;
+    const Value variable   = {.type = VALUE_EXPRESSION, .node = t->leaf};
+    Environment env        = bind(e, body->env, body->variable, variable);
+    const bool  good       = body->evaluate(e, &env, t) && t->found == t->part_count;
+    e->turn                = NODE_NONE;
+    t->conditions          = t->roots.count;
+    for (size_t i = t->first_required; i < e->turns->required.count; i++)
         array_push(e->values, &t->roots, e->turns->required.items[i]);
-    t->required = e->turns->required.count - first;
-    return t->shape;
+    t->required = e->turns->required.count - t->first_required;
+    return good;
 }
 
 /* ---- whether that is all ---- */
@@ -280,9 +280,14 @@ static bool gather_nodes(Elaboration *e, Turned *t)
     Dependence   d      = {e->graph, t->leaf, arena_new_array(e->values, bool, count - t->leaf)};
     Nodes        others = {0};
     bool         good   = true;
+    const size_t truths = t->roots.count;
     graph_mark_turned(e->graph, t->leaf, d.depends);
-    for (Node node = t->leaf; good && node < count; node++)
+    for (Node node = t->leaf; good && node < count; node++) {
         good = gather_node(e, &d, node, &others, &t->roots);
+        if (node < t->early_end)
+            t->early_numbers = graph_numbers_of(e->graph, t->roots.items + truths,
+                                                t->roots.count - truths);
+    }
     for (size_t i = 0; i < t->roots.count; i++)
         array_push(e->values, &others, t->roots.items[i]);
     good = good &&
@@ -325,10 +330,13 @@ static bool choose_turns(Elaboration *e, Turned *t)
     graph_at_turns(e->graph, t->roots.items, t->roots.count, t->leaf, t->turns, t->count, numbers,
                    e->scratch);
     for (size_t i = 0; i < t->count; i++) {
-        const double *of = numbers + i * width;
+        const double *of     = numbers + i * width;
+        const size_t  truths = t->conditions + t->required;
+        if (!all_hold(of + t->conditions, t->early_required) ||
+            !all_finite(of + truths, t->early_numbers))
+            return false;
         if (!all_hold(of, t->conditions))
             continue;
-        const size_t truths = t->conditions + t->required;
         if (!all_hold(of + t->conditions, t->required) || !all_finite(of + truths, width - truths))
             return false;
         t->turns[left++] = t->turns[i];
@@ -351,68 +359,107 @@ static bool boxes_agree(const Box *box, const Box *witness)
 
 /* What a blend makes of a bound is cut to its box, part by part (crowd_turns.c).  Of what is shown each
    that is empty is reported. */
-static bool goes_with_joint(const Elaboration *e, const Shape *shape)
+static bool goes_with_joint(const TurnBody *body, const Shape *shape)
 {
-    if (is_shown(e))
-        return !may_vanish(shape);
-    return shape->exact || e->joining->count == 2;
+    return body->shown ? !may_vanish(shape) : shape->exact || !body->bounded;
 }
 
-static bool any_is_missed(const Elaboration *e, const Box *boxes, size_t count)
+static bool any_is_missed(const TurnBody *body, const Box *boxes, size_t count)
 {
     bool found = false;
-    for (size_t i = 0; is_shown(e) && i < count; i++)
+    for (size_t i = 0; body->shown && i < count; i++)
         found = found || box_is_empty(boxes[i]);
     return found;
 }
 
-static bool find_turns(Elaboration *e, const Comprehension *c, Turned *t, const Before *before)
+static bool part_is_shared(const Elaboration *e, const Turned *t, const TurnPart *part)
 {
-    const Shape *witness = c->result->items[0].shape;
-    if (!evaluate_turned(e, c, t) || !is_silent(e, before) || !is_like(t->shape, witness) ||
-        !goes_with_joint(e, t->shape) || t->shape->tree_shapes > MOST_SHARED_SHAPES ||
-        !may_be_shared(e, t->shape) || !gather_nodes(e, t) || !choose_turns(e, t) ||
-        t->count < e->turns->least)
-        return false;
-    t->boxes = arena_new_array(e->values, Box, t->count);
-    return turn_boxes(e->builder, t->shape, t->leaf, t->turns, t->count, t->boxes) &&
-           boxes_agree(&t->boxes[0], &witness->box) && !any_is_missed(e, t->boxes, t->count);
+    return is_like(part->shape, part->witness) && goes_with_joint(t->body, part->shape) &&
+           part->shape->tree_shapes <= MOST_SHARED_SHAPES && may_be_shared(e, part->shape);
 }
 
-static void push_turns(Elaboration *e, const Comprehension *c, const Shape **turns, size_t count)
+static bool find_boxes(Elaboration *e, const Turned *t, TurnPart *part)
 {
-    c->result->items[0] = value_shape(turns[0]);
-    for (size_t i = 1; i < count; i++)
-        array_push_large(e->values, c->result, value_shape(turns[i]));
+    part->boxes = arena_new_array(e->values, Box, t->count);
+    return turn_boxes(e->builder, part->shape, t->leaf, t->turns, t->count, part->boxes) &&
+           boxes_agree(&part->boxes[0], &part->witness->box) &&
+           !any_is_missed(t->body, part->boxes, t->count);
 }
 
-static bool try_turns(Elaboration *e, const Comprehension *c)
+static bool find_turns(Elaboration *e, Turned *t, const Before *before)
 {
-    const Syntax *range = c->syntax->children[1]->children[0];
-    const Value   from  = evaluate(e, c->env, range->children[0]);
-    const Value   to    = evaluate(e, c->env, range->children[1]);
-    if (c->result->items[0].type != VALUE_SHAPE || from.type != VALUE_NUMBER ||
-        to.type != VALUE_NUMBER || !(to.number - from.number >= e->turns->least))
+    bool good = evaluate_turned(e, t) && is_silent(e, before);
+    for (size_t k = 0; good && k < t->part_count; k++)
+        good = part_is_shared(e, t, &t->parts[k]);
+    good = good && gather_nodes(e, t) && choose_turns(e, t) && t->count >= e->turns->least;
+    for (size_t k = 0; good && k < t->part_count; k++)
+        good = find_boxes(e, t, &t->parts[k]);
+    return good;
+}
+
+static void make_parts(Elaboration *e, Turned *t)
+{
+    graph_keep(e->graph);
+    for (size_t k = 0; k < t->part_count; k++) {
+        TurnPart *part = &t->parts[k];
+        part->turns    = arena_new_array(e->arena, const Shape *, t->count);
+        make_turns(e->builder, part->shape, t->leaf, t->turns, part->boxes, t->count, part->turns);
+    }
+    e->turns->loops++;
+}
+
+bool turns_try(Elaboration *e, Turned *t)
+{
+    const Syntax *range = t->body->range;
+    const Value   from  = evaluate(e, t->body->env, range->children[0]);
+    const Value   to    = evaluate(e, t->body->env, range->children[1]);
+    if (from.type != VALUE_NUMBER || to.type != VALUE_NUMBER ||
+        !(to.number - from.number >= e->turns->least))
         return false;
     const Before before = remember(e);
-    Turned       t      = {.leaf = NODE_NONE};
-    set_turns(e, &t, from.number, to.number);
-    const bool    found = find_turns(e, c, &t, &before);
-    const Shape **turns = arena_new_array(e->arena, const Shape *, found ? t.count : 1);
-    if (found) {
-        graph_keep(e->graph);
-        make_turns(e->builder, t.shape, t.leaf, t.turns, t.boxes, t.count, turns);
-        e->turns->loops++;
-    } else
+    set_turns(e, t, from.number, to.number);
+    const bool found = find_turns(e, t, &before);
+    if (found)
+        make_parts(e, t);
+    else
         put_back(e, &before);
     e->turns->required.count = before.required;
     e->turns->depth--;
     if (e->turns->depth == 0)
         e->turns->defined.count = 0;
     evaluation_forget(e, before.values, NULL);
-    if (found)
-        push_turns(e, c, turns, t.count);
     return found;
+}
+
+/* ---- lists ---- */
+
+static bool evaluate_element(Elaboration *e, const Environment *env, Turned *t)
+{
+    const Syntax *syntax = t->body->syntax;
+    for (uint32_t i = 2; i < syntax->count; i++)
+        if (!turn_condition(e, t, evaluate(e, env, syntax->children[i]->children[0])))
+            return false;
+    return turn_shape(e, t, evaluate(e, env, syntax->children[0]));
+}
+
+static bool try_list(Elaboration *e, const Comprehension *c)
+{
+    const Syntax  *clause = c->syntax->children[1];
+    const TurnBody body   = {.env      = c->env,
+                             .range    = clause->children[0],
+                             .syntax   = c->syntax,
+                             .variable = clause->name,
+                             .shown    = is_shown(e),
+                             .bounded  = e->joining->count > 2,
+                             .evaluate = evaluate_element};
+    Turned         t      = {.body = &body, .part_count = 1};
+    t.parts[0].witness    = c->result->items[0].shape;
+    if (c->result->items[0].type != VALUE_SHAPE || !turns_try(e, &t))
+        return false;
+    c->result->items[0] = value_shape(t.parts[0].turns[0]);
+    for (size_t i = 1; i < t.count; i++)
+        array_push_large(e->values, c->result, value_shape(t.parts[0].turns[i]));
+    return true;
 }
 
 Value evaluate_shown(Elaboration *e, const Environment *env, const Syntax *show)
@@ -430,6 +477,6 @@ bool turns_made(Elaboration *e, const Comprehension *c)
     if (c->result->count == 0 || loop->tried)
         return loop->made;
     loop->tried = true;
-    loop->made  = try_turns(e, c);
+    loop->made  = try_list(e, c);
     return loop->made;
 }

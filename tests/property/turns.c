@@ -35,7 +35,7 @@ static const char prelude[] =
     "param wide = 0.3 in [0.1, 0.5];\n";
 
 typedef struct Loop {
-    const char *name, *text; /* what is shown */
+    const char *name, *text; /* what is shown, or a `for` that shows it */
 } Loop;
 
 static const Loop at_once[] = {
@@ -81,6 +81,19 @@ static const Loop at_once[] = {
      "for i in 0..40])"},
     {"shown", "[ball(i) for i in 0..40]"},
     {"shown and painted", "[brick(i).move(spot(i)).paint(pick(i)) for i in 0..60 if hue(i) < 0.8]"},
+    {"statements", "for i in 0..40 { show ball(i); }"},
+    {"statements, painted",
+     "for i in 0..40 { let at = spot(i); show brick(i).move(at).paint(pick(i)); }"},
+    {"several statements",
+     "for i in 0..40 { let b = ball(i).paint(pick(i)); show b; let up = [0, 1, 0]; "
+     "show brick(i).move(spot(i + 50)).paint(pick(i + 7)); show b.move(up); }"},
+    {"statements that may show", "for i in 0..60 { if hue(i) < 0.6 { show ball(i); "
+                                 "show ball(i + 100).paint(pick(i)); } }"},
+    {"statements in two conditions",
+     "for i in 0..90 { let h = hue(i); if seed > 0 { if h < 0.8 { let k = i % 7; "
+     "if k != 3 { show ball(i).paint(pick(i)); } } } else { show ball(i); } }"},
+    {"statements that show nothing at first",
+     "for i in -10..40 { if i > 0 { show ball(i).paint(pick(i)); } }"},
     {"noise", "union([sphere(0.3).move(spot(i) + [noise(i + 0.3), 0, 0]) for i in 0..40])"},
 };
 
@@ -107,6 +120,16 @@ static const Loop by_turns[] = {
     {"degrees forgotten", "union([ball(i).rotate([0, 1, 0], 90 * i) for i in 0..40])"},
     {"asserted", "union([assert(hue(i) < 2) in ball(i) for i in 0..40])"},
     {"shown, and may be empty", "[(ball(i) & box([5, 5, 5])) for i in 0..40]"},
+    {"few statements", "for i in 0..15 { show ball(i); }"},
+    {"statements in two loops", "for i in 0..20 { for k in 0..2 { show ball(i + 30 * k); } }"},
+    {"statements that show lists", "for i in 0..40 { show [ball(i), ball(i + 50)]; }"},
+    {"either of two statements",
+     "for i in 0..40 { if hue(i) < 0.5 { show ball(i); } else { show brick(i).move(spot(i)); } }"},
+    {"a statement before a condition",
+     "for i in 0..40 { show ball(i); if hue(i) < 0.5 { show brick(i).move(spot(i + 50)); } }"},
+    {"a statement behind a condition",
+     "for i in 0..40 { if hue(i) < 0.5 { let a = 1; } show ball(i); }"},
+    {"statements by the time", "for i in 0..40 { show ball(i).move([sin(time + i), 0, 0]); }"},
     {"a hull", "hull(union([sphere(0.2).move(spot(i)) for i in 0..40]))"},
 };
 
@@ -123,7 +146,9 @@ static void open_loop(Asked *asked, const Loop *loop, int seed, KrsSpecialize sp
     char       text[4096];
     KrsOptions options = {.specialize = specialize};
     size_t     length  = (size_t)snprintf(text, sizeof text, prelude, seed);
-    length += (size_t)snprintf(text + length, sizeof text - length, "show %s;\n", loop->text);
+    length += (size_t)snprintf(text + length, sizeof text - length,
+                               strncmp(loop->text, "for ", 4) == 0 ? "%s\n" : "show %s;\n",
+                               loop->text);
     assert_true(length < sizeof text);
     KrsStatus status = turns ? compile_turn_by_turn(text, length, LEAST, &options, &asked->scene)
                              : compile_with_crowds(text, length, LEAST, &options, &asked->scene);
@@ -145,6 +170,22 @@ static void ask(Asked *asked, const double points[POINTS][3])
 }
 
 static bool is_near(double a, double b) { return a == b || fabs(a - b) < 1e-9; }
+
+/* Users see each turn of what is shown. */
+static void compare_components(const Loop *loop, const KrsScene *a, const KrsScene *b)
+{
+    assert_int_equal(krs_component_count(a), krs_component_count(b));
+    for (size_t i = 0; i < krs_component_count(a); i++) {
+        KrsComponent x, y;
+        assert_int_equal(krs_component(a, i, &x), KRS_OK);
+        assert_int_equal(krs_component(b, i, &y), KRS_OK);
+        bool same = strcmp(x.name, y.name) == 0 && x.exact == y.exact && x.estimate == y.estimate;
+        for (int k = 0; k < 3; k++)
+            same = same && is_near(x.low[k], y.low[k]) && is_near(x.high[k], y.high[k]);
+        if (!same)
+            fail_msg("%s: component %zu: %s and %s", loop->name, i + 1, x.name, y.name);
+    }
+}
 
 /* In the order of blends, and where numbers are rounded otherwise, both may differ a little. */
 static void compare(const Loop *loop, const Asked *a, const Asked *b)
@@ -181,6 +222,7 @@ static void hold_against_turns(const Loop *loop, int seed, KrsSpecialize special
     ask(&once, (const double(*)[3])points);
     ask(&turns, (const double(*)[3])points);
     compare(loop, &once, &turns);
+    compare_components(loop, once.scene, turns.scene);
     close_loop(&once);
     close_loop(&turns);
 }
@@ -202,9 +244,59 @@ static void others_are_evaluated_by_turns(void **state)
         hold_against_turns(&by_turns[i], 1, KRS_SPECIALIZE_NUMBERS, 0);
 }
 
+/* ---- mistakes ---- */
+
+typedef struct Said {
+    char   text[65536];
+    size_t length;
+} Said;
+
+static void say(void *user, const KrsDiagnostic *diagnostic)
+{
+    Said *said = user;
+    said->length += (size_t)snprintf(said->text + said->length, sizeof said->text - said->length,
+                                     "%s", diagnostic->text);
+    assert_true(said->length < sizeof said->text);
+}
+
+/* Mistakes in one turn, also where that turn shows nothing, and what is told of some. */
+static const char *const remarks[] = {
+    "let q = [1, 2, 3, -4];\n"
+    "for i in 0..60 { let n = q[floor(i / 10)]; if n > 0 { show sphere(0.1).move([i, 0, 0]); } }",
+    "for i in 0..60 { let n = 1 / (i - 50); if i < 45 { show sphere(0.1).move([i, 0, n]); } }",
+    "show [sphere(0.1).move([i, 0, 0]) for i in 0..60 if [1, 2, 3, -4][floor(i / 10)] > 0];",
+    "for i in 0..40 { show sphere(20 - i).move([9 * i, 0, 0]); }",
+    "for i in 0..40 { print(i / 39); show sphere(1).move([9 * i, 0, 0]); }",
+    "for i in 0..40 { show sphere(1).move([9 * i, 0, 0]) & sphere(1).move([8.6 * i, 0, 0]); }",
+    "for i in 0..40 { show if i == 20 then 3 else sphere(1).move([9 * i, 0, 0]); }",
+    "for i in 0..40 { show sphere(1).move([9 * i, 0, 0]).paint([i / 20, 0, 0]); }",
+    "show union([sphere(1).move([9 * i, 0, 0]).paint((i / 20) * [1, 1, 1]) for i in 0..40]);",
+};
+
+static void messages_are_those_of_turns(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof remarks / sizeof *remarks; i++) {
+        static Said once, turns;
+        memset(&once, 0, sizeof once);
+        memset(&turns, 0, sizeof turns);
+        KrsScene  *scene = NULL;
+        KrsOptions first = {.diagnostic = say, .user = &once};
+        KrsOptions other = {.diagnostic = say, .user = &turns};
+        KrsStatus  a = compile_with_crowds(remarks[i], strlen(remarks[i]), LEAST, &first, &scene);
+        krs_scene_free(scene);
+        scene       = NULL;
+        KrsStatus b = compile_turn_by_turn(remarks[i], strlen(remarks[i]), LEAST, &other, &scene);
+        krs_scene_free(scene);
+        if (a != b || once.length == 0 || strcmp(once.text, turns.text) != 0)
+            fail_msg("%s\n%s\n%s", remarks[i], once.text, turns.text);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(loops_are_as_their_turns),
-                                       cmocka_unit_test(others_are_evaluated_by_turns)};
+                                       cmocka_unit_test(others_are_evaluated_by_turns),
+                                       cmocka_unit_test(messages_are_those_of_turns)};
     return cmocka_run_group_tests_name("loops that are evaluated once", tests, NULL, NULL);
 }
