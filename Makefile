@@ -52,7 +52,7 @@ EVAL     := $(addprefix compiler/eval/, scope.c forget.c expression.c turns.c tu
                 random.c files.c text.c drawing.c texture.c functions.c csg.c fractal.c declare.c extremes.c claim_pairs.c claims.c empty.c cells.c measure.c methods.c properties.c \
                 material.c camera.c view.c sky.c palette.c remarks.c params.c statements.c shown.c studio.c hull.c hull_parts.c \
                 hull_supports.c hull_triangles.c)
-PRINT    := $(addprefix compiler/print/, frame_values.c media.c lines.c signatures.c helpers.c mirrors.c statements.c \
+PRINT    := $(addprefix compiler/print/, frame_values.c media.c lines.c signatures.c helpers.c mirrors.c statements.c noises.c \
                 prepare.c crowds.c textures.c distances.c shared.c surfaces.c boxes.c early_outs.c march.c \
                 module_print.c) \
             $(sort $(wildcard compiler/print/*/*.c))

@@ -19,7 +19,7 @@ PROPERTY_SHARED := $(addprefix tests/property/, crowd_parts.c garden.c op_trial.
 UNIT        := specks texts front synonyms look diagnostics shape parts passes display devices tracer film plates saved noise pixel_filters lens rendering lights light_groups sky_table daylight methods schedules paths writer \
                image_files image_reading memory validate search refute frame frame_floor query zones surroundings cache cache_limits \
                compiled pipelines per_component mixed_rays stencils glslang flatten loader watcher drivers grid crowd_grid crowds \
-               crowd_kernels crowd_ends crowd_pictures few_parts tables device_tables table_files printing printers answers alike update coordinates reload live saved_texts camera_text resolution painter saver edits values mesh mesh_progress mesh_bounds mesh_tets mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_proofs assembly
+               crowd_kernels crowd_ends crowd_pictures few_parts tables device_tables table_files printing printers gathered_noises answers alike update coordinates reload live saved_texts camera_text resolution painter saver edits values mesh mesh_progress mesh_bounds mesh_tets mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_proofs assembly
 PROPERTY    := ops noise textures graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees turn_boxes crowds crowds_apart crowds_deformed crowd_sums moving_crowds moving_scenes overlaps lanes lane_crowds lane_balls joints turns
 ORACLES     := self patterns bumps primitives krs_expand folds trees maps moebius moebius_images operators cells \
@@ -40,7 +40,7 @@ PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%
 SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/synonyms unit/diagnostics unit/shape unit/parts unit/passes unit/display \
                unit/writer unit/image_files unit/image_reading unit/validate unit/loader unit/watcher unit/grid unit/crowd_grid unit/crowds unit/few_parts unit/tables unit/search \
                unit/refute unit/memory unit/cache unit/cache_limits unit/frame unit/frame_floor unit/query \
-               unit/zones unit/printers unit/alike unit/update unit/coordinates unit/reload unit/saved_texts unit/camera_text unit/resolution unit/values unit/mesh unit/mesh_progress unit/mesh_tets unit/mesh_around unit/mesh_bounds unit/mesh_collapse unit/mesh_marks unit/mesh_near unit/assembly property/ops property/noise property/textures property/graph property/simplify \
+               unit/zones unit/printers unit/gathered_noises unit/alike unit/update unit/coordinates unit/reload unit/saved_texts unit/camera_text unit/resolution unit/values unit/mesh unit/mesh_progress unit/mesh_tets unit/mesh_around unit/mesh_bounds unit/mesh_collapse unit/mesh_marks unit/mesh_near unit/assembly property/ops property/noise property/textures property/graph property/simplify \
                property/facts property/derive property/series property/zeros property/local \
                property/along property/rebase property/slope property/parity property/reach \
                property/reach_trees property/turn_boxes property/crowds property/crowds_apart property/crowds_deformed property/crowd_sums property/moving_crowds property/moving_scenes property/overlaps property/lanes property/lane_crowds property/lane_balls property/joints property/turns oracle/primitives \

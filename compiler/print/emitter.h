@@ -68,9 +68,12 @@ typedef struct Emitter {
     NodeList          needed;  /* all that have uses, in order */
     const char      **given;   /* names of nodes that the function need not compute */
     uint8_t          *mark;    /* for walks, zero between them */
-    const char      **frame;   /* names of the globals that krs_prepare sets */
-    bool             *slot_is_read; /* in krs_prepare: whether a local has the slot's numbers */
-    uint8_t          *feeds_mirror; /* whether a mirror (OP_fold) uses it */
+    uint32_t         *rank;    /* how many noises a value needs, one in the other (noises.c) */
+    uint32_t          turns;   /* of loops over noises, so far */
+    bool              gathers_noises; /* in the function being written */
+    const char      **frame;          /* names of the globals that krs_prepare sets */
+    bool             *slot_is_read;   /* in krs_prepare: whether a local has the slot's numbers */
+    uint8_t          *feeds_mirror;   /* whether a mirror (OP_fold) uses it */
     const char      **excess; /* of mirrors in a row: the name of how far beyond it the point is */
     uint32_t          next;   /* number of the next local name */
     uint32_t          globals;
@@ -105,11 +108,18 @@ void emit_body(Emitter *e, const Node *roots, size_t count);
    it; then emit_node for each of the others. */
 void emit_begin(Emitter *e, const Node *roots, size_t count);
 void emit_node(Emitter *e, Node n);
+/* The same, unless it is given. */
+void emit_point_node(Emitter *e, Node n);
 /* The expression of a node whose operands have theirs. */
 const char *emit_expression(Emitter *e, const Expr *expr);
 /* Finds the nodes that a function needs, counting uses; unless it is one of the `frame`, frame
    values end the walk. */
 void emit_count_uses(Emitter *e, const Node *roots, size_t count, bool frame);
+
+/* ---- noises.c ---- */
+
+/* The statements of a body, in which many noises are one loop. */
+void emit_with_noises(Emitter *e);
 
 /* ---- lines.c ---- */
 

@@ -56,6 +56,7 @@ Emitter emitter_new(const Module *module, Arena *scratch)
     e.place        = arena_new_array(scratch, uint32_t, count);
     e.feeds_mirror = arena_new_array(scratch, uint8_t, count);
     e.given        = arena_new_array(scratch, const char *, count);
+    e.rank         = arena_new_array(scratch, uint32_t, count);
     e.mark         = arena_new_array(scratch, uint8_t, count);
     return e;
 }
@@ -365,7 +366,7 @@ uint64_t krs_variant_hash(const KrsVariant *variant, const KrsFunction *wanted, 
     const uint64_t numbers[] = {variant->zones,  variant->march_group,     variant->step,
                                 variant->planes, variant->camera_relative, variant->many_threads,
                                 variant->values, variant->shares,          variant->buffers,
-                                variant->glass,  variant->tangents};
+                                variant->glass,  variant->tangents,        variant->gathers_noises};
     uint64_t       set = 0, h = 0xcbf29ce484222325u; /* FNV-1a */
     for (size_t i = 0; i < count; i++)
         set |= (uint64_t)1 << wanted[i];

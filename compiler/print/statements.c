@@ -254,7 +254,7 @@ void emit_begin(Emitter *e, const Node *roots, size_t count)
 }
 
 /* What is given has its name. */
-static void emit_point_node(Emitter *e, Node n)
+void emit_point_node(Emitter *e, Node n)
 {
     if (!e->given[n]) {
         emit_node(e, n);
@@ -267,6 +267,10 @@ static void emit_point_node(Emitter *e, Node n)
 void emit_body(Emitter *e, const Node *roots, size_t count)
 {
     emit_begin(e, roots, count);
+    if (e->gathers_noises) {
+        emit_with_noises(e);
+        return;
+    }
     for (size_t i = 0; i < e->needed.count; i++)
         if (e->graph->items[e->needed.items[i]].time == TIME_POINT)
             emit_point_node(e, e->needed.items[i]);

@@ -60,11 +60,13 @@ void emit_surface_of(Emitter *e, const ModuleFunction *function)
     const Node *root   = function->roots;
     NodeList    shared = {0};
     emit_head_of(e, OF_SURFACE, function->component);
+    e->gathers_noises = e->variant->gathers_noises;
     if (emit_find_shared(e, function->component, &shared))
         emit_shared_rest(e, function, &shared);
     else
         emit_body(e, root, ROOT_COUNT);
-    Text fields = {.arena = e->scratch};
+    e->gathers_noises = false;
+    Text fields       = {.arena = e->scratch};
     for (ComponentRoot r = FIRST_ROOT; r < ROOT_NORMAL; r++)
         add_value(e, &fields, &root_info[r], e->text[root[r]]);
     emit_line(e, "    return KrsSurface(%s, %s%s);\n}\n\n",

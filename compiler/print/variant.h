@@ -114,6 +114,9 @@ typedef struct KrsVariant {
        where these cost less than the safe distances of polynomials.  Outside of the box around a
        component it is the box that counts. */
     bool tangents;
+    /* Many noises in krs_surface are one loop: a driver that copies functions to where they are
+       called has less to translate.  GLSL then needs GL_EXT_control_flow_attributes. */
+    bool gathers_noises;
 } KrsVariant;
 
 /* A number that tells texts apart, for caches. */

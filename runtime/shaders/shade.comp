@@ -1,5 +1,6 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
+#extension GL_EXT_control_flow_attributes : enable
 /*
  * shade.comp: finds the material of each hit, and the light that it sends along its ray.  That is
  * emitted light, light of the sky, and that of LIGHTS_AT_ONCE lights.  All of it is added to the

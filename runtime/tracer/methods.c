@@ -78,6 +78,12 @@ static bool prefers_few_kernels(const KrsRendering *rendering)
            rendering->program->march_group_count >= GROUPS_FOR_LARGE_PICTURES;
 }
 
+/* Drivers of devices of type CPU copy functions to where they are called. */
+bool rendering_gathers_noises(const KrsRendering *rendering)
+{
+    return rendering->purpose == KRS_FOR_SMALL_PICTURES && gpu_is_cpu(&rendering->renderer->gpu);
+}
+
 /* By default only on devices of type CPU: others skip far components by branches. */
 bool rendering_marches_per_component(const KrsRendering *rendering, KrsComponents components)
 {

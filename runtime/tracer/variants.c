@@ -291,7 +291,8 @@ KernelVariant variant_of_shade(const KrsRendering *rendering)
     want_rays(&to, rendering);
     want(&to, KRS_FUNCTION_SURFACE);
     want_media(&to, rendering);
-    to.scene.variant.tangents = knows_tangents(rendering);
+    to.scene.variant.tangents       = knows_tangents(rendering);
+    to.scene.variant.gathers_noises = rendering_gathers_noises(rendering);
     if (rendering->program->media)
         want(&to, KRS_FUNCTION_GLASS);
     if (rendering->program->mirrors)

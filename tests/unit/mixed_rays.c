@@ -1,6 +1,6 @@
 /*
  * mixed_rays.c: kernels that are for the rays of a picture and for those of its paths make the same
- * pictures as kernels for one of both, and there are fewer of them.
+ * pictures as kernels for one of both, and there are fewer of them.  So do kernels for small pictures.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -191,6 +191,28 @@ static void small_pictures_have_no_beams_before_roots(void **state)
     small_pictures_have_fewer_kernels(roots, "trace.comp");
 }
 
+/* Noises side by side, one in the other, of the plane and of space, in a shape and in colours. */
+static const char noises[] = CAMERA
+    "show sphere(1).displace(0.1 * fbm(2 * p)).paint(mix(#cc8844, #224466, 0.5 + fbm(3 * p + "
+    "fbm(p))));\n"
+    "show plane([0, 1, 0], -1).paint(mix(white, black, 0.5 + fbm([x, z]) * fbm([z, 2 * x])));\n";
+
+/* In a small picture they are loops. */
+static void small_pictures_have_the_same_noises(void **state)
+{
+    (void)state;
+    Stage       small = open_stage(noises, KRS_FOR_SMALL_PICTURES);
+    Stage       large = open_stage(noises, KRS_FOR_PICTURES);
+    KrsPicture *a     = render(&small, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_TOGETHER);
+    KrsPicture *b     = render(&large, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_TOGETHER);
+    for (int i = 0; i < 4 * PIXELS; i++)
+        assert_true(fabsf(a->color[i] - b->color[i]) <= 1e-4F);
+    krs_picture_free(a);
+    krs_picture_free(b);
+    close_stage(&small);
+    close_stage(&large);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -198,6 +220,7 @@ int main(void)
         cmocka_unit_test(mirrors_are_as_with_march_groups),
         cmocka_unit_test(small_pictures_have_no_march_groups),
         cmocka_unit_test(small_pictures_have_no_beams_before_roots),
+        cmocka_unit_test(small_pictures_have_the_same_noises),
     };
     return cmocka_run_group_tests_name("mixed rays", tests, open_renderer, close_renderer);
 }

@@ -111,6 +111,8 @@ static const char *const phrases[PHRASE_COUNT] = {
     [PHRASE_CASE]             = "    $au => {\n",
     [PHRASE_CASE_END]         = "    }\n",
     [PHRASE_SWITCH_END]       = "    default => {}\n    }\n",
+    [PHRASE_TURNS]            = "    repeat var $a: u32 {\n",
+    [PHRASE_TURNS_END]        = "    } until ($a == $b)\n",
     [PHRASE_BITS]             = "bitcast<u32>($a)",
     [PHRASE_PARAMETER_BLOCK]  = "var<block> krs_parameter: array<vec4f, $a>;\n",
     [PHRASE_ZONES]            = "var<private> krs_zones: array<vec4f, $a>;\n",
@@ -219,6 +221,7 @@ static void print_scene(const char *path)
         {.many_threads = true, .shares = true},
         {.many_threads = true, .values = true, .zones = 2},
         {.planes = scene->program.planes, .values = true, .shares = true},
+        {.gathers_noises = true},
     };
     for (size_t i = 0; i < sizeof variants / sizeof *variants; i++)
         print_variant(scene, &variants[i], path);

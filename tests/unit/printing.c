@@ -176,7 +176,7 @@ static void compile_text(const char *text, const KernelScene *of, const char *pa
     FILE  *out = open_memstream(&kernel, &length);
     assert_non_null(out);
     fprintf(out,
-            "#version 440\nlayout(local_size_x = 1) in;\n%s"
+            "#version 440\n#extension GL_EXT_control_flow_attributes : enable\n%s"
             "layout(std430, set = 1, binding = 0) buffer Sum { float sum; };\n"
             "void main()\n{\n    krs_prepare();\n    vec3 p = vec3(sum);\n",
             text);
@@ -269,7 +269,7 @@ static void look_at_variants(KrsScene *scene, const char *path, bool compiled)
          {.many_threads = false},
          {.many_threads = true},
          {.many_threads = true, .shares = true},
-         {.values = true},
+         {.values = true, .gathers_noises = true},
          {.values = true, .tangents = program->gradients},
          {.values = true, .zones = 2, .many_threads = true},
          {.step = KRS_STEP_TAYLOR},

@@ -52,6 +52,8 @@ static const char *const phrases[PHRASE_COUNT] = {
     [PHRASE_CASE]       = "    case $au:\n",
     [PHRASE_CASE_END]   = "        break;\n",
     [PHRASE_SWITCH_END] = "    }\n",
+    [PHRASE_TURNS]      = "    uint $a = 0u;\n    [[dont_unroll]] do {\n",
+    [PHRASE_TURNS_END]  = "    } while (++$a < $bu);\n",
 
     [PHRASE_BITS] = "floatBitsToUint($a)",
 
