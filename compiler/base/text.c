@@ -277,13 +277,15 @@ static size_t edit_distance(const char *a, size_t a_length, const char *b, size_
 const char *nearest_name(const char *word, const char *const *candidates, size_t count)
 {
     size_t      length  = strlen(word);
-    size_t      nearest = length < 3 ? 2 : 3; /* edits; at first one more than permitted */
+    size_t      nearest = length < 4 ? 2 : 3; /* edits; at first one more than permitted */
     const char *name    = NULL;
     if (length > LONGEST_GUESS)
         return NULL;
     for (size_t i = 0; i < count && nearest > 0; i++) {
         size_t other = strlen(candidates[i]);
         if (other > LONGEST_GUESS || (other > length ? other - length : length - other) >= nearest)
+            continue;
+        if (length < 5 && candidates[i][0] != word[0])
             continue;
         size_t distance = edit_distance(word, length, candidates[i], other);
         if (distance < nearest && distance < length && distance < other) {

@@ -176,34 +176,35 @@ static void lex_word(Lexer *lexer)
 typedef struct Lookalike {
     const char *sign, *instead;
     TokenKind   kind; /* the token it becomes; TOKEN_ERROR: not one token; TOKEN_END: a space */
+    const char *help; /* where it may mean something else, too; or NULL */
 } Lookalike;
 
 static const Lookalike lookalikes[] = {
-    {"&&", "and", TOKEN_AND},
-    {"||", "or", TOKEN_OR},
-    {"**", "^", TOKEN_CARET},
-    {"===", "==", TOKEN_EQUAL_EQUAL},
-    {"!==", "!=", TOKEN_NOT_EQUAL},
-    {"<>", "!=", TOKEN_NOT_EQUAL},
-    {"=>", ">=", TOKEN_GREATER_EQUAL},
-    {"=<", "<=", TOKEN_LESS_EQUAL},
-    {"\xE2\x88\x92", "-", TOKEN_MINUS}, /* minus */
-    {"\xE2\x80\x93", "-", TOKEN_MINUS}, /* dash */
-    {"\xC3\x97", "*", TOKEN_STAR},      /* multiplication cross */
-    {"\xC2\xB7", "*", TOKEN_STAR},      /* multiplication point */
-    {"\xC3\xB7", "/", TOKEN_SLASH},     /* division */
-    {"\xE2\x89\xA4", "<=", TOKEN_LESS_EQUAL},
-    {"\xE2\x89\xA5", ">=", TOKEN_GREATER_EQUAL},
-    {"\xE2\x89\xA0", "!=", TOKEN_NOT_EQUAL},
-    {"\xC2\xB2", "^2", TOKEN_ERROR},
-    {"\xC2\xB3", "^3", TOKEN_ERROR},
-    {"\xC2\xB0", "deg", TOKEN_ERROR},
-    {"\xCF\x80", "pi", TOKEN_ERROR},
-    {"\xE2\x80\x9C", "\"", TOKEN_ERROR}, /* quotes */
-    {"\xE2\x80\x9D", "\"", TOKEN_ERROR},
-    {"\xE2\x80\x98", "\"", TOKEN_ERROR},
-    {"\xE2\x80\x99", "\"", TOKEN_ERROR},
-    {"\xC2\xA0", " ", TOKEN_END}, /* no-break space */
+    {"&&", "and", TOKEN_AND, NULL},
+    {"||", "or", TOKEN_OR, NULL},
+    {"**", "^", TOKEN_CARET, NULL},
+    {"===", "==", TOKEN_EQUAL_EQUAL, NULL},
+    {"!==", "!=", TOKEN_NOT_EQUAL, NULL},
+    {"<>", "!=", TOKEN_NOT_EQUAL, NULL},
+    {"=>", NULL, TOKEN_GREATER_EQUAL, "a function is `def f(a) = a + 1;`, and at least is `>=`"},
+    {"=<", "<=", TOKEN_LESS_EQUAL, NULL},
+    {"\xE2\x88\x92", "-", TOKEN_MINUS, NULL}, /* minus */
+    {"\xE2\x80\x93", "-", TOKEN_MINUS, NULL}, /* dash */
+    {"\xC3\x97", "*", TOKEN_STAR, NULL},      /* multiplication cross */
+    {"\xC2\xB7", "*", TOKEN_STAR, NULL},      /* multiplication point */
+    {"\xC3\xB7", "/", TOKEN_SLASH, NULL},     /* division */
+    {"\xE2\x89\xA4", "<=", TOKEN_LESS_EQUAL, NULL},
+    {"\xE2\x89\xA5", ">=", TOKEN_GREATER_EQUAL, NULL},
+    {"\xE2\x89\xA0", "!=", TOKEN_NOT_EQUAL, NULL},
+    {"\xC2\xB2", "^2", TOKEN_ERROR, NULL},
+    {"\xC2\xB3", "^3", TOKEN_ERROR, NULL},
+    {"\xC2\xB0", "deg", TOKEN_ERROR, NULL},
+    {"\xCF\x80", "pi", TOKEN_ERROR, NULL},
+    {"\xE2\x80\x9C", "\"", TOKEN_ERROR, NULL}, /* quotes */
+    {"\xE2\x80\x9D", "\"", TOKEN_ERROR, NULL},
+    {"\xE2\x80\x98", "\"", TOKEN_ERROR, NULL},
+    {"\xE2\x80\x99", "\"", TOKEN_ERROR, NULL},
+    {"\xC2\xA0", " ", TOKEN_END, NULL}, /* no-break space */
 };
 
 static bool lex_lookalike(Lexer *lexer)
@@ -218,6 +219,7 @@ static bool lex_lookalike(Lexer *lexer)
         Diag *diag = report_from(lexer, ascii ? DIAG_UNEXPECTED_TOKEN : DIAG_STRAY_BYTES, start, "",
                                  NULL);
         diag->replacement = found->instead;
+        diag->help        = found->help;
         diag->message = diag_text(lexer->diags, "`%s` is not part of the language", found->sign);
         if (found->kind == TOKEN_END)
             diag->message = "a no-break space, which looks like a space and is none";
