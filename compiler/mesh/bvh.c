@@ -118,6 +118,35 @@ static bool is_clearly_far(const double corners[3][3], const double point[3], do
     return height * height > (1 + 1e-9) * radius * radius * dot3(normal, normal);
 }
 
+/* ---- walks ---- */
+
+/* Nodes that wait to be looked at. */
+typedef struct Walk {
+    const Bvh *bvh;
+    uint32_t   waiting[MOST_DEPTH + 2], count;
+} Walk;
+
+static void walk_begin(Walk *walk, const Bvh *bvh)
+{
+    walk->bvh        = bvh;
+    walk->waiting[0] = 0;
+    walk->count      = bvh->node_count > 0;
+}
+
+static const BvhNode *walk_next(Walk *walk)
+{
+    return walk->count > 0 ? &walk->bvh->nodes[walk->waiting[--walk->count]] : NULL;
+}
+
+/* The halves of a node wait; one with triangles has none. */
+static void walk_into(Walk *walk, const BvhNode *node)
+{
+    if (node->count > 0)
+        return;
+    walk->waiting[walk->count++] = node->second;
+    walk->waiting[walk->count++] = (uint32_t)(node - walk->bvh->nodes) + 1;
+}
+
 static bool visit_node(const Bvh *bvh, const BvhNode *node, const double point[3], double radius,
                        BvhVisit *visit, void *user)
 {
@@ -136,18 +165,14 @@ static bool visit_node(const Bvh *bvh, const BvhNode *node, const double point[3
 
 bool bvh_visit(const Bvh *bvh, const double point[3], double radius, BvhVisit *visit, void *user)
 {
-    uint32_t waiting[MOST_DEPTH + 2], count = 0;
-    if (bvh->node_count > 0)
-        waiting[count++] = 0;
-    while (count > 0) {
-        uint32_t       number = waiting[--count];
-        const BvhNode *node   = &bvh->nodes[number];
+    Walk           walk;
+    const BvhNode *node;
+    walk_begin(&walk, bvh);
+    while ((node = walk_next(&walk))) {
         if (square_to_box(node, point) > radius * radius)
             continue;
-        if (node->count == 0) {
-            waiting[count++] = node->second;
-            waiting[count++] = number + 1;
-        } else if (!visit_node(bvh, node, point, radius, visit, user))
+        walk_into(&walk, node);
+        if (!visit_node(bvh, node, point, radius, visit, user))
             return false;
     }
     return true;
@@ -175,18 +200,13 @@ static bool triangle_meets_box(const double corners[3][3], const double low[3],
 bool bvh_visit_box(const Bvh *bvh, const double low[3], const double high[3], BvhVisit *visit,
                    void *user)
 {
-    uint32_t waiting[MOST_DEPTH + 2], count = 0;
-    if (bvh->node_count > 0)
-        waiting[count++] = 0;
-    while (count > 0) {
-        uint32_t       number = waiting[--count];
-        const BvhNode *node   = &bvh->nodes[number];
+    Walk           walk;
+    const BvhNode *node;
+    walk_begin(&walk, bvh);
+    while ((node = walk_next(&walk))) {
         if (!boxes_meet(node, low, high))
             continue;
-        if (node->count == 0) {
-            waiting[count++] = node->second;
-            waiting[count++] = number + 1;
-        }
+        walk_into(&walk, node);
         for (uint32_t i = node->first; i < node->first + node->count; i++) {
             double corners[3][3];
             triangle_corners(bvh, bvh->order[i], corners);
