@@ -28,9 +28,10 @@ typedef struct Opened {
     MeshField field;
 } Opened;
 
-static void open_field(Opened *o, const char *text)
+static Opened *open_field(const char *text)
 {
-    memset(o, 0, sizeof *o);
+    Opened *o = calloc(1, sizeof *o);
+    assert_non_null(o);
     KrsFrame *frame;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &o->scene), KRS_OK);
     assert_int_equal(krs_frame_new(o->scene, &frame), KRS_OK);
@@ -43,6 +44,7 @@ static void open_field(Opened *o, const char *text)
     o->field = (MeshField){.frame = frame, .solid = &o->solid};
     frame_refresh(o->field.frame);
     field_open(&o->field, &o->arena);
+    return o;
 }
 
 static void close_field(Opened *o)
@@ -51,6 +53,7 @@ static void close_field(Opened *o)
     free(o->solid.roots);
     krs_frame_free(o->field.frame);
     krs_scene_free(o->scene);
+    free(o);
 }
 
 static Box random_box(double size, double most)
@@ -75,12 +78,10 @@ static void points_in(Box box, double points[POINTS][3])
 /* Text is an outline of a table, with curves. */
 static void ranges_of_outlines_hold(void **context)
 {
-    Opened *o     = malloc(sizeof *o);
+    Opened *o     = open_field("show text(\"S8&\", size: 2).extrude(0.3);");
     size_t  sided = 0;
     double  worst = 0;
     (void)context;
-    assert_non_null(o);
-    open_field(o, "show text(\"S8&\", size: 2).extrude(0.3);");
     for (int i = 0; i < BOXES; i++) {
         double points[POINTS][3], distances[POINTS], diagonal = 0;
         Box    box   = random_box(2, 0.5);
@@ -99,7 +100,6 @@ static void ranges_of_outlines_hold(void **context)
     /* They are narrow, and points use what they permit. */
     assert_true(sided > BOXES / 4 && worst > 0.6);
     close_field(o);
-    free(o);
 }
 
 static double value_of(const FieldPieces *pieces, const double *values)
@@ -122,10 +122,8 @@ static double value_of(const FieldPieces *pieces, const double *values)
 /* Returns in how many boxes there are some, and points on both sides. */
 static size_t try_pieces(const char *text)
 {
-    Opened *o       = malloc(sizeof *o);
+    Opened *o       = open_field(text);
     size_t  crossed = 0;
-    assert_non_null(o);
-    open_field(o, text);
     for (int i = 0; i < BOXES; i++) {
         double      points[POINTS][3], distances[POINTS], values[POINTS * MOST_PIECES];
         FieldPieces pieces;
@@ -148,7 +146,6 @@ static size_t try_pieces(const char *text)
         field_leave(&o->field);
     }
     close_field(o);
-    free(o);
     return crossed;
 }
 
@@ -172,15 +169,12 @@ static void faces_that_are_far_are_no_pieces(void **context)
     static const Box         HALF     = {{{-0.3, 0.3}, {-0.1, 0.4}, {-0.3, 0.3}}};
     (void)context;
     for (size_t i = 0; i < sizeof PLATES / sizeof *PLATES; i++) {
-        Opened     *o = malloc(sizeof *o);
+        Opened     *o = open_field(PLATES[i]);
         FieldPieces pieces;
-        assert_non_null(o);
-        open_field(o, PLATES[i]);
         assert_true(field_enter(&o->field, HALF));
         assert_true(field_pieces(&o->field, HALF, &pieces));
         assert_int_equal(pieces.count, 1);
         close_field(o);
-        free(o);
     }
     assert_true(try_pieces("show box([2, 0.4, 1.5]).round(0.1) - box([0.3, 1, 0.3]);") > 20);
 }
@@ -189,16 +183,14 @@ static void faces_that_are_far_are_no_pieces(void **context)
    own. */
 static void little_is_gained_in_boxes_of_the_same_size(void **context)
 {
+    static const char BALLS[] =
+        "show union([sphere(0.2).move([a, b, c]) for a in [-0.5, 0, 0.5] for b in [-0.5, 0, 0.5] "
+        "for c in [-0.5, 0, 0.5]]);";
     static const Box OUTER = {{{-1, 1}, {-1, 1}, {-1, 1}}}, SAME = {{{-1, 0.9}, {-1, 1}, {-1, 1}}},
                      SMALL = {{{0.4, 0.7}, {0.4, 0.7}, {0.4, 0.7}}};
-    Opened *o              = malloc(sizeof *o);
+    Opened *o              = open_field(BALLS);
     double  points[POINTS][3], whole[POINTS], within[POINTS];
     (void)context;
-    assert_non_null(o);
-    open_field(
-        o,
-        "show union([sphere(0.2).move([a, b, c]) for a in [-0.5, 0, 0.5] for b in [-0.5, 0, 0.5] "
-        "for c in [-0.5, 0, 0.5]]);");
     points_in(SMALL, points);
     field_distances(&o->field, (const double(*)[3])points, POINTS, whole);
     assert_true(field_enter(&o->field, OUTER));
@@ -216,7 +208,6 @@ static void little_is_gained_in_boxes_of_the_same_size(void **context)
     field_leave(&o->field);
     assert_int_equal(o->field.region_count, 0);
     close_field(o);
-    free(o);
 }
 
 /* A number whose parts above and below 0 are added is as steep as it is, and no corner.  The length of the part below
@@ -231,12 +222,10 @@ static void parts_of_a_number_are_that_number(void **context)
     static const Box ACROSS = {{{0.9, 1.1}, {-0.1, 0.1}, {-0.1, 0.1}}};
     (void)context;
     for (size_t i = 0; i < sizeof SUMS / sizeof *SUMS; i++) {
-        Opened     *o = malloc(sizeof *o);
+        Opened     *o = open_field(SUMS[i].text);
         Range       range;
         LaneSlope   slope;
         LaneHessian hessian;
-        assert_non_null(o);
-        open_field(o, SUMS[i].text);
         assert_true(field_enter(&o->field, ACROSS));
         assert_true(field_slope(&o->field, ACROSS, &range, &slope));
         assert_true(fabs(slope.by[0].low - (SUMS[i].smooth ? 1 : -1)) < 1e-9);
@@ -245,7 +234,6 @@ static void parts_of_a_number_are_that_number(void **context)
         assert_int_equal(field_hessian(&o->field, ACROSS, &range, &slope, &hessian),
                          SUMS[i].smooth);
         close_field(o);
-        free(o);
     }
 }
 
@@ -305,12 +293,10 @@ static double slope_share(MeshField *field, Box inner, double error)
 static void slopes_of_ways_hold(void **context)
 {
     static const double ERROR = 0.05;
-    Opened             *o     = malloc(sizeof *o);
-    double              most  = 0;
-    int                 known = 0;
+    Opened *o     = open_field("show field(sin(2 * x) + 0.4 * cos(1.5 * y) * sin(z) - 0.6);");
+    double  most  = 0;
+    int     known = 0;
     (void)context;
-    assert_non_null(o);
-    open_field(o, "show field(sin(2 * x) + 0.4 * cos(1.5 * y) * sin(z) - 0.6);");
     for (int i = 0; i < 10 * BOXES; i++) {
         Box inner = random_box(1.2, 0.3);
         if (!field_enter(&o->field, wider(inner, 2 * ERROR)))
@@ -324,7 +310,6 @@ static void slopes_of_ways_hold(void **context)
     print_message("# %d boxes, slopes of up to %.3f of the least growth\n", known, most);
     assert_true(known > BOXES && most > 0.95);
     close_field(o);
-    free(o);
 }
 
 int main(void)
