@@ -274,6 +274,12 @@ static size_t edit_distance(const char *a, size_t a_length, const char *b, size_
     return above[b_length];
 }
 
+/* With the same letter, or with its first two swapped. */
+static bool begin_alike(const char *word, const char *other)
+{
+    return word[0] == other[0] || (word[0] == other[1] && word[1] == other[0]);
+}
+
 const char *nearest_name(const char *word, const char *const *candidates, size_t count)
 {
     size_t      length  = strlen(word);
@@ -285,7 +291,7 @@ const char *nearest_name(const char *word, const char *const *candidates, size_t
         size_t other = strlen(candidates[i]);
         if (other > LONGEST_GUESS || (other > length ? other - length : length - other) >= nearest)
             continue;
-        if (length < 5 && candidates[i][0] != word[0])
+        if (length < 5 && !begin_alike(word, candidates[i]))
             continue;
         size_t distance = edit_distance(word, length, candidates[i], other);
         if (distance < nearest && distance < length && distance < other) {

@@ -47,8 +47,8 @@ const char *name_intern(Names *names, const char *bytes, size_t length);
 
 /* The candidate nearest to a misspelt word, or NULL.  The measure is the restricted
    Damerau-Levenshtein distance, in which a swap counts once.  Words of less than 4 letters may have
-   1 edit, others 2, and never as many as letters; those of less than 5 keep the first.  Of equally
-   near candidates the first is taken. */
+   1 edit, others 2, and never as many as letters; those of less than 5 keep the first or swap the
+   first two.  Of equally near candidates the first is taken. */
 const char *nearest_name(const char *word, const char *const *candidates, size_t count);
 
 #endif
