@@ -100,6 +100,7 @@ typedef struct KrsProgram {
     bool          rows_vary; /* tables depend on parameters or the time (krs_frame_table_inputs) */
     size_t        table_count, table_members; /* tables, and the rows of all of them */
     size_t        texture_count, texture_texels;
+    size_t        noises;  /* in krs_surface */
     bool          views;   /* krs_surface reads krs_view, the direction of the ray that sees it */
     const double *pass_ms; /* time of each pass (krs_pass, compile.h), in milliseconds */
     double        front_ms, glsl_ms; /* time of all passes before `emit`, and of `emit` */

@@ -116,6 +116,15 @@ static void find_textures(Compilation *c)
         program->views = program->views || surface->graph->items[surface->nodes[i]].op == OP_VIEW;
 }
 
+static void find_noises(Compilation *c)
+{
+    const Tape *surface = &c->scene->surface;
+    for (size_t i = 0; i < surface->count; i++) {
+        const Op op = surface->graph->items[surface->nodes[i]].op;
+        c->scene->program.noises += op == OP_noise2 || op == OP_noise3;
+    }
+}
+
 /* ---- the pass ---- */
 
 KrsStatus pass_facts(Compilation *c)
@@ -128,6 +137,7 @@ KrsStatus pass_facts(Compilation *c)
     find_steps(c);
     find_tables(c);
     find_textures(c);
+    find_noises(c);
     form_march_groups(c); /* needs boxes, costs and planes */
     c->scene->program.scene_parts = module_scene_part_count(c->scene->component_count);
     return KRS_OK;

@@ -8,9 +8,9 @@
  */
 #include "compiler/print/emitter.h"
 
-/* Fewer noises are not worth a loop.  Drivers end all loops of a lane after some turns, without a
-   word: lavapipe after 65535.  A lane may find 64 surfaces in a dispatch, with these turns for each. */
-enum { LEAST_TOGETHER = 4, MOST_TURNS = 256 };
+/* Drivers end all loops of a lane after some turns, without a word: lavapipe after 65535.  A lane may
+   find 64 surfaces in a dispatch, with these turns for each. */
+enum { MOST_TURNS = 256 };
 
 static bool is_noise(const Expr *expr) { return expr->op == OP_noise2 || expr->op == OP_noise3; }
 
@@ -93,7 +93,7 @@ static void emit_noises(Emitter *e, uint32_t rank, Op op)
         if (is_computed(e, n) && e->rank[n] == rank && e->graph->items[n].op == op)
             array_push(e->scratch, &noises, n);
     }
-    if (noises.count >= LEAST_TOGETHER && noises.count <= MOST_TURNS - e->turns) {
+    if (noises.count >= KRS_LEAST_NOISES_TOGETHER && noises.count <= MOST_TURNS - e->turns) {
         e->turns += (uint32_t)noises.count;
         emit_loop(e, &noises);
         return;

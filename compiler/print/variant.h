@@ -119,6 +119,9 @@ typedef struct KrsVariant {
     bool gathers_noises;
 } KrsVariant;
 
+/* Fewer noises are not worth a loop. */
+enum { KRS_LEAST_NOISES_TOGETHER = 4 };
+
 /* A number that tells texts apart, for caches. */
 uint64_t krs_variant_hash(const KrsVariant *variant, const KrsFunction *wanted, size_t count);
 

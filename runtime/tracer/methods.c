@@ -78,10 +78,12 @@ static bool prefers_few_kernels(const KrsRendering *rendering)
            rendering->program->march_group_count >= GROUPS_FOR_LARGE_PICTURES;
 }
 
-/* Drivers of devices of type CPU copy functions to where they are called. */
+/* Drivers of devices of type CPU copy functions to where they are called.  Where nothing would be
+   gathered, pictures of all sizes have the same kernels. */
 bool rendering_gathers_noises(const KrsRendering *rendering)
 {
-    return rendering->purpose == KRS_FOR_SMALL_PICTURES && gpu_is_cpu(&rendering->renderer->gpu);
+    return rendering->purpose == KRS_FOR_SMALL_PICTURES && gpu_is_cpu(&rendering->renderer->gpu) &&
+           rendering->program->noises >= KRS_LEAST_NOISES_TOGETHER;
 }
 
 /* By default only on devices of type CPU: others skip far components by branches. */
