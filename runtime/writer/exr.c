@@ -76,9 +76,6 @@ static bool exr_try(ExrWriter *writer, exr_result_t result)
 {
     if (result == EXR_ERR_SUCCESS)
         return true;
-    if (result == EXR_ERR_CORRUPT_CHUNK)
-        /* When writing, this means that the library found no memory. */
-        result = EXR_ERR_OUT_OF_MEMORY;
     if (writer->error->status == KRS_OK) {
         writer->error->status = result == EXR_ERR_OUT_OF_MEMORY ? KRS_OUT_OF_MEMORY : KRS_INTERNAL;
         snprintf(writer->error->message, sizeof writer->error->message,

@@ -28,8 +28,7 @@ static bool reserve(ExrZip *zip, size_t bytes)
 }
 
 /* The bytes at even places, and behind them those at odd places, each but the first as its
-   difference from the one before, plus 128 (OpenEXR's ImfZip.cpp; the file layout has no number of a
-   section for it). */
+   difference from the one before, plus 128 (as in ImfZip.cpp of OpenEXR, which is the reference). */
 static void find_differences(const unsigned char *packed, size_t bytes, unsigned char *differences)
 {
     const size_t   half = (bytes + 1) / 2;
