@@ -213,18 +213,18 @@ Value evaluate_shown(Elaboration *e, const Environment *env, const Syntax *show)
 bool turns_possible(const Elaboration *e, const Syntax *comprehension);
 /* Behind the first element tries to make all of them; true: they are made. */
 bool turns_made(Elaboration *e, const Comprehension *c);
-/* ---- turn_statements.c: the same of a `for` that shows shapes ---- */
-/* Behind the first turn that shows something tries to show what all turns do, in their order; true: it is
-   shown.  `shown`: how many components were there before the loop. */
-typedef bool ShowShape(Elaboration *e, Value value, const Syntax *syntax);
-bool statement_turns_made(Elaboration *e, const Environment *env, const Syntax *loop, size_t shown,
-                          ShowShape *show);
-/* ---- turns.c ---- */
 /* While a loop is tried, that a condition must hold in each turn; false: none is tried. */
 bool turns_require(Elaboration *e, Node condition);
 /* A definition that is evaluated now, and is no part of a loop that is tried.  Returns e->turn, to be set
    again behind it. */
 Node turns_begin_definition(Elaboration *e, Definition *definition);
+
+/* ---- turn_statements.c: a `for` that shows shapes, evaluated once ---- */
+/* Behind the first turn that shows something tries to show what all turns do, in their order; true: it is
+   shown.  `shown`: how many components were there before the loop. */
+typedef bool ShowShape(Elaboration *e, Value value, const Syntax *syntax);
+bool statement_turns_made(Elaboration *e, const Environment *env, const Syntax *loop, size_t shown,
+                          ShowShape *show);
 
 /* ---- fold.c ---- */
 /* A number that the author of the scene may change without another program: it gets an identity, by

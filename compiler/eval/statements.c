@@ -251,12 +251,11 @@ static bool run_turn(Elaboration *e, Value element, void *user)
 static void run_for(Elaboration *e, const Environment *env, const Syntax *syntax,
                     Sequence *sequence)
 {
-    Loop loop = {env,
-                 syntax,
-                 sequence,
-                 e->scene->components.count,
-                 !sequence && e->turns && e->turns->statements == 0,
-                 false};
+    Loop loop = {.env      = env,
+                 .syntax   = syntax,
+                 .sequence = sequence,
+                 .shown    = e->scene->components.count,
+                 .tries    = !sequence && e->turns && e->turns->statements == 0};
     if (e->turns)
         e->turns->statements++;
     if (!evaluate_each(e, env, syntax->children[0], run_turn, &loop) && sequence)

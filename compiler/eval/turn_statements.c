@@ -26,7 +26,7 @@ static bool take_if(Elaboration *e, const Environment *env, const Syntax *syntax
 
 static bool take_show(Elaboration *e, const Environment *env, const Syntax *syntax, Turned *t)
 {
-    const bool good = turn_shape(e, t, evaluate(e, env, syntax));
+    const bool good = turn_shape(t, evaluate(e, env, syntax));
     if (good)
         t->parts[t->found - 1].syntax = syntax;
     return good;

@@ -169,9 +169,8 @@ bool turn_condition(Elaboration *e, Turned *t, Value condition)
     return true;
 }
 
-bool turn_shape(Elaboration *e, Turned *t, Value value)
+bool turn_shape(Turned *t, Value value)
 {
-    (void)e;
     if (value.type != VALUE_SHAPE || t->found == t->part_count)
         return false;
     t->parts[t->found++].shape = value.shape;
@@ -439,7 +438,7 @@ static bool evaluate_element(Elaboration *e, const Environment *env, Turned *t)
     for (uint32_t i = 2; i < syntax->count; i++)
         if (!turn_condition(e, t, evaluate(e, env, syntax->children[i]->children[0])))
             return false;
-    return turn_shape(e, t, evaluate(e, env, syntax->children[0]));
+    return turn_shape(t, evaluate(e, env, syntax->children[0]));
 }
 
 static bool try_list(Elaboration *e, const Comprehension *c)

@@ -25,7 +25,7 @@ typedef struct TurnBody {
     const Syntax      *range, *syntax; /* of the variable; of the body */
     const char        *variable;
     bool               shown;   /* each shape is a component */
-    bool               bounded; /* where it is none: each distance must be exact */
+    bool               bounded; /* shapes are blended: each distance must be exact */
     /* Evaluates the body with turn_condition and turn_shape; false: it has something else. */
     bool (*evaluate)(Elaboration *e, const Environment *env, Turned *turned);
 } TurnBody;
@@ -49,7 +49,7 @@ struct Turned {
 /* For a body that is evaluated: a condition on all that follows, and a shape that the turn gives.  False: it
    has a value of another kind, never holds, or there are more shapes than in the first turn. */
 bool turn_condition(Elaboration *e, Turned *turned, Value condition);
-bool turn_shape(Elaboration *e, Turned *turned, Value value);
+bool turn_shape(Turned *turned, Value value);
 
 /* Whether some loop may be tried now. */
 bool turns_are_tried(const Elaboration *e);

@@ -47,9 +47,9 @@ static const double TINY      = 1e-30;
 
 /* ---- polynomials ---- */
 
-/* The length w of the interval, limited so that its powers are finite in single precision.  Roots that
-   are no square roots are compared by their logarithms, of which one is raised in the end: drivers
-   write a power of 2 as some twenty instructions. */
+/* The length w of the interval, limited so that its powers are finite in single precision.  Roots other
+   than square roots, and square roots of these, are compared by their logarithms, and one power of 2
+   is taken in the end: drivers write it as some twenty instructions. */
 static Node interval_length(Lowering *l, const Series *s)
 {
     Graph *g        = l->graph;

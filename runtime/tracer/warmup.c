@@ -107,7 +107,6 @@ static bool warm_up_all(KrsRenderer *renderer, VkDescriptorSet scene_set, WarmUp
     if (!ready)
         atomic_store(&queue->next, count);
     end_second_device(queue);
-    queue->helped = false;
     for (size_t i = 0; i < count && ready; i++) {
         requests[i].kernel->pipeline_ms += queue->second_ms[i];
         ready = taken[i] || codes[i].shared ||
