@@ -17,7 +17,7 @@
 # make lint       kernels by themselves, shell scripts, style of C
 # make format     brings that style about
 # make bless      writes the expected text of tests/errors/; read the difference
-# make deps       installs what is missing (Debian packages)
+# make deps       installs what building and rendering need (Debian packages); test-deps: also what tests need
 # make install    to PREFIX (/usr/local), below DESTDIR; uninstall: takes it away
 
 B       ?= build
@@ -182,10 +182,12 @@ demo: deps
 	@tools/demo.sh $(B)
 deps:
 	@tools/deps.sh
+test-deps:
+	@tools/deps.sh test
 libs:
 	@echo $(LIBS)
 clean:
 	rm -rf build
-.PHONY: all demo deps libs clean
+.PHONY: all demo deps test-deps libs clean
 .DELETE_ON_ERROR:
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

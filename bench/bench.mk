@@ -78,7 +78,7 @@ $(B)/bench/device/device: $(DEVICES) $(STAGE) $(B)/tests/support/support.a $(B)/
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
 CHECKED := $(addprefix tests/, unit/methods unit/schedules oracle/device property/ops \
              oracle/coverage oracle/chords)
-check-device: deps
+check-device: test-deps
 	@$(MAKE) --no-print-directory $(B)/krs $(B)/bench/device/device $(CHECKED:%=$(B)/%)
 	@B=$(B) KRS_DEVICE="$(DEVICE)" REVISION=$(REVISION) tools/check-device.sh $(CHECKED:%=$(B)/%)
 

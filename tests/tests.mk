@@ -154,7 +154,7 @@ format:
 bless: $(B)/krs
 	@tests/errors.sh --bless
 
-test: deps
+test: test-deps
 	@$(MAKE) --no-print-directory -j$(JOBS) all test-programs clang-check fuzzers
 	@$(MAKE) --no-print-directory -j$(JOBS) sanitize
 	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=900 \

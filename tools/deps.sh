@@ -1,13 +1,18 @@
 #!/bin/sh
-# deps.sh: installs the Debian packages that building and testing need and that are missing.
+# deps.sh [test]: installs the Debian packages that are missing, of those that building and rendering need,
+# and with `test` also of those that only tests need.
 # Says what it does; uses sudo when it is not run by root; does nothing when nothing is missing.
-packages="g++ glslang-dev glslang-tools spirv-tools libvulkan-dev mesa-vulkan-drivers
-          vulkan-validationlayers libopenexr-dev libdeflate-dev libpng-dev libxxhash-dev libqhull-dev libfreetype-dev
-          libharfbuzz-dev libfontconfig-dev libexpat1-dev fonts-dejavu-core libglfw3-dev libimgui-dev libgl-dev libchafa-dev
-          libx11-dev libgl1-mesa-dri xvfb xdotool openbox libcmocka-dev clang-14
-          clang-format-14 libclang-rt-14-dev shellcheck strace openexr patch pkgconf
-          chromium-common admesh libtinygltf-dev lib3mf-dev libmeshoptimizer-dev assimp-utils python3-numpy libcgal-dev"
+building="g++ glslang-dev glslang-tools spirv-tools libvulkan-dev libopenexr-dev libdeflate-dev libpng-dev libxxhash-dev
+          libqhull-dev libfreetype-dev libharfbuzz-dev libfontconfig-dev libexpat1-dev libglfw3-dev libimgui-dev libgl-dev
+          libchafa-dev libx11-dev libtinygltf-dev lib3mf-dev libmeshoptimizer-dev pkgconf"
+rendering="mesa-vulkan-drivers libgl1-mesa-dri fonts-dejavu-core"
+testing="vulkan-validationlayers xvfb xdotool openbox libcmocka-dev clang-14 clang-format-14 libclang-rt-14-dev lld
+         shellcheck strace openexr patch chromium-common admesh assimp-utils python3-numpy libcgal-dev"
 
+case ${1:-} in
+test) packages="$building $rendering $testing" ;;
+*) packages="$building $rendering" ;;
+esac
 missing=""
 for package in $packages; do
     status=$(dpkg-query -W -f '${Status}' "$package" 2>/dev/null)
