@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-#define KRS_VERSION "0.1.0"
+#define KRS_VERSION "0.2.0"
 
 /* The numbers are also the exit statuses of the command `krs`. */
 typedef enum KrsStatus {
