@@ -37,25 +37,61 @@ void passes_print(CommandId command, FILE *out)
                 strcmp(pass->name, pass->form) == 0 ? "" : pass->form, pass->meaning);
 }
 
-void help_print_command(CommandId command, FILE *out)
+/* Columns of a page, and where texts of options begin. */
+enum { PAGE_WIDTH = 80, TEXT_COLUMN = 33 };
+
+/* Words of a text, in lines that begin at TEXT_COLUMN; `column` is where the first begins. */
+static void print_wrapped(const char *text, size_t column, FILE *out)
+{
+    for (size_t length; *text; text += length) {
+        text += strspn(text, " ");
+        length = strcspn(text, " ");
+        if (column > TEXT_COLUMN && column + 1 + length > PAGE_WIDTH) {
+            fputc('\n', out);
+            column = 0;
+        }
+        int blanks = column < TEXT_COLUMN ? (int)(TEXT_COLUMN - column) : column > TEXT_COLUMN;
+        fprintf(out, "%*s%.*s", blanks, "", (int)length, text);
+        column += (size_t)blanks + length;
+    }
+    fputc('\n', out);
+}
+
+static void print_option(const OptionInfo *option, FILE *out)
+{
+    char argument[OPTION_TEXT] = "", text[OPTION_TEXT];
+    int  column                = fprintf(out, "    ");
+    if (option->letter)
+        column += fprintf(out, "-%c, ", option->letter);
+    column += fprintf(out, "--%s %s", option->name,
+                      option->argument ? option_argument(option, argument) : "");
+    if (column >= TEXT_COLUMN) { /* it has a line of its own */
+        fputc('\n', out);
+        column = 0;
+    }
+    print_wrapped(option_help(option, text), (size_t)column, out);
+}
+
+static void print_group(OptionGroup group, CommandId command, FILE *out)
+{
+    fprintf(out, "\n%s:\n", group_headings[group]);
+    for (OptionId id = 0; id < OPTION_COUNT; id++)
+        if (option_info[id].group == group && option_belongs(id, command))
+            print_option(&option_info[id], out);
+}
+
+void help_print_command(CommandId command, bool all, FILE *out)
 {
     const CommandInfo *info = &command_table[command];
     fprintf(out, "krs %s: %s\n\n%s", info->name, info->summary, info->examples);
     passes_print(command, out);
-    fprintf(out, "\nusage: krs %s [OPTION]... %s\n\n", info->name, info->arguments);
-    for (OptionId id = 0; id < OPTION_COUNT; id++) {
-        if (!option_belongs(id, command))
-            continue;
-        const OptionInfo *option = &option_info[id];
-        char              form[64], letter[8] = "", argument[OPTION_TEXT] = "", text[OPTION_TEXT];
-        if (option->letter)
-            snprintf(letter, sizeof letter, "-%c, ", option->letter);
-        snprintf(form, sizeof form, "%s--%s %s", letter, option->name,
-                 option->argument ? option_argument(option, argument) : "");
-        bool wide = strlen(form) > 28;
-        fprintf(out, "    %-28s%s %s\n", form, wide ? "\n                                " : "",
-                option_help(option, text));
-    }
+    fprintf(out, "\nusage: krs %s [OPTION]... %s\n", info->name, info->arguments);
+    for (OptionGroup group = 0; group < GROUP_COUNT; group++)
+        if (group_belongs(group, command) && (all || group != GROUP_RESEARCH))
+            print_group(group, command, out);
+    if (!all && group_belongs(GROUP_RESEARCH, command))
+        fprintf(out, "\nMore options compare methods with each other: `krs help %s --all`.\n",
+                info->name);
 }
 
 KrsStatus command_help(Options *options)
@@ -67,6 +103,6 @@ KrsStatus command_help(Options *options)
     CommandId command = find_command(options->files.items[0]);
     if (command == COMMAND_COUNT)
         return say_no_command(options->files.items[0]);
-    help_print_command(command, stdout);
+    help_print_command(command, options->all, stdout);
     return KRS_OK;
 }

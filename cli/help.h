@@ -11,9 +11,9 @@
 /* What each exit status means, in a sentence of several lines. */
 extern const char exit_statuses[];
 
-/* `krs --help`, `krs COMMAND --help`. */
+/* `krs --help`, `krs COMMAND --help`; `all`: also the options of GROUP_RESEARCH. */
 void help_print(FILE *out);
-void help_print_command(CommandId command, FILE *out);
+void help_print_command(CommandId command, bool all, FILE *out);
 /* The passes of the compiler, a line each, on the page of `dump`; else nothing. */
 void passes_print(CommandId command, FILE *out);
 

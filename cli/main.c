@@ -110,7 +110,7 @@ static int run(Options *options, int argc, char **argv)
     if (status != KRS_OK)
         return status;
     if (options->help) {
-        help_print_command(options->command, stdout);
+        help_print_command(options->command, options->all, stdout);
         return console_finish();
     }
     status = input_open(options);

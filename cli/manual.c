@@ -80,6 +80,16 @@ static void print_option(FILE *out, const OptionInfo *option)
     print_choices(out, option->choices);
 }
 
+static void print_group(FILE *out, OptionGroup group, CommandId command)
+{
+    fputs(".SS ", out);
+    print_plain(out, group_headings[group]);
+    fputs("\n", out);
+    for (OptionId id = 0; id < OPTION_COUNT; id++)
+        if (option_info[id].group == group && option_belongs(id, command))
+            print_option(out, &option_info[id]);
+}
+
 static void print_command_page(CommandId command, FILE *out)
 {
     const CommandInfo *info = &command_table[command];
@@ -92,9 +102,9 @@ static void print_command_page(CommandId command, FILE *out)
     print_plain(out, info->examples);
     passes_print(command, out);
     fputs(".fi\n.SH OPTIONS\n", out);
-    for (OptionId id = 0; id < OPTION_COUNT; id++)
-        if (option_belongs(id, command))
-            print_option(out, &option_info[id]);
+    for (OptionGroup group = 0; group < GROUP_COUNT; group++)
+        if (group_belongs(group, command))
+            print_group(out, group, command);
     fputs(".SH EXIT STATUS\n", out);
     print_plain(out, exit_statuses);
     fputs(".SH SEE ALSO\n.BR krs (1)\n", out);

@@ -40,6 +40,12 @@ const char *nearest_command(const char *name)
     return nearest_name(name, names, COMMAND_COUNT);
 }
 
+const char *const group_headings[GROUP_COUNT] = {
+#define GROUP(id, heading) [GROUP_##id] = (heading),
+#include "cli/option_groups.def"
+#undef GROUP
+};
+
 const OptionInfo option_info[OPTION_COUNT] = {
 #define NO_MEMBER                  ""
 #define MEMBER(type, name, value)  ""
@@ -50,14 +56,22 @@ const OptionInfo option_info[OPTION_COUNT] = {
 #define WORD(take, choices)        NULL, choices
 #define LIST(take, choices, wants) wants, choices
 #define VALUE(take, wants)         wants, NULL
-#define OPTION(id, letter, name, argument, commands, member, value, help) \
-    [OPTION_##id] = {letter, name, argument, commands, help member, value},
+#define OPTION(id, letter, name, argument, commands, group, member, value, help) \
+    [OPTION_##id] = {letter, name, argument, commands, GROUP_##group, help member, value},
 #include "cli/options.def"
 };
 
 bool option_belongs(OptionId id, CommandId command)
 {
     return command < COMMAND_COUNT && (option_info[id].commands & (1u << command)) != 0;
+}
+
+bool group_belongs(OptionGroup group, CommandId command)
+{
+    OptionId id = 0;
+    while (id < OPTION_COUNT && !(option_info[id].group == group && option_belongs(id, command)))
+        id++;
+    return id < OPTION_COUNT;
 }
 
 bool option_changes_pictures(OptionId id)

@@ -42,16 +42,27 @@ CommandId find_command(const char *name);
 const char *nearest_command(const char *name);
 
 typedef enum OptionId {
-#define OPTION(id, letter, name, argument, commands, member, value, help) OPTION_##id,
+#define OPTION(id, letter, name, argument, commands, group, member, value, help) OPTION_##id,
 #include "cli/options.def"
     OPTION_COUNT
 } OptionId;
+
+/* A heading of a page: the options that are about one matter. */
+typedef enum OptionGroup {
+#define GROUP(id, heading) GROUP_##id,
+#include "cli/option_groups.def"
+#undef GROUP
+    GROUP_COUNT
+} OptionGroup;
+
+extern const char *const group_headings[GROUP_COUNT];
 
 /* A row of options.def; {} in a text stands for the choices. */
 typedef struct OptionInfo {
     char          letter;          /* 0: none */
     const char   *name, *argument; /* `argument` NULL: it takes none; "": the choices */
     unsigned      commands;
+    OptionGroup   group;
     const char   *help, *wants;
     const Choice *choices; /* NULL: other values; with `wants` these are for lists of them */
 } OptionInfo;
@@ -66,6 +77,8 @@ const char *option_help(const OptionInfo *option, char text[OPTION_TEXT]);
 const char *option_words(const OptionInfo *option, char text[OPTION_TEXT]);
 
 bool option_belongs(OptionId id, CommandId command);
+/* Whether the command has options of this group. */
+bool group_belongs(OptionGroup group, CommandId command);
 /* False: whatever its value, samples of pictures are the same. */
 bool option_changes_pictures(OptionId id);
 
@@ -134,9 +147,9 @@ typedef struct Options {
 
     KrsRenderOptions how; /* what the rows put there; all else is 0 */
 #define NO_MEMBER
-#define MEMBER(type, name, value)                                         type name;
-#define DEFAULT(type, name, value)                                        type name;
-#define OPTION(id, letter, name, argument, commands, member, value, help) member
+#define MEMBER(type, name, value)                                                type name;
+#define DEFAULT(type, name, value)                                               type name;
+#define OPTION(id, letter, name, argument, commands, group, member, value, help) member
 #include "cli/options.def"
 
     const char *input; /* the scene that standard input has, or NULL */

@@ -41,9 +41,9 @@ static bool take_value(Options *options, OptionId id, const char *value, int cho
 #define WORD(take, choices)        take
 #define LIST(take, choices, wants) take
 #define VALUE(take, wants)         take
-#define OPTION(id, letter, name, argument, commands, member, value, help) \
-    case OPTION_##id:                                                     \
-        taken = (value);                                                  \
+#define OPTION(id, letter, name, argument, commands, group, member, value, help) \
+    case OPTION_##id:                                                            \
+        taken = (value);                                                         \
         break;
 #include "cli/options.def"
     case OPTION_COUNT: break;
@@ -208,9 +208,9 @@ KrsStatus options_parse(Options *options, int argc, char **argv)
     options->argv    = argv;
     options->command = COMMAND_COUNT;
 #define NO_MEMBER
-#define MEMBER(type, name, value)                                         options->name = value;
-#define DEFAULT(type, name, value)                                        options->name = value;
-#define OPTION(id, letter, name, argument, commands, member, value, help) member
+#define MEMBER(type, name, value)                                                options->name = value;
+#define DEFAULT(type, name, value)                                               options->name = value;
+#define OPTION(id, letter, name, argument, commands, group, member, value, help) member
 #include "cli/options.def"
     if (argc < 2)
         return say_usage(options, "no command is given");

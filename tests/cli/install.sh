@@ -35,7 +35,10 @@ missing=""
 for command in $commands; do
     page=stage/usr/share/man/man1/krs-$command.1
     [ -s "$page" ] || break
-    "$krs" "$command" --help | sed -n 's/^    \(-[a-z], \)\{0,1\}--\([a-z-]*\).*/\2/p' >options
+    "$krs" help "$command" --all >page.help
+    sed -n 's/^    \(-[a-z], \)\{0,1\}--\([a-z-]*\).*/\2/p' page.help >options
+    sed -n 's/^\([A-Z].*\):$/\1/p' page.help >headings
+    sed -n 's/^\.SS //p' "$page" | cmp -s - headings || missing="$missing headings:$command"
     while read -r option; do
         escaped=$(echo "--$option" | sed 's/-/\\-/g')
         grep -qF -- "$escaped" "$page" || missing="$missing $option"
@@ -43,7 +46,7 @@ for command in $commands; do
     grep -q "krs.-$command" stage/usr/share/man/man1/krs.1 || missing="$missing $command"
 done
 [ -z "$missing" ] && [ -n "$commands" ] && [ -s "$page" ]
-result $? "the manual has each command and each option"
+result $? "the manual has each command, and each option under its heading$missing"
 if command -v man >/dev/null; then
     for page in stage/usr/share/man/man1/*.1; do
         MANWIDTH=80 man -l --warnings "$page" >>pages 2>>warnings
@@ -79,7 +82,7 @@ fi
 zsh=stage/usr/share/zsh/site-functions/_krs fish=stage/usr/share/fish/vendor_completions.d/krs.fish
 missing=""
 for command in $commands; do
-    "$krs" "$command" --help >page
+    "$krs" help "$command" --all >page
     sed -n 's/^    \(-[a-z], \)\{0,1\}--\([a-z-]*\).*/\2/p' page | sort >options
     sed -n "/^$command)/,/;;\$/p" $zsh | sed -n "s/.*--\([a-z-]*\)[=}[].*/\1/p" | sort >in_zsh
     sed -n "s/.*seen_subcommand_from $command' -l \([a-z-]*\).*/\1/p" $fish | sort >in_fish

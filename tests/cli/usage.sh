@@ -2,7 +2,7 @@
 # usage.sh: command lines that are wrong, and the pages of help.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 64
+plan 69
 
 run
 said 2 "no command is given" "no command"
@@ -117,6 +117,50 @@ run help render
 result $? "krs help render is krs render --help"
 run help rendr
 said 2 "did you mean \`render\`?" "help of a misspelt command"
+# What a page has of options, a line each: its heading, a colon, the name.
+listed() {
+    awk '/^[A-Z].*:$/ { heading = $0 } /^    (-[a-z], )?--/ { sub(/^ *(-[a-z], )?--/, ""); print heading $1 }'
+}
+run help render
+listed <out >few
+grep -q "^More options.*krs help render --all" out
+result $? "the page of render names the page of all options"
+run help render --all
+listed <out >all
+for option in trace schedule even-hits starts components beams upsampling early-outs normals filter; do
+    grep -q ":$option$" few || grep -qx "Research:$option" all || echo "$option"
+done >out
+[ ! -s out ] && [ -s few ] && grep -v '^Research:' all | cmp -s - few
+result $? "options that compare methods stand on that page alone, and all else is the same"
+for place in Picture:size Picture:samples Camera:camera 'Time, parameters and zones:time' \
+    'Light and colour:integrator' Animation:frames Compositing:cryptomatte 'Device and cache:device' \
+    'Device and cache:cache' 'Limits and scenes of strangers:untrusted' 'Messages and exit status:help'; do
+    grep -qx "$place" few || echo "$place"
+done >out
+[ ! -s out ]
+result $? "options stand under the heading of what they are about"
+# By the rows themselves: a command that is not given is none of the page.
+wrong=""
+commands=$(sed -n 's/^COMMAND([A-Z]*, "\([a-z]*\)".*/\1/p' "$root/cli/commands.def")
+for command in $commands; do
+    run help "$command" --all
+    listed <out | sed 's/.*://' | sort >shown
+    name=$(echo "$command" | tr '[:lower:]' '[:upper:]')
+    for word in ON_ALL "ON($name)"; do
+        sed -n "s/^OPTION([^\"]*\"\([a-z-]*\)\".*[ |]$(echo "$word" | sed 's/[()]/[&]/g')[ ,].*/\1/p" \
+            "$root/cli/options.def"
+    done | sort | comm -23 - shown >out
+    [ ! -s out ] && [ -s shown ] && [ -z "$(uniq -d shown)" ] || wrong="$wrong $command"
+    # A heading stands once, and above a screen's half of options at most.
+    run help "$command" --all
+    [ -z "$(grep '^[A-Z].*:$' out | sort | uniq -d)" ] &&
+        ! sed -n '/^usage/,$p' out | tail -n +2 | grep -q '.\{81\}' &&
+        listed <out | sed 's/:[^:]*$//' | sort | uniq -c | awk '$1 > 12 { exit 1 }' || wrong="$wrong $command"
+done
+[ -z "$wrong" ]
+result $? "each option stands once, under headings that have a dozen at most, in 80 columns$wrong"
+run render --all ball.krs
+said 2 "render has no option --all" "the option of help is that of help alone"
 run --version
 [ "$status" -eq 0 ] && grep -q '^krs [0-9]' out && grep -q 'OpenEXRCore [0-9]' out &&
     grep -q 'glslang [0-9]' out
