@@ -12,7 +12,9 @@
 const char exit_statuses[] =
     "0 done; 1 the scene is wrong or beyond a limit; 2 wrong usage; 69 no device; 70 a bug, or\n"
     "the driver's; 71 out of memory; 73 cannot create the output; 74 cannot read the scene\n"
-    "or write the output; 75 interrupted, with a checkpoint (--resume); 130 interrupted.\n";
+    "or write the output; 75 interrupted, with a checkpoint (--resume); 130 interrupted.\n"
+    "SIGUSR1, by which batch systems warn, is an interrupt where --resume has a checkpoint, and\n"
+    "else ignored.  Deadlines and limits count time of work, not of being stopped or starved.\n";
 
 void help_print(FILE *out)
 {

@@ -21,10 +21,11 @@
 #include <unistd.h>
 
 #include "cli/console.h"
+#include "compiler/base/patience.h"
 
 typedef struct Shared {
     atomic_int       stage;
-    _Atomic uint64_t entered;   /* when, milliseconds of clock_now */
+    _Atomic uint64_t progress;  /* counts what is a step forward */
     atomic_int       resumable; /* whether a checkpoint is there */
     atomic_int       open;      /* whether `temporary` exists */
     char             temporary[4096];
@@ -39,24 +40,23 @@ typedef struct StageInfo {
     double      deadlines; /* how many it may take, or be without progress; 0: any time */
     bool        slow;      /* what takes long is the scene's fault, not a bug */
     bool        polite;    /* notices an interrupt by itself */
+    bool        idle;      /* has nothing to do */
 } StageInfo;
 
 static const StageInfo stage_info[STAGE_COUNT] = {
-    [STAGE_START]    = {"start", "starting", 0, false, false},
-    [STAGE_COMPILE]  = {"compile", "compiling the scene", 1, true, false},
-    [STAGE_SHADERS]  = {"shaders", "compiling the shaders", 1, true, false},
-    [STAGE_DEVICE]   = {"device", "starting the device", 1, false, false},
-    [STAGE_RENDER]   = {"render", "rendering", 2 * DEVICE_PATIENCE, false, true},
-    [STAGE_VALIDATE] = {"validate", "validating", 0, false, true},
-    [STAGE_MESH]     = {"mesh", "making the mesh", 0, false, true},
-    [STAGE_WRITE]    = {"write", "writing", 0, false, true},
-    [STAGE_ANSWER]   = {"answer", "printing the answer", 0, false, false},
-    [STAGE_WAIT]     = {"wait", "waiting for changes", 0, false, true},
+    [STAGE_START]    = {"start", "starting", 0, false, false, false},
+    [STAGE_COMPILE]  = {"compile", "compiling the scene", 1, true, false, false},
+    [STAGE_SHADERS]  = {"shaders", "compiling the shaders", 1, true, false, false},
+    [STAGE_DEVICE]   = {"device", "starting the device", 1, false, false, false},
+    [STAGE_RENDER]   = {"render", "rendering", 2 * DEVICE_PATIENCE, false, true, false},
+    [STAGE_VALIDATE] = {"validate", "validating", 0, false, true, false},
+    [STAGE_MESH]     = {"mesh", "making the mesh", 0, false, true, false},
+    [STAGE_WRITE]    = {"write", "writing", 0, false, true, false},
+    [STAGE_ANSWER]   = {"answer", "printing the answer", 0, false, false, false},
+    [STAGE_WAIT]     = {"wait", "waiting for changes", 0, false, true, true},
 };
 
 /* The child. */
-
-static uint64_t milliseconds(void) { return (uint64_t)(clock_now() * 1000); }
 
 static void crash_for_test(RunStage stage)
 {
@@ -73,14 +73,15 @@ static void crash_for_test(RunStage stage)
         raise(atoi(wish + length + 1));
 }
 
+void stage_goes_on(void) { atomic_fetch_add(&shared->progress, 1); }
+
+/* Who sees the new stage sees the step, too. */
 void stage_enter(RunStage stage)
 {
-    atomic_store(&shared->entered, milliseconds());
+    stage_goes_on();
     atomic_store(&shared->stage, (int)stage);
     crash_for_test(stage);
 }
-
-void stage_goes_on(void) { atomic_store(&shared->entered, milliseconds()); }
 
 void stage_resumable(bool resumable) { atomic_store(&shared->resumable, resumable); }
 
@@ -179,9 +180,11 @@ static _Noreturn void run_child(Options *options, Work *work, const sigset_t *ma
 /* The parent. */
 
 typedef struct Watch {
-    pid_t  child;
-    bool   interrupted, late, over; /* why we stopped the child; over: the limit of time */
-    double started_at, interrupted_at;
+    pid_t    child;
+    bool     interrupted, late, over; /* why we stopped the child; over: the limit of time */
+    bool     warned;                  /* SIGUSR1 has come: the child is stopped at a checkpoint */
+    Patience patience;
+    double   interrupted_after; /* seconds of work */
 } Watch;
 
 /* Of a regular file only: a pipe may never have a writer, a device never end. */
@@ -341,37 +344,73 @@ static int judge_death(const Options *options, const Watch *watch, int signal_nu
     return report_bug(options, story);
 }
 
-/* Whether a stage with a deadline has passed it. */
-static bool is_late(const Options *options)
+/* Looks at what the child has done since the last time; returns its stage. */
+static const StageInfo *observe(Watch *watch)
 {
-    const StageInfo *stage   = &stage_info[atomic_load(&shared->stage)];
-    double           seconds = (double)(milliseconds() - atomic_load(&shared->entered)) / 1000;
-    return stage->deadlines > 0 && seconds > stage->deadlines * options->deadline;
+    /* The stage comes first: a new one with the steps of the old would be late. */
+    const StageInfo *stage = &stage_info[atomic_load(&shared->stage)];
+    Look             look  = {.idle     = stage->idle && !watch->interrupted,
+                              .progress = atomic_load(&shared->progress)};
+    patience_look(watch->child, &watch->patience.last, &look);
+    patience_add(&watch->patience, &look);
+    return stage;
 }
 
-/* Passes interrupts on and watches the clock until the child has ended; returns how. */
+/* Ends a child that takes too long. */
+static void check_time(const Options *options, Watch *watch, const StageInfo *stage)
+{
+    const double force = 10; /* seconds from an interrupt on: a slice and a file */
+    if (watch->interrupted && watch->patience.worked - watch->interrupted_after > force)
+        kill(watch->child, SIGKILL);
+    if (watch->interrupted || watch->late || watch->over)
+        return;
+    watch->over = options->limits.time > 0 && watch->patience.worked > options->limits.time;
+    watch->late = !watch->over && stage->deadlines > 0 &&
+                  watch->patience.fruitless > stage->deadlines * options->deadline;
+    if (watch->over || watch->late)
+        kill(watch->child, SIGKILL);
+}
+
+static void interrupt(Watch *watch, int number)
+{
+    if (!watch->interrupted)
+        watch->interrupted_after = watch->patience.worked;
+    watch->interrupted = true;
+    kill(watch->child, number);
+}
+
+/* Stops the child and this process, until somebody continues this one.  Ctrl-Z has stopped the child already. */
+static void stop_with_child(const Watch *watch)
+{
+    sigset_t stop;
+    sigemptyset(&stop);
+    sigaddset(&stop, SIGTSTP);
+    kill(watch->child, SIGTSTP);
+    raise(SIGTSTP);
+    sigprocmask(SIG_UNBLOCK, &stop, NULL);
+    sigprocmask(SIG_BLOCK, &stop, NULL);
+    kill(watch->child, SIGCONT);
+}
+
+static void take_signal(Watch *watch, int number)
+{
+    if (number == SIGINT || number == SIGTERM || number == SIGHUP)
+        interrupt(watch, number);
+    if (number == SIGTSTP)
+        stop_with_child(watch);
+    watch->warned = watch->warned || number == SIGUSR1;
+}
+
+/* Passes signals on and watches the child's work until it has ended; returns how. */
 static int wait_for_child(const Options *options, Watch *watch, const sigset_t *signals)
 {
-    const double patience = 10; /* seconds from an interrupt to force: a slice and a file */
-    int          ended;
+    int ended;
     while (waitpid(watch->child, &ended, WNOHANG) == 0) {
-        struct timespec pause  = {.tv_nsec = 100 * 1000 * 1000};
-        int             number = sigtimedwait(signals, NULL, &pause);
-        if (number == SIGINT || number == SIGTERM || number == SIGHUP) {
-            if (!watch->interrupted)
-                watch->interrupted_at = clock_now();
-            watch->interrupted = true;
-            kill(watch->child, number);
-        }
-        if (watch->interrupted && clock_now() - watch->interrupted_at > patience)
-            kill(watch->child, SIGKILL);
-        if (watch->interrupted || watch->late || watch->over)
-            continue;
-        watch->over = options->limits.time > 0 &&
-                      clock_now() - watch->started_at > options->limits.time;
-        watch->late = !watch->over && is_late(options);
-        if (watch->over || watch->late)
-            kill(watch->child, SIGKILL);
+        const struct timespec pause = {.tv_nsec = 100 * 1000 * 1000};
+        take_signal(watch, sigtimedwait(signals, NULL, &pause));
+        if (watch->warned && !watch->interrupted && atomic_load(&shared->resumable))
+            interrupt(watch, SIGTERM);
+        check_time(options, watch, observe(watch));
     }
     return ended;
 }
@@ -383,6 +422,19 @@ static void add_signal(sigset_t *signals, int number)
         sigaddset(signals, number);
 }
 
+/* What this process waits for.  SIGUSR1 is ignored by both processes (main.c), and yet taken here. */
+static void choose_signals(sigset_t *signals)
+{
+    sigemptyset(signals);
+    add_signal(signals, SIGINT);
+    add_signal(signals, SIGTERM);
+    add_signal(signals, SIGHUP);
+    add_signal(signals, SIGTSTP);
+    sigaddset(signals, SIGUSR1);
+    sigaddset(signals, SIGCHLD);
+    signal(SIGCHLD, SIG_DFL); /* ignored, children could not be waited for */
+}
+
 int supervise(Options *options, Work *work)
 {
     shared = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -391,15 +443,10 @@ int supervise(Options *options, Work *work)
         return KRS_OUT_OF_MEMORY;
     }
     sigset_t signals, before;
-    sigemptyset(&signals);
-    add_signal(&signals, SIGINT);
-    add_signal(&signals, SIGTERM);
-    add_signal(&signals, SIGHUP);
-    sigaddset(&signals, SIGCHLD);
-    signal(SIGCHLD, SIG_DFL); /* ignored, children could not be waited for */
+    choose_signals(&signals);
     sigprocmask(SIG_BLOCK, &signals, &before);
 
-    Watch watch = {.child = fork(), .started_at = clock_now()};
+    Watch watch = {.child = fork()};
     if (watch.child < 0) {
         say("cannot start a process: %s", strerror(errno));
         return KRS_OUT_OF_MEMORY; /* or as many processes as the user may have */

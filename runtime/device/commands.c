@@ -2,6 +2,10 @@
  * commands.c: recording a piece of work, running it and timing it.  One piece runs at a time:
  * slices are long against what a submission costs, and the host must look at each anyway.
  */
+#include <unistd.h>
+
+#include "compiler/base/minmax.h"
+#include "compiler/base/patience.h"
 #include "runtime/device/gpu.h"
 
 static const VkPipelineStageFlags WORK = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT |
@@ -91,12 +95,32 @@ bool gpu_marked(Gpu *gpu, uint32_t mark, double *ms)
     return !gpu->times || measure(gpu, mark, mark + 1, ms);
 }
 
+static VkResult wait_for(Gpu *gpu, double seconds)
+{
+    return vkWaitForFences(gpu->device, 1, &gpu->fence, VK_TRUE, (uint64_t)(seconds * 1e9));
+}
+
+/* Most steps take no longer than the first slice; what the process does during more of them decides how much of
+   the time counts, since drivers for CPUs work in its threads. */
+static VkResult wait_patiently(Gpu *gpu)
+{
+    const double slice    = min2(gpu->patience, PATIENCE_LONGEST_LOOK);
+    Patience     patience = {.fruitless = slice};
+    VkResult     result   = wait_for(gpu, slice);
+    while (result == VK_TIMEOUT && patience.fruitless < gpu->patience) {
+        Look look = {0};
+        patience_look(getpid(), &patience.last, &look);
+        patience_add(&patience, &look);
+        result = wait_for(gpu, slice);
+    }
+    return result;
+}
+
 /* A device that never answers leaves a message, and nothing that could be freed. */
 static bool wait_for_fence(Gpu *gpu)
 {
     const char *attempt = "wait for the device";
-    VkResult    result  = vkWaitForFences(gpu->device, 1, &gpu->fence, VK_TRUE,
-                                          (uint64_t)(gpu->patience * 1e9));
+    VkResult    result  = wait_patiently(gpu);
     if (result == VK_TIMEOUT) {
         gpu->stuck = true;
         gpu_refuse(gpu, KRS_INTERNAL, "the device has not finished a step within %g seconds",
