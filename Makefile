@@ -1,5 +1,6 @@
 # make            build/krs, build/libkrs.a
-# make demo       set up, build, render the examples' highlights to build/demo/
+# make demo       set up, build, render the best examples in two minutes: open build/demo/index.html
+# make gallery    all of them, as the README has them, to build/gallery/: about an hour
 # make test       set up, build, run every test; the last line is `N passed, N failed`, and
 #                 `, N skipped` where some were; DEVICE=...: on another device (krs devices)
 # make test-meshes    300 random meshes within their error, and what CGAL finds of them; half an hour
@@ -178,8 +179,11 @@ include tools/install.mk
 
 # ---- what a newcomer types ----
 demo: deps
-	@$(MAKE) --no-print-directory all
-	@tools/demo.sh $(B)
+	@$(MAKE) --no-print-directory -j$(JOBS) all
+	@tools/gallery.sh $(B) demo
+gallery: deps
+	@$(MAKE) --no-print-directory -j$(JOBS) all
+	@tools/gallery.sh $(B) gallery
 deps:
 	@tools/deps.sh
 test-deps:
@@ -188,6 +192,6 @@ libs:
 	@echo $(LIBS)
 clean:
 	rm -rf build
-.PHONY: all demo deps test-deps libs clean
+.PHONY: all demo gallery deps test-deps libs clean
 .DELETE_ON_ERROR:
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

@@ -53,7 +53,7 @@ PLAIN       := $(filter-out $(filter-out $(BOTH), $(SANITIZED)), $(PROGRAMS))
 # Scripts that run beside programs, the longest first.  SCRIPTS run alone: they measure time, or count
 # what others may change.
 BESIDE      := $(addprefix tests/, examples.sh tutorial.sh extend/extend.sh cli/scale.sh errors-sanitized.sh lint.sh \
-               errors.sh layers.sh grammar.sh editors.sh golden.sh library.sh docs.sh)
+               errors.sh layers.sh grammar.sh editors.sh golden.sh library.sh docs.sh gallery.sh)
 SCRIPTS     := tests/run_selftest.sh $(sort $(filter-out tests/cli/common.sh $(BESIDE), \
                $(wildcard tests/cli/*.sh))) tests/fuzz/fuzz.sh
 # So many programs run at once: most use one core, as they compile kernels.  A device that is asked
