@@ -67,6 +67,11 @@ done)
 status=$?
 [ $status -eq 0 ] || echo "$not_run" | sed 's/^/# cannot be run: /'
 report "scripts can be run" $status
+# The patches of what should be easy to add fit the sources; tests/extend/extend.sh builds them.
+for change in tests/extend/*.patch; do
+    patch -p1 -F0 --dry-run -s <"$change"
+    report "$change can be applied" $?
+done
 # Every program of a test is in a list of tests.mk.
 listed=$(make -s list-programs | tr ' ' '\n')
 unlisted=$(grep -lE '^int main' tests/*/*.c | sed 's/\.c$//' | grep -vE '^tests/(cli|golden)/|_fuzz$' |
