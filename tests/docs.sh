@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.." || exit 1
 krs=${KRS:-build/krs}
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
-pages="README.md docs/tutorial.md docs/coming-from.md docs/language.md docs/library.md docs/architecture.md docs/details.md
+pages="README.md CONTRIBUTING.md SECURITY.md docs/tutorial.md docs/coming-from.md docs/language.md docs/library.md docs/architecture.md docs/details.md
 docs/viewer.md docs/meshes.md docs/how-it-works.md docs/glossary.md bench/README.md bench/measurements.md"
 failed=0
 report() { # status, name
@@ -128,7 +128,7 @@ report $? "the library's declarations are found"
 # ---- options, codes, files ----
 sed -n 's/^OPTION([A-Z_]*, *[^,]*, *"\([a-z-]*\)".*/--\1/p' cli/options.def >"$work/options"
 sed -n 's/.*"usage: bench \(.*\)/\1/p' bench/bench.c | grep -o -e '--[a-z-]*' >>"$work/options"
-echo --version >>"$work/options"
+printf "%s\n" --version --bless >>"$work/options"
 # shellcheck disable=SC2086 # several pages
 grep -ho -e '[` ]--[a-z][a-z-]*' $pages | tr -d '` ' | sort -u |
     grep -vxF -f "$work/options" >"$work/said"
@@ -147,6 +147,10 @@ done | grep -x "[a-z][A-Za-z0-9_/.-]*\.\($kinds\|krs\)" | sort -u | while read -
     grep -q "\(^\|/\)$(echo "$file" | sed 's/\./\\./g')\$" "$work/files" || echo "$file"
 done >"$work/said"
 none "every file that a page names exists"
+
+# ---- versions ----
+[ "$(sed -n 's/^## \[\([0-9.]*\)\].*/\1/p' CHANGELOG.md | head -n 1)" = "$(sed -n 's/^#define KRS_VERSION *"\(.*\)"/\1/p' compiler/krs.h)" ]
+report $? "the last version of the changelog is the program's"
 
 # ---- links ----
 for page in $pages; do
