@@ -29,7 +29,7 @@ typedef struct Reading {
 
 static KrsStatus say_result(const Reading *r, exr_result_t result)
 {
-    say("cannot read `%s`: %s", r->path, exr_get_default_error_message(result));
+    say("cannot read `%s`: %s", r->path, exr_chunks_fault(result));
     return result == EXR_ERR_OUT_OF_MEMORY ? KRS_OUT_OF_MEMORY : KRS_IO_ERROR;
 }
 

@@ -39,9 +39,24 @@ static exr_result_t read_chunk(const ExrChunks *chunks, int y, exr_decode_pipeli
     return result;
 }
 
+const char *exr_chunks_fault(exr_result_t result)
+{
+    switch (result) {
+    case EXR_ERR_OUT_OF_MEMORY: return "there is not enough memory for it";
+    case EXR_ERR_READ_IO: return "it ends too early";
+    case EXR_ERR_FEATURE_NOT_IMPLEMENTED: return "its compression is not known";
+    case EXR_ERR_BAD_CHUNK_LEADER:
+    case EXR_ERR_CORRUPT_CHUNK:
+    case EXR_ERR_INCORRECT_CHUNK:
+    case EXR_ERR_INVALID_SAMPLE_DATA: return "its pixels are damaged";
+    case EXR_ERR_FILE_ACCESS: return "it cannot be opened";
+    default: return "its header is damaged";
+    }
+}
+
 exr_result_t exr_chunks_read(const ExrChunks *chunks, int32_t lines)
 {
-    exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
+    exr_decode_pipeline_t pipeline = {0}; /* what its initializer says, in all versions */
     exr_result_t          result   = EXR_ERR_SUCCESS;
     for (int64_t y = chunks->window.min.y; y <= chunks->window.max.y && result == EXR_ERR_SUCCESS;
          y += lines)

@@ -40,8 +40,7 @@ static int64_t size_callback(exr_const_context_t context, void *user)
 
 static bool exr_try(ExrReader *reader, exr_result_t result)
 {
-    return result == EXR_ERR_SUCCESS ||
-           image_fail(reader->image, exr_get_default_error_message(result));
+    return result == EXR_ERR_SUCCESS || image_fail(reader->image, exr_chunks_fault(result));
 }
 
 static bool begin(ExrReader *reader)

@@ -22,22 +22,27 @@ typedef struct PngReader {
     uint32_t             channels; /* of the file: 1 to 4 */
     unsigned char       *pixels;
     float               *levels; /* of each number that a sample may be: how bright it is */
+    const char          *fault;  /* what is wrong should libpng find something */
 } PngReader;
 
 static void read_callback(png_structp png, png_bytep to, size_t length)
 {
     PngReader *reader = png_get_io_ptr(png);
-    if (length > reader->left)
-        png_error(png, "it ends too early");
+    if (length > reader->left) {
+        reader->fault = "it ends too early";
+        png_error(png, reader->fault);
+    }
     memcpy(to, reader->bytes, length);
     reader->bytes += length;
     reader->left -= length;
 }
 
+/* The words of libpng change with its version, and are of parts of the format. */
 static _Noreturn void error_callback(png_structp png, png_const_charp message)
 {
     PngReader *reader = png_get_error_ptr(png);
-    image_fail(reader->image, arena_copy_text(reader->image->arena, message, strlen(message)));
+    (void)message;
+    image_fail(reader->image, reader->fault);
     png_longjmp(png, 1);
 }
 
@@ -63,16 +68,20 @@ static void ask_for_samples(PngReader *reader)
     reader->channels = png_get_channels(reader->png, reader->info);
 }
 
-static void read_header(PngReader *reader)
+static bool read_header(PngReader *reader)
 {
     Image *image = reader->image;
-    png_set_user_limits(reader->png, image->most_side, image->most_side);
+    png_set_user_limits(reader->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
     png_set_read_fn(reader->png, reader, read_callback);
+    reader->fault = "its header is damaged";
     png_read_info(reader->png, reader->info);
-    ask_for_samples(reader);
     image->width  = png_get_image_width(reader->png, reader->info);
     image->height = png_get_image_height(reader->png, reader->info);
-    image->gray   = reader->channels <= 2;
+    if (image->width > image->most_side || image->height > image->most_side)
+        return image_fail(image, "it has too many pixels");
+    ask_for_samples(reader);
+    image->gray = reader->channels <= 2;
+    return true;
 }
 
 static void read_pixels(PngReader *reader)
@@ -82,6 +91,7 @@ static void read_pixels(PngReader *reader)
     reader->pixels    = arena_alloc(reader->image->arena, reader->image->height, row);
     for (uint32_t y = 0; y < reader->image->height; y++)
         rows[y] = reader->pixels + y * row;
+    reader->fault = "its pixels are damaged";
     png_read_image(reader->png, rows);
 }
 
@@ -128,8 +138,7 @@ static bool read_file(PngReader *reader)
 {
     if (setjmp(png_jmpbuf(reader->png)))
         return false;
-    read_header(reader);
-    if (!image_make(reader->image))
+    if (!read_header(reader) || !image_make(reader->image))
         return false;
     read_pixels(reader);
     convert(reader);

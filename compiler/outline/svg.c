@@ -66,7 +66,11 @@ static void drop_block(void *block) { (void)block; }
 
 static unsigned line_of(const Reader *reader)
 {
+#if XML_MAJOR_VERSION * 100 + XML_MINOR_VERSION >= 209
+    return (unsigned)XML_GetCurrentLineNumber64(reader->parser);
+#else
     return (unsigned)XML_GetCurrentLineNumber(reader->parser);
+#endif
 }
 
 /* Once for each kind. */
@@ -396,6 +400,25 @@ static void end_element(void *user, const char *name)
 
 /* ---- the whole ---- */
 
+/* The words of expat change with its version. */
+static const char *xml_fault(XML_Parser parser)
+{
+    switch (XML_GetErrorCode(parser)) {
+    case XML_ERROR_NONE: return "it is too long";
+    case XML_ERROR_NO_ELEMENTS:
+    case XML_ERROR_UNCLOSED_TOKEN:
+    case XML_ERROR_UNCLOSED_CDATA_SECTION:
+    case XML_ERROR_PARTIAL_CHAR: return "it ends too early";
+    case XML_ERROR_TAG_MISMATCH: return "an element is closed by the name of another";
+    case XML_ERROR_DUPLICATE_ATTRIBUTE: return "an element has an attribute twice";
+    case XML_ERROR_JUNK_AFTER_DOC_ELEMENT: return "there is something behind its last element";
+    case XML_ERROR_UNDEFINED_ENTITY: return "an entity (`&name;`) is not declared";
+    case XML_ERROR_UNKNOWN_ENCODING:
+    case XML_ERROR_INCORRECT_ENCODING: return "its encoding is not known";
+    default: return "this is not XML";
+    }
+}
+
 bool svg_read(SvgDrawing *drawing, const char *bytes, size_t length)
 {
     static const XML_Memory_Handling_Suite memory = {get_block, resize_block, drop_block};
@@ -410,8 +433,7 @@ bool svg_read(SvgDrawing *drawing, const char *bytes, size_t length)
     bool good = length <= INT32_MAX &&
                 XML_Parse(reader->parser, bytes, (int)length, XML_TRUE) == XML_STATUS_OK;
     if (!good) {
-        drawing->fault      = reader->fault ? reader->fault
-                                            : XML_ErrorString(XML_GetErrorCode(reader->parser));
+        drawing->fault      = reader->fault ? reader->fault : xml_fault(reader->parser);
         drawing->fault_line = line_of(reader);
     }
     XML_ParserFree(reader->parser);

@@ -241,6 +241,29 @@ static void exr_files_are_read_as_written(void **state)
 
 /* ---- what is broken ---- */
 
+/* What may be said of a file: words of libraries change with their versions, and speak of parts of formats. */
+static bool is_told(const char *fault)
+{
+    static const char *const faults[] = {
+        "it ends too early",
+        "its header is damaged",
+        "its pixels are damaged",
+        "its compression is not known",
+        "it has no pixels",
+        "it has too many pixels",
+        "it has too many pixels, or none",
+        "it is neither a PNG nor an OpenEXR file",
+        "it is not of scanlines: tiles and deep pixels are not read",
+        "it has neither the channels R, G, B nor the channel Y",
+        "a channel has fewer samples than pixels",
+        "a channel has whole numbers",
+    };
+    for (size_t i = 0; fault && i < sizeof faults / sizeof *faults; i++)
+        if (strcmp(fault, faults[i]) == 0)
+            return true;
+    return false;
+}
+
 /* Whatever is read is finite, and as large as it says. */
 static void look_at(size_t bytes)
 {
@@ -253,7 +276,7 @@ static void look_at(size_t bytes)
             sum += image.samples[i];
         }
     else
-        assert_true(image.fault && *image.fault);
+        assert_true(is_told(image.fault));
     arena_rewind(&arena, mark);
 }
 
@@ -287,15 +310,17 @@ static void what_is_no_picture_is_refused(void **state)
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         Image image = blank(SPACE_OF_FILE);
         assert_false(image_read(&image, (const unsigned char *)texts[i], strlen(texts[i])));
-        assert_true(image.fault && *image.fault);
+        assert_true(is_told(image.fault));
     }
     write_png(&forms[2]);
     Image image       = blank(SPACE_OF_FILE);
     image.most_pixels = PIXELS - 1;
     assert_false(image_read(&image, file, length));
+    assert_string_equal(image.fault, "it has too many pixels");
     image           = blank(SPACE_OF_FILE);
     image.most_side = WIDTH - 1;
     assert_false(image_read(&image, file, length));
+    assert_string_equal(image.fault, "it has too many pixels");
 }
 
 int main(void)
