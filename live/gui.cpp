@@ -189,7 +189,7 @@ bool gui_is_inside(void)
 void gui_backdrop(unsigned texture, float part)
 {
     const ImVec2      size = ImGui::GetIO().DisplaySize;
-    const ImTextureID id   = reinterpret_cast<ImTextureID>(static_cast<size_t>(texture));
+    const ImTextureID id   = (ImTextureID) static_cast<size_t>(texture);
     ImGui::GetBackgroundDrawList()->AddImage(id, ImVec2(0, 0), ImVec2(part * size.x, size.y));
 }
 

@@ -342,7 +342,7 @@ static bool extruded_hull(const Hulling *h, const Axis *axis, double slack, Valu
 
 static Value hull_with_rims(const Hulling *h)
 {
-    Axis   axis;
+    Axis   axis = {0};
     Value  result;
     bool   common = common_axis(&h->parts, &axis);
     double slack  = common ? NEAR * parts_size(&axis, &h->parts) : 0;

@@ -16,11 +16,21 @@
 #include <spirv-tools/libspirv.h>
 #include <spirv-tools/optimizer.hpp>
 
-/* Releases glslang's own lock, which glslang leaves locked when it throws an exception.  It does
-   nothing in threads that do not hold the lock. */
+/* glslang leaves its own lock locked when an exception ends its start.  Versions before 14 have a function
+   that releases it, and does nothing in threads that do not hold it.  In later ones the lock is lost. */
 namespace glslang
 {
-void ReleaseGlobalLock();
+__attribute__((weak)) void ReleaseGlobalLock();
+}
+
+/* Whether the lock is lost: whoever calls glslang would wait for ever.  The caller of border_start has a lock
+   of its own. */
+static bool lock_is_lost;
+
+static void release_lock()
+{
+    if (glslang::ReleaseGlobalLock)
+        glslang::ReleaseGlobalLock();
 }
 
 static BorderResult refuse(const char *text, char **log)
@@ -127,7 +137,7 @@ BorderResult border_compile(const char *glsl, uint32_t **words, size_t *word_cou
     *words              = nullptr;
     BorderResult result = guarded([=] { return compile(glsl, words, word_count, log); }, log);
     if (result != BORDER_OK)
-        glslang::ReleaseGlobalLock();
+        release_lock();
     return result;
 }
 
@@ -148,14 +158,18 @@ static BorderResult start(bool *started, char **log)
 
 BorderResult border_start(void)
 {
-    char        *log;
-    bool         started = false;
-    BorderResult result  = guarded([&] { return start(&started, &log); }, &log);
+    char *log;
+    bool  started = false;
+    if (lock_is_lost)
+        return BORDER_NO_MEMORY;
+    BorderResult result = guarded([&] { return start(&started, &log); }, &log);
     free(log);
-    if (result != BORDER_OK && started) {
-        glslang::ReleaseGlobalLock();
+    if (result == BORDER_OK || !started)
+        return result;
+    release_lock();
+    lock_is_lost = !glslang::ReleaseGlobalLock;
+    if (!lock_is_lost)
         border_stop();
-    }
     return result;
 }
 

@@ -19,7 +19,7 @@ typedef enum BorderResult { BORDER_OK, BORDER_REFUSED, BORDER_NO_MEMORY } Border
    must be stopped and started again, while no other thread compiles. */
 BorderResult border_compile(const char *glsl, uint32_t **words, size_t *word_count, char **log);
 /* Start and stop glslang, before and after all calls of border_compile.  A start that failed needs
-   no stop. */
+   no stop; with glslang from 14 on no later one succeeds. */
 BorderResult border_start(void);
 void         border_stop(void);
 /* Validates SPIR-V.  On BORDER_REFUSED *log has the validator's message, malloc'ed, or is NULL. */

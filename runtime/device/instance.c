@@ -3,6 +3,7 @@
  */
 #include "runtime/device/instance.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #define VALIDATION_LAYER "VK_LAYER_KHRONOS_validation"
@@ -13,10 +14,17 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL take_complaint(
 {
     (void)severity;
     (void)type;
-    Gpu *gpu = user;
+    Gpu        *gpu     = user;
+    const char *message = data->pMessage ? data->pMessage : "";
+    const char *name    = data->pMessageIdName ? data->pMessageIdName : "";
+    char        text[8192];
     gpu->complaints++;
+    if (!strstr(message, name)) { /* some versions of the layers leave it out */
+        snprintf(text, sizeof text, "%s: %s", name, message);
+        message = text;
+    }
     if (gpu->complaint)
-        gpu->complaint(gpu->user, data->pMessage ? data->pMessage : "");
+        gpu->complaint(gpu->user, message);
     return VK_FALSE;
 }
 

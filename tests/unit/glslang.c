@@ -11,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include <glslang/build_info.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -147,11 +148,12 @@ static void memory_runs_out_while_compiling(void **state)
     spirv_stop();
 }
 
-/* Every place is within the start of glslang, by the thread that comes first. */
+/* Every place is within the start of glslang, by the thread that comes first.  From version 14 on it keeps
+   its lock then, so later calls are refused instead of waiting for ever. */
 static void memory_runs_out_while_starting(void **state)
 {
     (void)state;
-    enum { PLACES = 24 };
+    enum { PLACES = 24, STARTS_AGAIN = GLSLANG_VERSION_MAJOR < 14 };
     spirv_start();
     long starting = count_allocations(), made = count_allocations();
     spirv_stop();
@@ -165,8 +167,8 @@ static void memory_runs_out_while_starting(void **state)
         assert_int_equal(call.status, KRS_OUT_OF_MEMORY);
         in_threads(after, 2);
         for (int k = 0; k < 2; k++) {
-            assert_int_equal(after[k].status, KRS_OK);
-            assert_true(after[k].right);
+            assert_int_equal(after[k].status, STARTS_AGAIN ? KRS_OK : KRS_OUT_OF_MEMORY);
+            assert_int_equal(after[k].right, STARTS_AGAIN);
         }
         spirv_stop();
     }
