@@ -68,7 +68,7 @@ RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tra
 LIVE     := $(sort $(wildcard live/*.c))
 LIVE_BORDER := live/gui.cpp
 CLI      := $(sort $(wildcard cli/*.c))
-CLI_BORDER := cli/mesh_glb.cpp cli/mesh_3mf.cpp
+CLI_BORDER := cli/mesh_glb.cpp
 
 # Text files that the program carries: the standard library, what scenes and kernels share, kernels.
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))
@@ -93,7 +93,7 @@ LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLC
 # Of the command alone.  Without libchafa `krs view --terminal` says so.
 CHAFA    := $(shell pkg-config --exists chafa && echo chafa)
 WINDOW_LIBS := $(if $(CHAFA),$(shell pkg-config --libs chafa)) -limgui -lstb -lglfw -lGL -lX11
-MESH_LIBS := -ltinygltf -l3MF
+MESH_LIBS := -ltinygltf -lzip
 
 COMPILER := $(BASE) $(IMAGE) $(OUTLINE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API) $(MESH)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
@@ -138,7 +138,7 @@ $(B)/compiler/graph/range.o $(B)/compiler/graph/lane_ranges.o $(B)/compiler/grap
 $(B)/%.o: %.cpp
 	@mkdir -p $(@D)
 	@echo "compile $<"
-	@$(CXX) -std=c++17 -Wall -Wextra -I. -I/usr/include/glslang -I/usr/include/imgui -I/usr/include/lib3mf -MMD -MP $(CFLAGS) $(if $(findstring -fsanitize,$(CFLAGS)),-O0) -c -o $@ $<
+	@$(CXX) -std=c++17 -Wall -Wextra -I. -I/usr/include/glslang -I/usr/include/imgui -MMD -MP $(CFLAGS) $(if $(findstring -fsanitize,$(CFLAGS)),-O0) -c -o $@ $<
 $(B)/%.o: $(B)/%.c
 	@$(CC) $(STYLE) $(CFLAGS) -c -o $@ $<
 $(B)/library_files.c: $(B)/embed $(LIBRARY)

@@ -1,5 +1,5 @@
 /*
- * mesh_border.h: glTF and 3MF, by the libraries tinygltf and lib3mf.
+ * mesh_border.h: glTF and 3MF, by the libraries tinygltf and libzip.
  */
 #ifndef KRS_MESH_BORDER_H
 #define KRS_MESH_BORDER_H

@@ -1,7 +1,7 @@
 #!/bin/sh
 # mesh.sh: `krs mesh`: files that other programs accept, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 31
+plan 33
 
 echo 'show sphere(0.5).paint(#ff8800);' >ball.krs
 echo 'let floor = half_space([0, 1, 0], 0); show floor; let ball = sphere(1); show ball;' >floor.krs
@@ -115,6 +115,33 @@ o stand" ] && [ "$(awk '$1 == "o" { part = $2 } $1 == "f" && part == "stand" { n
 result $? "OBJ has a group for each component"
 run mesh two.krs --split components -o s.stl
 said 2 "has no parts" "STL has none"
+if command -v python3 >/dev/null; then
+    for zone in UTC Asia/Tokyo; do
+        TZ=$zone "$krs" mesh --quiet two.krs --error 0.05 --split components -o "${zone#*/}.3mf" >out 2>err
+    done
+    cmp -s UTC.3mf Tokyo.3mf && python3 -c '
+import zipfile
+for entry in zipfile.ZipFile("UTC.3mf").infolist(): assert entry.date_time == (1980, 1, 1, 0, 0, 0)'
+    result $? "3MF is the same at any time, in any time zone"
+    python3 - >out 2>err <<'END'
+import zipfile
+import xml.etree.ElementTree as tree
+archive = zipfile.ZipFile("UTC.3mf")
+assert archive.testzip() is None and archive.namelist()[0] == "[Content_Types].xml"
+for name in archive.namelist():
+    tree.fromstring(archive.read(name))
+core = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
+model = tree.fromstring(archive.read("3D/3dmodel.model"))
+objects = [item.get("id") for item in model.iter(core + "object")]
+built = [item.get("objectid") for item in model.find(core + "build")]
+assert built == objects and len(built) == 2
+assert [item.get("name") for item in model.iter(core + "object")] == ["ball", "stand"]
+END
+    result $? "and has what the format wants, in its order"
+else
+    skip "3MF is the same at any time, in any time zone" "no python3"
+    skip "and has what the format wants, in its order" "no python3"
+fi
 run mesh two.krs --units furlong -o s.3mf
 ended 2 "units are known"
 run mesh --quiet two.krs --error 0.05 --simplify -o fewer.stl -o fewer.obj
