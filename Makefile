@@ -1,4 +1,4 @@
-# make            build/krs, build/libkrs.a
+# make            build/krs, build/libkrs.a; WERROR=1: warnings are errors
 # make demo       set up, build, render the best examples in two minutes: open build/demo/index.html
 # make gallery    all of them, as the README has them, to build/gallery/: about an hour
 # make test       set up, build, run every test; the last line is `N passed, N failed`, and
@@ -26,7 +26,7 @@ B       ?= build
 override B := $(patsubst $(CURDIR)/%,%,$(abspath $(B)))
 CFLAGS  ?= -g -O2
 FUZZ_SECONDS ?= 20
-CLANG   ?= clang-14
+CLANG   ?= clang
 DEVICE  ?= $(KRS_DEVICE)
 # Of `make test`, while it builds.
 JOBS    ?= $(shell nproc)
@@ -84,33 +84,56 @@ MODULES  := $(MODULES:runtime/shaders/%=$(B)/modules/%.spv) \
 MODULES  += $(MODULES:%.spv=%-FRAME_TEXELS.spv)
 EXAMPLES := $(sort $(wildcard examples/*.krs))
 
-STYLE    := -std=c17 -D_GNU_SOURCE -Wall -Wextra -Wpedantic -Wshadow -Werror -I. -MMD -MP -pthread
-# What the compiler needs but for glslang, which the fuzzers leave out.
-FRONT_LIBS := -lharfbuzz -lfreetype -lfontconfig -lexpat -lOpenEXRCore-3_1 -lpng -lqhull_r -lmeshoptimizer
-LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLCompiler -lSPIRV \
-            -lSPVRemapper -lglslang-default-resource-limits -lSPIRV-Tools-opt -lSPIRV-Tools \
-            $(FRONT_LIBS) -ldeflate -lxxhash -lvulkan -lstdc++ -lm -pthread
-# Of the command alone.  Without libchafa `krs view --terminal` says so.
-CHAFA    := $(shell pkg-config --exists chafa && echo chafa)
-WINDOW_LIBS := $(if $(CHAFA),$(shell pkg-config --libs chafa)) -limgui -lstb -lglfw -lGL -lX11
-MESH_LIBS := -ltinygltf -lzip
+# WERROR=1 makes an error of each warning: for developers, `make test` and CI.  Compilers of users are newer.
+WERROR   ?=
+WARNINGS := -Wall -Wextra -Wpedantic -Wshadow $(if $(filter 1,$(WERROR)),-Werror)
+# All can be linked into a shared library, and no name of ours is seen outside but those of the public headers.
+COMMON   := -I. -MMD -MP -pthread -fPIC -fvisibility=hidden
+STYLE    := -std=c17 -D_GNU_SOURCE $(WARNINGS) $(COMMON)
+CC_C     = $(CC) $(STYLE) $(HEADERS) $(CPPFLAGS) $(CFLAGS)
+# Headers of libraries in C++ are long: under the sanitizers -O1 would take three times as long as -O0.
+CC_CXX   = $(CXX) -std=c++17 -Wall -Wextra $(COMMON) $(HEADERS) $(CPPFLAGS) $(CXXFLAGS) \
+           $(if $(findstring -fsanitize,$(CXXFLAGS)),-O0)
+# What static libraries define, programs do not lend to shared ones.
+CC_LINK  = $(CC) $(CFLAGS) $(LDFLAGS) -Wl,--exclude-libs,ALL
+include tools/libraries.mk
 
 COMPILER := $(BASE) $(IMAGE) $(OUTLINE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API) $(MESH)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
             $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o
 
-all: $(B)/krs
-$(B)/krs: $(CLI:%.c=$(B)/%.o) $(CLI_BORDER:%.cpp=$(B)/%.o) $(B)/live.a $(B)/libkrs.a
+# Programs of this project are linked with the library's parts; others with the library, which shows its API alone.
+INTERNAL := $(B)/libkrs-internal.a
+# Before 1.0 each minor version may break what is linked with the one before.
+VERSION  := $(shell sed -n 's/^.define KRS_VERSION  *"\(.*\)"/\1/p' compiler/krs.h)
+SONAME   := libkrs.so.$(basename $(VERSION))
+
+all: $(B)/krs $(B)/libkrs.a
+$(B)/krs: $(CLI:%.c=$(B)/%.o) $(CLI_BORDER:%.cpp=$(B)/%.o) $(B)/live.a $(INTERNAL)
 	@echo "link   $@"
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(WINDOW_LIBS) $(MESH_LIBS) $(LIBS)
+	@$(CC_LINK) -o $@ $^ $(WINDOW_LIBS) $(MESH_LIBS) $(LIBS)
 # What the command has for scenes that are open: a client of the library, and no part of it.
 $(B)/live.a: $(LIVE:%.c=$(B)/%.o) $(LIVE_BORDER:%.cpp=$(B)/%.o) $(B)/members
 	@rm -f $@
 	@$(AR) rcs $@ $(filter %.o, $^)
-$(B)/libkrs.a: $(OBJECTS) $(B)/members
+$(INTERNAL): $(OBJECTS) $(B)/members
 	@echo "pack   $@"
 	@rm -f $@
 	@$(AR) rcs $@ $(filter %.o, $^)
+# One object whose hidden names are local.  Its sections are in no groups any more: a linker would drop
+# those of which another library has the like, and what names are local could not be found there.
+$(B)/krs.o: $(OBJECTS)
+	@$(CC) $(CFLAGS) -r -nostdlib -o $@ $^
+	@$(OBJCOPY) --remove-section=.group --localize-hidden --wildcard --localize-symbol='_Z*' $@
+$(B)/libkrs.a: $(B)/krs.o
+	@echo "pack   $@"
+	@rm -f $@
+	@$(AR) rcs $@ $^
+$(B)/$(SONAME): $(B)/krs.o
+	@echo "link   $@"
+	@$(CC_LINK) -shared -Wl,-soname,$(SONAME) -o $@ $^ $(LIBS)
+$(B)/libkrs.so: $(B)/$(SONAME)
+	@ln -sf $(SONAME) $@
 # What archives hold: one whose list has changed is packed again, although a new member may be older.
 MEMBERS  := $(OBJECTS) $(LIVE:%.c=$(B)/%.o) $(LIVE_BORDER:%.cpp=$(B)/%.o)
 ifneq ($(file <$(B)/members),$(MEMBERS))
@@ -119,13 +142,19 @@ endif
 $(B)/members:
 	@mkdir -p $(@D)
 	@echo '$(MEMBERS)' >$@
-$(B)/%.o: %.c
+# What is compiled with other options is compiled again; an error for a warning changes no object.
+FLAGS    := $(filter-out ccache,$(CC) $(CXX)) $(filter-out -Werror,$(STYLE)) $(CPPFLAGS) $(CFLAGS) / $(CXXFLAGS)
+ifneq ($(file <$(B)/flags),$(FLAGS))
+.PHONY: $(B)/flags
+endif
+$(B)/flags:
+	@mkdir -p $(@D)
+	@echo '$(FLAGS)' >$@
+$(B)/%.o: %.c $(B)/flags
 	@mkdir -p $(@D)
 	@echo "compile $<"
-	@$(CC) $(STYLE) $(CFLAGS) $(FAST) -c -o $@ $<
-# Its libraries have their headers in folders of their own.
-$(B)/compiler/outline/letters.o: STYLE += $(shell pkg-config --cflags freetype2 harfbuzz)
-$(B)/live/cells.o: STYLE += $(if $(CHAFA),-DKRS_HAS_CHAFA $(shell pkg-config --cflags chafa | sed 's/-I/-isystem /g'))
+	@$(CC_C) $(FAST) -c -o $@ $<
+$(B)/live/cells.o: FAST = $(if $(CHAFA),-DKRS_HAS_CHAFA)
 # Loops over lanes become vector instructions; results are the same on every machine.  What sanitizers
 # watch cannot become such: trying it takes minutes, and clang warns that it failed.
 $(LANES:%.c=$(B)/%.o): FAST := $(if $(findstring -fsanitize,$(CFLAGS)),-Wno-pass-failed,-O3) \
@@ -134,13 +163,12 @@ $(B)/compiler/graph/lanes_avx2.o: FAST += -mavx2
 $(B)/compiler/graph/lanes_avx512.o: FAST += -mavx512f -mavx512dq -mavx512vl -mprefer-vector-width=512
 # Intervals are two numbers that come in registers: joined into a vector they would go through memory, and wait there.
 $(B)/compiler/graph/range.o $(B)/compiler/graph/lane_ranges.o $(B)/compiler/graph/lane_slopes.o $(B)/compiler/graph/lane_hessians.o $(B)/compiler/graph/lane_partials.o: FAST := -fno-tree-slp-vectorize
-# Headers of these borders are long: under the sanitizers -O1 would take three times as long as -O0.
-$(B)/%.o: %.cpp
+$(B)/%.o: %.cpp $(B)/flags
 	@mkdir -p $(@D)
 	@echo "compile $<"
-	@$(CXX) -std=c++17 -Wall -Wextra -I. -I/usr/include/glslang -I/usr/include/imgui -MMD -MP $(CFLAGS) $(if $(findstring -fsanitize,$(CFLAGS)),-O0) -c -o $@ $<
-$(B)/%.o: $(B)/%.c
-	@$(CC) $(STYLE) $(CFLAGS) -c -o $@ $<
+	@$(CC_CXX) -c -o $@ $<
+$(B)/%.o: $(B)/%.c $(B)/flags
+	@$(CC_C) -c -o $@ $<
 $(B)/library_files.c: $(B)/embed $(LIBRARY)
 	@$(B)/embed library_files compiler/library/ $(LIBRARY) >$@
 $(B)/helper_files.c: $(B)/embed $(HELPERS)
@@ -171,7 +199,7 @@ $(B)/modules/%-SKY_MAP-FRAME_TEXELS.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
 	$(call MAKE_MODULE,SKY_MAP FRAME_TEXELS)
 $(B)/embed: compiler/base/embed/embed.c
 	@mkdir -p $(@D)
-	@$(CC) $(STYLE) -O1 -o $@ $<
+	@$(CC) $(STYLE) $(CPPFLAGS) -O1 $(LDFLAGS) -o $@ $<
 
 include tests/tests.mk
 include bench/bench.mk

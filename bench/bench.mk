@@ -4,9 +4,9 @@
 BENCH    := $(sort $(filter-out bench/stage.c, $(wildcard bench/*.c)))
 REVISION  = $(shell git describe --always --dirty 2>/dev/null || echo unknown)
 
-$(B)/bench/bench: $(BENCH:%.c=$(B)/%.o) $(B)/libkrs.a
+$(B)/bench/bench: $(BENCH:%.c=$(B)/%.o) $(INTERNAL)
 	@echo "link   $@"
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+	@$(CC_LINK) -o $@ $^ $(LIBS)
 bench: deps
 	@$(MAKE) --no-print-directory $(B)/bench/bench $(B)/krs
 	@$(B)/bench/bench --krs $(B)/krs --revision $(REVISION)
@@ -16,33 +16,33 @@ bench-quick: $(B)/bench/bench $(B)/krs
 # How well one sample shows what is finer than a pixel (bench/README.md).
 STAGE  := $(addprefix $(B)/bench/, stage.o sheet.o measure.o)
 MINIFY := $(addprefix $(B)/bench/, minify/minify.o minify/pixel_filter.o)
-$(B)/bench/minify/minify: $(MINIFY) $(STAGE) $(B)/libkrs.a
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+$(B)/bench/minify/minify: $(MINIFY) $(STAGE) $(INTERNAL)
+	@$(CC_LINK) -o $@ $^ $(LIBS)
 minify: $(B)/bench/minify/minify
 	@REVISION=$(REVISION) $(B)/bench/minify/minify
 
 # How many evaluations a pixel takes, as pictures in bench/results/.
-$(B)/bench/iterations/iterations: $(B)/bench/iterations/iterations.o $(STAGE) $(B)/libkrs.a
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+$(B)/bench/iterations/iterations: $(B)/bench/iterations/iterations.o $(STAGE) $(INTERNAL)
+	@$(CC_LINK) -o $@ $^ $(LIBS)
 iterations: $(B)/bench/iterations/iterations
 	@REVISION=$(REVISION) $(B)/bench/iterations/iterations
 
 # Every way to trace sequences with maps that invert.
-$(B)/bench/inverted/inverted: $(B)/bench/inverted/inverted.o $(STAGE) $(B)/libkrs.a
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+$(B)/bench/inverted/inverted: $(B)/bench/inverted/inverted.o $(STAGE) $(INTERNAL)
+	@$(CC_LINK) -o $@ $^ $(LIBS)
 inverted: $(B)/bench/inverted/inverted
 	@REVISION=$(REVISION) $(B)/bench/inverted/inverted
 
 # With and without each method of the enhanced-sphere-tracing paper.
 ENHANCED := $(addprefix $(B)/bench/, enhanced/enhanced.o enhanced/convex.o)
-$(B)/bench/enhanced/enhanced: $(ENHANCED) $(STAGE) $(B)/libkrs.a
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+$(B)/bench/enhanced/enhanced: $(ENHANCED) $(STAGE) $(INTERNAL)
+	@$(CC_LINK) -o $@ $^ $(LIBS)
 bench-enhanced: $(B)/bench/enhanced/enhanced
 	@REVISION=$(REVISION) $(B)/bench/enhanced/enhanced
 
 # How well and how fast normals are found (bench/README.md).
-$(B)/bench/normals/normals: $(B)/bench/normals/normals.o $(STAGE) $(B)/libkrs.a
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+$(B)/bench/normals/normals: $(B)/bench/normals/normals.o $(STAGE) $(INTERNAL)
+	@$(CC_LINK) -o $@ $^ $(LIBS)
 bench-normals: $(B)/bench/normals/normals
 	@REVISION=$(REVISION) $(B)/bench/normals/normals
 
@@ -66,16 +66,16 @@ bench-radiosity: $(B)/krs
 ALGEBRAIC := $(addprefix bench/algebraic/, algebraic.o estimates.o judge.o processes.o programs.o \
                trees.o julias.o polynomial.o)
 $(B)/bench/algebraic/algebraic: $(ALGEBRAIC:%=$(B)/%) $(B)/tests/oracle/oracle.a \
-                             $(B)/tests/support/support.a $(B)/libkrs.a
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
+                             $(B)/tests/support/support.a $(INTERNAL)
+	@$(CC_LINK) -o $@ $^ $(LIBS) -lcmocka
 bench-algebraic: $(B)/bench/algebraic/algebraic $(B)/krs
 	@$(B)/bench/algebraic/algebraic $(B)/krs
 
 # What one wants to know of a device first, in ten minutes (bench/README.md).
 DEVICES := $(addprefix $(B)/bench/device/, device.o limits.o accuracy.o examples.o methods.o \
              kernels.o)
-$(B)/bench/device/device: $(DEVICES) $(STAGE) $(B)/tests/support/support.a $(B)/libkrs.a
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
+$(B)/bench/device/device: $(DEVICES) $(STAGE) $(B)/tests/support/support.a $(INTERNAL)
+	@$(CC_LINK) -o $@ $^ $(LIBS) -lcmocka
 CHECKED := $(addprefix tests/, unit/methods unit/schedules oracle/device property/ops \
              oracle/coverage oracle/chords)
 check-device: test-deps
@@ -83,14 +83,14 @@ check-device: test-deps
 	@B=$(B) KRS_DEVICE="$(DEVICE)" REVISION=$(REVISION) tools/check-device.sh $(CHECKED:%=$(B)/%)
 
 # Registers of each kernel, as a compiler for a graphics card that is not there has them.
-$(B)/bench/registers/registers: $(B)/bench/registers/registers.o $(STAGE) $(B)/libkrs.a
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+$(B)/bench/registers/registers: $(B)/bench/registers/registers.o $(STAGE) $(INTERNAL)
+	@$(CC_LINK) -o $@ $^ $(LIBS)
 bench-registers: $(B)/bench/registers/registers $(B)/krs
 	@B=$(B) REVISION=$(REVISION) tools/bench-registers.sh
 
 # How long each pass of the compiler takes for many parts.
-$(B)/bench/parts/parts: $(B)/bench/parts/parts.o $(B)/libkrs.a
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+$(B)/bench/parts/parts: $(B)/bench/parts/parts.o $(INTERNAL)
+	@$(CC_LINK) -o $@ $^ $(LIBS)
 bench-parts: $(B)/bench/parts/parts
 	@$(B)/bench/parts/parts
 
@@ -101,20 +101,20 @@ bench-large: deps
 
 # How fast the viewer follows edits, sliders and the camera (bench/README.md).
 NUMBER_EDIT := $(B)/bench/view/number_edit.o
-$(B)/bench/view/view: $(B)/bench/view/view.o $(NUMBER_EDIT) $(STAGE) $(B)/live.a $(B)/libkrs.a
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+$(B)/bench/view/view: $(B)/bench/view/view.o $(NUMBER_EDIT) $(STAGE) $(B)/live.a $(INTERNAL)
+	@$(CC_LINK) -o $@ $^ $(LIBS)
 bench-view: $(B)/bench/view/view $(B)/krs
 	@REVISION=$(REVISION) bench/view/view.sh $(B) $(SCENES)
 
 # From a saved number to a written picture.
-$(B)/bench/edits/edits: $(B)/bench/edits/edits.o $(NUMBER_EDIT) $(STAGE) $(B)/live.a $(B)/libkrs.a
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+$(B)/bench/edits/edits: $(B)/bench/edits/edits.o $(NUMBER_EDIT) $(STAGE) $(B)/live.a $(INTERNAL)
+	@$(CC_LINK) -o $@ $^ $(LIBS)
 bench-edits: $(B)/bench/edits/edits $(B)/krs
 	@REVISION=$(REVISION) bench/edits/edits.sh $(B) $(SCENES)
 
 # How fast distances are evaluated, and meshes made.
-$(B)/bench/lanes/lanes: $(B)/bench/lanes/lanes.o $(B)/libkrs.a
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+$(B)/bench/lanes/lanes: $(B)/bench/lanes/lanes.o $(INTERNAL)
+	@$(CC_LINK) -o $@ $^ $(LIBS)
 bench-lanes: $(B)/bench/lanes/lanes
 	@$(B)/bench/lanes/lanes
 # CGAL meshes some surfaces, too, where it is installed.

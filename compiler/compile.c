@@ -243,6 +243,8 @@ static KrsStatus load_and_compile(const char *text, size_t length, const char *n
     return status;
 }
 
+const char *krs_version(void) { return KRS_VERSION; }
+
 KrsStatus krs_compile_text(const char *text, size_t length, const char *name,
                            const KrsOptions *options, KrsScene **scene)
 {

@@ -16,8 +16,18 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#ifdef __GNUC__
+#pragma GCC visibility push(default)
+#endif
 
-#define KRS_VERSION "0.2.0"
+/* The version of this header. */
+#define KRS_VERSION       "0.2.0"
+#define KRS_VERSION_MAJOR 0
+#define KRS_VERSION_MINOR 2
+#define KRS_VERSION_PATCH 0
+
+/* The version of the library that a program runs with, as KRS_VERSION has it. */
+const char *krs_version(void);
 
 /* The numbers are also the exit statuses of the command `krs`. */
 typedef enum KrsStatus {
@@ -434,6 +444,9 @@ KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, Kr
 KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
                       size_t count, double farthest, double tolerance, KrsHit *hits);
 
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif

@@ -12,6 +12,9 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#ifdef __GNUC__
+#pragma GCC visibility push(default)
+#endif
 
 /* Turns around the target: to the right and upwards, in radians.  The picture stays upright; it does
    not turn over the poles. */
@@ -43,6 +46,9 @@ bool krs_frame_component_box(KrsFrame *frame, size_t component, double low[3], d
 /* The box around all components that have an end; false: there is none. */
 bool krs_frame_box(KrsFrame *frame, double low[3], double high[3]);
 
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif

@@ -7,6 +7,9 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#ifdef __GNUC__
+#pragma GCC visibility push(default)
+#endif
 
 /*
  * Meshes: triangles near the surface.
@@ -106,6 +109,9 @@ bool         krs_assembly_visit(const KrsAssembly *assembly, KrsVisitCopy *visit
 KrsStatus krs_texture_places(KrsFrame *frame, const double (*points)[3], size_t count,
                              double (*places)[2]);
 
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif

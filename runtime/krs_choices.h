@@ -8,6 +8,9 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#ifdef __GNUC__
+#pragma GCC visibility push(default)
+#endif
 
 /* How light is found: KRS_INTEGRATOR_PREVIEW and so on. */
 typedef enum KrsIntegrator {
@@ -86,6 +89,9 @@ typedef enum KrsCatcher {
 } KrsCatcher;
 extern const char *const krs_catcher_names[KRS_CATCHER_COUNT];
 
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif

@@ -7,6 +7,9 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#ifdef __GNUC__
+#pragma GCC visibility push(default)
+#endif
 
 /* Take or give the next `size` bytes of a film that is kept; false: they cannot. */
 typedef bool KrsWriteCallback(void *user, const void *bytes, size_t size);
@@ -27,11 +30,14 @@ KrsStatus krs_film_save(KrsFilm *film, KrsWriteCallback *write, void *user);
  * those that were written, by a sum of them as in a file of `krs render --resume`.
  *
  * On any status but KRS_OK the film has no sample.  KRS_IO_ERROR: `read` returned false;
- * KRS_BAD_ARGUMENT: what was saved is of another version of krs, or of a film with other planes, size
+ * KRS_BAD_ARGUMENT: what was saved is of a krs of other sources, or of a film with other planes, size
  * or crop.
  */
 KrsStatus krs_film_load(KrsFilm *film, KrsReadCallback *read, void *user);
 
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif

@@ -17,6 +17,9 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#ifdef __GNUC__
+#pragma GCC visibility push(default)
+#endif
 
 typedef struct KrsRenderer  KrsRenderer;
 typedef struct KrsRendering KrsRendering;
@@ -440,6 +443,9 @@ KrsStatus krs_device_raycast(KrsRendering *rendering, KrsFrame *frame, const dou
                              const double (*directions)[3], size_t count, double farthest,
                              double tolerance, KrsHit *hits);
 
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif

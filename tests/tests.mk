@@ -53,7 +53,7 @@ PLAIN       := $(filter-out $(filter-out $(BOTH), $(SANITIZED)), $(PROGRAMS))
 # Scripts that run beside programs, the longest first.  SCRIPTS run alone: they measure time, or count
 # what others may change.
 BESIDE      := $(addprefix tests/, examples.sh tutorial.sh extend/extend.sh cli/scale.sh errors-sanitized.sh lint.sh \
-               errors.sh layers.sh grammar.sh editors.sh golden.sh library.sh docs.sh gallery.sh)
+               errors.sh layers.sh grammar.sh editors.sh golden.sh library.sh symbols.sh docs.sh gallery.sh)
 SCRIPTS     := tests/run_selftest.sh $(sort $(filter-out tests/cli/common.sh $(BESIDE), \
                $(wildcard tests/cli/*.sh))) tests/fuzz/fuzz.sh
 # So many programs run at once: most use one core, as they compile kernels.  A device that is asked
@@ -72,8 +72,8 @@ $(B)/tests/property/property.a: $(PROPERTY_SHARED:%.c=$(B)/%.o)
 
 # 270 programs are linked: the default linker takes three times as long as lld, and twice as gold.
 QUICK_LINKER := $(patsubst ld.%,-fuse-ld=%,$(notdir $(firstword $(wildcard /usr/bin/ld.lld /usr/bin/ld.gold))))
-LINK         = $(CC) $(STYLE) $(CFLAGS) $(QUICK_LINKER) -o $@ $^ $(LIBS) -lcmocka
-LINKED      := $(B)/tests/support/support.a $(B)/libkrs.a
+LINK         = $(CC_LINK) $(QUICK_LINKER) -o $@ $^ $(LIBS) -lcmocka
+LINKED      := $(B)/tests/support/support.a $(INTERNAL)
 $(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/oracle.a $(LINKED)
 	@$(LINK)
 $(B)/tests/unit/%: $(B)/tests/unit/%.o $(B)/tests/unit/unit.a $(LINKED)
@@ -114,7 +114,7 @@ $(B)/tests/unit/writer $(B)/tests/unit/image_files: $(B)/tests/unit/file_faults.
 golden: all $(B)/tests/golden/pictures
 	@B=$(B) tests/golden/pictures.sh
 
-test-programs: $(PLAIN:%=$(B)/%) $(DRIVERS:%=$(B)/%) $(JUDGE)
+test-programs: $(B)/libkrs.so $(PLAIN:%=$(B)/%) $(DRIVERS:%=$(B)/%) $(JUDGE)
 sanitized-programs: $(SANITIZED:%=$(B)/%) $(B)/krs
 sanitize:
 	@$(MAKE) --no-print-directory sanitized-programs B=$(B)/asan \
@@ -150,7 +150,7 @@ layers:
 docs: $(B)/krs
 	@tests/docs.sh
 format:
-	@clang-format-14 -i $$(find bench cli compiler examples live runtime tests -name '*.[ch]' -o -name '*.cpp')
+	@clang-format -i $$(find bench cli compiler examples live runtime tests -name '*.[ch]' -o -name '*.cpp')
 bless: $(B)/krs
 	@tests/errors.sh --bless
 

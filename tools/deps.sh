@@ -6,7 +6,7 @@ building="g++ glslang-dev glslang-tools spirv-tools libvulkan-dev libopenexr-dev
           libqhull-dev libfreetype-dev libharfbuzz-dev libfontconfig-dev libexpat1-dev libglfw3-dev libimgui-dev libgl-dev
           libchafa-dev libx11-dev libtinygltf-dev libzip-dev libmeshoptimizer-dev pkgconf"
 rendering="mesa-vulkan-drivers libgl1-mesa-dri fonts-dejavu-core"
-testing="vulkan-validationlayers xvfb xdotool openbox libcmocka-dev clang-14 clang-format-14 libclang-rt-14-dev lld
+testing="vulkan-validationlayers xvfb xdotool openbox libcmocka-dev clang clang-format libclang-rt-dev lld
          shellcheck strace openexr patch chromium-common admesh assimp-utils python3-numpy libcgal-dev"
 
 case ${1:-} in

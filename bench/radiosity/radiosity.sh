@@ -7,7 +7,7 @@ krs=${1:-build/krs}
 width=${WIDTH:-160} height=${HEIGHT:-120} reference=${REFERENCE:-4096}
 command -v povray >/dev/null || { echo "radiosity.sh: povray is not installed"; exit 77; }
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
-"${CC:-cc}" -std=c17 -D_GNU_SOURCE -o "$work/exr_text" tests/cli/exr_text.c -lOpenEXRCore-3_1 || exit 1
+"${CC:-cc}" -std=c17 -D_GNU_SOURCE -o "$work/exr_text" tests/cli/exr_text.c -lOpenEXRCore || exit 1
 
 seconds() { # of the processor, that a command takes
     /usr/bin/time -f '%U %S' -o "$work/time" "$@" >/dev/null 2>&1 && awk '{ print $1 + $2 }' "$work/time"

@@ -41,6 +41,13 @@ run() {
     status=$?
 }
 
+# Compiles a program of this folder that reads OpenEXR.
+compile_exr() { # its name
+    # shellcheck disable=SC2046 # words are meant
+    "${CC:-cc}" -std=c17 -D_GNU_SOURCE -o "$1" "$root/tests/cli/$1.c" \
+        $(pkg-config --silence-errors --cflags OpenEXR) -lOpenEXRCore -lm || exit 1
+}
+
 # The last run ended with this status and said these words: said 74 "words" "what was tested".
 said() {
     [ "$status" -eq "$1" ] && grep -qF -- "$2" err

@@ -4,7 +4,7 @@
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
 plan 9
-"${CC:-cc}" -std=c17 -D_GNU_SOURCE -o exr_text "$root/tests/cli/exr_text.c" -lOpenEXRCore-3_1 || exit 1
+compile_exr exr_text
 cat >parts.krs <<'END'
 camera { eye: [0, 1.2, 6], target: [0, 0.5, 0], fov: 40deg }
 image { size: [64, 36], samples: 16 }

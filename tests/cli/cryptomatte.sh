@@ -3,10 +3,8 @@
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
 plan 8
-for program in matte_check exr_text; do
-    "${CC:-cc}" -std=c17 -D_GNU_SOURCE -o $program "$root/tests/cli/$program.c" -lOpenEXRCore-3_1 -lm ||
-        exit 1
-done
+compile_exr matte_check
+compile_exr exr_text
 cat >parts.krs <<'END'
 camera { eye: [0, 1.2, 6], target: [0, 0.5, 0], fov: 40deg, aperture: 0.05 }
 light sun { direction: [-1, 2, 1], intensity: 3, softness: 1deg }

@@ -3,7 +3,7 @@
 # `make uninstall` takes it all away.  Nothing is compiled but that program.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 16
+plan 17
 
 # B as the tests have it: the folder of the command.
 build=$(dirname "$krs")
@@ -14,10 +14,11 @@ make_it() { # words
 
 make_it install PREFIX=/usr DESTDIR="$work/stage"
 ended 0 "make install"
-(cd stage && find . -type f | sort) >files
+(cd stage && find . -type f -o -type l | sort) >files
+soname=libkrs.so.$("$krs" --version | sed -n 's/^krs \([0-9]*\.[0-9]*\).*/\1/p')
 commands=$(sed -n 's/^COMMAND([A-Z]*, "\([a-z]*\)".*/\1/p' "$root/cli/commands.def")
 {
-    for file in bin/krs lib/libkrs.a lib/pkgconfig/krs.pc include/krs.h include/krs_mesh.h include/krs_camera.h include/krs_vulkan.h include/krs_film.h include/krs_choices.h \
+    for file in bin/krs lib/libkrs.a lib/libkrs.so "lib/$soname" lib/pkgconfig/krs.pc include/krs.h include/krs_mesh.h include/krs_camera.h include/krs_vulkan.h include/krs_film.h include/krs_choices.h \
         include/krs_planes.def include/krs_choices.def include/krs_surface.def \
         share/bash-completion/completions/krs share/zsh/site-functions/_krs \
         share/fish/vendor_completions.d/krs.fish share/man/man1/krs.1; do
@@ -129,13 +130,19 @@ if command -v pkg-config >/dev/null; then
     echo 'KrsStatus (*function)(void) = (KrsStatus (*)(void))krs_render;' >>vulkan.c
     # shellcheck disable=SC2046 # words are meant
     ${CC:-cc} -std=c17 -Wall -Werror $(pkg-config --cflags krs) outside.c vulkan.c \
-        $(pkg-config --libs krs) -o outside >out 2>err && ./outside >printed 2>err &&
+        $(pkg-config --libs krs) -o outside >out 2>err && LD_LIBRARY_PATH="$work/usr/lib" ./outside >printed 2>err &&
         cmp -s printed expected
     result $? "the program of docs/library.md, built by krs.pc, prints what it says there"
-    [ "$(pkg-config --modversion krs)" = "$("$krs" --version | sed -n 's/^krs //p')" ]
+    # shellcheck disable=SC2046 # words are meant
+    ${CC:-cc} -std=c17 -Wall -Werror $(pkg-config --cflags krs) outside.c vulkan.c \
+        $(pkg-config --static --libs krs | sed 's/-lkrs/-l:libkrs.a/') -o outside >out 2>err && ./outside >printed 2>err &&
+        cmp -s printed expected
+    result $? "and linked with the archive it needs nothing that is installed"
+    [ "$(pkg-config --modversion krs)" = "$("$krs" --version | sed -n 's/^krs \([0-9.]*\).*/\1/p')" ]
     result $? "krs.pc has the version"
 else
     skip "the program of docs/library.md, built by krs.pc" "no pkg-config"
+    skip "and linked with the archive it needs nothing that is installed" "no pkg-config"
     skip "krs.pc has the version" "no pkg-config"
 fi
 "$work/usr/bin/krs" check ball.krs >out 2>err

@@ -3,8 +3,7 @@
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
 plan 25
-"${CC:-cc}" -std=c17 -D_GNU_SOURCE -o exr_text "$root/tests/cli/exr_text.c" -lOpenEXRCore-3_1 ||
-    exit 1
+compile_exr exr_text
 
 picture() { run render ball.krs --quiet --size 41x33 "$@"; }
 pixel() { # file, channel, x, y

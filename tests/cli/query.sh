@@ -100,8 +100,7 @@ said 2 "--on device" "a device that is not asked"
 run query --on moon ball.krs
 said 2 "host or device" "somebody else"
 
-"${CC:-cc}" -std=c17 -D_GNU_SOURCE -o exr_text "$root/tests/cli/exr_text.c" -lOpenEXRCore-3_1 ||
-    exit 1
+compile_exr exr_text
 sed '/^zone/d' zoned.krs >bare.krs
 run render bare.krs --zone 0,0,1,0.5 --size 40x30 -o by_option.exr
 run render zoned.krs --size 40x30 -o by_scene.exr

@@ -77,7 +77,7 @@ build_copy() { # folder, names
     targets=$(for each in "$@"; do tests_of "$each"; done | grep "^$build/" | sort -u)
     # shellcheck disable=SC2086 # the list is words
     CCACHE_BASEDIR=$folder make --no-print-directory -C "$folder" -j"$(nproc)" B="$build" \
-        CC="$cache${CC:-gcc}" CXX="$cache${CXX:-g++}" "$build/krs" $targets >"$work/log" 2>&1
+        CC="$cache${CC:-cc}" CXX="$cache${CXX:-g++}" "$build/krs" $targets >"$work/log" 2>&1
 }
 
 run_tests() { # folder, name
