@@ -100,7 +100,7 @@ include tools/libraries.mk
 
 COMPILER := $(BASE) $(IMAGE) $(OUTLINE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API) $(MESH)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
-            $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o
+            $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o $(B)/fingerprints.o
 
 # Programs of this project are linked with the library's parts; others with the library, which shows its API alone.
 INTERNAL := $(B)/libkrs-internal.a
@@ -109,7 +109,7 @@ VERSION  := $(shell sed -n 's/^.define KRS_VERSION  *"\(.*\)"/\1/p' compiler/krs
 SONAME   := libkrs.so.$(basename $(VERSION))
 
 all: $(B)/krs $(B)/libkrs.a
-$(B)/krs: $(CLI:%.c=$(B)/%.o) $(CLI_BORDER:%.cpp=$(B)/%.o) $(B)/live.a $(INTERNAL)
+$(B)/krs: $(CLI:%.c=$(B)/%.o) $(B)/commit.o $(CLI_BORDER:%.cpp=$(B)/%.o) $(B)/live.a $(INTERNAL)
 	@echo "link   $@"
 	@$(CC_LINK) -o $@ $^ $(WINDOW_LIBS) $(MESH_LIBS) $(LIBS)
 # What the command has for scenes that are open: a client of the library, and no part of it.
@@ -201,6 +201,7 @@ $(B)/embed: compiler/base/embed/embed.c
 	@mkdir -p $(@D)
 	@$(CC) $(STYLE) $(CPPFLAGS) -O1 $(LDFLAGS) -o $@ $<
 
+include tools/fingerprints.mk
 include tests/tests.mk
 include bench/bench.mk
 include tools/install.mk

@@ -1,7 +1,7 @@
 /*
  * checkpoint.c: a file beside the first output that says how far `krs render --resume` has come.
  *
- * It has a key, which is a hash of the options that change pictures, the scene and the device; the number of the
+ * It has a key, which is a hash of the program's sources, the options that change pictures, the scene and the device; the number of the
  * frame at hand; and the film of that frame, unless the frame has not begun.  A hash of all stands at
  * the end.  The file is written whenever rendering has gone on for some seconds, as every output: it
  * appears whole or not at all.
@@ -20,6 +20,7 @@
 #include "cli/console.h"
 #include "cli/frame_paths.h"
 #include "cli/supervise.h"
+#include "compiler/base/fingerprints.h"
 
 /* At most so many seconds of work are lost, or one sample of each pixel.  For the tests, the environment
    variable KRS_TEST_CHECKPOINT says how many. */
@@ -78,7 +79,7 @@ static uint64_t key_of(const Options *options, const KrsScene *scene, const KrsR
     const KrsDevice device = krs_renderer_device(renderer);
     XXH64_state_t   hash;
     XXH64_reset(&hash, 0);
-    hash_word(&hash, KRS_VERSION);
+    hash_word(&hash, fingerprint_checkpoint);
     hash_options(&hash, options);
     hash_word(&hash, krs_scene_hash(scene));
     hash_word(&hash, device.name);

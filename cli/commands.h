@@ -14,6 +14,9 @@
 #include "cli/commands.def"
 #undef COMMAND
 
+/* The commit that the program was built from, written by the build; empty without git. */
+extern const char commit[];
+
 /* scene.c */
 
 /* Compiles a scene file, its diagnostics to standard error.  On KRS_OK the caller owns *scene,

@@ -46,7 +46,7 @@ static KrsStatus print_version(void)
     uint32_t    vulkan = VK_API_VERSION_1_0;
     exr_get_library_version(&major, &minor, &patch, &extra);
     vkEnumerateInstanceVersion(&vulkan);
-    printf("krs %s\n", KRS_VERSION);
+    printf("krs %s%s%s%s\n", krs_version(), *commit ? " (" : "", commit, *commit ? ")" : "");
     printf("Vulkan loader %u.%u.%u\n", VK_API_VERSION_MAJOR(vulkan), VK_API_VERSION_MINOR(vulkan),
            VK_API_VERSION_PATCH(vulkan));
     printf("glslang %s\n", spirv_glslang_version());

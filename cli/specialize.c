@@ -71,8 +71,7 @@ static bool is_edited(const Options *options, const KrsScene *literals, const Kr
     CacheKey key, first;
     if (strcmp(krs_scene_hash(structure), krs_scene_hash(literals)) != 0)
         return false; /* its file was written in between */
-    if (!hash_text(structure, "structure, krs " KRS_VERSION, &key) ||
-        !hash_text(literals, "literals, krs " KRS_VERSION, &first))
+    if (!hash_text(structure, "structure", &key) || !hash_text(literals, "literals", &first))
         return false;
     cache_open(&cache, cache_folder(options), (KrsAllocator){0});
     const bool edited = remember(&cache, key, first);

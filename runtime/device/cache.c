@@ -17,8 +17,9 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include "compiler/base/fingerprints.h"
+
 enum {
-    FORMAT           = 1, /* rises with every change of Header */
     KEY_DIGITS       = 2 * sizeof(CacheKey),
     NAME_SIZE        = 64,
     TOUCH_SECONDS    = 60,   /* uses closer together than this count as one */
@@ -35,7 +36,7 @@ static const char temporary_prefix[] = ".krs-cache-";
 /* In the byte order of the machine: foreign numbers do not match.  No padding. */
 typedef struct Header {
     char     magic[8];
-    uint32_t format, kind;
+    uint64_t kind;
     uint64_t length;    /* of the content */
     CacheKey key, hash; /* hash: of the content */
 } Header;
@@ -51,17 +52,18 @@ static CacheKey hash_bytes(const void *bytes, size_t length)
     return hash;
 }
 
-/* A text of any length is hashed by itself, then with the words before it. */
+/* A text of any length is hashed by itself, then with the words before it, and with the sources
+   that make an entry of it and lay it out. */
 CacheKey cache_key(const char *maker, const void *content, size_t length)
 {
-    CacheKey hashes[2] = {hash_bytes(maker, strlen(maker)), hash_bytes(content, length)};
+    CacheKey hashes[3] = {hash_bytes(maker, strlen(maker)), hash_bytes(content, length),
+                          hash_bytes(fingerprint_cache, strlen(fingerprint_cache))};
     return hash_bytes(hashes, sizeof hashes);
 }
 
 static Header make_header(CacheKind kind, CacheKey key, const void *bytes, size_t length)
 {
     return (Header){.magic  = "krskept",
-                    .format = FORMAT,
                     .kind   = kind,
                     .length = length,
                     .key    = key,

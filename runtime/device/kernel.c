@@ -82,9 +82,8 @@ static CacheKey make_key(const KernelSource *source, const char *text)
     const KernelScene *s       = source->scene;
     uint64_t           variant = s ? krs_variant_hash(&s->variant, s->wanted, s->wanted_count) : 0;
     char               maker[192];
-    snprintf(maker, sizeof maker,
-             "%s: krs %s, glslang %s, SPIRV-Tools %s, flat, variant %016" PRIx64, source->file,
-             KRS_VERSION, spirv_glslang_version(), spirv_tools_version(), variant);
+    snprintf(maker, sizeof maker, "%s: glslang %s, SPIRV-Tools %s, flat, variant %016" PRIx64,
+             source->file, spirv_glslang_version(), spirv_tools_version(), variant);
     return cache_key(maker, text, strlen(text));
 }
 

@@ -6,6 +6,7 @@
  */
 #include <string.h>
 
+#include "compiler/base/fingerprints.h"
 #include "runtime/film/held.h"
 #include "runtime/film/lights.h"
 #include "runtime/film/noise.h"
@@ -29,7 +30,7 @@ static bool pass(const Way *way, void *bytes, size_t size)
 /* No member has bytes between it and the next. */
 typedef struct Header {
     char      magic[8];
-    char      version[16];
+    char      sources[16];  /* fingerprint_film */
     uint64_t  kept, lights; /* numbers of four members */
     double    rebase_origin[3];
     float     world_to_camera[4][4], world_to_ndc[4][4];
@@ -45,15 +46,15 @@ typedef struct Header {
 static Header describe(const KrsFilm *film)
 {
     const KrsPicture *sums   = film->sums;
-    Header            header = {.magic   = "krsfilm",
-                                .version = KRS_VERSION,
-                                .kept    = film->kept ? held_kept(&film->options) : 0,
-                                .lights  = lights_numbers(film),
-                                .window  = sums->window,
-                                .width   = sums->width,
-                                .height  = sums->height,
-                                .planes  = film->options.planes,
-                                .mattes  = film->options.mattes};
+    Header            header = {.magic  = "krsfilm",
+                                .kept   = film->kept ? held_kept(&film->options) : 0,
+                                .lights = lights_numbers(film),
+                                .window = sums->window,
+                                .width  = sums->width,
+                                .height = sums->height,
+                                .planes = film->options.planes,
+                                .mattes = film->options.mattes};
+    memcpy(header.sources, fingerprint_film, sizeof header.sources);
     return header;
 }
 
@@ -95,7 +96,7 @@ static bool fits(const KrsFilm *film, const Header *header)
 {
     const Header own = describe(film);
     return memcmp(own.magic, header->magic, sizeof own.magic) == 0 &&
-           memcmp(own.version, header->version, sizeof own.version) == 0 &&
+           memcmp(own.sources, header->sources, sizeof own.sources) == 0 &&
            own.kept == header->kept && own.lights == header->lights &&
            memcmp(&own.window, &header->window, sizeof own.window) == 0 &&
            own.width == header->width && own.height == header->height &&

@@ -159,7 +159,7 @@ static void what_is_no_film_is_refused(void **state)
         assert_int_equal(krs_film_samples(wrong), 0);
         krs_film_free(wrong);
     }
-    room[9] ^= 1; /* the version */
+    room[9] ^= 1; /* the sources */
     assert_int_equal(krs_film_load(film, give, &(Bytes){room, file.at, 0}), KRS_BAD_ARGUMENT);
     room[9] ^= 1;
     assert_int_equal(krs_film_load(film, give, &(Bytes){room, file.at, 0}), KRS_OK);
