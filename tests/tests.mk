@@ -116,9 +116,9 @@ golden: all $(B)/tests/golden/pictures
 
 test-programs: $(B)/libkrs.so $(PLAIN:%=$(B)/%) $(DRIVERS:%=$(B)/%) $(JUDGE)
 sanitized-programs: $(SANITIZED:%=$(B)/%) $(B)/krs
+SANITIZERS  := -g -O1 -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined
 sanitize:
-	@$(MAKE) --no-print-directory sanitized-programs B=$(B)/asan \
-	    CFLAGS='-g -O1 -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined'
+	@$(MAKE) --no-print-directory sanitized-programs B=$(B)/asan CFLAGS='$(SANITIZERS)' CXXFLAGS='$(SANITIZERS)'
 
 # clang must like every file as well: those that the fuzzers leave out, and those of lanes, which only
 # here become vector instructions.  Its objects are not linked, and no warning needs more than -O0.
@@ -154,6 +154,7 @@ format:
 bless: $(B)/krs
 	@tests/errors.sh --bless
 
+test test-long: export WERROR = 1
 test: test-deps
 	@$(MAKE) --no-print-directory -j$(JOBS) all test-programs clang-check fuzzers
 	@$(MAKE) --no-print-directory -j$(JOBS) sanitize

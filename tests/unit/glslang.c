@@ -27,7 +27,8 @@ static _Thread_local long allocations_left = -1; /* negative: all succeed */
 static _Thread_local long allocations;
 static _Thread_local bool lasting; /* those behind the first that fails fail, too */
 
-void *malloc(size_t size)
+/* Seen from outside, for the library of C++. */
+__attribute__((visibility("default"))) void *malloc(size_t size)
 {
     allocations++;
     if (allocations_left == 0) {
