@@ -7,7 +7,8 @@ PKG_CONFIG ?= pkg-config
 CXXFLAGS   ?= $(CFLAGS)
 OBJCOPY    ?= objcopy
 
-# A variable whose text is found by a function when it is first used.
+# A variable whose text is found by a function when it is first used.  None of these uses another: make 4.4 finds
+# nothing then.
 once      = $(eval $(1) := $(call $(2)))$($(1))
 # What pkg-config says of modules, each by itself: one that is missing hides no other.
 described = $(foreach module,$(2),$(shell $(PKG_CONFIG) --silence-errors $(1) $(module)))
@@ -24,14 +25,14 @@ front_libs = $(call linked,harfbuzz,harfbuzz) $(call linked,freetype2,freetype) 
 # glslang consists of other libraries in each of its versions.
 glsl_libs  = $(call found,glslang MachineIndependent GenericCodeGen OSDependent OGLCompiler SPIRV \
              SPVRemapper glslang-default-resource-limits SPIRV-Tools-opt SPIRV-Tools)
-libs       = $(glsl_libs) $(FRONT_LIBS) $(call linked,libdeflate,deflate) \
+libs       = $(glsl_libs) $(front_libs) $(call linked,libdeflate,deflate) \
              $(call linked,libxxhash,xxhash) $(call linked,vulkan,vulkan) -lstdc++ -lm -pthread
 has_chafa  = $(shell $(PKG_CONFIG) --silence-errors --exists chafa && echo chafa)
-window     = $(call described,--libs,$(CHAFA)) $(call linked,imgui,imgui) $(call linked,glfw3,glfw) \
+window     = $(call described,--libs,$(has_chafa)) $(call linked,imgui,imgui) $(call linked,glfw3,glfw) \
              $(call linked,gl,GL) $(call linked,x11,X11)
 mesh_libs  = $(call linked,tinygltf,tinygltf) $(call linked,libzip,zip)
 # Their warnings are not ours.
-headers    = $(patsubst -I%,-isystem %,$(call described,--cflags,$(CHAFA) freetype2 harfbuzz fontconfig \
+headers    = $(patsubst -I%,-isystem %,$(call described,--cflags,$(has_chafa) freetype2 harfbuzz fontconfig \
              expat OpenEXR libpng qhull_r libdeflate libxxhash vulkan glfw3 imgui x11 libzip tinygltf))
 
 # What the compiler needs but for glslang, which the fuzzers leave out.
