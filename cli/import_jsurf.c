@@ -245,7 +245,7 @@ static bool write_view(const JsurfSurface *surface, const Space *camera)
     if (strcmp(front, back) == 0)
         text_add(scene, front);
     else
-        text_format(scene, "if equation > 0 then %s else %s", front, back);
+        text_format(scene, "if front then %s else %s", front, back);
     text_format(scene, ",\n    roughness: %.2f\n}\n", sqrt(2 / (fmax(shininess, 0) + 2)));
     import_mark(surface->import, jsurf_line(surface, "surface_equation"));
     text_format(scene, "show %s.within(sphere(%.7g), open: true).paint(sides);\n\n",

@@ -163,8 +163,6 @@ typedef struct KrsRay {
 } KrsRay;
 KrsRay krs_ray(const KrsScene *scene, const double origin[3], const double direction[3],
                double farthest);
-/* Turns the normals of a hit on a sheet to the side from which the ray comes. */
-void krs_face(const KrsRay *ray, KrsHit *hit);
 /* Whether krs_raycast accepts these arguments. */
 bool krs_rays_are_valid(const double (*origins)[3], const double (*directions)[3], size_t count,
                         double farthest, double tolerance);

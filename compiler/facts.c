@@ -112,8 +112,10 @@ static void find_textures(Compilation *c)
     program->texture_count   = textures ? textures->list.count : 0;
     for (size_t t = 0; t < program->texture_count; t++)
         program->texture_texels += textures->list.items[t].texel_count;
-    for (size_t i = 0; i < surface->count; i++)
-        program->views = program->views || surface->graph->items[surface->nodes[i]].op == OP_VIEW;
+    for (size_t i = 0; i < surface->count; i++) {
+        const Op op    = surface->graph->items[surface->nodes[i]].op;
+        program->views = program->views || op == OP_VIEW || op == OP_FRONT;
+    }
 }
 
 static void find_noises(Compilation *c)

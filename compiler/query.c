@@ -230,15 +230,27 @@ static KrsHit hit_at(const double point[3])
     return hit;
 }
 
-static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
+/* Turns a normal against the direction of a ray. */
+static void face(const double view[3], double normal[3])
+{
+    bool turned = dot3(view, normal) > 0;
+    for (int k = 0; k < 3 && turned; k++)
+        normal[k] = -normal[k];
+}
+
+/* `view` is the direction of the ray that sees the point, or NULL.  Materials of sheets have the normal
+   that faces it. */
+static void probe(KrsFrame *frame, const double point[3], const double view[3], KrsHit *hit)
 {
     uint32_t nearest = 0;
     *hit             = hit_at(point);
     normal_at(frame, point, hit->normal);
+    if (view && frame->scene->program.sheets)
+        face(view, hit->normal);
     hit->distance = distance_at(frame, point, &nearest);
     if (!nearest)
         return;
-    tape_run_surface(&frame->tapes.surface, point, hit->normal, 0, frame->values);
+    tape_run_seen(&frame->tapes.surface, point, hit->normal, view, frame->values);
     copy_surface(frame, nearest, hit);
 }
 
@@ -273,7 +285,7 @@ KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, Kr
         status = probe_lanes(frame, points + i, now, hits + i);
     }
     for (; i < count && status == KRS_OK; i++)
-        probe(frame, points[i], &hits[i]);
+        probe(frame, points[i], NULL, &hits[i]);
     return status;
 }
 
@@ -433,17 +445,6 @@ static RayState march_step(RayMarch *march)
     return MARCHING;
 }
 
-void krs_face(const KrsRay *ray, KrsHit *hit)
-{
-    double along = 0;
-    for (int k = 0; k < 3; k++)
-        along += hit->normal[k] * ray->direction[k];
-    for (int k = 0; k < 3 && along > 0; k++) {
-        hit->normal[k]  = -hit->normal[k];
-        hit->shading[k] = -hit->shading[k];
-    }
-}
-
 static void trace(KrsFrame *frame, KrsRay ray, double tolerance, KrsHit *hit)
 {
     RayMarch march = {.frame     = frame,
@@ -465,9 +466,7 @@ static void trace(KrsFrame *frame, KrsRay ray, double tolerance, KrsHit *hit)
         return;
     double point[3];
     march_point(&march, march.t, point);
-    probe(frame, point, hit);
-    if (frame->scene->program.sheets)
-        krs_face(&ray, hit);
+    probe(frame, point, ray.direction, hit);
     hit->t          = march.t;
     hit->hit        = state == HIT;
     hit->unresolved = state == MARCHING;

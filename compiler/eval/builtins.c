@@ -192,8 +192,8 @@ static const Builtin *find_row(const char *name)
 }
 
 static const char *const constants[] = {
-    "pi",       "tau", "x", "y",      "z",        "p",          "time",       "level",
-    "instance", "u",   "v", "normal", "identity", "orbit_trap", "orbit_step", "rounding"};
+    "pi", "tau", "x",      "y",        "z",          "p",          "time",     "level", "instance",
+    "u",  "v",   "normal", "identity", "orbit_trap", "orbit_step", "rounding", "front"};
 enum { CONSTANT_COUNT = sizeof constants / sizeof *constants };
 
 /* Names are compared by their addresses, which are looked up here before tables are searched. */
@@ -226,7 +226,7 @@ size_t builtin_names(const char **names, size_t capacity)
     return count;
 }
 
-/* level, instance, u, v, normal, orbit_trap and orbit_step: in materials only. */
+/* level, instance, u, v, normal, front, orbit_trap and orbit_step: in materials only. */
 static Value material_name(Elaboration *e, const char *name, Span span)
 {
     if (!e->in_material) {
@@ -239,6 +239,10 @@ static Value material_name(Elaboration *e, const char *name, Span span)
         return value_of_node(e, graph_leaf(e->graph, OP_LEVEL));
     if (strcmp(name, "normal") == 0)
         return value_of_node(e, graph_leaf(e->graph, OP_NORMAL));
+    if (strcmp(name, "front") == 0) {
+        Node half = graph_number(e->graph, 0.5);
+        return value_of_node(e, graph_op2(e->graph, OP_less, half, graph_leaf(e->graph, OP_FRONT)));
+    }
     if (strlen(name) == 1) {
         Node uv = graph_leaf(e->graph, OP_UV);
         return value_of_node(e, graph_component(e->graph, uv, name[0] == 'v'));

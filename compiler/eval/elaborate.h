@@ -115,7 +115,7 @@ struct Elaboration {
     const struct CalledFunction *called;       /* the innermost of these calls, or NULL */
     Node               rounding;    /* what the name `rounding` means in `core:`, or NODE_NONE */
     const Syntax      *block;       /* the last one whose properties were looked at, or NULL */
-    bool               in_material; /* level, instance, u, v and normal have a meaning */
+    bool               in_material; /* level, instance, u, v, normal and front have a meaning */
     bool               uses_uv;     /* a material may need the coordinates on surfaces */
     struct TurnTrials *turns;       /* loops whose turns are made at once: turns.c; NULL: none is */
     Node               turn;        /* what stands for the variable of such a loop, or NODE_NONE */

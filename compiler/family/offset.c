@@ -63,6 +63,7 @@ const Shape *make_sheet(ShapeBuilder *builder, const Shape *shape, Node thicknes
     Shape *sheet  = arena_new(builder->arena, Shape);
     *sheet        = *make_shell(builder, shape, thickness, span);
     sheet->name   = "sheet";
+    sheet->open   = true;
     sheet->sheet  = is_derivable(builder, shape);
     sheet->sheets = sheet->sheets || sheet->sheet;
     return sheet;
@@ -93,6 +94,77 @@ static Lowered thin_sheet(Lowering *l, Lowered solid)
     return solid;
 }
 
+/* Whether something that is computed of the surface asks for its side. */
+static bool asks_front(Lowering *l, Node node)
+{
+    const Node front = graph_leaf(l->graph, OP_FRONT);
+    if (node == NODE_NONE || node == front)
+        return false;
+    Tape tape = tape_new(l->graph, &node, 1, l->scratch);
+    for (size_t i = 0; i < tape.count; i++)
+        if (tape.nodes[i] == front)
+            return true;
+    return false;
+}
+
+static void replace_front(Lowering *l, Node *node, Node by)
+{
+    if (asks_front(l, *node))
+        *node = graph_replace_leaf(l->graph, *node, graph_leaf(l->graph, OP_FRONT), by, l->scratch);
+}
+
+static bool surface_asks_front(Lowering *l, const Surface *surface)
+{
+    bool asks = false;
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    asks = asks || asks_front(l, surface->name);
+#define KRS_INNER(name, blends) asks = asks || asks_front(l, surface->name);
+#include "compiler/shape/surface.def"
+    return asks;
+}
+
+/* 0 where a number is negative, else 1. */
+static Node is_positive(Graph *g, Node number)
+{
+    Node zero = graph_number(g, 0);
+    return graph_op3(g, OP_select, graph_op2(g, OP_less, number, zero), zero, graph_number(g, 1));
+}
+
+/* Which side of a sheet without thickness is seen: the normal is on the side of the ray, the gradient of
+   the solid on its outside.  The solid itself is 0 there, and its sign rounding. */
+static Node front_of_thin(Lowering *l, const Shape *solid, LowerContext context)
+{
+    Graph   *g             = l->graph;
+    Nodes    held_constant = {0};
+    Lowering inner         = *l;
+    inner.held_constant    = &held_constant;
+    inner.lowered_shapes   = NULL;
+    inner.surfaces         = false;
+    Node    gradient;
+    Lowered all = lower_shape(&inner, solid, context);
+    if (all.distance == NODE_NONE || inner.overflow ||
+        graph_gradient_of(g, all.distance, held_constant.items, held_constant.count, &gradient,
+                          NULL, l->scratch) == DERIVED_NOT)
+        return graph_number(g, 1); /* the whole is empty, or refused */
+    return is_positive(g, graph_op2(g, OP_dot, gradient, graph_leaf(g, OP_NORMAL)));
+}
+
+/* The front of a sheet is where the solid has its outside. */
+static void set_front(Lowering *l, const Shape *shape, LowerContext context, bool thin,
+                      Lowered *solid)
+{
+    if (!shape->open || !l->surfaces || solid->distance == NODE_NONE ||
+        !(context.fronts || surface_asks_front(l, &solid->surface)))
+        return;
+    Node front = thin ? front_of_thin(l, shape->children[0], context)
+                      : is_positive(l->graph, solid->distance);
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    replace_front(l, &solid->surface.name, front);
+#define KRS_INNER(name, blends) replace_front(l, &solid->surface.name, front);
+#include "compiler/shape/surface.def"
+    solid->surface.front = front;
+}
+
 Lowered lower_shell(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph *g       = l->graph;
@@ -101,6 +173,7 @@ Lowered lower_shell(Lowering *l, const Shape *shape, LowerContext context)
     Lowered result = thin ? lower_shape(l, shape->children[0], context)
                           : lower_operand(l, shape->children[0],
                                           context_lipschitz_within(context, shape->reach));
+    set_front(l, shape, context, thin, &result);
     if (result.distance == NODE_NONE || thin)
         return thin && result.distance != NODE_NONE ? thin_sheet(l, result) : result;
     Node half       = graph_number(g, 0.5);

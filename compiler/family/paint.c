@@ -84,6 +84,7 @@ const Shape *make_paint(ShapeBuilder *builder, const Shape *shape, const Materia
     }
     Shape *painted    = shape_around(builder, SHAPE_PAINT, "paint", shape, span);
     painted->material = material;
+    painted->fronts   = material_needs(builder, material, OP_FRONT);
     painted->smooth   = painted->smooth || material->bump != NODE_NONE;
     return painted;
 }
@@ -128,12 +129,13 @@ static void paint_place(Lowering *l, const Material *material, Substitution with
 /* The outermost paint counts, as the last method of a chain does. */
 Lowered lower_paint(Lowering *l, const Shape *shape, LowerContext context)
 {
+    context.fronts = context.fronts || shape->fronts;
     Lowered result = lower_shape(l, shape->children[0], context);
     if (!l->surfaces || result.distance == NODE_NONE)
         return result;
     Substitution with = {
         context.point, result.surface.instance, result.surface.level, result.surface.uv,
-        NODE_NONE,     result.surface.trap};
+        NODE_NONE,     result.surface.trap,     result.surface.front};
     const Material *material = shape->material;
     with.normal              = unit_normal(l->graph, result.surface.normal, context.normal);
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \

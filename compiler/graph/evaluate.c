@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/vec.h"
 #include "compiler/graph/crowd_walk.h"
 #include "compiler/graph/op_values.h"
 #include "compiler/graph/texture.h"
@@ -17,6 +18,7 @@
 typedef struct Inputs {
     const NodeValue *parameters;
     const double    *point, *normal;
+    const double    *view; /* of the ray that sees the surface; NULL: nobody looks */
     double           footprint;
     bool             by_cells;
     /* In bodies of crowd functions, whose call has these operands: */
@@ -32,6 +34,11 @@ static NodeValue all_of(const double v[4])
 static NodeValue vector_of(const double v[3])
 {
     return vector3(v[0] + 0.0, v[1] + 0.0, v[2] + 0.0);
+}
+
+static double sees_front(const Inputs *in)
+{
+    return in->view && dot3(in->view, in->normal) > 0 ? 0 : 1;
 }
 
 static inline NodeValue leaf_value(const Expr *e, const Inputs *in)
@@ -290,5 +297,12 @@ void tape_run_surface(const Tape *tape, const double point[3], const double norm
 {
     Inputs in = {
         .point = point, .normal = normal, .footprint = footprint, .by_cells = tape->by_cells};
+    run_points(tape, &in, values);
+}
+
+void tape_run_seen(const Tape *tape, const double point[3], const double normal[3],
+                   const double view[3], NodeValue *values)
+{
+    Inputs in = {.point = point, .normal = normal, .view = view, .by_cells = tape->by_cells};
     run_points(tape, &in, values);
 }

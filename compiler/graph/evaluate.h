@@ -63,6 +63,9 @@ void tape_run_point(const Tape *tape, const double point[3], NodeValue *values);
 /* The same on a surface that has this normal there, seen by pixels of this radius. */
 void tape_run_surface(const Tape *tape, const double point[3], const double normal[3],
                       double footprint, NodeValue *values);
+/* The same, seen by a ray of this direction, which may be NULL, and no pixel. */
+void tape_run_seen(const Tape *tape, const double point[3], const double normal[3],
+                   const double view[3], NodeValue *values);
 
 /* Only one operation of it, which reads tables or textures; tape_run_frame has filled `values`, where
    those of its operands change. */

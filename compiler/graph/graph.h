@@ -179,7 +179,7 @@ double op_cost(Op op, GraphType type, const GraphType *operands);
 /* A copy of `root` (and all it needs) in the same graph, with leaves replaced: OP_POINT by
    `point`, OP_INSTANCE by `instance` and so on; NODE_NONE keeps a leaf. */
 typedef struct Substitution {
-    Node point, instance, level, uv, normal, trap;
+    Node point, instance, level, uv, normal, trap, front;
 } Substitution;
 /* Of the point alone. */
 Substitution substitute_point(Node point);

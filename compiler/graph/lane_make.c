@@ -244,7 +244,8 @@ static void emit_leaf(Builder *b, const Expr *e, uint32_t *to)
         case OP_CROWD_FOOTPRINT: to[k] = LANE_FOOTPRINT; break;
         case OP_MEMBER: to[k] = emit_of_member(b, LANE_MEMBER, 0); break;
         case OP_STATE: to[k] = emit_of_member(b, LANE_STATE, 4 * state_of(e->index) + k); break;
-        default: to[k] = lane_steps_number(b->to, e->op == OP_INSTANCE && k == 0);
+        default:
+            to[k] = lane_steps_number(b->to, (e->op == OP_INSTANCE && k == 0) || e->op == OP_FRONT);
         }
 }
 

@@ -8,7 +8,7 @@
 
 Substitution substitute_point(Node point)
 {
-    return (Substitution){point, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE};
+    return (Substitution){point, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE};
 }
 
 static Node substitute_leaf(const Expr *e, Node node, Substitution with)
@@ -19,6 +19,7 @@ static Node substitute_leaf(const Expr *e, Node node, Substitution with)
                  : e->op == OP_UV       ? with.uv
                  : e->op == OP_TRAP     ? with.trap
                  : e->op == OP_NORMAL   ? with.normal
+                 : e->op == OP_FRONT    ? with.front
                                         : NODE_NONE;
     return other == NODE_NONE ? node : other;
 }

@@ -121,6 +121,8 @@ Lowered lower_shape(Lowering *l, const Shape *shape, LowerContext context)
     /* Only smooth mirrors and bumps change the normal. */
     if (result.distance != NODE_NONE && context.smoothing == NODE_NONE && !shape->smooth)
         result.surface.normal = context.normal;
+    if (l->surfaces && result.surface.front == NODE_NONE)
+        result.surface.front = graph_leaf(l->graph, OP_FRONT);
     if (l->surfaces && shape->shown > 0)
         result.surface.component = graph_uint(l->graph, shape->shown);
     if (l->lowered_shapes)

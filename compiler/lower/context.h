@@ -65,6 +65,7 @@ typedef struct LowerContext {
     double
          reach; /* how far from the surface distances must be right; beyond it they may be any bound
                      that is no less */
+    bool fronts;    /* a material above asks which side of a sheet is seen */
     Node smoothing; /* width over which a mirror turns normals; NODE_NONE: mirrors are sharp */
 } LowerContext;
 

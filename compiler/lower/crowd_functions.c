@@ -80,8 +80,9 @@ bool group_has_functions(const CrowdGroup *group, const GroupJoin *join)
     for (uint32_t root = PART_SURFACE; root < PART_ROOTS; root++) {
         bool wanted[PART_ROOTS] = {[0] = false};
         wanted[root]            = true;
-        const Node outer[] = {join->leaves.level, join->leaves.instance, join->leaves.smoothing};
-        for (int i = 0; i < 3; i++)
+        const Node outer[] = {join->leaves.level, join->leaves.instance, join->leaves.smoothing,
+                              graph_leaf(join->graph, OP_FRONT)};
+        for (size_t i = 0; i < sizeof outer / sizeof *outer; i++)
             if (is_function(group, join, root) &&
                 template_needs(group->template, outer[i], wanted, join->scratch))
                 return false;

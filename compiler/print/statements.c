@@ -112,6 +112,13 @@ static const char *fold_text(Emitter *e, const Expr *expr)
     return mirror ? mirror : fill_template(e, expr);
 }
 
+/* By the ray and the normal of the component's surface, whose function this is. */
+static const char *front_text(Emitter *e, const Expr *expr)
+{
+    (void)expr;
+    return phrase_text(e, PHRASE_CHOICE, (Operands){"dot(krs_view, normal) > 0.0", "0.0", "1.0"});
+}
+
 /* Parameters of the function that is being written. */
 static const char *const leaf_names[OP_COUNT] = {[OP_POINT]           = "p",
                                                  [OP_NORMAL]          = "normal",
@@ -131,6 +138,7 @@ static const char *(*const special[OP_COUNT])(Emitter *e, const Expr *expr) = {
     [OP_min]            = extremum_text,
     [OP_max]            = extremum_text,
     [OP_fold]           = fold_text,
+    [OP_FRONT]          = front_text,
     [OP_STATE]          = emit_state,
     [OP_texture]        = emit_texture,
     [OP_texture_gray]   = emit_texture,

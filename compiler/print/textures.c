@@ -27,7 +27,7 @@ static uint32_t number_of(const Emitter *e, const Expr *texture)
 
 void emit_note_seen(Emitter *e, const Expr *expr)
 {
-    e->sees = e->sees || expr->op == OP_VIEW;
+    e->sees = e->sees || expr->op == OP_VIEW || expr->op == OP_FRONT;
     if (!is_texture((Op)expr->op))
         return;
     if (!e->reads_texture)

@@ -55,6 +55,13 @@ void main()
 
     vec3 p = points[index].point;
     vec4 gradient_and_distance = find_gradient(p);
+#ifdef SHEETS // they are seen from both sides
+    if (dot(gradient_and_distance.xyz, points[index].direction) > 0.0)
+        gradient_and_distance.xyz = -gradient_and_distance.xyz;
+#endif
+#ifdef KRS_VIEW
+    krs_view = points[index].direction;
+#endif
     KrsSurface surface = krs_surface(p, gradient_and_distance.xyz, 0.0);
     Answer answer;
     answer.gradient = gradient_and_distance.xyz;

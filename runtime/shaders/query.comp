@@ -143,7 +143,7 @@ void end_item()
         state = STATE_MARCHING;
     if (state != STATE_MISS) {
         point = atomicAdd(counts.hit_count, 1u);
-        points[point] = Point(origin + t * direction, 0.0);
+        points[point] = Point(origin + t * direction, 0.0, direction, 0.0);
     }
     ray_hits[index] = RayHit(t, state, point, steps | side_bits);
 }

@@ -17,6 +17,9 @@ struct Glass {
 Glass find_glass_at(vec3 position, vec3 toward, float width)
 {
     krs_medium = 0u;
+#ifdef KRS_VIEW
+    krs_view = toward;
+#endif
     KrsSurface surface = krs_surface(position, -toward, width);
     float ior = clamp(surface.ior, 1.0, 4.0), head_on = (ior - 1.0) / (ior + 1.0);
     return Glass(find_glass(surface) * clamp(surface.color, 0.0, 1.0),

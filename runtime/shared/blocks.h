@@ -457,6 +457,8 @@ CONSTANT(QUERY_RAYS_BINDING, 5);
 struct Point {
     vec3  point;
     float gap_a;
+    vec3  direction; /* of the ray that sees it; 0: nobody looks */
+    float gap_b;
 };
 
 /* For query.comp, std430. */
@@ -486,7 +488,7 @@ struct RayHit {
 
 #ifdef __STDC_VERSION__
 typedef struct Point PointBlock;
-static_assert(sizeof(PointBlock) == 16, "std430");
+static_assert(sizeof(PointBlock) == 32, "std430");
 typedef struct QueryRay QueryRayBlock;
 static_assert(sizeof(QueryRayBlock) == 32, "std430");
 typedef struct RayHit RayHitBlock;

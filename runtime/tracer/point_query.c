@@ -67,8 +67,10 @@ KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*poi
         size_t      left  = count - first;
         uint32_t    batch = left < POINTS_AT_ONCE ? (uint32_t)left : POINTS_AT_ONCE;
         PointBlock *to    = rendering->points.bytes;
-        for (uint32_t i = 0; i < batch; i++)
+        for (uint32_t i = 0; i < batch; i++) {
+            to[i] = (PointBlock){0};
             memcpy(to[i].point, points[first + i], sizeof points[0]);
+        }
         if (!point_query_run(rendering, batch, surfaces != NULL))
             return rendering->renderer->gpu.status;
         const AnswerBlock *answers = rendering->answers.bytes;

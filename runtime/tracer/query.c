@@ -60,9 +60,11 @@ static bool probe_batch(KrsRendering *rendering, const double (*points)[3], uint
                         KrsHit *hits)
 {
     PointBlock *to = rendering->points.bytes;
-    for (uint32_t i = 0; i < count; i++)
+    for (uint32_t i = 0; i < count; i++) {
+        to[i] = (PointBlock){0};
         for (int k = 0; k < 3; k++)
             to[i].point[k] = (float)points[i][k];
+    }
     if (!point_query_run(rendering, count, true))
         return false;
     const AnswerBlock *answers = rendering->answers.bytes;
@@ -185,8 +187,8 @@ bool ray_hits_are_valid(const RayHitBlock *ray_hits, uint32_t count, uint32_t en
     return sound;
 }
 
-static void take_ray_hit(const KrsRay *ray, bool sheets, const RayHitBlock *ray_hit,
-                         const AnswerBlock *answers, KrsHit *hit)
+static void take_ray_hit(const KrsRay *ray, const RayHitBlock *ray_hit, const AnswerBlock *answers,
+                         KrsHit *hit)
 {
     *hit = (KrsHit){0};
     if (ray_hit->state == STATE_MISS)
@@ -197,8 +199,6 @@ static void take_ray_hit(const KrsRay *ray, bool sheets, const RayHitBlock *ray_
     for (int k = 0; k < 3; k++)
         hit->point[k] = ray->origin[k] + hit->t * ray->direction[k];
     describe(&answers[ray_hit->point], hit);
-    if (sheets)
-        krs_face(ray, hit);
 }
 
 /* Single precision cannot tell on which side of a surface a ray begins that is as near to it as
@@ -235,8 +235,7 @@ static bool raycast_batch(KrsRendering *rendering, KrsFrame      *frame, const d
         return false;
     for (uint32_t i = 0; i < count; i++) {
         KrsRay ray = krs_ray(scene, origins[i], directions[i], farthest);
-        take_ray_hit(&ray, rendering->program->sheets, &ray_hits[i], rendering->answers.bytes,
-                     &hits[i]);
+        take_ray_hit(&ray, &ray_hits[i], rendering->answers.bytes, &hits[i]);
         if (took_wrong_side(frame, &ray_hits[i], origins + i))
             krs_raycast(frame, origins + i, directions + i, 1, farthest, tolerance, hits + i);
     }

@@ -6,7 +6,8 @@
  * show that: no pixel more and none less but where a hair of the ray decides, or a twentieth of a
  * pixel at the rim of the ball; depths to a fiftieth of a pixel, and normals that are the formula's
  * gradient, towards the eye.  Questions to the host and to the device are held against the same
- * roots, and shadows on a floor against roots on the way to the light.
+ * roots, and shadows on a floor against roots on the way to the light.  Each has one colour in front and
+ * another behind: the sign of the formula before the root tells which a ray sees, at once or in a mirror.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -64,6 +65,8 @@ static const struct Sheet {
 };
 enum { SHEETS = sizeof sheets / sizeof sheets[0] };
 
+#define SIDES "material sides { color: if front then [0.9, 0, 0] else [0, 0.9, 0] }\n"
+
 typedef struct Case {
     Formula    *formula;
     double      radius;
@@ -75,15 +78,15 @@ static Case case_of(const struct Sheet *sheet)
 {
     Case c = {sheet->formula, sheet->radius, "", ""};
     if (sheet->text) {
-        snprintf(c.text, sizeof c.text, "%s.within(sphere(%g), open: true)", sheet->text,
-                 sheet->radius);
+        snprintf(c.text, sizeof c.text, "%s.within(sphere(%g), open: true).paint(sides)",
+                 sheet->text, sheet->radius);
         return c;
     }
     const Surface *surface = surface_named(sheet->name);
     c.formula              = surface->formula;
     c.radius               = surface->radius;
     c.before               = surface->before;
-    snprintf(c.text, sizeof c.text, "%sopen: true)", surface->call);
+    snprintf(c.text, sizeof c.text, "%sopen: true).paint(sides)", surface->call);
     return c;
 }
 
@@ -104,12 +107,12 @@ static Vec look(const Case *c, const struct Sheet *sheet)
 }
 
 typedef struct Verdict {
-    int hits, doubtful, extra, missed, off, turned;
+    int hits, doubtful, extra, missed, off, turned, confused;
 } Verdict;
 
-/* One ray's answer: whether it hits, how far away, and its normal (NULL: not asked). */
-static void judge_ray(const Case *c, int k, bool seen, double t, const Vec *normal, double leeway,
-                      Verdict *v)
+/* One ray's answer: whether it hits, how far away, its normal (NULL: not asked), and the colour. */
+static void judge_ray(const Case *c, int k, bool seen, double t, const Vec *normal, Vec color,
+                      double leeway, Verdict *v)
 {
     const Entry *entry  = &entries[k];
     bool         is     = entry->fate == RAY_HITS;
@@ -128,6 +131,7 @@ static void judge_ray(const Case *c, int k, bool seen, double t, const Vec *norm
     double size = vec_length(slope), cosine = vec_dot(slope, rays[k].direction) / size;
     if (!(fabs(cosine) > 0.05))
         return; /* it grazes, or the surface meets itself */
+    v->confused += (color.x > 0.5) != (cosine < 0) || (color.y > 0.5) != (cosine > 0);
     v->off += !(fabs(t - (double)entry->t) <= leeway / fabs(cosine));
     if (normal)
         v->turned += !(-vec_dot(*normal, slope) * (cosine > 0 ? 1 : -1) > 0.99 * size);
@@ -135,11 +139,12 @@ static void judge_ray(const Case *c, int k, bool seen, double t, const Vec *norm
 
 static void must_be_right(const char *name, const char *who, const Verdict *v)
 {
-    if (v->hits < 400 || v->doubtful > PIXELS / 20 || v->extra + v->missed + v->off > 0 ||
-        v->turned * 100 > v->hits)
+    if (v->hits < 400 || v->doubtful > PIXELS / 20 ||
+        v->extra + v->missed + v->off + v->confused > 0 || v->turned * 100 > v->hits)
         fail_msg("%s, %s: of %d hits (%d doubtful) %d are too much, %d missed, %d off, %d with "
-                 "another normal",
-                 name, who, v->hits, v->doubtful, v->extra, v->missed, v->off, v->turned);
+                 "another normal, %d of the wrong side",
+                 name, who, v->hits, v->doubtful, v->extra, v->missed, v->off, v->turned,
+                 v->confused);
 }
 
 static void judge_picture(const char *name, const Case *c, const Product *product, KrsTrace trace)
@@ -148,7 +153,8 @@ static void judge_picture(const char *name, const Case *c, const Product *produc
                                 .height  = HEIGHT,
                                 .samples = 1,
                                 .trace   = trace,
-                                .planes  = KRS_PLANE_POSITION | KRS_PLANE_IDS | KRS_PLANE_NORMAL};
+                                .planes  = KRS_PLANE_POSITION | KRS_PLANE_IDS | KRS_PLANE_NORMAL |
+                                          KRS_PLANE_ALBEDO};
     KrsRendering    *rendering;
     KrsPicture      *picture = NULL;
     Verdict          v       = {0};
@@ -157,9 +163,11 @@ static void judge_picture(const char *name, const Case *c, const Product *produc
         fail_msg("%s", krs_renderer_message(renderer));
     for (int k = 0; k < PIXELS; k++) {
         const float *at = &picture->position[3 * k], *n = &picture->normal[3 * k];
+        const float *a      = &picture->albedo[3 * k];
         Vec          normal = vec(n[0], n[1], n[2]);
         double       t      = vec_distance(vec(at[0], at[1], at[2]), rays[k].origin);
-        judge_ray(c, k, picture->component[k] != 0, t, &normal, 0.02 * PIXEL * t, &v);
+        judge_ray(c, k, picture->component[k] != 0, t, &normal, vec(a[0], a[1], a[2]),
+                  0.02 * PIXEL * t, &v);
     }
     assert_int_equal(picture->stats.unresolved, 0);
     must_be_right(name, krs_trace_names[trace], &v);
@@ -193,7 +201,9 @@ static void judge_questions(const char *name, const Case *c, const Product *prod
             const KrsHit *hit    = &hits[device][k];
             Vec           normal = vec(hit->normal[0], hit->normal[1], hit->normal[2]);
             assert_false(hit->unresolved && entries[k].fate != RAY_DOUBTFUL);
-            judge_ray(c, k, hit->hit, hit->t, &normal, (device ? 1e-3 : 1e-7) * c->radius, &v);
+            Vec color = vec(hit->color[0], hit->color[1], hit->color[2]);
+            judge_ray(c, k, hit->hit, hit->t, &normal, color, (device ? 1e-3 : 1e-7) * c->radius,
+                      &v);
         }
         must_be_right(name, device ? "asked on the device" : "asked on the host", &v);
     }
@@ -201,12 +211,13 @@ static void judge_questions(const char *name, const Case *c, const Product *prod
 
 static void sheets_are_where_signs_change(void **state)
 {
-    const struct Sheet *sheet = *state;
-    Case                c     = case_of(sheet);
-    Vec                 eye   = look(&c, sheet);
-    Product product = product_format("use \"std/surfaces.krs\";\n%sshow %s;\ncamera { eye: [%.17g, "
-                                     "%.17g, %.17g], target: [0, 0, 0], fov: 40deg }",
-                                     c.before, c.text, eye.x, eye.y, eye.z);
+    const struct Sheet *sheet   = *state;
+    Case                c       = case_of(sheet);
+    Vec                 eye     = look(&c, sheet);
+    Product             product = product_format("use \"std/surfaces.krs\";\n" SIDES
+                                                 "%sshow %s;\ncamera { eye: [%.17g, "
+                                                             "%.17g, %.17g], target: [0, 0, 0], fov: 40deg }",
+                                                 c.before, c.text, eye.x, eye.y, eye.z);
     judge_picture(sheet->name, &c, &product, KRS_TRACE_DEFAULT);
     if (sheet == sheets)
         for (KrsTrace trace = KRS_TRACE_PLAIN; trace < KRS_TRACE_COUNT; trace++)
@@ -226,7 +237,8 @@ static void sheets_cast_shadows(void **state)
     Vec                 eye = vec(0, 8 * c.radius, 8 * c.radius), target = vec(0, -up, 0);
     Lens                lens    = lens_make(eye, target, 2 * c.radius, true, WIDTH, HEIGHT);
     Product             product = product_format(
-                    "use \"std/surfaces.krs\";\n%slight red { direction: [-0.35, 1, 0.25], softness: 0, "
+                    "use \"std/surfaces.krs\";\n" SIDES
+                    "%slight red { direction: [-0.35, 1, 0.25], softness: 0, "
                                 "color: [1, 0, 0] }\n"
                                 "light green { direction: [-0.35, 1, 0.25], color: [0, 1, 0], shadow: false }\n"
                                 "sky { zenith: #000000, horizon: #000000, ground: #000000 }\nimage { tone_map: \"none\" }\n"
@@ -265,6 +277,167 @@ static void sheets_cast_shadows(void **state)
     product_free(&product);
 }
 
+/* ---- sides ---- */
+
+/* A sheet that shines, above a mirror, seen in the mirror alone. */
+static void mirrors_show_the_side(void **state)
+{
+    const struct Sheet *sheet   = *state;
+    Case                c       = case_of(sheet);
+    const char *const   names[] = {"preview", "direct", "path"};
+    double              down    = 1.5 * c.radius;
+    Vec                 eye     = vec(0.4 * c.radius, 1.2 * c.radius, 5 * c.radius);
+    Vec                 target  = vec(0, -down, 0.5 * c.radius);
+    Lens                lens    = lens_make(eye, target, tan(0.5 * FOV), false, WIDTH, HEIGHT);
+    Product             product = product_format(
+                    "use \"std/surfaces.krs\";\nmaterial sides { color: black, specular: 0, emission: if front "
+                                "then [1, 0, 0] else [0, 1, 0] }\n"
+                                "sky { zenith: #000000, horizon: #000000, ground: #000000 }\nimage { tone_map: \"none\" }\n"
+                                "material mirror { color: white, metallic: 1, roughness: 0 }\n"
+                                "%sshow plane([0, 1, 0], %.17g).paint(mirror);\nshow %s;\n"
+                                "camera { eye: [%.17g, %.17g, %.17g], target: [%.17g, %.17g, %.17g], fov: 40deg }",
+                    c.before, -down, c.text, eye.x, eye.y, eye.z, target.x, target.y, target.z);
+    for (KrsIntegrator integrator = 0; integrator < 3; integrator++) {
+        KrsRenderOptions options = {
+            .width = WIDTH, .height = HEIGHT, .samples = 1, .integrator = integrator};
+        KrsRendering *rendering;
+        KrsPicture   *picture = NULL;
+        int           seen[2] = {0, 0}, wrong = 0;
+        if (krs_rendering_new_for(renderer, product.scene,
+                                  integrator == 0 ? KRS_FOR_PICTURES : KRS_FOR_PATHS,
+                                  &rendering) != KRS_OK ||
+            krs_render(rendering, product.frame, &options, &picture) != KRS_OK)
+            fail_msg("%s", krs_renderer_message(renderer));
+        for (int k = 0; k < PIXELS; k++) {
+            const float *color = &picture->color[4 * k];
+            if (picture->component[k] != 1)
+                continue;
+            Line  ray    = lens_ray(&lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
+            Vec   mirror = line_at(ray, -(ray.origin.y + down) / ray.direction.y);
+            Vec   way    = vec(ray.direction.x, -ray.direction.y, ray.direction.z);
+            Entry entry  = surface_crossing(c.formula, c.radius, mirror, way);
+            if (entry.fate != RAY_HITS)
+                continue;
+            Vec p         = vec_add(mirror, vec_scale((double)entry.t, way)),
+                slope     = surface_slope(c.formula, p);
+            double cosine = vec_dot(slope, way) / vec_length(slope);
+            if (!(fabs(cosine) > 0.1) || vec_length(p) > 0.98 * c.radius)
+                continue;
+            seen[cosine > 0]++;
+            wrong += (color[0] > 0.3F) != (cosine < 0) || (color[1] > 0.3F) != (cosine > 0);
+        }
+        if (seen[0] + seen[1] < 200 || wrong * 50 > seen[0] + seen[1])
+            fail_msg("%s, %s: of %d and %d pixels of both sides, %d are wrong", sheet->name,
+                     names[integrator], seen[0], seen[1], wrong);
+        krs_picture_free(picture);
+        krs_rendering_free(rendering);
+    }
+    product_free(&product);
+}
+
+/* The side is that of the sheet itself, however it is placed, mirrored, joined and painted. */
+static void sides_follow_the_sheet(void **state)
+{
+    static const struct {
+        const char *scene;
+        Vec         origin, direction;
+        bool        front;
+    } rows[] = {
+        {"show field(y).within(box([2, 2, 2]), open: true).paint(sides);",
+         {0.2, 0.5, 0.1},
+         {0, -1, 0},
+         true},
+        {"show field(y).within(box([2, 2, 2]), open: true).paint(sides);",
+         {0.2, -0.5, 0.1},
+         {0, 1, 0},
+         false},
+        {"show field(-y).within(box([2, 2, 2]), open: true).paint(sides);",
+         {0.2, 0.5, 0.1},
+         {0, -1, 0},
+         false},
+        {"show field(y).paint(sides).within(box([2, 2, 2]), open: true);",
+         {0.2, 0.5, 0.1},
+         {0, -1, 0},
+         true},
+        {"show field(y).paint(sides).within(box([2, 2, 2]), open: true);",
+         {0.2, -0.5, 0.1},
+         {0, 1, 0},
+         false},
+        {"show field(y).within(box([2, 2, 2]), open: true).rotate([0, 0, 1], 180deg).paint(sides);",
+         {0.2, 0.5, 0.1},
+         {0, -1, 0},
+         false},
+        {"show field(y).within(box([2, 2, 2]), open: true).paint(sides).rotate([0, 0, 1], "
+         "180deg).move([0, 1, 0]);",
+         {0.2, 1.5, 0.1},
+         {0, -1, 0},
+         false},
+        {"show field(y - 2).within(box([2, 2, 2]).move([0, 2, 0]), open: true).mirror(plane([0, "
+         "-1, "
+         "0], 0)).paint(sides);",
+         {0.2, -1.5, 0.1},
+         {0, -1, 0},
+         false},
+        {"show field(y - 2).within(box([2, 2, 2]).move([0, 2, 0]), open: true).mirror(plane([0, "
+         "-1, "
+         "0], 0)).paint(sides);",
+         {0.2, -2.5, 0.1},
+         {0, 1, 0},
+         true},
+        {"show (field(y).within(box([2, 2, 2]), open: true) | sphere(0.2).move([0, 3, "
+         "0])).paint(sides);",
+         {0.2, -0.5, 0.1},
+         {0, 1, 0},
+         false},
+        {"show (field(y).within(box([2, 2, 2]), open: true) | sphere(0.2).move([0, 3, "
+         "0])).paint(sides);",
+         {0, 2.5, 0},
+         {0, 1, 0},
+         true},
+        {"show field(y).within(box([2, 2, 2]), open: true, thickness: "
+         "0.2).offset(0.05).paint(sides);",
+         {0.2, 0.5, 0.1},
+         {0, -1, 0},
+         true},
+        {"show field(y).within(box([2, 2, 2]), open: true, thickness: "
+         "0.2).offset(0.05).paint(sides);",
+         {0.2, -0.5, 0.1},
+         {0, 1, 0},
+         false},
+        {"show sphere(1).shell(0.1).paint(sides);", {0, 0, 0}, {0, 1, 0}, true},
+        {"show sphere(1).paint(sides);", {0, 2, 0}, {0, -1, 0}, true},
+        {"show sphere(1).paint(sides);", {0, 0.2, 0}, {0, -1, 0}, false},
+        {"show sphere(1).scale([1, 2, 1]).paint(sides);", {0, 0.2, 0}, {0, -1, 0}, false},
+        {"show union([sphere(0.4).paint(sides).move([i, 0, 0]) for i in 0..60]);",
+         {7, 0.2, 0},
+         {0, -1, 0},
+         false},
+        {"show union([sphere(0.4).paint(sides).move([i, 0, 0]) for i in 0..60]);",
+         {7, 2, 0},
+         {0, -1, 0},
+         true},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        Product       product = product_format(SIDES "%s", rows[i].scene);
+        KrsRendering *rendering;
+        KrsHit        hits[2];
+        const double  origin[1][3] = {{rows[i].origin.x, rows[i].origin.y, rows[i].origin.z}};
+        const double  way[1][3] = {{rows[i].direction.x, rows[i].direction.y, rows[i].direction.z}};
+        assert_int_equal(
+            krs_rendering_new_for(renderer, product.scene, KRS_FOR_QUESTIONS, &rendering), KRS_OK);
+        assert_int_equal(krs_raycast(product.frame, origin, way, 1, 100, 1e-6, &hits[0]), KRS_OK);
+        assert_int_equal(
+            krs_device_raycast(rendering, product.frame, origin, way, 1, 100, 1e-4, &hits[1]),
+            KRS_OK);
+        for (int device = 0; device < 2; device++)
+            if (!hits[device].hit || (hits[device].color[0] > 0.5) != rows[i].front)
+                fail_msg("%s, %s: the wrong side", rows[i].scene, device ? "device" : "host");
+        krs_rendering_free(rendering);
+        product_free(&product);
+    }
+}
+
 /* Where a distance is needed, a sheet is as thick as its author says. */
 static void thickness_is_given(void **state)
 {
@@ -284,8 +457,8 @@ static void thickness_is_given(void **state)
 
 int main(void)
 {
-    struct CMUnitTest tests[2 * SHEETS + 1];
-    static char       names[SHEETS][80];
+    struct CMUnitTest tests[3 * SHEETS + 2];
+    static char       names[SHEETS][2][80];
     size_t            count = 0;
     for (size_t i = 0; i < SHEETS; i++) {
         void *sheet    = (void *)(uintptr_t)&sheets[i];
@@ -293,9 +466,14 @@ int main(void)
                                              NULL, sheet};
         if (i % 4 != 1)
             continue;
-        snprintf(names[i], sizeof names[i], "the shadow of %s", sheets[i].name);
-        tests[count++] = (struct CMUnitTest){names[i], sheets_cast_shadows, NULL, NULL, sheet};
+        snprintf(names[i][0], sizeof names[i][0], "the shadow of %s", sheets[i].name);
+        tests[count++] = (struct CMUnitTest){names[i][0], sheets_cast_shadows, NULL, NULL, sheet};
+        if (i % 8 != 1)
+            continue;
+        snprintf(names[i][1], sizeof names[i][1], "the sides of %s", sheets[i].name);
+        tests[count++] = (struct CMUnitTest){names[i][1], mirrors_show_the_side, NULL, NULL, sheet};
     }
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(thickness_is_given);
+    tests[count++] = (struct CMUnitTest)cmocka_unit_test(sides_follow_the_sheet);
     return _cmocka_run_group_tests("sheets", tests, count, renderer_open, renderer_close);
 }
