@@ -36,7 +36,7 @@ BASE     := $(addprefix compiler/base/, arena.c patience.c exr_chunks.c half.c p
 FRONT    := $(addprefix compiler/front/, lexer.c lex_literals.c syntax.c format.c format_pieces.c parser.c parse_expression.c \
                 parse_declaration.c parse.c synonyms.c names.c files.c)
 OUTLINE  := $(addprefix compiler/outline/, path.c knots.c edge_cuts.c edge_sides.c resolve.c members.c letters.c \
-                svg_shapes.c svg.c)
+                svg_shapes.c svg.c svg_stroke.c svg_style.c svg_tree.c)
 IMAGE    := $(addprefix compiler/image/, png.c exr.c image.c)
 # Points side by side, once for each instruction set.
 LANES    := $(addprefix compiler/graph/lanes_, plain.c $(if $(filter x86_64, $(shell $(CC) -dumpmachine | cut -d - -f 1)), avx2.c avx512.c))

@@ -23,7 +23,7 @@ static void report_notes(Elaboration *e, const Call *call, const SvgDrawing *dra
         diag_note(e->diags, diag,
                   diag_text(e->diags, "%s:%u: %s", name, drawing->notes.items[i].line,
                             drawing->notes.items[i].what));
-    diag->help = "only areas are read; most editors turn strokes and texts into paths";
+    diag->help = "only areas and strokes are read; most editors turn texts into paths";
 }
 
 static void report_fault(Elaboration *e, const Call *call, const SvgDrawing *drawing,

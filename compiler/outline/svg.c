@@ -1,77 +1,48 @@
 /*
- * svg.c: reads the XML of a drawing, by expat.
+ * svg.c: what the elements of a drawing are: areas and strokes with their colours.
  */
 #include "compiler/outline/svg.h"
 
 #include <ctype.h>
-#include <expat.h>
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "compiler/base/text.h"
-#include "compiler/outline/svg_shapes.h"
+#include "compiler/outline/svg_stroke.h"
+#include "compiler/outline/svg_tree.h"
 
-enum { MOST_DEPTH = 256 };
+/* `use` in `use`, and gradients that continue others. */
+enum { MOST_REFERENCES = 24, MOST_ENTERED = 400000 };
+
+/* Of a fill or a stroke.  Its colour is sRGB, 0xrrggbb. */
+typedef struct Paint {
+    bool     drawn;
+    uint32_t rgb;
+} Paint;
 
 /* What elements inherit. */
 typedef struct State {
-    SvgMap   map;
-    uint32_t rgb;
-    FillRule rule;
-    bool     filled, stroked, hidden; /* hidden: in a definition, or in what is left out */
+    SvgMap    map;
+    Paint     fill, line;
+    uint32_t  current; /* `currentColor` */
+    FillRule  rule;
+    SvgStroke stroke;
+    bool      hidden; /* by `visibility`: parts of it may be shown again */
+    int       references;
 } State;
 
 typedef struct Reader {
     SvgDrawing *drawing;
-    XML_Parser  parser;
+    SvgTree     tree;
+    unsigned    line; /* of the element at hand */
     const char *fault;
-    State       states[MOST_DEPTH]; /* of the elements that are open */
-    int         depth;
+    unsigned    fault_line;
+    unsigned    entered; /* elements so far */
 } Reader;
 
-/* ---- memory ---- */
-
-/* expat has memory of the arena, which is freed with it: also where it runs out, and the call of expat
-   does not return. */
-static _Thread_local Arena *expat_arena;
-
-typedef struct Block {
-    size_t size;
-    _Alignas(max_align_t) char bytes[];
-} Block;
-
-static void *get_block(size_t size)
-{
-    Block *block = arena_alloc(expat_arena, 1, sizeof *block + size);
-    block->size  = size;
-    return block->bytes;
-}
-
-static void *resize_block(void *old, size_t size)
-{
-    void *fresh = get_block(size);
-    if (old) {
-        size_t had = ((Block *)((char *)old - offsetof(Block, bytes)))->size;
-        memcpy(fresh, old, had < size ? had : size);
-    }
-    return fresh;
-}
-
-static void drop_block(void *block) { (void)block; }
-
 /* ---- notes ---- */
-
-static unsigned line_of(const Reader *reader)
-{
-#if XML_MAJOR_VERSION * 100 + XML_MINOR_VERSION >= 209
-    return (unsigned)XML_GetCurrentLineNumber64(reader->parser);
-#else
-    return (unsigned)XML_GetCurrentLineNumber(reader->parser);
-#endif
-}
 
 /* Once for each kind. */
 static void note(Reader *reader, const char *what)
@@ -80,68 +51,54 @@ static void note(Reader *reader, const char *what)
     for (size_t i = 0; i < drawing->notes.count; i++)
         if (strcmp(drawing->notes.items[i].what, what) == 0)
             return;
-    SvgNote left = {what, line_of(reader)};
+    SvgNote left = {what, reader->line};
     array_push(drawing->arena, &drawing->notes, left);
 }
 
 static void stop(Reader *reader, const char *fault)
 {
-    reader->fault = fault;
-    XML_StopParser(reader->parser, XML_FALSE);
+    if (reader->fault)
+        return;
+    reader->fault      = fault;
+    reader->fault_line = reader->line;
 }
 
 /* ---- attributes ---- */
 
-static const char *attribute(const char **attributes, const char *name)
-{
-    for (; *attributes; attributes += 2)
-        if (strcmp(attributes[0], name) == 0)
-            return attributes[1];
-    return NULL;
-}
-
 static bool is_blank(char c) { return isspace((unsigned char)c) != 0; }
 
-/* "a: b" in "...; a: b; ...": NULL if there is none. */
-static const char *styled(const Reader *reader, const char *style, const char *name)
+static const char *property(const Reader *reader, const SvgElement *element, const char *name)
 {
-    size_t length = strlen(name);
-    while (style && *style) {
-        while (is_blank(*style) || *style == ';')
-            style++;
-        const char *colon = style + length, *end = style + strcspn(style, ";");
-        while (strncmp(style, name, length) == 0 && is_blank(*colon))
-            colon++;
-        if (strncmp(style, name, length) == 0 && *colon == ':') {
-            for (colon++; is_blank(*colon);)
-                colon++;
-            while (end > colon && is_blank(end[-1]))
-                end--;
-            return arena_copy_text(reader->drawing->arena, colon,
-                                   end > colon ? (size_t)(end - colon) : 0);
-        }
-        style = end;
-    }
-    return NULL;
+    const char *value = svg_property(&reader->tree, element, name);
+    return value && strcmp(value, "inherit") == 0 ? NULL : value;
 }
 
-/* In `style`, or as an attribute. */
-static const char *property(const Reader *reader, const char **attributes, const char *name)
+/* A length in units of the drawing, of which the view has `whole`; what is measured in others is not
+   known here. */
+static double length_in(Reader *reader, const char *text, double whole, double otherwise)
 {
-    const char *value = styled(reader, attribute(attributes, "style"), name);
-    return value ? value : attribute(attributes, name);
-}
-
-/* A length in units of the drawing; what is measured in others is not known here. */
-static double length_of(Reader *reader, const char **attributes, const char *name, double otherwise)
-{
-    const char *text = attribute(attributes, name);
-    double      number;
+    double number;
     if (!text || !svg_number(&text, &number))
         return otherwise;
+    if (*text == '%' && whole > 0)
+        return number / 100 * whole;
     if (*text && strncmp(text, "px", 2) != 0 && !is_blank(*text))
         note(reader, "units other than px, which count as px");
     return number;
+}
+
+static double view_size(const Reader *reader, int axis)
+{
+    return reader->drawing->high[axis] - reader->drawing->low[axis];
+}
+
+/* `axis`: 0 and 1 along the view's width and height, 2 neither. */
+static double length_of(Reader *reader, const SvgElement *element, const char *name, int axis,
+                        double otherwise)
+{
+    double whole = axis < 2 ? view_size(reader, axis)
+                            : hypot(view_size(reader, 0), view_size(reader, 1)) / sqrt(2);
+    return length_in(reader, svg_property(&reader->tree, element, name), whole, otherwise);
 }
 
 /* ---- colours ---- */
@@ -149,11 +106,12 @@ static double length_of(Reader *reader, const char **attributes, const char *nam
 static bool hexadecimal(const char *digits, uint32_t *rgb)
 {
     size_t count = strspn(digits, "0123456789abcdefABCDEF");
-    if (count != 3 && count != 6)
+    if (count != 3 && count != 4 && count != 6 && count != 8)
         return false;
     uint32_t number = (uint32_t)strtoul(digits, NULL, 16);
-    *rgb            = number;
-    if (count == 3)
+    number = count == 4 ? number >> 4 : count == 8 ? number >> 8 : number; /* without alpha */
+    *rgb   = number;
+    if (count <= 4)
         *rgb = (number >> 8 & 15) * 0x110000 + (number >> 4 & 15) * 0x1100 + (number & 15) * 0x11;
     return true;
 }
@@ -186,10 +144,8 @@ static bool color_of(const char *text, uint32_t *rgb)
     if (text[0] == '#')
         return hexadecimal(text + 1, rgb);
     *rgb = 0;
-    if (strcmp(text, "currentColor") == 0)
-        return true;
-    if (strncmp(text, "rgb(", 4) == 0)
-        return functional(text + 4, rgb);
+    if (strncmp(text, "rgb(", 4) == 0 || strncmp(text, "rgba(", 5) == 0)
+        return functional(strchr(text, '(') + 1, rgb);
     for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
         if (strcasecmp(text, colors[i].name) == 0) {
             *rgb = colors[i].rgb;
@@ -198,90 +154,282 @@ static bool color_of(const char *text, uint32_t *rgb)
     return false;
 }
 
-static void read_fill(Reader *reader, const char **attributes, State *state)
+/* ---- gradients ---- */
+
+typedef struct Stop {
+    double   at, opacity;
+    uint32_t rgb;
+} Stop;
+
+/* Red, green and blue by their opacity, and this. */
+typedef struct Mean {
+    double sum[4];
+} Mean;
+
+/* Colours change evenly between stops: the mean over a stretch is that of its ends, in terms of what
+   each adds to light that is mixed. */
+static void add_stretch(Mean *mean, const Stop *a, const Stop *b, double length)
 {
-    const char *fill = property(reader, attributes, "fill");
-    const char *rule = property(reader, attributes, "fill-rule");
-    if (rule && strcmp(rule, "inherit") != 0)
-        state->rule = strcmp(rule, "evenodd") == 0 ? FILL_EVEN_ODD : FILL_NONZERO;
-    if (!fill || strcmp(fill, "inherit") == 0)
-        return;
-    state->filled = strcmp(fill, "none") != 0 && strcmp(fill, "transparent") != 0;
-    if (state->filled && !color_of(fill, &state->rgb)) {
-        state->rgb = 0x808080;
-        note(reader, strncmp(fill, "url(", 4) == 0 ? "gradients and patterns, which are grey"
-                                                   : "unknown colours, which are grey");
+    for (int end = 0; end < 2; end++) {
+        const Stop *stop = end ? b : a;
+        for (int k = 0; k < 3; k++)
+            mean->sum[k] += 0.5 * length * stop->opacity * (stop->rgb >> (16 - 8 * k) & 255);
+        mean->sum[3] += 0.5 * length * stop->opacity;
     }
+}
+
+static Stop read_stop(Reader *reader, const SvgElement *element, const Stop *before)
+{
+    const char *color   = property(reader, element, "stop-color");
+    const char *opacity = property(reader, element, "stop-opacity");
+    const char *offset  = svg_attribute(element, "offset");
+    Stop        stop    = {.opacity = 1};
+    double      number;
+    if (offset && svg_number(&offset, &number))
+        stop.at = *offset == '%' ? number / 100 : number;
+    stop.at = fmin(fmax(stop.at, before ? before->at : 0), 1);
+    if (opacity && svg_number(&opacity, &number))
+        stop.opacity = fmin(fmax(*opacity == '%' ? number / 100 : number, 0), 1);
+    if (color && !color_of(color, &stop.rgb))
+        note(reader, "unknown colours, which are grey");
+    return stop;
+}
+
+/* The mean along a gradient; false: there is nothing to be seen of it. */
+static bool mean_of_stops(Reader *reader, const SvgElement *gradient, uint32_t *rgb)
+{
+    Mean mean   = {{0}};
+    Stop before = {0};
+    bool first  = true;
+    for (const SvgElement *at = gradient->first; at; at = at->next) {
+        if (strcmp(at->name, "stop") != 0)
+            continue;
+        Stop stop = read_stop(reader, at, first ? NULL : &before);
+        add_stretch(&mean, first ? &stop : &before, &stop, first ? stop.at : stop.at - before.at);
+        before = stop;
+        first  = false;
+    }
+    if (first)
+        return false;
+    add_stretch(&mean, &before, &before, 1 - before.at);
+    if (mean.sum[3] <= 0)
+        return false;
+    *rgb = 0;
+    for (int k = 0; k < 3; k++)
+        *rgb = *rgb << 8 | (uint32_t)lround(fmin(mean.sum[k] / mean.sum[3], 255));
+    return true;
+}
+
+static bool has_stops(const SvgElement *gradient)
+{
+    for (const SvgElement *at = gradient->first; at; at = at->next)
+        if (strcmp(at->name, "stop") == 0)
+            return true;
+    return false;
+}
+
+static const char *link_of(const SvgElement *element)
+{
+    const char *link = svg_attribute(element, "href");
+    return link ? link : svg_attribute(element, "xlink:href");
+}
+
+/* `url(#id)`: the mean of a gradient, whose stops may be those of another one. */
+static bool read_reference(Reader *reader, const char *text, Paint *paint)
+{
+    const SvgElement *found = svg_referred(&reader->tree, text);
+    if (!found || !strstr(found->name, "Gradient"))
+        return false;
+    for (int i = 0; found && !has_stops(found) && i < MOST_REFERENCES; i++)
+        found = svg_referred(&reader->tree, link_of(found));
+    note(reader, "gradients, which have one colour: their mean");
+    paint->drawn = found && mean_of_stops(reader, found, &paint->rgb);
+    return true;
+}
+
+/* ---- paints and strokes ---- */
+
+static void read_paint(Reader *reader, const SvgElement *element, const char *name,
+                       const State *state, Paint *paint)
+{
+    const char *text = property(reader, element, name);
+    bool        url  = text && strncmp(text, "url(", 4) == 0;
+    if (!text || (url && read_reference(reader, text, paint)))
+        return;
+    const char *otherwise = url ? strchr(text, ')') : NULL;
+    if (otherwise && otherwise[1] &&
+        color_of(otherwise + 1 + strspn(otherwise + 1, " "), &paint->rgb))
+        return;
+    paint->drawn = strcmp(text, "none") != 0 && strcmp(text, "transparent") != 0;
+    if (strcasecmp(text, "currentColor") == 0)
+        paint->rgb = state->current;
+    else if (paint->drawn && !color_of(text, &paint->rgb)) {
+        paint->rgb = 0x808080;
+        note(reader, url ? "patterns, which are grey" : "unknown colours, which are grey");
+    }
+}
+
+/* Whether a property is a share of nothing: nothing in between is known of areas. */
+static bool is_clear(Reader *reader, const SvgElement *element, const char *name)
+{
+    const char *text = property(reader, element, name);
+    double      number;
+    if (!text || !svg_number(&text, &number))
+        return false;
+    if (number > 0 && number < (*text == '%' ? 100 : 1))
+        note(reader, "opacity: all is opaque");
+    return number <= 0;
+}
+
+/* The row of a table whose name a property has; without one, what was inherited. */
+static int choice_of(Reader *reader, const SvgElement *element, const char *name,
+                     const char *const *names, int count, int inherited)
+{
+    const char *text = property(reader, element, name);
+    for (int i = 0; text && i < count; i++)
+        if (strcmp(text, names[i]) == 0)
+            return i;
+    if (text)
+        note(reader, "unknown forms of the ends and corners of strokes");
+    return inherited;
+}
+
+static void read_dashes(Reader *reader, const SvgElement *element, SvgStroke *stroke)
+{
+    enum { MOST = 32 };
+    const char *text = property(reader, element, "stroke-dasharray");
+    if (!text)
+        return;
+    double *dashes = arena_new_array(reader->drawing->arena, double, 2 * MOST);
+    int     count  = 0;
+    for (double number; count < MOST && svg_number(&text, &number); count++) {
+        dashes[count] = fmax(number, 0);
+        text += strncmp(text, "px", 2) == 0 ? 2 : 0;
+    }
+    memcpy(dashes + count, dashes, (size_t)count * sizeof *dashes);
+    stroke->dashes     = dashes;
+    stroke->dash_count = count % 2 == 1 ? 2 * count : count;
+}
+
+static void read_stroke(Reader *reader, const SvgElement *element, SvgStroke *stroke)
+{
+    static const char *const caps[]  = {"butt", "round", "square"};
+    static const char *const joins[] = {"miter", "round", "bevel"};
+    const char              *limit   = property(reader, element, "stroke-miterlimit");
+    stroke->width       = fmax(length_of(reader, element, "stroke-width", 2, stroke->width), 0);
+    stroke->dash_offset = length_of(reader, element, "stroke-dashoffset", 2, stroke->dash_offset);
+    stroke->cap         = choice_of(reader, element, "stroke-linecap", caps, 3, (int)stroke->cap);
+    stroke->join = choice_of(reader, element, "stroke-linejoin", joins, 3, (int)stroke->join);
+    if (limit)
+        svg_number(&limit, &stroke->miter_limit);
+    read_dashes(reader, element, stroke);
 }
 
 /* ---- shapes ---- */
 
-static bool draw_rectangle(Reader *reader, const char **attributes, SvgPen *pen)
+static bool draw_rectangle(Reader *reader, const SvgElement *element, SvgPen *pen)
 {
-    double corner[2] = {length_of(reader, attributes, "x", 0),
-                        length_of(reader, attributes, "y", 0)};
-    double size[2]   = {length_of(reader, attributes, "width", 0),
-                        length_of(reader, attributes, "height", 0)};
-    double rx        = length_of(reader, attributes, "rx", -1),
-           ry        = length_of(reader, attributes, "ry", -1);
+    double corner[2] = {length_of(reader, element, "x", 0, 0),
+                        length_of(reader, element, "y", 1, 0)};
+    double size[2]   = {length_of(reader, element, "width", 0, 0),
+                        length_of(reader, element, "height", 1, 0)};
+    double rx        = length_of(reader, element, "rx", 0, -1),
+           ry        = length_of(reader, element, "ry", 1, -1);
     double radii[2]  = {fmax(rx < 0 ? ry : rx, 0), fmax(ry < 0 ? rx : ry, 0)};
     if (size[0] > 0 && size[1] > 0)
         svg_rectangle(pen, corner, size, radii);
     return true;
 }
 
-static bool draw_ellipse(Reader *reader, const char **attributes, SvgPen *pen)
+static bool draw_ellipse(Reader *reader, const SvgElement *element, SvgPen *pen)
 {
-    double center[2] = {length_of(reader, attributes, "cx", 0),
-                        length_of(reader, attributes, "cy", 0)};
-    double radius    = length_of(reader, attributes, "r", 0);
-    double radii[2]  = {length_of(reader, attributes, "rx", radius),
-                        length_of(reader, attributes, "ry", radius)};
+    double center[2] = {length_of(reader, element, "cx", 0, 0),
+                        length_of(reader, element, "cy", 1, 0)};
+    double radius    = length_of(reader, element, "r", 2, 0);
+    double radii[2]  = {length_of(reader, element, "rx", 0, radius),
+                        length_of(reader, element, "ry", 1, radius)};
     if (radii[0] > 0 && radii[1] > 0)
         svg_ellipse(pen, center, radii);
     return true;
 }
 
-static bool draw_polygon(Reader *reader, const char **attributes, SvgPen *pen)
+static bool draw_line(Reader *reader, const SvgElement *element, SvgPen *pen)
 {
-    const char *points = attribute(attributes, "points");
-    (void)reader;
-    return !points || svg_polygon(pen, points);
+    double from[2] = {length_of(reader, element, "x1", 0, 0),
+                      length_of(reader, element, "y1", 1, 0)};
+    double to[2] = {length_of(reader, element, "x2", 0, 0), length_of(reader, element, "y2", 1, 0)};
+    pen_move(pen, from);
+    pen_line(pen, to);
+    return true;
 }
 
-static bool draw_path(Reader *reader, const char **attributes, SvgPen *pen)
+static bool draw_points(const SvgElement *element, SvgPen *pen, bool closed)
 {
-    const char *data = attribute(attributes, "d");
+    const char *points = svg_attribute(element, "points");
+    return !points || svg_polygon(pen, points, closed);
+}
+
+static bool draw_polygon(Reader *reader, const SvgElement *element, SvgPen *pen)
+{
+    (void)reader;
+    return draw_points(element, pen, true);
+}
+
+static bool draw_polyline(Reader *reader, const SvgElement *element, SvgPen *pen)
+{
+    (void)reader;
+    return draw_points(element, pen, false);
+}
+
+static bool draw_path(Reader *reader, const SvgElement *element, SvgPen *pen)
+{
+    const char *data = svg_attribute(element, "d");
     (void)reader;
     return !data || svg_path(pen, data);
 }
 
-typedef bool DrawShape(Reader *reader, const char **attributes, SvgPen *pen);
+typedef bool        DrawShape(Reader *reader, const SvgElement *element, SvgPen *pen);
+typedef void        EnterElement(Reader *reader, const SvgElement *element, State state);
+static EnterElement enter_use, enter_svg, enter_children, enter_switch;
 
-/* What elements are: shapes; groups; definitions, which nothing is drawn of; others are left out. */
-static const struct Element {
-    const char *name;
-    DrawShape  *draw;
-    bool        group, silent;
-    const char *fault; /* of a shape */
-} elements[] = {
-    {"path", draw_path, false, false, "this path means nothing from some place on"},
-    {"rect", draw_rectangle, false, false, ""},
-    {"circle", draw_ellipse, false, false, ""},
-    {"ellipse", draw_ellipse, false, false, ""},
-    {"polygon", draw_polygon, false, false, "the points of this polygon are no pairs of numbers"},
-    {"polyline", draw_polygon, false, false, "the points of this polyline are no pairs of numbers"},
-    {"svg", NULL, true, false, NULL},
-    {"g", NULL, true, false, NULL},
-    {"a", NULL, true, false, NULL},
-    {"defs", NULL, false, true, NULL},
-    {"title", NULL, false, true, NULL},
-    {"desc", NULL, false, true, NULL},
-    {"metadata", NULL, false, true, NULL},
-    {"linearGradient", NULL, false, true, NULL},
-    {"radialGradient", NULL, false, true, NULL},
-    {"line", NULL, false, true, NULL},
+/* What elements are: shapes; what has others inside; definitions, which nothing is drawn of; others are
+   left out. */
+static const struct Kind {
+    const char   *name;
+    DrawShape    *draw;
+    EnterElement *enter;
+    bool          silent;
+    const char   *fault; /* of a shape */
+} kinds[] = {
+    {"path", draw_path, NULL, false, "this path means nothing from some place on"},
+    {"rect", draw_rectangle, NULL, false, ""},
+    {"circle", draw_ellipse, NULL, false, ""},
+    {"ellipse", draw_ellipse, NULL, false, ""},
+    {"line", draw_line, NULL, false, ""},
+    {"polygon", draw_polygon, NULL, false, "the points of this polygon are no pairs of numbers"},
+    {"polyline", draw_polyline, NULL, false, "the points of this polyline are no pairs of numbers"},
+    {"use", NULL, enter_use, false, NULL},
+    {"svg", NULL, enter_svg, false, NULL},
+    {"g", NULL, enter_children, false, NULL},
+    {"a", NULL, enter_children, false, NULL},
+    {"switch", NULL, enter_switch, false, NULL},
+    {"defs", NULL, NULL, true, NULL},
+    {"symbol", NULL, NULL, true, NULL},
+    {"style", NULL, NULL, true, NULL},
+    {"title", NULL, NULL, true, NULL},
+    {"desc", NULL, NULL, true, NULL},
+    {"metadata", NULL, NULL, true, NULL},
+    {"linearGradient", NULL, NULL, true, NULL},
+    {"radialGradient", NULL, NULL, true, NULL},
 };
+
+static const struct Kind *find_kind(const char *name)
+{
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+        if (strcmp(kinds[i].name, name) == 0)
+            return &kinds[i];
+    return NULL;
+}
 
 /* In pieces of the view's size; curves leave them by a millionth of it. */
 static double tolerance_of(const SvgDrawing *drawing)
@@ -290,51 +438,39 @@ static double tolerance_of(const SvgDrawing *drawing)
     return size > 0 ? 1e-6 * size : 1e-3;
 }
 
-static void draw_element(Reader *reader, const struct Element *element, const char **attributes,
+static void add_figure(Reader *reader, const Curves *curves, FillRule rule, uint32_t rgb)
+{
+    SvgDrawing *drawing = reader->drawing;
+    SvgFigure   figure  = {*curves, rule, rgb, reader->line};
+    if (curves->count > 0)
+        array_push(drawing->arena, &drawing->figures, figure);
+}
+
+/* The area first, then the stroke upon it. */
+static void draw_element(Reader *reader, const struct Kind *kind, const SvgElement *element,
                          const State *state)
 {
     SvgDrawing *drawing = reader->drawing;
-    SvgPen      pen = {{.arena = drawing->arena, .tolerance = tolerance_of(drawing)}, state->map};
-    if (state->stroked)
-        note(reader, "strokes");
-    if (!element->draw(reader, attributes, &pen))
-        stop(reader, element->fault);
-    else if (state->filled && pen.path.curves.count > 0) {
-        SvgFigure figure = {pen.path.curves, state->rule, state->rgb, line_of(reader)};
-        array_push(drawing->arena, &drawing->figures, figure);
+    SvgTrail    trail   = {NULL, 0, 0};
+    bool        strokes = state->line.drawn && state->stroke.width > 0;
+    SvgPen      pen     = {{.arena = drawing->arena, .tolerance = tolerance_of(drawing)},
+                           state->map,
+                  strokes ? &trail : NULL};
+    if (!kind->draw(reader, element, &pen)) {
+        stop(reader, kind->fault);
+        return;
     }
+    if (state->fill.drawn && kind->draw != draw_line)
+        add_figure(reader, &pen.path.curves, state->rule, state->fill.rgb);
+    if (!strokes)
+        return;
+    pen.path  = (Path){.arena = drawing->arena, .tolerance = pen.path.tolerance};
+    pen.trail = NULL;
+    svg_stroke(&pen, &trail, &state->stroke);
+    add_figure(reader, &pen.path.curves, FILL_NONZERO, state->line.rgb);
 }
 
 /* ---- elements ---- */
-
-static void read_view(Reader *reader, const char **attributes)
-{
-    SvgDrawing *drawing = reader->drawing;
-    const char *box     = attribute(attributes, "viewBox");
-    double      n[4]    = {0, 0, length_of(reader, attributes, "width", 0),
-                           length_of(reader, attributes, "height", 0)};
-    if (box)
-        svg_numbers(box, n, 4);
-    for (int k = 0; k < 2 && n[2] > 0 && n[3] > 0; k++) {
-        drawing->low[k]  = n[k];
-        drawing->high[k] = n[k] + n[k + 2];
-    }
-}
-
-static const struct Element *find_element(const char *name)
-{
-    for (size_t i = 0; i < sizeof elements / sizeof *elements; i++)
-        if (strcmp(elements[i].name, name) == 0)
-            return &elements[i];
-    return NULL;
-}
-
-/* "svg:path" is a path where names have prefixes; others belong to editors. */
-static const char *local_name(const char *name)
-{
-    const char *colon = strchr(name, ':');
-    return colon && strncmp(name, "svg:", 4) == 0 ? colon + 1 : name;
-}
 
 static const char *left_out(const Reader *reader, const char *name)
 {
@@ -343,99 +479,190 @@ static const char *left_out(const Reader *reader, const char *name)
     return text.bytes;
 }
 
-static void read_state(Reader *reader, const char **attributes, State *state)
+static void read_looks(Reader *reader, const SvgElement *element, State *state)
 {
-    const char *transform = attribute(attributes, "transform");
-    const char *stroke    = property(reader, attributes, "stroke");
-    const char *display   = property(reader, attributes, "display");
+    const char *rule       = property(reader, element, "fill-rule");
+    const char *color      = property(reader, element, "color");
+    const char *visibility = property(reader, element, "visibility");
+    if (color)
+        color_of(color, &state->current);
+    if (visibility)
+        state->hidden = strcmp(visibility, "visible") != 0;
+    if (rule)
+        state->rule = strcmp(rule, "evenodd") == 0 ? FILL_EVEN_ODD : FILL_NONZERO;
+    read_paint(reader, element, "fill", state, &state->fill);
+    read_paint(reader, element, "stroke", state, &state->line);
+    read_stroke(reader, element, &state->stroke);
+    if (is_clear(reader, element, "fill-opacity"))
+        state->fill.drawn = false;
+    if (is_clear(reader, element, "stroke-opacity"))
+        state->line.drawn = false;
+}
+
+/* Of an element within these; false: it is not drawn. */
+static bool read_state(Reader *reader, const SvgElement *element, State *state)
+{
+    const char *transform = svg_property(&reader->tree, element, "transform");
+    const char *display   = svg_property(&reader->tree, element, "display");
     SvgMap      map;
-    if (stroke)
-        state->stroked = strcmp(stroke, "none") != 0;
-    if (display && strcmp(display, "none") == 0)
-        state->hidden = true;
-    if (transform && !svg_transform(transform, &map))
-        stop(reader, "this `transform` means nothing");
-    else if (transform)
+    if ((display && strcmp(display, "none") == 0) || is_clear(reader, element, "opacity"))
+        return false;
+    if (transform && strcmp(transform, "none") != 0) {
+        if (!svg_transform(transform, &map)) {
+            stop(reader, "this `transform` means nothing");
+            return false;
+        }
         state->map = svg_product(&state->map, &map);
-    if (property(reader, attributes, "clip-path") || property(reader, attributes, "mask"))
-        note(reader, "clips and masks");
-    read_fill(reader, attributes, state);
+    }
+    for (const char *const *name = (const char *const[]){"clip-path", "mask", NULL}; *name;
+         name++) {
+        const char *cut = property(reader, element, *name);
+        if (cut && strcmp(cut, "none") != 0)
+            note(reader, "clips and masks");
+    }
+    read_looks(reader, element, state);
+    return true;
 }
 
-static void begin_element(void *user, const char *full_name, const char **attributes)
+static void enter(Reader *reader, const SvgElement *element, State state)
 {
-    Reader     *reader = user;
-    const char *name   = local_name(full_name);
-    if (reader->depth + 1 >= MOST_DEPTH) {
-        stop(reader, "elements are nested too deep");
+    const struct Kind *kind = find_kind(element->name);
+    reader->line            = element->line;
+    if (++reader->entered > MOST_ENTERED)
+        stop(reader, "there are too many elements, as `use` multiplies them");
+    if (reader->fault || (kind && kind->silent))
+        return;
+    if (!kind) {
+        if (!strchr(element->name, ':')) /* that of an editor */
+            note(reader, left_out(reader, element->name));
         return;
     }
-    State *state = &reader->states[reader->depth + 1];
-    *state       = reader->states[reader->depth];
-    if (reader->depth++ == 0) {
-        if (strcmp(name, "svg") != 0)
-            stop(reader, "this is no SVG: its first element is not `svg`");
-        read_view(reader, attributes);
-    }
-    if (state->hidden || reader->fault)
+    if (!read_state(reader, element, &state))
         return;
-    const struct Element *element = find_element(name);
-    if (element && (element->draw || element->group))
-        read_state(reader, attributes, state);
-    else {
-        state->hidden = true;
-        if (!element && !strchr(name, ':'))
-            note(reader, left_out(reader, name));
-    }
-    if (element && element->draw && !state->hidden && !reader->fault)
-        draw_element(reader, element, attributes, state);
+    if (kind->enter)
+        kind->enter(reader, element, state);
+    else if (!state.hidden)
+        draw_element(reader, kind, element, &state);
 }
 
-static void end_element(void *user, const char *name)
+static void enter_children(Reader *reader, const SvgElement *element, State state)
 {
-    Reader *reader = user;
-    (void)name;
-    reader->depth--;
+    for (const SvgElement *child = element->first; child && !reader->fault; child = child->next)
+        enter(reader, child, state);
+}
+
+/* The first one that is known. */
+static void enter_switch(Reader *reader, const SvgElement *element, State state)
+{
+    for (const SvgElement *child = element->first; child; child = child->next)
+        if (find_kind(child->name)) {
+            enter(reader, child, state);
+            return;
+        }
+}
+
+static void move_map(SvgMap *map, double x, double y)
+{
+    SvgMap moved = {{1, 0, 0, 1, x, y}};
+    *map         = svg_product(map, &moved);
+}
+
+/* From the view of a part to its place, whose middle is that of the view, unless it is stretched. */
+static void fit_view(Reader *reader, const SvgElement *element, const double size[2], State *state)
+{
+    const char *box    = svg_attribute(element, "viewBox");
+    const char *aspect = svg_attribute(element, "preserveAspectRatio");
+    double      n[4];
+    if (!box || svg_numbers(box, n, 4) < 4 || !(n[2] > 0 && n[3] > 0 && size[0] > 0 && size[1] > 0))
+        return;
+    double scale[2] = {size[0] / n[2], size[1] / n[3]};
+    if (!aspect || strncmp(aspect, "none", 4) != 0)
+        scale[0] = scale[1] = fmin(scale[0], scale[1]);
+    if (aspect && strncmp(aspect, "none", 4) != 0 && strncmp(aspect, "xMidYMid", 8) != 0)
+        note(reader, "`preserveAspectRatio`: the middles of views are kept");
+    SvgMap map = {{scale[0], 0, 0, scale[1], 0.5 * size[0] - scale[0] * (n[0] + 0.5 * n[2]),
+                   0.5 * size[1] - scale[1] * (n[1] + 0.5 * n[3])}};
+    state->map = svg_product(&state->map, &map);
+}
+
+/* An `svg` in another, or a `symbol` where it is used. */
+static void enter_view(Reader *reader, const SvgElement *element, const double size[2], State state)
+{
+    fit_view(reader, element, size, &state);
+    enter_children(reader, element, state);
+}
+
+static void enter_svg(Reader *reader, const SvgElement *element, State state)
+{
+    double size[2] = {length_of(reader, element, "width", 0, view_size(reader, 0)),
+                      length_of(reader, element, "height", 1, view_size(reader, 1))};
+    if (element == reader->tree.root) {
+        enter_children(reader, element, state);
+        return;
+    }
+    move_map(&state.map, length_of(reader, element, "x", 0, 0),
+             length_of(reader, element, "y", 1, 0));
+    enter_view(reader, element, size, state);
+}
+
+static void enter_use(Reader *reader, const SvgElement *element, State state)
+{
+    const SvgElement *used = svg_referred(&reader->tree, link_of(element));
+    double            size[2];
+    if (!used || ++state.references > MOST_REFERENCES) {
+        note(reader,
+             used ? "elements `use` in each other" : "elements `use` of nothing in the file");
+        return;
+    }
+    move_map(&state.map, length_of(reader, element, "x", 0, 0),
+             length_of(reader, element, "y", 1, 0));
+    if (strcmp(used->name, "symbol") != 0) {
+        enter(reader, used, state);
+        return;
+    }
+    size[0] = length_of(reader, element, "width", 0, view_size(reader, 0));
+    size[1] = length_of(reader, element, "height", 1, view_size(reader, 1));
+    if (read_state(reader, used, &state))
+        enter_view(reader, used, size, state);
 }
 
 /* ---- the whole ---- */
 
-/* The words of expat change with its version. */
-static const char *xml_fault(XML_Parser parser)
+static void read_view(Reader *reader)
 {
-    switch (XML_GetErrorCode(parser)) {
-    case XML_ERROR_NONE: return "it is too long";
-    case XML_ERROR_NO_ELEMENTS:
-    case XML_ERROR_UNCLOSED_TOKEN:
-    case XML_ERROR_UNCLOSED_CDATA_SECTION:
-    case XML_ERROR_PARTIAL_CHAR: return "it ends too early";
-    case XML_ERROR_TAG_MISMATCH: return "an element is closed by the name of another";
-    case XML_ERROR_DUPLICATE_ATTRIBUTE: return "an element has an attribute twice";
-    case XML_ERROR_JUNK_AFTER_DOC_ELEMENT: return "there is something behind its last element";
-    case XML_ERROR_UNDEFINED_ENTITY: return "an entity (`&name;`) is not declared";
-    case XML_ERROR_UNKNOWN_ENCODING:
-    case XML_ERROR_INCORRECT_ENCODING: return "its encoding is not known";
-    default: return "this is not XML";
+    SvgDrawing *drawing = reader->drawing;
+    const char *box     = svg_attribute(reader->tree.root, "viewBox");
+    double      n[4]    = {0, 0, length_of(reader, reader->tree.root, "width", 2, 0),
+                           length_of(reader, reader->tree.root, "height", 2, 0)};
+    if (box)
+        svg_numbers(box, n, 4);
+    for (int k = 0; k < 2 && n[2] > 0 && n[3] > 0; k++) {
+        drawing->low[k]  = n[k];
+        drawing->high[k] = n[k] + n[k + 2];
     }
 }
 
 bool svg_read(SvgDrawing *drawing, const char *bytes, size_t length)
 {
-    static const XML_Memory_Handling_Suite memory = {get_block, resize_block, drop_block};
-    expat_arena                                   = drawing->arena;
-    Reader *reader                                = arena_new(drawing->arena, Reader);
-    *reader = (Reader){.drawing = drawing, .parser = XML_ParserCreate_MM(NULL, &memory, NULL)};
-    reader->states[0] = (State){.map = {{1, 0, 0, 1, 0, 0}}, .filled = true, .rule = FILL_NONZERO};
+    Reader reader   = {.drawing = drawing, .tree = {.arena = drawing->arena}, .line = 1};
     drawing->low[0] = drawing->low[1] = 1;
     drawing->high[0] = drawing->high[1] = 0;
-    XML_SetUserData(reader->parser, reader);
-    XML_SetElementHandler(reader->parser, begin_element, end_element);
-    bool good = length <= INT32_MAX &&
-                XML_Parse(reader->parser, bytes, (int)length, XML_TRUE) == XML_STATUS_OK;
-    if (!good) {
-        drawing->fault      = reader->fault ? reader->fault : xml_fault(reader->parser);
-        drawing->fault_line = line_of(reader);
+    if (!svg_tree_read(&reader.tree, bytes, length)) {
+        drawing->fault      = reader.tree.fault;
+        drawing->fault_line = reader.tree.fault_line;
+        return false;
     }
-    XML_ParserFree(reader->parser);
-    return good;
+    read_view(&reader);
+    if (reader.tree.unknown_rules > 0) {
+        reader.line = reader.tree.unknown_rules;
+        note(&reader, "rules of `style` for more than names, classes and ids");
+    }
+    enter(&reader, reader.tree.root,
+          (State){.map    = {{1, 0, 0, 1, 0, 0}},
+                  .fill   = {.drawn = true},
+                  .rule   = FILL_NONZERO,
+                  .stroke = {.width = 1, .miter_limit = 4}});
+    drawing->fault      = reader.fault;
+    drawing->fault_line = reader.fault_line;
+    return !reader.fault;
 }

@@ -1,8 +1,8 @@
 /*
  * svg.h: drawings in SVG as contours with colours.
  *
- * Filled shapes are read: paths, rectangles, circles, ellipses and polygons, in groups with transforms.
- * What else is drawn is left out, and noted with its line.
+ * Areas and strokes are read: of paths, rectangles, circles, ellipses, lines and polygons, in groups with
+ * transforms, styled by rules, and used again.  What else is drawn is left out, and noted with its line.
  */
 #ifndef KRS_SVG_H
 #define KRS_SVG_H

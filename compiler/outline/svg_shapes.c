@@ -111,36 +111,82 @@ static void mapped(const SvgPen *pen, const double p[2], double q[2])
     q[1]            = m[1] * p[0] + m[3] * p[1] + m[5];
 }
 
-static void pen_move(SvgPen *pen, const double to[2])
+/* Of the trail.  What follows a `Z` begins where that contour did. */
+static Path *begin_subpath(SvgPen *pen, const double at[2])
+{
+    const double *m     = pen->map.m;
+    double        scale = sqrt(fabs(m[0] * m[3] - m[1] * m[2]));
+    SvgSubpath    sub   = {
+             .path = {.arena = pen->path.arena, .tolerance = pen->path.tolerance / fmax(scale, 1e-9)}};
+    path_move(&sub.path, at);
+    array_push(pen->path.arena, pen->trail, sub);
+    return &pen->trail->items[pen->trail->count - 1].path;
+}
+
+static Path *subpath(SvgPen *pen)
+{
+    if (!pen->trail || pen->trail->count == 0)
+        return NULL;
+    SvgSubpath *sub = &pen->trail->items[pen->trail->count - 1];
+    if (sub->closed) {
+        const double start[2] = {sub->path.start[0], sub->path.start[1]};
+        begin_subpath(pen, start);
+        sub = &pen->trail->items[pen->trail->count - 1];
+    }
+    sub->drawn = true;
+    return &sub->path;
+}
+
+void pen_move(SvgPen *pen, const double to[2])
 {
     double q[2];
     mapped(pen, to, q);
     path_move(&pen->path, q);
+    if (pen->trail)
+        begin_subpath(pen, to);
 }
 
-static void pen_line(SvgPen *pen, const double to[2])
+void pen_line(SvgPen *pen, const double to[2])
 {
     double q[2];
+    Path  *trail = subpath(pen);
     mapped(pen, to, q);
     path_line(&pen->path, q);
+    if (trail)
+        path_line(trail, to);
 }
 
-static void pen_quadratic(SvgPen *pen, const double via[2], const double to[2])
+void pen_quadratic(SvgPen *pen, const double via[2], const double to[2])
 {
     double p[2], q[2];
+    Path  *trail = subpath(pen);
     mapped(pen, via, p);
     mapped(pen, to, q);
     path_quadratic(&pen->path, p, q);
+    if (trail)
+        path_quadratic(trail, via, to);
 }
 
-static void pen_cubic(SvgPen *pen, const double first[2], const double second[2],
-                      const double to[2])
+void pen_cubic(SvgPen *pen, const double first[2], const double second[2], const double to[2])
 {
     double p[2], q[2], r[2];
+    Path  *trail = subpath(pen);
     mapped(pen, first, p);
     mapped(pen, second, q);
     mapped(pen, to, r);
     path_cubic(&pen->path, p, q, r);
+    if (trail)
+        path_cubic(trail, first, second, to);
+}
+
+void pen_close(SvgPen *pen)
+{
+    Path *trail = subpath(pen);
+    path_close(&pen->path);
+    if (!trail)
+        return;
+    path_close(trail);
+    pen->trail->items[pen->trail->count - 1].closed = true;
 }
 
 /* ---- arcs ---- */
@@ -269,6 +315,7 @@ static void draw_piece(PathReader *reader, char letter, double *n, int count)
         memcpy(reader->control, n, sizeof to);
         break;
     case 'A': draw_arc_between(pen, reader->at, n); break;
+    case 'Z': pen_close(pen); break;
     default: pen_line(pen, to); break;
     }
     memcpy(reader->at, to, sizeof to);
@@ -332,7 +379,7 @@ void svg_ellipse(SvgPen *pen, const double center[2], const double radii[2])
     double start[2] = {center[0] + radii[0], center[1]};
     pen_move(pen, start);
     draw_arc(pen, &arc, start);
-    path_close(&pen->path);
+    pen_close(pen);
 }
 
 void svg_rectangle(SvgPen *pen, const double corner[2], const double size[2], const double radii[2])
@@ -352,10 +399,10 @@ void svg_rectangle(SvgPen *pen, const double corner[2], const double size[2], co
         if (rx > 0 && ry > 0)
             draw_arc(pen, &arc, NULL);
     }
-    path_close(&pen->path);
+    pen_close(pen);
 }
 
-bool svg_polygon(SvgPen *pen, const char *points)
+bool svg_polygon(SvgPen *pen, const char *points, bool closed)
 {
     double p[2];
     for (bool first = true; svg_number(&points, &p[0]); first = false) {
@@ -366,6 +413,8 @@ bool svg_polygon(SvgPen *pen, const char *points)
         else
             pen_line(pen, p);
     }
+    if (closed && pen->path.curves.count > 0)
+        pen_close(pen);
     path_close(&pen->path);
     return true;
 }

@@ -11,11 +11,30 @@ typedef struct SvgMap {
     double m[6];
 } SvgMap;
 
+/* What is drawn from one `M` to the next, before the map, for strokes. */
+typedef struct SvgSubpath {
+    Path path;
+    bool drawn, closed; /* something follows its first point; it ends with `Z` */
+} SvgSubpath;
+
+typedef struct SvgTrail {
+    SvgSubpath *items;
+    size_t      count, capacity;
+} SvgTrail;
+
 /* A path that is drawn behind a map. */
 typedef struct SvgPen {
-    Path   path;
-    SvgMap map;
+    Path      path;
+    SvgMap    map;
+    SvgTrail *trail; /* gets what is drawn; or NULL */
 } SvgPen;
+
+void pen_move(SvgPen *pen, const double to[2]);
+void pen_line(SvgPen *pen, const double to[2]);
+void pen_quadratic(SvgPen *pen, const double via[2], const double to[2]);
+void pen_cubic(SvgPen *pen, const double first[2], const double second[2], const double to[2]);
+/* Ends a contour where it began. */
+void pen_close(SvgPen *pen);
 
 /* The next number of a list, whose elements are apart by blanks or a comma; false: there is none. */
 bool svg_number(const char **text, double *number);
@@ -31,6 +50,6 @@ bool svg_path(SvgPen *pen, const char *text);
 void svg_rectangle(SvgPen *pen, const double corner[2], const double size[2],
                    const double radii[2]);
 void svg_ellipse(SvgPen *pen, const double center[2], const double radii[2]);
-bool svg_polygon(SvgPen *pen, const char *points);
+bool svg_polygon(SvgPen *pen, const char *points, bool closed);
 
 #endif

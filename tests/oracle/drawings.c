@@ -226,7 +226,8 @@ static void random_files(void **state)
     static const char whole[] =
         "<svg viewBox='0 0 9 9'><g fill='red' transform='rotate(3)'>"
         "<path d='M1 2c3-4 5 6 7,8s1 2 3 4a5 6 7 0 1 8 9zq1 2 3 4t5 6v7h8'/>"
-        "<polygon points='1,2 3,4 5,6'/></g></svg>";
+        "<style>.a{stroke:red;stroke-dasharray:1 2}#b,g>c{fill:none}</style>"
+        "<polygon class='a' id='b' points='1,2 3,4 5,6'/></g><use href='#b' x='1'/></svg>";
     Bench *bench = *state;
     for (int i = 0; i < 2000; i++) {
         char text[sizeof whole];
@@ -239,11 +240,280 @@ static void random_files(void **state)
     }
 }
 
+/* ---- strokes ---- */
+
+enum { STROKES = 60, STROKE_POINTS = 400, MOST_POINTS = 9 };
+
+static double to_segment(const double a[2], const double b[2], const double p[2])
+{
+    double dx = b[0] - a[0], dy = b[1] - a[1];
+    double t = ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / fmax(dx * dx + dy * dy, 1e-300);
+    t        = fmin(fmax(t, 0), 1);
+    return hypot(p[0] - a[0] - t * dx, p[1] - a[1] - t * dy);
+}
+
+/* How far a point is within the rectangle about a segment, lengthened at both ends. */
+static double in_bar(const double a[2], const double b[2], double radius, double more,
+                     const double p[2])
+{
+    double length = hypot(b[0] - a[0], b[1] - a[1]);
+    double u[2]   = {(b[0] - a[0]) / length, (b[1] - a[1]) / length};
+    double x      = (p[0] - a[0]) * u[0] + (p[1] - a[1]) * u[1];
+    double y      = (p[0] - a[0]) * u[1] - (p[1] - a[1]) * u[0];
+    return fmin(radius - fabs(y), fmin(x + more, length + more - x));
+}
+
+/* The same of the corner at b: the half-planes of both outer sides, which `cut` is in front of. */
+static double in_corner(const double a[2], const double b[2], const double c[2], double radius,
+                        bool miter, double limit, const double p[2])
+{
+    double la = hypot(b[0] - a[0], b[1] - a[1]), lc = hypot(c[0] - b[0], c[1] - b[1]);
+    double u[2] = {(b[0] - a[0]) / la, (b[1] - a[1]) / la};
+    double v[2] = {(c[0] - b[0]) / lc, (c[1] - b[1]) / lc};
+    double side = u[0] * v[1] - u[1] * v[0] > 0 ? -1 : 1;
+    double q[2] = {p[0] - b[0], p[1] - b[1]};
+    /* Between the two ends of radii, seen from b. */
+    double behind_a = q[0] * u[0] + q[1] * u[1], before_c = -(q[0] * v[0] + q[1] * v[1]);
+    double out_a     = side * (-q[0] * u[1] + q[1] * u[0]);
+    double out_c     = side * (-q[0] * v[1] + q[1] * v[0]);
+    double half      = 0.5 * acos(fmin(fmax(-(u[0] * v[0] + u[1] * v[1]), -1), 1));
+    double middle[2] = {u[0] - v[0], u[1] - v[1]}, size = hypot(middle[0], middle[1]);
+    double wedge = fmin(behind_a, before_c);
+    double sharp = fmin(radius - out_a, radius - out_c);
+    double bevel = radius * sin(half) - (q[0] * middle[0] + q[1] * middle[1]) / size;
+    if (wedge < -1e-9)
+        return -HUGE_VAL;
+    return miter && 1 / sin(half) <= limit ? sharp : bevel;
+}
+
+/* Random open lines with random ends and corners.  `sure` is how far the point is from deciding. */
+static bool stroke_contains(double (*points)[2], int count, double radius, int join, int cap,
+                            const double p[2], double *sure)
+{
+    double deepest = -HUGE_VAL;
+    *sure          = HUGE_VAL;
+    for (int i = 0; i + 1 < count; i++) {
+        double bar = in_bar(points[i], points[i + 1], radius, 0, p);
+        deepest    = fmax(deepest, bar);
+        *sure      = fmin(*sure, fabs(bar));
+    }
+    for (int i = 0; i < count; i++) {
+        bool   end = i == 0 || i + 1 == count;
+        double at  = -HUGE_VAL;
+        if (end ? cap == 1 : join == 1)
+            at = radius - hypot(p[0] - points[i][0], p[1] - points[i][1]);
+        else if (!end)
+            at = in_corner(points[i - 1], points[i], points[i + 1], radius, join == 0, 4, p);
+        else if (cap == 2) {
+            const double *next = points[i == 0 ? 1 : i - 1];
+            double        ends[2][2];
+            double        length = hypot(points[i][0] - next[0], points[i][1] - next[1]);
+            for (int k = 0; k < 2; k++) {
+                ends[0][k] = points[i][k];
+                ends[1][k] = points[i][k] + radius * (points[i][k] - next[k]) / length;
+            }
+            at = in_bar(ends[0], ends[1], radius, 0, p);
+        }
+        deepest = fmax(deepest, at);
+        *sure   = fmin(*sure, fabs(at));
+    }
+    return deepest > 0;
+}
+
+static void judge_stroke(const SvgDrawing *drawing, const char *element, double (*points)[2],
+                         int count, double radius, int join, int cap, Bench *bench)
+{
+    Outline outline;
+    double  at[2];
+    int     in = 0;
+    assert_int_equal(drawing->figures.count, 1);
+    const SvgFigure *figure = &drawing->figures.items[0];
+    if (outline_make(&outline, &figure->curves, figure->rule, &bench->arena, &bench->arena, at) !=
+        OUTLINE_GOOD)
+        fail_msg("%s: no outline", element);
+    for (int i = 0; i < STROKE_POINTS; i++) {
+        double p[2] = {random_between(&bench->random, 0, 100),
+                       random_between(&bench->random, 0, 100)};
+        double sure;
+        bool   inside = stroke_contains(points, count, radius, join, cap, p, &sure);
+        in += inside;
+        if (sure > 1e-3 && inside != (distance_to(&outline, p) < 0))
+            fail_msg("%s: %g %g is on the wrong side", element, p[0], p[1]);
+    }
+    assert_true(in > 0);
+}
+
+static void strokes_of_lines(void **state)
+{
+    static const char *const joins[] = {"miter", "round", "bevel"};
+    static const char *const caps[]  = {"butt", "round", "square"};
+    Bench                   *bench   = *state;
+    for (int i = 0; i < STROKES; i++) {
+        double     points[MOST_POINTS][2], radius = random_between(&bench->random, 1, 8);
+        int        count = 2 + random_below(&bench->random, MOST_POINTS - 1), length = 0;
+        int        join = random_below(&bench->random, 3), cap = random_below(&bench->random, 3);
+        char       list[512], element[1024];
+        SvgDrawing drawing;
+        for (int k = 0; k < count; k++) {
+            points[k][0] = 1 + random_below(&bench->random, 98);
+            points[k][1] = k + 1 + random_below(&bench->random, 90); /* none twice */
+            if (k > 0 && points[k][0] == points[k - 1][0])
+                points[k][0] += 0.5;
+            length += snprintf(list + length, sizeof list - (size_t)length, "%g %g ", points[k][0],
+                               points[k][1]);
+        }
+        snprintf(element, sizeof element,
+                 "<style>.%s {stroke-linejoin: %s} path { stroke-linecap: %s; fill: none }</style>"
+                 "<g stroke='red' stroke-width='%.17g'><path class='a %s' d='M%s'/></g>",
+                 joins[join], joins[join], caps[cap], 2 * radius, joins[join], list);
+        read_drawing(element, &drawing, &bench->arena);
+        judge_stroke(&drawing, element, points, count, radius, join, cap, bench);
+    }
+}
+
+/* Round strokes of curves are all that is near to the curve. */
+static void strokes_of_curves(void **state)
+{
+    enum { FINE = 4000 };
+    Bench *bench = *state;
+    for (int i = 0; i < STROKES / 2; i++) {
+        double     c[8], radius = random_between(&bench->random, 0.5, 12);
+        char       element[512];
+        Outline    outline;
+        double     at[2];
+        SvgDrawing drawing;
+        for (int k = 0; k < 8; k++)
+            c[k] = random_between(&bench->random, 10, 90);
+        snprintf(element, sizeof element,
+                 "<path fill='none' stroke='black' stroke-linecap='round' stroke-linejoin='round' "
+                 "stroke-width='%.17g' d='M%.17g %.17g C%.17g %.17g %.17g %.17g %.17g %.17g'/>",
+                 2 * radius, c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7]);
+        read_drawing(element, &drawing, &bench->arena);
+        const SvgFigure *figure = &drawing.figures.items[0];
+        if (outline_make(&outline, &figure->curves, figure->rule, &bench->arena, &bench->arena,
+                         at) != OUTLINE_GOOD)
+            fail_msg("%s: no outline", element);
+        for (int n = 0; n < STROKE_POINTS / 4; n++) {
+            double p[2]    = {random_between(&bench->random, 0, 100),
+                              random_between(&bench->random, 0, 100)};
+            double nearest = HUGE_VAL, before[2] = {c[0], c[1]};
+            for (int k = 1; k <= FINE; k++) {
+                double t = (double)k / FINE, u = 1 - t, q[2];
+                for (int m = 0; m < 2; m++)
+                    q[m] = u * u * u * c[m] + 3 * u * u * t * c[2 + m] + 3 * u * t * t * c[4 + m] +
+                           t * t * t * c[6 + m];
+                nearest = fmin(nearest, to_segment(before, q, p));
+                memcpy(before, q, sizeof q);
+            }
+            if (fabs(nearest - radius) > 2e-3 &&
+                (nearest < radius) != (distance_to(&outline, p) < 0))
+                fail_msg("%s: %g %g is on the wrong side", element, p[0], p[1]);
+        }
+    }
+}
+
+static bool dashes(double x, double y, double more)
+{
+    return fabs(y - 50) <= 5 + more && x > 10 && x < 90 && fmod(x - 10 + 3, 15) < 10;
+}
+
+static bool ring_by_stroke(double x, double y, double more)
+{
+    double r = hypot(x - 50, y - 50);
+    return fabs(r - 30) <= 10 + more;
+}
+
+static bool stretched_ring(double x, double y, double more)
+{
+    double r = hypot((x - 50) / 2, y - 50);
+    return fabs(r - 15) <= 5 + more;
+}
+
+/* Styles, references and placements of the same shapes. */
+static const Drawn styled_shapes[] = {
+    {"<style>.a { fill: none; stroke: red }</style><path class='a' d='M1 1L9 1L9 9'/>", NULL, 1},
+    {"<style>/* .b {} */ #x, .c .d { fill: none }</style><rect id='x' width='9' height='9'/>"
+     "<g class='b c'><rect class='d' width='9' height='9'/></g>",
+     NULL, 0},
+    {"<style>g > rect { fill: none }</style><g><a><rect x='10' y='20' width='60' height='30'/></a>"
+     "</g><g><rect width='9' height='9'/></g>",
+     rectangle, 1},
+    {"<style>rect { fill: none } .k { fill: red } #i { fill: none !important }</style>"
+     "<rect class='k' x='10' y='20' width='60' height='30'/><rect id='i' style='fill:red' "
+     "width='9' "
+     "height='9'/>",
+     rectangle, 1},
+    {"<use href='#r' x='10'/><defs><rect id='r' y='20' width='60' height='30'/></defs>", rectangle,
+     1},
+    {"<symbol id='s' viewBox='0 0 6 3'><rect width='6' height='3'/></symbol>"
+     "<use xlink:href='#s' x='10' y='20' width='60' height='30' xmlns:xlink='x'/>",
+     rectangle, 1},
+    {"<use href='#u'/><use id='u' href='#u'/>", NULL, 0},
+    {"<circle cx='50' cy='50' r='30' fill='none' stroke='red' stroke-width='20'/>", ring_by_stroke,
+     1},
+    {"<g transform='translate(50 50) scale(2 1)'><circle r='15' fill='none' stroke='red' "
+     "stroke-width='10'/></g>",
+     stretched_ring, 1},
+    {"<line x1='10' y1='50' x2='90' y2='50' stroke='red' stroke-width='10' stroke-dasharray='10 5' "
+     "stroke-dashoffset='3'/>",
+     dashes, 1},
+    {"<circle cx='50' cy='40' r='30' stroke='none' visibility='hidden'/>"
+     "<circle cx='50' cy='40' r='30' stroke='red' stroke-width='0'/>",
+     circle, 1},
+    {"<path d='M50 40h0' stroke-linecap='round' stroke='red' stroke-width='60'/>", circle, 1},
+};
+
+static void styles_and_references(void **state)
+{
+    Bench *bench = *state;
+    for (size_t i = 0; i < sizeof styled_shapes / sizeof *styled_shapes; i++) {
+        SvgDrawing drawing;
+        read_drawing(styled_shapes[i].element, &drawing, &bench->arena);
+        if ((int)drawing.figures.count != styled_shapes[i].figures)
+            fail_msg("%s: %zu figures", styled_shapes[i].element, drawing.figures.count);
+        if (styled_shapes[i].contains &&
+            count_wrong(&styled_shapes[i], &drawing.figures.items[0], 0, bench) > 0)
+            fail_msg("%s: points are on the wrong side", styled_shapes[i].element);
+    }
+}
+
+static void gradients_have_their_mean(void **state)
+{
+    static const struct {
+        const char *stops;
+        uint32_t    rgb;
+    } rows[] = {
+        {"<stop stop-color='#ff0000'/><stop offset='1' stop-color='#0000ff'/>", 0x800080},
+        {"<stop offset='50%' style='stop-color:#000000'/><stop offset='50%' stop-color='white'/>",
+         0x808080},
+        {"<stop offset='.2' stop-color='#000000'/><stop offset='.6' stop-color='#640000'/>",
+         0x3c0000}, /* 0.4 * 50 + 0.4 * 100 */
+        {"<stop stop-color='#00ff00' stop-opacity='0'/><stop offset='1' stop-color='#ff0000'/>",
+         0xff0000},
+    };
+    Bench *bench = *state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char       element[512];
+        SvgDrawing drawing;
+        snprintf(element, sizeof element,
+                 "<linearGradient id='a'>%s</linearGradient><radialGradient id='b' href='#a'/>"
+                 "<rect width='9' height='9' fill='url(#b)'/>",
+                 rows[i].stops);
+        read_drawing(element, &drawing, &bench->arena);
+        assert_int_equal(drawing.figures.items[0].rgb, rows[i].rgb);
+        assert_int_equal(drawing.notes.count, 1);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(shapes, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(colors, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(strokes_of_lines, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(strokes_of_curves, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(styles_and_references, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(gradients_have_their_mean, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(broken_files, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(random_files, bench_start, bench_stop),
     };
