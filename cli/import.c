@@ -74,6 +74,7 @@ KrsStatus command_import(Options *options)
     const char *path   = options->files.items[0];
     const char *slash  = strrchr(path, '/');
     Import      import = {.path = path, .name = slash ? slash + 1 : path, .arena = options->arena};
+    import.keep_going  = options->keep_going;
     import.output      = options->outputs.count > 0 ? options->outputs.items[0] : NULL;
     if (!import_knows(path))
         return say_usage(options, "`%s` ends in none of %s%s", path, import_endings(),
@@ -83,6 +84,8 @@ KrsStatus command_import(Options *options)
         return status;
     stage_enter(STAGE_COMPILE);
     status = import_file(&import);
+    for (size_t i = 0; i < import.left_out.count; i++)
+        say("left out: %s", import.left_out.items[i].words);
     if (status == KRS_BAD_SCENE && import.refusal.length > 0)
         say("%s", import.refusal.bytes);
     return status == KRS_OK ? write_scene(options, &import.scene) : say_status(status, path);

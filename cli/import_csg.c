@@ -19,6 +19,7 @@
 typedef struct CsgReader {
     WordReader words;
     int        depth;
+    bool       left_out; /* the last node is, by --keep-going: it is not nothing, but unknown */
 } CsgReader;
 
 static bool deeper(CsgReader *reader)
@@ -150,8 +151,19 @@ static const struct {
     {"hull", csg_hull},
     {"minkowski", csg_minkowski},
     {"offset", csg_offset},
+    {"text", csg_text},
 };
 enum { NODES = sizeof nodes / sizeof *nodes };
+
+/* Of which scenes have nothing like it. */
+static const struct {
+    const char *name, *why;
+} unknown[] = {
+    {"import", "scenes have no meshes"},
+    {"surface", "scenes have no fields of heights from a file"},
+    {"projection", "scenes have no shadows of solids as figures"},
+    {"resize", "the exact size of a part is not known here; write `scale`"},
+};
 
 static bool read_value(CsgReader *reader, CsgValue *value)
 {
@@ -164,6 +176,7 @@ static bool read_value(CsgReader *reader, CsgValue *value)
         return true;
     }
     value->kind   = words->word.kind == IMPORT_WORD_STRING ? CSG_STRING : CSG_TRUTH;
+    value->string = words->word.text;
     value->number = truth;
     if (truth || word_is(words, "false") || words->word.kind == IMPORT_WORD_STRING) {
         words_advance(words);
@@ -229,8 +242,13 @@ static bool read_nodes(CsgReader *reader, CsgNode *node)
                 return false;
             continue;
         }
+        reader->left_out = false;
         if (!read_node(reader, &part))
             return false;
+        if (!part && reader->left_out) {
+            reader->left_out = false;
+            continue;
+        }
         node->lacks       = node->lacks || !part;
         node->lacks_first = node->lacks_first || (first && !part);
         first             = false;
@@ -250,6 +268,10 @@ static bool build_node(const CsgNode *node, Part **part)
         if (strcmp(nodes[i].name, node->name) == 0)
             return nodes[i].build(node, part);
     }
+    for (size_t i = 0; i < sizeof unknown / sizeof *unknown; i++)
+        if (strcmp(unknown[i].name, node->name) == 0)
+            return import_refuse(node->import, node->line, "`%s` is not translated: %s", node->name,
+                                 unknown[i].why);
     const char *nearest = nearest_name(node->name, names, NODES);
     return import_refuse(node->import, node->line, "`%.40s` is not translated%s%s%s", node->name,
                          nearest ? "; is it `" : "", nearest ? nearest : "", nearest ? "`?" : "");
@@ -276,7 +298,10 @@ static bool read_node(CsgReader *reader, Part **part)
         return false;
     }
     reader->depth--;
-    return build_node(&node, part);
+    if (import_was_left_out(node.import, node.line))
+        return reader->left_out = true;
+    return build_node(&node, part) ||
+           (reader->left_out = import_leaves_out(node.import, node.line));
 }
 
 /* OpenSCAD shows plane figures a unit thick. */

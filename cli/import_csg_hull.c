@@ -9,7 +9,7 @@
 #include "cli/import_csg_node.h"
 #include "compiler/base/vec.h"
 
-enum { MOST_POINTS = 4096, MOST_PATHS = 500 };
+enum { MOST_POINTS = 4096, MOST_PATHS = 500, MOST_BALLS = 200, MOST_CORNERS = 2000 };
 
 /* ---- polygons ---- */
 
@@ -19,9 +19,11 @@ static Part *polygon_part(const CsgNode *node, double (*points)[3], size_t count
     for (size_t i = 0; i < count; i++)
         text_format(&list, "%s%s", i == 0 ? "" : ", ",
                     import_vector_text(node->import, points[i], 2));
-    Part *part   = part_shape(node->import, node->line, "polygon", "polygon([%s])", list.bytes);
-    part->figure = true;
-    part->balls  = (PartBalls){points, count, count, 0};
+    Part *part    = part_shape(node->import, node->line, "polygon", "polygon([%s])", list.bytes);
+    part->figure  = true;
+    part->balls   = (PartBalls){points, count, count, 0, NULL};
+    part->corners = points;
+    part->corner_count = count;
     return part;
 }
 
@@ -96,6 +98,8 @@ static bool face_is_outside(double (*const points)[3], size_t count, const doubl
     return !(above && below);
 }
 
+static bool collect(Import *import, const Part *part, const Place *outer, PartBalls *all);
+
 static Part *hull_part(const CsgNode *node, const PartBalls *balls)
 {
     Text list = {.arena = node->import->arena};
@@ -105,10 +109,13 @@ static Part *hull_part(const CsgNode *node, const PartBalls *balls)
                     : i % 4 ? ", "
                             : ",\n    ",
                     import_vector_text(node->import, balls->points[i], 3));
-    Part *part  = part_shape(node->import, node->line, "hull",
-                            balls->radius > 0 ? "hull([%s], %s)" : "hull([%s])", list.bytes,
-                             import_number_text(node->import, balls->radius));
-    part->balls = *balls;
+    const char *radius = balls->radii
+                             ? import_vector_text(node->import, balls->radii, (int)balls->count)
+                             : import_number_text(node->import, balls->radius);
+    Part       *part   = part_shape(node->import, node->line, "hull",
+                            balls->radius > 0 ? "hull([%s], radius: %s)" : "hull([%s])", list.bytes,
+                                    radius);
+    part->balls        = *balls;
     return part;
 }
 
@@ -132,19 +139,56 @@ bool csg_polyhedron(const CsgNode *node, Part **part)
             return import_refuse(node->import, node->line,
                                  "a polyhedron that is not convex is not translated");
     }
-    PartBalls balls = {points, count, count, 0};
+    PartBalls balls = {points, count, count, 0, NULL};
     *part           = hull_part(node, &balls);
     return true;
 }
 
 /* ---- hulls ---- */
 
-/* Adds the balls of which a part is the hull; false where it is something else. */
+static void make_room(Import *import, PartBalls *all, size_t more)
+{
+    if (all->count + more <= all->capacity)
+        return;
+    all->capacity     = 2 * (all->count + more);
+    double(*wider)[3] = arena_alloc(import->arena, all->capacity, sizeof *wider);
+    double *radii     = arena_new_array(import->arena, double, all->capacity);
+    if (all->count > 0) {
+        memcpy(wider, all->points, all->count * sizeof *wider);
+        memcpy(radii, all->radii, all->count * sizeof *radii);
+    }
+    all->points = wider;
+    all->radii  = radii;
+}
+
+/* What stands on a figure, as points: its ends. */
+static bool collect_column(Import *import, const PartColumn *column, const Place *place,
+                           PartBalls *all)
+{
+    PartBalls ends = {0};
+    Place     here = place_identity();
+    if (!collect(import, column->figure, &here, &ends) || ends.radius > 0)
+        return false;
+    make_room(import, all, 2 * ends.count);
+    for (size_t i = 0; i < 2 * ends.count; i++) {
+        double at[3] = {ends.points[i / 2][0], ends.points[i / 2][1],
+                        (i % 2 ? 0.5 : -0.5) * column->height};
+        place_apply(place, at, all->points[all->count]);
+        all->radii[all->count++] = 0;
+    }
+    return all->count <= MOST_POINTS;
+}
+
+/* Adds the balls of which a part is the hull; false where it is something else.  `radius` is that of the
+   largest. */
 static bool collect(Import *import, const Part *part, const Place *outer, PartBalls *all)
 {
     Place  place  = place_chain(&part->place, outer);
     double factor = place_factor(&place), radius = part->balls.radius * factor;
-    if (part->methods || part->join != PART_UNION || (part->shape && !part->balls.points))
+    if (part->methods && part->column.figure)
+        return collect_column(import, &part->column, &place, all);
+    if (part->methods || (part->join != PART_UNION && part->join != PART_HULL) ||
+        (part->shape && !part->balls.points))
         return false;
     for (size_t i = 0; i < part->parts.count; i++)
         if (!collect(import, part->parts.items[i], &place, all))
@@ -153,19 +197,24 @@ static bool collect(Import *import, const Part *part, const Place *outer, PartBa
         return true;
     if (part->balls.radius > 0 && factor == 0)
         return false;
-    if (all->count > 0 && fabs(radius - all->radius) > 1e-9 * radius)
-        return false;
-    if (all->count + part->balls.count > all->capacity) {
-        all->capacity     = 2 * (all->count + part->balls.count);
-        double(*wider)[3] = arena_alloc(import->arena, all->capacity, sizeof *wider);
-        if (all->count > 0)
-            memcpy(wider, all->points, all->count * sizeof *wider);
-        all->points = wider;
+    make_room(import, all, part->balls.count);
+    for (size_t i = 0; i < part->balls.count; i++) {
+        double own = part->balls.radii ? part->balls.radii[i] * factor : radius;
+        place_apply(&place, part->balls.points[i], all->points[all->count]);
+        all->radii[all->count++] = own;
+        all->radius              = fmax(all->radius, own);
     }
-    for (size_t i = 0; i < part->balls.count; i++)
-        place_apply(&place, part->balls.points[i], all->points[all->count++]);
-    all->radius = radius;
     return all->count <= MOST_POINTS;
+}
+
+/* Whether all balls have one size; then `radii` is not needed. */
+static bool are_of_one_size(PartBalls *balls)
+{
+    for (size_t i = 0; i < balls->count; i++)
+        if (fabs(balls->radii[i] - balls->radius) > 1e-9 * balls->radius)
+            return false;
+    balls->radii = NULL;
+    return true;
 }
 
 static int compare_points(const void *left, const void *right)
@@ -235,6 +284,33 @@ static bool hull_of_figures(const CsgNode *node, PartBalls *balls, Part **part)
     return true;
 }
 
+/* Whether something in it is round, and stands for points that OpenSCAD has for it. */
+static bool has_columns(const Part *part)
+{
+    bool found = part->column.figure && part->column.figure->figure_radius > 0;
+    found      = found || (part->stem && strcmp(part->stem, "cone") == 0);
+    for (size_t i = 0; i < part->parts.count && !found; i++)
+        found = has_columns(part->parts.items[i]);
+    return found;
+}
+
+/* The hull of the parts themselves, where the language knows it; NULL: it does not. */
+static Part *hull_of_parts(const CsgNode *node, const Part *joined)
+{
+    Import trial = {
+        .path = node->import->path, .name = node->import->name, .arena = node->import->arena};
+    PartWriter writer = {.import = &trial};
+    Part      *hull   = part_new(node->import, node->line, "hull");
+    trial.scene = trial.refusal = (Text){.arena = trial.arena};
+    hull->join                  = PART_HULL;
+    for (size_t i = 0; i < node->parts->parts.count; i++)
+        part_add(node->import, hull, node->parts->parts.items[i]);
+    return part_show(&writer, hull, joined->figure ? ".extrude(1)" : "") &&
+                   import_compiles(trial.scene.bytes)
+               ? hull
+               : NULL;
+}
+
 bool csg_hull(const CsgNode *node, Part **part)
 {
     Part     *joined = NULL;
@@ -244,9 +320,22 @@ bool csg_hull(const CsgNode *node, Part **part)
         return true;
     if (!csg_joined(node, node->parts->figure, &joined))
         return false;
-    if (!collect(node->import, joined, &here, &balls))
-        return import_refuse(node->import, node->line,
-                             "a hull is translated if it is of points, or of balls of one size");
+    bool known = collect(node->import, joined, &here, &balls);
+    bool equal = known && are_of_one_size(&balls);
+    if (!(equal && (joined->figure || !has_columns(joined)))) {
+        *part = hull_of_parts(node, joined);
+        if (*part) {
+            (*part)->balls = balls;
+            return true;
+        }
+    }
+    if (!known || (!equal && (joined->figure || balls.count > MOST_BALLS)))
+        return import_refuse(
+            node->import, node->line,
+            "a hull is translated if it is of points and balls, or of upright columns");
+    if (known && has_columns(joined))
+        import_note(node->import, node->line,
+                    "in hulls of columns that are not parallel these have OpenSCAD's flat sides");
     if (joined->figure)
         return hull_of_figures(node, &balls, part);
     *part = hull_part(node, &balls);
@@ -256,7 +345,7 @@ bool csg_hull(const CsgNode *node, Part **part)
         here  = place_move(balls.points[0]);
         part_move(*part, &here);
         (*part)->balls = (PartBalls){arena_alloc(node->import->arena, 1, sizeof *balls.points), 1,
-                                     1, balls.radius};
+                                     1, balls.radius, NULL};
     }
     return true;
 }
@@ -274,44 +363,228 @@ static Part *grown(const CsgNode *node, Part *part, double radius)
     return around;
 }
 
+/* An upright column, where it is only moved and turned about z: its figure as it is seen from above. */
+static bool upright_column(Import *import, const Part *part, PartColumn *column, double shift[3])
+{
+    const Place *place = &part->place;
+    if (part->methods && !part->column.figure)
+        return false;
+    if (!part->column.figure) {
+        PartColumn inner;
+        if (part->shape || part->parts.count != 1 || part->join != PART_UNION ||
+            !upright_column(import, part->parts.items[0], &inner, shift))
+            return false;
+        *column = inner;
+    } else {
+        *column  = part->column;
+        shift[2] = 0;
+    }
+    bool upright = place->rows[0][2] == 0 && place->rows[1][2] == 0 && place->rows[2][0] == 0 &&
+                   place->rows[2][1] == 0 && place->rows[2][2] > 0;
+    Place flat      = *place;
+    flat.rows[2][2] = 1;
+    flat.shift[2]   = 0;
+    shift[2]        = shift[2] * place->rows[2][2] + place->shift[2];
+    column->figure  = part_around(import, part->line, "footprint", column->figure);
+    column->height *= place->rows[2][2];
+    part_move(column->figure, &flat);
+    return upright;
+}
+
+/* Its radius, where a figure is a circle; `center` is its middle. */
+static double circle_of(Import *import, const Part *figure, double center[3])
+{
+    PartBalls balls = {0};
+    Place     here  = place_identity();
+    if (!collect(import, figure, &here, &balls) || balls.count != 1)
+        return 0;
+    memcpy(center, balls.points[0], 3 * sizeof *center);
+    return balls.radius;
+}
+
+/* Two columns, one of them round: what stands on the sum of their figures, as high as both. */
+static Part *sum_of_columns(const CsgNode *node, const Part *a, const Part *b)
+{
+    PartColumn columns[2];
+    double     shifts[2][3] = {{0}}, center[3] = {0, 0, 0}, height, at[3];
+    if (!upright_column(node->import, a, &columns[0], shifts[0]) ||
+        !upright_column(node->import, b, &columns[1], shifts[1]))
+        return NULL;
+    int    round  = 1;
+    double radius = circle_of(node->import, columns[1].figure, center);
+    if (radius == 0)
+        radius = circle_of(node->import, columns[round = 0].figure, center);
+    if (radius == 0)
+        return NULL;
+    height       = columns[0].height + columns[1].height;
+    Part *figure = grown(node, columns[1 - round].figure, radius);
+    Text  text   = {.arena = node->import->arena};
+    text_format(&text, ".extrude(%s)", import_number_text(node->import, height));
+    Part *sum    = part_around(node->import, node->line, "sum", figure);
+    sum->methods = text.bytes;
+    sum->figure  = false;
+    sum->column  = (PartColumn){figure, height};
+    at[0]        = center[0];
+    at[1]        = center[1];
+    at[2]        = shifts[0][2] + shifts[1][2];
+    Place moved  = place_move(at);
+    part_move(sum, &moved);
+    return sum;
+}
+
+/* Whether a part is the hull of its balls, not some part of it: polygons may be hollow. */
+static bool is_convex(const Part *part)
+{
+    bool polygon = part->shape && strcmp(part->stem, "polygon") == 0;
+    return !polygon && part->parts.count <= 1 &&
+           (part->parts.count == 0 ||
+            (part->join == PART_UNION && is_convex(part->parts.items[0])));
+}
+
+/* Two convex parts: the hull of the sums of their points. */
+static Part *sum_of_hulls(const CsgNode *node, const Part *a, const Part *b)
+{
+    PartBalls one = {0}, other = {0}, sums = {0};
+    Place     here = place_identity();
+    if (a->figure || !is_convex(a) || !is_convex(b) || !collect(node->import, a, &here, &one) ||
+        !collect(node->import, b, &here, &other) || !are_of_one_size(&one) ||
+        !are_of_one_size(&other) || one.count * other.count > MOST_POINTS)
+        return NULL;
+    make_room(node->import, &sums, one.count * other.count);
+    for (size_t i = 0; i < one.count * other.count; i++)
+        add_scaled3(sums.points[sums.count++], one.points[i / other.count], 1,
+                    other.points[i % other.count]);
+    sums.radius = one.radius + other.radius;
+    sums.radii  = NULL;
+    return hull_part(node, &sums);
+}
+
+/* The sum of two parts; NULL: it is not known. */
+static Part *sum_of(const CsgNode *node, Part *a, Part *b)
+{
+    Part *const parts[2] = {a, b};
+    Place       here     = place_identity();
+    for (int i = 1; i >= 0; i--) {
+        PartBalls balls = {0};
+        if (!collect(node->import, parts[i], &here, &balls) || balls.count != 1)
+            continue;
+        Place moved = place_move(balls.points[0]);
+        Part *sum   = balls.radius > 0 ? grown(node, parts[1 - i], balls.radius)
+                                       : part_around(node->import, node->line, "moved", parts[1 - i]);
+        part_move(sum, &moved);
+        return sum;
+    }
+    Part *columns = sum_of_columns(node, a, b);
+    return columns ? columns : sum_of_hulls(node, a, b);
+}
+
 bool csg_minkowski(const CsgNode *node, Part **part)
 {
-    Place here = place_identity();
+    Part *joined = NULL;
     if (!node->parts || node->lacks)
         return true;
-    Part *other = NULL, *joined = NULL;
     if (!csg_joined(node, node->parts->figure, &joined))
         return false;
-    double radius = 0, shift[3] = {0, 0, 0};
-    for (size_t i = 0; i < node->parts->parts.count; i++) {
-        Part     *item  = node->parts->parts.items[i];
-        PartBalls balls = {0};
-        if (collect(node->import, item, &here, &balls) && balls.count == 1 && balls.radius > 0 &&
-            (other || i + 1 < node->parts->parts.count)) {
-            radius += balls.radius;
-            add_scaled3(shift, shift, 1, balls.points[0]);
-        } else if (other) {
-            return import_refuse(node->import, node->line,
-                                 "`minkowski` is translated for sums with spheres or circles");
-        } else {
-            other = item;
-        }
+    *part = node->parts->parts.items[0];
+    for (size_t i = 1; i < node->parts->parts.count && *part; i++)
+        *part = sum_of(node, *part, node->parts->parts.items[i]);
+    return *part ||
+           import_refuse(node->import, node->line,
+                         "`minkowski` is translated for sums with balls, of columns with round"
+                         " ones, and of convex solids with corners");
+}
+
+/* ---- offsets with sharp corners ---- */
+
+/* Corners of a polygon whose sides are moved outwards; false where sides vanish. */
+static bool move_sides(const double (*corners)[3], size_t count, double by, double (*to)[3])
+{
+    double area = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double *a = corners[i], *b = corners[(i + 1) % count];
+        area += a[0] * b[1] - a[1] * b[0];
     }
-    *part = radius > 0 ? grown(node, other, radius) : other;
-    here  = place_move(shift);
-    part_move(*part, &here);
+    by = area < 0 ? -by : by;
+    for (size_t i = 0; i < count; i++) {
+        const double *a = corners[(i + count - 1) % count], *b = corners[i],
+                     *c = corners[(i + 1) % count];
+        double u[2] = {b[0] - a[0], b[1] - a[1]}, v[2] = {c[0] - b[0], c[1] - b[1]};
+        double lu = hypot(u[0], u[1]), lv = hypot(v[0], v[1]);
+        double m[2]  = {u[1] / lu + v[1] / lv, -u[0] / lu - v[0] / lv};
+        double share = 1 + (u[0] * v[0] + u[1] * v[1]) / (lu * lv);
+        if (!(lu > 0 && lv > 0 && share > 1e-9))
+            return false;
+        to[i][0] = b[0] + by * m[0] / share;
+        to[i][1] = b[1] + by * m[1] / share;
+        to[i][2] = 0;
+    }
+    for (size_t i = 0; i < count; i++) {
+        const double *a = corners[i], *b = corners[(i + 1) % count];
+        const double *c = to[i], *d = to[(i + 1) % count];
+        if ((b[0] - a[0]) * (d[0] - c[0]) + (b[1] - a[1]) * (d[1] - c[1]) <= 0)
+            return false;
+    }
     return true;
+}
+
+static double side_of(const double a[3], const double b[3], const double c[3])
+{
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/* Whether no two sides cross. */
+static bool is_simple(const double (*corners)[3], size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = i + 2; k < count; k++) {
+            const double *a = corners[i], *b = corners[i + 1];
+            const double *c = corners[k], *d = corners[(k + 1) % count];
+            if (i == 0 && k + 1 == count)
+                continue;
+            if (side_of(a, b, c) * side_of(a, b, d) < 0 && side_of(c, d, a) * side_of(c, d, b) < 0)
+                return false;
+        }
+    return true;
+}
+
+/* A single polygon or circle, whose sides or whose edge move. */
+static Part *widened(const CsgNode *node, const Part *figure, double by)
+{
+    Part *part = NULL;
+    if (figure->methods)
+        return NULL;
+    if (!figure->shape && figure->parts.count == 1 && figure->join == PART_UNION) {
+        part = widened(node, figure->parts.items[0], by);
+    } else if (figure->figure_radius > 0 && figure->figure_radius + by > 0) {
+        part = part_shape(node->import, node->line, "circle", "circle(%s)",
+                          import_number_text(node->import, figure->figure_radius + by));
+    } else if (figure->corner_count >= 3 && figure->corner_count <= MOST_CORNERS &&
+               is_simple((const double(*)[3])figure->corners, figure->corner_count)) {
+        double(*to)[3] = arena_alloc(node->import->arena, figure->corner_count, sizeof *to);
+        if (move_sides((const double(*)[3])figure->corners, figure->corner_count, by, to) &&
+            is_simple((const double(*)[3])to, figure->corner_count))
+            part = polygon_part(node, to, figure->corner_count);
+    }
+    if (!part || fabs(place_factor(&figure->place) - 1) > 1e-9)
+        return NULL; /* a stretched figure has other distances */
+    part_move(part, &figure->place);
+    return part;
 }
 
 bool csg_offset(const CsgNode *node, Part **part)
 {
     Part  *figure = NULL;
-    double radius;
-    if (!csg_number(node, "r", 0, &radius) || !csg_joined(node, true, &figure) || !figure)
+    double radius, delta, chamfer;
+    if (!csg_number(node, "r", 0, &radius) || !csg_number(node, "delta", 0, &delta) ||
+        !csg_number(node, "chamfer", 0, &chamfer) || !csg_joined(node, true, &figure) || !figure)
         return node->import->refusal.length == 0;
-    if (csg_argument(node, "delta") && radius == 0)
-        return import_refuse(node->import, node->line,
-                             "`offset` by `delta` is not translated; `r` is");
+    if (delta != 0 && radius == 0) {
+        *part = chamfer == 0 ? widened(node, figure, delta) : NULL;
+        return *part ||
+               import_refuse(node->import, node->line,
+                             "`offset` by `delta` is translated for one polygon or circle, whose"
+                             " sides stay, without `chamfer`");
+    }
     *part = radius != 0 ? grown(node, figure, radius) : figure;
     return true;
 }

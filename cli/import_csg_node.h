@@ -12,6 +12,7 @@ typedef enum CsgValueKind { CSG_NUMBER, CSG_TRUTH, CSG_UNDEF, CSG_STRING, CSG_LI
 typedef struct CsgValue {
     CsgValueKind kind;
     double       number; /* of a truth value 0 or 1 */
+    const char  *string;
     struct {
         struct CsgValue *items;
         size_t           count, capacity;
@@ -40,7 +41,7 @@ typedef struct CsgNode {
 typedef bool CsgBuild(const CsgNode *node, Part **part);
 
 CsgBuild csg_cube, csg_sphere, csg_cylinder, csg_polyhedron, csg_square, csg_circle, csg_polygon,
-    csg_linear_extrude, csg_rotate_extrude, csg_hull, csg_minkowski, csg_offset;
+    csg_linear_extrude, csg_rotate_extrude, csg_hull, csg_minkowski, csg_offset, csg_text;
 
 /* NULL: there is none of this name. */
 const CsgValue *csg_argument(const CsgNode *node, const char *name);

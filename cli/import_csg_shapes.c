@@ -3,6 +3,7 @@
  *
  * OpenSCAD's columns stand along z, those of scenes along y; figures lie in x and y in both.
  */
+#include <ctype.h>
 #include <math.h>
 #include <string.h>
 
@@ -103,7 +104,23 @@ static void turn_upright(Part *part)
 static PartBalls new_balls(const CsgNode *node, size_t count, double radius)
 {
     return (PartBalls){arena_alloc(node->import->arena, count, 3 * sizeof(double)), count, count,
-                       radius};
+                       radius, NULL};
+}
+
+static Part *rectangle(const CsgNode *node, const double size[2])
+{
+    Part *part         = part_shape(node->import, node->line, "square", "rectangle(%s)",
+                                    import_vector_text(node->import, size, 2));
+    part->figure       = true;
+    part->balls        = new_balls(node, 4, 0);
+    part->corners      = part->balls.points;
+    part->corner_count = 4;
+    for (int i = 0; i < 4; i++) { /* around, counterclockwise */
+        part->corners[i][0] = (i == 1 || i == 2 ? 0.5 : -0.5) * size[0];
+        part->corners[i][1] = (i >= 2 ? 0.5 : -0.5) * size[1];
+        part->corners[i][2] = 0;
+    }
+    return part;
 }
 
 bool csg_cube(const CsgNode *node, Part **part)
@@ -119,6 +136,7 @@ bool csg_cube(const CsgNode *node, Part **part)
     for (int i = 0; i < 8; i++)
         for (int k = 0; k < 3; k++)
             (*part)->balls.points[i][k] = (i >> k & 1 ? 0.5 : -0.5) * size[k];
+    (*part)->column = (PartColumn){rectangle(node, size), size[2]};
     if (center == 0)
         move_corner(*part, size);
     return true;
@@ -186,6 +204,24 @@ static Part *column(const CsgNode *node, double bottom, double top, double heigh
                       "capped_cone(%s, %s, %s).rotate([1, 0, 0], 90deg)", wide, narrow, tall);
 }
 
+static Part *circle(const CsgNode *node, double radius, int sides)
+{
+    const char *text    = import_number_text(node->import, radius);
+    Part       *part    = sides > 0 ? part_shape(node->import, node->line, "regular",
+                                                 "regular(%d, %s).rotate([0, 0, 1], -90deg)", sides, text)
+                                    : part_shape(node->import, node->line, "circle", "circle(%s)", text);
+    part->figure        = true;
+    part->figure_radius = sides > 0 ? 0 : radius;
+    part->balls         = new_balls(node, sides > 0 ? (size_t)sides : 1, sides > 0 ? 0 : radius);
+    for (int i = 0; i < sides; i++) {
+        part->balls.points[i][0] = radius * cos(360 * DEGREE * i / sides);
+        part->balls.points[i][1] = radius * sin(360 * DEGREE * i / sides);
+    }
+    part->corners      = sides > 0 ? part->balls.points : NULL;
+    part->corner_count = (size_t)sides;
+    return part;
+}
+
 bool csg_cylinder(const CsgNode *node, Part **part)
 {
     double    height, bottom, top, center;
@@ -200,9 +236,61 @@ bool csg_cylinder(const CsgNode *node, Part **part)
         return false;
     *part          = column(node, bottom, top, height, sides, &corners);
     (*part)->balls = corners;
+    if (bottom == top)
+        (*part)->column = (PartColumn){circle(node, bottom, sides), height};
     if (center == 0)
         move_corner(*part, (double[]){0, 0, height});
     return true;
+}
+
+/* ---- texts ---- */
+
+static const char *csg_string(const CsgNode *node, const char *name, const char *otherwise)
+{
+    const CsgValue *value = csg_argument(node, name);
+    return value && value->kind == CSG_STRING ? value->string : otherwise;
+}
+
+/* Escapes of OpenSCAD are those of the language, but for tabs and what has a number. */
+static void add_string(Text *text, const char *string)
+{
+    text_add(text, "\"");
+    for (; *string; string++) {
+        bool escapes = string[0] == '\\' && string[1] != '\0';
+        if (escapes && !strchr("\\\"n", string[1])) {
+            text_add(text, string[1] == 't' ? " " : "");
+            string++;
+            continue;
+        }
+        text_add_bytes(text, string, escapes ? 2 : 1);
+        string += escapes;
+    }
+    text_add(text, "\"");
+}
+
+/* "Family:style=Bold" is "Family:bold" here.  A font that is not installed is replaced, with a note. */
+static void add_font(const CsgNode *node, Text *text, const char *name)
+{
+    Text        font  = {.arena = node->import->arena};
+    Text        trial = {.arena = node->import->arena};
+    const char *style = strstr(name, ":style=");
+    size_t      most  = style ? (size_t)(style - name) : strlen(name);
+    text_add_bytes(&font, most > 0 ? name : "Liberation Sans", most > 0 ? most : 15);
+    if (style && strcmp(style + 7, "Regular") != 0) {
+        text_add(&font, ":");
+        for (const char *c = style + 7; *c && *c != ':'; c++)
+            text_add_bytes(&font, (char[]){(char)tolower((unsigned char)*c)}, 1);
+    }
+    text_add(&trial, "show text(\"a\", font: ");
+    add_string(&trial, font.bytes);
+    text_add(&trial, ").extrude(1);");
+    if (import_compiles(trial.bytes)) {
+        text_add(text, ", font: ");
+        add_string(text, font.bytes);
+    } else {
+        import_note(node->import, node->line,
+                    "the font `%.60s` is not installed: another one is taken", font.bytes);
+    }
 }
 
 /* ---- figures ---- */
@@ -214,13 +302,7 @@ bool csg_square(const CsgNode *node, Part **part)
         return false;
     if (!(size[0] > 0 && size[1] > 0))
         return is_nothing(node);
-    *part           = part_shape(node->import, node->line, "square", "rectangle(%s)",
-                                 import_vector_text(node->import, size, 2));
-    (*part)->figure = true;
-    (*part)->balls  = new_balls(node, 4, 0);
-    for (int i = 0; i < 4; i++)
-        for (int k = 0; k < 2; k++)
-            (*part)->balls.points[i][k] = (i >> k & 1 ? 0.5 : -0.5) * size[k];
+    *part = rectangle(node, size);
     if (center == 0)
         move_corner(*part, size);
     return true;
@@ -236,16 +318,47 @@ bool csg_circle(const CsgNode *node, Part **part)
         return is_nothing(node);
     if (!csg_sides(node, &sides))
         return false;
-    const char *text = import_number_text(node->import, radius);
-    *part            = sides > 0 ? part_shape(node->import, node->line, "regular",
-                                              "regular(%d, %s).rotate([0, 0, 1], -90deg)", sides, text)
-                                 : part_shape(node->import, node->line, "circle", "circle(%s)", text);
-    (*part)->figure  = true;
-    (*part)->balls   = new_balls(node, sides > 0 ? (size_t)sides : 1, sides > 0 ? 0 : radius);
-    for (int i = 0; i < sides; i++) {
-        (*part)->balls.points[i][0] = radius * cos(360 * DEGREE * i / sides);
-        (*part)->balls.points[i][1] = radius * sin(360 * DEGREE * i / sides);
-    }
+    *part = circle(node, radius, sides);
+    return true;
+}
+
+/* Liberation Sans is OpenSCAD's own; its sizes are those of letters of 100 in an em of 139. */
+bool csg_text(const CsgNode *node, Part **part)
+{
+    static const struct {
+        const char *argument, *from, *to;
+    } aligned[]        = {{"halign", "left", "left"},    {"halign", "center", "center"},
+                          {"halign", "right", "right"},  {"valign", "baseline", "baseline"},
+                          {"valign", "top", "top"},      {"valign", "center", "middle"},
+                          {"valign", "bottom", "bottom"}};
+    const char *across = "left", *up = "baseline";
+    double      size, spacing;
+    const char *string    = csg_string(node, "text", "");
+    const char *direction = csg_string(node, "direction", "ltr");
+    if (!csg_number(node, "size", 10, &size) || !csg_number(node, "spacing", 1, &spacing))
+        return false;
+    if (!(size > 0) || string[0] == '\0')
+        return is_nothing(node);
+    if (strcmp(direction, "ltr") != 0)
+        return import_refuse(node->import, node->line,
+                             "`text` that runs by `%.10s` is not translated", direction);
+    if (spacing != 1)
+        return import_refuse(node->import, node->line, "`spacing` of `text` is not translated");
+    for (size_t i = 0; i < sizeof aligned / sizeof *aligned; i++)
+        if (strcmp(csg_string(node, aligned[i].argument, ""), aligned[i].from) == 0)
+            *(aligned[i].argument[0] == 'h' ? &across : &up) = aligned[i].to;
+    Text text = {.arena = node->import->arena};
+    text_add(&text, "text(");
+    add_string(&text, string);
+    text_format(&text, ", size: %s", import_number_text(node->import, size * 100 / 72));
+    add_font(node, &text, csg_string(node, "font", ""));
+    if (strcmp(across, "left") != 0)
+        text_format(&text, ", align: \"%s\"", across);
+    if (strcmp(up, "baseline") != 0)
+        text_format(&text, ", vertical: \"%s\"", up);
+    text_add(&text, ")");
+    *part           = part_shape(node->import, node->line, "text", "%s", text.bytes);
+    (*part)->figure = true;
     return true;
 }
 
@@ -279,6 +392,8 @@ bool csg_linear_extrude(const CsgNode *node, Part **part)
     *part            = part_around(node->import, node->line, "extruded", figure);
     (*part)->methods = methods.bytes;
     (*part)->figure  = false;
+    if (twist == 0 && scale[0] == 1)
+        (*part)->column = (PartColumn){figure, height};
     if (center == 0 && twist == 0)
         move_corner(*part, (double[]){0, 0, height});
     return true;

@@ -21,7 +21,7 @@ static const struct {
 #define IMPORT_FORM(ending, import) {ending, import},
 #include "cli/import_forms.def"
 };
-enum { FORMS = sizeof forms / sizeof *forms };
+enum { FORMS = sizeof forms / sizeof *forms, MOST_LEFT_OUT = 200 };
 
 static int find_form(const char *path)
 {
@@ -44,8 +44,9 @@ const char *import_endings(void)
 bool import_knows(const char *path) { return find_form(path) >= 0; }
 
 typedef struct FirstError {
-    Import *import;
-    bool    found, no_polynomial;
+    Import  *import;
+    unsigned line; /* of the file */
+    bool     found, no_polynomial;
 } FirstError;
 
 static void note_error(void *user, const KrsDiagnostic *diagnostic)
@@ -57,8 +58,9 @@ static void note_error(void *user, const KrsDiagnostic *diagnostic)
     first->no_polynomial = strcmp(diagnostic->code, "E0410") == 0;
     if (first->no_polynomial && !first->import->as_field)
         return; /* a field may do */
-    import_refuse(first->import, import_origin(first->import, diagnostic->line),
-                  "what this becomes is no scene: %s (%s)", diagnostic->message, diagnostic->code);
+    first->line = import_origin(first->import, diagnostic->line);
+    import_refuse(first->import, first->line, "what this becomes is no scene: %s (%s)",
+                  diagnostic->message, diagnostic->code);
 }
 
 static KrsStatus translate(Import *import, FirstError *first)
@@ -86,6 +88,13 @@ KrsStatus import_file(Import *import)
     if (status == KRS_BAD_SCENE && first.no_polynomial) {
         import->as_field = true;
         status           = translate(import, &first);
+    }
+    /* Without what does not compile, one part after the other. */
+    for (int i = 0; i < MOST_LEFT_OUT && status == KRS_BAD_SCENE && first.found; i++) {
+        if (import_was_left_out(import, first.line) || !import_leaves_out(import, first.line))
+            break;
+        array_push(import->arena, &import->no_scene, first.line);
+        status = translate(import, &first);
     }
     return status;
 }

@@ -94,7 +94,8 @@ static int items_painted(const Part *part)
 /* The names of what it is made of, on lines that are not too long. */
 static void write_join(Text *text, const Part *part, const char *const *names)
 {
-    static const char *const functions[] = {"union(", "intersection(", "difference(", "xor("};
+    static const char *const functions[] = {"union(", "intersection(", "difference(", "xor(",
+                                            "hull("};
     size_t                   width       = 40;
     text_add(text, functions[part->join]);
     for (size_t i = 0; i < part->parts.count; i++) {
@@ -125,7 +126,7 @@ static const char *write_let(PartWriter *writer, Part *part, const char *const *
     text_format(text, "let %s = ", name.bytes);
     if (part->shape)
         text_add(text, part->shape);
-    else if (part->parts.count == 1)
+    else if (part->parts.count == 1 && part->join != PART_HULL)
         text_add(text, names[0]);
     else
         write_join(text, part, names);

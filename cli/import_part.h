@@ -13,15 +13,23 @@ typedef enum PartJoin {
     PART_UNION, /* also of one */
     PART_INTERSECTION,
     PART_DIFFERENCE,
-    PART_XOR /* of two */
+    PART_XOR, /* of two */
+    PART_HULL
 } PartJoin;
 
 /* Points whose convex hull, grown by a radius, a shape is. */
 typedef struct PartBalls {
     double (*points)[3]; /* NULL: it is something else */
-    size_t count, capacity;
-    double radius;
+    size_t  count, capacity;
+    double  radius;
+    double *radii; /* of each, where they differ; else NULL */
 } PartBalls;
+
+/* What stands upright on a figure: from z = -height / 2 to height / 2 in its own space. */
+typedef struct PartColumn {
+    struct Part *figure; /* NULL: it is something else */
+    double       height;
+} PartColumn;
 
 /* Its shape, or its items joined; then methods; then its place; then its look. */
 typedef struct Part {
@@ -38,7 +46,11 @@ typedef struct Part {
     bool        figure; /* plane, in x and y */
     bool        shared; /* in several places */
     PartBalls   balls;
-    unsigned    line;
+    PartColumn  column;
+    double      figure_radius; /* of a circle about its own origin; else 0 */
+    double (*corners)[3];      /* of a figure with straight sides, in their order, or NULL */
+    size_t   corner_count;
+    unsigned line;
     /* of the writer */
     const char *wanted;  /* the name that the file has for it */
     const char *name;    /* where it is the same wherever it is */

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/krs.h"
+
 enum { MOST_NOTES = 100 };
 
 /* What a file says moves no cursor, and ends no comment. */
@@ -46,6 +48,29 @@ void import_note(Import *import, unsigned line, const char *format, ...)
         array_push(import->arena, &import->notes, note);
 }
 
+bool import_leaves_out(Import *import, unsigned line)
+{
+    if (!import->keep_going || import->refusal.length == 0)
+        return false;
+    ImportNote note = {import->refusal.bytes, line};
+    import->refusal = (Text){.arena = import->arena};
+    for (size_t i = 0; i < import->left_out.count; i++)
+        if (import->left_out.items[i].line == line &&
+            strcmp(import->left_out.items[i].words, note.words) == 0)
+            return true;
+    array_push(import->arena, &import->left_out, note);
+    import_note(import, line, "a part is left out: %s", strchr(note.words, ':') + 1);
+    return true;
+}
+
+bool import_was_left_out(const Import *import, unsigned line)
+{
+    for (size_t i = 0; i < import->no_scene.count; i++)
+        if (import->no_scene.items[i] == line)
+            return true;
+    return false;
+}
+
 void import_write_head(Import *import)
 {
     text_format(&import->scene, "// From %s.\n", import->name);
@@ -53,6 +78,15 @@ void import_write_head(Import *import)
         text_format(&import->scene, "// Line %u: %s.\n", import->notes.items[i].line,
                     import->notes.items[i].words);
     text_add(&import->scene, "\n");
+}
+
+bool import_compiles(const char *scene)
+{
+    KrsOptions options = {.diagnostic = NULL};
+    KrsScene  *compiled;
+    KrsStatus  status = krs_compile_text(scene, strlen(scene), "scene.krs", &options, &compiled);
+    krs_scene_free(compiled);
+    return status == KRS_OK;
 }
 
 void import_mark(Import *import, unsigned line)

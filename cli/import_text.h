@@ -37,6 +37,15 @@ typedef struct Import {
         ImportNote *items;
         size_t      count, capacity;
     } notes;
+    bool keep_going; /* what is refused is left out */
+    struct {
+        ImportNote *items;
+        size_t      count, capacity;
+    } left_out; /* what was refused, and where */
+    struct {
+        unsigned *items;
+        size_t    count, capacity;
+    } no_scene; /* lines of parts that do not compile, and are not read again */
     Text refusal; /* "path:line: " and why there is no scene; empty when there is one */
 } Import;
 
@@ -47,8 +56,16 @@ bool import_refuse(Import *import, unsigned line, const char *format, ...)
 /* Notes what the scene leaves out; the same words count once. */
 void import_note(Import *import, unsigned line, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/* Whether to go on without a part that was just refused, which stands on this line: notes why, and
+   forgets the refusal. */
+bool import_leaves_out(Import *import, unsigned line);
+/* Whether a part of this line was found to be no scene. */
+bool import_was_left_out(const Import *import, unsigned line);
 /* "From FILE." and the notes, as comments. */
 void import_write_head(Import *import);
+
+/* Whether a text is a scene. */
+bool import_compiles(const char *scene);
 
 /* What is added to the scene now comes from this line. */
 void import_mark(Import *import, unsigned line);

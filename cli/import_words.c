@@ -54,9 +54,20 @@ static bool read_number(WordReader *reader)
                          reader->word.text);
 }
 
+/* Whether an odd number of `\` stands before. */
+static bool is_escaped(const char *text, size_t at)
+{
+    size_t count = 0;
+    while (count < at && text[at - 1 - count] == '\\')
+        count++;
+    return count % 2 == 1;
+}
+
 static bool read_string(WordReader *reader)
 {
     size_t length = strcspn(reader->at + 1, "\"\n");
+    while (length > 0 && reader->at[1 + length] == '"' && is_escaped(reader->at + 1, length))
+        length += 1 + strcspn(reader->at + 2 + length, "\"\n");
     if (reader->at[1 + length] != '"')
         return import_refuse(reader->import, reader->line, "this string has no end");
     reader->word.kind = IMPORT_WORD_STRING;
@@ -87,12 +98,20 @@ static bool read_word(WordReader *reader)
     return true;
 }
 
-void words_advance(WordReader *reader)
+void words_advance_plain(WordReader *reader)
 {
     bool good    = reader->import->refusal.length == 0 && skip_blanks(reader);
     reader->word = (ImportWord){.kind = IMPORT_WORD_END, .text = "", .line = reader->line};
     if (good && *reader->at != '\0' && !read_word(reader))
         reader->word = (ImportWord){.kind = IMPORT_WORD_END, .text = "", .line = reader->line};
+}
+
+void words_advance(WordReader *reader)
+{
+    if (reader->next)
+        reader->next(reader);
+    else
+        words_advance_plain(reader);
 }
 
 void words_start(WordReader *reader, Import *import, bool nested)

@@ -12,7 +12,8 @@ typedef enum ImportWordKind {
     IMPORT_WORD_NUMBER,
     IMPORT_WORD_NAME, /* may begin with `$` */
     IMPORT_WORD_STRING,
-    IMPORT_WORD_SIGN
+    IMPORT_WORD_SIGN,
+    IMPORT_WORD_HELD /* for those who read words in their own way: not ready yet */
 } ImportWordKind;
 
 typedef struct ImportWord {
@@ -28,11 +29,15 @@ typedef struct WordReader {
     unsigned    line;
     bool        nested; /* comments may contain comments */
     ImportWord  word;   /* the next one */
+    void (*next)(struct WordReader *reader); /* how to go on, or NULL: word by word */
+    void *user;
 } WordReader;
 
 /* The first word of the file is then the next one. */
 void words_start(WordReader *reader, Import *import, bool nested);
 void words_advance(WordReader *reader);
+/* The same word by word, whatever `next` is. */
+void words_advance_plain(WordReader *reader);
 
 /* Whether the next word is this name or sign. */
 bool word_is(const WordReader *reader, const char *text);

@@ -115,8 +115,12 @@ static const char *fold_text(Emitter *e, const Expr *expr)
 /* By the ray and the normal of the component's surface, whose function this is. */
 static const char *front_text(Emitter *e, const Expr *expr)
 {
+    Text        text  = {.arena = e->scratch};
+    const char *front = phrase_text(e, PHRASE_CHOICE,
+                                    (Operands){"dot(krs_view, normal) > 0.0", "0.0", "1.0"});
     (void)expr;
-    return phrase_text(e, PHRASE_CHOICE, (Operands){"dot(krs_view, normal) > 0.0", "0.0", "1.0"});
+    text_format(&text, "(%s)", front);
+    return text.bytes;
 }
 
 /* Parameters of the function that is being written. */

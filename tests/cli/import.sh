@@ -184,7 +184,7 @@ result $? "a scene of POV-Ray, with its names"
 run check ball_of_pov.krs
 [ "$status" -eq 0 ] && [ ! -s err ]
 result $? "is a scene without a mistake, too"
-refused a.csg 'cube();\ntext();\n' '2: `text` is not translated' "a text of OpenSCAD"
+refused a.csg 'cube();\nimport();\n' '2: `import` is not translated' "a mesh of OpenSCAD"
 refused a.pov 'sphere { 0, 1 }\nblob { }\n' '2: `blob` is not translated' "a blob of POV-Ray"
 
 # Damaged files: the exit status is 0 or 1, and what is written is understood or refused in turn.

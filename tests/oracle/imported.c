@@ -19,19 +19,27 @@ static jmp_buf exhausted;
 static Memory  memory = {.exhausted = &exhausted};
 static Arena   arena  = {.memory = &memory};
 
-Imported imported(const char *path, const char *text)
+static Imported imported_by(const char *path, const char *text, bool keep_going)
 {
     arena_free(&arena);
     assert_int_equal(setjmp(exhausted), 0);
-    Import   import = {.path   = path,
-                       .name   = path,
-                       .bytes  = arena_copy_text(&arena, text, strlen(text)),
-                       .length = strlen(text),
-                       .arena  = &arena};
+    Import   import = {.path       = path,
+                       .name       = path,
+                       .bytes      = arena_copy_text(&arena, text, strlen(text)),
+                       .length     = strlen(text),
+                       .arena      = &arena,
+                       .keep_going = keep_going};
     Imported result = {.status = import_file(&import)};
     result.scene    = import.scene.length > 0 ? import.scene.bytes : "";
     result.refusal  = import.refusal.length > 0 ? import.refusal.bytes : "";
     return result;
+}
+
+Imported imported(const char *path, const char *text) { return imported_by(path, text, false); }
+
+Imported imported_as_far_as_possible(const char *path, const char *text)
+{
+    return imported_by(path, text, true);
 }
 
 static void show_error(void *user, const KrsDiagnostic *diagnostic)

@@ -14,6 +14,8 @@ typedef struct Imported {
 } Imported;
 
 Imported imported(const char *path, const char *text);
+/* The same with --keep-going. */
+Imported imported_as_far_as_possible(const char *path, const char *text);
 
 /* The distances of the scene that a text becomes; fails the test when it becomes none. */
 void imported_distances(const char *path, const char *text, double (*points)[3], size_t count,

@@ -91,6 +91,38 @@ static void distances_are_closed_forms(void **state)
           " faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]);",
           1, 1, 1, 2 / sqrt(3));
     check("difference() { group(); cube(size = 9); } sphere(r = 1);", 0, 0, 3, 2);
+#define AT(x, y, z) \
+    "multmatrix([[1, 0, 0, " #x "], [0, 1, 0, " #y "], [0, 0, 1, " #z "], [0, 0, 0, 1]]) "
+    /* Columns side by side are round, whatever points OpenSCAD has for them. */
+    check("hull() { cylinder(h = 5, r1 = 3, r2 = 3); " AT(
+              20, 0, 0) "{ cylinder(h = 5, r1 = 3, r2 = 3); } }",
+          10, 5, 2, 2);
+    check("hull() { cylinder(h = 5, r1 = 3, r2 = 3); " AT(
+              20, 0, 0) "{ cylinder(h = 5, r1 = 3, r2 = 3); } }",
+          20 + 4 * sqrt(0.5), 4 * sqrt(0.5), 2, 1);
+    check("hull() { cube(size = 2, center = true); " AT(4, 0, 0) "{ sphere(r = 1); } }", 7, 0, 0,
+          2);
+    check("hull() { sphere(r = 2); " AT(0, 0, 9) "{ sphere(r = 1); } }", 0, 0, 12, 2);
+    check("hull() { linear_extrude(height = 2) { circle(r = 1); } " AT(
+              5, 0, 0) "{ cylinder(h = 2, r1 = 1, r2 = 1); } }",
+          2, 3, 1, 2);
+    check("minkowski() { cube(size = [10, 10, 2]); cylinder(h = 1, r1 = 2, r2 = 2); }", 13, 14, 2,
+          3);
+    check("minkowski() { cube(size = [10, 10, 2]); cylinder(h = 1, r1 = 2, r2 = 2); }", 5, 5, 5, 2);
+    check(
+        "minkowski() { cylinder(h = 1, r1 = 2, r2 = 2); linear_extrude(height = 3, center = true) {"
+        " polygon(points = [[0, 0], [9, 0], [9, 1], [1, 1], [1, 9], [0, 9]]); } }",
+        6, 6, 0, 3); /* not filled, as a hull would be */
+    check("minkowski() { cube(size = 1); " AT(3, 0, 0) "{ cube(size = 2); } }", 8, 1, 1, 2);
+    check("minkowski() { cube(size = 1); cube(size = 2); sphere(r = 1); }", 6, 1, 1, 2);
+    check("linear_extrude(height = 2) { offset(delta = 1, chamfer = false) { square(size = [4, 4],"
+          " center = true); } }",
+          5, 5, 1, sqrt(8));
+    check("linear_extrude(height = 2) { offset(delta = -1) { polygon(points = [[0, 0], [8, 0], [8, "
+          "3],"
+          " [3, 3], [3, 8], [0, 8]]); } }",
+          4, 4, 1, 2);
+    check("linear_extrude(height = 2) { offset(delta = 1) { circle(r = 2); } }", 5, 0, 1, 2);
     check("intersection() { cube(size = 9); group(); } sphere(r = 1);", 0, 0, 3, 2);
     check("%cube(size = 9); #sphere(r = 1);", 3, 0, 0, 2);
 }
@@ -316,7 +348,15 @@ static void random_trees_have_the_points_of_their_predicate(void **state)
 static void what_cannot_be_translated_is_said_with_its_line(void **state)
 {
     (void)state;
-    assert_refused("a.csg", "group() {\n text(text = \"a\");\n}", "a.csg:2: `text` is not");
+    assert_refused("a.csg", "group() {\n text(text = \"a\", direction = \"rtl\");\n}",
+                   "a.csg:2: `text` that runs");
+    assert_refused("a.csg", "cube();\nimport(file = \"a.stl\");", "a.csg:2: `import` is not");
+    assert_refused("a.csg", "\nsurface(file = \"a.dat\");", "a.csg:2: `surface` is not");
+    assert_refused("a.csg", "\nresize(newsize = [1, 2, 3]) { cube(); }",
+                   "a.csg:2: `resize` is not");
+    assert_refused("a.csg", "\nprojection(cut = true) { cube(); }", "a.csg:2: `projection` is not");
+    assert_refused("a.csg", "linear_extrude() { offset(delta = -2) { square(size = 3); } }",
+                   "a.csg:1: `offset` by `delta`");
     assert_refused("a.csg", "\ncubes(size = 1);",
                    "a.csg:2: `cubes` is not translated; is it `cube`");
     assert_refused("a.csg", "cube(size = 1)", "a.csg:1: the file ends where");
@@ -324,10 +364,10 @@ static void what_cannot_be_translated_is_said_with_its_line(void **state)
     assert_refused("a.csg", "union() { cube(); square(); }", "a.csg:1: a plane figure stands");
     assert_refused("a.csg", "linear_extrude() { cube(); }",
                    "a.csg:1: `linear_extrude` needs plane");
-    assert_refused("a.csg", "hull() { cube(); sphere(r = 1); }",
+    assert_refused("a.csg", "hull() { difference() { cube(); sphere(r = 0.2); } }",
                    "a.csg:1: a hull is translated if");
-    assert_refused("a.csg", "minkowski() { cube(); cube(); }",
-                   "a.csg:1: `minkowski` is translated");
+    assert_refused("a.csg", "minkowski() { difference() { cube(); sphere(r = 0.2); } cube(); }",
+                   "a.csg:1: `minkowski` is translated for");
     assert_refused("a.csg", "!cube();", "a.csg:1: `!` shows");
     assert_refused("a.csg", "", "a.csg:1: there is nothing");
     assert_refused("a.csg", "rotate_extrude() { square(center = true); }",
@@ -338,6 +378,19 @@ static void what_cannot_be_translated_is_said_with_its_line(void **state)
                    "a.csg:1: a polyhedron that is not convex");
     assert_refused("a.csg", "multmatrix([[0,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) {cube();}",
                    "a.csg:1: its place flattens");
+}
+
+/* Of three parts two are left; the scene and the words about it name the third. */
+static void what_is_left_out_is_named(void **state)
+{
+    static const char parts[] =
+        "sphere(r = 1);\nunion() { cube(size = 9);\nimport(file = \"a.stl\"); }\n";
+    Imported found = imported_as_far_as_possible("parts.csg", parts);
+    (void)state;
+    assert_int_equal(found.status, KRS_OK);
+    assert_non_null(strstr(found.scene, "sphere(1)"));
+    assert_non_null(strstr(found.scene, "box([9, 9, 9])"));
+    assert_non_null(strstr(found.scene, "Line 3: a part is left out"));
 }
 
 static void damaged_files_do_no_harm(void **state)
@@ -365,6 +418,7 @@ int main(void)
         cmocka_unit_test(turns_have_a_sense),
         cmocka_unit_test(random_trees_have_the_points_of_their_predicate),
         cmocka_unit_test(what_cannot_be_translated_is_said_with_its_line),
+        cmocka_unit_test(what_is_left_out_is_named),
         cmocka_unit_test(damaged_files_do_no_harm),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
