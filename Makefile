@@ -1,8 +1,9 @@
 # make            build/krs, build/libkrs.a; WERROR=1: warnings are errors
 # make demo       set up, build, render the best examples in two minutes: open build/demo/index.html
 # make gallery    all of them, as the README has them, to build/gallery/: about an hour
-# make test       set up, build, run every test; the last line is `N passed, N failed`, and
+# make test       set up, build, run every test but the longest; the last line is `N passed, N failed`, and
 #                 `, N skipped` where some were; DEVICE=...: on another device (krs devices)
+# make test-long  the longest, with clang and the fuzzers; test-all: both (docs/building.md)
 # make test-meshes    300 random meshes within their error, and what CGAL finds of them; half an hour
 # make sanitize   the same programs under ASan and UBSan, in build/asan/
 # make bench      measures, writes bench/results/; bench-quick: only whether it can

@@ -8,7 +8,8 @@ cd "$(dirname "$0")/.." || exit 1
 krs=${KRS:-build/krs}
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
-pages="README.md CONTRIBUTING.md SECURITY.md docs/tutorial.md docs/coming-from.md docs/language.md docs/library.md docs/architecture.md docs/details.md
+pages="README.md CONTRIBUTING.md SECURITY.md docs/features.md docs/figures.md docs/code.md docs/building.md
+docs/tutorial.md docs/coming-from.md docs/language.md docs/library.md docs/architecture.md docs/details.md
 docs/viewer.md docs/meshes.md docs/how-it-works.md docs/glossary.md bench/README.md bench/measurements.md"
 failed=0
 report() { # status, name

@@ -1,9 +1,9 @@
-# tests.mk: what `make test` runs.
+# tests.mk: what `make test`, `make test-long` and `make test-all` run.
 #
 # Every test speaks TAP; tests/run.sh counts.  `make test DEVICE=...` runs all on another Vulkan
 # device, in the words of `krs --device`; `DEVICE=swiftshader` on one that every Debian can have.
 # The tests that need no device run under the address and undefined-behaviour sanitizers, and
-# everything compiles under clang as well.
+# everything compiles under clang as well, in `make test-long`.
 
 # What tests of several kinds share; nothing of it knows what is tested.
 SUPPORT     := $(addprefix tests/support/, agreement.c bench.c crowd_texts.c device.c folder.c random.c \
@@ -53,9 +53,21 @@ PLAIN       := $(filter-out $(filter-out $(BOTH), $(SANITIZED)), $(PROGRAMS))
 # Scripts that run beside programs, the longest first.  SCRIPTS run alone: they measure time, or count
 # what others may change.
 BESIDE      := $(addprefix tests/, examples.sh tutorial.sh extend/extend.sh cli/scale.sh errors-sanitized.sh lint.sh \
-               errors.sh layers.sh grammar.sh editors.sh golden.sh library.sh symbols.sh docs.sh gallery.sh)
+               errors.sh layers.sh grammar.sh editors.sh golden.sh library.sh symbols.sh docs.sh gallery.sh \
+               $(addprefix cli/, compose.sh compositors.sh confined.sh cryptomatte.sh format.sh import.sh \
+               install.sh light_groups.sh mesh_copies.sh mesh_judges.sh mesh_places.sh pictures.sh usage.sh))
 SCRIPTS     := tests/run_selftest.sh $(sort $(filter-out tests/cli/common.sh $(BESIDE), \
                $(wildcard tests/cli/*.sh))) tests/fuzz/fuzz.sh
+# What takes longest and need not run after each change: `make test-long` has it, `make test` all else, and
+# `make test-all` both (docs/building.md says what costs what).  clang and the fuzzers belong to it, as they
+# compile everything once more, and the judge of meshes, whose headers take a minute.
+LONG        := $(addprefix tests/, examples.sh extend/extend.sh cli/mesh_judges.sh fuzz/fuzz.sh \
+               oracle/meshes oracle/mesh_forms oracle/mesh_examples)
+# Of a list, what belongs to a set: short, long or all.
+short_of     = $(filter-out $(LONG), $(1))
+long_of      = $(filter $(LONG), $(1))
+all_of       = $(1)
+
 # So many programs run at once: most use one core, as they compile kernels.  A device that is asked
 # for is left to one.
 TEST_JOBS   ?= $(if $(DEVICE)$(filter 1,$(JOBS)),1,2)
@@ -157,14 +169,21 @@ bless: $(B)/krs
 # Found when it is run: `make test` has installed it, where the system has it.
 SECOND_RUN   = tests/second_driver.sh $(if $(shell . tests/support/drivers.sh && [ -e "$$swiftshader_driver" ] && echo there), \
                KRS_DEVICE=swiftshader $(SECOND:%=$(B)/%))
-test test-long: export WERROR = 1
-test: test-deps
-	@$(MAKE) --no-print-directory -j$(JOBS) all test-programs clang-check fuzzers
-	@$(MAKE) --no-print-directory -j$(JOBS) sanitize
+test:      SET := short
+test-long: SET := long
+test-all:  SET := all
+chosen    = $(call $(SET)_of, $(1))
+test test-long test-all: export WERROR = 1
+test test-long test-all: test-deps
+	@$(MAKE) --no-print-directory -j$(JOBS) all $(B)/libkrs.so $(B)/bench/bench $(patsubst %,$(B)/%,$(call chosen, $(PLAIN)) $(DRIVERS)) \
+	    $(if $(filter short, $(SET)),,$(JUDGE) clang-check fuzzers)
+	@$(if $(filter long, $(SET)),,$(MAKE) --no-print-directory -j$(JOBS) sanitize)
 	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=900 \
 	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") \
-	    JOBS=$(TEST_JOBS) $(BESIDE) $(PLAIN:%=$(B)/%) $(SANITIZED:%=$(B)/asan/%) \
-	    JOBS=1 $(SCRIPTS) JOBS=$(TEST_JOBS) \
-	    $(if $(DEVICE),$(DRIVERS:%=$(B)/%),$(SECOND_RUN))
-.PHONY: test test-meshes golden list-programs test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers \
+	    JOBS=$(TEST_JOBS) $(call chosen, $(BESIDE)) $(patsubst %,$(B)/%,$(call chosen, $(PLAIN))) \
+	    $(if $(filter long, $(SET)),,$(SANITIZED:%=$(B)/asan/%)) \
+	    JOBS=1 $(call chosen, $(SCRIPTS)) \
+	    $(if $(filter long, $(SET)),,JOBS=$(TEST_JOBS) \
+	        $(if $(DEVICE),$(DRIVERS:%=$(B)/%),$(SECOND_RUN)))
+.PHONY: test test-long test-all test-meshes golden list-programs test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers \
         fuzz-programs lint layers docs format bless
