@@ -143,6 +143,16 @@ size_t krs_frame_emissive(KrsFrame *frame, const double low[3], const double hig
 /* Whether the rounding error of such a coordinate in single precision is visible in pixels of this
    width.  Then points must be relative to an origin near the camera. */
 bool krs_needs_rebase(double coordinate, double pixel);
+/* How far the taps for a normal reach at such a coordinate, for the sake of rounding, relative to what a
+   pixel of this width wants: above 1 normals are blurred, below it those at edges may be. */
+double krs_normal_blur(double coordinate, double pixel);
+/* Camera-relative coordinates are about as large as the distance from the eye.  They are not worth
+   their cost where others are less than KRS_LEAST_GAIN times as large, or the blur is less than
+   KRS_LEAST_BLUR.  Whether what is seen may have more of both, where the eye has this coordinate, and the nearest
+   surface this distance from it and pixels of this width. */
+#define KRS_LEAST_GAIN 4
+#define KRS_LEAST_BLUR 0.1
+bool krs_may_blur_normals(double coordinate, double distance, double pixel);
 /* Slots of the values that depend on the origin of camera-relative points, computed in double
    precision: camera_relative_slots vec4s. */
 void krs_frame_rebase(KrsFrame *frame, const double rebase_origin[3], float (*block)[4]);

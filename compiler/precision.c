@@ -3,10 +3,14 @@
  * camera-relative.
  *
  * The error of a coordinate is a few units in its last place, so it grows with the coordinate.  It
- * is visible where it exceeds a fraction of a pixel.  Pixels are narrowest at the surface nearest
- * to the eye, so the eye's coordinates and its distance from that surface decide.  The renderer
- * decides this for each frame.  The compiler has to find out whether there may be such a frame,
- * since code for camera-relative points takes time to compile.
+ * is visible in two ways.  An outline moves where the error exceeds a fraction of a pixel.  A normal
+ * is made of differences of distances, whose errors are as large: where the taps for it are near to one
+ * another, the errors turn it.  So taps keep a distance that grows with the coordinate.  Where that is
+ * more than a pixel, the normal is a mean over more than the pixel, and edges are blurred.
+ *
+ * Pixels are narrowest at the surface nearest to the eye, so the eye's coordinates and its distance
+ * from that surface decide.  The renderer decides this for each frame.  The compiler has to find out
+ * whether there may be such a frame.
  */
 #include <math.h>
 #include <string.h>
@@ -25,6 +29,21 @@ static const double MOST_OF_PIXEL = 1.0 / 64;
 bool krs_needs_rebase(double coordinate, double pixel)
 {
     return ROUNDING * coordinate > MOST_OF_PIXEL * pixel;
+}
+
+/* The least reach of taps for a normal, relative to coordinates, and their reach in pixels (NOISE in
+   hit_lists.glsl; normal_reach in job.c). */
+static const double NOISE = 1e-4, REACH_IN_PIXELS = 0.7;
+
+double krs_normal_blur(double coordinate, double pixel)
+{
+    return NOISE * coordinate / (REACH_IN_PIXELS * pixel);
+}
+
+bool krs_may_blur_normals(double coordinate, double distance, double pixel)
+{
+    return coordinate + distance > KRS_LEAST_GAIN * distance &&
+           krs_normal_blur(coordinate + distance, pixel) > KRS_LEAST_BLUR;
 }
 
 /* A moving eye may come near to any surface, so coordinates above this number need rebasing. */
@@ -110,12 +129,13 @@ static bool camera_needs_rebase(const ViewPrecision *view, const SceneCamera *ca
 {
     const double *eye     = view->values[camera->eye].v;
     double        nearest = nearest_to(view, eye), lines = lines_of(view->scene);
-    double        pixel = camera->projection == KRS_ORTHOGRAPHIC
-                              ? view->values[camera->height].v[0] / lines
-                          : camera->projection == KRS_PANORAMA
-                              ? M_PI * nearest / lines
-                              : 2 * tan(view->values[camera->fov].v[0] / 2) * nearest / lines;
-    return krs_needs_rebase(largest3(eye), pixel);
+    double        pixel    = camera->projection == KRS_ORTHOGRAPHIC
+                                 ? view->values[camera->height].v[0] / lines
+                             : camera->projection == KRS_PANORAMA
+                                 ? M_PI * nearest / lines
+                                 : 2 * tan(view->values[camera->fov].v[0] / 2) * nearest / lines;
+    const double  farthest = largest3(eye);
+    return krs_needs_rebase(farthest, pixel) || krs_may_blur_normals(farthest, nearest, pixel);
 }
 
 /* Whether a camera that the compiler places needs rebasing.  Its distance is about the size of the
@@ -126,7 +146,8 @@ static bool scene_needs_rebase(const Scene *s)
     for (int i = 0; i < 3; i++)
         if (isfinite(s->box.axis[i].high - s->box.axis[i].low))
             size = fmax(size, s->box.axis[i].high - s->box.axis[i].low);
-    return krs_needs_rebase(reach_of_boxes(s), 0.5 * size / lines_of(s));
+    const double reach = reach_of_boxes(s), pixel = 0.5 * size / lines_of(s);
+    return krs_needs_rebase(reach, pixel) || krs_may_blur_normals(reach, 0.5 * size, pixel);
 }
 
 bool may_need_rebase(const Scene *scene, Graph *graph, const Roots *roots, Arena *scratch)

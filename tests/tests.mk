@@ -22,7 +22,7 @@ UNIT        := specks texts patience front synonyms look diagnostics shape parts
                crowd_kernels crowd_ends crowd_pictures few_parts tables device_tables table_files printing printers gathered_noises answers alike update coordinates reload live saved_texts camera_text resolution painter saver edits values mesh mesh_progress mesh_bounds mesh_tets mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_proofs assembly
 PROPERTY    := ops noise textures graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees turn_boxes crowds crowds_apart crowds_deformed crowd_sums moving_crowds moving_scenes overlaps lanes lane_crowds lane_balls joints turns
-ORACLES     := self patterns bumps primitives krs_expand folds trees maps moebius moebius_images operators cells \
+ORACLES     := self distant patterns bumps primitives krs_expand folds trees maps moebius moebius_images operators cells \
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
                albedo furnace thin_film anisotropy tangents subsurface paths direct_glass enhanced emissive sky sky_means plate_light detail media cornell touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling \

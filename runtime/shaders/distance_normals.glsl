@@ -83,7 +83,7 @@ vec3 corner(uint i)
 
 void begin_nearer_taps()
 {
-    t = max(NEARER * t, NOISE / 3.0 * largest(hit.position) + hit.rounding);
+    t = max(NEARER * t, NOISE * largest(hit.position) + hit.rounding);
     looks_nearer = true;
     begin_taps();
     tap_limit = TAPS + CORNERS;

@@ -120,8 +120,8 @@ HitPoint find_hit_point(uint number)
 }
 
 // The reach of the differences of which normals are made.  Its least, relative to the coordinates:
-// less would be noise.
-const float NOISE = 3e-4;
+// less would be noise.  compiler/precision.c decides where it is too much.
+const float NOISE = 1e-4;
 float find_reach(HitPoint hit)
 {
     return max(frame.normal_reach * hit.width, NOISE * largest(hit.position) + hit.rounding);

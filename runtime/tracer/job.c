@@ -8,6 +8,7 @@
 
 #include "runtime/tracer/emissive.h"
 #include "runtime/tracer/methods.h"
+#include "runtime/tracer/origin.h"
 #include "runtime/tracer/rendering.h"
 #include "runtime/tracer/sky_table.h"
 #include "runtime/tracer/view.h"
@@ -20,9 +21,7 @@ bool job_refuse(Job *job, const char *words)
 
 double job_pixel(const Job *job, double distance)
 {
-    if (job->rays)
-        return job->rays->width + job->rays->spread * distance;
-    return view_pixel(&job->view.camera, job->options.height, distance);
+    return view_width(&job->view.camera, job->rays, job->options.height, distance);
 }
 
 const Kernel *job_pixel_kernel(const Job *job, PixelKernel kernel)
@@ -51,23 +50,6 @@ static float normal_reach(const KrsRenderOptions *options)
     bool one_sided = options->normals == KRS_NORMALS_FORWARD ||
                      options->normals == KRS_NORMALS_ANALYTIC;
     return options->no_filter || options->samples > 1 || one_sided ? 0.5f : 0.7f;
-}
-
-/* Makes points on the device relative to the eye, where rounding to single precision would be
-   visible in the surface nearest to it. */
-static void choose_rebase_origin(Job *job, KrsFrame *frame)
-{
-    const double(*eye)[3] = (const double(*)[3]) & job->view.camera.eye;
-    float  zones[KRS_MOST_ZONES][4];
-    double nearest = 0, largest_coordinate = 0;
-    if (!job->rendering->program->camera_relative || krs_frame_zones(frame, zones) > 0)
-        return;
-    for (int i = 0; i < 3; i++)
-        largest_coordinate = fmax(largest_coordinate, fabs((*eye)[i]));
-    if (krs_distance(frame, eye, 1, &nearest) != KRS_OK)
-        nearest = 0;
-    if (krs_needs_rebase(largest_coordinate, job_pixel(job, fabs(nearest))))
-        memcpy(job->rebase_origin, *eye, sizeof job->rebase_origin);
 }
 
 static bool is_camera_relative(const Job *job)
@@ -161,7 +143,9 @@ bool job_read_frame(Job *job, KrsFrame *frame, const KrsCamera *camera)
                                    &job->view.camera))
         return job_refuse(job, "rays have finite origins, directions that are not 0, and a width "
                                "or a spread above 0");
-    choose_rebase_origin(job, frame);
+    origin_choose(job->rendering, frame,
+                  &(Viewer){&job->view.camera, job->rays, job->options.width, job->options.height},
+                  job->rebase_origin);
     job->begins_outside = begins_outside(job, frame);
     if (!sky_table_upload(job->rendering, job->view.sky.map) || !prepare_frame_block(job))
         return false;

@@ -3,10 +3,10 @@
  */
 #include "runtime/tracer/slots.h"
 
-/* All slots but those of frame values, which kernels can compute by themselves. */
+/* All slots but those of values that the host computes and kernels can compute by themselves. */
 static uint32_t slots_without_values(const KrsProgram *program)
 {
-    return program->parameter_slots + KRS_MOST_ZONES + program->camera_relative_slots + 1;
+    return program->parameter_slots + KRS_MOST_ZONES + 1;
 }
 
 static uint32_t most_slots(const KrsRendering *rendering)
@@ -14,16 +14,26 @@ static uint32_t most_slots(const KrsRendering *rendering)
     return rendering->renderer->gpu.properties.limits.maxUniformBufferRange / (4 * sizeof(float));
 }
 
+bool rendering_rebases(const KrsRendering *rendering)
+{
+    const KrsProgram *program = rendering->program;
+    return program->camera_relative &&
+           slots_without_values(program) + program->value_slots + program->camera_relative_slots <=
+               most_slots(rendering);
+}
+
 uint32_t rendering_value_slots(const KrsRendering *rendering)
 {
     const KrsProgram *program = rendering->program;
     uint32_t          slots   = slots_without_values(program) + program->value_slots;
-    return program->camera_relative || slots <= most_slots(rendering) ? program->value_slots : 0;
+    return slots <= most_slots(rendering) ? program->value_slots : 0;
 }
 
 uint32_t rendering_slots(const KrsRendering *rendering)
 {
-    uint32_t slots = slots_without_values(rendering->program) + rendering_value_slots(rendering);
+    const KrsProgram *program = rendering->program;
+    uint32_t          slots   = slots_without_values(program) + rendering_value_slots(rendering);
+    slots += rendering_rebases(rendering) ? program->camera_relative_slots : 0;
     if (slots <= most_slots(rendering))
         return slots;
     gpu_refuse(&rendering->renderer->gpu, KRS_NO_DEVICE,

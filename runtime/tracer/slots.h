@@ -6,6 +6,8 @@
 
 #include "runtime/tracer/handles.h"
 
+/* Whether points may be camera-relative: the scene may need it, and the device has room for the slots. */
+bool rendering_rebases(const KrsRendering *rendering);
 /* The slots of frame values that the host computes.  Where the device has no room for all of them
    it is 0, and kernels compute them. */
 uint32_t rendering_value_slots(const KrsRendering *rendering);

@@ -196,6 +196,24 @@ static void place_ends(const KrsView *view, const double low[3], const double hi
         block->occlusion_reach = (float)(0.15 * distance);
 }
 
+bool view_ray(const KrsCamera *camera, uint32_t width, uint32_t height, const double place[2],
+              double origin[3], double direction[3])
+{
+    Basis        basis;
+    double       extent[2];
+    const double turns = camera->projection == KRS_PERSPECTIVE;
+    if (camera->projection == KRS_PANORAMA || !camera_is_valid(camera) ||
+        !camera_basis(camera, &basis))
+        return false;
+    half_extent(camera, width, height, extent);
+    for (int i = 0; i < 3; i++) {
+        double beside = extent[0] * place[0] * basis.right[i] + extent[1] * place[1] * basis.up[i];
+        origin[i]     = camera->eye[i] + (1 - turns) * beside;
+        direction[i]  = basis.forward[i] + turns * beside;
+    }
+    return true;
+}
+
 double view_pixel(const KrsCamera *camera, uint32_t height, double distance)
 {
     double extent[2];
@@ -206,6 +224,11 @@ double view_pixel(const KrsCamera *camera, uint32_t height, double distance)
     case KRS_PERSPECTIVE: break;
     }
     return 2 * extent[1] / height * distance;
+}
+
+double view_width(const KrsCamera *camera, const KrsRays *rays, uint32_t height, double distance)
+{
+    return rays ? rays->width + rays->spread * distance : view_pixel(camera, height, distance);
 }
 
 static double focus_of(const KrsCamera *camera, const Basis *basis)

@@ -20,8 +20,15 @@ double view_eyes(const KrsCamera *camera);
    view_prepare, by `eyes`: then this is half of their distance to the right. */
 void view_choose_eye(KrsCamera *camera, KrsEye eye, uint32_t width, uint32_t height);
 
+/* The ray through a place of the picture, from -1 to 1 to the right and upwards, without regard to a lens:
+   `direction` has any length.  False for a panorama, and where the camera cannot be used. */
+bool view_ray(const KrsCamera *camera, uint32_t width, uint32_t height, const double place[2],
+              double origin[3], double direction[3]);
+
 /* The width of a pixel in the middle of the picture, at a distance from the eye. */
 double view_pixel(const KrsCamera *camera, uint32_t height, double distance);
+/* Likewise of a ray of a list, for which the camera stands; NULL: there is no list. */
+double view_width(const KrsCamera *camera, const KrsRays *rays, uint32_t height, double distance);
 
 /* Sets the box that rays are clipped to.  It is a little larger than [low, high], since surfaces
    may touch these sides and single precision must not lose them. */
