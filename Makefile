@@ -33,7 +33,7 @@ DEVICE  ?= $(KRS_DEVICE)
 JOBS    ?= $(shell nproc)
 
 # Sources in the order of the pipeline: reading down this list is reading the program.
-BASE     := $(addprefix compiler/base/, arena.c patience.c exr_chunks.c half.c parallel.c text.c source.c beneath.c loader.c diag.c diag_text.c)
+BASE     := $(addprefix compiler/base/, arena.c patience.c exr_chunks.c half.c parallel.c text.c visible.c paths.c source.c beneath.c loader.c diag.c diag_text.c)
 FRONT    := $(addprefix compiler/front/, lexer.c lex_literals.c syntax.c format.c format_pieces.c parser.c parse_expression.c \
                 parse_declaration.c parse.c synonyms.c names.c files.c)
 OUTLINE  := $(addprefix compiler/outline/, path.c knots.c edge_cuts.c edge_sides.c resolve.c members.c letters.c \
@@ -97,6 +97,8 @@ CC_CXX   = $(CXX) -std=c++17 -Wall -Wextra $(COMMON) $(HEADERS) $(CPPFLAGS) $(CX
            $(if $(findstring -fsanitize,$(CXXFLAGS)),-O0)
 # What static libraries define, programs do not lend to shared ones.
 CC_LINK  = $(CC) $(CFLAGS) $(LDFLAGS) -Wl,--exclude-libs,ALL
+# The command is loaded anywhere, and what calls to libraries go by is read-only from its start on.
+HARDENED := -pie -Wl,-z,relro -Wl,-z,now
 include tools/libraries.mk
 
 COMPILER := $(BASE) $(IMAGE) $(OUTLINE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API) $(MESH)
@@ -112,7 +114,7 @@ SONAME   := libkrs.so.$(basename $(VERSION))
 all: $(B)/krs $(B)/libkrs.a
 $(B)/krs: $(CLI:%.c=$(B)/%.o) $(B)/commit.o $(CLI_BORDER:%.cpp=$(B)/%.o) $(B)/live.a $(INTERNAL)
 	@echo "link   $@"
-	@$(CC_LINK) -o $@ $^ $(WINDOW_LIBS) $(MESH_LIBS) $(LIBS)
+	@$(CC_LINK) $(HARDENED) -o $@ $^ $(WINDOW_LIBS) $(MESH_LIBS) $(LIBS)
 # What the command has for scenes that are open: a client of the library, and no part of it.
 $(B)/live.a: $(LIVE:%.c=$(B)/%.o) $(LIVE_BORDER:%.cpp=$(B)/%.o) $(B)/members
 	@rm -f $@

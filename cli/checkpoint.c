@@ -9,10 +9,12 @@
 #include "cli/checkpoint.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #define XXH_STATIC_LINKING_ONLY /* for the size of a state */
 #include <xxhash.h>
@@ -50,10 +52,14 @@ KrsStatus checkpoint_begin(Checkpoint *checkpoint, const Options *options, const
         return say_usage(options,
                          "--resume puts its checkpoint beside the first output, which must "
                          "be a file");
-    Text path = {.arena = options->arena};
+    struct stat about;
+    Text        path = {.arena = options->arena};
     text_format(&path, "%s.part", frame_path(options, output, options->first_frame));
     checkpoint->path = path.bytes;
-    return KRS_OK;
+    if (stat(path.bytes, &about) != 0 || S_ISREG(about.st_mode))
+        return KRS_OK;
+    say("cannot create `%s`: there is something else than a file", path.bytes);
+    return KRS_CANNOT_CREATE;
 }
 
 /* ---- the key ---- */
@@ -179,10 +185,23 @@ static bool is_whole(FILE *file)
     return left == sizeof sum && sum == XXH64_digest(&hash) && fseek(file, 0, SEEK_SET) == 0;
 }
 
+/* A pipe would be waited for. */
+static FILE *open_regular(const char *path)
+{
+    struct stat about;
+    const int   fd   = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    FILE       *file = NULL;
+    if (fd >= 0 && fstat(fd, &about) == 0 && S_ISREG(about.st_mode))
+        file = fdopen(fd, "rb");
+    if (fd >= 0 && !file)
+        close(fd);
+    return file;
+}
+
 /* Opens the checkpoint and reads its header.  NULL: there is none, or, which is said, it is damaged. */
 static FILE *open_checkpoint(const Checkpoint *checkpoint, Header *header)
 {
-    FILE *file = fopen(checkpoint->path, "rb");
+    FILE *file = open_regular(checkpoint->path);
     if (!file)
         return NULL;
     if (is_whole(file) && fread(header, 1, sizeof *header, file) == sizeof *header &&

@@ -35,6 +35,8 @@ typedef struct DiagnosticSink {
 
 /* For krs_compile_file and krs_dump of that scene; `sink` must outlive the call. */
 KrsOptions scene_options(DiagnosticSink *sink, const char *path);
+/* The folder that the scene may read from; NULL: any. */
+const char *scene_root(const Options *options, const char *path);
 /* From here on the scene of that file is compiled. */
 void scene_enter_compile(const char *path);
 /* "2 errors, 1 warning", unless there were none. */

@@ -11,6 +11,9 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "compiler/base/text.h"
+#include "compiler/base/visible.h"
+
 void console_clear(void)
 {
     if (isatty(STDERR_FILENO))
@@ -27,13 +30,18 @@ void console_doing(const Options *options, const char *what)
     fflush(stderr);
 }
 
+/* Words may have names of files, and these any bytes. */
 static void say_words(const char *format, va_list words)
 {
+    char *line;
     fflush(stdout); /* keeps the order of the two streams on a terminal */
     console_clear();
+    if (vasprintf(&line, format, words) < 0)
+        line = NULL;
     fputs("krs: ", stderr);
-    vfprintf(stderr, format, words);
+    visible_print(stderr, line ? line : "out of memory");
     fputc('\n', stderr);
+    free(line);
 }
 
 void say(const char *format, ...)
@@ -82,6 +90,19 @@ KrsStatus console_finish(void)
         return KRS_OK;
     say("error while writing standard output: %s", strerror(errno));
     return KRS_IO_ERROR;
+}
+
+const char *console_name(const Options *options, const char *path)
+{
+    Text name = {.arena = options->arena};
+    text_add(&name, "");
+    for (size_t left = strlen(path); left > 0;) {
+        const Visible visible = visible_next(path, left);
+        text_add_bytes(&name, visible.text, visible.length);
+        path += visible.used;
+        left -= visible.used;
+    }
+    return name.bytes;
 }
 
 void print_number(FILE *out, double number)

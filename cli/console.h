@@ -27,6 +27,9 @@ bool console_color(const Options *options);
 /* Standard output, to the last byte: KRS_IO_ERROR and a line when that fails. */
 KrsStatus console_finish(void);
 
+/* A name of a file as it is printed: a terminal gets no control characters of it. */
+const char *console_name(const Options *options, const char *path);
+
 /* The shortest decimal that reads back as the same double. */
 void print_number(FILE *out, double number);
 

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/commands.h"
 #include "cli/console.h"
@@ -16,7 +17,7 @@ static KrsStatus deliver(const Options *options, const char *path, const char *t
     KrsStatus status = KRS_OK;
     stage_enter(STAGE_ANSWER);
     if (options->check && !same) {
-        printf("%s\n", path);
+        puts(isatty(STDOUT_FILENO) ? console_name(options, path) : path);
         status = KRS_BAD_SCENE;
     } else if (!options->check && is_input(options, path)) {
         fputs(text, stdout);

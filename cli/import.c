@@ -4,8 +4,8 @@
  * The text is for people to go on with: it keeps the names and factors of the file and says in
  * comments what the file left open.
  */
-#include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -13,35 +13,43 @@
 #include "cli/console.h"
 #include "cli/import_file.h"
 #include "cli/supervise.h"
+#include "compiler/base/loader.h"
+#include "compiler/base/source.h"
 
-enum { MOST_BYTES = 16 << 20 };
+static KrsStatus refuse_reading(const Import *import, const Loaded *loaded)
+{
+    say("cannot read `%s`: %s", import->path, loaded->reason);
+    return loaded->outside ? KRS_BAD_SCENE : KRS_IO_ERROR;
+}
+
+/* The text with a NUL behind it. */
+static KrsStatus take_text(Import *import, const Loaded *loaded)
+{
+    if (loaded->length > MOST_SOURCE_BYTES) {
+        say("`%s` is longer than %d MiB", import->path, MOST_SOURCE_BYTES >> 20);
+        return KRS_BAD_SCENE;
+    }
+    if (memchr(loaded->text, '\0', loaded->length)) {
+        say("`%s` is not a text: it has a NUL byte", import->path);
+        return KRS_BAD_SCENE;
+    }
+    import->bytes  = arena_copy_text(import->arena, loaded->text, loaded->length);
+    import->length = loaded->length;
+    return KRS_OK;
+}
 
 static KrsStatus read_all(const Options *options, Import *import)
 {
+    Loader    loader = {0};
     KrsStatus status = scene_readable(options, import->path);
     if (status != KRS_OK)
         return status;
-    Text  text = {.arena = import->arena};
-    char  piece[1 << 14];
-    FILE *file = fopen(import->path, "rb");
-    for (size_t got = 1; file && got > 0 && text.length <= MOST_BYTES;) {
-        got = fread(piece, 1, sizeof piece, file);
-        text_add_bytes(&text, piece, got);
-    }
-    if (!file || ferror(file)) {
-        say("cannot read `%s`: %s", import->path, strerror(errno));
-        status = KRS_IO_ERROR;
-    } else if (text.length > MOST_BYTES) {
-        say("`%s` is longer than %d MiB", import->path, MOST_BYTES >> 20);
-        status = KRS_BAD_SCENE;
-    } else if (text.length > 0 && memchr(text.bytes, '\0', text.length)) {
-        say("`%s` is not a text: it has a NUL byte", import->path);
-        status = KRS_BAD_SCENE;
-    }
-    if (file)
-        fclose(file);
-    import->bytes  = text.length > 0 ? text.bytes : "";
-    import->length = text.length;
+    if (!loader_open(&loader, import->root, import->path))
+        return say_status(KRS_OUT_OF_MEMORY, import->path);
+    Loaded loaded = loader_read_scene(&loader, import->path);
+    status        = loaded.text ? take_text(import, &loaded) : refuse_reading(import, &loaded);
+    free(loaded.owned);
+    loader_close(&loader);
     return status;
 }
 
@@ -76,13 +84,15 @@ KrsStatus command_import(Options *options)
     Import      import = {.path = path, .name = slash ? slash + 1 : path, .arena = options->arena};
     import.keep_going  = options->keep_going;
     import.output      = options->outputs.count > 0 ? options->outputs.items[0] : NULL;
+    import.root        = scene_root(options, path);
+    import.memory      = options->limits.memory;
     if (!import_knows(path))
         return say_usage(options, "`%s` ends in none of %s%s", path, import_endings(),
                          other_way(path));
+    scene_enter_compile(path);
     KrsStatus status = read_all(options, &import);
     if (status != KRS_OK)
         return status;
-    stage_enter(STAGE_COMPILE);
     status = import_file(&import);
     for (size_t i = 0; i < import.left_out.count; i++)
         say("left out: %s", import.left_out.items[i].words);

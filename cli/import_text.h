@@ -26,6 +26,8 @@ typedef struct Import {
     const char *bytes; /* all of it, without a NUL but for the one behind it */
     size_t      length;
     const char *output; /* the file of the scene; NULL: standard output */
+    const char *root;   /* the folder that may be read; NULL: any */
+    uint64_t    memory; /* bytes that compiling the scene may use; 0: as usual */
     Arena      *arena;
     bool        as_field; /* an equation is no polynomial */
     Text        scene;    /* what came of it */

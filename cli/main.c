@@ -30,13 +30,13 @@ static Work *const works[COMMAND_COUNT] = {
 };
 
 /* A standard stream that the caller closed would otherwise be given out again, and a picture
-   written into what printf takes for the terminal.  Opened the wrong way round, each still fails
-   when used. */
+   written into what printf takes for the terminal.  A folder can be neither read nor written, also by who opens
+   it once more as /dev/stdout. */
 static void hold_standard_streams(void)
 {
     for (int stream = 0; stream < 3; stream++)
         if (fcntl(stream, F_GETFD) < 0 && errno == EBADF)
-            open("/dev/null", stream == 0 ? O_WRONLY : O_RDONLY);
+            open("/", O_RDONLY | O_DIRECTORY);
 }
 
 static KrsStatus print_version(void)

@@ -58,9 +58,10 @@ static KrsStatus compile_kernel(const Options *options, const KrsScene *scene, c
         array_push(options->arena, modules, module);
     else if (status == KRS_OUT_OF_MEMORY)
         say("out of memory while compiling `%s`", file);
-    else
-        say("a bug of krs: the kernel `%s` does not compile for this scene\n%s", file,
-            log ? log : "");
+    else {
+        say("a bug of krs: the kernel `%s` does not compile for this scene", file);
+        fprintf(stderr, "%s\n", log ? log : "");
+    }
     free(log);
     gpu_release(&gpu, text);
     return status;

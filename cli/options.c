@@ -13,7 +13,8 @@
 #define ON_PICTURES     (ON(RENDER) | ON(WATCH))
 #define ON_SHOWN        (ON_PICTURES | ON(VIEW))
 #define ON_SCENE        (ON_SHOWN | ON(VALIDATE) | ON(QUERY))
-#define ON_COMPILING    (ON_ALL & ~(ON(DEVICES) | ON(EXPLAIN) | ON(HELP) | ON(IMPORT)))
+#define ON_READING      (ON_ALL & ~(ON(DEVICES) | ON(EXPLAIN) | ON(HELP)))
+#define ON_COMPILING    (ON_READING & ~ON(IMPORT))
 #define TEXT_OF(macro)  TEXT_OF_(macro)
 #define TEXT_OF_(words) #words
 

@@ -12,6 +12,7 @@
 #include "compiler/base/arena.h"
 #include "compiler/krs.h"
 #include "runtime/display/display.h"
+#include "runtime/writer/atomic.h"
 
 enum {
     MANY_FILES      = -1,  /* a command that takes one or more files */
@@ -116,7 +117,7 @@ typedef struct WithinBox {
 } WithinBox;
 
 /* The path of standard output, which `-o -` is. */
-#define STANDARD_OUTPUT "/dev/stdout"
+#define STANDARD_OUTPUT OUTPUT_STANDARD
 
 typedef struct Options {
     CommandId command;

@@ -18,6 +18,7 @@
 #include "cli/render.h"
 #include "cli/render_stats.h"
 #include "cli/supervise.h"
+#include "cli/whole.h"
 
 static KrsStatus say_unknown_camera(const Options *options, const char *const *names, size_t count)
 {
@@ -106,7 +107,7 @@ static KrsStatus choose_size(Render *render, const KrsImage *image)
     how->width                = first_of(how->width, image->width, KRS_DEFAULT_WIDTH);
     how->height               = first_of(how->height, image->height, KRS_DEFAULT_HEIGHT);
     render->samples           = first_of(asked, image->samples,
-                               render->noise ? KRS_DEFAULT_NOISY_SAMPLES : KRS_DEFAULT_SAMPLES);
+                               render->noise > 0 ? KRS_DEFAULT_NOISY_SAMPLES : KRS_DEFAULT_SAMPLES);
     KrsStatus status          = check_limit(options, "pixels", (uint64_t)how->width * how->height,
                                             limits->pixels, options->how.width == 0);
     if (status == KRS_OK)
@@ -123,7 +124,7 @@ static KrsStatus check_how(const Render *render)
     if (crop->x + crop->width > how->width || crop->y + crop->height > how->height)
         return say_usage(options, "--crop %u,%u,%u,%u is not inside of a picture of %ux%u", crop->x,
                          crop->y, crop->width, crop->height, how->width, how->height);
-    if (options->light_groups && render->noise)
+    if (options->light_groups && render->noise > 0)
         return say_usage(options,
                          "--light-groups add up to the picture; where samples end by noise "
                          "they do not");
@@ -153,7 +154,7 @@ static KrsStatus choose_how(Render *render)
     if (status != KRS_OK)
         return status;
     *how          = options->how;
-    render->noise = options->how.noise > 0 || view.image.noise > 0;
+    render->noise = options->how.noise > 0 ? options->how.noise : view.image.noise;
     status        = choose_size(render, &view.image);
     if (status != KRS_OK)
         return status;
@@ -161,7 +162,7 @@ static KrsStatus choose_how(Render *render)
     how->seed          = options->seed;
     how->frame_seconds = 1 / options->fps;
     how->planes        = picture_planes(options, writes_exr(render));
-    if (!render->noise)
+    if (render->noise <= 0)
         how->planes &= known_planes(options);
     if (!isnan(options->exposure))
         how->noise_floor = KRS_DEFAULT_NOISE_FLOOR * exp2(-options->exposure);
@@ -296,6 +297,7 @@ static KrsStatus render_frame(Render *render, uint32_t frame)
     free_others(render);
     if (status == KRS_OK)
         show_stats(render, &picture->stats, frame);
+    render_faults_add(&render->faults, picture, render->noise);
     krs_picture_free(picture);
     return status;
 }
@@ -382,12 +384,12 @@ static KrsStatus make_ready(Render *render)
     return status == KRS_OK ? render_compile(render) : status;
 }
 
-/* Whether all files of a frame are there already. */
+/* Whether all files of a frame are there already, and whole. */
 static bool is_there(const Render *render, uint32_t frame)
 {
     bool there = render->output_count > 0;
     for (size_t i = 0; i < render->output_count; i++)
-        there = there && access(frame_path(render->options, render->outputs[i], frame), F_OK) == 0;
+        there = there && picture_is_whole(frame_path(render->options, render->outputs[i], frame));
     return there;
 }
 
@@ -413,6 +415,8 @@ KrsStatus render_frames(Render *render)
             status = checkpoint_advance(&render->checkpoint, frame);
     }
     progress_end(&render->progress);
+    render_faults_say(&render->faults, options);
+    render->faults = (RenderFaults){0};
     if (skipped > 0 && !options->quiet)
         say("left out %u frame%s whose files are there", skipped, skipped > 1 ? "s" : "");
     return status;

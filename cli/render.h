@@ -7,6 +7,7 @@
 #include "cli/checkpoint.h"
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/render_faults.h"
 
 typedef struct Render {
     const Options   *options;
@@ -19,10 +20,11 @@ typedef struct Render {
     KrsRenderOptions how;
     float           *depth; /* of another renderer, for the frame at hand; NULL: none */
     float (*plate)[4];
-    uint32_t   samples; /* of a pixel, also where `how` leaves it to the scene */
-    bool       noise;   /* its samples end where their noise is low */
-    Progress   progress;
-    Checkpoint checkpoint;
+    uint32_t     samples; /* of a pixel, also where `how` leaves it to the scene */
+    double       noise;   /* at which its samples end; 0: none */
+    Progress     progress;
+    RenderFaults faults;
+    Checkpoint   checkpoint;
     bool (*outdated)(
         void *user); /* asked while a picture is made: true ends it; NULL: it never is */
     void *user;      /* handed to `outdated` */

@@ -41,8 +41,7 @@ static void print_diagnostic(void *user, const KrsDiagnostic *diagnostic)
         fputc('\n', stderr);
 }
 
-/* The folder that scenes may read from; NULL: any. */
-static const char *scene_root(const Options *options, const char *path)
+const char *scene_root(const Options *options, const char *path)
 {
     const char *slash = strrchr(path, '/');
     if (options->root || !options->untrusted)

@@ -9,6 +9,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -285,14 +286,23 @@ static uint64_t memory_allowed(void)
     return limited ? limit.rlim_cur : 0;
 }
 
-/* Whether the child's processor time was used up: `ulimit -t` kills as well. */
-static bool is_out_of_time(void)
+static double seconds_of(struct timeval time)
+{
+    return (double)time.tv_sec + 1e-6 * (double)time.tv_usec;
+}
+
+/* Whether the child's processor time was used up: the system says so by SIGXCPU, or kills as well. */
+static bool is_out_of_time(const Watch *watch, int signal_number)
 {
     struct rlimit limit;
     struct rusage used;
-    return getrlimit(RLIMIT_CPU, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
-           getrusage(RUSAGE_CHILDREN, &used) == 0 &&
-           (rlim_t)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1 >= limit.rlim_cur;
+    if (signal_number != SIGKILL || getrlimit(RLIMIT_CPU, &limit) != 0 ||
+        limit.rlim_cur == RLIM_INFINITY || getrusage(RUSAGE_CHILDREN, &used) != 0)
+        return signal_number == SIGXCPU;
+    /* The system counts in ticks; the last look knows of what a killed process may not have been charged. */
+    const double seconds = fmax(seconds_of(used.ru_utime) + seconds_of(used.ru_stime),
+                                watch->patience.last.processor);
+    return seconds + 1 >= (double)limit.rlim_cur;
 }
 
 /* What takes long to compile is large, or a bug; nobody can tell, and only the former has a cure. */
@@ -323,7 +333,7 @@ static int judge_death(const Options *options, const Watch *watch, int signal_nu
     }
     if (watch->late)
         return report_late(options, stage);
-    if ((signal_number == SIGKILL || signal_number == SIGXCPU) && is_out_of_time()) {
+    if (is_out_of_time(watch, signal_number)) {
         say("stopped while %s: the processor time that `ulimit -t` allows is used up", doing);
         return KRS_INTERRUPTED;
     }

@@ -38,7 +38,7 @@ static const double TOLERANCE_OF_SCALE = 1e-5, TOLERANCE_OF_VALUE = 1e-4;
 
 typedef struct Validation {
     const Options *options;
-    const char    *path;
+    const char    *path, *name; /* the latter is printed */
     KrsScene      *scene;
     KrsFrame      *frame;
     uint64_t       random;                /* state of the generator */
@@ -136,7 +136,7 @@ static void print_component(const Validation *v, const double point[3])
 static KrsStatus report_ball(const Validation *v, const double center[3], double distance,
                              const double inside[3], double found)
 {
-    printf("%s: refuted: the distance ", v->path);
+    printf("%s: refuted: the distance ", v->name);
     print_number(stdout, distance);
     print_point(" at", center);
     print_point(" is too large:", inside);
@@ -212,7 +212,7 @@ static const double ALL_OF_THE_WAY = 1.001;
 
 static KrsStatus report_estimate(const Validation *v)
 {
-    printf("%s: refuted: an estimate is %.3f times as long as the way to the surface\n", v->path,
+    printf("%s: refuted: an estimate is %.3f times as long as the way to the surface\n", v->name,
            v->reached);
     return KRS_BAD_SCENE;
 }
@@ -224,7 +224,7 @@ static KrsStatus try_balls(Validation *v)
     krs_probe(v->frame, (const double(*)[3])v->points, BATCH, hits);
     for (size_t i = 0; i < BATCH; i++)
         if (isnan(hits[i].distance)) {
-            printf("%s: refuted: the distance", v->path);
+            printf("%s: refuted: the distance", v->name);
             print_point(" at", v->points[i]);
             puts(" is not a number");
             return KRS_BAD_SCENE;
@@ -293,7 +293,7 @@ static KrsStatus try_device(Validation *v, KrsRenderer *renderer, KrsRendering *
         if (krs_table_cells(v->scene) > 0 &&
             is_of_cell_aside(v, rounded[i], answered[i], tolerance))
             continue;
-        printf("%s: refuted: the device finds the distance %.9g", v->path, answered[i]);
+        printf("%s: refuted: the device finds the distance %.9g", v->name, answered[i]);
         print_point(" at", rounded[i]);
         fputs(", double precision ", stdout);
         print_number(stdout, expected[i]);
@@ -325,7 +325,7 @@ static KrsStatus try_points(Validation *v, KrsRenderer *renderer, KrsRendering *
     progress_end(&progress);
     if (status != KRS_OK)
         return status;
-    printf("%s: %llu points: %llu places in empty balls are empty", v->path,
+    printf("%s: %llu points: %llu places in empty balls are empty", v->name,
            (unsigned long long)tried, (unsigned long long)v->balls);
     if (rendering)
         printf("; %s agrees, at most %.2g of the tolerance apart",
@@ -333,7 +333,7 @@ static KrsStatus try_points(Validation *v, KrsRenderer *renderer, KrsRendering *
     putchar('\n');
     if (v->estimates > 0)
         printf("%s: estimates reach at most %.3f of the way to the surface, of %llu ways\n",
-               v->path, v->reached, (unsigned long long)v->estimates);
+               v->name, v->reached, (unsigned long long)v->estimates);
     return KRS_OK;
 }
 
@@ -342,7 +342,7 @@ static KrsStatus try_modules(const Validation *v)
     Modules   modules;
     KrsStatus status = modules_compile(v->options, v->scene, &modules);
     if (status == KRS_OK)
-        printf("%s: %zu modules are valid SPIR-V\n", v->path, modules.count);
+        printf("%s: %zu modules are valid SPIR-V\n", v->name, modules.count);
     modules_free(&modules);
     return status;
 }
@@ -359,20 +359,20 @@ static bool go_on(void *user, double fraction)
 static KrsStatus report_search(const Validation *v, KrsStatus status, const KrsRefutation *result)
 {
     if (result->refuted)
-        printf("%s: refuted: the distance of a shape\n", v->path);
+        printf("%s: refuted: the distance of a shape\n", v->name);
     if (status != KRS_OK)
         return status;
     printf("%s: %zu shapes searched, at %zu settings, by %llu distances: "
            "no slope above %.6g of 1\n",
-           v->path, result->shapes, result->settings, (unsigned long long)result->evaluations,
+           v->name, result->shapes, result->settings, (unsigned long long)result->evaluations,
            result->steepest);
     if (result->refused > 0)
-        printf("%s: %zu times no setting was found that is finite everywhere\n", v->path,
+        printf("%s: %zu times no setting was found that is finite everywhere\n", v->name,
                result->refused);
     if (result->skipped > 0)
-        printf("%s: %zu shapes are too large to be searched\n", v->path, result->skipped);
+        printf("%s: %zu shapes are too large to be searched\n", v->name, result->skipped);
     if (result->estimates > 0)
-        printf("%s: %zu shapes are estimates, of at most %.3f of the way to the surface\n", v->path,
+        printf("%s: %zu shapes are estimates, of at most %.3f of the way to the surface\n", v->name,
                result->estimates, result->longest);
     return KRS_OK;
 }
@@ -441,9 +441,11 @@ KrsStatus command_validate(Options *options)
     if (worst != KRS_OK)
         return worst;
     for (size_t i = 0; i < options->files.count && !*interrupted(); i++) {
-        Validation *v = arena_new(options->arena, Validation);
-        *v            = (Validation){
-                       .options = options, .path = options->files.items[i], .random = options->seed};
+        Validation *v    = arena_new(options->arena, Validation);
+        *v               = (Validation){.options = options,
+                                        .path    = options->files.items[i],
+                                        .name    = console_name(options, options->files.items[i]),
+                                        .random  = options->seed};
         KrsStatus status = validate_scene(v, renderer);
         if (worst == KRS_OK)
             worst = status;

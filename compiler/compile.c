@@ -225,16 +225,18 @@ static KrsStatus load_and_compile(const char *text, size_t length, const char *n
     static const KrsOptions defaults = {0};
     options                          = options ? options : &defaults;
     *scene                           = NULL;
-    Loader      loader               = {.supplier      = options->load,
-                                        .user          = options->load_user,
-                                        .observer      = options->opened,
-                                        .observer_user = options->opened_user};
-    KrsStatus   status               = KRS_OUT_OF_MEMORY;
-    Compilation c                    = {.request = request,
-                                        .options = options,
-                                        .loader  = &loader,
-                                        .name    = name,
-                                        .loaded  = {.text = text, .length = length}};
+    if (!name)
+        return KRS_BAD_ARGUMENT;
+    Loader      loader = {.supplier      = options->load,
+                          .user          = options->load_user,
+                          .observer      = options->opened,
+                          .observer_user = options->opened_user};
+    KrsStatus   status = KRS_OUT_OF_MEMORY;
+    Compilation c      = {.request = request,
+                          .options = options,
+                          .loader  = &loader,
+                          .name    = name,
+                          .loaded  = {.text = text, .length = length}};
     if (!text && options->text)
         c.loaded = (Loaded){.text = options->text, .length = options->text_length};
     if (loader_open(&loader, options->root, name))
@@ -248,6 +250,10 @@ const char *krs_version(void) { return KRS_VERSION; }
 KrsStatus krs_compile_text(const char *text, size_t length, const char *name,
                            const KrsOptions *options, KrsScene **scene)
 {
+    if (!text && length > 0) {
+        *scene = NULL;
+        return KRS_BAD_ARGUMENT;
+    }
     return load_and_compile(text ? text : "", length, name, options, &scene_alone, scene);
 }
 

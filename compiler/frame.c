@@ -185,6 +185,8 @@ KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values,
 {
     const KrsScene *scene = frame->scene;
     frame->unbounded      = NULL;
+    if (!name || (!values && count > 0))
+        return KRS_BAD_ARGUMENT;
     for (size_t i = 0; i < scene->parameter_count; i++) {
         const Parameter *parameter = &scene->parameters[i];
         if (strcmp(parameter->name, name) != 0)
@@ -250,7 +252,7 @@ static bool zone_is_valid(const double zone[4])
 
 KrsStatus krs_frame_set_zones(KrsFrame *frame, const double (*zones)[4], size_t count)
 {
-    if (count > KRS_MOST_ZONES)
+    if (count > KRS_MOST_ZONES || (!zones && count > 0))
         return KRS_BAD_ARGUMENT;
     for (size_t i = 0; i < count; i++)
         if (!zone_is_valid(zones[i]))

@@ -15,6 +15,8 @@
 
 static bool are_finite(const double (*vectors)[3], size_t count)
 {
+    if (!vectors)
+        return count == 0;
     for (size_t i = 0; i < count; i++)
         if (!isfinite(vectors[i][0]) || !isfinite(vectors[i][1]) || !isfinite(vectors[i][2]))
             return false;

@@ -51,7 +51,8 @@ KrsStatus krs_texture_places(KrsFrame *frame, const double (*points)[3], size_t 
     bool            any     = roots_of(&scene->roots, ROOTS_PLACE).count > 0;
     bool            normals = reads_normals(scene->graph, &scene->places);
     for (size_t i = 0; i < count; i++)
-        if (!isfinite(points[i][0]) || !isfinite(points[i][1]) || !isfinite(points[i][2]))
+        if (!points || !isfinite(points[i][0]) || !isfinite(points[i][1]) ||
+            !isfinite(points[i][2]))
             return KRS_BAD_ARGUMENT;
     frame_refresh_points(frame);
     for (size_t i = 0; i < count; i++)

@@ -453,6 +453,10 @@ static KrsStatus update(const KrsScene *scene, const char *text, size_t length, 
 KrsStatus krs_scene_update(const KrsScene *scene, const char *text, size_t length,
                            KrsScene **updated, KrsChanges *changes)
 {
+    if (!text && length > 0) {
+        *updated = NULL;
+        return KRS_BAD_ARGUMENT;
+    }
     return update(scene, text ? text : "", length, updated, changes);
 }
 

@@ -14,6 +14,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "compiler/base/visible.h"
 #include "live/cells.h"
 
 /* Pixels of a cell where the terminal does not tell.  Characters are about twice as high as wide. */
@@ -214,14 +215,18 @@ void terminal_size(const Terminal *terminal, uint32_t *width, uint32_t *height)
     *height           = (uint32_t)(grid.rows * (pixels ? grid.cell_height : SYMBOL_HEIGHT));
 }
 
-/* A line, as far as there is room for its characters. */
-static void print_line(const char *line, int columns)
+/* The first line, as far as there is room for its characters. */
+static void print_line(const char *line, uint32_t columns)
 {
-    for (int shown = 0; *line && *line != '\n'; line++) {
-        shown += (*line & 0xC0) != 0x80; /* not within a character of UTF-8 */
+    uint32_t shown = 0;
+    for (size_t left = strcspn(line, "\n"); left > 0;) {
+        const Visible visible = visible_next(line, left);
+        shown += visible.columns;
         if (shown > columns)
             break;
-        putchar(*line);
+        fwrite(visible.text, 1, visible.length, stdout);
+        line += visible.used;
+        left -= visible.used;
     }
     fputs("\033[K", stdout);
 }
@@ -240,7 +245,7 @@ void terminal_show(Terminal *terminal, const uint8_t *pixels, uint32_t width, ui
         if (row < 1)
             continue;
         printf("\033[%d;1H", row);
-        print_line(lines[i], grid.columns);
+        print_line(lines[i], (uint32_t)grid.columns);
     }
     fflush(stdout);
     free(text);

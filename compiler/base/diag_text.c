@@ -1,21 +1,16 @@
 /*
  * diag_text.c: writes diagnostics for people, with the source lines that they are about.
  *
- * A source may have any bytes.  So control characters, and characters that reverse the direction
- * of writing, are replaced by visible ones.  Of a very long line only the part around the mark is
- * shown.
+ * A source may have any bytes, which are made visible.  Of a very long line only the part around the
+ * mark is shown.
  */
 #include "compiler/base/diag.h"
 
 #include <string.h>
 
-enum {
-    TAB_COLUMNS       = 4,
-    LONG_LINE_BYTES   = 120,
-    WINDOW_BEFORE     = 40,
-    WINDOW_CHARACTERS = 100,
-    LONG_TEXT_BYTES   = 400
-};
+#include "compiler/base/visible.h"
+
+enum { LONG_LINE_BYTES = 120, WINDOW_BEFORE = 40, WINDOW_CHARACTERS = 100, LONG_TEXT_BYTES = 400 };
 
 /* A span to be marked; one that goes over several lines is marked on its first line only. */
 typedef struct Mark {
@@ -39,73 +34,17 @@ typedef struct Excerpt {
     } marks;
 } Excerpt;
 
-/* ---- characters ---- */
-
-typedef struct CharacterRange {
-    uint32_t first, last;
-} CharacterRange;
-
-static bool is_among(uint32_t c, const CharacterRange *ranges, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        if (c >= ranges[i].first && c <= ranges[i].last)
-            return true;
-    return false;
-}
-
-/* Control characters, and invisible ones that reorder or hide their neighbours. */
-static bool is_deceptive(uint32_t c)
-{
-    static const CharacterRange ranges[] = {{0x80, 0x9F},     {0x61C, 0x61C},   {0x200B, 0x200F},
-                                            {0x2028, 0x202E}, {0x2060, 0x206F}, {0xFEFF, 0xFEFF}};
-    return is_among(c, ranges, sizeof ranges / sizeof *ranges);
-}
-
-static bool is_combining(uint32_t c)
-{
-    static const CharacterRange ranges[] = {
-        {0x300, 0x36F}, {0x1AB0, 0x1AFF}, {0x20D0, 0x20FF}, {0xFE00, 0xFE0F}, {0xFE20, 0xFE2F}};
-    return is_among(c, ranges, sizeof ranges / sizeof *ranges);
-}
-
-static bool is_wide(uint32_t c)
-{
-    static const CharacterRange ranges[] = {{0x1100, 0x115F},  {0x2E80, 0x303E}, {0x3041, 0xA4CF},
-                                            {0xAC00, 0xD7A3},  {0xF900, 0xFAFF}, {0xFE30, 0xFE6F},
-                                            {0xFF00, 0xFF60},  {0xFFE0, 0xFFE6}, {0x1F300, 0x1FAFF},
-                                            {0x20000, 0x3FFFD}};
-    return is_among(c, ranges, sizeof ranges / sizeof *ranges);
-}
-
-/* Adds bytes to `out`, with visible characters in place of those that a terminal must not get.
-   Returns how many columns they take.  `out` may be NULL, to measure only. */
+/* Adds bytes to `out` as a terminal may get them.  Returns how many columns they take.  `out` may be NULL, to
+   measure only. */
 static uint32_t add_visible(Text *out, const char *bytes, size_t length)
 {
-    static const char replacement[] = "\xEF\xBF\xBD";
-    uint32_t          columns       = 0;
+    uint32_t columns = 0;
     for (size_t i = 0; i < length;) {
-        uint32_t    c;
-        size_t      used         = text_character(bytes + i, length - i, &c);
-        const char *shown        = bytes + i;
-        size_t      shown_length = used;
-        char        excerpt[]    = "\xE2\x90\x80"; /* U+2400, the first of the control pictures */
-        bool        ascii        = c < 0x80;
-        uint32_t    width        = !ascii && is_combining(c) ? 0 : !ascii && is_wide(c) ? 2 : 1;
-        if (c == '\t') {
-            shown        = "    ";
-            shown_length = width = TAB_COLUMNS;
-        } else if (c < 0x20 || c == 0x7F) {
-            excerpt[2]   = (char)(0x80 + (c == 0x7F ? 0x21 : c));
-            shown        = excerpt;
-            shown_length = 3;
-        } else if (used == 0 || (!ascii && is_deceptive(c))) {
-            shown        = replacement;
-            shown_length = 3;
-        }
+        const Visible visible = visible_next(bytes + i, length - i);
         if (out)
-            text_add_bytes(out, shown, shown_length);
-        columns += width;
-        i += used ? used : 1;
+            text_add_bytes(out, visible.text, visible.length);
+        columns += visible.columns;
+        i += visible.used;
     }
     return columns;
 }

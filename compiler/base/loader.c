@@ -13,41 +13,13 @@
 #include <unistd.h>
 
 #include "compiler/base/beneath.h"
+#include "compiler/base/paths.h"
 #include "compiler/base/source.h"
-
-/* The length of a path's folder with its last slash, in bytes. */
-static size_t folder_length(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? (size_t)(slash - path) + 1 : 0;
-}
-
-/* A file must have one name only, since it is known by its path. */
-void path_simplify(char *path)
-{
-    char *to = path;
-    for (const char *from = path; *from;) {
-        size_t length = strcspn(from, "/");
-        bool   last   = from[length] == '\0';
-        char  *back   = to > path ? to - 1 : NULL; /* goes to the start of the folder before */
-        while (back && back > path && back[-1] != '/')
-            back--;
-        bool folder = back && !(to - back == 3 && strncmp(back, "../", 3) == 0) && back < to - 1;
-        if (length == 2 && strncmp(from, "..", 2) == 0 && folder)
-            to = back;
-        else if (!(length == 1 && from[0] == '.' && !last)) {
-            memmove(to, from, length + !last);
-            to += length + !last;
-        }
-        from += length + !last;
-    }
-    *to = '\0';
-}
 
 /* The path from the root to the scene's folder: "" or "a/b/"; NULL if that is not in the root. */
 static char *find_scene_folder(const char *root, const char *scene)
 {
-    size_t length = folder_length(scene);
+    size_t length = path_folder_length(scene);
     char  *folder = length ? strndup(scene, length) : strdup(".");
     char  *whole = realpath(root, NULL), *real = folder ? realpath(folder, NULL) : NULL;
     char  *found = NULL;
@@ -89,31 +61,15 @@ void loader_close(Loader *loader)
     *loader = (Loader){.root = -1};
 }
 
-/* The path from the root to a file.  `path` begins as the scene's path does.  The result goes up
-   from the scene's folder to the last folder that both paths share, and down to the file.  NULL if
-   the file may be outside of the root, or if there is no memory. */
+/* The path from the root to a file.  `path` begins as the scene's path does.  NULL if the file may be outside of
+   the root, or if there is no memory. */
 static char *path_from_root(const Loader *loader, const char *path)
 {
-    const char *folder = loader->scene;
-    size_t      length = folder_length(folder), common = 0;
-    char       *whole = NULL, *up;
-    if (!loader->scene_folder || (path[0] == '/') != (folder[0] == '/' && length > 0))
-        return NULL;
-    for (size_t i = 0; i < length && path[i] == folder[i]; i++)
-        if (path[i] == '/')
-            common = i + 1;
-    size_t levels = 0;
-    for (size_t i = common; i < length; i++)
-        levels += folder[i] == '/';
-    up = malloc(3 * levels + 1);
-    if (!up)
-        return NULL;
-    for (size_t i = 0; i < levels; i++)
-        memcpy(up + 3 * i, "../", 3);
-    up[3 * levels] = '\0';
-    if (asprintf(&whole, "%s%s%s", loader->scene_folder, up, path + common) < 0)
+    char *relative = loader->scene_folder ? path_relative(loader->scene, path) : NULL,
+         *whole    = NULL;
+    if (relative && asprintf(&whole, "%s%s", loader->scene_folder, relative) < 0)
         whole = NULL;
-    free(up);
+    free(relative);
     return whole;
 }
 
@@ -155,7 +111,7 @@ Loaded loader_read_scene(const Loader *loader, const char *path)
     if (!loader->confined)
         return read_file(path);
     if (loader->scene_folder &&
-        asprintf(&whole, "%s%s", loader->scene_folder, path + folder_length(path)) < 0)
+        asprintf(&whole, "%s%s", loader->scene_folder, path + path_folder_length(path)) < 0)
         whole = NULL;
     return read_confined(loader, whole);
 }

@@ -33,8 +33,6 @@ typedef struct Loaded {
     char       *owned;   /* to be freed when the text is no longer needed */
 } Loaded;
 
-/* Removes "." and "name/.." from a path, in place. */
-void path_simplify(char *path);
 /* Sets all members but the caller's functions and what is handed to them.  `root` may be NULL: nothing is confined.  False when
    there is no memory. */
 bool loader_open(Loader *loader, const char *root, const char *scene);

@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "compiler/base/paths.h"
+
 static const char byte_order_mark[] = "\xEF\xBB\xBF";
 
 /* The first line begins behind a byte order mark, which is no character of the scene. */
@@ -160,23 +162,70 @@ char *source_read_open(int fd, size_t *length, const char **reason)
     return text;
 }
 
-/* FNV-1a (Fowler, Noll, Vo). */
-/* FNV-1a */
+/* ---- the hash: FNV-1a (Fowler, Noll, Vo) ---- */
+
 static const uint64_t FNV_START = 0xcbf29ce484222325u, FNV_PRIME = 0x100000001b3u;
 
-void sources_note_bytes(Sources *sources, const unsigned char *bytes, size_t length)
+static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t length)
 {
-    uint64_t h = sources->pictures ? sources->pictures : FNV_START;
+    const unsigned char *byte = bytes;
     for (size_t i = 0; i < length; i++)
-        h = (h ^ bytes[i]) * FNV_PRIME;
-    sources->pictures = h;
+        hash = (hash ^ byte[i]) * FNV_PRIME;
+    return hash;
+}
+
+/* The length before the content: bytes that go from one file to the next change the hash. */
+static uint64_t hash_file(uint64_t hash, const char *path, const void *bytes, size_t length)
+{
+    unsigned char size[8];
+    for (size_t i = 0; i < sizeof size; i++)
+        size[i] = (unsigned char)((uint64_t)length >> 8 * i);
+    hash = hash_bytes(hash, path, strlen(path) + 1);
+    hash = hash_bytes(hash, size, sizeof size);
+    return hash_bytes(hash, bytes, length);
+}
+
+/* How a scene that is called `scene` may name a file, wherever it is compiled: "" for its own. */
+static uint64_t hash_named(uint64_t hash, const char *scene, const char *path, const void *bytes,
+                           size_t length)
+{
+    char *from = strdup(scene), *to = strdup(path), *relative = NULL;
+    if (from && to) {
+        path_simplify(from);
+        path_simplify(to);
+        relative = strcmp(from, to) == 0 ? NULL : path_relative(from, to);
+    }
+    const bool own = from && to && strcmp(from, to) == 0;
+    hash           = hash_file(hash, own ? "" : relative ? relative : path, bytes, length);
+    free(from);
+    free(to);
+    free(relative);
+    return hash;
+}
+
+/* The scene is the first of its files. */
+static const char *scene_name(const Sources *sources)
+{
+    for (size_t i = 0; i < sources->count; i++)
+        if (!sources->items[i].library)
+            return sources->items[i].name;
+    return "";
+}
+
+void sources_note_file(Sources *sources, const char *path, const void *bytes, size_t length)
+{
+    const uint64_t before = sources->noted ? sources->noted : FNV_START;
+    sources->noted        = hash_named(before, scene_name(sources), path, bytes, length);
 }
 
 void sources_hash(const Sources *sources, char hash[17])
 {
-    uint64_t h = FNV_START ^ sources->pictures;
-    for (size_t i = 1; i < sources->count; i++)
-        for (uint32_t k = 0; !sources->items[i].library && k < sources->items[i].length; k++)
-            h = (h ^ (uint8_t)sources->items[i].text[k]) * FNV_PRIME;
+    uint64_t h = FNV_START;
+    for (size_t i = 1; i < sources->count; i++) {
+        const Source *source = &sources->items[i];
+        if (!source->library)
+            h = hash_named(h, scene_name(sources), source->name, source->text, source->length);
+    }
+    h = hash_bytes(h, &sources->noted, sizeof sources->noted);
     snprintf(hash, 17, "%016llx", (unsigned long long)h);
 }

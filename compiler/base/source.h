@@ -32,7 +32,7 @@ typedef struct Sources {
     Arena   *arena;
     Source  *items; /* items[0] is the empty source */
     size_t   count, capacity;
-    uint64_t pictures; /* a hash of the files that were read and are no texts; 0: there are none */
+    uint64_t noted; /* a hash of the files that were read and are no texts; 0: there are none */
 } Sources;
 
 /* Line and column of a byte, both from 1; columns count UTF-8 characters. */
@@ -52,9 +52,10 @@ char *source_read_open(int fd, size_t *length, const char **reason);
 /* Adds a copy of a text of at most MOST_SOURCE_BYTES and returns its number. */
 uint32_t source_add(Sources *sources, const char *name, const char *text, size_t length,
                     bool library);
-/* Notes a file that is no text, such as a picture, for the hash. */
-void sources_note_bytes(Sources *sources, const unsigned char *bytes, size_t length);
-/* A hash of 64 bits, as hexadecimal digits, of all sources that are not the library's. */
+/* Notes a file that is no text, such as a picture or a font, for the hash. */
+void sources_note_file(Sources *sources, const char *path, const void *bytes, size_t length);
+/* A hash of 64 bits, as hexadecimal digits, of all files that were read but the library's: of the path of each from
+   the scene's folder, its length and its content. */
 void     sources_hash(const Sources *sources, char hash[17]);
 uint32_t source_line(const Source *source, uint32_t offset);
 Position source_position(const Source *source, uint32_t offset);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/paths.h"
 #include "compiler/eval/elaborate.h"
 
 enum { MOST_FILE_BYTES = 64 << 20 };
@@ -71,7 +72,7 @@ bool read_beside(Elaboration *e, const Argument *argument, const char *name, Fil
     bool large = is_too_large(e, argument->syntax, loaded.length);
     if (!large) {
         keep_bytes(e, path, &loaded, bytes);
-        sources_note_bytes(e->sources, bytes->bytes, bytes->length);
+        sources_note_file(e->sources, path, bytes->bytes, bytes->length);
     }
     free(loaded.owned);
     return !large;
@@ -83,8 +84,10 @@ bool read_system_file(Elaboration *e, const char *path, FileBytes *bytes)
     if (find_read(e, path, bytes))
         return true;
     Loaded loaded = loader_read(&system, path);
-    if (loaded.text && loaded.length <= MOST_FILE_BYTES)
+    if (loaded.text && loaded.length <= MOST_FILE_BYTES) {
         keep_bytes(e, path, &loaded, bytes);
+        sources_note_file(e->sources, path, bytes->bytes, bytes->length);
+    }
     free(loaded.owned);
     return bytes->bytes != NULL;
 }

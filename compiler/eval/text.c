@@ -75,6 +75,7 @@ static bool find_system_font(Elaboration *e, const Call *call, const char *name,
         report_no_font(e, call, search, name);
         return false;
     }
+    sources_note_file(e->sources, "face", &found.face, sizeof found.face);
     *font = (Font){bytes.bytes, bytes.length, found.face};
     return true;
 }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "compiler/base/embedded.h"
+#include "compiler/base/paths.h"
 #include "compiler/front/names.h"
 #include "compiler/front/parse.h"
 #include "compiler/front/synonyms.h"

@@ -24,6 +24,8 @@ enum { MOST_STEPS = 8192, MOST_LANE_STEPS = 16384 };
 /* What single precision can square. */
 static bool is_in_reach(const double (*vectors)[3], size_t count)
 {
+    if (!vectors)
+        return count == 0;
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++)
             if (!(fabs(vectors[i][k]) <= KRS_MOST_COORDINATE))

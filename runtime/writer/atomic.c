@@ -149,19 +149,33 @@ bool output_is_same(const char *a, const char *b)
     return same;
 }
 
+static bool is_standard_output(const char *path) { return strcmp(path, OUTPUT_STANDARD) == 0; }
+
+/* Whether standard output can be written: a caller may have closed it. */
+static bool check_standard_output(OutputFile *file)
+{
+    const int flags = fcntl(STDOUT_FILENO, F_GETFL);
+    if (flags >= 0 && (flags & O_ACCMODE) != O_RDONLY)
+        return true;
+    errno = EBADF;
+    return fail_write(file);
+}
+
 /* Finds the target: the file that a symbolic link leads to is replaced, not the link. */
 static bool find_target(OutputFile *file)
 {
     struct stat *info   = &file->before;
     size_t       length = strlen(file->shown);
-    file->exists        = stat(file->shown, info) == 0;
+    if (is_standard_output(file->shown) && !check_standard_output(file))
+        return false;
+    file->exists = stat(file->shown, info) == 0;
     if (length == 0 || (file->exists && S_ISDIR(info->st_mode)) || file->shown[length - 1] == '/') {
         errno = length == 0 ? ENOENT : EISDIR;
         return fail_create(file);
     }
     if (file->exists && access(file->shown, W_OK) != 0)
         return fail_create(file);
-    file->direct = file->exists && !S_ISREG(info->st_mode);
+    file->direct = is_standard_output(file->shown) || (file->exists && !S_ISREG(info->st_mode));
     file->target = file->direct ? strdup(file->shown) : real_path(file->shown);
     if (!file->target)
         return fail_create(file);
@@ -262,7 +276,8 @@ bool output_append(OutputFile *file, const void *bytes, size_t length)
 /* Copies the temporary file to a target such as a pipe, which cannot be written in any order. */
 static bool copy_to_target(OutputFile *file)
 {
-    int target = open(file->target, O_WRONLY | O_CLOEXEC);
+    int target = is_standard_output(file->target) ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
+                                                  : open(file->target, O_WRONLY | O_CLOEXEC);
     if (target < 0)
         return fail_create(file);
     bool done = true;

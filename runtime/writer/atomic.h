@@ -7,7 +7,7 @@
  *
  * Until it is renamed the file is readable by the user alone; then it takes over owner and
  * permissions of the file that it replaces.  Symbolic links are followed, also those to a file that
- * does not exist yet.  A target that cannot be renamed over (a pipe, a terminal, /dev/full) is
+ * does not exist yet.  A target that cannot be renamed over (a pipe, a terminal, /dev/full, standard output) is
  * written when committing.
  */
 #ifndef KRS_ATOMIC_H
@@ -19,6 +19,9 @@
 #include <stdint.h>
 
 #include "compiler/krs.h"
+
+/* The path of standard output: what is written goes where other output of the process goes. */
+#define OUTPUT_STANDARD "/dev/stdout"
 
 /* One line for the user, such as "cannot create `a/b.exr`: No such file or directory". */
 typedef struct OutputError {

@@ -397,9 +397,46 @@ static void rays_of_any_length_hit(void **state)
     close_scene(frame, scene);
 }
 
+/* What is not there is a mistake of the caller, and changes nothing. */
+static void pointers_that_are_null_are_refused(void **state)
+{
+    (void)state;
+    static const char text[]   = "param r = 1 in [0.1, 2]; show sphere(r);";
+    const double      value[1] = {0.5};
+    KrsScene         *scene = (KrsScene *)1, *other = (KrsScene *)1;
+    KrsFrame         *frame;
+    char             *formatted = (char *)1;
+    bool              same;
+    double            distance[1];
+    KrsHit            hit;
+    assert_int_equal(krs_compile_text(NULL, 4, "a.krs", NULL, &scene), KRS_BAD_ARGUMENT);
+    assert_null(scene);
+    assert_int_equal(krs_compile_text(text, sizeof text - 1, NULL, NULL, &scene), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_compile_file(NULL, NULL, &scene), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_format(NULL, NULL, &formatted, &same), KRS_BAD_ARGUMENT);
+    assert_null(formatted);
+    assert_int_equal(krs_compile_text(text, sizeof text - 1, "a.krs", NULL, &scene), KRS_OK);
+    assert_int_equal(krs_scene_update(scene, NULL, 3, &other, NULL), KRS_BAD_ARGUMENT);
+    assert_null(other);
+    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_frame_set(frame, NULL, value, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_frame_set(frame, "r", NULL, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_frame_set_zones(frame, NULL, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_frame_set_zones(frame, NULL, 0), KRS_OK);
+    assert_int_equal(krs_distance(frame, NULL, 1, distance), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_normal(frame, NULL, 1, &hit.normal), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_probe(frame, NULL, 1, &hit), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_raycast(frame, NULL, NULL, 1, 1, 0, &hit), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_distance(frame, &(const double[3]){3, 0, 0}, 1, distance), KRS_OK);
+    assert_true(fabs(distance[0] - 2) < 1e-12);
+    krs_frame_free(frame);
+    krs_scene_free(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pointers_that_are_null_are_refused),
         cmocka_unit_test(parameters_move_the_scene),
         cmocka_unit_test(lists_are_indexed_by_what_frames_know),
         cmocka_unit_test(an_index_may_come_near_to_the_length),
