@@ -8,8 +8,8 @@
 
 /* The point q goes to rows q + shift. */
 typedef struct Place {
-    double rows[3][3];
-    double shift[3];
+  double rows[3][3];
+  double shift[3];
 } Place;
 
 Place place_identity(void);
@@ -21,14 +21,18 @@ Place place_turn(int axis, double angle);
 Place place_chain(const Place *first, const Place *then);
 /* The same map seen in a mirror that changes the sign of z. */
 Place place_mirrored(const Place *place);
-void  place_apply(const Place *place, const double q[3], double to[3]);
+/* False: it flattens space. */
+bool place_invert(Place *place);
+void place_apply(const Place *place, const double q[3], double to[3]);
 /* The factor by which all lengths grow; 0 where it differs by direction. */
 double place_factor(const Place *place);
-/* Whether figures in x and y stay there; makes it the plain map of space that does the same. */
+/* Whether figures in x and y stay there; makes it the plain map of space that
+ * does the same. */
 bool place_flatten(Place *place);
 
-/* Adds `.scale(...).rotate(...).move(...)`, as much of it as is needed; false when the place
-   flattens space to a plane, or is larger or smaller than numbers allow. */
+/* Adds `.scale(...).rotate(...).move(...)`, as much of it as is needed; false
+   when the place flattens space to a plane, or is larger or smaller than
+   numbers allow. */
 bool place_write(Text *text, const Place *place);
 
 #endif

@@ -1,9 +1,10 @@
 /*
  * import_pov_reader.h: what those who read POV-Ray's language share.
  *
- * POV-Ray's space is left-handed: its z points away from the eye, that of scenes towards it.  What
- * is read is in POV-Ray's space.  It changes the sign of z when it becomes a part, or is written:
- * points by pov_point, maps by place_mirrored.
+ * POV-Ray's space is left-handed: its z points away from the eye, that of
+ * scenes towards it.  What is read is in POV-Ray's space.  It changes the sign
+ * of z when it becomes a part, or is written: points by pov_point, maps by
+ * place_mirrored.
  */
 #ifndef KRS_IMPORT_POV_READER_H
 #define KRS_IMPORT_POV_READER_H
@@ -17,20 +18,12 @@ typedef struct PovValue {
     int    count; /* 1: a number, which may stand for a vector of equal ones */
 } PovValue;
 
+/* `size` of highlights is as in `phong_size`; `filter` and `transmit` are how
+ * much light goes through. */
 typedef struct PovLook {
-    bool   colored, finished, specular;
-    double color[3], size, metallic; /* `size` of highlights, as in `phong_size` */
+    bool   colored, finished, specular, patterned, textured;
+    double color[3], filter, transmit, size, metallic, ior;
 } PovLook;
-
-typedef enum PovNameKind { POV_VALUE, POV_OBJECT, POV_LOOK } PovNameKind;
-
-typedef struct PovName {
-    const char *name;
-    PovNameKind kind;
-    PovValue    value;
-    Part       *part;
-    PovLook     look;
-} PovName;
 
 typedef struct PovView {
     bool     has_camera, orthographic, has_direction;
@@ -40,19 +33,98 @@ typedef struct PovView {
 } PovView;
 
 typedef struct PovLight {
-    double   position[3], target[3], color[3];
+    double   position[3], target[3], color[5];
     bool     parallel, shadowless;
     unsigned line;
 } PovLight;
+
+typedef enum PovKind {
+    POV_NOTHING,
+    POV_VALUE,
+    POV_STRING,
+    POV_OBJECT,
+    POV_LOOK,
+    POV_CAMERA,
+    POV_LIGHT,
+    POV_PLACE,
+    POV_ARRAY,
+    POV_MACRO,
+    POV_FUNCTION,
+    POV_OTHER /* what changes no shape: it is known, and left out */
+} PovKind;
+
+/* Of a macro, and of a function: where its text is. */
+typedef struct PovMacro {
+    struct {
+        const char **items;
+        size_t       count, capacity;
+    } parameters;
+    const char *at;
+    unsigned    line, fixed_line;
+} PovMacro;
+
+enum { POV_MOST_DIMENSIONS = 5 };
+
+typedef struct PovCell {
+    PovKind          kind;
+    PovValue         value;
+    const char      *string;
+    Part            *part;
+    PovLook          look;
+    Place            place;
+    const PovView   *view;
+    const PovLight  *light;
+    const PovMacro  *macro;
+    struct PovCell **items; /* of an array */
+    int              sizes[POV_MOST_DIMENSIONS], dimensions;
+} PovCell;
+
+typedef struct PovName {
+    const char *name;
+    PovCell    *cell;
+} PovName;
+
+/* Where words come from: the file, one that it includes, or a macro. */
+typedef struct PovSource {
+    const char *at; /* where it goes on, while another one is read */
+    unsigned    line;
+    unsigned    fixed_line; /* all words count as of this line, where that is not 0 */
+    bool        macro;
+    size_t      names_before; /* behind them are those of its own */
+} PovSource;
+
+typedef struct PovBlock {
+    enum { POV_IF, POV_WHILE, POV_FOR, POV_SWITCH, POV_MACRO_BODY } kind;
+    size_t      source;
+    unsigned    line;
+    const char *at; /* of a loop: where it goes on */
+    unsigned    at_line;
+    PovCell    *cell; /* of `#for` */
+    double      last, step;
+} PovBlock;
 
 typedef struct PovReader {
     WordReader words;
     Import    *import;
     int        depth;
+    int        open, held_at; /* brackets; where directives wait, or -1 */
+    size_t     words_read;
+    struct {
+        PovSource *items;
+        size_t     count, capacity;
+    } sources;
+    struct {
+        PovBlock *items;
+        size_t    count, capacity;
+    } blocks;
     struct {
         PovName *items;
         size_t   count, capacity;
     } names;
+    struct {
+        const char **items;
+        size_t       count, capacity;
+    } shared; /* names of objects, as often as they were declared */
     struct {
         PovLight *items;
         size_t    count, capacity;
@@ -60,42 +132,88 @@ typedef struct PovReader {
     Part    *shown;     /* a union of what the scene has */
     Text     materials; /* of looks that are more than a colour */
     size_t   material_count;
+    PovLook  usual; /* of `#default` */
     PovView  view;
     bool     has_background;
     double   background[3];
     unsigned background_line;
 } PovReader;
 
+/* ---- programs: import_pov_sdl.c ---- */
+
+void pov_start(PovReader *reader);
+/* The last one of a name counts; NULL: there is none. */
+PovCell *pov_find(PovReader *reader, const char *name);
+/* Carries out a directive or macro that waits at the word. */
+bool pov_release(PovReader *reader);
+/* `default { ... }`, up to its `}`. */
+bool pov_default(PovReader *reader);
+/* Where reading is, to go back there after a refusal. */
+typedef struct PovState {
+    ImportWord  word;
+    const char *at;
+    unsigned    line;
+    int         depth, open, held_at;
+    size_t      sources, blocks;
+    PovSource   top;
+} PovState;
+void pov_keep_state(PovReader *reader, PovState *state);
+void pov_restore_state(PovReader *reader, const PovState *state);
+/* What a function is for these numbers. */
+bool pov_evaluate(PovReader *reader, const PovMacro *function, const double *numbers,
+                  PovValue *value);
+
+/* ---- what may be declared: import_pov_declared.c ---- */
+
+/* Whatever may stand behind `#declare NAME =`. */
+bool pov_rvalue(PovReader *reader, PovCell *cell);
+/* A parameter of a macro: a name stands for what is named. */
+bool pov_argument(PovReader *reader, PovCell **cell);
+/* Reads the indices behind the name of an array; NULL after a refusal. */
+PovCell *pov_element(PovReader *reader, PovCell *array);
+/* Takes a name, with its indices, that is declared for this kind; NULL: the
+ * word is none. */
+PovCell *pov_take(PovReader *reader, PovKind kind);
+
 /* ---- values: import_pov_values.c ---- */
 
-/* The last one of a name counts; NULL: there is none. */
-PovName *pov_find(PovReader *reader, const char *name);
 /* Whether the next word begins a number or a vector. */
 bool pov_value_follows(PovReader *reader);
 bool pov_value(PovReader *reader, PovValue *value);
+/* The same between parentheses, where values may be compared. */
+bool pov_condition(PovReader *reader, PovValue *value);
+bool pov_string_follows(PovReader *reader);
+bool pov_string(PovReader *reader, const char **string);
 bool pov_number(PovReader *reader, double *number);
 bool pov_vector(PovReader *reader, double v[3]);
 /* `color rgb <1, 0, 0>`, a vector, or a name. */
 bool pov_color_follows(PovReader *reader);
-bool pov_color(PovReader *reader, double color[3]);
+/* Red, green, blue, filter, transmit. */
+bool pov_color(PovReader *reader, double color[5]);
+/* Of a value that is a colour. */
+double pov_linear(double s);
 
 /* ---- words: import_pov_words.c ---- */
 
 bool pov_deeper(PovReader *reader);
 /* From `{` to the `}` that belongs to it. */
 bool pov_skip_block(PovReader *reader);
-/* A word that is left out with a note, and the values or the block behind it. */
+/* A word that is left out with a note (`what` NULL: without one), and the
+ * values or the block behind it. */
 bool pov_leave_out(PovReader *reader, const char *what);
-/* `translate`, `rotate`, `scale`, `matrix`: adds to a place in POV-Ray's space.  *taken: it was one
-   of them. */
+/* `translate`, `rotate`, `scale`, `matrix`: adds to a place in POV-Ray's space.
+   *taken: it was one of them. */
 bool pov_place(PovReader *reader, Place *place, bool *taken);
 /* In the space of scenes. */
 void pov_point(const double q[3], double p[3]);
 
 /* ---- looks: import_pov_looks.c ---- */
 
-/* `pigment`, `finish`, `texture` and `material` with their blocks; *taken likewise. */
+/* `pigment`, `finish`, `texture` and `material` with their blocks; *taken
+ * likewise. */
 bool pov_look(PovReader *reader, PovLook *look, bool *taken);
+/* What stands in such a block, or where one may be left away. */
+bool pov_look_inside(PovReader *reader, PovLook *look);
 /* The argument of `.paint`; NULL: the look says nothing. */
 const char *pov_look_text(PovReader *reader, const PovLook *look);
 
@@ -106,13 +224,16 @@ bool pov_object(PovReader *reader, Part **part);
 
 /* What stands in the block of a shape before its modifiers. */
 typedef bool PovBuild(PovReader *reader, unsigned line, Part **part);
+PovBuild     pov_prism, pov_lathe, pov_text, pov_disc, pov_blob, pov_superellipsoid, pov_julia;
+/* Whether what is next changes an object as a whole, or ends it. */
+bool     pov_modifier_follows(const PovReader *reader);
 PovBuild pov_sphere, pov_box, pov_cylinder, pov_cone, pov_torus, pov_plane, pov_quadric, pov_cubic,
     pov_quartic, pov_poly;
 
 /* ---- the view: import_pov_view.c ---- */
 
-bool pov_camera(PovReader *reader);
-bool pov_light(PovReader *reader);
+bool pov_camera(PovReader *reader, PovView *view);
+bool pov_light(PovReader *reader, PovLight *light);
 bool pov_background(PovReader *reader);
 void pov_write_view(PovReader *reader);
 

@@ -1,5 +1,6 @@
 /*
- * import_pov_shapes.c: POV-Ray's spheres, boxes, columns, rings, planes and polynomials.
+ * import_pov_shapes.c: POV-Ray's spheres, boxes, columns, rings, planes and
+ * polynomials.
  */
 #include <math.h>
 #include <string.h>
@@ -31,10 +32,13 @@ bool pov_sphere(PovReader *reader, unsigned line, Part **part)
     if (!pov_vector(reader, center))
         return false;
     comma(reader);
-    if (!pov_number(reader, &radius) || !positive(reader, line, radius))
+    if (!pov_number(reader, &radius))
         return false;
-    *part = part_shape(reader->import, line, "sphere", "sphere(%s)",
-                       import_number_text(reader->import, radius));
+    if (radius == 0)
+        return true; /* nothing is seen of it */
+    radius = fabs(radius);
+    *part  = part_shape(reader->import, line, "sphere", "sphere(%s)",
+                        import_number_text(reader->import, radius));
     move_to(*part, center);
     return true;
 }
@@ -153,7 +157,8 @@ bool pov_plane(PovReader *reader, unsigned line, Part **part)
 
 /* ---- polynomials ---- */
 
-/* A factor of x^i y^j z^k, in the space of scenes: odd powers of z change their sign. */
+/* A factor of x^i y^j z^k, in the space of scenes: odd powers of z change their
+ * sign. */
 static void add_term(Import *import, Text *text, double factor, const int powers[3])
 {
     const char *between = "";
@@ -179,7 +184,8 @@ static Part *algebraic(PovReader *reader, unsigned line, const char *stem, const
                       terms->length > 0 ? terms->bytes : "0");
 }
 
-/* `<` and all factors, from x^order down, with falling powers of x, then y, then z. */
+/* `<` and all factors, from x^order down, with falling powers of x, then y,
+ * then z. */
 static bool polynomial(PovReader *reader, unsigned line, int order, Part **part)
 {
     Text terms = {.arena = reader->import->arena};

@@ -20,13 +20,21 @@ static bool vector_of(PovReader *reader, const char *name, double v[3], bool *ta
     return pov_vector(reader, v);
 }
 
-static bool camera_word(PovReader *reader, Place *place)
+static bool camera_word(PovReader *reader, PovView *view, Place *place)
 {
-    PovView *view  = &reader->view;
-    bool     taken = false, angle = false;
-    double   degrees[3] = {view->angle, 0, 0};
-    bool     direction  = word_is(&reader->words, "direction");
-    bool     looks      = word_is(&reader->words, "look_at");
+    bool taken = false, angle = false;
+    if (!pov_release(reader))
+        return false;
+    PovCell *own = pov_take(reader, POV_CAMERA);
+    if (own) {
+        *view = *own->view;
+        return true;
+    }
+    if (word_accept(&reader->words, ";") || word_accept(&reader->words, ","))
+        return true;
+    double degrees[3] = {view->angle, 0, 0};
+    bool   direction  = word_is(&reader->words, "direction");
+    bool   looks      = word_is(&reader->words, "look_at");
     if (!vector_of(reader, "location", view->location, &taken) ||
         !vector_of(reader, "look_at", view->look_at, &taken) ||
         !vector_of(reader, "sky", view->sky, &taken) ||
@@ -50,26 +58,29 @@ static bool camera_word(PovReader *reader, Place *place)
     return pov_leave_out(reader, "of the camera is");
 }
 
-bool pov_camera(PovReader *reader)
+bool pov_camera(PovReader *reader, PovView *view)
 {
     Place    place     = place_identity();
     unsigned line      = reader->words.word.line;
     double   origin[3] = {0, 0, 0};
-    reader->view       = (PovView){.has_camera = true,
+    *view              = (PovView){.has_camera = true,
                                    .sky        = {0, 1, 0},
                                    .direction  = {0, 0, 1},
                                    .right      = {4 / 3.0, 0, 0},
                                    .up         = {0, 1, 0},
                                    .line       = line};
-    PovView *view      = &reader->view;
     words_advance(&reader->words);
     if (!word_expect(&reader->words, "{"))
         return false;
     while (!word_is(&reader->words, "}"))
-        if (!camera_word(reader, &place))
+        if (!camera_word(reader, view, &place))
             return false;
     if (!view->looks)
         add_scaled3(view->look_at, view->location, 1, view->direction);
+    if (view->angle >= 180) {
+        import_note(reader->import, line, "an angle of %g degrees is one of 120 here", view->angle);
+        view->angle = 120;
+    }
     if (length3(view->direction) == 0 || length3(view->right) == 0 || length3(view->up) == 0 ||
         distance3(view->location, view->look_at) == 0 || !(view->angle >= 0 && view->angle < 180))
         return import_refuse(reader->import, line, "the camera shows nothing");
@@ -86,33 +97,45 @@ bool pov_camera(PovReader *reader)
 static bool light_word(PovReader *reader, PovLight *light, Place *place)
 {
     bool taken = false;
+    if (!pov_release(reader))
+        return false;
     if (!pov_place(reader, place, &taken) || taken)
         return taken;
+    if (word_accept(&reader->words, ";") || word_accept(&reader->words, ","))
+        return true;
     if (word_accept(&reader->words, "parallel"))
         return light->parallel = true;
     if (word_accept(&reader->words, "shadowless"))
         return light->shadowless = true;
     if (!vector_of(reader, "point_at", light->target, &taken) || taken)
         return taken;
+    if (pov_color_follows(reader) && !pov_value_follows(reader))
+        return pov_color(reader, light->color);
     return pov_leave_out(reader, "of a light is");
 }
 
-bool pov_light(PovReader *reader)
+bool pov_light(PovReader *reader, PovLight *light)
 {
-    PovLight light = {.line = reader->words.word.line};
-    Place    place = place_identity();
+    Place place = place_identity();
+    *light      = (PovLight){.line = reader->words.word.line, .color = {1, 1, 1}};
     words_advance(&reader->words);
-    if (!word_expect(&reader->words, "{") || !pov_vector(reader, light.position))
+    if (!word_expect(&reader->words, "{"))
         return false;
-    word_accept(&reader->words, ",");
-    if (!pov_color(reader, light.color))
-        return false;
-    while (!word_is(&reader->words, "}"))
-        if (!light_word(reader, &light, &place))
+    PovCell *own = pov_take(reader, POV_LIGHT);
+    if (own) {
+        *light = *own->light;
+    } else {
+        if (!pov_vector(reader, light->position))
             return false;
-    place_apply(&place, light.position, light.position);
-    place_apply(&place, light.target, light.target);
-    array_push(reader->import->arena, &reader->lights, light);
+        word_accept(&reader->words, ",");
+        if (pov_color_follows(reader) && !pov_color(reader, light->color))
+            return false;
+    }
+    while (!word_is(&reader->words, "}"))
+        if (!light_word(reader, light, &place))
+            return false;
+    place_apply(&place, light->position, light->position);
+    place_apply(&place, light->target, light->target);
     return word_expect(&reader->words, "}");
 }
 
@@ -121,8 +144,12 @@ bool pov_background(PovReader *reader)
     reader->background_line = reader->words.word.line;
     reader->has_background  = true;
     words_advance(&reader->words);
-    return word_expect(&reader->words, "{") && pov_color(reader, reader->background) &&
-           word_expect(&reader->words, "}");
+    double color[5];
+    if (!word_expect(&reader->words, "{") || !pov_color(reader, color) ||
+        !word_expect(&reader->words, "}"))
+        return false;
+    memcpy(reader->background, color, sizeof reader->background);
+    return true;
 }
 
 /* ---- writing ---- */
@@ -139,7 +166,8 @@ static void write_camera(PovReader *reader)
     const PovView *view   = &reader->view;
     Text          *scene  = &reader->import->scene;
     double         aspect = length3(view->right) / length3(view->up);
-    /* The picture is `right` wide and `up` high, at the distance of `direction`. */
+    /* The picture is `right` wide and `up` high, at the distance of `direction`.
+   */
     double away = view->angle > 0 ? length3(view->right) / 2 / tan(view->angle * DEGREE / 2)
                                   : length3(view->direction);
     double fov  = 2 * atan(length3(view->up) / 2 / away) / DEGREE;
@@ -157,7 +185,8 @@ static void write_camera(PovReader *reader)
         text_format(scene, "image { size: [%d, 720] }\n", width);
 }
 
-/* POV-Ray's lights grow no weaker with distance, so they get as much stronger as they are far. */
+/* POV-Ray's lights grow no weaker with distance, so they get as much stronger
+ * as they are far. */
 static void write_light(PovReader *reader, const PovLight *light)
 {
     const double FULL  = 3; /* what rgb 1 is to a surface */

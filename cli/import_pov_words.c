@@ -1,6 +1,6 @@
 /*
- * import_pov_words.c: what blocks of POV-Ray have in common: nesting, places, and words that are
- * left out.
+ * import_pov_words.c: what blocks of POV-Ray have in common: nesting, places,
+ * and words that are left out.
  */
 #include <math.h>
 
@@ -31,14 +31,26 @@ bool pov_skip_block(PovReader *reader)
 bool pov_leave_out(PovReader *reader, const char *what)
 {
     WordReader *words = &reader->words;
-    if (words->word.kind != IMPORT_WORD_NAME)
+    if (!pov_release(reader))
+        return false;
+    if (words->word.kind == IMPORT_WORD_STRING || word_is(words, ",") || word_is(words, ";")) {
+        words_advance(words);
+        return true;
+    }
+    if (words->word.kind != IMPORT_WORD_NAME && !pov_value_follows(reader))
         return word_refuse(words, "a word or `}`");
-    import_note(reader->import, words->word.line, "`%.40s` %s left out", words->word.text, what);
+    if (words->word.kind != IMPORT_WORD_NAME || pov_value_follows(reader)) {
+        PovValue value;
+        return pov_value(reader, &value);
+    }
+    if (what)
+        import_note(reader->import, words->word.line, "`%.40s` %s left out", words->word.text,
+                    what);
     words_advance(words);
     if (word_is(words, "{"))
         return pov_skip_block(reader);
     while (pov_color_follows(reader)) {
-        double color[3];
+        double color[5];
         if (!pov_color(reader, color))
             return false;
         word_accept(words, ",");
@@ -81,18 +93,54 @@ static bool read_matrix(PovReader *reader, Place *place)
     return true;
 }
 
+/* `transform { ... }`, or the name of one. */
+static bool read_transform(PovReader *reader, Place *place)
+{
+    PovCell *own     = pov_take(reader, POV_PLACE);
+    Place    next    = place_identity();
+    bool     inverts = false;
+    if (own) {
+        *place = place_chain(place, &own->place);
+        return true;
+    }
+    if (!word_expect(&reader->words, "{"))
+        return false;
+    while (!word_is(&reader->words, "}")) {
+        bool taken = false;
+        own        = pov_take(reader, POV_PLACE);
+        if (own)
+            next = place_chain(&next, &own->place);
+        else if (word_accept(&reader->words, "inverse"))
+            inverts = true;
+        else if (!pov_place(reader, &next, &taken))
+            return false;
+        else if (!taken)
+            return word_refuse(&reader->words, "a transformation, or `}`");
+    }
+    if (inverts && !place_invert(&next))
+        return import_refuse(reader->import, reader->words.word.line, "this has no inverse");
+    *place = place_chain(place, &next);
+    return word_expect(&reader->words, "}");
+}
+
 bool pov_place(PovReader *reader, Place *place, bool *taken)
 {
     WordReader *words     = &reader->words;
     Place       next      = place_identity();
     double      v[3]      = {0, 0, 0};
     bool        translate = word_is(words, "translate"), rotate = word_is(words, "rotate");
-    bool        scale = word_is(words, "scale"), matrix = word_is(words, "matrix");
-    unsigned    line = words->word.line;
-    *taken           = translate || rotate || scale || matrix;
+    if (!pov_release(reader))
+        return false;
+    translate = word_is(words, "translate"), rotate = word_is(words, "rotate");
+    bool     scale = word_is(words, "scale"), matrix = word_is(words, "matrix");
+    bool     declared = word_is(words, "transform");
+    unsigned line     = words->word.line;
+    *taken            = translate || rotate || scale || matrix || declared;
     if (!*taken)
         return true;
     words_advance(words);
+    if (declared)
+        return read_transform(reader, place);
     if (matrix ? !read_matrix(reader, &next) : !pov_vector(reader, v))
         return false;
     if (scale && (v[0] == 0 || v[1] == 0 || v[2] == 0)) {

@@ -47,7 +47,7 @@ typedef struct Import {
     struct {
         unsigned *items;
         size_t    count, capacity;
-    } no_scene; /* lines of parts that do not compile, and are not read again */
+    } no_scene;   /* lines of parts that do not compile, and are not read again */
     Text refusal; /* "path:line: " and why there is no scene; empty when there is one */
 } Import;
 

@@ -27,8 +27,8 @@ typedef struct WordReader {
     Import     *import;
     const char *at;
     unsigned    line;
-    bool        nested; /* comments may contain comments */
-    ImportWord  word;   /* the next one */
+    bool        nested;                      /* comments may contain comments */
+    ImportWord  word;                        /* the next one */
     void (*next)(struct WordReader *reader); /* how to go on, or NULL: word by word */
     void *user;
 } WordReader;

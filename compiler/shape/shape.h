@@ -158,7 +158,7 @@ struct Shape {
     bool     per_frame; /* in the tree is a slope that is found anew for each frame (FrameSlope) */
     bool     trapped;   /* in the tree is a fractal or a mirror: `orbit_trap` means something */
     bool     figure;    /* a plane figure in x and y */
-    bool     open;   /* SHELL: a sheet, with two sides, whatever its thickness */
+    bool     open;      /* SHELL: a sheet, with two sides, whatever its thickness */
     bool     sheet;  /* SHELL: has no thickness where rays can go from root to root (rays_pass) */
     bool     sheets; /* in the tree are some */
     bool     fields; /* in the tree is a field whose bound follows from a region */

@@ -185,7 +185,7 @@ run check ball_of_pov.krs
 [ "$status" -eq 0 ] && [ ! -s err ]
 result $? "is a scene without a mistake, too"
 refused a.csg 'cube();\nimport();\n' '2: `import` is not translated' "a mesh of OpenSCAD"
-refused a.pov 'sphere { 0, 1 }\nblob { }\n' '2: `blob` is not translated' "a blob of POV-Ray"
+refused a.pov 'sphere { 0, 1 }\nmesh { }\n' '2: `mesh` is not translated' "a mesh of POV-Ray"
 
 # Damaged files: the exit status is 0 or 1, and what is written is understood or refused in turn.
 damaged() { # file, ending

@@ -72,6 +72,126 @@ static void what_is_declared_can_be_used(void **state)
     check("sphere { <0, 0, vdot(<1, 2, 3>, z)>, max(1, 0.5).x }", 0, 0, 6, 2);
 }
 
+/* Programs against what they unroll to. */
+static void programs_are_carried_out(void **state)
+{
+    static const struct {
+        const char *program, *unrolled;
+    } rows[] = {
+        {"#local I = 0; union { #while (I < 3) sphere { I*4*x, 1 } #local I = I + 1; #end }",
+         "union { sphere { 0, 1 } sphere { 4*x, 1 } sphere { 8*x, 1 } }"},
+        {"#for (I, 1, 3) sphere { I*4*y, 1 } #end",
+         "sphere { 4*y, 1 } sphere { 8*y, 1 } sphere { 12*y, 1 }"},
+        {"#for (I, 2, 0, -1) sphere { I*4*y, 1 } #end",
+         "sphere { 8*y, 1 } sphere { 4*y, 1 } sphere { 0, 1 }"},
+        {"#macro Ball(P, R) sphere { P, R } #end Ball(<1, 2, 3>, 2)", "sphere { <1, 2, 3>, 2 }"},
+        {"#macro Twice(A) (2*(A)) #end sphere { 0, Twice(3) + Twice(Twice(1)) }",
+         "sphere { 0, 10 }"},
+        {"#declare N = 4; #if (N > 3 & N != 5) sphere { 0, 1 } #else box { 0, 1 } #end",
+         "sphere { 0, 1 }"},
+        {"#declare N = 4; #if (N > 4) sphere { 0, 1 } #elseif (N = 4) box { 0, 2 } #else box { 0, "
+         "1 } #end",
+         "box { 0, 2 }"},
+        {"#switch (3) #case (1) sphere { 0, 1 } #break #range (2, 4) sphere { 0, 2 } #case (9) "
+         "sphere { x, 3 }"
+         " #break #else box { 0, 1 } #end",
+         "sphere { 0, 2 } sphere { x, 3 }"},
+        {"#local I = 0; #while (1) #if (I = 2) #break #end sphere { I*4*x, 1 } #local I = I + 1; "
+         "#end",
+         "sphere { 0, 1 } sphere { 4*x, 1 }"},
+        {"#declare A = 3 #declare B = A + 1 sphere { 0, B }", "sphere { 0, 4 }"},
+        {"#declare A = 1; #macro Set(V) #declare V = 5; #end Set(A) sphere { 0, A }",
+         "sphere { 0, 5 }"},
+        {"#macro M() #local A = 7; #end #declare A = 2; M() sphere { 0, A }", "sphere { 0, 2 }"},
+        {"#declare A = array[2][2] {{1, 2}, {3, 4}}; #declare A[1][1] = 9; sphere { A[0][1]*x, "
+         "A[1][1] }",
+         "sphere { 2*x, 9 }"},
+        {"#declare F = function(u, v) { u*u + v }; sphere { 0, F(2, 3) }", "sphere { 0, 7 }"},
+        {"#declare T = transform { translate x rotate 90*z } sphere { 0, 1 transform { T } }",
+         "sphere { 0, 1 translate x rotate 90*z }"},
+        {"#declare T = transform { scale 2 translate x inverse } sphere { 0, 2 transform T }",
+         "sphere { -x/2, 1 }"},
+        {"sphere { <1, #if (1) 2 #else 5 #end, 3>, select(-1, 4, 5) }", "sphere { <1, 2, 3>, 4 }"},
+        {"#ifndef (A) #declare A = 2; #end #ifdef (A) sphere { 0, A } #end", "sphere { 0, 2 }"},
+        {"#declare S = concat(\"a\", str(2, 0, 1)); sphere { 0, strlen(S) }", "sphere { 0, 4 }"},
+        {"sphere { vrotate(2*x, 90*z), (3 > 2 ? 1 : 5) }", "sphere { 2*y, 1 }"},
+        {"prism { linear_spline 0, 2, 5, <0,0>, <3,0>, <3,1>, <0,1>, <0,0> }",
+         "box { 0, <3, 2, 1> }"},
+        {"lathe { linear_spline 4, <0,0>, <2,0>, <2,3>, <0,3> }", "cylinder { 0, 3*y, 2 }"},
+        {"union { object { box { -1, 1 } inverse } sphere { 8*x, 2 } }",
+         "union { difference { plane { y, 1000000 } box { -1, 1 } } sphere { 8*x, 2 } }"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        double points[200][3], found[200], wanted[200];
+        for (int k = 0; k < 200; k++)
+            for (int m = 0; m < 3; m++)
+                points[k][m] = between(-12, 12);
+        imported_distances("program.pov", rows[i].program, points, 200, found);
+        imported_distances("unrolled.pov", rows[i].unrolled, points, 200, wanted);
+        for (int k = 0; k < 200; k++)
+            if (!(fabs(found[k] - wanted[k]) < 1e-6))
+                fail_msg("%s\nat %g %g %g: %.9g, not %.9g", rows[i].program, points[k][0],
+                         points[k][1], points[k][2], found[k], wanted[k]);
+    }
+}
+
+/* Strength (1 - (d / r)^2)^2 within r, above the threshold. */
+static void blobs_have_their_formula(void **state)
+{
+    static const char text[] =
+        "blob { threshold 0.5 sphere { 0, 2, 1 } sphere { <1.5, 0, 1>, 2, 0.8 }"
+        " cylinder { <0, 1, 0>, <0, 3, 0>, 1, 1.2 } }";
+    double points[POINTS][3], distances[POINTS];
+    (void)state;
+    for (int i = 0; i < POINTS; i++)
+        for (int k = 0; k < 3; k++)
+            points[i][k] = between(-2, 3.5);
+    imported_distances("blob.pov", text, points, POINTS, distances);
+    for (int i = 0; i < POINTS; i++) {
+        double q[3] = {points[i][0], points[i][1], -points[i][2]}, sum = 0;
+        double a = q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
+        double b = (q[0] - 1.5) * (q[0] - 1.5) + q[1] * q[1] + (q[2] - 1) * (q[2] - 1);
+        double h = fmin(fmax(q[1], 1), 3);
+        double c = q[0] * q[0] + (q[1] - h) * (q[1] - h) + q[2] * q[2];
+        sum += a < 4 ? pow(1 - a / 4, 2) : 0;
+        sum += b < 4 ? 0.8 * pow(1 - b / 4, 2) : 0;
+        sum += c < 1 ? 1.2 * pow(1 - c, 2) : 0;
+        if (fabs(sum - 0.5) > 1e-4 && (distances[i] < 0) != (sum > 0.5))
+            fail_msg("at %g %g %g: %g where the field is %g", q[0], q[1], q[2], distances[i], sum);
+    }
+}
+
+static void colors_are_those_of_pov(void **state)
+{
+    static const struct {
+        const char *pigment, *scene;
+    } rows[] = {
+        {"color red 0.9 green 0.5", ".paint([0.9, 0.5, 0])"},
+        {"Tan", ".paint([0.858824, 0.576471, 0.439216])"},
+        {"rgb <0.1, 0.2, 0.3>*2", ".paint([0.2, 0.4, 0.6])"},
+        {"color Red*0.5 + Blue*0.25", ".paint([0.5, 0, 0.25])"},
+        {"Gold filter 0.9",
+         "color: [0.8, 0.498039, 0.196078], roughness: 0.01, metallic: 0, transmission: 0.9"},
+        {"color rgbf <0.9, 0.5, 0.1, 0.9>",
+         "color: [0.9, 0.5, 0.1], roughness: 0.01, metallic: 0, transmission: 0.9"},
+        {"color rgbt <1, 0, 0, 1>",
+         "color: [1, 1, 1], roughness: 0.01, metallic: 0, transmission: 1"},
+        {"checker color rgb 0 color rgb 1", ".paint([0.5, 0.5, 0.5])"},
+        {"gradient y color_map { [0 color rgb 0] [1 color rgb <1, 0.5, 0>] }",
+         ".paint([0.5, 0.25, 0])"},
+        {"color srgb <0.5, 1, 0>", ".paint([0.2140411"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char text[512];
+        snprintf(text, sizeof text, "sphere { 0, 1 pigment { %s } }", rows[i].pigment);
+        Imported found = imported("color.pov", text);
+        if (found.status != KRS_OK || !strstr(found.scene, rows[i].scene))
+            fail_msg("%s: %s\n%s%s", rows[i].pigment, rows[i].scene, found.scene, found.refusal);
+    }
+}
+
 /* The turns that POV-Ray's manual describes with a left hand: thumb along the axis. */
 static void turns_are_left_handed(void **state)
 {
@@ -328,8 +448,9 @@ static void looks_and_view_are_translated(void **state)
               "sphere_5 = sphere(1).paint([1, 0, 0]);");
     scene_has("sphere { 0, 1 finish { phong 1 phong_size 6 metallic } }",
               "roughness: 0.5, metallic: 1 }");
+    scene_has("sphere { 0, 1 pigment { checker Red, Blue scale 2 } }", ".paint([0.5, 0, 0.5]);");
     scene_has("sphere { 0, 1 pigment { checker Red, Blue scale 2 } }",
-              "// Line 1: `checker` of a pigment is left out.");
+              "// Line 1: patterns of pigments are one colour, their mean.");
     scene_has(
         "sphere { 0, 1 } camera { location <1, 2, -5> look_at <0, 1, 3> angle 90 right 2*x }",
         "eye: [1, 2, 5],\n    target: [0, 1, -3],\n    up: [0, 1, 0],\n    fov: 53.1301023542deg");
@@ -342,8 +463,14 @@ static void looks_and_view_are_translated(void **state)
 static void what_cannot_be_translated_is_said_with_its_line(void **state)
 {
     (void)state;
-    assert_refused("a.pov", "\nblob { threshold 1 }", "a.pov:2: `blob` is not translated");
-    assert_refused("a.pov", "#while (1) #end", "a.pov:1: `#while` is not translated");
+    assert_refused("a.pov", "\nmesh { }", "a.pov:2: `mesh` is not translated");
+    assert_refused("a.pov", "\n#while (1) #end", "a.pov:2: this program has no end");
+    assert_refused("a.pov", "\n#macro A() A() #end A()", "a.pov:2: macros and files are more than");
+    assert_refused("a.pov", "\n#if (1) sphere { 0, 1 } #else", "a.pov:2: there is no `#end`");
+    assert_refused("a.pov", "#end", "a.pov:1: `#end` of nothing");
+    assert_refused("a.pov", "#declare A = array[3]; sphere { 0, A[3] }",
+                   "a.pov:1: the index 3 is not");
+    assert_refused("a.pov", "\n#error \"stop here\"", "a.pov:2: the file says: stop here");
     assert_refused("a.pov", "\n\nsphere { 0, 1 clipped_by { plane { x, 0 } } }",
                    "a.pov:3: `clipped_by` in `sphere` is not translated");
     assert_refused("a.pov", "cylinder { 0, y, 1 open }", "a.pov:1: `open` in `cylinder`");
@@ -398,6 +525,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(distances_are_closed_forms),
         cmocka_unit_test(what_is_declared_can_be_used),
+        cmocka_unit_test(programs_are_carried_out),
+        cmocka_unit_test(blobs_have_their_formula),
+        cmocka_unit_test(colors_are_those_of_pov),
         cmocka_unit_test(turns_are_left_handed),
         cmocka_unit_test(polynomials_have_their_signs),
         cmocka_unit_test(random_objects_have_the_points_of_their_predicate),

@@ -1,0 +1,802 @@
+/*
+ * import_pov_sdl.c: POV-Ray's programs: conditions, loops, macros and files
+ * that are included.
+ *
+ * They stand anywhere, also within a vector or an object.  So they are carried
+ * out as words are read: pov_advance gives the next word that is left.  What a
+ * directive needs to know, such as a condition, is read by those who read
+ * values, which asks for words again.
+ *
+ * `#declare A = B #declare C = A`: behind a value the next word is looked at
+ * before the name has it. There a directive waits (IMPORT_WORD_HELD), unless it
+ * is the end of a macro, until it is asked for.
+ */
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/import_pov_reader.h"
+
+enum { MOST_WORDS = 10000000, MOST_SOURCES = 100, MOST_INCLUDED = 4 << 20, MOST_NAMES = 100000 };
+
+/* ---- sources of words ---- */
+
+static PovReader *reader_of(WordReader *words) { return words->user; }
+
+static PovSource *top_source(PovReader *reader)
+{
+    return &reader->sources.items[reader->sources.count - 1];
+}
+
+static bool push_source(PovReader *reader, PovSource source, const char *at, unsigned line)
+{
+    if (reader->sources.count >= MOST_SOURCES)
+        return import_refuse(reader->import, reader->words.word.line,
+                             "macros and files are more than %d deep in each other", MOST_SOURCES);
+    PovSource *outer = reader->sources.count > 0 ? top_source(reader) : NULL;
+    if (outer) {
+        outer->at   = reader->words.at;
+        outer->line = reader->words.line;
+        if (outer->fixed_line > 0)
+            source.fixed_line = outer->fixed_line; /* all of it counts as where it began */
+    }
+    array_push(reader->import->arena, &reader->sources, source);
+    reader->words.at   = at;
+    reader->words.line = source.fixed_line > 0 ? source.fixed_line : line;
+    return true;
+}
+
+static void pop_source(PovReader *reader)
+{
+    reader->names.count = top_source(reader)->names_before;
+    reader->sources.count--;
+    reader->words.at   = top_source(reader)->at;
+    reader->words.line = top_source(reader)->line;
+}
+
+/* The next word of the source, whatever it is; at the end of a file that of the
+ * file around it. */
+static void raw_word(PovReader *reader)
+{
+    WordReader *words = &reader->words;
+    if (++reader->words_read > MOST_WORDS)
+        import_refuse(reader->import, words->word.line, "this program has no end, or a far one");
+    for (;;) {
+        words_advance_plain(words);
+        if (top_source(reader)->fixed_line > 0)
+            words->line = words->word.line = top_source(reader)->fixed_line;
+        if (words->word.kind != IMPORT_WORD_END || reader->import->refusal.length > 0 ||
+            reader->sources.count == 1 || top_source(reader)->macro)
+            return;
+        pop_source(reader);
+    }
+}
+
+/* ---- names ---- */
+
+PovCell *pov_find(PovReader *reader, const char *name)
+{
+    for (size_t i = reader->names.count; i-- > 0;)
+        if (reader->names.items[i].name[0] == name[0] &&
+            strcmp(reader->names.items[i].name, name) == 0)
+            return reader->names.items[i].cell;
+    return NULL;
+}
+
+/* Names of the innermost macro or file stand last; others are for all. */
+static PovCell *new_name(PovReader *reader, const char *name, PovCell *cell, bool local)
+{
+    PovName fresh = {name, cell};
+    if (reader->names.count >= MOST_NAMES) {
+        import_refuse(reader->import, reader->words.word.line, "more than %d names are declared",
+                      MOST_NAMES);
+        return NULL;
+    }
+    array_push(reader->import->arena, &reader->names, fresh);
+    if (local)
+        return cell;
+    /* It goes before all that are local, so that it stays when they go. */
+    size_t at = reader->names.count - 1;
+    size_t to = reader->sources.count > 1 ? reader->sources.items[1].names_before : at;
+    for (; at > to; at--)
+        reader->names.items[at] = reader->names.items[at - 1];
+    reader->names.items[to] = fresh;
+    for (size_t i = 1; i < reader->sources.count; i++)
+        reader->sources.items[i].names_before++;
+    return cell;
+}
+
+static PovCell *find_local(PovReader *reader, const char *name)
+{
+    for (size_t i = reader->names.count; i-- > top_source(reader)->names_before;)
+        if (strcmp(reader->names.items[i].name, name) == 0)
+            return reader->names.items[i].cell;
+    return NULL;
+}
+
+/* The cell that a declaration fills. */
+static PovCell *cell_to_fill(PovReader *reader, const char *name, bool local)
+{
+    PovCell *cell = local ? find_local(reader, name) : pov_find(reader, name);
+    return cell ? cell : new_name(reader, name, arena_new(reader->import->arena, PovCell), local);
+}
+
+/* ---- skipping ---- */
+
+static bool opens_block(const char *name)
+{
+    static const char *const openers[] = {"if",  "ifdef",  "ifndef", "while",
+                                          "for", "switch", "macro"};
+    for (size_t i = 0; i < sizeof openers / sizeof *openers; i++)
+        if (strcmp(openers[i], name) == 0)
+            return true;
+    return false;
+}
+
+/* Skips to a directive of the same level that is one of these; its name is then
+   the word.  `depth`: how many blocks are to be left. */
+static bool skip_to(PovReader *reader, const char *const *names, int depth)
+{
+    WordReader *words = &reader->words;
+    unsigned    line  = words->word.line;
+    while (words->word.kind != IMPORT_WORD_END || words->at[0] != '\0') {
+        words_advance_plain(words);
+        if (reader->import->refusal.length > 0)
+            return false;
+        if (!word_is(words, "#"))
+            continue;
+        words_advance_plain(words);
+        if (words->word.kind != IMPORT_WORD_NAME)
+            continue;
+        for (int i = 0; depth == 1 && names[i]; i++)
+            if (word_is(words, names[i]))
+                return true;
+        if (opens_block(words->word.text))
+            depth++;
+        else if (word_is(words, "end"))
+            depth--;
+        if (depth == 0)
+            return true;
+    }
+    return import_refuse(reader->import, line, "there is no `#end` for this");
+}
+
+/* ---- conditions and loops ---- */
+
+static PovBlock *top_block(PovReader *reader)
+{
+    return reader->blocks.count > 0 ? &reader->blocks.items[reader->blocks.count - 1] : NULL;
+}
+
+static void push_block(PovReader *reader, PovBlock block)
+{
+    block.source = reader->sources.count;
+    block.line   = reader->words.word.line;
+    array_push(reader->import->arena, &reader->blocks, block);
+}
+
+/* A value between parentheses.  The last one is the word then, so that reading
+ * may go on elsewhere. */
+static bool read_condition(PovReader *reader, double *number)
+{
+    WordReader *words = &reader->words;
+    PovValue    value;
+    words_advance(words);
+    if (!word_expect(words, "(") || !pov_condition(reader, &value))
+        return false;
+    *number = value.v[0];
+    return word_is(words, ")") || word_refuse(words, "`)`");
+}
+
+/* Goes on behind a condition that does not hold: at `#else`, at an `#elseif`
+ * that holds, or at the end. */
+static bool skip_to_else(PovReader *reader)
+{
+    static const char *const names[] = {"else", "elseif", NULL};
+    while (skip_to(reader, names, 1)) {
+        double holds = 1;
+        if (word_is(&reader->words, "end"))
+            return true;
+        if (word_is(&reader->words, "elseif") && !read_condition(reader, &holds))
+            return false;
+        if (holds == 0)
+            continue;
+        push_block(reader, (PovBlock){.kind = POV_IF});
+        return true;
+    }
+    return false;
+}
+
+static bool do_if(PovReader *reader, const char *name)
+{
+    double holds;
+    if (strcmp(name, "if") == 0) {
+        if (!read_condition(reader, &holds))
+            return false;
+    } else {
+        words_advance_plain(&reader->words);
+        if (!word_is(&reader->words, "("))
+            return word_refuse(&reader->words, "`(`");
+        words_advance_plain(&reader->words);
+        holds = (pov_find(reader, reader->words.word.text) != NULL) == (strcmp(name, "ifdef") == 0);
+        while (!word_is(&reader->words, ")") && reader->words.word.kind != IMPORT_WORD_END)
+            words_advance_plain(&reader->words);
+    }
+    if (holds == 0)
+        return skip_to_else(reader);
+    push_block(reader, (PovBlock){.kind = POV_IF});
+    return true;
+}
+
+static bool leave(PovReader *reader, int depth)
+{
+    static const char *const none[] = {NULL};
+    return skip_to(reader, none, depth);
+}
+
+static bool do_while(PovReader *reader)
+{
+    PovBlock block = {.kind = POV_WHILE, .at = reader->words.at, .at_line = reader->words.line};
+    double   holds;
+    if (!read_condition(reader, &holds))
+        return false;
+    if (holds == 0)
+        return leave(reader, 1);
+    push_block(reader, block);
+    return true;
+}
+
+static bool goes_on(const PovBlock *block, double number)
+{
+    const double SLACK = 1e-10;
+    return block->step > 0 ? number <= block->last + SLACK : number >= block->last - SLACK;
+}
+
+static bool do_for(PovReader *reader)
+{
+    WordReader *words      = &reader->words;
+    double      numbers[3] = {0, 0, 1};
+    words_advance(words);
+    if (!word_is(words, "("))
+        return word_refuse(words, "`(`");
+    words_advance_plain(words);
+    PovBlock block = {.kind = POV_FOR, .cell = cell_to_fill(reader, words->word.text, true)};
+    if (!block.cell)
+        return false;
+    words_advance(words);
+    for (int i = 0; i < 3 && word_accept(words, ","); i++)
+        if (!pov_number(reader, &numbers[i]))
+            return false;
+    if (!word_is(words, ")") || numbers[2] == 0)
+        return word_refuse(words, "`)`, behind a step that is not 0");
+    block.cell->kind  = POV_VALUE;
+    block.cell->value = (PovValue){.v = {numbers[0]}, .count = 1};
+    block.last        = numbers[1];
+    block.step        = numbers[2];
+    block.at          = words->at;
+    block.at_line     = words->line;
+    if (!goes_on(&block, numbers[0]))
+        return leave(reader, 1);
+    push_block(reader, block);
+    return true;
+}
+
+static bool is_case(PovReader *reader, double value, bool *found)
+{
+    WordReader *words = &reader->words;
+    PovValue    low, high;
+    bool        range = word_is(words, "range");
+    words_advance(words);
+    if (!word_expect(words, "(") || !pov_condition(reader, &low))
+        return false;
+    high = low;
+    if (range && (!word_expect(words, ",") || !pov_condition(reader, &high)))
+        return false;
+    *found = value >= low.v[0] - 1e-10 && value <= high.v[0] + 1e-10;
+    return word_is(words, ")") || word_refuse(words, "`)`");
+}
+
+static bool do_switch(PovReader *reader)
+{
+    static const char *const names[] = {"case", "range", "else", NULL};
+    double                   value;
+    if (!read_condition(reader, &value))
+        return false;
+    while (skip_to(reader, names, 1)) {
+        bool found = word_is(&reader->words, "else");
+        if (word_is(&reader->words, "end"))
+            return true;
+        if (!found && !is_case(reader, value, &found))
+            return false;
+        if (!found)
+            continue;
+        push_block(reader, (PovBlock){.kind = POV_SWITCH});
+        return true;
+    }
+    return false;
+}
+
+/* Leaves the innermost loop or `#switch`. */
+static bool do_break(PovReader *reader)
+{
+    int depth = 1;
+    for (; reader->blocks.count > 0 && top_block(reader)->kind == POV_IF; depth++)
+        reader->blocks.count--;
+    if (reader->blocks.count == 0 || top_block(reader)->kind == POV_MACRO_BODY)
+        return import_refuse(reader->import, reader->words.word.line, "`#break` of nothing");
+    reader->blocks.count--;
+    return leave(reader, depth);
+}
+
+static bool do_end(PovReader *reader)
+{
+    PovBlock *block = top_block(reader);
+    double    holds;
+    if (!block || block->source != reader->sources.count)
+        return import_refuse(reader->import, reader->words.word.line, "`#end` of nothing");
+    if (block->kind == POV_WHILE) {
+        PovBlock again     = *block;
+        reader->words.at   = again.at;
+        reader->words.line = again.at_line;
+        reader->blocks.count--;
+        if (!read_condition(reader, &holds))
+            return false;
+        if (holds == 0)
+            return leave(reader, 1);
+        array_push(reader->import->arena, &reader->blocks, again);
+        return true;
+    }
+    if (block->kind == POV_FOR) {
+        block->cell->value.v[0] += block->step;
+        if (goes_on(block, block->cell->value.v[0])) {
+            reader->words.at   = block->at;
+            reader->words.line = block->at_line;
+            return true;
+        }
+    }
+    bool macro = block->kind == POV_MACRO_BODY;
+    reader->blocks.count--;
+    if (macro)
+        pop_source(reader);
+    return true;
+}
+
+/* `#else` where what stands before it was carried out. */
+static bool do_else(PovReader *reader)
+{
+    PovBlock *block = top_block(reader);
+    if (!block || (block->kind != POV_IF && block->kind != POV_SWITCH))
+        return import_refuse(reader->import, reader->words.word.line, "`#else` of nothing");
+    if (block->kind == POV_SWITCH)
+        return true;
+    reader->blocks.count--;
+    return leave(reader, 1);
+}
+
+/* ---- macros ---- */
+
+static bool do_macro(PovReader *reader)
+{
+    WordReader *words = &reader->words;
+    PovMacro   *macro = arena_new(reader->import->arena, PovMacro);
+    *macro            = (PovMacro){.fixed_line = top_source(reader)->fixed_line};
+    words_advance_plain(words);
+    PovCell *cell = cell_to_fill(reader, words->word.text, false);
+    words_advance_plain(words);
+    if (!cell || !word_is(words, "("))
+        return word_refuse(words, "`(`");
+    for (words_advance_plain(words); !word_is(words, ")"); words_advance_plain(words)) {
+        if (words->word.kind == IMPORT_WORD_NAME)
+            array_push(reader->import->arena, &macro->parameters, words->word.text);
+        else if (!word_is(words, ","))
+            return word_refuse(words, "the name of a parameter");
+    }
+    macro->at   = words->at;
+    macro->line = words->line;
+    *cell       = (PovCell){.kind = POV_MACRO, .macro = macro};
+    return leave(reader, 1);
+}
+
+/* Calls a macro whose name is the word.  Parameters that are names stand for
+ * what is named. */
+static bool call_macro(PovReader *reader, const PovMacro *macro)
+{
+    WordReader *words     = &reader->words;
+    PovCell   **arguments = arena_new_array(reader->import->arena, PovCell *,
+                                            macro->parameters.count + 1);
+    int         held      = reader->held_at;
+    reader->held_at       = -1;
+    words_advance(words);
+    if (!word_expect(words, "("))
+        return false;
+    for (size_t i = 0; i < macro->parameters.count && !word_is(words, ")"); i++) {
+        if (!pov_argument(reader, &arguments[i]))
+            return false;
+        if (i + 1 < macro->parameters.count)
+            word_accept(words, ",");
+    }
+    if (!word_is(words, ")"))
+        return word_refuse(words, "`)` behind the parameters of a macro");
+    reader->held_at  = held;
+    PovSource source = {.macro        = true,
+                        .names_before = reader->names.count,
+                        .fixed_line   = macro->fixed_line > 0 ? words->word.line : 0};
+    if (!push_source(reader, source, macro->at, macro->line))
+        return false;
+    push_block(reader, (PovBlock){.kind = POV_MACRO_BODY});
+    for (size_t i = 0; i < macro->parameters.count; i++)
+        if (!new_name(reader, macro->parameters.items[i],
+                      arguments[i] ? arguments[i] : arena_new(reader->import->arena, PovCell),
+                      true))
+            return false;
+    return true;
+}
+
+/* ---- files ---- */
+
+static const char *const folders[] = {"/usr/share/povray-3.7/include/",
+                                      "/usr/share/povray/include/",
+                                      "/usr/local/share/povray-3.7/include/"};
+
+static FILE *open_included(PovReader *reader, const char *name)
+{
+    const char *slash = strrchr(reader->import->path, '/');
+    Text        path  = {.arena = reader->import->arena};
+    FILE       *file  = NULL;
+    if (slash)
+        text_add_bytes(&path, reader->import->path, (size_t)(slash + 1 - reader->import->path));
+    text_add(&path, name);
+    file = name[0] != '/' ? fopen(path.bytes, "rb") : NULL;
+    for (size_t i = 0; i < sizeof folders / sizeof *folders && !file && !strstr(name, ".."); i++) {
+        Text standard = {.arena = reader->import->arena};
+        text_format(&standard, "%s%s", folders[i], name);
+        file = fopen(standard.bytes, "rb");
+    }
+    return file;
+}
+
+/* Standard files that are not installed are done without: what they name is
+ * then unknown. */
+static bool do_include(PovReader *reader)
+{
+    WordReader *words = &reader->words;
+    words_advance(words);
+    PovCell *own = words->word.kind == IMPORT_WORD_NAME ? pov_find(reader, words->word.text) : NULL;
+    const char *name = words->word.kind == IMPORT_WORD_STRING ? words->word.text
+                       : own && own->kind == POV_STRING       ? own->string
+                                                              : NULL;
+    unsigned    line = words->word.line;
+    if (!name)
+        return word_refuse(words, "the name of a file, between quotes");
+    FILE *file = open_included(reader, name);
+    if (!file && strcmp(name, "colors.inc") == 0)
+        return true; /* its names are known */
+    if (!file) {
+        import_note(reader->import, line, "`%.60s` is not found", name);
+        return true;
+    }
+    Text text = {.arena = reader->import->arena};
+    char piece[1 << 14];
+    for (size_t got = 1; got > 0 && text.length < MOST_INCLUDED;) {
+        got = fread(piece, 1, sizeof piece, file);
+        text_add_bytes(&text, piece, got);
+    }
+    fclose(file);
+    if (text.length >= MOST_INCLUDED || (text.length > 0 && memchr(text.bytes, '\0', text.length)))
+        return import_refuse(reader->import, line, "`%.60s` is no text, or too long", name);
+    PovSource source = {.names_before = reader->names.count, .fixed_line = line};
+    return push_source(reader, source, text.length > 0 ? text.bytes : "", line);
+}
+
+/* ---- declarations ---- */
+
+/* A name for the scene.  Names of the language have no capital letters, so
+ * others get a prefix. */
+static const char *scene_name(PovReader *reader, const char *name)
+{
+    Text text  = {.arena = reader->import->arena};
+    bool large = false;
+    int  same  = 1;
+    for (const char *c = name; *c; c++)
+        large = large || (*c >= 'A' && *c <= 'Z');
+    for (size_t i = 0; i < reader->shared.count; i++)
+        same += strcmp(reader->shared.items[i], name) == 0;
+    array_push(reader->import->arena, &reader->shared, name);
+    text_format(&text, "%s%s", large && name[0] != '_' ? "" : "my_", name);
+    if (same > 1)
+        text_format(&text, "_%d_again", same);
+    return text.bytes;
+}
+
+static bool do_declare(PovReader *reader, bool local, bool *next)
+{
+    WordReader *words = &reader->words;
+    words_advance_plain(words);
+    if (word_is(words, "deprecated")) {
+        words_advance_plain(words);
+        if (word_is(words, "once"))
+            words_advance_plain(words);
+        if (words->word.kind == IMPORT_WORD_STRING)
+            words_advance_plain(words);
+    }
+    const char *name = words->word.text;
+    if (words->word.kind != IMPORT_WORD_NAME)
+        return word_refuse(words, "a name");
+    PovCell *cell = local ? find_local(reader, name) : pov_find(reader, name), filled = {0};
+    int      held = reader->held_at;
+    words_advance(words);
+    if (word_is(words, "[") && cell && !(cell = pov_element(reader, cell)))
+        return false;
+    reader->held_at = reader->open;
+    bool good       = word_expect(words, "=") && pov_release(reader) && pov_rvalue(reader, &filled);
+    reader->held_at = held;
+    if (!good)
+        return false;
+    if (filled.kind == POV_OBJECT && filled.part && !filled.part->wanted && !filled.part->shared) {
+        filled.part->wanted = scene_name(reader, name);
+        filled.part->shared = true;
+    }
+    if (!cell && !(cell = cell_to_fill(reader, name, local)))
+        return false;
+    *cell = filled;
+    *next = !word_is(words, ";");
+    return true;
+}
+
+/* ---- directives ---- */
+
+/* Of a text for people, or of what changes no shape. */
+static bool do_words(PovReader *reader, bool *next)
+{
+    PovCell ignored = {0};
+    words_advance(&reader->words);
+    int held        = reader->held_at;
+    reader->held_at = reader->open;
+    bool good       = pov_rvalue(reader, &ignored);
+    reader->held_at = held;
+    *next           = !word_is(&reader->words, ";");
+    return good;
+}
+
+/* Nothing is written; what a program reads from files is not known. */
+static bool do_file(PovReader *reader, const char *name, bool *next)
+{
+    WordReader *words = &reader->words;
+    unsigned    line  = words->word.line;
+    int         open  = 0;
+    const char *path;
+    words_advance_plain(words);
+    if (strcmp(name, "fclose") == 0)
+        return true;
+    if (strcmp(name, "fopen") == 0) {
+        words_advance(words);
+        if (!pov_string(reader, &path))
+            return false;
+        if (word_is(words, "read"))
+            return import_refuse(reader->import, line, "`#fopen` to read is not translated");
+        import_note(reader->import, line, "no files are written");
+        return word_is(words, "write") || word_is(words, "append") || (*next = true);
+    }
+    do {
+        open += word_is(words, "(") ? 1 : word_is(words, ")") ? -1 : 0;
+        if (open > 0)
+            words_advance_plain(words);
+    } while (open > 0 && words->word.kind != IMPORT_WORD_END);
+    return true;
+}
+
+static bool do_undef(PovReader *reader)
+{
+    words_advance_plain(&reader->words);
+    for (size_t i = reader->names.count; i-- > 0;)
+        if (strcmp(reader->names.items[i].name, reader->words.word.text) == 0) {
+            reader->names.items[i].name = "";
+            break;
+        }
+    return true;
+}
+
+bool pov_default(PovReader *reader)
+{
+    bool taken = false;
+    words_advance(&reader->words);
+    if (!word_expect(&reader->words, "{"))
+        return false;
+    while (!word_is(&reader->words, "}")) {
+        taken = false;
+        if (!pov_look(reader, &reader->usual, &taken))
+            return false;
+        if (!taken && !pov_leave_out(reader, "of `#default` is"))
+            return false;
+    }
+    return true;
+}
+
+/* Carries out a directive, whose name is the word.  *next: the word behind it
+ * is read already. */
+static bool directive(PovReader *reader, bool *next)
+{
+    WordReader *words = &reader->words;
+    const char *name  = words->word.text;
+    unsigned    line  = words->word.line;
+    *next             = false;
+    if (strcmp(name, "declare") == 0 || strcmp(name, "local") == 0)
+        return do_declare(reader, strcmp(name, "local") == 0, next);
+    if (strcmp(name, "if") == 0 || strcmp(name, "ifdef") == 0 || strcmp(name, "ifndef") == 0)
+        return do_if(reader, name);
+    if (strcmp(name, "else") == 0 || strcmp(name, "elseif") == 0)
+        return do_else(reader);
+    if (strcmp(name, "end") == 0)
+        return do_end(reader);
+    if (strcmp(name, "while") == 0)
+        return do_while(reader);
+    if (strcmp(name, "for") == 0)
+        return do_for(reader);
+    if (strcmp(name, "switch") == 0)
+        return do_switch(reader);
+    if (strcmp(name, "case") == 0 || strcmp(name, "range") == 0)
+        return is_case(reader, 0, &(bool){false});
+    if (strcmp(name, "break") == 0)
+        return do_break(reader);
+    if (strcmp(name, "macro") == 0)
+        return do_macro(reader);
+    if (strcmp(name, "include") == 0)
+        return do_include(reader);
+    if (strcmp(name, "fopen") == 0 || strcmp(name, "fclose") == 0 || strcmp(name, "write") == 0)
+        return do_file(reader, name, next);
+    if (strcmp(name, "undef") == 0)
+        return do_undef(reader);
+    if (strcmp(name, "default") == 0)
+        return pov_default(reader);
+    if (strcmp(name, "debug") == 0 || strcmp(name, "warning") == 0 || strcmp(name, "render") == 0 ||
+        strcmp(name, "statistics") == 0 || strcmp(name, "version") == 0)
+        return do_words(reader, next);
+    if (strcmp(name, "error") == 0) {
+        PovCell said = {0};
+        words_advance(words);
+        return pov_rvalue(reader, &said) &&
+               import_refuse(reader->import, line, "the file says: %.100s",
+                             said.kind == POV_STRING ? said.string : "an error");
+    }
+    return import_refuse(reader->import, line, "`#%.40s` is not translated", name);
+}
+
+/* ---- the next word ---- */
+
+/* Carries out what stands at the word, if it is a directive or calls a macro;
+ * false: it is neither. */
+static bool carry_out(PovReader *reader, bool *next)
+{
+    WordReader *words = &reader->words;
+    *next             = false;
+    if (word_is(words, "#")) {
+        words_advance_plain(words);
+        bool ends = word_is(words, "end") && top_block(reader) &&
+                    top_block(reader)->kind == POV_MACRO_BODY;
+        if (!ends && reader->held_at == reader->open) {
+            words->word.kind = IMPORT_WORD_HELD;
+            return *next     = true;
+        }
+        directive(reader, next);
+        return true;
+    }
+    PovCell *own = words->word.kind == IMPORT_WORD_NAME ? pov_find(reader, words->word.text) : NULL;
+    if (!own || own->kind != POV_MACRO)
+        return false;
+    if (reader->held_at == reader->open) {
+        words->word.kind = IMPORT_WORD_HELD;
+        return *next     = true;
+    }
+    call_macro(reader, own->macro);
+    return true;
+}
+
+static void settle(PovReader *reader, bool next)
+{
+    WordReader *words = &reader->words;
+    while (reader->import->refusal.length == 0) {
+        if (!next)
+            raw_word(reader);
+        next = false;
+        if (words->word.kind == IMPORT_WORD_HELD && reader->held_at != reader->open) {
+            pov_release(reader);
+            return;
+        }
+        if (words->word.kind == IMPORT_WORD_HELD || !carry_out(reader, &next))
+            break;
+        if (next && words->word.kind != IMPORT_WORD_HELD)
+            return; /* it is settled already */
+    }
+    if (reader->import->refusal.length > 0)
+        words->word = (ImportWord){.kind = IMPORT_WORD_END, .text = "", .line = words->word.line};
+    if (words->word.kind == IMPORT_WORD_SIGN && words->word.text[1] == '\0')
+        reader->open += strchr("{([", words->word.text[0])   ? 1
+                        : strchr("})]", words->word.text[0]) ? -1
+                                                             : 0;
+}
+
+static void next_word(WordReader *words) { settle(reader_of(words), false); }
+
+bool pov_release(PovReader *reader)
+{
+    WordReader *words = &reader->words;
+    bool        next  = false;
+    int         held  = reader->held_at;
+    if (words->word.kind != IMPORT_WORD_HELD)
+        return true;
+    reader->held_at = -1;
+    PovCell *own    = pov_find(reader, words->word.text);
+    if (own && own->kind == POV_MACRO)
+        call_macro(reader, own->macro);
+    else
+        directive(reader, &next);
+    reader->held_at = held;
+    if (!next)
+        settle(reader, false);
+    return reader->import->refusal.length == 0 && pov_release(reader);
+}
+
+void pov_start(PovReader *reader)
+{
+    PovSource file  = {.names_before = 0};
+    reader->held_at = -1;
+    reader->words   = (WordReader){.import = reader->import,
+                                   .at     = reader->import->bytes,
+                                   .line   = 1,
+                                   .nested = true,
+                                   .user   = reader,
+                                   .next   = next_word};
+    array_push(reader->import->arena, &reader->sources, file);
+    words_advance(&reader->words);
+}
+
+void pov_keep_state(PovReader *reader, PovState *state)
+{
+    *state = (PovState){reader->words.word,    reader->words.at,     reader->words.line,
+                        reader->depth,         reader->open,         reader->held_at,
+                        reader->sources.count, reader->blocks.count, *top_source(reader)};
+}
+
+void pov_restore_state(PovReader *reader, const PovState *state)
+{
+    reader->words.word    = state->word;
+    reader->words.at      = state->at;
+    reader->words.line    = state->line;
+    reader->depth         = state->depth;
+    reader->open          = state->open;
+    reader->held_at       = state->held_at;
+    reader->sources.count = state->sources;
+    reader->blocks.count  = state->blocks;
+    *top_source(reader)   = state->top;
+}
+
+/* ---- functions ---- */
+
+/* Reads the formula of a function again, with its parameters as names. */
+bool pov_evaluate(PovReader *reader, const PovMacro *function, const double *numbers,
+                  PovValue *value)
+{
+    WordReader *words = &reader->words;
+    ImportWord  word  = words->word;
+    size_t      names = reader->names.count;
+    int         held = reader->held_at, open = reader->open;
+    PovSource   source = {.names_before = names, .fixed_line = words->word.line};
+    if (!pov_deeper(reader) || !push_source(reader, source, function->at, function->line))
+        return false;
+    for (size_t i = 0; i < function->parameters.count; i++) {
+        PovCell *cell = arena_new(reader->import->arena, PovCell);
+        *cell         = (PovCell){.kind = POV_VALUE, .value = {.v = {numbers[i]}, .count = 1}};
+        new_name(reader, function->parameters.items[i], cell, true);
+    }
+    reader->held_at = -1;
+    words_advance(words);
+    bool good = pov_condition(reader, value) && (word_is(words, "}") || word_refuse(words, "`}`"));
+    reader->depth--;
+    if (!good)
+        return false;
+    pop_source(reader);
+    reader->names.count = names;
+    reader->held_at     = held;
+    reader->open        = open;
+    words->word         = word;
+    return true;
+}
