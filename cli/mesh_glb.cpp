@@ -293,26 +293,43 @@ void add_copies(tinygltf::Model &model, const MeshParts *parts, const MeshBody &
         }
 }
 
+// Levels of detail are members of nodes from tinygltf 2.9 on, which then knows them from nowhere else.
+template <typename Node>
+auto put_in_lods(Node &node, const std::vector<int> &ids, int) -> decltype((void)node.lods)
+{
+    node.lods = ids;
+}
+
+template <typename Node> void put_in_lods(Node &node, const std::vector<int> &ids, long)
+{
+    tinygltf::Value::Array  values;
+    tinygltf::Value::Object content;
+    for (int id : ids)
+        values.push_back(tinygltf::Value(id));
+    content["ids"]              = tinygltf::Value(values);
+    node.extensions["MSFT_lod"] = tinygltf::Value(content);
+}
+
 // A node for each further level of detail, which the extension MSFT_lod names.  No scene has them: a
 // program without it shows the first level.
 void add_lods(tinygltf::Model &model, const MeshParts *parts, const MeshBody &body,
               tinygltf::Node &node)
 {
-    tinygltf::Value::Array  ids, coverages;
-    tinygltf::Value::Object content, extras;
+    std::vector<int>        ids;
+    tinygltf::Value::Array  coverages;
+    tinygltf::Value::Object extras;
     double                  coverage = 0.5;
     for (size_t i = 1; i <= body.lod_count; i++, coverage /= 4) {
         tinygltf::Node level;
         level.name = body.name;
         level.mesh = add_mesh(model, parts, parts->parts[body.first_part + i], false, body.name);
-        ids.push_back(tinygltf::Value(add_node(model, level)));
+        ids.push_back(add_node(model, level));
         coverages.push_back(tinygltf::Value(coverage));
     }
     coverages.push_back(tinygltf::Value(0.0));
-    content["ids"]                = tinygltf::Value(ids);
     extras["MSFT_screencoverage"] = tinygltf::Value(coverages);
-    node.extensions["MSFT_lod"]   = tinygltf::Value(content);
     node.extras                   = tinygltf::Value(extras);
+    put_in_lods(node, ids, 0);
     use_extension(model.extensionsUsed, "MSFT_lod");
 }
 

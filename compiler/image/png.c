@@ -21,20 +21,33 @@ typedef struct PngReader {
     bool                 wide;     /* samples have 16 bits */
     uint32_t             channels; /* of the file: 1 to 4 */
     unsigned char       *pixels;
-    float               *levels; /* of each number that a sample may be: how bright it is */
-    const char          *fault;  /* what is wrong should libpng find something */
+    float               *levels;    /* of each number that a sample may be: how bright it is */
+    const char          *fault;     /* what is wrong should libpng find something, */
+    bool                 cut_short; /* unless the file is */
 } PngReader;
 
 static void read_callback(png_structp png, png_bytep to, size_t length)
 {
     PngReader *reader = png_get_io_ptr(png);
-    if (length > reader->left) {
-        reader->fault = "it ends too early";
-        png_error(png, reader->fault);
-    }
+    if (length > reader->left)
+        png_error(png, "the end");
     memcpy(to, reader->bytes, length);
     reader->bytes += length;
     reader->left -= length;
+}
+
+/* Whether a part, or the last of them, is behind the end: what libpng notices first depends on its version. */
+static bool is_cut_short(const unsigned char *bytes, size_t length)
+{
+    uint32_t size;
+    for (size_t at = 8; length >= 12 && at <= length - 12; at += 12 + (size_t)be32toh(size)) {
+        memcpy(&size, bytes + at, sizeof size);
+        if (memcmp(bytes + at + 4, "IEND", 4) == 0)
+            return false;
+        if (be32toh(size) > length - 12 - at)
+            return true;
+    }
+    return true;
 }
 
 /* The words of libpng change with its version, and are of parts of the format. */
@@ -42,7 +55,7 @@ static _Noreturn void error_callback(png_structp png, png_const_charp message)
 {
     PngReader *reader = png_get_error_ptr(png);
     (void)message;
-    image_fail(reader->image, reader->fault);
+    image_fail(reader->image, reader->cut_short ? "it ends too early" : reader->fault);
     png_longjmp(png, 1);
 }
 
@@ -147,10 +160,11 @@ static bool read_file(PngReader *reader)
 
 bool image_read_png(Image *image, const unsigned char *bytes, size_t length)
 {
-    PngReader reader = {.image = image, .bytes = bytes, .left = length};
-    reader.png       = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &reader, error_callback,
-                                                warning_callback, &reader, allocate, release);
-    reader.info      = reader.png ? png_create_info_struct(reader.png) : NULL;
+    PngReader reader = {
+        .image = image, .bytes = bytes, .left = length, .cut_short = is_cut_short(bytes, length)};
+    reader.png  = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &reader, error_callback,
+                                           warning_callback, &reader, allocate, release);
+    reader.info = reader.png ? png_create_info_struct(reader.png) : NULL;
     if (!reader.info)
         return image_fail(image, "libpng cannot begin");
     return read_file(&reader);

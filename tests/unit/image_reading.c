@@ -298,6 +298,10 @@ static void broken_files_are_refused(void **state)
     static const char *const colors[] = {"R", "G", "B"};
     const SampleType         halves[] = {SAMPLE_HALF, SAMPLE_HALF, SAMPLE_HALF};
     write_png(&forms[6]);
+    for (size_t i = 12; i < length; i++) {
+        Image image = blank(SPACE_OF_FILE);
+        assert_true(image_read(&image, file, i) || strcmp(image.fault, "it ends too early") == 0);
+    }
     break_file();
     write_exr(colors, halves, 3);
     break_file();
