@@ -44,16 +44,25 @@ skips() { # how many
     [ "$1" -eq 0 ] || echo ", $1 skipped"
 }
 
+# Puts the processor seconds of all that this shell has run and waited for into `spent`.
+measure() { # a file to write to; a shell within this one, as for a substitution, has run nothing
+    times >"$1"
+    spent=$(sed -n '2s/[ms]/ /gp' "$1" | awk '{ print 60 * $1 + $2 + 60 * $3 + $4 }')
+}
+
 # Runs a program, says how it ended, and notes the counts of its tests.
 test_program() { # program, where its output goes
     case $1 in
     */*) command=$1 ;;
     *) command=./$1 ;;
     esac
-    begun=$(date +%s)
+    measure "$2.times"
+    begun=$(date +%s) before=$spent
     timeout -k 5 "$seconds" "$command" >"$2" 2>&1 </dev/null
     status=$?
     took=$(($(date +%s) - begun))
+    measure "$2.times"
+    took="$took s, $(awk "BEGIN { printf \"%.1f\", $spent - $before }") s of processor"
     skipped=$(grep -cE '^(not )?ok.*# SKIP' "$2") # cmocka says `not ok` of those
     passed=$(grep '^ok' "$2" | grep -cv '# SKIP')
     failed=$(grep '^not ok' "$2" | grep -cv '# SKIP')
@@ -65,7 +74,7 @@ test_program() { # program, where its output goes
     if [ "$failed" -gt 0 ]; then
         { echo "==== $1: $failed failed${why:+ ($why)}"; cat "$2"; } >"$2.said"
     else
-        echo "     $1: $passed passed$(skips "$skipped") in $took s" >"$2.said"
+        echo "     $1: $passed passed$(skips "$skipped") in $took" >"$2.said"
     fi
     cat "$2.said"
     echo "$passed $failed $skipped" >>"$counts"

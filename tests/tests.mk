@@ -60,9 +60,10 @@ SCRIPTS     := tests/run_selftest.sh $(sort $(filter-out tests/cli/common.sh $(B
                $(wildcard tests/cli/*.sh))) tests/fuzz/fuzz.sh
 # What takes longest and need not run after each change: `make test-long` has it, `make test` all else, and
 # `make test-all` both (docs/building.md says what costs what).  clang and the fuzzers belong to it, as they
-# compile everything once more, and the judge of meshes, whose headers take a minute.
-LONG        := $(addprefix tests/, examples.sh extend/extend.sh cli/mesh_judges.sh fuzz/fuzz.sh \
-               oracle/meshes oracle/mesh_forms oracle/mesh_examples)
+# compile everything once more, the judge of meshes, whose headers take a minute, and what compares switches of
+# `krs help render --all` with each other.
+LONG        := $(addprefix tests/, examples.sh extend/extend.sh cli/mesh_judges.sh fuzz/fuzz.sh unit/per_component \
+               unit/schedules unit/methods oracle/meshes oracle/mesh_forms oracle/mesh_examples)
 # Of a list, what belongs to a set: short, long or all.
 short_of     = $(filter-out $(LONG), $(1))
 long_of      = $(filter $(LONG), $(1))
