@@ -101,7 +101,7 @@ while read -r property; do
 done <"$work/properties" >"$work/said"
 none "every property of a shape has a row"
 
-# What the library declares over several lines is joined; defaults do not matter.
+# What the library declares over several lines is joined; kinds and defaults do not matter.
 for file in compiler/library/*.krs compiler/library/std/*.krs; do
     awk '/^(shape|def) [a-z]/ { open = 1; text = "" }
          open { text = text " " $0 }
@@ -113,7 +113,7 @@ awk '{
         c = substr($0, i, 1)
         if (c ~ /[(\[]/) depth++
         if (c ~ /[)\]]/) depth--
-        if (depth == 1 && c == "=") skip = 1
+        if (depth == 1 && (c == "=" || c == ":")) skip = 1
         if (depth == 1 && c == ",") skip = 0
         if (depth == 0 && c == ")") { out = out ")"; break }
         if (!skip && c != " ") out = out (c == "," ? ", " : c)

@@ -16,7 +16,7 @@ ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c prod
 UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c queried.c \
                cache_folder.c compiled_files.c crossings.c crowd_scene.c closed_forms.c)
 PROPERTY_SHARED := $(addprefix tests/property/, crowd_parts.c garden.c op_trial.c reach_crowd.c)
-UNIT        := specks texts patience front synonyms look diagnostics shape parts passes display devices tracer film plates saved noise pixel_filters lens rendering lights light_groups sky_table daylight methods schedules paths writer \
+UNIT        := specks texts patience front synonyms arguments look diagnostics shape parts passes display devices tracer film plates saved noise pixel_filters lens rendering lights light_groups sky_table daylight methods schedules paths writer \
                image_files image_reading memory validate search refute frame frame_floor query zones surroundings cache cache_limits \
                compiled pipelines per_component mixed_rays stencils glslang flatten loader watcher drivers grid crowd_grid crowds \
                crowd_kernels crowd_ends crowd_pictures few_parts tables device_tables table_files printing printers gathered_noises answers alike update coordinates reload live saved_texts camera_text resolution painter saver edits values mesh mesh_progress mesh_bounds mesh_tets mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_proofs assembly
@@ -26,7 +26,7 @@ ORACLES     := self distant patterns bumps primitives krs_expand folds trees map
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
                albedo furnace thin_film anisotropy tangents subsurface paths direct_glass enhanced emissive sky sky_means plate_light detail media cornell touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling \
-               occlusion curves sweeps hulls lofts places underestimates bounds stencils light sides steep scales agree far sheets ray_lists specialize outlines drawings \
+               occlusion curves sweeps corners hulls lofts places underestimates bounds stencils light sides steep scales agree far sheets ray_lists specialize outlines drawings \
                imports imports_csg imports_pov meshes mesh_forms mesh_examples
 FUZZ        := sentences
 # On SwiftShader, unless another device is tested: what shows that drivers agree.

@@ -49,6 +49,12 @@ static Value builtin_distance(Elaboration *e, Call *call)
     if (offset.type == VALUE_ERROR)
         return offset;
     Value result;
+    if (value_size(e, offset) == 1) {
+        diag_add(e->diags, DIAG_LENGTH_MISMATCH, call->syntax->span, "`%s` needs two vectors",
+                 call->name)
+            ->help = "numbers are `abs(a - b)` apart";
+        return value_error();
+    }
     if (fold_vectors(e, OP_length, &offset, 1, &result))
         return result;
     return value_of_node(e, graph_op1(e->graph, OP_length, value_node(e, offset)));

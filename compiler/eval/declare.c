@@ -176,12 +176,12 @@ static void require_sizes(Elaboration *e, const Shape *shape)
 }
 
 /* A size of 0 or less leaves nothing to see, or a surface without an inside. */
-static void warn_if_empty(Elaboration *e, const Shape *shape)
+static void warn_if_empty(Elaboration *e, const Shape *shape, Span call)
 {
     bool flat = false;
     for (int i = 0; i < (shape->figure ? 2 : 3); i++)
         flat = flat || !(shape->box.axis[i].low < shape->box.axis[i].high);
-    if (e->sources->items[shape->span.source].library)
+    if (e->sources->items[call.source].library)
         return;
     if (e->turn != NODE_NONE)
         require_sizes(e, shape);
@@ -297,7 +297,7 @@ static bool outline_property(Elaboration *e, const Environment *env, const Synta
 
 /* What the shape is, out of its properties. */
 static bool read_properties(Elaboration *e, const Environment *env, const Syntax *declaration,
-                            bool first, Shape *shape)
+                            bool first, Span call, Shape *shape)
 {
     const Syntax *bound = find_property(declaration, "bound");
     shape->distance     = field_property(e, env, find_property(declaration, "distance"));
@@ -311,7 +311,7 @@ static bool read_properties(Elaboration *e, const Environment *env, const Syntax
                 uv_property(e, env, declaration, first, shape) && shape->distance != NODE_NONE &&
                 (!bound || shape->bound != NODE_NONE);
     if (good)
-        warn_if_empty(e, shape);
+        warn_if_empty(e, shape, call);
     return good;
 }
 
@@ -393,10 +393,13 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
     if (first && !check_properties(e, declaration))
         return value_error();
 
-    Shape *shape       = shape_new(e->builder, SHAPE_PRIMITIVE, function->name, span, NULL, 0);
-    Span   caller      = e->graph->here;
+    /* What the library makes of other shapes is what its caller asked for. */
+    const char *name = function->name;
+    Span        call = span, caller = e->graph->here;
+    made_for_author(e, &name, &span);
+    Shape *shape       = shape_new(e->builder, SHAPE_PRIMITIVE, name, span, NULL, 0);
     shape->declaration = declaration_new(e, function, env);
-    if (!read_properties(e, env, declaration, first, shape) ||
+    if (!read_properties(e, env, declaration, first, call, shape) ||
         !settle_slope(e, env, declaration, first, shape))
         return value_error();
     if (!e->uses_uv)

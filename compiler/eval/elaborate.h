@@ -359,6 +359,10 @@ Value call_with(Elaboration *e, const Function *function, Value first, const Syn
 /* The same of a function of the library that scenes do not see. */
 Value call_library(Elaboration *e, const char *name, Value first, const Syntax *call);
 
+/* What in the scene asked for what a function of the library makes now: its name, and the call.  False:
+   the scene makes it itself. */
+bool made_for_author(const Elaboration *e, const char **name, Span *span);
+
 /* ---- declare.c: shapes declared in the language ---- */
 /* Whether a material of these files may need the coordinates on surfaces. */
 bool files_mention_uv(const Files *files);

@@ -152,9 +152,14 @@ static Value report_endless(Elaboration *e, const Call *call)
 
 Value builtin_extremes(Elaboration *e, Call *call)
 {
-    double low[3], high[3], slope = HUGE_VAL;
-    Box    box;
-    Node   node = want_numeric(e, call, 0);
+    double       low[3], high[3], slope = HUGE_VAL;
+    Box          box;
+    const Value *known = &call->arguments[0].value;
+    if (known->type == VALUE_NUMBER) {
+        const double both[] = {known->number, known->number};
+        return value_vector(e, both, 2);
+    }
+    Node node = want_numeric(e, call, 0);
     if (node == NODE_NONE || !want_corner(e, &call->arguments[1], low, false) ||
         !want_corner(e, &call->arguments[2], high, true) || !want_constant(e, call, 3, &slope))
         return value_error();

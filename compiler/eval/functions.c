@@ -2,12 +2,13 @@
  * functions.c: calls of functions, of shape declarations and of materials with parameters.
  */
 #include "compiler/eval/elaborate.h"
+#include "compiler/eval/kinds.h"
 
 #include <string.h>
 
 enum { MOST_CALLS = 1000 };
 
-static uint32_t parameter_count(const Syntax *definition)
+uint32_t parameter_count(const Syntax *definition)
 {
     uint32_t count = 0;
     while (count < definition->count && definition->children[count]->kind == SYNTAX_PARAMETER)
@@ -25,15 +26,13 @@ static const char **parameter_names(Elaboration *e, const Syntax *definition)
     return names;
 }
 
-static void note_signature(Elaboration *e, Diag *diag, const Syntax *definition)
+void note_signature(Elaboration *e, Diag *diag, const Syntax *definition)
 {
     const char **names = parameter_names(e, definition);
     diag_note(e->diags, diag, signature(e, definition->name, names, parameter_count(definition)));
 }
 
-/* Says how a function of the library is called; how others are, only their author knows. */
-static void explain_library(Elaboration *e, Diag *diag, const Syntax *call,
-                            const Syntax *definition)
+void explain_library(Elaboration *e, Diag *diag, const Syntax *call, const Syntax *definition)
 {
     if (e->sources->items[definition->span.source].library)
         explain_usage(e, diag, call, definition->name);
@@ -87,106 +86,6 @@ static bool gather_arguments(Elaboration *e, const Environment *env, const Synta
     return good;
 }
 
-/* The default of a shape's parameter shows what it must be: a number or a vector, how long. */
-static bool fits_default(Elaboration *e, const Environment *env, const Function *function,
-                         const Syntax *call, const Syntax *parameter, Value value,
-                         const Syntax *origin)
-{
-    if (function->syntax->kind != SYNTAX_SHAPE || parameter->count == 0)
-        return true;
-    Value usual = evaluate(e, env, parameter->children[0]);
-    if (value_size(e, usual) == 0 || value_size(e, usual) == value_size(e, value))
-        return true;
-    const char *found = value_type_name(e, value);
-    Diag       *diag  = diag_add(e->diags, DIAG_TYPE_MISMATCH, origin->span,
-                                 "`%s` of `%s` must be %s, found %s", parameter->name, function->name,
-                                 value_type_name(e, usual), found);
-    diag->label       = diag_text(e->diags, "this is %s", found);
-    note_signature(e, diag, function->syntax);
-    explain_library(e, diag, call, function->syntax);
-    point_at_definition(e, diag, origin);
-    return false;
-}
-
-/* The range of a parameter, two numbers; false: reported. */
-/* An end of a range is a number now; where kernels read numbers, the end of what they all allow. */
-static bool range_end(Elaboration *e, Value value, bool high, double *end)
-{
-    if (value.type == VALUE_NUMBER) {
-        *end = value.number;
-        return true;
-    }
-    if (!e->hoists || value_size(e, value) != 1 || value_time(e, value) == TIME_POINT)
-        return false;
-    Range may = node_range(e->builder, value_node(e, value), 0);
-    *end      = high ? may.low : may.high;
-    return true;
-}
-
-static bool parameter_range(Elaboration *e, const Environment *env, const Syntax *parameter,
-                            Range *range)
-{
-    const Syntax *syntax = parameter->children[1];
-    Value         value  = evaluate(e, env, syntax);
-    if (value.type == VALUE_ERROR)
-        return false;
-    if (value.type == VALUE_LIST && value.list->count == 2 &&
-        range_end(e, value.list->items[0], false, &range->low) &&
-        range_end(e, value.list->items[1], true, &range->high))
-        return true;
-    Diag *diag  = diag_add(e->diags, DIAG_RANGE_OF_PARAM, syntax->span,
-                           "the range of `%s` is not two numbers", parameter->name);
-    diag->label = "[low, high], known at compile time";
-    return false;
-}
-
-/* "18", or "from 0deg to 18deg" of what is known in frames only. */
-static const char *range_text(Elaboration *e, Range range, bool degrees)
-{
-    Text text = {.arena = e->diags->arena};
-    text_add(&text, range.low < range.high ? "from " : "");
-    add_number(&text, range.low, degrees);
-    text_add(&text, range.low < range.high ? " to " : "");
-    if (range.low < range.high)
-        add_number(&text, range.high, degrees);
-    return text.bytes;
-}
-
-/* A parameter with a range takes numbers in it; `origin` is the argument, or the default. */
-static bool fits_range(Elaboration *e, const Environment *env, const Function *function,
-                       const Syntax *parameter, Value value, const Syntax *origin)
-{
-    Range range, found;
-    if (parameter->count < 2)
-        return true;
-    if (!parameter_range(e, env, parameter, &range))
-        return false;
-    if (value_size(e, value) != 1) {
-        type_error(e, origin, value, "a number");
-        return false;
-    }
-    if (value_time(e, value) == TIME_POINT) {
-        point_error(e, origin,
-                    diag_text(e->diags, "`%s` of `%s`, which has a range,", parameter->name,
-                              function->name));
-        return false;
-    }
-    found = value.type == VALUE_NUMBER ? (Range){value.number, value.number}
-                                       : node_range(e->builder, value_node(e, value), 0);
-    if (range.low <= found.low && found.high <= range.high)
-        return true;
-    bool  degrees = written_in_degrees(e, parameter), also = written_in_degrees(e, origin);
-    Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, origin->span, "`%s` of `%s` must be %s",
-                           parameter->name, function->name, range_text(e, range, degrees));
-    diag->label = diag_text(e->diags, "this %s %s%s", found.low < found.high ? "can be" : "is",
-                            range_text(e, found, also), degrees && !also ? " radians" : "");
-    if (degrees && (diag->replacement = degrees_instead(e, origin)))
-        diag->help = "degrees have their unit behind the number";
-    note_signature(e, diag, function->syntax);
-    point_at_definition(e, diag, origin);
-    return false;
-}
-
 /* A parameter is an angle by its name, or by a default in degrees. */
 static void warn_of_wrong_unit(Elaboration *e, const Syntax *parameter, Value value,
                                const Syntax *origin)
@@ -206,10 +105,11 @@ static bool bind_parameters(Elaboration *e, const Function *function, const Valu
         Value         value;
         if (origins[i]) {
             value = values[i];
-            if (!fits_default(e, env, function, call, parameter, value, origins[i]))
+            if (!fits_type(e, env, function, call, parameter, &value, origins[i]))
                 return false;
         } else if (parameter->count)
-            value = evaluate(e, env, parameter->children[0]);
+            value = value_as_kind(e, (ParameterKind)parameter->number[0],
+                                  evaluate(e, env, parameter->children[0]), parameter);
         else {
             Diag *diag = missing_argument(e, call, definition->name, parameter->name);
             note_signature(e, diag, definition);
@@ -217,7 +117,10 @@ static bool bind_parameters(Elaboration *e, const Function *function, const Valu
         }
         if (value.type == VALUE_ERROR ||
             !fits_range(e, env, function, parameter, value,
-                        origins[i] ? origins[i] : parameter->children[0]))
+                        origins[i]                          ? origins[i]
+                        : is_of_author(e, function->syntax) ? parameter->children[0]
+                                                            : call,
+                        origins[i] != NULL))
             return false;
         if (origins[i])
             warn_of_wrong_unit(e, parameter, value, origins[i]);
@@ -246,78 +149,15 @@ static bool check_shape_arguments(Elaboration *e, const Function *function, cons
     return true;
 }
 
-static bool add_value(Text *text, const Elaboration *e, Value value)
-{
-    if (value.type == VALUE_NUMBER) {
-        text_number(text, value.number);
-        return true;
-    }
-    if (value.type != VALUE_LIST || value_size(e, value) < 2 || value_time(e, value) > TIME_COMPILE)
-        return false;
-    for (size_t i = 0; i < value.list->count; i++) {
-        text_add(text, i ? ", " : "[");
-        add_value(text, e, value.list->items[i]);
-    }
-    text_add(text, "]");
-    return true;
-}
-
-/* "called with levels = 18, size = [1, 2, 1]": numbers and vectors that are known. */
-static void note_arguments(Elaboration *e, Diag *diag, const Function *function,
-                           const Value *values, const Syntax *const *origins)
-{
-    Text text = {.arena = e->diags->arena};
-    for (uint32_t i = 0; i < parameter_count(function->syntax); i++) {
-        Text value = {.arena = e->diags->arena};
-        if (!origins[i] || !add_value(&value, e, values[i]))
-            continue;
-        text_format(&text, "%s%s = %s", text.length ? ", " : "called with ",
-                    function->syntax->children[i]->name, value.bytes);
-    }
-    if (text.length)
-        diag_note(e->diags, diag, text.bytes);
-}
-
-/*
- * A mistake that comes to light inside the library is the caller's: its diagnostics are moved
- * to the call, and the place in the library becomes the second one.
- */
-static void blame_caller(Elaboration *e, size_t first, const Syntax *syntax,
-                         const Function *function, const Value *values,
-                         const Syntax *const *origins)
-{
-    const Source *sources = e->sources->items;
-    if (sources[syntax->span.source].library)
-        return;
-    size_t retained = first;
-    for (size_t i = first; i < e->diags->count; i++) {
-        Diag *diag  = e->diags->items[i];
-        bool  error = diag_info[diag->code].severity == DIAG_ERROR;
-        bool  ours  = sources[diag->span.source].library && diag->span.source;
-        if (ours && error && retained > first) { /* one mistake at the call, one report */
-            e->diags->errors--;
-            continue;
-        }
-        e->diags->items[retained++] = diag;
-        if (!ours)
-            continue;
-        diag_secondary(e->diags, diag, diag->span, diag->label ? diag->label : "found here");
-        diag->span        = syntax->span;
-        diag->label       = diag_text(e->diags, "in this call of `%s`", function->name);
-        diag->replacement = NULL;
-        note_arguments(e, diag, function, values, origins);
-    }
-    e->diags->count = retained;
-}
-
 /* What a function asserts is about how it is called. */
-static void mark_call(Elaboration *e, size_t first, const Syntax *syntax, const char *name)
+static void mark_call(Elaboration *e, size_t first, const Syntax *syntax, const Function *function)
 {
     for (size_t i = first; i < e->diags->count; i++) {
         Diag *diag = e->diags->items[i];
-        if (diag->code == DIAG_ASSERTION && diag->secondary.count == 0)
+        if (diag->code == DIAG_ASSERTION && diag->secondary.count == 0 &&
+            is_of_author(e, function->syntax))
             diag_secondary(e->diags, diag, syntax->span,
-                           diag_text(e->diags, "in this call of `%s`", name));
+                           diag_text(e->diags, "in this call of `%s`", function->name));
     }
 }
 
@@ -350,12 +190,38 @@ static const CalledFunction *call_within_itself(const CalledFunction *innermost)
     return innermost;
 }
 
+/* The innermost call that is written in the scene. */
+static const CalledFunction *call_of_author(const Elaboration *e)
+{
+    const CalledFunction *call = e->called;
+    while (call && !is_of_author(e, call->syntax))
+        call = call->outer;
+    return call;
+}
+
+bool made_for_author(const Elaboration *e, const char **name, Span *span)
+{
+    const CalledFunction *call = call_of_author(e);
+    if (!call || call == e->called)
+        return false;
+    *name = call->function->name;
+    *span = call->syntax->span;
+    return true;
+}
+
 static void report_depth(Elaboration *e, const CalledFunction *innermost)
 {
     const CalledFunction *call = call_within_itself(innermost);
-    Diag                 *diag = diag_add(e->diags, DIAG_LIMIT, call->syntax->span,
-                                          "`%s` is called within itself more than 1,000 deep",
-                                          call->function->name);
+    if (!is_of_author(e, call->syntax) && call_of_author(e)) {
+        call = call_of_author(e);
+        diag_add(e->diags, DIAG_LIMIT, call->syntax->span,
+                 "`%s` needs more steps for these arguments than are possible",
+                 call->function->name);
+        return;
+    }
+    Diag *diag = diag_add(e->diags, DIAG_LIMIT, call->syntax->span,
+                          "`%s` is called within itself more than 1,000 deep",
+                          call->function->name);
     diag->help =
         "a function that calls itself ends by an `if`, as in `def tower(n) = if n == 0 then "
         "sphere(1) else box([1, 1, 1]) | tower(n - 1).move([0, 1, 0]);`";
@@ -381,7 +247,7 @@ static Value call_values(Elaboration *e, const Function *function, const Value *
         result = call_body(e, function, &env, syntax->span);
     e->called = call.outer;
     e->calls--;
-    mark_call(e, said, syntax, function->name);
+    mark_call(e, said, syntax, function);
     blame_caller(e, said, syntax, function, values, origins);
     return result;
 }

@@ -7,6 +7,8 @@
 #include "compiler/front/parser.h"
 #include "compiler/front/synonyms.h"
 
+#include <string.h>
+
 /* ---- definitions ---- */
 
 /* The index of a `[` that begins a range whose `in` is missing, as in `1 [0, 2]`: behind a number, and
@@ -54,17 +56,57 @@ static void read_default(Parser *p)
     read_limits(p);
 }
 
-/* parameter = NAME [ "=" expression [ "in" expression ] ] ; */
+static void report_kind(Parser *p, const Token *word)
+{
+    const char *names[KIND_COUNT];
+    for (int i = 1; i < KIND_COUNT; i++)
+        names[i - 1] = parameter_kind_name((ParameterKind)i);
+    Diag *diag        = report_at(p, DIAG_UNKNOWN_NAME, word->span,
+                                  diag_text(p->diags, "no kind of value is called `%s`", word->name));
+    diag->label       = "unknown kind";
+    diag->replacement = nearest_name(word->name, names, KIND_COUNT - 1);
+    diag->help        = diag->replacement ? "a kind with a similar name exists"
+                                          : "the default of a parameter stands behind `=`";
+}
+
+/* What stands behind the colon. */
+static ParameterKind parse_kind(Parser *p)
+{
+    const Token *word = expect_label(p, "a kind of value");
+    for (int i = 1; word && i < KIND_COUNT; i++)
+        if (strcmp(parameter_kind_name((ParameterKind)i), word->name) == 0)
+            return (ParameterKind)i;
+    if (word)
+        report_kind(p, word);
+    return KIND_ANY;
+}
+
+/* Whether a kind of value follows, not a default behind a wrong sign. */
+static bool is_kind_next(const Parser *p)
+{
+    const TokenKind after = kind_after(p);
+    return kind_here(p) == TOKEN_COLON &&
+           (after == TOKEN_NAME || after == TOKEN_SHAPE || after == TOKEN_MATERIAL);
+}
+
+/* parameter = NAME [ ":" KIND ] [ "=" expression [ "in" expression ] ] ; */
 static Syntax *parse_parameter(Parser *p)
 {
-    Span         start = token_here(p)->span;
-    size_t       first = begin_children(p);
-    const Token *name  = expect_name(p, "of a parameter");
+    Span          start = token_here(p)->span;
+    size_t        first = begin_children(p);
+    const Token  *name  = expect_name(p, "of a parameter");
+    ParameterKind kind  = KIND_ANY;
+    if (is_kind_next(p)) {
+        advance(p);
+        kind = parse_kind(p);
+    }
     if (kind_here(p) == TOKEN_ASSIGN || kind_here(p) == TOKEN_COLON) {
         expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` before the default of a parameter");
         read_default(p);
     }
-    return finish_named(p, SYNTAX_PARAMETER, start, first, name);
+    Syntax *parameter    = finish_named(p, SYNTAX_PARAMETER, start, first, name);
+    parameter->number[0] = kind;
+    return parameter;
 }
 
 /* parameters = "(" [ parameter { "," parameter } [ "," ] ] ")" ; */

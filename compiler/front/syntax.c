@@ -72,6 +72,8 @@ static void print_content(const Syntax *syntax, Text *out)
     }
     if (syntax->name)
         text_format(out, " %s", syntax->name);
+    if (syntax->kind == SYNTAX_PARAMETER && syntax->number[0] != 0)
+        text_format(out, ": %s", parameter_kind_name((ParameterKind)syntax->number[0]));
     for (uint32_t i = 0; i < numbers; i++) {
         text_add(out, " ");
         text_number(out, syntax->number[i]);
@@ -92,6 +94,17 @@ static void print_level(const Syntax *syntax, const Sources *sources, int level,
 void syntax_print(const Syntax *syntax, const Sources *sources, Text *out)
 {
     print_level(syntax, sources, 0, out);
+}
+
+const char *parameter_kind_name(ParameterKind kind)
+{
+    static const char *const names[] = {
+        NULL,
+#define KIND(name, latest, many, check, wanted) #name,
+#include "compiler/front/kinds.def"
+#undef KIND
+    };
+    return names[kind];
 }
 
 bool syntax_is_function(const Syntax *syntax)

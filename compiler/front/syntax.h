@@ -39,7 +39,8 @@ typedef enum SyntaxKind {
     SYNTAX_BLOCK,     /* -      statements (of a `for` or `if`, and of the whole file) */
     SYNTAX_LET,       /* name   [0] value */
     SYNTAX_DEF,       /* name   [0..n-2] PARAMETER, [n-1] body; doc */
-    SYNTAX_PARAMETER, /* name   [0] default, [1] range (any expression); no [1], or no child */
+    SYNTAX_PARAMETER, /* name   [0] default, [1] range (any expression); no [1], or no child;
+                         number[0] is its ParameterKind */
     SYNTAX_PARAM,     /* name   [0] default, [1] range (any expression), or no [1] */
     SYNTAX_SHAPE,     /* name   PARAMETER..., PROPERTY...; doc */
     SYNTAX_MATERIAL, /* name   PARAMETER..., PROPERTY...; number[0] is 1 if it has a list of parameters */
@@ -61,6 +62,15 @@ typedef enum SyntaxKind {
     SYNTAX_KIND_COUNT
 } SyntaxKind;
 
+/* What a parameter takes: kinds.def. */
+typedef enum ParameterKind {
+    KIND_ANY,
+#define KIND(name, latest, many, check, wanted) KIND_##name,
+#include "compiler/front/kinds.def"
+#undef KIND
+    KIND_COUNT
+} ParameterKind;
+
 typedef struct Syntax Syntax;
 struct Syntax {
     SyntaxKind  kind;
@@ -77,6 +87,9 @@ struct Syntax {
 
 /* Most levels of an expression, so that functions may walk the tree by recursion. */
 enum { SYNTAX_MOST_LEVELS = 1000 };
+
+/* "points"; NULL for KIND_ANY. */
+const char *parameter_kind_name(ParameterKind kind);
 
 /* "comprehension", for dumps. */
 const char *syntax_kind_name(SyntaxKind kind);

@@ -220,6 +220,13 @@ static const char *example_of(Grammar *g, const char *class)
 #include "compiler/front/token.def"
 #undef TOKEN
     };
+    static const char *const kinds[] = {
+#define KIND(name, latest, many, check, wanted) #name,
+#include "compiler/front/kinds.def"
+#undef KIND
+    };
+    if (strcmp(class, "KIND") == 0)
+        return PICK(g, kinds);
     if (strcmp(class, "NUMBER") == 0)
         return PICK(g, numbers);
     if (strcmp(class, "COLOUR") == 0)

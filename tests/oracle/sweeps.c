@@ -19,7 +19,7 @@ typedef struct Path {
     Vec    up; /* where it begins */
     double wide, high, twist, taper;
     Vec    frames[MOST_PARTS * STEPS + 1]; /* the y axis at each step, before twist */
-    double ways[MOST_PARTS + 1];           /* the share of the path before each part */
+    double ways[MOST_PARTS * STEPS + 1];   /* the share of the path's length before it */
 } Path;
 
 /* `t` counts parts. */
@@ -39,22 +39,20 @@ static Vec path_tangent(const Path *path, double t)
     return vec_unit(vec_sub(vec_mix(part[1], part[2], s), vec_mix(part[0], part[1], s)));
 }
 
-/* The share of a part is by the mean of its chord, twice, and its control polygon. */
+/* Lengths by chords of many small steps. */
 static void path_measure(Path *path)
 {
-    for (int i = 0; i < path->count; i++) {
-        const Vec *q      = path->parts[i];
-        path->ways[i + 1] = path->ways[i] + 2 * vec_distance(q[0], q[2]) +
-                            vec_distance(q[0], q[1]) + vec_distance(q[1], q[2]);
-    }
-    for (int i = 0; i < path->count; i++)
-        path->ways[i] /= path->ways[path->count];
-    path->ways[path->count] = 1;
+    for (int i = 0; i < path->count * STEPS; i++)
+        path->ways[i + 1] = path->ways[i] + vec_distance(path_at(path, (double)i / STEPS),
+                                                         path_at(path, (i + 1.0) / STEPS));
+    for (int i = 0; i <= path->count * STEPS; i++)
+        path->ways[i] /= path->ways[path->count * STEPS];
 }
 
 /* Frames by transport in many small steps: what is along the tangent is taken away. */
 static void path_close(Path *path)
 {
+    path->ways[0] = 0;
     path_measure(path);
     path->frames[0] = path->up;
     for (int i = 0; i <= path->count * STEPS; i++) {
@@ -93,8 +91,8 @@ static double path_nearest(const Path *path, Vec point)
 
 static double path_way(const Path *path, double t)
 {
-    int part = part_at(path, t);
-    return path->ways[part] + (t - part) * (path->ways[part + 1] - path->ways[part]);
+    int step = (int)fmin(floor(t * STEPS), path->count * STEPS - 1);
+    return path->ways[step] + (t * STEPS - step) * (path->ways[step + 1] - path->ways[step]);
 }
 
 /* The figure's axes at a place of the path. */
