@@ -12,70 +12,68 @@
 enum { IMPORT_MOST_DEPTH = 200 };
 
 typedef enum PartJoin {
-  PART_UNION, /* also of one */
-  PART_INTERSECTION,
-  PART_DIFFERENCE,
-  PART_XOR, /* of two */
-  PART_HULL
+    PART_UNION, /* also of one */
+    PART_INTERSECTION,
+    PART_DIFFERENCE,
+    PART_XOR, /* of two */
+    PART_HULL
 } PartJoin;
 
 /* Points whose convex hull, grown by a radius, a shape is. */
 typedef struct PartBalls {
-  double (*points)[3]; /* NULL: it is something else */
-  size_t count, capacity;
-  double radius;
-  double *radii; /* of each, where they differ; else NULL */
+    double (*points)[3]; /* NULL: it is something else */
+    size_t  count, capacity;
+    double  radius;
+    double *radii; /* of each, where they differ; else NULL */
 } PartBalls;
 
 /* What stands upright on a figure: from z = -height / 2 to height / 2 in its
  * own space. */
 typedef struct PartColumn {
-  struct Part *figure; /* NULL: it is something else */
-  double height;
+    struct Part *figure; /* NULL: it is something else */
+    double       height;
 } PartColumn;
 
 /* Its shape, or its items joined; then methods; then its place; then its look.
  */
 typedef struct Part {
-  const char *
-      stem; /* what its name begins with in the scene, and a number behind it */
-  const char *shape; /* as the scene has it; NULL: see join and items */
-  PartJoin join;
-  struct {
-    struct Part **items;
-    size_t count, capacity;
-  } parts;
-  const char
-      *methods; /* such as ".offset(1)", in the part's own space; NULL: none */
-  Place place;
-  const char *look; /* argument of `.paint`; NULL: none */
-  bool figure;      /* plane, in x and y */
-  bool outside;     /* it is what is outside of this */
-  bool shared;      /* in several places */
-  PartBalls balls;
-  PartColumn column;
-  double figure_radius; /* of a circle about its own origin; else 0 */
-  double (*corners)[3]; /* of a figure with straight sides, in their order, or
+    const char *stem;  /* what its name begins with in the scene, and a number behind it */
+    const char *shape; /* as the scene has it; NULL: see join and items */
+    PartJoin    join;
+    struct {
+        struct Part **items;
+        size_t        count, capacity;
+    } parts;
+    const char *methods; /* such as ".offset(1)", in the part's own space; NULL: none */
+    Place       place;
+    const char *look;    /* argument of `.paint`; NULL: none */
+    bool        figure;  /* plane, in x and y */
+    bool        outside; /* it is what is outside of this */
+    bool        shared;  /* in several places */
+    PartBalls   balls;
+    PartColumn  column;
+    double      figure_radius; /* of a circle about its own origin; else 0 */
+    double (*corners)[3];      /* of a figure with straight sides, in their order, or
                            NULL */
-  size_t corner_count;
-  unsigned line;
-  /* of the writer */
-  const char *wanted; /* the name that the file has for it */
-  const char *name;   /* where it is the same wherever it is */
-  int depth;          /* of parts in it */
-  int painted;        /* 0 unknown; PAINTED, UNPAINTED, or both */
+    size_t   corner_count;
+    unsigned line;
+    /* of the writer */
+    const char *wanted;  /* the name that the file has for it */
+    const char *name;    /* where it is the same wherever it is */
+    int         depth;   /* of parts in it */
+    int         painted; /* 0 unknown; PAINTED, UNPAINTED, or both */
 } Part;
 
 typedef struct PartWriter {
-  Import *import;
-  bool inner_looks; /* a part's own look counts, not that of what it is a part
+    Import *import;
+    bool    inner_looks; /* a part's own look counts, not that of what it is a part
                        of */
-  size_t written;
+    size_t  written;
 } PartWriter;
 
 Part *part_new(Import *import, unsigned line, const char *stem);
-Part *part_shape(Import *import, unsigned line, const char *stem,
-                 const char *format, ...) __attribute__((format(printf, 4, 5)));
+Part *part_shape(Import *import, unsigned line, const char *stem, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 void part_add(Import *import, Part *part, Part *item);
 /* `what`, to which methods are added that see it as it is placed. */
 Part *part_around(Import *import, unsigned line, const char *stem, Part *what);
@@ -83,8 +81,7 @@ Part *part_around(Import *import, unsigned line, const char *stem, Part *what);
 void part_move(Part *part, const Place *place);
 
 /* "[1, 2, 3]", "2.5": rounded numbers, to be put into formats. */
-const char *import_vector_text(Import *import, const double *numbers,
-                               int count);
+const char *import_vector_text(Import *import, const double *numbers, int count);
 const char *import_number_text(Import *import, double number);
 
 /* Adds a `let` for the part and all that it needs.  Returns false after a

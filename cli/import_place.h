@@ -8,8 +8,8 @@
 
 /* The point q goes to rows q + shift. */
 typedef struct Place {
-  double rows[3][3];
-  double shift[3];
+    double rows[3][3];
+    double shift[3];
 } Place;
 
 Place place_identity(void);
