@@ -69,7 +69,7 @@ RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tra
 LIVE     := $(sort $(wildcard live/*.c))
 LIVE_BORDER := live/gui.cpp
 CLI      := $(sort $(wildcard cli/*.c))
-CLI_BORDER := cli/mesh_glb.cpp
+CLI_BORDER := cli/mesh_glb.cpp cli/terminate.cpp
 
 # Text files that the program carries: the standard library, what scenes and kernels share, kernels.
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))

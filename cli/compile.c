@@ -2,31 +2,13 @@
  * compile.c: `krs compile`: the shaders of a scene and their description, as files.
  */
 #include <endian.h>
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/modules.h"
 #include "cli/supervise.h"
-
-/* The folder is made if it is missing, but not the folders above it. */
-static KrsStatus make_folder(const char *folder)
-{
-    struct stat info;
-    if (mkdir(folder, 0777) == 0)
-        return KRS_OK;
-    int reason = errno;
-    if (reason == EEXIST) {
-        if (stat(folder, &info) == 0 && S_ISDIR(info.st_mode))
-            return KRS_OK;
-        reason = ENOTDIR;
-    }
-    say("cannot create `%s`: %s", folder, strerror(reason));
-    return KRS_CANNOT_CREATE;
-}
 
 static KrsStatus write_output_file(const Options *options, const char *base, const char *ending,
                                    const void *bytes, size_t length)
@@ -170,8 +152,11 @@ static KrsStatus write_all(const Options *options, const KrsScene *scene, const 
     const char *name = scene_name(options->arena, options->files.items[0]);
     Text        base = {.arena = options->arena};
     text_format(&base, "%s/%s", options->outputs.items[0], name);
-    KrsStatus status = make_folder(options->outputs.items[0]);
-    if (status == KRS_OK)
+    OutputError error;
+    KrsStatus   status = output_make_folder(options->outputs.items[0], &error);
+    if (status != KRS_OK)
+        say("%s", error.message);
+    else
         status = write_glsl(options, scene, base.bytes);
     for (size_t i = 0; i < modules->count && status == KRS_OK; i++) {
         const SpirvModule *module = &modules->items[i];

@@ -113,6 +113,8 @@ static int run(Options *options, int argc, char **argv)
         help_print_command(options->command, options->all, stdout);
         return console_finish();
     }
+    if (options->untrusted)
+        output_forbid_links();
     status = input_open(options);
     return status == KRS_OK ? supervise(options, work_with_memory) : (int)status;
 }

@@ -19,9 +19,12 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "cli/console.h"
+#include "cli/crash_report.h"
+#include "cli/terminate.h"
 #include "compiler/base/patience.h"
 
 typedef struct Shared {
@@ -31,6 +34,10 @@ typedef struct Shared {
     atomic_int       open;      /* whether `temporary` exists */
     char             temporary[4096];
     char             size[256]; /* of what is compiled, in words */
+    bool             again;     /* a child before this one was late */
+    double           read_since;
+    size_t           read_length;
+    char             read[1 << 16]; /* paths, each with a NUL */
 } Shared;
 
 static Shared               *shared;
@@ -92,6 +99,42 @@ void stage_size(const char *format, ...)
     va_start(arguments, format);
     vsnprintf(shared->size, sizeof shared->size, format, arguments);
     va_end(arguments);
+}
+
+static double time_of(const struct timespec *time)
+{
+    return (double)time->tv_sec + 1e-9 * (double)time->tv_nsec;
+}
+
+void stage_forget(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME_COARSE, &now); /* as files have it */
+    shared->read_length = 0;
+    shared->read_since  = time_of(&now);
+}
+
+/* What there is no room for is not seen again before the scene itself is saved. */
+void stage_read(const char *path)
+{
+    const size_t length = strlen(path) + 1;
+    if (length > sizeof shared->read - shared->read_length)
+        return;
+    memcpy(shared->read + shared->read_length, path, length);
+    shared->read_length += length;
+}
+
+bool stage_again(VisitRead *visit, void *user, bool *changed)
+{
+    struct stat about;
+    *changed = false;
+    for (size_t at = 0; shared->again && at < shared->read_length;
+         at += strlen(shared->read + at) + 1) {
+        visit(user, shared->read + at); /* first: what happens from now on is told */
+        if (stat(shared->read + at, &about) == 0 && time_of(&about.st_ctim) > shared->read_since)
+            *changed = true;
+    }
+    return shared->again;
 }
 
 const volatile sig_atomic_t *interrupted(void) { return &interrupt_flag; }
@@ -167,6 +210,7 @@ static void limit_memory(uint64_t bytes)
 static _Noreturn void run_child(Options *options, Work *work, const sigset_t *mask)
 {
     limit_memory(options->limits.memory);
+    terminate_by_status();
     prctl(PR_SET_PDEATHSIG, SIGTERM); /* nobody would read what we do */
     catch_signal(SIGINT);
     catch_signal(SIGTERM);
@@ -183,92 +227,11 @@ static _Noreturn void run_child(Options *options, Work *work, const sigset_t *ma
 typedef struct Watch {
     pid_t    child;
     bool     interrupted, late, over; /* why we stopped the child; over: the limit of time */
+    bool     exited;                  /* the child ended by itself */
     bool     warned;                  /* SIGUSR1 has come: the child is stopped at a checkpoint */
     Patience patience;
     double   interrupted_after; /* seconds of work */
 } Watch;
-
-/* Of a regular file only: a pipe may never have a writer, a device never end. */
-static void copy_file(const char *from, const char *to)
-{
-    char        buffer[65536];
-    struct stat about;
-    ssize_t     length = 0;
-    int         source = open(from, O_RDONLY | O_CLOEXEC | O_NONBLOCK), target = -1;
-    if (source >= 0 && fstat(source, &about) == 0 && S_ISREG(about.st_mode))
-        target = open(to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-    while (target >= 0 && (length = read(source, buffer, sizeof buffer)) > 0)
-        if (write(target, buffer, (size_t)length) != length)
-            break;
-    if (source >= 0)
-        close(source);
-    if (target >= 0)
-        close(target);
-}
-
-/* Single quotes keep every byte in a shell, except themselves. */
-static void print_quoted(FILE *out, const char *word)
-{
-    fputc('\'', out);
-    for (; *word; word++)
-        if (*word == '\'')
-            fputs("'\\''", out);
-        else
-            fputc(*word, out);
-    fputc('\'', out);
-}
-
-static void copy_scenes(const Options *options, const char *folder)
-{
-    for (size_t i = 0; i < options->files.count; i++) {
-        const char *from = options->files.items[i], *slash = strrchr(from, '/');
-        char       *to;
-        if (asprintf(&to, "%s/%zu-%s", folder, i + 1, slash ? slash + 1 : from) < 0)
-            return;
-        copy_file(from, to);
-        free(to);
-    }
-}
-
-static void write_command(const Options *options, const char *folder, const char *story)
-{
-    char *path;
-    if (asprintf(&path, "%s/command.txt", folder) < 0)
-        return;
-    FILE *out = fopen(path, "w");
-    free(path);
-    if (!out)
-        return;
-    fprintf(out, "krs %s: %s\n\ncommand:", KRS_VERSION, story);
-    for (int i = 0; i < options->argc; i++) {
-        fputc(' ', out);
-        print_quoted(out, options->argv[i]);
-    }
-    fputs("\nscenes:", out);
-    for (size_t i = 0; i < options->files.count; i++)
-        fprintf(out, " %s", options->files.items[i]);
-    fputc('\n', out);
-    fclose(out);
-}
-
-/* Says what happened, and keeps what is needed to see it again: scenes and command line. */
-static int report_bug(const Options *options, const char *story)
-{
-    char       *folder;
-    const char *parent = getenv("TMPDIR");
-    if (asprintf(&folder, "%s/krs-crash-XXXXXX", parent && *parent ? parent : "/tmp") < 0)
-        folder = NULL;
-    if (folder && mkdtemp(folder)) {
-        copy_scenes(options, folder);
-        write_command(options, folder, story);
-        say("%s; this is a bug of krs or of the driver; what is needed to see it again is in %s",
-            story, folder);
-    } else {
-        say("%s; this is a bug of krs or of the driver", story);
-    }
-    free(folder);
-    return KRS_INTERNAL;
-}
 
 static const char *signal_name(int signal_number)
 {
@@ -363,6 +326,8 @@ static const StageInfo *observe(Watch *watch)
                               .progress = atomic_load(&shared->progress)};
     patience_look(watch->child, &watch->patience.last, &look);
     patience_add(&watch->patience, &look);
+    if (look.idle)
+        watch->patience.worked = 0; /* limits hold for what comes next */
     return stage;
 }
 
@@ -445,6 +410,37 @@ static void choose_signals(sigset_t *signals)
     signal(SIGCHLD, SIG_DFL); /* ignored, children could not be waited for */
 }
 
+/* Runs one child; returns its status. */
+static int run(Options *options, Work *work, const sigset_t *signals, const sigset_t *before,
+               Watch *watch)
+{
+    *watch = (Watch){.child = fork()};
+    if (watch->child < 0) {
+        say("cannot start a process: %s", strerror(errno));
+        return KRS_OUT_OF_MEMORY; /* or as many processes as the user may have */
+    }
+    if (watch->child == 0)
+        run_child(options, work, before);
+    const int ended  = wait_for_child(options, watch, signals);
+    watch->exited    = WIFEXITED(ended);
+    const int status = watch->exited ? WEXITSTATUS(ended)
+                                     : judge_death(options, watch, WTERMSIG(ended));
+    if (atomic_load(&shared->open))
+        unlink(shared->temporary);
+    atomic_store(&shared->open, 0);
+    return status;
+}
+
+/* Whether what took too long is one text of many: the next one may be better. */
+static bool goes_on_watching(const Options *options, const Watch *watch)
+{
+    const RunStage stage = (RunStage)atomic_load(&shared->stage);
+    shared->again        = options->command == COMMAND_WATCH && !watch->interrupted &&
+                    (watch->over || (watch->late && stage_info[stage].slow)) &&
+                    shared->read_length > 0;
+    return shared->again;
+}
+
 int supervise(Options *options, Work *work)
 {
     shared = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -456,23 +452,15 @@ int supervise(Options *options, Work *work)
     choose_signals(&signals);
     sigprocmask(SIG_BLOCK, &signals, &before);
 
-    Watch watch = {.child = fork()};
-    if (watch.child < 0) {
-        say("cannot start a process: %s", strerror(errno));
-        return KRS_OUT_OF_MEMORY; /* or as many processes as the user may have */
-    }
-    if (watch.child == 0)
-        run_child(options, work, &before);
-
-    int ended  = wait_for_child(options, &watch, &signals);
-    int status = WIFEXITED(ended) ? WEXITSTATUS(ended)
-                                  : judge_death(options, &watch, WTERMSIG(ended));
-    if (atomic_load(&shared->open))
-        unlink(shared->temporary);
+    Watch watch;
+    int   status;
+    do
+        status = run(options, work, &signals, &before, &watch);
+    while (goes_on_watching(options, &watch));
     const bool resumable = atomic_load(&shared->resumable) != 0;
     if (status == KRS_INTERRUPTED)
         say("%s", resumable ? "interrupted; the same command goes on from here" : "interrupted");
-    if (resumable && (status == KRS_INTERRUPTED || (WIFEXITED(ended) && status == KRS_INTERNAL)))
+    if (resumable && (status == KRS_INTERRUPTED || (watch.exited && status == KRS_INTERNAL)))
         status = KRS_RESUMABLE; /* the latter: a device that is lost */
     munmap(shared, sizeof *shared);
     return status;

@@ -31,7 +31,8 @@ typedef KrsStatus Work(Options *options);
      - what `work` returns;
      - 70 after a crash, or when a device makes no progress for several of options->deadline, with
        a line on standard error and a folder that keeps what is needed to see it again;
-     - 1 when compiling takes longer than options->deadline, or all longer than its limit;
+     - 1 when compiling takes longer than options->deadline, or all longer than its limit; `krs watch` says so, and
+       goes on in another child, where the limit holds for each picture;
      - 71 when the system killed the child, which it does for want of memory;
      - 130 after SIGINT, SIGTERM or SIGHUP, which are passed on; 75 where a checkpoint is there.
    Times are those of work (patience.h): a process that is stopped, or gets no processor, is not late, and one in
@@ -53,6 +54,15 @@ void stage_goes_on(void);
 void stage_resumable(bool resumable);
 /* How large what is compiled is, should it take too long: "`a.krs` has 12 bytes". */
 void stage_size(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* For STAGE_WAIT: a process that is late before it is ended, which is said, and another one takes its place.
+   stage_read notes a file that is read, for that; stage_forget forgets all of them, as a reading begins. */
+void stage_read(const char *path);
+void stage_forget(void);
+/* Whether this process is such another one; then `visit` is called for the files that the one before read, and
+   `changed` says whether one was written since its reading began. */
+typedef bool VisitRead(void *user, const char *path);
+bool         stage_again(VisitRead *visit, void *user, bool *changed);
 
 /* Nonzero once the user has asked to stop.  In STAGE_RENDER, STAGE_VALIDATE, STAGE_MESH,
    STAGE_WRITE and STAGE_WAIT it is for the work to notice; in the others the process just ends. */

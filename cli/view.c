@@ -18,6 +18,15 @@ static void lose_display(void)
     _exit(KRS_NO_DEVICE);
 }
 
+/* With a window that says itself what takes long, there is no deadline. */
+static void note_reading(void *user, bool begins)
+{
+    if (begins)
+        scene_enter_compile(user);
+    else
+        stage_enter(STAGE_WAIT);
+}
+
 static bool is_stopped(void *user)
 {
     (void)user;
@@ -79,11 +88,12 @@ KrsStatus command_view(Options *options)
                           .zones         = options->zones,
                           .zone_count    = options->zone_count,
                           .terminal      = options->terminal,
+                          .reads         = note_reading,
+                          .user          = (void *)path,
                           .stopped       = is_stopped,
                           .lost          = lose_display};
     if (options->terminal) /* its screen is for the picture, which has the mistakes below it */
         with.scene.diagnostic = NULL;
-    stage_enter(STAGE_WAIT);
     status = viewer_run(&with, message);
     if (message[0])
         say("%s", message);

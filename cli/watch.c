@@ -35,6 +35,12 @@ static bool has_changed(void *user)
     return watch->changed;
 }
 
+static void note_read(void *user, const char *path)
+{
+    (void)user;
+    stage_read(path);
+}
+
 /* ---- a saved text ---- */
 
 /* Takes the rendering over to the document's version. */
@@ -60,6 +66,8 @@ static KrsStatus adopt(Watch *watch)
 static KrsStatus compile_scene(Watch *watch)
 {
     watch->sink.errors = watch->sink.warnings = 0;
+    stage_forget();
+    stage_read(watch->path);
     scene_enter_compile(watch->path);
     KrsStatus status = document_read(watch->document);
     scene_print_counts(&watch->sink);
@@ -105,8 +113,8 @@ static bool can_be_mended(const Watch *watch, KrsStatus status, bool first)
     if (status == KRS_INTERRUPTED)
         return watch->changed;
     return status == KRS_OK || status == KRS_BAD_SCENE ||
-           (!first &&
-            (status == KRS_BAD_ARGUMENT || status == KRS_IO_ERROR || status == KRS_CANNOT_CREATE));
+           (!first && (status == KRS_BAD_ARGUMENT || status == KRS_IO_ERROR ||
+                       status == KRS_CANNOT_CREATE || status == KRS_OUT_OF_MEMORY));
 }
 
 static void wait_for_change(Watch *watch)
@@ -118,9 +126,17 @@ static void wait_for_change(Watch *watch)
     watch->changed = false;
 }
 
+static bool watch_again(void *user, const char *path)
+{
+    Watch *watch = user;
+    return document_watch(watch->document, path);
+}
+
 static KrsStatus watch_scene(Watch *watch)
 {
     KrsStatus status = KRS_OK;
+    if (stage_again(watch_again, watch, &watch->changed))
+        wait_for_change(watch);
     for (bool first = true; !*interrupted(); first = false) {
         status = make_picture(watch);
         if (*interrupted() || (!watch->refused && !can_be_mended(watch, status, first)))
@@ -157,7 +173,8 @@ KrsStatus command_watch(Options *options)
         return status;
     watch->render.outdated = has_changed;
     watch->render.user     = watch;
-    const KrsOptions with  = scene_options(&watch->sink, watch->path);
+    KrsOptions with        = scene_options(&watch->sink, watch->path);
+    with.opened            = note_read;
     watch->document        = document_new(watch->path, &with);
     if (!watch->document) {
         say("the system does not let files be watched: too many programs do");

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/eventfd.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "live/watcher.h"
@@ -173,9 +174,32 @@ static Version *version_before(const Document *document)
     return document->spare ? document->spare : document->version;
 }
 
+/* What is there instead of a file, such as a pipe, may never end: nobody could save the scene any more. */
+static bool is_no_file(Document *document)
+{
+    struct stat about;
+    if (stat(document->path, &about) != 0 || S_ISREG(about.st_mode) || S_ISDIR(about.st_mode))
+        return false;
+    watch_file(document, document->path);
+    hear(document,
+         &(KrsDiagnostic){.error   = true,
+                          .code    = "E0501",
+                          .message = "in the place of the scene is no file, but a pipe or a device",
+                          .source  = document->path,
+                          .line    = 1,
+                          .column  = 1,
+                          .text = "error[E0501]: in the place of the scene is no file, but a pipe "
+                                  "or a device\n",
+                          .json = "{\"severity\": 1, \"code\": \"E0501\", \"message\": \"in the "
+                                  "place of the scene is no file, but a pipe or a device\"}"});
+    return true;
+}
+
 static KrsStatus compile(Document *document, KrsScene **scene, KrsChanges *changes)
 {
-    KrsOptions with  = document->options;
+    KrsOptions with = document->options;
+    if (is_no_file(document))
+        return KRS_IO_ERROR;
     with.diagnostic  = hear;
     with.user        = document;
     with.opened      = watch_file;
@@ -303,6 +327,11 @@ unsigned document_readings(Document *document)
     unsigned readings = document->readings;
     pthread_mutex_unlock(&document->lock);
     return readings;
+}
+
+bool document_watch(Document *document, const char *path)
+{
+    return watcher_add(document->watcher, path);
 }
 
 bool document_changed(Document *document) { return watcher_changed(document->watcher); }

@@ -59,6 +59,8 @@ void    remarks_free(Remarks *remarks);
 /* How often the file was read; for any thread. */
 unsigned document_readings(Document *document);
 
+/* Watches a file as if it had been read.  False: the system refuses. */
+bool document_watch(Document *document, const char *path);
 /* Whether the file, or one that it uses, has changed since the last call; waits for nothing. */
 bool document_changed(Document *document);
 /* Waits for that.  False: a signal has come, the time is over, or document_wake was called. */

@@ -7,6 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/loader.h"
+#include "compiler/base/paths.h"
+#include "compiler/base/source.h"
 #include "live/text_file.h"
 
 static bool file_name(const char *scene_path, char path[4096])
@@ -54,11 +57,32 @@ static bool parse_value(const char *line, PresetValue *value)
     return value->count > 0;
 }
 
-Presets presets_read(const char *scene_path)
+/* By the rules for what a scene may read, if there is a folder that it may read from. */
+static bool read_file(const char *scene_path, const char *root, Bytes *bytes)
+{
+    char   path[4096];
+    Loader loader = {0};
+    if (!file_name(scene_path, path))
+        return false;
+    if (!root)
+        return text_file_read(path, bytes);
+    if (!loader_open(&loader, root, scene_path))
+        return false;
+    path_simplify(path);
+    const Loaded loaded = loader_read(&loader, path);
+    loader_close(&loader);
+    *bytes = (Bytes){loaded.owned, loaded.length};
+    return loaded.owned && loaded.length <= MOST_SOURCE_BYTES;
+}
+
+Presets presets_read(const char *scene_path, const char *root)
 {
     Presets presets = {0};
-    char    path[4096], line[400], name[64];
-    FILE   *file = file_name(scene_path, path) ? fopen(path, "r") : NULL;
+    Bytes   bytes   = {0};
+    char    line[400], name[64];
+    FILE   *file = read_file(scene_path, root, &bytes) && bytes.length > 0
+                       ? fmemopen(bytes.text, bytes.length, "r")
+                       : NULL;
     while (file && fgets(line, sizeof line, file)) {
         PresetValue value;
         if (sscanf(line, " [%63[^]\n]]", name) == 1)
@@ -68,6 +92,7 @@ Presets presets_read(const char *scene_path)
     }
     if (file)
         fclose(file);
+    free(bytes.text);
     return presets;
 }
 

@@ -28,8 +28,9 @@ typedef struct Presets {
     size_t  count;
 } Presets;
 
-/* Reads those of a scene's file; without such a file there are none. */
-Presets presets_read(const char *scene_path);
+/* Reads those of a scene's file; without such a file there are none.  `root` is the only folder that may be read;
+   NULL: any may. */
+Presets presets_read(const char *scene_path, const char *root);
 void    presets_free(Presets *presets);
 /* Makes a preset of the values that a scene has, in place of one of this name; false: without
    memory. */

@@ -12,9 +12,10 @@ typedef struct Bytes {
     size_t length;
 } Bytes;
 
-/* The caller frees the text whatever is returned. */
+/* Reads a regular file: a pipe may never end.  The caller frees the text, which is NULL before, whatever is
+   returned. */
 bool text_file_read(const char *path, Bytes *bytes);
-/* A new file, or one in place of an old one, appears whole or not at all; links stay links. */
+/* A new file, or one in place of an old one, appears whole or not at all (runtime/writer/atomic.h). */
 bool text_file_write(const char *path, const Bytes *bytes);
 
 #endif

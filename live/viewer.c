@@ -21,8 +21,16 @@
 #define FRAME_SECONDS (1.0 / 60)
 /* After an event, panels are drawn for so long: some answer in the next frame only. */
 #define SETTLE_SECONDS 0.1
+/* A text that takes longer to compile is said to be slow. */
+#define SLOW_SECONDS 3.0
 /* How long a signal may go unnoticed. */
 #define LONGEST_WAIT 1.0
+
+static void tell_reading(const Viewing *viewing, bool begins)
+{
+    if (viewing->options->reads)
+        viewing->options->reads(viewing->options->user, begins);
+}
 
 /* ---- the thread that reads the scene ---- */
 
@@ -37,7 +45,9 @@ static void *read_scene(void *user)
             viewing_wake(viewing);
             continue;
         }
+        atomic_store(&viewing->reading_since, viewing_now());
         const KrsStatus status = document_read(viewing->document);
+        atomic_store(&viewing->reading_since, 0);
         if (status == KRS_CANNOT_CREATE)
             atomic_store(&viewing->read_status, status);
         viewing_wake(viewing);
@@ -132,6 +142,16 @@ static void prepare_edits(Viewing *viewing)
     version_release(spare);
 }
 
+/* Says that a saved text takes long, so that nobody waits for it in vain. */
+static bool notice_slow_reading(Viewing *viewing)
+{
+    const double since = atomic_load(&viewing->reading_since);
+    if (since == 0 || viewing_now() - since < SLOW_SECONDS)
+        return false;
+    viewing_notice(viewing, "the saved text has been compiling for %.0f s", viewing_now() - since);
+    return true;
+}
+
 /* How long the window may wait for the next event. */
 static double choose_wait(const Viewing *viewing, bool running)
 {
@@ -166,7 +186,7 @@ static KrsStatus loop(Viewing *viewing)
         const double begun = viewing_now();
         if (viewing->options->stopped && viewing->options->stopped(viewing->options->user))
             return KRS_OK;
-        if (quiet) {
+        if (!notice_slow_reading(viewing) && quiet) {
             prepare_edits(viewing);
             continue;
         }
@@ -235,6 +255,7 @@ static KrsStatus terminal_loop(Viewing *viewing)
             prepare_edits(viewing);
         if (viewing->options->stopped && viewing->options->stopped(viewing->options->user))
             return KRS_OK;
+        notice_slow_reading(viewing);
         take_document(viewing);
         while (terminal_key(viewing->terminal, &key, &modifiers, &closed))
             if (modifiers != 0 || !act_fly_step(viewing, key))
@@ -294,7 +315,9 @@ static KrsStatus begin(Viewing *viewing, char message[256])
     viewing->document = document_new(options->path, &options->scene);
     if (!viewing->document)
         return fail(message, KRS_IO_ERROR, "the system does not let files be watched", "");
+    tell_reading(viewing, true);
     KrsStatus status = document_read(viewing->document);
+    tell_reading(viewing, false);
     if (status != KRS_OK && status != KRS_BAD_SCENE)
         return fail(message, status, "", "");
     take_document(viewing);
@@ -322,6 +345,8 @@ static KrsStatus run(Viewing *viewing, char message[256])
         fail(message, status, viewing->painting.message, "");
     atomic_store(&viewing->closing, true);
     document_wake(viewing->document);
+    if (atomic_load(&viewing->reading_since) != 0)
+        tell_reading(viewing, true);
     pthread_join(viewing->reader, NULL);
     return status;
 }
@@ -336,6 +361,7 @@ KrsStatus viewer_run(const ViewerOptions *options, char message[256])
     message[0]      = '\0';
     atomic_init(&viewing.closing, false);
     atomic_init(&viewing.prepares, false);
+    atomic_init(&viewing.reading_since, 0);
     KrsStatus status = begin(&viewing, message);
     if (status == KRS_OK)
         status = run(&viewing, message);

@@ -28,6 +28,9 @@ typedef struct ViewerOptions {
     size_t zone_count;
     bool   terminal; /* in place of a window */
     double budget;   /* milliseconds of a frame while something moves; 0: the default */
+    /* Told when nothing can be done before the scene has been read (true), and when it has been (false): at the
+       beginning, and at the end if it is being read.  NULL: nobody wants to know. */
+    void (*reads)(void *user, bool begins);
     /* Asked between frames: true ends the viewer. */
     bool (*stopped)(void *user);
     /* The connection to the display is lost: does not return. */

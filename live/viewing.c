@@ -232,7 +232,7 @@ static void take_settings(Viewing *viewing)
         set_value(viewing, options->settings[i].name, options->settings[i].values,
                   options->settings[i].count);
     viewing_set_cut(viewing);
-    viewing->presets = presets_read(options->path);
+    viewing->presets = presets_read(options->path, options->scene.root);
 }
 
 /* What the first version decides about. */

@@ -26,8 +26,10 @@ typedef struct Viewing {
     bool                 ended; /* by a key of the terminal */
     pthread_t            reader;
     atomic_bool          closing;
-    atomic_bool          prepares;    /* the reader is to prepare edits */
-    atomic_int           read_status; /* of the document, where no edit will mend it */
+    atomic_bool          prepares; /* the reader is to prepare edits */
+    _Atomic double
+               reading_since; /* viewing_now, when a saved text began to be compiled; 0: none is */
+    atomic_int read_status;   /* of the document, where no edit will mend it */
 
     KrsFrame    *frame; /* of the view's version: cameras, and whether values fit */
     View         view;

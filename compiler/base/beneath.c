@@ -1,5 +1,5 @@
 /*
- * beneath.c: opens files below a folder, and none outside of it.
+ * beneath.c: opens files below a folder, and none outside of it; folders through no links.
  */
 #include "compiler/base/beneath.h"
 
@@ -92,4 +92,56 @@ int open_beneath(int root, const char *path)
                        : open_beneath_by_steps(root, path);
     }
     return open_beneath_by_steps(root, path); /* EAGAIN: other processes keep renaming folders */
+}
+
+/* The rest of an absolute path that leads below the current folder; NULL: it does not. */
+static const char *below_current_folder(const char *path)
+{
+    char         here[PATH_MAX];
+    const size_t length = getcwd(here, sizeof here) ? strlen(here) : 0;
+    if (length < 2 || strncmp(path, here, length) != 0 || (path[length] != '/' && path[length]))
+        return NULL;
+    return path + length + strspn(path + length, "/");
+}
+
+int open_folder_by_steps(const char *path)
+{
+    int folder = open(path[0] == '/' ? "/" : ".", O_PATH | O_CLOEXEC | O_DIRECTORY);
+    for (path += strspn(path, "/"); *path && folder >= 0; path += strspn(path, "/")) {
+        char         name[NAME_MAX + 1];
+        const size_t length = strcspn(path, "/");
+        const int    before = folder;
+        folder              = -1;
+        errno               = ENAMETOOLONG;
+        if (length <= NAME_MAX) {
+            memcpy(name, path, length);
+            name[length] = '\0';
+            folder       = open_step(before, name, false);
+        }
+        const int reason = errno;
+        close(before);
+        errno = reason == EXDEV ? ELOOP : reason;
+        path += length;
+    }
+    return folder;
+}
+
+int open_folder_without_links(const char *path)
+{
+    char            simple[PATH_MAX];
+    const char     *below = path[0] == '/' ? below_current_folder(path) : path, *from = path;
+    struct open_how how = {.flags   = O_PATH | O_CLOEXEC | O_DIRECTORY,
+                           .resolve = RESOLVE_NO_SYMLINKS | RESOLVE_NO_MAGICLINKS};
+    if (below && simplify(below, simple)) {
+        how.resolve |= RESOLVE_BENEATH;
+        from = simple[0] ? simple : ".";
+    }
+    for (int attempt = 0; attempt < 10; attempt++) {
+        const int fd = (int)syscall(SYS_openat2, AT_FDCWD, from, &how, sizeof how);
+        if (fd >= 0 || (errno != EAGAIN && errno != ENOSYS && errno != EPERM))
+            return fd;
+        if (errno != EAGAIN)
+            break;
+    }
+    return open_folder_by_steps(from);
 }

@@ -11,4 +11,10 @@ int open_beneath(int root, const char *path);
    followed: they fail with EXDEV too. */
 int open_beneath_by_steps(int root, const char *path);
 
+/* Opens a folder, as a place of which files are made (O_PATH), through no symbolic link: what is below the current
+   folder is opened below it.  -1 and errno: ELOOP or ENOTDIR where a link is on the path. */
+int open_folder_without_links(const char *path);
+/* The same for systems without openat2. */
+int open_folder_by_steps(const char *path);
+
 #endif

@@ -68,6 +68,8 @@ static bool find_system_font(Elaboration *e, const Call *call, const char *name,
     FoundFont  found;
     FileBytes  bytes  = {0};
     FontSearch search = font_find(name, &found);
+    if (search == FONT_NO_MEMORY)
+        longjmp(*e->arena->memory->exhausted, 1); /* as any other want of memory */
     if (search == FONT_FOUND && !read_system_file(e, found.path, &bytes))
         search = FONT_NONE;
     free(found.path);

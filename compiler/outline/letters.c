@@ -35,16 +35,21 @@ static bool is_generic(const char *name)
 
 static FontSearch match_font(FcConfig *config, const char *name, bool any, FoundFont *found)
 {
-    FcResult   result;
-    FcPattern *asked = FcNameParse((const FcChar8 *)name);
+    FcResult   result = FcResultMatch;
+    FcPattern *asked  = FcNameParse((const FcChar8 *)name);
     if (!asked)
         return FONT_UNKNOWN;
     FcPattern *filled = FcPatternDuplicate(asked);
-    FcPatternAddBool(filled, FC_SCALABLE, FcTrue);
-    FcConfigSubstitute(config, filled, FcMatchPattern);
+    if (!filled || !FcPatternAddBool(filled, FC_SCALABLE, FcTrue) ||
+        !FcConfigSubstitute(config, filled, FcMatchPattern)) {
+        if (filled)
+            FcPatternDestroy(filled);
+        FcPatternDestroy(asked);
+        return FONT_NO_MEMORY;
+    }
     FcDefaultSubstitute(filled);
     FcPattern *match  = FcFontMatch(config, filled, &result);
-    FontSearch search = FONT_NONE;
+    FontSearch search = result == FcResultOutOfMemory ? FONT_NO_MEMORY : FONT_NONE;
     FcChar8   *path;
     if (match && FcPatternGetString(match, FC_FILE, 0, &path) == FcResultMatch) {
         search = any || has_family(asked, match) ? FONT_FOUND : FONT_UNKNOWN;
@@ -71,7 +76,7 @@ FontSearch font_find(const char *name, FoundFont *found)
     if (!name && search == FONT_UNKNOWN)
         search = match_font(config, "sans-serif", true, found);
     FcConfigDestroy(config);
-    return search == FONT_FOUND && !found->path ? FONT_NONE : search;
+    return search == FONT_FOUND && !found->path ? FONT_NO_MEMORY : search;
 }
 
 /* ---- glyphs ---- */

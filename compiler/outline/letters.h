@@ -21,7 +21,8 @@ typedef struct FoundFont {
 typedef enum FontSearch {
     FONT_FOUND,
     FONT_UNKNOWN, /* there are fonts, but none of this name */
-    FONT_NONE     /* there are no fonts at all */
+    FONT_NONE,    /* there are no fonts at all */
+    FONT_NO_MEMORY
 } FontSearch;
 
 /* The font that a name means, as fontconfig reads it: "DejaVu Serif", "DejaVu Sans:bold".  NULL: a

@@ -10,17 +10,19 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <libgen.h>
 #include <limits.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "compiler/base/beneath.h"
+#include "runtime/writer/real_path.h"
 #include "runtime/writer/temporary.h"
 
-enum { BUFFER_SIZE = 1 << 16, MOST_LINKS = 40 };
+enum { BUFFER_SIZE = 1 << 16 };
 
 struct OutputFile {
     OutputError                 *error;
@@ -29,7 +31,8 @@ struct OutputFile {
     char                        *target; /* with symbolic links followed */
     char                        *folder;
     char                        *temporary; /* path of the temporary file, in `folder` */
-    int                          fd;
+    char                        *known_as;  /* the same for other processes */
+    int fd, held; /* `held`: a folder that was reached without links, or -1 */
     /* The target is no regular file: it is not renamed over, and the temporary file is in
        TMPDIR. */
     bool direct;
@@ -44,6 +47,21 @@ struct OutputFile {
     char        buffer[BUFFER_SIZE];
 };
 
+/* Set once, when the process begins. */
+static atomic_bool links_are_forbidden;
+
+void output_forbid_links(void) { atomic_store(&links_are_forbidden, true); }
+
+static const char *explain(int reason)
+{
+    const bool forbidden = atomic_load(&links_are_forbidden);
+    if (forbidden && reason == ELOOP)
+        return "there is a symbolic link, and outputs of untrusted scenes go through none";
+    if (forbidden && reason == EPERM)
+        return "there is something else than a file";
+    return strerror(reason);
+}
+
 static bool output_fail(OutputError *error, KrsStatus status, const char *path, int reason)
 {
     if (error->status != KRS_OK)
@@ -56,7 +74,7 @@ static bool output_fail(OutputError *error, KrsStatus status, const char *path, 
     else
         snprintf(error->message, sizeof error->message, "%s `%s`: %s",
                  status == KRS_CANNOT_CREATE ? "cannot create" : "error while writing", path,
-                 strerror(reason));
+                 explain(reason));
     if (reason == ENOMEM)
         error->status = KRS_OUT_OF_MEMORY;
     return false;
@@ -76,68 +94,14 @@ static void output_free(OutputFile *file)
 {
     if (file->fd >= 0)
         close(file->fd);
+    if (file->held >= 0)
+        close(file->held);
     free(file->shown);
     free(file->target);
     free(file->folder);
     free(file->temporary);
+    free(file->known_as);
     free(file);
-}
-
-static char *folder_of(const char *path)
-{
-    char *copy   = strdup(path);
-    char *folder = copy ? strdup(dirname(copy)) : NULL;
-    free(copy);
-    return folder;
-}
-
-/* "real/folder/name" of a file that does not exist, in a folder that does. */
-static char *real_path_of_missing(const char *path)
-{
-    char *folder = folder_of(path), *real = folder ? realpath(folder, NULL) : NULL, *place = NULL;
-    const char *slash = strrchr(path, '/');
-    if (real &&
-        asprintf(&place, "%s/%s", strcmp(real, "/") == 0 ? "" : real, slash ? slash + 1 : path) < 0)
-        place = NULL;
-    free(folder);
-    free(real);
-    return place;
-}
-
-/* The path that a symbolic link refers to; NULL when `path` is no link. */
-static char *follow_link(const char *path)
-{
-    char    to[PATH_MAX], *folder, *place = NULL;
-    ssize_t length = readlink(path, to, sizeof to - 1);
-    if (length < 0)
-        return NULL;
-    to[length] = '\0';
-    if (to[0] == '/')
-        return strdup(to);
-    folder = folder_of(path);
-    if (folder && asprintf(&place, "%s/%s", folder, to) < 0)
-        place = NULL;
-    free(folder);
-    return place;
-}
-
-/* The real path of a file, which need not exist, with all links followed; NULL with errno set. */
-static char *real_path(const char *path)
-{
-    char *place = strdup(path);
-    for (int links = 0; place && links < MOST_LINKS; links++) {
-        char *real = realpath(place, NULL), *next = NULL;
-        bool  missing = !real && errno == ENOENT;
-        if (missing && !(next = follow_link(place)))
-            real = real_path_of_missing(place);
-        free(place);
-        if (!next)
-            return real;
-        place = next;
-    }
-    free(place);
-    errno = ELOOP;
-    return NULL;
 }
 
 bool output_is_same(const char *a, const char *b)
@@ -161,6 +125,49 @@ static bool check_standard_output(OutputFile *file)
     return fail_write(file);
 }
 
+/* Opens the folder of a path through no link. */
+static int hold_folder(const char *path)
+{
+    char       *folder = path_folder(path);
+    int         held   = folder ? open_folder_without_links(folder) : -1;
+    int         reason = folder ? errno : ENOMEM;
+    struct stat about;
+    if (held < 0 && reason == ENOTDIR && stat(folder, &about) == 0 && S_ISDIR(about.st_mode))
+        reason = ELOOP; /* a link that leads to a folder is none, where openat2 is missing */
+    free(folder);
+    errno = reason;
+    return held;
+}
+
+/* Finds a target that is reached through no link.  Its folder stays open, and is named by its descriptor: what
+   takes the place of its name later does not matter. */
+static bool find_without_links(OutputFile *file)
+{
+    struct stat *info  = &file->before;
+    const char  *slash = strrchr(file->shown, '/'), *name = slash ? slash + 1 : file->shown;
+    if (strcmp(name, "") == 0 || strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
+        errno = EISDIR;
+        return fail_create(file);
+    }
+    file->held = hold_folder(file->shown);
+    if (file->held < 0)
+        return fail_create(file);
+    if (asprintf(&file->folder, "/proc/self/fd/%d", file->held) < 0)
+        file->folder = NULL;
+    if (!file->folder || asprintf(&file->target, "%s/%s", file->folder, name) < 0) {
+        file->target = NULL;
+        errno        = ENOMEM;
+        return fail_create(file);
+    }
+    file->exists = lstat(file->target, info) == 0;
+    if (file->exists && !S_ISREG(info->st_mode)) {
+        errno = S_ISLNK(info->st_mode) ? ELOOP : S_ISDIR(info->st_mode) ? EISDIR : EPERM;
+        return fail_create(file);
+    }
+    return !file->exists || faccessat(AT_FDCWD, file->target, W_OK, AT_SYMLINK_NOFOLLOW) == 0 ||
+           fail_create(file);
+}
+
 /* Finds the target: the file that a symbolic link leads to is replaced, not the link. */
 static bool find_target(OutputFile *file)
 {
@@ -168,6 +175,8 @@ static bool find_target(OutputFile *file)
     size_t       length = strlen(file->shown);
     if (is_standard_output(file->shown) && !check_standard_output(file))
         return false;
+    if (atomic_load(&links_are_forbidden) && !is_standard_output(file->shown))
+        return find_without_links(file);
     file->exists = stat(file->shown, info) == 0;
     if (length == 0 || (file->exists && S_ISDIR(info->st_mode)) || file->shown[length - 1] == '/') {
         errno = length == 0 ? ENOENT : EISDIR;
@@ -183,7 +192,7 @@ static bool find_target(OutputFile *file)
     const char *spool = getenv("TMPDIR");
     if (!spool || !*spool)
         spool = "/tmp";
-    file->folder = file->direct ? strdup(spool) : folder_of(file->target);
+    file->folder = file->direct ? strdup(spool) : path_folder(file->target);
     return file->folder || fail_create(file);
 }
 
@@ -194,7 +203,16 @@ static bool create_temporary(OutputFile *file)
     if (!file->exists)
         file->mode = temporary_mode(file->folder);
     file->fd = temporary_create(file->folder, &file->temporary);
-    return file->fd >= 0 || fail_create(file);
+    if (file->fd < 0)
+        return fail_create(file);
+    char    folder[PATH_MAX];
+    ssize_t length = file->held >= 0 ? readlink(file->folder, folder, sizeof folder - 1) : -1;
+    if (length >= 0) {
+        folder[length] = '\0';
+        if (asprintf(&file->known_as, "%s%s", folder, strrchr(file->temporary, '/')) < 0)
+            file->known_as = NULL;
+    }
+    return true;
 }
 
 OutputFile *output_open(const char *path, const volatile sig_atomic_t *cancelled,
@@ -206,7 +224,8 @@ OutputFile *output_open(const char *path, const volatile sig_atomic_t *cancelled
         output_fail(error, KRS_OUT_OF_MEMORY, path, ENOMEM);
         return NULL;
     }
-    *file = (OutputFile){.error = error, .cancelled = cancelled, .fd = -1, .shown = strdup(path)};
+    *file = (OutputFile){
+        .error = error, .cancelled = cancelled, .fd = -1, .held = -1, .shown = strdup(path)};
     if (!file->shown) {
         output_fail(error, KRS_OUT_OF_MEMORY, path, ENOMEM);
         output_free(file);
@@ -219,7 +238,10 @@ OutputFile *output_open(const char *path, const volatile sig_atomic_t *cancelled
     return file;
 }
 
-const char *output_temporary(const OutputFile *file) { return file->temporary; }
+const char *output_temporary(const OutputFile *file)
+{
+    return file->known_as ? file->known_as : file->temporary;
+}
 
 /* Writes all bytes, in as many calls as that takes.  `offset` < 0: the target has no offsets. */
 static bool write_fully(OutputFile *file, int fd, const char *bytes, size_t length, int64_t offset)
@@ -393,5 +415,36 @@ KrsStatus output_check(const char *path, OutputError *error)
         temporary_clean(file->folder);
         output_abandon(file);
     }
+    return error->status;
+}
+
+/* mkdir, through no link where that is forbidden. */
+static bool make_folder(const char *path)
+{
+    if (!atomic_load(&links_are_forbidden))
+        return mkdir(path, 0777) == 0;
+    const char *slash  = strrchr(path, '/');
+    const int   held   = hold_folder(path);
+    const bool  made   = held >= 0 && mkdirat(held, slash ? slash + 1 : path, 0777) == 0;
+    const int   reason = errno;
+    if (held >= 0)
+        close(held);
+    errno = reason;
+    return made;
+}
+
+KrsStatus output_make_folder(const char *path, OutputError *error)
+{
+    struct stat info;
+    *error = (OutputError){0};
+    if (make_folder(path))
+        return KRS_OK;
+    int reason = errno;
+    if (reason == EEXIST) {
+        if (stat(path, &info) == 0 && S_ISDIR(info.st_mode))
+            return KRS_OK;
+        reason = ENOTDIR;
+    }
+    output_fail(error, KRS_CANNOT_CREATE, path, reason);
     return error->status;
 }

@@ -60,6 +60,14 @@ void      output_abandon(OutputFile *file);
 KrsStatus output_text(const char *path, const char *text, size_t length,
                       const volatile sig_atomic_t *cancelled, OutputError *error);
 
+/* From now on outputs of this process go through no symbolic link, neither in a folder's place nor in the file's, and
+   replace nothing but regular files; standard output is none of them.  For scenes of strangers, who may have put
+   links beside them.  It holds for the whole process, so that no writer can forget it. */
+void output_forbid_links(void);
+
+/* Makes a folder if it is missing, but not the folders above it, by the same rules. */
+KrsStatus output_make_folder(const char *path, OutputError *error);
+
 /* Checks whether a file can be created, before hours of work are spent on it.  Also removes the
    temporary files that killed processes have left in that folder. */
 KrsStatus output_check(const char *path, OutputError *error);

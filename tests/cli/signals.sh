@@ -2,7 +2,7 @@
 # signals.sh: what stops the command, or warns it, and that times are those of work.
 # shellcheck source-path=SCRIPTDIR disable=SC2086
 . "$(dirname "$0")/common.sh"
-plan 13
+plan 20
 
 echo 'show sphere(1);' >ball.krs
 echo 0 0 0 >points
@@ -74,18 +74,81 @@ wait $process
 status=$?
 said 1 "gave up compiling the scene" "it is, once it goes on without progress"
 
-KRS_TEST_CRASH=compile:hang env --default-signal=TSTP "$krs" check --deadline 2 ball.krs >out 2>err &
+# Nobody could continue a group of processes that has no parent in its session: the system stops none of them.
+env --default-signal=TSTP sleep 5 &
 process=$!
-wait_for_child $process
-child=$(child_of $process)
+sleep 0.2
 kill -s TSTP $process
+sleep 0.2
+stops=$(state_of $process)
+kill -s KILL $process
+wait $process 2>/dev/null
+if [ "$stops" = T ]; then
+    KRS_TEST_CRASH=compile:hang env --default-signal=TSTP "$krs" check --deadline 2 ball.krs >out 2>err &
+    process=$!
+    wait_for_child $process
+    child=$(child_of $process)
+    kill -s TSTP $process
+    sleep 3
+    [ "$(state_of $process)" = T ] && [ "$(state_of "$child")" = T ]
+    result $? "SIGTSTP stops both processes"
+    kill -s CONT $process
+    sleep 0.3
+    running=$(state_of "$child")
+    wait $process
+    status=$?
+    [ "$running" = S ] && [ "$status" -eq 1 ] && grep -q "gave up" err
+    result $? "and SIGCONT continues both"
+else
+    skip "SIGTSTP stops both processes" "this group of processes cannot be stopped"
+    skip "and SIGCONT continues both" "this group of processes cannot be stopped"
+fi
+
+# ---- watching goes on ----
+
+said_times() { grep -c "$1" err; }
+wait_for() { # words, how often
+    tries=0
+    until [ "$(said_times "$1")" -ge "$2" ] || [ $tries -ge 600 ] || ! kill -s 0 $process 2>/dev/null; do
+        tries=$((tries + 1))
+        sleep 0.1
+    done
+    [ "$(said_times "$1")" -ge "$2" ]
+}
+finish() {
+    kill -s TERM $process
+    wait $process
+    status=$?
+}
+cp ball.krs watched.krs
+"$krs" watch watched.krs -o watched.png --size 8x8 --limit time=20 >out 2>err </dev/null &
+process=$!
+wait_for wrote 1
+sleep 22
+echo 'show sphere(0.9);' >watched.krs
+wait_for wrote 2
+result $? "a limit of time does not count waiting"
+rm watched.krs
+mkfifo watched.krs
+wait_for "no file, but a pipe or a device" 1
+result $? "a pipe in the place of the scene is said"
+rm watched.krs
+ln -s /dev/zero watched.krs
+wait_for "no file, but a pipe or a device" 2
+result $? "and a device"
+rm watched.krs
+echo 'show sphere(0.8);' >watched.krs
+wait_for wrote 3
+result $? "and a file there is rendered"
+finish
+ended 0 "until it is ended"
+KRS_TEST_CRASH=compile:hang "$krs" watch watched.krs -o watched.png --size 8x8 --deadline 1 >out 2>err </dev/null &
+process=$!
+wait_for "gave up compiling the scene after 1 seconds" 1
 sleep 3
-[ "$(state_of $process)" = T ] && [ "$(state_of "$child")" = T ]
-result $? "SIGTSTP stops both processes"
-kill -s CONT $process
-sleep 0.3
-running=$(state_of "$child")
-wait $process
-status=$?
-[ "$running" = S ] && [ "$status" -eq 1 ] && grep -q "gave up" err
-result $? "and SIGCONT continues both"
+[ "$(said_times "gave up")" -eq 1 ] && kill -s 0 $process
+result $? "a scene that takes too long is said once, and watching goes on"
+echo 'show sphere(0.7);' >watched.krs
+wait_for "gave up compiling the scene after 1 seconds" 2
+result $? "the next text is tried"
+finish

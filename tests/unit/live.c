@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -389,14 +390,14 @@ static void presets_are_kept(void **state)
     assert_true(fd >= 0);
     close(fd);
     assert_int_equal(krs_compile_text(text, strlen(text), "a", NULL, &scene), KRS_OK);
-    Presets presets = presets_read(path);
+    Presets presets = presets_read(path, NULL);
     assert_int_equal(presets.count, 0);
     assert_true(presets_set(&presets, "at night", scene, values));
     assert_true(presets_set(&presets, "b", scene, (const double[4][4]){{0}}));
     assert_true(presets_set(&presets, "b", scene, (const double[4][4]){{2}}));
     assert_true(presets_write(&presets, path));
     presets_free(&presets);
-    presets = presets_read(path);
+    presets = presets_read(path, NULL);
     assert_int_equal(presets.count, 2);
     assert_string_equal(presets.items[0].name, "at night");
     assert_int_equal(presets.items[0].count, 4);
@@ -413,7 +414,7 @@ static void presets_are_kept(void **state)
     presets_remove(&presets, 0);
     assert_true(presets_write(&presets, path));
     presets_free(&presets);
-    presets = presets_read(path);
+    presets = presets_read(path, NULL);
     assert_int_equal(presets.count, 1);
     assert_string_equal(presets.items[0].name, "b");
     assert_false(presets_write(&presets, "/nowhere/a"));
@@ -422,6 +423,35 @@ static void presets_are_kept(void **state)
     snprintf(file, sizeof file, "%s.presets", path);
     remove(file);
     remove(path);
+}
+
+/* Of what is no file, or outside of the folder that may be read, nothing is read, and nothing is waited for. */
+static void presets_are_read_from_files(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/krs-live-XXXXXX", scene[64], file[80], outside[80];
+    assert_non_null(mkdtemp(folder));
+    snprintf(scene, sizeof scene, "%s/a.krs", folder);
+    snprintf(file, sizeof file, "%s.presets", scene);
+    snprintf(outside, sizeof outside, "%s.presets", folder);
+    FILE *out = fopen(outside, "w");
+    fputs("[one]\nr=1\n", out);
+    fclose(out);
+    const char *const links[] = {NULL, "/dev/zero", "/", "nowhere", outside};
+    for (size_t i = 0; i < sizeof links / sizeof *links; i++)
+        for (int confined = 0; confined <= 1; confined++) {
+            assert_int_equal(links[i] ? symlink(links[i], file) : mkfifo(file, 0600), 0);
+            Presets presets = presets_read(scene, confined ? folder : NULL);
+            assert_int_equal(presets.count, links[i] == outside && !confined);
+            presets_free(&presets);
+            remove(file);
+        }
+    assert_int_equal(rename(outside, file), 0);
+    Presets presets = presets_read(scene, folder);
+    assert_int_equal(presets.count, 1);
+    presets_free(&presets);
+    remove(file);
+    rmdir(folder);
 }
 
 static void gestures_are_undone(void **state)
@@ -464,6 +494,7 @@ int main(void)
         cmocka_unit_test(balls_follow_the_mouse),
         cmocka_unit_test(textures_are_followed),
         cmocka_unit_test(presets_are_kept),
+        cmocka_unit_test(presets_are_read_from_files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

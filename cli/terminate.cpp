@@ -1,0 +1,34 @@
+// terminate.cpp: exceptions that nobody can catch.
+//
+// Libraries in C++ may need memory where they give up what they have: an exception there ends the process.
+#include "cli/terminate.h"
+
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <unistd.h>
+
+#include "compiler/krs.h"
+
+namespace
+{
+
+[[noreturn]] void end_process()
+{
+    static const char words[] = "krs: out of memory\n";
+    try {
+        std::exception_ptr thrown = std::current_exception();
+        if (thrown)
+            std::rethrow_exception(thrown);
+    } catch (const std::bad_alloc &) {
+        const ssize_t written = write(STDERR_FILENO, words, sizeof words - 1);
+        (void)written; // there is nobody else to tell
+        _exit(KRS_OUT_OF_MEMORY);
+    } catch (...) {
+    }
+    std::abort();
+}
+
+} // namespace
+
+void terminate_by_status(void) { std::set_terminate(end_process); }
