@@ -318,6 +318,22 @@ static void more_samples_err_less(void **state)
     assert_true(many < few / 3.5);
 }
 
+/* A scene that names a sky has the lights that it names: a white ball below a white sky is not seen. */
+static void a_named_sky_is_all_light(void **state)
+{
+    (void)state;
+    PathStage stage = path_stage_open("camera { eye: [0, 0, 4] }\n"
+                                      "sky { zenith: white, horizon: white, ground: white }\n"
+                                      "material m { color: white, specular: 0, roughness: 1 }\n"
+                                      "show sphere(1).paint(m);\n");
+    for (int k = 0; k < 2; k++) {
+        const KrsIntegrator by = k ? KRS_INTEGRATOR_PATH : KRS_INTEGRATOR_DIRECT;
+        assert_true(must_be_near(path_stage_estimate(&stage, options_of(by, 32, 4), everywhere, 2),
+                                 1, 0.005, "a ball"));
+    }
+    path_stage_close(&stage);
+}
+
 static int begin(void **state) { return enter_folder(state) || renderer_open(state); }
 
 static int end(void **state) { return renderer_close(state) || leave_folder(state); }
@@ -330,6 +346,7 @@ int main(void)
         cmocka_unit_test(a_bright_texel_lights_a_plane),
         cmocka_unit_test(mirrors_show_the_map),
         cmocka_unit_test(more_samples_err_less),
+        cmocka_unit_test(a_named_sky_is_all_light),
     };
     return cmocka_run_group_tests_name("sky", tests, begin, end);
 }
