@@ -65,7 +65,7 @@ typedef enum KrsShadows {
 } KrsShadows;
 extern const char *const krs_shadows_names[KRS_SHADOWS_COUNT];
 
-/* How far above surfaces rays of paths begin: KRS_STARTS_PIXELS, KRS_STARTS_DISTANCE. */
+/* How far above surfaces rays of paths begin: KRS_STARTS_PRECISION, KRS_STARTS_DISTANCE. */
 typedef enum KrsStarts {
 #define KRS_STARTS(id, name, about) KRS_STARTS_##id,
 #include "runtime/choices.def"

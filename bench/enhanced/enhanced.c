@@ -74,7 +74,7 @@ static void compare_steps(const Stage *stage)
                                     .planes   = KRS_PLANE_DEPTH,
                                     .trace    = methods[i],
                                     .schedule = KRS_SCHEDULE_PIXEL};
-        KrsRenderOptions paths   = of_path(methods[i], KRS_STARTS_PIXELS);
+        KrsRenderOptions paths   = of_path(methods[i], KRS_STARTS_PRECISION);
         double           first, all;
         KrsPicture      *seen = shoot(stage, &primary, &first), *lit = shoot(stage, &paths, &all);
         sheet_print(&sheet, "| %s | %s | %.1f | %.0f | %.1f | %.0f | %llu |\n", stage->name + 9,
@@ -143,7 +143,7 @@ static void compare_corners(KrsRenderer *renderer)
                         "| --- | --- | --- |\n");
     for (size_t i = 0; i < sizeof sides / sizeof *sides; i++)
         sheet_print(&sheet, "| %u | %+.2f %% | %+.2f %% |\n", sides[i],
-                    100 * (corner_light(&stage, sides[i], KRS_STARTS_PIXELS) / truth - 1),
+                    100 * (corner_light(&stage, sides[i], KRS_STARTS_PRECISION) / truth - 1),
                     100 * (corner_light(&stage, sides[i], KRS_STARTS_DISTANCE) / truth - 1));
     stage_close(&stage);
 }

@@ -31,15 +31,25 @@ float find_eta(float here, float beyond)
 #ifdef STARTS_BY_DISTANCE
 #include "starts_by_distance.glsl"
 #else
-// How many pixels above a surface rays start, where it is even and where it is not, as in
+// How many pixels above a surface rays of previews start, where it is even and where it is not, as in
 // secondary.comp.
 const float START_OF_EVEN = 0.125, START = 0.5;
 
-// How high above the surface a ray starts.
+// How high above the surface a ray starts.  Where hits are settled, that is by what rounding may be wrong
+// by: of coordinates, and of the distance, which shows in differences around the hit.  These are large at
+// edges as well, so they count up to MOST_BEND alone.
+const float MOST_BEND = 0.04;
+float find_settled_height(HitPoint hit, float evenness)
+{
+    float bend = sqrt(max(1.0 / max(evenness * evenness, 1e-6) - 1.0, 0.0));
+    return max(SETTLED_START * hit.rounding, 2.0 * find_reach(hit) * min(bend, MOST_BEND));
+}
+
 float find_height(HitPoint hit, float evenness, float distance)
 {
     float pixels = mix(START, START_OF_EVEN, smoothstep(0.9, 0.99, evenness));
-    return pixels * hit.width + 4.0 * hit.rounding;
+    return frame.settles != 0u ? find_settled_height(hit, evenness)
+                               : pixels * hit.width + 4.0 * hit.rounding;
 }
 #endif
 
@@ -75,7 +85,7 @@ vec3 find_left(Boundary boundary, float way)
 void prepare_boundary(inout HitPoint hit, float code, vec3 facing)
 {
     enter_medium(code);
-    krs_lift = 0.5 * hit.width + 4.0 * hit.rounding;
+    krs_lift = find_height(hit, 0.0, 0.0);
     if (hit.side < 0.0) {
         krs_medium = krs_medium_at(hit.position + krs_lift * facing);
         hit.side = krs_medium == 0u ? -1.0 : 1.0;

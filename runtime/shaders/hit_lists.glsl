@@ -109,7 +109,7 @@ HitPoint hit_point_of_slot(uint slot)
     find_ray(vec2(work.corner + pixel) + work.offset, origin, direction, base, slope);
     vec3  position = origin + ray.t * direction;
     float rounding = ROUNDING * (largest(position) + largest(origin));
-    float width = max(base + slope * ray.t, 1e-30); // it is a divisor
+    float width = max(width_at(ray.t, base + slope * ray.t), 1e-30); // it is a divisor
     return HitPoint(slot, position, direction, width, rounding, ray.side, ray.steps);
 }
 

@@ -70,33 +70,65 @@ void take_distance(float larger)
     march.state = march.t > end ? STATE_MISS : STATE_MARCHING;
 }
 #else
+// Settles a hit: takes steps of the secant method, each at most half as long as the last, until what is
+// left is small.  The step after that leaves about its square.  A length to the next root is negative
+// nowhere before it, and is followed while it shrinks.
+const float SMALL = 256.0; // roundings
+void settle(float at, float clearance, float rounded)
+{
+    float most = 0.5 * abs(march.step);
+#if defined(STEPS) || defined(ALONG)
+    float next = clearance > 0.0 && clearance < most ? clearance : 0.0;
+#else
+    float slope = (clearance - march.clearance) / march.step;
+    float next = slope < 0.0 ? clamp(-clearance / slope, -most, most) : sign(clearance) * most;
+#endif
+    bool settled = !(abs(next) > SMALL * rounded); // also where it is not a number
+    march.t = settled ? at + next : at;
+    march.clearance = clearance;
+    march.step = next;
+    march.state = settled ? STATE_HIT : STATE_REFINING;
+}
+
 void take_distance(float distance)
 {
     bool  is_ray = control.phase == TRACE_RAYS, refining = march.state == STATE_REFINING;
-    float at = march.t + march.step, pixel = pixel_base + pixel_slope * at;
+    float at = march.t + march.step, pixel = width_at(at, pixel_base + pixel_slope * at);
     if (march.side == 0.0) {
         march.side = distance < 0.0 ? -1.0 : 1.0;
         width = distance < 0.0 ? inside_width() : width;
     }
     float taken = width.x + width.y * at;
     float clearance = (march.side * distance - taken) * shrinking;
-    float rounded = ROUNDING * (rounding + at), tolerance = tolerance_in_pixels * pixel + rounded;
+    float rounded = ROUNDING * (rounding + at);
+    float tolerance = (leaves_surfaces() ? UNVERIFIED * at : tolerance_in_pixels * pixel) + rounded;
     float least = is_ray ? 0.0 : max(rounded, (BEAM_MARGIN - 1.0) * taken);
     float unverified = march.step - march.clearance; // a surface may hide in such an interval
-    float permitted = is_ray ? frame.error * pixel : 0.0;
+    float permitted = !is_ray ? 0.0 : leaves_surfaces() ? PERMITTED * at : frame.error * pixel;
     march.steps++;
+    if (is_ray && refining && settles()) {
+        settle(at, clearance, rounded);
+#ifdef PACKED
+        advance_to_next_part();
+#endif
+        return;
+    }
     float last_radius = march.clearance, radius = clearance;
 #ifdef STEPS // from inside of one solid nothing is known of balls around others
     last_radius = march_radius;
     radius = march.side < 0.0 ? clearance : sampled.y;
     float ahead = march.side < 0.0 ? clearance : sampled.x;
 #endif
-    bool found_surface = clearance <= least && (unverified <= permitted + tolerance || !is_ray) ||
+    bool leaves = leaves_surfaces() && march.clearance == 0.0 && clearance <= 0.0 &&
+                  at <= max(LEAVING * ROUNDING * rounding, LEAVING_IN_PIXELS * pixel_base);
+    bool found_surface = clearance <= least && (unverified <= permitted + tolerance || !is_ray) &&
+                             !leaves ||
                          refining;
     bool verified = !found_surface && clearance > least &&
                     march.step - last_radius <= radius + 1.01 * tolerance;
     bool accurate = unverified <= 2.0 * tolerance || refining || !is_ray ||
                     BALLS == AUTOMATIC && -clearance <= SHALLOW * march.clearance;
+    accurate = accurate && !(is_ray && settles());
     float crossing = find_crossing(clearance);
     float last_slope = march.step > 0.0 ? (radius - last_radius) / march.step : 0.0;
     float slope = (1.0 - LEARNING) * march.slope + LEARNING * last_slope;
@@ -120,6 +152,12 @@ void take_distance(float distance)
     march.state = found_surface                           ? (accurate ? STATE_HIT : STATE_REFINING)
                   : verified && at + clearance > end ? STATE_MISS
                                                      : STATE_MARCHING;
+    if (leaves) { // as if it began here
+        march.t = at;
+        march.step = max(at, rounded);
+        march.clearance = 0.0;
+        march.state = STATE_MARCHING;
+    }
 #ifdef PACKED
     advance_to_next_part();
 #endif

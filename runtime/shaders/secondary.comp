@@ -37,7 +37,14 @@ const float UNEVEN = 0.9, EVEN = 0.99;
 const float NEAR_START = 8.0;
 // The least step of a ray: the smaller of these parts of the permitted error and of a pixel.  It
 // grows by STEP_GROWTH with each step, so that a ray which creeps along a surface leaves it.
-const float LEAST_STEP = 0.0625, LEAST_STEP_IN_PIXELS = 0.015625, STEP_GROWTH = 1.008;
+const float LEAST_STEP = 0.0625, LEAST_STEP_IN_PIXELS = 0.015625;
+#ifdef PATH_RAYS // they start nearer to the surface
+const float STEP_GROWTH = 1.02;
+#else
+const float STEP_GROWTH = 1.008;
+#endif
+// For so long a ray of a path that begins behind its surface is not blocked by that.
+const float LEAVING_IN_PIXELS = 0.125;
 // The margin around a cone, in pixels: if the cone is empty, the light is visible from pixels as
 // near as that, too.
 const float CONE_MARGIN = 3.0;
@@ -163,7 +170,7 @@ void aim_over_hemisphere(vec3 normal, vec2 point)
 vec3 added; // by the light if it is visible,
 uint row;   // to this row of results
 
-// Where the path was scattered; its ray has gone on.
+// Where the path was scattered; its ray has gone on.  That of the light starts as high at least.
 HitPoint hit_of_path(uint slot)
 {
     uint index = index_of(pixel_of(slot));
@@ -171,8 +178,10 @@ HitPoint hit_of_path(uint slot)
     row = uint(abs(surface.w)) / CODES_OF_RAYS;
     surface.w = sign(surface.w) * (abs(surface.w) - float(row * CODES_OF_RAYS));
     enter_medium(surface.w);
-    return HitPoint(slot, surface.xyz, vec3(0.0), load_path(PATH_ORIGIN, index).w,
-                    ROUNDING * largest(surface.xyz), sign(surface.w), 0u);
+    vec4  next = load_path(PATH_ORIGIN, index);
+    float rounding = 2.0 * ROUNDING * largest(surface.xyz);
+    lift = max(SETTLED_START * rounding, length(next.xyz - surface.xyz));
+    return HitPoint(slot, surface.xyz, vec3(0.0), next.w, rounding, sign(surface.w), 0u);
 }
 
 // Aims at the light that the path has chosen.  A light behind the surface is seen from there.
@@ -182,7 +191,6 @@ void aim_as_chosen(vec3 normal)
     vec4 chosen = load_path(PATH_LIGHT, index);
     vec3 toward = load_path(PATH_TOWARD, index).xyz;
     float behind = dot(normal, toward) < 0.0 ? -1.0 : 1.0;
-    lift = lift_in_pixels * hit.width + 4.0 * hit.rounding;
     start = hit.position + behind * lift * normal;
     end = min(chosen.w, frame.farthest);
     added = chosen.rgb;
@@ -313,6 +321,12 @@ void take_distance(float distance)
     step_count++;
     float first = clamp(distance / lift, 0.0625, 1.0);
     start_ratio = step_count == 1u ? first : start_ratio;
+#ifdef PATH_RAYS // rounding may put it behind the surface where it starts, as in trace.comp
+    if (last_step == 0.0 && is_blocked(distance) && t <= LEAVING_IN_PIXELS * hit.width) {
+        t += max(t, lift);
+        return;
+    }
+#endif
     float per_gap = 1.0 / max(last_step, 1e-30);
     bool  inside = is_blocked(distance);
     bool  steps_back = has_overstepped(around, per_gap) && !(inside && !is_cone);

@@ -128,7 +128,8 @@ void leave(inout Walk walk, HitPoint hit, vec3 facing)
     vec3  gradient = find_gradient_below(walk.position, reach);
     float square = dot(gradient, gradient);
     walk.moved = square > 1e-6 && square < 1e6;
-    walk.position -= krs_subsurface(walk.position) * gradient / max(square, 1e-6);
+    for (uint i = 0u; i < 2u; i++)
+        walk.position -= krs_subsurface(walk.position) * gradient / max(square, 1e-6);
     walk.normal = gradient * inversesqrt(max(square, 1e-12));
 }
 

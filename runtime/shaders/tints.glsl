@@ -40,7 +40,7 @@ vec3 find_way_to(Light light, vec3 start, out float end)
 // Where such a way starts.
 vec3 find_start_of_way(HitPoint hit, vec3 facing)
 {
-    return hit.position + (0.5 * hit.width + 4.0 * hit.rounding) * facing;
+    return hit.position + find_height(hit, 0.0, 0.0) * facing;
 }
 
 // The tint of a way that is `end` long, if it casts a shadow; `width`: that of the pixel.

@@ -161,7 +161,7 @@ void exchange_item(uint number)
 
 float tolerance_at(float t)
 {
-    return tolerance_in_pixels * (pixel_base + pixel_slope * t) + ROUNDING * (rounding + t);
+    return tolerance_in_pixels * width_at(t, pixel_base + pixel_slope * t) + ROUNDING * (rounding + t);
 }
 
 // The ray, or the beam's axis, through a point of the picture.
@@ -180,6 +180,24 @@ vec2 find_width(float side)
     float spread = half_diagonal * frame.pixel_slope;
     float stretch = frame.pixel_slope / max(pixel_slope, 1e-30);
     return vec2(half_diagonal * pixel_base, spread / max(stretch - 0.5 * spread, 0.1));
+}
+
+// Whether hits are settled as near to the surface as rounding permits (march_step.glsl).
+bool settles() { return frame.settles != 0u; }
+
+// Whether a ray begins just above a surface and knows its normal.  If rounding puts it behind the surface,
+// that is no hit for a while: for LEAVING roundings, or a part of a pixel.  What may stay unverified, also
+// behind an expected surface (OVERSHOOT), are parts of its length.  So a ray that creeps along a surface
+// gets away from it.
+const float LEAVING = 192.0, LEAVING_IN_PIXELS = 0.125, UNVERIFIED = 1.0 / 512.0,
+            PERMITTED = 1.0 / 32.0;
+bool leaves_surfaces()
+{
+#ifdef FOLLOWS_PATHS
+    return are_of_paths() && settles();
+#else
+    return false;
+#endif
 }
 
 vec2 inside_width() { return -SEAM * ROUNDING * vec2(rounding, 1.0); }
@@ -246,6 +264,15 @@ void begin_march(uint index, float start, bool is_ray)
 #ifdef PACKED
 #include "packed.glsl"
 #endif
+
+// Begins just above a plane that the ray leaves by this cosine.  After the first step the clearance
+// rises by a little less than that.
+const float LESS = 0.1;
+void begin_above_surface(float cosine)
+{
+    march.step = (1.0 + cosine) * 2.0 * SETTLED_START * ROUNDING * rounding;
+    march.slope = cosine - LESS - LEARNING / ((1.0 - LEARNING) * (1.0 + cosine));
+}
 
 void begin_item(uint number, bool saved)
 {
@@ -325,6 +352,8 @@ void begin_item(uint number, bool saved)
 #ifdef FOLLOWS_PATHS // it begins at a surface, so its first distance is too small to tell the side
         march.side = are_of_paths() ? sign(code) : march.side;
         width = march.side < 0.0 ? inside_width() : width;
+        if (leaves_surfaces())
+            begin_above_surface(abs(dot(load_hit(FACING, load_tile_word(number)).xyz, direction)));
 #endif
 #ifdef PACKED
         begin_scene_parts(is_ray);

@@ -241,7 +241,7 @@ static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedu
             variant_of_normals(rendering, rendering_normals(rendering, KRS_NORMALS_DEFAULT), 0));
     if (paths) {
         request(requests, "scatter.comp",
-                variant_of_scatter(rendering, KRS_STARTS_PIXELS, KRS_INTEGRATOR_PATH));
+                variant_of_scatter(rendering, KRS_STARTS_PRECISION, KRS_INTEGRATOR_PATH));
         request(requests, "secondary.comp",
                 variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace),
                                 KRS_INTEGRATOR_PATH));

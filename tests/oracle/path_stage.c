@@ -55,12 +55,11 @@ void estimate_add(Estimate *estimate, double number)
 double mean_of_region(const KrsPicture *picture, Region region, int channel)
 {
     double   sum   = 0;
-    unsigned count = 0;
-    for (unsigned y = (unsigned)(region.top * picture->height);
-         y < (unsigned)(region.bottom * picture->height); y++)
-        for (unsigned x = (unsigned)(region.left * picture->width);
-             x < (unsigned)(region.right * picture->width); x++) {
-            const float *color = &picture->color[4 * (y * picture->width + x)];
+    unsigned count = 0, width = picture->window.width, height = picture->window.height;
+    for (unsigned y = (unsigned)(region.top * height); y < (unsigned)(region.bottom * height); y++)
+        for (unsigned x = (unsigned)(region.left * width); x < (unsigned)(region.right * width);
+             x++) {
+            const float *color = &picture->color[4 * (y * width + x)];
             if (color[3] == 1) {
                 sum += (double)color[channel];
                 count++;

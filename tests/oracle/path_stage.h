@@ -31,7 +31,7 @@ typedef struct Estimate {
 
 void estimate_add(Estimate *estimate, double number);
 
-/* Places of a picture, in parts of its sides. */
+/* Places of a picture, or of the window that was rendered of it, in parts of its sides. */
 typedef struct Region {
     double left, top, right, bottom;
 } Region;

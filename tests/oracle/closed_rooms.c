@@ -1,0 +1,160 @@
+/*
+ * closed_rooms.c: the light of closed rooms, for pictures and rooms of all sizes.
+ *
+ * Where all walls emit E and reflect the part a of light, each place sends E + a E + a^2 E + ... into
+ * all directions: so many terms as paths have surfaces.  What lets light through, mirrors it or
+ * scatters it below its surface, and absorbs nothing, is not seen in there.  So paths that leak out of
+ * the room are light that is missing.
+ *
+ * In a ball with a lamp of intensity I in its middle all places send the same, too: a I / (pi r^2) of
+ * the lamp, and with what walls send to each other that divided by 1 - a.  There the insides of walls
+ * are dark, and a path that meets the surface again that it leaves is light that is missing.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
+#include "compiler/compile.h"
+#include "tests/oracle/path_stage.h"
+#include "tests/support/renderer.h"
+
+/* Rooms about 3 wide are scaled and moved; the camera is near the middle. */
+#define ROOM                                                                                \
+    "param size = 1 in [1e-5, 1e5]; param place = [0, 0, 0]; param power = 0 in [0, 9];\n"  \
+    "param part = 1 in [0, 1]; param glow = 1 in [0, 9];\n"                                 \
+    "camera { eye: place + size * [0.3, 0.1, 0.2], target: place + size * [1, 0.3, 0.5],\n" \
+    "         fov: 60deg }\n"                                                               \
+    "sky { zenith: black, horizon: black, ground: black }\n"                                \
+    "light lamp { position: place, intensity: power * size * size }\n"                      \
+    "material wall { color: [part, part, part], specular: 0, emission: [glow, glow, glow] }\n"
+#define SHOW(shape, material) "show (" shape ").scale(size).move(place).paint(" material ");\n"
+#define BOX                   SHOW("box([5, 5, 5]) - box([3, 2.4, 3.6])", "wall")
+#define RADIUS                1.9
+#define BALL                  ROOM SHOW("box([5, 5, 5]) - sphere(1.9)", "wall")
+
+/* Rooms of walls alone, whose paths may have few surfaces. */
+static const char *const bare[] = {
+    ROOM BOX,
+    BALL,
+    ROOM SHOW("box([5, 5, 5]) - cylinder(1.5, 2.6)", "wall"),
+    ROOM SHOW("box([5, 5, 5]) - (box([3, 2.4, 3]) | sphere(1.4).move([1, 0.6, 0.4]))"
+              " | cylinder(0.2, 4).rotate([1, 0, 2], 30deg).move([-1, 0, -1])",
+              "wall"),
+    ROOM SHOW("box([6, 6, 6]) - union(sphere(1.5), box([4, 1, 1]), blend: 0.3)", "wall"),
+    /* Thin walls, each a component. */
+    ROOM SHOW("box([3, 0.02, 3]).move([0, -1.2, 0])", "wall")
+        SHOW("box([3, 0.02, 3]).move([0, 1.2, 0])", "wall")
+            SHOW("box([0.02, 2.42, 3]).move([1.5, 0, 0])", "wall")
+                SHOW("box([0.02, 2.42, 3]).move([-1.5, 0, 0])", "wall")
+                    SHOW("box([3.02, 2.42, 0.02]).move([0, 0, 1.5])", "wall")
+                        SHOW("box([3.02, 2.42, 0.02]).move([0, 0, -1.5])", "wall"),
+};
+
+/* A box with something white in it. */
+static const char *const furnished[] = {
+    ROOM "material glass { transmission: 1, roughness: 0.1, color: white }\n" BOX SHOW(
+        "sphere(0.5).move([1, 0.2, 0.6])", "glass"),
+    ROOM "material mirror { metallic: 1, roughness: 0, color: white }\n" BOX SHOW(
+        "sphere(0.5).move([1, 0.2, 0.6])", "mirror"),
+    ROOM
+    "material wax { specular: 0, color: white, subsurface_weight: 1, subsurface_color: white,\n"
+    "  subsurface_radius: size * [0.1, 0.1, 0.1] }\n" BOX SHOW("sphere(0.5).move([1, 0.2, 0.6])",
+                                                               "wax"),
+};
+#define COUNT(list) (sizeof(list) / sizeof *(list))
+
+/* The side of a picture, of which 64 pixels are rendered at most; what a room is scaled by, and where
+   it is along a line. */
+typedef struct View {
+    unsigned side;
+    double   size, place;
+} View;
+static const View views[] = {{8, 1, 0},      {2000, 1, 0}, {8, 1e-3, 0},   {8, 1, 7},
+                             {2000, 1e4, 0}, {8, 1e4, 0},  {64, 0.01, 0.1}};
+#define MOST 64u
+
+/* Light that may be lost or appear, beside noise. */
+#define MOST_LOST 0.005
+
+static KrsRenderOptions options_of(PathStage *stage, const View *view, uint32_t bounces)
+{
+    const unsigned side = view->side < MOST ? view->side : MOST, corner = (view->side - side) / 2;
+    path_stage_set(stage, "size", view->size);
+    path_stage_set_all(stage, "place", view->place, 2 * view->place, -3 * view->place);
+    return (KrsRenderOptions){.width      = view->side,
+                              .height     = view->side,
+                              .crop       = {corner, corner, side, side},
+                              .samples    = side < MOST ? 16 : 2,
+                              .bounces    = bounces,
+                              .planes     = KRS_PLANE_COLOR,
+                              .integrator = KRS_INTEGRATOR_PATH};
+}
+
+static bool is_right(PathStage *stage, const View *view, uint32_t bounces, double expected,
+                     const char *what, size_t number)
+{
+    char name[100];
+    snprintf(name, sizeof name, "%s %zu, %u pixels, size %g, at %g", what, number, view->side,
+             view->size, view->place);
+    Estimate found = path_stage_estimate(stage, options_of(stage, view, bounces), everywhere, 3);
+    return must_be_near(found, expected, MOST_LOST, name);
+}
+
+static void rooms_lose_no_light(void **state)
+{
+    (void)state;
+    enum { BOUNCES = 3 };
+    size_t wrong = 0;
+    for (size_t i = 0; i < COUNT(bare); i++) {
+        PathStage stage = path_stage_open(bare[i]);
+        for (size_t k = 0; k < COUNT(views); k++)
+            wrong += !is_right(&stage, &views[k], BOUNCES, 1 + BOUNCES, "bare room", i);
+        path_stage_close(&stage);
+    }
+    assert_int_equal(wrong, 0);
+}
+
+static void white_furniture_is_not_seen(void **state)
+{
+    (void)state;
+    size_t wrong = 0;
+    for (size_t i = 0; i < COUNT(furnished); i++) {
+        PathStage stage = path_stage_open(furnished[i]);
+        path_stage_set(&stage, "part", 0.5);
+        for (size_t k = 0; k < COUNT(views); k += 2)
+            wrong += !is_right(&stage, &views[k], 24, 2, "furnished room", i);
+        path_stage_close(&stage);
+    }
+    assert_int_equal(wrong, 0);
+}
+
+static void lamps_light_balls_evenly(void **state)
+{
+    (void)state;
+    const double part = 0.7, power = 4;
+    size_t       wrong = 0;
+    PathStage    stage = path_stage_open(BALL);
+    path_stage_set(&stage, "part", part);
+    path_stage_set(&stage, "glow", 0);
+    path_stage_set(&stage, "power", power);
+    for (size_t k = 0; k < COUNT(views); k += 2)
+        wrong += !is_right(&stage, &views[k], 30,
+                           part * power / (M_PI * RADIUS * RADIUS) / (1 - part), "ball", k);
+    path_stage_close(&stage);
+    assert_int_equal(wrong, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rooms_lose_no_light),
+        cmocka_unit_test(white_furniture_is_not_seen),
+        cmocka_unit_test(lamps_light_balls_evenly),
+    };
+    return cmocka_run_group_tests_name("closed_rooms", tests, renderer_open, renderer_close);
+}
