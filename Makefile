@@ -44,10 +44,10 @@ LANES    := $(addprefix compiler/graph/lanes_, plain.c $(if $(filter x86_64, $(s
 GRAPH    := $(addprefix compiler/graph/, intern.c alike.c alike_copy.c graph.c crowd.c crowd_walk.c crowd_frame.c build.c substitute.c extract.c derive_rules.c \
                 derive_blends.c derive.c series.c zeros.c local_terms.c local_curves.c local.c rebase.c \
                 simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c frame_ranges.c turns.c parity.c texture.c texture_facts.c \
-                regions.c squares.c grid_build.c grid_find.c grid_clearance.c grid_halve.c grid_refine.c grid_sift.c grid_tails.c fractal.c op_values.c tape.c evaluate.c lane_rows.c lane_make.c lane_run.c lane_crowds.c lane_ranges.c \
+                regions.c squares.c grid_build.c grid_find.c grid_clearance.c grid_halve.c grid_refine.c grid_sift.c grid_tails.c fractal.c blend_shares.c op_values.c tape.c evaluate.c lane_rows.c lane_make.c lane_run.c lane_crowds.c lane_ranges.c \
                 lane_steepest.c lane_slopes.c lane_cuts.c lane_partials.c lane_outlines.c lane_hessians.c lane_prune.c joints.c joint_needs.c print.c) $(LANES)
 SHAPE    := $(addprefix compiler/shape/, turn_boxes.c frame_boxes.c sequence_box.c box.c box_rules.c reach.c cover.c overlap.c map.c moebius.c builder.c sky_map.c slope.c print.c)
-LOWER    := $(addprefix compiler/lower/, footprint.c bump.c context.c box_distance.c surface.c join.c crowd_table.c crowd_cells.c crowd_functions.c crowd_turns.c crowd_find.c crowd.c normal.c tangent.c map_chain.c \
+LOWER    := $(addprefix compiler/lower/, footprint.c bump.c context.c box_distance.c surface.c nearest.c join.c blend.c crowd_table.c crowd_cells.c crowd_functions.c crowd_turns.c crowd_find.c crowd.c normal.c tangent.c map_chain.c \
                 outline.c sphere_fold.c guards.c ray_images.c ray_step.c lower.c)
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
 EVAL     := $(addprefix compiler/eval/, scope.c forget.c expression.c turns.c turn_statements.c arithmetic.c fold.c reports.c units.c arguments.c components.c records.c data.c csv.c json.c builtins.c indices.c lists.c \

@@ -145,6 +145,7 @@ static bool same_function(const CrowdFunction *a, const CrowdFunction *b)
 {
     bool same = a->crowd == b->crowd && a->type == b->type && a->clear == b->clear &&
                 a->either == b->either && a->sums == b->sums && a->ends == b->ends &&
+                a->joins == b->joins && a->listed == b->listed &&
                 a->state_count == b->state_count && a->distance == b->distance &&
                 a->first_body == b->first_body;
     for (uint32_t i = 0; same && i < a->state_count; i++)

@@ -5,31 +5,33 @@
 
 #include <math.h>
 
-#include "compiler/lower/crowd.h"
+#include "compiler/lower/blend.h"
 #include "compiler/lower/join.h"
 #include "compiler/lower/surface.h"
 #include "compiler/shape/overlap.h"
 
 /* ---- how it is made ---- */
 
-/* How many operands of a blend can act at one point.  One that is farther than `most` widths acts only as the
-   least of all, alone; and no distance is less than that to the box (lower_operand). */
+/* How many operands of a blend can act at one point.  One that is farther than the reach acts only as the
+   least of all, alone; and no distance is less than that to the box (lower_operand).  Of pairs two act, and
+   the solid that others are taken from. */
 static uint32_t acting_together(ShapeBuilder *builder, const Shape *joint)
 {
-    const BlendInfo *info  = &blend_info[joint->blend.kind];
-    double           far   = info->most * joint->blend.widest;
-    uint32_t         count = joint->child_count;
-    bool             joins = joint->kind == SHAPE_UNION || joint->kind == SHAPE_DIFFERENCE;
+    const BlendKind kind    = joint->blend.kind;
+    const uint32_t  solid   = joint->kind == SHAPE_DIFFERENCE; /* acts in all of its inside */
+    double          far     = blend_reach(kind, joint->child_count) * joint->blend.widest;
+    uint32_t        count   = joint->child_count;
+    uint32_t        at_once = blend_many(kind).way == MANY_PAIRS ? solid + 2 : UINT32_MAX;
+    bool            joins   = joint->kind == SHAPE_UNION || solid;
     if (!joins || !isfinite(far) || count < 3)
-        return count;
-    uint32_t  solid = joint->kind == SHAPE_DIFFERENCE; /* acts in all of its inside */
+        return count < at_once ? count : at_once;
     ArenaMark mark  = arena_mark(builder->scratch);
     Box      *boxes = arena_new_array(builder->scratch, Box, count);
     for (uint32_t i = solid; i < count; i++)
         boxes[i - solid] = joint->children[i]->box;
     uint32_t most = most_overlap(boxes, count - solid, fmax(far, 0), builder->scratch);
     arena_rewind(builder->scratch, mark);
-    return solid + most;
+    return solid + most < at_once ? solid + most : at_once;
 }
 
 const Shape *make_joint(ShapeBuilder *builder, ShapeKind kind, const Shape *const *shapes,
@@ -47,7 +49,8 @@ const Shape *make_joint(ShapeBuilder *builder, ShapeKind kind, const Shape *cons
     if (blend.width != NODE_NONE && count > 1) {
         const BlendInfo *info = &blend_info[blend.kind];
         /* Each further operand adds a partial derivative; their squares sum to 1, so the sum of
-           n of them is at most sqrt(n): for two operands the factor of the table. */
+           n of them is at most sqrt(n): for two operands the factor of the table.  What pairs of tools are
+           to a solid is less: (1 + sqrt 2) / sqrt 2. */
         if (info->slope > 1)
             joint->slope *= pow(info->slope, log2(acting_together(builder, joint)));
     }
@@ -90,14 +93,14 @@ static Lowered lower_joined(Lowering *l, const Shape *joint, const Shape *child,
                                            : lower_operand(l, child, context);
 }
 
-/* Joined in pairs, so that the graph stays shallow and a blend of many keeps its slope. */
+/* Sharply joined in pairs, so that the graph stays shallow. */
 static Lowered union_in_pairs(Lowering *l, const Shape *shape, const Shape *const *children,
                               uint32_t count, LowerContext context)
 {
     if (count == 0)
         return lowered_nothing;
     if (count == 1)
-        return lower_joined(l, shape, children[0], context);
+        return lower_shape(l, children[0], context);
     uint32_t half  = count / 2;
     Lowered  left  = union_in_pairs(l, shape, children, half, context);
     Lowered  right = union_in_pairs(l, shape, children + half, count - half, context);
@@ -108,9 +111,12 @@ static Lowered union_in_pairs(Lowering *l, const Shape *shape, const Shape *cons
 static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *children,
                         uint32_t count, double reach, LowerContext context)
 {
-    CrowdJoin join   = {shape, children, count, false, reach};
-    Lowered   crowds = lower_crowds(l, &join, context);
-    Lowered   others = union_in_pairs(l, shape, join.parts, join.count, context);
+    CrowdJoin join = {shape, children, count, false, reach};
+    bool      nowhere;
+    if (shape->blend.width != NODE_NONE)
+        return lower_blend(l, join, context, &nowhere);
+    Lowered crowds = lower_crowds(l, &join, context);
+    Lowered others = union_in_pairs(l, shape, join.parts, join.count, context);
     return join_two(l, shape->blend, crowds, others);
 }
 
@@ -131,9 +137,14 @@ Lowered lower_intersection(Lowering *l, const Shape *shape, LowerContext context
     context = joint_context(shape, context);
     /* The complement of the union of the complements. */
     CrowdJoin join = {shape, shape->children, shape->child_count, true, context.reach};
-    Lowered   all  = complement(l, lower_crowds(l, &join, context));
+    if (shape->blend.width != NODE_NONE) {
+        bool    nowhere;
+        Lowered blended = lower_blend(l, join, context, &nowhere);
+        return nowhere ? lowered_nothing : complement(l, blended);
+    }
+    Lowered all = complement(l, lower_crowds(l, &join, context));
     for (uint32_t i = 0; i < join.count; i++) {
-        Lowered next = lower_joined(l, shape, join.parts[i], context);
+        Lowered next = lower_shape(l, join.parts[i], context);
         if (next.distance == NODE_NONE)
             return lowered_nothing;
         all = all.distance == NODE_NONE ? next : intersection_of_two(l, shape, all, next);

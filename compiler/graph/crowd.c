@@ -25,6 +25,8 @@ uint32_t graph_add_crowd_function(Graph *graph, CrowdFunction function, const No
         assert(graph->items[bodies[i]].type == function.states[i].type);
         array_push(crowds->arena, &crowds->bodies, bodies[i]);
     }
+    if (function.joins)
+        array_push(crowds->arena, &crowds->bodies, bodies[function.state_count]);
     array_push(crowds->arena, &crowds->functions, function);
     return (uint32_t)crowds->functions.count - 1;
 }
@@ -149,6 +151,7 @@ Node graph_crowd_leaf(Graph *graph, Op op, uint32_t crowd)
     static const GraphType types[OP_COUNT] = {[OP_CROWD_POINT]     = TYPE_VEC3,
                                               [OP_CROWD_NORMAL]    = TYPE_VEC3,
                                               [OP_CROWD_FOOTPRINT] = TYPE_FLOAT,
+                                              [OP_CROWD_THRESHOLD] = TYPE_FLOAT,
                                               [OP_MEMBER]          = TYPE_UINT};
     assert(types[op] != 0);
     return graph_indexed_leaf(graph, op, types[op], crowd);
@@ -174,8 +177,9 @@ Node graph_crowd(Graph *graph, Op op, uint32_t function, Node point)
 }
 
 Node graph_crowd_surface(Graph *graph, Op op, uint32_t function, Node point, Node normal,
-                         Node footprint)
+                         Node footprint, Node threshold)
 {
     Node number = graph_uint(graph, function);
-    return graph_op4(graph, op, number, point, normal, footprint);
+    Node pixel  = graph_op2(graph, OP_vec2, footprint, threshold);
+    return graph_op4(graph, op, number, point, normal, pixel);
 }

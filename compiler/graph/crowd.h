@@ -6,13 +6,13 @@
  * then found anew for each frame.
  * A crowd function is a loop over the members that are near.  It keeps states, which begin as
  * constants.  For each member every state becomes what its body says; all change at once.  The result is
- * the last value of the first state, or what `sums` makes of it.
+ * the last value of the first state, or what `sums` or `joins` make of all.
  *
  * Kernels loop over the list of one cell, of which a distance is at most the clearance.  On the host the
  * loop is over all members that may count, as far as the state `distance` tells (evaluate.h).
  *
  * Bodies are nodes of the graph.  Their leaves are of the crowd (ops.def): OP_CROWD_POINT,
- * OP_CROWD_NORMAL, OP_CROWD_FOOTPRINT stand for the operands of the call, OP_MEMBER is the number of the
+ * OP_CROWD_NORMAL, OP_CROWD_FOOTPRINT, OP_CROWD_THRESHOLD stand for the operands of the call, OP_MEMBER is the number of the
  * member, and OP_STATE that of a state.  OP_row reads a number of the table.  No other leaf of point
  * time may be in a body.  So bodies have no node of point time in common with anything but functions of
  * the same table, and share the values[] of a tape: each run finds all that it needs anew.  A body may
@@ -29,6 +29,7 @@
 #include "compiler/graph/grid.h"
 
 enum { MOST_CROWD_STATES = 8, MOST_TABLE_COLUMNS = 64, NO_DISTANCE = MOST_CROWD_STATES };
+enum { NOT_LISTED = MOST_CROWD_STATES };
 
 /* A column whose numbers are known. */
 #define KNOWN_COLUMN UINT32_MAX
@@ -97,11 +98,17 @@ typedef struct CrowdFunction {
     bool      either; /* the member nearest to 0 decides, the first of several, and the result is at
                           most as far from 0 as the clearance, which has a sign: where no
                           member is in a cell, that of all points in it */
+    bool
+        joins; /* behind the bodies is an operation on all states, in their order: the result, or, of
+                   a VEC4 and with `listed`, what is at most the clearance.  Then the
+                   result is state `listed`, which is what it began as where that is not so,
+                   but for a first number of state 0: the clearance */
     bool sums; /* the result is the first state less the third times the logarithm of the second */
     bool
         ends; /* and kernels add up the fourth state along lists with tails, as far as that counts */
     CrowdState states[MOST_CROWD_STATES];
     uint32_t   state_count;
+    uint32_t   listed;     /* of `joins`; NOT_LISTED: the operation is the result */
     uint32_t   distance;   /* the state that is a distance; NO_DISTANCE: there is none */
     uint32_t   first_body; /* the body of state i is Crowds.bodies[first_body + i] */
 } CrowdFunction;
@@ -126,8 +133,8 @@ typedef struct Crowds {
 
 /* Those of a graph, which are made when there are none. */
 Crowds *graph_crowds(Graph *graph);
-/* Adds a function, whose member first_body is set here, with a body for each of its states.  Returns its
-   number. */
+/* Adds a function, whose member first_body is set here, with a body for each of its states, and what joins
+   them, if it does.  Returns its number. */
 uint32_t graph_add_crowd_function(Graph *graph, CrowdFunction function, const Node *bodies);
 /* For a pass that makes a graph: the roots, and behind them the bodies and frame numbers of the
    graph. */
@@ -148,11 +155,11 @@ Node graph_crowd_leaf(Graph *graph, Op op, uint32_t crowd); /* but OP_STATE */
 Node graph_state(Graph *graph, GraphType type, uint32_t function, uint32_t state);
 /* A number of the row `member`, a UINT node: FLOAT. */
 Node graph_row(Graph *graph, uint32_t crowd, uint32_t column, Node member);
-/* Calls.  OP_crowd_distance, FLOAT, and OP_crowd_member, UINT, have the point alone; OP_crowd_number,
-   FLOAT, and OP_crowd_vector, VEC3, also the normal and the footprint. */
+/* Calls.  OP_crowd_distance, FLOAT, OP_crowd_list, VEC4, and OP_crowd_member, UINT, have the point alone;
+   OP_crowd_number, FLOAT, and OP_crowd_vector, VEC3, also the normal, the footprint and the threshold. */
 Node graph_crowd(Graph *graph, Op op, uint32_t function, Node point);
 Node graph_crowd_surface(Graph *graph, Op op, uint32_t function, Node point, Node normal,
-                         Node footprint);
+                         Node footprint, Node threshold);
 
 /* The table and the column behind the first operand of OP_row. */
 static inline uint32_t row_crowd(uint32_t id) { return id / MOST_TABLE_COLUMNS; }
@@ -160,6 +167,11 @@ static inline uint32_t row_column(uint32_t id) { return id % MOST_TABLE_COLUMNS;
 /* The function and its state behind the index of OP_STATE. */
 static inline uint32_t function_of(uint32_t index) { return index / MOST_CROWD_STATES; }
 static inline uint32_t state_of(uint32_t index) { return index % MOST_CROWD_STATES; }
+/* How many bodies a function has. */
+static inline uint32_t body_count(const CrowdFunction *function)
+{
+    return function->state_count + function->joins;
+}
 /* Whether it calls a function. */
 static inline bool is_call(Op op) { return op >= OP_crowd_distance && op <= OP_crowd_vector; }
 /* Whether it is a leaf that bodies alone have. */

@@ -117,18 +117,51 @@ CrowdStep crowd_walk_next(CrowdWalk *walk, double distance, uint32_t *member)
                                                      : crowd_walk_widen(walk, distance);
 }
 
-/* Without a member the sum is 0. */
-static double end_of_states(const CrowdFunction *function, const double states[3])
+/* What the operation behind the bodies makes of the states. */
+static double joined(const CrowdFunction *function, const Graph *graph, const NodeValue *states)
 {
-    return function->sums ? states[0] - states[2] * log(fmax(states[1], 1)) : states[0];
+    const Node  body = graph->crowds->bodies.items[function->first_body + function->state_count];
+    const Expr *e    = &graph->items[body];
+    GraphType   types[MAX_OPERANDS];
+    for (uint32_t k = 0; k < e->operand_count; k++)
+        types[k] = function->states[k].type;
+    return op_evaluate((Op)e->op, (GraphType)e->type, 0, types, states).v[0];
 }
 
-double crowd_walk_result(const CrowdWalk *walk, const double states[3])
+/* Without a member the sum is 0. */
+static double end_of_states(const CrowdFunction *function, const Graph *graph,
+                            const NodeValue *states)
 {
-    const double state = end_of_states(walk->function, states);
-    if (walk->to_nearest || !walk->function->clear)
-        return state;
-    if (walk->function->either)
-        return fabs(state) < fabs(walk->clearance) ? state : walk->clearance;
-    return fmin(state, walk->clearance);
+    return function->joins  ? joined(function, graph, states)
+           : function->sums ? states[0].v[0] - states[2].v[0] * log(fmax(states[1].v[0], 1))
+                            : states[0].v[0];
+}
+
+static NodeValue listed_state(const CrowdWalk *walk, const Graph *graph, const NodeValue *states)
+{
+    const CrowdFunction *function = walk->function;
+    const CrowdState    *state    = &function->states[function->listed];
+    NodeValue            none     = {{0}};
+    if (walk->to_nearest || !function->clear ||
+        end_of_states(function, graph, states) < walk->clearance)
+        return states[function->listed];
+    for (uint32_t c = 0; c < components(state->type); c++)
+        none.v[c] = function->listed == 0 && c == 0 ? walk->clearance : state->first[c];
+    return none;
+}
+
+NodeValue crowd_walk_result(const CrowdWalk *walk, const Graph *graph, const NodeValue *states)
+{
+    const CrowdFunction *function = walk->function;
+    NodeValue            result   = states[0];
+    if (function->joins && function->listed != NOT_LISTED)
+        return listed_state(walk, graph, states);
+    result.v[0] = end_of_states(function, graph, states);
+    if (walk->to_nearest || !function->clear)
+        return result;
+    if (function->either)
+        result.v[0] = fabs(result.v[0]) < fabs(walk->clearance) ? result.v[0] : walk->clearance;
+    else
+        result.v[0] = fmin(result.v[0], walk->clearance);
+    return result;
 }

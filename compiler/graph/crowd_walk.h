@@ -8,6 +8,7 @@
 #define KRS_CROWD_WALK_H
 
 #include "compiler/graph/crowd.h"
+#include "compiler/graph/op_values.h"
 
 typedef struct CrowdWalk {
     const CrowdFunction *function;
@@ -41,8 +42,8 @@ CrowdStep crowd_walk_next(CrowdWalk *walk, double distance, uint32_t *member);
    function begins again.  An earlier distance serves for the first: it finds some members more. */
 bool      crowd_walk_member(CrowdWalk *walk, double distance, uint32_t *member);
 CrowdStep crowd_walk_widen(CrowdWalk *walk, double distance);
-/* What the function is when its first three states have ended at these numbers: by cells a distance is at
-   most the clearance. */
-double crowd_walk_result(const CrowdWalk *walk, const double states[3]);
+/* What the function is when its states have ended at these numbers: by cells a distance is at most the
+   clearance.  The graph is that of its bodies. */
+NodeValue crowd_walk_result(const CrowdWalk *walk, const Graph *graph, const NodeValue *states);
 
 #endif

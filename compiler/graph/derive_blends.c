@@ -167,6 +167,63 @@ Node derive_smin(Derivation *d, const Expr *e, Node node, const Node *inner)
     return between_jumps(d, add(g, sum[0], sum[1]));
 }
 
+/* ---- of several numbers that share the result ---- */
+
+/* The columns `share`, of how far components are below the threshold, in widths from 0 to 1. */
+typedef struct Sharing {
+    Graph *graph;
+    Node   below;
+} Sharing;
+
+static Node share_linear(const Sharing *x) { return x->below; }
+
+/* 2 v^2, or 1 - 2 (1 - v)^2 above a half: 1/2 + 2 u - 2 u |u| with u = v - 1/2 */
+static Node share_curved(const Sharing *x)
+{
+    Graph *g      = x->graph;
+    Node   middle = sub(g, x->below, graph_number(g, 0.5)), two = graph_number(g, 2);
+    Node   bend  = mul(g, middle, graph_op1(g, OP_abs, middle));
+    Node   share = mul(g, sub(g, middle, bend), two);
+    return add(g, share, graph_number(g, 0.5));
+}
+
+#define BLEND_SHARES(name, sharers, share, ...) \
+    static Node share_of_##name(const Sharing *x) { return share; }
+#include "compiler/graph/blends.def"
+
+static const struct {
+    Op threshold;
+    Node (*share)(const Sharing *x);
+} sharing_of[OP_COUNT] = {
+#define BLEND_SHARES(name, ...)                                  \
+    [OP_smin4_##name] = {OP_threshold4_##name, share_of_##name}, \
+    [OP_smin8_##name] = {OP_threshold8_##name, share_of_##name},
+#include "compiler/graph/blends.def"
+};
+
+/* Without a width the least one, which is at the threshold, has all. */
+Node derive_shares(Derivation *d, const Expr *e, Node node, const Node *inner)
+{
+    (void)node;
+    Graph    *g       = d->graph;
+    const int vectors = e->operand_count - 1;
+    if (!is_zero(g, inner[vectors]))
+        return NODE_NONE;
+    Node width     = not_zero(d, e->operands[vectors]);
+    Node threshold = graph_op(g, sharing_of[e->op].threshold, e->operands);
+    Node sum = zero_of(g, TYPE_FLOAT), zero = graph_number(g, 0), one = graph_number(g, 1);
+    Node blends = graph_op2(g, OP_less, zero, e->operands[vectors]);
+    Node sharp  = graph_op3(g, OP_select, blends, zero, one);
+    for (int k = 0; k < vectors; k++) {
+        if (is_zero(g, inner[k]))
+            continue;
+        Node    below = add(g, over(g, sub(g, threshold, e->operands[k]), width), sharp);
+        Sharing x     = {g, graph_op3(g, OP_clamp, below, zero, one)};
+        sum           = plus(g, sum, graph_op2(g, OP_dot, sharing_of[e->op].share(&x), inner[k]));
+    }
+    return between_jumps(d, sum);
+}
+
 /* clamp(1/2 + (b - a) / 2k, 0, 1) */
 Node derive_blend_weight(Derivation *d, const Expr *e, Node node, const Node *inner)
 {

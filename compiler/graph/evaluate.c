@@ -22,6 +22,7 @@ typedef struct Inputs {
     double           footprint;
     bool             by_cells;
     /* In bodies of crowd functions, whose call has these operands: */
+    double           threshold;
     uint32_t         member;
     const NodeValue *states;
 } Inputs;
@@ -225,31 +226,31 @@ static NodeValue run_loop(Loop *loop)
             loop_over(loop, member);
         else
             begin_loop(loop);
-    const double ends[]  = {loop->states[0].v[0], loop->states[1].v[0], loop->states[2].v[0]};
-    loop->states[0].v[0] = crowd_walk_result(&walk, ends);
-    return loop->states[0];
+    return crowd_walk_result(&walk, loop->body->graph, loop->states);
 }
 
 static NodeValue run_call(const Tape *tape, const Expr *e, const Inputs *outer, NodeValue *values)
 {
     const Crowds *crowds = tape->graph->crowds;
     uint32_t      id     = whole(&values[e->operands[0]]);
-    double        point[3], normal[3] = {0, 0, 0}, footprint = 0;
+    double        point[3], normal[3] = {0, 0, 0}, pixel[2] = {0, 0};
     memcpy(point, values[e->operands[1]].v, sizeof point);
     if (e->operand_count > 2) {
         memcpy(normal, values[e->operands[2]].v, sizeof normal);
-        footprint = values[e->operands[3]].v[0];
+        memcpy(pixel, values[e->operands[3]].v, sizeof pixel);
     }
     const CrowdFunction *function = &crowds->functions.items[id];
 
-    Loop loop = {
-        .function = function,
-        .table    = &crowds->tables.items[function->crowd],
-        .body     = &tape->functions[id],
-        .bodies   = crowds->bodies.items + function->first_body,
-        .values   = values,
-        .in       = {
-                  .point = point, .normal = normal, .footprint = footprint, .by_cells = outer->by_cells}};
+    Loop loop = {.function = function,
+                 .table    = &crowds->tables.items[function->crowd],
+                 .body     = &tape->functions[id],
+                 .bodies   = crowds->bodies.items + function->first_body,
+                 .values   = values,
+                 .in       = {.point     = point,
+                              .normal    = normal,
+                              .footprint = pixel[0],
+                              .threshold = pixel[1],
+                              .by_cells  = outer->by_cells}};
     return run_loop(&loop);
 }
 

@@ -1,21 +1,20 @@
 /*
  * grid_halve.c: which members of a list change a blend in a part of its cell.
  *
- * Distances of the members are evaluated in the middle of each part.  Elsewhere in it they differ by no more
- * than their slope permits.  Members are joined in the order of the list, and what they make, the running
- * value, has the same slope.  So a member changes nothing in a part
- * - if it is nowhere less than `acts` above the running value before it; or
- * - if the running value before a later member is nowhere less than `acts` above that one, which then makes
- *   the result as if it were the first; or
- * - if it is nowhere less than the reach above the result, or above the clearance of the cell.
+ * Distances of the members are evaluated in the middle of each part.  Elsewhere in it they, and the result, differ
+ * by no more than their slope permits.  So a member changes nothing in a part if it is nowhere less than
+ * - `acts` above the least of all; or
+ * - the reach above the result, or above the clearance of the cell.
  * Of a blend that fades, those are left out that make the least of the sum.  Where results are large, no
  * member is needed: the least of them is the clearance.
  */
 #include "compiler/graph/grid_halve.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "compiler/base/far.h"
+#include "compiler/graph/blend_shares.h"
 #include "compiler/graph/grid_builder.h"
 #include "compiler/graph/op_values.h"
 
@@ -58,28 +57,46 @@ void halving_distances(const Halver *halver, const HalvingDesk *desk, size_t mem
              distances);
 }
 
-/* Running values after one more member, in the middle of each part. */
-static void join_member(const GridBlend *blend, double *running, const double *distances)
+/* The nearest members in the middle of a part, in ascending order. */
+typedef struct Nearest {
+    double   distances[MOST_SHARERS];
+    uint32_t count;
+} Nearest;
+
+static void add_distance(Nearest *nearest, double distance)
 {
-    const double k = blend->width, n = blend->steps;
-    (void)n;
-    switch (blend->op) {
-#define BLEND(name, signature, slope, bulge, most, reach, acts, fades, cost, facts, glsl, value, \
-              ...)                                                                               \
-    case OP_smin_##name:                                                                         \
-        for (int i = 0; i < GRID_PARTS; i++) {                                                   \
-            const double a = running[i], b = distances[i], t = fabs(a - b) / k;                  \
-            const double h = fmax(1 - t, 0);                                                     \
-            (void)t, (void)h;                                                                    \
-            running[i] = (value);                                                                \
-        }                                                                                        \
-        return;
-#include "compiler/graph/blends.def"
-    default: return;
-    }
+    uint32_t at = nearest->count < MOST_SHARERS ? nearest->count++ : MOST_SHARERS;
+    for (; at > 0 && nearest->distances[at - 1] > distance; at--)
+        if (at < MOST_SHARERS)
+            nearest->distances[at] = nearest->distances[at - 1];
+    if (at < MOST_SHARERS)
+        nearest->distances[at] = distance;
 }
 
-/* Results of a blend that fades, which is right in any order.  Powers that are no part of the sum in double precision are left
+/* What the members make, of which these are the nearest. */
+static double join_nearest(const GridBlend *blend, const Nearest *nearest)
+{
+    static const GraphType types[][MAX_OPERANDS] = {
+        {TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT}, {TYPE_VEC4, TYPE_VEC4, TYPE_FLOAT}};
+    NodeValue operands[MAX_OPERANDS] = {{{0}}};
+    double    all[MOST_SHARERS];
+    if (nearest->count == 0)
+        return NOWHERE;
+    for (uint32_t i = 0; i < MOST_SHARERS; i++)
+        all[i] = i < nearest->count ? nearest->distances[i] : NOWHERE;
+    if (blend->shares) {
+        memcpy(operands[0].v, all, sizeof operands[0].v);
+        memcpy(operands[1].v, all + 4, sizeof operands[1].v);
+    } else {
+        operands[0].v[0] = all[0];
+        operands[1].v[0] = all[1];
+    }
+    operands[2].v[0] = blend->width;
+    operands[3].v[0] = blend->steps;
+    return op_evaluate(blend->op, TYPE_FLOAT, 0, types[blend->shares], operands).v[0];
+}
+
+/* Results of a blend that makes a sum of powers.  Those that are no part of the sum in double precision are left
    out. */
 static void sum_powers(const GridBlend *blend, const HalvingDesk *desk, uint32_t count,
                        double *results)
@@ -96,45 +113,43 @@ static void sum_powers(const GridBlend *blend, const HalvingDesk *desk, uint32_t
             results[part] -= blend->width * log(sums[part]);
 }
 
-/* Joins all members.  Those that never act, and those before one that begins anew, are not needed. */
+/* Joins all members.  Those that never act are not needed. */
 static void join_all(const Halver *halver, const HalvingDesk *desk, uint8_t *needs,
-                     const Halving *h, double away, double *running)
+                     const Halving *h, double away, double *results)
 {
     const GridBlend *blend = halver->blend;
     LaneTape         tape  = *blend->tape;
     LaneWork         work  = lane_work_in(desk->rows, NULL);
     double           points[GRID_PARTS][3];
-    uint32_t         begins[GRID_PARTS] = {0};
+    Nearest          nearest[GRID_PARTS];
     for (int part = 0; part < GRID_PARTS; part++) {
-        running[part] = NOWHERE;
+        nearest[part].count = 0;
         for (int k = 0; k < 3; k++)
             points[part][k] = h->low[k] + ((part >> k & 1) + 0.5) * 0.5 * h->size;
     }
     LanePoints middles = {.points = (const double(*)[3])points, .count = GRID_PARTS};
     for (uint32_t i = 0; i < h->count; i++) {
-        double  *distances = desk->distances[i];
-        uint32_t needed    = 0;
-        size_t   member    = h->members[h->places[i]];
-        tape.scalars       = blend->scalars + member * tape.scalar_count;
+        double *distances = desk->distances[i];
+        size_t  member    = h->members[h->places[i]];
+        tape.scalars      = blend->scalars + member * tape.scalar_count;
         lane_run(&tape, &work, LANE_DOUBLE, middles, 0, 1, distances);
-        for (int part = 0; part < GRID_PARTS; part++) {
-            double above = distances[part] - running[part];
-            needed |= (uint32_t)(above < blend->acts + 2 * away) << part;
-            begins[part] = -above >= blend->acts + 2 * away ? i : begins[part];
-        }
-        needs[i] = (uint8_t)needed;
-        for (int part = 0; part < GRID_PARTS && blend->fades; part++)
-            running[part] = fmin(running[part], distances[part]);
-        if (!blend->fades)
-            join_member(blend, running, distances);
-    }
-    if (blend->fades) {
-        sum_powers(blend, desk, h->count, running);
-        return;
+        for (int part = 0; part < GRID_PARTS; part++)
+            add_distance(&nearest[part], distances[part]);
     }
     for (int part = 0; part < GRID_PARTS; part++)
-        for (uint32_t i = 0; i < begins[part]; i++)
-            needs[i] &= (uint8_t) ~(1u << part);
+        results[part] = nearest[part].count ? nearest[part].distances[0] : NOWHERE;
+    for (uint32_t i = 0; i < h->count; i++) {
+        uint32_t needed = 0;
+        for (int part = 0; part < GRID_PARTS; part++) {
+            double above = desk->distances[i][part] - results[part];
+            needed |= (uint32_t)(above < blend->acts + 2 * away) << part;
+        }
+        needs[i] = (uint8_t)needed;
+    }
+    for (int part = 0; part < GRID_PARTS && !blend->sums; part++)
+        results[part] = join_nearest(blend, &nearest[part]);
+    if (blend->sums)
+        sum_powers(blend, desk, h->count, results);
 }
 
 /* ---- blends that fade ---- */

@@ -98,11 +98,30 @@ static Range range_of_blend(const Search *s, const JointPart *part)
                    may_be_sharp ? fmin(a.high, b.high) : blend_at(s->tree, part, a.high, b.high)};
 }
 
+/* Without what is not needed it is the least of what some of them make. */
+static Range range_of_shares(const Search *s, const Cell *cell, const JointPart *part)
+{
+    FindShares *find = sharing_op((Op)s->tree->graph->items[part->node].op).find;
+    double      low[MOST_SHARERS], high[MOST_SHARERS], least = HUGE_VAL;
+    uint32_t    count = 0;
+    for (uint32_t k = 0; k < part->sharer_count; k++)
+        if (cell->matters[part->sharers[k]]) {
+            low[count]    = s->range[part->sharers[k]].low;
+            high[count++] = s->range[part->sharers[k]].high;
+            least         = fmin(least, high[count - 1]);
+        }
+    const double most = find(high, count, part->number).result;
+    Range        all  = {find(low, count, part->number).result, s->in_all ? least : most};
+    return isnan(all.low) || isnan(all.high) ? ANYTHING : all;
+}
+
 static Range range_of_part(const Search *s, const Cell *cell, const JointPart *part)
 {
     const Range *range = s->range;
-    const bool   a = cell->matters[part->a], b = cell->matters[part->b];
-    const bool   two = part->kind == JOINT_MIN || part->kind == JOINT_MAX ||
+    if (part->kind == JOINT_SHARES)
+        return range_of_shares(s, cell, part);
+    const bool a = cell->matters[part->a], b = cell->matters[part->b];
+    const bool two = part->kind == JOINT_MIN || part->kind == JOINT_MAX ||
                      part->kind == JOINT_BLEND;
     if (two && !(a && b)) /* what does not matter has the range of another box */
         return range[a ? part->a : part->b];
@@ -169,6 +188,40 @@ static bool may_blend(const Search *s, const JointPart *part)
     return fmax(b.low - a.high, a.low - b.high) <= part->number;
 }
 
+/* Which operands that mattered may have a share, as bits. */
+static uint32_t find_sharers(const Search *s, const JointPart *part, const bool *mattered)
+{
+    uint32_t bits  = 0;
+    double   least = HUGE_VAL;
+    for (uint32_t k = 0; k < part->sharer_count; k++)
+        if (mattered[part->sharers[k]])
+            least = fmin(least, s->range[part->sharers[k]].high);
+    for (uint32_t k = 0; k < part->sharer_count; k++)
+        if (mattered[part->sharers[k]] && s->range[part->sharers[k]].low <= least + part->number)
+            bits |= 1u << k;
+    return bits;
+}
+
+/* Whether two of those that matter may share where it was not needed yet; `mark`: now it is. */
+static bool finds_shares(const Search *s, JointPart *part, const bool *matters, bool mark)
+{
+    const uint32_t bits = find_sharers(s, part, matters);
+    bool           more = false;
+    for (uint32_t k = 0; k < part->sharer_count; k++)
+        for (uint32_t l = 0; l < k; l++) {
+            Range a = s->range[part->sharers[k]], b = s->range[part->sharers[l]];
+            if (!(bits >> k & bits >> l & 1) || part->shares[k] >> l & 1 ||
+                fmax(b.low - a.high, a.low - b.high) > part->number)
+                continue;
+            more = true;
+            if (mark) {
+                part->shares[k] |= (uint8_t)(1u << l);
+                part->shares[l] |= (uint8_t)(1u << k);
+            }
+        }
+    return more;
+}
+
 /* Marks the operands that matter in a box, if the part does. */
 static void mark_operands(const Search *s, const JointPart *part, const bool *mattered,
                           bool *matters)
@@ -181,6 +234,12 @@ static void mark_operands(const Search *s, const JointPart *part, const bool *ma
     }
     if (part->kind == JOINT_LEAF)
         return;
+    if (part->kind == JOINT_SHARES) {
+        const uint32_t bits = find_sharers(s, part, mattered);
+        for (uint32_t k = 0; k < part->sharer_count; k++)
+            matters[part->sharers[k]] |= bits >> k & 1;
+        return;
+    }
     if (part->kind == JOINT_MIN || part->kind == JOINT_MAX || part->kind == JOINT_BLEND) {
         a = mattered[part->a], b = mattered[part->b];
         if (a && b)
@@ -234,6 +293,8 @@ static bool is_in_question(Search *s, const Cell *cell, uint32_t i, const bool *
         part->is_round |= size.least_at_edges && rounder;
         return (more && !size.least) || (rounder && !size.least_at_edges);
     }
+    if (part->kind == JOINT_SHARES)
+        return finds_shares(s, part, matters, size.least) && !size.least;
     const bool more = !part->blends && matters[part->a] && matters[part->b] && may_blend(s, part);
     part->blends |= size.least && more;
     return more && !size.least;

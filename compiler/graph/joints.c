@@ -3,6 +3,8 @@
  */
 #include "compiler/graph/joints.h"
 
+#include "compiler/base/far.h"
+
 /* A larger tree would take longer to look at than what is saved. */
 enum { MOST_NODES = 4000 };
 
@@ -152,6 +154,38 @@ static JointPart part_of_corner(const Making *m, Node node, const Node *sides, u
     return part;
 }
 
+/* The numbers that a blend of several is of, without those that are nowhere; 0: it is none of known width, or of
+   other vectors than of numbers. */
+static uint32_t operands_of_shares(const Making *m, const Expr *e, Node operands[MOST_SHARERS])
+{
+    uint32_t count = 0, vectors = e->operand_count - 1u;
+    if (!sharing_op((Op)e->op).find || !is_number(m, e->operands[vectors]) ||
+        !(expr_of(m, e->operands[vectors])->number[0] > 0))
+        return 0;
+    for (uint32_t k = 0; k < vectors; k++) {
+        const Expr *vector = expr_of(m, e->operands[k]);
+        const bool  same   = vector->op == OP_CONSTANT && vector->number[0] >= NOWHERE;
+        if (!same && vector->op != OP_vec4)
+            return 0;
+        for (uint32_t c = 0; c < 4 && !same; c++) {
+            const Node operand = vector->operands[c];
+            if (!is_number(m, operand) || expr_of(m, operand)->number[0] < NOWHERE)
+                operands[count++] = operand;
+        }
+    }
+    return count;
+}
+
+static JointPart part_of_shares(const Making *m, Node node, const Node *operands, uint32_t count)
+{
+    const Expr e    = *expr_of(m, node);
+    JointPart  part = {.kind = JOINT_SHARES, .node = node, .sharer_count = count};
+    for (uint32_t k = 0; k < count; k++)
+        part.sharers[k] = add_part(m, operands[k]);
+    part.number = expr_of(m, e.operands[e.operand_count - 1])->number[0];
+    return part;
+}
+
 static JointPart make_part(const Making *m, Node node)
 {
     const Expr e = *expr_of(m, node);
@@ -178,7 +212,10 @@ static JointPart make_part(const Making *m, Node node)
         part.number    = expr_of(m, e.operands[2])->number[0];
         return part;
     }
-    return (JointPart){.kind = JOINT_LEAF, .node = node};
+    Node operands[MOST_SHARERS];
+    count = operands_of_shares(m, &e, operands);
+    return count ? part_of_shares(m, node, operands, count)
+                 : (JointPart){.kind = JOINT_LEAF, .node = node};
 }
 
 static uint32_t add_part(const Making *m, Node node)
@@ -195,11 +232,13 @@ static void find_signs(JointTree *tree)
     tree->parts[tree->count - 1].upwards = true;
     for (uint32_t i = tree->count; i-- > 0;) {
         const JointPart part   = tree->parts[i];
-        const uint32_t  of[]   = {part.a, part.b};
+        const bool      shares = part.kind == JOINT_SHARES;
+        const uint32_t  two[] = {part.a, part.b}, *of = shares ? part.sharers : two;
         const bool      turns  = part.kind == JOINT_NEGATIVE;
         const uint32_t  others = part.kind == JOINT_LEAF || part.kind == JOINT_CORNER ? 0
-                                 : has_two(part.kind)                                 ? 2
-                                                                                      : 1;
+                                 : shares             ? part.sharer_count
+                                 : has_two(part.kind) ? 2
+                                                      : 1;
         for (uint32_t k = 0; k < others; k++) {
             tree->parts[of[k]].upwards |= turns ? part.downwards : part.upwards;
             tree->parts[of[k]].downwards |= turns ? part.upwards : part.downwards;
@@ -240,6 +279,55 @@ static Node rest_of_corner(Graph *g, const JointPart *part, const Node *rests)
     return count == part->side_count ? part->node : corner_of(g, sides);
 }
 
+/* Those that share with operand k, or with one that does, as bits. */
+static uint32_t who_share_with(const JointPart *part, uint32_t k)
+{
+    uint32_t all = 1u << k, before = 0;
+    while (all != before) {
+        before = all;
+        for (uint32_t i = 0; i < part->sharer_count; i++)
+            if (before >> i & 1)
+                all |= part->shares[i];
+    }
+    return all;
+}
+
+static Node blend_of(Graph *g, Op op, Node width, const Node *operands, uint32_t count)
+{
+    const SharingOp sharing = sharing_op(op);
+    Node            four[8], vectors[2];
+    if (count <= 2)
+        return count == 1 ? operands[0]
+                          : graph_op3(g, sharing.of_two, operands[0], operands[1], width);
+    for (uint32_t k = 0; k < 8; k++)
+        four[k] = k < count ? operands[k] : graph_number(g, NOWHERE);
+    for (uint32_t k = 0; k < 2; k++)
+        vectors[k] = graph_op(g, OP_vec4, four + 4 * k);
+    return count <= 4 ? graph_op2(g, sharing.of_four, vectors[0], width)
+                      : graph_op3(g, sharing.of_eight, vectors[0], vectors[1], width);
+}
+
+/* The least of what those make that share. */
+static Node rest_of_shares(Graph *g, const JointPart *part, const Node *rests)
+{
+    const Expr e     = g->items[part->node];
+    Node       least = NODE_NONE;
+    uint32_t   done  = 0;
+    for (uint32_t k = 0; k < part->sharer_count; k++) {
+        Node     operands[MOST_SHARERS];
+        uint32_t count = 0, together = who_share_with(part, k);
+        if (done >> k & 1)
+            continue;
+        done |= together;
+        for (uint32_t i = 0; i < part->sharer_count; i++)
+            if (together >> i & 1)
+                operands[count++] = rests[part->sharers[i]];
+        Node blended = blend_of(g, (Op)e.op, e.operands[e.operand_count - 1], operands, count);
+        least        = least == NODE_NONE ? blended : graph_op2(g, OP_min, least, blended);
+    }
+    return least;
+}
+
 static Node rest_of_part(Graph *g, const JointPart *part, const Node *rests)
 {
     const Expr e = g->items[part->node];
@@ -247,6 +335,7 @@ static Node rest_of_part(Graph *g, const JointPart *part, const Node *rests)
     switch (part->kind) {
     case JOINT_LEAF: return part->node;
     case JOINT_CORNER: return rest_of_corner(g, part, rests);
+    case JOINT_SHARES: return rest_of_shares(g, part, rests);
     case JOINT_NEGATIVE: return graph_op1(g, OP_neg, rests[part->a]);
     case JOINT_ADD:
     case JOINT_SCALE: return graph_op2(g, (Op)e.op, rests[part->a], e.operands[1]);

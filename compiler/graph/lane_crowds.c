@@ -19,6 +19,7 @@
 enum { STATE_NUMBERS = 4 * MOST_CROWD_STATES };
 
 typedef struct LaneLoop {
+    const Graph         *graph;
     const Crowds        *crowds;
     const CrowdFunction *function;
     const Crowd         *table;
@@ -93,14 +94,15 @@ static bool next_member(LaneLoop *loop, size_t lane)
     return step == CROWD_MEMBER;
 }
 
-/* The first state is the result. */
 static void put_result(const LaneLoop *loop, const LaneCall *call, double *rows, size_t lane)
 {
+    NodeValue states[MOST_CROWD_STATES], result;
+    for (uint32_t k = 0; k < loop->function->state_count; k++)
+        for (uint32_t c = 0; c < 4; c++)
+            states[k].v[c] = loop->states[4 * k + c][lane];
+    result = crowd_walk_result(loop->walks[lane], loop->graph, states);
     for (uint32_t c = 0; c < call->parts; c++)
-        rows[(size_t)call->to[c] * LANES + loop->points[lane]] = loop->states[c][lane];
-    const double ends[] = {loop->states[0][lane], loop->states[4][lane], loop->states[8][lane]};
-    rows[(size_t)call->to[0] * LANES + loop->points[lane]] = crowd_walk_result(loop->walks[lane],
-                                                                               ends);
+        rows[(size_t)call->to[c] * LANES + loop->points[lane]] = result.v[c];
 }
 
 static void take_states(LaneLoop *loop, const LaneTape *body, const double *rows)
@@ -212,11 +214,12 @@ static void fill_pairs(Pairs *pairs, const LaneCall *call, double *outer)
             i++;
             continue;
         }
-        uint32_t     point                         = loop->points[i];
-        const double ends[3]                       = {pairs->found[point]};
-        outer[(size_t)call->to[0] * LANES + point] = crowd_walk_result(loop->walks[i], ends);
-        loop->walks[i]                             = loop->walks[--loop->active];
-        loop->points[i]                            = loop->points[loop->active];
+        uint32_t        point = loop->points[i];
+        const NodeValue end   = {{pairs->found[point]}};
+        outer[(size_t)call->to[0] * LANES + point] =
+            crowd_walk_result(loop->walks[i], loop->graph, &end).v[0];
+        loop->walks[i]  = loop->walks[--loop->active];
+        loop->points[i] = loop->points[loop->active];
     }
 }
 
@@ -267,7 +270,7 @@ static void pass_operands(const LaneTape *tape, const double *outer, const LaneC
     pass_operand(tape, outer, call->from[1], 3, inputs, lanes);
     if (tape->tape->graph->items[call->node].operand_count > 2) {
         pass_operand(tape, outer, call->from[2], 3, inputs + LANE_NORMAL * LANES, lanes);
-        pass_operand(tape, outer, call->from[3], 1, inputs + LANE_FOOTPRINT * LANES, lanes);
+        pass_operand(tape, outer, call->from[3], 2, inputs + LANE_FOOTPRINT * LANES, lanes);
     }
 }
 
@@ -280,7 +283,8 @@ void lane_crowd_call(const LaneTape *tape, const LaneWork *work, const LaneCall 
     LaneTape        member = body->tape;
     double         *outer = work->rows, *inputs = work->whole + (size_t)body->first_row * LANES;
     LaneWork        inner = {inputs, work->values, work->whole, &loop};
-    loop.crowds           = tape->tape->graph->crowds;
+    loop.graph            = tape->tape->graph;
+    loop.crowds           = loop.graph->crowds;
     loop.function         = &loop.crowds->functions.items[body->function];
     loop.table            = &loop.crowds->tables.items[body->table];
     loop.by_cells         = work->loop ? work->loop->by_cells : tape->tape->by_cells;

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/graph/blend_shares.h"
 #include "compiler/graph/lane_call.h"
 #include "compiler/graph/lane_cuts.h"
 #include "compiler/graph/lane_outlines.h"
@@ -222,29 +223,70 @@ static double blend_bend(uint16_t op)
     return op == OP_smin_quadratic ? 0.5 : op == OP_smin_cubic ? 1 : 0.25;
 }
 
-/* Weights w and 1 - w of the operands, and what the change of w adds. */
-static LaneHessian hessian_of_blend(const Run *run)
+/* The derivatives of a - b. */
+static LaneSlope slope_apart(const Run *run, uint32_t a, uint32_t b)
 {
-    Range              a = range_in(run, 0), b = range_in(run, 1), width = range_in(run, 2);
-    const LaneHessian *first     = hessian_at(run, run->step->operands[0]);
-    const LaneHessian *second    = hessian_at(run, run->step->operands[1]);
-    const LaneSlope   *slopes[2] = {slope_at(run, run->step->operands[0]),
-                                    slope_at(run, run->step->operands[1])};
-    LaneSlope          apart     = {{{0, 0}, {0, 0}, {0, 0}}};
-    LaneHessian        sum       = {.known = first->known && second->known && width.low > 0 &&
-                                             operand_is_constant(run, 2)};
-    if (!sum.known || !is_finite(a) || !is_finite(b))
-        return UNKNOWN_BEND;
-    for (int i = 0; i < 6; i++)
-        sum.by[i] = range_hull(first->by[i], second->by[i]);
+    const LaneSlope *slopes[2] = {slope_at(run, a), slope_at(run, b)};
+    LaneSlope        apart     = {{{0, 0}, {0, 0}, {0, 0}}};
     for (int j = 0; j < 3; j++) {
         if (slopes[0])
             apart.by[j] = slopes[0]->by[j];
         if (slopes[1])
             apart.by[j] = plus(apart.by[j], minus(slopes[1]->by[j]));
     }
-    add_square(&sum, (Range){-blend_bend(run->step->op) / width.low * (1 + 0x1p-50), 0}, &apart);
+    return apart;
+}
+
+/* Weights of the operands, which sum to 1, and what their changes add: for each pair no more than where there are
+   only two. */
+static LaneHessian hessian_of_mean(const Run *run, uint16_t op, const uint32_t *operands,
+                                   uint32_t count, Range width)
+{
+    LaneHessian sum  = {.known = width.low > 0 && count > 0};
+    Range       bend = {-blend_bend(op) / width.low * (1 + 0x1p-50), 0};
+    for (uint32_t k = 0; k < count; k++)
+        sum.known = sum.known && hessian_at(run, operands[k])->known &&
+                    is_finite(range_at(run, operands[k]));
+    if (!sum.known)
+        return UNKNOWN_BEND;
+    for (int i = 0; i < 6; i++) {
+        sum.by[i] = hessian_at(run, operands[0])->by[i];
+        for (uint32_t k = 1; k < count; k++)
+            sum.by[i] = range_hull(sum.by[i], hessian_at(run, operands[k])->by[i]);
+    }
+    for (uint32_t k = 0; k < count; k++)
+        for (uint32_t l = k + 1; l < count; l++) {
+            LaneSlope apart = slope_apart(run, operands[k], operands[l]);
+            add_square(&sum, bend, &apart);
+        }
     return sum;
+}
+
+static LaneHessian hessian_of_blend(const Run *run)
+{
+    return operand_is_constant(run, 2)
+               ? hessian_of_mean(run, run->step->op, run->step->operands, 2, range_in(run, 2))
+               : UNKNOWN_BEND;
+}
+
+/* Of those that may have a share in the box. */
+static LaneHessian hessian_of_shares(const Run *run, const LaneCall *call, const Expr *e)
+{
+    const uint32_t vectors = e->operand_count - 1u, width = call->operands[vectors][0];
+    uint32_t       sharers[MOST_SHARERS], count           = 0;
+    double         least = HUGE_VAL;
+    if (!(width & LANE_SCALAR))
+        return UNKNOWN_BEND;
+    const double known = run->tape->scalars[width & ~LANE_SCALAR];
+    for (uint32_t i = 0; i < 4 * vectors; i++)
+        least = min2(least, range_at(run, call->operands[i / 4][i % 4]).high);
+    for (uint32_t i = 0; i < 4 * vectors; i++) {
+        const uint32_t operand = call->operands[i / 4][i % 4];
+        if (!((range_at(run, operand).low - least) * (1 - 0x1p-50) > known))
+            sharers[count++] = operand;
+    }
+    return hessian_of_mean(run, (uint16_t)sharing_op((Op)e->op).of_two, sharers, count,
+                           range_of(known));
 }
 
 /* ---- other steps ---- */
@@ -309,7 +351,11 @@ static LaneHessian hessian_of_call(const Run *run)
     LaneHessian sum = NO_BEND;
     if (run->step->op != LANE_CALL)
         return UNKNOWN_BEND;
-    const uint32_t       *point = run->tape->calls[run->step->operands[0]].operands[1];
+    const LaneCall *call = &run->tape->calls[run->step->operands[0]];
+    const Expr     *e    = &run->tape->tape->graph->items[call->node];
+    if (sharing_op((Op)e->op).find)
+        return hessian_of_shares(run, call, e);
+    const uint32_t       *point = call->operands[1];
     const OutlinePartials p     = lane_outline_partials(run->tape, run->ranges, run->at);
     if (!p.known)
         return UNKNOWN_BEND;

@@ -242,6 +242,7 @@ static void emit_leaf(Builder *b, const Expr *e, uint32_t *to)
         case OP_DIRECTION: to[k] = first + k; break;
         case OP_FOOTPRINT:
         case OP_CROWD_FOOTPRINT: to[k] = LANE_FOOTPRINT; break;
+        case OP_CROWD_THRESHOLD: to[k] = LANE_THRESHOLD; break;
         case OP_MEMBER: to[k] = emit_of_member(b, LANE_MEMBER, 0); break;
         case OP_STATE: to[k] = emit_of_member(b, LANE_STATE, 4 * state_of(e->index) + k); break;
         default:

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/graph/blend_shares.h"
 #include "compiler/graph/lane_call.h"
 #include "compiler/graph/lane_outlines.h"
 #include "compiler/graph/lane_rows.h"
@@ -233,6 +234,54 @@ static bool prune_turn(Pruning *p, size_t i)
     return true;
 }
 
+/* ---- blends of many ---- */
+
+/* The numbers that may have a share somewhere in the box; their count, or 0: that is not known. */
+static uint32_t find_sharers(const Pruning *p, const LaneCall *call, uint32_t vectors, double width,
+                             uint32_t sharers[MOST_SHARERS])
+{
+    double   least = HUGE_VAL;
+    uint32_t count = 0;
+    Range    range;
+    for (uint32_t k = 0; k < vectors; k++)
+        for (uint32_t c = 0; c < 4; c++) {
+            if (!number_at(p, call->operands[k][c], &range))
+                return 0;
+            least = min2(least, range.high);
+        }
+    for (uint32_t k = 0; k < vectors; k++)
+        for (uint32_t c = 0; c < 4; c++)
+            if (number_at(p, call->operands[k][c], &range) &&
+                (range.low - least) * (1 - 0x1p-50) <= width)
+                sharers[count++] = call->operands[k][c];
+    return count;
+}
+
+/* Where one or two have a share; false: it stays a call. */
+static bool prune_shares(Pruning *p, size_t i)
+{
+    LaneStep step = p->from->steps[i];
+    uint32_t sharers[MOST_SHARERS];
+    if (step.op != LANE_CALL)
+        return false;
+    const LaneCall *call    = &p->from->calls[step.operands[0]];
+    const Expr     *e       = &p->from->tape->graph->items[call->node];
+    const uint32_t  vectors = e->operand_count - 1u, width = call->operands[vectors][0];
+    if (!sharing_op((Op)e->op).find || !(width & LANE_SCALAR))
+        return false;
+    double   known = p->from->scalars[width & ~LANE_SCALAR];
+    uint32_t count = find_sharers(p, call, vectors, max2(known, 0), sharers);
+    if (count != 1 && count != 2)
+        return false;
+    step.op                  = (uint16_t)sharing_op((Op)e->op).of_two;
+    step.operand_count       = 3;
+    step.operands[0]         = stand_in(p, sharers[0]);
+    step.operands[1]         = stand_in(p, sharers[count - 1]);
+    step.operands[2]         = width;
+    p->same[LANE_INPUTS + i] = count == 1 ? step.operands[0] : lane_steps_add(&p->to, step);
+    return true;
+}
+
 /* Outlines keep the members that may be the nearest. */
 static void prune_members(Pruning *p, LaneCall *call, size_t step)
 {
@@ -282,7 +331,7 @@ LaneTape lane_prune(const LaneTape *tape, const LaneRanges *ranges, size_t outpu
     for (size_t i = 0; i < tape->count; i++)
         if (prune_turn(&p, i))
             i += 2;
-        else
+        else if (!prune_shares(&p, i))
             prune_step(&p, i);
     prune_calls(&p);
     for (size_t i = 0; i < outputs; i++)

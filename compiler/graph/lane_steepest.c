@@ -18,6 +18,11 @@ static bool op_never_jumps(uint16_t op)
         return (norm) != NORM_NONE;
 #include "compiler/graph/ops.def"
 #define BLEND(name, ...) case OP_smin_##name:
+#define BLEND_SHARES(name, ...) \
+    case OP_smin4_##name:       \
+    case OP_smin8_##name:       \
+    case OP_threshold4_##name:  \
+    case OP_threshold8_##name:
 #include "compiler/graph/blends.def"
     case OP_COMPONENT:
     case OP_splat2:

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/graph/blend_shares.h"
 #include "compiler/graph/fractal.h"
 
 /* ---- the `evaluate` column of OP rows: `size` is the number of components that matter ---- */
@@ -326,6 +327,14 @@ static double widths_apart(double a, double b, double width)
     return a == b ? 0 : fabs(a - b) / width;
 }
 
+static BlendShares shares_of_eight(FindShares *sharers, const NodeValue *o)
+{
+    double distances[8];
+    memcpy(distances, o[0].v, 4 * sizeof *distances);
+    memcpy(distances + 4, o[1].v, 4 * sizeof *distances);
+    return sharers(distances, 8, o[2].v[0]);
+}
+
 #define BLEND(name, signature, slope, bulge, most, reach, acts, fades, cost, facts, glsl, value, \
               weights, meaning)                                                                  \
     static NodeValue evaluate_smin_##name(const NodeValue *o, uint32_t size)                     \
@@ -338,6 +347,29 @@ static double widths_apart(double a, double b, double width)
         double n = sizeof signature > sizeof "fff>f" ? o[3].v[0] : 0;                            \
         (void)h, (void)n;                                                                        \
         return number(value);                                                                    \
+    }
+#include "compiler/graph/blends.def"
+
+#define BLEND_SHARES(name, sharers, ...)                                           \
+    static NodeValue evaluate_smin4_##name(const NodeValue *o, uint32_t size)      \
+    {                                                                              \
+        (void)size;                                                                \
+        return number(sharers(o[0].v, 4, o[1].v[0]).result);                       \
+    }                                                                              \
+    static NodeValue evaluate_threshold4_##name(const NodeValue *o, uint32_t size) \
+    {                                                                              \
+        (void)size;                                                                \
+        return number(sharers(o[0].v, 4, o[1].v[0]).threshold);                    \
+    }                                                                              \
+    static NodeValue evaluate_smin8_##name(const NodeValue *o, uint32_t size)      \
+    {                                                                              \
+        (void)size;                                                                \
+        return number(shares_of_eight(sharers, o).result);                         \
+    }                                                                              \
+    static NodeValue evaluate_threshold8_##name(const NodeValue *o, uint32_t size) \
+    {                                                                              \
+        (void)size;                                                                \
+        return number(shares_of_eight(sharers, o).threshold);                      \
     }
 #include "compiler/graph/blends.def"
 

@@ -65,7 +65,7 @@ static void print_functions(const Tape *tape, Text *out)
         const Crowd *table = &crowds->tables.items[function->crowd];
         text_format(out, "function %u of table %u, %u rows of %u:", (unsigned)id,
                     (unsigned)function->crowd, (unsigned)table->rows, (unsigned)table->columns);
-        for (uint32_t i = 0; i < function->state_count; i++)
+        for (uint32_t i = 0; i < body_count(function); i++)
             text_format(out, " %%%u", (unsigned)crowds->bodies.items[function->first_body + i]);
         text_add(out, "\n");
     }

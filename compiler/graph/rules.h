@@ -88,6 +88,6 @@ Rule fact_turn, fact_fold, fact_front, fact_cell, fact_cell_polar, fact_noise2, 
     fact_mandelbulb, fact_trap, fact_of_table, fact_footprint;
 /* rules_blends.c */
 Rule fact_smin, fact_smin_endless, fact_smin_circular, fact_smin_chamfer, fact_smin_stairs,
-    fact_blend_weight;
+    fact_blend_weight, fact_smin_shares, fact_blend_threshold;
 
 #endif

@@ -25,15 +25,21 @@ static Range smooth_range(const RuleInput *input, double n)
 }
 
 /* A width (or number of steps) that moves with the point would need a rule of its own. */
-static Fact fact_smooth(const RuleInput *input, uint32_t count, Range value, double slope, Jet jet)
+static Fact fact_smooth_of(const RuleInput *input, uint32_t first, uint32_t count, Range value,
+                           double slope, Jet jet)
 {
     Fact fact = fact_unknown(1);
-    if (operands_constant(input, 2, count)) {
+    if (operands_constant(input, first, count)) {
         fact_set(&fact, 0, jet);
         fact.slope = slope;
     }
     fact.value[0] = value;
     return fact;
+}
+
+static Fact fact_smooth(const RuleInput *input, uint32_t count, Range value, double slope, Jet jet)
+{
+    return fact_smooth_of(input, 2, count, value, slope, jet);
 }
 
 /* The derivatives by a and b are at least 0 and sum to 1. */
@@ -115,6 +121,55 @@ Fact fact_smin_stairs(const RuleInput *input)
     double scale = range_largest(a) + range_largest(b) + range_largest(k);
     return smooth_mean_within(input, 4, loosened(value, scale));
 }
+
+/* ---- of several numbers that share the result ---- */
+
+/* All components of the vectors at their least, or at their greatest. */
+static double shares_corner(const RuleInput *input, uint32_t vectors, bool high, double width)
+{
+    NodeValue operands[MAX_OPERANDS] = {{{0}}};
+    for (uint32_t k = 0; k < vectors; k++)
+        for (int i = 0; i < 4; i++) {
+            Range component  = input->operands[k].value[i];
+            operands[k].v[i] = high ? component.high : component.low;
+        }
+    operands[vectors].v[0] = width;
+    return op_evaluate(input->op, TYPE_FLOAT, 0, input->types, operands).v[0];
+}
+
+/* `grows`: with the width, too.  A result shrinks with it. */
+static Range shares_range(const RuleInput *input, uint32_t vectors, bool grows)
+{
+    Range  k     = input->operands[vectors].value[0];
+    double low   = shares_corner(input, vectors, false, grows ? k.low : k.high);
+    double high  = shares_corner(input, vectors, true, grows ? k.high : k.low);
+    Range  range = {isnan(low) ? -HUGE_VAL : low, isnan(high) ? HUGE_VAL : high};
+    double scale = fmin(fmax(fabs(low), fabs(high)), 1e300) + fmin(range_largest(k), 1e300);
+    return loosened(range, scale);
+}
+
+/* Shares are at least 0, and their sum is 1.  What is a width above another has none. */
+static Fact mean_of_shares(const RuleInput *input, bool grows)
+{
+    const uint32_t vectors = input->types[1] == TYPE_VEC4 ? 2 : 1;
+    const double   width   = fmax(input->operands[vectors].value[0].high, 0);
+    double         least = HUGE_VAL, slope = 0;
+    Jet hull = {.gradient = {{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}}};
+    for (uint32_t k = 0; k < vectors; k++)
+        for (uint32_t i = 0; i < 4; i++)
+            least = fmin(least, input->operands[k].value[i].high);
+    for (uint32_t k = 0; k < vectors; k++) {
+        for (uint32_t i = 0; i < 4; i++)
+            if (!(input->operands[k].value[i].low > least + width))
+                hull = jet_hull(hull, jet_of(&input->operands[k], i));
+        slope = fmax(slope, input->operands[k].slope);
+    }
+    return fact_smooth_of(input, vectors, vectors + 1, shares_range(input, vectors, grows), slope,
+                          hull);
+}
+
+Fact fact_smin_shares(const RuleInput *input) { return mean_of_shares(input, false); }
+Fact fact_blend_threshold(const RuleInput *input) { return mean_of_shares(input, true); }
 
 Fact fact_blend_weight(const RuleInput *input)
 {

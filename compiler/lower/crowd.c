@@ -77,9 +77,9 @@ static LowerContext context_of_parts(const PartLeaves *leaves, LowerContext oute
 
 /* ---- tables ---- */
 
-/* How many widths above a result a member is that changes what is mixed by less than a
-   thousandth. */
-static const double MIXING_REACH = 5;
+/* How many widths above a result a member is that has no share: a width above the least one, which is no
+   more than a width above the result. */
+static const double MIXING_REACH = 2;
 
 static double blended_reach(const CrowdGroup *group, const GroupJoin *join)
 {
@@ -286,24 +286,33 @@ static JointCrowds *find_joint(Lowering *l, const CrowdJoin *join, LowerContext 
     return made;
 }
 
-Lowered lower_crowds(Lowering *l, CrowdJoin *join, LowerContext context)
+JoinedCrowds find_crowds(Lowering *l, CrowdJoin *join, LowerContext context)
 {
-    Lowered    all   = lowered_nothing;
-    const bool sharp = join->joint->blend.width == NODE_NONE;
+    JoinedCrowds found = {.count = 0};
+    const bool   sharp = join->joint->blend.width == NODE_NONE;
     if (!l->crowds || join->count < least_of_joint(l->crowds, sharp) || join->joint->sheets ||
         l->overflow)
-        return all;
+        return found;
     if (!l->crowds->alike) {
         l->crowds->alike  = alike_new(l->graph, l->crowds->arena);
         l->crowds->leaves = part_leaves(l->graph);
     }
-    JointCrowds *made    = find_joint(l, join, context);
-    GroupJoin    members = group_join(l, join);
-    for (uint32_t i = 0; i < made->group_count; i++) {
-        Lowered crowd = group_lower(&made->groups[i], &members, l->surfaces, context);
+    found.join        = group_join(l, join);
+    JointCrowds *made = find_joint(l, join, context);
+    found.groups      = made->groups;
+    found.count       = made->group_count;
+    join->parts       = made->rest;
+    join->count       = made->rest_count;
+    return found;
+}
+
+Lowered lower_crowds(Lowering *l, CrowdJoin *join, LowerContext context)
+{
+    Lowered      all   = lowered_nothing;
+    JoinedCrowds found = find_crowds(l, join, context);
+    for (uint32_t i = 0; i < found.count; i++) {
+        Lowered crowd = group_lower(&found.groups[i], &found.join, l->surfaces, context);
         all           = join_two(l, join->joint->blend, all, crowd);
     }
-    join->parts = made->rest;
-    join->count = made->rest_count;
     return all;
 }

@@ -31,7 +31,7 @@ typedef struct CrowdJoin {
     double              reach; /* LowerContext.reach of all parts together */
 } CrowdJoin;
 
-/* Joins those parts that are many and alike.  The others are left in *join. */
+/* Sharply joins those parts that are many and alike.  The others are left in *join. */
 Lowered lower_crowds(Lowering *l, CrowdJoin *join, LowerContext context);
 
 #endif

@@ -61,12 +61,13 @@ static double *scalars_of(const MemberDistance *distance, const LaneTape *lanes,
     return scalars;
 }
 
-/* Whether a blend's running value has the slope of its operands, and what is far from it does not act. */
+/* Whether a blend has the slope of its operands, and what is far from the least of them does not act. */
 static bool may_refine(const CrowdGroup *group, const GroupJoin *join, const GridBlend *blend,
                        const Crowd *table)
 {
-    return blend_info[join->blend.kind].slope == 1 && isfinite(blend->acts) && blend->width > 0 &&
-           isfinite(group->slope) && !join->complement && !table->frame_columns;
+    const bool row = blend_many(join->blend.kind).way == MANY_IN_ROW && !blend->sums;
+    return !row && blend_info[join->blend.kind].slope == 1 && isfinite(blend->acts) &&
+           blend->width > 0 && isfinite(group->slope) && !join->complement && !table->frame_columns;
 }
 
 /* Entries of lists that kernels do not read are few: as if each had so many texels. */
@@ -123,13 +124,6 @@ static bool refine(const CrowdGroup *group, const GroupJoin *join, const Box *bo
     return true;
 }
 
-/* How far above a result of 0 all of n operands in a row can be, in widths.  They stop acting when the running
-   value is `acts` below all of them. */
-static double widths_above(BlendKind kind, uint32_t n)
-{
-    return fmin(blend_bulge(kind, n), blend_acts(kind, n) + blend_info[kind].bulge);
-}
-
 static bool make_refined(const CrowdGroup *group, const GroupJoin *join, const Box *boxes,
                          double reach, double margin, Crowd *table)
 {
@@ -138,10 +132,13 @@ static bool make_refined(const CrowdGroup *group, const GroupJoin *join, const B
     if (of->width == NODE_NONE || !graph_known_component(join->graph, of->width, 0, &blend.width) ||
         (of->steps != NODE_NONE && !graph_known_component(join->graph, of->steps, 0, &blend.steps)))
         return false;
-    blend.op    = blend_info[of->kind].op;
-    blend.acts  = blend.width * blend_acts(of->kind, table->rows);
-    blend.fades = blend_fades(of->kind) && !group_varies(group, join);
-    blend.swell = table->stretch * blend.width * widths_above(of->kind, table->rows);
+    const BlendMany many = blend_many(of->kind);
+    blend.shares         = many.way == MANY_SHARE;
+    blend.sums           = blend_fades(of->kind);
+    blend.op             = blend.shares ? many.of_eight : blend_info[of->kind].op;
+    blend.acts           = blend.width * blend_acts(of->kind, table->rows);
+    blend.fades          = blend_fades(of->kind) && !group_varies(group, join);
+    blend.swell          = table->stretch * blend.width * blend_bulge(of->kind, table->rows);
     if (!may_refine(group, join, &blend, table))
         return false;
     GraphMark mark    = graph_mark(join->graph);

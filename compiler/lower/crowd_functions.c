@@ -1,8 +1,9 @@
 /*
  * crowd_functions.c: the functions of a crowd: distance, nearest member, and what blends mix.
  *
- * Members are joined in their order, as join_two joins two shapes: a state is what the members
- * before make, and the body joins it with one more.  What is not mixed is that of the nearest.
+ * States are what the members before make, and the bodies join it with one more.  Of blends that share the
+ * result, or are of pairs, states are the nearest distances.  Surfaces are mixed by shares, for which the
+ * threshold must be known before.  What is not mixed is that of the nearest.
  */
 #include "compiler/base/far.h"
 #include "compiler/lower/crowd_group.h"
@@ -151,10 +152,42 @@ static uint32_t make_sum(const CrowdGroup *group, const GroupJoin *join)
     return graph_add_crowd_function(g, function, bodies);
 }
 
-static uint32_t make_distance(const CrowdGroup *group, const GroupJoin *join)
+/* A function whose states are the nearest distances, the width and, of pairs, the number of steps.  Without
+   `joined` it joins them as the blend does, else to what that makes of the states. */
+static uint32_t make_of_nearest(const CrowdGroup *group, const GroupJoin *join, bool pairs,
+                                uint32_t listed, bool threshold)
 {
-    if (join->blend.width != NODE_NONE && blend_fades(join->blend.kind))
-        return make_sum(group, join);
+    Graph    *g      = join->graph;
+    uint32_t  id     = next_function(g);
+    GraphType type   = pairs ? TYPE_FLOAT : TYPE_VEC4;
+    Nearest   before = {pairs, graph_state(g, type, id, 0), graph_state(g, type, id, 1)};
+    Member    member = member_in_body(group, join, PART_DISTANCE);
+    Nearest   after  = nearest_add(g, before, member.distance);
+    bool      steps  = pairs && join->blend.steps != NODE_NONE;
+    Blend     states = join->blend;
+    threshold        = threshold || (!pairs && blend_many(states.kind).way != MANY_SHARE);
+    states.width     = graph_state(g, TYPE_FLOAT, id, 2);
+    if (steps)
+        states.steps = graph_state(g, TYPE_FLOAT, id, 3);
+    Node          bodies[5]      = {after.near, after.more, join->blend.width, join->blend.steps};
+    CrowdFunction function       = {.crowd       = group->crowd,
+                                    .type        = listed == NOT_LISTED ? TYPE_FLOAT : type,
+                                    .clear       = !threshold,
+                                    .joins       = true,
+                                    .listed      = listed,
+                                    .states      = {{type, {NOWHERE, NOWHERE, NOWHERE, NOWHERE}},
+                                                    {type, {NOWHERE, NOWHERE, NOWHERE, NOWHERE}},
+                                                    {TYPE_FLOAT, {0}},
+                                                    {TYPE_FLOAT, {0}}},
+                                    .state_count = steps ? 4 : 3};
+    bodies[function.state_count] = threshold ? nearest_threshold(g, states, before)
+                                             : nearest_end(g, states, before);
+    return graph_add_crowd_function(g, function, bodies);
+}
+
+/* One after the other: sharp joints, and blends for which the order means nothing. */
+static uint32_t make_row(const CrowdGroup *group, const GroupJoin *join)
+{
     Graph        *g        = join->graph;
     Node          state    = graph_state(g, TYPE_FLOAT, next_function(g), 0);
     Member        member   = member_in_body(group, join, PART_DISTANCE);
@@ -167,6 +200,17 @@ static uint32_t make_distance(const CrowdGroup *group, const GroupJoin *join)
     return graph_add_crowd_function(g, function, &body);
 }
 
+static uint32_t make_distance(const CrowdGroup *group, const GroupJoin *join)
+{
+    const bool sharp = join->blend.width == NODE_NONE;
+    if (!sharp && blend_fades(join->blend.kind))
+        return make_sum(group, join);
+    const BlendMany many = blend_many(join->blend.kind);
+    if (sharp || many.way == MANY_IN_ROW)
+        return make_row(group, join);
+    return make_of_nearest(group, join, many.way == MANY_PAIRS, NOT_LISTED, false);
+}
+
 static uint32_t make_nearest(const CrowdGroup *group, const GroupJoin *join)
 {
     Graph        *g        = join->graph;
@@ -175,7 +219,7 @@ static uint32_t make_nearest(const CrowdGroup *group, const GroupJoin *join)
     Member        member   = member_in_body(group, join, PART_DISTANCE);
     Node          stays    = graph_op2(g, OP_less, state, member.distance);
     Node          bodies[] = {graph_op3(g, OP_select, stays, number, member.number),
-                              join_distances(g, join->blend, state, member.distance)};
+                              graph_op2(g, OP_min, state, member.distance)};
     CrowdFunction function = {.crowd       = group->crowd,
                               .type        = TYPE_UINT,
                               .states      = {{TYPE_UINT, {0}}, {TYPE_FLOAT, {NOWHERE}}},
@@ -184,20 +228,26 @@ static uint32_t make_nearest(const CrowdGroup *group, const GroupJoin *join)
     return graph_add_crowd_function(g, function, bodies);
 }
 
+/* The weighted mean of a property, or without one (PART_DISTANCE) the sum of shares. */
 static uint32_t make_property(const CrowdGroup *group, const GroupJoin *join, uint32_t root)
 {
-    Graph        *g        = join->graph;
-    Member        member   = member_in_body(group, join, root);
-    GraphType     type     = (GraphType)g->items[member.property].type;
-    Node          property = graph_state(g, type, next_function(g), 0);
-    Node          state    = graph_state(g, TYPE_FLOAT, next_function(g), 1);
-    Node          weight = graph_op3(g, OP_blend_weight, state, member.distance, join->blend.width);
-    Node          bodies[] = {graph_op3(g, OP_mix, member.property, property, weight),
-                              join_distances(g, join->blend, state, member.distance)};
-    CrowdFunction function = {.crowd       = group->crowd,
-                              .type        = type,
-                              .states      = {{type, {0}}, {TYPE_FLOAT, {NOWHERE}}},
-                              .state_count = 2,
+    Graph    *g         = join->graph;
+    Member    member    = member_in_body(group, join, root);
+    GraphType type      = (GraphType)g->items[member.property].type;
+    Node      property  = graph_state(g, type, next_function(g), 0);
+    Node      least     = graph_state(g, TYPE_FLOAT, next_function(g), 1);
+    Node      sum       = graph_state(g, TYPE_FLOAT, next_function(g), 2);
+    Node      threshold = graph_crowd_leaf(g, OP_CROWD_THRESHOLD, group->crowd);
+    Node      share     = share_below(g, join->blend, threshold, member.distance);
+    Node      more      = graph_op2(g, OP_add, sum, share);
+    Node weight   = graph_op2(g, OP_div, sum, graph_op2(g, OP_max, more, graph_number(g, 1e-30)));
+    Node mean     = graph_op3(g, OP_mix, member.property, property, weight);
+    Node bodies[] = {root == PART_DISTANCE ? graph_op2(g, OP_add, property, share) : mean,
+                     graph_op2(g, OP_min, least, member.distance), more};
+    CrowdFunction function = {.crowd  = group->crowd,
+                              .type   = type,
+                              .states = {{type, {0}}, {TYPE_FLOAT, {NOWHERE}}, {TYPE_FLOAT, {0}}},
+                              .state_count = root == PART_DISTANCE ? 2 : 3,
                               .distance    = 1};
     return graph_add_crowd_function(g, function, bodies);
 }
@@ -212,7 +262,7 @@ static Node call_nearest(CrowdGroup *group, const GroupJoin *join, Node point)
 }
 
 static Node call_property(CrowdGroup *group, const GroupJoin *join, uint32_t root,
-                          LowerContext context)
+                          LowerContext context, Node threshold)
 {
     uint32_t *function = &group->properties[root];
     if (*function == NO_FUNCTION)
@@ -220,7 +270,14 @@ static Node call_property(CrowdGroup *group, const GroupJoin *join, uint32_t roo
     const CrowdFunction *made = &graph_crowds(join->graph)->functions.items[*function];
     Op                   op   = made->type == TYPE_FLOAT ? OP_crowd_number : OP_crowd_vector;
     return graph_crowd_surface(join->graph, op, *function, context.point, context.normal,
-                               context.footprint);
+                               context.footprint, threshold);
+}
+
+static Node call_distance(const GroupJoin *join, uint32_t function, LowerContext context)
+{
+    const CrowdFunction *made = &graph_crowds(join->graph)->functions.items[function];
+    Op                   op   = made->type == TYPE_VEC4 ? OP_crowd_list : OP_crowd_distance;
+    return graph_crowd(join->graph, op, function, context.point);
 }
 
 /* The wanted roots of one member, or of all where they do not vary, where the context is. */
@@ -242,7 +299,8 @@ static void copy_outside(const CrowdGroup *group, const GroupJoin *join, Node me
     template_copy(join->graph, group->template, slots, pairs, count, wanted, roots, join->scratch);
 }
 
-static Surface lower_surface(CrowdGroup *group, const GroupJoin *join, LowerContext context)
+Surface group_surface(CrowdGroup *group, const GroupJoin *join, Node threshold,
+                      LowerContext context)
 {
     bool same[PART_ROOTS] = {[0] = false}, nearest[PART_ROOTS] = {[0] = false}, any = false;
     Node roots[PART_ROOTS], of_nearest[PART_ROOTS];
@@ -260,7 +318,7 @@ static Surface lower_surface(CrowdGroup *group, const GroupJoin *join, LowerCont
         if (nearest[root])
             roots[root] = of_nearest[root];
         else if (!same[root])
-            roots[root] = call_property(group, join, root, context);
+            roots[root] = call_property(group, join, root, context, threshold);
     Surface surface;
 #define KRS_INNER(name, blends) \
     surface.name = roots[PART_SURFACE + offsetof(Surface, name) / sizeof(Node)];
@@ -273,13 +331,46 @@ static Surface lower_surface(CrowdGroup *group, const GroupJoin *join, LowerCont
     return surface;
 }
 
-Lowered group_lower(CrowdGroup *group, const GroupJoin *join, bool surfaces, LowerContext context)
+Node group_distance(CrowdGroup *group, const GroupJoin *join, LowerContext context)
 {
-    Lowered result = lowered_nothing;
     if (group->distance == NO_FUNCTION)
         group->distance = make_distance(group, join);
-    result.distance = graph_crowd(join->graph, OP_crowd_distance, group->distance, context.point);
-    if (surfaces)
-        result.surface = lower_surface(group, join, context);
+    return call_distance(join, group->distance, context);
+}
+
+Nearest group_nearest(CrowdGroup *group, const GroupJoin *join, bool pairs, LowerContext context)
+{
+    Nearest nearest = {.pairs = pairs};
+    for (uint32_t i = 0; i < 2; i++) {
+        uint32_t *function = &group->lists[pairs][i];
+        if (*function == NO_FUNCTION)
+            *function = make_of_nearest(group, join, pairs, i, false);
+        *(i ? &nearest.more : &nearest.near) = call_distance(join, *function, context);
+    }
+    return nearest;
+}
+
+Node group_threshold(CrowdGroup *group, const GroupJoin *join, LowerContext context)
+{
+    if (group->threshold == NO_FUNCTION)
+        group->threshold = make_of_nearest(group, join, false, NOT_LISTED, true);
+    return call_distance(join, group->threshold, context);
+}
+
+Node group_share(CrowdGroup *group, const GroupJoin *join, Node threshold, LowerContext context)
+{
+    return call_property(group, join, PART_DISTANCE, context, threshold);
+}
+
+Lowered group_lower(CrowdGroup *group, const GroupJoin *join, bool surfaces, LowerContext context)
+{
+    Lowered result  = lowered_nothing;
+    result.distance = group_distance(group, join, context);
+    if (surfaces) {
+        const bool sharp     = join->blend.width == NODE_NONE;
+        Node       threshold = sharp ? graph_number(join->graph, 0)
+                                     : group_threshold(group, join, context);
+        result.surface       = group_surface(group, join, threshold, context);
+    }
     return result;
 }

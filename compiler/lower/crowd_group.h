@@ -7,6 +7,7 @@
 #include "compiler/graph/alike.h"
 #include "compiler/graph/crowd.h"
 #include "compiler/lower/context.h"
+#include "compiler/lower/nearest.h"
 
 /* The expressions of a part: its distance, and a node for each row of surface.def. */
 enum { PART_DISTANCE, PART_SURFACE, PART_ROOTS = 1 + sizeof(Surface) / sizeof(Node) };
@@ -45,10 +46,11 @@ typedef struct CrowdGroup {
     uint32_t *columns; /* of each slot 4: of its elements the column, or NO_COLUMN: equal in all */
     struct Column *sources; /* of each column, the element that it has */
     uint32_t       column_count;
-    double         slope;                  /* of the distances of all members */
-    uint32_t       crowd;                  /* its table */
-    uint32_t       distance, nearest;      /* functions; NO_FUNCTION: not made yet */
-    uint32_t       properties[PART_ROOTS]; /* of blends: what is mixed */
+    double         slope;             /* of the distances of all members */
+    uint32_t       crowd;             /* its table */
+    uint32_t       distance, nearest; /* functions; NO_FUNCTION: not made yet */
+    uint32_t threshold, lists[2][2];  /* of blends: for surfaces; near and more, of pairs or not */
+    uint32_t properties[PART_ROOTS];  /* and what is mixed, behind the sum of shares */
 } CrowdGroup;
 
 #define NO_COLUMN   UINT32_MAX
@@ -112,13 +114,31 @@ void group_slots(const CrowdGroup *group, Graph *graph, Node member, Node *slots
 /* The same, with a parameter in the place of each column: those from slot `first` on. */
 void group_slots_of_parameters(const CrowdGroup *group, Graph *graph, uint32_t first, Node *slots);
 
+/* crowd.c: the groups of parts of a joint that are many and alike.  The other parts are left in *join. */
+typedef struct JoinedCrowds {
+    CrowdGroup *groups;
+    uint32_t    count;
+    GroupJoin   join; /* of them */
+} JoinedCrowds;
+struct CrowdJoin;
+JoinedCrowds find_crowds(Lowering *l, struct CrowdJoin *join, LowerContext context);
+
 /* crowd_functions.c: whether functions can be made for all that is asked of the surface. */
 bool group_has_functions(const CrowdGroup *group, const GroupJoin *join);
 /* Whether a blend mixes something in which the members differ. */
 bool group_mixes(const CrowdGroup *group, const GroupJoin *join);
 /* Whether its members differ in anything but their distances. */
 bool group_varies(const CrowdGroup *group, const GroupJoin *join);
-/* The members of a group, joined, where the context is. */
+/* What is asked of the members of a group where the context is: what they are joined to; of blends also
+   their nearest distances, their threshold, the sum of their shares below one, and what is mixed by
+   these. */
+Node    group_distance(CrowdGroup *group, const GroupJoin *join, LowerContext context);
+Nearest group_nearest(CrowdGroup *group, const GroupJoin *join, bool pairs, LowerContext context);
+Node    group_threshold(CrowdGroup *group, const GroupJoin *join, LowerContext context);
+Node    group_share(CrowdGroup *group, const GroupJoin *join, Node threshold, LowerContext context);
+Surface group_surface(CrowdGroup *group, const GroupJoin *join, Node threshold,
+                      LowerContext context);
+/* The members of a group, joined, where the context is, by themselves. */
 Lowered group_lower(CrowdGroup *group, const GroupJoin *join, bool surfaces, LowerContext context);
 
 #endif

@@ -35,7 +35,11 @@ static bool entries_equal(Entry a, Entry b) { return a.number == b.number && a.n
 
 CrowdGroup group_new(Template *template, Arena *arena)
 {
-    CrowdGroup group = {.template = template, .distance = NO_FUNCTION, .nearest = NO_FUNCTION};
+    CrowdGroup group = {.template  = template,
+                        .distance  = NO_FUNCTION,
+                        .nearest   = NO_FUNCTION,
+                        .threshold = NO_FUNCTION,
+                        .lists     = {{NO_FUNCTION, NO_FUNCTION}, {NO_FUNCTION, NO_FUNCTION}}};
     for (uint32_t i = 0; i < PART_ROOTS; i++)
         group.properties[i] = NO_FUNCTION;
     group.elements = arena_new_array(arena, SlotElement, 4 * (size_t) template->slot_count + 1);

@@ -7,14 +7,6 @@
 #include "compiler/lower/crowd_group.h"
 #include "compiler/lower/surface.h"
 
-Node join_distances(Graph *g, Blend blend, Node a, Node b)
-{
-    if (blend.width == NODE_NONE)
-        return graph_op2(g, OP_min, a, b);
-    Node operands[MAX_OPERANDS] = {a, b, blend.width, blend.steps};
-    return graph_op(g, blend_info[blend.kind].op, operands);
-}
-
 Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b)
 {
     Graph *g = l->graph;

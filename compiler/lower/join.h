@@ -5,10 +5,11 @@
 #define KRS_JOIN_H
 
 #include "compiler/lower/context.h"
+#include "compiler/lower/nearest.h"
 
 /* The union of two lowered shapes, sharp or blended. */
-Node    join_distances(Graph *g, Blend blend, Node a, Node b);
 Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b);
+
 /* Lowers an operand of a shape, such as a blend, that needs distances other than 0.  They are at
    least the distance to the sides of the operand's box.  How far from the surface they must be
    right, the context says. */

@@ -51,8 +51,8 @@ void emit_find_called(Emitter *e, NodeList *roots)
         const CrowdFunction *function = &crowds->functions.items[id];
         if (!e->called[id])
             continue;
-        note_roots(e, bodies_of(e, function), function->state_count);
-        for (uint32_t i = 0; i < function->state_count; i++)
+        note_roots(e, bodies_of(e, function), body_count(function));
+        for (uint32_t i = 0; i < body_count(function); i++)
             array_push(e->scratch, roots, bodies_of(e, function)[i]);
     }
 }
@@ -164,8 +164,8 @@ const char *emit_state(Emitter *e, const Expr *state)
 /* What functions are called with: some with the point alone. */
 static const char *parameters_text(Emitter *e, uint32_t count)
 {
-    static const GraphType   types[] = {TYPE_VEC3, TYPE_VEC3, TYPE_FLOAT};
-    static const char *const names[] = {"p", "normal", "footprint"};
+    static const GraphType   types[] = {TYPE_VEC3, TYPE_VEC3, TYPE_VEC2};
+    static const char *const names[] = {"p", "normal", "pixel"};
     Text                     text    = {.arena = e->scratch};
     for (uint32_t i = 0; i < count; i++) {
         Operands parameter = {e->printer->types[types[i]], names[i]};
@@ -265,6 +265,32 @@ static void emit_sum_that_ends(Emitter *e, const CrowdFunction *function, const 
     text_add(e->out, "    return whole > 0.0 ? blended : nearby.clearance;\n}\n\n");
 }
 
+/* What the function returns that joins its states. */
+static void emit_end_of_states(Emitter *e, const CrowdFunction *function, const Node *bodies)
+{
+    const Node  body   = bodies[function->state_count];
+    const char *listed = function->listed == NOT_LISTED ? "" : state_name(e, function->listed);
+    emit_body(e, &body, 1);
+    const char *end = emit_bare(e, e->text[body]);
+    if (!function->clear) {
+        text_format(e->out, "    return %s;\n}\n\n", function->listed == NOT_LISTED ? end : listed);
+    } else if (function->listed == NOT_LISTED) {
+        text_format(e->out, "    return min(%s, nearby.clearance);\n}\n\n", end);
+    } else {
+        const CrowdState *state = &function->states[function->listed];
+        Expr              first = {.op = OP_CONSTANT, .type = (uint8_t)state->type};
+        memcpy(first.number, state->first, sizeof first.number);
+        Text none = {.arena = e->scratch};
+        text_add(&none, emit_constant(e, &first));
+        emit_line(e, "    bool listed = %s < nearby.clearance;\n", end);
+        emit_local(e, state->type, "none", none.bytes);
+        if (function->listed == 0)
+            emit_line(e, state->type == TYPE_FLOAT ? "    none = nearby.clearance;\n"
+                                                   : "    none.x = nearby.clearance;\n");
+        text_format(e->out, "    return listed ? %s : none;\n}\n\n", listed);
+    }
+}
+
 static void emit_function_of_crowd(Emitter *e, uint32_t id)
 {
     const CrowdFunction *function = &e->graph->crowds->functions.items[id];
@@ -286,6 +312,10 @@ static void emit_function_of_crowd(Emitter *e, uint32_t id)
     emit_next_states(e, function, bodies);
     indent_lines(e, body);
     text_add(e->out, "    }\n");
+    if (function->joins) {
+        emit_end_of_states(e, function, bodies);
+        return;
+    }
     if (function->sums) /* without a member the sum is 0 */
         emit_line(e, "    state0 -= state2 * log(max(state1, 1.0));\n");
     text_format(e->out, "    return %s;\n}\n\n",

@@ -131,7 +131,8 @@ static const char *const leaf_names[OP_COUNT] = {[OP_POINT]           = "p",
                                                  [OP_DIRECTION]       = "direction",
                                                  [OP_CROWD_POINT]     = "p",
                                                  [OP_CROWD_NORMAL]    = "normal",
-                                                 [OP_CROWD_FOOTPRINT] = "footprint",
+                                                 [OP_CROWD_FOOTPRINT] = "pixel.x",
+                                                 [OP_CROWD_THRESHOLD] = "pixel.y",
                                                  [OP_MEMBER]          = "member"};
 
 static const char *(*const special[OP_COUNT])(Emitter *e, const Expr *expr) = {
@@ -148,6 +149,7 @@ static const char *(*const special[OP_COUNT])(Emitter *e, const Expr *expr) = {
     [OP_texture_gray]   = emit_texture,
     [OP_row]            = emit_row,
     [OP_crowd_distance] = emit_crowd_call,
+    [OP_crowd_list]     = emit_crowd_call,
     [OP_crowd_member]   = emit_crowd_call,
     [OP_crowd_number]   = emit_crowd_call,
     [OP_crowd_vector]   = emit_crowd_call,

@@ -19,6 +19,16 @@ double blend_bulge(BlendKind kind, uint32_t count)
     return fmin(info->bulge * log2(count), info->most);
 }
 
+BlendMany blend_many(BlendKind kind)
+{
+    static const BlendMany ways[BLEND_COUNT] = {
+#define BLEND_SHARES(name, ...) [BLEND_##name] = {MANY_SHARE, OP_smin4_##name, OP_smin8_##name},
+#define BLEND_IN_ROW(name)      [BLEND_##name] = {.way = MANY_IN_ROW},
+#include "compiler/graph/blends.def"
+    };
+    return ways[kind];
+}
+
 double blend_reach(BlendKind kind, double n)
 {
     const double reaches[BLEND_COUNT] = {

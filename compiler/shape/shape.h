@@ -79,13 +79,19 @@ typedef struct BlendInfo {
     double      most;  /* the same for any number of operands */
 } BlendInfo;
 extern const BlendInfo blend_info[BLEND_COUNT];
+/* What a kind makes of more than two operands (blends.def). */
+typedef struct BlendMany {
+    enum { MANY_PAIRS, MANY_SHARE, MANY_IN_ROW } way;
+    Op of_four, of_eight; /* SHARE: operations on distances in vectors */
+} BlendMany;
+BlendMany blend_many(BlendKind kind);
 /* Of so many operands, in widths: how far the least may exceed a result of 0; and how far above a
    result an operand no longer changes it. */
 double blend_bulge(BlendKind kind, uint32_t count);
 double blend_reach(BlendKind kind, double n);
-/* How far above what those before it make one of them changes nothing. */
+/* How far above the least of the others one of them changes nothing. */
 double blend_acts(BlendKind kind, double n);
-/* Whether the order of operands means nothing, and what one adds falls by e with each width. */
+/* Whether what an operand adds falls by e with each width. */
 bool blend_fades(BlendKind kind);
 
 /* How the shapes of a metasurface fade; falloffs.def has a row for each. */

@@ -171,6 +171,32 @@ static void blends_derive(void **state)
     }
 }
 
+/* Blends of more than two, which share the result. */
+static void shares_derive(void **state)
+{
+    static const struct {
+        Op          of_four, of_eight;
+        const char *name;
+    } rows[] = {
+#define BLEND_SHARES(name, ...) {OP_smin4_##name, OP_smin8_##name, #name},
+#include "compiler/graph/blends.def"
+    };
+    Bench *b = *state;
+    Graph *g = b->graph;
+    Node   o[4], half = graph_number(g, 0.5);
+    mixed_operands(b, o);
+    o[3]      = graph_component(g, b->point, 0);
+    Node four = graph_op(g, OP_vec4, o), more = graph_op2(g, OP_mul, four, half);
+    for (double width = 0; width < 3; width += 0.8)
+        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+            Node k = graph_number(g, width);
+            assert_true(check_derivatives(b, rows[i].name, graph_op2(g, rows[i].of_four, four, k)) >
+                        150);
+            assert_true(check_derivatives(b, rows[i].name,
+                                          graph_op3(g, rows[i].of_eight, four, more, k)) > 150);
+        }
+}
+
 static void sectors_derive(void **state)
 {
     Bench *b = *state;
@@ -269,6 +295,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(componentwise_rows_derive, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(vector_rules_derive, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(blends_derive, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(shares_derive, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(sectors_derive, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(derivatives_of_boxes_are_numbers, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(what_is_still_has_no_derivative, bench_start, bench_stop),

@@ -43,6 +43,9 @@ static const struct {
     {OP_mandelbulb, "mkk"},
     {OP_mandelbulb_trap, "mkk"},
 #define BLEND(name, ...) {OP_smin_##name, "mmwn"},
+#define BLEND_SHARES(name, ...)                                                      \
+    {OP_smin4_##name, "mw"}, {OP_smin8_##name, "mmw"}, {OP_threshold4_##name, "mw"}, \
+        {OP_threshold8_##name, "mmw"},
 #include "compiler/graph/blends.def"
 };
 

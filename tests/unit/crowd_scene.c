@@ -253,6 +253,7 @@ Many make_many(Bench *b)
     many.roots[SMOOTH] = graph_crowd(g, OP_crowd_distance, many.smooth, b->point);
     many.roots[NESTED] = graph_crowd(g, OP_crowd_distance, many.nested, b->point);
     many.roots[SHADED] = graph_row(g, plain, SHADE, member);
-    many.roots[LEAN]   = graph_crowd_surface(g, OP_crowd_vector, lean, b->point, normal, footprint);
+    many.roots[LEAN]   = graph_crowd_surface(g, OP_crowd_vector, lean, b->point, normal, footprint,
+                                             graph_number(g, 0));
     return many;
 }

@@ -1,0 +1,29 @@
+/*
+ * blend_shares.h: smooth minima of several numbers that share the result (blends.def, math.md section 4).
+ */
+#ifndef KRS_BLEND_SHARES_H
+#define KRS_BLEND_SHARES_H
+
+#include "compiler/graph/graph.h"
+
+/* Of more operands only the nearest count. */
+enum { MOST_SHARERS = 8 };
+
+/* The result of a blend, and the threshold below which operands have a share. */
+typedef struct BlendShares {
+    double result, threshold;
+} BlendShares;
+
+/* Of up to MOST_SHARERS distances, at least one, in any order, over a width.  A width of 0 or less leaves the least. */
+typedef BlendShares FindShares(const double *distances, uint32_t count, double width);
+FindShares          shares_quadratic, shares_cubic;
+
+/* Of an operation that is such a minimum of vectors: the same of two numbers, of one vector and of two, and
+   how it is found; zeros: it is none. */
+typedef struct SharingOp {
+    Op          of_two, of_four, of_eight;
+    FindShares *find;
+} SharingOp;
+SharingOp sharing_op(Op op);
+
+#endif
