@@ -81,9 +81,12 @@ static bool collect_shapes(Elaboration *e, const Call *call, Value value, const 
 static const Shape **joinable_shapes(Elaboration *e, const Call *call, const Values *values)
 {
     const Shape **shapes = arena_new_array(e->values, const Shape *, values->count + 1);
+    const Shape  *first  = NULL; /* of those that are something */
     for (size_t i = 0; i < values->count; i++) {
         shapes[i] = values->items[i].shape;
-        if (shapes[i]->figure != shapes[0]->figure) {
+        if (!first && !shapes[i]->nothing)
+            first = shapes[i];
+        if (first && !shapes[i]->nothing && shapes[i]->figure != first->figure) {
             Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, call->syntax->span,
                                   "plane figures and solids cannot be joined");
             diag->help = "make figures solid with `.extrude(height)` or `.revolve()`";
@@ -115,7 +118,7 @@ static Value join(Elaboration *e, const Call *call, ShapeKind kind, const Values
 
 static bool can_be_joined(Elaboration *e, const Shape *a, const Shape *b, Span span)
 {
-    if (a->figure == b->figure || a->kind == SHAPE_EMPTY || b->kind == SHAPE_EMPTY)
+    if (a->figure == b->figure || a->nothing || b->nothing)
         return true;
     Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, span,
                           "a plane figure and a solid cannot be joined");

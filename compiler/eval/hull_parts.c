@@ -256,7 +256,7 @@ bool hull_parts_of_shape(Elaboration *e, const Call *call, const Syntax *syntax,
                          HullParts *parts)
 {
     Gathering g = {e, call, syntax, parts};
-    return goes_with(&g, shape->figure) && add_shape(&g, shape, &IDENTITY, 0);
+    return shape->nothing || (goes_with(&g, shape->figure) && add_shape(&g, shape, &IDENTITY, 0));
 }
 
 static bool add_value(const Gathering *g, Value value)

@@ -11,12 +11,14 @@ typedef Value Method(Elaboration *e, const Shape *shape, Call *call);
 
 static const double ORIGIN[3] = {0, 0, 0};
 
+static bool lies_in_plane(const Shape *shape) { return shape->figure || shape->nothing; }
+
 /* A vector of three.  Figures take two as well: `otherwise` is the third. */
 static Node want_extent(Elaboration *e, const Shape *shape, const Call *call, double otherwise)
 {
     Value value = call->arguments[0].value;
     Call  whole = *call;
-    if (shape->figure && value_size(e, value) == 2) {
+    if (lies_in_plane(shape) && value_size(e, value) == 2) {
         Node flat                = value_node(e, value);
         Node third               = graph_number(e->graph, otherwise);
         Node one                 = graph_component(e->graph, flat, 0);
@@ -55,7 +57,7 @@ static void give_axis(Elaboration *e, Call *call)
 
 static Value method_rotate(Elaboration *e, const Shape *shape, Call *call)
 {
-    if (shape->figure)
+    if (lies_in_plane(shape))
         give_axis(e, call);
     const Argument *axis = &call->arguments[0];
     if (is_given(call, 0) && is_given(call, 1) && value_size(e, axis->value) == 1) {
@@ -228,7 +230,7 @@ static Value method_elongate(Elaboration *e, const Shape *shape, Call *call)
 
 static bool check_figure(Elaboration *e, const Shape *shape, const Call *call)
 {
-    if (shape->figure)
+    if (lies_in_plane(shape))
         return true;
     Diag *diag  = diag_add(e->diags, DIAG_TYPE_MISMATCH, call->syntax->children[0]->span,
                            "`%s` needs a plane figure, found a solid", call->name);

@@ -126,6 +126,7 @@ static void take_over(Shape *shape, const Shape *part)
     shape->per_frame    = shape->per_frame || part->per_frame;
     shape->trapped      = shape->trapped || part->trapped;
     shape->figure       = shape->figure || part->figure;
+    shape->nothing      = shape->nothing && part->nothing;
     shape->fields       = shape->fields || part->fields;
     shape->sheets       = shape->sheets || part->sheets;
     shape->smooth       = shape->smooth || part->smooth;
@@ -173,6 +174,7 @@ Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span s
     shape->slope       = 1;
     shape->derived     = 1;
     shape->exact       = true;
+    shape->nothing     = count > 0 || kind == SHAPE_EMPTY || kind == SHAPE_UNION;
     shape->blend       = blend_sharp;
     shape->field       = &nothing_known;
     shape->distance = shape->bound = shape->uv = shape->trap = NODE_NONE;

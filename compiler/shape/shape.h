@@ -164,6 +164,7 @@ struct Shape {
     bool     per_frame; /* in the tree is a slope that is found anew for each frame (FrameSlope) */
     bool     trapped;   /* in the tree is a fractal or a mirror: `orbit_trap` means something */
     bool     figure;    /* a plane figure in x and y */
+    bool     nothing;   /* made of empty unions alone: a figure as well as a solid */
     bool     open;      /* SHELL: a sheet, with two sides, whatever its thickness */
     bool     sheet;  /* SHELL: has no thickness where rays can go from root to root (rays_pass) */
     bool     sheets; /* in the tree are some */
