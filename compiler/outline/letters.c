@@ -93,10 +93,16 @@ typedef struct Drawing {
     uint32_t         missing;
 } Drawing;
 
+/* Points are whole numbers to FreeType.  At as many pixels per em as the em has units, a unit is 64 of them;
+   they are shifted by a bit, so that what stands halfway between two, as points of TrueType do that
+   are not written, is a whole number as well. */
+enum { PARTS_OF_UNIT = 64, HALVES = 1 };
+
 static void place(const Drawing *drawing, const FT_Vector *point, double at[2])
 {
-    at[0] = drawing->origin[0] + drawing->unit * (double)point->x;
-    at[1] = drawing->origin[1] + drawing->unit * (double)point->y;
+    const double part = drawing->unit / (PARTS_OF_UNIT << HALVES);
+    at[0]             = drawing->origin[0] + part * (double)point->x;
+    at[1]             = drawing->origin[1] + part * (double)point->y;
 }
 
 static int move_to(const FT_Vector *to, void *user)
@@ -141,8 +147,8 @@ static int cubic_to(const FT_Vector *first, const FT_Vector *second, const FT_Ve
 
 static void draw_glyph(Drawing *drawing, uint32_t glyph)
 {
-    static const FT_Outline_Funcs functions = {move_to, line_to, conic_to, cubic_to, 0, 0};
-    if (FT_Load_Glyph(drawing->face, glyph, FT_LOAD_NO_SCALE | FT_LOAD_NO_BITMAP) == 0 &&
+    static const FT_Outline_Funcs functions = {move_to, line_to, conic_to, cubic_to, HALVES, 0};
+    if (FT_Load_Glyph(drawing->face, glyph, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP) == 0 &&
         drawing->face->glyph->format == FT_GLYPH_FORMAT_OUTLINE)
         FT_Outline_Decompose(&drawing->face->glyph->outline, &functions, drawing);
     path_close(drawing->path);
@@ -216,7 +222,8 @@ static bool open_face(Drawing *drawing, const Font *font)
         return false;
     if (FT_New_Memory_Face(drawing->library, font->bytes, (FT_Long)font->length, font->face,
                            &drawing->face) == 0 &&
-        FT_IS_SCALABLE(drawing->face) && drawing->face->units_per_EM > 0)
+        FT_IS_SCALABLE(drawing->face) && drawing->face->units_per_EM > 0 &&
+        FT_Set_Pixel_Sizes(drawing->face, 0, drawing->face->units_per_EM) == 0)
         return true;
     FT_Done_FreeType(drawing->library); /* with its faces */
     return false;
