@@ -306,7 +306,7 @@ static Part *hull_of_parts(const CsgNode *node, const Part *joined)
     for (size_t i = 0; i < node->parts->parts.count; i++)
         part_add(node->import, hull, node->parts->parts.items[i]);
     return part_show(&writer, hull, joined->figure ? ".extrude(1)" : "") &&
-                   import_compiles(trial.scene.bytes)
+                   import_compiles(node->import, trial.scene.bytes)
                ? hull
                : NULL;
 }

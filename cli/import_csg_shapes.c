@@ -284,7 +284,7 @@ static void add_font(const CsgNode *node, Text *text, const char *name)
     text_add(&trial, "show text(\"a\", font: ");
     add_string(&trial, font.bytes);
     text_add(&trial, ").extrude(1);");
-    if (import_compiles(trial.bytes)) {
+    if (import_compiles(node->import, trial.bytes)) {
         text_add(text, ", font: ");
         add_string(text, font.bytes);
     } else {

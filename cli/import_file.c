@@ -6,7 +6,6 @@
  */
 #include "cli/import_file.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/import_csg.h"
@@ -64,18 +63,6 @@ static void note_error(void *user, const KrsDiagnostic *diagnostic)
                   diagnostic->message, diagnostic->code);
 }
 
-/* Where a folder is all that may be read, a scene gets only the file that it comes from. */
-static const char *supply_own(void *user, const char *path, size_t *length)
-{
-    const Import *import = user;
-    char         *named = realpath(path, NULL), *own = realpath(import->path, NULL);
-    const bool    same = named && own && strcmp(named, own) == 0;
-    free(named);
-    free(own);
-    *length = import->length;
-    return same ? import->bytes : NULL;
-}
-
 static KrsStatus translate(Import *import, FirstError *first)
 {
     *first              = (FirstError){.import = import};
@@ -83,12 +70,10 @@ static KrsStatus translate(Import *import, FirstError *first)
     import->marks.count = import->notes.count = 0;
     if (!forms[find_form(import->path)].import(import))
         return KRS_BAD_SCENE;
-    KrsOptions options = {.diagnostic   = note_error,
-                          .user         = first,
-                          .memory_limit = import->memory,
-                          .load         = import->root ? supply_own : NULL,
-                          .load_user    = import};
-    KrsScene  *scene;
+    KrsOptions options = import_options(import);
+    options.diagnostic = note_error;
+    options.user       = first;
+    KrsScene *scene;
     /* Files that it names are sought from where it will stand. */
     const char *name   = import->output ? import->output : "scene.krs";
     KrsStatus   status = krs_compile_text(import->scene.bytes, import->scene.length, name, &options,

@@ -217,6 +217,12 @@ bool pov_look_inside(PovReader *reader, PovLook *look);
 /* The argument of `.paint`; NULL: the look says nothing. */
 const char *pov_look_text(PovReader *reader, const PovLook *look);
 
+/* ---- files: import_pov_include.c ---- */
+
+/* The text of an included file, in the import's arena; NULL: there is none, which is noted.  Returns
+   false after a refusal. */
+bool pov_read_included(Import *import, unsigned line, const char *name, const char **text);
+
 /* ---- objects: import_pov_objects.c and import_pov_shapes.c ---- */
 
 bool pov_object_follows(const PovReader *reader);

@@ -16,7 +16,7 @@
 
 #include "cli/import_pov_reader.h"
 
-enum { MOST_WORDS = 10000000, MOST_SOURCES = 100, MOST_INCLUDED = 4 << 20, MOST_NAMES = 100000 };
+enum { MOST_WORDS = 10000000, MOST_SOURCES = 100, MOST_NAMES = 100000 };
 
 /* ---- sources of words ---- */
 
@@ -433,29 +433,6 @@ static bool call_macro(PovReader *reader, const PovMacro *macro)
 
 /* ---- files ---- */
 
-static const char *const folders[] = {"/usr/share/povray-3.7/include/",
-                                      "/usr/share/povray/include/",
-                                      "/usr/local/share/povray-3.7/include/"};
-
-static FILE *open_included(PovReader *reader, const char *name)
-{
-    const char *slash = strrchr(reader->import->path, '/');
-    Text        path  = {.arena = reader->import->arena};
-    FILE       *file  = NULL;
-    if (slash)
-        text_add_bytes(&path, reader->import->path, (size_t)(slash + 1 - reader->import->path));
-    text_add(&path, name);
-    file = name[0] != '/' ? fopen(path.bytes, "rb") : NULL;
-    for (size_t i = 0; i < sizeof folders / sizeof *folders && !file && !strstr(name, ".."); i++) {
-        Text standard = {.arena = reader->import->arena};
-        text_format(&standard, "%s%s", folders[i], name);
-        file = fopen(standard.bytes, "rb");
-    }
-    return file;
-}
-
-/* Standard files that are not installed are done without: what they name is
- * then unknown. */
 static bool do_include(PovReader *reader)
 {
     WordReader *words = &reader->words;
@@ -467,24 +444,11 @@ static bool do_include(PovReader *reader)
     unsigned    line = words->word.line;
     if (!name)
         return word_refuse(words, "the name of a file, between quotes");
-    FILE *file = open_included(reader, name);
-    if (!file && strcmp(name, "colors.inc") == 0)
-        return true; /* its names are known */
-    if (!file) {
-        import_note(reader->import, line, "`%.60s` is not found", name);
-        return true;
-    }
-    Text text = {.arena = reader->import->arena};
-    char piece[1 << 14];
-    for (size_t got = 1; got > 0 && text.length < MOST_INCLUDED;) {
-        got = fread(piece, 1, sizeof piece, file);
-        text_add_bytes(&text, piece, got);
-    }
-    fclose(file);
-    if (text.length >= MOST_INCLUDED || (text.length > 0 && memchr(text.bytes, '\0', text.length)))
-        return import_refuse(reader->import, line, "`%.60s` is no text, or too long", name);
+    const char *text;
+    if (!pov_read_included(reader->import, line, name, &text))
+        return false;
     PovSource source = {.names_before = reader->names.count, .fixed_line = line};
-    return push_source(reader, source, text.length > 0 ? text.bytes : "", line);
+    return !text || push_source(reader, source, text, line);
 }
 
 /* ---- declarations ---- */

@@ -236,7 +236,12 @@ bool pov_text(PovReader *reader, unsigned line, Part **part)
         text_format(&text, *c == '"' ? "\\%c" : "%c", *c);
     text_add(&text, "\"");
     text_format(&path, "/usr/share/povray-3.7/include/%s", font);
-    if (!strstr(font, "..") && access(path.bytes, R_OK) == 0)
+    if (reader->import->root)
+        import_note(reader->import, line,
+                    "the font `%.60s` is not read: an untrusted import reads nothing of POV-Ray's "
+                    "folders; another one is taken",
+                    font);
+    else if (!strstr(font, "..") && access(path.bytes, R_OK) == 0)
         text_format(&text, ", font: \"%s\"", path.bytes);
     else
         import_note(reader->import, line, "the font `%.60s` is not found: another one is taken",
@@ -421,7 +426,7 @@ bool pov_superellipsoid(PovReader *reader, unsigned line, Part **part)
                     across, across, import_number_text(reader->import, v[0] / v[1]), along);
     text_add(&text, ".within(box([2, 2, 2]))");
     text_format(&trial, "show %s;", text.bytes);
-    if (!import_compiles(trial.bytes))
+    if (!import_compiles(reader->import, trial.bytes))
         return import_refuse(reader->import, line,
                              "a superellipsoid of these exponents is not translated");
     *part = part_shape(reader->import, line, "superellipsoid", "%s", text.bytes);

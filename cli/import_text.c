@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/krs.h"
-
 enum { MOST_NOTES = 100 };
 
 /* What a file says moves no cursor, and ends no comment. */
@@ -80,9 +78,27 @@ void import_write_head(Import *import)
     text_add(&import->scene, "\n");
 }
 
-bool import_compiles(const char *scene)
+static const char *supply_own(void *user, const char *path, size_t *length)
 {
-    KrsOptions options = {.diagnostic = NULL};
+    const Import *import = user;
+    char         *named = realpath(path, NULL), *own = realpath(import->path, NULL);
+    const bool    same = named && own && strcmp(named, own) == 0;
+    free(named);
+    free(own);
+    *length = import->length;
+    return same ? import->bytes : NULL;
+}
+
+KrsOptions import_options(Import *import)
+{
+    return (KrsOptions){.memory_limit = import->memory,
+                        .load         = import->root ? supply_own : NULL,
+                        .load_user    = import};
+}
+
+bool import_compiles(Import *import, const char *scene)
+{
+    KrsOptions options = import_options(import);
     KrsScene  *compiled;
     KrsStatus  status = krs_compile_text(scene, strlen(scene), "scene.krs", &options, &compiled);
     krs_scene_free(compiled);

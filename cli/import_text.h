@@ -7,6 +7,7 @@
 #include <stdbool.h>
 
 #include "compiler/base/text.h"
+#include "compiler/krs.h"
 
 /* From here on, the text of the scene comes from this line of the file. */
 typedef struct ImportMark {
@@ -66,8 +67,11 @@ bool import_was_left_out(const Import *import, unsigned line);
 /* "From FILE." and the notes, as comments. */
 void import_write_head(Import *import);
 
+/* How the scene is compiled: where a folder is all that may be read, it reads no file but the one
+   that it comes from.  The import must live as long as they are used. */
+KrsOptions import_options(Import *import);
 /* Whether a text is a scene. */
-bool import_compiles(const char *scene);
+bool import_compiles(Import *import, const char *scene);
 
 /* What is added to the scene now comes from this line. */
 void import_mark(Import *import, unsigned line);

@@ -1,8 +1,9 @@
 #!/bin/sh
-# untrusted.sh: what the command writes of a stranger's scene goes where the command line says, through no link.
-# shellcheck source-path=SCRIPTDIR disable=SC2086
+# untrusted.sh: what the command writes of a stranger's scene goes where the command line says, through no link,
+# and what an import reads lies in the folder of its file.
+# shellcheck source-path=SCRIPTDIR disable=SC2016,SC2086
 . "$(dirname "$0")/common.sh"
-plan 56
+plan 70
 small="--size 16x12 --quiet --untrusted"
 
 # Of a folder with links of all kinds, and one beside it that nothing may change.
@@ -80,9 +81,11 @@ for kind in relative absolute chain; do
     for path in folder/a.png folder/victim/a.png folder/sub/a.png deep/../folder/a.png "$work/in/folder/a.png"; do
         (cd in && timeout 60 "$krs" render ball.krs $small -o "$path" >../stdout 2>../err)
         status=$?
-        { [ "$status" -eq 73 ] && untouched; } || break
+        [ "$status" -eq 73 ] && untouched
+        good=$?
+        [ $good -eq 0 ] || break
     done
-    result $? "a folder of an output: $kind"
+    result $good "a folder of an output: $kind"
     (cd in && timeout 60 "$krs" compile ball.krs --untrusted -o folder/shaders >../stdout 2>../err) ||
         (cd in && timeout 60 "$krs" compile ball.krs --untrusted -o folder >../stdout 2>../err)
     status=$?
@@ -118,6 +121,71 @@ else
     skip "a folder that cannot be written" "root may write anywhere"
 fi
 chmod u+w in/deep
+
+# ---- what an import reads ----
+
+# `sphere { 0, R }`, where R is in the file that is included.
+include() { # name
+    printf '#declare R = 1;\n#include "%s"\nsphere { 0, R }\n' "$1" >in/a.pov
+    (cd in && timeout 60 "$krs" import a.pov --untrusted >../stdout 2>../err)
+    status=$?
+}
+for kind in relative absolute chain magic; do
+    prepare && echo '#declare R = 0.25;' >out/victim && plant $kind r.inc
+    include r.inc
+    [ "$status" -eq 1 ] && grep -q 'a.pov:2: `r.inc` is not read: it is outside' err && [ ! -s stdout ]
+    result $? "an included link: $kind"
+done
+for path in ../out/victim deep/../../out/victim "$work/out/victim" /etc/passwd folder/victim; do
+    prepare && echo '#declare R = 0.25;' >out/victim && ln -s ../out in/folder
+    include "$path"
+    [ "$status" -eq 1 ] && grep -q 'is not read: it is outside' err && [ ! -s stdout ]
+    good=$?
+    [ $good -eq 0 ] || break
+done
+result $good "an included file that lies outside"
+prepare && echo '#include "../out/victim"' >in/deep/r.inc
+include deep/r.inc
+[ "$status" -eq 1 ] && grep -q '../out/victim` is not read' err
+result $? "one that an included file names"
+prepare && mkdir -p in/deep && plant inside r.inc && echo '#declare R = 0.25;' >in/deep/there
+include r.inc
+[ "$status" -eq 0 ] && grep -q 'sphere(0.25)' stdout
+result $? "an included link that stays in the folder"
+for path in ./deep/there deep/../deep/there; do
+    include $path
+    [ "$status" -eq 0 ] && grep -q 'sphere(0.25)' stdout
+    good=$?
+    [ $good -eq 0 ] || break
+done
+result $good "and the file itself"
+prepare && mkfifo in/r.inc
+include r.inc
+[ "$status" -eq 0 ] && grep -q '`r.inc` is not read: it is not a regular file' stdout
+result $? "a pipe"
+include ''
+[ "$status" -eq 0 ] && grep -q 'is not read' stdout
+result $? "a file without a name"
+include textures.inc
+[ "$status" -eq 0 ] && grep -q "an untrusted import reads nothing of POV-Ray's folders" stdout
+result $? "a file of POV-Ray's own"
+prepare && echo '#declare R = 0.25;' >out/victim
+include ../out/victim && (cd in && "$krs" import a.pov >../stdout 2>../err)
+[ -s stdout ] && grep -q 'sphere(0.25)' stdout && (cd in && "$krs" import a.pov --root .. >../stdout 2>../err) &&
+    grep -q 'sphere(0.25)' stdout
+result $? "what is outside, for a scene of one's own, and where the root is further up"
+# A pipe would wait for ever, were it opened.
+prepare && mkfifo in/font.ttf
+printf 'linear_extrude(height = 1) { text(text = "a", size = 10, font = "font.ttf"); }\n' >in/a.csg
+(cd in && timeout 60 "$krs" import a.csg --untrusted >../stdout 2>../err)
+status=$?
+[ "$status" -eq 0 ] && grep -q 'text("a"' stdout && ! grep -q 'font: ' stdout
+result $? "a font from a file in OpenSCAD"
+printf 'text { ttf "timrom.ttf" "a" 1, 0 }\n' >in/a.pov
+(cd in && timeout 60 "$krs" import a.pov --untrusted >../stdout 2>../err)
+status=$?
+[ "$status" -eq 0 ] && grep -q 'the font `timrom.ttf` is not read' stdout
+result $? "a font of POV-Ray's"
 
 # ---- links that come and go ----
 
