@@ -55,5 +55,9 @@ bool csg_points(const CsgNode *node, const CsgValue *list, size_t numbers, doubl
 bool csg_sides(const CsgNode *node, int *sides);
 /* Its nodes as one part, all solids or all figures; refuses a mixture. */
 bool csg_joined(const CsgNode *node, bool figure, Part **part);
+/* A polygon, which keeps the points. */
+Part *csg_polygon_part(const CsgNode *node, double (*points)[3], size_t count);
+/* A part and all that is nearer to it than the radius. */
+Part *csg_grown(const CsgNode *node, Part *part, double radius);
 
 #endif
