@@ -13,6 +13,7 @@
 #include "cli/import_pov.h"
 #include "cli/import_svg.h"
 #include "cli/import_tape.h"
+#include "compiler/compile.h"
 
 static const struct {
     const char *ending;
@@ -73,13 +74,9 @@ static KrsStatus translate(Import *import, FirstError *first)
     KrsOptions options = import_options(import);
     options.diagnostic = note_error;
     options.user       = first;
-    KrsScene *scene;
     /* Files that it names are sought from where it will stand. */
-    const char *name   = import->output ? import->output : "scene.krs";
-    KrsStatus   status = krs_compile_text(import->scene.bytes, import->scene.length, name, &options,
-                                          &scene);
-    krs_scene_free(scene);
-    return status;
+    const char *name = import->output ? import->output : "scene.krs";
+    return krs_check_text(import->scene.bytes, import->scene.length, name, &options);
 }
 
 KrsStatus import_file(Import *import)

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/compile.h"
+
 enum { MOST_NOTES = 100 };
 
 /* What a file says moves no cursor, and ends no comment. */
@@ -99,10 +101,7 @@ KrsOptions import_options(Import *import)
 bool import_compiles(Import *import, const char *scene)
 {
     KrsOptions options = import_options(import);
-    KrsScene  *compiled;
-    KrsStatus  status = krs_compile_text(scene, strlen(scene), "scene.krs", &options, &compiled);
-    krs_scene_free(compiled);
-    return status == KRS_OK;
+    return krs_check_text(scene, strlen(scene), "scene.krs", &options) == KRS_OK;
 }
 
 void import_mark(Import *import, unsigned line)

@@ -257,6 +257,16 @@ KrsStatus krs_compile_text(const char *text, size_t length, const char *name,
     return load_and_compile(text ? text : "", length, name, options, &scene_alone, scene);
 }
 
+KrsStatus krs_check_text(const char *text, size_t length, const char *name,
+                         const KrsOptions *options)
+{
+    KrsScene *scene;
+    Request   request = {.after = PASS_COUNT, .end = PASS_frame};
+    KrsStatus status  = load_and_compile(text, length, name, options, &request, &scene);
+    scene_free(scene);
+    return status;
+}
+
 static KrsStatus compile_path(const char *path, const KrsOptions *options, const Request *request,
                               KrsScene **scene)
 {

@@ -65,6 +65,12 @@ const KrsPass *krs_pass(size_t index);
 /* The pass with this name or form, or NULL. */
 const KrsPass *krs_find_pass(const char *word);
 
+/* Whether a text is a scene: errors are those of krs_compile_text.  No camera is placed in a scene
+   without one, which casts rays and may take longer than all the rest, and nothing is said of what
+   cameras see. */
+KrsStatus krs_check_text(const char *text, size_t length, const char *name,
+                         const KrsOptions *options);
+
 /* Compiles a file, and writes the result of the pass `after` as text, which the caller frees with
    free().  If a pass refuses the scene, the text is that of `after` if it ran before, else "".
    KRS_BAD_ARGUMENT, and NULL: there is no such pass. */
