@@ -300,10 +300,11 @@ void complete_view(Elaboration *e)
     static const Syntax silent = {.kind = SYNTAX_SKY};
     if (e->scene->cameras.count == 0)
         default_camera(e);
-    if (e->scene->lights.count == 0 && e->scene->sky.zenith == NODE_NONE && !e->scene->sky.map)
-        default_sun(e);
+    const bool named = e->scene->sky.zenith != NODE_NONE || e->scene->sky.map;
     if (e->scene->sky.zenith == NODE_NONE)
         elaborate_sky(e, NULL, &silent);
+    if (e->scene->lights.count == 0 && !named)
+        default_sun(e);
     complete_sky(e);
     if (e->scene->fog.color == NODE_NONE) {
         set_fog(e, NULL, &silent);
