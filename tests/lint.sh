@@ -1,7 +1,7 @@
 #!/bin/sh
 # lint.sh: every kernel is GLSL by itself, every script passes shellcheck, and all C has the style of
 # .clang-format (`make format` brings it about).
-# Files have at most 500 lines, and none is larger than a megabyte.
+# Names files of more than 700 lines, which is no failure; none is larger than a megabyte.
 cd "$(dirname "$0")/.." || exit 1
 failed=0
 report() { # name, status
@@ -99,16 +99,12 @@ elif [ -n "$version" ] && styled clang-format 2>/dev/null; then
 else
     echo "ok - $style # SKIP clang-format ${version:-of no version} has other tastes than 14"
 fi
-# A file has one subject, and at most 500 lines.
-found=$(find Makefile .ci bench cli compiler grammar live runtime tests tools -name results -prune -o \
+# A file of more than 700 lines may have two subjects: look whether it has.
+find Makefile .ci bench cli compiler grammar live runtime tests tools -name results -prune -o \
     -type f ! -path 'tests/golden/*.glsl' \( -name Makefile -o -name run -o -name '*.[ch]' \
     -o -name '*.cpp' -o -name '*.def' -o -name '*.glsl' -o -name '*.comp' -o -name '*.sh' \
     -o -name '*.mk' -o -name '*.py' \) -exec wc -l {} + |
-    awk '$1 > 500 && $2 != "total" { print $2 }' | sort)
-[ -z "$found" ]
-status=$?
-[ $status -eq 0 ] || echo "$found" | sed 's/^/# more than 500 lines: /'
-report "no file has more than 500 lines" $status
+    awk '$1 > 700 && $2 != "total" { print "# warning: " $2 " has " $1 " lines" }' | sort
 # Who clones the project gets each file that was ever in it: what programs wrote has no place there.
 heavy=$(git ls-files -z | xargs -0 du -k | awk '$1 > 1024 { print $2 }')
 [ -z "$heavy" ]
