@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -57,6 +58,14 @@ static double blended(const float point[3], double width)
     return least - width * log(sum);
 }
 
+static bool some_function_ends(const Crowds *crowds)
+{
+    for (size_t i = 0; i < crowds->functions.count; i++)
+        if (crowds->functions.items[i].ends)
+            return true;
+    return false;
+}
+
 /* In kernels of a scene of that width. */
 static void sample(double width)
 {
@@ -73,8 +82,7 @@ static void sample(double width)
     if (krs_renderer_new(&options, &renderer) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     assert_int_equal(krs_compile_text(text, strlen(text), "ends.krs", NULL, &scene), KRS_OK);
-    assert_int_equal(scene->graph->crowds->functions.count, 1);
-    assert_true(scene->graph->crowds->functions.items[0].ends);
+    assert_true(some_function_ends(scene->graph->crowds));
     assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
     assert_int_equal(krs_sample(rendering, frame, (const float(*)[3])points, POINTS, found, NULL),
