@@ -48,7 +48,7 @@ GRAPH    := $(addprefix compiler/graph/, intern.c alike.c alike_copy.c graph.c c
                 lane_steepest.c lane_slopes.c lane_cuts.c lane_partials.c lane_outlines.c lane_hessians.c lane_prune.c joints.c joint_needs.c print.c) $(LANES)
 SHAPE    := $(addprefix compiler/shape/, turn_boxes.c frame_boxes.c sequence_box.c box.c box_rules.c reach.c cover.c overlap.c map.c moebius.c builder.c sky_map.c slope.c print.c)
 LOWER    := $(addprefix compiler/lower/, footprint.c bump.c context.c box_distance.c surface.c nearest.c join.c blend.c crowd_table.c crowd_cells.c crowd_functions.c crowd_turns.c crowd_find.c crowd.c normal.c tangent.c map_chain.c \
-                outline.c sphere_fold.c guards.c ray_images.c ray_step.c lower.c)
+                outline.c boundary.c sphere_fold.c guards.c ray_images.c ray_step.c lower.c)
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
 EVAL     := $(addprefix compiler/eval/, scope.c forget.c expression.c turns.c turn_statements.c arithmetic.c fold.c reports.c units.c arguments.c components.c records.c data.c csv.c json.c builtins.c indices.c lists.c \
                 random.c files.c text.c drawing.c texture.c functions.c kinds.c blame.c csg.c fractal.c declare.c extremes.c claim_pairs.c claims.c empty.c cells.c measure.c methods.c properties.c \

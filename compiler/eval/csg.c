@@ -96,6 +96,15 @@ static const Shape **joinable_shapes(Elaboration *e, const Call *call, const Val
     return shapes;
 }
 
+Value value_of_joint(Elaboration *e, ShapeKind kind, const Shape *const *shapes, uint32_t count,
+                     Blend blend, Span span)
+{
+    const Shape *joint = make_joint(e->builder, kind, shapes, count, blend, span);
+    if (joint->boundary)
+        find_borders(e, joint);
+    return value_shape(joint);
+}
+
 static Value join(Elaboration *e, const Call *call, ShapeKind kind, const Values *values,
                   uint32_t first_option)
 {
@@ -111,7 +120,7 @@ static Value join(Elaboration *e, const Call *call, ShapeKind kind, const Values
     if (!shapes)
         return value_error();
     uint32_t count = (uint32_t)values->count;
-    return value_shape(make_joint(e->builder, kind, shapes, count, blend, call->syntax->span));
+    return value_of_joint(e, kind, shapes, count, blend, call->syntax->span);
 }
 
 /* ---- two shapes ---- */
@@ -134,7 +143,7 @@ Value join_shapes(Elaboration *e, const Syntax *syntax, const Shape *a, const Sh
     if (!can_be_joined(e, a, b, syntax->name_span))
         return value_error();
     const Shape *shapes[] = {a, b};
-    return value_shape(make_joint(e->builder, kind, shapes, 2, blend_sharp, syntax->span));
+    return value_of_joint(e, kind, shapes, 2, blend_sharp, syntax->span);
 }
 
 Value choose_shape(Elaboration *e, const Syntax *syntax, Value condition, const Shape *yes,

@@ -15,12 +15,22 @@ static const char *const property_names[] = {"distance", "bound", "exact",  "slo
                                              "outline",  "hull",  "example"};
 enum { PROPERTY_COUNT = sizeof property_names / sizeof *property_names };
 
+/* Figures of the library say what their outlines are: what `outline` is of polygons, where there are arcs. */
+static const char border_name[] = "border";
+
+static bool is_declared_in_library(const Elaboration *e, const Syntax *declaration)
+{
+    return e->sources->items[declaration->span.source].library;
+}
+
 static bool check_properties(Elaboration *e, const Syntax *declaration)
 {
     bool good = true;
     for (uint32_t i = 0; i < declaration->count; i++) {
         const Syntax *property = declaration->children[i];
-        bool          known    = property->kind != SYNTAX_PROPERTY;
+        bool          known    = property->kind != SYNTAX_PROPERTY ||
+                     (strcmp(property->name, border_name) == 0 &&
+                      is_declared_in_library(e, declaration));
         for (size_t k = 0; !known && k < PROPERTY_COUNT; k++)
             known = strcmp(property->name, property_names[k]) == 0;
         if (known)
@@ -293,6 +303,68 @@ static bool outline_property(Elaboration *e, const Environment *env, const Synta
     return true;
 }
 
+/* ---- borders ---- */
+
+static const Syntax *border_property(const Elaboration *e, const Syntax *declaration)
+{
+    if (!is_declared_in_library(e, declaration))
+        return NULL;
+    const Syntax *border = find_property(declaration, border_name);
+    return border ? border : find_property(declaration, "outline");
+}
+
+/* [x, y] or [x, y, bulge]; false: it is no such corner. */
+static bool border_corner(Elaboration *e, Value value, BorderCorner *corner)
+{
+    double   numbers[4];
+    uint32_t known = value_numbers(value, numbers), size = known ? known : value_size(e, value);
+    *corner = (BorderCorner){{0, 0, 0}, {NODE_NONE, NODE_NONE, NODE_NONE}};
+    if (size != 2 && size != 3)
+        return false;
+    const Node node = known ? NODE_NONE : value_node(e, value);
+    if (!known && node == NODE_NONE)
+        return false;
+    for (uint32_t k = 0; k < size; k++)
+        if (known)
+            corner->numbers[k] = numbers[k];
+        else
+            corner->nodes[k] = graph_component(e->graph, node, k);
+    return true;
+}
+
+static void find_border(Elaboration *e, const Shape *shape)
+{
+    Border      *border = shape->border;
+    const size_t said = e->diags->count, errors = e->diags->errors, warnings = e->diags->warnings;
+    border->found = true;
+    Value value   = evaluate(e, &shape->declaration->names, shape->declaration->border);
+    if (e->diags->count > said && !is_stopped(e)) { /* a parameter says which corners there are */
+        e->diags->count    = said;
+        e->diags->errors   = errors;
+        e->diags->warnings = warnings;
+        return;
+    }
+    if (value.type != VALUE_LIST)
+        return;
+    border->corners = arena_new_array(e->arena, BorderCorner, value.list->count + 1);
+    for (size_t i = 0; i < value.list->count; i++)
+        if (!border_corner(e, value.list->items[i], &border->corners[i]))
+            return;
+    border->count = (uint32_t)value.list->count;
+}
+
+/* Joints below have been through this. */
+void find_borders(Elaboration *e, const Shape *shape)
+{
+    if (shape->border && !shape->border->found)
+        find_border(e, shape);
+    if (shape->turned)
+        find_borders(e, shape->turned);
+    for (uint32_t i = 0; i < shape->child_count; i++)
+        if (!shape->children[i]->boundary)
+            find_borders(e, shape->children[i]);
+}
+
 /* ---- properties ---- */
 
 /* What the shape is, out of its properties. */
@@ -370,9 +442,11 @@ static const struct Declaration *declaration_new(Elaboration *e, const Function 
 {
     struct Declaration *known = arena_new(e->arena, struct Declaration);
     *known       = (struct Declaration){function->syntax, find_property(function->syntax, "core"),
-                                        find_property(function->syntax, "hull"), *env};
-    known->names = known->core || known->hull ? keep_names(e, env, function->closure)
-                                              : (Environment){NULL, env->scope};
+                                        find_property(function->syntax, "hull"),
+                                        border_property(e, function->syntax), *env};
+    known->names = known->core || known->hull || known->border
+                       ? keep_names(e, env, function->closure)
+                       : (Environment){NULL, env->scope};
     return known;
 }
 
@@ -399,6 +473,8 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
     made_for_author(e, &name, &span);
     Shape *shape       = shape_new(e->builder, SHAPE_PRIMITIVE, name, span, NULL, 0);
     shape->declaration = declaration_new(e, function, env);
+    if (shape->declaration->border)
+        shape->border = arena_new(e->arena, Border);
     if (!read_properties(e, env, declaration, first, call, shape) ||
         !settle_slope(e, env, declaration, first, shape))
         return value_error();

@@ -126,9 +126,10 @@ struct Elaboration {
 /* What a shape knows of the declaration that made it. */
 struct Declaration {
     const Syntax *syntax;
-    const Syntax *core;  /* what .round(r) grows by r, using `rounding`; or NULL */
-    const Syntax *hull;  /* the balls and rims whose convex hull is its own; or NULL */
-    Environment   names; /* what these expressions see */
+    const Syntax *core;   /* what .round(r) grows by r, using `rounding`; or NULL */
+    const Syntax *hull;   /* the balls and rims whose convex hull is its own; or NULL */
+    const Syntax *border; /* the corners of its outline; or NULL */
+    Environment   names;  /* what these expressions see */
 };
 
 /* Whether a limit was reached: everything is an error from here, silently. */
@@ -376,6 +377,11 @@ bool needs_check(Elaboration *e, const Syntax *syntax);
 const Shape *declared_core(Elaboration *e, const Shape *shape, Node rounding);
 /* The value of `hull`. */
 Value declared_hull(Elaboration *e, const Shape *shape);
+/* Finds the corners of all figures below a sharp joint. */
+void find_borders(Elaboration *e, const Shape *joint);
+/* A joint of shapes; of figures one knows then where the boundary is. */
+Value value_of_joint(Elaboration *e, ShapeKind kind, const Shape *const *shapes, uint32_t count,
+                     Blend blend, Span span);
 
 /* ---- claims.c: what declarations claim ---- */
 /* The library's claims hold for all sizes: tests search them, and compiling does not wait. */

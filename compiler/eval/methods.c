@@ -318,8 +318,7 @@ static Value method_within(Elaboration *e, const Shape *shape, Call *call)
     if (open && !(shape = sheet_of(e, shape, region, thickness, call)))
         return value_error();
     const Shape *both[] = {shape, region};
-    return value_shape(
-        make_joint(e->builder, SHAPE_INTERSECTION, both, 2, blend_sharp, call->syntax->span));
+    return value_of_joint(e, SHAPE_INTERSECTION, both, 2, blend_sharp, call->syntax->span);
 }
 
 static MakeDeformed *deformation(const char *name)

@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "compiler/lower/blend.h"
+#include "compiler/lower/boundary.h"
 #include "compiler/lower/join.h"
 #include "compiler/lower/surface.h"
 #include "compiler/shape/overlap.h"
@@ -46,6 +47,8 @@ const Shape *make_joint(ShapeBuilder *builder, ShapeKind kind, const Shape *cons
     /* Outside, the least of exact distances is exact; every other joint only bounds it. */
     joint->exact = joint->exact && kind == SHAPE_UNION && blend.width == NODE_NONE;
     joint->box   = builder_box(builder, joint);
+    if (blend.width == NODE_NONE && joint->figure)
+        joint->boundary = boundary_new(builder->arena);
     if (blend.width != NODE_NONE && count > 1) {
         const BlendInfo *info = &blend_info[blend.kind];
         /* Each further operand adds a partial derivative; their squares sum to 1, so the sum of
@@ -120,10 +123,29 @@ static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *chi
     return join_two(l, shape->blend, crowds, others);
 }
 
-Lowered lower_union(Lowering *l, const Shape *shape, LowerContext context)
+/* What lowers a joint by its parts. */
+static Lowered within_boundary(Lowering *l, const Shape *shape, LowerContext context,
+                               LowerShape *by_parts)
+{
+    if (!boundary_counts(l, shape, context))
+        return by_parts(l, shape, context);
+    LowerContext sides = context; /* what is asked of the parts is the side alone */
+    sides.reach        = 0;
+    Lowered result     = by_parts(l, shape, sides);
+    if (result.distance != NODE_NONE)
+        result.distance = boundary_distance(l, shape, context, result.distance);
+    return result;
+}
+
+static Lowered union_by_parts(Lowering *l, const Shape *shape, LowerContext context)
 {
     return union_of(l, shape, shape->children, shape->child_count, context.reach,
                     joint_context(shape, context));
+}
+
+Lowered lower_union(Lowering *l, const Shape *shape, LowerContext context)
+{
+    return within_boundary(l, shape, context, union_by_parts);
 }
 
 static Lowered intersection_of_two(Lowering *l, const Shape *shape, Lowered a, Lowered b)
@@ -132,7 +154,7 @@ static Lowered intersection_of_two(Lowering *l, const Shape *shape, Lowered a, L
     return complement(l, join_two(l, shape->blend, not_a, not_b));
 }
 
-Lowered lower_intersection(Lowering *l, const Shape *shape, LowerContext context)
+static Lowered intersection_by_parts(Lowering *l, const Shape *shape, LowerContext context)
 {
     context = joint_context(shape, context);
     /* The complement of the union of the complements. */
@@ -152,7 +174,12 @@ Lowered lower_intersection(Lowering *l, const Shape *shape, LowerContext context
     return all;
 }
 
-Lowered lower_difference(Lowering *l, const Shape *shape, LowerContext context)
+Lowered lower_intersection(Lowering *l, const Shape *shape, LowerContext context)
+{
+    return within_boundary(l, shape, context, intersection_by_parts);
+}
+
+static Lowered difference_by_parts(Lowering *l, const Shape *shape, LowerContext context)
 {
     context       = joint_context(shape, context);
     Lowered left  = lower_joined(l, shape, shape->children[0], context);
@@ -164,8 +191,13 @@ Lowered lower_difference(Lowering *l, const Shape *shape, LowerContext context)
     return complement(l, joined);
 }
 
+Lowered lower_difference(Lowering *l, const Shape *shape, LowerContext context)
+{
+    return within_boundary(l, shape, context, difference_by_parts);
+}
+
 /* What is in one of two: their union less what they share. */
-Lowered lower_xor(Lowering *l, const Shape *shape, LowerContext context)
+static Lowered xor_by_parts(Lowering *l, const Shape *shape, LowerContext context)
 {
     context   = joint_context(shape, context);
     Lowered a = lower_joined(l, shape, shape->children[0], context);
@@ -177,6 +209,11 @@ Lowered lower_xor(Lowering *l, const Shape *shape, LowerContext context)
     Lowered shared  = join_two(l, shape->blend, complement(l, a), complement(l, b));
     result.distance = graph_op2(l->graph, OP_max, result.distance, shared.distance);
     return result;
+}
+
+Lowered lower_xor(Lowering *l, const Shape *shape, LowerContext context)
+{
+    return within_boundary(l, shape, context, xor_by_parts);
 }
 
 Lowered lower_morph(Lowering *l, const Shape *shape, LowerContext context)

@@ -141,9 +141,13 @@ static double longest_side(const Span2 *span)
 static double bulge(const Cutter *cutter, const Span2 *span)
 {
     const Curve *curve = &cutter->making->edges.items[span->edge].curve;
-    double       bend  = hypot(curve->from[0] - 2 * curve->via[0] + curve->to[0],
-                               curve->from[1] - 2 * curve->via[1] + curve->to[1]);
-    double       part  = span->t[1] - span->t[0];
+    if (curve->radius > 0) {
+        double half = fmin(0.5 * apart(span->ends[0], span->ends[1]), curve->radius);
+        return half * half / (curve->radius + sqrt(curve->radius * curve->radius - half * half));
+    }
+    double bend = hypot(curve->from[0] - 2 * curve->via[0] + curve->to[0],
+                        curve->from[1] - 2 * curve->via[1] + curve->to[1]);
+    double part = span->t[1] - span->t[0];
     return curve->straight ? 0 : 0.25 * bend * part * part;
 }
 
@@ -204,6 +208,13 @@ static bool is_double(const Edge *a, const Edge *b, double tolerance)
     return same && apart(a->curve.via, b->curve.via) <= 4 * tolerance;
 }
 
+/* Arcs of one circle share more than points, or only ends. */
+static bool is_one_circle(const Curve *a, const Curve *b, double tolerance)
+{
+    return a->radius > 0 && b->radius > 0 && fabs(a->radius - b->radius) <= tolerance &&
+           apart(a->centre, b->centre) <= tolerance;
+}
+
 static bool cut_pair(Cutter *cutter, uint32_t a, uint32_t b)
 {
     Making *making = cutter->making;
@@ -211,6 +222,9 @@ static bool cut_pair(Cutter *cutter, uint32_t a, uint32_t b)
         return true;
     Span2 x = whole_edge(making, a), y = whole_edge(making, b);
     cut_at_ends(cutter, a, b);
+    if (is_one_circle(&making->edges.items[a].curve, &making->edges.items[b].curve,
+                      cutter->tolerance))
+        return true;
     cutter->leaves = 0;
     find_crossings(cutter, &x, &y, 0);
     if (cutter->leaves <= MOST_LEAVES)

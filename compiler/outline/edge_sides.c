@@ -118,7 +118,13 @@ static int count_crossings(const Strips *strips, const double point[2], uint32_t
 
 static bool is_inside(int winding, FillRule rule)
 {
-    return rule == FILL_NONZERO ? winding != 0 : winding % 2 != 0;
+    switch (rule) {
+    case FILL_EVEN_ODD: return winding % 2 != 0;
+    case FILL_NONZERO: return winding != 0;
+    case FILL_POSITIVE: return winding > 0;
+    case FILL_TWICE: return winding > 1;
+    }
+    return false;
 }
 
 /* Contours go around what is on the left of them. */

@@ -12,8 +12,9 @@
 
 #include "compiler/outline/path.h"
 
-/* What is inside: where contours go around an odd number of times, or not 0 times in all. */
-typedef enum FillRule { FILL_EVEN_ODD, FILL_NONZERO } FillRule;
+/* What is inside: where contours go around, in all, an odd number of times, not 0 times, to the left
+   at least once or at least twice. */
+typedef enum FillRule { FILL_EVEN_ODD, FILL_NONZERO, FILL_POSITIVE, FILL_TWICE } FillRule;
 
 /*
  * A piece of an outline.  What is nearest to an end of it lies on the outer side of the corner there:

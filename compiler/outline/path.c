@@ -75,6 +75,35 @@ void path_quadratic(Path *path, const double via[2], const double to[2])
     path_line(path, to);
 }
 
+/* Each part of an arc turns by a quarter of a circle at most. */
+void path_arc(Path *path, const double to[2], double bulge)
+{
+    double from[2] = {path->at[0], path->at[1]}, turn = 4 * atan(bulge);
+    double chord[2] = {to[0] - from[0], to[1] - from[1]};
+    /* From the middle of the chord the centre is to the left by this share of the chord. */
+    double left  = 0.25 * (1 / bulge - bulge);
+    int    count = (int)fmax(ceil(fabs(turn) / (0.5 * M_PI) - 1e-9), 1);
+    Curve  arc   = {.straight = false};
+    if (fabs(bulge) < 1e-9 || is_same(from, to)) {
+        path_line(path, to);
+        return;
+    }
+    arc.centre[0] = 0.5 * (from[0] + to[0]) - left * chord[1];
+    arc.centre[1] = 0.5 * (from[1] + to[1]) + left * chord[0];
+    arc.radius    = hypot(from[0] - arc.centre[0], from[1] - arc.centre[1]);
+    double begin  = atan2(from[1] - arc.centre[1], from[0] - arc.centre[0]);
+    double part = turn / count, far = arc.radius / cos(0.5 * part);
+    for (int i = 1; i <= count; i++) {
+        double end = begin + i * part, middle = end - 0.5 * part;
+        memcpy(arc.from, path->at, sizeof arc.from);
+        arc.via[0] = arc.centre[0] + far * cos(middle);
+        arc.via[1] = arc.centre[1] + far * sin(middle);
+        arc.to[0]  = i < count ? arc.centre[0] + arc.radius * cos(end) : to[0];
+        arc.to[1]  = i < count ? arc.centre[1] + arc.radius * sin(end) : to[1];
+        add_curve(path, &arc);
+    }
+}
+
 /* A cubic curve leaves the quadratic one with the same ends, and a control point in the middle, by
    at most sqrt(3) / 36 of its third difference.  A part of 1 / n has 1 / n^3 of that; its control
    points are old + slope / n and end - next / n. */
@@ -117,17 +146,57 @@ void path_take(Path *path, const Path *other)
 
 /* ---- one curve ---- */
 
+/* Of `via` among the control points. */
+static double weight_of(const Curve *curve)
+{
+    return curve->radius > 0 ? curve->radius / hypot(curve->via[0] - curve->centre[0],
+                                                     curve->via[1] - curve->centre[1])
+                             : 1;
+}
+
+/* Weighted control points of the part from t to u: its ends and what is between them; t = u: a point.  The
+   third component is the weight. */
+static void blossom(const Curve *curve, double t, double u, double point[3])
+{
+    double weight = weight_of(curve);
+    double first = (1 - t) * (1 - u), last = t * u, between = (1 - first - last) * weight;
+    for (int k = 0; k < 2; k++)
+        point[k] = first * curve->from[k] + between * curve->via[k] + last * curve->to[k];
+    point[2] = first + between + last;
+}
+
 void curve_point(const Curve *curve, double t, double point[2])
 {
-    double u = 1 - t;
+    double u = 1 - t, weighted[3];
+    if (curve->radius > 0) {
+        blossom(curve, t, t, weighted);
+        point[0] = weighted[0] / weighted[2];
+        point[1] = weighted[1] / weighted[2];
+        return;
+    }
     for (int k = 0; k < 2; k++)
         point[k] = curve->straight
                        ? u * curve->from[k] + t * curve->to[k]
                        : u * u * curve->from[k] + 2 * u * t * curve->via[k] + t * t * curve->to[k];
 }
 
+/* Half of the derivative of a quotient, from the points at both ends of what has the tangent. */
+static void arc_tangent(const Curve *curve, double t, double tangent[2])
+{
+    double at[3], before[3], behind[3];
+    blossom(curve, t, t, at);
+    blossom(curve, t, 0, before);
+    blossom(curve, t, 1, behind);
+    for (int k = 0; k < 2; k++)
+        tangent[k] = (behind[k] - before[k] - (behind[2] - before[2]) * at[k] / at[2]) / at[2];
+}
+
 void curve_tangent(const Curve *curve, double t, double tangent[2])
 {
+    if (curve->radius > 0) {
+        arc_tangent(curve, t, tangent);
+        return;
+    }
     for (int k = 0; k < 2; k++)
         tangent[k] = curve->straight ? 0.5 * (curve->to[k] - curve->from[k])
                                      : (1 - t) * (curve->via[k] - curve->from[k]) +
@@ -136,17 +205,33 @@ void curve_tangent(const Curve *curve, double t, double tangent[2])
 
 Curve curve_part(const Curve *curve, double t, double u)
 {
-    double from[2], to[2], tangent[2];
+    double from[2], to[2], tangent[2], via[3];
     curve_point(curve, t, from);
     curve_point(curve, u, to);
     Curve part = line_between(from, to);
     if (curve->straight)
         return part;
-    curve_tangent(curve, t, tangent);
     part.straight = false;
+    if (curve->radius > 0) {
+        blossom(curve, t, u, via);
+        memcpy(part.centre, curve->centre, sizeof part.centre);
+        part.radius = curve->radius;
+        for (int k = 0; k < 2; k++)
+            part.via[k] = via[k] / via[2];
+        return part;
+    }
+    curve_tangent(curve, t, tangent);
     for (int k = 0; k < 2; k++)
         part.via[k] = from[k] + (u - t) * tangent[k];
     return part;
+}
+
+Curve curve_reversed(const Curve *curve)
+{
+    Curve reversed = *curve;
+    memcpy(reversed.from, curve->to, sizeof reversed.from);
+    memcpy(reversed.to, curve->from, sizeof reversed.to);
+    return reversed;
 }
 
 static double square_to(const Curve *curve, double t, const double point[2])
@@ -176,8 +261,26 @@ static double newton_root(const double f[4], double t)
 
 static double clamp_unit(double t) { return t < 0 ? 0 : t > 1 ? 1 : t; }
 
+/* From the middle of an arc on, the tangent of half of the angle grows evenly with t. */
+static double arc_nearest(const Curve *curve, const double point[2])
+{
+    double middle[2], from[2], at[2];
+    for (int k = 0; k < 2; k++) {
+        middle[k] = curve->via[k] - curve->centre[k];
+        from[k]   = curve->from[k] - curve->centre[k];
+        at[k]     = point[k] - curve->centre[k];
+    }
+    double half  = atan2(cross_of(middle, from), middle[0] * from[0] + middle[1] * from[1]);
+    double angle = atan2(cross_of(middle, at), middle[0] * at[0] + middle[1] * at[1]);
+    if (fabs(angle) <= fabs(half))
+        return clamp_unit(0.5 - 0.5 * tan(0.5 * angle) / tan(0.5 * half));
+    return (angle < 0) == (half < 0) ? 0 : 1;
+}
+
 double curve_nearest(const Curve *curve, const double point[2])
 {
+    if (curve->radius > 0)
+        return arc_nearest(curve, point);
     double q[2], b[2], c[2], bb = 0, bc = 0, cc = 0, qb = 0, qc = 0;
     for (int k = 0; k < 2; k++) {
         q[k] = curve->from[k] - point[k];

@@ -1,5 +1,6 @@
 /*
- * path.h: contours in the plane, as they are drawn: lines, quadratic and cubic Bezier curves.
+ * path.h: contours in the plane, as they are drawn: lines, arcs of circles, quadratic and cubic Bezier
+ * curves.
  *
  * Cubic curves become quadratic ones that leave them by no more than a tolerance.
  */
@@ -11,10 +12,12 @@
 
 #include "compiler/base/arena.h"
 
-/* (1 - t)^2 from + 2 (1 - t) t via + t^2 to, 0 <= t <= 1; of a line `via` is its middle. */
+/* (1 - t)^2 from + 2 (1 - t) t via + t^2 to, 0 <= t <= 1; of a line `via` is its middle.  An arc of a circle
+   turns by less than half of it; its tangents meet in `via`, which has the weight radius / |via - centre|. */
 typedef struct Curve {
     double from[2], via[2], to[2];
     bool   straight;
+    double centre[2], radius; /* of an arc; of other curves the radius is 0 */
 } Curve;
 
 typedef struct Curves {
@@ -35,6 +38,8 @@ void path_move(Path *path, const double to[2]);
 void path_line(Path *path, const double to[2]);
 void path_quadratic(Path *path, const double via[2], const double to[2]);
 void path_cubic(Path *path, const double first[2], const double second[2], const double to[2]);
+/* An arc; `bulge` is the tangent of a quarter of the angle that it turns by, above 0 to the left. */
+void path_arc(Path *path, const double to[2], double bulge);
 void path_close(Path *path);
 
 /* Copies all that is drawn in another path, whose arena may then be freed. */
@@ -46,6 +51,8 @@ void curve_point(const Curve *curve, double t, double point[2]);
 void curve_tangent(const Curve *curve, double t, double tangent[2]);
 /* The part with parameters from t to u. */
 Curve curve_part(const Curve *curve, double t, double u);
+/* The same backwards. */
+Curve curve_reversed(const Curve *curve);
 /* The nearest point's parameter. */
 double curve_nearest(const Curve *curve, const double point[2]);
 

@@ -27,17 +27,33 @@ void add_edge(Making *making, const Curve *curve, int weight)
     array_push_large(making->arena, &making->edges, edge);
 }
 
+/* Where an arc is farthest along an axis; at most two of these are in a quarter of a circle. */
+static int arc_turns(const Curve *curve, double turns[2])
+{
+    static const double axes[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    int                 count      = 0;
+    for (int i = 0; i < 4 && count < 2; i++) {
+        double t = curve_nearest(curve, (double[]){curve->centre[0] + curve->radius * axes[i][0],
+                                                   curve->centre[1] + curve->radius * axes[i][1]});
+        if (t > 1e-9 && t < 1 - 1e-9)
+            turns[count++] = t;
+    }
+    return count;
+}
+
 /* Cut where a coordinate turns back. */
 static void add_monotone(Making *making, const Curve *curve)
 {
     double turns[4] = {0, 1, 1, 1};
     int    count    = 1;
-    for (int k = 0; k < 2 && !curve->straight; k++) {
+    for (int k = 0; k < 2 && !curve->straight && !(curve->radius > 0); k++) {
         double way = curve->via[k] - curve->from[k], next = curve->to[k] - curve->via[k];
         double t = way != next ? way / (way - next) : 0;
         if (t > 0 && t < 1)
             turns[count++] = t;
     }
+    if (curve->radius > 0)
+        count += arc_turns(curve, turns + 1);
     if (count == 3 && turns[1] > turns[2]) {
         double t = turns[1];
         turns[1] = turns[2];
@@ -55,15 +71,9 @@ static void add_monotone(Making *making, const Curve *curve)
 /* From the knot with the smaller number. */
 static Edge ascending(const Edge *edge)
 {
-    Edge turned = *edge;
     if (edge->from < edge->to)
-        return turned;
-    turned.from   = edge->to;
-    turned.to     = edge->from;
-    turned.weight = -edge->weight;
-    memcpy(turned.curve.from, edge->curve.to, sizeof turned.curve.from);
-    memcpy(turned.curve.to, edge->curve.from, sizeof turned.curve.to);
-    return turned;
+        return *edge;
+    return (Edge){curve_reversed(&edge->curve), edge->to, edge->from, -edge->weight};
 }
 
 static int compare_numbers(double a, double b) { return (a > b) - (a < b); }
@@ -106,11 +116,7 @@ static void merge_edges(Making *making)
 
 static void reverse(Edge *edge)
 {
-    Edge old = *edge;
-    memcpy(edge->curve.from, old.curve.to, sizeof edge->curve.from);
-    memcpy(edge->curve.to, old.curve.from, sizeof edge->curve.to);
-    edge->from = old.to;
-    edge->to   = old.from;
+    *edge = (Edge){curve_reversed(&edge->curve), edge->to, edge->from, edge->weight};
 }
 
 /* With the inside on the left. */

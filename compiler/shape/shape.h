@@ -142,6 +142,20 @@ enum { MOST_SHAPE_DEPTH = 1000 };
 /* Walks visit a shape as often as it is used, which is more often than there are shapes. */
 enum { MOST_TREE_SHAPES = 4000000 };
 
+/* A corner of a figure's outline, [x, y], and the bulge of the arc from there to the next: the tangent of
+   a quarter of its angle, above 0 to the left.  A number is a node unless that is NODE_NONE. */
+typedef struct BorderCorner {
+    double numbers[3];
+    Node   nodes[3];
+} BorderCorner;
+
+/* The corners of a figure that a declaration knows, found when the figure is joined; before that none. */
+typedef struct Border {
+    BorderCorner *corners;
+    uint32_t      count;
+    bool          found;
+} Border;
+
 struct Shape {
     ShapeKind     kind;
     Span          span; /* of the expression that made it */
@@ -200,6 +214,8 @@ struct Shape {
     uint32_t            stage_count;
 
     struct OutlineShape *outline;    /* PRIMITIVE that contours fill (lower/outline.h), else NULL */
+    Border              *border;     /* PRIMITIVE whose declaration knows its outline, else NULL */
+    struct Boundary     *boundary;   /* sharp joint of figures (lower/boundary.h), else NULL */
     Node plane_normal, plane_offset; /* PRIMITIVE that is a half-space, else NODE_NONE */
     Node ball_radius;                /* PRIMITIVE that is a ball about the origin, else NODE_NONE */
     /* PRIMITIVE that a declaration of the language made: what the evaluator knows of it, and
