@@ -77,6 +77,15 @@ static const char *other_way(const char *path)
     return "";
 }
 
+/* What the head of the scene says is said here, too; what is left out was said before. */
+static void say_notes(const Import *import)
+{
+    for (size_t i = 0; i < import->notes.count; i++)
+        if (strncmp(import->notes.items[i].words, "a part is left out", 18) != 0)
+            say("%s:%u: note: %s", import->path, import->notes.items[i].line,
+                import->notes.items[i].words);
+}
+
 KrsStatus command_import(Options *options)
 {
     const char *path   = options->files.items[0];
@@ -96,6 +105,8 @@ KrsStatus command_import(Options *options)
     status = import_file(&import);
     for (size_t i = 0; i < import.left_out.count; i++)
         say("left out: %s", import.left_out.items[i].words);
+    if (status == KRS_OK && !options->quiet)
+        say_notes(&import);
     if (status == KRS_BAD_SCENE && import.refusal.length > 0)
         say("%s", import.refusal.bytes);
     return status == KRS_OK ? write_scene(options, &import.scene) : say_status(status, path);

@@ -7,6 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/vec.h"
+
 enum { PAINTED = 1, UNPAINTED = 2, MOST_WRITTEN = 200000, MOST_DEPTH = 1000, WIDTH = 100 };
 
 Part *part_new(Import *import, unsigned line, const char *stem)
@@ -46,6 +48,39 @@ Part *part_around(Import *import, unsigned line, const char *stem, Part *what)
 
 void part_move(Part *part, const Place *place) { part->place = place_chain(&part->place, place); }
 
+static bool is_in(const PartInside *inside, const double p[3])
+{
+    const double *n = inside->numbers;
+    switch (inside->kind) {
+    case PART_BALL: return length3(p) < n[0];
+    case PART_BOX: return fabs(p[0]) < n[0] && fabs(p[1]) < n[1] && fabs(p[2]) < n[2];
+    case PART_HALF_SPACE: return dot3(n, p) < n[3];
+    default: return false;
+    }
+}
+
+bool part_holds(const Part *part, const double point[3])
+{
+    Place  back = part->place;
+    double p[3];
+    size_t held = 0, count = part->parts.count;
+    if (!place_invert(&back) || part->depth > MOST_DEPTH)
+        return false;
+    place_apply(&back, point, p);
+    bool first = false, in = is_in(&part->inside, p);
+    for (size_t i = 0; i < count && !part->methods; i++) {
+        bool item = part_holds(part->parts.items[i], p);
+        held += item;
+        first = i == 0 ? item : first;
+    }
+    if (count > 0)
+        in = part->join == PART_UNION          ? held > 0
+             : part->join == PART_INTERSECTION ? held == count
+             : part->join == PART_DIFFERENCE   ? first && held == 1
+                                               : false;
+    return in != part->outside;
+}
+
 const char *import_number_text(Import *import, double number)
 {
     Text text = {.arena = import->arena};
@@ -83,6 +118,8 @@ static int part_painted(Part *part)
     }
     return part->painted;
 }
+
+bool part_is_painted(Part *part) { return part_painted(part) == PAINTED; }
 
 static int items_painted(const Part *part)
 {

@@ -27,6 +27,17 @@ typedef struct PartBalls {
     double *radii; /* of each, where they differ; else NULL */
 } PartBalls;
 
+/* Whether a point is in a simple solid, in its own space. */
+typedef struct PartInside {
+    enum {
+        PART_UNTOLD,    /* it is something else */
+        PART_BALL,      /* of the first number, its radius */
+        PART_BOX,       /* of half the edges */
+        PART_HALF_SPACE /* of a unit normal and an offset */
+    } kind;
+    double numbers[4];
+} PartInside;
+
 /* What stands upright on a figure: from z = -height / 2 to height / 2 in its
  * own space. */
 typedef struct PartColumn {
@@ -52,6 +63,7 @@ typedef struct Part {
     bool        shared;  /* in several places */
     PartBalls   balls;
     PartColumn  column;
+    PartInside  inside;
     double      figure_radius; /* of a circle about its own origin; else 0 */
     double (*corners)[3];      /* of a figure with straight sides, in their order, or
                            NULL */
@@ -79,6 +91,10 @@ void part_add(Import *import, Part *part, Part *item);
 Part *part_around(Import *import, unsigned line, const char *stem, Part *what);
 /* Places it anew, behind where it is. */
 void part_move(Part *part, const Place *place);
+/* Whether a point is inside, as far as that is told; if not, it counts as outside. */
+bool part_holds(const Part *part, const double point[3]);
+/* Whether all that it is made of has looks; nothing may be added to it after that. */
+bool part_is_painted(Part *part);
 
 /* "[1, 2, 3]", "2.5": rounded numbers, to be put into formats. */
 const char *import_vector_text(Import *import, const double *numbers, int count);

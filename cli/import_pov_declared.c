@@ -240,7 +240,9 @@ bool pov_rvalue(PovReader *reader, PovCell *cell)
         return false;
     if (value || pov_color_follows(reader))
         return read_value(reader, cell);
-    *cell = (PovCell){.kind = POV_LOOK};
+    *cell = (PovCell){.kind = POV_LOOK, .look = reader->usual};
+    if (!word_is(words, "texture") && !word_is(words, "material"))
+        cell->look.colored = cell->look.finished = false; /* of a part of one */
     if (!pov_look(reader, &cell->look, &look))
         return false;
     if (look) {

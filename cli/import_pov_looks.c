@@ -62,9 +62,7 @@ static bool take_declared(PovReader *reader, PovLook *look)
     }
     if (own->look.finished) {
         look->finished = true;
-        look->specular = own->look.specular;
-        look->size     = own->look.size;
-        look->metallic = own->look.metallic;
+        look->finish   = own->look.finish;
     }
     look->ior = own->look.ior > 0 ? own->look.ior : look->ior;
     return true;
@@ -76,7 +74,7 @@ typedef bool ReadEntry(PovReader *reader, double color[5]);
 
 static bool read_pigment_entry(PovReader *reader, double color[5])
 {
-    PovLook look = {0};
+    PovLook look = pov_usual_look();
     if (!pov_look_inside(reader, &look))
         return false;
     look_color(&look, color);
@@ -136,7 +134,7 @@ static bool read_list_of_looks(PovReader *reader, int most, PovLook *look)
     words_advance(&reader->words);
     for (int i = 0; i < most; i++) {
         double  color[5];
-        PovLook part  = {0};
+        PovLook part  = pov_usual_look();
         bool    taken = false;
         if (!take_declared(reader, &part) && !pov_look(reader, &part, &taken))
             return false;
@@ -239,39 +237,80 @@ static bool amount(PovReader *reader, double otherwise, double *number)
     return true;
 }
 
-/* How wide a highlight is: phong_size, or 1 / roughness, are exponents of a
- * cosine. */
+/* A number, or a colour, for each of three channels. */
+static bool channels(PovReader *reader, double channels[3])
+{
+    double color[5];
+    words_advance(&reader->words);
+    if (!pov_color(reader, color))
+        return false;
+    memcpy(channels, color, 3 * sizeof *channels);
+    return true;
+}
+
+/* `diffuse albedo 0.6, 0.2`: the second one is for what is lit from behind. */
+static bool diffuse(PovReader *reader, PovFinish *finish)
+{
+    double behind;
+    words_advance(&reader->words);
+    word_accept(&reader->words, "albedo");
+    if (!pov_number(reader, &finish->diffuse))
+        return false;
+    if (!word_accept(&reader->words, ",") || !pov_value_follows(reader))
+        return true;
+    import_note(reader->import, reader->words.word.line, "light from behind is left out");
+    return pov_number(reader, &behind);
+}
+
+/* How wide a highlight is: a cosine with phong_size for its exponent, between the mirrored ray and
+   the light, is about one with four times that between the normal and their middle; 1 / roughness is
+   such an exponent. */
+static bool finish_word(PovReader *reader, PovLook *look)
+{
+    WordReader *words  = &reader->words;
+    PovFinish  *finish = &look->finish;
+    bool        phong = word_is(words, "phong"), specular = word_is(words, "specular");
+    double      number;
+    if (phong || specular) {
+        words_advance(words);
+        word_accept(words, "albedo");
+        if (!pov_number(reader, &number))
+            return false;
+        finish->specular = finish->specular || number > 0;
+        if (finish->exponent == 0)
+            finish->exponent = phong ? 160 : 20;
+        return true;
+    }
+    if (word_is(words, "phong_size")) {
+        if (!amount(reader, 40, &number))
+            return false;
+        finish->exponent = 4 * number;
+        return true;
+    }
+    if (word_is(words, "roughness")) {
+        if (!amount(reader, 0.05, &number))
+            return false;
+        finish->exponent = number > 0 ? 1 / number : 1e6;
+        return true;
+    }
+    if (word_is(words, "metallic"))
+        return amount(reader, 1, &finish->metallic);
+    if (word_is(words, "diffuse"))
+        return diffuse(reader, finish);
+    if (word_is(words, "ambient"))
+        return channels(reader, finish->ambient);
+    if (word_is(words, "emission"))
+        return channels(reader, finish->emission);
+    return pov_leave_out(reader, "of a finish is");
+}
+
 static bool finish(PovReader *reader, PovLook *look)
 {
-    WordReader *words = &reader->words;
-    look->finished    = true;
-    while (!word_is(words, "}")) {
-        double number;
-        bool   phong = word_is(words, "phong"), specular = word_is(words, "specular");
-        if (!pov_release(reader))
+    look->finished = true;
+    while (!word_is(&reader->words, "}")) {
+        if (!pov_release(reader) || (!take_declared(reader, look) && !finish_word(reader, look)))
             return false;
-        if (take_declared(reader, look))
-            continue;
-        if (phong || specular) {
-            if (!amount(reader, 0, &number))
-                return false;
-            look->specular = look->specular || number > 0;
-            if (look->size == 0)
-                look->size = phong ? 40 : 20;
-        } else if (word_is(words, "phong_size")) {
-            if (!amount(reader, 40, &look->size))
-                return false;
-        } else if (word_is(words, "roughness")) {
-            if (!amount(reader, 0.05, &number))
-                return false;
-            look->size = number > 0 ? 1 / number : 1e6;
-        } else if (word_is(words, "metallic")) {
-            if (!amount(reader, 1, &look->metallic))
-                return false;
-        } else if (!pov_leave_out(reader, "of a finish is")) {
-            return false;
-        }
-        word_accept(words, ",");
+        word_accept(&reader->words, ",");
     }
     return true;
 }
@@ -321,8 +360,12 @@ static bool texture(PovReader *reader, PovLook *look)
 static bool read_layer(PovReader *reader, PovLook *look)
 {
     PovLook layer = *look, below = *look;
-    layer.colored = layer.textured = false;
-    layer.filter = layer.transmit = 0;
+    if (below.textured) {
+        layer.colored = false;
+        layer.filter = layer.transmit = 0;
+        layer.finish                  = reader->usual.finish;
+    }
+    layer.textured = false;
     if (!block(reader, &layer, texture))
         return false;
     double through = fmin(fmax(layer.filter + layer.transmit, 0), 1);
@@ -365,38 +408,90 @@ bool pov_look(PovReader *reader, PovLook *look, bool *taken)
         good = read_map(reader, read_pigment_entry, look);
     else
         good = true, *taken = false;
+    look->said = look->said || *taken;
     reader->depth--;
     return good;
 }
 
+PovLook pov_usual_look(void)
+{
+    return (PovLook){.finish = {.diffuse = 0.6, .ambient = {0.1, 0.1, 0.1}}};
+}
+
+/* Four digits of a colour, which the curve of a screen hides the rest of. */
+static const char *color_text(PovReader *reader, const double color[3])
+{
+    double rounded[3];
+    for (int i = 0; i < 3; i++)
+        rounded[i] = round(1e4 * color[i]) / 1e4;
+    return import_vector_text(reader->import, rounded, 3);
+}
+
+/* `color` and `emission`, as POV-Ray has them: what is transmitted has no colour of the thing, what
+   is filtered has, and neither is scattered. */
+static void add_colors(PovReader *reader, const PovLook *look, double through, Text *text)
+{
+    const PovFinish *finish = &look->finish;
+    double           color[3], emission[3], most = 0;
+    double           filter = fmax(look->filter, 0), transmit = fmax(look->transmit, 0);
+    for (int i = 0; i < 3; i++) {
+        double pigment = look->colored ? look->color[i] : 0.6;
+        double tint    = through > 0 ? (filter * pigment + transmit) / (filter + transmit) : 0;
+        double body    = pov_light_of(reader, finish->diffuse * pigment);
+        color[i]       = fmin((1 - through) * body + through * pov_light_of(reader, tint), 1);
+        emission[i]    = (1 - through) *
+                      pov_light_of(reader, pigment * (finish->ambient[i] * reader->ambient[i] +
+                                                      finish->emission[i]));
+        most = fmax(most, emission[i]);
+    }
+    text_format(text, "color: %s", color_text(reader, color));
+    if (most >= 5e-5)
+        text_format(text, ", emission: %s", color_text(reader, emission));
+}
+
+/* The name of a material with this text in its braces. */
+static const char *material_name(PovReader *reader, const char *inside)
+{
+    Text   name   = {.arena = reader->import->arena};
+    size_t number = 0;
+    while (number < reader->material_texts.count &&
+           strcmp(reader->material_texts.items[number], inside) != 0)
+        number++;
+    text_format(&name, "look_%zu", number + 1);
+    if (number < reader->material_texts.count)
+        return name.bytes;
+    array_push(reader->import->arena, &reader->material_texts, inside);
+    text_format(&reader->materials, "material %s { %s }\n", name.bytes, inside);
+    return name.bytes;
+}
+
 const char *pov_look_text(PovReader *reader, const PovLook *look)
 {
-    double color[3], through = fmin(fmax(look->filter + look->transmit, 0), 1);
-    /* What is transmitted has no colour of the thing. */
-    double white = through > 0 ? fmin(fmax(look->transmit, 0), 1) : 0;
-    for (int i = 0; i < 3; i++) {
-        color[i] = fmin(look->colored ? look->color[i] : 0.6, 1);
-        color[i] += white * (1 - color[i]);
-    }
+    const PovFinish *finish  = &look->finish;
+    double           through = fmin(fmax(look->filter + look->transmit, 0), 1);
+    Text             inside  = {.arena = reader->import->arena};
+    if (!look->said)
+        return NULL;
     if (look->patterned)
         import_note(reader->import, reader->words.word.line,
                     "patterns of pigments are one colour, their mean");
-    const char *text = import_vector_text(reader->import, color, 3);
-    if (!look->finished && through == 0)
-        return look->colored ? text : NULL;
-    Text   name      = {.arena = reader->import->arena};
-    Text  *materials = &reader->materials;
-    double roughness = look->specular ? sqrt(2 / (fmax(look->size, 0) + 2))
-                       : through > 0  ? 0.01
-                                      : 0.6;
-    text_format(&name, "look_%zu", ++reader->material_count);
-    text_format(materials, "material %s { color: %s, roughness: %.3g, metallic: %s", name.bytes,
-                text, fmax(roughness, 0.01),
-                import_number_text(reader->import, fmin(fmax(look->metallic, 0), 1)));
+    if (!look->colored && !look->patterned)
+        import_note(reader->import, reader->words.word.line,
+                    "what has no pigment is grey, not black");
+    add_colors(reader, look, through, &inside);
+    if (finish->specular)
+        text_format(&inside, ", roughness: %.3g",
+                    fmax(pow(2 / (fmax(finish->exponent, 0) + 2), 0.25), 0.01));
+    else if (through > 0)
+        text_add(&inside, ", roughness: 0.01");
+    else if (finish->metallic <= 0)
+        text_add(&inside, ", specular: 0");
+    if (finish->metallic > 0)
+        text_format(&inside, ", metallic: %s",
+                    import_number_text(reader->import, fmin(finish->metallic, 1)));
     if (through > 0)
         text_format(
-            materials, ", transmission: %s, ior: %s", import_number_text(reader->import, through),
+            &inside, ", transmission: %s, ior: %s", import_number_text(reader->import, through),
             import_number_text(reader->import, look->ior > 0 ? fmin(fmax(look->ior, 1), 4) : 1));
-    text_add(materials, " }\n");
-    return name.bytes;
+    return material_name(reader, inside.bytes);
 }

@@ -2,10 +2,12 @@
  * import_pov_objects.c: objects of POV-Ray: shapes, joints, and objects that
  * were declared, with what stands behind them in their blocks.
  */
+#include <math.h>
 #include <string.h>
 
 #include "cli/import_pov_reader.h"
 
+static bool read_union(PovReader *reader, unsigned line, Part **part);
 static bool read_join(PovReader *reader, unsigned line, Part **part);
 static bool read_object(PovReader *reader, unsigned line, Part **part);
 
@@ -25,8 +27,8 @@ static const struct {
     {"quartic", pov_quartic, PART_UNION},
     {"poly", pov_poly, PART_UNION},
     {"object", read_object, PART_UNION},
-    {"union", read_join, PART_UNION},
-    {"merge", read_join, PART_UNION},
+    {"union", read_union, PART_UNION},
+    {"merge", read_union, PART_UNION},
     {"intersection", read_join, PART_INTERSECTION},
     {"difference", read_join, PART_DIFFERENCE},
     {"prism", pov_prism, PART_UNION},
@@ -56,14 +58,47 @@ static int find_object(const PovReader *reader)
 
 bool pov_object_follows(const PovReader *reader) { return find_object(reader) >= 0; }
 
+/* Shapes that scenes do not have. */
+static const char *const missing[] = {
+    "mesh",     "mesh2", "height_field",    "bicubic_patch", "isosurface", "parametric",  "polygon",
+    "triangle", "sor",   "smooth_triangle", "ovus",          "lemon",      "sphere_sweep"};
+
+static bool is_missing(const PovReader *reader)
+{
+    for (size_t i = 0; i < sizeof missing / sizeof *missing; i++)
+        if (word_is(&reader->words, missing[i]))
+            return true;
+    return false;
+}
+
+/* An object of a join; *item is NULL where nothing is seen of it.  One that is refused is left out of
+   a union with --keep-going. */
+static bool read_item(PovReader *reader, bool may_lack, Part **item)
+{
+    unsigned line = reader->words.word.line;
+    PovState state;
+    pov_keep_state(reader, &state);
+    *item = NULL;
+    if (is_missing(reader))
+        import_refuse(reader->import, line, "`%.40s` is not translated", reader->words.word.text);
+    else if (pov_object(reader, item))
+        return true;
+    if (!may_lack || !import_leaves_out(reader->import, line))
+        return false;
+    *item = NULL;
+    pov_restore_state(reader, &state);
+    words_advance(&reader->words);
+    return pov_skip_block(reader);
+}
+
 /* Directives may stand between objects, and lights, which are those of the
  * scene. */
-static bool read_join(PovReader *reader, unsigned line, Part **part)
+static bool read_items(PovReader *reader, unsigned line, bool may_lack, Part **part)
 {
     WordReader *words = &reader->words;
     *part             = part_new(reader->import, line, "union");
     for (;;) {
-        Part *item;
+        Part *item = NULL;
         if (!pov_release(reader))
             return false;
         if (word_is(words, "light_source")) {
@@ -71,22 +106,30 @@ static bool read_join(PovReader *reader, unsigned line, Part **part)
             if (!pov_light(reader, &light))
                 return false;
             array_push(reader->import->arena, &reader->lights, light);
-        } else if (pov_object_follows(reader)) {
-            if (!pov_object(reader, &item))
+        } else if (pov_object_follows(reader) || is_missing(reader)) {
+            if (!read_item(reader, may_lack, &item))
                 return false;
-            if (item)
-                part_add(reader->import, *part, item);
         } else {
             PovCell *own = pov_take(reader, POV_OBJECT);
             if (!own)
-                break;
-            if (own->part)
-                part_add(reader->import, *part, own->part);
+                return true;
+            item = own->part;
         }
+        if (item)
+            part_add(reader->import, *part, item);
         while (word_accept(words, ",") || word_accept(words, ";"))
             ;
     }
-    return true;
+}
+
+static bool read_union(PovReader *reader, unsigned line, Part **part)
+{
+    return read_items(reader, line, true, part);
+}
+
+static bool read_join(PovReader *reader, unsigned line, Part **part)
+{
+    return read_items(reader, line, false, part);
 }
 
 /* A name, or an object in the object. */
@@ -130,11 +173,31 @@ bool pov_modifier_follows(const PovReader *reader)
     return is_harmless(reader);
 }
 
+/* A box that is scaled along its edges is a box: its distance is exact, where that of what is scaled
+   unevenly is a bound, and a bad one of what becomes flat. */
+static void stretch_box(Import *import, Part *part)
+{
+    double *half = part->inside.numbers, size[3];
+    for (int i = 0; i < 9; i++)
+        if (i / 3 != i % 3 && part->place.rows[i / 3][i % 3] != 0)
+            return;
+    if (part->inside.kind != PART_BOX || place_factor(&part->place) > 0)
+        return;
+    for (int i = 0; i < 3; i++) {
+        half[i] *= fabs(part->place.rows[i][i]);
+        size[i]                = 2 * half[i];
+        part->place.rows[i][i] = 1;
+    }
+    Text text = {.arena = import->arena};
+    text_format(&text, "box(%s)", import_vector_text(import, size, 3));
+    part->shape = text.bytes;
+}
+
 /* The modifiers of an object, up to its `}`. */
 static bool read_modifiers(PovReader *reader, const char *name, Part *part)
 {
     WordReader *words    = &reader->words;
-    PovLook     look     = {0};
+    PovLook     look     = reader->usual;
     Place       place    = place_identity();
     bool        inverted = false;
     while (!word_is(words, "}")) {
@@ -158,7 +221,7 @@ static bool read_modifiers(PovReader *reader, const char *name, Part *part)
         } else if (word_is(words, "color") || word_is(words, "colour")) {
             if (!pov_color(reader, color))
                 return false;
-            look.colored = true;
+            look.said = look.colored = true;
             memcpy(look.color, color, sizeof look.color);
         } else if (words->word.kind == IMPORT_WORD_NAME) {
             return import_refuse(reader->import, words->word.line,
@@ -171,6 +234,7 @@ static bool read_modifiers(PovReader *reader, const char *name, Part *part)
         return true;
     place = place_mirrored(&place);
     part_move(part, &place);
+    stretch_box(reader->import, part);
     part->look    = pov_look_text(reader, &look);
     part->outside = part->outside != inverted;
     return true;
@@ -188,13 +252,14 @@ bool pov_object(PovReader *reader, Part **part)
     if (!pov_deeper(reader) || !word_expect(&reader->words, "{") || !pov_release(reader) ||
         !objects[found].build(reader, line, part))
         return false;
-    if (objects[found].build == read_join) {
+    bool joins = objects[found].build == read_join || objects[found].build == read_union;
+    if (joins) {
         (*part)->join = objects[found].join;
         (*part)->stem = objects[found].name;
     }
     if (!read_modifiers(reader, objects[found].name, *part))
         return false;
-    if (*part && objects[found].build == read_join && (*part)->parts.count == 0)
+    if (*part && joins && (*part)->parts.count == 0)
         *part = NULL;
     reader->depth--;
     return word_expect(&reader->words, "}");

@@ -18,23 +18,31 @@ typedef struct PovValue {
     int    count; /* 1: a number, which may stand for a vector of equal ones */
 } PovValue;
 
-/* `size` of highlights is as in `phong_size`; `filter` and `transmit` are how
- * much light goes through. */
+/* How light comes back: `exponent` of highlights is that of the cosine between
+ * the normal and the middle of both directions. */
+typedef struct PovFinish {
+    bool   specular, phong;
+    double exponent, metallic, diffuse, ambient[3], emission[3];
+} PovFinish;
+
+/* `said`: it is more than what is usual; `filter` and `transmit` are how much
+ * light goes through. */
 typedef struct PovLook {
-    bool   colored, finished, specular, patterned, textured;
-    double color[3], filter, transmit, size, metallic, ior;
+    bool      said, colored, finished, patterned, textured;
+    double    color[3], filter, transmit, ior;
+    PovFinish finish;
 } PovLook;
 
 typedef struct PovView {
-    bool     has_camera, orthographic, has_direction;
+    bool     has_camera, orthographic, widened, has_direction, mirrored;
     double   location[3], look_at[3], sky[3], direction[3], right[3], up[3], angle;
     bool     looks;
     unsigned line;
 } PovView;
 
 typedef struct PovLight {
-    double   position[3], target[3], color[5];
-    bool     parallel, shadowless;
+    double   position[3], target[3], color[5], full, falloff;
+    bool     parallel, shadowless, spot;
     unsigned line;
 } PovLight;
 
@@ -129,11 +137,18 @@ typedef struct PovReader {
         PovLight *items;
         size_t    count, capacity;
     } lights;
-    Part    *shown;     /* a union of what the scene has */
-    Text     materials; /* of looks that are more than a colour */
-    size_t   material_count;
+    Part *shown;     /* a union of what the scene has */
+    Text  materials; /* of looks that are more than a colour */
+    struct {
+        const char **items; /* what stands in their braces */
+        size_t       count, capacity;
+    } material_texts;
     PovLook  usual; /* of `#default` */
     PovView  view;
+    double   version;     /* of `#version` in the file itself; 0: none */
+    double   gamma;       /* exponent of colours; 0: the curve of sRGB */
+    double   found_gamma; /* the same, of `assumed_gamma`; below 0: there is none */
+    double   ambient[3];  /* of `ambient_light` */
     bool     has_background;
     double   background[3];
     unsigned background_line;
@@ -190,8 +205,9 @@ bool pov_vector(PovReader *reader, double v[3]);
 bool pov_color_follows(PovReader *reader);
 /* Red, green, blue, filter, transmit. */
 bool pov_color(PovReader *reader, double color[5]);
-/* Of a value that is a colour. */
-double pov_linear(double s);
+/* What a channel of a colour is in light.  Colours of files are in the space of
+ * `assumed_gamma`; without it, those of old ones are as they are shown. */
+double pov_light_of(const PovReader *reader, double channel);
 
 /* ---- words: import_pov_words.c ---- */
 
@@ -212,6 +228,8 @@ void pov_point(const double q[3], double p[3]);
 /* `pigment`, `finish`, `texture` and `material` with their blocks; *taken
  * likewise. */
 bool pov_look(PovReader *reader, PovLook *look, bool *taken);
+/* The look of what says nothing, and nothing of `#default` yet. */
+PovLook pov_usual_look(void);
 /* What stands in such a block, or where one may be left away. */
 bool pov_look_inside(PovReader *reader, PovLook *look);
 /* The argument of `.paint`; NULL: the look says nothing. */
@@ -241,6 +259,13 @@ PovBuild pov_sphere, pov_box, pov_cylinder, pov_cone, pov_torus, pov_plane, pov_
 bool pov_camera(PovReader *reader, PovView *view);
 bool pov_light(PovReader *reader, PovLight *light);
 bool pov_background(PovReader *reader);
+/* The mean of its colours is the background. */
+bool pov_sky_sphere(PovReader *reader);
+/* `global_settings` */
+bool pov_settings(PovReader *reader);
+/* When all was read: without a camera POV-Ray has one at the origin; shapes alone are seen as a whole
+   here. */
+void pov_finish_view(PovReader *reader);
 void pov_write_view(PovReader *reader);
 
 #endif

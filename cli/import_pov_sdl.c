@@ -471,6 +471,24 @@ static const char *scene_name(PovReader *reader, const char *name)
     return text.bytes;
 }
 
+/* With --keep-going an object that is refused is one of which nothing is seen. */
+static bool declared(PovReader *reader, PovCell *cell)
+{
+    const char *behind = reader->words.at + strspn(reader->words.at, " \t\r\n");
+    unsigned    line   = reader->words.word.line;
+    PovState    state;
+    pov_keep_state(reader, &state);
+    if (pov_rvalue(reader, cell))
+        return true;
+    if (state.word.kind != IMPORT_WORD_NAME || *behind != '{' ||
+        !import_leaves_out(reader->import, line))
+        return false;
+    pov_restore_state(reader, &state);
+    *cell = (PovCell){.kind = POV_OBJECT};
+    words_advance(&reader->words);
+    return pov_skip_block(reader);
+}
+
 static bool do_declare(PovReader *reader, bool local, bool *next)
 {
     WordReader *words = &reader->words;
@@ -491,7 +509,7 @@ static bool do_declare(PovReader *reader, bool local, bool *next)
     if (word_is(words, "[") && cell && !(cell = pov_element(reader, cell)))
         return false;
     reader->held_at = reader->open;
-    bool good       = word_expect(words, "=") && pov_release(reader) && pov_rvalue(reader, &filled);
+    bool good       = word_expect(words, "=") && pov_release(reader) && declared(reader, &filled);
     reader->held_at = held;
     if (!good)
         return false;
@@ -509,16 +527,27 @@ static bool do_declare(PovReader *reader, bool local, bool *next)
 /* ---- directives ---- */
 
 /* Of a text for people, or of what changes no shape. */
-static bool do_words(PovReader *reader, bool *next)
+static bool do_words(PovReader *reader, PovCell *said, bool *next)
 {
-    PovCell ignored = {0};
     words_advance(&reader->words);
     int held        = reader->held_at;
     reader->held_at = reader->open;
-    bool good       = pov_rvalue(reader, &ignored);
+    bool good       = pov_rvalue(reader, said);
     reader->held_at = held;
     *next           = !word_is(&reader->words, ";");
     return good;
+}
+
+/* That of included files is their own. */
+static bool do_version(PovReader *reader, bool *next)
+{
+    PovCell said = {0};
+    bool    own  = reader->sources.count == 1 && reader->version == 0;
+    if (!do_words(reader, &said, next))
+        return false;
+    if (own && said.kind == POV_VALUE)
+        reader->version = said.value.v[0];
+    return true;
 }
 
 /* Nothing is written; what a program reads from files is not known. */
@@ -572,6 +601,7 @@ bool pov_default(PovReader *reader)
         if (!taken && !pov_leave_out(reader, "of `#default` is"))
             return false;
     }
+    reader->usual.said = reader->usual.textured = false;
     return true;
 }
 
@@ -612,8 +642,10 @@ static bool directive(PovReader *reader, bool *next)
     if (strcmp(name, "default") == 0)
         return pov_default(reader);
     if (strcmp(name, "debug") == 0 || strcmp(name, "warning") == 0 || strcmp(name, "render") == 0 ||
-        strcmp(name, "statistics") == 0 || strcmp(name, "version") == 0)
-        return do_words(reader, next);
+        strcmp(name, "statistics") == 0)
+        return do_words(reader, &(PovCell){0}, next);
+    if (strcmp(name, "version") == 0)
+        return do_version(reader, next);
     if (strcmp(name, "error") == 0) {
         PovCell said = {0};
         words_advance(words);

@@ -36,10 +36,29 @@ bool pov_sphere(PovReader *reader, unsigned line, Part **part)
         return false;
     if (radius == 0)
         return true; /* nothing is seen of it */
-    radius = fabs(radius);
-    *part  = part_shape(reader->import, line, "sphere", "sphere(%s)",
-                        import_number_text(reader->import, radius));
+    radius          = fabs(radius);
+    *part           = part_shape(reader->import, line, "sphere", "sphere(%s)",
+                                 import_number_text(reader->import, radius));
+    (*part)->inside = (PartInside){PART_BALL, {radius}};
     move_to(*part, center);
+    return true;
+}
+
+/* Sheets are no solids; a box with one length of 0 gets a little of it. */
+static bool thicken(PovReader *reader, unsigned line, double size[3])
+{
+    double most = fmax(size[0], fmax(size[1], size[2]));
+    int    flat = 0;
+    for (int i = 0; i < 3; i++)
+        flat += !(size[i] > 0);
+    if (flat > 1)
+        return positive(reader, line, 0);
+    for (int i = 0; i < 3 && flat > 0; i++)
+        if (!(size[i] > 0)) {
+            size[i] = 1e-3 * most;
+            import_note(reader->import, line,
+                        "flat boxes are a thousandth of their longest edge thick");
+        }
     return true;
 }
 
@@ -54,11 +73,12 @@ bool pov_box(PovReader *reader, unsigned line, Part **part)
     for (int i = 0; i < 3; i++) {
         size[i]   = fabs(high[i] - low[i]);
         center[i] = (high[i] + low[i]) / 2;
-        if (!positive(reader, line, size[i]))
-            return false;
     }
-    *part = part_shape(reader->import, line, "box", "box(%s)",
-                       import_vector_text(reader->import, size, 3));
+    if (!thicken(reader, line, size))
+        return false;
+    *part           = part_shape(reader->import, line, "box", "box(%s)",
+                                 import_vector_text(reader->import, size, 3));
+    (*part)->inside = (PartInside){PART_BOX, {size[0] / 2, size[1] / 2, size[2] / 2}};
     move_to(*part, center);
     return true;
 }
@@ -149,9 +169,10 @@ bool pov_plane(PovReader *reader, unsigned line, Part **part)
     pov_point(v, normal);
     if (!normalize3(normal))
         return import_refuse(reader->import, line, "a plane has no normal");
-    *part = part_shape(reader->import, line, "plane", "plane(%s, %s)",
-                       import_vector_text(reader->import, normal, 3),
-                       import_number_text(reader->import, offset));
+    *part           = part_shape(reader->import, line, "plane", "plane(%s, %s)",
+                                 import_vector_text(reader->import, normal, 3),
+                                 import_number_text(reader->import, offset));
+    (*part)->inside = (PartInside){PART_HALF_SPACE, {normal[0], normal[1], normal[2], offset}};
     return true;
 }
 

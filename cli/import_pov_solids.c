@@ -286,6 +286,7 @@ bool pov_disc(PovReader *reader, unsigned line, Part **part)
         text_format(&text, ".align([0, 1, 0], %s)", import_vector_text(reader->import, normal, 3));
     *part = part_shape(reader->import, line, "disc", "%s", text.bytes);
     pov_point(center, p);
+    add_scaled3(p, p, -0.5e-3 * radius, normal); /* its upper side is where the disc is */
     Place moved = place_move(p);
     part_move(*part, &moved);
     return true;
@@ -329,7 +330,7 @@ static bool read_component(BlobReader *blob, bool round)
     bool  moved = false;
     Place place = place_identity();
     while (!word_is(&reader->words, "}")) {
-        PovLook ignored = {0};
+        PovLook ignored = pov_usual_look();
         bool    taken = false, looks = false;
         if (!pov_place(reader, &place, &taken) || (!taken && !pov_look(reader, &ignored, &looks)))
             return false;

@@ -40,12 +40,12 @@ static const struct {
     {"u", {{1, 0}, 2}},
     {"v", {{0, 1}, 2}},
     {"version", {{3.7}, 1}},
-    {"final_frame", {{1}, 1}},
-    {"frame_number", {{1}, 1}},
-    {"initial_frame", {{1}, 1}},
-    {"final_clock", {{1}, 1}},
+    {"final_frame", {{0}, 1}},
+    {"frame_number", {{0}, 1}},
+    {"initial_frame", {{0}, 1}},
+    {"final_clock", {{0}, 1}},
     {"initial_clock", {{0}, 1}},
-    {"clock_delta", {{1}, 1}},
+    {"clock_delta", {{0}, 1}},
     {"clock_on", {{0}, 1}},
     {"input_file_name", {{0}, 1}},
 /* Of colors.inc, where it is not installed. */
@@ -619,11 +619,25 @@ bool pov_color_follows(PovReader *reader)
     return pov_value_follows(reader);
 }
 
-double pov_linear(double s) { return s <= 0.04045 ? s / 12.92 : pow((s + 0.055) / 1.055, 2.4); }
+static double linear(double s) { return s <= 0.04045 ? s / 12.92 : pow((s + 0.055) / 1.055, 2.4); }
+
+double pov_light_of(const PovReader *reader, double channel)
+{
+    double gamma = reader->gamma;
+    return gamma == 0 ? linear(channel) : pow(fmax(channel, 0), gamma);
+}
+
+/* Of a channel as it is shown. */
+static double in_space_of_file(const PovReader *reader, double shown)
+{
+    double gamma = reader->gamma;
+    return gamma == 0 ? shown : pow(linear(fmax(shown, 0)), 1 / gamma);
+}
 
 /* Where the numbers behind a word for colours go: of rgbt the fourth is
  * `transmit`. */
-static void take_channels(const char *word, const PovValue *found, PovValue *color)
+static void take_channels(const PovReader *reader, const char *word, const PovValue *found,
+                          PovValue *color)
 {
     bool     encoded = word[0] == 's', transmits = strchr(word, 't') && !strchr(word, 'f');
     int      count = (int)strlen(word) - (encoded ? 1 : 0);
@@ -631,7 +645,9 @@ static void take_channels(const char *word, const PovValue *found, PovValue *col
     promote(&all, count < 3 ? 3 : count);
     memset(color->v, 0, sizeof color->v);
     for (int i = 0; i < 5 && i < (found->count > count ? found->count : count); i++)
-        color->v[transmits && i == 3 ? 4 : i] = encoded && i < 3 ? pov_linear(all.v[i]) : all.v[i];
+        color->v[transmits && i == 3 ? 4 : i] = encoded && i < 3
+                                                    ? in_space_of_file(reader, all.v[i])
+                                                    : all.v[i];
     color->count = 5;
 }
 
@@ -662,7 +678,7 @@ bool pov_color(PovReader *reader, double color[5])
             words_advance(words);
             if (!pov_value(reader, &found))
                 return false;
-            take_channels(name, &found, &value);
+            take_channels(reader, name, &found, &value);
         } else if (channel >= 0) {
             words_advance(words);
             if (!pov_number(reader, &value.v[channel]))

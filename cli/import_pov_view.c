@@ -1,5 +1,5 @@
 /*
- * import_pov_view.c: camera, lights and background of POV-Ray.
+ * import_pov_view.c: camera, lights, background and settings of POV-Ray.
  */
 #include <math.h>
 #include <string.h>
@@ -20,11 +20,56 @@ static bool vector_of(PovReader *reader, const char *name, double v[3], bool *ta
     return pov_vector(reader, v);
 }
 
-static bool camera_word(PovReader *reader, PovView *view, Place *place)
+/* How far away the picture is that is `right` wide and `up` high. */
+static double distance_of_picture(const PovView *view)
 {
-    bool taken = false, angle = false;
-    if (!pov_release(reader))
+    return view->angle > 0 ? length3(view->right) / 2 / tan(view->angle * DEGREE / 2)
+                           : length3(view->direction);
+}
+
+/* `orthographic` behind the rest of a camera shows as much as that camera does at the distance of
+   `look_at`. */
+static void widen(PovView *view)
+{
+    double away        = distance_of_picture(view);
+    view->orthographic = true;
+    if (!view->looks || !(away > 0))
+        return;
+    double factor = distance3(view->location, view->look_at) / away;
+    for (int i = 0; i < 3; i++) {
+        view->right[i] *= factor;
+        view->up[i] *= factor;
+    }
+    view->widened = true;
+}
+
+/* A camera is moved as it is at this word: what stands behind it is where it says. */
+static void move_camera(PovReader *reader, PovView *view, const Place *place)
+{
+    Place turn = *place;
+    memset(turn.shift, 0, sizeof turn.shift);
+    place_apply(place, view->location, view->location);
+    place_apply(place, view->look_at, view->look_at);
+    place_apply(&turn, view->direction, view->direction);
+    place_apply(&turn, view->right, view->right);
+    place_apply(&turn, view->up, view->up);
+    if (view->looks)
+        place_apply(&turn, view->sky, view->sky);
+    double slack = 1e-6 * length3(view->right) * length3(view->up);
+    if (fabs(dot3(view->right, view->up)) > slack)
+        import_note(reader->import, reader->words.word.line, "the camera is not sheared");
+}
+
+static bool camera_word(PovReader *reader, PovView *view)
+{
+    bool  taken = false, moved = false;
+    Place place = place_identity();
+    if (!pov_release(reader) || !pov_place(reader, &place, &moved))
         return false;
+    if (moved) {
+        move_camera(reader, view, &place);
+        return true;
+    }
     PovCell *own = pov_take(reader, POV_CAMERA);
     if (own) {
         *view = *own->view;
@@ -40,12 +85,10 @@ static bool camera_word(PovReader *reader, PovView *view, Place *place)
         !vector_of(reader, "sky", view->sky, &taken) ||
         !vector_of(reader, "direction", view->direction, &taken) ||
         !vector_of(reader, "right", view->right, &taken) ||
-        !vector_of(reader, "up", view->up, &taken) || !pov_place(reader, place, &angle))
+        !vector_of(reader, "up", view->up, &taken))
         return false;
     view->has_direction = view->has_direction || direction;
     view->looks         = view->looks || looks;
-    taken               = taken || angle;
-    angle               = !taken && word_is(&reader->words, "angle");
     if (!vector_of(reader, "angle", degrees, &taken))
         return false;
     view->angle = degrees[0];
@@ -53,30 +96,40 @@ static bool camera_word(PovReader *reader, PovView *view, Place *place)
         return true;
     if (word_accept(&reader->words, "perspective"))
         return true;
-    if (word_accept(&reader->words, "orthographic"))
-        return view->orthographic = true;
+    if (word_accept(&reader->words, "orthographic")) {
+        widen(view);
+        return true;
+    }
     return pov_leave_out(reader, "of the camera is");
+}
+
+static PovView usual_camera(unsigned line)
+{
+    return (PovView){.has_camera = true,
+                     .sky        = {0, 1, 0},
+                     .look_at    = {0, 0, 1},
+                     .direction  = {0, 0, 1},
+                     .right      = {4 / 3.0, 0, 0},
+                     .up         = {0, 1, 0},
+                     .line       = line};
 }
 
 bool pov_camera(PovReader *reader, PovView *view)
 {
-    Place    place     = place_identity();
-    unsigned line      = reader->words.word.line;
-    double   origin[3] = {0, 0, 0};
-    *view              = (PovView){.has_camera = true,
-                                   .sky        = {0, 1, 0},
-                                   .direction  = {0, 0, 1},
-                                   .right      = {4 / 3.0, 0, 0},
-                                   .up         = {0, 1, 0},
-                                   .line       = line};
+    unsigned line = reader->words.word.line;
+    *view         = usual_camera(line);
     words_advance(&reader->words);
     if (!word_expect(&reader->words, "{"))
         return false;
     while (!word_is(&reader->words, "}"))
-        if (!camera_word(reader, view, &place))
+        if (!camera_word(reader, view))
             return false;
-    if (!view->looks)
+    if (view->orthographic && view->angle > 0 && !view->widened)
+        widen(view);
+    if (!view->looks) {
+        memcpy(view->sky, view->up, sizeof view->sky);
         add_scaled3(view->look_at, view->location, 1, view->direction);
+    }
     if (view->angle >= 180) {
         import_note(reader->import, line, "an angle of %g degrees is one of 120 here", view->angle);
         view->angle = 120;
@@ -84,13 +137,9 @@ bool pov_camera(PovReader *reader, PovView *view)
     if (length3(view->direction) == 0 || length3(view->right) == 0 || length3(view->up) == 0 ||
         distance3(view->location, view->look_at) == 0 || !(view->angle >= 0 && view->angle < 180))
         return import_refuse(reader->import, line, "the camera shows nothing");
-    if (view->right[0] < 0)
-        import_note(reader->import, line, "`right` mirrors the picture; it is not mirrored here");
-    place_apply(&place, origin, origin);
-    place_apply(&place, view->location, view->location);
-    place_apply(&place, view->look_at, view->look_at);
-    place_apply(&place, view->sky, view->sky);
-    add_scaled3(view->sky, view->sky, -1, origin);
+    double across[3];
+    cross3(view->up, view->direction, across);
+    view->mirrored = dot3(across, view->right) <= 0; /* as POV-Ray decides it */
     return word_expect(&reader->words, "}");
 }
 
@@ -103,6 +152,12 @@ static bool light_word(PovReader *reader, PovLight *light, Place *place)
         return taken;
     if (word_accept(&reader->words, ";") || word_accept(&reader->words, ","))
         return true;
+    if (word_accept(&reader->words, "spotlight"))
+        return light->spot = true;
+    if (word_accept(&reader->words, "radius"))
+        return pov_number(reader, &light->full);
+    if (word_accept(&reader->words, "falloff"))
+        return pov_number(reader, &light->falloff);
     if (word_accept(&reader->words, "parallel"))
         return light->parallel = true;
     if (word_accept(&reader->words, "shadowless"))
@@ -117,7 +172,8 @@ static bool light_word(PovReader *reader, PovLight *light, Place *place)
 bool pov_light(PovReader *reader, PovLight *light)
 {
     Place place = place_identity();
-    *light      = (PovLight){.line = reader->words.word.line, .color = {1, 1, 1}};
+    *light      = (PovLight){
+             .line = reader->words.word.line, .color = {1, 1, 1}, .full = 30, .falloff = 45};
     words_advance(&reader->words);
     if (!word_expect(&reader->words, "{"))
         return false;
@@ -136,20 +192,94 @@ bool pov_light(PovReader *reader, PovLight *light)
             return false;
     place_apply(&place, light->position, light->position);
     place_apply(&place, light->target, light->target);
+    if (!light->parallel)
+        import_note(reader->import, light->line,
+                    "lights grow weaker with distance; they are as bright as in POV-Ray where the "
+                    "camera looks at");
     return word_expect(&reader->words, "}");
+}
+
+static void set_background(PovReader *reader, unsigned line, const double *color)
+{
+    reader->background_line = line;
+    reader->has_background  = true;
+    memcpy(reader->background, color, sizeof reader->background);
+    if (fmax(color[0], fmax(color[1], color[2])) > 0)
+        import_note(reader->import, line, "the background lights the scene");
 }
 
 bool pov_background(PovReader *reader)
 {
-    reader->background_line = reader->words.word.line;
-    reader->has_background  = true;
+    unsigned line = reader->words.word.line;
     words_advance(&reader->words);
     double color[5];
     if (!word_expect(&reader->words, "{") || !pov_color(reader, color) ||
         !word_expect(&reader->words, "}"))
         return false;
-    memcpy(reader->background, color, sizeof reader->background);
+    set_background(reader, line, color);
     return true;
+}
+
+bool pov_sky_sphere(PovReader *reader)
+{
+    PovLook  sky  = pov_usual_look();
+    unsigned line = reader->words.word.line;
+    words_advance(&reader->words);
+    if (!word_expect(&reader->words, "{"))
+        return false;
+    while (!word_is(&reader->words, "}")) {
+        bool  taken   = false;
+        Place nowhere = place_identity();
+        if (!pov_look(reader, &sky, &taken) || (!taken && !pov_place(reader, &nowhere, &taken)) ||
+            (!taken && !pov_leave_out(reader, "of a `sky_sphere` is")))
+            return false;
+    }
+    if (sky.colored) {
+        import_note(reader->import, line, "`sky_sphere` is one colour, its mean");
+        set_background(reader, line, sky.color);
+    }
+    return word_expect(&reader->words, "}");
+}
+
+/* Those of how POV-Ray computes, and not of what. */
+static const char *const technical[] = {"max_trace_level", "adc_bailout",     "max_intersections",
+                                        "noise_generator", "number_of_waves", "irid_wavelength",
+                                        "charset",         "mm_per_unit",     "hf_gray_16"};
+
+static bool is_technical(const PovReader *reader)
+{
+    for (size_t i = 0; i < sizeof technical / sizeof *technical; i++)
+        if (word_is(&reader->words, technical[i]))
+            return true;
+    return false;
+}
+
+static bool setting(PovReader *reader)
+{
+    double color[5];
+    if (!pov_release(reader))
+        return false;
+    if (word_accept(&reader->words, "assumed_gamma")) {
+        reader->found_gamma = 0;
+        return word_accept(&reader->words, "srgb") || pov_number(reader, &reader->found_gamma);
+    }
+    if (!word_accept(&reader->words, "ambient_light"))
+        return pov_leave_out(reader, is_technical(reader) ? NULL : "of `global_settings` is");
+    if (!pov_color(reader, color))
+        return false;
+    memcpy(reader->ambient, color, sizeof reader->ambient);
+    return true;
+}
+
+bool pov_settings(PovReader *reader)
+{
+    words_advance(&reader->words);
+    if (!word_expect(&reader->words, "{"))
+        return false;
+    while (!word_is(&reader->words, "}"))
+        if (!setting(reader))
+            return false;
+    return word_expect(&reader->words, "}");
 }
 
 /* ---- writing ---- */
@@ -157,7 +287,10 @@ bool pov_background(PovReader *reader)
 static const char *point_text(PovReader *reader, const double q[3])
 {
     double p[3];
-    pov_point(q, p);
+    if (reader->view.mirrored)
+        memcpy(p, q, sizeof p);
+    else
+        pov_point(q, p);
     return import_vector_text(reader->import, p, 3);
 }
 
@@ -166,11 +299,7 @@ static void write_camera(PovReader *reader)
     const PovView *view   = &reader->view;
     Text          *scene  = &reader->import->scene;
     double         aspect = length3(view->right) / length3(view->up);
-    /* The picture is `right` wide and `up` high, at the distance of `direction`.
-   */
-    double away = view->angle > 0 ? length3(view->right) / 2 / tan(view->angle * DEGREE / 2)
-                                  : length3(view->direction);
-    double fov  = 2 * atan(length3(view->up) / 2 / away) / DEGREE;
+    double         fov    = 2 * atan(length3(view->up) / 2 / distance_of_picture(view)) / DEGREE;
     import_mark(reader->import, view->line);
     text_format(scene, "\ncamera { // line %u\n    eye: %s,\n    target: %s,\n    up: %s,\n",
                 view->line, point_text(reader, view->location), point_text(reader, view->look_at),
@@ -185,27 +314,48 @@ static void write_camera(PovReader *reader)
         text_format(scene, "image { size: [%d, 720] }\n", width);
 }
 
+/* POV-Ray's angles are from the axis; here it is the whole one. */
+static void write_spot(PovReader *reader, const PovLight *light)
+{
+    double falloff = fmin(fmax(light->falloff, 0.5), 89),
+           full    = fmin(fmax(light->full, 0), falloff);
+    text_format(&reader->import->scene, ", target: %s, angle: %sdeg, edge: %.3g",
+                point_text(reader, light->target), import_number_text(reader->import, 2 * falloff),
+                fmax(1 - full / falloff, 0.01));
+}
+
 /* POV-Ray's lights grow no weaker with distance, so they get as much stronger
  * as they are far. */
 static void write_light(PovReader *reader, const PovLight *light)
 {
-    const double FULL  = 3; /* what rgb 1 is to a surface */
+    const double FULL  = 3.14159265358979323846; /* a white surface is as bright as rgb 1 */
     Text        *scene = &reader->import->scene;
-    double       level = fmax(light->color[0], fmax(light->color[1], light->color[2]));
     double       away[3], color[3];
+    for (int i = 0; i < 3; i++)
+        color[i] = pov_light_of(reader, light->color[i]);
+    double level = fmax(color[0], fmax(color[1], color[2]));
     add_scaled3(away, light->position, -1, light->target);
     double distance = distance3(light->position, reader->view.look_at);
     if (level <= 0)
         return;
     for (int i = 0; i < 3; i++)
-        color[i] = light->color[i] / level;
+        color[i] /= level;
     import_mark(reader->import, light->line);
-    text_format(scene, "light { %s: %s, color: %s, intensity: %.6g%s } // line %u\n",
+    text_format(scene, "light { %s: %s, color: %s, intensity: %.6g%s",
                 light->parallel ? "direction" : "position",
                 point_text(reader, light->parallel ? away : light->position),
                 import_vector_text(reader->import, color, 3),
                 FULL * level * (light->parallel ? 1 : fmax(distance * distance, 1e-6)),
-                light->shadowless ? ", shadow: false" : "", light->line);
+                light->shadowless ? ", shadow: false" : "");
+    if (light->spot && !light->parallel)
+        write_spot(reader, light);
+    text_format(scene, " } // line %u\n", light->line);
+}
+
+void pov_finish_view(PovReader *reader)
+{
+    if (!reader->view.has_camera && reader->lights.count > 0)
+        reader->view = usual_camera(reader->lights.items[0].line);
 }
 
 void pov_write_view(PovReader *reader)
@@ -214,13 +364,17 @@ void pov_write_view(PovReader *reader)
         write_camera(reader);
     for (size_t i = 0; i < reader->lights.count; i++)
         write_light(reader, &reader->lights.items[i]);
-    if (!reader->has_background)
-        return;
+    if (!reader->has_background && !reader->view.has_camera && reader->lights.count == 0)
+        return; /* shapes alone have the usual light */
     double color[3];
     for (int i = 0; i < 3; i++)
-        color[i] = fmin(reader->background[i], 1);
+        color[i] = fmin(pov_light_of(reader, reader->background[i]), 1);
     const char *sky = import_vector_text(reader->import, color, 3);
-    import_mark(reader->import, reader->background_line);
-    text_format(&reader->import->scene, "sky { zenith: %s, horizon: %s, ground: %s } // line %u\n",
-                sky, sky, sky, reader->background_line);
+    text_format(&reader->import->scene, "sky { zenith: %s, horizon: %s, ground: %s }", sky, sky,
+                sky);
+    if (reader->has_background) {
+        import_mark(reader->import, reader->background_line);
+        text_format(&reader->import->scene, " // line %u", reader->background_line);
+    }
+    text_add(&reader->import->scene, "\n");
 }

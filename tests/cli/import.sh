@@ -3,7 +3,7 @@
 # with the line that is wrong; no file, whatever is in it, ends in a crash.
 # shellcheck source-path=SCRIPTDIR disable=SC2016
 . "$(dirname "$0")/common.sh"
-plan 57
+plan 61
 
 cat >ball.vm <<'END'
 # a ball of radius 0.75 with its upper half cut away, and a line that does not count
@@ -184,6 +184,21 @@ result $? "a scene of POV-Ray, with its names"
 run check ball_of_pov.krs
 [ "$status" -eq 0 ] && [ ! -s err ]
 result $? "is a scene without a mistake, too"
+# What the head of a scene says is left out is said at once, too; --keep-going names what it leaves out.
+printf 'sphere { 0, 1 finish { reflection 1 } }\nmesh { }\nbox { 2, 3 }\n' >rest.pov
+run import rest.pov -o rest.krs
+said 1 'rest.pov:2: `mesh` is not translated' "a part that scenes do not have"
+run import --keep-going rest.pov -o rest.krs
+[ "$status" -eq 0 ] && grep -q 'left out: rest.pov:2: `mesh` is not translated' err &&
+    grep -q 'rest.pov:1: note: `reflection` of a finish is left out' err &&
+    grep -q 'Line 2: a part is left out' rest.krs && grep -q '^show box' rest.krs
+result $? "is left out with --keep-going, by name and line"
+run check rest.krs
+[ "$status" -eq 0 ]
+result $? "and the rest is a scene"
+run import --keep-going --quiet rest.pov -o rest.krs
+[ "$status" -eq 0 ] && ! grep -q 'note:' err
+result $? "--quiet says no notes"
 refused a.csg 'cube();\nimport();\n' '2: `import` is not translated' "a mesh of OpenSCAD"
 refused a.pov 'sphere { 0, 1 }\nmesh { }\n' '2: `mesh` is not translated' "a mesh of POV-Ray"
 
