@@ -76,8 +76,8 @@ sed -n '/not_supported/d; s/^METHOD(\([a-z_]*\), *"\([^"]*\)".*/.\1(\2)/p
         grep -qF -- "$wanted" "$work/signatures" || echo "$wanted"
     done >"$work/said"
 none "every method is on the page, with its parameters"
-sed -n 's/^\(FALLOFF\|PALETTE\)([A-Z_, ]*"\([a-z]*\)".*/\2/p; s/^BLEND(\([a-z]*\),.*/\1/p' \
-    compiler/graph/blends.def compiler/shape/falloffs.def compiler/eval/palettes.def |
+sed -n 's/^\(FALLOFF\|PALETTE\)([A-Z_, ]*"\([a-z]*\)".*/\2/p; s/^BLEND(\([a-z]*\),.*/\1/p; s/^    "\([a-z]*\)",$/\1/p' \
+    compiler/graph/blends.def compiler/eval/csg.c compiler/shape/falloffs.def compiler/eval/palettes.def |
     while read -r kind; do
         grep -qF -- "\"$kind\"" "$work/spans" || echo "$kind"
     done >"$work/said"

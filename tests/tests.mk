@@ -21,7 +21,7 @@ UNIT        := specks texts patience front synonyms arguments look diagnostics s
                compiled pipelines per_component mixed_rays stencils glslang flatten loader watcher drivers grid crowd_grid crowds \
                crowd_kernels crowd_ends crowd_pictures few_parts tables device_tables table_files printing printers gathered_noises answers alike update coordinates reload live saved_texts camera_text resolution painter saver edits values mesh mesh_progress mesh_bounds mesh_tets mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_proofs assembly
 PROPERTY    := ops noise textures graph simplify facts derive series zeros local along rebase slope \
-               parity reach reach_trees turn_boxes crowds crowds_apart crowds_deformed crowd_sums blends_of_many moving_crowds moving_scenes overlaps lanes lane_crowds lane_balls joints turns
+               parity reach reach_trees turn_boxes crowds crowds_apart crowds_deformed crowd_sums blends_of_many fillets moving_crowds moving_scenes overlaps lanes lane_crowds lane_balls joints turns
 ORACLES     := self distant patterns bumps primitives krs_expand folds trees maps moebius moebius_images operators cells \
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
@@ -43,7 +43,7 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/patience unit/front unit/syno
                unit/zones unit/printers unit/gathered_noises unit/alike unit/update unit/coordinates unit/reload unit/saved_texts unit/camera_text unit/resolution unit/values unit/mesh unit/mesh_progress unit/mesh_tets unit/mesh_around unit/mesh_bounds unit/mesh_collapse unit/mesh_marks unit/mesh_near unit/assembly property/ops property/noise property/textures property/graph property/simplify \
                property/facts property/derive property/series property/zeros property/local \
                property/along property/rebase property/slope property/parity property/reach \
-               property/reach_trees property/turn_boxes property/crowds property/crowds_apart property/crowds_deformed property/crowd_sums property/blends_of_many property/moving_crowds property/moving_scenes property/overlaps property/lanes property/lane_crowds property/lane_balls property/joints property/turns oracle/primitives \
+               property/reach_trees property/turn_boxes property/crowds property/crowds_apart property/crowds_deformed property/crowd_sums property/blends_of_many property/fillets property/moving_crowds property/moving_scenes property/overlaps property/lanes property/lane_crowds property/lane_balls property/joints property/turns oracle/primitives \
                oracle/krs_expand oracle/folds oracle/bounds \
                oracle/cells oracle/maps oracle/operators oracle/moving \
                oracle/fractals oracle/metasurfaces oracle/normals oracle/tangents oracle/drawings oracle/imports \

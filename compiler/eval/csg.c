@@ -2,10 +2,14 @@
  * csg.c: operators and built-in functions that make one shape of several.
  */
 #include "compiler/eval/elaborate.h"
+#include "compiler/eval/fillet.h"
 
+/* Behind the kinds of blends: fillets are unions of circular ones, cut. */
+enum { FILLET = BLEND_COUNT };
 static const char *const blend_spellings[] = {
 #define BLEND(name, ...) #name,
 #include "compiler/graph/blends.def"
+    "fillet",
 };
 static const Choices blend_names = {
     .noun    = "blend",
@@ -13,7 +17,7 @@ static const Choices blend_names = {
     .unknown = "unknown kind of blend",
     .more    = "",
     .items   = blend_spellings,
-    .count   = BLEND_COUNT,
+    .count   = FILLET + 1,
 };
 
 static const char *const falloff_spellings[] = {
@@ -31,14 +35,16 @@ static const Choices falloff_names = {
 };
 
 /* The parameters `blend= kind= steps=`, of which `first` is the first.  False: reported. */
-static bool blend_arguments(Elaboration *e, const Call *call, uint32_t first, Blend *blend)
+static bool blend_arguments(Elaboration *e, const Call *call, uint32_t first, Blend *blend,
+                            bool *fillet)
 {
     uint32_t kind, steps;
     *blend = blend_sharp;
     if (!want_name(e, &call->arguments[first + 1], &blend_names, &kind) ||
         !want_count(e, call, first + 2, 1, 64, 4, &steps))
         return false;
-    blend->kind  = (BlendKind)kind;
+    *fillet      = kind == FILLET;
+    blend->kind  = *fillet ? BLEND_circular : (BlendKind)kind;
     blend->steps = graph_number(e->graph, steps);
     if (!is_given(call, first))
         return true;
@@ -105,11 +111,23 @@ Value value_of_joint(Elaboration *e, ShapeKind kind, const Shape *const *shapes,
     return value_shape(joint);
 }
 
+/* The hull of its parts, which a fillet does not leave, says nothing about what is cut away. */
+static bool refuse_fillet(Elaboration *e, const Call *call, uint32_t first_option)
+{
+    const Syntax *kind = call->arguments[first_option + 1].syntax;
+    Diag         *diag = diag_add(e->diags, DIAG_BAD_VALUE, kind->span, "fillets are for unions");
+    diag->label        = diag_text(e->diags, "this is `%s`", call->name);
+    diag->help         = "edges that are cut are rounded by `kind: \"circular\"`";
+    return false;
+}
+
 static Value join(Elaboration *e, const Call *call, ShapeKind kind, const Values *values,
                   uint32_t first_option)
 {
     Blend blend;
-    if (!blend_arguments(e, call, first_option, &blend))
+    bool  fillet;
+    if (!blend_arguments(e, call, first_option, &blend, &fillet) ||
+        (fillet && kind != SHAPE_UNION && !refuse_fillet(e, call, first_option)))
         return value_error();
     if (values->count == 0 && kind != SHAPE_UNION) {
         diag_add(e->diags, DIAG_MISSING_ARGUMENT, call->syntax->span,
@@ -120,6 +138,10 @@ static Value join(Elaboration *e, const Call *call, ShapeKind kind, const Values
     if (!shapes)
         return value_error();
     uint32_t count = (uint32_t)values->count;
+    if (fillet && blend.width != NODE_NONE && count > 1) {
+        const Shape *joint = make_fillet(e, call, shapes, count, blend);
+        return joint ? value_shape(joint) : value_error();
+    }
     return value_of_joint(e, kind, shapes, count, blend, call->syntax->span);
 }
 

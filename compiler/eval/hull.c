@@ -340,14 +340,21 @@ static bool extruded_hull(const Hulling *h, const Axis *axis, double slack, Valu
     return true;
 }
 
+/* False: it is none of those that can be made. */
+static bool rims_hull(const Hulling *h, bool *common, Value *result)
+{
+    Axis axis    = {0};
+    *common      = common_axis(&h->parts, &axis);
+    double slack = *common ? NEAR * parts_size(&axis, &h->parts) : 0;
+    return *common &&
+           (turned_hull(h, &axis, slack, result) || extruded_hull(h, &axis, slack, result));
+}
+
 static Value hull_with_rims(const Hulling *h)
 {
-    Axis   axis = {0};
-    Value  result;
-    bool   common = common_axis(&h->parts, &axis);
-    double slack  = common ? NEAR * parts_size(&axis, &h->parts) : 0;
-    if (common &&
-        (turned_hull(h, &axis, slack, &result) || extruded_hull(h, &axis, slack, &result)))
+    bool  common;
+    Value result;
+    if (rims_hull(h, &common, &result))
         return result;
     return refuse(h,
                   common ? "round solids in a hull need one axis for all, or the same two ends"
@@ -409,6 +416,26 @@ static Value hull_of_parts(const Hulling *h)
         balls[i] = h->parts.items[i].ball;
     }
     return hull_of_balls(h, balls, count, h->parts.figure);
+}
+
+const Shape *round_hull(Elaboration *e, const Call *call, const HullParts *parts)
+{
+    const Hulling h     = {.e = e, .call = call, .parts = *parts, .grown = value_number(0)};
+    HullBall     *balls = arena_new_array(e->values, HullBall, parts->count + 1);
+    bool          common, rims = false, round = false;
+    Value         result = {.type = VALUE_ERROR};
+    for (size_t i = 0; i < parts->count; i++) {
+        balls[i] = parts->items[i].ball;
+        rims     = rims || length3(parts->items[i].rim) > 0;
+        round    = round || balls[i].radius > 0;
+    }
+    if (parts->count > MOST_BALLS)
+        return NULL;
+    if (rims)
+        return rims_hull(&h, &common, &result) && result.type == VALUE_SHAPE ? result.shape : NULL;
+    if (round || (parts->figure && !balls_are_flat(balls, parts->count, true)))
+        result = hull_of_balls(&h, balls, parts->count, parts->figure);
+    return result.type == VALUE_SHAPE ? result.shape : NULL;
 }
 
 /* What shapes of the scene say of themselves is put to the test, each by its hull alone. */

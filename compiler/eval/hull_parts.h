@@ -34,4 +34,7 @@ bool hull_parts(Elaboration *e, const Call *call, HullParts *parts);
 bool hull_parts_of_shape(Elaboration *e, const Call *call, const Syntax *syntax, const Shape *shape,
                          HullParts *parts);
 
+/* hull.c: the hull of parts; NULL: they are corners of a solid, too many, or more than can be said. */
+const Shape *round_hull(Elaboration *e, const Call *call, const HullParts *parts);
+
 #endif

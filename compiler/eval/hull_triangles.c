@@ -10,6 +10,7 @@
 
 #include "compiler/base/vec.h"
 #include "compiler/eval/elaborate.h"
+#include "compiler/eval/hull_normals.h"
 
 enum { MOST_POINTS = 4096 };
 
@@ -66,13 +67,39 @@ static Value triangle_value(Elaboration *e, const facetT *facet)
     return value_list(e, corners, 3);
 }
 
-static Value triangles_of(Elaboration *e, const qhT *qh)
+/* Its facets are handed to a function, which may keep nothing of them.  False: the points lie in a
+   plane. */
+typedef void EachFacet(const facetT *facet, void *user);
+static bool  run_qhull(coordT *points, size_t count, const char *options, EachFacet *each,
+                       void *user)
 {
-    Values triangles = {0};
-    for (const facetT *facet = qh->facet_list; facet && facet->next; facet = facet->next)
-        array_push(e->values, &triangles,
-                   triangle_value(e, facet)); /* the last one is a sentinel */
-    return value_list(e, triangles.items, triangles.count);
+    qhT   state, *qh = &state;
+    FILE *silent = fopen("/dev/null", "w"); /* what it says of mistakes */
+    FILE *said   = silent ? silent : stderr;
+    char  command[32];
+    snprintf(command, sizeof command, "%s", options);
+    qh_zero(qh, said);
+    const int status = qh_new_qhull(qh, 3, (int)count, points, False, command, said, said);
+    if (status == 0) /* the last facet is a sentinel */
+        for (const facetT *facet = qh->facet_list; facet && facet->next; facet = facet->next)
+            each(facet, user);
+    int current, total;
+    qh_freeqhull(qh, !qh_ALL);
+    qh_memfreeshort(qh, &current, &total);
+    if (silent)
+        fclose(silent);
+    return status == 0;
+}
+
+typedef struct Triangles {
+    Elaboration *e;
+    Values       found;
+} Triangles;
+
+static void add_triangle(const facetT *facet, void *user)
+{
+    Triangles *triangles = user;
+    array_push(triangles->e->values, &triangles->found, triangle_value(triangles->e, facet));
 }
 
 Value builtin_hull_triangles(Elaboration *e, Call *call)
@@ -87,21 +114,26 @@ Value builtin_hull_triangles(Elaboration *e, Call *call)
         if (!read_point(points->items[i], numbers + 3 * i))
             return refuse(e, call, "a point of a hull is three numbers, known at compile time");
 
-    qhT   state, *qh = &state;
-    FILE *silent = fopen("/dev/null", "w"); /* what it says of mistakes */
-    Value result;
-    FILE *said      = silent ? silent : stderr;
-    char  command[] = "qhull Qt"; /* faces are triangles */
-    qh_zero(qh, said);
-    int status = qh_new_qhull(qh, 3, (int)points->count, numbers, False, command, said, said);
-    if (status == 0)
-        result = triangles_of(e, qh);
-    else
-        result = refuse(e, call, "these points lie in a plane, or nearly so");
-    int current, total;
-    qh_freeqhull(qh, !qh_ALL);
-    qh_memfreeshort(qh, &current, &total);
-    if (silent)
-        fclose(silent);
-    return result;
+    Triangles triangles = {.e = e};
+    if (!run_qhull(numbers, points->count, "qhull Qt", add_triangle, &triangles))
+        return refuse(e, call, "these points lie in a plane, or nearly so");
+    return value_list(e, triangles.found.items, triangles.found.count);
+}
+
+static void add_normal(const facetT *facet, void *user)
+{
+    HullNormals *normals = user;
+    double      *numbers = arena_new_array(normals->arena, double, 3);
+    for (int k = 0; k < 3; k++)
+        numbers[k] = facet->normal[k];
+    array_push(normals->arena, normals, numbers);
+}
+
+void hull_normals(const double *points, size_t count, HullNormals *normals)
+{
+    coordT *numbers = arena_new_array(normals->arena, coordT, 3 * count + 1);
+    for (size_t i = 0; i < 3 * count; i++)
+        numbers[i] = points[i];
+    if (count >= 4)
+        run_qhull(numbers, count, "qhull", add_normal, normals);
 }

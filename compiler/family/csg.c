@@ -60,6 +60,16 @@ const Shape *make_joint(ShapeBuilder *builder, ShapeKind kind, const Shape *cons
     return joint;
 }
 
+const Shape *make_clip(ShapeBuilder *builder, const Shape *shape, const Shape *region, Span span)
+{
+    const Shape *parts[] = {shape, region};
+    Shape       *clip    = shape_new(builder, SHAPE_CLIP, "clip", span, parts, region ? 2 : 1);
+    clip->exact          = false;
+    clip->without_uv     = shape->without_uv;
+    clip->box            = builder_box(builder, clip);
+    return clip;
+}
+
 const Shape *make_morph(ShapeBuilder *builder, const Shape *a, const Shape *b, Node t, Span span)
 {
     const Shape *children[] = {a, b};
@@ -214,6 +224,20 @@ static Lowered xor_by_parts(Lowering *l, const Shape *shape, LowerContext contex
 Lowered lower_xor(Lowering *l, const Shape *shape, LowerContext context)
 {
     return within_boundary(l, shape, context, xor_by_parts);
+}
+
+/* All that is seen is of the part that is cut. */
+Lowered lower_clip(Lowering *l, const Shape *shape, LowerContext context)
+{
+    Lowered    result   = lower_shape(l, shape->children[0], context);
+    const bool surfaces = l->surfaces;
+    if (shape->child_count == 1 || result.distance == NODE_NONE)
+        return result;
+    l->surfaces     = false;
+    Lowered region  = lower_shape(l, shape->children[1], context);
+    l->surfaces     = surfaces;
+    result.distance = graph_op2(l->graph, OP_max, result.distance, region.distance);
+    return result;
 }
 
 Lowered lower_morph(Lowering *l, const Shape *shape, LowerContext context)

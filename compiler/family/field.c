@@ -243,6 +243,13 @@ static const Shape *restrict_joint(ShapeBuilder *builder, const Shape *shape, Bo
                       shape->span);
 }
 
+static const Shape *restrict_clip(ShapeBuilder *builder, const Shape *shape, Box box, bool uniform)
+{
+    const Shape *content = restrict_shape(builder, shape->children[0], box, uniform);
+    const Shape *region  = shape->child_count > 1 ? shape->children[1] : NULL;
+    return make_clip(builder, content, region, shape->span);
+}
+
 static const Shape *restrict_offset(ShapeBuilder *builder, const Shape *shape, Box box,
                                     bool uniform)
 {
