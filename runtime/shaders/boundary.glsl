@@ -49,7 +49,7 @@ float find_height(HitPoint hit, float evenness, float distance)
 {
     float pixels = mix(START, START_OF_EVEN, smoothstep(0.9, 0.99, evenness));
     return frame.settles != 0u ? find_settled_height(hit, evenness)
-                               : pixels * hit.width + 4.0 * hit.rounding;
+                               : pixels * hit.near + 4.0 * hit.rounding;
 }
 #endif
 

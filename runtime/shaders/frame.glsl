@@ -15,8 +15,9 @@
 const float PI       = 3.14159265358979;
 const float INFINITE = 1e38;
 const float ROUNDING = 2.4e-7; // four units in the last place of 1
-// Where hits are settled, a pixel counts as no wider than this part of its ray, and rays of paths start so
-// many roundings above a surface.  So where paths go does not depend on the size of the picture.
+// A pixel counts as no wider than this part of its ray where rays start, for normals, and, where hits are
+// settled, for all.  There rays of paths start so many roundings above a surface.  So where paths go does
+// not depend on the size of the picture.
 const float MOST_WIDTH = 1.0 / 64.0, SETTLED_START = 32.0;
 
 // How a ray has ended.

@@ -95,6 +95,7 @@ struct HitPoint {
     vec3  position;
     vec3  direction; // of the ray, unit
     float width;     // of a pixel there
+    float near;      // the same, but from a camera at most MOST_WIDTH of the ray
     float rounding;  // error of the coordinates
     float side;      // as in RayEnd
     uint  steps;     // as in RayEnd
@@ -110,7 +111,8 @@ HitPoint hit_point_of_slot(uint slot)
     vec3  position = origin + ray.t * direction;
     float rounding = ROUNDING * (largest(position) + largest(origin));
     float width = max(width_at(ray.t, base + slope * ray.t), 1e-30); // it is a divisor
-    return HitPoint(slot, position, direction, width, rounding, ray.side, ray.steps);
+    float near = are_of_paths() ? width : max(min(width, MOST_WIDTH * ray.t), 1e-30);
+    return HitPoint(slot, position, direction, width, near, rounding, ray.side, ray.steps);
 }
 
 // The hit of item `number` of the list that is read.
@@ -124,5 +126,5 @@ HitPoint find_hit_point(uint number)
 const float NOISE = 1e-4;
 float find_reach(HitPoint hit)
 {
-    return max(frame.normal_reach * hit.width, NOISE * largest(hit.position) + hit.rounding);
+    return max(frame.normal_reach * hit.near, NOISE * largest(hit.position) + hit.rounding);
 }
