@@ -152,18 +152,12 @@ static const struct {
     {"minkowski", csg_minkowski},
     {"offset", csg_offset},
     {"text", csg_text},
+    {"resize", csg_resize},
+    {"projection", csg_projection},
+    {"import", csg_import},
+    {"surface", csg_surface},
 };
 enum { NODES = sizeof nodes / sizeof *nodes };
-
-/* Of which scenes have nothing like it. */
-static const struct {
-    const char *name, *why;
-} unknown[] = {
-    {"import", "scenes have no meshes"},
-    {"surface", "scenes have no fields of heights from a file"},
-    {"projection", "scenes have no shadows of solids as figures"},
-    {"resize", "the exact size of a part is not known here; write `scale`"},
-};
 
 static bool read_value(CsgReader *reader, CsgValue *value)
 {
@@ -268,10 +262,6 @@ static bool build_node(const CsgNode *node, Part **part)
         if (strcmp(nodes[i].name, node->name) == 0)
             return nodes[i].build(node, part);
     }
-    for (size_t i = 0; i < sizeof unknown / sizeof *unknown; i++)
-        if (strcmp(unknown[i].name, node->name) == 0)
-            return import_refuse(node->import, node->line, "`%s` is not translated: %s", node->name,
-                                 unknown[i].why);
     const char *nearest = nearest_name(node->name, names, NODES);
     return import_refuse(node->import, node->line, "`%.40s` is not translated%s%s%s", node->name,
                          nearest ? "; is it `" : "", nearest ? nearest : "", nearest ? "`?" : "");

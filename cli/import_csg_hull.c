@@ -225,8 +225,8 @@ static int compare_points(const void *left, const void *right)
     return a[1] != b[1] ? (a[1] < b[1] ? -1 : 1) : 0;
 }
 
-/* Andrew's chain: the corners of the hull, counterclockwise; at most 2 when it is a line. */
-static size_t convex_corners(Import *import, PartBalls *balls)
+/* Andrew's chain. */
+size_t csg_convex_corners(Import *import, PartBalls *balls)
 {
     size_t n = balls->count, count = 0;
     double(*points)[3] = balls->points;
@@ -255,7 +255,7 @@ static size_t convex_corners(Import *import, PartBalls *balls)
 static bool hull_of_figures(const CsgNode *node, PartBalls *balls, Part **part)
 {
     Import     *import  = node->import;
-    size_t      corners = convex_corners(import, balls);
+    size_t      corners = csg_convex_corners(import, balls);
     const char *radius  = import_number_text(import, balls->radius);
     if (corners < 3 && balls->radius == 0)
         return import_refuse(import, node->line, "the hull of points on a line is nothing");

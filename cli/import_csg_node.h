@@ -41,7 +41,8 @@ typedef struct CsgNode {
 typedef bool CsgBuild(const CsgNode *node, Part **part);
 
 CsgBuild csg_cube, csg_sphere, csg_cylinder, csg_polyhedron, csg_square, csg_circle, csg_polygon,
-    csg_linear_extrude, csg_rotate_extrude, csg_hull, csg_minkowski, csg_offset, csg_text;
+    csg_linear_extrude, csg_rotate_extrude, csg_hull, csg_minkowski, csg_offset, csg_text,
+    csg_resize, csg_projection, csg_import, csg_surface;
 
 /* NULL: there is none of this name. */
 const CsgValue *csg_argument(const CsgNode *node, const char *name);
@@ -57,6 +58,10 @@ bool csg_sides(const CsgNode *node, int *sides);
 bool csg_joined(const CsgNode *node, bool figure, Part **part);
 /* A polygon, which keeps the points. */
 Part *csg_polygon_part(const CsgNode *node, double (*points)[3], size_t count);
+/* Leaves the corners of the convex hull in x and y, counterclockwise; at most 2 when it is a line. */
+size_t csg_convex_corners(Import *import, PartBalls *balls);
+/* The text of an argument. */
+const char *csg_string(const CsgNode *node, const char *name, const char *otherwise);
 /* A part and all that is nearer to it than the radius. */
 Part *csg_grown(const CsgNode *node, Part *part, double radius);
 

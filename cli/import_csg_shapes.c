@@ -238,6 +238,8 @@ bool csg_cylinder(const CsgNode *node, Part **part)
     (*part)->balls = corners;
     if (bottom == top)
         (*part)->column = (PartColumn){circle(node, bottom, sides), height};
+    else if (sides == 0)
+        (*part)->cone = (PartCone){bottom, top, height};
     if (center == 0)
         move_corner(*part, (double[]){0, 0, height});
     return true;
@@ -245,7 +247,7 @@ bool csg_cylinder(const CsgNode *node, Part **part)
 
 /* ---- texts ---- */
 
-static const char *csg_string(const CsgNode *node, const char *name, const char *otherwise)
+const char *csg_string(const CsgNode *node, const char *name, const char *otherwise)
 {
     const CsgValue *value = csg_argument(node, name);
     return value && value->kind == CSG_STRING ? value->string : otherwise;

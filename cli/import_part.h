@@ -45,6 +45,11 @@ typedef struct PartColumn {
     double       height;
 } PartColumn;
 
+/* A round cone about its own z, from -height / 2 to height / 2; a height of 0: it is something else. */
+typedef struct PartCone {
+    double bottom, top, height;
+} PartCone;
+
 /* Its shape, or its items joined; then methods; then its place; then its look.
  */
 typedef struct Part {
@@ -63,6 +68,7 @@ typedef struct Part {
     bool        shared;  /* in several places */
     PartBalls   balls;
     PartColumn  column;
+    PartCone    cone;
     PartInside  inside;
     double      figure_radius; /* of a circle about its own origin; else 0 */
     double (*corners)[3];      /* of a figure with straight sides, in their order, or

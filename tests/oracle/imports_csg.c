@@ -350,11 +350,10 @@ static void what_cannot_be_translated_is_said_with_its_line(void **state)
     (void)state;
     assert_refused("a.csg", "group() {\n text(text = \"a\", direction = \"rtl\");\n}",
                    "a.csg:2: `text` that runs");
-    assert_refused("a.csg", "cube();\nimport(file = \"a.stl\");", "a.csg:2: `import` is not");
-    assert_refused("a.csg", "\nsurface(file = \"a.dat\");", "a.csg:2: `surface` is not");
-    assert_refused("a.csg", "\nresize(newsize = [1, 2, 3]) { cube(); }",
-                   "a.csg:2: `resize` is not");
-    assert_refused("a.csg", "\nprojection(cut = true) { cube(); }", "a.csg:2: `projection` is not");
+    assert_refused("a.csg", "cube();\nimport(file = \"a.stl\");",
+                   "a.csg:2: `import` is not translated: scenes have no meshes, such as `a.stl`");
+    assert_refused("a.csg", "\nsurface(file = \"a.dat\");",
+                   "a.csg:2: `surface` is not translated: scenes have no fields");
     assert_refused("a.csg", "linear_extrude() { offset(delta = -2) { square(size = 3); } }",
                    "a.csg:1: `offset` by `delta`");
     assert_refused("a.csg", "\ncubes(size = 1);",
