@@ -34,6 +34,7 @@ typedef struct Shared {
     atomic_int       open;      /* whether `temporary` exists */
     char             temporary[4096];
     char             size[256]; /* of what is compiled, in words */
+    atomic_int       scarce;    /* the child crashed where an allocation had failed */
     bool             again;     /* a child before this one was late */
     double           read_since;
     size_t           read_length;
@@ -207,10 +208,29 @@ static void limit_memory(uint64_t bytes)
     setrlimit(RLIMIT_DATA, &limit);
 }
 
+/* Libraries in C may use what they could not allocate.  Where nothing has failed since, that has left its mark. */
+static void note_crash(int number)
+{
+    if (errno == ENOMEM)
+        atomic_store(&shared->scarce, 1);
+    raise(number); /* the process ends by it as if nobody had looked */
+}
+
+/* Sanitizers have handlers of their own. */
+static void note_crashes(void)
+{
+    static const int numbers[] = {SIGSEGV, SIGBUS, SIGABRT};
+    struct sigaction action    = {.sa_handler = note_crash, .sa_flags = (int)SA_RESETHAND}, now;
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        if (sigaction(numbers[i], NULL, &now) == 0 && now.sa_handler == SIG_DFL)
+            sigaction(numbers[i], &action, NULL);
+}
+
 static _Noreturn void run_child(Options *options, Work *work, const sigset_t *mask)
 {
     limit_memory(options->limits.memory);
     terminate_by_status();
+    note_crashes();
     prctl(PR_SET_PDEATHSIG, SIGTERM); /* nobody would read what we do */
     catch_signal(SIGINT);
     catch_signal(SIGTERM);
@@ -311,6 +331,10 @@ static int judge_death(const Options *options, const Watch *watch, int signal_nu
         say("crashed while %s (SIG%s), probably for want of memory: %s allows %llu MiB", doing,
             signal_name(signal_number), limit ? "--limit" : "`ulimit -v`",
             (unsigned long long)(allowed >> 20));
+        return KRS_OUT_OF_MEMORY;
+    }
+    if (atomic_load(&shared->scarce)) {
+        say("crashed while %s (SIG%s), for want of memory", doing, signal_name(signal_number));
         return KRS_OUT_OF_MEMORY;
     }
     snprintf(story, sizeof story, "crashed while %s (SIG%s)", doing, signal_name(signal_number));

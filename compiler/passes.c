@@ -27,6 +27,8 @@ KrsStatus pass_load(Compilation *c)
     if (c->loaded.outside)
         return refuse_scene(c, DIAG_OUTSIDE_ROOT,
                             "the scene is outside of the folder that scenes may read from");
+    if (!c->loaded.text && c->loaded.reason == source_no_memory)
+        return KRS_OUT_OF_MEMORY;
     if (!c->loaded.text) {
         const char *reason = c->loaded.reason ? c->loaded.reason : "unknown";
         refuse_scene(c, DIAG_CANNOT_READ, diag_text(&c->diags, "cannot be read: %s", reason));

@@ -419,7 +419,8 @@ typedef struct KrsSurfacePoint {
    in single precision, and what is there; either may be NULL.  In scenes with many parts that are
    alike, a distance may be less far from them, never more; near surfaces it is as on the host.
    Where it is constant around a point the normal by differences is 0, and what is there is that of
-   some part.  KRS_OUT_OF_MEMORY, KRS_INTERNAL. */
+   some part.  KRS_BAD_ARGUMENT: `points` is NULL and `count` is not 0; KRS_OUT_OF_MEMORY,
+   KRS_INTERNAL. */
 KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3],
                      size_t count, float *distances, KrsSurfacePoint *surfaces);
 

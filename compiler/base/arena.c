@@ -39,7 +39,9 @@ static void use_large_pages(void *block, size_t size)
 #endif
 }
 
-static void out_of_memory(Memory *memory) { longjmp(*memory->exhausted, 1); }
+static _Noreturn void out_of_memory(const Memory *memory) { longjmp(*memory->exhausted, 1); }
+
+_Noreturn void arena_exhausted(const Arena *arena) { out_of_memory(arena->memory); }
 
 /* A zeroed block with space for `bytes` behind its header.  The caller links it into a list. */
 static ArenaBlock *block_new(Memory *memory, size_t bytes)

@@ -55,6 +55,9 @@ void      arena_rewind(Arena *arena, ArenaMark mark);
 /* A copy of length bytes, with a NUL behind them. */
 char *arena_copy_text(Arena *arena, const char *bytes, size_t length);
 
+/* What happens when the memory of an arena runs out, for who finds that elsewhere. */
+_Noreturn void arena_exhausted(const Arena *arena);
+
 /* A new T, or an array of n of them: Token *t = arena_new(arena, Token); */
 #define arena_new(arena, T)          ((T *)arena_alloc((arena), 1, sizeof(T)))
 #define arena_new_array(arena, T, n) ((T *)arena_alloc((arena), (n), sizeof(T)))

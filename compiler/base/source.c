@@ -126,11 +126,13 @@ char *source_read(const char *path, size_t *length, const char **reason)
     return source_read_open(fd, length, reason);
 }
 
+const char source_no_memory[] = "there is not enough memory";
+
 char *source_read_open(int fd, size_t *length, const char **reason)
 {
     FILE *file = fdopen(fd, "rb");
     char *text = NULL;
-    *reason    = "there is not enough memory";
+    *reason    = source_no_memory;
     if (!file) {
         close(fd);
         return NULL;
@@ -142,7 +144,7 @@ char *source_read_open(int fd, size_t *length, const char **reason)
         if (*length == capacity) {
             capacity     = capacity ? 2 * capacity : 16384;
             char *larger = realloc(text, capacity);
-            *reason      = larger ? NULL : "there is not enough memory";
+            *reason      = larger ? NULL : source_no_memory;
             if (!larger)
                 break;
             text = larger;

@@ -42,6 +42,9 @@ typedef struct Position {
 
 enum { MOST_SOURCE_BYTES = 16 << 20 };
 
+/* The reason that memory has run out. */
+extern const char source_no_memory[];
+
 /* The bytes of a file, which the caller frees with free().  On failure NULL, and *reason is a
    static text.  Of a file longer than MOST_SOURCE_BYTES, a little more than that is read: *length
    then shows that it is too long. */

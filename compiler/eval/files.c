@@ -24,6 +24,8 @@ static const char *path_beside(Elaboration *e, const Syntax *syntax, const char 
 static void refuse_file(Elaboration *e, const Syntax *syntax, const char *path,
                         const Loaded *loaded)
 {
+    if (loaded->reason == source_no_memory)
+        arena_exhausted(e->arena);
     Diag *diag  = loaded->outside
                       ? diag_add(e->diags, DIAG_OUTSIDE_ROOT, syntax->span,
                                  "`%s` is outside of the folder that scenes may read from", path)

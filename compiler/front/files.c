@@ -107,6 +107,8 @@ static const char *read_library(const char *path, size_t *length)
 static void refuse(Files *files, Span place, const char *path, const Loaded *text,
                    const char *label)
 {
+    if (text->reason == source_no_memory)
+        arena_exhausted(files->arena);
     Diag *diag  = text->outside
                       ? diag_add(files->diags, DIAG_OUTSIDE_ROOT, place,
                                  "`%s` is outside of the folder that scenes may read from", path)

@@ -61,6 +61,10 @@ KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*poi
                      size_t count, float *distances, KrsSurfacePoint *surfaces)
 {
     renderer_clear(rendering->renderer);
+    if (!points && count > 0) {
+        gpu_refuse(&rendering->renderer->gpu, KRS_BAD_ARGUMENT, "there are no points");
+        return KRS_BAD_ARGUMENT;
+    }
     if (!point_query_prepare(rendering) || !rendering_set_parameters(rendering, frame))
         return rendering->renderer->gpu.status;
     for (size_t first = 0; first < count; first += POINTS_AT_ONCE) {

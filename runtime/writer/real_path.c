@@ -55,10 +55,12 @@ static char *follow_link(const char *path)
 char *real_path(const char *path)
 {
     char *place = strdup(path);
-    for (int links = 0; place && links < MOST_LINKS; links++) {
+    if (!place)
+        return NULL;
+    for (int links = 0; links < MOST_LINKS; links++) {
         char *real = realpath(place, NULL), *next = NULL;
         bool  missing = !real && errno == ENOENT;
-        if (missing && !(next = follow_link(place)))
+        if (missing && !(next = follow_link(place)) && errno != ENOMEM)
             real = real_path_of_missing(place);
         free(place);
         if (!next)

@@ -2,7 +2,7 @@
 # failures.sh: crashes, interrupts, missing devices and missing memory.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 37
+plan 40
 small="--size 16x12 --quiet"
 
 for stage in start compile shaders device render write; do
@@ -146,6 +146,41 @@ if "${CC:-cc}" -std=c17 -D_GNU_SOURCE -shared -fPIC -o few.so "$root/tests/cli/f
 else
     skip "no thread can be made" "no compiler"
     skip "a device whose threads are missing is given up" "no compiler"
+fi
+
+# Some of the allocations of a run fail, one each time: it is done all the same, or ends with 71, a last line of
+# ours, and no file.
+scarce() { # what is tested; arguments of krs
+    tested=$1 bad=0 tried=0
+    shift
+    SCARCE_COUNT=7 LD_PRELOAD=./scarce.so "$krs" "$@" 7>count >out 2>err
+    made=$(head -n 1 count)
+    while [ $tried -lt 16 ]; do
+        tried=$((tried + 1))
+        rm -f scarce.3mf scarce.glb
+        # More of them where files are written, at the end.
+        at=$((made - made * (16 - tried) * (16 - tried) / 256))
+        SCARCE_AT=$at LD_PRELOAD=./scarce.so "$krs" "$@" >out 2>err
+        status=$?
+        [ $status -eq 0 ] || { [ $status -eq 71 ] && tail -n 1 err | grep -q '^krs: .*memory' &&
+            [ ! -e scarce.3mf ] && [ ! -e scarce.glb ]; } || bad=$at
+        [ "$bad" -eq 0 ] || break
+    done
+    [ "$bad" -eq 0 ] && no_temporaries
+    result $? "$tested"
+}
+echo 'show text("A").extrude(0.3);' >letter.krs
+if "${CC:-cc}" -std=c17 -D_GNU_SOURCE -shared -fPIC -o scarce.so "$root/tests/cli/scarce_malloc.c" \
+    2>/dev/null; then
+    scarce "allocations that fail where a font is found" check letter.krs
+    scarce "allocations that fail where a 3MF file is written" \
+        mesh ball.krs --error 0.2 --quiet -o scarce.3mf
+    scarce "allocations that fail where a GLB file is written" \
+        mesh ball.krs --error 0.2 --quiet -o scarce.glb
+else
+    skip "allocations that fail where a font is found" "no compiler"
+    skip "allocations that fail where a 3MF file is written" "no compiler"
+    skip "allocations that fail where a GLB file is written" "no compiler"
 fi
 
 if strace -o /dev/null true 2>/dev/null; then

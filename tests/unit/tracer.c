@@ -249,6 +249,8 @@ static void points_are_sampled(void **state)
         assert_int_equal(surfaces[i].component, 1);
     }
     assert_int_equal(krs_sample(stage->rendering, stage->frame, NULL, 0, NULL, NULL), KRS_OK);
+    assert_int_equal(krs_sample(stage->rendering, stage->frame, NULL, 1, distances, NULL),
+                     KRS_BAD_ARGUMENT);
 }
 
 /* ---- What must not be seen ---- */
