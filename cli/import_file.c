@@ -50,6 +50,14 @@ typedef struct FirstError {
     bool     found, no_polynomial;
 } FirstError;
 
+static const char *blame_at(const FirstError *first)
+{
+    for (size_t i = 0; i < first->import->blames.count; i++)
+        if (first->import->blames.items[i].line == first->line)
+            return first->import->blames.items[i].words;
+    return NULL;
+}
+
 static void note_error(void *user, const KrsDiagnostic *diagnostic)
 {
     FirstError *first = user;
@@ -59,7 +67,13 @@ static void note_error(void *user, const KrsDiagnostic *diagnostic)
     first->no_polynomial = strcmp(diagnostic->code, "E0410") == 0;
     if (first->no_polynomial && !first->import->as_field)
         return; /* a field may do */
-    first->line = import_origin(first->import, diagnostic->line);
+    first->line       = import_origin(first->import, diagnostic->line);
+    const char *blame = strcmp(diagnostic->code, "E0402") == 0 ? blame_at(first) : NULL;
+    if (blame) {
+        import_refuse(first->import, first->line, "%s: a field needs a bound of its slope (%s)",
+                      blame, diagnostic->code);
+        return;
+    }
     import_refuse(first->import, first->line, "what this becomes is no scene: %s (%s)",
                   diagnostic->message, diagnostic->code);
 }
@@ -68,7 +82,7 @@ static KrsStatus translate(Import *import, FirstError *first)
 {
     *first              = (FirstError){.import = import};
     import->scene       = (Text){.arena = import->arena};
-    import->marks.count = import->notes.count = 0;
+    import->marks.count = import->notes.count = import->blames.count = 0;
     if (!forms[find_form(import->path)].import(import))
         return KRS_BAD_SCENE;
     KrsOptions options = import_options(import);

@@ -14,46 +14,50 @@
 
 enum { MOST_LINES = 100000, MOST_ARGUMENTS = 2 };
 
-/* How the language says it; $a and $b are the arguments. */
+/* How the language says it; $a and $b are the arguments.  `blame`: why its slope may have no bound. */
 typedef struct Operation {
     const char *name;
     int         arguments;
-    const char *text;
+    const char *text, *blame;
 } Operation;
 
+#define DIVIDES "divides by what can be 0 in a box of 2 about the origin"
+#define JUMPS   "jumps in a box of 2 about the origin"
+#define STEEP   "has no greatest slope in a box of 2 about the origin"
+
 static const Operation operations[] = {
-    {"const", 0, NULL}, /* what follows is a number */
-    {"var-x", 0, "x"},
-    {"var-y", 0, "y"},
-    {"var-z", 0, "z"},
-    {"neg", 1, "-$a"},
-    {"abs", 1, "abs($a)"},
-    {"recip", 1, "1 / $a"},
-    {"sqrt", 1, "sqrt($a)"},
-    {"square", 1, "$a ^ 2"},
-    {"floor", 1, "floor($a)"},
-    {"ceil", 1, "ceil($a)"},
-    {"round", 1, "round($a)"},
-    {"sin", 1, "sin($a)"},
-    {"cos", 1, "cos($a)"},
-    {"tan", 1, "tan($a)"},
-    {"asin", 1, "asin($a)"},
-    {"acos", 1, "acos($a)"},
-    {"atan", 1, "atan($a)"},
-    {"exp", 1, "exp($a)"},
-    {"ln", 1, "log($a)"},
-    {"not", 1, "if $a == 0 then 1 else 0"},
-    {"add", 2, "$a + $b"},
-    {"sub", 2, "$a - $b"},
-    {"mul", 2, "$a * $b"},
-    {"div", 2, "$a / $b"},
-    {"min", 2, "min($a, $b)"},
-    {"max", 2, "max($a, $b)"},
-    {"atan2", 2, "atan2($a, $b)"},
-    {"mod", 2, "mod($a, abs($b))"}, /* never negative */
-    {"compare", 2, "sign($a - $b)"},
-    {"and", 2, "if $a == 0 then $a else $b"},
-    {"or", 2, "if $a == 0 then $b else $a"},
+    {"const", 0, NULL, NULL}, /* what follows is a number */
+    {"var-x", 0, "x", NULL},
+    {"var-y", 0, "y", NULL},
+    {"var-z", 0, "z", NULL},
+    {"neg", 1, "-$a", NULL},
+    {"abs", 1, "abs($a)", NULL},
+    {"recip", 1, "1 / $a", DIVIDES},
+    {"sqrt", 1, "sqrt($a)", STEEP},
+    {"square", 1, "$a ^ 2", NULL},
+    {"floor", 1, "floor($a)", JUMPS},
+    {"ceil", 1, "ceil($a)", JUMPS},
+    {"round", 1, "round($a)", JUMPS},
+    {"sin", 1, "sin($a)", NULL},
+    {"cos", 1, "cos($a)", NULL},
+    {"tan", 1, "tan($a)", STEEP},
+    {"asin", 1, "asin($a)", STEEP},
+    {"acos", 1, "acos($a)", STEEP},
+    {"atan", 1, "atan($a)", NULL},
+    {"exp", 1, "exp($a)", NULL},
+    {"ln", 1, "log($a)", STEEP},
+    {"not", 1, "if $a == 0 then 1 else 0", JUMPS},
+    {"add", 2, "$a + $b", NULL},
+    {"sub", 2, "$a - $b", NULL},
+    {"mul", 2, "$a * $b", NULL},
+    {"div", 2, "$a / $b", DIVIDES},
+    {"min", 2, "min($a, $b)", NULL},
+    {"max", 2, "max($a, $b)", NULL},
+    {"atan2", 2, "atan2($a, $b)", STEEP},
+    {"mod", 2, "mod($a, abs($b))", JUMPS}, /* never negative */
+    {"compare", 2, "sign($a - $b)", JUMPS},
+    {"and", 2, "if $a == 0 then $a else $b", JUMPS},
+    {"or", 2, "if $a == 0 then $b else $a", JUMPS},
 };
 enum { OPERATIONS = sizeof operations / sizeof *operations };
 
@@ -249,6 +253,9 @@ static void write_instruction(const ImportedTape *tape, const Instruction *instr
             text_add_bytes(text, at, 1);
     }
     text_add(text, ";\n");
+    if (instruction->operation->blame)
+        import_blame(tape->import, instruction->line, "`%s` %s", instruction->operation->name,
+                     instruction->operation->blame);
 }
 
 static void write_tape(ImportedTape *tape)

@@ -48,6 +48,15 @@ void import_note(Import *import, unsigned line, const char *format, ...)
         array_push(import->arena, &import->notes, note);
 }
 
+void import_blame(Import *import, unsigned line, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    ImportNote note = {harmless(import->arena, format, arguments), line};
+    va_end(arguments);
+    array_push(import->arena, &import->blames, note);
+}
+
 bool import_leaves_out(Import *import, unsigned line)
 {
     if (!import->keep_going || import->refusal.length == 0)

@@ -40,6 +40,10 @@ typedef struct Import {
         ImportNote *items;
         size_t      count, capacity;
     } notes;
+    struct {
+        ImportNote *items;
+        size_t      count, capacity;
+    } blames;        /* what slopes without a bound may come from */
     bool keep_going; /* what is refused is left out */
     struct {
         ImportNote *items;
@@ -58,6 +62,9 @@ bool import_refuse(Import *import, unsigned line, const char *format, ...)
 
 /* Notes what the scene leaves out; the same words count once. */
 void import_note(Import *import, unsigned line, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* Notes why a slope may have no bound at a line, for words about it. */
+void import_blame(Import *import, unsigned line, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* Whether to go on without a part that was just refused, which stands on this line: notes why, and
    forgets the refusal. */

@@ -14,7 +14,7 @@
 
 #include "tests/oracle/imported.h"
 
-enum { SURFACES = 32, TAPES = 24, MOST_STEPS = 14, POINTS = 40 };
+enum { SURFACES = 32, TAPES = 24, MOST_STEPS = 16, POINTS = 40 };
 
 static Random randomness = {15};
 
@@ -78,7 +78,8 @@ static void what_is_no_polynomial_is_a_field_or_refused(void **state)
     assert_non_null(strstr(imported("a.jsurf", "surface_equation=sin(x)+y").scene, "field("));
     assert_refused("a.jsurf", "\nsurface_equation=floor(x)+y", "a.jsurf:2: what this becomes");
     assert_refused("a.jsurf", "\n\nsurface_equation=1/x", "a.jsurf:3: what this becomes");
-    assert_refused("a.vm", "_0 var-x\n_1 const 2\n_2 floor _0\n_3 mul _2 _1\n", "a.vm:3: what");
+    assert_refused("a.vm", "_0 var-x\n_1 const 2\n_2 floor _0\n_3 mul _2 _1\n",
+                   "a.vm:3: `floor` jumps");
 }
 
 /* ---- tapes ---- */
@@ -114,7 +115,7 @@ typedef struct Step {
 /* x, y and z, a number, and then steps of the table. */
 static int write_tape(Step *tape, char *text, size_t size_of_text)
 {
-    int    count = 4 + 2 + below(MOST_STEPS - 6), kinds = below(4) > 0 ? STEPS - 3 : STEPS;
+    int    count = 4 + 2 + below(8), kinds = below(4) > 0 ? STEPS - 3 : STEPS;
     char   line[80];
     double number  = round(between(-2, 2) * 8) / 8;
     tape[3].number = number;
@@ -171,12 +172,98 @@ static void random_tapes(void **state)
     assert_true(accepted > TAPES / 4);
 }
 
+/* Quotients of random steps by what is at least a number above 0. */
+static int write_quotients(Step *tape, char *text, size_t size_of_text)
+{
+    int    count = 4;
+    char   line[80];
+    double number  = between(0.3, 2);
+    tape[3].number = number;
+    snprintf(text, size_of_text, "_0 var-x\n_1 var-y\n_2 var-z\n_3 const %.17g\n", number);
+    /* square, add and div, by their places in the table, between steps without poles */
+    static const int kinds[] = {-1, 7, 0, 13};
+    for (int round = 0; round < 3; round++)
+        for (int k = 0; k < 4; k++, count++) {
+            Step *step         = &tape[count];
+            step->kind         = k == 0 ? below(9) : kinds[k];
+            step->arguments[0] = k == 2 ? count - 1 : k == 3 ? below(count - 2) : below(count);
+            step->arguments[1] = k == 2 ? 3 : k == 3 ? count - 1 : below(count);
+            if (steps[step->kind].arguments == 2)
+                snprintf(line, sizeof line, "_%d %s _%d _%d\n", count, steps[step->kind].name,
+                         step->arguments[0], step->arguments[1]);
+            else
+                snprintf(line, sizeof line, "_%d %s _%d\n", count, steps[step->kind].name,
+                         step->arguments[0]);
+            add(text, size_of_text, line);
+        }
+    return count;
+}
+
+/* The field is divided by a bound of its slope: no difference of distances is above the way between
+   the points, and over all trials some are a good part of it. */
+static void quotients_have_bounds(void **state)
+{
+    double steepest = 0, sum = 0;
+    int    accepted = 0;
+    (void)state;
+    for (int i = 0; i < TAPES; i++) {
+        Step   tape[MOST_STEPS];
+        char   text[4096];
+        double points[2 * POINTS][3], distances[2 * POINTS], steep = 0;
+        int    count    = write_quotients(tape, text, sizeof text);
+        double constant = tape_value(tape, count, (double[]){0.1, 0.2, 0.3});
+        if (tape_value(tape, count, (double[]){-0.3, 0.5, 0.7}) == constant)
+            continue; /* nothing depends on the point, which is refused */
+        for (int k = 0; k < 2 * POINTS; k += 2) {
+            random_vector(&randomness, 0.95, points[k]);
+            for (int a = 0; a < 3; a++)
+                points[k + 1][a] = points[k][a] + between(-1e-3, 1e-3);
+        }
+        accepted++;
+        imported_distances("quotients.vm", text, points, 2 * POINTS, distances);
+        for (int k = 0; k < 2 * POINTS; k++) {
+            double value = tape_value(tape, count, points[k]);
+            if (fabs(value) > 1e-6 && (value < 0) != (distances[k] < 0))
+                fail_msg("%g at %g %g %g, but distance %g, of\n%s", value, points[k][0],
+                         points[k][1], points[k][2], distances[k], text);
+        }
+        for (int k = 0; k < 2 * POINTS; k += 2) {
+            double way = sqrt(pow(points[k][0] - points[k + 1][0], 2) +
+                              pow(points[k][1] - points[k + 1][1], 2) +
+                              pow(points[k][2] - points[k + 1][2], 2));
+            steep      = fmax(steep, fabs(distances[k] - distances[k + 1]) / way);
+        }
+        if (steep > 1 + 1e-6)
+            fail_msg("the distance changes by %g in a unit, of\n%s", steep, text);
+        steepest = fmax(steepest, steep);
+        sum += steep;
+    }
+    print_message("# of %d quotients the steepest is %.2f, the mean %.2f\n", accepted, steepest,
+                  sum / accepted);
+    assert_true(accepted > TAPES / 2 && steepest > 0.8);
+}
+
+static void poles_are_refused_with_their_line(void **state)
+{
+    (void)state;
+    assert_refused("a.vm", "_0 var-x\n_1 var-y\n_2 div _0 _1\n_3 add _2 _0\n",
+                   "a.vm:3: `div` divides by what can be 0");
+    assert_refused("a.vm", "_0 var-x\n_1 recip _0\n", "a.vm:2: `recip` divides by what can be 0");
+    assert_refused("a.vm",
+                   "_0 var-x\n_1 var-y\n_2 const 0.5\n_3 add _1 _2\n\n_4 div _0 _3\n_5 neg _4\n",
+                   "a.vm:6: `div` divides by what can be 0");
+    assert_refused("a.vm", "_0 var-x\n_1 floor _0\n", "a.vm:2: `floor` jumps");
+    assert_refused("a.vm", "_0 var-x\n_1 sqrt _0\n", "a.vm:2: `sqrt` has no greatest slope");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_no_polynomial_is_a_field_or_refused),
         cmocka_unit_test(random_surfaces),
         cmocka_unit_test(random_tapes),
+        cmocka_unit_test(quotients_have_bounds),
+        cmocka_unit_test(poles_are_refused_with_their_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
