@@ -102,11 +102,9 @@ static const Shape **joinable_shapes(Elaboration *e, const Call *call, const Val
     return shapes;
 }
 
-Value value_of_joint(Elaboration *e, ShapeKind kind, const Shape *const *shapes, uint32_t count,
-                     Blend blend, Span span)
+Value value_of_joint(Elaboration *e, const Shape *joint)
 {
-    const Shape *joint = make_joint(e->builder, kind, shapes, count, blend, span);
-    if (joint->boundary)
+    if (joint && joint->boundary)
         find_borders(e, joint);
     return value_shape(joint);
 }
@@ -142,7 +140,8 @@ static Value join(Elaboration *e, const Call *call, ShapeKind kind, const Values
         const Shape *joint = make_fillet(e, call, shapes, count, blend);
         return joint ? value_shape(joint) : value_error();
     }
-    return value_of_joint(e, kind, shapes, count, blend, call->syntax->span);
+    return value_of_joint(e,
+                          make_joint(e->builder, kind, shapes, count, blend, call->syntax->span));
 }
 
 /* ---- two shapes ---- */
@@ -165,7 +164,7 @@ Value join_shapes(Elaboration *e, const Syntax *syntax, const Shape *a, const Sh
     if (!can_be_joined(e, a, b, syntax->name_span))
         return value_error();
     const Shape *shapes[] = {a, b};
-    return value_of_joint(e, kind, shapes, 2, blend_sharp, syntax->span);
+    return value_of_joint(e, make_joint(e->builder, kind, shapes, 2, blend_sharp, syntax->span));
 }
 
 Value choose_shape(Elaboration *e, const Syntax *syntax, Value condition, const Shape *yes,

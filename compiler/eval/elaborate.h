@@ -379,9 +379,8 @@ const Shape *declared_core(Elaboration *e, const Shape *shape, Node rounding);
 Value declared_hull(Elaboration *e, const Shape *shape);
 /* Finds the corners of all figures below a sharp joint. */
 void find_borders(Elaboration *e, const Shape *joint);
-/* A joint of shapes; of figures one knows then where the boundary is. */
-Value value_of_joint(Elaboration *e, ShapeKind kind, const Shape *const *shapes, uint32_t count,
-                     Blend blend, Span span);
+/* Shapes that are joined or copied, or NULL; of figures one knows then where the boundary is. */
+Value value_of_joint(Elaboration *e, const Shape *joint);
 
 /* ---- claims.c: what declarations claim ---- */
 /* The library's claims hold for all sizes: tests search them, and compiling does not wait. */

@@ -475,7 +475,7 @@ const Shape *make_fillet(Elaboration *e, const Call *call, const Shape *const *s
             array_push(e->values, &joined, f.parts.items[i].shape);
     if (joined.count == 1)
         return joined.items[0];
-    return value_of_joint(e, SHAPE_UNION, joined.items, (uint32_t)joined.count, blend_sharp,
-                          call->syntax->span)
+    return value_of_joint(e, make_joint(e->builder, SHAPE_UNION, joined.items,
+                                        (uint32_t)joined.count, blend_sharp, call->syntax->span))
         .shape;
 }

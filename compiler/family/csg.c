@@ -133,20 +133,6 @@ static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *chi
     return join_two(l, shape->blend, crowds, others);
 }
 
-/* What lowers a joint by its parts. */
-static Lowered within_boundary(Lowering *l, const Shape *shape, LowerContext context,
-                               LowerShape *by_parts)
-{
-    if (!boundary_counts(l, shape, context))
-        return by_parts(l, shape, context);
-    LowerContext sides = context; /* what is asked of the parts is the side alone */
-    sides.reach        = 0;
-    Lowered result     = by_parts(l, shape, sides);
-    if (result.distance != NODE_NONE)
-        result.distance = boundary_distance(l, shape, context, result.distance);
-    return result;
-}
-
 static Lowered union_by_parts(Lowering *l, const Shape *shape, LowerContext context)
 {
     return union_of(l, shape, shape->children, shape->child_count, context.reach,
@@ -155,7 +141,7 @@ static Lowered union_by_parts(Lowering *l, const Shape *shape, LowerContext cont
 
 Lowered lower_union(Lowering *l, const Shape *shape, LowerContext context)
 {
-    return within_boundary(l, shape, context, union_by_parts);
+    return lower_within_boundary(l, shape, context, union_by_parts);
 }
 
 static Lowered intersection_of_two(Lowering *l, const Shape *shape, Lowered a, Lowered b)
@@ -186,7 +172,7 @@ static Lowered intersection_by_parts(Lowering *l, const Shape *shape, LowerConte
 
 Lowered lower_intersection(Lowering *l, const Shape *shape, LowerContext context)
 {
-    return within_boundary(l, shape, context, intersection_by_parts);
+    return lower_within_boundary(l, shape, context, intersection_by_parts);
 }
 
 static Lowered difference_by_parts(Lowering *l, const Shape *shape, LowerContext context)
@@ -203,7 +189,7 @@ static Lowered difference_by_parts(Lowering *l, const Shape *shape, LowerContext
 
 Lowered lower_difference(Lowering *l, const Shape *shape, LowerContext context)
 {
-    return within_boundary(l, shape, context, difference_by_parts);
+    return lower_within_boundary(l, shape, context, difference_by_parts);
 }
 
 /* What is in one of two: their union less what they share. */
@@ -223,7 +209,7 @@ static Lowered xor_by_parts(Lowering *l, const Shape *shape, LowerContext contex
 
 Lowered lower_xor(Lowering *l, const Shape *shape, LowerContext context)
 {
-    return within_boundary(l, shape, context, xor_by_parts);
+    return lower_within_boundary(l, shape, context, xor_by_parts);
 }
 
 /* All that is seen is of the part that is cut. */

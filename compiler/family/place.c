@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#include "compiler/lower/boundary.h"
 #include "compiler/lower/map_chain.h"
 
 /* ---- how it is made ---- */
@@ -85,6 +86,8 @@ const Shape *make_mirror(ShapeBuilder *builder, const Shape *shape, Node normal,
     mirror->values[1] = offset;
     mirror->exact     = false;
     mirror->box       = builder_box(builder, mirror);
+    if (mirror->figure)
+        mirror->boundary = boundary_new(builder->arena);
     return mirror;
 }
 
@@ -165,12 +168,17 @@ Lowered lower_stretch(Lowering *l, const Shape *shape, LowerContext context)
     return scale_distance(l, result, least);
 }
 
-Lowered lower_mirror(Lowering *l, const Shape *shape, LowerContext context)
+static Lowered mirror_by_part(Lowering *l, const Shape *shape, LowerContext context)
 {
     NormalPath path = normal_path(l, context, 1);
     normal_fold(l, &path, context.point, shape->values[0], shape->values[1]);
     Node point = graph_op3(l->graph, OP_fold, context.point, shape->values[0], shape->values[1]);
     return lower_behind(l, shape->children[0], context, &path, point);
+}
+
+Lowered lower_mirror(Lowering *l, const Shape *shape, LowerContext context)
+{
+    return lower_within_boundary(l, shape, context, mirror_by_part);
 }
 
 Lowered lower_elongate(Lowering *l, const Shape *shape, LowerContext context)

@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "compiler/graph/parity.h"
+#include "compiler/lower/boundary.h"
 #include "compiler/lower/box_distance.h"
 #include "compiler/lower/join.h"
 #include "compiler/lower/map_chain.h"
@@ -45,6 +46,8 @@ const Shape *make_repeat(ShapeBuilder *builder, const Shape *shape, Node period,
         }
     }
     repeat->box = builder_box(builder, repeat);
+    if (repeat->figure)
+        repeat->boundary = boundary_new(builder->arena);
     return repeat;
 }
 
@@ -316,7 +319,7 @@ static CellAxis lower_axis(Lowering *l, const Shape *shape, LowerContext context
     return axis;
 }
 
-Lowered lower_repeat(Lowering *l, const Shape *shape, LowerContext context)
+static Lowered repeat_by_cells(Lowering *l, const Shape *shape, LowerContext context)
 {
     CellBounds bounds = {NODE_NONE, NODE_NONE};
     CellAxis   axes[3];
@@ -329,6 +332,11 @@ Lowered lower_repeat(Lowering *l, const Shape *shape, LowerContext context)
         return result;
     result.distance = graph_op2(l->graph, OP_min, result.distance, bounds.walls);
     return outside_of_box(l, shape, context, result);
+}
+
+Lowered lower_repeat(Lowering *l, const Shape *shape, LowerContext context)
+{
+    return lower_within_boundary(l, shape, context, repeat_by_cells);
 }
 
 static bool range_is_finite(Range range) { return isfinite(range.low) && isfinite(range.high); }

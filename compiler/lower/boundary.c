@@ -372,6 +372,66 @@ static bool gather_shell(Gathering *g, const Shape *shape, Curves *curves)
     return resolve(g, curves, FILL_POSITIVE);
 }
 
+/* ---- copies ---- */
+
+/* What is in dot(u, p) <= w, and its mirror image. */
+static bool gather_mirror(Gathering *g, const Shape *shape, Curves *curves)
+{
+    double u[2], w;
+    g->changed = true;
+    if (!known(g, shape->values[0], 0, &u[0]) || !known(g, shape->values[0], 1, &u[1]) ||
+        !known(g, shape->values[1], 0, &w) || !gather(g, shape->children[0], curves) ||
+        !(hypot(u[0], u[1]) > 1 - 1e-9))
+        return false;
+    double   far = 4 * (size_of(curves) + fabs(w)), at[2] = {w * u[0], w * u[1]};
+    double   along[2] = {-u[1] * far, u[0] * far};
+    Path     half     = {.arena = g->scratch};
+    Curves   image    = {0};
+    PlaneMap mirror   = {
+          {{1 - 2 * u[0] * u[0], -2 * u[0] * u[1]}, {-2 * u[0] * u[1], 1 - 2 * u[1] * u[1]}},
+          {2 * at[0], 2 * at[1]}};
+    path_move(&half, (double[]){at[0] - along[0], at[1] - along[1]});
+    path_line(&half, (double[]){at[0] + along[0], at[1] + along[1]});
+    path_line(&half, (double[]){at[0] + along[0] - far * u[0], at[1] + along[1] - far * u[1]});
+    path_line(&half, (double[]){at[0] - along[0] - far * u[0], at[1] - along[1] - far * u[1]});
+    path_close(&half);
+    append(g, curves, &half.curves);
+    if (!resolve(g, curves, FILL_TWICE))
+        return false;
+    append(g, &image, curves);
+    if (!map_all(&mirror, &image))
+        return false;
+    append(g, curves, &image);
+    return resolve(g, curves, FILL_NONZERO);
+}
+
+/* In a lattice about the origin that ends. */
+static bool gather_repeat(Gathering *g, const Shape *shape, Curves *curves)
+{
+    enum { MOST_COPIES = 1000 };
+    const uint32_t *cells     = shape->cells;
+    double          period[2] = {0, 0};
+    Curves          part      = {0};
+    g->changed                = true;
+    if (shape->values[1] != NODE_NONE || cells[2] != 1 || cells[0] == 0 || cells[1] == 0 ||
+        (double)cells[0] * cells[1] > MOST_COPIES || !gather(g, shape->children[0], &part))
+        return false;
+    for (uint32_t k = 0; k < 2; k++)
+        if (cells[k] > 1 && !known(g, shape->values[0], k, &period[k]))
+            return false;
+    for (uint32_t i = 0; i < cells[0] * cells[1]; i++) {
+        Curves   copy = {0};
+        PlaneMap move = {{{1, 0}, {0, 1}},
+                         {(i % cells[0] - 0.5 * (cells[0] - 1)) * period[0],
+                          ((double)(i / cells[0]) - 0.5 * (cells[1] - 1)) * period[1]}};
+        append(g, &copy, &part);
+        if (!map_all(&move, &copy))
+            return false;
+        append(g, curves, &copy);
+    }
+    return resolve(g, curves, FILL_NONZERO);
+}
+
 /* ---- any part ---- */
 
 static bool gather_turn(Gathering *g, const Shape *shape, Curves *curves)
@@ -400,6 +460,8 @@ static bool gather(Gathering *g, const Shape *shape, Curves *curves)
     case SHAPE_DIFFERENCE: return gather_difference(g, shape, curves);
     case SHAPE_OFFSET: return gather_offset(g, shape, curves);
     case SHAPE_SHELL: return gather_shell(g, shape, curves);
+    case SHAPE_MIRROR: return gather_mirror(g, shape, curves);
+    case SHAPE_REPEAT: return gather_repeat(g, shape, curves);
     case SHAPE_TURN: return gather_turn(g, shape, curves);
     case SHAPE_PAINT:
     case SHAPE_SMOOTH: return gather(g, shape->children[0], curves);
@@ -568,7 +630,7 @@ static Node distance_to_table(Lowering *l, struct Boundary *boundary, double rea
     return graph_op1(l->graph, OP_abs, distance);
 }
 
-bool boundary_counts(Lowering *l, const Shape *joint, LowerContext context)
+static bool boundary_counts(Lowering *l, const Shape *joint, LowerContext context)
 {
     struct Boundary *boundary = joint->boundary;
     if (!boundary || !(context.reach > 0) || !(l->crowds || l->far))
@@ -578,7 +640,7 @@ bool boundary_counts(Lowering *l, const Shape *joint, LowerContext context)
     return boundary->state == BOUNDARY_KNOWN;
 }
 
-Node boundary_distance(Lowering *l, const Shape *joint, LowerContext context, Node joined)
+static Node boundary_distance(Lowering *l, const Shape *joint, LowerContext context, Node joined)
 {
     Graph           *g        = l->graph;
     struct Boundary *boundary = joint->boundary;
@@ -589,4 +651,17 @@ Node boundary_distance(Lowering *l, const Shape *joint, LowerContext context, No
     }
     Node inside = graph_op2(g, OP_less, joined, graph_number(g, 0));
     return graph_op3(g, OP_select, inside, neg(g, near), near);
+}
+
+Lowered lower_within_boundary(Lowering *l, const Shape *joint, LowerContext context,
+                              LowerShape *by_parts)
+{
+    if (!boundary_counts(l, joint, context))
+        return by_parts(l, joint, context);
+    LowerContext sides = context; /* what is asked of the parts is the side alone */
+    sides.reach        = 0;
+    Lowered result     = by_parts(l, joint, sides);
+    if (result.distance != NODE_NONE)
+        result.distance = boundary_distance(l, joint, context, result.distance);
+    return result;
 }

@@ -1,5 +1,5 @@
 /*
- * boundary.h: the true boundary of figures that are joined sharply.
+ * boundary.h: the true boundary of figures that are joined sharply, or copied.
  *
  * The least of the distances to parts that overlap or touch is not the distance inside of their union: it is
  * 0 along a seam.  Where the numbers of all parts are known, so are their outlines, and what is left of
@@ -13,10 +13,9 @@
 /* Makes what is known of a joint's boundary, which is looked for when it is first needed. */
 struct Boundary *boundary_new(Arena *arena);
 
-/* Whether distances are needed away from the outline of a joint, what its parts say is not the true one there,
-   and its boundary is known. */
-bool boundary_counts(Lowering *l, const Shape *joint, LowerContext context);
-/* Then: the distance to the boundary, with the sign of `joined`. */
-Node boundary_distance(Lowering *l, const Shape *joint, LowerContext context, Node joined);
+/* Lowers a joint, or copies, by its parts.  Where distances are needed away from the outline, what the parts say is not
+   the true one there, and the boundary is known, it gets the distance to that, with the sign of the parts. */
+Lowered lower_within_boundary(Lowering *l, const Shape *joint, LowerContext context,
+                              LowerShape *by_parts);
 
 #endif

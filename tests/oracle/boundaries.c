@@ -5,6 +5,7 @@
  * point is on the boundary of a joint where the joint says something else on its two sides.
  */
 #include <stdio.h>
+#include <string.h>
 
 #include "tests/oracle/judge.h"
 #include "tests/oracle/product.h"
@@ -389,6 +390,43 @@ static void loops_have_true_distances(void **state)
           &random);
 }
 
+/* Copies touch, or are cut where they meet. */
+static void copies_have_true_distances(void **state)
+{
+    static const struct {
+        const char *text;
+        int         count;
+        Part        parts[MOST_PARTS];
+    } copies[] = {
+        {"rectangle([0.5, 0.75]).repeat([0.5, 0.75, 0], [3, 2, 1])",
+         1,
+         {{.kind = RECTANGLE, .a = 1.5, .b = 1.5, .scale = 1}}},
+        {"circle(0.5).repeat([1, 0, 0], [3, 1, 1]) | rectangle([3, 0.25])",
+         4,
+         {{.kind = CIRCLE, .a = 0.5, .scale = 1, .x = -1},
+          {.kind = CIRCLE, .a = 0.5, .scale = 1, .join = '|'},
+          {.kind = CIRCLE, .a = 0.5, .scale = 1, .x = 1, .join = '|'},
+          {.kind = RECTANGLE, .a = 3, .b = 0.25, .scale = 1, .join = '|'}}},
+        {"circle(0.75).move([-0.25, 0.125]).mirror(plane([1, 0, 0], 0))",
+         2,
+         {{.kind = CIRCLE, .a = 0.75, .scale = 1, .x = -0.25, .y = 0.125},
+          {.kind = CIRCLE, .a = 0.75, .scale = 1, .x = 0.25, .y = 0.125, .join = '|'}}},
+        {"circle(0.75).move([0.25, 0.125]).mirror(plane([1, 0, 0], 0))",
+         2,
+         {{.kind = CIRCLE, .a = 0.75, .scale = 1, .x = -0.25, .y = 0.125},
+          {.kind = CIRCLE, .a = 0.75, .scale = 1, .x = 0.25, .y = 0.125, .join = '&'}}},
+    };
+    static Member member;
+    Random        random = {15};
+    (void)state;
+    for (size_t i = 0; i < sizeof copies / sizeof *copies; i++) {
+        memcpy(member.parts, copies[i].parts, sizeof member.parts);
+        member.count = copies[i].count;
+        find_boundary(member.parts, member.count, &member.boundary);
+        check(&member, copies[i].text, &random);
+    }
+}
+
 /* At each height the mean of the true distances says what is inside: there is no groove. */
 static void lofts_go_by_true_distances(void **state)
 {
@@ -439,9 +477,8 @@ static void parameters_leave_bounds(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(joints_have_true_distances),
-        cmocka_unit_test(loops_have_true_distances),
-        cmocka_unit_test(lofts_go_by_true_distances),
+        cmocka_unit_test(joints_have_true_distances), cmocka_unit_test(loops_have_true_distances),
+        cmocka_unit_test(copies_have_true_distances), cmocka_unit_test(lofts_go_by_true_distances),
         cmocka_unit_test(parameters_leave_bounds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
