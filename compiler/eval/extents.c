@@ -290,11 +290,12 @@ static void add_children(const Gathering *g, const Shape *shape, uint32_t count,
         add_shape(g, shape->children[i], placing, grown);
 }
 
-/* Grown by as much. */
+/* Grown by as much, which a distance that is less than the true one does not tell. */
 static void add_grown(const Gathering *g, const Shape *shape, const Placing *placing, Node by,
                       Node grown)
 {
-    if (placing->scale == NODE_NONE || node_range(g->e->builder, by, 0).low < 0) {
+    if (placing->scale == NODE_NONE || !shape->children[0]->exact ||
+        node_range(g->e->builder, by, 0).low < 0) {
         add_box(g, shape, placing, grown);
         return;
     }
@@ -420,6 +421,32 @@ void extents_add(Elaboration *e, const Shape *shape, Extents *extents)
     add_shape(&g, shape, &identity, graph_number(e->graph, 0));
 }
 
+/* ---- of two shapes ---- */
+
+static void add_lines(Elaboration *e, ExtentLines *to, const ExtentLines *from)
+{
+    for (size_t i = 0; i < from->count; i++)
+        array_push(e->values, to, from->items[i]);
+}
+
+Extents extents_of_both(Elaboration *e, const Extents *a, const Extents *b)
+{
+    const Extents *both[] = {a, b};
+    Extents        joined = {.figure = a->figure};
+    for (int k = 0; k < 2; k++) {
+        const Extents *one = both[k];
+        for (size_t i = 0; i < one->count; i++)
+            array_push(e->values, &joined, one->items[i]);
+        for (size_t i = 0; i < one->faces.count; i++)
+            array_push(e->values, &joined.faces, one->faces.items[i]);
+        for (size_t i = 0; i < one->centres.count; i++)
+            array_push(e->values, &joined.centres, one->centres.items[i]);
+        add_lines(e, &joined.axes, &one->axes);
+        add_lines(e, &joined.half_spaces, &one->half_spaces);
+    }
+    return joined;
+}
+
 /* ---- how far they reach ---- */
 
 static Node greater(Graph *g, Node a, Node b)
@@ -493,4 +520,21 @@ Node extents_from(Elaboration *e, const Extents *extents, Node centre)
         most = greater(g, most, plus(g, reach, part->radius));
     }
     return most;
+}
+
+bool extents_box(Elaboration *e, const Extents *extents, Node corners[2])
+{
+    Node sides[2][3];
+    bool bounded = true;
+    for (int k = 0; k < 6; k++) {
+        const double sign   = k / 3 ? 1 : -1;
+        const Node   along  = graph_vec3(e->graph, k % 3 == 0 ? sign : 0, k % 3 == 1 ? sign : 0,
+                                      k % 3 == 2 ? sign : 0);
+        const Node   most   = extents_along(e, extents, along);
+        bounded             = bounded && most != NODE_NONE;
+        sides[k / 3][k % 3] = !bounded || k / 3 ? most : neg(e->graph, most);
+    }
+    for (int i = 0; i < 2; i++)
+        corners[i] = bounded ? graph_op(e->graph, OP_vec3, sides[i]) : NODE_NONE;
+    return bounded;
 }

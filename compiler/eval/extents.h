@@ -44,6 +44,10 @@ typedef struct Extents {
 /* Adds those of a shape. */
 void extents_add(Elaboration *e, const Shape *shape, Extents *extents);
 
+Extents extents_of_both(Elaboration *e, const Extents *a, const Extents *b);
+
+/* The least and the greatest coordinates of all of it; false: it has none. */
+bool extents_box(Elaboration *e, const Extents *extents, Node corners[2]);
 /* The greatest of dot(along, q) over all of it; NODE_NONE: there is none. */
 Node extents_along(Elaboration *e, const Extents *extents, Node along);
 /* No less than the greatest distance from a line, or from a point; there are no half-spaces. */

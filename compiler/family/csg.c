@@ -60,13 +60,16 @@ const Shape *make_joint(ShapeBuilder *builder, ShapeKind kind, const Shape *cons
     return joint;
 }
 
-const Shape *make_clip(ShapeBuilder *builder, const Shape *shape, const Shape *region, Span span)
+const Shape *make_clip(ShapeBuilder *builder, const Shape *shape, const Shape *region,
+                       const Node corners[2], Span span)
 {
     const Shape *parts[] = {shape, region};
     Shape       *clip    = shape_new(builder, SHAPE_CLIP, "clip", span, parts, region ? 2 : 1);
     clip->exact          = false;
     clip->without_uv     = shape->without_uv;
-    clip->box            = builder_box(builder, clip);
+    for (int i = 0; i < 2 && corners; i++)
+        clip->corners[i] = corners[i];
+    clip->box = builder_box(builder, clip);
     return clip;
 }
 

@@ -37,8 +37,10 @@ const Shape *make_transform(ShapeBuilder *builder, const Shape *shape, const Map
 const Shape *make_stretch(ShapeBuilder *builder, const Shape *shape, Node factors, Span span);
 const Shape *make_joint(ShapeBuilder *builder, ShapeKind kind, const Shape *const *shapes,
                         uint32_t count, Blend blend, Span span);
-/* What of a shape is in a region, which is not seen; NULL: all is. */
-const Shape *make_clip(ShapeBuilder *builder, const Shape *shape, const Shape *region, Span span);
+/* What of a shape is in a region, which is not seen; NULL: all is.  It is known to be between these two
+   corners; NULL: to be in the box of the shape. */
+const Shape *make_clip(ShapeBuilder *builder, const Shape *shape, const Shape *region,
+                       const Node corners[2], Span span);
 const Shape *make_morph(ShapeBuilder *builder, const Shape *a, const Shape *b, Node t, Span span);
 /* The condition is a truth value that does not depend on the point. */
 const Shape *make_choice(ShapeBuilder *builder, Node condition, const Shape *yes, const Shape *no,

@@ -247,7 +247,7 @@ static const Shape *restrict_clip(ShapeBuilder *builder, const Shape *shape, Box
 {
     const Shape *content = restrict_shape(builder, shape->children[0], box, uniform);
     const Shape *region  = shape->child_count > 1 ? shape->children[1] : NULL;
-    return make_clip(builder, content, region, shape->span);
+    return make_clip(builder, content, region, shape->corners, shape->span);
 }
 
 static const Shape *restrict_offset(ShapeBuilder *builder, const Shape *shape, Box box,

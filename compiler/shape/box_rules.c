@@ -106,6 +106,19 @@ static Box box_primitive(const BoxInput *in)
     return box;
 }
 
+/* What of a box is between the corners of a shape, as far as it has some. */
+static Box between_corners(const BoxInput *in, Box box)
+{
+    const Shape *shape = in->shape;
+    for (uint32_t i = 0; i < 3; i++) {
+        if (shape->corners[0] != NODE_NONE)
+            box.axis[i].low = fmax(box.axis[i].low, number(in, shape->corners[0], i).low);
+        if (shape->corners[1] != NODE_NONE)
+            box.axis[i].high = fmin(box.axis[i].high, number(in, shape->corners[1], i).high);
+    }
+    return box;
+}
+
 static Box box_of_part(const BoxInput *in) { return part(in, 0); }
 
 static Box box_transform(const BoxInput *in)
@@ -129,6 +142,8 @@ static Box hull_of_parts(const BoxInput *in)
         hull = i ? box_hull(hull, part(in, i)) : part(in, i);
     return hull;
 }
+
+static Box box_clip(const BoxInput *in) { return between_corners(in, part(in, 0)); }
 
 /* A blend adds to its parts where they are near to each other. */
 static Box box_union(const BoxInput *in)

@@ -1,0 +1,32 @@
+/*
+ * fillet_zone.h: where a fillet can add something to two parts.
+ */
+#ifndef KRS_FILLET_ZONE_H
+#define KRS_FILLET_ZONE_H
+
+#include "compiler/eval/elaborate.h"
+
+/* A ball. */
+typedef struct ZoneCell {
+    double centre[3], radius;
+} ZoneCell;
+
+/* A box; and, where the parts are known now, balls that hold all that is added. */
+typedef struct FilletZone {
+    Box  box;
+    bool known;
+    struct {
+        ZoneCell *items;
+        size_t    count, capacity;
+    } cells;
+} FilletZone;
+
+/* Of parts whose circular blend differs from their union in this box alone.  So many points are looked at. */
+FilletZone fillet_zone(Elaboration *e, const Shape *a, const Shape *b, double width, Box box,
+                       size_t most);
+/* Whether a convex function of the point, with slope 1, may be above 0 there. */
+bool zone_goes_beyond(Elaboration *e, const FilletZone *zone, Node distance);
+/* The same of dot(normal, p) - offset, in numbers. */
+bool zone_goes_beyond_plane(const FilletZone *zone, const double normal[3], double offset);
+
+#endif

@@ -1,0 +1,15 @@
+/*
+ * hull_region.h: a region that holds parts, and is their convex hull or little more.
+ */
+#ifndef KRS_HULL_REGION_H
+#define KRS_HULL_REGION_H
+
+#include "compiler/eval/extents.h"
+#include "compiler/eval/fillet_zone.h"
+
+/* As far as that matters in a zone; NULL: all of the zone is in it.  `crowd`: it is one of many, which had
+   best be alike. */
+const Shape *hull_region(Elaboration *e, const Call *call, const Extents *extents,
+                         const FilletZone *zone, bool crowd);
+
+#endif
