@@ -174,9 +174,23 @@ typedef struct PovState {
 } PovState;
 void pov_keep_state(PovReader *reader, PovState *state);
 void pov_restore_state(PovReader *reader, const PovState *state);
+/* The cell that a declaration fills; NULL after a refusal. */
+PovCell *pov_cell_to_fill(PovReader *reader, const char *name, bool local);
+/* Goes on behind what called the macro, or included the file, that is read. */
+void pov_pop_source(PovReader *reader);
 /* What a function is for these numbers. */
 bool pov_evaluate(PovReader *reader, const PovMacro *function, const double *numbers,
                   PovValue *value);
+
+/* ---- conditions and loops: import_pov_blocks.c ---- */
+
+/* `#if`, `#while`, `#end` and others, whose name is the word; *taken: it was one of them. */
+bool pov_block_directive(PovReader *reader, const char *name, bool *taken);
+/* NULL: there is none. */
+PovBlock *pov_top_block(PovReader *reader);
+void      pov_push_block(PovReader *reader, PovBlock block);
+/* Skips to the end of so many blocks. */
+bool pov_leave(PovReader *reader, int depth);
 
 /* ---- what may be declared: import_pov_declared.c ---- */
 
@@ -201,6 +215,11 @@ bool pov_string_follows(PovReader *reader);
 bool pov_string(PovReader *reader, const char **string);
 bool pov_number(PovReader *reader, double *number);
 bool pov_vector(PovReader *reader, double v[3]);
+/* Makes a number a vector of `count` equal ones; what a vector lacks becomes 0. */
+void pov_promote(PovValue *value, int count);
+
+/* ---- colours: import_pov_colors.c ---- */
+
 /* `color rgb <1, 0, 0>`, a vector, or a name. */
 bool pov_color_follows(PovReader *reader);
 /* Red, green, blue, filter, transmit. */

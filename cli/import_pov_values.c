@@ -1,12 +1,12 @@
 /*
- * import_pov_values.c: numbers, vectors and colours of POV-Ray, and arithmetic
- * with them.
+ * import_pov_values.c: numbers, vectors and strings of POV-Ray, and arithmetic with them.
  *
- *     condition = either [ "?" condition ":" condition ], either and both of
- * comparisons by | and & value   = product { ("+" | "-") product } product =
- * factor { ("*" | "/") factor } factor  = ("+" | "-") factor | atom { "." ("x"
- * | "y" | "z" | "red" | ...) } atom    = number | "(" value ")" | "<" value {
- * "," value } ">" | name | function "(" value { "," value } ")"
+ *     condition = either [ "?" condition ":" condition ]; either joins comparisons by | and &
+ *     value     = product { ("+" | "-") product }
+ *     product   = factor { ("*" | "/") factor }
+ *     factor    = ("+" | "-" | "!") factor | atom { "." ("x" | "y" | "z" | "red" | ...) }
+ *     atom      = number | "(" condition ")" | "<" value { "," value } ">" | name
+ *               | function "(" value { "," value } ")"
  */
 #include <math.h>
 #include <stdint.h>
@@ -172,7 +172,7 @@ bool pov_value_follows(PovReader *reader)
 }
 
 /* A number where a vector is wanted. */
-static void promote(PovValue *value, int count)
+void pov_promote(PovValue *value, int count)
 {
     for (int i = value->count; i < count; i++)
         value->v[i] = value->count == 1 ? value->v[0] : 0;
@@ -195,8 +195,8 @@ static bool read_list(PovReader *reader, PovValue *values, int most, int *count,
 static PovValue vector_result(int function, PovValue *a, PovValue *b)
 {
     PovValue result = {.count = 3};
-    promote(a, 3);
-    promote(b, 3);
+    pov_promote(a, 3);
+    pov_promote(b, 3);
     if (function == 1) {
         memcpy(result.v, a->v, sizeof a->v);
         normalize3(result.v);
@@ -272,8 +272,8 @@ static bool vector_turned(PovReader *reader, bool by_axis, PovValue *value)
     if (!pov_condition(reader, value) || !next_argument(reader, &by) ||
         (by_axis && !next_argument(reader, &angle)))
         return false;
-    promote(value, 3);
-    promote(&by, 3);
+    pov_promote(value, 3);
+    pov_promote(&by, 3);
     double              v[3]       = {value->v[0], value->v[1], value->v[2]}, w[3];
     static const double axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int i = 0; i < (by_axis ? 1 : 3); i++) {
@@ -481,8 +481,8 @@ static bool read_factor(PovReader *reader, PovValue *value)
 static bool combine(PovReader *reader, char sign, PovValue *a, PovValue *b)
 {
     int count = a->count > b->count ? a->count : b->count;
-    promote(a, count);
-    promote(b, count);
+    pov_promote(a, count);
+    pov_promote(b, count);
     for (int i = 0; i < count; i++) {
         switch (sign) {
         case '+': a->v[i] += b->v[i]; break;
@@ -597,104 +597,8 @@ bool pov_vector(PovReader *reader, double v[3])
     PovValue value;
     if (!pov_value(reader, &value))
         return false;
-    promote(&value, 3);
+    pov_promote(&value, 3);
     memcpy(v, value.v, 3 * sizeof *v);
-    return true;
-}
-
-/* ---- colours ---- */
-
-static const char *const color_words[] = {"color", "colour", "rgb",   "rgbf",  "rgbt",
-                                          "rgbft", "srgb",   "srgbf", "srgbt", "srgbft"};
-static const char *const channels[]    = {"red", "green", "blue", "filter", "transmit"};
-
-bool pov_color_follows(PovReader *reader)
-{
-    for (size_t i = 0; i < sizeof color_words / sizeof *color_words; i++)
-        if (word_is(&reader->words, color_words[i]))
-            return true;
-    for (size_t i = 0; i < sizeof channels / sizeof *channels; i++)
-        if (word_is(&reader->words, channels[i]))
-            return true;
-    return pov_value_follows(reader);
-}
-
-static double linear(double s) { return s <= 0.04045 ? s / 12.92 : pow((s + 0.055) / 1.055, 2.4); }
-
-double pov_light_of(const PovReader *reader, double channel)
-{
-    double gamma = reader->gamma;
-    return gamma == 0 ? linear(channel) : pow(fmax(channel, 0), gamma);
-}
-
-/* Of a channel as it is shown. */
-static double in_space_of_file(const PovReader *reader, double shown)
-{
-    double gamma = reader->gamma;
-    return gamma == 0 ? shown : pow(linear(fmax(shown, 0)), 1 / gamma);
-}
-
-/* Where the numbers behind a word for colours go: of rgbt the fourth is
- * `transmit`. */
-static void take_channels(const PovReader *reader, const char *word, const PovValue *found,
-                          PovValue *color)
-{
-    bool     encoded = word[0] == 's', transmits = strchr(word, 't') && !strchr(word, 'f');
-    int      count = (int)strlen(word) - (encoded ? 1 : 0);
-    PovValue all   = *found;
-    promote(&all, count < 3 ? 3 : count);
-    memset(color->v, 0, sizeof color->v);
-    for (int i = 0; i < 5 && i < (found->count > count ? found->count : count); i++)
-        color->v[transmits && i == 3 ? 4 : i] = encoded && i < 3
-                                                    ? in_space_of_file(reader, all.v[i])
-                                                    : all.v[i];
-    color->count = 5;
-}
-
-static int find_word(const PovReader *reader, const char *const *words, int count)
-{
-    for (int i = 0; i < count; i++)
-        if (word_is(&reader->words, words[i]))
-            return i;
-    return -1;
-}
-
-/* Words and numbers, one after the other, each of which changes what is known
- * so far. */
-bool pov_color(PovReader *reader, double color[5])
-{
-    WordReader *words = &reader->words;
-    PovValue    value = {.count = 0}, found;
-    int         word, channel;
-    if (!pov_release(reader))
-        return false;
-    if (!word_accept(words, "color"))
-        word_accept(words, "colour");
-    for (;;) {
-        word    = find_word(reader, color_words + 2, sizeof color_words / sizeof *color_words - 2);
-        channel = find_word(reader, channels, 5);
-        if (word >= 0) {
-            const char *name = words->word.text;
-            words_advance(words);
-            if (!pov_value(reader, &found))
-                return false;
-            take_channels(reader, name, &found, &value);
-        } else if (channel >= 0) {
-            words_advance(words);
-            if (!pov_number(reader, &value.v[channel]))
-                return false;
-            value.count = 5;
-        } else if (value.count == 0) {
-            if (!pov_value(reader, &value))
-                return false;
-            promote(&value, 3);
-            value.count = value.count > 3 ? value.count : 3;
-        } else {
-            break;
-        }
-    }
-    for (int i = 0; i < 5; i++)
-        color[i] = i < value.count || value.count == 5 ? fmax(value.v[i], 0) : 0;
     return true;
 }
 
@@ -715,7 +619,10 @@ bool pov_string_follows(PovReader *reader)
         own = first_element(own);
     if (own)
         return own->kind == POV_STRING;
-    return find_word(reader, string_functions, 7) >= 0;
+    for (size_t i = 0; i < sizeof string_functions / sizeof *string_functions - 1; i++)
+        if (word_is(words, string_functions[i]))
+            return true;
+    return false;
 }
 
 /* `str(number, least length, digits)` */
