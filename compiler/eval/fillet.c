@@ -106,8 +106,9 @@ static bool add_parts(Elaboration *e, const Shape *shape, Shapes *parts)
 static bool refuse_many(Filleting *f, const char *what)
 {
     Diag *diag = diag_add(f->e->diags, DIAG_LIMIT, f->call->syntax->span, "%s", what);
-    diag->help = "join sharply, with `|`, what needs no fillets in between: a union counts as one "
-                 "part of the next `union`";
+    diag->help =
+        "join sharply, with `|`, what needs no fillets in between: parts of such a union get "
+        "none among themselves";
     return false;
 }
 

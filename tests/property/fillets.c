@@ -403,6 +403,20 @@ static void level_tops_stay_in_frames(void **state)
     }
 }
 
+/* A joint reaches no farther than its parts. */
+static void bounds_stay(void **state)
+{
+    static const char text[] = "let s = union(box([2, 1, 2]), cylinder(0.5, 1).move([1, 0, 0]), "
+                               "blend: 0.4, kind: \"fillet\");"
+                               "let b = s.bounds(); assert(b[0][0] == -1 and b[0][1] == -0.5 and "
+                               "b[1][1] == 0.5 and b[1][0] == 1.5);"
+                               "show s;";
+    double            point[1][3] = {{0, 0, 0}};
+    KrsHit            hit;
+    (void)state;
+    probe_text(text, NULL, 0, point, 1, &hit);
+}
+
 /* ---- arcs ---- */
 
 /* Concave edges at right angles have the arc of a ball of that radius that rolls along both sides: outside of two
@@ -638,6 +652,7 @@ int main(void)
         cmocka_unit_test(a_wall_stays),
         cmocka_unit_test(level_tops_stay),
         cmocka_unit_test(level_tops_stay_in_frames),
+        cmocka_unit_test(bounds_stay),
         cmocka_unit_test(edges_have_arcs),
         cmocka_unit_test(pairs_stay_in_their_hull),
         cmocka_unit_test(order_and_what_is_far_do_not_show),
