@@ -9,6 +9,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "compiler/base/embedded.h"
 #include "compiler/base/text.h"
 #include "compiler/outline/svg_stroke.h"
 #include "compiler/outline/svg_tree.h"
@@ -132,26 +133,44 @@ static bool functional(const char *text, uint32_t *rgb)
     return true;
 }
 
+static const char *library_text(const char *name)
+{
+    const EmbeddedFile *file = library_files;
+    while (file->name && strcmp(file->name, name) != 0)
+        file++;
+    return file->name ? file->text : "";
+}
+
+/* Colours of CSS are declared by the library, `let tomato = #ff6347;`, but for `tan`, which is the
+   tangent in the language. */
+static bool named(const char *name, uint32_t *rgb)
+{
+    size_t length = strlen(name);
+    *rgb          = 0xd2b48c;
+    if (strcasecmp(name, "tan") == 0)
+        return true;
+    for (const char *at = strstr(library_text("colours.krs"), "\nlet "); at;
+         at             = strstr(at + 1, "\nlet ")) {
+        if (length == 0 || strncasecmp(at + 5, name, length) != 0)
+            continue;
+        const char *behind = at + 5 + length + strspn(at + 5 + length, " ");
+        if (strncmp(behind, "= #", 3) != 0)
+            continue;
+        *rgb = (uint32_t)strtoul(behind + 3, NULL, 16);
+        return true;
+    }
+    *rgb = 0;
+    return false;
+}
+
 static bool color_of(const char *text, uint32_t *rgb)
 {
-    static const struct {
-        const char *name;
-        uint32_t    rgb;
-    } colors[] = {
-#define COLOR(name, rgb) {name, rgb},
-#include "compiler/outline/svg_colors.def"
-    };
     if (text[0] == '#')
         return hexadecimal(text + 1, rgb);
     *rgb = 0;
     if (strncmp(text, "rgb(", 4) == 0 || strncmp(text, "rgba(", 5) == 0)
         return functional(strchr(text, '(') + 1, rgb);
-    for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
-        if (strcasecmp(text, colors[i].name) == 0) {
-            *rgb = colors[i].rgb;
-            return true;
-        }
-    return false;
+    return named(text, rgb);
 }
 
 /* ---- gradients ---- */
