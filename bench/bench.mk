@@ -125,7 +125,7 @@ bench-mesh: $(B)/krs $(PEER)
 	@bench/mesh/mesh.sh $(B)/krs $(PEER)
 
 # For `make test`.
-SCRIPTS += tests/bench.sh
+ALONE += tests/bench.sh
 test-programs: $(B)/bench/bench
 clang-objects: $(BENCH:%.c=$(B)/%.o) $(STAGE) $(MINIFY) \
                $(B)/bench/iterations/iterations.o $(B)/bench/inverted/inverted.o \

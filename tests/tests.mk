@@ -2,8 +2,8 @@
 #
 # Every test speaks TAP; tests/run.sh counts.  `make test DEVICE=...` runs all on another Vulkan
 # device, in the words of `krs --device`; `DEVICE=swiftshader` on one that every Debian can have.
-# The tests that need no device run under the address and undefined-behaviour sanitizers, and
-# everything compiles under clang as well, in `make test-long`.
+# In `make test-long` what needs no device runs under the address and undefined-behaviour sanitizers,
+# and everything compiles under clang as well.
 
 # What tests of several kinds share; nothing of it knows what is tested.
 SUPPORT     := $(addprefix tests/support/, agreement.c bench.c crowd_texts.c device.c folder.c random.c \
@@ -35,8 +35,8 @@ SECOND      := $(DRIVERS) $(addprefix tests/, unit/devices unit/tracer \
                oracle/device oracle/picture oracle/query oracle/query_limits)
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)
-# Without a device: what runs under the sanitizers (drivers leak by design), and only there, but for
-# BOTH, whose machine code depends on the compiler's options.
+# Without a device: what runs under the sanitizers (drivers leak by design).  `make test-all` runs it only
+# there, but for BOTH, whose machine code depends on the compiler's options.
 SANITIZED   := $(addprefix tests/, unit/texts unit/patience unit/front unit/synonyms unit/diagnostics unit/shape unit/parts unit/passes unit/display \
                unit/writer unit/image_files unit/image_reading unit/validate unit/loader unit/watcher unit/grid unit/crowd_grid unit/crowds unit/few_parts unit/tables unit/search \
                unit/refute unit/memory unit/cache unit/cache_limits unit/frame unit/frame_floor unit/query \
@@ -50,24 +50,32 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/patience unit/front unit/syno
                oracle/imports_csg oracle/imports_csg_sizes oracle/imports_pov fuzz/sentences)
 BOTH        := $(addprefix tests/, property/lanes unit/mesh)
 PLAIN       := $(filter-out $(filter-out $(BOTH), $(SANITIZED)), $(PROGRAMS))
-# Scripts that run beside programs, the longest first.  SCRIPTS run alone: they measure time, or count
-# what others may change.
-BESIDE      := $(addprefix tests/, examples.sh tutorial.sh extend/extend.sh cli/scale.sh errors-sanitized.sh lint.sh \
-               errors.sh layers.sh grammar.sh editors.sh golden.sh library.sh symbols.sh docs.sh gallery.sh \
-               $(addprefix cli/, compose.sh compositors.sh confined.sh cryptomatte.sh format.sh import.sh \
-               install.sh light_groups.sh mesh_copies.sh mesh_judges.sh mesh_places.sh pictures.sh usage.sh))
-SCRIPTS     := tests/run_selftest.sh $(sort $(filter-out tests/cli/common.sh $(BESIDE), \
-               $(wildcard tests/cli/*.sh))) tests/fuzz/fuzz.sh
+# Scripts that run alone: events of a window, and measurements.  The others run beside programs, the longest first.
+ALONE       := $(addprefix tests/, cli/view.sh cli/view_random.sh fuzz/fuzz.sh)
+LONGEST     := $(addprefix tests/, examples.sh extend/extend.sh errors-sanitized.sh cli/signals.sh gallery.sh lint.sh cli/resume.sh \
+               errors.sh cli/watch.sh cli/untrusted.sh cli/silent.sh cli/cache.sh cli/fingerprints.sh cli/failures.sh)
+BESIDE      := $(LONGEST) $(filter-out $(LONGEST) $(ALONE) tests/run.sh tests/second_driver.sh tests/bench.sh tests/cli/common.sh, \
+               $(wildcard tests/*.sh tests/cli/*.sh))
 # What takes longest and need not run after each change: `make test-long` has it, `make test` all else, and
-# `make test-all` both (docs/building.md says what costs what).  clang and the fuzzers belong to it, as they
-# compile everything once more, the judge of meshes, whose headers take a minute, and what compares switches of
-# `krs help render --all` with each other.
-LONG        := $(addprefix tests/, examples.sh extend/extend.sh cli/mesh_judges.sh fuzz/fuzz.sh unit/per_component \
-               unit/schedules unit/methods oracle/meshes oracle/mesh_forms oracle/mesh_examples)
-# Of a list, what belongs to a set: short, long or all.
-short_of     = $(filter-out $(LONG), $(1))
-long_of      = $(filter $(LONG), $(1))
-all_of       = $(1)
+# `make test-all` both (docs/building.md says what costs what).  The sanitizers, clang and the fuzzers belong
+# to it, as they compile everything once more, the judge of meshes, whose headers take a minute, and what
+# compares switches of `krs help render --all` with each other.
+LONG        := $(addprefix tests/, examples.sh extend/extend.sh errors-sanitized.sh cli/view_random.sh cli/mesh_judges.sh fuzz/fuzz.sh bench.sh \
+               unit/per_component unit/schedules unit/methods oracle/meshes oracle/mesh_forms oracle/mesh_examples)
+# What a set has of scripts, of programs, and of programs under the sanitizers.
+scripts_short    = $(filter-out $(LONG), $(1))
+scripts_long     = $(filter $(LONG), $(1))
+scripts_all      = $(1)
+programs_short  := $(filter-out $(LONG), $(PROGRAMS))
+programs_long   := $(filter $(LONG), $(PLAIN))
+programs_all    := $(PLAIN)
+sanitized_short :=
+sanitized_long  := $(SANITIZED)
+sanitized_all   := $(SANITIZED)
+# That drivers agree: another device is compared with lavapipe, or else SwiftShader, which is slow.
+drivers_short    = $(if $(DEVICE),$(DRIVERS:%=$(B)/%))
+drivers_long     = $(if $(DEVICE),,$(SECOND_RUN))
+drivers_all      = $(drivers_short) $(drivers_long)
 
 # So many programs run at once: most use one core, as they compile kernels.  A device that is asked
 # for is left to one.
@@ -173,18 +181,16 @@ SECOND_RUN   = tests/second_driver.sh $(if $(shell . tests/support/drivers.sh &&
 test:      SET := short
 test-long: SET := long
 test-all:  SET := all
-chosen    = $(call $(SET)_of, $(1))
+scripts    = $(call scripts_$(SET), $(1))
+programs   = $(patsubst %,$(B)/%,$(programs_$(SET)))
+sanitized  = $(patsubst %,$(B)/asan/%,$(sanitized_$(SET)))
 test test-long test-all: export WERROR = 1
 test test-long test-all: test-deps
-	@$(MAKE) --no-print-directory -j$(JOBS) all $(B)/libkrs.so $(B)/bench/bench $(patsubst %,$(B)/%,$(call chosen, $(PLAIN)) $(DRIVERS)) \
-	    $(if $(filter short, $(SET)),,$(JUDGE) clang-check fuzzers)
-	@$(if $(filter long, $(SET)),,$(MAKE) --no-print-directory -j$(JOBS) sanitize)
+	@$(MAKE) --no-print-directory -j$(JOBS) all $(B)/libkrs.so $(B)/bench/bench $(programs) $(if $(DEVICE),$(DRIVERS:%=$(B)/%)) \
+	    $(if $(filter short, $(SET)),,$(JUDGE) $(SECOND:%=$(B)/%) sanitize clang-check fuzzers)
 	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=900 \
 	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") \
-	    JOBS=$(TEST_JOBS) $(call chosen, $(BESIDE)) $(patsubst %,$(B)/%,$(call chosen, $(PLAIN))) \
-	    $(if $(filter long, $(SET)),,$(SANITIZED:%=$(B)/asan/%)) \
-	    JOBS=1 $(call chosen, $(SCRIPTS)) \
-	    $(if $(filter long, $(SET)),,JOBS=$(TEST_JOBS) \
-	        $(if $(DEVICE),$(DRIVERS:%=$(B)/%),$(SECOND_RUN)))
+	    JOBS=$(TEST_JOBS) $(call scripts, $(BESIDE)) $(programs) $(sanitized) \
+	    JOBS=1 $(call scripts, $(ALONE)) JOBS=$(TEST_JOBS) $(drivers_$(SET))
 .PHONY: test test-long test-all test-meshes golden list-programs test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers \
         fuzz-programs lint layers docs format bless

@@ -6,7 +6,7 @@ set -u
 cd "$(dirname "$0")/.." || exit 1
 build=$1 set=$2
 shift 2
-folder=$build/$set
+folder=$build/$set figures=$build/$set.figures
 
 # The rows of this set: kind|name|scene|options|what it shows.
 rows() {
@@ -41,6 +41,18 @@ below() { # kind, name, scene, options, text
     echo "<p><code>$(command_of "$@" | escaped)</code></p>"
 }
 
+# A picture on the page, and the meshes of the same name.
+figure() { # name
+    rows | grep "^[a-z]*|$1|" | while IFS='|' read -r kind name scene options text; do
+        [ -s "$folder/$(files_of "$kind" "$name" | cut -d ' ' -f 1)" ] || continue
+        [ "$kind" = mesh ] || echo "<figure><a href=\"$name.png\"><img src=\"$name.png\" alt=\"$name\"></a>
+<figcaption><h2>$name</h2>"
+        echo "<p>$(echo "$text" | escaped)</p>"
+        below "$kind" "$name" "$scene" "$options"
+    done
+    echo "</figcaption></figure>"
+}
+
 # Of what there is so far.
 page() {
     cat <<END
@@ -63,18 +75,8 @@ code { font-size: 0.8em; overflow-wrap: anywhere; color: #555 }
 light of any strength, and depth, normals and components of each pixel; STL and GLB are triangles.</p>
 <main>
 END
-    rows | while IFS='|' read -r kind name scene options text; do
-        if [ "$kind" = mesh ] || [ ! -s "$folder/$name.png" ]; then continue; fi
-        echo "<figure><a href=\"$name.png\"><img src=\"$name.png\" alt=\"$name\"></a>"
-        echo "<figcaption><h2>$name</h2><p>$(echo "$text" | escaped)</p>"
-        below "$kind" "$name" "$scene" "$options"
-        [ ! -s "$folder/$name.glb" ] || rows | grep "^mesh|$name|" |
-            while IFS='|' read -r kind name scene options text; do
-                echo "<p>$(echo "$text" | escaped)</p>"
-                below "$kind" "$name" "$scene" "$options"
-            done
-        echo "</figcaption></figure>"
-    done
+    # shellcheck disable=SC2046 # names are words
+    cat $(rows | awk -F '|' -v folder="$figures" '$1 != "mesh" { print folder "/" $2 }') 2>/dev/null
     echo "</main></html>"
 }
 
@@ -84,10 +86,11 @@ make_row() { # kind, name, scene, options, text
     echo "$1 $2: $5"
     eval "$(command_of "$@") --quiet" || exit 1
     echo "$1 $2: $(files_of "$1" "$2"), after $(($(date +%s) - begun)) s"
+    if [ -s "$folder/$2.png" ]; then figure "$2" >"$figures/.$$" && mv "$figures/.$$" "$figures/$2"; fi
     page >"$folder/.index-$$" && mv "$folder/.index-$$" "$folder/index.html"
 }
 
-mkdir -p "$folder" || exit 1
+mkdir -p "$folder" "$figures" || exit 1
 begun=$(date +%s)
 if [ $# -eq 0 ]; then
     echo "$set: $(rows | grep -vc '^mesh') pictures and $(rows | grep -c '^mesh') meshes"
