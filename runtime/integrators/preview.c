@@ -101,7 +101,9 @@ static void add_background(Preview *p)
                    0);
 }
 
-/* Adds a ray over the hemisphere of each hit, and means over neighbouring pixels. */
+/* Adds a ray over the hemisphere of each hit, and means over neighbouring pixels.  The means are
+   needed however many rays there are: the light between a surface and its occluders is no linear
+   function of openness (shade.comp).  So the mean of noisy pixels would be too dark. */
 static void add_occlusion(Preview *p)
 {
     static const struct {

@@ -62,8 +62,10 @@ vec3 traced_by_layers(Layers layers, vec2 traced)
            layers.bsdf.under_coat * layers.bsdf.mirrored * traced.x;
 }
 
-// The light of the sky, where nothing occludes it.
-vec3 ambient_of_layers(Layers layers, vec3 toward_eye, vec3 normal, vec2 traced)
+// The light of the sky.  `bounce`: the part that reaches the body, with the light between it and
+// what occludes it.
+vec3 ambient_of_layers(Layers layers, vec3 toward_eye, vec3 normal, float openness, vec3 bounce,
+                       vec2 traced)
 {
     Bsdf bsdf = layers.bsdf;
     vec3 around = find_sky_around(normal);
@@ -75,5 +77,5 @@ vec3 ambient_of_layers(Layers layers, vec3 toward_eye, vec3 normal, vec2 traced)
     vec3 coat = find_sky_mirrored(layers.axes.normal, toward_eye, layers.coat_roughness);
     vec3 mirrored = bsdf.under_sheen * bsdf.coated * (1.0 - traced.y) * coat +
                     bsdf.under_coat * bsdf.mirrored * (1.0 - traced.x) * body;
-    return layers.body * around + bsdf.sheen * bsdf.fuzzy * around + mirrored;
+    return layers.body * around * bounce + (bsdf.sheen * bsdf.fuzzy * around + mirrored) * openness;
 }

@@ -153,18 +153,20 @@ vec3 direct_light(Light light, HitPoint hit, Coat coat, vec3 facing, float visib
     return visible * color * find_reflected(coat, toward);
 }
 
-// The light of the sky, as far as the hemisphere is open.  What occluders give back is a bounce.
+// The light of the sky, as far as the hemisphere is open.  Occluders are taken to have the
+// surface's own colour, and give some light back.
 vec3 ambient(Coat coat, float openness)
 {
+    vec3 bounce = openness / max(1.0 - coat.color * (1.0 - openness), 0.05);
 #ifdef LAYERS
-    return openness * ambient_of_layers(coat.layers, coat.toward_eye, coat.mean_length * coat.normal,
-                                        coat.traced);
+    return ambient_of_layers(coat.layers, coat.toward_eye, coat.mean_length * coat.normal, openness,
+                             bounce, coat.traced);
 #else
     vec3 scattered = coat.mirror.below * coat.color *
-                     find_sky_around(coat.mean_length * coat.normal);
+                     find_sky_around(coat.mean_length * coat.normal) * bounce;
     vec3 mirrored = find_sky_mirrored(coat.normal, coat.toward_eye, coat.roughness) *
                     coat.mirror.around;
-    return openness * (scattered + mirrored * (1.0 - coat.traced.x));
+    return scattered + mirrored * openness * (1.0 - coat.traced.x);
 #endif
 }
 

@@ -171,10 +171,12 @@ KrsWindow view_window(const FrameBlock *block, const KrsCamera *camera, double r
                        (uint32_t)(to[1] - from[1])};
 }
 
-/* Sets the end of rays. */
-static void place_end(const KrsView *view, const double low[3], const double high[3],
-                      double distance, FrameBlock *block)
+/* Sets the end of rays and the reach of occlusion.  The reach depends on the scene alone where
+   possible, not on the camera, so that it does not change while the camera moves. */
+static void place_ends(const KrsView *view, const double low[3], const double high[3],
+                       double distance, FrameBlock *block)
 {
+    double size = finite_size(low, high);
     if (is_bounded(low, high)) {
         double farthest = 0;
         for (int i = 0; i < 3; i++) {
@@ -183,10 +185,15 @@ static void place_end(const KrsView *view, const double low[3], const double hig
             farthest += side * side;
         }
         /* An orthographic ray starts beside the eye, no farther from it than the box is. */
-        block->farthest = (float)(2.1 * sqrt(farthest) + 2 * view->camera.height);
+        block->farthest        = (float)(2.1 * sqrt(farthest) + 2 * view->camera.height);
+        block->occlusion_reach = (float)(0.15 * size);
     } else {
-        block->farthest = (float)(HORIZON * fmax(finite_size(low, high), distance));
+        double scale           = fmax(size, distance);
+        block->farthest        = (float)(HORIZON * scale);
+        block->occlusion_reach = (float)(0.15 * (size > 0 ? fmin(size, distance) : distance));
     }
+    if (!(block->occlusion_reach > 0))
+        block->occlusion_reach = (float)(0.15 * distance);
 }
 
 bool view_ray(const KrsCamera *camera, uint32_t width, uint32_t height, const double place[2],
@@ -306,7 +313,7 @@ bool view_prepare(const KrsView *view, const double low[3], const double high[3]
     block->pixel_slope = (float)(view_pixel(camera, height, 1) - view_pixel(camera, height, 0));
     place_lens(camera, &basis, extent, block);
     view_place_box(view, low, high, block);
-    place_end(view, low, high, basis.distance, block);
+    place_ends(view, low, high, basis.distance, block);
     return isfinite(block->farthest);
 }
 
