@@ -42,8 +42,8 @@ const uint FIRST_ROULETTE = 3u;
 // How much the width of a ray grows where rough surfaces scatter it, relative to a camera's.
 const float MOST_SPREAD = 3.0;
 
-// Rays that rise less go along a plane for too many steps.  They bring a hundred thousandth of the light
-// on a dull surface; smooth ones mirror rays that come as low.
+// Rays that rise less go along a plane for too many steps, so they are lifted.  They bring a hundred
+// thousandth of the light on a dull surface; smooth ones mirror rays that come as low.
 const float LEAST_RISE = 2e-3, LOW = 0.05;
 bool goes_along(float rise, HitPoint hit, vec3 facing)
 {
@@ -234,8 +234,9 @@ float go_on(uvec2 pixel, uint index, HitPoint hit, Bsdf bsdf, Axes axes, vec4 fa
     scattered.w = mixed_density(cones, direction, scattered.w);
     weight *= scattered.rgb / max(scattered.w, 1e-30);
     float rise = dot(direction, facing.xyz) * sign(light.z);
-    bool  goes_on = rise > 0.0 && !goes_along(rise, hit, facing.xyz) && scattered.w > 0.0 &&
-                    largest(weight) > 0.0 && largest(weight) < 1e30;
+    if (rise > 0.0 && goes_along(rise, hit, facing.xyz))
+        direction = normalize(direction + (LEAST_RISE - rise) * sign(light.z) * facing.xyz);
+    bool  goes_on = rise > 0.0 && scattered.w > 0.0 && largest(weight) > 0.0 && largest(weight) < 1e30;
     if (control.value >= FIRST_ROULETTE) {
         float chance = min(find_survival(weight, kept), 0.95);
         goes_on = goes_on && sample_choice(work.corner + pixel, control.ray,

@@ -77,6 +77,9 @@ static const White whites[] = {
     {"smooth cloth", {{"fuzz", 1}, {"fuzz_rough", 0}}},
     {"rough cloth", {{"fuzz", 1}, {"fuzz_rough", 1}}},
     {"half cloth", {{"fuzz", 0.5}, {"fuzz_rough", 0.8}}},
+    {"cloth of metal and glass",
+     {{"metal", 0.5}, {"glass", 1}, {"fuzz", 0.7}, {"fuzz_rough", 0.3}}},
+    {"cloth of some glass", {{"glass", 0.5}, {"fuzz", 0.4}, {"fuzz_rough", 0}}},
     {"a film on a dielectric", {{"film", 1}, {"index", 2}}},
     {"a thick film on a metal", {{"film", 1}, {"metal", 1}, {"thick", 3}}},
     {"a bubble", {{"film", 1}, {"glass", 1}, {"index", 1.2}}},
@@ -122,7 +125,8 @@ static void paint(const White *white, double roughness)
 }
 
 /* The part of the light that may be lost or appear, beside noise. */
-#define MOST_LOST 0.01
+#define MOST_LOST          0.002
+#define MOST_LOST_OF_METAL 5e-4
 
 /* Only glass lets paths go on within the ball. */
 static bool has_glass(const White *white)
@@ -133,17 +137,21 @@ static bool has_glass(const White *white)
     return found;
 }
 
-static Estimate look(const White *white)
+static Estimate look_at(const White *white, uint32_t samples)
 {
     return path_stage_estimate(&stage,
                                (KrsRenderOptions){.width      = 64,
                                                   .height     = 64,
-                                                  .samples    = 1,
+                                                  .samples    = samples,
                                                   .bounces    = has_glass(white) ? 64 : 2,
                                                   .planes     = KRS_PLANE_COLOR,
                                                   .integrator = KRS_INTEGRATOR_PATH},
                                everywhere, 6);
 }
+
+static Estimate look(const White *white) { return look_at(white, 1); }
+
+static Estimate look_long(const White *white) { return look_at(white, 16); }
 
 static void white_is_not_seen(void **state)
 {
@@ -157,6 +165,22 @@ static void white_is_not_seen(void **state)
             paint(&whites[i], roughness);
             wrong += !must_be_near(look(&whites[i]), 1, MOST_LOST, name);
         }
+    assert_int_equal(wrong, 0);
+}
+
+/* Metals send all on at once, so there is little noise in which light could hide. */
+static void metals_lose_nothing(void **state)
+{
+    (void)state;
+    size_t wrong = 0;
+    for (int k = 0; k <= 20; k++) {
+        char name[100];
+        snprintf(name, sizeof name, "a long look at a metal, roughness %.2f", k / 20.0);
+        paint(&whites[0], k / 20.0);
+        Estimate found = look_long(&whites[0]);
+        print_message("# %s: %.5f +- %.5f\n", name, found.mean, found.error);
+        wrong += !must_be_near(found, 1, MOST_LOST_OF_METAL, name);
+    }
     assert_int_equal(wrong, 0);
 }
 
@@ -374,6 +398,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(white_is_not_seen),
+        cmocka_unit_test(metals_lose_nothing),
         cmocka_unit_test(gray_is_seen),
         cmocka_unit_test(light_is_found_either_way),
         cmocka_unit_test(nothing_bounces_from_a_ball),
