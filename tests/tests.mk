@@ -56,18 +56,19 @@ LONGEST     := $(addprefix tests/, examples.sh extend/extend.sh errors-sanitized
                errors.sh cli/watch.sh cli/untrusted.sh cli/silent.sh cli/cache.sh cli/fingerprints.sh cli/failures.sh)
 BESIDE      := $(LONGEST) $(filter-out $(LONGEST) $(ALONE) tests/run.sh tests/second_driver.sh tests/bench.sh tests/cli/common.sh, \
                $(wildcard tests/*.sh tests/cli/*.sh))
-# What takes more than 13 s of processor, but for what every change should pass: `make test-long` has it, `make test` all
+# What takes more than 11 s of processor, but for what every change should pass: `make test-long` has it, `make test` all
 # else, and `make test-all` both (docs/building.md says what costs what).  The sanitizers, clang and the fuzzers belong
 # to it, as they compile everything once more, the judge of meshes, whose headers take a minute, and what
 # compares switches of `krs help render --all` with each other.
 LONG        := $(addprefix tests/, examples.sh extend/extend.sh errors-sanitized.sh fuzz/fuzz.sh bench.sh \
-               $(addprefix cli/, cache.sh compose.sh fingerprints.sh format.sh install.sh mesh_judges.sh pictures.sh resume.sh scale.sh \
-               view_random.sh watch.sh) \
-               $(addprefix unit/, crowd_grid drivers film light_groups memory mesh_proofs methods noise per_component plates printing \
-               rendering schedules) \
-               $(addprefix property/, blends_of_many turn_boxes turns) \
-               $(addprefix oracle/, algebraic area_shadows chain_pictures chains closed_rooms combinations cornell coverage direct_glass \
-               distant furnace meshes mesh_examples mesh_forms occlusion paths soft_shadows upsampling))
+               $(addprefix cli/, cache.sh compose.sh failures.sh fingerprints.sh format.sh install.sh mesh_judges.sh outputs.sh \
+               pictures.sh query.sh resume.sh scale.sh view.sh view_random.sh watch.sh) \
+               $(addprefix unit/, arguments compiled crowd_grid drivers film light_groups memory mesh_proofs methods noise paths \
+               per_component plates printing rendering saved schedules values) \
+               $(addprefix property/, blends_of_many crowds fillets turn_boxes turns) \
+               $(addprefix oracle/, agree albedo algebraic area_shadows chain_pictures chains closed_rooms combinations cornell coverage \
+               direct_glass distant emissive furnace light media meshes mesh_examples mesh_forms moebius occlusion paths plate_light \
+               ray_lists sheets sky soft_shadows specialize stencils upsampling))
 # What a set has of scripts, of programs, and of programs under the sanitizers.
 scripts_short    = $(filter-out $(LONG), $(1))
 scripts_long     = $(filter $(LONG), $(1))
