@@ -3,7 +3,7 @@
 # make gallery    all of them, as the README has them, to build/gallery/: about an hour
 # make test       set up, build, run every test but the longest; the last line is `N passed, N failed`, and
 #                 `, N skipped` where some were; DEVICE=...: on another device (krs devices)
-# make test-long  the longest, with clang and the fuzzers; test-all: both (docs/building.md)
+# make test-long  the longest, with sanitizers, clang and the fuzzers; test-all: both (docs/building.md)
 # make test-meshes    300 random meshes within their error, and what CGAL finds of them; half an hour
 # make sanitize   the same programs under ASan and UBSan, in build/asan/
 # make bench      measures, writes bench/results/; bench-quick: only whether it can
