@@ -17,9 +17,10 @@
 
 #include "compiler/base/vec.h"
 #include "compiler/compilation.h"
+#include "compiler/graph/lanes.h"
 #include "compiler/shape/box.h"
 
-enum { RAYS = 512, FEWEST_RAYS = 64, ROUNDS = 3, BATCH = 8, MOST_UNRESOLVED = 4 };
+enum { RAYS = 512, FEWEST_RAYS = 64, ROUNDS = 3, BATCH = LANES, MOST_UNRESOLVED = 4 };
 /* Cells are halved this many times, along their longest side; and so many are tried at once for each
    ray that is cast. */
 enum { HALVINGS = 15, CELLS_A_RAY = 4, MOST_CELLS = RAYS * CELLS_A_RAY };
@@ -33,15 +34,26 @@ static const double MARGIN = 0.06, GOLDEN_ANGLE = 2.399963229728653; /* pi (3 - 
    time. */
 static const double FLOPS_OF_ALL_RAYS = 2500;
 
+/* Nor do rays take more steps or operations than this, whatever each of them needs: those of a round at
+   most a part of what is left, so that there is something for the next one. */
+enum { MOST_STEPS = 1000, SHARE = 3 };
+static const uint64_t MOST_OPERATIONS = 40000000;
+
+/* Rays are cast in an order whose beginnings are spread as all of it, whether or not there is time for
+   all: this has no factor in common with their number. */
+enum { STRIDE = 7919 };
+
 /* Rays of one round, and what those of all rounds have hit of bounded components. */
 typedef struct Rays {
     double     origins[RAYS][3], directions[RAYS][3];
-    KrsHit     hits[RAYS];
+    KrsHit     hits[BATCH];
     double     seen[2 * ROUNDS * RAYS][3];
     size_t     seen_count;
-    Box        box;   /* around what is seen */
-    const Box *boxes; /* of components in the frame: frame_find_boxes */
-    bool       apart; /* they keep away from what has no end, as a floor */
+    Box        box;    /* around what is seen */
+    const Box *boxes;  /* of components in the frame: frame_find_boxes */
+    bool       apart;  /* they keep away from what has no end, as a floor */
+    uint64_t   most;   /* operations of the frame, at the end */
+    RayLimits  limits; /* of the round */
 } Rays;
 
 static Box box_of_point(const double point[3])
@@ -64,11 +76,15 @@ static int count_rays(const KrsScene *scene)
     return count;
 }
 
-/* Makes a ray from a lattice of `count` points that are spread evenly on a sphere around the ball
-   (Fibonacci's) to a point, which is given in radii of the ball from its centre. */
+/* The place of the i-th ray that is cast among `count` of them. */
+static int spread(int i, int count) { return i * STRIDE % count; }
+
+/* Makes the i-th ray that is cast: from a lattice of `count` points that are spread evenly on a sphere
+   around the ball (Fibonacci's) to a point, which is given in radii of the ball from its centre. */
 static void make_ray(const Ball *ball, int i, int count, const double to[3], Rays *rays)
 {
-    double y = 1 - (2 * i + 1.0) / count, ring = sqrt(1 - y * y), angle = GOLDEN_ANGLE * i;
+    int    place = spread(i, count);
+    double y = 1 - (2 * place + 1.0) / count, ring = sqrt(1 - y * y), angle = GOLDEN_ANGLE * place;
     double from[3] = {ring * cos(angle), rays->apart ? fabs(y) : y, ring * sin(angle)};
     for (int k = 0; k < 3; k++) {
         rays->origins[i][k]    = ball->centre[k] + 1.01 * ball->radius * from[k];
@@ -80,31 +96,45 @@ static void make_ray(const Ball *ball, int i, int count, const double to[3], Ray
 static void make_rays(const Ball *ball, int count, Rays *rays)
 {
     for (int i = 0; i < count; i++) {
-        double depth = 0.9 * cbrt((i * 89 % count + 0.5) / count);
-        double turn  = GOLDEN_ANGLE * (i * 37 % count);
-        double up = 1 - (2 * (i * 53 % count) + 1.0) / count, side = sqrt(1 - up * up);
+        int    place = spread(i, count);
+        double depth = 0.9 * cbrt((place * 89 % count + 0.5) / count);
+        double turn  = GOLDEN_ANGLE * (place * 37 % count);
+        double up = 1 - (2 * (place * 53 % count) + 1.0) / count, side = sqrt(1 - up * up);
         make_ray(ball, i, count,
                  (double[]){depth * side * cos(turn), depth * up, depth * side * sin(turn)}, rays);
     }
 }
 
-/* Casts rays and notes what they hit of bounded components; false after a few unresolved ones.
-   Distances that are much too short need many steps, and then the camera is placed by what is seen
-   so far, to save time. */
+static void begin_round(const KrsFrame *frame, Rays *rays)
+{
+    uint64_t left = frame->ran < rays->most ? rays->most - frame->ran : 0;
+    rays->limits  = (RayLimits){MOST_STEPS, frame->ran + left / SHARE};
+}
+
+static void note_hit(KrsFrame *frame, const KrsHit *hit, Rays *rays)
+{
+    if (!hit->hit || !box_is_finite(frame_box(frame, rays->boxes, hit->component - 1)))
+        return;
+    memcpy(rays->seen[rays->seen_count++], hit->point, sizeof hit->point);
+    rays->box = box_hull(rays->box, box_of_point(hit->point));
+}
+
+/* Casts rays and notes what they hit of bounded components, as long as they do not take too much; false
+   after a few unresolved ones.  Distances that are much too short need many steps, and then the camera
+   is placed by what is seen so far. */
 static bool cast_rays(KrsFrame *frame, Rays *rays, int count, double radius)
 {
-    int unresolved = 0;
-    for (int i = 0; i < count && unresolved <= MOST_UNRESOLVED; i++) {
-        const KrsHit *hit = &rays->hits[i];
-        if (i % BATCH == 0)
-            frame_raycast(frame, (const double(*)[3])rays->origins + i,
-                          (const double(*)[3])rays->directions + i,
-                          (size_t)(count - i < BATCH ? count - i : BATCH), 4 * radius,
-                          1e-3 * radius, rays->hits + i);
-        unresolved += hit->unresolved;
-        if (hit->hit && box_is_finite(frame_box(frame, rays->boxes, hit->component - 1))) {
-            memcpy(rays->seen[rays->seen_count++], hit->point, sizeof hit->point);
-            rays->box = box_hull(rays->box, box_of_point(hit->point));
+    const uint64_t most       = rays->limits.ran;
+    int            unresolved = 0;
+    for (int i = 0; i < count && unresolved <= MOST_UNRESOLVED && frame->ran < most; i += BATCH) {
+        int now = count - i < BATCH ? count - i : BATCH;
+        if (frame_raycast(frame, (const double(*)[3])rays->origins + i,
+                          (const double(*)[3])rays->directions + i, (size_t)now, 4 * radius,
+                          1e-3 * radius, rays->limits, rays->hits) != KRS_OK)
+            return false;
+        for (const KrsHit *hit = rays->hits; hit < rays->hits + now; hit++) {
+            note_hit(frame, hit, rays);
+            unresolved += hit->unresolved && frame->ran < most;
         }
     }
     return unresolved <= MOST_UNRESOLVED;
@@ -191,13 +221,13 @@ static void reduce_cells(KrsFrame *frame, const Box *known, Cells *cells)
 }
 
 /* Leaves out the cells that are next to what has no end. */
-static void keep_apart(KrsFrame *frame, const Box *boxes, Cells *cells)
+static void keep_apart(KrsFrame *frame, const Rays *rays, Cells *cells)
 {
     size_t kept = 0;
     frame_refresh_points(frame);
-    for (size_t i = 0; i < cells->count; i++) {
+    for (size_t i = 0; i < cells->count && frame->ran < rays->limits.ran; i++) {
         uint32_t nearest = frame_nearest_component(frame, cells->middles[i]);
-        if (nearest == 0 || !box_is_finite(frame_box(frame, boxes, nearest - 1)))
+        if (nearest == 0 || !box_is_finite(frame_box(frame, rays->boxes, nearest - 1)))
             continue;
         memcpy(cells->middles[kept], cells->middles[i], sizeof *cells->middles);
         cells->boxes[kept++] = cells->boxes[i];
@@ -212,11 +242,11 @@ static void find_cells(KrsFrame *frame, Box box, const Rays *rays, const Box *kn
 {
     cells->count    = 1;
     cells->boxes[0] = box;
-    for (int i = 0; i < HALVINGS && cells->count <= most; i++) {
+    for (int i = 0; i < HALVINGS && cells->count <= most && frame->ran < rays->limits.ran; i++) {
         halve_cells(cells);
         reduce_cells(frame, known, cells);
         if (rays->apart)
-            keep_apart(frame, rays->boxes, cells);
+            keep_apart(frame, rays, cells);
     }
 }
 
@@ -242,11 +272,14 @@ static void search_beyond(KrsFrame *frame, Box box, int most, double margin, Cel
     bool more  = true;
     for (int round = 0; round < ROUNDS && more; round++) {
         Box known = box_grow(rays->box, margin);
+        begin_round(frame, rays);
         find_cells(frame, box, rays, &known, (size_t)most * CELLS_A_RAY, cells);
-        int count = cells->count < (size_t)most ? (int)cells->count : most;
-        for (int i = 0; i < count; i++) /* if there are more cells than rays, to some */
-            make_ray_to_cell(frame, &outer, i, count,
-                             cells->middles[(size_t)i * cells->count / (size_t)count], rays);
+        int wished = cells->count < (size_t)most ? (int)cells->count : most, count = 0;
+        /* If there are more cells than rays, to some. */
+        for (; count < wished && frame->ran < rays->limits.ran; count++) {
+            size_t cell = (size_t)spread(count, wished) * cells->count / (size_t)wished;
+            make_ray_to_cell(frame, &outer, count, wished, cells->middles[cell], rays);
+        }
         more = cast_rays(frame, rays, count, outer.radius) && !is_inside(&rays->box, &known);
     }
 }
@@ -256,6 +289,7 @@ static void search_beyond(KrsFrame *frame, Box box, int most, double margin, Cel
 static bool cast_rounds(KrsFrame *frame, int count, Rays *rays, Ball *ball)
 {
     for (int round = 0; round < ROUNDS; round++) {
+        begin_round(frame, rays);
         make_rays(ball, count, rays);
         if (!cast_rays(frame, rays, count, ball->radius))
             return false;
@@ -380,6 +414,7 @@ static KrsStatus find_camera(KrsFrame *frame, DefaultCamera *camera, bool *found
     KrsStatus status = rays && cells ? KRS_OK : KRS_OUT_OF_MEMORY;
     if (status == KRS_OK) {
         rays->boxes = boxes;
+        rays->most  = frame->ran + MOST_OPERATIONS;
         find_ball(frame, box, rays, cells, &ball);
         frame_view(frame, 0, &view);
         *camera = place_camera(rays, &ball, view.camera.fov);

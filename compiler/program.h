@@ -212,10 +212,18 @@ struct KrsFrame {
     struct FrameTables *tables; /* NULL: they are those of the scene */
     struct FrameLanes  *lanes;  /* points.h; NULL: nobody has asked for many points */
     bool                exact;  /* rays are marched with exact distances of crowds */
-    bool                fresh;  /* the frame values in `values` belong to the parameters */
+    uint64_t            ran; /* operations that marching rays has taken; one for many points at once
+                                   counts as one */
+    bool                fresh; /* the frame values in `values` belong to the parameters */
     double              zones[KRS_MOST_ZONES][4];
     size_t              zone_count; /* zones of the caller */
 };
+
+/* Rays remain unresolved after so many steps each, or when the frame has run so many operations. */
+typedef struct RayLimits {
+    size_t   steps;
+    uint64_t ran;
+} RayLimits;
 
 /* The functions of krs.h and compiled.h with the same names.  The compiler itself calls them, after
    the pass `retain`. */
@@ -223,7 +231,8 @@ KrsStatus frame_new(const KrsScene *scene, KrsFrame **frame);
 void      frame_free(KrsFrame *frame);
 KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view);
 KrsStatus frame_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
-                        size_t count, double farthest, double tolerance, KrsHit *hits);
+                        size_t count, double farthest, double tolerance, RayLimits limits,
+                        KrsHit *hits);
 void      scene_free(KrsScene *scene);
 /* A frame of the same scene with the same parameters, time and zones. */
 KrsStatus frame_copy_of(const KrsFrame *frame, KrsFrame **copy);

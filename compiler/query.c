@@ -339,6 +339,8 @@ bool krs_rays_are_valid(const double (*origins)[3], const double (*directions)[3
     return true;
 }
 
+typedef enum RayState { MARCHING, HIT, MISS } RayState;
+
 enum { TOUCHING = 16 }; /* largest gap between solids that touch, in rounding errors */
 
 /* A ray that is marched.  There is no surface before `t`, nor within `clearance` behind it.  The
@@ -351,6 +353,7 @@ typedef struct RayMarch {
     double    side; /* 1: the ray begins outside; -1: inside of a solid; 0: not yet known */
     double    t, clearance, step;
     double    slope; /* moving average of the change of clearance per length of ray */
+    RayState  state;
 } RayMarch;
 
 static void march_point(const RayMarch *march, double t, double point[3])
@@ -364,8 +367,15 @@ static double rounding_at(const RayMarch *march, double t)
     return 4 * DBL_EPSILON * (march->size + t);
 }
 
-/* The clearance at a point of the ray.  Solids that touch count as one solid.  So for a ray from
-   inside they are enlarged by the gap that rounding may leave between them. */
+/* The clearance at a point of the ray that has this distance.  Solids that touch count as one solid.
+   So for a ray from inside they are enlarged by the gap that rounding may leave between them. */
+static double clearance_of(RayMarch *march, double t, double distance)
+{
+    if (march->side == 0)
+        march->side = distance < 0 ? -1 : 1;
+    return march->side < 0 ? TOUCHING * rounding_at(march, t) - distance : distance;
+}
+
 static double march_clearance(RayMarch *march, double t)
 {
     double point[3];
@@ -376,9 +386,7 @@ static double march_clearance(RayMarch *march, double t)
     double back     = t > march->t ? t - march->t + 2 * rounding_at(march, t) : 0;
     double distance = sheets ? step_ahead(march->frame, point, march->ray.direction, back)
                              : clearance_at(march->frame, point);
-    if (march->side == 0)
-        march->side = distance < 0 ? -1 : 1;
-    return march->side < 0 ? TOUCHING * rounding_at(march, t) - distance : distance;
+    return clearance_of(march, t, distance);
 }
 
 /* The t where the ray crosses the surface, between t, where the clearance is positive, and t +
@@ -410,17 +418,15 @@ static double find_crossing(RayMarch *march, double clearance)
     return high;
 }
 
-typedef enum RayState { MARCHING, HIT, MISS } RayState;
-
 /*
- * One step, by the rule of trace.comp.  The empty balls around t and around t + step must meet; the
- * length between them is unverified.  If it is more than a sixteenth of the tolerance, the step is
- * shortened to the middle of it.  So steps may be longer than the clearance (automatic relaxation):
- * as long as the balls meet if the clearance goes on changing as before.
+ * One step, by the rule of trace.comp, to where the clearance is this.  The empty balls around t and
+ * around t + step must meet; the length between them is unverified.  If it is more than a sixteenth of
+ * the tolerance, the step is shortened to the middle of it.  So steps may be longer than the clearance
+ * (automatic relaxation): as long as the balls meet if the clearance goes on changing as before.
  */
-static RayState march_step(RayMarch *march)
+static RayState march_step(RayMarch *march, double clearance)
 {
-    double at = march->t + march->step, clearance = march_clearance(march, at);
+    double at    = march->t + march->step;
     double least = rounding_at(march, at), permitted = march->tolerance / 16 + least;
     double unverified = march->step - march->clearance;
     if (clearance <= 0 && unverified <= march->tolerance + permitted) {
@@ -447,47 +453,127 @@ static RayState march_step(RayMarch *march)
     return MARCHING;
 }
 
-static void trace(KrsFrame *frame, KrsRay ray, double tolerance, KrsHit *hit)
+static RayMarch begin_march(KrsFrame *frame, KrsRay ray, double tolerance)
 {
-    RayMarch march = {.frame     = frame,
+    return (RayMarch){.frame     = frame,
                       .ray       = ray,
                       .size      = largest3(ray.origin),
                       .tolerance = tolerance > 0 ? tolerance : 1e-9,
                       .side      = ray.start > 0 ? 1 : 0,
                       .t         = ray.start,
-                      .slope     = -1};
-    RayState state = ray.start <= ray.end ? MARCHING : MISS;
-    for (int i = 0; i < KRS_MOST_STEPS && state == MARCHING; i++)
-        state = march_step(&march);
-    *hit = (KrsHit){0};
-    if (state == MISS && march.side < 0 && ray.walls) {
-        march.t = ray.end;
-        state   = HIT;
-    }
-    if (state == MISS)
-        return;
+                      .slope     = -1,
+                      .state     = ray.start <= ray.end ? MARCHING : MISS};
+}
+
+/* Nothing is asked of the place where a ray remains that may run no more. */
+static void end_march(RayMarch *march, RayLimits limits, KrsHit *hit)
+{
     double point[3];
-    march_point(&march, march.t, point);
-    probe(frame, point, ray.direction, hit);
-    hit->t          = march.t;
-    hit->hit        = state == HIT;
-    hit->unresolved = state == MARCHING;
+    *hit = (KrsHit){0};
+    if (march->state == MISS && march->side < 0 && march->ray.walls) {
+        march->t     = march->ray.end;
+        march->state = HIT;
+    }
+    if (march->state == MISS)
+        return;
+    march_point(march, march->t, point);
+    if (march->state == HIT || march->frame->ran < limits.ran)
+        probe(march->frame, point, march->ray.direction, hit);
+    hit->t          = march->t;
+    hit->hit        = march->state == HIT;
+    hit->unresolved = march->state == MARCHING;
+}
+
+/* Whether clearances of rays are distances, which lanes tell.  Sheets have other ones, and guards and
+   cells of crowds make them shorter. */
+static bool march_by_lanes(const KrsFrame *frame)
+{
+    const KrsScene *scene   = frame->scene;
+    const Node     *guarded = roots_of(&scene->roots, ROOTS_GUARDED).items;
+    bool            lanes   = !scene->program.sheets && frame->tapes.distance.function_count == 0;
+    for (size_t i = 0; i < scene->component_count && lanes; i++)
+        lanes = guarded[i] == distance_root(&scene->roots, i);
+    return lanes;
+}
+
+/* The next step of each of some rays that are not at their end. */
+static KrsStatus step_together(KrsFrame *frame, RayMarch *const *marches, size_t count)
+{
+    double points[LANES][3], distances[LANES];
+    for (size_t i = 0; i < count; i++)
+        march_point(marches[i], marches[i]->t + marches[i]->step, points[i]);
+    KrsStatus status = points_distances(frame, (const double(*)[3])points, count, false, distances);
+    frame->ran += frame->tapes.distance.count - frame->tapes.distance.frame_count;
+    for (size_t i = 0; i < count && status == KRS_OK; i++)
+        marches[i]->state = march_step(
+            marches[i], clearance_of(marches[i], marches[i]->t + marches[i]->step, distances[i]));
+    return status;
+}
+
+/* Marches up to LANES rays side by side: their answers are those of each by itself. */
+static KrsStatus march_together(KrsFrame *frame, RayMarch *rays, size_t count, RayLimits limits)
+{
+    RayMarch *marches[LANES];
+    KrsStatus status = KRS_OK;
+    for (size_t step = 0; step < limits.steps && frame->ran < limits.ran && status == KRS_OK;
+         step++) {
+        size_t left = 0;
+        for (size_t i = 0; i < count; i++)
+            if (rays[i].state == MARCHING)
+                marches[left++] = &rays[i];
+        if (left == 0)
+            break;
+        status = step_together(frame, marches, left);
+    }
+    return status;
+}
+
+static void march_alone(RayMarch *ray, RayLimits limits)
+{
+    for (size_t step = 0; step < limits.steps && ray->frame->ran < limits.ran; step++) {
+        if (ray->state != MARCHING)
+            break;
+        ray->state = march_step(ray, march_clearance(ray, ray->t + ray->step));
+    }
+}
+
+/* Up to LANES rays. */
+static KrsStatus raycast(KrsFrame *frame, RayMarch *rays, size_t count, bool together,
+                         RayLimits limits, KrsHit *hits)
+{
+    KrsStatus status = together ? march_together(frame, rays, count, limits) : KRS_OK;
+    for (size_t i = 0; i < count && status == KRS_OK; i++) {
+        if (!together)
+            march_alone(&rays[i], limits);
+        end_march(&rays[i], limits, &hits[i]);
+    }
+    return status;
 }
 
 KrsStatus frame_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
-                        size_t count, double farthest, double tolerance, KrsHit *hits)
+                        size_t count, double farthest, double tolerance, RayLimits limits,
+                        KrsHit *hits)
 {
     if (!krs_rays_are_valid(origins, directions, count, farthest, tolerance))
         return KRS_BAD_ARGUMENT;
     frame_refresh_points(frame);
-    for (size_t i = 0; i < count; i++)
-        trace(frame, krs_ray(frame->scene, origins[i], directions[i], farthest), tolerance,
-              &hits[i]);
-    return KRS_OK;
+    const bool lanes  = march_by_lanes(frame);
+    KrsStatus  status = KRS_OK;
+    for (size_t begin = 0, now; begin < count && status == KRS_OK; begin += now) {
+        RayMarch rays[LANES];
+        now = count - begin < LANES ? count - begin : LANES;
+        for (size_t i = 0; i < now; i++)
+            rays[i] = begin_march(
+                frame, krs_ray(frame->scene, origins[begin + i], directions[begin + i], farthest),
+                tolerance);
+        status = raycast(frame, rays, now, lanes && by_lanes(frame, now), limits, hits + begin);
+    }
+    return status;
 }
 
 KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
                       size_t count, double farthest, double tolerance, KrsHit *hits)
 {
-    return frame_raycast(frame, origins, directions, count, farthest, tolerance, hits);
+    return frame_raycast(frame, origins, directions, count, farthest, tolerance,
+                         (RayLimits){KRS_MOST_STEPS, UINT64_MAX}, hits);
 }

@@ -21,6 +21,7 @@ typedef struct Inputs {
     const double    *view; /* of the ray that sees the surface; NULL: nobody looks */
     double           footprint;
     bool             by_cells;
+    uint64_t        *ran;
     /* In bodies of crowd functions, whose call has these operands: */
     double           threshold;
     uint32_t         member;
@@ -250,7 +251,8 @@ static NodeValue run_call(const Tape *tape, const Expr *e, const Inputs *outer, 
                               .normal    = normal,
                               .footprint = pixel[0],
                               .threshold = pixel[1],
-                              .by_cells  = outer->by_cells}};
+                              .by_cells  = outer->by_cells,
+                              .ran       = outer->ran}};
     return run_loop(&loop);
 }
 
@@ -274,6 +276,7 @@ NodeValue tape_run_reader(const Tape *tape, Node node, const NodeValue *operands
 
 static void run_points(const Tape *tape, const Inputs *in, NodeValue *values)
 {
+    uint64_t ran = 0;
     for (size_t i = tape->frame_count; i < tape->count; i++) {
         Node        node = tape->nodes[i];
         const Expr *e    = &tape->graph->items[node];
@@ -285,7 +288,10 @@ static void run_points(const Tape *tape, const Inputs *in, NodeValue *values)
             run_reader(tape, node, in, values);
         else
             tape_run_node(tape->graph, node, values);
+        ran++;
     }
+    if (in->ran)
+        *in->ran += ran;
 }
 
 void tape_run_point(const Tape *tape, const double point[3], NodeValue *values)
@@ -296,8 +302,11 @@ void tape_run_point(const Tape *tape, const double point[3], NodeValue *values)
 void tape_run_surface(const Tape *tape, const double point[3], const double normal[3],
                       double footprint, NodeValue *values)
 {
-    Inputs in = {
-        .point = point, .normal = normal, .footprint = footprint, .by_cells = tape->by_cells};
+    Inputs in = {.point     = point,
+                 .normal    = normal,
+                 .footprint = footprint,
+                 .by_cells  = tape->by_cells,
+                 .ran       = tape->ran};
     run_points(tape, &in, values);
 }
 

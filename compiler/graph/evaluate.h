@@ -25,6 +25,8 @@ typedef struct Tape {
     /* Crowd functions have the list of one cell, as in kernels, so a distance is at most the cell's
        clearance.  Else all members count that may be nearest. */
     bool by_cells;
+    /* NULL, or what counts the operations that are run at points, those of functions included. */
+    uint64_t *ran;
 } Tape;
 
 Tape tape_new(const Graph *graph, const Node *roots, size_t root_count, Arena *arena);

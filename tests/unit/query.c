@@ -269,6 +269,54 @@ static void directions_have_any_length(void **context)
     scene_close(s);
 }
 
+/* Whether a number of rays that are cast at once end where each by itself does, bit for bit. */
+static void cast_at_once(const char *text)
+{
+    enum { COUNT = 75 }; /* more than a run of lanes has, and no whole number of runs */
+    double origins[COUNT][3], directions[COUNT][3];
+    KrsHit together[COUNT], alone;
+    int    hits = 0;
+    Scene  s    = scene_of(text);
+    for (int i = 0; i < COUNT; i++) { /* some begin inside */
+        random_vector(&chance, i % 5 ? 4 : 1, origins[i]);
+        random_vector(&chance, 1, directions[i]);
+        for (int k = 0; k < 3 && i % 5; k++)
+            directions[i][k] = 0.6 * directions[i][k] - origins[i][k];
+    }
+    assert_int_equal(krs_raycast(s.frame, (const double(*)[3])origins,
+                                 (const double(*)[3])directions, COUNT, 20, 1e-4, together),
+                     KRS_OK);
+    for (int i = 0; i < COUNT; i++) {
+        assert_int_equal(krs_raycast(s.frame, (const double(*)[3])origins + i,
+                                     (const double(*)[3])directions + i, 1, 20, 1e-4, &alone),
+                         KRS_OK);
+        hits += alone.hit;
+        if (alone.t != together[i].t || alone.component != together[i].component ||
+            alone.hit != together[i].hit || alone.unresolved != together[i].unresolved ||
+            memcmp(alone.point, together[i].point, sizeof alone.point) != 0 ||
+            memcmp(alone.normal, together[i].normal, sizeof alone.normal) != 0)
+            fail_msg("%s: ray %d ends at %.17g beside others, at %.17g alone", text, i,
+                     together[i].t, alone.t);
+    }
+    if (hits < COUNT / 5)
+        fail_msg("%s: only %d hits", text, hits);
+    scene_close(s);
+}
+
+static void rays_at_once_are_those_of_each(void **context)
+{
+    (void)context;
+    cast_at_once("show sphere(1); show box([0.6, 0.5, 0.8]).move([1.5, 0, 0]);");
+    cast_at_once("show regular(5, 1).extrude(3).twist([0, 1, 0], 80deg).move([0.2, 0, 0]);");
+    cast_at_once("show difference(box([2, 2, 1.1]), sphere(0.6), blend: 0.1); zone { center: [0.5, "
+                 "0, 0], radius: 0.9 }");
+    cast_at_once(
+        "show union([sphere(0.2).move([sin(i), cos(3 * i), sin(7 * i)]) for i in 0..80]);");
+    cast_at_once(
+        "show sphere(0.4).repeat([0.9, 0.9, 0.9], [3, 2, 3]); show plane([0, 1, 0], -1.5);");
+    cast_at_once("show field(sin(4 * x) * cos(4 * y) + sin(4 * z)).within(sphere(1.5));");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -281,6 +329,7 @@ int main(void)
         cmocka_unit_test(rays_that_run_out_are_told),
         cmocka_unit_test(seams_do_not_end_rays),
         cmocka_unit_test(directions_have_any_length),
+        cmocka_unit_test(rays_at_once_are_those_of_each),
     };
     return cmocka_run_group_tests_name("queries", tests, NULL, NULL);
 }
