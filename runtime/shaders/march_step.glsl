@@ -90,8 +90,37 @@ void settle(float at, float clearance, float rounded)
     march.state = settled ? STATE_HIT : STATE_REFINING;
 }
 
+#ifdef TOUCHES
+// Takes the distance above the start.  If the ball around that place reaches down to the start, the ray is
+// free up to the far end of its chord.  The march goes on from the ball that reaches as far on the ray and
+// touches the plane that the ray leaves.  The slope is halfway between those off the plane and towards a wall.
+void take_ball(float radius)
+{
+    float height = length(aside), middle = height * cosine;
+    radius = clamp(radius, 0.0, end);
+    float square = radius * radius - (height - middle) * (height + middle);
+    float half_chord = sqrt(max(square, 0.0)), free = middle + half_chord;
+    bool  touches = square > 0.0 && middle - half_chord <= SETTLED_START * ROUNDING * rounding;
+    aside = vec3(0.0);
+    march.steps++;
+    if (touches && free > march.step) {
+        march.t = free / (1.0 + cosine);
+        march.clearance = free - march.t;
+        march.slope = 0.5 * (cosine - 1.0);
+        march.step = 2.0 / (1.0 - march.slope) * march.clearance;
+        march.state = free > end ? STATE_MISS : STATE_MARCHING;
+    }
+}
+#endif
+
 void take_distance(float distance)
 {
+#ifdef TOUCHES
+    if (aside != vec3(0.0)) {
+        take_ball(march.side * distance);
+        return;
+    }
+#endif
     bool  is_ray = control.phase == TRACE_RAYS, refining = march.state == STATE_REFINING;
     float at = march.t + march.step, pixel = width_at(at, pixel_base + pixel_slope * at);
     if (march.side == 0.0) {

@@ -46,6 +46,9 @@
 #if defined(PATH_RAYS) || defined(MIXED_RAYS)
 #define FOLLOWS_PATHS
 #include "media.glsl"
+#if !defined(STEPS) && !defined(ALONG) && !defined(PACKED) && !defined(PROBE)
+#define TOUCHES // balls that touch the surface tell the first step (begin_at_surface)
+#endif
 #endif
 #ifndef PATH_RAYS
 #include "limits.glsl"
@@ -110,6 +113,10 @@ float shrinking;               // of the clearance, since the beam gets wider: 1
 bool  ends_at_walls;           // all solids end at `end`
 float rounding;                // magnitude of coordinates at t = 0
 float tolerance_in_pixels;     // length that may stay unverified, in pixels
+#ifdef TOUCHES
+vec3  aside;                   // from the start to where the first distance is taken, then 0
+float cosine;                  // of the angle between that and the ray
+#endif
 uint  most_steps;              // of a ray of this lane
 uint  found_tiles;             // bits of this lane's beams that find something
 
@@ -265,14 +272,29 @@ void begin_march(uint index, float start, bool is_ray)
 #include "packed.glsl"
 #endif
 
+#ifdef FOLLOWS_PATHS
 // Begins just above a plane that the ray leaves by this cosine.  After the first step the clearance
 // rises by a little less than that.
 const float LESS = 0.1;
-void begin_above_surface(float cosine)
+void begin_above_plane(float cosine)
 {
     march.step = (1.0 + cosine) * 2.0 * SETTLED_START * ROUNDING * rounding;
     march.slope = cosine - LESS - LEARNING / ((1.0 - LEARNING) * (1.0 + cosine));
 }
+
+// Begins at a surface.  Mostly there is an empty ball that touches the surface at the start, with a part of
+// the last ray's length as its radius.  So the first distance is taken in its middle instead of on the ray.
+const float TOUCHING = 0.125;
+void begin_at_surface(vec3 normal, float last_length)
+{
+    float rise = dot(normal, direction);
+    begin_above_plane(abs(rise));
+#ifdef TOUCHES
+    aside = TOUCHING * min(last_length, end) * (rise < 0.0 ? -normal : normal);
+    cosine = abs(rise);
+#endif
+}
+#endif
 
 void begin_item(uint number, bool saved)
 {
@@ -345,6 +367,9 @@ void begin_item(uint number, bool saved)
     plane_t = plane_t > frame.farthest ? INFINITE : max(plane_t, 0.0);
     end = min(end, plane_t);
 #endif
+#ifdef TOUCHES
+    aside = vec3(0.0);
+#endif
     if (!saved) {
         uvec2 cell = item_tile - (large ? first_32 : first_8);
         uint  beam = large ? end_of_32(cell) : small ? end_of_4(cell, quarter) : end_of_8(cell);
@@ -353,7 +378,7 @@ void begin_item(uint number, bool saved)
         march.side = are_of_paths() ? sign(code) : march.side;
         width = march.side < 0.0 ? inside_width() : width;
         if (leaves_surfaces())
-            begin_above_surface(abs(dot(load_hit(FACING, load_tile_word(number)).xyz, direction)));
+            begin_at_surface(load_hit(FACING, load_tile_word(number)).xyz, find_end(index).t);
 #endif
 #ifdef PACKED
         begin_scene_parts(is_ray);
@@ -399,7 +424,14 @@ float item_distance(vec3 position)
 }
 
 // Where the distance is evaluated next; with PROBE the centre of a ball.
-vec3 item_position() { return origin + (march.t + march.step) * direction; }
+vec3 item_position()
+{
+#ifdef TOUCHES
+    if (aside != vec3(0.0))
+        return origin + aside;
+#endif
+    return origin + (march.t + march.step) * direction;
+}
 
 #include "march_step.glsl"
 

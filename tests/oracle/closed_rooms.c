@@ -122,6 +122,23 @@ static void rooms_lose_no_light(void **state)
     assert_int_equal(wrong, 0);
 }
 
+/* Long rays are followed by short ones, below a thin ceiling above which all is open. */
+static void low_rooms_lose_no_light(void **state)
+{
+    (void)state;
+    const View view  = {64, 1, 0};
+    PathStage  stage = path_stage_open(
+         ROOM "camera along { eye: [0.3, 0.1, 0.2], target: [1, 0.1, 0.3], fov: 4deg }\n" SHOW(
+             "box([5, 5, 5]) - box([3, 0.02, 3]).move([0, 0.1, 0])"
+              " - box([6, 5, 6]).move([0, 2.615, 0])",
+             "wall"));
+    KrsRenderOptions options = options_of(&stage, &view, 3);
+    options.camera           = 1;
+    assert_true(must_be_near(path_stage_estimate(&stage, options, everywhere, 3), 4, MOST_LOST,
+                             "low room"));
+    path_stage_close(&stage);
+}
+
 static void white_furniture_is_not_seen(void **state)
 {
     (void)state;
@@ -152,6 +169,21 @@ static void lamps_light_balls_evenly(void **state)
     assert_int_equal(wrong, 0);
 }
 
+/* The start of a ray at a surface is where most distances may go. */
+static void rays_leave_surfaces_by_few_distances(void **state)
+{
+    (void)state;
+    PathStage        stage   = path_stage_open(BALL);
+    const View       view    = {360, 1, 0};
+    KrsRenderOptions options = options_of(&stage, &view, 10);
+    path_stage_set(&stage, "part", 0.9);
+    KrsPicture *picture = path_stage_render(&stage, &options);
+    print_message("# %.1f distances a path\n", picture->stats.evaluations_per_ray);
+    assert_true(picture->stats.evaluations_per_ray < 100);
+    krs_picture_free(picture);
+    path_stage_close(&stage);
+}
+
 /* A lamp sends as much to walls in previews of all sizes. */
 static void previews_of_all_sizes_are_alike(void **state)
 {
@@ -179,8 +211,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rooms_lose_no_light),
+        cmocka_unit_test(low_rooms_lose_no_light),
         cmocka_unit_test(white_furniture_is_not_seen),
         cmocka_unit_test(lamps_light_balls_evenly),
+        cmocka_unit_test(rays_leave_surfaces_by_few_distances),
         cmocka_unit_test(previews_of_all_sizes_are_alike),
     };
     return cmocka_run_group_tests_name("closed_rooms", tests, renderer_open, renderer_close);
