@@ -92,20 +92,32 @@ static bool skip_to_else(PovReader *reader)
     return false;
 }
 
+/* Whether a name between parentheses, with its indices, stands for anything. */
+static bool read_defined(PovReader *reader, double *defined)
+{
+    WordReader *words = &reader->words;
+    words_advance(words);
+    if (!word_is(words, "("))
+        return word_refuse(words, "`(`");
+    words_advance_plain(words); /* a macro is not called */
+    PovCell *cell = pov_find(reader, words->word.text);
+    words_advance(words);
+    if (cell && word_is(words, "[") && !(cell = pov_element(reader, cell)))
+        return false;
+    *defined = cell && cell->kind != POV_NOTHING;
+    return word_is(words, ")") || word_refuse(words, "`)`");
+}
+
 static bool do_if(PovReader *reader, const char *name)
 {
-    double holds;
+    double holds = 0;
     if (strcmp(name, "if") == 0) {
         if (!read_condition(reader, &holds))
             return false;
+    } else if (!read_defined(reader, &holds)) {
+        return false;
     } else {
-        words_advance_plain(&reader->words);
-        if (!word_is(&reader->words, "("))
-            return word_refuse(&reader->words, "`(`");
-        words_advance_plain(&reader->words);
-        holds = (pov_find(reader, reader->words.word.text) != NULL) == (strcmp(name, "ifdef") == 0);
-        while (!word_is(&reader->words, ")") && reader->words.word.kind != IMPORT_WORD_END)
-            words_advance_plain(&reader->words);
+        holds = holds == (strcmp(name, "ifdef") == 0);
     }
     if (holds == 0)
         return skip_to_else(reader);

@@ -121,8 +121,16 @@ PovCell *pov_take(PovReader *reader, PovKind kind)
     }
     if (!element || element->kind != kind)
         return NULL;
+    unsigned line = reader->words.word.line;
     words_advance(&reader->words);
-    return pov_element(reader, own);
+    own = pov_element(reader, own);
+    if (!own || own->kind == kind)
+        return own;
+    import_refuse(reader->import, line,
+                  own->kind == POV_NOTHING
+                      ? "this element of the array has no value yet"
+                      : "this is another kind of value than the array's first");
+    return NULL;
 }
 
 /* ---- functions ---- */

@@ -33,11 +33,14 @@ typedef struct PovLook {
     PovFinish finish;
 } PovLook;
 
+/* `focal_point` is as far from `said_location` as what is sharp, wherever the camera is moved to then.
+   `angle` and `angle_up` are 0 unless they are said. */
 typedef struct PovView {
-    bool     has_camera, orthographic, widened, has_direction, mirrored;
-    double   location[3], look_at[3], sky[3], direction[3], right[3], up[3], angle;
-    bool     looks;
-    unsigned line;
+    bool     has_camera, orthographic, spherical, widened, has_direction, mirrored;
+    double   location[3], look_at[3], sky[3], direction[3], right[3], up[3], angle, angle_up;
+    double   said_location[3], focal_point[3], aperture, blur_samples;
+    bool     looks, has_focal_point;
+    unsigned line, spherical_line;
 } PovView;
 
 typedef struct PovLight {

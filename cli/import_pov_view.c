@@ -60,6 +60,60 @@ static void move_camera(PovReader *reader, PovView *view, const Place *place)
         import_note(reader->import, reader->words.word.line, "the camera is not sheared");
 }
 
+/* `angle` from side to side, and of spherical cameras another one from top to bottom. */
+static bool camera_angle(PovReader *reader, PovView *view)
+{
+    view->angle_up = 0;
+    if (!pov_number(reader, &view->angle))
+        return false;
+    return !view->spherical || !word_accept(&reader->words, ",") ||
+           pov_number(reader, &view->angle_up);
+}
+
+static bool camera_kind(PovReader *reader, PovView *view, bool *taken)
+{
+    unsigned line = reader->words.word.line;
+    *taken        = true;
+    if (word_accept(&reader->words, "perspective"))
+        return true;
+    if (word_accept(&reader->words, "orthographic")) {
+        widen(view);
+        return true;
+    }
+    *taken = word_accept(&reader->words, "spherical");
+    if (*taken) {
+        view->spherical      = true;
+        view->spherical_line = line;
+    }
+    return true;
+}
+
+/* What is sharp. */
+static bool camera_lens(PovReader *reader, PovView *view, bool *taken)
+{
+    double nothing;
+    bool   focal = word_is(&reader->words, "focal_point");
+    *taken       = false;
+    if (!vector_of(reader, "focal_point", view->focal_point, taken))
+        return false;
+    view->has_focal_point = view->has_focal_point || focal;
+    if (*taken)
+        return true;
+    *taken = true;
+    if (word_accept(&reader->words, "aperture"))
+        return pov_number(reader, &view->aperture);
+    if (word_accept(&reader->words, "blur_samples")) {
+        double least; /* stands before a comma */
+        if (!pov_number(reader, &view->blur_samples))
+            return false;
+        return !word_accept(&reader->words, ",") || pov_number(reader, &least);
+    }
+    if (word_accept(&reader->words, "confidence") || word_accept(&reader->words, "variance"))
+        return pov_number(reader, &nothing);
+    *taken = false;
+    return true;
+}
+
 static bool camera_word(PovReader *reader, PovView *view)
 {
     bool  taken = false, moved = false;
@@ -77,9 +131,9 @@ static bool camera_word(PovReader *reader, PovView *view)
     }
     if (word_accept(&reader->words, ";") || word_accept(&reader->words, ","))
         return true;
-    double degrees[3] = {view->angle, 0, 0};
-    bool   direction  = word_is(&reader->words, "direction");
-    bool   looks      = word_is(&reader->words, "look_at");
+    bool direction = word_is(&reader->words, "direction");
+    bool looks     = word_is(&reader->words, "look_at");
+    bool location  = word_is(&reader->words, "location");
     if (!vector_of(reader, "location", view->location, &taken) ||
         !vector_of(reader, "look_at", view->look_at, &taken) ||
         !vector_of(reader, "sky", view->sky, &taken) ||
@@ -89,18 +143,29 @@ static bool camera_word(PovReader *reader, PovView *view)
         return false;
     view->has_direction = view->has_direction || direction;
     view->looks         = view->looks || looks;
-    if (!vector_of(reader, "angle", degrees, &taken))
-        return false;
-    view->angle = degrees[0];
-    if (taken)
-        return true;
-    if (word_accept(&reader->words, "perspective"))
-        return true;
-    if (word_accept(&reader->words, "orthographic")) {
-        widen(view);
-        return true;
-    }
+    if (location)
+        memcpy(view->said_location, view->location, sizeof view->location);
+    if (!taken && word_accept(&reader->words, "angle"))
+        return camera_angle(reader, view);
+    if (taken || !camera_kind(reader, view, &taken) || taken ||
+        !camera_lens(reader, view, &taken) || taken)
+        return reader->import->refusal.length == 0;
     return pov_leave_out(reader, "of the camera is");
+}
+
+/* Those of 360 by 180 degrees are panoramas; of others nothing can be said. */
+static void settle_sphere(PovReader *reader, PovView *view)
+{
+    double across = view->angle > 0 ? view->angle : 360;
+    double upward = view->angle_up > 0 ? view->angle_up : across / 2;
+    if (!view->spherical || (across == 360 && upward == 180))
+        return;
+    view->spherical = false;
+    import_note(
+        reader->import, view->spherical_line,
+        "`spherical` of the camera is left out: it is of %g by %g degrees, and panoramas are "
+        "of 360 by 180",
+        across, upward);
 }
 
 static PovView usual_camera(unsigned line)
@@ -130,12 +195,14 @@ bool pov_camera(PovReader *reader, PovView *view)
         memcpy(view->sky, view->up, sizeof view->sky);
         add_scaled3(view->look_at, view->location, 1, view->direction);
     }
-    if (view->angle >= 180) {
+    settle_sphere(reader, view);
+    if (view->angle >= 180 && !view->spherical) {
         import_note(reader->import, line, "an angle of %g degrees is one of 120 here", view->angle);
         view->angle = 120;
     }
     if (length3(view->direction) == 0 || length3(view->right) == 0 || length3(view->up) == 0 ||
-        distance3(view->location, view->look_at) == 0 || !(view->angle >= 0 && view->angle < 180))
+        distance3(view->location, view->look_at) == 0 || !(view->angle >= 0) ||
+        (view->angle >= 180 && !view->spherical))
         return import_refuse(reader->import, line, "the camera shows nothing");
     double across[3];
     cross3(view->up, view->direction, across);
@@ -294,6 +361,21 @@ static const char *point_text(PovReader *reader, const double q[3])
     return import_vector_text(reader->import, p, 3);
 }
 
+/* Of n samples POV-Ray's lens is a pattern of points, whose mean distance from the middle is about that
+   of a disc with a quarter of the aperture as its radius. */
+static void write_lens(PovReader *reader)
+{
+    const PovView *view  = &reader->view;
+    double         focus = view->has_focal_point ? distance3(view->said_location, view->focal_point)
+                                                 : distance_of_picture(view);
+    if (!(view->aperture > 0 && view->blur_samples > 0 && focus > 0) || view->spherical ||
+        view->orthographic)
+        return;
+    text_format(&reader->import->scene, "    aperture: %s,\n    focus: %s,\n",
+                import_number_text(reader->import, view->aperture / 4),
+                import_number_text(reader->import, focus));
+}
+
 static void write_camera(PovReader *reader)
 {
     const PovView *view   = &reader->view;
@@ -304,7 +386,10 @@ static void write_camera(PovReader *reader)
     text_format(scene, "\ncamera { // line %u\n    eye: %s,\n    target: %s,\n    up: %s,\n",
                 view->line, point_text(reader, view->location), point_text(reader, view->look_at),
                 point_text(reader, view->sky));
-    if (view->orthographic)
+    write_lens(reader);
+    if (view->spherical)
+        text_add(scene, "    projection: \"panorama\"\n}\n");
+    else if (view->orthographic)
         text_format(scene, "    projection: \"orthographic\",\n    height: %s\n}\n",
                     import_number_text(reader->import, length3(view->up)));
     else

@@ -6,7 +6,8 @@
 Imports every .pov below the first folder, renders it with both programs, and writes a table, best
 first, to compared/table.txt, and for each scene that imports a picture to compared/NAME.png: POV-Ray's
 and ours as they are shown, above the depths of both.  Scenes that were compared before are not
-rendered again: remove their .png for that.
+rendered again: remove their .png for that.  Beside it NAME.png.row has what was measured of a scene,
+as JSON: its name and the numbers of its row of the table.
 
 What is measured, of pictures 160 pixels wide:
 

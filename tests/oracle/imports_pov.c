@@ -78,6 +78,13 @@ static void programs_are_carried_out(void **state)
     static const struct {
         const char *program, *unrolled;
     } rows[] = {
+        {"#declare A = array[3] {1, 2} #for (I, 0, 2) #ifdef (A[I]) sphere { A[I]*x, 1 } #end #end",
+         "sphere { x, 1 } sphere { 2*x, 1 }"},
+        {"#declare A = array[2] {1} #ifndef (A[1]) sphere { 0, A[0] } #else box { 0, 1 } #end",
+         "sphere { 0, 1 }"},
+        {"#macro M(P) #ifdef (P) sphere { 0, P } #else sphere { 0, 2 } #end #end M(3) #ifdef (M) "
+         "box { 4, 5 } #end",
+         "sphere { 0, 3 } box { 4, 5 }"},
         {"#local I = 0; union { #while (I < 3) sphere { I*4*x, 1 } #local I = I + 1; #end }",
          "union { sphere { 0, 1 } sphere { 4*x, 1 } sphere { 8*x, 1 } }"},
         {"#for (I, 1, 3) sphere { I*4*y, 1 } #end",
@@ -162,103 +169,6 @@ static void blobs_have_their_formula(void **state)
     }
 }
 
-static void scene_has(const char *from, const char *words)
-{
-    Imported result = imported("look.pov", from);
-    if (result.status != KRS_OK || !strstr(result.scene, words))
-        fail_msg("no `%s`: %s\n%s", words, result.refusal, result.scene);
-}
-
-/* Three numbers behind a word of the first material, or zeros. */
-static void numbers_behind(const char *scene, const char *word, double numbers[3])
-{
-    const char *at = strstr(scene, "material look_1");
-    at             = at ? strstr(at, word) : NULL;
-    numbers[0] = numbers[1] = numbers[2] = 0;
-    if (at &&
-        sscanf(at + strlen(word), ": [%lf, %lf, %lf]", &numbers[0], &numbers[1], &numbers[2]) != 3)
-        fail_msg("no numbers: %s", at);
-}
-
-/* What POV-Ray's manual says of a pigment below a light: its diffuse part scatters, its ambient part
-   is there without light, and both only as far as nothing goes through. */
-static void check_color(const char *pigment, const double p[5], double diffuse, double ambient,
-                        const char *before, double (*light)(double))
-{
-    char   text[512];
-    double through = p[3] + p[4], color[3], emission[3];
-    snprintf(text, sizeof text, "%ssphere { 0, 1 pigment { %s } finish { diffuse %g ambient %g } }",
-             before, pigment, diffuse, ambient);
-    Imported found = imported("color.pov", text);
-    numbers_behind(found.scene, "color", color);
-    numbers_behind(found.scene, "emission", emission);
-    for (int i = 0; i < 3; i++) {
-        double tint     = through > 0 ? (p[3] * p[i] + p[4]) / through : 0;
-        double expected = fmin((1 - through) * light(diffuse * p[i]) + through * light(tint), 1);
-        double alone    = (1 - through) * light(ambient * p[i]);
-        if (!(fabs(color[i] - expected) < 1e-4 && fabs(emission[i] - alone) < 1e-4))
-            fail_msg("%s: %g and %g, not %g and %g\n%s%s", text, color[i], emission[i], expected,
-                     alone, found.scene, found.refusal);
-    }
-}
-
-static double linear(double s) { return s; }
-static double squared(double s) { return s * s; }
-static double of_screen(double s)
-{
-    return s <= 0.04045 ? s / 12.92 : pow((s + 0.055) / 1.055, 2.4);
-}
-
-static void colors_are_those_of_pov(void **state)
-{
-    static const struct {
-        const char *pigment;
-        double      color[5];
-    } rows[] = {
-        {"color red 0.9 green 0.5", {0.9, 0.5, 0}},
-        {"Tan", {0.858824, 0.576471, 0.439216}},
-        {"rgb <0.1, 0.2, 0.3>*2", {0.2, 0.4, 0.6}},
-        {"color Red*0.5 + Blue*0.25", {0.5, 0, 0.25}},
-        {"Gold filter 0.9", {0.8, 0.498039, 0.196078, 0.9}},
-        {"color rgbf <0.9, 0.5, 0.1, 0.9>", {0.9, 0.5, 0.1, 0.9}},
-        {"color rgbt <1, 0, 0, 0.75>", {1, 0, 0, 0, 0.75}},
-        {"checker color rgb 0 color rgb 1", {0.5, 0.5, 0.5}},
-        {"gradient y color_map { [0 color rgb 0] [1 color rgb <1, 0.5, 0>] }", {0.5, 0.25, 0}},
-    };
-    (void)state;
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        const double *color = rows[i].color;
-        check_color(rows[i].pigment, color, 0.6, 0.1, "#version 3.7; ", linear);
-        check_color(rows[i].pigment, color, 0.9, 0.4, "#version 3.7; ", linear);
-        check_color(rows[i].pigment, color, 0.6, 0, "", of_screen);
-        check_color(rows[i].pigment, color, 0.6, 0.2, "global_settings { assumed_gamma 2 } ",
-                    squared);
-    }
-    /* Colours of a screen are the same in every space. */
-    const double half[5] = {0.214041, 1, 0};
-    check_color("color srgb <0.5, 1, 0>", half, 0.6, 0.1, "#version 3.7; ", linear);
-    check_color("color srgb <0.5, 1, 0>", (const double[5]){0.5, 1}, 0.6, 0.1, "", of_screen);
-}
-
-static void defaults_are_those_of_the_file(void **state)
-{
-    (void)state;
-    scene_has("#version 3.7; #default { finish { ambient 0 diffuse 1 } }\n"
-              "sphere { 0, 1 pigment { rgb x } }",
-              "color: [1, 0, 0], specular: 0 }");
-    scene_has("#version 3.7; #default { pigment { rgb y } finish { ambient 0 diffuse 1 } }\n"
-              "sphere { 0, 1 }",
-              "color: [0, 1, 0], specular: 0 }");
-    scene_has(
-        "#version 3.7; #default { pigment { rgb y } } #declare F = finish { ambient 1 diffuse 0 }"
-        "sphere { 0, 1 pigment { rgb x } finish { F } }",
-        "color: [0, 0, 0], emission: [1, 0, 0], specular: 0 }");
-    scene_has("#version 3.7; global_settings { ambient_light rgb 2 }\n"
-              "sphere { 0, 1 pigment { rgb x } }",
-              "emission: [0.2, 0, 0]");
-}
-
-/* The turns that POV-Ray's manual describes with a left hand: thumb along the axis. */
 static void turns_are_left_handed(void **state)
 {
     (void)state;
@@ -492,108 +402,7 @@ static void random_objects_have_the_points_of_their_predicate(void **state)
     assert_true(inside > TREES * POINTS / 50);
 }
 
-/* ---- looks, view, and what is no scene ---- */
-
-/* The place of the camera in space as it is here, and the distance of what is seen first. */
-static double seen_at(const char *pov, const double eye[3], const double towards[3])
-{
-    Imported   result  = imported("view.pov", pov);
-    KrsOptions options = {0};
-    KrsScene  *scene   = NULL;
-    KrsFrame  *frame   = NULL;
-    KrsHit     hit;
-    if (result.status != KRS_OK || krs_compile_text(result.scene, strlen(result.scene), "view.krs",
-                                                    &options, &scene) != KRS_OK)
-        fail_msg("%s\n%s", result.refusal, result.scene);
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_raycast(frame, (const double(*)[3])eye, (const double(*)[3])towards, 1,
-                                 1000, 1e-6, &hit),
-                     KRS_OK);
-    krs_frame_free(frame);
-    krs_scene_free(scene);
-    return hit.hit ? hit.t : INFINITY;
-}
-
-/* POV-Ray's rays see surfaces from inside, too. */
-static void solids_around_the_camera_are_seen(void **state)
-{
-    static const struct {
-        const char *objects;
-        double      towards[3], t;
-    } rows[] = {
-        {"plane { z, 10 }", {0, 0, -1}, 10},
-        {"sphere { 0, 7 }", {0, 1, 0}, 7},
-        {"sphere { 0, 1 scale 5 translate x }", {1, 0, 0}, 6},
-        {"box { -3, 3 inverse }", {1, 0, 0}, 3},
-        {"box { -3, 3 }", {1, 0, 0}, 3},
-        {"plane { y, 9 } sphere { 3*x, 1 }", {1, 0, 0}, 2},
-        {"union { sphere { 0, 9 } sphere { 3*x, 1 } }", {1, 0, 0}, 2},
-        {"union { sphere { 0, 9 } sphere { 3*x, 1 } translate 2*x }", {1, 0, 0}, 4},
-        {"difference { sphere { 0, 9 } sphere { 0, 4 } }", {1, 0, 0}, 4},
-        {"intersection { sphere { 0, 9 } plane { x, 4 } }", {1, 0, 0}, 4},
-    };
-    (void)state;
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        char   pov[512];
-        double eye[3] = {0, 0, 0}, t;
-        snprintf(pov, sizeof pov, "camera { location 0 look_at z } %s", rows[i].objects);
-        t = seen_at(pov, eye, rows[i].towards);
-        if (!(fabs(t - rows[i].t) < 1e-4))
-            fail_msg("%s: %g, not %g", pov, t, rows[i].t);
-    }
-}
-
-static void looks_and_view_are_translated(void **state)
-{
-    (void)state;
-    scene_has("#version 3.7; sphere { 0, 1 pigment { color rgb <1, 0.5, 0> } }",
-              "color: [0.6, 0.3, 0], emission: [0.1, 0.05, 0], specular: 0 }\n"
-              "let sphere_1 = sphere(1).paint(look_1);");
-    scene_has("#declare T = texture { pigment { Red } } sphere { 0, 1 texture { T } }",
-              ".paint(look_1);");
-    scene_has("union { sphere { 0, 1 pigment { rgb x } } sphere { y, 1 } pigment { rgb z } }",
-              "sphere_2 = sphere(1).move([0, 1, 0]).paint(look_2);");
-    scene_has("#declare A = union { sphere { 0, 1 pigment { rgb x } } sphere { y, 1 } }\n"
-              "object { A } object { A pigment { rgb z } }",
-              "sphere_5 = sphere(1).paint(look_1);");
-    scene_has("sphere { 0, 1 pigment { rgb x } } sphere { y, 1 pigment { rgb x } }",
-              "sphere_2 = sphere(1).move([0, 1, 0]).paint(look_1);");
-    scene_has("sphere { 0, 1 finish { phong 1 phong_size 7.5 metallic } }",
-              "roughness: 0.5, metallic: 1 }");
-    scene_has("sphere { 0, 1 finish { specular 1 roughness 1/30 } }", "roughness: 0.5 }");
-    scene_has("sphere { 0, 1 pigment { checker Red, Blue scale 2 } }",
-              "// Line 1: patterns of pigments are one colour, their mean.");
-    scene_has(
-        "sphere { 0, 1 } camera { location <1, 2, -5> look_at <0, 1, 3> angle 90 right 2*x }",
-        "eye: [1, 2, 5],\n    target: [0, 1, -3],\n    up: [0, 1, 0],\n    fov: 53.1301023542deg");
-    scene_has("sphere { 0, 1 } camera { location -4*z direction z }", "target: [0, 0, 3]");
-    scene_has("sphere { 0, 1 } camera { location -4*z look_at 0 right -4/3*x }",
-              "eye: [0, 0, -4],\n    target: [0, 0, 0],");
-    scene_has("sphere { z, 1 } camera { location -4*z look_at 0 right -4/3*x }",
-              "sphere_2 = sphere_1.transform(reflect(plane([0, 0, 1], 0)))");
-    scene_has("sphere { 0, 1 } camera { location -4*z look_at 0 orthographic }",
-              "projection: \"orthographic\",\n    height: 4\n");
-    scene_has("sphere { 0, 1 } camera { orthographic location -4*z look_at 0 }",
-              "projection: \"orthographic\",\n    height: 1\n");
-    scene_has("sphere { 0, 1 } camera { orthographic location -4*z look_at 0 angle 90 right 2*x }",
-              "projection: \"orthographic\",\n    height: 4\n");
-    scene_has("sphere { 0, 1 } camera { translate 3*x location -4*z look_at 0 }", "eye: [0, 0, 4]");
-    scene_has("sphere { 0, 1 } camera { location -4*z look_at 0 translate 3*x }",
-              "eye: [3, 0, 4],\n    target: [3, 0, 0]");
-    scene_has("sphere { 9*z, 1 } light_source { 9, rgb 1 }",
-              "eye: [0, 0, 0],\n    target: [0, 0, -1]");
-    scene_has("sphere { 0, 1 } light_source { <0, 3, 4>, rgb 2 } camera { location -z look_at 0 }"
-              "#version 3.7;",
-              "light { position: [0, 3, -4], color: [1, 1, 1], intensity: 157.08 }");
-    scene_has(
-        "sphere { 0, 1 } light_source { 9*y, rgb 2 spotlight point_at y radius 10 falloff 20 }",
-        ", target: [0, 1, 0], angle: 40deg, edge: 0.5 }");
-    scene_has("#version 3.7; sphere { 0, 1 } background { rgb <0, 0, 0.5> }",
-              "sky { zenith: [0, 0, 0.5],");
-    scene_has("sphere { 0, 1 } light_source { 9, rgb 1 }", "sky { zenith: [0, 0, 0],");
-    scene_has("box { -1, 1 scale <1, 2, 1e-4> }", "= box([2, 4, 0.0002]);");
-    scene_has("disc { 0, y, 10 }", "cylinder(10, 0.01).move([0, -0.005, 0]);");
-}
+/* ---- what is no scene ---- */
 
 static void what_cannot_be_translated_is_said_with_its_line(void **state)
 {
@@ -605,6 +414,14 @@ static void what_cannot_be_translated_is_said_with_its_line(void **state)
     assert_refused("a.pov", "#end", "a.pov:1: `#end` of nothing");
     assert_refused("a.pov", "#declare A = array[3]; sphere { 0, A[3] }",
                    "a.pov:1: the index 3 is not");
+    assert_refused("a.pov", "\n#declare A = array[2] {\"x\"} #declare B = concat(A[1], \"y\");",
+                   "a.pov:2: this element of the array has no value yet");
+    assert_refused("a.pov", "#declare A = array[2] {x, sphere { 0, 1 }} sphere { A[1], 1 }",
+                   "a.pov:1: there should be an element that is a number");
+    assert_refused("a.pov", "#declare A = array[2] {sphere { 0, 1 }} object { A[1] }",
+                   "a.pov:1: this element of the array has no value yet");
+    assert_refused("a.pov", "#declare A = array[2] {sphere { 0, 1 }, \"x\"} object { A[1] }",
+                   "a.pov:1: this is another kind of value than the array's first");
     assert_refused("a.pov", "\n#error \"stop here\"", "a.pov:2: the file says: stop here");
     assert_refused("a.pov", "\n\nsphere { 0, 1 clipped_by { plane { x, 0 } } }",
                    "a.pov:3: `clipped_by` in `sphere` is not translated");
@@ -700,13 +517,9 @@ int main(void)
         cmocka_unit_test(what_is_declared_can_be_used),
         cmocka_unit_test(programs_are_carried_out),
         cmocka_unit_test(blobs_have_their_formula),
-        cmocka_unit_test(colors_are_those_of_pov),
-        cmocka_unit_test(defaults_are_those_of_the_file),
         cmocka_unit_test(turns_are_left_handed),
-        cmocka_unit_test(solids_around_the_camera_are_seen),
         cmocka_unit_test(polynomials_have_their_signs),
         cmocka_unit_test(random_objects_have_the_points_of_their_predicate),
-        cmocka_unit_test(looks_and_view_are_translated),
         cmocka_unit_test(what_cannot_be_translated_is_said_with_its_line),
         cmocka_unit_test(what_is_refused_is_left_out),
         cmocka_unit_test(damaged_files_do_no_harm),
