@@ -157,11 +157,12 @@ bool krs_may_blur_normals(double coordinate, double distance, double pixel);
    precision: camera_relative_slots vec4s. */
 void krs_frame_rebase(KrsFrame *frame, const double rebase_origin[3], float (*block)[4]);
 /* krs_frame_tables, where kernels read only so many texels at the beginning of both; others may be left
-   as they are. */
-void krs_frame_tables_in_use(const KrsFrame *frame, float (*rows)[4], uint32_t (*cells)[2],
-                             size_t *row_count, size_t *cell_count);
-/* What tables depend on, as parameter_slots numbers; frames in which these are equal have equal tables. */
-void krs_frame_table_inputs(const KrsFrame *frame, double (*inputs)[4]);
+   as they are.  With an origin (NULL: none) they are those of camera-relative points. */
+void krs_frame_tables_in_use(const KrsFrame *frame, const double *rebase_origin, float (*rows)[4],
+                             uint32_t (*cells)[2], size_t *row_count, size_t *cell_count);
+/* What these depend on, as parameter_slots numbers; frames in which these are equal have equal tables. */
+void krs_frame_table_inputs(const KrsFrame *frame, const double *rebase_origin,
+                            double (*inputs)[4]);
 /* The caller's zones (center, radius), for the slots behind the parameter block.  Returns how many.
    In a variant with room for more the others must have a radius far below 0. */
 size_t krs_frame_zones(const KrsFrame *frame, float (*zones)[4]);

@@ -98,7 +98,7 @@ static void find_tables(Compilation *c)
     TableSizes    sizes   = tables_measure(crowds, c->scene->graph->textures);
     program->table_rows   = sizes.rows;
     program->table_cells  = sizes.cells;
-    program->rows_vary    = crowds && crowds->frame_numbers.count > 0;
+    program->rows_vary    = crowds_vary(crowds);
     program->table_count  = crowds ? crowds->tables.count : 0;
     for (size_t t = 0; t < program->table_count; t++)
         program->table_members += crowds->tables.items[t].rows;

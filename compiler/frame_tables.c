@@ -144,15 +144,25 @@ void frame_tables_refresh(const KrsFrame *frame)
 
 /* ---- as kernels read them ---- */
 
-void krs_frame_tables_in_use(const KrsFrame *frame, float (*rows)[4], uint32_t (*cells)[2],
-                             size_t *row_count, size_t *cell_count)
+/* The origin is the last slot of the parameter block. */
+static bool is_origin(const KrsScene *scene, uint32_t slot)
+{
+    return scene->program.camera_relative && slot == scene->program.parameter_slots - 1;
+}
+
+void krs_frame_tables_in_use(const KrsFrame *frame, const double *rebase_origin, float (*rows)[4],
+                             uint32_t (*cells)[2], size_t *row_count, size_t *cell_count)
 {
     const KrsScene *scene  = frame->scene;
     const Crowds   *crowds = frame->tables ? frame->tables->crowds : scene->graph->crowds;
-    if (!frame->fresh)
+    if (rebase_origin)
+        memcpy(frame->parameters[scene->program.parameter_slots - 1].v, rebase_origin,
+               3 * sizeof *rebase_origin);
+    if (!frame->fresh || rebase_origin)
         tape_run_frame(&scene->rows, frame->parameters, frame->values);
     frame_tables_refresh(frame);
-    TableSizes used = tables_pack(crowds, scene->graph->textures, frame->values, rows, cells);
+    TableSizes used = tables_pack(crowds, scene->graph->textures, frame->values,
+                                  rebase_origin != NULL, rows, cells);
     *row_count      = used.rows;
     *cell_count     = used.cells;
 }
@@ -165,18 +175,22 @@ void krs_frame_tables(const KrsFrame *frame, float (*rows)[4], uint32_t (*cells)
         return;
     if (frame->tables)
         memset(cells, 0, program->table_cells * sizeof *cells);
-    krs_frame_tables_in_use(frame, rows, cells, &row_count, &cell_count);
+    krs_frame_tables_in_use(frame, NULL, rows, cells, &row_count, &cell_count);
     memset(rows + row_count, 0, (program->table_rows - row_count) * sizeof *rows);
 }
 
-void krs_frame_table_inputs(const KrsFrame *frame, double (*inputs)[4])
+void krs_frame_table_inputs(const KrsFrame *frame, const double *rebase_origin, double (*inputs)[4])
 {
     const KrsScene *scene = frame->scene;
     const Tape     *rows  = &scene->rows;
     memset(inputs, 0, scene->program.parameter_slots * sizeof *inputs);
     for (size_t i = 0; i < rows->frame_count; i++) {
         const Expr *e = &rows->graph->items[rows->nodes[i]];
-        if (e->op == OP_PARAMETER)
+        if (e->op != OP_PARAMETER)
+            continue;
+        if (!is_origin(scene, e->index))
             memcpy(inputs[e->index], frame->parameters[e->index].v, sizeof *inputs);
+        else if (rebase_origin)
+            memcpy(inputs[e->index], rebase_origin, 3 * sizeof *rebase_origin);
     }
 }

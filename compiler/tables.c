@@ -93,18 +93,34 @@ static double half_upward(Range axis, float center)
     return nextafterf((float)half, HUGE_VALF);
 }
 
-static void put_header(const Grid *grid, Place place, Texel *header)
+/* What a table is relative to. */
+typedef struct Origin {
+    double v[3];
+} Origin;
+
+static Origin origin_of(const Crowds *crowds, const Crowd *table, const NodeValue *values,
+                        bool relocated)
+{
+    Origin origin = {{0}};
+    for (int k = 0; k < 3 && relocated && table->origin > 0; k++)
+        if (relocates_along(table, k))
+            origin.v[k] = values[crowds->frame_numbers.items[table->origin - 1]].v[k];
+    return origin;
+}
+
+static void put_header(const Grid *grid, Origin origin, Place place, Texel *header)
 {
     bool   infinite = isinf(grid->size);
     float  center[3];
     double half[3];
     for (int k = 0; k < 3; k++) {
-        Range axis = grid->inner.axis[k];
+        Range axis = {grid->inner.axis[k].low - origin.v[k],
+                      grid->inner.axis[k].high - origin.v[k]};
         center[k]  = infinite ? 0 : (float)(0.5 * (axis.low + axis.high));
         half[k]    = infinite ? NOWHERE : half_upward(axis, center[k]);
     }
-    put_floats(header[0], grid->low[0], grid->low[1]);
-    put_floats(header[1], grid->low[2], 1 / grid->size);
+    put_floats(header[0], grid->low[0] - origin.v[0], grid->low[1] - origin.v[1]);
+    put_floats(header[1], grid->low[2] - origin.v[2], 1 / grid->size);
     memcpy(header[2], grid->cells, 2 * sizeof *grid->cells);
     header[3][0] = grid->cells[2];
     header[3][1] = (uint32_t)place.cell;
@@ -151,16 +167,17 @@ static float to_single(double number)
 }
 
 static void put_rows(const Crowds *crowds, const Crowd *table, const NodeValue *values,
-                     float (*rows)[4])
+                     Origin origin, float (*rows)[4])
 {
     size_t texels = row_texels(table);
     memset(rows, 0, table->rows * texels * sizeof *rows);
     for (uint32_t c = 0; c < table->columns; c++) {
         const Node   *nodes   = column_nodes(crowds, table, c);
         const double *numbers = table->numbers + c;
+        const double  taken   = table->axes[c] > 0 ? origin.v[table->axes[c] - 1] : 0;
         for (size_t r = 0; r < table->rows; r++)
-            rows[r * texels + c / 4][c % 4] = to_single(nodes ? values[nodes[r]].v[0]
-                                                              : numbers[r * table->columns]);
+            rows[r * texels + c / 4][c % 4] = to_single(
+                (nodes ? values[nodes[r]].v[0] : numbers[r * table->columns]) - taken);
     }
 }
 
@@ -177,13 +194,14 @@ static void put_copies(const Crowd *table, const float (*rows)[4], float (*copie
 
 /* Packs all rows; the sizes become those of all tables. */
 static TableSizes pack_rows(const Crowds *crowds, const Textures *textures, const NodeValue *values,
-                            float (*rows)[4])
+                            bool relocated, float (*rows)[4])
 {
     TableSizes next = after_headers(crowds, textures);
     for (size_t t = 0; t < table_count(crowds); t++) {
         const Crowd *table = &crowds->tables.items[t];
         Place        place = place_table(table, &next);
-        put_rows(crowds, table, values, rows + place.row);
+        put_rows(crowds, table, values, origin_of(crowds, table, values, relocated),
+                 rows + place.row);
         put_copies(table, (const float(*)[4])(rows + place.row), rows + place.copy);
     }
     return next;
@@ -224,18 +242,19 @@ static void pack_textures(const Crowds *crowds, const Textures *textures, Texel 
 }
 
 TableSizes tables_pack(const Crowds *crowds, const Textures *textures, const NodeValue *values,
-                       float (*rows)[4], uint32_t (*cells)[2])
+                       bool relocated, float (*rows)[4], uint32_t (*cells)[2])
 {
     TableSizes next = after_headers(crowds, textures);
     for (size_t t = 0; t < table_count(crowds); t++) {
         const Crowd *table = &crowds->tables.items[t];
         Place        place = place_table(table, &next);
-        put_header(&table->cells, place, cells + GRID_HEADER * t);
+        put_header(&table->cells, origin_of(crowds, table, values, relocated), place,
+                   cells + GRID_HEADER * t);
         put_fading(table, cells + GRID_HEADER * t);
         put_grid(&table->cells, cells + place.cell, cells + place.list);
     }
     pack_textures(crowds, textures, cells);
-    next = pack_rows(crowds, textures, values, rows);
+    next = pack_rows(crowds, textures, values, relocated, rows);
     if (next.rows == 0)
         memset(rows[next.rows++], 0, sizeof *rows);
     if (texture_count(textures) > 0) /* they are the last of all */

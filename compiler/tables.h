@@ -45,8 +45,8 @@ TableSizes tables_measure(const Crowds *crowds, const Textures *textures);
 void tables_place_texture(const Crowds *crowds, const Textures *textures, size_t index,
                           size_t *header, size_t *first);
 /* Fills arrays of these sizes; `values` of nodes has the numbers of the frame, and may be NULL where
-   there are none.  Returns how many texels at the beginning are in use: all, unless members move. */
+   there are none.  `relocated`: tables with an origin are relative to it, for camera-relative points.  Returns how many texels at the beginning are in use: all, unless members move. */
 TableSizes tables_pack(const Crowds *crowds, const Textures *textures, const NodeValue *values,
-                       float (*rows)[4], uint32_t (*cells)[2]);
+                       bool relocated, float (*rows)[4], uint32_t (*cells)[2]);
 
 #endif

@@ -136,6 +136,22 @@ void crowds_keep(Crowds *crowds, Arena *arena)
         keep_table(&crowds->tables.items[i], arena);
 }
 
+bool crowds_vary(const Crowds *crowds)
+{
+    for (size_t i = 0; crowds && i < crowds->tables.count; i++)
+        if (crowds->tables.items[i].frame_columns || crowds->tables.items[i].places)
+            return true;
+    return false;
+}
+
+bool relocates_along(const Crowd *table, int axis)
+{
+    for (uint32_t c = 0; c < table->columns; c++)
+        if (table->axes[c] == axis + 1)
+            return table->relocates;
+    return false;
+}
+
 const Node *column_nodes(const Crowds *crowds, const Crowd *table, uint32_t column)
 {
     assert(column < table->columns);

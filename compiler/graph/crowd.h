@@ -69,7 +69,14 @@ typedef struct Crowd {
     CrowdArc    *arcs;          /* of members of an outline; NULL: it is none */
     double fades, slope; /* of a blend with tails, its width, and the slope of all distances */
     double stretch;      /* the distance of a member, times this, is at least that to its box */
-    Span   span;         /* of the join */
+    /* Functions use nothing of the point of a call but its difference from numbers of the row.  Columns of these
+       have 1 + the number of the axis in `axes`, others have 0; along axes without a column the numbers are near 0.
+       So point and rows may be relative to another origin.  In camera-relative kernels that is the VEC3 of which
+       `origin` is 1 + the place in Crowds.frame_numbers; 0: it is that of the table in all kernels. */
+    bool     relocates;
+    uint8_t  axes[MOST_TABLE_COLUMNS];
+    uint32_t origin;
+    Span     span; /* of the join */
 } Crowd;
 
 /* How many nodes a place has. */
@@ -145,6 +152,10 @@ Node *roots_with_bodies(const Graph *graph, const Node *roots, size_t root_count
 void hand_on_crowds(Graph *to, const Graph *from, const Node *all, Node *roots, size_t root_count);
 /* Copies tables and functions into an arena as well, when that of the original is to be freed. */
 void crowds_keep(Crowds *crowds, Arena *arena);
+/* Whether numbers or grids of tables depend on parameters or the time. */
+bool crowds_vary(const Crowds *crowds);
+/* Whether there is a column for what is taken from the point along this axis. */
+bool relocates_along(const Crowd *table, int axis);
 /* The nodes of a column, one for each row; NULL: its numbers are known. */
 const Node *column_nodes(const Crowds *crowds, const Crowd *table, uint32_t column);
 

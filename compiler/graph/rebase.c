@@ -12,6 +12,7 @@
  */
 #include "compiler/graph/rebase.h"
 
+#include "compiler/graph/crowd.h"
 #include "compiler/graph/evaluate.h"
 
 /* base + relative; base NODE_NONE: the latter is all. */
@@ -247,26 +248,135 @@ static SplitValue rebase_node(Graph *g, const Expr *e, const SplitValue *p)
     return any_base(e, p) ? rules[e->op](g, e, p) : plain_value(g, e, p);
 }
 
+/* ---- crowds ---- */
+
+/* What is relative in a table, and the points of its calls.  So rows and grids are small numbers near the
+   camera, which the host finds. */
+typedef struct Relocated {
+    Node base; /* of the points; NODE_NONE: they are as they are */
+    bool stays;
+} Relocated;
+
+static const Crowd *table_at(const Graph *g, uint32_t table)
+{
+    return &g->crowds->tables.items[table];
+}
+
+static uint32_t table_of_call(const Graph *g, const Expr *call)
+{
+    const uint32_t function = (uint32_t)g->items[call->operands[0]].number[0];
+    return g->crowds->functions.items[function].crowd;
+}
+
+/* Which tables stay as they are: also those that members of others call. */
+static Relocated *new_relocated(const Graph *g, Arena *scratch)
+{
+    const Crowds *crowds = g->crowds;
+    Relocated    *tables = arena_new_array(scratch, Relocated,
+                                           (crowds ? crowds->tables.count : 0) + 1);
+    for (size_t t = 0; crowds && t < crowds->tables.count; t++)
+        tables[t] = (Relocated){NODE_NONE, !crowds->tables.items[t].relocates};
+    if (!crowds)
+        return tables;
+    const Tape bodies = tape_new(g, crowds->bodies.items, crowds->bodies.count, scratch);
+    for (size_t i = 0; i < bodies.count; i++) {
+        const Expr *e = &g->items[bodies.nodes[i]];
+        if (is_call((Op)e->op))
+            tables[table_of_call(g, e)].stays = true;
+    }
+    return tables;
+}
+
+/* All calls of a table have the same base, or it stays. */
+static void note_call(const Graph *g, const Expr *call, Node base, Relocated *tables)
+{
+    Relocated *table = &tables[table_of_call(g, call)];
+    table->stays     = table->stays || base == NODE_NONE ||
+                   (table->base != NODE_NONE && table->base != base);
+    table->base = base;
+}
+
+/* The frame has the bases of those that do not stay. */
+static void keep_bases(Graph *g, Relocated *tables)
+{
+    Crowds *crowds = g->crowds;
+    for (size_t t = 0; crowds && t < crowds->tables.count; t++) {
+        if (tables[t].stays)
+            tables[t].base = NODE_NONE;
+        if (tables[t].base == NODE_NONE)
+            continue;
+        array_push(crowds->arena, &crowds->frame_numbers, tables[t].base);
+        crowds->tables.items[t].origin = (uint32_t)crowds->frame_numbers.count;
+    }
+}
+
+/* What a call has in the place of its point: along axes without a column all of it. */
+static SplitValue point_of_call(Graph *g, const Crowd *table, SplitValue point)
+{
+    Node parts[MAX_OPERANDS], zero = graph_number(g, 0);
+    bool all = true;
+    for (int k = 0; k < 3; k++) {
+        const bool relative = relocates_along(table, k);
+        parts[k]            = relative ? zero : graph_component(g, point.base, (uint32_t)k);
+        all                 = all && relative;
+    }
+    return whole(all ? point.relative
+                     : sum_of(g, (SplitValue){graph_op(g, OP_vec3, parts), point.relative}));
+}
+
+/* A number of a row, which is relative to the base of its table. */
+static SplitValue row_value(Graph *g, const Expr *row, const SplitValue *operands,
+                            const Relocated *tables)
+{
+    const uint32_t id    = (uint32_t)g->items[row->operands[0]].number[0];
+    const Node     base  = tables[row_crowd(id)].base;
+    const uint8_t  axis  = table_at(g, row_crowd(id))->axes[row_column(id)];
+    SplitValue     value = plain_value(g, row, operands);
+    if (base != NODE_NONE && axis > 0)
+        value.base = graph_component(g, base, axis - 1u);
+    return value;
+}
+
+/* ---- all ---- */
+
+/* First without the bases of tables, which are found, then with them. */
+static void rebase_tape(Graph *g, const Tape *tape, Node rebase_origin, Relocated *tables,
+                        bool finds, SplitValue *values)
+{
+    for (size_t i = 0; i < tape->count; i++) {
+        Node       node = tape->nodes[i];
+        Expr       e    = g->items[node];
+        SplitValue operands[MAX_OPERANDS];
+        g->here = e.span;
+        if (e.op == OP_POINT) {
+            values[i] = (SplitValue){rebase_origin, node};
+            continue;
+        }
+        if (e.time != TIME_POINT || e.operand_count == 0) {
+            values[i] = whole(node);
+            continue;
+        }
+        for (int k = 0; k < e.operand_count; k++)
+            operands[k] = values[tape_index(tape, e.operands[k])];
+        if (is_call((Op)e.op) && finds)
+            note_call(g, &e, operands[1].base, tables);
+        else if (is_call((Op)e.op) && tables[table_of_call(g, &e)].base != NODE_NONE)
+            operands[1] = point_of_call(g, table_at(g, table_of_call(g, &e)), operands[1]);
+        values[i] = e.op == OP_row && !finds ? row_value(g, &e, operands, tables)
+                                             : rebase_node(g, &e, operands);
+    }
+}
+
 void graph_rebase(Graph *graph, Node *roots, size_t count, Node rebase_origin, Arena *scratch)
 {
     Span        here   = graph->here;
     Tape        tape   = tape_new(graph, roots, count, scratch);
     SplitValue *values = arena_new_array(scratch, SplitValue, tape.count);
-    for (size_t i = 0; i < tape.count; i++) {
-        Node       node = tape.nodes[i];
-        Expr       e    = graph->items[node];
-        SplitValue operands[MAX_OPERANDS];
-        graph->here = e.span;
-        if (e.op == OP_POINT)
-            values[i] = (SplitValue){rebase_origin, node};
-        else if (e.time != TIME_POINT || e.operand_count == 0)
-            values[i] = whole(node);
-        else {
-            for (int k = 0; k < e.operand_count; k++)
-                operands[k] = values[tape_index(&tape, e.operands[k])];
-            values[i] = rebase_node(graph, &e, operands);
-        }
-    }
+    Relocated  *tables = new_relocated(graph, scratch);
+    if (graph->crowds)
+        rebase_tape(graph, &tape, rebase_origin, tables, true, values);
+    keep_bases(graph, tables);
+    rebase_tape(graph, &tape, rebase_origin, tables, false, values);
     for (size_t i = 0; i < count; i++)
         roots[i] = sum_of(graph, values[tape_index(&tape, roots[i])]);
     graph->here = here;

@@ -46,6 +46,7 @@ typedef struct CrowdGroup {
     uint32_t *columns; /* of each slot 4: of its elements the column, or NO_COLUMN: equal in all */
     struct Column *sources; /* of each column, the element that it has */
     uint32_t       column_count;
+    bool           relocates;         /* Crowd */
     double         slope;             /* of the distances of all members */
     uint32_t       crowd;             /* its table */
     uint32_t       distance, nearest; /* functions; NO_FUNCTION: not made yet */

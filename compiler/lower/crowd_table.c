@@ -1,6 +1,7 @@
 /*
  * crowd_table.c: the numbers in which the members of a crowd differ, as the columns of a table.
  */
+#include <math.h>
 #include <string.h>
 
 #include "compiler/lower/crowd_group.h"
@@ -75,10 +76,12 @@ void group_add(CrowdGroup *group, uint32_t part, const SlotContent *contents, Ar
 
 /* ---- columns ---- */
 
-/* The elements of slots that have equal numbers in each member are one column. */
+/* The elements of slots that have equal numbers in each member are one column, but for what is taken from
+   the point: that has a column for each axis. */
 typedef struct Column {
     uint32_t slot, element;
     uint64_t hash;
+    uint8_t  axis; /* of the point: 1 + its number; 0: none */
 } Column;
 
 static bool differs(const CrowdGroup *group, uint32_t slot, uint32_t element)
@@ -101,7 +104,7 @@ static uint64_t column_hash(const CrowdGroup *group, uint32_t slot, uint32_t ele
 
 static bool columns_equal(const CrowdGroup *group, const Column *a, const Column *b)
 {
-    if (a->hash != b->hash)
+    if (a->hash != b->hash || a->axis != b->axis)
         return false;
     for (size_t i = 0; i < group->members.count; i++)
         if (!entries_equal(entry_at(group, i, a->slot, a->element),
@@ -111,9 +114,9 @@ static bool columns_equal(const CrowdGroup *group, const Column *a, const Column
 }
 
 /* The column with these numbers, new if there is none; NO_COLUMN: there are too many. */
-static uint32_t add_column(CrowdGroup *group, uint32_t slot, uint32_t element)
+static uint32_t add_column(CrowdGroup *group, uint32_t slot, uint32_t element, uint8_t axis)
 {
-    Column column = {slot, element, column_hash(group, slot, element)};
+    Column column = {slot, element, column_hash(group, slot, element), axis};
     for (uint32_t i = 0; i < group->column_count; i++)
         if (columns_equal(group, &group->sources[i], &column))
             return i;
@@ -121,6 +124,62 @@ static uint32_t add_column(CrowdGroup *group, uint32_t slot, uint32_t element)
         return NO_COLUMN;
     group->sources[group->column_count] = column;
     return group->column_count++;
+}
+
+/* Whether an operand is a place that is taken from the point. */
+static bool is_place(const TemplateNode *node, uint32_t operand, Node point)
+{
+    return node->op == OP_sub && operand == 1 && node->uses[1].kind == USE_SLOT &&
+           node->uses[0].kind == USE_SAME && node->uses[0].index == point;
+}
+
+static bool is_node(const TemplateUse *use, Node node)
+{
+    return use->kind == USE_SAME && use->index == node;
+}
+
+/* Marks slots that have places.  False: the point is used in another way as well. */
+static bool find_places(const Template *template, Node point, bool *places)
+{
+    for (uint32_t i = 0; i < template->root_count; i++)
+        if (is_node(&template->roots[i], point))
+            return false;
+    for (uint32_t i = 0; i < template->node_count; i++) {
+        const TemplateNode *node = &template->nodes[i];
+        for (uint32_t k = 0; k < MAX_OPERANDS; k++) {
+            if (is_node(&node->uses[k], point) && !(k == 0 && is_place(node, 1, point)))
+                return false;
+            if (is_place(node, k, point))
+                places[node->uses[k].index] = true;
+        }
+    }
+    return true;
+}
+
+/* A number that all members have is left where it is, if the rounding of points that are so far away is that of
+   points near the origin. */
+static const double NEAR = 4;
+
+static bool is_far(const CrowdGroup *group, uint32_t slot, uint32_t element)
+{
+    const SlotElement *all = element_at(group, slot, element);
+    return differs(group, slot, element) || all->node != NODE_NONE || fabs(all->number) > NEAR;
+}
+
+/* Sets axis[slot][element] of places: 1 + the number of the axis, where that needs columns. */
+static bool find_axes(const CrowdGroup *group, const GroupJoin *join, uint8_t (*axis)[4])
+{
+    const uint32_t slots  = group->template->slot_count;
+    bool          *places = arena_new_array(join->scratch, bool, slots + 1), far[3] = {false};
+    if (!find_places(group->template, join->leaves.point, places))
+        return false;
+    for (uint32_t i = 0; i < slots; i++)
+        for (uint32_t k = 0; places[i] && k < 3; k++)
+            far[k] = far[k] || is_far(group, i, k);
+    for (uint32_t i = 0; i < slots; i++)
+        for (uint8_t k = 0; places[i] && k < 3; k++)
+            axis[i][k] = far[k] ? k + 1 : 0;
+    return far[0] || far[1] || far[2];
 }
 
 bool group_find_columns(CrowdGroup *group, const GroupJoin *join)
@@ -131,14 +190,17 @@ bool group_find_columns(CrowdGroup *group, const GroupJoin *join)
     group->columns      = arena_new_array(arena, uint32_t, 4 * (size_t)slots + 1);
     group->sources      = arena_new_array(join->scratch, Column, MOST_TABLE_COLUMNS);
     group->column_count = 0;
+    uint8_t(*axis)[4]   = arena_alloc(join->scratch, (size_t)slots + 1, sizeof *axis);
+    memset(axis, 0, (slots + 1) * sizeof *axis);
+    group->relocates = find_axes(group, join, axis);
     for (uint32_t i = 0; i < slots; i++)
         for (uint32_t k = 0; k < elements(group, i); k++) {
             uint32_t *column = &group->columns[4 * i + k];
             *column          = NO_COLUMN;
-            if (!differs(group, i, k))
+            if (!differs(group, i, k) && !axis[i][k])
                 continue;
             group->varies[i] = true;
-            *column          = add_column(group, i, k);
+            *column          = add_column(group, i, k, axis[i][k]);
             if (*column == NO_COLUMN)
                 return false;
         }
@@ -149,7 +211,8 @@ bool group_find_columns(CrowdGroup *group, const GroupJoin *join)
 
 static bool is_of_frame(const CrowdGroup *group, const Column *column)
 {
-    return element_at(group, column->slot, column->element)->nodes.count > 0;
+    const SlotElement *all = element_at(group, column->slot, column->element);
+    return all->nodes.count > 0 || all->node != NODE_NONE;
 }
 
 static void fill_known(const CrowdGroup *group, Crowd *table, uint32_t column)
@@ -183,10 +246,13 @@ void group_make_table(CrowdGroup *group, const GroupJoin *join, const Box *boxes
 {
     Crowds  *crowds = graph_crowds(join->graph);
     uint32_t rows = (uint32_t)group->members.count, columns = group->column_count;
-    table.arena   = join->tables;
-    table.rows    = rows;
-    table.columns = columns;
-    table.numbers = arena_new_array(table.arena, double, (size_t)rows *columns + 1);
+    table.arena     = join->tables;
+    table.rows      = rows;
+    table.columns   = columns;
+    table.numbers   = arena_new_array(table.arena, double, (size_t)rows *columns + 1);
+    table.relocates = group->relocates;
+    for (uint32_t k = 0; k < columns; k++)
+        table.axes[k] = group->sources[k].axis;
     for (uint32_t k = 0; k < columns; k++)
         if (is_of_frame(group, &group->sources[k]))
             fill_of_frame(group, join->graph, &table, k);

@@ -270,7 +270,7 @@ static void emit_about_textures(Emitter *e)
 
 static void emit_about_tables(Emitter *e)
 {
-    bool vary = e->graph->crowds->frame_numbers.count > 0;
+    bool vary = crowds_vary(e->graph->crowds);
     text_add(e->out,
              "// Parts that are alike are rows of krs_rows, a texel buffer of format RGBA32F.\n"
              "// krs_cells, of format RG32UI, says which of them are near a point.  ");

@@ -154,8 +154,8 @@ bool job_read_frame(Job *job, KrsFrame *frame, const KrsCamera *camera)
         job->frame.emissive_count = emissive_find(job->rendering->program, &job->view.camera, frame,
                                                   job->rebase_origin, job->emissive);
     memcpy(job->rendering->frame.bytes, &job->frame, sizeof job->frame);
-    return rendering_set_parameters(job->rendering, frame) &&
+    const double *rebase_origin = is_camera_relative(job) ? job->rebase_origin : NULL;
+    return rendering_set_parameters(job->rendering, frame, rebase_origin) &&
            rendering_set_rays(job->rendering, kind_of_rays(job)) &&
-           (!is_camera_relative(job) ||
-            rendering_rebase(job->rendering, frame, job->rebase_origin));
+           (!rebase_origin || rendering_rebase(job->rendering, frame, rebase_origin));
 }

@@ -65,7 +65,7 @@ KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*poi
         gpu_refuse(&rendering->renderer->gpu, KRS_BAD_ARGUMENT, "there are no points");
         return KRS_BAD_ARGUMENT;
     }
-    if (!point_query_prepare(rendering) || !rendering_set_parameters(rendering, frame))
+    if (!point_query_prepare(rendering) || !rendering_set_parameters(rendering, frame, NULL))
         return rendering->renderer->gpu.status;
     for (size_t first = 0; first < count; first += POINTS_AT_ONCE) {
         size_t      left  = count - first;

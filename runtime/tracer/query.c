@@ -89,7 +89,7 @@ KrsStatus krs_device_probe(KrsRendering *rendering, KrsFrame *frame, const doubl
     renderer_clear(rendering->renderer);
     if (!is_in_reach(points, count))
         return refuse(rendering, "a coordinate is not a number below 1e18");
-    if (!point_query_prepare(rendering) || !rendering_set_parameters(rendering, frame))
+    if (!point_query_prepare(rendering) || !rendering_set_parameters(rendering, frame, NULL))
         return rendering->renderer->gpu.status;
     for (size_t first = 0; first < count; first += POINTS_AT_ONCE)
         if (!probe_batch(rendering, points + first, batch_of(count - first), hits + first))
@@ -253,7 +253,7 @@ KrsStatus krs_device_raycast(KrsRendering *rendering, KrsFrame *frame, const dou
         !is_in_reach(origins, count) || tolerance > KRS_MOST_COORDINATE)
         return refuse(rendering, "rays have finite origins below 1e18, directions that are not 0, "
                                  "and neither end nor tolerance below 0");
-    if (!prepare(rendering) || !rendering_set_parameters(rendering, frame))
+    if (!prepare(rendering) || !rendering_set_parameters(rendering, frame, NULL))
         return rendering->renderer->gpu.status;
     set_frame(rendering, tolerance);
     for (size_t first = 0; first < count; first += POINTS_AT_ONCE)

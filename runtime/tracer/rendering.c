@@ -291,9 +291,10 @@ static bool choose_zones(KrsRendering *rendering, size_t count)
     return kernels_create(rendering, rendering->purpose);
 }
 
-bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame)
+bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame,
+                              const double *rebase_origin)
 {
-    if (!scene_tables_upload(rendering, frame))
+    if (!scene_tables_upload(rendering, frame, rebase_origin))
         return false;
     /* Written to host memory first: the compiler's functions may read back what they write. */
     Gpu   *gpu         = &rendering->renderer->gpu;

@@ -8,7 +8,8 @@
 
 /* Copies the frame's parameters and zones to the device.  Chooses the kernels for these zones, and
    for the scene's own cameras. */
-bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame);
+bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame,
+                              const double *rebase_origin);
 /* Chooses the kernels for rays of another kind; call it after rendering_set_parameters.  Kernels of
    a scene with a panorama or a lens serve all of its cameras. */
 bool rendering_set_rays(KrsRendering *rendering, RayKind kind);

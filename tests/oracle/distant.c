@@ -52,6 +52,22 @@ static const struct Form {
                      "0.4).scale(s).move(o)"},
     {"a crowd", "union([box([0.13, 0.1 + 0.001 * i, 0.2]).move([0.2 * (i % 10) - 0.9, 0.2 * "
                 "floor(i / 10) - 0.9, 0.2 * sin(i)]) for i in 0..100]).scale(s).move(o)"},
+    {"far members", "union([box([0.13, 0.1 + 0.001 * i, 0.2]).rotate([1, 0.3, 0], 0.1 * i).scale(s)"
+                    ".move(o + s * [0.2 * (i % 10) - 0.9, 0.2 * floor(i / 10) - 0.9, 0.2 * sin(i)])"
+                    " for i in 0..100])"},
+    {"far members on a plane", "union([sphere(0.12 + 0.0003 * i).scale(s).move(o + s * [0.2 * (i % "
+                               "10) - 0.9, 0.2 * floor(i / 10) - 0.9, 0]) for i in 0..100])"},
+    {"far members on a diagonal",
+     "union([sphere(0.05).scale(s).move(o + s * [0.02 * i - 1, 0.02 * i - 1, 0.02 * i - 1])"
+     " | sphere(0.06).scale(s).move(o + s * [0.02 * i - 1, 0.3, 0.2]) for i in 0..100])"},
+    {"far members of a blend",
+     "union([sphere(0.1 + 0.0003 * i).scale(s).move(o + s * [0.2 * (i % 10) - 0.9, 0.2 * floor(i / "
+     "10) - 0.9, 0.2 * sin(i)]) for i in 0..100], blend: 0.15 * s)"},
+    {"far members, turned about the origin",
+     "union([box([0.13, 0.1 + 0.001 * i, 0.2]).scale(s).move([0.8 * o.x - 0.6 * o.z, o.y, 0.6 * "
+     "o.x + "
+     "0.8 * o.z] + s * [0.2 * (i % 10) - 0.9, 0.2 * floor(i / 10) - 0.9, 0.2 * sin(i)]) for i in "
+     "0..100]).rotate([0, 1, 0], 36.86989764584402deg)"},
     {"a lattice", "sphere(0.17).repeat([0.45, 0.45, 0.5], [4, 4, 2]).scale(s).move(o)"},
     {"letters", "text(\"Rg\").extrude(0.3).scale(s).move(o)"},
     {"a hull", "hull([[0.8, 0.8, 0.8], [-0.8, -0.8, 0.8], [-0.8, 0.8, -0.8], [0.8, -0.8, -0.8], "
@@ -65,7 +81,7 @@ static const struct Form {
     {"a turned outline", "polygon([[-0.9, -0.6], [0.8, -0.7], [0.3, 0.1], [0.7, 0.9], [-0.5, "
                          "0.6]]).revolve().rotate([1, 0, 0], 30deg).scale(s).move(o)"},
 };
-enum { FORMS = sizeof forms / sizeof forms[0] };
+enum { FORMS = sizeof forms / sizeof forms[0], FAR_MEMBERS = 13 };
 
 enum { WIDTH = 64, HEIGHT = 36, PIXELS = WIDTH * HEIGHT, RAYS = 5, TRIALS = 4 };
 static const double FOV  = 0.66;
@@ -127,12 +143,13 @@ static void cast_rays(const struct Form *form, const Shot *shot, KrsHit *hits)
 typedef struct Subject {
     Product       product;
     KrsRendering *rendering;
+    bool          literal;
 } Subject;
 
 static Subject subject_new(const struct Form *form, const Shot *literal)
 {
     char    numbers[200] = "param s = 1 in [1e-4, 1e4]; param o = [0, 0, 0];";
-    Subject subject;
+    Subject subject      = {.literal = literal};
     if (literal)
         snprintf(numbers, sizeof numbers, "let s = %.17g; let o = [%.17g, %.17g, %.17g];",
                  literal->size, literal->middle.x, literal->middle.y, literal->middle.z);
@@ -228,7 +245,7 @@ static void check(const struct Form *form, const Subject *subject, const Shot *s
     cast_rays(form, shot, hits);
     if (origin)
         known = count(origin, &there, false, hits);
-    Counts counts = count(subject, shot, !origin, hits);
+    Counts counts = count(subject, shot, subject->literal, hits);
     if (counts.off > known.off + MOST_EVEN * counts.even + 1 ||
         counts.across > known.across + MOST_ACROSS * counts.all + 2)
         fail_msg("%s of size %g, %g units away, %u lines: of %d even pixels %d are off by more "
@@ -256,10 +273,12 @@ static void numbers_do_as_well(void **state)
     (void)state;
     Random random = {99};
     for (int i = 0; i < 3; i++) {
-        Shot    shot    = random_shot(&random, i);
-        Subject subject = subject_new(&forms[0], &shot);
-        check(&forms[0], &subject, &shot, NULL);
+        const struct Form *form    = &forms[i == 2 ? FAR_MEMBERS : 0];
+        Shot               shot    = random_shot(&random, i);
+        Subject            subject = subject_new(form, &shot), origin = subject_new(form, NULL);
+        check(form, &subject, &shot, i == 2 ? &origin : NULL);
         subject_free(&subject);
+        subject_free(&origin);
     }
 }
 

@@ -124,7 +124,7 @@ static bool device_has_tables(const Stage *stage, const KrsRendering *rendering)
     size_t rows = krs_table_rows(stage->scene), cells = krs_table_cells(stage->scene);
     float(*wanted_rows)[4]     = calloc(rows, sizeof *wanted_rows);
     uint32_t(*wanted_cells)[2] = calloc(cells, sizeof *wanted_cells);
-    krs_frame_tables_in_use(stage->frame, wanted_rows, wanted_cells, &rows, &cells);
+    krs_frame_tables_in_use(stage->frame, NULL, wanted_rows, wanted_cells, &rows, &cells);
     bool same = device_has(gpu, &rendering->table_rows, wanted_rows, rows * sizeof *wanted_rows) &&
                 device_has(gpu, &rendering->table_cells, wanted_cells,
                            cells * sizeof *wanted_cells);

@@ -59,7 +59,7 @@ static Packed pack(Bench *bench)
     memset(packed.rows, 0xff, (packed.sizes.rows + 1) * sizeof *packed.rows);
     for (size_t i = 0; i <= packed.sizes.cells; i++)
         packed.cells[i][0] = packed.cells[i][1] = UNTOUCHED;
-    tables_pack(&packed.crowds, NULL, NULL, packed.rows, packed.cells);
+    tables_pack(&packed.crowds, NULL, NULL, false, packed.rows, packed.cells);
     return packed;
 }
 
