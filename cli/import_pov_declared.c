@@ -113,6 +113,11 @@ PovCell *pov_take(PovReader *reader, PovKind kind)
                            ? pov_find(reader, reader->words.word.text)
                            : NULL;
     PovCell *element = own;
+    if (own && own->kind == POV_REFUSED) {
+        import_refuse(reader->import, reader->words.word.line, "of `%.40s`: %s",
+                      reader->words.word.text, own->string);
+        return NULL;
+    }
     while (element && element->kind == POV_ARRAY && kind != POV_ARRAY) {
         PovCell *first = NULL;
         for (int i = 0; i < element->sizes[0] && !first; i++)

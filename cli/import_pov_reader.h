@@ -61,7 +61,8 @@ typedef enum PovKind {
     POV_ARRAY,
     POV_MACRO,
     POV_FUNCTION,
-    POV_OTHER /* what changes no shape: it is known, and left out */
+    POV_OTHER,  /* what changes no shape: it is known, and left out */
+    POV_REFUSED /* of an included file; `string` says why, to who uses it */
 } PovKind;
 
 /* Of a macro, and of a function: where its text is. */

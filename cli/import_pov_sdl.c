@@ -219,20 +219,28 @@ static const char *scene_name(PovReader *reader, const char *name)
     return text.bytes;
 }
 
-/* With --keep-going an object that is refused is one of which nothing is seen. */
+/* What an included file declares, and cannot be said, is refused where it is used.  With --keep-going an
+   object of the file itself that is refused is one of which nothing is seen. */
 static bool declared(PovReader *reader, PovCell *cell)
 {
     const char *behind = reader->words.at + strspn(reader->words.at, " \t\r\n");
     unsigned    line   = reader->words.word.line;
+    Import     *import = reader->import;
     PovState    state;
     pov_keep_state(reader, &state);
     if (pov_rvalue(reader, cell))
         return true;
-    if (state.word.kind != IMPORT_WORD_NAME || *behind != '{' ||
-        !import_leaves_out(reader->import, line))
+    if (state.word.kind != IMPORT_WORD_NAME || *behind != '{')
         return false;
-    pov_restore_state(reader, &state);
     *cell = (PovCell){.kind = POV_OBJECT};
+    if (state.sources > 1 && import->refusal.length > 0) {
+        const char *words = import->refusal.bytes + strlen(import->path) + 1;
+        *cell           = (PovCell){.kind = POV_REFUSED, .string = words + strcspn(words, " ") + 1};
+        import->refusal = (Text){.arena = import->arena};
+    } else if (!import_leaves_out(import, line)) {
+        return false;
+    }
+    pov_restore_state(reader, &state);
     words_advance(&reader->words);
     return pov_skip_block(reader);
 }

@@ -3,7 +3,7 @@
 # with the line that is wrong; no file, whatever is in it, ends in a crash.
 # shellcheck source-path=SCRIPTDIR disable=SC2016
 . "$(dirname "$0")/common.sh"
-plan 61
+plan 65
 
 cat >ball.vm <<'END'
 # a ball of radius 0.75 with its upper half cut away, and a line that does not count
@@ -200,6 +200,20 @@ run import --keep-going --quiet rest.pov -o rest.krs
 [ "$status" -eq 0 ] && ! grep -q 'note:' err
 result $? "--quiet says no notes"
 refused a.csg 'cube();\nimport();\n' '2: `import` is not translated' "a mesh of OpenSCAD"
+# What an included file declares counts where it is used.
+printf '#declare Odd = union { triangle { x, y, z } }\n#declare Bare = mesh { }\n#declare Good = sphere { 0, 1 }\n' >odd.inc
+refused a.pov '#include "odd.inc"\nobject { Good }\nobject { Odd }\n' '3: of `Odd`: `triangle` is not translated' \
+    "an object of an included file that cannot be said"
+refused a.pov '#include "odd.inc"\n#declare Two = union { object { Good } object { Odd } }\nobject { Two }\n' \
+    '2: of `Odd`: `triangle`' "a union with it"
+printf '#include "odd.inc"\nobject { Good }\n#ifdef (Odd) sphere { 5*x, 1 } #end\n' >used.pov
+run import used.pov -o used.krs
+[ "$status" -eq 0 ] && [ "$(grep -c '^show' used.krs)" -eq 2 ] && ! grep -q 'triangle\|mesh' used.krs err
+result $? "a file that includes it and does not show it"
+printf '#include "odd.inc"\nobject { Good }\nobject { Bare }\n' >used.pov
+run import --keep-going used.pov -o used.krs
+[ "$status" -eq 0 ] && [ "$(grep -c '^show' used.krs)" -eq 1 ] && grep -q 'left out: used.pov:3: of `Bare`: `mesh`' err
+result $? "one that shows it, with --keep-going"
 refused a.pov 'sphere { 0, 1 }\nmesh { }\n' '2: `mesh` is not translated' "a mesh of POV-Ray"
 
 # Damaged files: the exit status is 0 or 1, and what is written is understood or refused in turn.
