@@ -120,28 +120,48 @@ static Part *polygon(PovReader *reader, unsigned line, double (*points)[3], size
 
 /* ---- prisms and lathes ---- */
 
-/* A contour ends where it comes back to its first point; several of them cut
- * holes. */
-static Part *figure_of(PovReader *reader, unsigned line, const Points *points)
+static bool is_same(const Points *points, size_t i, size_t k)
 {
-    Part  *figure = NULL;
-    size_t begin  = 0;
-    for (size_t i = 1; i < points->count; i++) {
-        bool closed = distance3(points->items[i], points->items[begin]) < 1e-9;
-        if (!closed && i + 1 < points->count)
-            continue;
-        size_t count = i - begin + (closed ? 0 : 1);
-        if (count >= 3) {
-            Part *next = polygon(reader, line, points->items + begin, count);
-            Part *both = part_new(reader->import, line, "polygons");
-            both->join = PART_XOR;
-            if (figure) {
-                part_add(reader->import, both, figure);
-                part_add(reader->import, both, next);
-            }
-            figure = figure ? both : next;
+    return distance3(points->items[i], points->items[k]) < 1e-9;
+}
+
+/* The number of points up to the end of the contour that begins there: it comes back to where it has
+   started.  Splines that need neighbours have a point before the start, cubic ones another one behind
+   the end, and those of Bezier four points a curve. */
+static size_t end_of_contour(const Points *points, Spline spline, size_t begin)
+{
+    size_t start = begin + (spline == QUADRATIC || spline == CUBIC),
+           step  = spline == BEZIER ? 4 : 1;
+    for (size_t i = start + (spline == BEZIER ? 3 : 1); i < points->count; i += step)
+        if (is_same(points, i, start)) {
+            size_t end = i + 1 + (spline == CUBIC);
+            return end < points->count ? end : points->count;
         }
-        begin = ++i;
+    return points->count;
+}
+
+/* Several contours cut holes. */
+static Part *figure_of(PovReader *reader, unsigned line, Spline spline, const Points *points)
+{
+    Part *figure = NULL;
+    for (size_t begin = 0, end; begin < points->count; begin = end) {
+        end            = end_of_contour(points, spline, begin);
+        Points contour = {.items = points->items + begin, .count = end - begin};
+        if (contour.count < 3)
+            continue;
+        contour = flattened(reader, spline, &contour);
+        if (contour.count > 1 && is_same(&contour, 0, contour.count - 1))
+            contour.count--;
+        if (contour.count < 3)
+            continue;
+        Part *next = polygon(reader, line, contour.items, contour.count);
+        Part *both = part_new(reader->import, line, "polygons");
+        both->join = PART_XOR;
+        if (figure) {
+            part_add(reader->import, both, figure);
+            part_add(reader->import, both, next);
+        }
+        figure = figure ? both : next;
     }
     return figure;
 }
@@ -170,8 +190,7 @@ bool pov_prism(PovReader *reader, unsigned line, Part **part)
     if (!read_points(reader, &points))
         return false;
     comma(reader);
-    points       = flattened(reader, spline, &points);
-    Part *figure = figure_of(reader, line, &points);
+    Part *figure = figure_of(reader, line, spline, &points);
     if (!figure || low == high)
         return import_refuse(reader->import, line, "this prism has no volume");
     text_format(&text, ".extrude(%s)", import_number_text(reader->import, fabs(high - low)));

@@ -61,6 +61,44 @@ static void distances_are_closed_forms(void **state)
           8, 3);
 }
 
+/* A prism of two contours, each of them through the corners of a square, has a hole, whatever spline
+   goes through them. */
+static void contours_of_splines_cut_holes(void **state)
+{
+    static const struct {
+        const char *name;
+        int         before, behind; /* points beside the corners, which begin and end equal */
+        bool        bezier;
+    } splines[]                       = {{"linear_spline", 0, 0, false},
+                                         {"quadratic_spline", 1, 0, false},
+                                         {"cubic_spline", 1, 1, false},
+                                         {"bezier_spline", 0, 0, true}};
+    static const double corners[5][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}};
+    (void)state;
+    for (size_t s = 0; s < sizeof splines / sizeof *splines; s++) {
+        char   pov[2048];
+        int    count = splines[s].bezier ? 16 : 5 + splines[s].before + splines[s].behind;
+        size_t end   = (size_t)sprintf(pov, "prism { %s 0, 1, %d", splines[s].name, 2 * count);
+        for (int i = 0; i < 2 * count; i++) {
+            double        side = i < count ? 3 : 1, t = i % 4 / 3.0;
+            int           k = splines[s].bezier ? i % count / 4 : i % count - splines[s].before;
+            const double *a = corners[(k + 4) % 4], *b = corners[(k + 4) % 4 + 1];
+            double        x = splines[s].bezier ? a[0] + t * (b[0] - a[0]) : a[0];
+            double        y = splines[s].bezier ? a[1] + t * (b[1] - a[1]) : a[1];
+            end += (size_t)sprintf(pov + end, ", <%.9g, %.9g>", side * x, side * y);
+        }
+        sprintf(pov + end, " }");
+        assert_true(distance_at(pov, 0, 0.5, 0) > 0.4);
+        assert_true(distance_at(pov, 0.8, 0.5, -0.8) > 0.1);
+        assert_true(distance_at(pov, 2, 0.5, 0) < 0 && distance_at(pov, -2, 0.5, -2.5) < 0);
+        assert_true(distance_at(pov, 0, 0.5, -2.5) < 0 && distance_at(pov, 5, 0.5, 0) > 0.5);
+        if (splines[s].before == 0) {
+            check(pov, 0, 0.5, 0.25, 0.75);
+            check(pov, 2.75, 0.5, 0, -0.25);
+        }
+    }
+}
+
 static void what_is_declared_can_be_used(void **state)
 {
     (void)state;
@@ -514,6 +552,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(distances_are_closed_forms),
+        cmocka_unit_test(contours_of_splines_cut_holes),
         cmocka_unit_test(what_is_declared_can_be_used),
         cmocka_unit_test(programs_are_carried_out),
         cmocka_unit_test(blobs_have_their_formula),
