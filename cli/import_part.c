@@ -48,6 +48,15 @@ Part *part_around(Import *import, unsigned line, const char *stem, Part *what)
 
 void part_move(Part *part, const Place *place) { part->place = place_chain(&part->place, place); }
 
+/* `n` as of PART_ROUND: the radius changes from one end to the other. */
+static bool is_in_round(const double n[6], const double p[3])
+{
+    double off[3], along = dot3(n, p);
+    add_scaled3(off, p, -along, n);
+    double part = 0.5 + 0.5 * along / n[3];
+    return fabs(along) < n[3] && length3(off) < n[4] + part * (n[5] - n[4]);
+}
+
 static bool is_in(const PartInside *inside, const double p[3])
 {
     const double *n = inside->numbers;
@@ -55,6 +64,8 @@ static bool is_in(const PartInside *inside, const double p[3])
     case PART_BALL: return length3(p) < n[0];
     case PART_BOX: return fabs(p[0]) < n[0] && fabs(p[1]) < n[1] && fabs(p[2]) < n[2];
     case PART_HALF_SPACE: return dot3(n, p) < n[3];
+    case PART_ROUND: return is_in_round(n, p);
+    case PART_RING: return hypot(hypot(p[0], p[2]) - n[0], p[1]) < n[1];
     default: return false;
     }
 }

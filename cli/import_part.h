@@ -30,12 +30,14 @@ typedef struct PartBalls {
 /* Whether a point is in a simple solid, in its own space. */
 typedef struct PartInside {
     enum {
-        PART_UNTOLD,    /* it is something else */
-        PART_BALL,      /* of the first number, its radius */
-        PART_BOX,       /* of half the edges */
-        PART_HALF_SPACE /* of a unit normal and an offset */
+        PART_UNTOLD,     /* it is something else */
+        PART_BALL,       /* of the first number, its radius */
+        PART_BOX,        /* of half the edges */
+        PART_HALF_SPACE, /* of a unit normal and an offset */
+        PART_ROUND,      /* of a unit axis, half the height, and the radii at its two ends */
+        PART_RING        /* about y, of its radius and that of its tube */
     } kind;
-    double numbers[4];
+    double numbers[6];
 } PartInside;
 
 /* What stands upright on a figure: from z = -height / 2 to height / 2 in its

@@ -110,6 +110,8 @@ static bool column(PovReader *reader, unsigned line, const double bottom[3], con
     if (along[0] != 0 || along[2] != 0)
         text_format(&text, ".align([0, 1, 0], %s)", import_vector_text(import, along, 3));
     *part = part_shape(import, line, radius == end ? "cylinder" : "cone", "%s", text.bytes);
+    (*part)->inside = (PartInside){PART_ROUND,
+                                   {along[0], along[1], along[2], height / 2, radius, end}};
     move_to(*part, center);
     return true;
 }
@@ -151,9 +153,10 @@ bool pov_torus(PovReader *reader, unsigned line, Part **part)
     if (!pov_number(reader, &minor) || !positive(reader, line, major) ||
         !positive(reader, line, minor))
         return false;
-    *part = part_shape(reader->import, line, "torus", "torus(%s, %s)",
-                       import_number_text(reader->import, major),
-                       import_number_text(reader->import, minor));
+    *part           = part_shape(reader->import, line, "torus", "torus(%s, %s)",
+                                 import_number_text(reader->import, major),
+                                 import_number_text(reader->import, minor));
+    (*part)->inside = (PartInside){PART_RING, {major, minor}};
     return true;
 }
 
