@@ -72,6 +72,13 @@ void imported_distances(const char *path, const char *text, double (*points)[3],
     krs_scene_free(scene);
 }
 
+void upright_point(const double q[3], double p[3])
+{
+    p[0] = q[0];
+    p[1] = q[2];
+    p[2] = -q[1];
+}
+
 void assert_refused(const char *path, const char *text, const char *words)
 {
     Imported result = imported(path, text);

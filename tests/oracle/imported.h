@@ -21,6 +21,9 @@ Imported imported_as_far_as_possible(const char *path, const char *text);
 void imported_distances(const char *path, const char *text, double (*points)[3], size_t count,
                         double *distances);
 
+/* Where a point of OpenSCAD is in the scene: its z is up, that of the scene is to the front. */
+void upright_point(const double q[3], double p[3]);
+
 /* Fails the test unless the text is refused with a line of it and these words: "3: no operation". */
 void assert_refused(const char *path, const char *text, const char *words);
 

@@ -21,20 +21,12 @@ static Random randomness = {152};
 static double between(double low, double high) { return random_between(&randomness, low, high); }
 static int    below(int count) { return random_below(&randomness, count); }
 
-/* OpenSCAD's z is up, that of the scene is to the front. */
-static void scene_point(const double q[3], double p[3])
-{
-    p[0] = q[0];
-    p[1] = q[2];
-    p[2] = -q[1];
-}
-
 /* ---- closed forms ---- */
 
 static double distance_at(const char *text, double x, double y, double z)
 {
     double point[1][3], distance;
-    scene_point((double[]){x, y, z}, point[0]);
+    upright_point((double[]){x, y, z}, point[0]);
     imported_distances("form.csg", text, point, 1, &distance);
     return distance;
 }
@@ -328,7 +320,7 @@ static void random_trees_have_the_points_of_their_predicate(void **state)
         int root   = write_tree(1 + below(3));
         for (int k = 0; k < POINTS; k++) {
             random_vector(&randomness, 2, own[k]);
-            scene_point(own[k], points[k]);
+            upright_point(own[k], points[k]);
         }
         imported_distances("random.csg", text, points, POINTS, distances);
         for (int k = 0; k < POINTS; k++) {

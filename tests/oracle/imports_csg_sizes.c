@@ -20,14 +20,6 @@ static Random randomness = {2021};
 static double between(double low, double high) { return random_between(&randomness, low, high); }
 static int    below(int count) { return random_below(&randomness, count); }
 
-/* OpenSCAD's z is up, that of the scene is to the front. */
-static void scene_point(const double q[3], double p[3])
-{
-    p[0] = q[0];
-    p[1] = q[2];
-    p[2] = -q[1];
-}
-
 /* A box, a ball, a round column or a cone: turned about x, then moved. */
 typedef struct Piece {
     enum { BOX, BALL, COLUMN, CONE, PIECES } kind;
@@ -108,7 +100,7 @@ static void check_points(const char *text, double (*own)[3], const bool *has)
 {
     static double points[POINTS][3], distances[POINTS];
     for (int k = 0; k < POINTS; k++)
-        scene_point(own[k], points[k]);
+        upright_point(own[k], points[k]);
     imported_distances("sizes.csg", text, points, POINTS, distances);
     for (int k = 0; k < POINTS; k++)
         if (fabs(distances[k]) > 1e-6 && has[k] != (distances[k] < 0))
@@ -120,7 +112,7 @@ static void check_points(const char *text, double (*own)[3], const bool *has)
 static void check_distance(const char *text, double x, double y, double z, double expected)
 {
     double point[1][3], found;
-    scene_point((double[]){x, y, z}, point[0]);
+    upright_point((double[]){x, y, z}, point[0]);
     imported_distances("sizes.csg", text, point, 1, &found);
     if (!(fabs(found - expected) < 1e-6))
         fail_msg("%s\nat %g %g %g: %.9g, not %.9g", text, x, y, z, found, expected);
