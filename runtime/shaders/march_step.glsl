@@ -71,23 +71,32 @@ void take_distance(float larger)
 }
 #else
 // Settles a hit: takes steps of the secant method, each at most half as long as the last, until what is
-// left is small.  The step after that leaves about its square.  A length to the next root is negative
-// nowhere before it, and is followed while it shrinks.
+// left is small.  The step after that leaves about its square.  Behind the surface t stays before it, and the
+// chord from there is taken.  So what is found is the side of a thin wall that the ray has met, not the other.
+// A length to the next root is negative nowhere before it, and is followed while it shrinks.
 const float SMALL = 256.0; // roundings
 void settle(float at, float clearance, float rounded)
 {
     float most = 0.5 * abs(march.step);
 #if defined(STEPS) || defined(ALONG)
     float next = clearance > 0.0 && clearance < most ? clearance : 0.0;
+    bool  behind = false;
 #else
     float slope = (clearance - march.clearance) / march.step;
-    float next = slope < 0.0 ? clamp(-clearance / slope, -most, most) : sign(clearance) * most;
+    bool  behind = clearance < 0.0 && march.clearance > 0.0 && march.step > 0.0;
+    float next = behind        ? -clearance / slope
+                 : slope < 0.0 ? clamp(-clearance / slope, -most, most)
+                               : sign(clearance) * most;
 #endif
     bool settled = !(abs(next) > SMALL * rounded); // also where it is not a number
+    march.state = settled ? STATE_HIT : STATE_REFINING;
+    if (behind && !settled) {
+        march.step += next;
+        return;
+    }
     march.t = settled ? at + next : at;
     march.clearance = clearance;
     march.step = next;
-    march.state = settled ? STATE_HIT : STATE_REFINING;
 }
 
 #ifdef TOUCHES

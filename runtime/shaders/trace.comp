@@ -196,7 +196,7 @@ bool settles() { return frame.settles != 0u; }
 // that is no hit for a while: for LEAVING roundings, or a part of a pixel.  What may stay unverified, also
 // behind an expected surface (OVERSHOOT), are parts of its length.  So a ray that creeps along a surface
 // gets away from it.
-const float LEAVING = 192.0, LEAVING_IN_PIXELS = 0.125, UNVERIFIED = 1.0 / 512.0,
+const float LEAVING = 192.0, LEAVING_IN_PIXELS = 0.03125, UNVERIFIED = 1.0 / 2048.0,
             PERMITTED = 1.0 / 32.0;
 bool leaves_surfaces()
 {

@@ -55,6 +55,19 @@ static const char *const bare[] = {
                         SHOW("box([3.02, 2.42, 0.02]).move([0, 0, -1.5])", "wall"),
 };
 
+/* Rooms whose distance is a bound, has roots along rays, or a slope that varies. */
+static const char *const curved[] = {
+    ROOM SHOW("box([5, 5, 5]) - algebraic(x^8 + y^8 + z^8 == 20)", "wall"),
+    ROOM SHOW("box([6, 6, 6]) - algebraic((x^2 + y^2 / 2)^3 + z^6 + x * z^3 / 4 == 6)", "wall"),
+    ROOM SHOW("algebraic(x^4 + y^4 + z^4 == 10) - algebraic(x^4 + y^4 + z^4 == 9.8)", "wall"),
+    ROOM SHOW("box([5, 5, 5]) - field(x^2 + y^2 + z^2 - 3 + 0.3 * sin(3 * x) * cos(3 * y))"
+              ".within(box([4.6, 4.6, 4.6]))",
+              "wall"),
+    ROOM SHOW("box([7, 7, 7]) - julia(c: [-0.2, 0.6, 0.2, 0.1], power: 2, iterations: 4).scale(2)",
+              "wall"),
+    ROOM SHOW("box([6, 6, 6]) - box([2, 3, 2.4]).round(0.3).twist([0, 1, 0], 0.5)", "wall"),
+};
+
 /* A box with something white in it. */
 static const char *const furnished[] = {
     ROOM "material glass { transmission: 1, roughness: 0.1, color: white }\n" BOX SHOW(
@@ -120,6 +133,40 @@ static void rooms_lose_no_light(void **state)
         path_stage_close(&stage);
     }
     assert_int_equal(wrong, 0);
+}
+
+/* Paths of few surfaces have less noise, since none of them ends early. */
+static void curved_rooms_lose_no_light(void **state)
+{
+    (void)state;
+    static const View some[] = {{8, 1, 0}, {2000, 1e4, 0}, {64, 1e-3, 0.1}};
+    enum { BOUNCES = 2, PATHS = 4096 };
+    size_t wrong = 0;
+    for (size_t i = 0; i < COUNT(curved); i++) {
+        PathStage stage = path_stage_open(curved[i]);
+        for (size_t k = 0; k < COUNT(some); k++) {
+            KrsRenderOptions options = options_of(&stage, &some[k], BOUNCES);
+            char             name[60];
+            snprintf(name, sizeof name, "curved room %zu, %u pixels", i, some[k].side);
+            options.samples = PATHS / (options.crop.width * options.crop.height);
+            wrong += !must_be_near(path_stage_estimate(&stage, options, everywhere, 3), 1 + BOUNCES,
+                                   MOST_LOST, name);
+        }
+        path_stage_close(&stage);
+    }
+    assert_int_equal(wrong, 0);
+}
+
+/* Walls that are a 400th of the room's width: hits are on the side that is met. */
+static void thin_walls_lose_no_light(void **state)
+{
+    (void)state;
+    PathStage stage = path_stage_open(ROOM SHOW("sphere(1.9).shell(0.01)", "wall"));
+    View      view  = {64, 1, 0};
+    assert_true(is_right(&stage, &view, 2, 3, "thin walls", 0));
+    view.place = 7;
+    assert_true(is_right(&stage, &view, 2, 3, "thin walls", 1));
+    path_stage_close(&stage);
 }
 
 /* Long rays are followed by short ones, below a thin ceiling above which all is open. */
@@ -211,6 +258,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rooms_lose_no_light),
+        cmocka_unit_test(curved_rooms_lose_no_light),
+        cmocka_unit_test(thin_walls_lose_no_light),
         cmocka_unit_test(low_rooms_lose_no_light),
         cmocka_unit_test(white_furniture_is_not_seen),
         cmocka_unit_test(lamps_light_balls_evenly),
