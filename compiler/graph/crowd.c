@@ -105,6 +105,8 @@ static void keep_table(Crowd *table, Arena *arena)
         return;
     table->arena   = arena;
     table->numbers = COPY_ITEMS(arena, table->numbers, (size_t)table->rows * table->columns);
+    if (table->bounds)
+        table->bounds = COPY_ITEMS(arena, table->bounds, table->rows);
     if (table->boxes)
         table->boxes = COPY_ITEMS(arena, table->boxes, table->rows);
     if (table->places)

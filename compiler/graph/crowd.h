@@ -66,6 +66,7 @@ typedef struct Crowd {
     uint32_t     first_place;   /* where nodes of the places begin in Crowds.frame_numbers */
     double       reach, margin; /* of these grids */
     Box         *boxes;         /* of members of which only the nearest counts; NULL: not known */
+    Box         *bounds;        /* of members, in all frames; NULL: not known */
     CrowdArc    *arcs;          /* of members of an outline; NULL: it is none */
     double fades, slope; /* of a blend with tails, its width, and the slope of all distances */
     double stretch;      /* the distance of a member, times this, is at least that to its box */
@@ -115,8 +116,9 @@ typedef struct CrowdFunction {
         ends; /* and kernels add up the fourth state along lists with tails, as far as that counts */
     CrowdState states[MOST_CROWD_STATES];
     uint32_t   state_count;
-    uint32_t   listed;     /* of `joins`; NOT_LISTED: the operation is the result */
-    uint32_t   distance;   /* the state that is a distance; NO_DISTANCE: there is none */
+    uint32_t   listed;   /* of `joins`; NOT_LISTED: the operation is the result */
+    uint32_t   distance; /* the state that is a distance; NO_DISTANCE: there is none */
+    double     slope;    /* the result changes no faster than the point, times this; 0: not known */
     uint32_t   first_body; /* the body of state i is Crowds.bodies[first_body + i] */
 } CrowdFunction;
 

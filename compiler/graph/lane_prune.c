@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "compiler/graph/blend_shares.h"
+#include "compiler/graph/crowd.h"
 #include "compiler/graph/lane_call.h"
 #include "compiler/graph/lane_outlines.h"
 #include "compiler/graph/lane_rows.h"
@@ -282,6 +283,119 @@ static bool prune_shares(Pruning *p, size_t i)
     return true;
 }
 
+/* ---- crowds ---- */
+
+/* Whether a crowd function takes the least distance of all members, one after the other. */
+static bool takes_least(const CrowdFunction *function)
+{
+    return function->slope > 0 && function->state_count == 1 && !function->either &&
+           !function->joins && !function->sums && function->type == TYPE_FLOAT;
+}
+
+/* How far a box is from a range of points at least. */
+static double distance_of_boxes(const Box *box, const Range at[3])
+{
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        double off = max2(max2(box->axis[k].low - at[k].high, at[k].low - box->axis[k].high), 0);
+        square += off * off;
+    }
+    return sqrt(square) * (1 - 1e-12);
+}
+
+/* Members that may be nearer than the nearest is at most, in the box; false: they are not known, or too many. */
+static bool find_least_members(const Pruning *p, const LaneCall *call, const Crowd *table,
+                               double farthest, uint32_t *members, uint32_t *count)
+{
+    Range at[3];
+    *count = 0;
+    for (int k = 0; k < 3; k++)
+        if (!number_at(p, call->operands[1][k], &at[k]))
+            return false;
+    for (uint32_t i = 0; i < table->rows; i++) {
+        if (distance_of_boxes(&table->bounds[i], at) > farthest * table->stretch)
+            continue;
+        if (*count == MOST_LANE_MEMBERS ||
+            (*count + 1) * call->body->tape.count > MOST_STEPS_OF_MEMBERS)
+            return false;
+        members[(*count)++] = i;
+    }
+    return *count > 0;
+}
+
+/* What a step reads of the member, as a number. */
+static uint32_t member_number(Pruning *p, const Crowd *table, const LaneStep *step, uint32_t member)
+{
+    const Crowds *crowds = p->from->tape->graph->crowds;
+    if (step->op == LANE_MEMBER)
+        return lane_steps_number(&p->to, member);
+    const Node *nodes = column_nodes(crowds, table, step->operands[0]);
+    return lane_steps_number(
+        &p->to, nodes ? p->ranges->values[nodes[member]].v[0]
+                      : table->numbers[(size_t)member * table->columns + step->operands[0]]);
+}
+
+static uint32_t body_scalar(Pruning *p, const LaneBody *body, uint32_t scalar)
+{
+    const LaneScalar *source = &body->tape.sources[scalar];
+    return lane_steps_number(&p->to, source->node == NODE_NONE
+                                         ? source->number
+                                         : p->ranges->values[source->node].v[source->component]);
+}
+
+/* Adds the steps of a body for one member; returns the operand of its state. */
+static uint32_t add_member(Pruning *p, const LaneCall *call, const Crowd *table, uint32_t member,
+                           uint32_t state, uint32_t *values)
+{
+    const LaneBody *body = call->body;
+    for (int k = 0; k < 3; k++)
+        values[LANE_POINT + k] = stand_in(p, call->operands[1][k]);
+    for (size_t i = 0; i < body->tape.count; i++) {
+        LaneStep step = body->tape.steps[i];
+        if (step.op == LANE_STATE)
+            values[LANE_INPUTS + i] = state;
+        else if (step.op == LANE_ROW || step.op == LANE_MEMBER)
+            values[LANE_INPUTS + i] = member_number(p, table, &step, member);
+        else {
+            step.origin = 0;
+            for (uint32_t k = 0; k < step.operand_count; k++)
+                step.operands[k] = step.operands[k] & LANE_SCALAR
+                                       ? body_scalar(p, body, step.operands[k] & ~LANE_SCALAR)
+                                       : values[step.operands[k]];
+            values[LANE_INPUTS + i] = lane_steps_add(&p->to, step);
+        }
+    }
+    uint32_t output = body->tape.outputs[0];
+    return output & LANE_SCALAR ? body_scalar(p, body, output & ~LANE_SCALAR) : values[output];
+}
+
+/* Where few members are near, the steps of these; false: it stays a call. */
+static bool prune_crowd(Pruning *p, size_t i)
+{
+    const LaneStep *step  = &p->from->steps[i];
+    Range           range = p->ranges->ranges[LANE_INPUTS + i];
+    if (step->op != LANE_CALL || !p->ranges->unroll || !p->ranges->values ||
+        p->from->tape->by_cells)
+        return false;
+    const LaneCall *call   = &p->from->calls[step->operands[0]];
+    const Crowds   *crowds = p->from->tape->graph->crowds;
+    uint32_t        members[MOST_LANE_MEMBERS], count;
+    if (!call->body || p->from->tape->graph->items[call->node].op != OP_crowd_distance ||
+        call->body->tape.call_count > 0)
+        return false;
+    const CrowdFunction *function = &crowds->functions.items[call->body->function];
+    const Crowd         *table    = &crowds->tables.items[call->body->table];
+    if (!takes_least(function) || !table->bounds || !isfinite(range.high) ||
+        !find_least_members(p, call, table, range.high, members, &count))
+        return false;
+    uint32_t  state  = lane_steps_number(&p->to, function->states[0].first[0]);
+    uint32_t *values = arena_new_array(p->to.arena, uint32_t, LANE_INPUTS + call->body->tape.count);
+    for (uint32_t k = 0; k < count; k++)
+        state = add_member(p, call, table, members[k], state, values);
+    p->same[LANE_INPUTS + i] = state;
+    return true;
+}
+
 /* Outlines keep the members that may be the nearest. */
 static void prune_members(Pruning *p, LaneCall *call, size_t step)
 {
@@ -312,7 +426,7 @@ static void prune_calls(Pruning *p)
 static void reserve(Pruning *p)
 {
     Arena *arena           = p->to.arena;
-    p->to.steps.capacity   = p->from->count + LANE_STEPS_OF_CALL * p->from->call_count + 1;
+    p->to.steps.capacity   = lane_most_steps(p->from) + 1;
     p->to.steps.items      = arena_new_array(arena, LaneStep, p->to.steps.capacity);
     p->to.sources.capacity = p->from->scalar_count + p->from->count + 2 * p->from->call_count + 1;
     p->to.sources.items    = arena_new_array(arena, LaneScalar, p->to.sources.capacity);
@@ -331,7 +445,7 @@ LaneTape lane_prune(const LaneTape *tape, const LaneRanges *ranges, size_t outpu
     for (size_t i = 0; i < tape->count; i++)
         if (prune_turn(&p, i))
             i += 2;
-        else if (!prune_shares(&p, i))
+        else if (!prune_shares(&p, i) && !prune_crowd(&p, i))
             prune_step(&p, i);
     prune_calls(&p);
     for (size_t i = 0; i < outputs; i++)

@@ -226,20 +226,21 @@ static bool is_scalar(const LaneCall *call, uint32_t operand, GraphType type)
     return scalars == type_size(type);
 }
 
-/* The distance to an outline changes no faster than the point moves; its table has single precision, and the
-   nearest place on a curve is found by some steps only.  False: it is no outline. */
-static bool range_of_outline(const LaneTape *tape, const LaneRanges *ranges, const LaneCall *call,
-                             const Fact *facts, Range *range)
+/* The distance to a crowd changes no faster than the point moves, times its slope.  The table of an outline has single
+   precision, and the nearest place on a curve is found by some steps only.  False: there is no bound. */
+static bool range_of_crowd(const LaneTape *tape, const LaneRanges *ranges, const LaneCall *call,
+                           const Fact *facts, Range *range)
 {
-    static const double UNCERTAIN = 1e-5;
-    const Graph        *graph     = tape->tape->graph;
-    const Expr         *e         = &graph->items[call->node];
+    static const double UNCERTAIN_OUTLINE = 1e-5, UNCERTAIN = 1e-9;
+    const Graph        *graph = tape->tape->graph;
+    const Expr         *e     = &graph->items[call->node];
     NodeValue           operands[2];
     double              radius = 0, size = 0;
     if (e->op != OP_crowd_distance || !ranges->values || tape->tape->by_cells)
         return false;
-    operands[0].v[0] = graph->items[e->operands[0]].number[0];
-    if (!graph->crowds->functions.items[(size_t)operands[0].v[0]].either)
+    operands[0].v[0]              = graph->items[e->operands[0]].number[0];
+    const CrowdFunction *function = &graph->crowds->functions.items[(size_t)operands[0].v[0]];
+    if (!(function->slope > 0))
         return false;
     for (int k = 0; k < 3; k++) {
         Range at         = facts[1].value[k];
@@ -250,7 +251,8 @@ static bool range_of_outline(const LaneTape *tape, const LaneRanges *ranges, con
     if (!isfinite(radius))
         return false;
     double value = lane_call(tape->tape, ranges->values, call->node, operands).v[0];
-    radius += UNCERTAIN * (radius + size + fabs(value));
+    radius *= function->slope;
+    radius += (function->either ? UNCERTAIN_OUTLINE : UNCERTAIN) * (radius + size + fabs(value));
     *range = (Range){value - radius, value + radius};
     return isfinite(value);
 }
@@ -275,7 +277,7 @@ static void run_call(const LaneTape *tape, const LaneRanges *ranges, size_t step
     Fact fact = is_texture((Op)e->op)
                     ? texture_fact_of(graph, e, facts)
                     : op_fact((Op)e->op, (GraphType)e->type, e->index, types, facts, NULL);
-    if (range_of_outline(tape, ranges, call, facts, &fact.value[0]))
+    if (range_of_crowd(tape, ranges, call, facts, &fact.value[0]))
         sure = true;
     for (uint32_t c = 0; c < call->parts; c++) {
         ranges->ranges[LANE_INPUTS + step + c] = fact.value[c];
@@ -427,7 +429,7 @@ Range lane_ranges_run(const LaneTape *tape, const LaneRanges *ranges, Box box)
 
 Range lane_ranges_run_closer(const LaneTape *tape, const LaneRanges *ranges, Box box)
 {
-    LaneRanges middle = {ranges->middle, ranges->sure, ranges->values, NULL};
+    LaneRanges middle = {ranges->middle, ranges->sure, ranges->values, NULL, false};
     Ball       ball   = {0, 0};
     Box        point;
     for (int k = 0; k < 3; k++) {

@@ -125,21 +125,30 @@ typedef struct LaneWork {
     const struct LaneLoop *loop;  /* while a body is run */
 } LaneWork;
 
-/* A call may become that many steps when it is pruned, which work on as many rows; or it keeps a list of
-   members, which takes that many bytes. */
+/* A call may become that many steps when it is pruned, which work on as many rows; or one to a crowd function the
+   steps of its body for some members; or it keeps a list of members, which takes that many bytes. */
 enum {
     LANE_STEPS_OF_CALL    = 6,
     MOST_LANE_MEMBERS     = 32,
+    MOST_STEPS_OF_MEMBERS = 640,
     LANE_BYTES_OF_MEMBERS = 4 * MOST_LANE_MEMBERS + 16
 };
+static inline size_t lane_steps_of_calls(const LaneTape *tape)
+{
+    size_t steps = LANE_STEPS_OF_CALL * tape->call_count;
+    for (size_t i = 0; i < tape->call_count; i++)
+        if (tape->calls[i].body)
+            steps += MOST_STEPS_OF_MEMBERS;
+    return steps;
+}
 /* The most steps of a lane tape and of all that it is pruned to, and the most rows. */
 static inline size_t lane_most_steps(const LaneTape *tape)
 {
-    return tape->count + LANE_STEPS_OF_CALL * tape->call_count;
+    return tape->count + lane_steps_of_calls(tape);
 }
 static inline size_t lane_most_rows(const LaneTape *tape)
 {
-    return tape->rows + LANE_STEPS_OF_CALL * tape->call_count;
+    return tape->rows + lane_steps_of_calls(tape);
 }
 
 /* Bytes of rows, and the rows within a block of memory of that size. */
@@ -178,11 +187,11 @@ void lane_gradients(const LaneTape *tape, const LaneWork *work, const double (*p
 
 /* The ranges of values over a box, by one thread.  `sure`: it is a number in every point of the box. */
 typedef struct LaneRanges {
-    Range *ranges;
-    bool  *sure;
-    NodeValue
-          *values; /* those of the frame, as of LaneWork: then outlines have ranges; NULL: not */
-    Range *middle; /* those in the middle of the box: for lane_ranges_run_closer */
+    Range     *ranges;
+    bool      *sure;
+    NodeValue *values; /* those of the frame, as of LaneWork: then crowds have ranges; NULL: not */
+    Range     *middle; /* those in the middle of the box: for lane_ranges_run_closer */
+    bool       unroll; /* pruning makes steps of calls of crowds of which few members are near */
 } LaneRanges;
 
 /* Room for those of a lane tape, and of all that it is pruned to. */

@@ -120,6 +120,15 @@ static Member member_in_body(const CrowdGroup *group, const GroupJoin *join, uin
 
 static uint32_t next_function(Graph *g) { return (uint32_t)graph_crowds(g)->functions.count; }
 
+/* Of the distance to all members, which are joined sharply or blended; 0: it has no bound. */
+static double slope_of(const CrowdGroup *group, const GroupJoin *join)
+{
+    double slope = group->slope;
+    if (join->blend.width != NODE_NONE)
+        slope *= blend_info[join->blend.kind].slope;
+    return isfinite(slope) ? slope : 0;
+}
+
 /* A blend that fades, -k log of the sum of e^(-d / k).  States are the least distance m, the sum of
    e^((m - d) / k), k, and d for kernels: one power for each member, and one logarithm for all. */
 static uint32_t make_sum(const CrowdGroup *group, const GroupJoin *join)
@@ -141,6 +150,7 @@ static uint32_t make_sum(const CrowdGroup *group, const GroupJoin *join)
     CrowdFunction function = {.crowd = group->crowd,
                               .type  = TYPE_FLOAT,
                               .clear = true,
+                              .slope = slope_of(group, join),
                               .sums  = true,
                               .ends  = graph_crowds(g)->tables.items[group->crowd].cells.tails !=
                                       NULL,
@@ -173,6 +183,8 @@ static uint32_t make_of_nearest(const CrowdGroup *group, const GroupJoin *join, 
     CrowdFunction function       = {.crowd       = group->crowd,
                                     .type        = listed == NOT_LISTED ? TYPE_FLOAT : type,
                                     .clear       = !threshold,
+                                    .slope       = threshold || listed != NOT_LISTED ? 0
+                                                                                     : slope_of(group, join),
                                     .joins       = true,
                                     .listed      = listed,
                                     .states      = {{type, {NOWHERE, NOWHERE, NOWHERE, NOWHERE}},
@@ -195,6 +207,7 @@ static uint32_t make_row(const CrowdGroup *group, const GroupJoin *join)
     CrowdFunction function = {.crowd       = group->crowd,
                               .type        = TYPE_FLOAT,
                               .clear       = true,
+                              .slope       = slope_of(group, join),
                               .states      = {{TYPE_FLOAT, {NOWHERE}}},
                               .state_count = 1};
     return graph_add_crowd_function(g, function, &body);

@@ -261,6 +261,10 @@ void group_make_table(CrowdGroup *group, const GroupJoin *join, const Box *boxes
     Box *own = arena_new_array(join->scratch, Box, rows);
     for (uint32_t i = 0; i < rows; i++)
         own[i] = boxes[group->members.items[i]];
+    if (!join->complement) {
+        table.bounds = arena_new_array(table.arena, Box, rows);
+        memcpy(table.bounds, own, rows * sizeof *own);
+    }
     group_make_cells(group, join, own, reach, margin, &table);
     group->crowd = (uint32_t)crowds->tables.count;
     array_push(crowds->arena, &crowds->tables, table);

@@ -135,6 +135,7 @@ static uint32_t add_function(Graph *g, const OutlineShape *shape, uint32_t crowd
                               .type        = TYPE_FLOAT,
                               .clear       = true,
                               .either      = true,
+                              .slope       = 1,
                               .states      = {{TYPE_FLOAT, {NOWHERE}}},
                               .state_count = 1};
     return graph_add_crowd_function(g, function, &body);
