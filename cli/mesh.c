@@ -374,9 +374,11 @@ KrsStatus command_mesh(Options *options)
     if (status == KRS_OK)
         status = scene_frame(options, scene, &meshing.frame);
     if (status == KRS_OK) {
-        meshing.how = (KrsMeshOptions){
-            .memory_limit = options->limits.memory, .go_on = go_on, .user = &meshing};
-        status = check_wishes(&meshing);
+        meshing.how = (KrsMeshOptions){.even         = options->mesh_even,
+                                       .memory_limit = options->limits.memory,
+                                       .go_on        = go_on,
+                                       .user         = &meshing};
+        status      = check_wishes(&meshing);
     }
     if (status == KRS_OK)
         status = find_meshes(&meshing);

@@ -23,6 +23,9 @@ typedef struct KrsMeshOptions {
     size_t component; /* from 1; 0: all */
     bool   within;    /* only what is in the box from `low` to `high`, for scenes without an end */
     double low[3], high[3];
+    /* Flat faces, too, are of about even triangles.  Without it a solid of flat faces and one material has no more
+       triangles than these need. */
+    bool   even;
     size_t memory_limit; /* bytes; 0: KRS_USUAL_MEMORY */
     /* Told now and then which part of the work is done, as far as one can say; false: stop, with
        KRS_INTERRUPTED.  May be NULL. */

@@ -21,7 +21,7 @@ typedef struct FieldRegion {
     size_t   used;
 } FieldRegion;
 
-enum { MOST_REGIONS = 2, MOST_FIELD_POINTS = LANES };
+enum { MOST_REGIONS = 8, MOST_FIELD_POINTS = LANES };
 
 /* For one thread. */
 typedef struct MeshField {
@@ -93,5 +93,21 @@ bool field_pieces(MeshField *field, Box box, FieldPieces *pieces);
 /* Their values at up to MOST_FIELD_POINTS points in that box: values[i * count] and so on are those of point i. */
 void field_piece_values(const MeshField *field, const FieldPieces *pieces,
                         const double (*points)[3], size_t point_count, double *values);
+
+enum { MOST_FACES = 8 };
+
+/* Operands of a lane tape. */
+typedef struct FieldFaces {
+    uint32_t operands[MOST_FACES];
+    size_t   count;
+} FieldFaces;
+
+/* Distances to boxes are length(max(q, 0)) + part min(greatest q, 0), or nearly so.  Adds all q of either part, after a
+   run of ranges, and multiplies the part by its factor; false: it is none. */
+bool field_outside(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand,
+                   FieldFaces *faces);
+bool field_inside(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand,
+                  FieldFaces *faces, double *part);
+bool field_has_face(const FieldFaces *faces, uint32_t operand);
 
 #endif

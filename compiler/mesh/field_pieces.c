@@ -72,19 +72,21 @@ static bool is_lesser(const LaneStep *step)
     return step->op == OP_min || step->op == LANE_LESSER;
 }
 
-static bool is_zero(const Finding *f, uint32_t operand)
-{
-    return range_is_zero(range_of_operand(f, operand));
-}
-
 /* ---- distances to boxes ---- */
 
-typedef struct Faces {
-    uint32_t operands[8];
-    size_t   count;
-} Faces;
+static bool is_zero_in(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand)
+{
+    return range_is_zero(operand & LANE_SCALAR ? range_of(tape->scalars[operand & ~LANE_SCALAR])
+                                               : ranges->ranges[operand]);
+}
 
-static bool has_face(const Faces *faces, uint32_t operand)
+static const LaneStep *step_in(const LaneTape *tape, uint32_t operand)
+{
+    return (operand & LANE_SCALAR) || operand < LANE_INPUTS ? NULL
+                                                            : &tape->steps[operand - LANE_INPUTS];
+}
+
+bool field_has_face(const FieldFaces *faces, uint32_t operand)
 {
     for (size_t i = 0; i < faces->count; i++)
         if (faces->operands[i] == operand)
@@ -92,57 +94,95 @@ static bool has_face(const Faces *faces, uint32_t operand)
     return false;
 }
 
-static bool add_face(Faces *faces, uint32_t operand)
+static bool add_face(FieldFaces *faces, uint32_t operand)
 {
-    if (faces->count == 8 || (operand & LANE_SCALAR))
+    if (field_has_face(faces, operand))
+        return true;
+    if (faces->count == MOST_FACES || (operand & LANE_SCALAR))
         return false;
     faces->operands[faces->count++] = operand;
     return true;
 }
 
-/* max(q, 0) of all of a length. */
-static bool find_outside(const Finding *f, uint32_t operand, Faces *faces)
+static bool find_greatest(const LaneTape *tape, uint32_t operand, FieldFaces *faces)
 {
-    const LaneStep *step = step_of(f, operand);
+    const LaneStep *step = step_in(tape, operand);
+    if (step && is_greater(step))
+        return find_greatest(tape, step->operands[0], faces) &&
+               find_greatest(tape, step->operands[1], faces);
+    return add_face(faces, operand);
+}
+
+/* What is the greatest of some numbers, of which one is 0. */
+static bool find_above_zero(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand,
+                            FieldFaces *faces, bool *zero)
+{
+    const LaneStep *step = step_in(tape, operand);
+    if (is_zero_in(tape, ranges, operand))
+        return *zero = true;
+    if (step && is_greater(step))
+        return find_above_zero(tape, ranges, step->operands[0], faces, zero) &&
+               find_above_zero(tape, ranges, step->operands[1], faces, zero);
+    return add_face(faces, operand);
+}
+
+bool field_outside(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand,
+                   FieldFaces *faces)
+{
+    const LaneStep *step = step_in(tape, operand);
+    bool            zero = false;
     if (step && step->op == OP_length) {
         for (uint32_t k = 0; k < step->operand_count; k++)
-            if (!is_zero(f, step->operands[k]) && !find_outside(f, step->operands[k], faces))
+            if (!is_zero_in(tape, ranges, step->operands[k]) &&
+                !field_outside(tape, ranges, step->operands[k], faces))
                 return false;
         return true;
     }
-    for (int k = 0; step && is_greater(step) && k < 2; k++)
-        if (is_zero(f, step->operands[1 - k]))
-            return add_face(faces, step->operands[k]);
-    return false;
+    for (int k = 0; step && is_lesser(step) && k < 2; k++)
+        if (!(step->operands[k] & LANE_SCALAR) && ranges->ranges[step->operands[k]].low >= 0)
+            return field_outside(tape, ranges, step->operands[1 - k], faces);
+    return step && is_greater(step) && find_above_zero(tape, ranges, operand, faces, &zero) && zero;
 }
 
-static bool find_greatest(const Finding *f, uint32_t operand, Faces *faces)
+bool field_inside(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand,
+                  FieldFaces *faces, double *part)
 {
-    const LaneStep *step = step_of(f, operand);
-    if (step && is_greater(step))
-        return find_greatest(f, step->operands[0], faces) &&
-               find_greatest(f, step->operands[1], faces);
-    return add_face(faces, operand);
+    const LaneStep *step   = step_in(tape, operand);
+    bool            scaled = step && (step->op == OP_mul || step->op == OP_div);
+    for (int k = scaled && step->op == OP_div; scaled && k < 2; k++) {
+        double number = step->operands[k] & LANE_SCALAR
+                            ? tape->scalars[step->operands[k] & ~LANE_SCALAR]
+                            : 0;
+        if (!(number > 0))
+            continue;
+        *part *= step->op == OP_mul ? number : 1 / number;
+        return field_inside(tape, ranges, step->operands[1 - k], faces, part);
+    }
+    for (int k = 0; step && is_lesser(step) && k < 2; k++)
+        if (is_zero_in(tape, ranges, step->operands[1 - k]))
+            return find_greatest(tape, step->operands[k], faces);
+    return false;
 }
 
 /* length(max(q, 0)) + min(greatest q, 0) is above 0 where some q is, and else the greatest, if all that are not in the
    length are nowhere above 0.  So its sum with an offset has the sign of that of the greatest, unless the offset is below 0
    and the length has several: then it is rounded. */
-static bool find_faces(const Finding *f, const LaneStep *step, double offset, Faces *inside)
+static bool find_faces(const Finding *f, const LaneStep *step, double offset, FieldFaces *inside)
 {
     for (int k = 0; k < 2; k++) {
-        const LaneStep *least   = step_of(f, step->operands[1 - k]);
-        Faces           outside = {.count = 0};
-        inside->count           = 0;
-        if (!least || !is_lesser(least) || !find_outside(f, step->operands[k], &outside))
+        FieldFaces outside = {.count = 0};
+        double     part    = 1;
+        inside->count      = 0;
+        if (!field_outside(f->tape, &f->field->ranges, step->operands[k], &outside))
             continue;
-        int  zero = is_zero(f, least->operands[0]) ? 0 : is_zero(f, least->operands[1]) ? 1 : -1;
-        bool fits = zero >= 0 && (offset >= 0 || outside.count == 1) &&
-                    find_greatest(f, least->operands[1 - zero], inside);
+        bool fits = (offset >= 0 || outside.count == 1) &&
+                    field_inside(f->tape, &f->field->ranges, step->operands[1 - k], inside,
+                                 &part) &&
+                    part == 1;
         for (size_t i = 0; fits && i < outside.count; i++)
-            fits = has_face(inside, outside.operands[i]);
+            fits = field_has_face(inside, outside.operands[i]);
         for (size_t i = 0; fits && i < inside->count; i++)
-            fits = has_face(&outside, inside->operands[i]) ||
+            fits = field_has_face(&outside, inside->operands[i]) ||
                    range_of_operand(f, inside->operands[i]).high <= 0;
         if (fits)
             return true;
@@ -191,7 +231,7 @@ static bool add_size(Finding *f, const LaneStep *step, double sign, double offse
     return add_pair(f, operands, signs, offset, sign > 0 ? PIECE_MAX : PIECE_MIN);
 }
 
-static bool add_box(Finding *f, const Faces *faces, double sign, double offset)
+static bool add_box(Finding *f, const FieldFaces *faces, double sign, double offset)
 {
     int    choice = sign > 0 ? PIECE_MAX : PIECE_MIN;
     size_t added  = 0;
@@ -224,7 +264,7 @@ static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset
 {
     enum { MOST_DEPTH = 40 };
     const LaneStep *step = step_of(f, operand);
-    Faces           faces;
+    FieldFaces      faces;
     bool            found = false;
     if (!step || f->field->hessians[operand].known || f->depth == MOST_DEPTH)
         return add_piece(f, operand, sign, offset);

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/mesh/mesher.h"
+#include "compiler/mesh/flat.h"
 #include "compiler/mesh/voids.h"
 #include "compiler/program.h"
 
@@ -95,6 +95,39 @@ static void close_voids(Mesher *m)
     m->unresolved += closed;
 }
 
+/* Whether all surfaces have one material, which is the same everywhere. */
+static bool has_one_material(const KrsScene *scene)
+{
+    const Graph *graph = scene->graph;
+    for (size_t i = 0; i < scene->component_count; i++)
+        for (size_t k = 0; k < ROOT_COUNT; k++) {
+            Node node = surface_roots(&scene->roots, i)[k];
+            if (root_info[k].material && (graph->items[node].time == TIME_POINT ||
+                                          node != surface_roots(&scene->roots, 0)[k]))
+                return false;
+        }
+    return true;
+}
+
+/* False: it is not wanted, or not flat. */
+static bool find_flat(Mesher *m, const KrsScene *scene)
+{
+    FlatVertices vertices  = {0};
+    Triangles    triangles = {0};
+    if (m->options->even || !has_one_material(scene))
+        return false;
+    ArenaMark mark = arena_mark(&m->arena);
+    if (!find_flat_mesh(m, &vertices, &triangles)) {
+        arena_rewind(&m->arena, mark);
+        return false;
+    }
+    m->contour.vertices.items  = vertices.items;
+    m->contour.vertices.count  = vertices.count;
+    m->contour.triangles.items = triangles.items;
+    m->contour.triangles.count = triangles.count;
+    return true;
+}
+
 static KrsStatus run(Mesher *m, KrsFrame *frame, KrsMesh **mesh)
 {
     jmp_buf exhausted;
@@ -102,7 +135,7 @@ static KrsStatus run(Mesher *m, KrsFrame *frame, KrsMesh **mesh)
     if (setjmp(exhausted) != 0)
         return KRS_OUT_OF_MEMORY;
     KrsStatus status = is_nothing(m) ? KRS_OK : open_fields(m, frame);
-    if (status == KRS_OK && !is_nothing(m)) {
+    if (status == KRS_OK && !is_nothing(m) && !find_flat(m, frame->scene)) {
         status = find_proven_mesh(m) ? KRS_OK : KRS_INTERRUPTED;
         if (status == KRS_OK)
             close_voids(m);

@@ -144,6 +144,13 @@ else
 fi
 run mesh two.krs --units furlong -o s.3mf
 ended 2 "units are known"
+echo 'show polygon([[0, 0], [10, 0], [10, 6]]).extrude(10);' >wedge.krs
+run mesh --quiet wedge.krs -o wedge.obj -o wedge.stl
+[ "$status" -eq 0 ] && [ "$(grep -c '^f' wedge.obj)" -eq 8 ]
+result $? "a wedge has 8 triangles"
+run mesh --quiet wedge.krs --error 0.5 --even -o wedge.obj
+[ "$status" -eq 0 ] && [ "$(grep -c '^f' wedge.obj)" -gt 500 ]
+result $? "--even makes even triangles of flat faces"
 run mesh --quiet two.krs --error 0.05 --simplify -o fewer.stl -o fewer.obj
 [ "$status" -eq 0 ] && [ "$(grep -c '^f' fewer.obj)" -lt $((triangles / 2)) ]
 result $? "--simplify halves the triangles"

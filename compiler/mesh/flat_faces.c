@@ -1,0 +1,570 @@
+/* flat_faces.c: polygons of planes in boxes, and the edges between them. */
+#include "compiler/mesh/flat_faces.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "compiler/base/vec.h"
+#include "compiler/mesh/numbering.h"
+
+#define WALL UINT32_MAX
+
+/* Parts of the size: by how much planes are moved at most, and what is not told apart; the latter is far above
+   rounding. */
+static const double MOVE = 1e-8, NARROW = 1e-13;
+
+/* ---- planes ---- */
+
+/* A number from -1 to 1 for each plane. */
+static double jitter(uint32_t number)
+{
+    uint32_t h = (number + 1) * 2654435761u;
+    h ^= h >> 15;
+    h *= 2246822519u;
+    h ^= h >> 13;
+    h *= 3266489917u;
+    h ^= h >> 16;
+    return (double)h / 2147483648.0 - 1;
+}
+
+static uint32_t find_plane(FlatFaces *faces, const HalfSpace *plane, int *sign)
+{
+    static const double EQUAL = 1e-9;
+    for (size_t i = 0; i < faces->planes.count; i++) {
+        const HalfSpace *own = &faces->planes.items[i].exact;
+        double           off[3];
+        *sign = dot3(plane->normal, own->normal) < 0 ? -1 : 1;
+        add_scaled3(off, plane->normal, -*sign, own->normal);
+        if (largest3(off) < EQUAL &&
+            fabs(plane->offset - *sign * own->offset) < EQUAL * faces->size)
+            return (uint32_t)i;
+    }
+    FlatPlane fresh = {*plane,
+                       plane->offset + MOVE * faces->size * jitter((uint32_t)faces->planes.count)};
+    array_push_large(faces->arena, &faces->planes, fresh);
+    *sign = 1;
+    return (uint32_t)faces->planes.count - 1;
+}
+
+static double above(const FlatPlane *plane, const double point[3])
+{
+    return dot3(plane->exact.normal, point) + plane->moved;
+}
+
+/* ---- polygons ---- */
+
+enum { MOST_CORNERS = 64 };
+
+/* In the positive order around the normal of its plane; labels[i] is the plane at the edge from corner i. */
+typedef struct Polygon {
+    int      count;
+    double   at[MOST_CORNERS][3];
+    uint32_t labels[MOST_CORNERS];
+} Polygon;
+
+typedef struct Cell {
+    FlatFaces        *faces;
+    const FlatPieces *pieces;
+    Box               box;
+    uint32_t          planes[MOST_FLATS]; /* of half-spaces */
+    int               signs[MOST_FLATS];
+    int               own; /* the half-space that is cut */
+    bool              failed;
+} Cell;
+
+static void add_corner(Polygon *polygon, const double at[3], uint32_t label)
+{
+    if (polygon->count < MOST_CORNERS) {
+        memcpy(polygon->at[polygon->count], at, sizeof polygon->at[0]);
+        polygon->labels[polygon->count] = label;
+    }
+    polygon->count++;
+}
+
+/* The part where values are below 0, whose new edge has the label. */
+static void cut_polygon(Cell *cell, const Polygon *polygon, const double *values, double sign,
+                        uint32_t label, Polygon *part)
+{
+    part->count = 0;
+    for (int i = 0; i < polygon->count; i++) {
+        int    next = (i + 1) % polygon->count;
+        double a = sign * values[i], b = sign * values[next], between[3], along[3];
+        bool   inside = a < 0, stays = b < 0;
+        if (inside)
+            add_corner(part, polygon->at[i], polygon->labels[i]);
+        if (inside != stays) {
+            add_scaled3(along, polygon->at[next], -1, polygon->at[i]);
+            add_scaled3(between, polygon->at[i], a / (a - b), along);
+            add_corner(part, between, inside ? label : polygon->labels[i]);
+        }
+    }
+    cell->failed |= part->count > MOST_CORNERS;
+}
+
+/* The whole plane in the box. */
+static void begin_polygon(Cell *cell, const FlatPlane *plane, Polygon *polygon)
+{
+    const double *normal = plane->exact.normal;
+    double        center[3], axes[2][3], at[3], values[MOST_CORNERS], reach = 0;
+    int           least = 0;
+    Polygon       part;
+    for (int k = 0; k < 3; k++) {
+        center[k] = 0.5 * (cell->box.axis[k].low + cell->box.axis[k].high);
+        reach += cell->box.axis[k].high - cell->box.axis[k].low;
+        least = fabs(normal[k]) < fabs(normal[least]) ? k : least;
+    }
+    double unit[3] = {least == 0, least == 1, least == 2};
+    cross3(normal, unit, axes[0]);
+    normalize3(axes[0]);
+    cross3(normal, axes[0], axes[1]);
+    add_scaled3(center, center, -above(plane, center), normal);
+    polygon->count = 0;
+    for (int i = 0; i < 4; i++) {
+        add_scaled3(at, center, i == 0 || i == 3 ? -reach : reach, axes[0]);
+        add_scaled3(at, at, i < 2 ? -reach : reach, axes[1]);
+        add_corner(polygon, at, WALL);
+    }
+    for (int side = 0; side < 6; side++) {
+        int k = side / 2;
+        for (int i = 0; i < polygon->count; i++)
+            values[i] = side % 2 ? polygon->at[i][k] - cell->box.axis[k].high
+                                 : cell->box.axis[k].low - polygon->at[i][k];
+        cut_polygon(cell, polygon, values, 1, WALL, &part);
+        *polygon = part;
+    }
+}
+
+/* ---- edges ---- */
+
+static void line_direction(const FlatFaces *faces, uint32_t a, uint32_t b, double along[3])
+{
+    uint32_t low = a < b ? a : b, high = a < b ? b : a;
+    cross3(faces->planes.items[low].exact.normal, faces->planes.items[high].exact.normal, along);
+    normalize3(along);
+}
+
+/* `outward`: the solid is below the plane, 1, or above it, -1. */
+static void add_part(Cell *cell, const Polygon *polygon, int outward)
+{
+    FlatFaces *faces = cell->faces;
+    uint32_t   plane = cell->planes[cell->own];
+    for (int i = 0; i < polygon->count; i++) {
+        int         next   = (i + 1) % polygon->count;
+        uint32_t    before = polygon->labels[(i + polygon->count - 1) % polygon->count];
+        FlatSegment s      = {
+                 .face = 2 * plane + (outward < 0), .line = polygon->labels[i], .way = outward};
+        double along[3];
+        if (s.line == WALL)
+            continue;
+        line_direction(faces, plane, s.line, along);
+        s.begin   = dot3(along, polygon->at[i]);
+        s.end     = dot3(along, polygon->at[next]);
+        s.ends[0] = before;
+        s.ends[1] = polygon->labels[next];
+        if (s.begin > s.end) {
+            double   begin = s.begin;
+            uint32_t end   = s.ends[0];
+            s.begin        = s.end;
+            s.end          = begin;
+            s.ends[0]      = s.ends[1];
+            s.ends[1]      = end;
+            s.way          = -s.way;
+        }
+        array_push_large(faces->arena, &faces->segments, s);
+    }
+}
+
+/* A half-space that decides and of which one does not know the side. */
+static int find_unknown(const FlatPieces *pieces, int root, const signed char *sides)
+{
+    const FlatNode *node = &pieces->nodes[root];
+    if (node->kind == FLAT_HALF_SPACE)
+        return node->first;
+    return find_unknown(
+        pieces, flat_side(pieces, node->first, sides) == 0 ? node->first : node->second, sides);
+}
+
+static void cut_part(Cell *cell, const Polygon *polygon, signed char *sides)
+{
+    const FlatPieces *pieces = cell->pieces;
+    int               side[2];
+    if (polygon->count < 3 || cell->failed)
+        return;
+    int unknown = -1;
+    for (int i = 0; i < 2; i++) {
+        sides[cell->own] = (signed char)(i == 0 ? -1 : 1);
+        side[i]          = flat_side(pieces, pieces->root, sides);
+        if (side[i] == 0)
+            unknown = find_unknown(pieces, pieces->root, sides);
+    }
+    if (unknown < 0) {
+        if (side[0] != side[1])
+            add_part(cell, polygon, side[0] < 0 ? cell->signs[cell->own] : -cell->signs[cell->own]);
+        return;
+    }
+    const FlatPlane *plane = &cell->faces->planes.items[cell->planes[unknown]];
+    double           values[MOST_CORNERS];
+    for (int i = 0; i < polygon->count; i++) {
+        values[i] = above(plane, polygon->at[i]);
+        cell->failed |= fabs(values[i]) < NARROW * cell->faces->size;
+    }
+    for (int sign = -1; sign <= 1; sign += 2) {
+        Polygon part;
+        cut_polygon(cell, polygon, values, -sign, cell->planes[unknown], &part);
+        sides[unknown] = (signed char)(sign * cell->signs[unknown]);
+        cut_part(cell, &part, sides);
+    }
+    sides[unknown] = 0;
+}
+
+bool flat_faces_add(FlatFaces *faces, Box box, const FlatPieces *pieces)
+{
+    Cell        cell = {.faces = faces, .pieces = pieces, .box = box};
+    signed char sides[MOST_FLATS];
+    if (pieces->root < 0)
+        return true;
+    for (size_t i = 0; i < pieces->count; i++)
+        cell.planes[i] = find_plane(faces, &pieces->list[i], &cell.signs[i]);
+    for (size_t i = 0; i < pieces->count && !cell.failed; i++) {
+        Polygon polygon;
+        cell.own = (int)i;
+        memset(sides, 0, sizeof sides);
+        begin_polygon(&cell, &faces->planes.items[cell.planes[i]], &polygon);
+        cut_part(&cell, &polygon, sides);
+    }
+    return !cell.failed;
+}
+
+/* ---- edges ---- */
+
+typedef struct Edge {
+    uint32_t face, from, to;
+    double   way[3];
+    bool     walked;
+} Edge;
+
+typedef struct Finishing {
+    FlatFaces    *faces;
+    FlatVertices *vertices;
+    Numbering     numbers; /* of vertices, by their planes */
+    struct {
+        Edge  *items;
+        size_t count, capacity;
+    } edges;
+    uint32_t *one; /* of each vertex, another one at the same place; itself */
+} Finishing;
+
+static int compare_segments(const void *first, const void *second)
+{
+    const FlatSegment *a = first, *b = second;
+    if (a->face != b->face)
+        return a->face < b->face ? -1 : 1;
+    if (a->line != b->line)
+        return a->line < b->line ? -1 : 1;
+    return (a->begin > b->begin) - (a->begin < b->begin);
+}
+
+/* An end of a segment: how often the line is covered behind it, less how often before. */
+typedef struct Event {
+    double   at;
+    int      change;
+    uint32_t plane;
+} Event;
+
+static int compare_events(const void *first, const void *second)
+{
+    const Event *a = first, *b = second;
+    return (a->at > b->at) - (a->at < b->at);
+}
+
+static bool meeting_point(const HalfSpace *const planes[3], const double offsets[3],
+                          double point[3])
+{
+    double products[3][3];
+    for (int i = 0; i < 3; i++)
+        cross3(planes[(i + 1) % 3]->normal, planes[(i + 2) % 3]->normal, products[i]);
+    double volume = dot3(planes[0]->normal, products[0]);
+    if (fabs(volume) < 1e-12)
+        return false;
+    for (int k = 0; k < 3; k++)
+        point[k] = -(offsets[0] * products[0][k] + offsets[1] * products[1][k] +
+                     offsets[2] * products[2][k]) /
+                   volume;
+    return true;
+}
+
+/* Where three planes meet; those that were moved tell where it is if the others are near to parallel. */
+static uint32_t find_vertex(Finishing *f, uint32_t a, uint32_t b, uint32_t c)
+{
+    uint32_t fresh  = (uint32_t)f->vertices->count;
+    uint32_t number = numbering_take(&f->numbers, face_key(a, b, c), fresh);
+    if (number != fresh)
+        return number;
+    const uint32_t   numbers[3] = {a, b, c};
+    const HalfSpace *planes[3];
+    double           offsets[3], moved[3], at[3] = {0, 0, 0}, near[3] = {0, 0, 0};
+    for (int i = 0; i < 3; i++) {
+        planes[i]  = &f->faces->planes.items[numbers[i]].exact;
+        offsets[i] = planes[i]->offset;
+        moved[i]   = f->faces->planes.items[numbers[i]].moved;
+    }
+    if (!meeting_point(planes, moved, near))
+        return NO_NUMBER;
+    meeting_point(planes, offsets, at);
+    array_reserve_large(f->faces->arena, f->vertices);
+    bool close = distance3(at, near) < 1e-5 * f->faces->size;
+    memcpy(f->vertices->items[f->vertices->count++], close ? at : near, sizeof at);
+    return number;
+}
+
+/* Edges of one face on one line, from the ends of segments in order. */
+static bool find_edges_between(Finishing *f, const FlatSegment *of, const Event *events,
+                               size_t count)
+{
+    const FlatFaces *faces = f->faces;
+    uint32_t         last = NO_NUMBER, plane = of->face / 2;
+    int              covered = 0;
+    for (size_t i = 0, next; i < count; i = next) {
+        int      change = 0;
+        uint32_t end    = WALL;
+        for (next = i; next < count && events[next].at - events[i].at < NARROW * faces->size;
+             next++) {
+            change += events[next].change;
+            if (events[next].plane == WALL)
+                continue;
+            if (end != WALL && end != events[next].plane)
+                return false;
+            end = events[next].plane;
+        }
+        if (change == 0)
+            continue;
+        uint32_t vertex = end == WALL ? NO_NUMBER : find_vertex(f, plane, of->line, end);
+        if (vertex == NO_NUMBER)
+            return false;
+        if (covered != 0) {
+            Edge edge = {of->face,
+                         covered > 0 ? last : vertex,
+                         covered > 0 ? vertex : last,
+                         {0, 0, 0},
+                         false};
+            line_direction(faces, plane, of->line, edge.way);
+            for (int k = 0; k < 3; k++)
+                edge.way[k] *= covered;
+            array_push_large(faces->arena, &f->edges, edge);
+        }
+        covered += change;
+        if (covered < -1 || covered > 1)
+            return false;
+        last = vertex;
+    }
+    return covered == 0;
+}
+
+static bool find_edges(Finishing *f)
+{
+    FlatSegment *segments = f->faces->segments.items;
+    size_t       count    = f->faces->segments.count;
+    if (count > 0)
+        qsort(segments, count, sizeof *segments, compare_segments);
+    Event *events = arena_new_array(f->faces->arena, Event, 2 * count + 1);
+    for (size_t i = 0, next; i < count; i = next) {
+        size_t found = 0;
+        for (next = i; next < count && segments[next].face == segments[i].face &&
+                       segments[next].line == segments[i].line;
+             next++) {
+            const FlatSegment *s = &segments[next];
+            events[found++]      = (Event){s->begin, s->way, s->ends[0]};
+            events[found++]      = (Event){s->end, -s->way, s->ends[1]};
+        }
+        qsort(events, found, sizeof *events, compare_events);
+        if (!find_edges_between(f, &segments[i], events, found))
+            return false;
+    }
+    return true;
+}
+
+/* ---- vertices at the same place ---- */
+
+static uint32_t one_of(Finishing *f, uint32_t vertex)
+{
+    while (f->one[vertex] != vertex)
+        vertex = f->one[vertex] = f->one[f->one[vertex]];
+    return vertex;
+}
+
+static void join_vertices(Finishing *f)
+{
+    static const double SHORT = 1e-6;
+    f->one                    = arena_new_array(f->faces->arena, uint32_t, f->vertices->count + 1);
+    for (uint32_t i = 0; i < f->vertices->count; i++)
+        f->one[i] = i;
+    for (size_t i = 0; i < f->edges.count; i++) {
+        const Edge *edge     = &f->edges.items[i];
+        const double(*at)[3] = (const double(*)[3])f->vertices->items;
+        if (distance3(at[edge->from], at[edge->to]) < SHORT * f->faces->size) {
+            uint32_t a = one_of(f, edge->from), b = one_of(f, edge->to);
+            f->one[a < b ? b : a] = a < b ? a : b;
+        }
+    }
+}
+
+/* ---- faces ---- */
+
+static int compare_edges(const void *first, const void *second)
+{
+    const Edge *a = first, *b = second;
+    if (a->face != b->face)
+        return a->face < b->face ? -1 : 1;
+    return (a->from > b->from) - (a->from < b->from);
+}
+
+/* The edge that follows: at a corner that two parts of a face share, the one to the left. */
+static Edge *edge_behind(Edge *edges, size_t count, const Edge *edge, const double normal[3])
+{
+    size_t low = 0, high = count;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (edges[middle].from < edge->to)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    Edge *found = NULL;
+    for (; low < count && edges[low].from == edge->to; low++) {
+        double turn[3];
+        cross3(edge->way, edges[low].way, turn);
+        if (!edges[low].walked && (!found || dot3(turn, normal) > 0))
+            found = &edges[low];
+    }
+    return found;
+}
+
+/* Without vertices that are at the same place, and without lines that go back at once. */
+static void add_loop(Finishing *f, const uint32_t *walked, size_t count, Loops *loops)
+{
+    Arena *arena = f->faces->arena;
+    size_t begin = loops->vertices.count;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t  vertex = one_of(f, walked[i]);
+        size_t    own    = loops->vertices.count - begin;
+        uint32_t *last   = loops->vertices.items + loops->vertices.count;
+        if (own > 0 && last[-1] == vertex)
+            continue;
+        if (own > 1 && last[-2] == vertex)
+            loops->vertices.count--;
+        else
+            array_push(arena, &loops->vertices, vertex);
+    }
+    for (;;) {
+        uint32_t *items = loops->vertices.items;
+        size_t    last  = loops->vertices.count;
+        if (last - begin > 1 && items[last - 1] == items[begin])
+            loops->vertices.count--;
+        else if (last - begin > 2 && items[last - 1] == items[begin + 1]) {
+            memmove(&items[begin], &items[begin + 1], (last - begin - 1) * sizeof *items);
+            loops->vertices.count -= 2;
+        } else if (last - begin > 2 && items[last - 2] == items[begin])
+            loops->vertices.count -= 2;
+        else
+            break;
+    }
+    if (loops->vertices.count - begin < 3)
+        loops->vertices.count = begin;
+    else
+        array_push(arena, &loops->ends, loops->vertices.count);
+}
+
+static bool find_loops(Finishing *f, Edge *edges, size_t count, const double normal[3],
+                       Loops *loops)
+{
+    uint32_t *walked = arena_new_array(f->faces->arena, uint32_t, count);
+    for (size_t i = 0; i < count; i++) {
+        size_t steps = 0;
+        for (Edge *edge = &edges[i]; !edge->walked;) {
+            edge->walked    = true;
+            walked[steps++] = edge->from;
+            if (edge->to == edges[i].from)
+                break;
+            edge = edge_behind(edges, count, edge, normal);
+            if (!edge)
+                return false;
+        }
+        if (steps > 0)
+            add_loop(f, walked, steps, loops);
+    }
+    return true;
+}
+
+static bool cut_faces(Finishing *f, Triangles *triangles)
+{
+    Edge  *edges = f->edges.items;
+    size_t count = f->edges.count;
+    if (count > 0)
+        qsort(edges, count, sizeof *edges, compare_edges);
+    for (size_t i = 0, next; i < count; i = next) {
+        const FlatPlane *plane = &f->faces->planes.items[edges[i].face / 2];
+        Loops            loops = {0};
+        double           normal[3];
+        for (int k = 0; k < 3; k++)
+            normal[k] = edges[i].face % 2 ? -plane->exact.normal[k] : plane->exact.normal[k];
+        for (next = i; next < count && edges[next].face == edges[i].face; next++)
+            ;
+        if (!find_loops(f, &edges[i], next - i, normal, &loops) ||
+            !polygons_cut((const double(*)[3])f->vertices->items, normal, &loops, triangles,
+                          f->faces->arena))
+            return false;
+    }
+    return true;
+}
+
+/* ---- all ---- */
+
+/* Each edge of a triangle is once in the other direction. */
+static bool is_closed(const Finishing *f, const Triangles *triangles)
+{
+    Numbering edges = {.arena = f->faces->arena};
+    for (size_t i = 0; i < triangles->count; i++)
+        for (int k = 0; k < 3; k++) {
+            NumberKey key   = {triangles->items[i][k], triangles->items[i][(k + 1) % 3]};
+            uint32_t  fresh = (uint32_t)edges.count;
+            if (numbering_take(&edges, key, fresh) != fresh)
+                return false;
+        }
+    for (size_t i = 0; i < triangles->count; i++)
+        for (int k = 0; k < 3; k++) {
+            NumberKey key = {triangles->items[i][(k + 1) % 3], triangles->items[i][k]};
+            if (numbering_find(&edges, key) == NO_NUMBER)
+                return false;
+        }
+    return true;
+}
+
+/* Leaves out vertices that no triangle has. */
+static void number_vertices(Finishing *f, Triangles *triangles)
+{
+    uint32_t *numbers = arena_new_array(f->faces->arena, uint32_t, f->vertices->count + 1);
+    double(*at)[3]    = f->vertices->items;
+    uint32_t used     = 0;
+    for (size_t i = 0; i < 3 * triangles->count; i++)
+        numbers[triangles->items[i / 3][i % 3]] = 1;
+    for (size_t i = 0; i < f->vertices->count; i++)
+        if (numbers[i]) {
+            memcpy(at[used], at[i], sizeof at[used]);
+            numbers[i] = used++;
+        }
+    f->vertices->count = used;
+    for (size_t i = 0; i < 3 * triangles->count; i++)
+        triangles->items[i / 3][i % 3] = numbers[triangles->items[i / 3][i % 3]];
+}
+
+bool flat_faces_finish(FlatFaces *faces, FlatVertices *vertices, Triangles *triangles)
+{
+    Finishing f = {.faces = faces, .vertices = vertices, .numbers = {.arena = faces->arena}};
+    if (!find_edges(&f))
+        return false;
+    join_vertices(&f);
+    if (!cut_faces(&f, triangles) || !is_closed(&f, triangles))
+        return false;
+    number_vertices(&f, triangles);
+    return true;
+}

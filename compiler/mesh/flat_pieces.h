@@ -1,0 +1,43 @@
+/*
+ * flat_pieces.h: a solid in a box, as half-spaces that are joined by intersections and unions.
+ *
+ * Where a distance is made of numbers that change evenly, by minima, maxima and sizes, its sign is that of minima
+ * and maxima of such numbers alone.  So the distance to a prism, which mirrors space until one side is left, is in
+ * a box around an edge the maximum of what its two sides cut.
+ */
+#ifndef KRS_MESH_FLAT_PIECES_H
+#define KRS_MESH_FLAT_PIECES_H
+
+#include "compiler/mesh/field.h"
+
+/* normal . p + offset, below 0 inside; the normal has length 1. */
+typedef struct HalfSpace {
+    double normal[3], offset;
+} HalfSpace;
+
+enum { MOST_FLATS = 48, MOST_FLAT_NODES = 256 };
+
+/* A solid: all, none, or a node. */
+enum { FLAT_ALL = -1, FLAT_NONE = -2 };
+
+typedef struct FlatNode {
+    enum { FLAT_HALF_SPACE, FLAT_BOTH, FLAT_EITHER } kind;
+    int first, second; /* of a half-space: its number, and its sign */
+} FlatNode;
+
+typedef struct FlatPieces {
+    size_t    count, node_count;
+    HalfSpace list[MOST_FLATS];
+    FlatNode  nodes[MOST_FLAT_NODES];
+    int       root;
+} FlatPieces;
+
+/* In a box within that which was entered last.  `size`: of what is meshed; half-spaces that differ by less than
+   rounding are one.  False: it is not made like that, or of more. */
+bool flat_pieces(MeshField *field, Box box, double size, Arena *scratch, FlatPieces *pieces);
+
+/* Whether the solid has a place, which is inside or outside of half-spaces: -1 or 1, or 0 where one does not know.  The same for the
+   result. */
+int flat_side(const FlatPieces *pieces, int root, const signed char *sides);
+
+#endif

@@ -1,0 +1,33 @@
+/*
+ * polygons.h: flat polygons with holes, cut into triangles.
+ */
+#ifndef KRS_MESH_POLYGONS_H
+#define KRS_MESH_POLYGONS_H
+
+#include <stdint.h>
+
+#include "compiler/base/arena.h"
+
+/* Closed lines, one behind the other; the inside is on the left. */
+typedef struct Loops {
+    struct {
+        uint32_t *items; /* vertices */
+        size_t    count, capacity;
+    } vertices;
+    struct {
+        size_t *items; /* behind the last vertex of each */
+        size_t  count, capacity;
+    } ends;
+} Loops;
+
+typedef struct Triangles {
+    uint32_t (*items)[3];
+    size_t count, capacity;
+} Triangles;
+
+/* Triangles between vertices of loops in a plane with this unit normal, in the order of the loops, which do
+   not cross.  Each edge is in one triangle, each line between two of them in two.  False: none were found. */
+bool polygons_cut(const double (*at)[3], const double normal[3], const Loops *loops,
+                  Triangles *triangles, Arena *arena);
+
+#endif
