@@ -237,6 +237,7 @@ KrsStatus krs_frame_update(KrsFrame *frame, const KrsScene *scene)
     KrsFrame other   = *frame;
     *frame           = *fresh;
     *fresh           = other;
+    frame_count_operations(frame);
     frame_free(fresh);
     return KRS_OK;
 }

@@ -35,7 +35,7 @@ static Tape tape_of_frame(const Tape *tape, struct FrameTables *tables)
     return copy;
 }
 
-static void count_operations(KrsFrame *frame)
+void frame_count_operations(KrsFrame *frame)
 {
     FrameTapes *tapes   = &frame->tapes;
     tapes->distance.ran = tapes->guarded.ran = tapes->ahead.ran = &frame->ran;
@@ -74,7 +74,7 @@ bool frame_tables_new(KrsFrame *frame)
     const KrsScene *scene = frame->scene;
     frame->tapes          = (FrameTapes){scene->distance, scene->guarded, scene->ahead,
                                          scene->turned,   scene->surface, scene->places};
-    count_operations(frame);
+    frame_count_operations(frame);
     if (!crowds_move(scene->graph->crowds))
         return true;
     struct FrameTables *tables = allocate(&scene->memory, sizeof *tables);
@@ -90,7 +90,7 @@ bool frame_tables_new(KrsFrame *frame)
     if (setjmp(exhausted) != 0)
         return false;
     make_tables(frame, tables);
-    count_operations(frame);
+    frame_count_operations(frame);
     tables->memory.exhausted = NULL;
     return true;
 }

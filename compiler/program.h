@@ -260,6 +260,8 @@ bool tape_depends_on(const Tape *tape, uint32_t slot);
 
 /* frame_tables.c: tables where members of crowds move, and tapes over them.  False: memory has run out. */
 bool frame_tables_new(KrsFrame *frame);
+/* Its tapes add what they run to its own count: after it was copied to another place. */
+void frame_count_operations(KrsFrame *frame);
 void frame_tables_free(KrsFrame *frame);
 /* Values of the frame have changed; the tables are found when they are needed. */
 void frame_tables_change(KrsFrame *frame);

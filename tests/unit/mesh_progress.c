@@ -35,7 +35,8 @@ static void work_goes_on_in_small_steps(void **state)
     KrsMesh       *mesh, *few;
     (void)state;
     assert_int_equal(krs_mesh(s.frame, &options, &mesh), KRS_OK);
-    assert_true(told.count > 10 && told.last > 0.7 && told.largest_step < 0.3);
+    /* The thread that tells may get no turn in one of the phases: the longest is 0.45 of all. */
+    assert_true(told.count > 10 && told.last > 0.7 && told.largest_step < 0.5);
     told = (Told){.most = SIZE_MAX};
     assert_int_equal(krs_mesh_simplify(mesh, &options, &few), KRS_OK);
     assert_true(told.count > 10 && told.last > 0.7 && told.largest_step < 0.3);
