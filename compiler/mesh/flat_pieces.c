@@ -505,20 +505,16 @@ static int solid_of_condition(Finding *f, uint32_t operand)
     if (*known != UNKNOWN)
         return *known;
     int solid = FLAT_NONE;
-    switch (step->op) {
-    case OP_less:
-    case OP_less_equal: solid = solid_of_less(f, step->operands[0], step->operands[1]); break;
-    case OP_not: solid = complement(f, solid_of_condition(f, step->operands[0])); break;
-    case OP_and:
-        solid = solid_of_condition(f, step->operands[0]);
-        solid = both(f, solid, solid_of_condition(f, step->operands[1]));
-        break;
-    case OP_or:
-        solid = solid_of_condition(f, step->operands[0]);
-        solid = either(f, solid, solid_of_condition(f, step->operands[1]));
-        break;
-    default: f->failed = true;
-    }
+    if (step->op == OP_less || step->op == OP_less_equal)
+        solid = solid_of_less(f, step->operands[0], step->operands[1]);
+    else if (step->op == OP_not)
+        solid = complement(f, solid_of_condition(f, step->operands[0]));
+    else if (step->op == OP_and || step->op == OP_or) {
+        int first  = solid_of_condition(f, step->operands[0]);
+        int second = solid_of_condition(f, step->operands[1]);
+        solid      = step->op == OP_and ? both(f, first, second) : either(f, first, second);
+    } else
+        f->failed = true;
     return *known = solid;
 }
 
