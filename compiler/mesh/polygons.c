@@ -29,6 +29,7 @@ typedef struct Cutting {
     Ring      *rings;
     size_t     count;
     Triangles *triangles;
+    double     tiny; /* twice the area of what counts as a line */
 } Cutting;
 
 /* Twice the area of a triangle; above 0 where c is on the left of a to b. */
@@ -68,6 +69,7 @@ static void read_rings(Cutting *c, const double (*at)[3], const double normal[3]
         }
         for (size_t i = 1; i + 1 < ring->count; i++)
             ring->area += area2(ring->items[0].at, ring->items[i].at, ring->items[i + 1].at);
+        c->tiny += 1e-13 * fabs(ring->area);
     }
 }
 
@@ -102,21 +104,32 @@ static bool find_outer(Cutting *c, Ring *hole)
     return found;
 }
 
-/* Whether the lines a to b and c to d cross, or the second has an end on the first, but for a common end. */
-static bool lines_cross(const double a[2], const double b[2], const double c[2], const double d[2])
+/* Whether two points are on different sides of the line a to b, or one of them is on it. */
+static bool line_parts(const double a[2], const double b[2], const double c[2], const double d[2],
+                       double tiny)
+{
+    double first = area2(a, b, c), second = area2(a, b, d);
+    return (first >= 0) != (second >= 0) || fabs(first) <= tiny || fabs(second) <= tiny;
+}
+
+/* Whether the lines a to b and c to d cross, or one has an end on the other, but for a common end. */
+static bool lines_cross(const double a[2], const double b[2], const double c[2], const double d[2],
+                        double tiny)
 {
     if (same(a, c) || same(a, d) || same(b, c) || same(b, d))
         return false;
-    double first = area2(a, b, c), second = area2(a, b, d);
-    double third = area2(c, d, a), fourth = area2(c, d, b);
-    return ((first >= 0) != (second >= 0) || first == 0 || second == 0) &&
-           ((third >= 0) != (fourth >= 0) || third == 0 || fourth == 0);
+    double margin = sqrt(tiny);
+    for (int k = 0; k < 2; k++) /* far from each other, also where they are in one line */
+        if (max2(a[k], b[k]) < min2(c[k], d[k]) - margin ||
+            max2(c[k], d[k]) < min2(a[k], b[k]) - margin)
+            return false;
+    return line_parts(a, b, c, d, tiny) && line_parts(c, d, a, b, tiny);
 }
 
-static bool ring_blocks(const Ring *ring, const double a[2], const double b[2])
+static bool ring_blocks(const Ring *ring, const double a[2], const double b[2], double tiny)
 {
     for (size_t i = 0, j = ring->count - 1; i < ring->count; j = i++)
-        if (lines_cross(a, b, ring->items[j].at, ring->items[i].at))
+        if (lines_cross(a, b, ring->items[j].at, ring->items[i].at, tiny))
             return true;
     return false;
 }
@@ -150,7 +163,7 @@ static bool find_bridge(const Cutting *c, const Ring *hole, size_t *from, size_t
             continue;
         bool blocked = false;
         for (size_t r = 0; r < c->count && !blocked; r++)
-            blocked = !c->rings[r].joined && ring_blocks(&c->rings[r], a, b);
+            blocked = !c->rings[r].joined && ring_blocks(&c->rings[r], a, b, c->tiny);
         if (!blocked) {
             least = distance;
             *to   = i;
@@ -252,7 +265,7 @@ static void cut_ear(Cutting *c, const Ring *ring, uint32_t *left, size_t *count,
 /* The next ear is looked for behind the one beside, so that triangles fan less. */
 static bool cut_ring(Cutting *c, const Ring *ring)
 {
-    double        tiny    = 1e-14 * fabs(ring->area);
+    const double  tiny    = c->tiny;
     const EarRule rules[] = {{tiny, -tiny}, {tiny, tiny}, {-tiny, tiny}};
     uint32_t     *left    = arena_new_array(c->arena, uint32_t, ring->count);
     size_t        count = ring->count, at = 0, looked = 0, rule = 0;

@@ -53,6 +53,12 @@ static void solids_have_no_more_triangles_than_their_faces_need(void **state)
         {"show difference(box([16, 2, 16]), [box([0.7, 3, 0.7]).rotate([0, 1, 0], 0.3 * i)"
          ".move([i - 15 * floor(i / 15) - 7, 0, floor(i / 15) - 7]) for i in 0..225]);",
          12 + 20 * 225, 1, 225, 512 - 225 * 0.98},
+        /* Columns of corners are in one line.  Without holes a solid of n corners has 2 n - 4 triangles. */
+        {"show union([box([128, 9.6, 128]) - box([125, 9.6, 125]).move([0, -1.5, 0]), "
+         "[prism(8, 2.4, 1.8).move([8 * i - 60, 5.7, 8 * j - 60]) for i in 0..16 for j in "
+         "0..16]]);",
+         2 * (16 + 256 * 16) - 4, 1, 0,
+         128 * 9.6 * 128 - 125 * 8.1 * 125 + 256 * 2.8284271247461903 * 2.4 * 2.4 * 1.8},
     };
     (void)state;
     for (size_t i = 0; i < sizeof solids / sizeof *solids; i++) {
