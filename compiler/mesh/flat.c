@@ -1,8 +1,8 @@
 /*
  * flat.c: boxes that are halved until each has few planes.
  *
- * Nothing is sampled: where no surface is comes from ranges, and where one is, its planes are known.  Solids
- * with round parts are given up as soon as some of these are met.
+ * Where no surface is comes from ranges, and where one is, from its planes.  In the end each triangle is looked at
+ * once: the surface must be in its middle.  Solids with round parts are given up as soon as some of these are met.
  */
 #include "compiler/mesh/flat.h"
 
@@ -39,6 +39,7 @@ static bool halve_at(Halving *h, Box box, int halvings)
     return halve(h, box, halvings + 1);
 }
 
+/* Whether a curved surface is surely in the box. */
 static bool is_round(Halving *h, Box box)
 {
     Range       range;
@@ -46,7 +47,6 @@ static bool is_round(Halving *h, Box box)
     LaneHessian hessian;
     if (!field_hessian(h->field, box, &range, &slope, &hessian) || hessian.flat)
         return false;
-    /* A smooth surface that is surely there. */
     double middle[3], radius = HUGE_VAL;
     for (int k = 0; k < 3; k++) {
         middle[k] = 0.5 * (box.axis[k].low + box.axis[k].high);

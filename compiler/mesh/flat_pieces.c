@@ -1,8 +1,11 @@
 /*
  * flat_pieces.c: half-spaces from the steps of a lane tape.
  *
- * Each step that changes evenly is a form: a sum of coordinates, and of kinks, which are minima, maxima and sizes of forms.
+ * Each linear step is a form: a sum of coordinates, and of kinks, which are minima, maxima and absolute values of forms.
  * A sum with a kink is the minimum or the maximum of two sums without it, by the sign of its factor.
+ *
+ * One thing is taken for granted and not proven: that a distance to a box is 0 or less where none of its faces is above 0.  So
+ * who uses the half-spaces looks whether the surface is on the faces that come out (flat.c: is_on_surface).
  */
 #include "compiler/mesh/flat_pieces.h"
 
@@ -187,10 +190,9 @@ static Form length_form(const Finding *f, const LaneStep *step, uint32_t value)
 /* Whether it is what a distance to a box is the sum of. */
 static bool is_box_distance(const Finding *f, const LaneStep *step)
 {
-    FieldFaces outside, inside;
-    double     part;
     for (int k = 0; k < 2; k++) {
-        outside.count = inside.count = 0;
+        FieldFaces outside = {.count = 0}, inside = {.count = 0};
+        double     part = 1;
         if (field_outside(f->tape, &f->field->ranges, step->operands[k], &outside) &&
             field_inside(f->tape, &f->field->ranges, step->operands[1 - k], &inside, &part))
             return true;
@@ -198,7 +200,7 @@ static bool is_box_distance(const Finding *f, const LaneStep *step)
     return false;
 }
 
-/* What is not even is a kink: its sign may be known. */
+/* What is not linear is a kink: its sign may be known. */
 static Form form_of_step(const Finding *f, size_t i)
 {
     const LaneStep *step  = &f->tape->steps[i];

@@ -1,8 +1,8 @@
 /*
  * flat_pieces.h: a solid in a box, as half-spaces that are joined by intersections and unions.
  *
- * Where a distance is made of numbers that change evenly, by minima, maxima and sizes, its sign is that of minima
- * and maxima of such numbers alone.  So the distance to a prism, which mirrors space until one side is left, is in
+ * Where a distance is made of linear numbers by minima, maxima and absolute values, its sign is that of minima
+ * and maxima of linear numbers alone.  So the distance to a prism, which mirrors space until one side is left, is in
  * a box around an edge the maximum of what its two sides cut.
  */
 #ifndef KRS_MESH_FLAT_PIECES_H
@@ -36,8 +36,8 @@ typedef struct FlatPieces {
    rounding are one.  False: it is not made like that, or of more. */
 bool flat_pieces(MeshField *field, Box box, double size, Arena *scratch, FlatPieces *pieces);
 
-/* Whether the solid has a place, which is inside or outside of half-spaces: -1 or 1, or 0 where one does not know.  The same for the
-   result. */
+/* Whether a place is in the solid: -1, or 1 where it is outside, or 0 where that is not known.  `sides` says the same of each
+   half-space. */
 int flat_side(const FlatPieces *pieces, int root, const signed char *sides);
 
 #endif
