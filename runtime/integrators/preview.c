@@ -144,8 +144,10 @@ static void add_unproven(Preview *p, PassConstants constants, float weight)
 static void add_means(Preview *p, PassConstants constants, float weight)
 {
     const KrsPhase phase = KRS_PHASE_SHADOWS;
-    constants.phase      = 0;
-    add_pixels(p, phase, PIXELS_PENUMBRAE, LIST_OF_QUARTERS, NO_LIST, constants, weight / 3);
+    constants.phase      = PENUMBRAE_COUNTED;
+    add_pixels(p, phase, PIXELS_PENUMBRAE, LIST_OF_QUARTERS, NO_LIST, constants, weight / 6);
+    constants.phase = PENUMBRAE_SPREAD;
+    add_pixels(p, phase, PIXELS_PENUMBRAE, LIST_OF_QUARTERS, NO_LIST, constants, weight / 6);
     constants.phase = SHADOW_NEAR;
     add_pixels(p, phase, PIXELS_SHADOW, LIST_REMAINING, LIST_WIDE, constants, weight / 3);
     constants.phase = SHADOW_WIDE;

@@ -145,7 +145,8 @@ void do_item(uint quarter)
         atomicAdd(counts.unresolved, bitCount(unresolved));
     if (control.phase == BACKGROUND_FIRST) {
         pixel_lists[quarter_at(HITS_OF_QUARTERS, quarter)] = hits;
-        pixel_lists[quarter_at(LIGHT_OF_QUARTERS, quarter)] = 0u; // it stays 0 where nothing is hit
+        pixel_lists[quarter_at(LIGHT_OF_QUARTERS, quarter)] = 0u; // these stay 0 where nothing is hit
+        pixel_lists[quarter_at(LIGHT_AROUND_QUARTERS, quarter)] = 0u;
     }
     list_hits(quarter, hits);
     list_by_group(quarter, hits, groups);

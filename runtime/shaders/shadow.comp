@@ -17,6 +17,7 @@
 #include "hit_lists.glsl"
 #include "shared.glsl"
 #include "neighbours.glsl"
+#include "quarters.glsl"
 
 // RADIUS_OF_PENUMBRA: the radius of a mean, relative to the width of the penumbra.  LEAST_RADIUS:
 // its least, in pixels.  NEAR_RADIUS: a larger radius needs a second mean.  In grazing light that
@@ -28,18 +29,8 @@ const float RADIUS_OF_PENUMBRA = 0.5, LEAST_RADIUS = 1.25, NEAR_RADIUS = 2.0, GR
 // LEAST_CHANGE: the least sum of differences that tells a direction.
 const float LEAST_ALONG = 0.15, WIDE_ENOUGH = 6.0, LEAST_CHANGE = 1.5;
 
-// The penumbrae of a quarter of a tile, times a weight; 0 outside of the band.
-Penumbrae find_quarter(ivec2 quarter, float weight)
-{
-    ivec2 quarters = 2 * ((ivec2(work.extent) + 7) / 8);
-    bool  exists = all(greaterThanEqual(quarter, ivec2(0))) && all(lessThan(quarter, quarters));
-    uvec2 within = uvec2(clamp(quarter, ivec2(0), quarters - 1));
-    uint  tile = (within.y >> 1u) * uint(quarters.x >> 1) + (within.x >> 1u);
-    uint  number = 4u * tile + 2u * (within.y & 1u) + (within.x & 1u);
-    Penumbrae of = unpack_penumbrae(find_listed(quarter_at(LIGHT_OF_QUARTERS, number)));
-    weight = exists ? weight : 0.0;
-    return Penumbrae(weight * of.lit, weight * of.hidden, weight * of.width);
-}
+// Less weight than that says nothing: it may be due to rounding.
+const float LEAST_WEIGHT = 0.05;
 
 // The radius of the mean in pixels, by the four quarters around.  It is 0 where all of their pixels
 // see the light, or none does.  Fewer pixels would often agree by chance at the ends of a penumbra,
@@ -51,10 +42,11 @@ float find_radius(ivec2 pixel)
     float lit = 0.0, hidden = 0.0, width = 0.0;
     do {
         vec2      lateral = abs(1.0 - vec2(tap) - fraction);
-        Penumbrae found = find_quarter(first + tap, lateral.x * lateral.y);
-        lit += found.lit;
-        hidden += found.hidden;
-        width += found.width;
+        Penumbrae found = find_quarter(LIGHT_AROUND_QUARTERS, first + tap);
+        float     weight = lateral.x * lateral.y;
+        lit += weight * found.lit;
+        hidden += weight * found.hidden;
+        width += weight * found.width;
         tap = ivec2(1 - tap.x, tap.y + tap.x);
     } while (tap.y < 2);
     float radius = max(RADIUS_OF_PENUMBRA * width / max(hidden, 1e-6), LEAST_RADIUS);
@@ -99,7 +91,7 @@ vec2 find_change(uint list, ivec2 pixel, int stride)
 }
 
 // The mean visibility over 5x5 pixels that are `stride` apart, weighted by how near their hits are.
-// Along the edge of a narrow penumbra distances count less.
+// Along the edge of a narrow penumbra distances count less.  It is -1 where no pixel knows it.
 float find_mean(uint list, ivec2 pixel, HitPoint hit, Disc disc, int stride, float radius)
 {
     vec2  sums = vec2(0.0);
@@ -123,7 +115,7 @@ float find_mean(uint list, ivec2 pixel, HitPoint hit, Disc disc, int stride, flo
         sums += weight * find_seen(list, there);
         tap = next_offset(tap, 2);
     } while (tap.y <= 2 && radius > 0.0);
-    return sums.y > 0.0 ? sums.x / sums.y : 1.0;
+    return sums.y > LEAST_WEIGHT ? sums.x / sums.y : -1.0;
 }
 
 void begin_group() {}
@@ -141,11 +133,12 @@ void do_item(uint number)
     Disc  disc = find_disc(find_light(control.light), hit);
     uint  list = wide ? MEANS_SHARED : RAYS_SHARED;
     float mean = find_mean(list, pixel, hit, disc, wide ? 2 : 1, radius);
-    visible = radius > 0.0 ? mean : visible;
+    bool  known = radius > 0.0 ? mean >= 0.0 : own != BELOW_HORIZON;
+    visible = radius > 0.0 ? abs(mean) : visible;
     float rise = dot(load_hit(FACING, slot).xyz, disc.toward);
-    if (!wide)
+    if (!wide && known) // a pixel that faces away from the light tells others nothing
         store_shared(MEANS_SHARED, slot, uintBitsToFloat(word), code_of_openness(visible));
-    if (!wide && radius > 0.0)
+    if (!wide && known && radius > 0.0)
         pixel_lists[LIST_WIDE * band_pixels() + atomicAdd(counts.wide, 1u)] = slot;
     else
         store_lighting(control.value, slot, visible * find_fraction_above(disc, rise));

@@ -279,6 +279,9 @@ CONSTANT(ESCAPE_TO_SKY, 1); /* surfaces have shown what mirrors lights, as in pr
 /* phase, of scatter.comp, and of shade.comp with MIRRORS */
 CONSTANT(PATHS_GO_ON, 0);
 CONSTANT(PATHS_END, 1);
+/* phase, of penumbrae.comp */
+CONSTANT(PENUMBRAE_COUNTED, 0);
+CONSTANT(PENUMBRAE_SPREAD, 1);
 /* phase, of shadow.comp */
 CONSTANT(SHADOW_NEAR, 0);
 CONSTANT(SHADOW_WIDE, 1);
@@ -355,6 +358,7 @@ CONSTANT(SHARED_LISTS, 2);
 CONSTANT(LISTED_QUARTERS, 0);
 CONSTANT(HITS_OF_QUARTERS, 1);
 CONSTANT(LIGHT_OF_QUARTERS, 2);
+CONSTANT(LIGHT_AROUND_QUARTERS, 3); /* the same, with what is known of quarters around */
 
 /* Results: each row has four numbers for every pixel of a band.  Where nothing is hit the component
    is 0, and all rows but colour and steps are void. */

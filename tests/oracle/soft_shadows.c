@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "tests/oracle/shadow_truth.h"
+#include "tests/support/renderer.h"
 
 #define LIFT       0.125 /* pixels above even ground, where rays start */
 #define BLUR_REACH 8     /* pixels: so far from a penumbra nothing is shared */
@@ -23,6 +24,11 @@
    means reach as far across the edge as along it. */
 #define NARROW      (1.5 * DEGREE)
 #define MOST_FRAYED 0.105
+/* Around a lamp in a recess, one ray a pixel: by how many pixels the edge of light is uneven where this
+   share is seen; on average over recesses, and the worst of them. */
+#define DARK                0.01
+#define MOST_TOOTHED        0.85
+#define MOST_TOOTHED_AT_ALL 1.1
 
 /* How far the mean of 5x5 pixels is outside of what is true for it; NAN where one of them shows
    no ground in the light. */
@@ -180,12 +186,123 @@ static void wrong_soft_shadows_are_found(void **state)
     krs_picture_free(picture);
 }
 
+/* ---- A lamp in a recess of the ceiling ---- */
+
+/* In truth the lamp is a disc, across the way to it.  The lower edge of the recess hides it. */
+typedef struct Recess {
+    double ceiling, wall;      /* its height, and how far off the wall is */
+    double radius, lamp, wide; /* of the recess; the lamp's height and radius */
+} Recess;
+
+enum { RECESSES = 8, RECESS_WIDTH = 160, RECESS_HEIGHT = 80 };
+
+/* Where the wall has half of the light, below the lamp. */
+static double edge_on_wall(const Recess *recess)
+{
+    return recess->lamp - (recess->lamp - recess->ceiling) * recess->wall / recess->radius;
+}
+
+static KrsPicture *take_recess(const Recess *recess)
+{
+    SceneText    text = {0};
+    const double edge = edge_on_wall(recess);
+    for (int i = 0; i < 2; i++)
+        scene_write(&text, "light %s { position: [0, %.9g, 0], radius: %.9g, color: %s%s }\n",
+                    i ? "green" : "red", recess->lamp, recess->wide, i ? "[0, 1, 0]" : "[1, 0, 0]",
+                    i ? ", shadow: false" : "");
+    scene_write(&text,
+                "sky { zenith: black, horizon: black, ground: black }\n"
+                "material chalk { color: white, specular: 0 }\n"
+                "show plane([1, 0, 0], -%.9g).paint(chalk);\n"
+                "show (box([40, 1, 40]).move([0, %.9g, 0]) - cylinder(%.9g, 4).move([0, %.9g, 0]))"
+                ".paint(chalk);\n"
+                "camera { eye: [0, %.9g, 0], target: [-1, %.9g, 0], "
+                "projection: \"orthographic\", height: 1.2 }\n",
+                recess->wall, recess->ceiling + 0.5, recess->radius, recess->ceiling, edge, edge);
+    return picture_of(
+        text.bytes,
+        &(KrsRenderOptions){.width = RECESS_WIDTH, .height = RECESS_HEIGHT, .no_filter = true});
+}
+
+static double lamp_seen(const Recess *recess, Vec place)
+{
+    enum { RINGS = 20, SPOKES = 40 };
+    const Vec middle = vec(0, recess->lamp, 0), axis = vec_unit(vec_sub(middle, place));
+    const Vec side = vec_unit(vec_cross(axis, vec(0, 1, 0))), up = vec_cross(axis, side);
+    int       seen = 0;
+    for (int i = 0; i < RINGS * SPOKES; i++) {
+        double far  = recess->wide * sqrt((i / SPOKES + 0.5) / RINGS);
+        double turn = 2 * M_PI * (i % SPOKES + 0.5 * (i / SPOKES % 2)) / SPOKES;
+        Vec    on   = vec_add(middle,
+                              vec_add(vec_scale(far * cos(turn), side), vec_scale(far * sin(turn), up)));
+        Vec    way  = vec_sub(on, place);
+        Vec    at   = vec_add(place, vec_scale((recess->ceiling - place.y) / way.y, way));
+        seen += hypot(at.x, at.z) < recess->radius;
+    }
+    return (double)seen / (RINGS * SPOKES);
+}
+
+/* Where the light of a column falls to DARK, counted up from its foot: by what pixels see, or in truth. */
+static double edge_of_column(const double *seen, int x)
+{
+    double last = 1;
+    for (int y = RECESS_HEIGHT - 1; y >= 0; y--) {
+        double here = seen[y * RECESS_WIDTH + x];
+        if (here <= DARK)
+            return RECESS_HEIGHT - 1 - y - (DARK - here) / (last - here);
+        last = here;
+    }
+    return NAN;
+}
+
+/* By how much the dark edge is uneven: root of the mean square, in pixels. */
+static double find_teeth(const KrsPicture *picture, const Recess *recess)
+{
+    static double seen[RECESS_WIDTH * RECESS_HEIGHT], truth[RECESS_WIDTH * RECESS_HEIGHT];
+    double        sum = 0, squares = 0;
+    for (int k = 0; k < RECESS_WIDTH * RECESS_HEIGHT; k++) {
+        const float *color = picture->color + 4 * k, *at = picture->position + 3 * k;
+        seen[k]  = (double)color[0] / (double)color[1];
+        truth[k] = lamp_seen(recess, vec((double)at[0], (double)at[1], (double)at[2]));
+    }
+    for (int x = 0; x < RECESS_WIDTH; x++) {
+        double off = edge_of_column(seen, x) - edge_of_column(truth, x);
+        sum += off / RECESS_WIDTH;
+        squares += off * off / RECESS_WIDTH;
+    }
+    return sqrt(squares - sum * sum);
+}
+
+static void light_around_lamps_has_no_teeth(void **state)
+{
+    (void)state;
+    Random random = {3};
+    double mean = 0, worst = 0;
+    for (int i = 0; i < RECESSES; i++) {
+        Recess      recess  = {.ceiling = 2,
+                               .wall    = random_between(&random, 1.5, 2.5),
+                               .radius  = random_between(&random, 0.25, 0.5),
+                               .lamp    = random_between(&random, 2.08, 2.2),
+                               .wide    = random_between(&random, 0.02, 0.06)};
+        KrsPicture *picture = take_recess(&recess);
+        double      teeth   = find_teeth(picture, &recess);
+        print_message("# recess %.3f, lamp %.3f in %.3f: teeth of %.3f pixels\n", recess.radius,
+                      recess.wide, recess.lamp - recess.ceiling, teeth);
+        worst = fmax(worst, teeth);
+        mean += teeth / RECESSES;
+        krs_picture_free(picture);
+    }
+    print_message("# teeth of %.3f pixels, at most %.3f\n", mean, worst);
+    assert_true(mean < MOST_TOOTHED && worst < MOST_TOOTHED_AT_ALL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(soft_shadows_are_shares_of_the_disc),
         cmocka_unit_test(edges_of_narrow_shadows_are_not_frayed),
         cmocka_unit_test(soft_shadows_of_bounds_are_the_same),
+        cmocka_unit_test(light_around_lamps_has_no_teeth),
         cmocka_unit_test(wrong_soft_shadows_are_found),
     };
     return run_shadow_tests("soft shadows", tests, sizeof tests / sizeof tests[0]);
