@@ -31,18 +31,23 @@ int frame_places(const char *path)
     return places;
 }
 
-const char *frame_path(const Options *options, const char *path, uint32_t frame)
+const char *numbered_path(const Options *options, const char *path, uint32_t number)
 {
     int         width   = 0;
     size_t      length  = 0;
-    const char *pattern = options->animated ? find_pattern(path, &width, &length) : NULL;
+    const char *pattern = find_pattern(path, &width, &length);
     if (!pattern)
         return path;
     Text text = {.arena = options->arena};
     text_add_bytes(&text, path, (size_t)(pattern - path));
-    text_format(&text, "%0*u", width, frame);
+    text_format(&text, "%0*u", width, number);
     text_add(&text, pattern + length);
     return text.bytes;
+}
+
+const char *frame_path(const Options *options, const char *path, uint32_t frame)
+{
+    return options->animated ? numbered_path(options, path, frame) : path;
 }
 
 bool are_one_file(const Options *options, const char *a, const char *b)

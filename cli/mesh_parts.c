@@ -293,7 +293,7 @@ void flatten_parts(const Meshing *meshing, MeshParts *parts)
 /* ---- units ---- */
 
 /* In the order of unit_choices. */
-static const double metres_of_units[] = {1e-3, 1e-6, 1e-2, 1, 0.0254, 0.3048};
+const double metres_of_units[] = {1e-3, 1e-6, 1e-2, 1, 0.0254, 0.3048};
 
 /* Without a wish, what the format is usually in. */
 void set_units(const Meshing *meshing, const MeshFormat *format, MeshParts *parts)

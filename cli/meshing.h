@@ -72,6 +72,8 @@ void flatten_parts(const Meshing *meshing, MeshParts *parts);
 /* mesh_places.c: where triangles are in textures, if there are any; and vertices, by doubling those on seams. */
 KrsStatus find_places(const Meshing *meshing, MeshParts *parts);
 void      split_places(Arena *arena, MeshParts *parts);
+/* Of a length of 1, in the order of unit_choices. */
+extern const double metres_of_units[];
 /* What a length of 1 is in the file. */
 void set_units(const Meshing *meshing, const MeshFormat *format, MeshParts *parts);
 

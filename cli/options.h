@@ -116,6 +116,12 @@ typedef struct WithinBox {
     double low[3], high[3];
 } WithinBox;
 
+/* --plane */
+typedef struct SectionPlane {
+    bool            given;
+    KrsSectionPlane at;
+} SectionPlane;
+
 /* The path of standard output, which `-o -` is. */
 #define STANDARD_OUTPUT OUTPUT_STANDARD
 

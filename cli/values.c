@@ -137,18 +137,32 @@ bool read_setting(Options *options, const char *word)
     return done;
 }
 
-bool read_within(const char *word, WithinBox *box)
+/* Two points, or a point and a direction. */
+static bool read_six(const char *word, double first[3], double second[3])
 {
-    double numbers[6];
     for (int i = 0; i < 6; i++) {
-        if (!read_number_prefix(word, &word, &numbers[i]) ||
-            fabs(numbers[i]) > KRS_MOST_COORDINATE || *word != (i < 5 ? ',' : '\0'))
+        double *number = i < 3 ? &first[i] : &second[i - 3];
+        if (!read_number_prefix(word, &word, number) || fabs(*number) > KRS_MOST_COORDINATE ||
+            *word != (i < 5 ? ',' : '\0'))
             return false;
         word += i < 5;
     }
+    return true;
+}
+
+bool read_plane(const char *word, SectionPlane *plane)
+{
+    const double *normal = plane->at.normal;
+    plane->given         = true;
+    return read_six(word, plane->at.point, plane->at.normal) &&
+           hypot(hypot(normal[0], normal[1]), normal[2]) > 1e-100;
+}
+
+bool read_within(const char *word, WithinBox *box)
+{
     box->given = true;
-    memcpy(box->low, numbers, sizeof box->low);
-    memcpy(box->high, numbers + 3, sizeof box->high);
+    if (!read_six(word, box->low, box->high))
+        return false;
     return box->low[0] < box->high[0] && box->low[1] < box->high[1] && box->low[2] < box->high[2];
 }
 

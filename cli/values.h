@@ -25,6 +25,7 @@ bool read_expression(Arena *arena, const char *text,
                      Setting *setting);                 /* "r=0.5", "at=[1,2,3]", "c=#rrggbb" */
 bool read_zone(Options *options, const char *word);     /* "X,Y,Z,R", of which there is room */
 bool read_within(const char *word, WithinBox *box);     /* "X,Y,Z,X,Y,Z" */
+bool read_plane(const char *word, SectionPlane *plane); /* "X,Y,Z,X,Y,Z" */
 bool read_exit_map(Options *options, const char *word); /* "71=33,75=99" */
 bool read_limits(const char *word, Limits *limits);     /* "time=10,memory=1G" */
 bool read_white_balance(const char *word, WhiteBalance *balance); /* "5500", "5500,10" */

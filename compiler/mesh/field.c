@@ -154,6 +154,7 @@ void field_distances(const MeshField *field, const double (*points)[3], size_t c
         distances[i] = cut_by_zones(field->frame, points[i], distances[i]);
         if (field->cut)
             distances[i] = max2(distances[i], distance_to_cut(field, points[i]));
+        distances[i] -= field->skin;
     }
 }
 

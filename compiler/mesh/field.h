@@ -29,6 +29,7 @@ typedef struct MeshField {
     const MeshSolid *solid;
     bool             cut; /* nothing is solid outside of the box */
     double           low[3], high[3];
+    double           skin; /* what is solid is thicker by that at points, not in boxes */
 
     LaneTape     tape;
     LaneWork     work;

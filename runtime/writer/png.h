@@ -15,4 +15,8 @@
    exr_write. */
 bool png_write(const Picture *picture, const uint8_t *rgb, OutputFile *file, OutputError *error);
 
+/* Writes one byte a pixel, linear, of `per_metre` pixels in a metre if that can be told. */
+bool png_write_mask(const Picture *picture, const uint8_t *gray, double per_metre, OutputFile *file,
+                    OutputError *error);
+
 #endif

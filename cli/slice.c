@@ -1,0 +1,360 @@
+/*
+ * slice.c: `krs slice`: sections of a scene, layer by layer.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/console.h"
+#include "cli/frame_paths.h"
+#include "cli/meshing.h"
+#include "cli/slicing.h"
+
+enum { MOST_LAYERS = 1000000, AT_ONCE = 32, USUAL_PIXELS = 1024 };
+/* Bytes of a picture. */
+#define MOST_PIXELS 1073741824.0
+
+typedef struct Slicing {
+    const Options  *options;
+    const KrsScene *scene;
+    KrsFrame       *frame;
+    KrsSlicer      *slicer;
+    SliceSheet      sheet;
+    double          error;
+    KrsSectionPlane plane; /* of a section, or of layer 0 */
+    Progress        progress;
+} Slicing;
+
+static bool go_on(void *user)
+{
+    (void)user;
+    return !*interrupted();
+}
+
+/* ---- what is asked for ---- */
+
+static size_t output_total(const Slicing *slicing)
+{
+    return slicing->options->outputs.count ? slicing->options->outputs.count : 1;
+}
+
+static const char *output_name(const Slicing *slicing, size_t index)
+{
+    const Options *options = slicing->options;
+    Text           path    = {.arena = options->arena};
+    if (options->outputs.count > 0)
+        return options->outputs.items[index];
+    text_format(&path, "%s.svg", scene_name(options->arena, options->files.items[0]));
+    return path.bytes;
+}
+
+static KrsStatus check_output(const Slicing *slicing, const char *path)
+{
+    const Options     *options = slicing->options;
+    const SliceFormat *format  = slice_format(path);
+    const char        *first   = numbered_path(options, path, 1);
+    OutputError        error;
+    if (!format)
+        return say_usage(options, "`%s` is no section: its name must end in " SLICE_ENDINGS, path);
+    if (frame_places(path) > 1)
+        return say_usage(options, "`%s` has more than one place for the number of a layer", path);
+    if (!format->has_layers && frame_places(path) == 0 && !options->plane.given)
+        return say_usage(
+            options, "`%s` would have one layer; with %%04d in its name there is a file for each",
+            path);
+    KrsStatus status = check_scene_not_overwritten(options, first);
+    if (status == KRS_OK && output_check(first, &error) != KRS_OK) {
+        say("%s", error.message);
+        status = error.status;
+    }
+    return status;
+}
+
+static KrsStatus check_options(const Slicing *slicing)
+{
+    const Options *options = slicing->options;
+    KrsStatus      status  = KRS_OK;
+    if (options->layer == 0 && !options->plane.given)
+        return say_usage(options,
+                         "say how thick layers are, as in --layer 0.05, or where a section "
+                         "is, as in --plane=0,0,0.5,0,0,1");
+    if (options->layer > 0 && options->plane.given)
+        return say_usage(options, "--layer makes many sections, and --plane one");
+    for (size_t i = 0; i < output_total(slicing) && status == KRS_OK; i++)
+        status = check_output(slicing, output_name(slicing, i));
+    return status;
+}
+
+/* ---- where sections are ---- */
+
+static KrsSectionPlane plane_of(const Slicing *slicing, double at)
+{
+    KrsSectionPlane plane = slicing->plane;
+    if (slicing->sheet.stacked)
+        plane.point[slicing->options->axis] = at;
+    return plane;
+}
+
+/* One layer that is thicker than all is cut in the middle of what there is. */
+static Layer layer_of(const Slicing *slicing, uint32_t index)
+{
+    const SliceSheet *sheet = &slicing->sheet;
+    double            low = sheet->bottom + index * sheet->layer, high = low + sheet->layer;
+    double at = sheet->layer_count == 1 ? 0.5 * (low + fmin(high, sheet->top)) : 0.5 * (low + high);
+    return (Layer){NULL, index + 1, low, at, high};
+}
+
+/* What has its middle in the solid is a layer. */
+static KrsStatus find_layers(Slicing *slicing, const double low[3], const double high[3])
+{
+    const Options *options = slicing->options;
+    SliceSheet    *sheet   = &slicing->sheet;
+    sheet->layer_count     = 1;
+    if (options->plane.given) {
+        slicing->plane = options->plane.at;
+        return KRS_OK;
+    }
+    sheet->stacked                       = true;
+    sheet->layer                         = options->layer;
+    sheet->bottom                        = low[options->axis];
+    sheet->top                           = high[options->axis];
+    slicing->plane.normal[options->axis] = 1;
+    double count = fmax(1, ceil((sheet->top - sheet->bottom) / sheet->layer - 0.5 - 1e-9));
+    if (count > MOST_LAYERS)
+        return say_usage(options,
+                         "`%s` would have %.3g layers, and can have %d; --layer is too thin",
+                         options->files.items[0], count, MOST_LAYERS);
+    sheet->layer_count = (uint32_t)count;
+    return KRS_OK;
+}
+
+/* The box of the scene as the plane shows it. */
+static void find_sides(Slicing *slicing, const double low[3], const double high[3])
+{
+    SliceSheet *sheet = &slicing->sheet;
+    double      axes[2][3];
+    krs_plane_axes(&slicing->plane, axes[0], axes[1]);
+    for (int k = 0; k < 2; k++) {
+        sheet->low[k] = sheet->high[k] = 0;
+        for (int i = 0; i < 3; i++) {
+            sheet->low[k] += fmin(axes[k][i] * low[i], axes[k][i] * high[i]);
+            sheet->high[k] += fmax(axes[k][i] * low[i], axes[k][i] * high[i]);
+        }
+    }
+}
+
+static bool has_pictures(const Slicing *slicing)
+{
+    for (size_t i = 0; i < output_total(slicing); i++)
+        if (!slice_format(output_name(slicing, i))->has_layers)
+            return true;
+    return false;
+}
+
+static KrsStatus find_pixels(Slicing *slicing)
+{
+    const Options *options = slicing->options;
+    SliceSheet    *sheet   = &slicing->sheet;
+    double sides[2] = {sheet->high[0] - sheet->low[0], sheet->high[1] - sheet->low[1]}, pixels[2];
+    double longest  = fmax(sides[0], sides[1]);
+    sheet->per_unit = options->resolution > 0 ? options->resolution : USUAL_PIXELS / longest;
+    for (int k = 0; k < 2; k++)
+        pixels[k] = fmax(1, ceil(sides[k] * sheet->per_unit - 1e-6));
+    if (options->how.width > 0) {
+        pixels[0] = options->how.width;
+        pixels[1] = options->how.height;
+    }
+    double all = pixels[0] * pixels[1];
+    if (fmax(pixels[0], pixels[1]) > KRS_MOST_SIDE || all > MOST_PIXELS)
+        return say_usage(options,
+                         "pictures of %.0f x %.0f pixels are too large; a smaller --resolution "
+                         "has fewer",
+                         pixels[0], pixels[1]);
+    if (options->limits.pixels > 0 && all > (double)options->limits.pixels)
+        return say_usage(options,
+                         "pictures of %.0f x %.0f pixels are more than --limit pixels=%llu",
+                         pixels[0], pixels[1], (unsigned long long)options->limits.pixels);
+    sheet->width  = (uint32_t)pixels[0];
+    sheet->height = (uint32_t)pixels[1];
+    return KRS_OK;
+}
+
+static void find_units(Slicing *slicing)
+{
+    SliceSheet *sheet = &slicing->sheet;
+    int         unit  = slicing->options->mesh_units;
+    unit              = unit < 0 ? find_choice("mm", unit_choices) : unit;
+    sheet->unit       = unit_choices[unit].name;
+    sheet->metres     = metres_of_units[unit];
+    sheet->gray       = slicing->options->slice_exposure == EXPOSURE_GRAY;
+    sheet->digits     = (int)fmax(0, fmin(15, ceil(-log10(slicing->error)) + 3));
+}
+
+static void find_error(Slicing *slicing, const double low[3], const double high[3])
+{
+    const double usual = 1.0 / 2000, of_pixel = 1.0 / 16;
+    double       longest = 0;
+    for (int k = 0; k < 3; k++)
+        longest = fmax(longest, high[k] - low[k]);
+    slicing->error = slicing->options->slice_error;
+    if (slicing->error > 0)
+        return;
+    slicing->error = usual * longest;
+    if (slicing->sheet.width > 0)
+        slicing->error = fmin(slicing->error, of_pixel / slicing->sheet.per_unit);
+}
+
+static KrsStatus open_slicer(Slicing *slicing, const KrsMeshOptions *wishes)
+{
+    const Options  *options = slicing->options;
+    KrsSliceOptions how     = {.error        = slicing->error,
+                               .component    = wishes->component,
+                               .within       = wishes->within,
+                               .memory_limit = options->limits.memory,
+                               .go_on        = go_on};
+    memcpy(how.low, wishes->low, sizeof how.low);
+    memcpy(how.high, wishes->high, sizeof how.high);
+    krs_slicer_free(slicing->slicer);
+    KrsStatus status = krs_slicer_new(slicing->frame, &how, &slicing->slicer);
+    if (status == KRS_BAD_ARGUMENT)
+        return say_usage(options, "--error is too small for the size of `%s`",
+                         options->files.items[0]);
+    return status == KRS_OK ? KRS_OK : say_status(status, options->files.items[0]);
+}
+
+static KrsStatus find_wishes(Slicing *slicing)
+{
+    Meshing   meshing = {.options = slicing->options, .scene = slicing->scene};
+    double    low[3], high[3];
+    KrsStatus status = check_wishes(&meshing);
+    if (status == KRS_OK)
+        status = open_slicer(slicing, &meshing.how);
+    if (status != KRS_OK)
+        return status;
+    if (!krs_slicer_box(slicing->slicer, low, high)) {
+        say("there is nothing to write: `%s` has nothing solid%s", slicing->options->files.items[0],
+            meshing.how.within ? " in this box" : "");
+        return KRS_BAD_SCENE;
+    }
+    status = find_layers(slicing, low, high);
+    find_sides(slicing, low, high);
+    if (status == KRS_OK && has_pictures(slicing))
+        status = find_pixels(slicing);
+    if (status != KRS_OK)
+        return status;
+    find_error(slicing, low, high);
+    find_units(slicing);
+    return open_slicer(slicing, &meshing.how);
+}
+
+/* ---- files ---- */
+
+/* Calls `take` for each layer, in their order. */
+typedef KrsStatus TakeLayer(void *user, const Layer *layer);
+
+static KrsStatus make_some(Slicing *slicing, uint32_t first, size_t count, TakeLayer *take,
+                           void *user)
+{
+    KrsSectionPlane planes[AT_ONCE];
+    KrsSection     *sections[AT_ONCE];
+    for (size_t i = 0; i < count; i++)
+        planes[i] = plane_of(slicing, layer_of(slicing, first + (uint32_t)i).at);
+    stage_enter(STAGE_SLICE);
+    KrsStatus status = krs_slice(slicing->slicer, planes, count, sections);
+    if (status != KRS_OK)
+        return status == KRS_INTERRUPTED ? status
+                                         : say_status(status, slicing->options->files.items[0]);
+    for (size_t i = 0; i < count; i++) {
+        Layer layer   = layer_of(slicing, first + (uint32_t)i);
+        layer.section = sections[i];
+        if (status == KRS_OK)
+            status = take(user, &layer);
+        krs_section_free(sections[i]);
+    }
+    return status;
+}
+
+static KrsStatus make_layers(Slicing *slicing, TakeLayer *take, void *user)
+{
+    uint32_t  all    = slicing->sheet.layer_count;
+    KrsStatus status = KRS_OK;
+    for (uint32_t i = 0; i < all && status == KRS_OK; i += AT_ONCE) {
+        progress_show(&slicing->progress, (double)i / all);
+        status = make_some(slicing, i, all - i < AT_ONCE ? all - i : AT_ONCE, take, user);
+    }
+    return status;
+}
+
+typedef struct Target {
+    Slicing           *slicing;
+    const SliceFormat *format;
+    const char        *path;
+    const Layer       *layer; /* the only one of the file; NULL: it has all */
+    SliceFile         *file;
+    KrsStatus         *status; /* of making sections */
+} Target;
+
+static KrsStatus add_layer(void *user, const Layer *layer)
+{
+    const Target *target = user;
+    return target->format->add(target->file, layer) ? KRS_OK : KRS_IO_ERROR;
+}
+
+static bool fill_file(const void *user, OutputFile *output, OutputError *error)
+{
+    Target    target = *(const Target *)user;
+    SliceFile file   = {.sheet = &target.slicing->sheet, .file = output, .error = error};
+    target.file      = &file;
+    bool done        = target.format->begin(&file);
+    if (done && target.layer)
+        done = add_layer(&target, target.layer) == KRS_OK;
+    else if (done) {
+        KrsStatus status = make_layers(target.slicing, add_layer, &target);
+        done             = status == KRS_OK;
+        if (!done && error->status == KRS_OK) {
+            error->status  = KRS_INTERRUPTED; /* what else it was has been said */
+            *target.status = status;
+        }
+    }
+    return done && target.format->end(&file) && slice_file_flush(&file);
+}
+
+static KrsStatus write_layer(void *user, const Layer *layer)
+{
+    Target target = *(const Target *)user;
+    target.layer  = layer;
+    return write_output(numbered_path(target.slicing->options, target.path, layer->number),
+                        fill_file, &target);
+}
+
+static KrsStatus write_sections(Slicing *slicing, const char *path)
+{
+    KrsStatus made   = KRS_OK;
+    Target    target = {
+           .slicing = slicing, .format = slice_format(path), .path = path, .status = &made};
+    progress_start(&slicing->progress, slicing->options, 1);
+    KrsStatus status = frame_places(path) > 0 ? make_layers(slicing, write_layer, &target)
+                                              : write_output(path, fill_file, &target);
+    progress_end(&slicing->progress);
+    return made == KRS_OK ? status : made;
+}
+
+KrsStatus command_slice(Options *options)
+{
+    Slicing   slicing = {.options = options};
+    KrsScene *scene   = NULL;
+    KrsStatus status  = check_options(&slicing);
+    if (status == KRS_OK)
+        status = scene_open(options, options->files.items[0], &scene);
+    slicing.scene = scene;
+    if (status == KRS_OK)
+        status = scene_frame(options, scene, &slicing.frame);
+    if (status == KRS_OK)
+        status = find_wishes(&slicing);
+    for (size_t i = 0; i < output_total(&slicing) && status == KRS_OK; i++)
+        status = write_sections(&slicing, output_name(&slicing, i));
+    krs_slicer_free(slicing.slicer);
+    krs_frame_free(slicing.frame);
+    krs_scene_free(scene);
+    return status;
+}

@@ -1,0 +1,190 @@
+/* bend.c: chords bent to the outline. */
+#include "compiler/slice/section.h"
+
+#include <string.h>
+
+#include "compiler/base/vec.h"
+
+/* Chords are this part of the error from the outline; points that are left out later are the rest. */
+static const double PART_OF_CHORDS = 0.25;
+/* Chords as short as that part of the error stay as they are. */
+static const double SHORTEST = 1.0 / 256;
+/* Of a corner: how far it is from the outline, in errors, at most, and the cosine of the angle by which normals differ
+   at least. */
+static const double NEAR_CORNER = 1e-3, STRAIGHT_COSINE = 0.996;
+/* How far it is from both ends of the stretch, in its lengths: what is nearer is the corner at that end. */
+static const double NEAREST = 0.02, FARTHEST = 4;
+
+typedef struct Stretch {
+    double from[2], to[2];
+    bool   corners[2];                /* whether they are corners */
+    double along[2], left[2], length; /* unit vectors; the solid is on the left */
+} Stretch;
+
+static Stretch stretch_between(const OutlinePoint *from, const OutlinePoint *to)
+{
+    Stretch stretch = {.from    = {from->at[0], from->at[1]},
+                       .to      = {to->at[0], to->at[1]},
+                       .corners = {from->corner, to->corner}};
+    for (int k = 0; k < 2; k++)
+        stretch.along[k] = to->at[k] - from->at[k];
+    stretch.length = hypot(stretch.along[0], stretch.along[1]);
+    for (int k = 0; k < 2 && stretch.length > 0; k++)
+        stretch.along[k] /= stretch.length;
+    stretch.left[0] = -stretch.along[1];
+    stretch.left[1] = stretch.along[0];
+    return stretch;
+}
+
+/* A point at a part of the stretch, and so far to the left. */
+static void beside(const Stretch *stretch, double part, double left, double at[2])
+{
+    for (int k = 0; k < 2; k++)
+        at[k] = stretch->from[k] + part * stretch->length * stretch->along[k] +
+                left * stretch->left[k];
+}
+
+/* Whether the outline is as near at four places along the stretch. */
+static bool is_near(const Section *s, const Stretch *stretch, double reach)
+{
+    static const double places[4] = {0.17, 0.39, 0.61, 0.87};
+    double              points[8][2], distances[8];
+    for (int i = 0; i < 8; i++)
+        beside(stretch, places[i / 2], i % 2 ? reach : -reach, points[i]);
+    slice_distances(s->field, &s->plane, (const double(*)[2])points, 8, distances);
+    for (int i = 0; i < 8; i++)
+        if (is_inside(distances[i]) != (i % 2 == 1))
+            return false;
+    return true;
+}
+
+/* The outline across the middle of a stretch, no farther off than that is long: to the right of what is inside, or to
+   the left.  False: it is not there. */
+static bool find_middle(const Section *s, const Stretch *stretch, double at[2])
+{
+    enum { STEPS = 7 };
+    double points[STEPS + 1][2], distances[STEPS + 1], reach = stretch->length / (1 << (STEPS - 1));
+    beside(stretch, 0.5, 0, points[0]);
+    slice_distances(s->field, &s->plane, (const double(*)[2])points, 1, distances);
+    bool inside = is_inside(distances[0]);
+    for (int i = 1; i <= STEPS; i++, reach *= 2)
+        beside(stretch, 0.5, inside ? -reach : reach, points[i]);
+    slice_distances(s->field, &s->plane, (const double(*)[2])points, STEPS + 1, distances);
+    for (int i = 1; i <= STEPS; i++) {
+        int       in = inside ? i - 1 : i, out = inside ? i : i - 1;
+        PlaneRoot root = {.at_outside = distances[out], .at_inside = distances[in]};
+        if (is_inside(distances[i]) == inside)
+            continue;
+        memcpy(root.outside, points[out], sizeof root.outside);
+        memcpy(root.inside, points[in], sizeof root.inside);
+        slice_roots(s->field, &s->plane, &root, 1, s->enough);
+        memcpy(at, root.at, sizeof root.at);
+        return true;
+    }
+    return false;
+}
+
+/* What is known at both ends: normals of the outline, and how steep the distance is. */
+typedef struct Ends {
+    double normals[2][2], steep[2];
+} Ends;
+
+/* Normals jump at corners, so there they are those of a place a little farther on. */
+static bool find_ends(const Section *s, const Stretch *stretch, Ends *ends)
+{
+    static const double BESIDE_CORNER = 0.01;
+    double              points[2][2];
+    beside(stretch, stretch->corners[0] ? BESIDE_CORNER : 0, 0, points[0]);
+    beside(stretch, stretch->corners[1] ? 1 - BESIDE_CORNER : 1, 0, points[1]);
+    slice_gradients(s->field, &s->plane, (const double(*)[2])points, 1e-3 * stretch->length,
+                    ends->normals);
+    for (int i = 0; i < 2; i++) {
+        ends->steep[i] = hypot(ends->normals[i][0], ends->normals[i][1]);
+        if (!(ends->steep[i] > 0))
+            return false;
+        ends->normals[i][0] /= ends->steep[i];
+        ends->normals[i][1] /= ends->steep[i];
+    }
+    return true;
+}
+
+/* Where the tangents at both ends meet, if that is a corner of the outline. */
+static bool find_corner_of(const Section *s, const Stretch *stretch, const Ends *ends, double at[2])
+{
+    const double *n = ends->normals[0], *m = ends->normals[1];
+    double        cosine = n[0] * m[0] + n[1] * m[1], sine = n[0] * m[1] - n[1] * m[0];
+    double        distance,
+        across = stretch->length * (m[0] * stretch->along[0] + m[1] * stretch->along[1]);
+    if (cosine > STRAIGHT_COSINE || sine == 0)
+        return false;
+    /* Forward along the first tangent, and then along the second. */
+    at[0]       = stretch->from[0] - n[1] * across / sine;
+    at[1]       = stretch->from[1] + n[0] * across / sine;
+    double from = across / sine / stretch->length;
+    double to   = (m[0] * (stretch->to[1] - at[1]) - m[1] * (stretch->to[0] - at[0])) /
+                stretch->length;
+    if (from < NEAREST || to < NEAREST || from > FARTHEST)
+        return false;
+    slice_distances(s->field, &s->plane, (const double(*)[2])at, 1, &distance);
+    return fabs(distance) <= NEAR_CORNER * s->error * min2(ends->steep[0], ends->steep[1]);
+}
+
+/* Whether an arc with such tangents is as near to the stretch. */
+static bool has_tangents(const Stretch *stretch, const Ends *ends, double reach)
+{
+    for (int i = 0; i < 2; i++) {
+        double sine = ends->normals[i][0] * stretch->along[0] +
+                      ends->normals[i][1] * stretch->along[1];
+        if (0.25 * stretch->length * fabs(sine) > 1.5 * reach)
+            return false;
+    }
+    return true;
+}
+
+static void bend(Section *s, const OutlinePoint *from, const OutlinePoint *to, int depth)
+{
+    enum { MOST_HALVINGS = 30 };
+    double       reach   = PART_OF_CHORDS * s->error;
+    Stretch      stretch = stretch_between(from, to);
+    OutlinePoint point;
+    Ends         ends;
+    if (stretch.length < SHORTEST * s->error || depth > MOST_HALVINGS)
+        return;
+    bool known   = find_ends(s, &stretch, &ends);
+    point.corner = known && find_corner_of(s, &stretch, &ends, point.at);
+    if (!point.corner) {
+        bool straight = !known || has_tangents(&stretch, &ends, reach);
+        if ((straight && is_near(s, &stretch, reach)) || !find_middle(s, &stretch, point.at))
+            return;
+    }
+    bend(s, from, &point, depth + 1);
+    array_push_large(&s->arena, &s->bends, point);
+    bend(s, &point, to, depth + 1);
+}
+
+static void box_of_chord(const Section *s, size_t item, double low[2], double high[2])
+{
+    const Chord  *chord = &s->chords.items[item];
+    const double *from  = s->crossings.items[chord->from].point;
+    const double *to    = s->crossings.items[chord->to].point;
+    double        wider = 0.5 * hypot(to[0] - from[0], to[1] - from[1]) + s->error;
+    for (int k = 0; k < 2; k++) {
+        low[k]  = min2(from[k], to[k]) - wider;
+        high[k] = max2(from[k], to[k]) + wider;
+    }
+}
+
+static void bend_some(Section *s, size_t first, size_t count)
+{
+    for (size_t i = first; i < first + count; i++) {
+        Chord *chord      = &s->chords.items[i];
+        chord->first      = (uint32_t)s->bends.count;
+        OutlinePoint from = {.corner = false}, to = from;
+        memcpy(from.at, s->crossings.items[chord->from].point, sizeof from.at);
+        memcpy(to.at, s->crossings.items[chord->to].point, sizeof to.at);
+        bend(s, &from, &to, 0);
+        chord->count = (uint32_t)s->bends.count - chord->first;
+    }
+}
+
+void bend_chords(Section *s) { in_groups(s, s->chords.count, box_of_chord, bend_some); }

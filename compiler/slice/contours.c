@@ -1,0 +1,124 @@
+/* contours.c: the contours of a section, from chord to chord. */
+#include "compiler/slice/section.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* What is left out of contours, and where arcs may be, in errors; the rest is that of chords. */
+static const double PART_OF_POINTS = 0.5, PART_OF_ARCS = 0.02;
+
+typedef struct Result {
+    OutlinePoint *points; /* of the contour at hand */
+    double       *bulges;
+    size_t        capacity;
+    KrsSection   *section;
+    size_t        point_room, contour_room;
+} Result;
+
+/* Points from a crossing on until it comes again; 0: chords do not lead back. */
+static size_t follow(const Section *s, uint32_t start, bool *seen, OutlinePoint *points)
+{
+    size_t   count = 0;
+    uint32_t at    = start;
+    do {
+        const Crossing *crossing = &s->crossings.items[at];
+        if (seen[at] || crossing->chord == 0)
+            return 0;
+        const Chord *chord = &s->chords.items[crossing->chord - 1];
+        seen[at]           = true;
+        points[count++]    = (OutlinePoint){{crossing->point[0], crossing->point[1]}, false};
+        memcpy(points + count, s->bends.items + chord->first, chord->count * sizeof *points);
+        count += chord->count;
+        at = chord->to;
+    } while (at != start);
+    return count;
+}
+
+/* Twice the area would lose digits far from the origin. */
+static double area_of(const OutlinePoint *points, const double *bulges, size_t count)
+{
+    double area = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double *a = points[i].at, *b = points[(i + 1) % count].at, *o = points[0].at;
+        area += 0.5 * ((a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]));
+        if (bulges && bulges[i] != 0) {
+            double chord = hypot(b[0] - a[0], b[1] - a[1]), angle = 4 * atan(bulges[i]);
+            double radius = chord / (2 * sin(0.5 * angle));
+            area += 0.5 * radius * radius * (angle - sin(angle));
+        }
+    }
+    return area;
+}
+
+static void add_contour(Section *s, Result *result, size_t count)
+{
+    KrsSection *section = result->section;
+    KrsContour  contour = {.first = section->point_count};
+    contour.count       = s->arcs ? fit_arcs(result->points, result->bulges, count,
+                                             PART_OF_ARCS * s->error, &s->arena)
+                                  : leave_out_points(result->points, count, PART_OF_POINTS * s->error,
+                                                     &s->arena);
+    contour.area        = area_of(result->points, s->arcs ? result->bulges : NULL, contour.count);
+    if (contour.count < (s->arcs ? 2 : 3) || contour.area == 0)
+        return;
+    for (size_t i = 0; i < contour.count; i++) {
+        memcpy(section->points[contour.first + i], result->points[i].at, sizeof *section->points);
+        if (s->arcs)
+            section->bulges[contour.first + i] = result->bulges[i];
+    }
+    section->point_count += contour.count;
+    section->contours[section->contour_count++] = contour;
+}
+
+/* Room for all points, of which few stay. */
+static KrsSection *section_new(const Section *s, size_t points, size_t contours)
+{
+    KrsSection *section = calloc(1, sizeof *section);
+    if (!section)
+        return NULL;
+    section->points   = malloc((points + 1) * sizeof *section->points);
+    section->bulges   = s->arcs ? malloc((points + 1) * sizeof *section->bulges) : NULL;
+    section->contours = malloc((contours + 1) * sizeof *section->contours);
+    if (section->points && section->contours && (section->bulges || !s->arcs))
+        return section;
+    krs_section_free(section);
+    return NULL;
+}
+
+static void give_back_room(KrsSection *section)
+{
+    void *less = realloc(section->points, (section->point_count + 1) * sizeof *section->points);
+    section->points = less ? less : section->points;
+    less = realloc(section->contours, (section->contour_count + 1) * sizeof *section->contours);
+    section->contours = less ? less : section->contours;
+}
+
+KrsSection *section_contours(Section *s)
+{
+    size_t room   = s->crossings.count + s->bends.count;
+    Result result = {.section = section_new(s, room, s->crossings.count)};
+    if (!result.section)
+        return NULL;
+    bool     *seen   = arena_new_array(&s->arena, bool, s->crossings.count + 1);
+    ArenaMark before = arena_mark(&s->arena);
+    result.points    = arena_new_array(&s->arena, OutlinePoint, room + 1);
+    result.bulges    = arena_new_array(&s->arena, double, room + 1);
+    for (uint32_t i = 0; i < s->crossings.count; i++) {
+        size_t count = seen[i] ? 0 : follow(s, i, seen, result.points);
+        if (count > 0)
+            add_contour(s, &result, count);
+    }
+    arena_rewind(&s->arena, before);
+    give_back_room(result.section);
+    return result.section;
+}
+
+void krs_section_free(KrsSection *section)
+{
+    if (!section)
+        return;
+    free(section->points);
+    free(section->bulges);
+    free(section->contours);
+    free(section);
+}

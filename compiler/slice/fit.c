@@ -1,0 +1,212 @@
+/* fit.c: fewer points of a contour, and arcs. */
+#include "compiler/slice/section.h"
+
+#include <string.h>
+
+#include "compiler/base/minmax.h"
+
+/* ---- where runs begin and end ---- */
+
+static double distance2(const double a[2], const double b[2])
+{
+    return hypot(b[0] - a[0], b[1] - a[1]);
+}
+
+static size_t farthest_from(const OutlinePoint *points, size_t count, const double from[2])
+{
+    size_t farthest = 0;
+    for (size_t i = 1; i < count; i++)
+        if (distance2(points[i].at, from) > distance2(points[farthest].at, from))
+            farthest = i;
+    return farthest;
+}
+
+/* Begins with a corner, or else with what is farthest from somewhere, and ends with the first point once more, for
+   which there is room. */
+static void turn_to_corner(OutlinePoint *points, size_t count, Arena *scratch)
+{
+    size_t first = 0;
+    while (first < count && !points[first].corner)
+        first++;
+    if (first == count)
+        first = farthest_from(points, count, points[0].at);
+    OutlinePoint *before = arena_new_array(scratch, OutlinePoint, first + 1);
+    memcpy(before, points, first * sizeof *points);
+    memmove(points, points + first, (count - first) * sizeof *points);
+    memcpy(points + count - first, before, first * sizeof *points);
+    points[0].corner = true;
+    points[count]    = points[0];
+}
+
+/* ---- points ---- */
+
+static double distance_to_line(const double at[2], const double from[2], const double to[2])
+{
+    double along[2] = {to[0] - from[0], to[1] - from[1]},
+           off[2]   = {at[0] - from[0], at[1] - from[1]};
+    double length2  = along[0] * along[0] + along[1] * along[1];
+    double part     = length2 > 0 ? (off[0] * along[0] + off[1] * along[1]) / length2 : 0;
+    part            = max2(0, min2(1, part));
+    return hypot(off[0] - part * along[0], off[1] - part * along[1]);
+}
+
+/* The point between two that is farthest from the line between them, if that is more than the error; or 0. */
+static size_t farthest_between(const OutlinePoint *points, size_t from, size_t to, double error)
+{
+    size_t farthest = 0;
+    for (size_t i = from + 1; i < to; i++) {
+        double distance = distance_to_line(points[i].at, points[from].at, points[to].at);
+        if (distance > error) {
+            error    = distance;
+            farthest = i;
+        }
+    }
+    return farthest;
+}
+
+/* Of a contour without corners both ends are one point, so it is halved before. */
+static void keep_needed(const OutlinePoint *points, size_t from, size_t to, double error,
+                        bool *kept, Arena *scratch)
+{
+    struct {
+        size_t (*items)[2];
+        size_t count, capacity;
+    } open = {0};
+    array_reserve_large(scratch, &open);
+    memcpy(open.items[open.count++], (size_t[2]){from, to}, sizeof *open.items);
+    kept[from] = kept[to] = true;
+    while (open.count > 0) {
+        size_t run[2];
+        memcpy(run, open.items[--open.count], sizeof run);
+        size_t at = farthest_between(points, run[0], run[1], error);
+        if (at == 0)
+            continue;
+        kept[at] = true;
+        for (int i = 0; i < 2; i++) {
+            array_reserve_large(scratch, &open);
+            memcpy(open.items[open.count++],
+                   i ? ((size_t[2]){at, run[1]}) : ((size_t[2]){run[0], at}), sizeof *open.items);
+        }
+    }
+}
+
+size_t leave_out_points(OutlinePoint *points, size_t count, double error, Arena *scratch)
+{
+    ArenaMark before = arena_mark(scratch);
+    bool     *kept   = arena_new_array(scratch, bool, count + 1);
+    size_t    left   = 0;
+    turn_to_corner(points, count, scratch);
+    for (size_t from = 0, to; from < count; from = to) {
+        for (to = from + 1; !points[to].corner;)
+            to++;
+        if (from == 0 && to == count) {
+            size_t half = farthest_from(points, count, points[0].at);
+            keep_needed(points, from, half, error, kept, scratch);
+            keep_needed(points, half, to, error, kept, scratch);
+        } else
+            keep_needed(points, from, to, error, kept, scratch);
+    }
+    for (size_t i = 0; i < count; i++)
+        if (kept[i])
+            points[left++] = points[i];
+    arena_rewind(scratch, before);
+    return left;
+}
+
+/* ---- lines and arcs ---- */
+
+/* A line, or an arc: that from a point to another through the one in the middle between them. */
+typedef struct Piece2 {
+    double from[2], to[2], centre[2], radius, bulge;
+} Piece2;
+
+static Piece2 line_of(const double from[2], const double to[2])
+{
+    return (Piece2){.from = {from[0], from[1]}, .to = {to[0], to[1]}};
+}
+
+static bool arc_of(const double from[2], const double via[2], const double to[2], Piece2 *arc)
+{
+    double a[2] = {via[0] - from[0], via[1] - from[1]}, b[2] = {to[0] - from[0], to[1] - from[1]};
+    double cross = a[0] * b[1] - a[1] * b[0];
+    double aa = a[0] * a[0] + a[1] * a[1], bb = b[0] * b[0] + b[1] * b[1];
+    if (fabs(cross) <= 1e-12 * bb)
+        return false;
+    *arc           = line_of(from, to);
+    arc->centre[0] = from[0] + 0.5 * (b[1] * aa - a[1] * bb) / cross;
+    arc->centre[1] = from[1] + 0.5 * (a[0] * bb - b[0] * aa) / cross;
+    arc->radius    = distance2(arc->centre, from);
+    /* Angles at the circle are half of those in the centre. */
+    double c[2]  = {to[0] - via[0], to[1] - via[1]};
+    double angle = atan2(a[0] * c[1] - a[1] * c[0], a[0] * c[0] + a[1] * c[1]);
+    arc->bulge   = tan(0.5 * angle);
+    return fabs(angle) < 0.75 * M_PI;
+}
+
+static bool fits(const OutlinePoint *points, size_t from, size_t to, const Piece2 *piece,
+                 double error)
+{
+    for (size_t i = from + 1; i < to; i++) {
+        double off = piece->radius > 0
+                         ? fabs(distance2(points[i].at, piece->centre) - piece->radius)
+                         : distance_to_line(points[i].at, piece->from, piece->to);
+        if (!(off <= error))
+            return false;
+    }
+    return true;
+}
+
+static bool fit_run(const OutlinePoint *points, size_t from, size_t to, double error, Piece2 *piece)
+{
+    *piece = line_of(points[from].at, points[to].at);
+    if (fits(points, from, to, piece, error))
+        return true;
+    return to - from >= 3 &&
+           arc_of(points[from].at, points[(from + to) / 2].at, points[to].at, piece) &&
+           fits(points, from, to, piece, error);
+}
+
+/* The longest run from a point on that one piece fits, up to `end`: doubled until it does not, then halved between. */
+static size_t longest_run(const OutlinePoint *points, size_t from, size_t end, double error,
+                          Piece2 *best)
+{
+    size_t good = from + 1, bad = end + 1;
+    *best = line_of(points[from].at, points[good].at);
+    for (size_t step = 2; good < end && bad > end; step *= 2) {
+        size_t to = from + step < end ? from + step : end;
+        Piece2 piece;
+        if (fit_run(points, from, to, error, &piece)) {
+            good  = to;
+            *best = piece;
+        } else if (step >= 8)
+            bad = to;
+    }
+    while (bad - good > 1 && bad <= end) {
+        size_t to = good + (bad - good) / 2;
+        Piece2 piece;
+        if (fit_run(points, from, to, error, &piece)) {
+            good  = to;
+            *best = piece;
+        } else
+            bad = to;
+    }
+    return good;
+}
+
+size_t fit_arcs(OutlinePoint *points, double *bulges, size_t count, double error, Arena *scratch)
+{
+    ArenaMark before = arena_mark(scratch);
+    size_t    left   = 0;
+    turn_to_corner(points, count, scratch);
+    for (size_t from = 0, end = 0, to; from < count; from = to) {
+        Piece2 piece;
+        if (end <= from)
+            for (end = from + 1; !points[end].corner;)
+                end++;
+        to             = longest_run(points, from, end, error, &piece);
+        points[left]   = points[from];
+        bulges[left++] = piece.bulge;
+    }
+    arena_rewind(scratch, before);
+    return left;
+}

@@ -1,0 +1,128 @@
+/*
+ * section.h: how one section is made.
+ *
+ * 1. A quadtree is refined where the outline may be, down to cells in which both derivatives are proven to keep their
+ *    sign, or to cells of the error (tree.c).  Where they keep it, signs at corners tell all of the topology.
+ * 2. Each edge of cells whose ends differ in sign has a crossing, an exact root.  Cells join their crossings by chords:
+ *    next to each other along the cell's border, so that chords do not cross (chords.c).
+ * 3. Chords are bent to the outline by exact roots across them; corners are where tangents of both ends meet (bend.c).
+ * 4. Contours are followed from crossing to crossing, and lose the points that the error permits to leave out, or
+ *    become lines and arcs (contours.c, fit.c).
+ */
+#ifndef KRS_SLICE_SECTION_H
+#define KRS_SLICE_SECTION_H
+
+#include <stdatomic.h>
+
+#include "compiler/slice/plane.h"
+
+/* Places of corners of cells are whole numbers below that; the root is a square of that side. */
+enum { DEEPEST = 28, WHOLE_SIDE = 1 << DEEPEST };
+
+typedef struct Cell {
+    uint32_t at[2]; /* its lowest corner */
+    uint32_t side;
+} Cell;
+
+/* A corner of cells. */
+typedef struct Corner {
+    uint32_t at[2];
+    uint32_t next; /* of its slot, + 1 */
+    double   distance;
+} Corner;
+
+/* Where the outline crosses an edge from a corner on along an axis. */
+typedef struct Crossing {
+    uint32_t at[2], side, next;
+    uint8_t  axis;
+    bool     inside_first; /* the corner at which the edge begins is inside */
+    double   point[2];
+    uint32_t chord; /* + 1 of that which begins here */
+} Crossing;
+
+/* From a crossing to the next; in between are bends. */
+typedef struct Chord {
+    uint32_t from, to, first, count;
+} Chord;
+
+typedef struct OutlinePoint {
+    double at[2];
+    bool   corner;
+} OutlinePoint;
+
+typedef struct Section {
+    Memory     memory;
+    Arena      arena;
+    MeshField *field;
+    SlicePlane plane;
+    double     low[2], side; /* of the root */
+    double     error, enough, skin;
+    uint32_t   finest; /* side of the smallest cells */
+    bool       arcs;
+    bool (*go_on)(void *user); /* NULL: another thread asks */
+    void        *user;
+    atomic_bool *stopped;
+    size_t       looked; /* at cells */
+
+    struct {
+        Corner *items;
+        size_t  count, capacity;
+    } corners;
+    struct {
+        Cell  *items;
+        size_t count, capacity;
+    } leaves;
+    struct {
+        Crossing *items;
+        size_t    count, capacity;
+    } crossings;
+    struct {
+        Chord *items;
+        size_t count, capacity;
+    } chords;
+    struct {
+        OutlinePoint *items;
+        size_t        count, capacity;
+    } bends;
+    struct {
+        uint32_t *items;
+        size_t    count, capacity;
+    } around; /* crossings of the cell at hand */
+    struct SlotTable {
+        uint32_t *items;
+        size_t    count;
+    } corner_slots, crossing_slots;
+} Section;
+
+static inline double place_of(const Section *s, int axis, uint32_t whole)
+{
+    return s->low[axis] + s->side * ((double)whole / WHOLE_SIDE);
+}
+
+static inline bool is_inside(double distance) { return distance <= 0; }
+
+/* The root cell around a box of the scene. */
+void section_root(Section *s, const double low[3], const double high[3]);
+
+/* tree.c; false: it was stopped. */
+bool          find_leaves(Section *s);
+const Corner *find_corner(const Section *s, const uint32_t at[2]);
+uint64_t      hash_place(const uint32_t at[2], uint32_t more);
+/* Calls `work` for groups of few items that are next to each other, with the field pruned to their boxes. */
+typedef void BoxOfItem(const Section *s, size_t item, double low[2], double high[2]);
+typedef void WorkOnItems(Section *s, size_t first, size_t count);
+void         in_groups(Section *s, size_t count, BoxOfItem *box, WorkOnItems *work);
+
+/* chords.c */
+void find_chords(Section *s);
+/* bend.c */
+void bend_chords(Section *s);
+
+/* contours.c: the points of a contour, which is closed; NULL behind the last. */
+KrsSection *section_contours(Section *s);
+/* fit.c: leaves out points, up to a distance; returns how many stay. */
+size_t leave_out_points(OutlinePoint *points, size_t count, double error, Arena *scratch);
+/* Makes lines and arcs of points, up to a distance; returns how many pieces there are. */
+size_t fit_arcs(OutlinePoint *points, double *bulges, size_t count, double error, Arena *scratch);
+
+#endif

@@ -1,0 +1,232 @@
+/* slice.c: krs_slice: what is asked for, and what is given back. */
+#include <setjmp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "compiler/base/parallel.h"
+#include "compiler/base/vec.h"
+#include "compiler/slice/section.h"
+
+static const double DEFAULT_ERROR = 1.0 / 2000, LEAST_ERROR = 1e-7;
+/* Of coordinates: how far roots are known, and by how much solids are thicker, so that faces that touch, and faces in
+   the plane itself, are not decided by rounding. */
+static const double ENOUGH = 1e-14, SKIN = 1e-12;
+
+struct KrsSlicer {
+    Memory          memory;
+    Arena           arena;
+    KrsSliceOptions options;
+    MeshSolid       solid;
+    double          low[3], high[3], error, size; /* the largest coordinate */
+    size_t          parts;
+    MeshField       fields[MOST_PARTS];
+};
+
+/* ---- the slicer ---- */
+
+static bool find_box(KrsSlicer *slicer)
+{
+    const KrsSliceOptions *options = &slicer->options;
+    double                 longest = 0;
+    bool                   empty   = false;
+    for (int k = 0; k < 3; k++) {
+        Range range     = slicer->solid.box.axis[k];
+        slicer->low[k]  = options->within ? max2(range.low, options->low[k]) : range.low;
+        slicer->high[k] = options->within ? min2(range.high, options->high[k]) : range.high;
+        empty           = empty || slicer->low[k] > slicer->high[k];
+        longest         = max2(longest, slicer->high[k] - slicer->low[k]);
+    }
+    for (int k = 0; k < 3 && empty; k++)
+        slicer->low[k] = slicer->high[k] = 0;
+    slicer->size = max2(largest3(slicer->low), largest3(slicer->high));
+    if (empty)
+        slicer->parts = 0;
+    if (!isfinite(slicer->size))
+        return false;
+    slicer->error = slicer->options.error > 0 ? slicer->options.error : DEFAULT_ERROR * longest;
+    return empty || slicer->error >= LEAST_ERROR * longest;
+}
+
+static KrsStatus open_fields(KrsSlicer *slicer, KrsFrame *frame)
+{
+    jmp_buf            exhausted;
+    volatile KrsStatus status = KRS_OK;
+    slicer->memory.exhausted  = &exhausted;
+    if (setjmp(exhausted) != 0)
+        return KRS_OUT_OF_MEMORY;
+    for (size_t i = 0; i < slicer->parts && status == KRS_OK; i++) {
+        MeshField *field = &slicer->fields[i];
+        *field           = (MeshField){
+                      .solid = &slicer->solid, .cut = slicer->options.within, .skin = SKIN * slicer->size};
+        memcpy(field->low, slicer->low, sizeof field->low);
+        memcpy(field->high, slicer->high, sizeof field->high);
+        status = frame_copy_of(frame, &field->frame);
+        if (status == KRS_OK) {
+            frame_refresh_points(field->frame);
+            field_open(field, &slicer->arena);
+        }
+    }
+    return status;
+}
+
+static KrsStatus open_slicer(KrsSlicer *slicer, KrsFrame *frame)
+{
+    const KrsScene *scene  = frame->scene;
+    size_t          number = slicer->options.component;
+    bool           *wanted = number ? calloc(scene->component_count + 1, sizeof *wanted) : NULL;
+    slicer->solid.roots    = malloc(solid_root_bytes(scene));
+    if (!slicer->solid.roots || (number && !wanted)) {
+        free(wanted);
+        return KRS_OUT_OF_MEMORY;
+    }
+    if (wanted)
+        wanted[scene->lowered[number - 1]] = true;
+    solid_of_components(scene, wanted, &slicer->solid);
+    free(wanted);
+    slicer->parts = parallel_parts();
+    return find_box(slicer) ? open_fields(slicer, frame) : KRS_BAD_ARGUMENT;
+}
+
+KrsStatus krs_slicer_new(KrsFrame *frame, const KrsSliceOptions *options, KrsSlicer **result)
+{
+    static const KrsSliceOptions none  = {0};
+    const KrsScene              *scene = frame->scene;
+    *result                            = NULL;
+    if (options && (options->component > scene->shown_count || !(options->error >= 0) ||
+                    isinf(options->error)))
+        return KRS_BAD_ARGUMENT;
+    if (scene->program.sheets)
+        return KRS_BAD_ARGUMENT;
+    KrsSlicer *slicer = calloc(1, sizeof *slicer);
+    if (!slicer)
+        return KRS_OUT_OF_MEMORY;
+    slicer->options      = options ? *options : none;
+    slicer->memory.limit = slicer->options.memory_limit ? slicer->options.memory_limit
+                                                        : KRS_USUAL_MEMORY;
+    slicer->arena.memory = &slicer->memory;
+    KrsStatus status     = open_slicer(slicer, frame);
+    if (status == KRS_OK)
+        *result = slicer;
+    else
+        krs_slicer_free(slicer);
+    return status;
+}
+
+void krs_slicer_free(KrsSlicer *slicer)
+{
+    if (!slicer)
+        return;
+    for (size_t i = 0; i < MOST_PARTS; i++)
+        frame_free(slicer->fields[i].frame);
+    arena_free(&slicer->arena);
+    free(slicer->solid.roots);
+    free(slicer);
+}
+
+bool krs_slicer_box(const KrsSlicer *slicer, double low[3], double high[3])
+{
+    memcpy(low, slicer->low, sizeof slicer->low);
+    memcpy(high, slicer->high, sizeof slicer->high);
+    return slicer->parts > 0;
+}
+
+/* ---- sections ---- */
+
+/* Some sections, by all threads: each takes the next. */
+typedef struct Slicing {
+    KrsSlicer             *slicer;
+    const KrsSectionPlane *planes;
+    size_t                 count;
+    KrsSection           **sections;
+    atomic_size_t          next;
+    atomic_bool            stopped;
+    KrsStatus              statuses[MOST_PARTS];
+} Slicing;
+
+static KrsStatus make_section(Section *s, const KrsSlicer *slicer, KrsSection **result)
+{
+    jmp_buf exhausted;
+    s->memory.exhausted = &exhausted;
+    if (setjmp(exhausted) != 0)
+        return KRS_OUT_OF_MEMORY;
+    section_root(s, slicer->low, slicer->high);
+    if (!find_leaves(s))
+        return KRS_INTERRUPTED;
+    find_chords(s);
+    bend_chords(s);
+    *result = section_contours(s);
+    return *result ? KRS_OK : KRS_OUT_OF_MEMORY;
+}
+
+static bool plane_is_valid(const KrsSectionPlane *plane)
+{
+    double normal[3];
+    memcpy(normal, plane->normal, sizeof normal);
+    return normalize3(normal) && isfinite(dot3(plane->point, normal));
+}
+
+static KrsStatus slice_plane_of(Slicing *slicing, size_t part, size_t number)
+{
+    KrsSlicer *slicer     = slicing->slicer;
+    Section    s          = {.field   = &slicer->fields[part],
+                             .plane   = slice_plane(&slicing->planes[number]),
+                             .error   = slicer->error,
+                             .enough  = ENOUGH * slicer->size,
+                             .arcs    = slicer->options.arcs,
+                             .skin    = SKIN * slicer->size,
+                             .go_on   = part == 0 ? slicer->options.go_on : NULL,
+                             .user    = slicer->options.user,
+                             .stopped = &slicing->stopped};
+    s.memory.limit        = slicer->memory.limit / slicer->parts;
+    s.arena.memory        = &s.memory;
+    KrsStatus status      = make_section(&s, slicer, &slicing->sections[number]);
+    s.field->region_count = 0;
+    arena_free(&s.arena);
+    return status;
+}
+
+static void slice_some(void *task, size_t part, size_t parts)
+{
+    Slicing   *slicing = task;
+    KrsStatus *status  = &slicing->statuses[part];
+    size_t     number;
+    (void)parts;
+    while (part < slicing->slicer->parts && *status == KRS_OK &&
+           (number = atomic_fetch_add(&slicing->next, 1)) < slicing->count)
+        *status = slice_plane_of(slicing, part, number);
+    if (*status != KRS_OK)
+        atomic_store(&slicing->stopped, true);
+}
+
+static void free_sections(KrsSection **sections, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        krs_section_free(sections[i]);
+        sections[i] = NULL;
+    }
+}
+
+KrsStatus krs_slice(KrsSlicer *slicer, const KrsSectionPlane *planes, size_t count,
+                    KrsSection **sections)
+{
+    Slicing   slicing = {.slicer = slicer, .planes = planes, .count = count, .sections = sections};
+    KrsStatus status  = KRS_OK;
+    for (size_t i = 0; i < count; i++) {
+        sections[i] = NULL;
+        if (!plane_is_valid(&planes[i]))
+            status = KRS_BAD_ARGUMENT;
+    }
+    if (status != KRS_OK)
+        return status;
+    if (slicer->parts > 0)
+        run_in_parallel(slice_some, &slicing);
+    for (size_t i = 0; i < MOST_PARTS; i++)
+        if (slicing.statuses[i] != KRS_OK && (status == KRS_OK || status == KRS_INTERRUPTED))
+            status = slicing.statuses[i];
+    for (size_t i = 0; i < count && status == KRS_OK; i++)
+        if (!sections[i] && !(sections[i] = calloc(1, sizeof **sections)))
+            status = KRS_OUT_OF_MEMORY;
+    if (status != KRS_OK)
+        free_sections(sections, count);
+    return status;
+}

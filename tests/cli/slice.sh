@@ -1,0 +1,180 @@
+#!/bin/sh
+# slice.sh: `krs slice`: files that other programs accept, their areas, and what is refused.
+. "$(dirname "$0")/common.sh"
+plan 31
+
+echo 'show sphere(0.5);' >ball.krs
+echo 'show box([4, 3, 2]) - cylinder(1, 5).rotate([1, 0, 0], 90deg);' >plate.krs
+echo 'let floor = half_space([0, 1, 0], 0); show floor; let ball = sphere(1); show ball;' >floor.krs
+echo 'camera { eye: [0, 0, 5] }' >empty.krs
+
+# Areas of files, by readers that share nothing with krs: areas FILE prints one for each layer.
+cat >areas.py <<'END'
+import re, struct, sys, zlib
+def shoelace(points):
+    return sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(points, points[1:] + points[:1])) / 2
+def svg(text):
+    import xml.etree.ElementTree as tree
+    for group in tree.fromstring(text.encode()):
+        area = 0
+        for path in group:
+            for part in path.get("d").split("Z"):
+                numbers = [float(x) for x in re.findall(r"-?\d+\.?\d*", part)]
+                area -= shoelace(list(zip(numbers[::2], numbers[1::2])))
+        yield area
+def cli(text):
+    area, count = None, 0
+    for line in text.split("\n"):
+        if line.startswith("$$LAYER/"): # the first tells where the second begins
+            if area is not None:
+                assert count > 1 or area == 0
+                yield from [area] if count > 1 else []
+            area, count = 0, count + 1
+        if line.startswith("$$POLYLINE/"):
+            numbers = [float(x) for x in line[11:].split(",")]
+            points = list(zip(numbers[3::2], numbers[4::2]))
+            assert len(points) == numbers[2] and points[0] == points[-1]
+            assert (shoelace(points) > 0) == (numbers[1] == 1)
+            area += shoelace(points)
+    yield area
+def dxf(text):
+    words = text.split("\n")
+    areas, points, layer = {}, [], None
+    for code, value in zip(words[::2], words[1::2]):
+        if code == "0":
+            if value == "POLYLINE":
+                points = []
+            if value == "SEQEND":
+                areas[layer] = areas.get(layer, 0) + shoelace(points)
+            kind = value
+        if code == "8":
+            layer = value
+        if code == "10" and kind == "VERTEX":
+            points.append([float(value), 0])
+        if code == "20" and kind == "VERTEX":
+            points[-1][1] = float(value)
+    return areas.values()
+def png(data):
+    at, pixels = 8, b""
+    while at < len(data):
+        length, = struct.unpack(">I", data[at:at + 4])
+        kind, body = data[at + 4:at + 8], data[at + 8:at + 8 + length]
+        if kind == b"IHDR":
+            width, height, depth, color = struct.unpack(">IIBB", body[:10])
+            assert depth == 8 and color == 0
+        if kind == b"pHYs":
+            scale = struct.unpack(">I", body[:4])[0] / 1000
+        if kind == b"IDAT":
+            pixels += body
+        at += 12 + length
+    raw, above, total = zlib.decompress(pixels), [0] * width, 0
+    for y in range(height):
+        row = list(raw[y * (width + 1) + 1:(y + 1) * (width + 1)])
+        how = raw[y * (width + 1)]
+        assert how in (0, 2)
+        if how == 2:
+            row = [(a + b) % 256 for a, b in zip(row, above)]
+        above, total = row, total + sum(row)
+    return [total / 255 / scale ** 2]
+path = sys.argv[1]
+data = open(path, "rb").read()
+read = {"svg": svg, "cli": cli, "dxf": dxf, "png": png}[path.rsplit(".", 1)[1]]
+print(*("%.6f" % area for area in read(data if path.endswith("png") else data.decode())))
+END
+# Whether the areas of a file are these, up to an error: areas_are FILE ERROR AREA...
+areas_are() {
+    file=$1 near=$2
+    shift 2
+    python3 areas.py "$file" >areas.txt 2>err || return 1
+    echo "$@" | tr ' ' '\n' >wanted.txt
+    tr ' ' '\n' <areas.txt | paste - wanted.txt |
+        awk -v near="$near" '{ if (NF != 2 || ($1 - $2)^2 > near^2) bad = 1 } END { exit bad || NR == 0 }'
+}
+
+run slice --quiet plate.krs --layer 0.5 -o p.svg -o p.dxf -o p.cli -o 'p-%03d.png' --error 0.0005 --resolution 50 --exposure gray
+[ "$status" -eq 0 ] && [ -s p.svg ] && [ -s p.dxf ] && [ -s p.cli ] && [ -s p-001.png ] && [ -s p-004.png ] &&
+    [ ! -e p-005.png ] && [ ! -s err ]
+result $? "files of all formats, and a picture of each layer"
+if command -v python3 >/dev/null; then
+    hole=8.858407
+    for file in p.svg p.dxf p.cli; do
+        areas_are $file 0.004 $hole $hole $hole $hole
+        result $? "$file has the area of each layer"
+    done
+    areas_are p-003.png 0.004 $hole
+    result $? "pictures in gray have it, too"
+    run slice --quiet plate.krs --layer 0.5 -o 'b-%d.png' --resolution 50
+    areas_are b-2.png 0.1 $hole
+    result $? "and those in black and white about so"
+    run slice --quiet ball.krs --layer 0.02 -o b.cli --error 0.0001
+    python3 areas.py b.cli | tr ' ' '\n' | awk '{ volume += 0.02 * $1 } END { d = volume - 0.5235988; exit !(d * d < 0.0004^2 && NR == 50) }'
+    result $? "layers of a ball add up to its volume"
+    run slice --quiet plate.krs --plane=0,0,0,1,1,1 -o c.svg --error 0.001
+    # The plane cuts the box in a hexagon, less an ellipse.
+    [ "$status" -eq 0 ] && python3 areas.py c.svg >out && [ "$(wc -w <out)" -eq 1 ]
+    result $? "one section of a plane"
+    run slice --quiet plate.krs --axis y --layer 3 -o y.svg
+    areas_are y.svg 0.001 4
+    result $? "layers along another axis, in the middle of what is thinner than a layer"
+    run slice plate.krs --plane=0,0,0,0,0,1 -o -
+    cp out o.svg
+    areas_are o.svg 0.01 $hole
+    result $? "SVG goes to standard output"
+    run slice --quiet plate.krs --plane=0,0,7,0,0,1 -o e.svg -o e.dxf -o e.png
+    [ "$status" -eq 0 ] && areas_are e.svg 0 0 && areas_are e.png 0 0
+    result $? "a plane that misses the solid has an empty section"
+    run slice --quiet plate.krs --plane=0,0,1,0,0,1 -o t.svg
+    areas_are t.svg 0.02 $hole
+    result $? "and the plane of a face has the face"
+else
+    for i in 1 2 3 4 5 6 7 8 9 10 11; do skip "areas of files, $i" "no python3"; done
+fi
+if command -v xmllint >/dev/null; then
+    xmllint --noout p.svg 2>err
+    result $? "SVG is XML"
+else
+    skip "SVG is XML" "no xmllint"
+fi
+run slice --quiet plate.krs --plane=0,0,0,0,0,1 -o in.svg -o in.dxf -o in.cli --units in
+grep -q 'width="4in" height="3in"' in.svg && grep -q '^..UNITS/25.4' in.cli && [ "$(sed -n '/INSUNITS/{n;n;p;}' in.dxf)" = 1 ]
+result $? "files say their units"
+run slice --quiet ball.krs --layer 0.5 --size 64x32 --resolution 10 -o 's-%d.png'
+[ "$(od -A n -t u1 -j 16 -N 8 s-1.png | tr -d ' \n')" = 0006400032 ]
+result $? "pictures are as large as is asked"
+grep -c 'POLYLINE' p.cli | grep -qx 8
+result $? "a hole is a contour of its own"
+
+run slice ball.krs
+said 2 "--layer 0.05" "layers have a thickness"
+run slice ball.krs --layer 0.1 --plane=0,0,0,0,0,1
+said 2 "and --plane one" "which one section has not"
+run slice ball.krs --layer 0.1 -o a.png
+said 2 "%04d" "a picture has one layer"
+run slice ball.krs --layer 0.1 -o 'a-%d-%d.svg'
+said 2 "more than one place" "and a name one number"
+run slice ball.krs --layer 0.1 -o a.xyz
+said 2 ".svg, .dxf, .cli or .png" "formats are named"
+run slice ball.krs --layer 1e-9 -o a.svg
+said 2 "too thin" "layers are not without number"
+run slice ball.krs --layer 0.1 -o 'a-%d.png' --resolution 1e8
+said 2 "too large" "nor are pixels"
+run slice ball.krs --layer nan -o a.svg
+said 2 "--layer wants a length" "what is no number is refused"
+run slice ball.krs --plane=0,0,0,0,0,0 -o a.svg
+said 2 "--plane wants" "and what is no direction"
+run slice ball.krs --layer 0.1 --error 1e-12 -o a.svg
+said 2 "--error is too small" "and an error that numbers cannot tell"
+run slice floor.krs --layer 0.1
+said 2 "one that has: \`ball\`" "what has no end is refused"
+run slice --quiet floor.krs --layer 0.5 --within=-2,-2,-2,2,2,2 -o w.svg
+[ "$status" -eq 0 ] && { ! command -v python3 >/dev/null || { python3 areas.py w.svg >out && [ "$(wc -w <out)" -eq 8 ]; }; }
+result $? "but not what of it is in a box"
+run slice empty.krs --layer 0.1
+said 1 "nothing to write" "nothing has no sections"
+mkdir inside && cp ball.krs inside && ln -s ../outside.svg inside/link.svg
+run slice --quiet --untrusted inside/ball.krs --layer 0.5 -o inside/link.svg
+[ "$status" -eq 73 ] && [ ! -e outside.svg ]
+result $? "with --untrusted nothing is written through a link"
+run slice --quiet ball.krs --layer 0.5 -o missing/a.svg
+[ "$status" -eq 73 ] && no_temporaries
+result $? "a folder that is missing is told"

@@ -1,0 +1,316 @@
+/*
+ * slices.c: sections against closed forms, and against whether points are inside.
+ */
+#include "tests/oracle/product.h"
+#include "tests/support/random.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static KrsSlicer *open_slicer(const Product *product, double error, bool arcs)
+{
+    KrsSliceOptions options = {.error = error, .arcs = arcs};
+    KrsSlicer      *slicer;
+    assert_int_equal(krs_slicer_new(product->frame, &options, &slicer), KRS_OK);
+    return slicer;
+}
+
+static KrsSection *slice_at(KrsSlicer *slicer, Vec point, Vec normal)
+{
+    KrsSectionPlane plane = {{point.x, point.y, point.z}, {normal.x, normal.y, normal.z}};
+    KrsSection     *section;
+    assert_int_equal(krs_slice(slicer, &plane, 1, &section), KRS_OK);
+    return section;
+}
+
+/* Of a section without arcs, by its points alone. */
+static double area_of_points(const KrsSection *section)
+{
+    double area = 0;
+    for (size_t c = 0; c < section->contour_count; c++) {
+        const KrsContour *contour = &section->contours[c];
+        for (size_t i = 0; i < contour->count; i++) {
+            const double *a = section->points[contour->first + i];
+            const double *b = section->points[contour->first + (i + 1) % contour->count];
+            area += 0.5 * (a[0] * b[1] - a[1] * b[0]);
+        }
+    }
+    return area;
+}
+
+/* How often the contours go around a point, to the left. */
+static int winding(const KrsSection *section, const double at[2])
+{
+    int around = 0;
+    for (size_t c = 0; c < section->contour_count; c++) {
+        const KrsContour *contour = &section->contours[c];
+        for (size_t i = 0; i < contour->count; i++) {
+            const double *a    = section->points[contour->first + i];
+            const double *b    = section->points[contour->first + (i + 1) % contour->count];
+            double        side = (b[0] - a[0]) * (at[1] - a[1]) - (b[1] - a[1]) * (at[0] - a[0]);
+            if (a[1] <= at[1] && b[1] > at[1] && side > 0)
+                around++;
+            if (a[1] > at[1] && b[1] <= at[1] && side < 0)
+                around--;
+        }
+    }
+    return around;
+}
+
+/* ---- closed forms ---- */
+
+typedef struct Form {
+    const char *text;
+    double      point[3], normal[3], error;
+    double      area;     /* of the section */
+    double      length;   /* of its outline: the area is right up to the error along it */
+    size_t      contours; /* and holes among them */
+    size_t      holes;
+    size_t      points; /* 0: as many as are needed */
+} Form;
+
+static const Form forms[] = {
+    {"show sphere(1);", {0, 0, 0.3}, {0, 0, 1}, 1e-3, 0.91 * 3.14159265358979, 6, 1, 0, 0},
+    {"show sphere(1);", {0.1, 0.2, 0.3}, {1, 2, -3}, 1e-4, 3.1056840764, 6.3, 1, 0, 0},
+    {"show box([1, 2, 3]);", {0, 0, 0.1}, {0, 0, 1}, 0.01, 2, 0, 1, 0, 4},
+    {"show box([1, 2, 3]);", {0, 0, 0.1}, {0, 1, 0}, 0.01, 3, 0, 1, 0, 4},
+    {"show box([1, 2, 3]);", {0, 0, 0.1}, {-1, 0, 0}, 0.01, 6, 0, 1, 0, 4},
+    {"show box([1, 2, 3]).rotate([0, 0, 1], 30deg);", {0, 0, 0.1}, {0, 0, 1}, 0.01, 2, 0, 1, 0, 4},
+    /* A cube across its diagonal is a hexagon. */
+    {"show box([2, 2, 2]);", {0, 0, 0}, {1, 1, 1}, 0.01, 5.196152422706632, 0, 1, 0, 6},
+    {"show box([2, 2, 2]).rotate([0, 0, 1], 90deg);", {0, 0, 0}, {0, 0, 1}, 1e-3, 4, 0, 1, 0, 4},
+    {"show torus(2, 0.5);", {0, 0, 0}, {0, 1, 0}, 1e-3, 12.566370614359172, 26, 2, 1, 0},
+    {"show torus(2, 0.5);", {0, 0, 0}, {1, 0, 0}, 1e-3, 1.5707963267948966, 7, 2, 0, 0},
+    {"show cone(1, 2);", {0, -0.5, 0}, {0, 1, 0}, 1e-3, 0, 0, 1, 0, 0},
+    {"show cylinder(1, 2) - cylinder(0.5, 3).move([0.2, 0, 0]);",
+     {0, 0.1, 0},
+     {0, 1, 0},
+     1e-4,
+     0.75 * 3.14159265358979,
+     9.5,
+     2,
+     1,
+     0},
+    {"show cylinder(1, 2);",
+     {0, 0, 0},
+     {1, 1, 0},
+     1e-4,
+     3.14159265358979 * 1.4142135623731,
+     8,
+     1,
+     0,
+     0},
+    /* Shells within each other. */
+    {"show sphere(2) - sphere(1.5) | sphere(1) - sphere(0.5);",
+     {0, 0, 0},
+     {0, 0, 1},
+     1e-3,
+     2.5 * 3.14159265358979,
+     32,
+     4,
+     2,
+     0},
+    /* Parts that touch along a face are one; nothing is between them. */
+    {"show box([1, 1, 1]) | box([1, 1, 1]).move([1, 0, 0]);",
+     {0, 0, 0.1},
+     {0, 0, 1},
+     0.01,
+     2,
+     0,
+     1,
+     0,
+     4},
+    {"show (box([1, 1, 1]) | box([1, 1, 1]).move([1, 0, 0])).rotate([0, 0, 1], 31deg);",
+     {0, 0, 0.1},
+     {0, 0, 1},
+     0.01,
+     2,
+     0,
+     1,
+     0,
+     4},
+    {"show box([4, 4, 1]) - box([1, 1, 2]) - box([1, 1, 2]).rotate([0, 0, 1], 45deg).move([1.2, "
+     "1.2, 0]);",
+     {0, 0, 0.1},
+     {0, 0, 1},
+     0.01,
+     14,
+     0,
+     3,
+     2,
+     12},
+    /* In the plane of a face, of one, and of one that is turned. */
+    {"show box([2, 2, 2]);", {0, 0, 1}, {0, 0, 1}, 0.01, 4, 8, 1, 0, 4},
+    {"show box([2, 2, 2]);", {0, 0, -1}, {0, 0, 1}, 0.01, 4, 8, 1, 0, 4},
+    {"show box([2, 2, 2]);", {0, 0, 1.0001}, {0, 0, 1}, 0.01, 0, 0, 0, 0, 0},
+    {"show sphere(1);", {0, 0, 2}, {0, 0, 1}, 0.01, 0, 0, 0, 0, 0},
+    {"show regular(7, 1).extrude(1);", {0, 0, 0}, {0, 0, 1}, 0.01, 2.736410188638104, 0, 1, 0, 7},
+    {"show star(5, 1, 0.4).extrude(1);",
+     {0, 0, 0},
+     {0, 0, 1},
+     1e-3,
+     1.1755705045849463,
+     0,
+     1,
+     0,
+     10},
+};
+
+static void sections_have_the_areas_of_closed_forms(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+        const Form *form    = &forms[i];
+        Product     product = product_compile(form->text);
+        KrsSlicer  *slicer  = open_slicer(&product, form->error, false);
+        KrsSection *section = slice_at(slicer, vec(form->point[0], form->point[1], form->point[2]),
+                                       vec(form->normal[0], form->normal[1], form->normal[2]));
+        size_t      holes   = 0;
+        double      area    = area_of_points(section);
+        for (size_t c = 0; c < section->contour_count; c++)
+            holes += section->contours[c].area < 0;
+        print_message("# area %.9f for %.9f, %zu contours, %zu points: %s\n", area, form->area,
+                      section->contour_count, section->point_count, form->text);
+        if (form->area > 0 || form->contours == 0)
+            assert_true(fabs(area - form->area) <= form->error * form->length + 1e-9);
+        assert_int_equal(section->contour_count, form->contours);
+        assert_int_equal(holes, form->holes);
+        if (form->points > 0)
+            assert_int_equal(section->point_count, form->points);
+        krs_section_free(section);
+        krs_slicer_free(slicer);
+        product_free(&product);
+    }
+}
+
+/* ---- random solids ---- */
+
+static void write_part(SceneText *text, Random *random)
+{
+    static const char *const parts[] = {"box([%.3f, %.3f, %.3f])",
+                                        "cylinder(%.3f, %.3f)",
+                                        "sphere(%.3f)",
+                                        "torus(1.2 * %.3f, 0.4 * %.3f)",
+                                        "prism(5, %.3f, %.3f)",
+                                        "box([%.3f, %.3f, %.3f]).round(0.1)",
+                                        "cone(%.3f, %.3f)",
+                                        "star(5, %.3f, 0.3).extrude(%.3f)",
+                                        "capsule([0, 0, 0], [%.3f, %.3f, 0.1], 0.3)",
+                                        "box([%.3f, %.3f, %.3f]).shell(0.15)"};
+    double                   sizes[3], at[3], axis[3];
+    for (int k = 0; k < 3; k++)
+        sizes[k] = random_between(random, 0.5, 1.5);
+    random_vector(random, 1, at);
+    random_vector(random, 1, axis);
+    char part[256];
+    snprintf(part, sizeof part, parts[random_below(random, sizeof parts / sizeof *parts)], sizes[0],
+             sizes[1], sizes[2]);
+    scene_write(text, "%s", part);
+    if (random_below(random, 2) > 0)
+        scene_write(text, ".rotate([%.3f, %.3f, %.3f], %.3f)", axis[0], axis[1], axis[2] + 2,
+                    random_between(random, -3, 3));
+    scene_write(text, ".move([%.3f, %.3f, %.3f])", at[0], at[1], at[2]);
+}
+
+static Product random_solid(Random *random)
+{
+    static const char *const joints[] = {"union", "difference", "union", "intersection"};
+    SceneText                text     = {.length = 0};
+    int                      parts    = 2 + random_below(random, 5);
+    for (int i = 1; i < parts; i++)
+        scene_write(&text, "%s(", i == 1 ? "show union" : joints[random_below(random, 4)]);
+    write_part(&text, random);
+    for (int i = 1; i < parts; i++) {
+        scene_write(&text, ", ");
+        write_part(&text, random);
+        scene_write(&text, random_below(random, 3) ? ")" : ", blend: 0.1)");
+    }
+    scene_write(&text, ";");
+    print_message("# %s\n", text.bytes);
+    return product_compile(text.bytes);
+}
+
+static Vec point_of(const KrsSectionPlane *plane, const double at[2])
+{
+    double right[3], up[3], normal[3], length = 0, depth = 0, point[3];
+    krs_plane_axes(plane, right, up);
+    for (int k = 0; k < 3; k++)
+        length += plane->normal[k] * plane->normal[k];
+    for (int k = 0; k < 3; k++) {
+        normal[k] = plane->normal[k] / sqrt(length);
+        depth += plane->point[k] * normal[k];
+    }
+    for (int k = 0; k < 3; k++)
+        point[k] = at[0] * right[k] + at[1] * up[k] + depth * normal[k];
+    return vec(point[0], point[1], point[2]);
+}
+
+/* Points of contours are on the surface, and so are places between them but for the error. */
+static void points_are_on_the_surface(const Product *product, const KrsSection *section,
+                                      const KrsSectionPlane *plane, double error)
+{
+    for (size_t c = 0; c < section->contour_count; c++) {
+        const KrsContour *contour = &section->contours[c];
+        for (size_t i = 0; i < contour->count; i++) {
+            const double *a = section->points[contour->first + i];
+            const double *b = section->points[contour->first + (i + 1) % contour->count];
+            for (int k = 0; k < 4; k++) {
+                const double at[2]    = {a[0] + 0.25 * k * (b[0] - a[0]),
+                                         a[1] + 0.25 * k * (b[1] - a[1])};
+                double       distance = product_distance(product, point_of(plane, at));
+                if (fabs(distance) > (k ? 1.01 * error : 0.01 * error))
+                    print_message("# %g %g - %g %g\n# %d: at %.9g, %.9g it is %g\n", a[0], a[1],
+                                  b[0], b[1], k, at[0], at[1], distance);
+                assert_true(fabs(distance) <= (k ? 1.01 * error : 0.01 * error));
+            }
+        }
+    }
+}
+
+static void sections_are_where_solids_are(void **state)
+{
+    enum { SOLIDS = 150, POINTS = 400 };
+    Random random = {7};
+    size_t told   = 0;
+    (void)state;
+    for (int i = 0; i < SOLIDS; i++) {
+        Product         product = random_solid(&random);
+        double          error   = i % 3 ? 0.01 : 0.001;
+        KrsSlicer      *slicer  = open_slicer(&product, error, false);
+        KrsSectionPlane plane   = {{0, 0, random_between(&random, -0.3, 0.3)}, {0, 0, 1}};
+        if (i % 2)
+            random_vector(&random, 1, plane.normal);
+        KrsSection *section;
+        print_message("# error %g, plane 0 0 %.17g %.17g %.17g %.17g\n", error, plane.point[2],
+                      plane.normal[0], plane.normal[1], plane.normal[2]);
+        assert_int_equal(krs_slice(slicer, &plane, 1, &section), KRS_OK);
+        points_are_on_the_surface(&product, section, &plane, error);
+        for (int k = 0; k < POINTS; k++) {
+            double at[3];
+            random_vector(&random, 2.5, at);
+            double distance = product_distance(&product, point_of(&plane, at));
+            if (fabs(distance) < 1.5 * error)
+                continue;
+            told++;
+            if (winding(section, at) != (distance < 0))
+                print_message("# at %.9g, %.9g it is %g and around %d\n", at[0], at[1], distance,
+                              winding(section, at));
+            assert_int_equal(winding(section, at), distance < 0);
+        }
+        krs_section_free(section);
+        krs_slicer_free(slicer);
+        product_free(&product);
+    }
+    print_message("# %zu points\n", told);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sections_are_where_solids_are),
+        cmocka_unit_test(sections_have_the_areas_of_closed_forms),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
