@@ -115,12 +115,18 @@ const char *import_vector_text(Import *import, const double *numbers, int count)
 
 /* ---- writing ---- */
 
+/* How many of its parts are seen: the region of a clipped one is not. */
+static size_t seen_items(const Part *part)
+{
+    return part->join == PART_CLIP ? 1 : part->parts.count;
+}
+
 /* Whether a part, or what it is made of, has looks of its own: all of it,
  * nothing, or some. */
 static int part_painted(Part *part)
 {
     if (part->painted == 0) {
-        for (size_t i = 0; i < part->parts.count && !part->look; i++)
+        for (size_t i = 0; i < seen_items(part) && !part->look; i++)
             part->painted |= part_painted(part->parts.items[i]);
         if (part->look)
             part->painted = PAINTED;
@@ -135,7 +141,7 @@ bool part_is_painted(Part *part) { return part_painted(part) == PAINTED; }
 static int items_painted(const Part *part)
 {
     int painted = part->parts.count == 0 ? UNPAINTED : 0;
-    for (size_t i = 0; i < part->parts.count; i++)
+    for (size_t i = 0; i < seen_items(part); i++)
         painted |= part_painted(part->parts.items[i]);
     return painted;
 }
@@ -146,6 +152,10 @@ static void write_join(Text *text, const Part *part, const char *const *names)
     static const char *const functions[] = {"union(", "intersection(", "difference(", "xor(",
                                             "hull("};
     size_t                   width       = 40;
+    if (part->join == PART_CLIP) {
+        text_format(text, "%s.within(%s, open: true)", names[0], names[1]);
+        return;
+    }
     text_add(text, functions[part->join]);
     for (size_t i = 0; i < part->parts.count; i++) {
         width += strlen(names[i]) + 2;
@@ -206,7 +216,8 @@ static const char *write_part(PartWriter *writer, Part *part, const char *around
     const char **names = arena_new_array(writer->import->arena, const char *,
                                          part->parts.count + 1);
     for (size_t i = 0; i < part->parts.count; i++) {
-        names[i] = write_part(writer, part->parts.items[i], pushed ? look : NULL);
+        names[i] = write_part(writer, part->parts.items[i],
+                              pushed && i < seen_items(part) ? look : NULL);
         if (!names[i])
             return NULL;
     }

@@ -16,7 +16,8 @@ typedef enum PartJoin {
     PART_INTERSECTION,
     PART_DIFFERENCE,
     PART_XOR, /* of two */
-    PART_HULL
+    PART_HULL,
+    PART_CLIP /* of two: the surface of the first one within the second */
 } PartJoin;
 
 /* Points whose convex hull, grown by a radius, a shape is. */
@@ -72,6 +73,9 @@ typedef struct Part {
     PartColumn  column;
     PartCone    cone;
     PartInside  inside;
+    const char *equation; /* "algebraic(...)" or "field(...)", of which the shape is all, or what is
+                             within `extent`; NULL: it is something else */
+    const char *extent;   /* a region; NULL: the equation alone */
     double      figure_radius; /* of a circle about its own origin; else 0 */
     double (*corners)[3];      /* of a figure with straight sides, in their order, or
                            NULL */

@@ -38,6 +38,9 @@ static const struct {
     {"blob", pov_blob, PART_UNION},
     {"superellipsoid", pov_superellipsoid, PART_UNION},
     {"julia_fractal", pov_julia, PART_UNION},
+    {"polygon", pov_polygon, PART_UNION},
+    {"triangle", pov_triangle, PART_UNION},
+    {"smooth_triangle", pov_smooth_triangle, PART_UNION},
 };
 enum { OBJECTS = sizeof objects / sizeof *objects };
 
@@ -59,9 +62,9 @@ static int find_object(const PovReader *reader)
 bool pov_object_follows(const PovReader *reader) { return find_object(reader) >= 0; }
 
 /* Shapes that scenes do not have. */
-static const char *const missing[] = {
-    "mesh",     "mesh2", "height_field",    "bicubic_patch", "isosurface", "parametric",  "polygon",
-    "triangle", "sor",   "smooth_triangle", "ovus",          "lemon",      "sphere_sweep"};
+static const char *const missing[] = {"mesh",       "mesh2",       "height_field", "bicubic_patch",
+                                      "isosurface", "parametric",  "sor",          "ovus",
+                                      "lemon",      "sphere_sweep"};
 
 static bool is_missing(const PovReader *reader)
 {
@@ -129,7 +132,12 @@ static bool read_union(PovReader *reader, unsigned line, Part **part)
 
 static bool read_join(PovReader *reader, unsigned line, Part **part)
 {
-    return read_items(reader, line, false, part);
+    if (!read_items(reader, line, false, part))
+        return false;
+    return !pov_is_sheet(*part) ||
+           import_refuse(reader->import, line,
+                         "what is clipped, open or flat has no inside: it is not translated in "
+                         "`intersection` and `difference`");
 }
 
 /* A name, or an object in the object. */
@@ -164,9 +172,9 @@ static bool is_harmless(const PovReader *reader)
 
 bool pov_modifier_follows(const PovReader *reader)
 {
-    static const char *const others[] = {"}",       "translate", "rotate",  "scale",
-                                         "matrix",  "transform", "pigment", "finish",
-                                         "texture", "material",  "inverse"};
+    static const char *const others[] = {"}",         "translate",  "rotate", "scale",   "matrix",
+                                         "transform", "pigment",    "finish", "texture", "material",
+                                         "inverse",   "clipped_by", "open"};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         if (word_is(&reader->words, others[i]))
             return true;
@@ -193,8 +201,27 @@ static void stretch_box(Import *import, Part *part)
     part->shape = text.bytes;
 }
 
-/* The modifiers of an object, up to its `}`. */
-static bool read_modifiers(PovReader *reader, const char *name, Part *part)
+/* `{ objects }`: what is within all of them is left of the part, as it is placed so far. */
+static bool read_clip(PovReader *reader, const Place *place, Part **part)
+{
+    unsigned line = reader->words.word.line;
+    Part    *region;
+    words_advance(&reader->words);
+    if (!pov_deeper(reader) || !word_expect(&reader->words, "{") ||
+        !read_items(reader, line, false, &region))
+        return false;
+    if (!word_is(&reader->words, "}") || region->parts.count == 0)
+        return import_refuse(reader->import, line, "`clipped_by` is translated with objects alone");
+    region->join = PART_INTERSECTION;
+    if (region->parts.count == 1)
+        region = region->parts.items[0];
+    reader->depth--;
+    return word_expect(&reader->words, "}") &&
+           (!*part || pov_clip(reader, place, part, line, region));
+}
+
+/* The modifiers of an object, up to its `}`; what they cut is another part. */
+static bool read_modifiers(PovReader *reader, const char *name, Part **part)
 {
     WordReader *words    = &reader->words;
     PovLook     look     = reader->usual;
@@ -209,6 +236,17 @@ static bool read_modifiers(PovReader *reader, const char *name, Part *part)
             continue;
         if (word_accept(words, "inverse")) {
             inverted = !inverted;
+            continue;
+        }
+        if (word_is(words, "clipped_by")) {
+            if (!read_clip(reader, &place, part))
+                return false;
+            continue;
+        }
+        if (*part && word_is(words, "open")) {
+            if (!pov_open(reader, words->word.line, part))
+                return false;
+            words_advance(words);
             continue;
         }
         if (!pov_place(reader, &place, &taken) || (!taken && !pov_look(reader, &look, &taken)))
@@ -230,13 +268,13 @@ static bool read_modifiers(PovReader *reader, const char *name, Part *part)
             return word_refuse(words, "a modifier such as `translate`, or `}`");
         }
     }
-    if (!part)
+    if (!*part)
         return true;
     place = place_mirrored(&place);
-    part_move(part, &place);
-    stretch_box(reader->import, part);
-    part->look    = pov_look_text(reader, &look);
-    part->outside = part->outside != inverted;
+    part_move(*part, &place);
+    stretch_box(reader->import, *part);
+    (*part)->look    = pov_look_text(reader, &look);
+    (*part)->outside = (*part)->outside != (inverted && !pov_is_sheet(*part));
     return true;
 }
 
@@ -257,7 +295,7 @@ bool pov_object(PovReader *reader, Part **part)
         (*part)->join = objects[found].join;
         (*part)->stem = objects[found].name;
     }
-    if (!read_modifiers(reader, objects[found].name, *part))
+    if (!read_modifiers(reader, objects[found].name, part))
         return false;
     if (*part && joins && (*part)->parts.count == 0)
         *part = NULL;

@@ -272,10 +272,24 @@ bool pov_object(PovReader *reader, Part **part);
 /* What stands in the block of a shape before its modifiers. */
 typedef bool PovBuild(PovReader *reader, unsigned line, Part **part);
 PovBuild     pov_prism, pov_lathe, pov_text, pov_disc, pov_blob, pov_superellipsoid, pov_julia;
+PovBuild     pov_polygon, pov_triangle, pov_smooth_triangle;
 /* Whether what is next changes an object as a whole, or ends it. */
 bool     pov_modifier_follows(const PovReader *reader);
 PovBuild pov_sphere, pov_box, pov_cylinder, pov_cone, pov_torus, pov_plane, pov_quadric, pov_cubic,
     pov_quartic, pov_poly;
+
+/* A figure in x and y of contours that end where they begin, and cut holes into each other; NULL: of
+   no area. */
+Part *pov_figure(PovReader *reader, unsigned line, double (*points)[3], size_t count);
+
+/* ---- surfaces that enclose nothing: import_pov_sheets.c ---- */
+
+bool pov_is_sheet(const Part *part);
+/* Cuts the surface of an object that has been placed so far in POV-Ray's space; the region is where
+   scenes have it. */
+bool pov_clip(PovReader *reader, const Place *place, Part **part, unsigned line, Part *region);
+/* Leaves the side of a column. */
+bool pov_open(PovReader *reader, unsigned line, Part **part);
 
 /* ---- the view: import_pov_view.c ---- */
 

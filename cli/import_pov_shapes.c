@@ -204,8 +204,10 @@ static void add_term(Import *import, Text *text, double factor, const int powers
 
 static Part *algebraic(PovReader *reader, unsigned line, const char *stem, const Text *terms)
 {
-    return part_shape(reader->import, line, stem, "algebraic(%s == 0)",
-                      terms->length > 0 ? terms->bytes : "0");
+    Part *part     = part_shape(reader->import, line, stem, "algebraic(%s == 0)",
+                            terms->length > 0 ? terms->bytes : "0");
+    part->equation = part->shape;
+    return part;
 }
 
 /* `<` and all factors, from x^order down, with falling powers of x, then y,

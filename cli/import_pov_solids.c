@@ -166,6 +166,12 @@ static Part *figure_of(PovReader *reader, unsigned line, Spline spline, const Po
     return figure;
 }
 
+Part *pov_figure(PovReader *reader, unsigned line, double (*points)[3], size_t count)
+{
+    Points contours = {.items = points, .count = count};
+    return figure_of(reader, line, LINEAR, &contours);
+}
+
 bool pov_prism(PovReader *reader, unsigned line, Part **part)
 {
     /* A figure in x and y stands along z; here it lies in x and z. */
@@ -415,10 +421,15 @@ bool pov_blob(PovReader *reader, unsigned line, Part **part)
         size[i]   = blob.high[i] - blob.low[i];
         middle[i] = 0.5 * (blob.high[i] + blob.low[i]);
     }
-    *part = part_shape(
-        reader->import, line, "blob", "field(%s - (%s))\n    .within(box(%s).move(%s))",
-        import_number_text(reader->import, threshold), blob.terms.bytes,
-        import_vector_text(reader->import, size, 3), import_vector_text(reader->import, middle, 3));
+    Text equation = {.arena = reader->import->arena}, extent = {.arena = reader->import->arena};
+    text_format(&equation, "field(%s - (%s))", import_number_text(reader->import, threshold),
+                blob.terms.bytes);
+    text_format(&extent, "box(%s).move(%s)", import_vector_text(reader->import, size, 3),
+                import_vector_text(reader->import, middle, 3));
+    *part = part_shape(reader->import, line, "blob", "%s\n    .within(%s)", equation.bytes,
+                       extent.bytes);
+    (*part)->equation = equation.bytes;
+    (*part)->extent   = extent.bytes;
     return true;
 }
 
@@ -444,12 +455,14 @@ bool pov_superellipsoid(PovReader *reader, unsigned line, Part **part)
                     "field(pow(pow(abs(x), %s) + pow(abs(y), %s), %s) + "
                     "pow(abs(z), %s) - 1)",
                     across, across, import_number_text(reader->import, v[0] / v[1]), along);
-    text_add(&text, ".within(box([2, 2, 2]))");
-    text_format(&trial, "show %s;", text.bytes);
+    text_format(&trial, "show %s.within(box([2, 2, 2]));", text.bytes);
     if (!import_compiles(reader->import, trial.bytes))
         return import_refuse(reader->import, line,
                              "a superellipsoid of these exponents is not translated");
-    *part = part_shape(reader->import, line, "superellipsoid", "%s", text.bytes);
+    *part = part_shape(reader->import, line, "superellipsoid", "%s.within(box([2, 2, 2]))",
+                       text.bytes);
+    (*part)->equation = text.bytes;
+    (*part)->extent   = "box([2, 2, 2])";
     return true;
 }
 

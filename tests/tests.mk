@@ -27,7 +27,7 @@ ORACLES     := self distant patterns bumps primitives krs_expand folds trees map
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
                albedo furnace thin_film anisotropy tangents subsurface paths direct_glass enhanced emissive sky sky_means plate_light detail media cornell touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling closed_rooms \
                occlusion curves sweeps corners hulls lofts boundaries nothing places underestimates bounds stencils light sides steep scales agree far sheets ray_lists specialize outlines glyphs drawings \
-               imports imports_csg imports_csg_sizes imports_pov imports_pov_looks flat_meshes slices meshes mesh_forms mesh_examples
+               imports imports_csg imports_csg_sizes imports_pov imports_pov_looks imports_pov_sheets flat_meshes slices meshes mesh_forms mesh_examples
 FUZZ        := sentences
 # On SwiftShader, unless another device is tested: what shows that drivers agree.
 DRIVERS     := tests/oracle/drivers
@@ -47,7 +47,7 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/patience unit/front unit/syno
                oracle/krs_expand oracle/folds oracle/bounds \
                oracle/cells oracle/maps oracle/operators oracle/moving \
                oracle/fractals oracle/metasurfaces oracle/normals oracle/tangents oracle/drawings oracle/imports \
-               oracle/imports_csg oracle/imports_csg_sizes oracle/imports_pov oracle/imports_pov_looks fuzz/sentences)
+               oracle/imports_csg oracle/imports_csg_sizes oracle/imports_pov oracle/imports_pov_looks oracle/imports_pov_sheets fuzz/sentences)
 BOTH        := $(addprefix tests/, property/lanes unit/mesh)
 PLAIN       := $(filter-out $(filter-out $(BOTH), $(SANITIZED)), $(PROGRAMS))
 # Scripts that run alone: events of a window, and measurements.  The others run beside programs, the longest first.
@@ -111,8 +111,8 @@ $(B)/tests/property/%: $(B)/tests/property/%.o $(B)/tests/property/property.a $(
 $(B)/tests/%: $(B)/tests/%.o $(LINKED)
 	@$(LINK)
 # Who reads files of other programs belongs to the command, not to the library.
-IMPORTS     := imports imports_csg imports_csg_sizes imports_pov imports_pov_looks
-$(IMPORTS:%=$(B)/tests/oracle/%): $(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/imported.o \
+IMPORTS     := imports imports_csg imports_csg_sizes imports_pov imports_pov_looks imports_pov_sheets
+$(IMPORTS:%=$(B)/tests/oracle/%): $(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/imported.o $(B)/tests/oracle/pov_trees.o \
         $(patsubst %.c,$(B)/%.o,$(wildcard cli/import_*.c)) $(LINKED)
 	@$(LINK)
 $(B)/tests/unit/watcher: $(B)/live.a

@@ -287,7 +287,7 @@ static Node sheet_thickness(Elaboration *e, const Shape *region, const Call *cal
 static const Shape *sheet_of(Elaboration *e, const Shape *shape, const Shape *region,
                              Node thickness, const Call *call)
 {
-    if (!box_is_finite(region->box) || box_is_empty(region->box)) {
+    if (!box_is_finite(region->box)) {
         Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[0].syntax->span,
                                "a surface is cut open by a bounded region");
         diag->label = "endless";
@@ -304,14 +304,15 @@ static Value method_within(Elaboration *e, const Shape *shape, Call *call)
     bool open = false;
     if (!want_flag(e, call, 1, &open))
         return value_error();
-    Box  box       = region->box;
+    Box box = region->box;
+    open    = open && !box_is_empty(box); /* nothing of a surface is nothing of its solid, too */
     Node thickness = sheet_thickness(e, region, call);
     if (thickness == NODE_NONE ||
         (is_given(call, 2) &&
          !check_not_negative(e, thickness, call->arguments[2].syntax, "a thickness")))
         return value_error();
     /* A field's solid ends at the sides of its box, where no sheet shall be. */
-    if (open && box_is_finite(box) && !box_is_empty(box))
+    if (open && box_is_finite(box))
         box = box_grow(
             box, 2 * fmax(node_range(e->builder, thickness, 0).high, 1e-3 * box_diagonal(box)));
     shape = restrict_shape(e->builder, shape, box, open);

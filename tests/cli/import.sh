@@ -201,14 +201,14 @@ run import --keep-going --quiet rest.pov -o rest.krs
 result $? "--quiet says no notes"
 refused a.csg 'cube();\nimport();\n' '2: `import` is not translated' "a mesh of OpenSCAD"
 # What an included file declares counts where it is used.
-printf '#declare Odd = union { triangle { x, y, z } }\n#declare Bare = mesh { }\n#declare Good = sphere { 0, 1 }\n' >odd.inc
-refused a.pov '#include "odd.inc"\nobject { Good }\nobject { Odd }\n' '3: of `Odd`: `triangle` is not translated' \
+printf '#declare Odd = union { bicubic_patch { x, y, z } }\n#declare Bare = mesh { }\n#declare Good = sphere { 0, 1 }\n' >odd.inc
+refused a.pov '#include "odd.inc"\nobject { Good }\nobject { Odd }\n' '3: of `Odd`: `bicubic_patch` is not translated' \
     "an object of an included file that cannot be said"
 refused a.pov '#include "odd.inc"\n#declare Two = union { object { Good } object { Odd } }\nobject { Two }\n' \
-    '2: of `Odd`: `triangle`' "a union with it"
+    '2: of `Odd`: `bicubic_patch`' "a union with it"
 printf '#include "odd.inc"\nobject { Good }\n#ifdef (Odd) sphere { 5*x, 1 } #end\n' >used.pov
 run import used.pov -o used.krs
-[ "$status" -eq 0 ] && [ "$(grep -c '^show' used.krs)" -eq 2 ] && ! grep -q 'triangle\|mesh' used.krs err
+[ "$status" -eq 0 ] && [ "$(grep -c '^show' used.krs)" -eq 2 ] && ! grep -q 'bicubic_patch\|mesh' used.krs err
 result $? "a file that includes it and does not show it"
 printf '#include "odd.inc"\nobject { Good }\nobject { Bare }\n' >used.pov
 run import --keep-going used.pov -o used.krs

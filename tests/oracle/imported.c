@@ -72,6 +72,20 @@ void imported_distances(const char *path, const char *text, double (*points)[3],
     krs_scene_free(scene);
 }
 
+void imported_hits(const char *path, const char   *text, double (*origins)[3],
+                   double (*directions)[3], size_t count, double farthest, KrsHit *hits)
+{
+    Imported  result = imported(path, text);
+    KrsScene *scene  = compiled(path, text, &result);
+    KrsFrame *frame;
+    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_raycast(frame, (const double(*)[3])origins, (const double(*)[3])directions,
+                                 count, farthest, 1e-9, hits),
+                     KRS_OK);
+    krs_frame_free(frame);
+    krs_scene_free(scene);
+}
+
 void upright_point(const double q[3], double p[3])
 {
     p[0] = q[0];

@@ -21,6 +21,10 @@ Imported imported_as_far_as_possible(const char *path, const char *text);
 void imported_distances(const char *path, const char *text, double (*points)[3], size_t count,
                         double *distances);
 
+/* The first hits of rays with the scene that a text becomes, likewise. */
+void imported_hits(const char *path, const char   *text, double (*origins)[3],
+                   double (*directions)[3], size_t count, double farthest, KrsHit *hits);
+
 /* Where a point of OpenSCAD is in the scene: its z is up, that of the scene is to the front. */
 void upright_point(const double q[3], double p[3]);
 

@@ -13,8 +13,9 @@
 #include <cmocka.h>
 
 #include "tests/oracle/imported.h"
+#include "tests/oracle/pov_trees.h"
 
-enum { SIGNS = 100, TREES = 16, POINTS = 300, MOST_NODES = 64, MOST_TURNS = 3, MOST_TEXT = 16384 };
+enum { SIGNS = 100, TREES = 16, POINTS = 300 };
 
 static Random randomness = {1991};
 
@@ -260,181 +261,28 @@ static void polynomials_have_their_signs(void **state)
 
 /* ---- random objects ---- */
 
-typedef enum Kind { BALL, BOX, COLUMN, RING, HALF, JOIN } Kind;
-
-typedef struct Turn {
-    int    kind; /* 0 translate, 1 rotate, 2 scale */
-    double by[3];
-} Turn;
-
-typedef struct Node {
-    Kind   kind;
-    int    join, count, items[3], turn_count;
-    double a[3], b[3], r, s;
-    Turn   turns[MOST_TURNS];
-} Node;
-
-static Node   nodes[MOST_NODES];
-static int    node_count;
-static char   text[MOST_TEXT];
-static size_t length;
-
-static void write_text(const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    length += (size_t)vsnprintf(text + length, sizeof text - length, format, arguments);
-    va_end(arguments);
-    assert_true(length < sizeof text);
-}
-
-static void write_primitive(Node *node)
-{
-    const double *a = node->a, *b = node->b;
-    random_vector(&randomness, 1, node->a);
-    random_vector(&randomness, 1, node->b);
-    node->r = between(0.3, 1);
-    node->s = below(3) ? between(0, 1) : node->r;
-    switch (node->kind) {
-    case BALL:
-        write_text("sphere { <%.17g, %.17g, %.17g>, %.17g ", a[0], a[1], a[2], node->r);
-        break;
-    case BOX:
-        write_text("box { <%.17g, %.17g, %.17g>, <%.17g, %.17g, %.17g> ", a[0], a[1], a[2], b[0],
-                   b[1], b[2]);
-        break;
-    case COLUMN:
-        write_text("cone { <%.17g, %.17g, %.17g>, %.17g, <%.17g, %.17g, %.17g>, %.17g ", a[0], a[1],
-                   a[2], node->r, b[0], b[1], b[2], node->s);
-        break;
-    case RING:
-        node->s = node->r * between(0.2, 0.8);
-        write_text("torus { %.17g, %.17g ", node->r, node->s);
-        break;
-    default: write_text("plane { <%.17g, %.17g, %.17g>, %.17g ", a[0], a[1], a[2], b[0]);
-    }
-}
-
-static void write_turns(Node *node)
-{
-    static const char *const words[] = {"translate", "rotate", "scale"};
-    node->turn_count                 = below(MOST_TURNS + 1);
-    for (int i = 0; i < node->turn_count; i++) {
-        Turn *turn = &node->turns[i];
-        turn->kind = below(3);
-        for (int k = 0; k < 3; k++)
-            turn->by[k] = turn->kind == 0   ? between(-1, 1)
-                          : turn->kind == 1 ? (below(2) ? between(-180, 180) : 0)
-                                            : between(0.6, 1.4) * (below(8) ? 1 : -1);
-        write_text("%s <%.17g, %.17g, %.17g> ", words[turn->kind], turn->by[0], turn->by[1],
-                   turn->by[2]);
-    }
-    write_text("}\n");
-}
-
-static int write_tree(int depth)
-{
-    static const char *const joins[] = {"union", "intersection", "difference", "merge"};
-    int                      index   = node_count++;
-    assert_true(index < MOST_NODES);
-    Node *node = &nodes[index];
-    *node      = (Node){.kind = depth == 0 ? (Kind)below(JOIN) : JOIN};
-    if (node->kind == JOIN) {
-        node->join  = below(4);
-        node->count = 2 + below(2);
-        write_text("%s {\n", joins[node->join]);
-        for (int i = 0; i < node->count; i++)
-            node->items[i] = write_tree(depth - 1);
-    } else {
-        write_primitive(node);
-    }
-    write_turns(node);
-    return index;
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static bool primitive_has(const Node *node, const double q[3])
-{
-    double off[3], along[3], round = hypot(q[0], q[2]);
-    for (int i = 0; i < 3; i++) {
-        off[i]   = q[i] - node->a[i];
-        along[i] = node->b[i] - node->a[i];
-    }
-    double t = dot(off, along) / dot(along, along);
-    switch (node->kind) {
-    case BALL: return dot(off, off) < node->r * node->r;
-    case BOX:
-        for (int i = 0; i < 3; i++)
-            if ((q[i] - node->a[i]) * (q[i] - node->b[i]) > 0)
-                return false;
-        return true;
-    case COLUMN:
-        return t > 0 && t < 1 &&
-               sqrt(fmax(dot(off, off) - t * t * dot(along, along), 0)) <
-                   node->r + t * (node->s - node->r);
-    case RING: return hypot(round - node->r, q[1]) < node->s;
-    default: return dot(node->a, q) / sqrt(dot(node->a, node->a)) < node->b[0];
-    }
-}
-
-/* Back from where a turn takes points: z, y and x in this order, each against its sense. */
-static void undo(const Turn *turn, double q[3])
-{
-    for (int axis = 2; axis >= 0 && turn->kind == 1; axis--) {
-        double angle = -turn->by[axis] * acos(-1) / 180;
-        int    i = (axis + 1) % 3, k = (axis + 2) % 3;
-        double a = q[i], b = q[k];
-        q[i] = a * cos(angle) - b * sin(angle);
-        q[k] = a * sin(angle) + b * cos(angle);
-    }
-    for (int i = 0; i < 3 && turn->kind != 1; i++)
-        q[i] = turn->kind == 0 ? q[i] - turn->by[i] : q[i] / turn->by[i];
-}
-
-static bool tree_has(int index, const double outer[3])
-{
-    const Node *node = &nodes[index];
-    double      q[3] = {outer[0], outer[1], outer[2]};
-    for (int i = node->turn_count; i-- > 0;)
-        undo(&node->turns[i], q);
-    if (node->kind < JOIN)
-        return primitive_has(node, q);
-    bool first = tree_has(node->items[0], q), all = first, any = first, others = false;
-    for (int i = 1; i < node->count; i++) {
-        bool has = tree_has(node->items[i], q);
-        all      = all && has;
-        any      = any || has;
-        others   = others || has;
-    }
-    return node->join == 1 ? all : node->join == 2 ? first && !others : any;
-}
-
 static void random_objects_have_the_points_of_their_predicate(void **state)
 {
     int inside = 0;
     (void)state;
     for (int i = 0; i < TREES; i++) {
-        double own[POINTS][3], points[POINTS][3], distances[POINTS];
-        node_count = 0;
-        length     = 0;
-        int root   = write_tree(below(3));
+        double  own[POINTS][3], points[POINTS][3], distances[POINTS];
+        PovTree tree;
+        pov_tree_begin(&tree, &randomness);
+        int root = pov_tree_write(&tree, below(3));
         for (int k = 0; k < POINTS; k++) {
             random_vector(&randomness, 2, own[k]);
             memcpy(points[k], own[k], sizeof own[k]);
             points[k][2] = -own[k][2];
         }
-        imported_distances("random.pov", text, points, POINTS, distances);
+        imported_distances("random.pov", tree.text, points, POINTS, distances);
         for (int k = 0; k < POINTS; k++) {
-            bool has = tree_has(root, own[k]);
+            bool has = pov_tree_has(&tree, root, own[k]);
             inside += has;
             if (fabs(distances[k]) > 1e-7 && has != (distances[k] < 0))
                 fail_msg("%g %g %g is %s, but distance %g, of\n%s\n%s", own[k][0], own[k][1],
-                         own[k][2], has ? "inside" : "outside", distances[k], text,
-                         imported("random.pov", text).scene);
+                         own[k][2], has ? "inside" : "outside", distances[k], tree.text,
+                         imported("random.pov", tree.text).scene);
         }
     }
     assert_true(inside > TREES * POINTS / 50);
@@ -461,9 +309,8 @@ static void what_cannot_be_translated_is_said_with_its_line(void **state)
     assert_refused("a.pov", "#declare A = array[2] {sphere { 0, 1 }, \"x\"} object { A[1] }",
                    "a.pov:1: this is another kind of value than the array's first");
     assert_refused("a.pov", "\n#error \"stop here\"", "a.pov:2: the file says: stop here");
-    assert_refused("a.pov", "\n\nsphere { 0, 1 clipped_by { plane { x, 0 } } }",
-                   "a.pov:3: `clipped_by` in `sphere` is not translated");
-    assert_refused("a.pov", "cylinder { 0, y, 1 open }", "a.pov:1: `open` in `cylinder`");
+    assert_refused("a.pov", "\n\nsphere { 0, 1 contained_by { plane { x, 0 } } }",
+                   "a.pov:3: `contained_by` in `sphere` is not translated");
     assert_refused("a.pov", "sphere { 0, R }", "a.pov:1: there should be a number");
     assert_refused("a.pov", "sphere { 0, 1", "a.pov:1: the file ends where");
     assert_refused("a.pov", "sphere { 0, <1, 2, 3> }", "a.pov:1: a number is needed");
@@ -510,11 +357,11 @@ static void what_is_refused_is_left_out(void **state)
          "box { 2, 3 } }",
          "Line 1: a part", "= box("},
         {"union { sphere { 0, 1 }\nbicubic_patch { type 1 } }", "Line 2: a part", "= sphere("},
-        {"union { sphere { 0, 1 clipped_by { plane { y, 0 } } }\nbox { 2, 3 } }", "Line 1: a part",
-         "= box("},
+        {"union { sphere { 0, 1 contained_by { plane { y, 0 } } }\nbox { 2, 3 } }",
+         "Line 1: a part", "= box("},
         {"difference { sphere { 0, 1 }\nmesh { triangle { 0, x, y } } }\nbox { 2, 3 }",
          "Line 1: a part", "= box("},
-        {"#declare N = 0;\n#while (N < 3)\nsphere { 0, 1 clipped_by { plane { y, 0 } } }\n"
+        {"#declare N = 0;\n#while (N < 3)\nsphere { 0, 1 contained_by { plane { y, 0 } } }\n"
          "box { N, N + 1 }\n#declare N = N + 1;\n#end",
          "Line 3: a part", "2.5, 2.5, -2.5"},
         {"#macro Ball(P) sphere { P, 1 } height_field { png \"a.png\" } #end\nBall(9*z) box { 2, 3 "
