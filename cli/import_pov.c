@@ -7,10 +7,12 @@
  */
 #include "cli/import_pov.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "cli/import_pov_reader.h"
+#include "compiler/base/vec.h"
 
 /* Blocks that change no shape. */
 static const char *const settings[] = {"fog", "rainbow", "media", "atmosphere", "photons"};
@@ -138,13 +140,31 @@ static void add_seen(PovReader *reader, Part *part, const Place *place, const ch
         add_seen(reader, part->parts.items[i], &all, part->look ? part->look : look);
 }
 
+/* How far the planes of a part are from a point at most. */
+static double farthest_plane(const Part *part, const Place *around, const double point[3])
+{
+    Place  place = place_chain(&part->place, around), back = place;
+    double most = 0, p[3], foot[3];
+    if (part->inside.kind == PART_HALF_SPACE && place_invert(&back)) {
+        const double *n = part->inside.numbers;
+        place_apply(&back, point, p);
+        add_scaled3(foot, p, n[3] - dot3(n, p), n);
+        place_apply(&place, foot, foot);
+        most = distance3(foot, point);
+    }
+    for (size_t i = 0; i < part->parts.count; i++)
+        most = fmax(most, farthest_plane(part->parts.items[i], &place, point));
+    return most;
+}
+
 static void look_around(PovReader *reader)
 {
     Part  *all  = reader->shown, *part;
     Place  here = place_identity();
     double eye[3];
     pov_point(reader->view.location, eye);
-    reader->shown = part_new(reader->import, all->line, all->stem);
+    reader->shown        = part_new(reader->import, all->line, all->stem);
+    reader->view.horizon = farthest_plane(all, &here, eye);
     for (size_t i = 0; i < all->parts.count; i++) {
         part = all->parts.items[i];
         if (part_holds(part, eye))

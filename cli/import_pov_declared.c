@@ -10,10 +10,10 @@
 enum { MOST_ELEMENTS = 1000000 };
 
 /* Blocks that are known by name and change no shape here. */
-static const char *const others[] = {"normal",          "interior",    "media",     "fog",
-                                     "sky_sphere",      "rainbow",     "density",   "slope_map",
-                                     "normal_map",      "density_map", "photons",   "radiosity",
-                                     "global_settings", "spline",      "subsurface"};
+static const char *const others[] = {"normal",      "interior",  "media",     "fog",
+                                     "rainbow",     "density",   "slope_map", "normal_map",
+                                     "density_map", "photons",   "radiosity", "global_settings",
+                                     "spline",      "subsurface"};
 
 static bool follows(const PovReader *reader, const char *const *names, size_t count)
 {
@@ -193,6 +193,12 @@ static bool read_view(PovReader *reader, PovCell *cell)
     return pov_camera(reader, view);
 }
 
+static bool read_sky(PovReader *reader, PovCell *cell)
+{
+    *cell = (PovCell){.kind = POV_SKY};
+    return pov_sky_look(reader, &cell->look);
+}
+
 static bool read_light(PovReader *reader, PovCell *cell)
 {
     PovLight *light = arena_new(reader->import->arena, PovLight);
@@ -278,6 +284,8 @@ bool pov_rvalue(PovReader *reader, PovCell *cell)
         return read_view(reader, cell);
     if (word_is(words, "light_source"))
         return read_light(reader, cell);
+    if (word_is(words, "sky_sphere"))
+        return read_sky(reader, cell);
     if (follows(reader, others, sizeof others / sizeof *others))
         return read_other(reader, cell);
     return import_refuse(reader->import, words->word.line,

@@ -8,6 +8,22 @@
 
 #include "cli/import_pov_reader.h"
 
+/* Places of a pattern's distribution, and those below which its values are. */
+enum { SHARES = 17 };
+
+static const double shares[SHARES] = {0,     0.002, 0.01,  0.03,   0.0625, 0.125, 0.25,  0.375, 0.5,
+                                      0.625, 0.75,  0.875, 0.9375, 0.97,   0.99,  0.998, 1};
+
+static const struct {
+    const char *name;
+    double      values[SHARES];
+} distributions[] = {
+#define PATTERN(name, ...) {#name, {__VA_ARGS__}},
+#include "cli/import_pov_patterns.def"
+#undef PATTERN
+};
+enum { DISTRIBUTIONS = sizeof distributions / sizeof *distributions };
+
 /* A sum of colours by their shares: red, green, blue, filter, transmit, and the
  * shares. */
 typedef struct Mean {
@@ -58,6 +74,7 @@ static bool take_declared(PovReader *reader, PovLook *look)
         look->filter    = own->look.filter;
         look->transmit  = own->look.transmit;
         look->patterned = own->look.patterned;
+        look->pattern   = own->look.pattern;
         look->colored   = true;
     }
     if (own->look.finished) {
@@ -81,13 +98,61 @@ static bool read_pigment_entry(PovReader *reader, double color[5])
     return true;
 }
 
+/* Colours of a map; between two of them it is linear. */
+typedef struct Knots {
+    struct Knot {
+        double place, color[5];
+    } * items;
+    size_t count, capacity;
+} Knots;
+
+/* The part of a map from `from` to `to`, where a pattern has so large a share of its values. */
+static void add_span(Mean *mean, const Knots *map, double from, double to, double share)
+{
+    for (size_t i = 0; i <= map->count; i++) {
+        const struct Knot *a    = &map->items[i > 0 ? i - 1 : 0];
+        const struct Knot *b    = &map->items[i < map->count ? i : i - 1];
+        double             low  = i > 0 ? fmax(from, a->place) : from;
+        double             high = i < map->count ? fmin(to, b->place) : to, color[5];
+        if (!(high > low) && !(from == to && low == high))
+            continue;
+        double t = b->place > a->place ? ((low + high) / 2 - a->place) / (b->place - a->place) : 0;
+        for (int k = 0; k < 5; k++)
+            color[k] = a->color[k] + t * (b->color[k] - a->color[k]);
+        add_color(mean, color, to > from ? share * (high - low) / (to - from) : share);
+        if (from == to)
+            return;
+    }
+}
+
+/* The mean over the values of the pattern; those of `average` are weights instead of places. */
+static void set_mean_of_map(PovLook *look, const Knots *map, bool weights)
+{
+    Mean mean = {{0}};
+    for (size_t i = 0; i < map->count && weights; i++)
+        add_color(&mean, map->items[i].color, fmax(map->items[i].place, 0));
+    for (int i = 0; i + 1 < SHARES && map->count > 0 && !weights && look->pattern > 0; i++) {
+        const double *values = distributions[look->pattern - 1].values;
+        add_span(&mean, map, values[i], values[i + 1], shares[i + 1] - shares[i]);
+    }
+    if (map->count > 0 && !weights && look->pattern == 0)
+        add_span(&mean, map, 0, 1, 1);
+    set_mean(look, &mean);
+}
+
+static void add_knot(PovReader *reader, Knots *map, double place, const double color[5])
+{
+    struct Knot knot = {.place = place};
+    memcpy(knot.color, color, sizeof knot.color);
+    array_push(reader->import->arena, map, knot);
+}
+
 /* `[place entry] ...`, or in old files `[place, place color A color B]`. */
 static bool read_entries(PovReader *reader, ReadEntry *read, PovLook *look)
 {
-    WordReader *words  = &reader->words;
-    Mean        mean   = {{0}};
-    double      before = 0, last[5] = {0};
-    bool        first = true;
+    WordReader *words   = &reader->words;
+    Knots       map     = {0};
+    bool        average = look->averages;
     while (word_accept(words, "[")) {
         double place, end, color[5], other[5];
         if (!pov_number(reader, &place))
@@ -101,20 +166,16 @@ static bool read_entries(PovReader *reader, ReadEntry *read, PovLook *look)
             return false;
         memcpy(other, color, sizeof other);
         word_accept(words, ",");
-        if (!word_is(words, "]") && !read(reader, other))
+        bool two = !word_is(words, "]");
+        if (two && !read(reader, other))
             return false;
-        add_color(&mean, first ? color : last, 0.5 * fmax(place - before, 0));
-        add_color(&mean, color, 0.5 * fmax(place - before, 0));
-        add_color(&mean, color, 0.5 * fmax(end - place, 0));
-        add_color(&mean, other, 0.5 * fmax(end - place, 0));
-        memcpy(last, other, sizeof last);
-        before = fmin(end, 1);
-        first  = false;
+        add_knot(reader, &map, place, color);
+        if (two || end > place)
+            add_knot(reader, &map, end, other);
         if (!word_expect(words, "]"))
             return false;
     }
-    add_color(&mean, last, fmax(1 - before, 0));
-    set_mean(look, &mean);
+    set_mean_of_map(look, &map, average);
     return true;
 }
 
@@ -186,6 +247,15 @@ static bool read_pattern(PovReader *reader, PovLook *look, bool *taken)
 
 /* ---- blocks ---- */
 
+/* The word may be the name of a pattern. */
+static void name_pattern(const PovReader *reader, PovLook *look)
+{
+    for (int i = 0; i < DISTRIBUTIONS; i++)
+        if (word_is(&reader->words, distributions[i].name))
+            look->pattern = i + 1;
+    look->averages = look->averages || word_is(&reader->words, "average");
+}
+
 static bool pigment(PovReader *reader, PovLook *look)
 {
     Place ignored = place_identity();
@@ -206,6 +276,7 @@ static bool pigment(PovReader *reader, PovLook *look)
             set_color(look, color);
         } else {
             look->patterned = true;
+            name_pattern(reader, look);
             if (!pov_leave_out(reader, NULL))
                 return false;
         }
@@ -262,6 +333,42 @@ static bool diffuse(PovReader *reader, PovFinish *finish)
     return pov_number(reader, &behind);
 }
 
+/* `reflection R`, or `reflection { least, most ... }`, of which the first one is seen from above. */
+static bool reflection(PovReader *reader, PovFinish *finish)
+{
+    unsigned line = reader->words.word.line;
+    double   most[5], number;
+    words_advance(&reader->words);
+    if (!word_is(&reader->words, "{")) {
+        if (!pov_color(reader, most))
+            return false;
+        memcpy(finish->reflection, most, sizeof finish->reflection);
+        return true;
+    }
+    words_advance(&reader->words);
+    if (!pov_color(reader, most))
+        return false;
+    memcpy(finish->reflection, most, sizeof finish->reflection);
+    if (word_accept(&reader->words, ",")) {
+        import_note(reader->import, line, "`reflection` is the same from all sides, as from above");
+        if (!pov_color(reader, most))
+            return false;
+    }
+    while (!word_is(&reader->words, "}")) {
+        if (!pov_release(reader))
+            return false;
+        if (word_is(&reader->words, "metallic")) {
+            if (!amount(reader, 1, &number))
+                return false;
+            finish->mirrors_metal = number > 0;
+        } else if (!pov_leave_out(reader, "of a reflection is")) {
+            return false;
+        }
+    }
+    words_advance(&reader->words);
+    return true;
+}
+
 /* How wide a highlight is: a cosine with phong_size for its exponent, between the mirrored ray and
    the light, is about one with four times that between the normal and their middle; 1 / roughness is
    such an exponent. */
@@ -301,6 +408,8 @@ static bool finish_word(PovReader *reader, PovLook *look)
         return channels(reader, finish->ambient);
     if (word_is(words, "emission"))
         return channels(reader, finish->emission);
+    if (word_is(words, "reflection"))
+        return reflection(reader, finish);
     return pov_leave_out(reader, "of a finish is");
 }
 
@@ -354,6 +463,15 @@ static bool texture(PovReader *reader, PovLook *look)
         word_accept(&reader->words, ",");
     }
     return true;
+}
+
+void pov_add_layer(PovLook *below, const PovLook *layer)
+{
+    double through = fmin(fmax(layer->filter + layer->transmit, 0), 1);
+    for (int i = 0; i < 3; i++)
+        below->color[i] = (1 - through) * layer->color[i] +
+                          through * (below->colored ? below->color[i] : 0);
+    below->colored = true;
 }
 
 /* A texture lies on those before it: they show as far as light goes through. */
@@ -427,9 +545,25 @@ static const char *color_text(PovReader *reader, const double color[3])
     return import_vector_text(reader->import, rounded, 3);
 }
 
+/* What a look mirrors of each channel; *part: of what it mirrors and scatters, on average. */
+static void mirrored(PovReader *reader, const PovLook *look, double light[3], double *part)
+{
+    double sum = 0, all = 0;
+    for (int i = 0; i < 3; i++) {
+        double pigment = look->colored ? look->color[i] : 0.6;
+        double mirror  = fmax(look->finish.reflection[i], 0);
+        light[i]       = pov_light_of(reader, mirror * (look->finish.mirrors_metal ? pigment : 1));
+        sum += light[i];
+        all += light[i] + pov_light_of(reader, look->finish.diffuse * pigment);
+    }
+    *part = sum > 0 ? sum / all : 0;
+}
+
 /* `color` and `emission`, as POV-Ray has them: what is transmitted has no colour of the thing, what
-   is filtered has, and neither is scattered. */
-static void add_colors(PovReader *reader, const PovLook *look, double through, Text *text)
+   is filtered has, and neither is scattered.  A metal mirrors in its colour, which a part of it
+   scatters: so the colour is the sum of both. */
+static void add_colors(PovReader *reader, const PovLook *look, double through,
+                       const double mirror[3], Text *text)
 {
     const PovFinish *finish = &look->finish;
     double           color[3], emission[3], most = 0;
@@ -438,8 +572,8 @@ static void add_colors(PovReader *reader, const PovLook *look, double through, T
         double pigment = look->colored ? look->color[i] : 0.6;
         double tint    = through > 0 ? (filter * pigment + transmit) / (filter + transmit) : 0;
         double body    = pov_light_of(reader, finish->diffuse * pigment);
-        color[i]       = fmin((1 - through) * body + through * pov_light_of(reader, tint), 1);
-        emission[i]    = (1 - through) *
+        color[i] = fmin((1 - through) * body + through * pov_light_of(reader, tint) + mirror[i], 1);
+        emission[i] = (1 - through) *
                       pov_light_of(reader, pigment * (finish->ambient[i] * reader->ambient[i] +
                                                       finish->emission[i]));
         most = fmax(most, emission[i]);
@@ -478,7 +612,20 @@ const char *pov_look_text(PovReader *reader, const PovLook *look)
     if (!look->colored && !look->patterned)
         import_note(reader->import, reader->words.word.line,
                     "what has no pigment is grey, not black");
-    add_colors(reader, look, through, &inside);
+    double mirror[3] = {0}, part = 0;
+    mirrored(reader, look, mirror, &part);
+    if (part > 0 && through > 0) {
+        import_note(reader->import, reader->words.word.line,
+                    "`reflection` of what is transparent is that of its index of refraction");
+        part = mirror[0] = mirror[1] = mirror[2] = 0;
+    }
+    add_colors(reader, look, through, mirror, &inside);
+    if (part > 0) {
+        import_note(reader->import, reader->words.word.line,
+                    "`reflection` has the colour of the thing, and highlights as sharp as itself");
+        text_format(&inside, ", specular: 0, roughness: 0.02, metallic: %.4g", part);
+        return material_name(reader, inside.bytes);
+    }
     if (finish->specular)
         text_format(&inside, ", roughness: %.3g",
                     fmax(pow(2 / (fmax(finish->exponent, 0) + 2), 0.25), 0.01));

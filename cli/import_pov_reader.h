@@ -21,14 +21,17 @@ typedef struct PovValue {
 /* How light comes back: `exponent` of highlights is that of the cosine between
  * the normal and the middle of both directions. */
 typedef struct PovFinish {
-    bool   specular, phong;
+    bool   specular, phong, mirrors_metal;
     double exponent, metallic, diffuse, ambient[3], emission[3];
+    double reflection[3]; /* what is mirrored; where `mirrors_metal`, times the colour */
 } PovFinish;
 
 /* `said`: it is more than what is usual; `filter` and `transmit` are how much
  * light goes through. */
 typedef struct PovLook {
     bool      said, colored, finished, patterned, textured;
+    bool      averages; /* its pigment is the mean of a map's, by weights */
+    int       pattern;  /* that of its pigment: a row of import_pov_patterns.def, from 1 */
     double    color[3], filter, transmit, ior;
     PovFinish finish;
 } PovLook;
@@ -40,6 +43,7 @@ typedef struct PovView {
     double   location[3], look_at[3], sky[3], direction[3], right[3], up[3], angle, angle_up;
     double   said_location[3], focal_point[3], aperture, blur_samples;
     bool     looks, has_focal_point;
+    double   horizon; /* how far the farthest plane is from the eye; 0: there is none */
     unsigned line, spherical_line;
 } PovView;
 
@@ -55,6 +59,7 @@ typedef enum PovKind {
     POV_STRING,
     POV_OBJECT,
     POV_LOOK,
+    POV_SKY, /* the look of a `sky_sphere` */
     POV_CAMERA,
     POV_LIGHT,
     POV_PLACE,
@@ -253,6 +258,8 @@ void pov_point(const double q[3], double p[3]);
 bool pov_look(PovReader *reader, PovLook *look, bool *taken);
 /* The look of what says nothing, and nothing of `#default` yet. */
 PovLook pov_usual_look(void);
+/* A layer of a sky on those before it, which show as far as light goes through. */
+void pov_add_layer(PovLook *below, const PovLook *layer);
 /* What stands in such a block, or where one may be left away. */
 bool pov_look_inside(PovReader *reader, PovLook *look);
 /* The argument of `.paint`; NULL: the look says nothing. */
@@ -296,6 +303,8 @@ bool pov_open(PovReader *reader, unsigned line, Part **part);
 bool pov_camera(PovReader *reader, PovView *view);
 bool pov_light(PovReader *reader, PovLight *light);
 bool pov_background(PovReader *reader);
+/* `sky_sphere { ... }`; nothing is coloured where it has no pigment. */
+bool pov_sky_look(PovReader *reader, PovLook *sky);
 /* The mean of its colours is the background. */
 bool pov_sky_sphere(PovReader *reader);
 /* `global_settings` */

@@ -287,25 +287,41 @@ bool pov_background(PovReader *reader)
     return true;
 }
 
-bool pov_sky_sphere(PovReader *reader)
+bool pov_sky_look(PovReader *reader, PovLook *sky)
 {
-    PovLook  sky  = pov_usual_look();
-    unsigned line = reader->words.word.line;
+    *sky = pov_usual_look();
     words_advance(&reader->words);
     if (!word_expect(&reader->words, "{"))
         return false;
     while (!word_is(&reader->words, "}")) {
-        bool  taken   = false;
-        Place nowhere = place_identity();
-        if (!pov_look(reader, &sky, &taken) || (!taken && !pov_place(reader, &nowhere, &taken)) ||
+        bool     taken   = false;
+        Place    nowhere = place_identity();
+        PovCell *own     = pov_take(reader, POV_SKY);
+        if (own) {
+            *sky = own->look;
+            continue;
+        }
+        PovLook layer = pov_usual_look();
+        if (!pov_look(reader, &layer, &taken) || (!taken && !pov_place(reader, &nowhere, &taken)) ||
             (!taken && !pov_leave_out(reader, "of a `sky_sphere` is")))
             return false;
+        if (layer.colored)
+            pov_add_layer(sky, &layer);
     }
+    return word_expect(&reader->words, "}");
+}
+
+bool pov_sky_sphere(PovReader *reader)
+{
+    PovLook  sky;
+    unsigned line = reader->words.word.line;
+    if (!pov_sky_look(reader, &sky))
+        return false;
     if (sky.colored) {
         import_note(reader->import, line, "`sky_sphere` is one colour, its mean");
         set_background(reader, line, sky.color);
     }
-    return word_expect(&reader->words, "}");
+    return true;
 }
 
 /* Those of how POV-Ray computes, and not of what. */
@@ -376,6 +392,20 @@ static void write_lens(PovReader *reader)
                 import_number_text(reader->import, focus));
 }
 
+/* Rays end 10,000 times as far as the target of the camera, if planes are endless.  Where these are
+   high above the eye, as skies are, the target is farther along the same line, so that what is missing
+   at their horizon is less than a pixel high. */
+static const char *target_text(PovReader *reader)
+{
+    const double   STEEPEST = 5e-4 * 1e4;
+    const PovView *view     = &reader->view;
+    double         away     = distance3(view->location, view->look_at), target[3], along[3];
+    add_scaled3(along, view->look_at, -1, view->location);
+    double farther = view->orthographic ? 1 : fmax(1, view->horizon / STEEPEST / away);
+    add_scaled3(target, view->location, farther, along);
+    return point_text(reader, farther > 1 ? target : view->look_at);
+}
+
 static void write_camera(PovReader *reader)
 {
     const PovView *view   = &reader->view;
@@ -384,7 +414,7 @@ static void write_camera(PovReader *reader)
     double         fov    = 2 * atan(length3(view->up) / 2 / distance_of_picture(view)) / DEGREE;
     import_mark(reader->import, view->line);
     text_format(scene, "\ncamera { // line %u\n    eye: %s,\n    target: %s,\n    up: %s,\n",
-                view->line, point_text(reader, view->location), point_text(reader, view->look_at),
+                view->line, point_text(reader, view->location), target_text(reader),
                 point_text(reader, view->sky));
     write_lens(reader);
     if (view->spherical)

@@ -14,7 +14,7 @@ What is measured, of pictures 160 pixels wide:
     outline  share of pixels where both see something, or both nothing
     depth    share of pixels at whose distance the other picture has something, too
     colour   mean difference of channels, from 0 to 1, of the mean colours of squares of 20 pixels
-    light    mean brightness of ours as it is shown, as a part of POV-Ray's
+    light    mean light of ours, of what is shown of it, as a part of POV-Ray's
 
 A pixel counts as equal if what is seen there is within the range of the other's 3x3 pixels around it:
 pictures of two programs have edges half a pixel apart.  Distances may differ by 2 %.
@@ -150,6 +150,11 @@ class Comparison:
         parts = numpy.add.reduceat(ones, range(0, picture.shape[0], size), 0)
         return sums / numpy.add.reduceat(parts, range(0, picture.shape[1], size), 1)
 
+    @staticmethod
+    def light(picture):
+        """The mean light of values as they are shown: a few stars are as bright as a dim sky."""
+        return numpy.where(picture > 0.04045, ((picture + 0.055) / 1.055) ** 2.4, picture / 12.92).mean()
+
     def measure(self, picture):
         shown, away = self.ours()
         seen = numpy.isfinite(away)
@@ -158,7 +163,7 @@ class Comparison:
         away = numpy.where(away > far, numpy.inf, away)
         distance = self.their_distances(unit)
         full = self.theirs("full.png", 9, "", linear=False)
-        row = {"light": shown.mean() / max(full.mean(), 1e-3),
+        row = {"light": self.light(shown) / max(self.light(full), 1e-3),
                "color": numpy.abs(self.squares(full) - self.squares(shown)).mean()}
         if distance is None:
             distance = numpy.zeros_like(away)

@@ -185,12 +185,12 @@ run check ball_of_pov.krs
 [ "$status" -eq 0 ] && [ ! -s err ]
 result $? "is a scene without a mistake, too"
 # What the head of a scene says is left out is said at once, too; --keep-going names what it leaves out.
-printf 'sphere { 0, 1 finish { reflection 1 } }\nmesh { }\nbox { 2, 3 }\n' >rest.pov
+printf 'sphere { 0, 1 finish { brilliance 2 } }\nmesh { }\nbox { 2, 3 }\n' >rest.pov
 run import rest.pov -o rest.krs
 said 1 'rest.pov:2: `mesh` is not translated' "a part that scenes do not have"
 run import --keep-going rest.pov -o rest.krs
 [ "$status" -eq 0 ] && grep -q 'left out: rest.pov:2: `mesh` is not translated' err &&
-    grep -q 'rest.pov:1: note: `reflection` of a finish is left out' err &&
+    grep -q 'rest.pov:1: note: `brilliance` of a finish is left out' err &&
     grep -q 'Line 2: a part is left out' rest.krs && grep -q '^show box' rest.krs
 result $? "is left out with --keep-going, by name and line"
 run check rest.krs

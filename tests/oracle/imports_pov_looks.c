@@ -228,6 +228,115 @@ static void looks_and_view_are_translated(void **state)
     scene_has("disc { 0, y, 10 }", "cylinder(10, 0.01).move([0, -0.005, 0]);");
 }
 
+/* Means of 600x600 pixels of pictures of POV-Ray 3.7 that show 50 units of a pattern: how often it has
+   which value. */
+static void means_of_patterns_are_those_of_pictures(void **state)
+{
+    static const struct {
+        const char *pattern, *map;
+        double      mean[3], slack;
+    } rows[] = {
+        {"granite", "[0 rgb 1][0.27 rgb 0][1 rgb 0]", {0.0618, 0.0618, 0.0618}, 0.01},
+        {"granite turbulence 1", "[0 rgb 1][0.27 rgb 0][1 rgb 0]", {0.0617, 0.0617, 0.0617}, 0.01},
+        {"bozo", "[0 rgb 1][0.4 rgb 0][1 rgb 0]", {0.035, 0.035, 0.035}, 0.01},
+        {"agate", "[0 rgb x][0.5 rgb y][1 rgb z]", {0.2617, 0.3838, 0.3545}, 0.01},
+        {"wrinkles", "[0.6 rgb 0][0.7 rgb 1]", {0.172, 0.172, 0.172}, 0.02},
+        {"crackle", "[0 rgb 1][0.1 rgb 0]", {0.1801, 0.1801, 0.1801}, 0.02},
+        {"leopard", "[0.2 rgb 0][0.4 rgb 1]", {0.2106, 0.2106, 0.2106}, 0.02},
+        {"dents", "[0 rgb 0][1 rgb 1]", {0.1522, 0.1522, 0.1522}, 0.01},
+        {"marble", "[0 rgb 1][0.27 rgb 0][1 rgb 0]", {0.135, 0.135, 0.135}, 0.001},
+        {"gradient x",
+         "[0.2 rgb 1][0.2 rgb 0][0.6 0.8 color rgb x color rgb z]",
+         {0.5, 0.2, 0.5},
+         0.001},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char   pov[512];
+        double color[3];
+        snprintf(pov, sizeof pov,
+                 "#version 3.7; sphere { 0, 1 pigment { %s color_map { %s } } finish { diffuse 1 "
+                 "ambient 0 } }",
+                 rows[i].pattern, rows[i].map);
+        Imported found = imported("mean.pov", pov);
+        numbers_behind(found.scene, "color", color);
+        for (int k = 0; k < 3; k++)
+            if (!(fabs(color[k] - rows[i].mean[k]) < rows[i].slack))
+                fail_msg("%s: %g, not %g\n%s%s", pov, color[k], rows[i].mean[k], found.scene,
+                         found.refusal);
+    }
+    scene_has("#version 3.7; sphere { 0, 1 pigment { average pigment_map { [1 rgb x][3 rgb z] } } "
+              "finish { diffuse 1 } }",
+              "color: [0.25, 0, 0.75]");
+}
+
+/* What scatters D and mirrors R is a metal of the colour D + R, of which the part R / (D + R) mirrors. */
+static void mirrors_are_metals(void **state)
+{
+    (void)state;
+    scene_has("#version 3.7; sphere { 0, 1 pigment { rgb 1 } finish { diffuse 0 ambient 0 "
+              "reflection 0.8 } }",
+              "{ color: [0.8, 0.8, 0.8], specular: 0, roughness: 0.02, metallic: 1 }");
+    scene_has("#version 3.7; sphere { 0, 1 pigment { rgb 0.5 } finish { diffuse 0.6 ambient 0 "
+              "reflection { 0.1 } } }",
+              "{ color: [0.4, 0.4, 0.4], specular: 0, roughness: 0.02, metallic: 0.25 }");
+    scene_has(
+        "#version 3.7; sphere { 0, 1 pigment { rgb <1, 0.5, 0> } finish { diffuse 0 ambient 0 "
+        "reflection { 0.5 metallic } } }",
+        "{ color: [0.5, 0.25, 0], specular: 0, roughness: 0.02, metallic: 1 }");
+    scene_has(
+        "#version 3.7; sphere { 0, 1 pigment { rgbt 1 } finish { diffuse 0 reflection 0.5 } }",
+        "`reflection` of what is transparent is that of its index of refraction");
+    scene_has("sphere { 0, 1 finish { reflection { 0.1, 1 } } }",
+              "`reflection` is the same from all sides");
+}
+
+/* A sky may be declared, and has layers; the first one is behind the others. */
+static void skies_may_be_declared(void **state)
+{
+    (void)state;
+    scene_has("#version 3.7; #declare S = sky_sphere { pigment { rgb <0.1, 0.2, 0.3> } }\n"
+              "sky_sphere { S } sphere { 0, 1 }",
+              "sky { zenith: [0.1, 0.2, 0.3],");
+    scene_has("#version 3.7; sky_sphere { pigment { rgb x } pigment { rgbt <0, 0, 1, 0.25> } } "
+              "sphere { 0, 1 }",
+              "sky { zenith: [0.25, 0, 0.75],");
+}
+
+/* Rays end 10,000 times as far as the target: a plane far above the eye reaches down to less than half a
+   pixel of 1,000 (0.0005) above the horizon, and the view stays. */
+static void far_planes_reach_the_horizon(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 20; i++) {
+        char   pov[256];
+        double eye[3], target[3], look[3], height = exp(between(0, 12)), away = 0, was = 0,
+                                           turn = 0;
+        random_vector(&randomness, 3, eye);
+        random_vector(&randomness, 3, look);
+        snprintf(pov, sizeof pov,
+                 "camera { location <%.9g, %.9g, %.9g> look_at <%.9g, %.9g, %.9g> }\n"
+                 "plane { y, 1 scale %.9g inverse }",
+                 eye[0], eye[1], eye[2], look[0], look[1], look[2], height);
+        Imported    found = imported("sky.pov", pov);
+        const char *at    = strstr(found.scene, "target: [");
+        assert_non_null(at);
+        assert_int_equal(sscanf(at, "target: [%lf, %lf, %lf]", &target[0], &target[1], &target[2]),
+                         3);
+        eye[2]  = -eye[2];
+        look[2] = -look[2];
+        for (int k = 0; k < 3; k++) {
+            away += (target[k] - eye[k]) * (target[k] - eye[k]);
+            was += (look[k] - eye[k]) * (look[k] - eye[k]);
+            turn += (target[k] - eye[k]) * (look[k] - eye[k]);
+        }
+        if (!(fabs(height - eye[1]) / (1e4 * sqrt(away)) < 5.1e-4 && turn > 0 &&
+              away >= was * (1 - 1e-6) && turn * turn > (1 - 1e-6) * away * was))
+            fail_msg("%s\n%s", pov, found.scene);
+    }
+    scene_has("camera { location <0, 1, -3> look_at y } plane { y, 0 }", "target: [0, 1, 0],");
+}
+
 /* POV-Ray 3.7 shows a thing at the distance z of its axis, much smaller than its blur, as a disc of a
    quarter of the aperture times |1 - z / focus|: measured in its pictures, by second moments within 2 %.
    The focus is as far as the focal point before the camera is moved, and one length of `direction`
@@ -300,6 +409,10 @@ int main(void)
         cmocka_unit_test(defaults_are_those_of_the_file),
         cmocka_unit_test(solids_around_the_camera_are_seen),
         cmocka_unit_test(looks_and_view_are_translated),
+        cmocka_unit_test(means_of_patterns_are_those_of_pictures),
+        cmocka_unit_test(mirrors_are_metals),
+        cmocka_unit_test(skies_may_be_declared),
+        cmocka_unit_test(far_planes_reach_the_horizon),
         cmocka_unit_test(lenses_are_those_of_pov),
         cmocka_unit_test(cameras_are_those_of_pov_or_named),
     };
