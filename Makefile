@@ -65,7 +65,7 @@ API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits
                 update.c camera_moves.c search_pairs.c search_targets.c search_starts.c search.c refuter.c \
                 refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)
 MESH     := $(addprefix compiler/mesh/, solid.c field.c field_pieces.c numbering.c batches.c weights.c tets.c marks.c quadric.c roots.c contour.c contour_mesh.c bvh.c groups.c gradient.c lens.c around.c verify.c smooth.c pieces.c voids.c bounds.c rounds.c polygons.c flat_pieces.c flat_faces.c flat.c mesh.c placing.c assemble.c crossing.c settle.c slivers.c near.c collapse.c simplify.c)
-SLICE    := $(addprefix compiler/slice/, plane.c tree.c chords.c bend.c fit.c contours.c slice.c)
+SLICE    := $(addprefix compiler/slice/, plane.c extent.c tree.c chords.c bend.c fit.c contours.c slice.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer integrators film display writer))))
 LIVE     := $(sort $(wildcard live/*.c))
 LIVE_BORDER := live/gui.cpp

@@ -20,8 +20,9 @@ typedef struct Slicing {
     KrsFrame       *frame;
     KrsSlicer      *slicer;
     SliceSheet      sheet;
-    double          error;
-    KrsSectionPlane plane; /* of a section, or of layer 0 */
+    KrsSliceOptions how;     /* of the slicer */
+    bool            figures; /* what is shown is plane figures */
+    KrsSectionPlane plane;   /* of a section, or of layer 0 */
     Progress        progress;
 } Slicing;
 
@@ -58,7 +59,7 @@ static KrsStatus check_output(const Slicing *slicing, const char *path)
         return say_usage(options, "`%s` is no section: its name must end in " SLICE_ENDINGS, path);
     if (frame_places(path) > 1)
         return say_usage(options, "`%s` has more than one place for the number of a layer", path);
-    if (!format->has_layers && frame_places(path) == 0 && !options->plane.given)
+    if (!format->has_layers && frame_places(path) == 0 && options->layer > 0)
         return say_usage(
             options, "`%s` would have one layer; with %%04d in its name there is a file for each",
             path);
@@ -74,15 +75,37 @@ static KrsStatus check_options(const Slicing *slicing)
 {
     const Options *options = slicing->options;
     KrsStatus      status  = KRS_OK;
-    if (options->layer == 0 && !options->plane.given)
-        return say_usage(options,
-                         "say how thick layers are, as in --layer 0.05, or where a section "
-                         "is, as in --plane=0,0,0.5,0,0,1");
+
     if (options->layer > 0 && options->plane.given)
         return say_usage(options, "--layer makes many sections, and --plane one");
     for (size_t i = 0; i < output_total(slicing) && status == KRS_OK; i++)
         status = check_output(slicing, output_name(slicing, i));
     return status;
+}
+
+/* Plane figures are sections already. */
+static KrsStatus check_figures(Slicing *slicing)
+{
+    const Options *options = slicing->options;
+    const size_t   chosen = slicing->how.component, count = krs_component_count(slicing->scene);
+    size_t         figures = 0, all = 0;
+    for (size_t i = chosen ? chosen - 1 : 0; i < (chosen ? chosen : count); i++, all++) {
+        KrsComponent component;
+        krs_component(slicing->scene, i, &component);
+        figures += component.figure;
+    }
+    slicing->figures = figures > 0;
+    if (figures > 0 && figures < all)
+        return say_usage(options, "`%s` shows plane figures and solids; --component takes one",
+                         options->files.items[0]);
+    if (figures > 0 && (options->layer > 0 || options->plane.given))
+        return say_usage(options, "`%s` is a plane figure, which has neither --layer nor --plane",
+                         options->files.items[0]);
+    if (figures == 0 && options->layer == 0 && !options->plane.given)
+        return say_usage(options,
+                         "say how thick layers are, as in --layer 0.05, or where a section "
+                         "is, as in --plane=0,0,0.5,0,0,1");
+    return KRS_OK;
 }
 
 /* ---- where sections are ---- */
@@ -110,8 +133,9 @@ static KrsStatus find_layers(Slicing *slicing, const double low[3], const double
     const Options *options = slicing->options;
     SliceSheet    *sheet   = &slicing->sheet;
     sheet->layer_count     = 1;
-    if (options->plane.given) {
-        slicing->plane = options->plane.at;
+    if (options->layer == 0) {
+        slicing->plane = slicing->figures ? (KrsSectionPlane){.normal = {0, 0, 1}}
+                                          : options->plane.at;
         return KRS_OK;
     }
     sheet->stacked                       = true;
@@ -187,7 +211,7 @@ static void find_units(Slicing *slicing)
     sheet->unit       = unit_choices[unit].name;
     sheet->metres     = metres_of_units[unit];
     sheet->gray       = slicing->options->slice_exposure == EXPOSURE_GRAY;
-    sheet->digits     = (int)fmax(0, fmin(15, ceil(-log10(slicing->error)) + 3));
+    sheet->digits     = (int)fmax(0, fmin(15, ceil(-log10(slicing->how.error)) + 3));
 }
 
 static void find_error(Slicing *slicing, const double low[3], const double high[3])
@@ -196,44 +220,50 @@ static void find_error(Slicing *slicing, const double low[3], const double high[
     double       longest = 0;
     for (int k = 0; k < 3; k++)
         longest = fmax(longest, high[k] - low[k]);
-    slicing->error = slicing->options->slice_error;
-    if (slicing->error > 0)
+    if (slicing->how.error > 0)
         return;
-    slicing->error = usual * longest;
+    slicing->how.error = usual * longest;
     if (slicing->sheet.width > 0)
-        slicing->error = fmin(slicing->error, of_pixel / slicing->sheet.per_unit);
+        slicing->how.error = fmin(slicing->how.error, of_pixel / slicing->sheet.per_unit);
 }
 
-static KrsStatus open_slicer(Slicing *slicing, const KrsMeshOptions *wishes)
+static KrsStatus open_slicer(Slicing *slicing)
 {
-    const Options  *options = slicing->options;
-    KrsSliceOptions how     = {.error        = slicing->error,
-                               .component    = wishes->component,
-                               .within       = wishes->within,
-                               .memory_limit = options->limits.memory,
-                               .go_on        = go_on};
-    memcpy(how.low, wishes->low, sizeof how.low);
-    memcpy(how.high, wishes->high, sizeof how.high);
+    const Options *options = slicing->options;
     krs_slicer_free(slicing->slicer);
-    KrsStatus status = krs_slicer_new(slicing->frame, &how, &slicing->slicer);
+    KrsStatus status = krs_slicer_new(slicing->frame, &slicing->how, &slicing->slicer);
     if (status == KRS_BAD_ARGUMENT)
         return say_usage(options, "--error is too small for the size of `%s`",
                          options->files.items[0]);
     return status == KRS_OK ? KRS_OK : say_status(status, options->files.items[0]);
 }
 
-static KrsStatus find_wishes(Slicing *slicing)
+/* Fills in how the scene is cut, but for where. */
+static KrsStatus take_wishes(Slicing *slicing)
 {
     Meshing   meshing = {.options = slicing->options, .scene = slicing->scene};
+    KrsStatus status  = check_wishes(&meshing);
+    slicing->how      = (KrsSliceOptions){.error        = slicing->options->slice_error,
+                                          .component    = meshing.how.component,
+                                          .within       = meshing.how.within,
+                                          .memory_limit = slicing->options->limits.memory,
+                                          .go_on        = go_on};
+    memcpy(slicing->how.low, meshing.how.low, sizeof slicing->how.low);
+    memcpy(slicing->how.high, meshing.how.high, sizeof slicing->how.high);
+    return status == KRS_OK ? check_figures(slicing) : status;
+}
+
+static KrsStatus find_wishes(Slicing *slicing)
+{
     double    low[3], high[3];
-    KrsStatus status = check_wishes(&meshing);
+    KrsStatus status = take_wishes(slicing);
     if (status == KRS_OK)
-        status = open_slicer(slicing, &meshing.how);
+        status = open_slicer(slicing);
     if (status != KRS_OK)
         return status;
     if (!krs_slicer_box(slicing->slicer, low, high)) {
         say("there is nothing to write: `%s` has nothing solid%s", slicing->options->files.items[0],
-            meshing.how.within ? " in this box" : "");
+            slicing->how.within ? " in this box" : "");
         return KRS_BAD_SCENE;
     }
     status = find_layers(slicing, low, high);
@@ -244,7 +274,7 @@ static KrsStatus find_wishes(Slicing *slicing)
         return status;
     find_error(slicing, low, high);
     find_units(slicing);
-    return open_slicer(slicing, &meshing.how);
+    return KRS_OK;
 }
 
 /* ---- files ---- */
@@ -332,9 +362,13 @@ static KrsStatus write_sections(Slicing *slicing, const char *path)
     KrsStatus made   = KRS_OK;
     Target    target = {
            .slicing = slicing, .format = slice_format(path), .path = path, .status = &made};
+    slicing->how.arcs = target.format->has_arcs;
+    KrsStatus status  = open_slicer(slicing);
+    if (status != KRS_OK)
+        return status;
     progress_start(&slicing->progress, slicing->options, 1);
-    KrsStatus status = frame_places(path) > 0 ? make_layers(slicing, write_layer, &target)
-                                              : write_output(path, fill_file, &target);
+    status = frame_places(path) > 0 ? make_layers(slicing, write_layer, &target)
+                                    : write_output(path, fill_file, &target);
     progress_end(&slicing->progress);
     return made == KRS_OK ? status : made;
 }

@@ -208,10 +208,10 @@ static bool end_cli(SliceFile *file) { return add(file, "$$GEOMETRYEND\n"); }
 
 /* ---- all formats ---- */
 
-static const SliceFormat formats[] = {{".svg", true, begin_svg, add_svg, end_svg},
-                                      {".dxf", true, begin_dxf, add_dxf, end_dxf},
-                                      {".cli", true, begin_cli, add_cli, end_cli},
-                                      {".png", false, nothing, slice_add_picture, nothing}};
+static const SliceFormat formats[] = {{".svg", true, true, begin_svg, add_svg, end_svg},
+                                      {".dxf", true, true, begin_dxf, add_dxf, end_dxf},
+                                      {".cli", true, false, begin_cli, add_cli, end_cli},
+                                      {".png", false, false, nothing, slice_add_picture, nothing}};
 
 const SliceFormat *slice_format(const char *path)
 {

@@ -43,6 +43,7 @@ typedef struct SliceFile {
 typedef struct SliceFormat {
     const char *ending;
     bool        has_layers; /* one file can have all */
+    bool        has_arcs;
     bool (*begin)(SliceFile *file);
     bool (*add)(SliceFile *file, const Layer *layer);
     bool (*end)(SliceFile *file);

@@ -104,6 +104,9 @@ typedef struct KrsOptions {
     bool pictures; /* six large parts that are alike share code, too: shorter kernels and faster
                       frames, but meshes take longer; for pictures */
     bool assembly; /* keep what krs_assemble and krs_texture_places need, which takes some time */
+    bool
+        figures; /* plane figures may be shown: each is made solid along z, about as high as it is long.  Its section
+                      by the plane z = 0 is the figure */
     /* Only files in this folder, and below it, are read; others are E0504, also behind symbolic
        links.  That includes the scene itself in krs_compile_file.  With krs_compile_text, `name`
        must be in the folder for `use` to work.  NULL: all files may be read. */
@@ -346,6 +349,7 @@ typedef struct KrsComponent {
     bool        per_frame;       /* `slope` is that of the first frame; each has its own */
     bool        exact;           /* the distance is exact outside wherever docs/math.md says so */
     bool        estimate;        /* nothing is proven of the distance; else it is a bound */
+    bool        figure;          /* a plane figure: KrsOptions.figures */
     uint32_t    levels;          /* number of reflections of its outermost sequence, or 0 */
     double      instances;       /* number of kernels with all their copies */
     uint32_t    inversions;      /* maps that invert, in its outermost sequence or `.transform` */

@@ -120,6 +120,7 @@ static void elaborate_with(Compilation *c, TurnTrials *turns)
                             .loader   = c->loader,
                             .turns    = turns,
                             .studio   = c->options->studio,
+                            .figures  = c->options->figures,
                             .hoists   = hoists(c),
                             .textures = {.arena = &c->scene->arena}};
     elaborate(&e);

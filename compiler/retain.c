@@ -30,6 +30,7 @@ static void retain_components(Compilation *c)
                                                .per_frame  = from->shape->per_frame,
                                                .exact      = from->shape->exact,
                                                .estimate   = from->shape->estimate,
+                                               .figure     = from->figure,
                                                .levels     = from->shape->levels,
                                                .instances  = from->shape->instances,
                                                .inversions = from->shape->inversions};

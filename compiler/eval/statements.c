@@ -93,6 +93,17 @@ static bool check_extent(Elaboration *e, const Shape *shape, const Syntax *synta
     return true;
 }
 
+/* A figure as a solid, about as high as it is long. */
+static const Shape *thicken(const Elaboration *e, const Shape *figure, Span span)
+{
+    double height = 1;
+    for (int i = 0; i < 2; i++) {
+        double side = figure->box.axis[i].high - figure->box.axis[i].low;
+        height      = isfinite(side) ? fmax(height, side) : height;
+    }
+    return make_extrude(e->builder, figure, graph_number(e->builder->graph, height), span);
+}
+
 /* Shows a shape, or all shapes of a list; `syntax` is the expression shown. */
 static bool show_one(Elaboration *e, Value value, const Syntax *syntax)
 {
@@ -108,6 +119,9 @@ static bool show_one(Elaboration *e, Value value, const Syntax *syntax)
         type_error(e, syntax, value, "a shape");
         return false;
     }
+    bool figure = value.shape->figure && !value.shape->nothing;
+    if (figure && e->figures)
+        value.shape = thicken(e, value.shape, syntax->span);
     if (value.shape->figure) {
         Diag *diag  = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span,
                                "a plane figure cannot be shown");
@@ -117,11 +131,12 @@ static bool show_one(Elaboration *e, Value value, const Syntax *syntax)
     }
     if (!check_bounded(e->builder, value.shape) || !check_extent(e, value.shape, syntax))
         return false;
-    Component component = {.name  = component_name(e, syntax),
-                           .first = e->scene->components.count,
-                           .count = 1,
-                           .shape = value.shape,
-                           .span  = syntax->span};
+    Component component = {.name   = component_name(e, syntax),
+                           .first  = e->scene->components.count,
+                           .count  = 1,
+                           .shape  = value.shape,
+                           .figure = figure,
+                           .span   = syntax->span};
     if (!shape_plane(e->builder, value.shape, &component.plane_normal, &component.plane_offset))
         component.plane_normal = component.plane_offset = NODE_NONE;
     array_push_large(e->arena, &e->scene->components, component);

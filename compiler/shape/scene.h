@@ -21,6 +21,7 @@ typedef struct Component {
     const Shape *shape;
     Span         span;
     Node         plane_normal, plane_offset; /* of a half-space and nothing else, or NODE_NONE */
+    bool         figure;                     /* a plane figure, made solid */
 } Component;
 
 /* Numbers and vectors here are frame-time nodes. */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* What is left out of contours, and where arcs may be, in errors; the rest is that of chords. */
-static const double PART_OF_POINTS = 0.5, PART_OF_ARCS = 0.02;
+static const double PART_OF_POINTS = 0.5, PART_OF_ARCS = 0.002;
 
 typedef struct Result {
     OutlinePoint *points; /* of the contour at hand */

@@ -115,6 +115,10 @@ size_t leave_out_points(OutlinePoint *points, size_t count, double error, Arena 
 
 /* ---- lines and arcs ---- */
 
+/* A run may end with a point behind the place where the next piece touches it, as near as the error is; that bends its
+   arc a little.  So what touches is told by that many errors. */
+static const double LOOSER = 20;
+
 /* A line, or an arc: that from a point to another through the one in the middle between them. */
 typedef struct Piece2 {
     double from[2], to[2], centre[2], radius, bulge;
@@ -193,19 +197,143 @@ static size_t longest_run(const OutlinePoint *points, size_t from, size_t end, d
     return good;
 }
 
-size_t fit_arcs(OutlinePoint *points, double *bulges, size_t count, double error, Arena *scratch)
+/* How far it is from a point to the line or the circle of a piece. */
+static double distance_to_whole(const Piece2 *piece, const double at[2])
 {
-    ArenaMark before = arena_mark(scratch);
-    size_t    left   = 0;
-    turn_to_corner(points, count, scratch);
+    if (piece->radius > 0)
+        return fabs(distance2(at, piece->centre) - piece->radius);
+    double along[2] = {piece->to[0] - piece->from[0], piece->to[1] - piece->from[1]};
+    double cross    = along[0] * (at[1] - piece->from[1]) - along[1] * (at[0] - piece->from[0]);
+    return fabs(cross) / hypot(along[0], along[1]);
+}
+
+/* Where a line and a circle, or two circles, touch, near a place between them: both are smooth there. */
+static bool touching_point(const Piece2 *a, const Piece2 *b, const double near[2], double joint[2])
+{
+    const Piece2 *round = a->radius > 0 ? a : b, *other = a->radius > 0 ? b : a;
+    double        to[2];
+    if (round->radius == 0)
+        return false;
+    if (other->radius > 0) {
+        for (int k = 0; k < 2; k++)
+            to[k] = other->centre[k] - round->centre[k];
+    } else {
+        to[0] = other->from[1] - other->to[1];
+        to[1] = other->to[0] - other->from[0];
+    }
+    double length = hypot(to[0], to[1]);
+    double side   = to[0] * (near[0] - round->centre[0]) + to[1] * (near[1] - round->centre[1]);
+    for (int k = 0; k < 2 && length > 0; k++)
+        joint[k] = round->centre[k] + (side < 0 ? -1 : 1) * round->radius * to[k] / length;
+    return length > 0;
+}
+
+static void end_piece_at(Piece2 *piece, bool at_end, const double joint[2])
+{
+    double *end = at_end ? piece->to : piece->from;
+    memcpy(end, joint, 2 * sizeof *joint);
+    if (piece->radius == 0)
+        return;
+    double a[2] = {piece->from[0] - piece->centre[0], piece->from[1] - piece->centre[1]};
+    double b[2] = {piece->to[0] - piece->centre[0], piece->to[1] - piece->centre[1]};
+    double turn = atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+    if (piece->bulge > 0 && turn < 0)
+        turn += 2 * M_PI;
+    if (piece->bulge < 0 && turn > 0)
+        turn -= 2 * M_PI;
+    piece->bulge = tan(0.25 * turn);
+}
+
+/* Moves the place where two pieces meet, which is near `near`, to where they touch; false: they do not, within an error,
+   or farther away than `reach`. */
+static bool join_smoothly(Piece2 *before, Piece2 *behind, const double near[2], double reach,
+                          double error)
+{
+    double joint[2];
+    if (!touching_point(before, behind, near, joint) || distance2(joint, near) > reach ||
+        distance_to_whole(before, joint) > error || distance_to_whole(behind, joint) > error)
+        return false;
+    end_piece_at(before, true, joint);
+    end_piece_at(behind, false, joint);
+    return true;
+}
+
+/* The pieces of a contour, and which lead from one point to the next only. */
+typedef struct Pieces {
+    Piece2 *items;
+    bool   *links;
+    size_t  count;
+} Pieces;
+
+static void fit_runs(const OutlinePoint *points, size_t count, double error, Pieces *pieces)
+{
     for (size_t from = 0, end = 0, to; from < count; from = to) {
-        Piece2 piece;
         if (end <= from)
             for (end = from + 1; !points[end].corner;)
                 end++;
-        to             = longest_run(points, from, end, error, &piece);
-        points[left]   = points[from];
-        bulges[left++] = piece.bulge;
+        to = longest_run(points, from, end, error, &pieces->items[pieces->count]);
+        pieces->links[pieces->count++] = to == from + 1;
+    }
+}
+
+/* Between a line and an arc that touches it there is a link from the last point on one to the first on the other. */
+static void leave_out_links(Pieces *pieces, double error)
+{
+    size_t left = 0, count = pieces->count;
+    for (size_t i = 0; i < count; i++) {
+        Piece2 *link = &pieces->items[i], *behind = &pieces->items[(i + 1) % count];
+        Piece2 *before = left > 0 ? &pieces->items[left - 1] : &pieces->items[count - 1];
+        double near[2] = {0.5 * (link->from[0] + link->to[0]), 0.5 * (link->from[1] + link->to[1])};
+        bool gone = left + count - i > 2 && pieces->links[i] && before->radius != behind->radius &&
+                    join_smoothly(before, behind, near, distance2(link->from, link->to), error);
+        if (!gone)
+            pieces->items[left++] = *link;
+    }
+    pieces->count = left;
+}
+
+static void touch_neighbours(Pieces *pieces, double error)
+{
+    static const double PART = 0.25;
+    for (size_t i = 0; i < pieces->count && pieces->count > 1; i++) {
+        Piece2 *before = &pieces->items[i], *behind = &pieces->items[(i + 1) % pieces->count];
+        double  near[2] = {before->to[0], before->to[1]};
+        double  reach   = PART * min2(distance2(before->from, before->to),
+                                      distance2(behind->from, behind->to));
+        join_smoothly(before, behind, near, reach, error);
+    }
+}
+
+/* Contours without corners begin somewhere: what is one piece there becomes one. */
+static void join_ends(Pieces *pieces, double error)
+{
+    if (pieces->count < 4)
+        return;
+    Piece2 *first = &pieces->items[0], *last = &pieces->items[pieces->count - 1];
+    double  turn = 4 * fabs(atan(first->bulge) + atan(last->bulge));
+    if ((first->radius > 0) != (last->radius > 0) || first->bulge * last->bulge < 0 ||
+        turn > M_PI || distance_to_whole(last, first->to) > error ||
+        distance_to_whole(first, last->from) > error)
+        return;
+    end_piece_at(last, true, first->to);
+    pieces->items[0] = *last;
+    pieces->count--;
+}
+
+size_t fit_arcs(OutlinePoint *points, double *bulges, size_t count, double error, Arena *scratch)
+{
+    ArenaMark before = arena_mark(scratch);
+    Pieces    pieces = {.items = arena_new_array(scratch, Piece2, count),
+                        .links = arena_new_array(scratch, bool, count)};
+    size_t    left   = 0;
+    turn_to_corner(points, count, scratch);
+    fit_runs(points, count, error, &pieces);
+    leave_out_links(&pieces, LOOSER * error);
+    touch_neighbours(&pieces, LOOSER * error);
+    join_ends(&pieces, LOOSER * error);
+    for (size_t i = 0; i < pieces.count; i++) {
+        memcpy(points[left].at, pieces.items[i].from, sizeof points[left].at);
+        bulges[left++] = pieces.items[i].bulge;
     }
     arena_rewind(scratch, before);
     return left;

@@ -5,6 +5,7 @@
 
 #include "compiler/base/parallel.h"
 #include "compiler/base/vec.h"
+#include "compiler/slice/extent.h"
 #include "compiler/slice/section.h"
 
 static const double DEFAULT_ERROR = 1.0 / 2000, LEAST_ERROR = 1e-7;
@@ -84,7 +85,12 @@ static KrsStatus open_slicer(KrsSlicer *slicer, KrsFrame *frame)
     solid_of_components(scene, wanted, &slicer->solid);
     free(wanted);
     slicer->parts = parallel_parts();
-    return find_box(slicer) ? open_fields(slicer, frame) : KRS_BAD_ARGUMENT;
+    if (!find_box(slicer))
+        return KRS_BAD_ARGUMENT;
+    KrsStatus status = open_fields(slicer, frame);
+    if (status == KRS_OK && slicer->parts > 0)
+        narrow_box(&slicer->fields[0], slicer->low, slicer->high);
+    return status;
 }
 
 KrsStatus krs_slicer_new(KrsFrame *frame, const KrsSliceOptions *options, KrsSlicer **result)

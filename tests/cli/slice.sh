@@ -1,7 +1,7 @@
 #!/bin/sh
 # slice.sh: `krs slice`: files that other programs accept, their areas, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 31
+plan 38
 
 echo 'show sphere(0.5);' >ball.krs
 echo 'show box([4, 3, 2]) - cylinder(1, 5).rotate([1, 0, 0], 90deg);' >plate.krs
@@ -10,17 +10,31 @@ echo 'camera { eye: [0, 0, 5] }' >empty.krs
 
 # Areas of files, by readers that share nothing with krs: areas FILE prints one for each layer.
 cat >areas.py <<'END'
-import re, struct, sys, zlib
+import math, re, struct, sys, zlib
 def shoelace(points):
     return sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(points, points[1:] + points[:1])) / 2
+def sector(a, b, radius, large, sweep): # between an arc and its chord; y is downwards
+    half = math.asin(min(1, math.hypot(b[0] - a[0], b[1] - a[1]) / 2 / radius))
+    angle = 2 * (math.pi - half if large else half)
+    return (1 if sweep else -1) * radius ** 2 / 2 * (angle - math.sin(angle))
+def bulged(a, b, bulge):
+    if bulge == 0:
+        return 0
+    chord, angle = math.hypot(b[0] - a[0], b[1] - a[1]), 4 * math.atan(bulge)
+    return (chord / 2 / math.sin(angle / 2)) ** 2 / 2 * (angle - math.sin(angle))
 def svg(text):
     import xml.etree.ElementTree as tree
     for group in tree.fromstring(text.encode()):
         area = 0
         for path in group:
             for part in path.get("d").split("Z"):
-                numbers = [float(x) for x in re.findall(r"-?\d+\.?\d*", part)]
-                area -= shoelace(list(zip(numbers[::2], numbers[1::2])))
+                points = []
+                for kind, words in re.findall(r"([MLA])([^MLA]*)", part):
+                    numbers = [float(x) for x in words.split()]
+                    points.append(numbers[-2:])
+                    if kind == "A":
+                        area -= sector(points[-2], points[-1], numbers[0], numbers[3], numbers[4])
+                area -= shoelace(points)
         yield area
 def cli(text):
     area, count = None, 0
@@ -45,14 +59,17 @@ def dxf(text):
             if value == "POLYLINE":
                 points = []
             if value == "SEQEND":
-                areas[layer] = areas.get(layer, 0) + shoelace(points)
+                pieces = zip(points, points[1:] + points[:1])
+                areas[layer] = areas.get(layer, 0) + shoelace(points) + sum(bulged(a, b, a[2]) for a, b in pieces)
             kind = value
         if code == "8":
             layer = value
         if code == "10" and kind == "VERTEX":
-            points.append([float(value), 0])
+            points.append([float(value), 0, 0])
         if code == "20" and kind == "VERTEX":
             points[-1][1] = float(value)
+        if code == "42":
+            points[-1][2] = float(value)
     return areas.values()
 def png(data):
     at, pixels = 8, b""
@@ -129,6 +146,27 @@ if command -v python3 >/dev/null; then
 else
     for i in 1 2 3 4 5 6 7 8 9 10 11; do skip "areas of files, $i" "no python3"; done
 fi
+echo 'show rectangle([4, 3]).round(0.5) - circle(0.5);' >figure.krs
+run slice --quiet figure.krs -o f.svg -o f.dxf
+ended 0 "plane figures are sections"
+[ "$(grep -o ' A' f.svg | wc -l)" -eq 6 ] && [ "$(grep -o ' L' f.svg | wc -l)" -eq 3 ] &&
+    [ "$(grep -c '^42$' f.dxf)" -eq 6 ]
+result $? "with lines as lines and arcs as arcs"
+if command -v python3 >/dev/null; then
+    areas_are f.svg 0.0001 11 && areas_are f.dxf 0.0001 11
+    result $? "which have their area"
+else
+    skip "which have their area" "no python3"
+fi
+run slice figure.krs --layer 0.1
+said 2 "neither --layer" "figures have no layers"
+echo 'let plate = rectangle([4, 3]); show plate; show sphere(1);' >both.krs
+run slice both.krs
+said 2 "figures and solids" "figures are not cut with solids"
+run slice --quiet both.krs --component plate -o plate.svg
+ended 0 "but alone"
+run mesh figure.krs
+said 1 "cannot be shown" "other commands have nothing to show of them"
 if command -v xmllint >/dev/null; then
     xmllint --noout p.svg 2>err
     result $? "SVG is XML"

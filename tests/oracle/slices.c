@@ -185,6 +185,97 @@ static void sections_have_the_areas_of_closed_forms(void **state)
     }
 }
 
+/* ---- lines and arcs ---- */
+
+typedef struct Figure {
+    const char *text;
+    double      area;
+    size_t      lines, arcs;
+} Figure;
+
+/* A point of the piece between two points, at half of its way. */
+static void middle_of(const double a[2], const double b[2], double bulge, double at[2])
+{
+    at[0] = 0.5 * (a[0] + b[0]) + 0.5 * bulge * (b[1] - a[1]);
+    at[1] = 0.5 * (a[1] + b[1]) - 0.5 * bulge * (b[0] - a[0]);
+}
+
+static void figures_are_of_lines_and_arcs(void **state)
+{
+    static const double pi        = 3.14159265358979323846;
+    const Figure        figures[] = {
+               {"circle(1)", pi, 0, 2},
+               {"rectangle([4, 3])", 12, 4, 0},
+               {"rectangle([4, 3]).round(0.5)", 12 - (4 - pi) * 0.25, 4, 4},
+               {"rectangle([4, 3]).round(0.5).rotate(20deg) - circle(0.5).move([1, 0])",
+                12 - (4 - pi) * 0.25 - 0.25 * pi, 4, 6},
+               {"segment([0, 0], [3, 0], 0.5)", 1.5 + 0.0625 * pi, 2, 2},
+               {"rectangle([2, 2]) | circle(1).move([1, 0])", 4 + 0.5 * pi, 3, 1},
+               {"polygon([[0, 0], [4, 0], [4, 1], [1, 1], [1, 3], [0, 3]])", 6, 6, 0},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) {
+        Product     product = product_format("show (%s).extrude(1);", figures[i].text);
+        KrsSlicer  *slicer  = open_slicer(&product, 0.001, true);
+        KrsSection *section = slice_at(slicer, vec(0, 0, 0), vec(0, 0, 1));
+        size_t      lines = 0, arcs = 0;
+        double      area = 0;
+        for (size_t c = 0; c < section->contour_count; c++) {
+            const KrsContour *contour = &section->contours[c];
+            area += contour->area;
+            for (size_t k = 0; k < contour->count; k++) {
+                const double *a     = section->points[contour->first + k];
+                const double *b     = section->points[contour->first + (k + 1) % contour->count];
+                double        bulge = section->bulges[contour->first + k], at[2];
+                middle_of(a, b, bulge, at);
+                assert_true(fabs(product_distance(&product, vec(at[0], at[1], 0))) < 1e-4);
+                arcs += bulge != 0;
+                lines += bulge == 0;
+            }
+        }
+        print_message("# %zu lines, %zu arcs, area %.9f for %.9f: %s\n", lines, arcs, area,
+                      figures[i].area, figures[i].text);
+        assert_true(fabs(area - figures[i].area) < 1e-4);
+        assert_int_equal(lines, figures[i].lines);
+        assert_int_equal(arcs, figures[i].arcs);
+        krs_section_free(section);
+        krs_slicer_free(slicer);
+        product_free(&product);
+    }
+}
+
+/* Boxes of blends and of what is turned have room to spare: layers begin where the solid does. */
+static void boxes_are_narrow(void **state)
+{
+    static const struct {
+        const char *text;
+        double      low[3], high[3];
+    } boxes[] = {
+        {"show box([1, 2, 3]);", {-0.5, -1, -1.5}, {0.5, 1, 1.5}},
+        {"show sphere(1).rotate([1, 0, 0], 1).move([1, 2, 3]);", {0, 1, 2}, {2, 3, 4}},
+        {"show sphere(1) - half_space([0, 0, 1], -0.25);", {-1, -1, -0.25}, {1, 1, 1}},
+        {"show torus(2, 0.5).rotate([0, 0, 1], 90deg);", {-0.5, -2.5, -2.5}, {0.5, 2.5, 2.5}},
+        {"show union(sphere(1).move([2, 0, 0]), sphere(1).move([-2, 0, 0]), blend: 0.5);",
+         {-3, -1, -1},
+         {3, 1, 1}},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof boxes / sizeof *boxes; i++) {
+        Product    product = product_compile(boxes[i].text);
+        KrsSlicer *slicer  = open_slicer(&product, 0.01, false);
+        double     low[3], high[3];
+        assert_true(krs_slicer_box(slicer, low, high));
+        print_message("# [%g, %g, %g] to [%g, %g, %g]: %s\n", low[0], low[1], low[2], high[0],
+                      high[1], high[2], boxes[i].text);
+        for (int k = 0; k < 3; k++) {
+            assert_true(fabs(low[k] - boxes[i].low[k]) < 1e-4);
+            assert_true(fabs(high[k] - boxes[i].high[k]) < 1e-4);
+        }
+        krs_slicer_free(slicer);
+        product_free(&product);
+    }
+}
+
 /* ---- random solids ---- */
 
 static void write_part(SceneText *text, Random *random)
@@ -271,7 +362,7 @@ static void points_are_on_the_surface(const Product *product, const KrsSection *
 
 static void sections_are_where_solids_are(void **state)
 {
-    enum { SOLIDS = 150, POINTS = 400 };
+    enum { SOLIDS = 90, POINTS = 400 };
     Random random = {7};
     size_t told   = 0;
     (void)state;
@@ -310,6 +401,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sections_are_where_solids_are),
+        cmocka_unit_test(boxes_are_narrow),
+        cmocka_unit_test(figures_are_of_lines_and_arcs),
         cmocka_unit_test(sections_have_the_areas_of_closed_forms),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

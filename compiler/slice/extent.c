@@ -1,0 +1,180 @@
+/* extent.c: where a solid ends, by branch and bound. */
+#include "compiler/slice/extent.h"
+
+#include <string.h>
+
+#include "compiler/base/vec.h"
+
+enum { MOST_BOXES = 1500, MOST_OPEN = 256, SAMPLES = 12 };
+
+/* Along an axis, downwards or upwards: heights are coordinates times the sign. */
+typedef struct Extent {
+    const MeshField *field;
+    int              axis;
+    double           sign, best; /* the least height of a point that is known to be solid */
+    double           at[3];      /* that point */
+    double           gap;        /* what is above best - gap is not looked for */
+    size_t           looked;
+} Extent;
+
+static double bottom_of(const Extent *e, const Box *box)
+{
+    return e->sign > 0 ? box->axis[e->axis].low : -box->axis[e->axis].high;
+}
+
+static void set_top(const Extent *e, Box *box, double height)
+{
+    if (e->sign > 0)
+        box->axis[e->axis].high = min2(box->axis[e->axis].high, height);
+    else
+        box->axis[e->axis].low = max2(box->axis[e->axis].low, -height);
+}
+
+/* Down from a solid point to where it ends, or to a height: halved, since steps along a distance would be many. */
+static void go_down(Extent *e, const double from[3], double bottom)
+{
+    enum { HALVINGS = 48 };
+    double point[3] = {from[0], from[1], from[2]}, inside = e->sign * from[e->axis],
+           outside = bottom;
+    for (int i = 0; i < HALVINGS && outside < inside; i++) {
+        double middle  = i == 0 ? outside : 0.5 * (inside + outside);
+        point[e->axis] = e->sign * middle;
+        if (field_distance(e->field, point) <= 0)
+            inside = middle;
+        else
+            outside = middle;
+    }
+    if (inside >= e->best)
+        return;
+    point[e->axis] = e->sign * inside;
+    e->best        = inside;
+    memcpy(e->at, point, sizeof e->at);
+}
+
+/* Looks at the middle of a box.  False: there is nothing in the box, as distances change no faster than points move. */
+static bool look_in(Extent *e, const Box *box)
+{
+    double point[3], half[3];
+    for (int k = 0; k < 3; k++) {
+        point[k] = 0.5 * (box->axis[k].low + box->axis[k].high);
+        half[k]  = 0.5 * (box->axis[k].high - box->axis[k].low);
+    }
+    double distance = field_distance(e->field, point);
+    if (distance > 0)
+        return distance <= 1.0001 * length3(half);
+    go_down(e, point, bottom_of(e, box));
+    return true;
+}
+
+/* From the lowest point that is known sideways, and down from there, by steps that become shorter. */
+static void slide_down(Extent *e, const Box *box)
+{
+    enum { STEPS = 40, MOST_SLIDES = 400 };
+    const double bottom = bottom_of(e, box);
+    double step = 0.1 * (-bottom_of(&(Extent){.axis = e->axis, .sign = -e->sign}, box) - bottom);
+    for (int i = 0, slides = 0; i < STEPS && slides < MOST_SLIDES; i++, step *= 0.5)
+        for (int direction = 0; direction < 8 && slides < MOST_SLIDES; direction++) {
+            double point[3] = {e->at[0], e->at[1], e->at[2]}, before = e->best;
+            point[(e->axis + 1) % 3] += step * cos(M_PI_4 * direction);
+            point[(e->axis + 2) % 3] += step * sin(M_PI_4 * direction);
+            if (field_distance(e->field, point) <= 0)
+                go_down(e, point, bottom);
+            if (e->best < before) {
+                slides++;
+                direction--;
+            }
+        }
+}
+
+static void halve(const Box *box, Box halves[2])
+{
+    int longest = 0;
+    for (int k = 1; k < 3; k++)
+        if (box->axis[k].high - box->axis[k].low > box->axis[longest].high - box->axis[longest].low)
+            longest = k;
+    halves[0] = halves[1]        = *box;
+    double middle                = 0.5 * (box->axis[longest].low + box->axis[longest].high);
+    halves[0].axis[longest].high = halves[1].axis[longest].low = middle;
+}
+
+/* Whether nothing is solid below best - gap; `best` is lower then. */
+static bool prove(Extent *e, Box all)
+{
+    Box    open[MOST_OPEN];
+    size_t count  = 0;
+    open[count++] = all;
+    while (count > 0) {
+        Box box = open[--count];
+        set_top(e, &box, e->best - e->gap);
+        if (!(box.axis[e->axis].low < box.axis[e->axis].high) ||
+            field_range(e->field, box).low > 0 || !look_in(e, &box))
+            continue;
+        if (++e->looked > MOST_BOXES || count + 2 > MOST_OPEN)
+            return false;
+        set_top(e, &box, e->best - e->gap);
+        if (!(box.axis[e->axis].low < box.axis[e->axis].high))
+            continue;
+        halve(&box, &open[count]);
+        bool lower_first = bottom_of(e, &open[count]) < bottom_of(e, &open[count + 1]);
+        if (lower_first) {
+            Box other       = open[count];
+            open[count]     = open[count + 1];
+            open[count + 1] = other;
+        }
+        count += 2;
+    }
+    return true;
+}
+
+static void sample(Extent *e, const Box *box)
+{
+    double points[SAMPLES][3], distances[SAMPLES];
+    for (int i = 0; i < SAMPLES * SAMPLES; i++) {
+        for (int k = 0; k < SAMPLES; k++) {
+            const double parts[3] = {i / SAMPLES + 0.5, i % SAMPLES + 0.5, k + 0.5};
+            for (int a = 0; a < 3; a++)
+                points[k][a] = box->axis[a].low +
+                               (box->axis[a].high - box->axis[a].low) * parts[a] / SAMPLES;
+        }
+        field_distances(e->field, (const double(*)[3])points, SAMPLES, distances);
+        for (int k = 0; k < SAMPLES; k++)
+            if (distances[k] <= 0)
+                go_down(e, points[k], e->sign * points[k][e->axis]);
+    }
+}
+
+/* The least height that is known to be solid, if nothing is by a 500th of all heights lower; else one that nothing is
+   below. */
+static double find_bottom(const MeshField *field, const Box *box, int axis, double sign)
+{
+    static const double gaps[] = {0.05, 0.002};
+    Extent              e      = {.field = field, .axis = axis, .sign = sign, .best = INFINITY};
+    double bottom = bottom_of(&e, box), height = box->axis[axis].high - box->axis[axis].low;
+    sample(&e, box);
+    for (size_t i = 0; i < sizeof gaps / sizeof *gaps && e.best < INFINITY; i++) {
+        e.gap    = gaps[i] * height;
+        e.looked = 0;
+        slide_down(&e, box);
+        if (!prove(&e, *box))
+            return bottom;
+        bottom = max2(bottom, e.best - e.gap);
+    }
+    return e.best < INFINITY ? e.best : bottom;
+}
+
+void narrow_box(const MeshField *field, double low[3], double high[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        Box box;
+        for (int k = 0; k < 3; k++)
+            box.axis[k] = (Range){low[k], high[k]};
+        if (!(low[axis] < high[axis]))
+            continue;
+        double least = find_bottom(field, &box, axis, 1),
+               most  = -find_bottom(field, &box, axis, -1);
+        if (least < most) {
+            low[axis]  = max2(low[axis], least);
+            high[axis] = min2(high[axis], most);
+        }
+    }
+}
