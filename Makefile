@@ -33,7 +33,7 @@ DEVICE  ?= $(KRS_DEVICE)
 JOBS    ?= $(shell nproc)
 
 # Sources in the order of the pipeline: reading down this list is reading the program.
-BASE     := $(addprefix compiler/base/, arena.c patience.c exr_chunks.c half.c parallel.c text.c visible.c paths.c source.c beneath.c loader.c diag.c diag_text.c)
+BASE     := $(addprefix compiler/base/, arena.c patience.c unchecked.c exr_chunks.c half.c parallel.c text.c visible.c paths.c source.c beneath.c loader.c diag.c diag_text.c)
 FRONT    := $(addprefix compiler/front/, lexer.c lex_literals.c syntax.c format.c format_pieces.c parser.c parse_expression.c \
                 parse_declaration.c parse.c synonyms.c names.c files.c)
 OUTLINE  := $(addprefix compiler/outline/, path.c knots.c edge_cuts.c edge_sides.c resolve.c members.c letters.c \

@@ -26,6 +26,7 @@
 #include "cli/crash_report.h"
 #include "cli/terminate.h"
 #include "compiler/base/patience.h"
+#include "compiler/base/unchecked.h"
 
 typedef struct Shared {
     atomic_int       stage;
@@ -209,10 +210,14 @@ static void limit_memory(uint64_t bytes)
     setrlimit(RLIMIT_DATA, &limit);
 }
 
-/* Libraries in C may use what they could not allocate.  Where nothing has failed since, that has left its mark. */
-static void note_crash(int number)
+/* Libraries in C may use what they could not allocate.  Where nothing has failed since, that has left its mark;
+   where they run on for long, they crash at an address near 0. */
+static void note_crash(int number, siginfo_t *info, void *context)
 {
-    if (errno == ENOMEM)
+    (void)context;
+    bool nothing = number == SIGSEGV && info->si_code == SEGV_MAPERR &&
+                   (uintptr_t)info->si_addr < 4096;
+    if (errno == ENOMEM || (nothing && unchecked_runs()))
         atomic_store(&shared->scarce, 1);
     raise(number); /* the process ends by it as if nobody had looked */
 }
@@ -221,7 +226,9 @@ static void note_crash(int number)
 static void note_crashes(void)
 {
     static const int numbers[] = {SIGSEGV, SIGBUS, SIGABRT};
-    struct sigaction action    = {.sa_handler = note_crash, .sa_flags = (int)SA_RESETHAND}, now;
+    struct sigaction action    = {.sa_sigaction = note_crash,
+                                  .sa_flags     = (int)(SA_RESETHAND | SA_SIGINFO)},
+                     now;
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
         if (sigaction(numbers[i], NULL, &now) == 0 && now.sa_handler == SIG_DFL)
             sigaction(numbers[i], &action, NULL);

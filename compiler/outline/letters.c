@@ -3,6 +3,7 @@
  */
 #include "compiler/outline/letters.h"
 
+#include <errno.h>
 #include <fontconfig/fontconfig.h>
 #include <ft2build.h>
 #include FT_FREETYPE_H
@@ -11,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+
+#include "compiler/base/unchecked.h"
 
 /* ---- fonts of the system ---- */
 
@@ -38,7 +41,7 @@ static FontSearch match_font(FcConfig *config, const char *name, bool any, Found
     FcResult   result = FcResultMatch;
     FcPattern *asked  = FcNameParse((const FcChar8 *)name);
     if (!asked)
-        return FONT_UNKNOWN;
+        return errno == ENOMEM ? FONT_NO_MEMORY : FONT_UNKNOWN;
     FcPattern *filled = FcPatternDuplicate(asked);
     if (!filled || !FcPatternAddBool(filled, FC_SCALABLE, FcTrue) ||
         !FcConfigSubstitute(config, filled, FcMatchPattern)) {
@@ -65,18 +68,31 @@ static FontSearch match_font(FcConfig *config, const char *name, bool any, Found
     return search;
 }
 
-FontSearch font_find(const char *name, FoundFont *found)
+static FontSearch search_fonts(const char *name, FoundFont *found)
 {
-    *found           = (FoundFont){0};
+    errno            = 0;
     FcConfig *config = FcInitLoadConfigAndFonts();
     if (!config)
-        return FONT_NONE;
+        return errno == ENOMEM ? FONT_NO_MEMORY : FONT_NONE;
     FontSearch search = match_font(config, name ? name : "DejaVu Sans", name && is_generic(name),
                                    found);
     if (!name && search == FONT_UNKNOWN)
         search = match_font(config, "sans-serif", true, found);
     FcConfigDestroy(config);
     return search == FONT_FOUND && !found->path ? FONT_NO_MEMORY : search;
+}
+
+/* fontconfig goes on without fonts where it could not allocate something: a second time says whether
+   there are none. */
+FontSearch font_find(const char *name, FoundFont *found)
+{
+    FontSearch search = FONT_NONE;
+    *found            = (FoundFont){0};
+    unchecked_begin();
+    for (int i = 0; i < 2 && search == FONT_NONE; i++)
+        search = search_fonts(name, found);
+    unchecked_end();
+    return search;
 }
 
 /* ---- glyphs ---- */

@@ -150,16 +150,18 @@ fi
 
 # Some of the allocations of a run fail, one each time: it is done all the same, or ends with 71, a last line of
 # ours, and no file.
-scarce() { # what is tested; arguments of krs
-    tested=$1 bad=0 tried=0
-    shift
+scarce() { # what is tested; how many times; arguments of krs
+    tested=$1 times=$2 bad=0 tried=0
+    shift 2
     SCARCE_COUNT=7 LD_PRELOAD=./scarce.so "$krs" "$@" 7>count >out 2>err
     made=$(head -n 1 count)
-    while [ $tried -lt 16 ]; do
+    while [ $tried -lt "$times" ]; do
         tried=$((tried + 1))
         rm -f scarce.3mf scarce.glb
-        # More of them where files are written, at the end.
-        at=$((made - made * (16 - tried) * (16 - tried) / 256))
+        case $1 in
+            mesh) at=$((made - made * (times - tried) * (times - tried) / (times * times))) ;; # more at the end
+            *) at=$((made * tried / times)) ;;
+        esac
         SCARCE_AT=$at LD_PRELOAD=./scarce.so "$krs" "$@" >out 2>err
         status=$?
         [ $status -eq 0 ] || { [ $status -eq 71 ] && tail -n 1 err | grep -q '^krs: .*memory' &&
@@ -172,10 +174,10 @@ scarce() { # what is tested; arguments of krs
 echo 'show text("A").extrude(0.3);' >letter.krs
 if "${CC:-cc}" -std=c17 -D_GNU_SOURCE -shared -fPIC -o scarce.so "$root/tests/cli/scarce_malloc.c" \
     2>/dev/null; then
-    scarce "allocations that fail where a font is found" check letter.krs
-    scarce "allocations that fail where a 3MF file is written" \
+    scarce "allocations that fail where a font is found" 60 check letter.krs
+    scarce "allocations that fail where a 3MF file is written" 16 \
         mesh ball.krs --error 0.2 --quiet -o scarce.3mf
-    scarce "allocations that fail where a GLB file is written" \
+    scarce "allocations that fail where a GLB file is written" 16 \
         mesh ball.krs --error 0.2 --quiet -o scarce.glb
 else
     skip "allocations that fail where a font is found" "no compiler"

@@ -1,0 +1,14 @@
+/*
+ * unchecked.c: calls of libraries in C that use what they could not allocate.
+ */
+#include "compiler/base/unchecked.h"
+
+#include <stdatomic.h>
+
+static atomic_int running;
+
+void unchecked_begin(void) { atomic_fetch_add(&running, 1); }
+
+void unchecked_end(void) { atomic_fetch_sub(&running, 1); }
+
+bool unchecked_runs(void) { return atomic_load(&running) > 0; }
