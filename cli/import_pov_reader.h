@@ -152,7 +152,8 @@ typedef struct PovReader {
         const char **items; /* what stands in their braces */
         size_t       count, capacity;
     } material_texts;
-    PovLook  usual; /* of `#default` */
+    size_t   flat_figures; /* triangles and polygons so far */
+    PovLook  usual;        /* of `#default` */
     PovView  view;
     double   version;     /* of `#version` in the file itself; 0: none */
     double   gamma;       /* exponent of colours; 0: the curve of sRGB */

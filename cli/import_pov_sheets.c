@@ -13,7 +13,7 @@
 #include "cli/import_pov_reader.h"
 #include "compiler/base/vec.h"
 
-enum { MOST_POINTS = 10000 };
+enum { MOST_POINTS = 10000, MOST_FIGURES = 500 };
 
 static const double FAR_AWAY = 1e5; /* sheets end somewhere */
 
@@ -309,6 +309,11 @@ static bool flat(PovReader *reader, unsigned line, double (*points)[3], size_t c
 {
     Place  frame = place_identity(), back;
     double wide  = 0;
+    if (++reader->flat_figures >
+        MOST_FIGURES) /* no scene has room for them, as it takes long to find */
+        return import_refuse(reader->import, line,
+                             "more than %d triangles and polygons are not translated",
+                             MOST_FIGURES);
     for (size_t i = 0; i < count; i++)
         pov_point(points[i], points[i]);
     if (!frame_of(points, count, &frame))

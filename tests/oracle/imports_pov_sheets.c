@@ -343,6 +343,8 @@ static void what_has_no_inside_is_refused_where_it_needs_one(void **state)
     assert_refused("a.pov",
                    "sphere { 0, 1 bounded_by { box { -1, 1 } }\nclipped_by { bounded_by } }",
                    "a.pov:2: `clipped_by` is translated with objects alone");
+    assert_refused("a.pov", "#for (I, 1, 501)\ntriangle { 0, x, y + I*z }\n#end",
+                   "a.pov:2: more than 500 triangles");
     assert_refused("a.pov", "polygon { 5, 0, x, y, z, 0 }",
                    "a.pov:1: the points are not in a plane");
 }
