@@ -36,10 +36,12 @@ typedef struct Shared {
     char             temporary[4096];
     char             size[256]; /* of what is compiled, in words */
     atomic_int       scarce;    /* the child crashed where an allocation had failed */
-    bool             again;     /* a child before this one was late */
-    double           read_since;
-    size_t           read_length;
-    char             read[1 << 16]; /* paths, each with a NUL */
+    atomic_int
+         unchecked; /* calls that are running of libraries which use what they could not allocate */
+    bool again;     /* a child before this one was late */
+    double read_since;
+    size_t read_length;
+    char   read[1 << 16]; /* paths, each with a NUL */
 } Shared;
 
 static Shared               *shared;
@@ -237,6 +239,8 @@ static void note_crashes(void)
 static _Noreturn void run_child(Options *options, Work *work, const sigset_t *mask)
 {
     limit_memory(options->limits.memory);
+    atomic_store(&shared->unchecked, 0);
+    unchecked_count_at(&shared->unchecked);
     terminate_by_status();
     note_crashes();
     prctl(PR_SET_PDEATHSIG, SIGTERM); /* nobody would read what we do */
@@ -300,6 +304,12 @@ static bool is_out_of_time(const Watch *watch, int signal_number)
 static int report_late(const Options *options, const StageInfo *stage)
 {
     char story[256];
+    if (atomic_load(&shared->unchecked) > 0) {
+        say("gave up %s after %g seconds: the search of fonts does not end, probably for want of "
+            "memory",
+            stage->doing, options->deadline * stage->deadlines);
+        return KRS_OUT_OF_MEMORY;
+    }
     if (stage->slow) {
         shared->size[sizeof shared->size - 1] = '\0';
         say("gave up %s after %g seconds: %s; --deadline SECONDS allows it longer", stage->doing,

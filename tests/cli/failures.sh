@@ -174,7 +174,7 @@ scarce() { # what is tested; how many times; arguments of krs
 echo 'show text("A").extrude(0.3);' >letter.krs
 if "${CC:-cc}" -std=c17 -D_GNU_SOURCE -shared -fPIC -o scarce.so "$root/tests/cli/scarce_malloc.c" \
     2>/dev/null; then
-    scarce "allocations that fail where a font is found" 60 check letter.krs
+    scarce "allocations that fail where a font is found" 60 check letter.krs --deadline 5
     scarce "allocations that fail where a 3MF file is written" 16 \
         mesh ball.krs --error 0.2 --quiet -o scarce.3mf
     scarce "allocations that fail where a GLB file is written" 16 \
