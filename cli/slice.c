@@ -10,7 +10,7 @@
 #include "cli/meshing.h"
 #include "cli/slicing.h"
 
-enum { MOST_LAYERS = 1000000, AT_ONCE = 32, USUAL_PIXELS = 1024 };
+enum { MOST_LAYERS = 1000000, AT_ONCE = 8, USUAL_PIXELS = 1024 };
 /* Bytes of a picture. */
 #define MOST_PIXELS 1073741824.0
 

@@ -65,6 +65,8 @@ static KrsStatus open_fields(KrsSlicer *slicer, KrsFrame *frame)
         if (status == KRS_OK) {
             frame_refresh_points(field->frame);
             field_open(field, &slicer->arena);
+            field->ranges.unroll =
+                true; /* derivatives of crowds have no bounds; those of few members have */
         }
     }
     return status;

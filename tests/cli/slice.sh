@@ -1,7 +1,7 @@
 #!/bin/sh
 # slice.sh: `krs slice`: files that other programs accept, their areas, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 38
+plan 40
 
 echo 'show sphere(0.5);' >ball.krs
 echo 'show box([4, 3, 2]) - cylinder(1, 5).rotate([1, 0, 0], 90deg);' >plate.krs
@@ -145,6 +145,39 @@ if command -v python3 >/dev/null; then
     result $? "and the plane of a face has the face"
 else
     for i in 1 2 3 4 5 6 7 8 9 10 11; do skip "areas of files, $i" "no python3"; done
+fi
+# The most memory of a command, in kilobytes: memory_of KRS-ARGUMENTS...
+memory_of() {
+    python3 -c 'import resource, subprocess, sys
+subprocess.run(sys.argv[1:], check=True)
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)' "$krs" "$@" 2>err
+}
+if command -v python3 >/dev/null; then
+    echo 'param height = 6 in [6, 60]; show sphere(0.4).repeat(1) & box([8, 8, height]);' >lattice.krs
+    low=$(memory_of slice --quiet lattice.krs --layer 0.4 --error 0.02 -o l.cli)
+    high=$(memory_of slice --quiet lattice.krs --layer 0.4 --error 0.02 --set height=60 -o h.cli)
+    [ "$(grep -c LAYER/ h.cli)" -eq 151 ] && [ "$high" -lt $((low * 5 / 4)) ]
+    result $? "ten times the layers take no more memory"
+else
+    skip "ten times the layers take no more memory" "no python3"
+fi
+# What another program finds of a mesh.
+cat >flange.krs <<'END'
+let foot = box([4, 0.7, 2.4]).round(0.15);
+let bores = [cylinder(0.3, 2).move([side * 1.45, 0, 0]) for side in [-1, 1]];
+show difference(union(foot, cylinder(0.85, 2).move([0, 0.9, 0]), blend: 0.5), cylinder(0.5, 5), bores);
+END
+if command -v python3 >/dev/null && command -v admesh >/dev/null; then
+    run slice --quiet flange.krs --layer 0.02 --axis y -o flange.cli
+    run mesh --quiet flange.krs --error 0.004 -o flange.stl
+    admesh flange.stl >out
+    python3 areas.py flange.cli | tr ' ' '\n' >areas.txt
+    sed -n 's/.*Volume *: *\([0-9.]*\).*/\1/p' out | cat - areas.txt |
+        awk 'NR == 1 { wanted = $1; next } { volume += 0.02 * $1 }
+             END { print volume, wanted; d = volume / wanted - 1; exit !(wanted > 1 && d * d < 0.003^2) }' >found
+    result $? "layers have the volume that admesh finds of the mesh"
+else
+    skip "layers have the volume that admesh finds of the mesh" "no admesh or python3"
 fi
 echo 'show rectangle([4, 3]).round(0.5) - circle(0.5);' >figure.krs
 run slice --quiet figure.krs -o f.svg -o f.dxf
