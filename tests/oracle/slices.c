@@ -360,6 +360,43 @@ static void points_are_on_the_surface(const Product *product, const KrsSection *
     }
 }
 
+static double side_of(const double a[2], const double b[2], const double at[2])
+{
+    return (b[0] - a[0]) * (at[1] - a[1]) - (b[1] - a[1]) * (at[0] - a[0]);
+}
+
+/* By how much two pieces cross: what the nearest of their four ends is from the other's line; below 0: not. */
+static double crossing_depth(const double a[2], const double b[2], const double c[2],
+                             const double d[2])
+{
+    double first = hypot(b[0] - a[0], b[1] - a[1]), second = hypot(d[0] - c[0], d[1] - c[1]);
+    if (side_of(a, b, c) * side_of(a, b, d) >= 0 || side_of(c, d, a) * side_of(c, d, b) >= 0)
+        return -1;
+    return fmin(fmin(fabs(side_of(a, b, c)), fabs(side_of(a, b, d))) / first,
+                fmin(fabs(side_of(c, d, a)), fabs(side_of(c, d, b))) / second);
+}
+
+/* Contours do not cross, but where something is thinner than the error, nor does one go back along itself. */
+static void contours_do_not_cross(const KrsSection *section, double error)
+{
+    size_t *next = calloc(section->point_count + 1, sizeof *next);
+    for (size_t c = 0; c < section->contour_count; c++)
+        for (size_t i = 0; i < section->contours[c].count; i++)
+            next[section->contours[c].first + i] = section->contours[c].first +
+                                                   (i + 1) % section->contours[c].count;
+    for (size_t i = 0; i < section->point_count; i++) {
+        const double *a = section->points[i], *b = section->points[next[i]];
+        const double *behind = section->points[next[next[i]]];
+        double        turn   = atan2(side_of(a, b, behind), (b[0] - a[0]) * (behind[0] - b[0]) +
+                                                                (b[1] - a[1]) * (behind[1] - b[1]));
+        assert_true(fabs(turn) < 3.1415);
+        for (size_t k = 0; k < i; k++)
+            assert_true(crossing_depth(a, b, section->points[k], section->points[next[k]]) <=
+                        0.5 * error);
+    }
+    free(next);
+}
+
 static void sections_are_where_solids_are(void **state)
 {
     enum { SOLIDS = 90, POINTS = 400 };
@@ -378,6 +415,7 @@ static void sections_are_where_solids_are(void **state)
                       plane.normal[0], plane.normal[1], plane.normal[2]);
         assert_int_equal(krs_slice(slicer, &plane, 1, &section), KRS_OK);
         points_are_on_the_surface(&product, section, &plane, error);
+        contours_do_not_cross(section, error);
         for (int k = 0; k < POINTS; k++) {
             double at[3];
             random_vector(&random, 2.5, at);
