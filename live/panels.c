@@ -340,6 +340,14 @@ static void draw_status(Viewing *viewing)
     viewing->heights.status = gui_panel_end();
 }
 
+/* What must be known even where there is no other panel. */
+static void draw_notice(Viewing *viewing)
+{
+    gui_panel("notice", (GuiPlace){.corner = GUI_TOP_LEFT}, true);
+    gui_text(GUI_PLAIN, viewing->notice);
+    gui_panel_end();
+}
+
 /* What is under the mouse. */
 static void draw_found(Viewing *viewing)
 {
@@ -435,6 +443,8 @@ void panels_draw(Viewing *viewing)
         draw_status(viewing);
         draw_controls(viewing);
         draw_found(viewing);
+    } else if (viewing->reads_slowly) {
+        draw_notice(viewing);
     }
     if (viewing->panels || viewing->remarks.errors > 0)
         draw_remarks(viewing);

@@ -145,11 +145,12 @@ static void prepare_edits(Viewing *viewing)
 /* Says that a saved text takes long, so that nobody waits for it in vain. */
 static bool notice_slow_reading(Viewing *viewing)
 {
-    const double since = atomic_load(&viewing->reading_since);
-    if (since == 0 || viewing_now() - since < SLOW_SECONDS)
-        return false;
-    viewing_notice(viewing, "the saved text has been compiling for %.0f s", viewing_now() - since);
-    return true;
+    const double since    = atomic_load(&viewing->reading_since);
+    viewing->reads_slowly = since != 0 && viewing_now() - since >= SLOW_SECONDS;
+    if (viewing->reads_slowly)
+        viewing_notice(viewing, "the saved text has been compiling for %.0f s",
+                       viewing_now() - since);
+    return viewing->reads_slowly;
 }
 
 /* How long the window may wait for the next event. */
@@ -234,7 +235,9 @@ static void draw_terminal(Viewing *viewing)
     snprintf(first, sizeof first, "%s   %ux%u   %u/%u   %s   ? help", viewing->options->path,
              shot->width, shot->height, shot->samples, viewing->view.samples,
              look_names[viewing->view.look]);
-    if (viewing->remarks.errors > 0)
+    if (viewing->reads_slowly)
+        snprintf(second, sizeof second, "%s", viewing->notice);
+    else if (viewing->remarks.errors > 0)
         snprintf(second, sizeof second, "%s:%u: %s", viewing->remarks.items[0].source,
                  viewing->remarks.items[0].line, viewing->remarks.items[0].text);
     else if (painting->compiling)

@@ -54,6 +54,7 @@ typedef struct Viewing {
     uint8_t *pixels;      /* of the shot */
     char     notice[160]; /* what was done last */
     double   noticed_at;
+    bool     reads_slowly; /* a saved text takes long, which `notice` says */
     bool     panels, help, numbers;
     int      scrolled; /* lines of the help, since it was drawn */
     struct {

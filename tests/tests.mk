@@ -51,7 +51,7 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/patience unit/front unit/syno
 BOTH        := $(addprefix tests/, property/lanes unit/mesh)
 PLAIN       := $(filter-out $(filter-out $(BOTH), $(SANITIZED)), $(PROGRAMS))
 # Scripts that run alone: events of a window, and measurements.  The others run beside programs, the longest first.
-ALONE       := $(addprefix tests/, cli/view.sh cli/view_random.sh fuzz/fuzz.sh)
+ALONE       := $(addprefix tests/, cli/view.sh cli/view_limits.sh cli/view_random.sh fuzz/fuzz.sh)
 LONGEST     := $(addprefix tests/, examples.sh extend/extend.sh errors-sanitized.sh cli/signals.sh gallery.sh lint.sh cli/resume.sh \
                errors.sh cli/watch.sh cli/untrusted.sh cli/silent.sh cli/cache.sh cli/fingerprints.sh cli/failures.sh)
 BESIDE      := $(LONGEST) $(filter-out $(LONGEST) $(ALONE) tests/run.sh tests/second_driver.sh tests/bench.sh tests/cli/common.sh, \
@@ -62,7 +62,7 @@ BESIDE      := $(LONGEST) $(filter-out $(LONGEST) $(ALONE) tests/run.sh tests/se
 # compares switches of `krs help render --all` with each other.
 LONG        := $(addprefix tests/, examples.sh extend/extend.sh errors-sanitized.sh fuzz/fuzz.sh bench.sh \
                $(addprefix cli/, cache.sh compose.sh failures.sh fingerprints.sh format.sh install.sh mesh_judges.sh outputs.sh \
-               pictures.sh query.sh resume.sh scale.sh view.sh view_random.sh watch.sh) \
+               pictures.sh query.sh resume.sh scale.sh view.sh view_limits.sh view_random.sh watch.sh) \
                $(addprefix unit/, arguments compiled crowd_grid drivers film light_groups memory mesh_proofs methods noise paths \
                per_component plates printing rendering saved schedules values) \
                $(addprefix property/, blends_of_many crowds fillets turn_boxes turns) \
