@@ -374,9 +374,13 @@ bool csg_linear_extrude(const CsgNode *node, Part **part)
         !csg_number(node, "twist", 0, &twist) || !csg_vector(node, "scale", scale, 2) ||
         !csg_vector(node, "v", along, 3) || !csg_joined(node, true, &figure))
         return false;
-    if (scale[0] != scale[1] || scale[0] < 0)
+    if (scale[0] != scale[1])
         return import_refuse(node->import, node->line,
                              "`scale` that differs in x and y is not translated");
+    if (!(scale[0] > 0))
+        return import_refuse(node->import, node->line,
+                             "`scale` of 0 is not translated: the tip of a cone or pyramid is, by "
+                             "`cylinder` with `r2 = 0`, or `polyhedron`");
     if (along[0] != 0 || along[1] != 0 || along[2] <= 0)
         return import_refuse(node->import, node->line, "`v` that is not along z is not translated");
     if (!figure || !(height > 0))

@@ -342,6 +342,8 @@ static void what_cannot_be_translated_is_said_with_its_line(void **state)
     (void)state;
     assert_refused("a.csg", "group() {\n text(text = \"a\", direction = \"rtl\");\n}",
                    "a.csg:2: `text` that runs");
+    assert_refused("a.csg", "linear_extrude(height = 4, scale = [0, 0]) {\ncircle(r = 2);\n}",
+                   "a.csg:1: `scale` of 0 is not translated");
     assert_refused("a.csg", "cube();\nimport(file = \"a.stl\");",
                    "a.csg:2: `import` is not translated: scenes have no meshes, such as `a.stl`");
     assert_refused("a.csg", "\nsurface(file = \"a.dat\");",
