@@ -6,6 +6,7 @@
  */
 #include "cli/import_file.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/import_csg.h"
@@ -58,9 +59,30 @@ static const char *blame_at(const FirstError *first)
     return NULL;
 }
 
+/* Of what a drawing has and shapes do not, each kind is a note, "drawing.svg:3: clips and masks". */
+static void note_left_out(Import *import, const char *text)
+{
+    static const char note[] = "= note: ";
+    while ((text = strstr(text, note))) {
+        size_t length = strcspn(text, "\n");
+        for (size_t i = sizeof note - 1; i + 1 < length; i++) {
+            size_t digits = text[i] == ':' ? strspn(text + i + 1, "0123456789") : 0;
+            size_t words  = i + 1 + digits + 2;
+            if (digits > 0 && words < length && strncmp(text + words - 2, ": ", 2) == 0) {
+                import_note(import, (unsigned)strtoul(text + i + 1, NULL, 10), "left out: %.*s",
+                            (int)(length - words), text + words);
+                break;
+            }
+        }
+        text += length;
+    }
+}
+
 static void note_error(void *user, const KrsDiagnostic *diagnostic)
 {
     FirstError *first = user;
+    if (strcmp(diagnostic->code, "W0311") == 0)
+        note_left_out(first->import, diagnostic->text);
     if (!diagnostic->error || first->found)
         return;
     first->found         = true;

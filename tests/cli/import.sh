@@ -3,7 +3,7 @@
 # with the line that is wrong; no file, whatever is in it, ends in a crash.
 # shellcheck source-path=SCRIPTDIR disable=SC2016
 . "$(dirname "$0")/common.sh"
-plan 65
+plan 66
 
 cat >ball.vm <<'END'
 # a ball of radius 0.75 with its upper half cut away, and a line that does not count
@@ -156,6 +156,10 @@ END
 run import drawings/disc.svg -o drawings/disc.krs
 [ "$status" -eq 0 ] && grep -q 'svg("disc.svg", size: 4)' drawings/disc.krs
 result $? "a drawing is named as seen from the scene beside it"
+printf '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9">\n<rect width="5" height="5"/>\n<text y="5">Hi</text>\n</svg>\n' >drawings/text.svg
+run import drawings/text.svg -o drawings/text.krs
+[ "$status" -eq 0 ] && grep -q '^krs: drawings/text.svg:3: note: left out: elements `text`$' err
+result $? "what a drawing has and shapes do not is noted with its line"
 run import drawings/disc.svg -o scenes/disc.krs
 [ "$status" -eq 0 ] && run check scenes/disc.krs && [ "$status" -eq 0 ]
 result $? "a drawing in another folder"
