@@ -545,18 +545,22 @@ static const char *color_text(PovReader *reader, const double color[3])
     return import_vector_text(reader->import, rounded, 3);
 }
 
-/* What a look mirrors of each channel; *part: of what it mirrors and scatters, on average. */
+/* What a look mirrors of each channel; *part: of what it mirrors and scatters, on average.  The colour of
+   a metal is that of both: the more it scatters, the more of that hue its mirror gets. */
 static void mirrored(PovReader *reader, const PovLook *look, double light[3], double *part)
 {
-    double sum = 0, all = 0;
+    double sum = 0, all = 0, body[3], share;
     for (int i = 0; i < 3; i++) {
         double pigment = look->colored ? look->color[i] : 0.6;
         double mirror  = fmax(look->finish.reflection[i], 0);
         light[i]       = pov_light_of(reader, mirror * (look->finish.mirrors_metal ? pigment : 1));
+        body[i]        = pov_light_of(reader, look->finish.diffuse * pigment);
         sum += light[i];
-        all += light[i] + pov_light_of(reader, look->finish.diffuse * pigment);
+        all += light[i] + body[i];
     }
-    *part = sum > 0 ? sum / all : 0;
+    *part = share = sum > 0 ? sum / all : 0;
+    for (int i = 0; i < 3 && all > sum; i++)
+        light[i] = share * light[i] + (1 - share) * (sum / 3) * 3 * body[i] / (all - sum);
 }
 
 /* `color` and `emission`, as POV-Ray has them: what is transmitted has no colour of the thing, what

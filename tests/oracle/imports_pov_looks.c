@@ -284,6 +284,11 @@ static void mirrors_are_metals(void **state)
         "#version 3.7; sphere { 0, 1 pigment { rgb <1, 0.5, 0> } finish { diffuse 0 ambient 0 "
         "reflection { 0.5 metallic } } }",
         "{ color: [0.5, 0.25, 0], specular: 0, roughness: 0.02, metallic: 1 }");
+    /* D = 0.3, 0.15, 0, and R = 0.15 of each: half is mirrored, in a hue between both. */
+    scene_has(
+        "#version 3.7; sphere { 0, 1 pigment { rgb <1, 0.5, 0> } finish { diffuse 0.3 ambient "
+        "0 reflection 0.15 } }",
+        "{ color: [0.525, 0.3, 0.075], specular: 0, roughness: 0.02, metallic: 0.5 }");
     scene_has(
         "#version 3.7; sphere { 0, 1 pigment { rgbt 1 } finish { diffuse 0 reflection 0.5 } }",
         "`reflection` of what is transparent is that of its index of refraction");
