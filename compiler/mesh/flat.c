@@ -2,7 +2,8 @@
  * flat.c: boxes that are halved until each has few planes.
  *
  * Where no surface is comes from ranges, and where one is, from its planes.  In the end each triangle is looked at
- * once: the surface must be in its middle.  Solids with round parts are given up as soon as some of these are met.
+ * once: the surface must be in its middle.  Solids with round parts are given up where some of these are met: halving does not
+ * end there.
  */
 #include "compiler/mesh/flat.h"
 
@@ -10,7 +11,7 @@
 
 #include "compiler/base/vec.h"
 
-enum { MOST_BOXES = 20000, MOST_HALVINGS = 45, HALVINGS_OF_REGION = 3, PATIENCE = 256 };
+enum { MOST_BOXES = 200000, MOST_HALVINGS = 45, HALVINGS_OF_REGION = 3, PATIENCE = 256 };
 /* Boxes that were looked at when more than a part of them must have been flat. */
 enum { FIRST_BOXES = 600 };
 static const double LEAST_KNOWN = 0.02;
@@ -39,22 +40,6 @@ static bool halve_at(Halving *h, Box box, int halvings)
     return halve(h, box, halvings + 1);
 }
 
-/* Whether a curved surface is surely in the box. */
-static bool is_round(Halving *h, Box box)
-{
-    Range       range;
-    LaneSlope   slope;
-    LaneHessian hessian;
-    if (!field_hessian(h->field, box, &range, &slope, &hessian) || hessian.flat)
-        return false;
-    double middle[3], radius = HUGE_VAL;
-    for (int k = 0; k < 3; k++) {
-        middle[k] = 0.5 * (box.axis[k].low + box.axis[k].high);
-        radius    = min2(radius, 0.5 * (box.axis[k].high - box.axis[k].low));
-    }
-    return fabs(field_distance(h->field, middle)) < 0.5 * radius;
-}
-
 static bool is_wanted(Mesher *m)
 {
     if (m->options->go_on && !m->options->go_on(m->options->user, 0))
@@ -62,13 +47,12 @@ static bool is_wanted(Mesher *m)
     return !atomic_load(&m->stopped);
 }
 
-static bool is_given_up(Halving *h, Box box, int halvings)
+static bool is_given_up(Halving *h, int halvings)
 {
     h->boxes++;
     return (h->boxes % PATIENCE == 0 && !is_wanted(h->m)) || halvings > MOST_HALVINGS ||
            h->boxes > MOST_BOXES ||
-           (h->boxes > FIRST_BOXES && (double)h->known < LEAST_KNOWN * (double)h->boxes) ||
-           is_round(h, box);
+           (h->boxes > FIRST_BOXES && (double)h->known < LEAST_KNOWN * (double)h->boxes);
 }
 
 static bool halve(Halving *h, Box box, int halvings)
@@ -86,7 +70,7 @@ static bool halve(Halving *h, Box box, int halvings)
         h->boxes++;
         done = flat_faces_add(&h->faces, box, &h->pieces);
     } else
-        done = !is_given_up(h, box, halvings) && halve_at(h, box, halvings);
+        done = !is_given_up(h, halvings) && halve_at(h, box, halvings);
     if (entered)
         field_leave(h->field);
     return done;

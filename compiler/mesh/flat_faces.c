@@ -5,13 +5,12 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/mesh/numbering.h"
 
 #define WALL UINT32_MAX
 
-/* Parts of the size: by how much planes are moved at most, and what is not told apart; the latter is far above
-   rounding. */
-static const double MOVE = 1e-8, NARROW = 1e-13;
+/* Parts of the size: by how much planes are moved at most; how near to a plane a corner must not be; and what is one
+   place on a line.  The latter are above rounding. */
+static const double MOVE = 1e-7, NARROW = 1e-14, SAME = 1e-13;
 
 /* ---- planes ---- */
 
@@ -27,23 +26,43 @@ static double jitter(uint32_t number)
     return (double)h / 2147483648.0 - 1;
 }
 
-static uint32_t find_plane(FlatFaces *faces, const HalfSpace *plane, int *sign)
+/* A number that planes have in common with themselves turned over, and other ones seldom. */
+static double plane_mark(const FlatFaces *faces, const HalfSpace *plane)
+{
+    static const double MIXED[3] = {0.7548776662, 0.5698402910, 0.3819660113};
+    return fabs(dot3(plane->normal, MIXED) + plane->offset / faces->size);
+}
+
+static bool is_plane(const FlatFaces *faces, uint32_t number, const HalfSpace *plane, int *sign)
 {
     static const double EQUAL = 1e-9;
-    for (size_t i = 0; i < faces->planes.count; i++) {
-        const HalfSpace *own = &faces->planes.items[i].exact;
-        double           off[3];
-        *sign = dot3(plane->normal, own->normal) < 0 ? -1 : 1;
-        add_scaled3(off, plane->normal, -*sign, own->normal);
-        if (largest3(off) < EQUAL &&
-            fabs(plane->offset - *sign * own->offset) < EQUAL * faces->size)
-            return (uint32_t)i;
-    }
-    FlatPlane fresh = {*plane,
-                       plane->offset + MOVE * faces->size * jitter((uint32_t)faces->planes.count)};
+    const HalfSpace    *own   = &faces->planes.items[number].exact;
+    double              off[3];
+    *sign = dot3(plane->normal, own->normal) < 0 ? -1 : 1;
+    add_scaled3(off, plane->normal, -*sign, own->normal);
+    return largest3(off) < EQUAL && fabs(plane->offset - *sign * own->offset) < EQUAL * faces->size;
+}
+
+static uint32_t find_plane(FlatFaces *faces, const HalfSpace *plane, int *sign)
+{
+    static const double WIDTH = 1e-7; /* far above what is equal */
+    int64_t             slot  = (int64_t)floor(plane_mark(faces, plane) / WIDTH);
+    faces->marks.arena        = faces->arena;
+    for (int64_t i = slot - 1; i <= slot + 1; i++)
+        for (uint32_t at         = numbering_find(&faces->marks, (NumberKey){(uint64_t)i, 0});
+             at != NO_NUMBER; at = faces->planes.items[at].next)
+            if (is_plane(faces, at, plane, sign))
+                return at;
+    uint32_t  number = (uint32_t)faces->planes.count;
+    uint32_t  first  = numbering_take(&faces->marks, (NumberKey){(uint64_t)slot, 0}, number);
+    FlatPlane fresh  = {*plane, plane->offset + MOVE * faces->size * jitter(number), NO_NUMBER};
     array_push_large(faces->arena, &faces->planes, fresh);
+    if (first != number) {
+        faces->planes.items[number].next = faces->planes.items[first].next;
+        faces->planes.items[first].next  = number;
+    }
     *sign = 1;
-    return (uint32_t)faces->planes.count - 1;
+    return number;
 }
 
 static double above(const FlatPlane *plane, const double point[3])
@@ -174,16 +193,6 @@ static void add_part(Cell *cell, const Polygon *polygon, int outward)
     }
 }
 
-/* A half-space that decides and of which one does not know the side. */
-static int find_unknown(const FlatPieces *pieces, int root, const signed char *sides)
-{
-    const FlatNode *node = &pieces->nodes[root];
-    if (node->kind == FLAT_HALF_SPACE)
-        return node->first;
-    return find_unknown(
-        pieces, flat_side(pieces, node->first, sides) == 0 ? node->first : node->second, sides);
-}
-
 static void cut_part(Cell *cell, const Polygon *polygon, signed char *sides)
 {
     const FlatPieces *pieces = cell->pieces;
@@ -193,9 +202,10 @@ static void cut_part(Cell *cell, const Polygon *polygon, signed char *sides)
     int unknown = -1;
     for (int i = 0; i < 2; i++) {
         sides[cell->own] = (signed char)(i == 0 ? -1 : 1);
-        side[i]          = flat_side(pieces, pieces->root, sides);
+        int missing      = -1;
+        side[i]          = flat_side(pieces, pieces->root, sides, &missing);
         if (side[i] == 0)
-            unknown = find_unknown(pieces, pieces->root, sides);
+            unknown = missing;
     }
     if (unknown < 0) {
         if (side[0] != side[1])
@@ -312,52 +322,68 @@ static uint32_t find_vertex(Finishing *f, uint32_t a, uint32_t b, uint32_t c)
         return NO_NUMBER;
     meeting_point(planes, offsets, at);
     array_reserve_large(f->faces->arena, f->vertices);
-    bool close = distance3(at, near) < 1e-5 * f->faces->size;
+    bool close = distance3(at, near) < 1e-4 * f->faces->size;
     memcpy(f->vertices->items[f->vertices->count++], close ? at : near, sizeof at);
     return number;
 }
 
-/* Edges of one face on one line, from the ends of segments in order. */
-static bool find_edges_between(Finishing *f, const FlatSegment *of, const Event *events,
-                               size_t count)
+/* A walk along a line: the vertex before, and how often the line is covered behind it. */
+typedef struct Walk {
+    const FlatSegment *of;
+    uint32_t           last;
+    int                covered;
+} Walk;
+
+static bool walk_on(Finishing *f, Walk *walk, uint32_t end, int change)
 {
-    const FlatFaces *faces = f->faces;
-    uint32_t         last = NO_NUMBER, plane = of->face / 2;
-    int              covered = 0;
-    for (size_t i = 0, next; i < count; i = next) {
-        int      change = 0;
-        uint32_t end    = WALL;
-        for (next = i; next < count && events[next].at - events[i].at < NARROW * faces->size;
-             next++) {
-            change += events[next].change;
-            if (events[next].plane == WALL)
-                continue;
-            if (end != WALL && end != events[next].plane)
-                return false;
-            end = events[next].plane;
-        }
-        if (change == 0)
-            continue;
-        uint32_t vertex = end == WALL ? NO_NUMBER : find_vertex(f, plane, of->line, end);
-        if (vertex == NO_NUMBER)
-            return false;
-        if (covered != 0) {
-            Edge edge = {of->face,
-                         covered > 0 ? last : vertex,
-                         covered > 0 ? vertex : last,
-                         {0, 0, 0},
-                         false};
-            line_direction(faces, plane, of->line, edge.way);
-            for (int k = 0; k < 3; k++)
-                edge.way[k] *= covered;
-            array_push_large(faces->arena, &f->edges, edge);
-        }
-        covered += change;
-        if (covered < -1 || covered > 1)
-            return false;
-        last = vertex;
+    uint32_t plane = walk->of->face / 2;
+    if (change == 0)
+        return true;
+    uint32_t vertex = end == WALL ? NO_NUMBER : find_vertex(f, plane, walk->of->line, end);
+    if (vertex == NO_NUMBER)
+        return false;
+    if (walk->covered != 0) {
+        bool along = walk->covered > 0;
+        Edge edge  = {.face = walk->of->face,
+                      .from = along ? walk->last : vertex,
+                      .to   = along ? vertex : walk->last};
+        line_direction(f->faces, plane, walk->of->line, edge.way);
+        for (int k = 0; k < 3; k++)
+            edge.way[k] *= walk->covered;
+        array_push_large(f->faces->arena, &f->edges, edge);
     }
-    return covered == 0;
+    walk->covered += change;
+    walk->last = vertex;
+    return walk->covered >= -1 && walk->covered <= 1;
+}
+
+/* Edges of one face on one line, from the ends of segments in order.  Ends at one place cancel out where a box ends, and where
+   two planes end the line there it has a short edge. */
+static bool find_edges_between(Finishing *f, const FlatSegment *of, Event *events, size_t count)
+{
+    Walk walk = {of, NO_NUMBER, 0};
+    for (size_t i = 0, next; i < count; i = next) {
+        int at_walls = 0;
+        for (next = i; next < count && events[next].at - events[i].at < SAME * f->faces->size;
+             next++)
+            at_walls += events[next].plane == WALL ? events[next].change : 0;
+        for (size_t k = i; k < next; k++) {
+            int change = at_walls;
+            if (events[k].plane == WALL)
+                continue;
+            for (size_t other = next; other-- > k;)
+                if (events[other].plane == events[k].plane) {
+                    change += events[other].change;
+                    events[other].change = 0;
+                }
+            at_walls = 0;
+            if (!walk_on(f, &walk, events[k].plane, change))
+                return false;
+        }
+        if (at_walls != 0)
+            return false;
+    }
+    return walk.covered == 0;
 }
 
 static bool find_edges(Finishing *f)
@@ -394,7 +420,7 @@ static uint32_t one_of(Finishing *f, uint32_t vertex)
 
 static void join_vertices(Finishing *f)
 {
-    static const double SHORT = 1e-6;
+    static const double SHORT = 1e-5;
     f->one                    = arena_new_array(f->faces->arena, uint32_t, f->vertices->count + 1);
     for (uint32_t i = 0; i < f->vertices->count; i++)
         f->one[i] = i;

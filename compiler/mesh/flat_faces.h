@@ -13,11 +13,13 @@
 #define KRS_MESH_FLAT_FACES_H
 
 #include "compiler/mesh/flat_pieces.h"
+#include "compiler/mesh/numbering.h"
 #include "compiler/mesh/polygons.h"
 
 typedef struct FlatPlane {
     HalfSpace exact;
     double    moved; /* the offset of the plane that is cut */
+    uint32_t  next;  /* with the same mark; NO_NUMBER */
 } FlatPlane;
 
 /* Part of an edge: of a face, at another plane. */
@@ -35,6 +37,7 @@ typedef struct FlatFaces {
         FlatPlane *items;
         size_t     count, capacity;
     } planes;
+    Numbering marks; /* the first plane that has a mark */
     struct {
         FlatSegment *items;
         size_t       count, capacity;

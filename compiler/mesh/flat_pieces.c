@@ -664,18 +664,24 @@ bool flat_pieces(MeshField *field, Box box, double size, Arena *scratch, FlatPie
     return !f.failed && field->frame->zone_count == 0;
 }
 
-int flat_side(const FlatPieces *pieces, int root, const signed char *sides)
+int flat_side(const FlatPieces *pieces, int root, const signed char *sides, int *unknown)
 {
     if (root == FLAT_ALL || root == FLAT_NONE)
         return root == FLAT_ALL ? -1 : 1;
     const FlatNode *node = &pieces->nodes[root];
-    if (node->kind == FLAT_HALF_SPACE)
+    if (node->kind == FLAT_HALF_SPACE) {
+        if (sides[node->first] == 0)
+            *unknown = node->first;
         return node->second * sides[node->first];
-    int first = flat_side(pieces, node->first, sides);
-    if (first == (node->kind == FLAT_BOTH ? 1 : -1))
-        return first;
-    int second = flat_side(pieces, node->second, sides);
-    if (second == (node->kind == FLAT_BOTH ? 1 : -1))
+    }
+    int decides = node->kind == FLAT_BOTH ? 1 : -1, missing = -1;
+    int second = flat_side(pieces, node->second, sides, &missing);
+    if (second == decides)
         return second;
-    return first == second ? first : 0;
+    int first = flat_side(pieces, node->first, sides, second == 0 ? unknown : &missing);
+    if (first == decides || first == second)
+        return first;
+    if (missing >= 0)
+        *unknown = missing;
+    return 0;
 }

@@ -37,7 +37,7 @@ typedef struct FlatPieces {
 bool flat_pieces(MeshField *field, Box box, double size, Arena *scratch, FlatPieces *pieces);
 
 /* Whether a place is in the solid: -1, or 1 where it is outside, or 0 where that is not known.  `sides` says the same of each
-   half-space. */
-int flat_side(const FlatPieces *pieces, int root, const signed char *sides);
+   half-space; where it is not known, `unknown` is one of those that would tell. */
+int flat_side(const FlatPieces *pieces, int root, const signed char *sides, int *unknown);
 
 #endif

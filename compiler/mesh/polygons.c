@@ -65,7 +65,7 @@ static void read_rings(Cutting *c, const double (*at)[3], const double normal[3]
             Corner   corner = {.vertex = vertex};
             for (int k = 0; k < 2; k++)
                 corner.at[k] = dot3(at[vertex], axes[k]);
-            array_push(c->arena, ring, corner);
+            array_push_large(c->arena, ring, corner);
         }
         for (size_t i = 1; i + 1 < ring->count; i++)
             ring->area += area2(ring->items[0].at, ring->items[i].at, ring->items[i + 1].at);
@@ -118,7 +118,7 @@ static bool lines_cross(const double a[2], const double b[2], const double c[2],
 {
     if (same(a, c) || same(a, d) || same(b, c) || same(b, d))
         return false;
-    double margin = sqrt(tiny);
+    double margin = tiny > 0 ? sqrt(tiny) : 0;
     for (int k = 0; k < 2; k++) /* far from each other, also where they are in one line */
         if (max2(a[k], b[k]) < min2(c[k], d[k]) - margin ||
             max2(c[k], d[k]) < min2(a[k], b[k]) - margin)
@@ -145,31 +145,44 @@ static bool goes_inside(const Ring *ring, size_t i, const double to[2])
                                          : left_of_before || left_of_behind;
 }
 
-/* The shortest line from a hole to the ring around it that crosses nothing. */
+static bool is_blocked(const Cutting *c, const double a[2], const double b[2])
+{
+    for (size_t r = 0; r < c->count; r++)
+        if (!c->rings[r].joined && ring_blocks(&c->rings[r], a, b, c->tiny))
+            return true;
+    return false;
+}
+
+/* The shortest line from a hole to the ring around it that crosses nothing: mostly the first or second that is tried. */
 static bool find_bridge(const Cutting *c, const Ring *hole, size_t *from, size_t *to)
 {
     const Ring *outer = &c->rings[hole->outer];
-    double      least = HUGE_VAL;
     size_t      right = 0;
     for (size_t i = 1; i < hole->count; i++)
         if (hole->items[i].at[0] > hole->items[right].at[0])
             right = i;
-    *from           = right;
-    const double *a = hole->items[right].at;
-    for (size_t i = 0; i < outer->count; i++) {
-        const double *b        = outer->items[i].at;
-        double        distance = hypot(a[0] - b[0], a[1] - b[1]);
-        if (distance >= least || !goes_inside(outer, i, a) || !goes_inside(hole, right, b))
-            continue;
-        bool blocked = false;
-        for (size_t r = 0; r < c->count && !blocked; r++)
-            blocked = !c->rings[r].joined && ring_blocks(&c->rings[r], a, b, c->tiny);
-        if (!blocked) {
+    *from               = right;
+    const double *a     = hole->items[right].at;
+    ArenaMark     mark  = arena_mark(c->arena);
+    bool         *tried = arena_new_array(c->arena, bool, outer->count), found = false;
+    for (double least = 0; !found && least < HUGE_VAL;) {
+        least = HUGE_VAL;
+        for (size_t i = 0; i < outer->count; i++) {
+            const double *b        = outer->items[i].at;
+            double        distance = hypot(a[0] - b[0], a[1] - b[1]);
+            if (tried[i] || distance >= least || !goes_inside(outer, i, a) ||
+                !goes_inside(hole, right, b))
+                continue;
             least = distance;
             *to   = i;
         }
+        if (least < HUGE_VAL) {
+            tried[*to] = true;
+            found      = !is_blocked(c, a, outer->items[*to].at);
+        }
     }
-    return least < HUGE_VAL;
+    arena_rewind(c->arena, mark);
+    return found;
 }
 
 static bool join_hole(Cutting *c, Ring *hole)
@@ -177,16 +190,15 @@ static bool join_hole(Cutting *c, Ring *hole)
     size_t from = 0, to = 0;
     if (!find_bridge(c, hole, &from, &to))
         return false;
-    Ring *outer = &c->rings[hole->outer], whole = *outer;
-    whole.items = NULL;
-    whole.count = whole.capacity = 0;
-    for (size_t i = 0; i <= to; i++)
-        array_push(c->arena, &whole, outer->items[i]);
+    Ring  *outer  = &c->rings[hole->outer];
+    size_t behind = outer->count - to, added = hole->count + 2;
+    for (size_t i = 0; i < added; i++)
+        array_push_large(c->arena, outer, (Corner){0});
+    Corner *at = outer->items +
+                 to; /* the corner, the hole and its first corner again, the corner again */
+    memmove(at + added, at, behind * sizeof *at);
     for (size_t i = 0; i <= hole->count; i++)
-        array_push(c->arena, &whole, hole->items[(from + i) % hole->count]);
-    for (size_t i = to; i < outer->count; i++)
-        array_push(c->arena, &whole, outer->items[i]);
-    *outer       = whole;
+        at[1 + i] = hole->items[(from + i) % hole->count];
     hole->joined = true;
     return true;
 }
@@ -239,17 +251,77 @@ static bool triangle_has(const double *const corners[3], const double point[2], 
     return true;
 }
 
-static bool is_ear(const Ring *ring, const uint32_t *left, size_t count, size_t i, EarRule rule)
+/* Corners that are left, by the cells of a grid that they are in. */
+typedef struct Buckets {
+    double    low[2], cells[2]; /* per length */
+    uint32_t  side;
+    uint32_t *first, *next; /* of each cell, and of each corner; NONE ends them */
+    bool     *cut;
+} Buckets;
+
+enum { NONE = 0x7fffffff };
+
+static uint32_t cell_along(const Buckets *buckets, double at, int k)
+{
+    double cell = (at - buckets->low[k]) * buckets->cells[k];
+    return (uint32_t)min2(max2(cell, 0), buckets->side - 1);
+}
+
+static void fill_buckets(Buckets *buckets, const Ring *ring, Arena *arena)
+{
+    double high[2];
+    *buckets       = (Buckets){.side = 1 + (uint32_t)sqrt((double)ring->count)};
+    size_t cells   = (size_t)buckets->side * buckets->side;
+    buckets->first = arena_new_array(arena, uint32_t, cells);
+    buckets->next  = arena_new_array(arena, uint32_t, ring->count);
+    buckets->cut   = arena_new_array(arena, bool, ring->count);
+    for (size_t i = 0; i < cells; i++)
+        buckets->first[i] = NONE;
+    for (int k = 0; k < 2; k++) {
+        buckets->low[k] = high[k] = ring->items[0].at[k];
+        for (size_t i = 1; i < ring->count; i++) {
+            buckets->low[k] = min2(buckets->low[k], ring->items[i].at[k]);
+            high[k]         = max2(high[k], ring->items[i].at[k]);
+        }
+        buckets->cells[k] = buckets->side / max2(high[k] - buckets->low[k], 1e-300);
+    }
+    for (size_t i = 0; i < ring->count; i++) {
+        size_t cell = (size_t)cell_along(buckets, ring->items[i].at[1], 1) * buckets->side +
+                      cell_along(buckets, ring->items[i].at[0], 0);
+        buckets->next[i]     = buckets->first[cell];
+        buckets->first[cell] = (uint32_t)i;
+    }
+}
+
+/* Whether some corner that is left is in a triangle, or touches it. */
+static bool has_corner(const Buckets *buckets, const Ring *ring, const double *const corners[3],
+                       double touching)
+{
+    uint32_t low[2], high[2];
+    double   margin = touching < 0 ? sqrt(-touching) : 0;
+    for (int k = 0; k < 2; k++) {
+        low[k]  = cell_along(buckets,
+                             min2(min2(corners[0][k], corners[1][k]), corners[2][k]) - margin, k);
+        high[k] = cell_along(buckets,
+                             max2(max2(corners[0][k], corners[1][k]), corners[2][k]) + margin, k);
+    }
+    for (uint32_t y = low[1]; y <= high[1]; y++)
+        for (uint32_t x = low[0]; x <= high[0]; x++)
+            for (uint32_t i = buckets->first[(size_t)y * buckets->side + x]; i != NONE;
+                 i          = buckets->next[i])
+                if (!buckets->cut[i] && triangle_has(corners, ring->items[i].at, touching))
+                    return true;
+    return false;
+}
+
+static bool is_ear(const Ring *ring, const Buckets *buckets, const uint32_t *left, size_t count,
+                   size_t i, EarRule rule)
 {
     const Corner *items      = ring->items;
     const double *corners[3] = {items[left[(i + count - 1) % count]].at, items[left[i]].at,
                                 items[left[(i + 1) % count]].at};
-    if (!(area2(corners[0], corners[1], corners[2]) > rule.least))
-        return false;
-    for (size_t k = 0; k < count; k++)
-        if (triangle_has(corners, items[left[k]].at, rule.touching))
-            return false;
-    return true;
+    return area2(corners[0], corners[1], corners[2]) > rule.least &&
+           !has_corner(buckets, ring, corners, rule.touching);
 }
 
 static void cut_ear(Cutting *c, const Ring *ring, uint32_t *left, size_t *count, size_t at)
@@ -269,11 +341,14 @@ static bool cut_ring(Cutting *c, const Ring *ring)
     const EarRule rules[] = {{tiny, -tiny}, {tiny, tiny}, {-tiny, tiny}};
     uint32_t     *left    = arena_new_array(c->arena, uint32_t, ring->count);
     size_t        count = ring->count, at = 0, looked = 0, rule = 0;
+    Buckets       buckets;
+    fill_buckets(&buckets, ring, c->arena);
     for (size_t i = 0; i < count; i++)
         left[i] = (uint32_t)i;
     while (count > 2) {
         at %= count;
-        if (is_ear(ring, left, count, at, rules[rule])) {
+        if (is_ear(ring, &buckets, left, count, at, rules[rule])) {
+            buckets.cut[left[at]] = true;
             cut_ear(c, ring, left, &count, at);
             looked = rule = 0;
         } else if (++looked > count) {

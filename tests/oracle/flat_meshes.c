@@ -53,6 +53,10 @@ static void solids_have_no_more_triangles_than_their_faces_need(void **state)
         {"show difference(box([16, 2, 16]), [box([0.7, 3, 0.7]).rotate([0, 1, 0], 0.3 * i)"
          ".move([i - 15 * floor(i / 15) - 7, 0, floor(i / 15) - 7]) for i in 0..225]);",
          12 + 20 * 225, 1, 225, 512 - 225 * 0.98},
+        /* A face with thousands of corners, and lines that end at two planes within rounding. */
+        {"show difference(box([200, 3, 200]), [prism(6, 2.6, 10)"
+         ".move([5 * i + 2.5 * (j % 2) - 97, 0, 4.33 * j - 97]) for i in 0..38 for j in 0..45]);",
+         12 + 28 * 1710, 1, 1710, 120000 - 1710 * 52.68898556624525},
         /* Columns of corners are in one line.  Without holes a solid of n corners has 2 n - 4 triangles. */
         {"show union([box([128, 9.6, 128]) - box([125, 9.6, 125]).move([0, -1.5, 0]), "
          "[prism(8, 2.4, 1.8).move([8 * i - 60, 5.7, 8 * j - 60]) for i in 0..16 for j in "
