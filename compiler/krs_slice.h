@@ -18,9 +18,8 @@ extern "C" {
  * the surface, and its corners are points.
  */
 typedef struct KrsSliceOptions {
-    double
-           error; /* largest distance between contours and the outline of the section; 0: a 2000th of the longest
-                     side of the box */
+    /* Largest distance between contours and the outline of the section; 0: a 2000th of the longest side of the box. */
+    double error;
     size_t component; /* from 1; 0: all */
     bool   within;    /* only what is in the box from `low` to `high`, for scenes without an end */
     double low[3], high[3];
@@ -48,9 +47,9 @@ typedef struct KrsContour {
 
 typedef struct KrsSection {
     double (*points)[2]; /* products of points in the scene with the plane's axes */
-    double         *
-        bulges; /* with `arcs`, of the piece behind each point: the tangent of a quarter of the angle by which it
-                       turns, above 0 to the left; 0 is a line.  Else NULL */
+    /* With `arcs`, of the piece behind each point: the tangent of a quarter of the angle by which it turns, above 0 to
+       the left; 0 is a line.  Else NULL. */
+    double     *bulges;
     size_t      point_count;
     KrsContour *contours;
     size_t      contour_count;

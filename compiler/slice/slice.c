@@ -65,8 +65,8 @@ static KrsStatus open_fields(KrsSlicer *slicer, KrsFrame *frame)
         if (status == KRS_OK) {
             frame_refresh_points(field->frame);
             field_open(field, &slicer->arena);
-            field->ranges.unroll =
-                true; /* derivatives of crowds have no bounds; those of few members have */
+            /* Derivatives of crowds have no bounds; those of few members have. */
+            field->ranges.unroll = true;
         }
     }
     return status;

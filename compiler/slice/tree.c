@@ -88,18 +88,18 @@ static void make_corners(Section *s, const uint32_t (*places)[2], size_t count)
     enum { MOST = 5 };
     double   points[MOST][2], distances[MOST];
     uint32_t made[MOST][2];
-    size_t new = 0;
+    size_t   fresh = 0;
     for (size_t i = 0; i < count; i++) {
         if (find_corner(s, places[i]))
             continue;
-        memcpy(made[new], places[i], sizeof *made);
+        memcpy(made[fresh], places[i], sizeof *made);
         for (int k = 0; k < 2; k++)
-            points[new][k] = place_of(s, k, places[i][k]);
-        new ++;
+            points[fresh][k] = place_of(s, k, places[i][k]);
+        fresh++;
     }
-    if (new > 0)
-        slice_distances(s->field, &s->plane, (const double(*)[2])points, new, distances);
-    for (size_t i = 0; i < new; i++)
+    if (fresh > 0)
+        slice_distances(s->field, &s->plane, (const double(*)[2])points, fresh, distances);
+    for (size_t i = 0; i < fresh; i++)
         add_corner(s, made[i], distances[i]);
 }
 

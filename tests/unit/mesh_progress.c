@@ -39,7 +39,8 @@ static void work_goes_on_in_small_steps(void **state)
     assert_true(told.count > 10 && told.last > 0.7 && told.largest_step < 0.5);
     told = (Told){.most = SIZE_MAX};
     assert_int_equal(krs_mesh_simplify(mesh, &options, &few), KRS_OK);
-    assert_true(told.count > 10 && told.last > 0.7 && told.largest_step < 0.3);
+    /* The same here: the first try is half of all. */
+    assert_true(told.count > 10 && told.last > 0.7 && told.largest_step <= 0.5);
     krs_mesh_free(few);
     krs_mesh_free(mesh);
     scene_close(s);
