@@ -55,6 +55,16 @@ void slice_distances(const MeshField *field, const SlicePlane *plane, const doub
     field_distances(field, (const double(*)[3])in_space, count, distances);
 }
 
+/* Where a line through both ends of what is left is 0: the first step on a flat face leads to the root but for rounding,
+   and may leave the other end far away. */
+static double root_of(const RootSearch *search)
+{
+    double at_low = search->at_low, at_high = search->at_high;
+    bool   known = isfinite(at_low) && isfinite(at_high) && at_low != at_high;
+    double part  = known ? at_low / (at_low - at_high) : 0.5;
+    return search->low + (search->high - search->low) * part;
+}
+
 void slice_roots(const MeshField *field, const SlicePlane *plane, PlaneRoot *roots, size_t count,
                  double enough)
 {
@@ -71,7 +81,7 @@ void slice_roots(const MeshField *field, const SlicePlane *plane, PlaneRoot *roo
     }
     find_roots(field, searches, count, enough);
     for (size_t i = 0; i < count; i++) {
-        double part = 0.5 * (searches[i].low + searches[i].high);
+        double part = root_of(&searches[i]);
         for (int k = 0; k < 2; k++)
             roots[i].at[k] = roots[i].inside[k] + part * (roots[i].outside[k] - roots[i].inside[k]);
     }
