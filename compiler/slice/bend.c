@@ -9,11 +9,15 @@
 static const double PART_OF_CHORDS = 0.25;
 /* Chords as short as that part of the error stay as they are. */
 static const double SHORTEST = 1.0 / 256;
-/* Of a corner: how far it is from the outline, in errors, at most, and the cosine of the angle by which normals differ
-   at least. */
-static const double NEAR_CORNER = 1e-3, STRAIGHT_COSINE = 0.996;
+/* Of a corner: how far it is from the outline, in errors, at most, and in what tangents of an arc would be from it; and
+   the cosine of the angle by which normals differ at least. */
+static const double NEAR_CORNER = 1e-3, PART_OF_ARC = 0.02, STRAIGHT_COSINE = 1 - 1e-5;
+/* Where normals differ by more than that, a stretch has a corner, or is halved. */
+static const double SMOOTH_COSINE = 0.996;
 /* How far it is from both ends of the stretch, in its lengths: what is nearer is the corner at that end. */
-static const double NEAREST = 0.02, FARTHEST = 4;
+static const double NEAREST = 0.02;
+/* How far beside a chord the distance is looked at: in its lengths, and that many errors, where a sharp corner may be. */
+static const double BESIDE_LENGTHS = 0.5, BESIDE_ERRORS = 4;
 
 typedef struct Stretch {
     double from[2], to[2];
@@ -108,6 +112,11 @@ static bool find_ends(const Section *s, const Stretch *stretch, Ends *ends)
     return true;
 }
 
+static double width_beside(const Section *s, double length)
+{
+    return BESIDE_LENGTHS * length + BESIDE_ERRORS * s->error;
+}
+
 /* Where the tangents at both ends meet, if that is a corner of the outline. */
 static bool find_corner_of(const Section *s, const Stretch *stretch, const Ends *ends, double at[2])
 {
@@ -123,15 +132,20 @@ static bool find_corner_of(const Section *s, const Stretch *stretch, const Ends 
     double from = across / sine / stretch->length;
     double to   = (m[0] * (stretch->to[1] - at[1]) - m[1] * (stretch->to[0] - at[0])) /
                 stretch->length;
-    if (from < NEAREST || to < NEAREST || from > FARTHEST)
+    if (from < NEAREST || to < NEAREST ||
+        min2(from, to) * stretch->length > width_beside(s, stretch->length))
         return false;
     slice_distances(s->field, &s->plane, (const double(*)[2])at, 1, &distance);
-    return fabs(distance) <= NEAR_CORNER * s->error * min2(ends->steep[0], ends->steep[1]);
+    double near = min2(NEAR_CORNER * s->error, PART_OF_ARC * stretch->length * fabs(sine) / 8);
+    return fabs(distance) <= near * min2(ends->steep[0], ends->steep[1]);
 }
 
-/* Whether an arc with such tangents is as near to the stretch. */
+/* Whether an arc with such tangents, which are nearly the same, is as near to the stretch. */
 static bool has_tangents(const Stretch *stretch, const Ends *ends, double reach)
 {
+    const double *n = ends->normals[0], *m = ends->normals[1];
+    if (n[0] * m[0] + n[1] * m[1] < SMOOTH_COSINE)
+        return false;
     for (int i = 0; i < 2; i++) {
         double sine = ends->normals[i][0] * stretch->along[0] +
                       ends->normals[i][1] * stretch->along[1];
@@ -148,10 +162,10 @@ static void bend(Section *s, const OutlinePoint *from, const OutlinePoint *to, i
     Stretch      stretch = stretch_between(from, to);
     OutlinePoint point;
     Ends         ends;
-    if (stretch.length < SHORTEST * s->error || depth > MOST_HALVINGS)
+    bool         known = stretch.length > 0 && find_ends(s, &stretch, &ends);
+    point.corner       = known && find_corner_of(s, &stretch, &ends, point.at);
+    if ((!point.corner && stretch.length < SHORTEST * s->error) || depth > MOST_HALVINGS)
         return;
-    bool known   = find_ends(s, &stretch, &ends);
-    point.corner = known && find_corner_of(s, &stretch, &ends, point.at);
     if (!point.corner) {
         bool straight = !known || has_tangents(&stretch, &ends, reach);
         if ((straight && is_near(s, &stretch, reach)) || !find_middle(s, &stretch, point.at))
@@ -167,7 +181,7 @@ static void box_of_chord(const Section *s, size_t item, double low[2], double hi
     const Chord  *chord = &s->chords.items[item];
     const double *from  = s->crossings.items[chord->from].point;
     const double *to    = s->crossings.items[chord->to].point;
-    double        wider = 0.5 * hypot(to[0] - from[0], to[1] - from[1]) + s->error;
+    double        wider = width_beside(s, hypot(to[0] - from[0], to[1] - from[1]));
     for (int k = 0; k < 2; k++) {
         low[k]  = min2(from[k], to[k]) - wider;
         high[k] = max2(from[k], to[k]) + wider;
@@ -187,4 +201,97 @@ static void bend_some(Section *s, size_t first, size_t count)
     }
 }
 
-void bend_chords(Section *s) { in_groups(s, s->chords.count, box_of_chord, bend_some); }
+/* ---- corners at the ends of stretches ---- */
+
+/* A point of the outline towards the next, no farther off than that: on the tangent there. */
+static bool point_towards(const Section *s, const OutlinePoint *from, const OutlinePoint *to,
+                          double reach, OutlinePoint *point)
+{
+    double length = hypot(to->at[0] - from->at[0], to->at[1] - from->at[1]), distance;
+    double places[2][2], gradients[2][2];
+    *point = *to;
+    if (length <= reach)
+        return true;
+    point->corner = false;
+    for (int k = 0; k < 2; k++)
+        places[0][k] = places[1][k] = from->at[k] + reach / length * (to->at[k] - from->at[k]);
+    slice_distances(s->field, &s->plane, (const double(*)[2])places, 1, &distance);
+    slice_gradients(s->field, &s->plane, (const double(*)[2])places, 1e-3 * reach, gradients);
+    double steep2 = gradients[0][0] * gradients[0][0] + gradients[0][1] * gradients[0][1];
+    for (int k = 0; k < 2; k++)
+        point->at[k] = places[0][k] - distance * gradients[0][k] / steep2;
+    return steep2 > 0;
+}
+
+/* What is too near to an end of its stretch to be found is in the middle between both neighbours of that end. */
+static void find_corner_at(const Section *s, const OutlinePoint *before, OutlinePoint *point,
+                           const OutlinePoint *behind)
+{
+    static const double MOST_TIMES = 20;
+    Stretch             first      = stretch_between(before, point);
+    Stretch             last       = stretch_between(point, behind);
+    double       cosine = first.along[0] * last.along[0] + first.along[1] * last.along[1], at[2];
+    double       reach  = MOST_TIMES * min2(first.length, last.length);
+    OutlinePoint from, to;
+    Ends         ends;
+    if (point->corner || reach == 0 || cosine > STRAIGHT_COSINE ||
+        !point_towards(s, point, before, reach, &from) ||
+        !point_towards(s, point, behind, reach, &to))
+        return;
+    Stretch stretch = stretch_between(&from, &to);
+    if (stretch.length > 0 && find_ends(s, &stretch, &ends) &&
+        find_corner_of(s, &stretch, &ends, at)) {
+        memcpy(point->at, at, sizeof at);
+        point->corner = true;
+    }
+}
+
+static OutlinePoint point_of_chord(const Section *s, const Chord *chord, size_t number)
+{
+    if (number < chord->count)
+        return s->bends.items[chord->first + number];
+    const Crossing *to = &s->crossings.items[chord->to];
+    return (OutlinePoint){{to->point[0], to->point[1]}, to->corner};
+}
+
+static void box_of_joint(const Section *s, size_t item, double low[2], double high[2])
+{
+    uint32_t next = s->crossings.items[s->chords.items[item].to].chord;
+    double   from[2], to[2];
+    box_of_chord(s, item, low, high);
+    if (next == 0)
+        return;
+    box_of_chord(s, next - 1, from, to);
+    for (int k = 0; k < 2; k++) {
+        low[k]  = min2(low[k], from[k]);
+        high[k] = max2(high[k], to[k]);
+    }
+}
+
+static void look_at_ends(Section *s, size_t first, size_t count)
+{
+    for (size_t i = first; i < first + count; i++) {
+        const Chord    *chord  = &s->chords.items[i];
+        const Crossing *start  = &s->crossings.items[chord->from];
+        Crossing       *end    = &s->crossings.items[chord->to];
+        OutlinePoint    before = {{start->point[0], start->point[1]}, start->corner};
+        for (size_t k = 0; k < chord->count; k++) {
+            OutlinePoint behind = point_of_chord(s, chord, k + 1);
+            find_corner_at(s, &before, &s->bends.items[chord->first + k], &behind);
+            before = s->bends.items[chord->first + k];
+        }
+        if (end->chord == 0)
+            continue;
+        OutlinePoint point  = point_of_chord(s, chord, chord->count);
+        OutlinePoint behind = point_of_chord(s, &s->chords.items[end->chord - 1], 0);
+        find_corner_at(s, &before, &point, &behind);
+        memcpy(end->point, point.at, sizeof end->point);
+        end->corner = point.corner;
+    }
+}
+
+void bend_chords(Section *s)
+{
+    in_groups(s, s->chords.count, box_of_chord, bend_some);
+    in_groups(s, s->chords.count, box_of_joint, look_at_ends);
+}

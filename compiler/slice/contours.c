@@ -26,7 +26,8 @@ static size_t follow(const Section *s, uint32_t start, bool *seen, OutlinePoint 
             return 0;
         const Chord *chord = &s->chords.items[crossing->chord - 1];
         seen[at]           = true;
-        points[count++]    = (OutlinePoint){{crossing->point[0], crossing->point[1]}, false};
+        points[count++]    = (OutlinePoint){{crossing->point[0], crossing->point[1]},
+                                            crossing->corner};
         memcpy(points + count, s->bends.items + chord->first, chord->count * sizeof *points);
         count += chord->count;
         at = chord->to;
@@ -50,8 +51,21 @@ static double area_of(const OutlinePoint *points, const double *bulges, size_t c
     return area;
 }
 
+/* Whether points that are left out leave nothing: the contour is thinner than the error. */
+static bool is_dust(Section *s, const OutlinePoint *points, size_t count)
+{
+    ArenaMark     before = arena_mark(&s->arena);
+    OutlinePoint *copy   = arena_new_array(&s->arena, OutlinePoint, count + 1);
+    memcpy(copy, points, count * sizeof *copy);
+    bool dust = leave_out_points(copy, count, PART_OF_POINTS * s->error, &s->arena) < 3;
+    arena_rewind(&s->arena, before);
+    return dust;
+}
+
 static void add_contour(Section *s, Result *result, size_t count)
 {
+    if (is_dust(s, result->points, count))
+        return;
     KrsSection *section = result->section;
     KrsContour  contour = {.first = section->point_count};
     contour.count       = s->arcs ? fit_arcs(result->points, result->bulges, count,

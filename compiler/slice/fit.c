@@ -320,6 +320,12 @@ static void join_ends(Pieces *pieces, double error)
     pieces->count--;
 }
 
+/* An arc that is as near to its chord is a line. */
+static bool is_straight(const Piece2 *piece, double error)
+{
+    return 0.5 * fabs(piece->bulge) * distance2(piece->from, piece->to) <= error;
+}
+
 size_t fit_arcs(OutlinePoint *points, double *bulges, size_t count, double error, Arena *scratch)
 {
     ArenaMark before = arena_mark(scratch);
@@ -333,7 +339,7 @@ size_t fit_arcs(OutlinePoint *points, double *bulges, size_t count, double error
     join_ends(&pieces, LOOSER * error);
     for (size_t i = 0; i < pieces.count; i++) {
         memcpy(points[left].at, pieces.items[i].from, sizeof points[left].at);
-        bulges[left++] = pieces.items[i].bulge;
+        bulges[left++] = is_straight(&pieces.items[i], error) ? 0 : pieces.items[i].bulge;
     }
     arena_rewind(scratch, before);
     return left;

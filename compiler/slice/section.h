@@ -36,6 +36,7 @@ typedef struct Crossing {
     uint32_t at[2], side, next;
     uint8_t  axis;
     bool     inside_first; /* the corner at which the edge begins is inside */
+    bool     corner;       /* of the outline */
     double   point[2];
     uint32_t chord; /* + 1 of that which begins here */
 } Crossing;

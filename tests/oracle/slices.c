@@ -225,6 +225,12 @@ static void figures_are_of_lines_and_arcs(void **state)
                {"segment([0, 0], [3, 0], 0.5)", 1.5 + 0.0625 * pi, 2, 2},
                {"rectangle([2, 2]) | circle(1).move([1, 0])", 4 + 0.5 * pi, 3, 1},
                {"polygon([[0, 0], [4, 0], [4, 1], [1, 1], [1, 3], [0, 3]])", 6, 6, 0},
+               {"star(12, 1, 0.7)", 8.4 * sin(pi / 12), 24, 0},
+               {"star(40, 1, 0.7)", 28 * sin(pi / 40), 80, 0},
+               {"star(100, 1, 0.7)", 70 * sin(pi / 100), 200, 0},
+               {"star(37, 1, 0.8).rotate(17deg)", 29.6 * sin(pi / 37), 74, 0},
+               {"regular(131, 1).rotate(3deg)", 65.5 * sin(pi / 65.5), 131, 0},
+               {"regular(220, 1)", 110 * sin(pi / 110), 220, 0},
     };
     (void)state;
     for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) {
