@@ -118,7 +118,7 @@ static double width_beside(const Section *s, double length)
 }
 
 /* Where the tangents at both ends meet, if that is a corner of the outline. */
-static bool find_corner_of(const Section *s, const Stretch *stretch, const Ends *ends, double at[2])
+static bool meet_tangents(const Section *s, const Stretch *stretch, const Ends *ends, double at[2])
 {
     const double *n = ends->normals[0], *m = ends->normals[1];
     double        cosine = n[0] * m[0] + n[1] * m[1], sine = n[0] * m[1] - n[1] * m[0];
@@ -138,6 +138,52 @@ static bool find_corner_of(const Section *s, const Stretch *stretch, const Ends 
     slice_distances(s->field, &s->plane, (const double(*)[2])at, 1, &distance);
     double near = min2(NEAR_CORNER * s->error, PART_OF_ARC * stretch->length * fabs(sine) / 8);
     return fabs(distance) <= near * min2(ends->steep[0], ends->steep[1]);
+}
+
+/* A point of the outline towards the next, no farther off than that: on the tangent there. */
+static bool point_towards(const Section *s, const OutlinePoint *from, const OutlinePoint *to,
+                          double reach, OutlinePoint *point)
+{
+    double length = hypot(to->at[0] - from->at[0], to->at[1] - from->at[1]), distance;
+    double places[2][2], gradients[2][2];
+    *point = *to;
+    if (length <= reach)
+        return true;
+    point->corner = false;
+    for (int k = 0; k < 2; k++)
+        places[0][k] = places[1][k] = from->at[k] + reach / length * (to->at[k] - from->at[k]);
+    slice_distances(s->field, &s->plane, (const double(*)[2])places, 1, &distance);
+    slice_gradients(s->field, &s->plane, (const double(*)[2])places, 1e-3 * reach, gradients);
+    double steep2 = gradients[0][0] * gradients[0][0] + gradients[0][1] * gradients[0][1];
+    for (int k = 0; k < 2; k++)
+        point->at[k] = places[0][k] - distance * gradients[0][k] / steep2;
+    return steep2 > 0;
+}
+
+/* So, too, but from places nearer and nearer to the corner: tangents of what is round meet beside it. */
+static bool find_corner_of(const Section *s, const Stretch *stretch, const Ends *ends, double at[2])
+{
+    enum { TRIES = 2 };
+    static const double CLOSER = 0.02, LEAST = 1e5;
+    if (!meet_tangents(s, stretch, ends, at))
+        return false;
+    OutlinePoint corner = {{at[0], at[1]}, true}, ways[2] = {{.corner = false}}, from, to;
+    memcpy(ways[0].at, stretch->from, sizeof ways[0].at);
+    memcpy(ways[1].at, stretch->to, sizeof ways[1].at);
+    double reach = CLOSER * min2(stretch_between(&ways[0], &corner).length,
+                                 stretch_between(&corner, &ways[1]).length);
+    for (int i = 0; i < TRIES && reach > LEAST * s->enough; i++, reach *= CLOSER) {
+        Ends closer;
+        if (!point_towards(s, &corner, &ways[0], reach, &from) ||
+            !point_towards(s, &corner, &ways[1], reach, &to))
+            break;
+        Stretch around = stretch_between(&from, &to);
+        if (around.length == 0 || !find_ends(s, &around, &closer) ||
+            !meet_tangents(s, &around, &closer, corner.at))
+            break;
+        memcpy(at, corner.at, sizeof corner.at);
+    }
+    return true;
 }
 
 /* Whether an arc with such tangents, which are nearly the same, is as near to the stretch. */
@@ -202,26 +248,6 @@ static void bend_some(Section *s, size_t first, size_t count)
 }
 
 /* ---- corners at the ends of stretches ---- */
-
-/* A point of the outline towards the next, no farther off than that: on the tangent there. */
-static bool point_towards(const Section *s, const OutlinePoint *from, const OutlinePoint *to,
-                          double reach, OutlinePoint *point)
-{
-    double length = hypot(to->at[0] - from->at[0], to->at[1] - from->at[1]), distance;
-    double places[2][2], gradients[2][2];
-    *point = *to;
-    if (length <= reach)
-        return true;
-    point->corner = false;
-    for (int k = 0; k < 2; k++)
-        places[0][k] = places[1][k] = from->at[k] + reach / length * (to->at[k] - from->at[k]);
-    slice_distances(s->field, &s->plane, (const double(*)[2])places, 1, &distance);
-    slice_gradients(s->field, &s->plane, (const double(*)[2])places, 1e-3 * reach, gradients);
-    double steep2 = gradients[0][0] * gradients[0][0] + gradients[0][1] * gradients[0][1];
-    for (int k = 0; k < 2; k++)
-        point->at[k] = places[0][k] - distance * gradients[0][k] / steep2;
-    return steep2 > 0;
-}
 
 /* What is too near to an end of its stretch to be found is in the middle between both neighbours of that end. */
 static void find_corner_at(const Section *s, const OutlinePoint *before, OutlinePoint *point,

@@ -154,6 +154,8 @@ static const Form forms[] = {
      3,
      2,
      12},
+    /* A plane that only touches has no dust. */
+    {"show torus(2, 0.5);", {0, 0.5, 0}, {0, 1, 0}, 1e-3, 0, 0, 0, 0, 0},
     /* In the plane of a face, of one, and of one that is turned. */
     {"show box([2, 2, 2]);", {0, 0, 1}, {0, 0, 1}, 0.01, 4, 8, 1, 0, 4},
     {"show box([2, 2, 2]);", {0, 0, -1}, {0, 0, 1}, 0.01, 4, 8, 1, 0, 4},
@@ -225,6 +227,8 @@ static void figures_are_of_lines_and_arcs(void **state)
                {"segment([0, 0], [3, 0], 0.5)", 1.5 + 0.0625 * pi, 2, 2},
                {"rectangle([2, 2]) | circle(1).move([1, 0])", 4 + 0.5 * pi, 3, 1},
                {"polygon([[0, 0], [4, 0], [4, 1], [1, 1], [1, 3], [0, 3]])", 6, 6, 0},
+               {"circle(1) & circle(1).move([1, 0])", 2 * pi / 3 - 0.5 * sqrt(3), 0, 2},
+               {"circle(1) - circle(1).move([1, 0])", pi / 3 + 0.5 * sqrt(3), 0, 2},
                {"star(12, 1, 0.7)", 8.4 * sin(pi / 12), 24, 0},
                {"star(40, 1, 0.7)", 28 * sin(pi / 40), 80, 0},
                {"star(100, 1, 0.7)", 70 * sin(pi / 100), 200, 0},
