@@ -16,7 +16,7 @@ static const double NEAR_CORNER = 1e-3, PART_OF_ARC = 0.02, STRAIGHT_COSINE = 1 
 static const double SMOOTH_COSINE = 0.996;
 /* How far it is from both ends of the stretch, in its lengths: what is nearer is the corner at that end. */
 static const double NEAREST = 0.02;
-/* How far beside a chord the distance is looked at: in its lengths, and that many errors, where a sharp corner may be. */
+/* How far beside a chord the distance is looked at: in its lengths, and in errors, where a sharp corner may be. */
 static const double BESIDE_LENGTHS = 0.5, BESIDE_ERRORS = 4;
 
 typedef struct Stretch {
