@@ -322,7 +322,7 @@ static uint32_t find_vertex(Finishing *f, uint32_t a, uint32_t b, uint32_t c)
         return NO_NUMBER;
     meeting_point(planes, offsets, at);
     array_reserve_large(f->faces->arena, f->vertices);
-    bool close = distance3(at, near) < 1e-4 * f->faces->size;
+    bool close = distance3(at, near) < 1e-2 * f->faces->size;
     memcpy(f->vertices->items[f->vertices->count++], close ? at : near, sizeof at);
     return number;
 }

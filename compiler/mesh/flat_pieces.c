@@ -401,6 +401,17 @@ static bool meet(const CrowdArc *before, const CrowdArc *behind, double toleranc
                  before->start[1] + 2 * before->way[1] - behind->start[1]) <= tolerance;
 }
 
+/* Where no part of an outline goes through, the side of the middle is that of all.  Ranges are uncertain by more than the
+   distance there is. */
+static int solid_beside_outline(Finding *f, uint32_t value)
+{
+    static const double SINGLE = 1e-6; /* of coordinates: what the outline is known to */
+    Range               range  = f->field->ranges.ranges[value];
+    double              middle = 0.5 * (range.low + range.high);
+    f->failed |= !(fabs(middle) > SINGLE * f->size);
+    return middle > 0 ? FLAT_NONE : FLAT_ALL;
+}
+
 /* In a place that one or two straight parts of an outline go through. */
 static int solid_of_outline(Finding *f, uint32_t value)
 {
@@ -431,11 +442,8 @@ static int solid_of_outline(Finding *f, uint32_t value)
             arcs[here++] = arc;
         }
     }
-    if (f->failed || here == 0) {
-        Range range = f->field->ranges.ranges[value];
-        f->failed |= range.low <= 0 && range.high >= 0;
-        return range.low > 0 ? FLAT_NONE : FLAT_ALL;
-    }
+    if (f->failed || here == 0)
+        return solid_beside_outline(f, value);
     int first = half_space(f, &lines[0]);
     if (here == 1)
         return first;

@@ -53,6 +53,10 @@ static void solids_have_no_more_triangles_than_their_faces_need(void **state)
         {"show difference(box([16, 2, 16]), [box([0.7, 3, 0.7]).rotate([0, 1, 0], 0.3 * i)"
          ".move([i - 15 * floor(i / 15) - 7, 0, floor(i / 15) - 7]) for i in 0..225]);",
          12 + 20 * 225, 1, 225, 512 - 225 * 0.98},
+        {"show pyramid(10, 0.0001);", 6, 1, 0, 1. / 300},
+        {"def at(i) = (if i % 2 == 0 then 10 else 7) * [cos(i * 1.8deg), sin(i * 1.8deg)];"
+         "show polygon([at(i) for i in 0..200]).extrude(1);",
+         796, 1, 0, 100 * 70 * 0.0314107590781283},
         /* A face with thousands of corners, and lines that end at two planes within rounding. */
         {"show difference(box([200, 3, 200]), [prism(6, 2.6, 10)"
          ".move([5 * i + 2.5 * (j % 2) - 97, 0, 4.33 * j - 97]) for i in 0..38 for j in 0..45]);",
