@@ -6,8 +6,9 @@
  * edge: edges lie between two planes, and end where a third one is.  So faces come out whole, whatever the boxes
  * were.
  *
- * Planes are moved by less than rounding of what is written, each by its own amount, so that no four of them meet in
- * a point.  Where they did, edges without length are left, whose ends become one.
+ * Planes are moved by about a ten-millionth of the size, each by its own amount, so that no four of them meet in
+ * a point.  Where they did, edges without length are left, whose ends become one.  Vertices are where the planes meet that
+ * were not moved.
  */
 #ifndef KRS_MESH_FLAT_FACES_H
 #define KRS_MESH_FLAT_FACES_H
