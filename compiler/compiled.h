@@ -146,13 +146,15 @@ bool krs_needs_rebase(double coordinate, double pixel);
 /* How far the taps for a normal reach at such a coordinate, for the sake of rounding, relative to what a
    pixel of this width wants: above 1 normals are blurred, below it those at edges may be. */
 double krs_normal_blur(double coordinate, double pixel);
-/* Camera-relative coordinates are about as large as the distance from the eye.  They are not worth
-   their cost where others are less than KRS_LEAST_GAIN times as large, or the blur is less than
-   KRS_LEAST_BLUR.  Whether what is seen may have more of both, where the eye has this coordinate, and the nearest
-   surface this distance from it and pixels of this width. */
+/* How large camera-relative coordinates are about, at this distance from the eye: no larger, and in narrow
+   views and orthographic ones twice the height of so many lines of pixels of this width. */
+double krs_seen_reach(double distance, double pixel, double lines);
+/* Camera-relative coordinates are not worth their cost where others are less than KRS_LEAST_GAIN times as
+   large, or the blur is less than KRS_LEAST_BLUR.  Whether what is seen may have more of both, where the
+   eye has this coordinate, and the nearest surface this distance from it and pixels of this width. */
 #define KRS_LEAST_GAIN 4
 #define KRS_LEAST_BLUR 0.1
-bool krs_may_blur_normals(double coordinate, double distance, double pixel);
+bool krs_may_blur_normals(double coordinate, double distance, double pixel, double lines);
 /* Slots of the values that depend on the origin of camera-relative points, computed in double
    precision: camera_relative_slots vec4s. */
 void krs_frame_rebase(KrsFrame *frame, const double rebase_origin[3], float (*block)[4]);
@@ -163,9 +165,10 @@ void krs_frame_tables_in_use(const KrsFrame *frame, const double *rebase_origin,
 /* What these depend on, as parameter_slots numbers; frames in which these are equal have equal tables. */
 void krs_frame_table_inputs(const KrsFrame *frame, const double *rebase_origin,
                             double (*inputs)[4]);
-/* The caller's zones (center, radius), for the slots behind the parameter block.  Returns how many.
-   In a variant with room for more the others must have a radius far below 0. */
-size_t krs_frame_zones(const KrsFrame *frame, float (*zones)[4]);
+/* The caller's zones (center, radius), for the slots behind the parameter block.  With an origin (NULL:
+   none) they are for camera-relative points: how deep the origin is in each takes the place of the radius.
+   Returns how many.  In a variant with room for more the others must have a radius far below 0. */
+size_t krs_frame_zones(const KrsFrame *frame, const double *rebase_origin, float (*zones)[4]);
 /* A ray of a query, with a unit direction.  It is marched from `start` to `end`: the part of
    [0, farthest] in the box around the scene, which is empty when `end` is less than `start`. */
 typedef struct KrsRay {

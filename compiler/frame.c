@@ -264,11 +264,16 @@ KrsStatus krs_frame_set_zones(KrsFrame *frame, const double (*zones)[4], size_t 
     return KRS_OK;
 }
 
-size_t krs_frame_zones(const KrsFrame *frame, float (*zones)[4])
+size_t krs_frame_zones(const KrsFrame *frame, const double *rebase_origin, float (*zones)[4])
 {
-    for (size_t i = 0; i < frame->zone_count; i++)
-        for (int k = 0; k < 4; k++)
-            zones[i][k] = (float)frame->zones[i][k];
+    static const double nowhere[3] = {0};
+    const double       *origin     = rebase_origin ? rebase_origin : nowhere;
+    for (size_t i = 0; i < frame->zone_count; i++) {
+        const double *zone = frame->zones[i];
+        for (int k = 0; k < 3; k++)
+            zones[i][k] = (float)(zone[k] - origin[k]);
+        zones[i][3] = (float)(zone[3] - (rebase_origin ? distance3(zone, origin) : 0));
+    }
     return frame->zone_count;
 }
 

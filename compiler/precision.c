@@ -40,9 +40,14 @@ double krs_normal_blur(double coordinate, double pixel)
     return NOISE * coordinate / (REACH_IN_PIXELS * pixel);
 }
 
-bool krs_may_blur_normals(double coordinate, double distance, double pixel)
+double krs_seen_reach(double distance, double pixel, double lines)
 {
-    return coordinate + distance > KRS_LEAST_GAIN * distance &&
+    return fmin(distance, 2 * pixel * lines);
+}
+
+bool krs_may_blur_normals(double coordinate, double distance, double pixel, double lines)
+{
+    return coordinate + distance > KRS_LEAST_GAIN * krs_seen_reach(distance, pixel, lines) &&
            krs_normal_blur(coordinate + distance, pixel) > KRS_LEAST_BLUR;
 }
 
@@ -135,7 +140,8 @@ static bool camera_needs_rebase(const ViewPrecision *view, const SceneCamera *ca
                                  ? M_PI * nearest / lines
                                  : 2 * tan(view->values[camera->fov].v[0] / 2) * nearest / lines;
     const double  farthest = largest3(eye);
-    return krs_needs_rebase(farthest, pixel) || krs_may_blur_normals(farthest, nearest, pixel);
+    return krs_needs_rebase(farthest, pixel) ||
+           krs_may_blur_normals(farthest, nearest, pixel, lines);
 }
 
 /* Whether a camera that the compiler places needs rebasing.  Its distance is about the size of the
@@ -146,16 +152,14 @@ static bool scene_needs_rebase(const Scene *s)
     for (int i = 0; i < 3; i++)
         if (isfinite(s->box.axis[i].high - s->box.axis[i].low))
             size = fmax(size, s->box.axis[i].high - s->box.axis[i].low);
-    const double reach = reach_of_boxes(s), pixel = 0.5 * size / lines_of(s);
-    return krs_needs_rebase(reach, pixel) || krs_may_blur_normals(reach, 0.5 * size, pixel);
+    const double reach = reach_of_boxes(s), lines = lines_of(s), pixel = 0.5 * size / lines;
+    return krs_needs_rebase(reach, pixel) || krs_may_blur_normals(reach, 0.5 * size, pixel, lines);
 }
 
 bool may_need_rebase(const Scene *scene, Graph *graph, const Roots *roots, Arena *scratch)
 {
     ViewPrecision view  = {.scene = scene, .graph = graph, .roots = roots, .scratch = scratch};
     bool          needs = false, moves = scene->cameras.count == 0;
-    if (scene->zone_count > 0)
-        return false;
     run_defaults(&view);
     for (size_t i = 0; i < view.tape.count && !moves; i++)
         moves = graph->items[view.tape.nodes[i]].time == TIME_FRAME;

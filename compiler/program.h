@@ -33,7 +33,7 @@ typedef enum RootKind {
     ROOTS_BOX,             /* numbers by which boxes of a frame are found */
     ROOTS_ASSEMBLY,        /* what the assembly's items refer to */
     ROOTS_PLACE,           /* for meshes: where each component reads its texture; FLOAT: nowhere */
-    ROOTS_CAMERA_RELATIVE, /* surfaces and plane again for camera-relative points, or none */
+    ROOTS_CAMERA_RELATIVE, /* surfaces, plane and zones again for camera-relative points, or none */
     ROOT_KINDS
 } RootKind;
 

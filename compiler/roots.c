@@ -37,7 +37,8 @@ static void allocate_roots(Compilation *c, RootRange assembly)
         [ROOTS_BOX]             = s->boxes.nodes.count,
         [ROOTS_ASSEMBLY]        = assembly.count,
         [ROOTS_PLACE]           = c->options->assembly ? components : 0,
-        [ROOTS_CAMERA_RELATIVE] = components * ROOT_COUNT + NODES_OF(PlaneRoots)};
+        [ROOTS_CAMERA_RELATIVE] = components * ROOT_COUNT + NODES_OF(PlaneRoots) +
+                                  (s->zone_count > 0)};
     for (RootKind kind = 0; kind < ROOT_KINDS; kind++)
         roots->first[kind + 1] = roots->first[kind] + counts[kind];
     roots->all = arena_new_array(&c->scene->arena, Node, roots->first[ROOT_KINDS]);
@@ -208,17 +209,21 @@ static void lower_gradients(Compilation *c, Graph *g, LoweredCrowds *crowds)
     }
 }
 
-/* Copies the roots of components and planes, and rebases the copies to camera-relative points. */
+/* Copies the roots of components, planes and zones, and rebases the copies to camera-relative points. */
 static void lower_camera_relative(Compilation *c, Graph *g)
 {
-    const Roots   *roots    = &c->scene->roots;
-    RootRange      surfaces = roots_of(roots, ROOTS_SURFACE), plane = roots_of(roots, ROOTS_PLANE);
-    RootRange      near     = roots_of(roots, ROOTS_CAMERA_RELATIVE);
+    static const RootKind copied[] = {ROOTS_SURFACE, ROOTS_PLANE, ROOTS_ZONE};
+    const Roots          *roots    = &c->scene->roots;
+    RootRange             near     = roots_of(roots, ROOTS_CAMERA_RELATIVE);
+    Node                 *to       = near.items;
     GraphParameter anywhere = {{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL, HUGE_VAL}};
     Node           rebase_origin = graph_parameter(g, (uint32_t)g->parameters.count, TYPE_VEC3);
     array_push(&c->scene->arena, &g->parameters, anywhere);
-    memcpy(near.items, surfaces.items, surfaces.count * sizeof(Node));
-    memcpy(near.items + surfaces.count, plane.items, plane.count * sizeof(Node));
+    for (size_t i = 0; i < sizeof copied / sizeof *copied; i++) {
+        const RootRange from = roots_of(roots, copied[i]);
+        memcpy(to, from.items, from.count * sizeof(Node));
+        to += from.count;
+    }
     graph_rebase(g, near.items, near.count, rebase_origin, &c->scratch);
     arena_free(&c->scratch);
 }

@@ -6,11 +6,19 @@
 
 /* ---- zones ---- */
 
+Node emit_zone(const Emitter *e)
+{
+    const Module *m = e->module;
+    return m->zone != NODE_NONE && e->variant->camera_relative
+               ? m->camera_relative[m->components * ROOT_COUNT + 2]
+               : m->zone;
+}
+
 /* How deep p is in the zones of the scene, and then what distances must not be below: that, and the
    depth in those of the caller. */
 void emit_zones(Emitter *e)
 {
-    Node zone = e->variant->camera_relative ? NODE_NONE : e->module->zone;
+    const Node zone = emit_zone(e);
     if (!e->cuts)
         return;
     if (zone != NODE_NONE) {
@@ -24,7 +32,8 @@ void emit_zones(Emitter *e)
     if (zone != NODE_NONE)
         text_add(e->out, "    d = max(d, krs_zone_depth(p));\n");
     if (e->variant->zones > 0)
-        emit_phrase(e, PHRASE_CUT_ZONES, (Operands){emit_count(e, e->variant->zones)});
+        emit_phrase(e, e->variant->camera_relative ? PHRASE_CUT_NEAR_ZONES : PHRASE_CUT_ZONES,
+                    (Operands){emit_count(e, e->variant->zones)});
     text_add(e->out, "    return d;\n}\n\n");
 }
 

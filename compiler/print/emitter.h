@@ -212,9 +212,11 @@ const char *emit_box_distance(Emitter *e, uint32_t component);
 void        emit_distance_of(Emitter *e, const ModuleFunction *function);
 void        emit_gradient_of(Emitter *e, const ModuleFunction *function);
 void        emit_zones(Emitter *e);
-void        emit_distance(Emitter *e);
-void        emit_gradient(Emitter *e);
-void        emit_tangent(Emitter *e);
+/* How deep points of the variant are in the zones of the scene; NODE_NONE: there are none. */
+Node emit_zone(const Emitter *e);
+void emit_distance(Emitter *e);
+void emit_gradient(Emitter *e);
+void emit_tangent(Emitter *e);
 
 /* shared.c: what a component's distance and surface have in common. */
 /* The values that the distance hands over; false: each is computed by itself. */

@@ -38,10 +38,11 @@ typedef struct Module {
     const Node
         *gradients; /* lower_gradient's two, of the zones as well; FLOATs where there is none */
     /* Of the scene: */
-    Node        zone;            /* the depth in zones, or NODE_NONE */
-    const Node *planes;          /* where a ray meets one, and how steeply it falls */
-    const Node *camera_relative; /* surfaces and planes once more, of camera-relative points; NULL:
-                            there are none */
+    Node        zone;   /* the depth in zones, or NODE_NONE */
+    const Node *planes; /* where a ray meets one, and how steeply it falls */
+    const Node
+        *camera_relative; /* surfaces, planes and the zone, if there is one, of camera-relative
+                            points; NULL: there are none */
     /* What is known of components: */
     const Box      *boxes;
     BoxNodes        box_nodes;
@@ -81,7 +82,7 @@ const char *module_function_name(KrsFunction function);
 
 /* Adds the text of a variant: the wanted functions, and what they call.  Memory is that of `out`.
    A group has krs_distance and krs_along alone; a camera-relative one the distance, planes, scene parts
-   and the surface, and no zones. */
+   and the surface. */
 void module_print(const Module *module, const KrsVariant *variant, const KrsFunction *wanted,
                   size_t count, const Printer *printer, Text *out);
 

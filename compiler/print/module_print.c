@@ -174,7 +174,8 @@ void module_lay_out(Module *module, uint32_t zone_slots, Arena *arena, Arena *sc
     slots->camera_relative.first_slot = slots->plain.first_slot + slots->plain.slots + zone_slots;
     if (!module->camera_relative)
         return;
-    add_nodes(&e, &camera_relative, module->camera_relative, count * ROOT_COUNT + 2);
+    add_nodes(&e, &camera_relative, module->camera_relative,
+              count * ROOT_COUNT + 2 + (module->zone != NODE_NONE));
     lay_out(&e, &camera_relative, &slots->camera_relative, arena);
 }
 
@@ -221,10 +222,10 @@ static NodeList gather_roots(Emitter *e)
                 ModuleFunction function = emit_function(e, kind, i);
                 add_nodes(e, &roots, function.roots, function.root_count);
             }
-    bool zones = e->module->zone != NODE_NONE && !e->variant->camera_relative;
-    add_nodes(e, &roots, &e->module->zone, zones && e->cuts);
+    const Node zone = emit_zone(e);
+    add_nodes(e, &roots, &zone, zone != NODE_NONE && e->cuts);
     add_nodes(e, &roots, e->module->gradients + 2 * e->module->components,
-              zones && emit_wants_gradient(e) ? 2 : 0);
+              zone != NODE_NONE && emit_wants_gradient(e) ? 2 : 0);
     add_boxes(e, &roots, e->wanted[KRS_FUNCTION_DISTANCE_LOD],
               e->wanted[KRS_FUNCTION_SCENE_PART_BOX] && !e->variant->camera_relative);
     add_kept_boxes(e, &roots);
@@ -295,16 +296,16 @@ static void emit_block(Emitter *e)
                     "// %u more slots hold what else depends on the frame alone: "
                     "krs_frame_values in krs.h.\n",
                     e->module->slots.plain.slots);
+    if (v->zones > 0)
+        text_format(e->out, "// %u hold zones: center and radius.\n", v->zones);
     if (v->camera_relative)
         text_add(e->out,
                  "// Points are relative to an origin near them, of which the last slots tell.\n");
-    if (v->zones > 0)
-        text_format(e->out, "// The last %u hold zones: center and radius.\n", v->zones);
     if (emit_reads_tables(e))
         emit_about_tables(e);
     if (emit_reads_textures(e))
         emit_about_textures(e);
-    emit_phrase(e, PHRASE_PARAMETER_BLOCK, (Operands){emit_count(e, slots + v->zones)});
+    emit_phrase(e, PHRASE_PARAMETER_BLOCK, (Operands){emit_count(e, slots)});
     if (emit_reads_zones(e))
         emit_phrase(e, PHRASE_ZONES, (Operands){emit_count(e, v->zones)});
     if (emit_reads_tables(e))
@@ -343,8 +344,7 @@ void module_print(const Module *module, const KrsVariant *variant, const KrsFunc
     e.helper_text.arena = out->arena;
     for (size_t i = 0; i < count; i++)
         e.wanted[wanted[i]] = true;
-    e.cuts = (variant->zones > 0 || (module->zone != NODE_NONE && !variant->camera_relative)) &&
-             needs_cut(&e);
+    e.cuts = (variant->zones > 0 || module->zone != NODE_NONE) && needs_cut(&e);
     helpers_read(&e);
     find_needs(&e);
     NodeList roots = gather_roots(&e);

@@ -123,13 +123,20 @@ bool emit_reads_zones(const Emitter *e)
     return e->variant->zones > 0 && (e->cuts || emit_wants_gradient(e));
 }
 
+/* The first slot of the zones of the caller. */
+static uint32_t zone_slot(const Emitter *e)
+{
+    const FrameValues *plain = &e->module->slots.plain;
+    const bool         found = e->variant->values || e->variant->camera_relative;
+    return plain->first_slot + (found ? plain->slots : 0);
+}
+
 /* Where zones of the caller are read from. */
 static void emit_zone_reads(Emitter *e)
 {
     if (emit_reads_zones(e))
-        emit_phrase(
-            e, PHRASE_READ_ZONES,
-            (Operands){emit_count(e, e->variant->zones), emit_count(e, emit_slot_count(e))});
+        emit_phrase(e, PHRASE_READ_ZONES,
+                    (Operands){emit_count(e, e->variant->zones), emit_count(e, zone_slot(e))});
 }
 
 uint32_t emit_slot_count(const Emitter *e)
@@ -137,7 +144,7 @@ uint32_t emit_slot_count(const Emitter *e)
     const FrameSlots *slots = &e->module->slots;
     if (e->variant->camera_relative)
         return slots->camera_relative.first_slot + slots->camera_relative.slots + 1;
-    return slots->plain.first_slot + (e->variant->values ? slots->plain.slots : 0);
+    return zone_slot(e) + e->variant->zones;
 }
 
 void emit_prepare(Emitter *e, const Node *roots, size_t count, const FrameValues *values)

@@ -21,7 +21,7 @@ enum { GRID = 8, RAYS = GRID * GRID };
 static const double PART_OF_PIXEL = 0.25;
 
 /* A part of what is seen may be blurred by up to MOST_BLUR.  So may all of it, where coordinates are not
-   MUCH_GAIN times as large as the distance from the eye. */
+   MUCH_GAIN times as large as camera-relative ones. */
 static const double MOST_BLUR = 2, MUCH_GAIN = 6;
 
 /* What is seen from the eye, or a bound on it. */
@@ -56,9 +56,12 @@ static void look(const Viewer *viewer, KrsFrame *frame, Sight *sight)
             sight->hits[sight->count++] = sight->hits[i];
 }
 
-static bool blurs(double coordinate, double distance, double pixel, double gain, double blur)
+static bool blurs(const Viewer *viewer, double coordinate, double distance, double gain,
+                  double blur)
 {
-    return coordinate > gain * distance && krs_normal_blur(coordinate, pixel) > blur;
+    const double pixel = pixel_at(viewer, distance);
+    return coordinate > gain * krs_seen_reach(distance, pixel, viewer->height) &&
+           krs_normal_blur(coordinate, pixel) > blur;
 }
 
 /* Whether normals are blurred too much somewhere, or most of them are. */
@@ -66,15 +69,14 @@ static bool blurs_normals(const Viewer *viewer, const Sight *sight)
 {
     size_t blurred = 0;
     for (size_t i = 0; i < sight->count; i++) {
-        const double coordinate = largest3(sight->hits[i].point), t = sight->hits[i].t,
-                     pixel = pixel_at(viewer, t);
-        if (blurs(coordinate, t, pixel, KRS_LEAST_GAIN, MOST_BLUR))
+        const double coordinate = largest3(sight->hits[i].point), t = sight->hits[i].t;
+        if (blurs(viewer, coordinate, t, KRS_LEAST_GAIN, MOST_BLUR))
             return true;
-        blurred += blurs(coordinate, t, pixel, MUCH_GAIN, KRS_LEAST_BLUR);
+        blurred += blurs(viewer, coordinate, t, MUCH_GAIN, KRS_LEAST_BLUR);
     }
     return sight->count > 0 ? 2 * blurred > sight->count
-                            : blurs(sight->eye - sight->nearest, sight->nearest, sight->pixel,
-                                    MUCH_GAIN, KRS_LEAST_BLUR);
+                            : blurs(viewer, sight->eye - sight->nearest, sight->nearest, MUCH_GAIN,
+                                    KRS_LEAST_BLUR);
 }
 
 /* The nearest point that is seen; the eye, where nothing is. */
@@ -90,10 +92,9 @@ void origin_choose(const KrsRendering *rendering, KrsFrame *frame, const Viewer 
                    double origin[3])
 {
     const double(*eye)[3] = (const double(*)[3]) & viewer->camera->eye;
-    float zones[KRS_MOST_ZONES][4];
-    Sight sight = {.eye = largest3(*eye)};
+    Sight sight           = {.eye = largest3(*eye)};
     memset(origin, 0, 3 * sizeof *origin);
-    if (!rendering_rebases(rendering) || krs_frame_zones(frame, zones) > 0)
+    if (!rendering_rebases(rendering))
         return;
     if (krs_distance(frame, eye, 1, &sight.nearest) != KRS_OK)
         sight.nearest = 0;
@@ -101,7 +102,8 @@ void origin_choose(const KrsRendering *rendering, KrsFrame *frame, const Viewer 
     sight.pixel   = pixel_at(viewer, sight.nearest);
     bool moves    = krs_needs_rebase(sight.eye, sight.pixel);
     bool differs  = !rendering->program->algebraic; /* else normals are by derivatives */
-    if (!moves && !(differs && krs_may_blur_normals(sight.eye, sight.nearest, sight.pixel)))
+    if (!moves &&
+        !(differs && krs_may_blur_normals(sight.eye, sight.nearest, sight.pixel, viewer->height)))
         return;
     look(viewer, frame, &sight);
     if (moves || (differs && blurs_normals(viewer, &sight)))

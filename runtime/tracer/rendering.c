@@ -307,7 +307,7 @@ bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame,
     krs_frame_parameters(frame, block);
     if (values > 0)
         krs_frame_values(frame, block + first_value);
-    size_t zones = krs_frame_zones(frame, block + slots);
+    size_t zones = krs_frame_zones(frame, rebase_origin, block + slots);
     for (size_t i = zones; i < KRS_MOST_ZONES; i++)
         block[slots + i][3] = NO_ZONE;
     memcpy(rendering->parameters.bytes, block, (slots + KRS_MOST_ZONES) * sizeof *block);
@@ -331,7 +331,6 @@ bool rendering_rebase(KrsRendering *rendering, KrsFrame *frame, const double reb
            slots * sizeof *block);
     gpu_release(gpu, block);
     rendering->camera_relative = true;
-    rendering->zone_slots      = 0;
     return true;
 }
 

@@ -6,7 +6,8 @@
  * sides: they may be off by a degree, and by a part of what the surface turns within the pixel.  Of
  * all pixels, also at edges, about as many may be off by more than 18 degrees as in a picture of the
  * surface at the origin.  Surfaces stand 20 to a million units away and are a thousandth of a unit to
- * thirty units large, and pixels are those of pictures of 36 to 2,000 lines.
+ * thirty units large, and pixels are those of pictures of 36 to 2,000 lines.  Cameras are near them, or in the origin
+ * with a long lens.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -77,15 +78,40 @@ static const struct Form {
     {"turns about the origin",
      "(box([1, 1, 1]) - sphere(0.65)).scale(s).rotate([0, 1, 0], 37deg).move([0.8 * o.x - 0.6 * "
      "o.z, o.y, 0.6 * o.x + 0.8 * o.z]).rotate([0, 1, 0], 36.86989764584402deg)"},
+    {"zones of the scene",
+     "(box([1, 1, 1]) | sphere(0.6).move([0.2, 0.5, 0.1])).scale(s).move(o);\n"
+     "zone { center: o + s * [0.4, 0.4, 0.6], radius: 0.55 * s }\n"
+     "zone { center: o + s * [-0.5, 0.1, 0.5], radius: 0.3 * s }\n"
+     "show torus(0.7, 0.1).scale(s).move(o)"},
+    {"a zone of the caller",
+     "(box([1, 1, 1]) | sphere(0.6).move([0.2, 0.5, 0.1])).scale(s).move(o)"},
+    {"a zone on a plane",
+     "half_space([0.1, 1, 0.05], 0).move(o); show sphere(0.5 * s).move(o);\n"
+     "zone { center: o + s * [0.5, 0.1, 0.9], radius: 0.4 * s } show box([s, s, s]).move(o)"},
+    {"a cut by a zone as large as a plane",
+     "(torus(0.7, 0.2) | box([0.5, 1, 0.5])).scale(s).move(o)"},
+    {"a field with parameters", "field(abs(y) + (0.3 + 0.1 * (sin(o.x)^2 + cos(o.x)^2 - 1)) * "
+                                "abs(x) - 0.5).within(box([1.6, 1.6, "
+                                "1.6])).scale(s).move(o)"},
     {"a ball on a plane", "(half_space([0.1, 1, 0.05], 0).move(o) | sphere(0.5 * s).move(o))"},
     {"a turned outline", "polygon([[-0.9, -0.6], [0.8, -0.7], [0.3, 0.1], [0.7, 0.9], [-0.5, "
                          "0.6]]).revolve().rotate([1, 0, 0], 30deg).scale(s).move(o)"},
 };
+/* The zones of the caller that some have, in sizes from o. */
+static const struct Zone {
+    const char *form;
+    double      ball[4];
+} zones[] = {
+    {"a zone of the caller", {0.4, 0.4, 0.6, 0.55}},
+    {"a zone on a plane", {-0.3, 0.4, 0.9, 0.5}},
+    {"a cut by a zone as large as a plane", {300, 400, 0, 499.9}},
+};
+
 enum { FORMS = sizeof forms / sizeof forms[0], FAR_MEMBERS = 13 };
 
 enum { WIDTH = 64, HEIGHT = 36, PIXELS = WIDTH * HEIGHT, RAYS = 5, TRIALS = 4 };
 static const double FOV  = 0.66;
-static const Vec    AWAY = {1.2, 1, 2}; /* the eye, from the middle, in sizes */
+static const Vec    AWAY = {1.2, 1, 2};
 
 static const double DEGREE = 0.017453292519943295, EVEN = 15, TURNS = 0.2, ACROSS = 18;
 /* The most parts of pixels that are off and are not at the origin. */
@@ -95,7 +121,8 @@ static const double MOST_EVEN = 0.003, MOST_ACROSS = 0.005;
 typedef struct Shot {
     double   far, size;
     uint32_t lines;
-    Vec      middle;
+    Vec      middle, away; /* the eye, from the middle, in sizes */
+    double   fov;
 } Shot;
 
 static KrsWindow window_of(const Shot *shot, uint32_t *width)
@@ -115,6 +142,18 @@ static double angle(Vec a, Vec b)
     return atan2(vec_length(vec_cross(a, b)), vec_dot(a, b)) / DEGREE;
 }
 
+/* Sets the zone of the caller. */
+static void set_zone(const struct Form *form, KrsFrame *frame, double size, Vec middle)
+{
+    for (size_t i = 0; i < sizeof zones / sizeof *zones; i++) {
+        const double *ball       = zones[i].ball;
+        const double  zone[1][4] = {{middle.x + size * ball[0], middle.y + size * ball[1],
+                                     middle.z + size * ball[2], size * ball[3]}};
+        if (strcmp(zones[i].form, form->name) == 0)
+            assert_int_equal(krs_frame_set_zones(frame, zone, 1), KRS_OK);
+    }
+}
+
 /* What is hit at the origin by the ray of each pixel, and by those a pixel beside it. */
 static void cast_rays(const struct Form *form, const Shot *shot, KrsHit *hits)
 {
@@ -123,7 +162,8 @@ static void cast_rays(const struct Form *form, const Shot *shot, KrsHit *hits)
     uint32_t            width;
     KrsWindow           window = window_of(shot, &width);
     Product product = product_format("let s = 1; let o = [0, 0, 0];\nshow %s;", form->text);
-    Lens    lens = lens_make(AWAY, vec(0, 0, 0), tan(FOV / 2), false, (int)width, (int)shot->lines);
+    Lens    lens    = lens_make(shot->away, vec(0, 0, 0), tan(shot->fov / 2), false, (int)width,
+                                (int)shot->lines);
     for (int i = 0; i < RAYS * PIXELS; i++) {
         const double *place = beside[i % RAYS];
         int           pixel = i / RAYS;
@@ -132,8 +172,10 @@ static void cast_rays(const struct Form *form, const Shot *shot, KrsHit *hits)
         memcpy(origins[i], &ray.origin, sizeof origins[i]);
         memcpy(directions[i], &ray.direction, sizeof directions[i]);
     }
+    set_zone(form, product.frame, 1, vec(0, 0, 0));
     assert_int_equal(krs_raycast(product.frame, (const double(*)[3])origins,
-                                 (const double(*)[3])directions, RAYS * PIXELS, 100, 1e-7, hits),
+                                 (const double(*)[3])directions, RAYS * PIXELS, HUGE_VAL, 1e-7,
+                                 hits),
                      KRS_OK);
     product_free(&product);
 }
@@ -141,22 +183,26 @@ static void cast_rays(const struct Form *form, const Shot *shot, KrsHit *hits)
 /* A form as a program: its size and place are parameters, so that it is compiled once; or, for a shot,
    numbers. */
 typedef struct Subject {
-    Product       product;
-    KrsRendering *rendering;
-    bool          literal;
+    const struct Form *form;
+    Product            product;
+    KrsRendering      *rendering;
+    bool               literal;
 } Subject;
 
 static Subject subject_new(const struct Form *form, const Shot *literal)
 {
-    char    numbers[200] = "param s = 1 in [1e-4, 1e4]; param o = [0, 0, 0];";
-    Subject subject      = {.literal = literal};
+    char    numbers[400] = "param s = 1 in [1e-4, 1e4]; param o = [0, 0, 0]; param e = [1, 1, 1]; "
+                           "param f = 1 in [1e-9, 3];";
+    Subject subject      = {.form = form, .literal = literal};
     if (literal)
-        snprintf(numbers, sizeof numbers, "let s = %.17g; let o = [%.17g, %.17g, %.17g];",
-                 literal->size, literal->middle.x, literal->middle.y, literal->middle.z);
-    subject.product = product_format(
-        "%s\nshow %s;\n"
-        "camera { eye: o + s * [%g, %g, %g], target: o, fov: %.17g }\n",
-        numbers, form->text, AWAY.x, AWAY.y, AWAY.z, FOV);
+        snprintf(numbers, sizeof numbers,
+                 "let s = %.17g; let o = [%.17g, %.17g, %.17g]; let e = [%.17g, %.17g, %.17g]; "
+                 "let f = %.17g;",
+                 literal->size, literal->middle.x, literal->middle.y, literal->middle.z,
+                 literal->away.x, literal->away.y, literal->away.z, literal->fov);
+    subject.product = product_format("%s\nshow %s;\n"
+                                     "camera { eye: o + s * e, target: o, fov: f }\n",
+                                     numbers, form->text);
     if (krs_rendering_new(renderer, subject.product.scene, &subject.rendering) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     return subject;
@@ -176,12 +222,16 @@ static KrsPicture *render(const Subject *subject, const Shot *shot, bool literal
                                  .samples = 1,
                                  .planes  = KRS_PLANE_NORMAL};
     KrsPicture      *picture  = NULL;
-    const double     middle[] = {shot->middle.x, shot->middle.y, shot->middle.z};
+    const double     middle[] = {shot->middle.x, shot->middle.y, shot->middle.z},
+                 away[]       = {shot->away.x, shot->away.y, shot->away.z};
     options.width             = width;
     if (!literal) {
         assert_int_equal(krs_frame_set(subject->product.frame, "s", &shot->size, 1), KRS_OK);
         assert_int_equal(krs_frame_set(subject->product.frame, "o", middle, 3), KRS_OK);
+        assert_int_equal(krs_frame_set(subject->product.frame, "e", away, 3), KRS_OK);
+        assert_int_equal(krs_frame_set(subject->product.frame, "f", &shot->fov, 1), KRS_OK);
     }
+    set_zone(subject->form, subject->product.frame, shot->size, shot->middle);
     if (krs_render(subject->rendering, subject->product.frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     return picture;
@@ -216,12 +266,18 @@ static void count_pixel(const KrsHit *hits, const float *seen, Counts *counts)
 
 static Shot random_shot(Random *random, int trial)
 {
-    static const uint32_t lines[TRIALS] = {60, 2000, 36, 200};
-    Shot                  shot          = {.lines = lines[trial]};
+    static const uint32_t lines[TRIALS] = {60, 2000, 36, 120};
+    Shot                  shot          = {.lines = lines[trial], .away = AWAY, .fov = FOV};
     shot.far                            = trial % 3 == 0 ? random_between(random, 50, 500)
                                                          : 20 * pow(10, random_between(random, 0, 4.7));
     shot.size   = trial % 3 == 0 ? 1 : pow(10, random_between(random, -3, 1.5));
     shot.middle = vec_scale(shot.far, random_unit(random));
+    if (trial == TRIALS - 1) { /* from the origin, as large in the picture as in others */
+        shot.far    = shot.size * pow(10, random_between(random, 0.7, 3.5));
+        shot.middle = vec_scale(shot.far, random_unit(random));
+        shot.away   = vec_scale(-1 / shot.size, shot.middle);
+        shot.fov    = 2 * atan(tan(FOV / 2) * vec_length(AWAY) / vec_length(shot.away));
+    }
     return shot;
 }
 
@@ -240,7 +296,7 @@ static void check(const struct Form *form, const Subject *subject, const Shot *s
                   const Subject *origin)
 {
     static KrsHit hits[RAYS * PIXELS];
-    Shot          there = {.size = 1, .lines = shot->lines};
+    Shot          there = {.size = 1, .lines = shot->lines, .away = shot->away, .fov = shot->fov};
     Counts        known = {0};
     cast_rays(form, shot, hits);
     if (origin)

@@ -119,6 +119,7 @@ static const char *const phrases[PHRASE_COUNT] = {
     [PHRASE_READ_ZONES]       = "    read_zones($a, $b);\n",
     [PHRASE_CUT]              = "fn krs_cut(p: vec3f, uncut: f32) -> f32\n{\n    var d = uncut;\n",
     [PHRASE_CUT_ZONES]        = "    d = zone_depth(p, d, $a);\n",
+    [PHRASE_CUT_NEAR_ZONES]   = "    d = near_zone_depth(p, d, $a);\n",
     [PHRASE_TEXEL_CELLS]      = "texel cells;\n",
     [PHRASE_BUFFER_CELLS]     = "buffer cells;\n",
     [PHRASE_TEXTURES]         = "textures;\n",

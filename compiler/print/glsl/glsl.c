@@ -65,6 +65,13 @@ static const char *const phrases[PHRASE_COUNT] = {
     [PHRASE_CUT]             = "float krs_cut(vec3 p, float d)\n{\n",
     [PHRASE_CUT_ZONES]       = "    for (int i = 0; i < $a; i++)\n"
                                "        d = max(d, krs_zones[i].w - length(p - krs_zones[i].xyz));\n",
+    /* length(c) - length(c - p), without a difference of large numbers. */
+    [PHRASE_CUT_NEAR_ZONES] =
+        "    for (int i = 0; i < $a; i++) {\n"
+        "        vec3 c = krs_zones[i].xyz;\n"
+        "        float lengths = length(c) + length(c - p);\n"
+        "        d = max(d, krs_zones[i].w + dot(c + (c - p), p) / max(lengths, 1e-30));\n"
+        "    }\n",
 
     [PHRASE_TEXEL_CELLS] =
         "layout(set = 0, binding = 2) uniform usamplerBuffer krs_cells;\n\n"
