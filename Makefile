@@ -66,11 +66,14 @@ API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits
                 refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)
 MESH     := $(addprefix compiler/mesh/, solid.c field.c field_pieces.c numbering.c batches.c weights.c tets.c marks.c quadric.c roots.c contour.c contour_mesh.c bvh.c groups.c gradient.c lens.c around.c verify.c smooth.c pieces.c voids.c bounds.c rounds.c polygons.c flat_pieces.c flat_faces.c flat.c mesh.c placing.c assemble.c crossing.c settle.c slivers.c near.c collapse.c simplify.c)
 SLICE    := $(addprefix compiler/slice/, plane.c extent.c tree.c chords.c bend.c fit.c contours.c slice.c)
+GRID     := $(addprefix compiler/grid/, samples.c row.c grid.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer integrators film display writer))))
 LIVE     := $(sort $(wildcard live/*.c))
 LIVE_BORDER := live/gui.cpp
 CLI      := $(sort $(wildcard cli/*.c))
 CLI_BORDER := cli/mesh_glb.cpp cli/terminate.cpp
+# OpenVDB is loaded when a .vdb is written: it takes longer to load than most commands to run.
+VDB       = $(if $(VDB_LIBS),$(B)/krs-vdb.so)
 
 # Text files that the program carries: the standard library, what scenes and kernels share, kernels.
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))
@@ -102,7 +105,7 @@ CC_LINK  = $(CC) $(CFLAGS) $(LDFLAGS) -Wl,--exclude-libs,ALL
 HARDENED := -pie -Wl,-z,relro -Wl,-z,now
 include tools/libraries.mk
 
-COMPILER := $(BASE) $(IMAGE) $(OUTLINE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API) $(MESH) $(SLICE)
+COMPILER := $(BASE) $(IMAGE) $(OUTLINE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API) $(MESH) $(SLICE) $(GRID)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
             $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o $(B)/fingerprints.o
 
@@ -112,10 +115,15 @@ INTERNAL := $(B)/libkrs-internal.a
 VERSION  := $(shell sed -n 's/^.define KRS_VERSION  *"\(.*\)"/\1/p' compiler/krs.h)
 SONAME   := libkrs.so.$(basename $(VERSION))
 
-all: $(B)/krs $(B)/libkrs.a
+all: $(B)/krs $(B)/libkrs.a $(VDB)
 $(B)/krs: $(CLI:%.c=$(B)/%.o) $(B)/commit.o $(CLI_BORDER:%.cpp=$(B)/%.o) $(B)/live.a $(INTERNAL)
 	@echo "link   $@"
 	@$(CC_LINK) $(HARDENED) -o $@ $^ $(WINDOW_LIBS) $(MESH_LIBS) $(LIBS)
+# Its headers take a minute to compile, and twice that with names for a debugger.
+$(B)/cli/grid_openvdb.o: CXXFLAGS += -O1 -g0
+$(B)/krs-vdb.so: $(B)/cli/grid_openvdb.o
+	@echo "link   $@"
+	@$(CXX) $(CXXFLAGS) $(LDFLAGS) -shared -o $@ $< $(VDB_LIBS)
 # What the command has for scenes that are open: a client of the library, and no part of it.
 $(B)/live.a: $(LIVE:%.c=$(B)/%.o) $(LIVE_BORDER:%.cpp=$(B)/%.o) $(B)/members
 	@rm -f $@

@@ -455,6 +455,7 @@ KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3], const double 
 }
 #endif
 
+#include "compiler/krs_grid.h"
 #include "compiler/krs_mesh.h"
 #include "compiler/krs_slice.h"
 #endif

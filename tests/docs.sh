@@ -10,7 +10,7 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 pages="README.md CONTRIBUTING.md SECURITY.md docs/features.md docs/figures.md docs/code.md docs/building.md
 docs/tutorial.md docs/coming-from.md docs/language.md docs/library.md docs/architecture.md docs/details.md
-docs/viewer.md docs/meshes.md docs/slices.md docs/how-it-works.md docs/glossary.md bench/README.md bench/measurements.md"
+docs/viewer.md docs/meshes.md docs/slices.md docs/grids.md docs/how-it-works.md docs/glossary.md bench/README.md bench/measurements.md"
 failed=0
 report() { # status, name
     if [ "$1" -eq 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failed=1; fi
@@ -189,7 +189,7 @@ report $? "docs/architecture.md has at most 200 lines"
 report $? "docs/glossary.md has at most 30 words, below its heading"
 
 # ---- the C library ----
-sed -n 's/^[A-Za-z].*\(krs_[a-z_0-9]*\)(.*/\1/p' compiler/krs.h compiler/krs_mesh.h compiler/krs_slice.h compiler/krs_camera.h runtime/krs_vulkan.h runtime/krs_film.h |
+sed -n 's/^[A-Za-z].*\(krs_[a-z_0-9]*\)(.*/\1/p' compiler/krs.h compiler/krs_mesh.h compiler/krs_slice.h compiler/krs_grid.h compiler/krs_camera.h runtime/krs_vulkan.h runtime/krs_film.h |
     sort -u >"$work/declared"
 # shellcheck disable=SC2016 # backquotes that are meant
 sed -n '/^## All functions/,$p' docs/library.md | grep -o '`krs_[a-z_0-9]*`' | tr -d '`' |

@@ -274,6 +274,39 @@ bool bvh_find_nearest(const Bvh *bvh, const double point[3], double radius, uint
     return true;
 }
 
+/* The half whose box is nearer is looked at first. */
+static void walk_into_nearer(Walk *walk, const BvhNode *node, const double point[3])
+{
+    uint32_t first = (uint32_t)(node - walk->bvh->nodes) + 1, second = node->second;
+    if (node->count > 0)
+        return;
+    bool second_nearer = square_to_box(&walk->bvh->nodes[second], point) <
+                         square_to_box(&walk->bvh->nodes[first], point);
+    walk->waiting[walk->count++] = second_nearer ? first : second;
+    walk->waiting[walk->count++] = second_nearer ? second : first;
+}
+
+double bvh_distance(const Bvh *bvh, const double point[3], double radius, uint32_t *found)
+{
+    Nearest        nearest = {point, radius, *found};
+    Walk           walk;
+    const BvhNode *node;
+    walk_begin(&walk, bvh);
+    while ((node = walk_next(&walk))) {
+        if (square_to_box(node, point) >= nearest.distance * nearest.distance)
+            continue;
+        walk_into_nearer(&walk, node, point);
+        for (uint32_t i = node->first; i < node->first + node->count; i++) {
+            double corners[3][3];
+            triangle_corners(bvh, bvh->order[i], corners);
+            if (!is_clearly_far((const double(*)[3])corners, point, nearest.distance))
+                take_nearest(&nearest, bvh->order[i], (const double(*)[3])corners);
+        }
+    }
+    *found = nearest.triangle;
+    return nearest.distance;
+}
+
 /* The nearest point of a segment. */
 static void segment_nearest(const double a[3], const double b[3], const double point[3],
                             double nearest[3])

@@ -45,6 +45,9 @@ bool bvh_is_near(const Bvh *bvh, const double point[3], double radius, uint32_t 
 /* Whether any does, and the nearest then. */
 bool bvh_find_nearest(const Bvh *bvh, const double point[3], double radius, uint32_t *found);
 
+/* How far it is, and `found` then; the radius if none is nearer than that.  The radius may be infinite. */
+double bvh_distance(const Bvh *bvh, const double point[3], double radius, uint32_t *found);
+
 /* The nearest point of a triangle. */
 void triangle_nearest(const double corners[3][3], const double point[3], double nearest[3]);
 

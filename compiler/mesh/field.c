@@ -287,9 +287,10 @@ static void enter(MeshField *field, const LaneTape *outer, Box box)
 
 /* To enter a box takes several runs of the tape around it, so the new tape must be much shorter: it is not where it was
    short, nor in boxes of about the same size. */
+enum { SHORT = 40 };
+
 static bool is_worth_entering(const MeshField *field, Box box)
 {
-    enum { SHORT = 40 };
     static const double MUCH_SMALLER = 0.05;
     double              part         = 1;
     if (field->region_count == 0)
@@ -327,6 +328,14 @@ void field_focus(MeshField *field, Box box)
 {
     lane_ranges_run_closer(outer_tape(field), &field->ranges, box);
     enter(field, outer_tape(field), box);
+}
+
+void field_narrow(MeshField *field, Box box)
+{
+    if (field->region_count > 0 && outer_tape(field)->count <= SHORT)
+        stay(field);
+    else
+        field_focus(field, box);
 }
 
 void field_leave(MeshField *field) { field->region_count--; }

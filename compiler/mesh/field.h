@@ -48,8 +48,9 @@ void field_open(MeshField *field, Arena *arena);
    no surface in it, and it was not entered.  Where little would be pruned the tape stays, and true only means that
    nothing is known. */
 bool field_enter(MeshField *field, Box box);
-/* Enters it in any case. */
+/* Enters it in any case; or unless the tape is short. */
 void field_focus(MeshField *field, Box box);
+void field_narrow(MeshField *field, Box box);
 void field_leave(MeshField *field);
 
 /* At up to MOST_FIELD_POINTS points. */

@@ -1,0 +1,321 @@
+/*
+ * grid.c: `krs grid`: samples of a scene.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/console.h"
+#include "cli/gridding.h"
+#include "cli/meshing.h"
+
+/* Cells along the longest side, and in a band, where nothing else is asked for. */
+static const double USUAL_CELLS = 128, USUAL_BAND = 3;
+/* Samples of a file that has all, and bricks of those that are looked at for one that has those near the surface. */
+static const double MOST_SAMPLES = 2147483648.0, MOST_BRICKS = 1073741824.0;
+
+typedef struct Gridding {
+    const Options  *options;
+    const KrsScene *scene;
+    KrsFrame       *frame;
+    KrsGridOptions  how; /* but for what a format has */
+    GridSheet       sheet;
+    KrsGrid        *grid;
+    bool            solid; /* some sample is in it */
+    Progress        progress;
+    double          begun, goal; /* of this step of the work, of 1 */
+} Gridding;
+
+static bool go_on(void *user, double fraction)
+{
+    Gridding *gridding = user;
+    progress_show(&gridding->progress,
+                  gridding->begun + fraction * (gridding->goal - gridding->begun));
+    return !*interrupted();
+}
+
+/* ---- what is asked for ---- */
+
+static size_t file_total(const Gridding *gridding)
+{
+    return gridding->options->outputs.count ? gridding->options->outputs.count : 1;
+}
+
+static const char *file_name(const Gridding *gridding, size_t index)
+{
+    const Options *options = gridding->options;
+    Text           path    = {.arena = options->arena};
+    if (options->outputs.count > 0)
+        return options->outputs.items[index];
+    text_format(&path, "%s.npy", scene_name(options->arena, options->files.items[0]));
+    return path.bytes;
+}
+
+static KrsStatus check_file(const Gridding *gridding, const char *path)
+{
+    const Options    *options = gridding->options;
+    const GridFormat *format  = grid_format(path);
+    OutputError       error;
+    if (!format)
+        return say_usage(options, "`%s` is no grid: its name must end in " GRID_ENDINGS, path);
+    if (options->grid_material && !format->has_material)
+        return say_usage(options, "`%s` has no room for numbers of materials; .npy has", path);
+    KrsStatus status = check_scene_not_overwritten(options, path);
+    if (status == KRS_OK && output_check(path, &error) != KRS_OK) {
+        say("%s", error.message);
+        status = error.status;
+    }
+    if (status == KRS_OK && format->begin == grid_begin_vdb)
+        status = grid_check_vdb(path);
+    return status;
+}
+
+static KrsStatus check_options(const Gridding *gridding)
+{
+    const Options *options = gridding->options;
+    KrsStatus      status  = KRS_OK;
+    if (options->grid_fog && (options->grid_exact || options->grid_band > 0))
+        return say_usage(options, "--fog writes no distances, which --exact and --band are about");
+    if (options->grid_error > 0 && !options->grid_exact)
+        return say_usage(options, "--error is that of --exact");
+    for (size_t i = 0; i < file_total(gridding) && status == KRS_OK; i++)
+        status = check_file(gridding, file_name(gridding, i));
+    return status;
+}
+
+/* A length of two digits, not below this one. */
+static double round_up(double length)
+{
+    double unit = pow(10, floor(log10(length)) - 1);
+    return ceil(length / unit - 1e-9) * unit;
+}
+
+static KrsStatus refuse_cell(const Gridding *gridding, const char *path, const char *what,
+                             double most, double larger)
+{
+    return say_usage(gridding->options,
+                     "`%s` would have %s, and can have %.0f; --cell %.4g has fewer", path, what,
+                     most, round_up(larger));
+}
+
+/* The length of the longest side tells what the cell is without a wish. */
+static KrsStatus take_wishes(Gridding *gridding)
+{
+    const Options *options = gridding->options;
+    Meshing        meshing = {.options = options, .scene = gridding->scene};
+    KrsStatus      status  = check_wishes(&meshing);
+    double         longest;
+    if (status != KRS_OK)
+        return status;
+    gridding->how = (KrsGridOptions){.fog          = options->grid_fog,
+                                     .exact        = options->grid_exact,
+                                     .error        = options->grid_error,
+                                     .materials    = options->grid_color || options->grid_material,
+                                     .component    = meshing.how.component,
+                                     .within       = meshing.how.within,
+                                     .memory_limit = options->limits.memory,
+                                     .go_on        = go_on,
+                                     .user         = gridding};
+    memcpy(gridding->how.low, meshing.how.low, sizeof gridding->how.low);
+    memcpy(gridding->how.high, meshing.how.high, sizeof gridding->how.high);
+    find_end(&meshing, &longest);
+    gridding->how.cell = options->grid_cell > 0 ? options->grid_cell
+                         : longest > 0          ? longest / USUAL_CELLS
+                                                : 1;
+    if (longest / gridding->how.cell > KRS_MOST_CELLS) {
+        char what[64];
+        snprintf(what, sizeof what, "%.3g cells along an axis", longest / gridding->how.cell);
+        return refuse_cell(gridding, options->files.items[0], what, KRS_MOST_CELLS,
+                           longest / KRS_MOST_CELLS);
+    }
+    return KRS_OK;
+}
+
+/* ---- how large it is ---- */
+
+/* Before anything is computed. */
+static KrsStatus check_size(const Gridding *gridding, const char *path, const GridFormat *format)
+{
+    const KrsGridShape *shape = &gridding->sheet.shape;
+    double longest = 0, samples = 1, most = format->sparse ? 512 * MOST_BRICKS : MOST_SAMPLES;
+    char   what[128];
+    for (int k = 0; k < 3; k++) {
+        longest = fmax(longest, (double)shape->count[k]);
+        samples *= (double)shape->count[k];
+    }
+    snprintf(what, sizeof what, "%zu x %zu x %zu samples", shape->count[0], shape->count[1],
+             shape->count[2]);
+    if (samples > most)
+        return refuse_cell(gridding, path, what, most, shape->cell * cbrt(1.1 * samples / most));
+    if (longest > format->most_side) {
+        snprintf(what, sizeof what, "%.0f samples along an axis", longest);
+        return refuse_cell(gridding, path, what, format->most_side,
+                           shape->cell * 1.01 * longest / format->most_side);
+    }
+    return KRS_OK;
+}
+
+/* What is near the surface grows with its area. */
+static KrsStatus check_memory(Gridding *gridding, const char *path)
+{
+    GridSheet *sheet  = &gridding->sheet;
+    size_t     limit  = gridding->options->limits.memory;
+    double     most   = (double)(limit ? limit : KRS_USUAL_MEMORY);
+    KrsStatus  status = krs_grid_count_near(gridding->grid, &sheet->near);
+    double     bytes  = (double)sheet->near *
+                   (KRS_BRICK_SAMPLES * (double)grid_sample_bytes(sheet) + 256);
+    char what[64];
+    if (status != KRS_OK || bytes <= most)
+        return status;
+    snprintf(what, sizeof what, "%.4g MB of samples in memory", bytes * 1e-6);
+    return say_usage(gridding->options,
+                     "`%s` would have %s, and can have %.4g MB (--limit memory); --cell %.4g has "
+                     "fewer",
+                     path, what, most * 1e-6,
+                     round_up(sheet->shape.cell * sqrt(1.1 * bytes / most)));
+}
+
+/* ---- files ---- */
+
+typedef struct Target {
+    Gridding         *gridding;
+    const GridFormat *format;
+    GridFile         *file;
+} Target;
+
+static bool add_brick(void *user, const KrsGridBrick *brick)
+{
+    Target   *target   = user;
+    Gridding *gridding = target->gridding;
+    for (int i = 0; i < KRS_BRICK_SAMPLES && !gridding->solid; i++)
+        gridding->solid = gridding->sheet.fog ? brick->values[i] > 0 : brick->values[i] <= 0;
+    return target->format->add(target->file, brick);
+}
+
+/* What else went wrong is told as that of a file. */
+static bool fail(OutputError *error, KrsStatus status)
+{
+    if (error->status != KRS_OK)
+        return false;
+    error->status = status;
+    snprintf(error->message, sizeof error->message, "%s",
+             "not enough memory for this grid; a larger --cell needs less");
+    return false;
+}
+
+static bool fill_grid(const void *user, OutputFile *output, OutputError *error)
+{
+    Target    target   = *(const Target *)user;
+    Gridding *gridding = target.gridding;
+    GridFile  file     = {.sheet = &gridding->sheet,
+                          .file  = output,
+                          .error = error,
+                          .arena = gridding->options->arena};
+    target.file        = &file;
+    if (!target.format->begin(&file))
+        return false;
+    KrsStatus status = krs_grid_visit(gridding->grid, add_brick, &target);
+    if (status != KRS_OK)
+        return fail(error, status);
+    return target.format->end(&file);
+}
+
+static KrsStatus open_grid(Gridding *gridding, const char *path, const GridFormat *format)
+{
+    const Options *options = gridding->options;
+    KrsGridOptions how     = gridding->how;
+    double         usual   = format->sparse ? USUAL_BAND : 0;
+    how.aligned            = format->sparse;
+    how.band = options->grid_fog ? 0 : options->grid_band > 0 ? options->grid_band : usual;
+    krs_grid_free(gridding->grid);
+    KrsStatus status = krs_grid_new(gridding->frame, &how, &gridding->grid);
+    if (status == KRS_BAD_ARGUMENT)
+        return say_usage(options, "%s is too small for the size of `%s`",
+                         how.error > 0 ? "--error" : "--cell", options->files.items[0]);
+    if (status != KRS_OK)
+        return status == KRS_INTERRUPTED ? status : say_status(status, options->files.items[0]);
+    int unit = options->mesh_units < 0 ? find_choice("mm", unit_choices) : options->mesh_units;
+    gridding->sheet = (GridSheet){.shape    = krs_grid_shape(gridding->grid),
+                                  .fog      = options->grid_fog,
+                                  .color    = options->grid_color,
+                                  .material = options->grid_material,
+                                  .metres   = metres_of_units[unit]};
+    if (gridding->sheet.shape.count[0] == 0) {
+        say("there is nothing to write: `%s` has nothing solid%s", options->files.items[0],
+            how.within ? " in this box" : "");
+        return KRS_BAD_SCENE;
+    }
+    status = check_size(gridding, path, format);
+    return status == KRS_OK && format->sparse ? check_memory(gridding, path) : status;
+}
+
+/* The mesh behind exact distances is the first half of the work of a file. */
+static KrsStatus write_grid(Gridding *gridding, size_t number)
+{
+    const char       *path   = file_name(gridding, number);
+    const GridFormat *format = grid_format(path);
+    Target            target = {.gridding = gridding, .format = format};
+    const double      all    = (double)file_total(gridding);
+    gridding->begun          = (double)number / all;
+    gridding->goal           = ((double)number + 0.5) / all;
+    stage_enter(STAGE_GRID);
+    progress_start(&gridding->progress, gridding->options, 1);
+    KrsStatus status = open_grid(gridding, path, format);
+    gridding->begun  = gridding->options->grid_exact ? gridding->goal : gridding->begun;
+    gridding->goal   = ((double)number + 1) / all;
+    if (status == KRS_OK)
+        status = write_output(path, fill_grid, &target);
+    progress_end(&gridding->progress);
+    return status;
+}
+
+static void report(const Gridding *gridding)
+{
+    const KrsGridShape *shape = &gridding->sheet.shape;
+    const double       *at    = shape->unresolved_at;
+    char                what[128];
+    if (gridding->options->quiet)
+        return;
+    if (shape->estimate)
+        say("warning: the distance is an estimate, so nothing is proven of it");
+    if (!gridding->solid)
+        say("warning: no sample is in what is solid, which is thinner than cells are; a smaller "
+            "--cell finds it");
+    if (shape->unresolved > 0)
+        say("warning: in %zu places distances may be too long, by what is thinner than the error; "
+            "the first is at [%g, %g, %g]; a smaller --error tells",
+            shape->unresolved, at[0], at[1], at[2]);
+    if (gridding->sheet.fog)
+        snprintf(what, sizeof what, "densities");
+    else if (gridding->options->grid_exact)
+        snprintf(what, sizeof what, "distances at most %.4g below the true ones", shape->error);
+    else
+        snprintf(what, sizeof what, "distances never above the true ones%s",
+                 shape->outside ? ", and exact outside" : "; --exact computes these");
+    say("%zu x %zu x %zu samples from [%.9g, %.9g, %.9g] on, %g apart; %s", shape->count[0],
+        shape->count[1], shape->count[2], (double)shape->first[0] * shape->cell,
+        (double)shape->first[1] * shape->cell, (double)shape->first[2] * shape->cell, shape->cell,
+        what);
+}
+
+KrsStatus command_grid(Options *options)
+{
+    Gridding  gridding = {.options = options};
+    KrsScene *scene    = NULL;
+    KrsStatus status   = check_options(&gridding);
+    if (status == KRS_OK)
+        status = scene_open(options, options->files.items[0], &scene);
+    gridding.scene = scene;
+    if (status == KRS_OK)
+        status = scene_frame(options, scene, &gridding.frame);
+    if (status == KRS_OK)
+        status = take_wishes(&gridding);
+    for (size_t i = 0; i < file_total(&gridding) && status == KRS_OK; i++)
+        status = write_grid(&gridding, i);
+    if (status == KRS_OK)
+        report(&gridding);
+    krs_grid_free(gridding.grid);
+    krs_frame_free(gridding.frame);
+    krs_scene_free(scene);
+    return status;
+}

@@ -1,0 +1,366 @@
+/* grid.c: krs_grid_new and krs_grid_visit: what is asked for, and what is given back. */
+#include "compiler/grid/grid.h"
+
+#include <setjmp.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "compiler/base/vec.h"
+#include "compiler/points.h"
+#include "compiler/slice/extent.h"
+
+/* Cells around what is solid where there is no band. */
+enum { MARGIN = 3 };
+static const double MOST_BAND = 1e6;
+/* Of a cell. */
+static const double USUAL_ERROR = 0.1;
+/* How far solids may reach beyond the box that is found, as a part of its side (narrow_box). */
+static const double BEYOND = 0.0021;
+
+/* ---- what is sampled ---- */
+
+/* False: it has no end; without anything solid the box is of points. */
+static bool find_box(KrsGrid *grid, bool *empty)
+{
+    const KrsGridOptions *options = &grid->options;
+    bool                  endless = false;
+    *empty                        = grid->solid.root_count == 0;
+    for (int k = 0; k < 3; k++) {
+        Range range   = grid->solid.box.axis[k];
+        grid->low[k]  = options->within ? max2(range.low, options->low[k]) : range.low;
+        grid->high[k] = options->within ? min2(range.high, options->high[k]) : range.high;
+        *empty        = *empty || grid->low[k] > grid->high[k];
+        endless       = endless || !isfinite(grid->high[k] - grid->low[k]);
+    }
+    return *empty || !endless;
+}
+
+/* What is in the box that was narrowed, and a little beyond, if the first one has that. */
+static void narrow(KrsGrid *grid)
+{
+    double low[3], high[3];
+    memcpy(low, grid->low, sizeof low);
+    memcpy(high, grid->high, sizeof high);
+    narrow_box(&grid->fields[0], grid->low, grid->high);
+    for (int k = 0; k < 3; k++) {
+        double beyond = BEYOND * (high[k] - low[k]);
+        grid->low[k]  = max2(low[k], grid->low[k] - beyond);
+        grid->high[k] = min2(high[k], grid->high[k] + beyond);
+    }
+}
+
+/* False: there are too many samples. */
+static bool find_samples(KrsGrid *grid)
+{
+    const KrsGridOptions *options = &grid->options;
+    KrsGridShape         *shape   = &grid->shape;
+    double margin = options->fog ? 1 : options->band > 0 ? ceil(options->band) : MARGIN;
+    for (int k = 0; k < 3; k++) {
+        double first = floor(grid->low[k] / shape->cell) - margin;
+        double last  = ceil(grid->high[k] / shape->cell) + margin;
+        if (!(fabs(first) < KRS_MOST_CELLS && fabs(last) < KRS_MOST_CELLS &&
+              last - first < KRS_MOST_CELLS))
+            return false;
+        if (options->aligned)
+            first = floor(first / BRICK) * BRICK;
+        shape->first[k] = (int64_t)first;
+        shape->count[k] = (size_t)(last - first) + 1;
+        grid->bricks[k] = (shape->count[k] + BRICK - 1) / BRICK;
+    }
+    return true;
+}
+
+/* The least of distances that are exact outside is so, too. */
+static bool is_exact_outside(const KrsGrid *grid, const KrsFrame *frame)
+{
+    bool exact = !grid->options.within && frame->zone_count == 0 && !grid->solid.zoned;
+    for (size_t i = 0; i < frame->scene->shown_count && exact; i++)
+        if (grid->options.component == 0 || grid->options.component == i + 1)
+            exact = frame->scene->components[i].exact;
+    return exact;
+}
+
+static KrsStatus find_mesh(KrsGrid *grid, KrsFrame *frame)
+{
+    const KrsGridOptions *options = &grid->options;
+    KrsMeshOptions        how     = {.component    = options->component,
+                                     .within       = options->within,
+                                     .memory_limit = options->memory_limit,
+                                     .go_on        = options->go_on,
+                                     .user         = options->user};
+    memcpy(how.low, options->low, sizeof how.low);
+    memcpy(how.high, options->high, sizeof how.high);
+    /* Half of it is how far the distance to the mesh may be from the true one, to either side. */
+    how.error        = 0.5 * (options->error > 0 ? options->error : USUAL_ERROR * options->cell);
+    KrsStatus status = krs_mesh(frame, &how, &grid->mesh);
+    if (status != KRS_OK)
+        return status;
+    grid->shape.error      = 2 * grid->mesh->error;
+    grid->shape.unresolved = grid->mesh->unresolved;
+    memcpy(grid->shape.unresolved_at, grid->mesh->unresolved_at, sizeof grid->shape.unresolved_at);
+    if (grid->mesh->triangle_count == 0) {
+        krs_mesh_free(grid->mesh);
+        grid->mesh = NULL;
+        return KRS_OK;
+    }
+    bvh_new(&grid->bvh, (const double(*)[3])grid->mesh->vertices,
+            (const uint32_t(*)[3])grid->mesh->triangles, grid->mesh->triangle_count, &grid->arena);
+    return KRS_OK;
+}
+
+static KrsStatus open_fields(KrsGrid *grid, KrsFrame *frame)
+{
+    KrsStatus status = KRS_OK;
+    for (size_t i = 0; i < grid->parts && status == KRS_OK; i++) {
+        MeshField *field = &grid->fields[i];
+        *field           = (MeshField){.solid = &grid->solid, .cut = grid->options.within};
+        memcpy(field->low, grid->low, sizeof field->low);
+        memcpy(field->high, grid->high, sizeof field->high);
+        status = frame_copy_of(frame, &field->frame);
+        if (status != KRS_OK)
+            return status;
+        frame_refresh_points(field->frame);
+        field_open(field, &grid->arena);
+        if (grid->options.materials && !frame_lanes(field->frame))
+            return KRS_OUT_OF_MEMORY;
+    }
+    return status;
+}
+
+static KrsStatus prepare(KrsGrid *grid, KrsFrame *frame)
+{
+    jmp_buf            exhausted;
+    bool               empty;
+    volatile KrsStatus status = KRS_OK;
+    if (!find_box(grid, &empty))
+        return KRS_BAD_ARGUMENT;
+    if (empty)
+        return KRS_OK;
+    grid->memory.exhausted = &exhausted;
+    if (setjmp(exhausted) != 0)
+        return KRS_OUT_OF_MEMORY;
+    status = open_fields(grid, frame);
+    if (status != KRS_OK)
+        return status;
+    narrow(grid);
+    if (!find_samples(grid))
+        return KRS_BAD_ARGUMENT;
+    return grid->options.exact && !grid->options.fog ? find_mesh(grid, frame) : KRS_OK;
+}
+
+static KrsStatus choose_components(KrsGrid *grid, const KrsScene *scene)
+{
+    size_t number     = grid->options.component;
+    bool  *wanted     = number ? calloc(scene->component_count + 1, sizeof *wanted) : NULL;
+    grid->solid.roots = malloc(solid_root_bytes(scene));
+    if (!grid->solid.roots || (number && !wanted)) {
+        free(wanted);
+        return KRS_OUT_OF_MEMORY;
+    }
+    if (wanted) {
+        wanted[scene->lowered[number - 1]] = true;
+        grid->chosen                       = (uint32_t)scene->lowered[number - 1] + 1;
+    }
+    solid_of_components(scene, wanted, &grid->solid);
+    free(wanted);
+    return KRS_OK;
+}
+
+/* Samples that are farther from the surface have one value: those whose cube it does not reach, or beyond the band. */
+static double find_near(const KrsGridOptions *options)
+{
+    const double half_diagonal = 0.8661;
+    if (options->fog)
+        return half_diagonal * options->cell;
+    return options->band > 0 ? options->band * options->cell : INFINITY;
+}
+
+static bool options_are_valid(const KrsGridOptions *options, const KrsScene *scene)
+{
+    return options->cell > 0 && isfinite(options->cell) && options->band >= 0 &&
+           options->band <= MOST_BAND && options->error >= 0 && isfinite(options->error) &&
+           options->component <= scene->shown_count && !scene->program.sheets;
+}
+
+KrsStatus krs_grid_new(KrsFrame *frame, const KrsGridOptions *options, KrsGrid **result)
+{
+    const KrsScene *scene = frame->scene;
+    *result               = NULL;
+    if (!options_are_valid(options, scene))
+        return KRS_BAD_ARGUMENT;
+    KrsGrid *grid = calloc(1, sizeof *grid);
+    if (!grid)
+        return KRS_OUT_OF_MEMORY;
+    grid->options      = *options;
+    grid->memory.limit = options->memory_limit ? options->memory_limit : KRS_USUAL_MEMORY;
+    grid->arena.memory = &grid->memory;
+    grid->parts        = parallel_parts();
+    grid->near         = find_near(options);
+    grid->shape.cell   = options->cell;
+    grid->shape.band   = options->fog ? 0 : options->band * options->cell;
+    KrsStatus status   = choose_components(grid, scene);
+    if (status == KRS_OK)
+        status = prepare(grid, frame);
+    grid->shape.estimate   = grid->solid.estimate;
+    grid->shape.outside    = is_exact_outside(grid, frame);
+    grid->memory.exhausted = NULL;
+    if (status == KRS_OK)
+        *result = grid;
+    else
+        krs_grid_free(grid);
+    return status;
+}
+
+void krs_grid_free(KrsGrid *grid)
+{
+    if (!grid)
+        return;
+    for (size_t i = 0; i < MOST_PARTS; i++)
+        frame_free(grid->fields[i].frame);
+    krs_mesh_free(grid->mesh);
+    arena_free(&grid->arena);
+    free(grid->solid.roots);
+    free(grid);
+}
+
+KrsGridShape krs_grid_shape(const KrsGrid *grid) { return grid->shape; }
+
+/* ---- samples ---- */
+
+enum { ROWS_OF_PART = 4, MOST_ROWS = ROWS_OF_PART * MOST_PARTS };
+
+/* Some rows, by all threads: each takes the next. */
+typedef struct Rows {
+    KrsGrid *grid;
+    size_t   first, count;
+    bool     count_only;
+    Brick   *bricks[MOST_ROWS];
+    float   *equal; /* the samples of a brick that is not near */
+    float (*black)[3];
+    uint32_t     *nothing;
+    atomic_size_t next;
+    KrsStatus     statuses[MOST_PARTS];
+} Rows;
+
+static void fill_some(void *task, size_t part, size_t parts)
+{
+    Rows      *rows   = task;
+    KrsStatus *status = &rows->statuses[part];
+    size_t     number;
+    (void)parts;
+    while (part < rows->grid->parts && *status == KRS_OK &&
+           (number = atomic_fetch_add(&rows->next, 1)) < rows->count) {
+        size_t row = rows->first + number;
+        *status    = fill_row(rows->grid, &rows->grid->fields[part], row % rows->grid->bricks[1],
+                              row / rows->grid->bricks[1], rows->count_only, rows->bricks[number]);
+    }
+}
+
+static void make_room(Rows *rows, size_t count)
+{
+    KrsGrid *grid = rows->grid;
+    size_t   all  = grid->bricks[0];
+    rows->equal   = arena_new_array(&grid->arena, float, BRICK_SAMPLES);
+    rows->black   = arena_alloc(&grid->arena, BRICK_SAMPLES, sizeof *rows->black);
+    rows->nothing = arena_new_array(&grid->arena, uint32_t, BRICK_SAMPLES);
+    for (size_t r = 0; r < count; r++) {
+        Brick *bricks   = arena_new_array(&grid->arena, Brick, all);
+        rows->bricks[r] = bricks;
+        for (size_t i = 0; i < all && !rows->count_only; i++) {
+            bricks[i].values = arena_new_array(&grid->arena, float, BRICK_SAMPLES);
+            if (!grid->options.materials)
+                continue;
+            bricks[i].colors = arena_alloc(&grid->arena, BRICK_SAMPLES, sizeof *bricks[i].colors);
+            bricks[i].materials = arena_new_array(&grid->arena, uint32_t, BRICK_SAMPLES);
+        }
+    }
+}
+
+static bool give_row(const Rows *rows, size_t number, KrsVisitBrick *visit, void *user)
+{
+    const KrsGrid *grid = rows->grid;
+    const size_t   row  = rows->first + number;
+    for (size_t x = 0; x < grid->bricks[0]; x++) {
+        const Brick *from  = &rows->bricks[number][x];
+        KrsGridBrick brick = {
+            {x * BRICK, row % grid->bricks[1] * BRICK, row / grid->bricks[1] * BRICK},
+            from->near,
+            from->values,
+            (const float(*)[3])from->colors,
+            from->materials};
+        if (!from->near && !rows->count_only) {
+            for (size_t i = 0; i < BRICK_SAMPLES && rows->equal[i] != from->far; i++)
+                rows->equal[i] = from->far;
+            brick.values    = rows->equal;
+            brick.colors    = from->colors ? (const float(*)[3])rows->black : NULL;
+            brick.materials = from->materials ? rows->nothing : NULL;
+        }
+        if (!visit(user, &brick))
+            return false;
+    }
+    return true;
+}
+
+static KrsStatus visit_some(Rows *rows, KrsVisitBrick *visit, void *user)
+{
+    KrsStatus status = KRS_OK;
+    atomic_store(&rows->next, 0);
+    run_in_parallel(fill_some, rows);
+    for (size_t i = 0; i < rows->grid->parts && status == KRS_OK; i++)
+        status = rows->statuses[i];
+    for (size_t i = 0; i < rows->count && status == KRS_OK; i++)
+        if (!give_row(rows, i, visit, user))
+            status = KRS_IO_ERROR;
+    return status;
+}
+
+static KrsStatus visit_all(Rows *rows, KrsVisitBrick *visit, void *user)
+{
+    const KrsGridOptions *options = &rows->grid->options;
+    const size_t          all     = rows->grid->bricks[1] * rows->grid->bricks[2];
+    const size_t          at_once = ROWS_OF_PART * rows->grid->parts;
+    KrsStatus             status  = KRS_OK;
+    make_room(rows, all < at_once ? all : at_once);
+    for (; rows->first < all && status == KRS_OK; rows->first += rows->count) {
+        rows->count = all - rows->first < at_once ? all - rows->first : at_once;
+        if (options->go_on && !options->go_on(options->user, (double)rows->first / (double)all))
+            status = KRS_INTERRUPTED;
+        else
+            status = visit_some(rows, visit, user);
+    }
+    return status;
+}
+
+static KrsStatus visit_bricks(KrsGrid *grid, bool count_only, KrsVisitBrick *visit, void *user)
+{
+    jmp_buf            exhausted;
+    Rows               rows   = {.grid = grid, .count_only = count_only};
+    const ArenaMark    mark   = arena_mark(&grid->arena);
+    volatile KrsStatus status = KRS_OUT_OF_MEMORY;
+    if (grid->shape.count[0] == 0)
+        return KRS_OK;
+    grid->memory.exhausted = &exhausted;
+    if (setjmp(exhausted) == 0)
+        status = visit_all(&rows, visit, user);
+    grid->memory.exhausted = NULL;
+    arena_rewind(&grid->arena, mark);
+    return status;
+}
+
+KrsStatus krs_grid_visit(KrsGrid *grid, KrsVisitBrick *visit, void *user)
+{
+    return visit_bricks(grid, false, visit, user);
+}
+
+static bool add_near(void *user, const KrsGridBrick *brick)
+{
+    *(size_t *)user += brick->near;
+    return true;
+}
+
+KrsStatus krs_grid_count_near(KrsGrid *grid, size_t *count)
+{
+    *count = 0;
+    return visit_bricks(grid, true, add_near, count);
+}

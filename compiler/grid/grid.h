@@ -1,0 +1,58 @@
+/*
+ * grid.h: how a grid is made.
+ *
+ * Rows of bricks along x are dealt out to threads (grid.c).  A row is halved down to bricks, as far as its distance from
+ * the surface is not proven (row.c).  Exact distances are those to a mesh of proven error (samples.c).
+ */
+#ifndef KRS_GRID_GRID_H
+#define KRS_GRID_GRID_H
+
+#include "compiler/base/parallel.h"
+#include "compiler/mesh/bvh.h"
+#include "compiler/mesh/field.h"
+
+enum { BRICK = KRS_BRICK_SIDE, BRICK_SAMPLES = KRS_BRICK_SAMPLES };
+
+typedef struct Brick {
+    bool   near;
+    float  far; /* the value of all samples of one that is not near */
+    float *values;
+    float (*colors)[3];
+    uint32_t *materials;
+} Brick;
+
+struct KrsGrid {
+    Memory         memory;
+    Arena          arena;
+    KrsGridOptions options;
+    KrsGridShape   shape;
+    MeshSolid      solid;
+    double         low[3], high[3]; /* around what is solid */
+    size_t         bricks[3];
+    uint32_t       chosen; /* number from 1 of the only component among the lowered; 0: all */
+    double near; /* samples that are farther from the surface have one value; infinite: none has */
+    size_t parts;
+    MeshField fields[MOST_PARTS];
+    KrsMesh
+        *mesh; /* for exact distances; NULL: not asked for, or nothing is as thick as its error */
+    Bvh  bvh;
+};
+
+/* Where a sample is. */
+static inline double grid_place(const KrsGrid *grid, int axis, size_t index)
+{
+    return (double)(grid->shape.first[axis] + (int64_t)index) * grid->shape.cell;
+}
+
+/* samples.c: the samples of a brick that begins at `at`; the field is in the box of them. */
+void      fill_brick(const KrsGrid *grid, MeshField *field, const size_t at[3], uint32_t *triangle,
+                     Brick *brick);
+KrsStatus add_materials(const KrsGrid *grid, MeshField *field, const size_t at[3], Brick *brick);
+/* The value of samples that are so far from the surface, told by one of them. */
+float far_value(const KrsGrid *grid, double distance);
+
+/* row.c: the bricks of row `y`, `z`, which have room for their samples.  With `count` it only finds which are near. */
+KrsStatus fill_row(const KrsGrid *grid, MeshField *field, size_t y, size_t z, bool count,
+                   Brick *row);
+
+#endif
