@@ -13,6 +13,8 @@
 static const double USUAL_CELLS = 128, USUAL_BAND = 3;
 /* Samples of a file that has all, and bricks of those that are looked at for one that has those near the surface. */
 static const double MOST_SAMPLES = 2147483648.0, MOST_BRICKS = 1073741824.0;
+/* Along the longest side; the library takes twice as many. */
+static const double MOST_CELLS = 0.5 * KRS_MOST_CELLS;
 
 typedef struct Gridding {
     const Options  *options;
@@ -23,14 +25,15 @@ typedef struct Gridding {
     KrsGrid        *grid;
     bool            solid; /* some sample is in it */
     Progress        progress;
-    double          begun, goal; /* of this step of the work, of 1 */
+    double          done, begun, goal; /* of all work: done, and before and after this step of it */
 } Gridding;
 
 static bool go_on(void *user, double fraction)
 {
     Gridding *gridding = user;
-    progress_show(&gridding->progress,
-                  gridding->begun + fraction * (gridding->goal - gridding->begun));
+    double    done     = gridding->begun + fraction * (gridding->goal - gridding->begun);
+    gridding->done     = fmax(gridding->done, done);
+    progress_show(&gridding->progress, gridding->done);
     return !*interrupted();
 }
 
@@ -83,6 +86,13 @@ static KrsStatus check_options(const Gridding *gridding)
     return status;
 }
 
+/* Of the library. */
+static KrsStatus say_failure(const Gridding *gridding, KrsStatus status)
+{
+    return status == KRS_INTERRUPTED ? status
+                                     : say_status(status, gridding->options->files.items[0]);
+}
+
 /* A length of two digits, not below this one. */
 static double round_up(double length)
 {
@@ -122,11 +132,11 @@ static KrsStatus take_wishes(Gridding *gridding)
     gridding->how.cell = options->grid_cell > 0 ? options->grid_cell
                          : longest > 0          ? longest / USUAL_CELLS
                                                 : 1;
-    if (longest / gridding->how.cell > KRS_MOST_CELLS) {
+    if (longest / gridding->how.cell > MOST_CELLS) {
         char what[64];
         snprintf(what, sizeof what, "%.3g cells along an axis", longest / gridding->how.cell);
-        return refuse_cell(gridding, options->files.items[0], what, KRS_MOST_CELLS,
-                           longest / KRS_MOST_CELLS);
+        return refuse_cell(gridding, options->files.items[0], what, MOST_CELLS,
+                           longest / MOST_CELLS);
     }
     return KRS_OK;
 }
@@ -152,6 +162,11 @@ static KrsStatus check_size(const Gridding *gridding, const char *path, const Gr
         return refuse_cell(gridding, path, what, format->most_side,
                            shape->cell * 1.01 * longest / format->most_side);
     }
+    if (shape->cell < format->least_cell)
+        return say_usage(gridding->options,
+                         "`%s` would have cells of %.3g, and OpenVDB has none below %.3g; other "
+                         "files have, or a larger scene",
+                         path, shape->cell, format->least_cell);
     return KRS_OK;
 }
 
@@ -165,8 +180,10 @@ static KrsStatus check_memory(Gridding *gridding, const char *path)
     double     bytes  = (double)sheet->near *
                    (KRS_BRICK_SAMPLES * (double)grid_sample_bytes(sheet) + 256);
     char what[64];
-    if (status != KRS_OK || bytes <= most)
-        return status;
+    if (status != KRS_OK)
+        return say_failure(gridding, status);
+    if (bytes <= most)
+        return KRS_OK;
     snprintf(what, sizeof what, "%.4g MB of samples in memory", bytes * 1e-6);
     return say_usage(gridding->options,
                      "`%s` would have %s, and can have %.4g MB (--limit memory); --cell %.4g has "
@@ -233,7 +250,7 @@ static KrsStatus open_grid(Gridding *gridding, const char *path, const GridForma
         return say_usage(options, "%s is too small for the size of `%s`",
                          how.error > 0 ? "--error" : "--cell", options->files.items[0]);
     if (status != KRS_OK)
-        return status == KRS_INTERRUPTED ? status : say_status(status, options->files.items[0]);
+        return say_failure(gridding, status);
     int unit = options->mesh_units < 0 ? find_choice("mm", unit_choices) : options->mesh_units;
     gridding->sheet = (GridSheet){.shape    = krs_grid_shape(gridding->grid),
                                   .fog      = options->grid_fog,
@@ -287,6 +304,8 @@ static void report(const Gridding *gridding)
             shape->unresolved, at[0], at[1], at[2]);
     if (gridding->sheet.fog)
         snprintf(what, sizeof what, "densities");
+    else if (shape->estimate)
+        snprintf(what, sizeof what, "distances are estimates");
     else if (gridding->options->grid_exact)
         snprintf(what, sizeof what, "distances at most %.4g below the true ones", shape->error);
     else

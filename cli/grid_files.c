@@ -382,15 +382,18 @@ static bool begin_vti(GridFile *file)
 
 /* ---- all formats ---- */
 
+/* Rows of files that have all samples are made in memory.  OpenVDB wants volumes of cells above 3e-15. */
+#define MOST_ROW   262144.0
 #define MOST_INDEX 1073741824.0
+#define LEAST_VDB  1.5e-5
 
 static const GridFormat formats[] = {
-    {".npy", false, true, MOST_INDEX, begin_npy, add_to_row, end_rows},
-    {".vdb", true, true, MOST_INDEX, grid_begin_vdb, grid_add_vdb, grid_end_vdb},
-    {".nii", false, true, INT16_MAX, begin_nii, add_to_row, end_rows},
-    {".ktx2", false, false, MOST_INDEX, begin_ktx2, add_to_row, end_rows},
-    {".vti", false, true, MOST_INDEX, begin_vti, add_to_row, end_rows},
-    {".vtu", true, true, MOST_INDEX, grid_begin_vtu, grid_add_vtu, grid_end_vtu}};
+    {".npy", false, true, MOST_ROW, 0, begin_npy, add_to_row, end_rows},
+    {".vdb", true, true, MOST_INDEX, LEAST_VDB, grid_begin_vdb, grid_add_vdb, grid_end_vdb},
+    {".nii", false, true, INT16_MAX, 0, begin_nii, add_to_row, end_rows},
+    {".ktx2", false, false, MOST_ROW, 0, begin_ktx2, add_to_row, end_rows},
+    {".vti", false, true, MOST_ROW, 0, begin_vti, add_to_row, end_rows},
+    {".vtu", true, true, MOST_INDEX, 0, grid_begin_vtu, grid_add_vtu, grid_end_vtu}};
 
 const GridFormat *grid_format(const char *path)
 {

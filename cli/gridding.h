@@ -30,6 +30,7 @@ typedef struct GridFormat {
     bool        sparse;       /* it has bricks that are near, and a band */
     bool        has_material; /* numbers of materials */
     double      most_side;    /* samples along an axis */
+    double      least_cell;   /* a length */
     bool (*begin)(GridFile *file);
     bool (*add)(GridFile *file, const KrsGridBrick *brick);
     bool (*end)(GridFile *file);

@@ -27,8 +27,8 @@ typedef struct KrsGridOptions {
        (krs_mesh).  The error is a length, and without it a tenth of a cell. */
     bool   exact;
     double error;
-    bool
-           aligned; /* the first sample along each axis is a whole multiple of KRS_BRICK_SIDE, as OpenVDB has it */
+    /* The first sample along each axis is a whole multiple of KRS_BRICK_SIDE, as OpenVDB has it. */
+    bool   aligned;
     bool   materials; /* also colours, and numbers of materials */
     size_t component; /* from 1; 0: all */
     bool   within;    /* only what is in the box from `low` to `high`, for scenes without an end */
@@ -76,9 +76,8 @@ typedef struct KrsGrid KrsGrid;
  * Prepares a grid of what a frame shows, which must stay as it is until the grid is freed.  The grid reaches beyond
  * what is solid by the band, or without one by 3 cells; with `fog` by one.  With `exact` this takes most of the time.
  * KRS_BAD_ARGUMENT: there is no such component; what is sampled has no end, or is no solid (surfaces without
- * thickness); the grid is longer than KRS_MOST_CELLS along
- * an axis, or that far from the origin; or the error is below what krs_mesh
- * takes.
+ * thickness); the grid is longer than KRS_MOST_CELLS along an axis, or that far from the origin; or the error is below
+ * what krs_mesh takes.
  */
 KrsStatus    krs_grid_new(KrsFrame *frame, const KrsGridOptions *options, KrsGrid **grid);
 void         krs_grid_free(KrsGrid *grid);
@@ -89,7 +88,7 @@ typedef bool KrsVisitBrick(void *user, const KrsGridBrick *brick);
 
 /*
  * Computes the samples, by all processors at once, and calls `visit` for each brick in the caller's thread: along x,
- * then y, then z.  Memory is that of some rows of bricks along x.  What is proven to be farther from the surface than
+ * then y, then z.  Memory is that of some runs of bricks along x.  What is proven to be farther from the surface than
  * the band is not evaluated.
  */
 KrsStatus krs_grid_visit(KrsGrid *grid, KrsVisitBrick *visit, void *user);

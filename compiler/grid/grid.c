@@ -228,46 +228,66 @@ KrsGridShape krs_grid_shape(const KrsGrid *grid) { return grid->shape; }
 
 /* ---- samples ---- */
 
-enum { ROWS_OF_PART = 4, MOST_ROWS = ROWS_OF_PART * MOST_PARTS };
+/* Runs that are made at once: some for each part, of at least so many bricks. */
+enum { LONGEST_RUN = 64, RUNS_OF_PART = 4, ENOUGH_BRICKS = 1024, MOST_RUNS = 256 };
 
-/* Some rows, by all threads: each takes the next. */
-typedef struct Rows {
+/* Some runs, by all threads: each takes the next. */
+typedef struct Runs {
     KrsGrid *grid;
     size_t   first, count;
     bool     count_only;
-    Brick   *bricks[MOST_ROWS];
+    Brick   *bricks[MOST_RUNS];
     float   *equal; /* the samples of a brick that is not near */
     float (*black)[3];
     uint32_t     *nothing;
     atomic_size_t next;
     KrsStatus     statuses[MOST_PARTS];
-} Rows;
+} Runs;
+
+static size_t runs_of_row(const KrsGrid *grid)
+{
+    return (grid->bricks[0] + LONGEST_RUN - 1) / LONGEST_RUN;
+}
+
+static size_t longest_run(const KrsGrid *grid)
+{
+    return grid->bricks[0] < LONGEST_RUN ? grid->bricks[0] : LONGEST_RUN;
+}
+
+/* Along x, then y, then z. */
+static BrickRun run_of(const KrsGrid *grid, size_t number)
+{
+    const size_t each = runs_of_row(grid), x = number % each * LONGEST_RUN, row = number / each;
+    const size_t left = grid->bricks[0] - x;
+    return (BrickRun){{x, row % grid->bricks[1], row / grid->bricks[1]},
+                      left < LONGEST_RUN ? left : LONGEST_RUN};
+}
 
 static void fill_some(void *task, size_t part, size_t parts)
 {
-    Rows      *rows   = task;
-    KrsStatus *status = &rows->statuses[part];
+    Runs      *runs   = task;
+    KrsStatus *status = &runs->statuses[part];
     size_t     number;
     (void)parts;
-    while (part < rows->grid->parts && *status == KRS_OK &&
-           (number = atomic_fetch_add(&rows->next, 1)) < rows->count) {
-        size_t row = rows->first + number;
-        *status    = fill_row(rows->grid, &rows->grid->fields[part], row % rows->grid->bricks[1],
-                              row / rows->grid->bricks[1], rows->count_only, rows->bricks[number]);
+    while (part < runs->grid->parts && *status == KRS_OK &&
+           (number = atomic_fetch_add(&runs->next, 1)) < runs->count) {
+        BrickRun run = run_of(runs->grid, runs->first + number);
+        *status      = fill_run(runs->grid, &runs->grid->fields[part], &run, runs->count_only,
+                                runs->bricks[number]);
     }
 }
 
-static void make_room(Rows *rows, size_t count)
+static void make_room(Runs *runs, size_t count)
 {
-    KrsGrid *grid = rows->grid;
-    size_t   all  = grid->bricks[0];
-    rows->equal   = arena_new_array(&grid->arena, float, BRICK_SAMPLES);
-    rows->black   = arena_alloc(&grid->arena, BRICK_SAMPLES, sizeof *rows->black);
-    rows->nothing = arena_new_array(&grid->arena, uint32_t, BRICK_SAMPLES);
+    KrsGrid *grid = runs->grid;
+    size_t   each = longest_run(grid);
+    runs->equal   = arena_new_array(&grid->arena, float, BRICK_SAMPLES);
+    runs->black   = arena_alloc(&grid->arena, BRICK_SAMPLES, sizeof *runs->black);
+    runs->nothing = arena_new_array(&grid->arena, uint32_t, BRICK_SAMPLES);
     for (size_t r = 0; r < count; r++) {
-        Brick *bricks   = arena_new_array(&grid->arena, Brick, all);
-        rows->bricks[r] = bricks;
-        for (size_t i = 0; i < all && !rows->count_only; i++) {
+        Brick *bricks   = arena_new_array(&grid->arena, Brick, each);
+        runs->bricks[r] = bricks;
+        for (size_t i = 0; i < each && !runs->count_only; i++) {
             bricks[i].values = arena_new_array(&grid->arena, float, BRICK_SAMPLES);
             if (!grid->options.materials)
                 continue;
@@ -277,57 +297,69 @@ static void make_room(Rows *rows, size_t count)
     }
 }
 
-static bool give_row(const Rows *rows, size_t number, KrsVisitBrick *visit, void *user)
+/* One value for all samples, and no colour. */
+static void tell_far(const Runs *runs, const Brick *from, KrsGridBrick *brick)
 {
-    const KrsGrid *grid = rows->grid;
-    const size_t   row  = rows->first + number;
-    for (size_t x = 0; x < grid->bricks[0]; x++) {
-        const Brick *from  = &rows->bricks[number][x];
+    for (size_t i = 0; i < BRICK_SAMPLES && runs->equal[i] != from->far; i++)
+        runs->equal[i] = from->far;
+    brick->values    = runs->equal;
+    brick->colors    = from->colors ? (const float(*)[3])runs->black : NULL;
+    brick->materials = from->materials ? runs->nothing : NULL;
+}
+
+static bool give_run(const Runs *runs, size_t number, KrsVisitBrick *visit, void *user)
+{
+    const BrickRun run = run_of(runs->grid, runs->first + number);
+    for (size_t i = 0; i < run.count; i++) {
+        const Brick *from  = &runs->bricks[number][i];
         KrsGridBrick brick = {
-            {x * BRICK, row % grid->bricks[1] * BRICK, row / grid->bricks[1] * BRICK},
+            {(run.first[0] + i) * BRICK, run.first[1] * BRICK, run.first[2] * BRICK},
             from->near,
             from->values,
             (const float(*)[3])from->colors,
             from->materials};
-        if (!from->near && !rows->count_only) {
-            for (size_t i = 0; i < BRICK_SAMPLES && rows->equal[i] != from->far; i++)
-                rows->equal[i] = from->far;
-            brick.values    = rows->equal;
-            brick.colors    = from->colors ? (const float(*)[3])rows->black : NULL;
-            brick.materials = from->materials ? rows->nothing : NULL;
-        }
+        if (!from->near && !runs->count_only)
+            tell_far(runs, from, &brick);
         if (!visit(user, &brick))
             return false;
     }
     return true;
 }
 
-static KrsStatus visit_some(Rows *rows, KrsVisitBrick *visit, void *user)
+static KrsStatus visit_some(Runs *runs, KrsVisitBrick *visit, void *user)
 {
     KrsStatus status = KRS_OK;
-    atomic_store(&rows->next, 0);
-    run_in_parallel(fill_some, rows);
-    for (size_t i = 0; i < rows->grid->parts && status == KRS_OK; i++)
-        status = rows->statuses[i];
-    for (size_t i = 0; i < rows->count && status == KRS_OK; i++)
-        if (!give_row(rows, i, visit, user))
+    atomic_store(&runs->next, 0);
+    run_in_parallel(fill_some, runs);
+    for (size_t i = 0; i < runs->grid->parts && status == KRS_OK; i++)
+        status = runs->statuses[i];
+    for (size_t i = 0; i < runs->count && status == KRS_OK; i++)
+        if (!give_run(runs, i, visit, user))
             status = KRS_IO_ERROR;
     return status;
 }
 
-static KrsStatus visit_all(Rows *rows, KrsVisitBrick *visit, void *user)
+static size_t runs_at_once(const KrsGrid *grid)
 {
-    const KrsGridOptions *options = &rows->grid->options;
-    const size_t          all     = rows->grid->bricks[1] * rows->grid->bricks[2];
-    const size_t          at_once = ROWS_OF_PART * rows->grid->parts;
-    KrsStatus             status  = KRS_OK;
-    make_room(rows, all < at_once ? all : at_once);
-    for (; rows->first < all && status == KRS_OK; rows->first += rows->count) {
-        rows->count = all - rows->first < at_once ? all - rows->first : at_once;
-        if (options->go_on && !options->go_on(options->user, (double)rows->first / (double)all))
+    size_t count = ENOUGH_BRICKS / longest_run(grid);
+    if (count < RUNS_OF_PART * grid->parts)
+        count = RUNS_OF_PART * grid->parts;
+    return count < MOST_RUNS ? count : MOST_RUNS;
+}
+
+static KrsStatus visit_all(Runs *runs, KrsVisitBrick *visit, void *user)
+{
+    const KrsGridOptions *options = &runs->grid->options;
+    const size_t all     = runs_of_row(runs->grid) * runs->grid->bricks[1] * runs->grid->bricks[2];
+    const size_t at_once = runs_at_once(runs->grid);
+    KrsStatus    status  = KRS_OK;
+    make_room(runs, all < at_once ? all : at_once);
+    for (; runs->first < all && status == KRS_OK; runs->first += runs->count) {
+        runs->count = all - runs->first < at_once ? all - runs->first : at_once;
+        if (options->go_on && !options->go_on(options->user, (double)runs->first / (double)all))
             status = KRS_INTERRUPTED;
         else
-            status = visit_some(rows, visit, user);
+            status = visit_some(runs, visit, user);
     }
     return status;
 }
@@ -335,14 +367,14 @@ static KrsStatus visit_all(Rows *rows, KrsVisitBrick *visit, void *user)
 static KrsStatus visit_bricks(KrsGrid *grid, bool count_only, KrsVisitBrick *visit, void *user)
 {
     jmp_buf            exhausted;
-    Rows               rows   = {.grid = grid, .count_only = count_only};
+    Runs               runs   = {.grid = grid, .count_only = count_only};
     const ArenaMark    mark   = arena_mark(&grid->arena);
     volatile KrsStatus status = KRS_OUT_OF_MEMORY;
     if (grid->shape.count[0] == 0)
         return KRS_OK;
     grid->memory.exhausted = &exhausted;
     if (setjmp(exhausted) == 0)
-        status = visit_all(&rows, visit, user);
+        status = visit_all(&runs, visit, user);
     grid->memory.exhausted = NULL;
     arena_rewind(&grid->arena, mark);
     return status;

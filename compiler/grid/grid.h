@@ -1,7 +1,7 @@
 /*
  * grid.h: how a grid is made.
  *
- * Rows of bricks along x are dealt out to threads (grid.c).  A row is halved down to bricks, as far as its distance from
+ * Runs of bricks along x are dealt out to threads (grid.c).  A run is halved down to bricks, as far as its distance from
  * the surface is not proven (row.c).  Exact distances are those to a mesh of proven error (samples.c).
  */
 #ifndef KRS_GRID_GRID_H
@@ -51,8 +51,13 @@ KrsStatus add_materials(const KrsGrid *grid, MeshField *field, const size_t at[3
 /* The value of samples that are so far from the surface, told by one of them. */
 float far_value(const KrsGrid *grid, double distance);
 
-/* row.c: the bricks of row `y`, `z`, which have room for their samples.  With `count` it only finds which are near. */
-KrsStatus fill_row(const KrsGrid *grid, MeshField *field, size_t y, size_t z, bool count,
-                   Brick *row);
+/* Bricks that follow each other along x: the numbers of the first, and how many. */
+typedef struct BrickRun {
+    size_t first[3], count;
+} BrickRun;
+
+/* row.c: fills bricks that have room for their samples.  With `count_only` it only finds which are near. */
+KrsStatus fill_run(const KrsGrid *grid, MeshField *field, const BrickRun *run, bool count_only,
+                   Brick *bricks);
 
 #endif

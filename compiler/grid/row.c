@@ -1,28 +1,29 @@
-/* row.c: a row of bricks. */
+/* row.c: bricks that follow each other along x. */
 #include "compiler/grid/grid.h"
 
 #include <string.h>
 
 #include "compiler/base/vec.h"
 
-/* A field is pruned for a row and a brick, and for every so many halvings between. */
+/* A field is pruned for a run and a brick, and for every so many halvings between. */
 enum { ENTER_EVERY = 3 };
 
 typedef struct Row {
-    const KrsGrid *grid;
-    MeshField     *field;
-    size_t         y, z;
-    bool           count;    /* what is in bricks is not asked for */
-    uint32_t       triangle; /* the nearest one of the last sample */
-    Brick         *bricks;
+    const KrsGrid  *grid;
+    MeshField      *field;
+    const BrickRun *run;
+    bool            count_only;
+    uint32_t        triangle; /* the nearest one of the last sample */
+    Brick          *bricks;
 } Row;
 
-/* Around the samples of some bricks. */
+/* Around the samples of some bricks of the run. */
 static Box box_of(const Row *row, size_t first, size_t count)
 {
-    const size_t from[3] = {first * BRICK, row->y * BRICK, row->z * BRICK};
-    const size_t to[3]   = {(first + count) * BRICK - 1, from[1] + BRICK - 1, from[2] + BRICK - 1};
-    Box          box;
+    const size_t *at      = row->run->first;
+    const size_t  from[3] = {(at[0] + first) * BRICK, at[1] * BRICK, at[2] * BRICK};
+    const size_t  to[3]   = {from[0] + count * BRICK - 1, from[1] + BRICK - 1, from[2] + BRICK - 1};
+    Box           box;
     for (int k = 0; k < 3; k++)
         box.axis[k] = (Range){grid_place(row->grid, k, from[k]), grid_place(row->grid, k, to[k])};
     return box;
@@ -66,10 +67,11 @@ static void fill_far(const Row *row, size_t first, size_t count, double distance
 
 static KrsStatus fill_near(Row *row, size_t number)
 {
-    const size_t at[3] = {number * BRICK, row->y * BRICK, row->z * BRICK};
-    Brick       *brick = &row->bricks[number];
-    brick->near        = true;
-    if (row->count)
+    const size_t *first = row->run->first;
+    const size_t  at[3] = {(first[0] + number) * BRICK, first[1] * BRICK, first[2] * BRICK};
+    Brick        *brick = &row->bricks[number];
+    brick->near         = true;
+    if (row->count_only)
         return KRS_OK;
     fill_brick(row->grid, row->field, at, &row->triangle, brick);
     return brick->colors ? add_materials(row->grid, row->field, at, brick) : KRS_OK;
@@ -96,9 +98,9 @@ static KrsStatus fill(Row *row, size_t first, size_t count, int depth)
     return status;
 }
 
-KrsStatus fill_row(const KrsGrid *grid, MeshField *field, size_t y, size_t z, bool count,
+KrsStatus fill_run(const KrsGrid *grid, MeshField *field, const BrickRun *run, bool count_only,
                    Brick *bricks)
 {
-    Row row = {grid, field, y, z, count, 0, bricks};
-    return fill(&row, 0, grid->bricks[0], 0);
+    Row row = {grid, field, run, count_only, 0, bricks};
+    return fill(&row, 0, run->count, 0);
 }

@@ -1,7 +1,7 @@
 #!/bin/sh
 # grid.sh: `krs grid`: files as their formats want them, what other programs read of them, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 42
+plan 46
 
 echo 'material red { color: [1, 0, 0] } show sphere(0.5).move([0.25, 0, 0]).paint(red);' >ball.krs
 echo 'let floor = half_space([0, 1, 0], 0); show floor; let ball = sphere(1); show ball;' >floor.krs
@@ -263,9 +263,33 @@ assert abs(total / 32 ** 3 / 0.5235988 - 1) < 0.001, total" 2>err
     else
         skip "vdb_print reads it" "no vdb_print"
     fi
+    if command -v blender >/dev/null; then
+        cat >blender.py <<'END'
+import bmesh, bpy
+bpy.ops.wm.read_factory_settings(use_empty=True)
+for path, name, threshold in ("b.vdb", "surface", 0), ("f.vdb", "density", 0.5):
+    bpy.ops.object.volume_import(filepath=path)
+    volume = bpy.context.object
+    volume.data.grids.load()
+    maker = bpy.data.objects.new("maker", bpy.data.meshes.new("maker"))
+    bpy.context.collection.objects.link(maker)
+    modifier = maker.modifiers.new("mesh", "VOLUME_TO_MESH")
+    modifier.object, modifier.grid_name = volume, name
+    modifier.threshold, modifier.resolution_mode = threshold, "GRID"
+    found = maker.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
+    mesh = bmesh.new()
+    mesh.from_mesh(found)
+    print(name, "ok" if abs(mesh.calc_volume() / 0.5235988 - 1) < 0.01 else mesh.calc_volume())
+END
+        blender -b --python blender.py >out 2>err
+        grep -q 'surface ok' out && grep -q 'density ok' out
+        result $? "Blender makes meshes of both, with the volume"
+    else
+        skip "Blender makes meshes of both, with the volume" "no blender"
+    fi
 else
     said 73 "libopenvdb-dev" "without OpenVDB it is said"
-    for i in 1 2 3; do skip "OpenVDB, $i" "built without"; done
+    for i in 1 2 3 4; do skip "OpenVDB, $i" "built without"; done
 fi
 mkdir alone && cp "$krs" alone/krs
 alone/krs grid ball.krs -o a.vdb >out 2>err
@@ -273,6 +297,27 @@ status=$?
 said 73 "built without OpenVDB" "a krs without its module says so"
 [ ! -e a.vdb ]
 result $? "and writes nothing"
+
+# ---- how much it takes ----
+# The most memory of a command, in kilobytes: memory_of KRS-ARGUMENTS...
+memory_of() {
+    python3 -c 'import resource, subprocess, sys
+subprocess.run(sys.argv[1:], check=True)
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)' "$krs" "$@" 2>err
+}
+if command -v python3 >/dev/null; then
+    echo 'param size = 2 in [2, 20]; show sphere(0.4).repeat(1) & box([8, size, size]);' >lattice.krs
+    low=$(memory_of grid --quiet lattice.krs --cell 0.1 -o l.npy)
+    high=$(memory_of grid --quiet lattice.krs --cell 0.1 --set size=20 -o h.npy)
+    [ "$(wc -c <h.npy)" -gt $(($(wc -c <l.npy) * 40)) ] && [ "$high" -lt $((low * 5 / 4)) ]
+    result $? "fifty times the samples take no more memory"
+    echo 'show sphere(1).move([-1000, 0, 0]); show sphere(1).move([1000, 0, 0]);' >apart.krs
+    high=$(memory_of grid --quiet apart.krs --cell 0.05 -o apart.vtu)
+    [ "$high" -lt $((low + 50000)) ]
+    result $? "nor does what is between two balls"
+else
+    for i in 1 2; do skip "memory, $i" "no python3"; done
+fi
 
 # ---- what is said ----
 run grid ball.krs --cell 0.1 -o s.npy
@@ -309,6 +354,10 @@ run grid ball.krs --cell 1e-9 -o a.vdb
 result $? "also of sparse files"
 run grid ball.krs --cell 0.00002 -o a.nii
 said 2 "can have" "NIfTI has 32767 samples along an axis"
+echo 'show sphere(1e-6);' >tiny.krs
+run grid tiny.krs -o a.vdb
+[ "$status" -eq 73 ] || said 2 "OpenVDB has none below 1.5e-05" "OpenVDB has no cells that are too small"
+[ "$status" -ne 73 ] || skip "OpenVDB has no cells that are too small" "built without"
 run grid ball.krs -o a.xyz
 said 2 ".vdb, .npy, .nii, .ktx2, .vti or .vtu" "formats are named"
 run grid ball.krs -o a.ktx2 --material
