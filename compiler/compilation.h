@@ -94,7 +94,8 @@ uint32_t least_crowd(const Compilation *c);
 
 /* precision.c: whether a camera may be so far from the origin, and so near to a surface, that
    points must be camera-relative. */
-bool may_need_rebase(const Scene *scene, Graph *graph, const Roots *roots, Arena *scratch);
+bool may_need_rebase(const Scene *scene, Graph *graph, const Roots *roots, bool pictures,
+                     Arena *scratch);
 
 /* limits.c: reports that the scene is too large.  `component` is the largest, with that number of
    operations; 0: there were too many to be counted. */

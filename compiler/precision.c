@@ -51,6 +51,10 @@ bool krs_may_blur_normals(double coordinate, double distance, double pixel, doub
            krs_normal_blur(coordinate + distance, pixel) > KRS_LEAST_BLUR;
 }
 
+/* Answers of a device are relative to a nearer base where coordinates are so many times as large as what is
+   seen, from its middle on (query.c of the runtime). */
+static const double MOST_REACH = 10;
+
 /* A moving eye may come near to any surface, so coordinates above this number need rebasing. */
 static const double FAR_OUT = 64;
 /* Pictures are assumed to have at most twice as many lines as the scene's image, or as usual. */
@@ -144,19 +148,27 @@ static bool camera_needs_rebase(const ViewPrecision *view, const SceneCamera *ca
            krs_may_blur_normals(farthest, nearest, pixel, lines);
 }
 
-/* Whether a camera that the compiler places needs rebasing.  Its distance is about the size of the
-   scene (framing.c). */
-static bool scene_needs_rebase(const Scene *s)
+/* The longest side of its box that has an end. */
+static double size_of(const Scene *s)
 {
     double size = 0;
     for (int i = 0; i < 3; i++)
         if (isfinite(s->box.axis[i].high - s->box.axis[i].low))
             size = fmax(size, s->box.axis[i].high - s->box.axis[i].low);
+    return size;
+}
+
+/* Whether a camera that the compiler places needs rebasing.  Its distance is about the size of the
+   scene (framing.c). */
+static bool scene_needs_rebase(const Scene *s)
+{
+    const double size  = size_of(s);
     const double reach = reach_of_boxes(s), lines = lines_of(s), pixel = 0.5 * size / lines;
     return krs_needs_rebase(reach, pixel) || krs_may_blur_normals(reach, 0.5 * size, pixel, lines);
 }
 
-bool may_need_rebase(const Scene *scene, Graph *graph, const Roots *roots, Arena *scratch)
+bool may_need_rebase(const Scene *scene, Graph *graph, const Roots *roots, bool pictures,
+                     Arena *scratch)
 {
     ViewPrecision view  = {.scene = scene, .graph = graph, .roots = roots, .scratch = scratch};
     bool          needs = false, moves = scene->cameras.count == 0;
@@ -171,6 +183,8 @@ bool may_need_rebase(const Scene *scene, Graph *graph, const Roots *roots, Arena
             needs = camera_needs_rebase(&view, camera) ||
                     (moves && reach_of_eye(&view, camera->eye) > FAR_OUT);
     }
+    if (!pictures && size_of(scene) > 0) /* a device may be asked about what no camera sees */
+        needs = needs || reach_of_boxes(scene) > MOST_REACH * 0.5 * size_of(scene);
     arena_free(scratch);
     return needs;
 }

@@ -249,7 +249,8 @@ KrsStatus pass_lower(Compilation *c)
     if (!lower_components(c, s->graph, crowds))
         return KRS_BAD_SCENE;
     more->sheets          = any_thin_sheets(s);
-    more->camera_relative = !more->sheets && may_need_rebase(s, s->graph, roots, &c->scratch);
+    more->camera_relative = !more->sheets &&
+                            may_need_rebase(s, s->graph, roots, c->options->pictures, &c->scratch);
     gather_view(s, roots);
     lower_marches(c, s->graph, crowds);
     find_media(c, s->graph);

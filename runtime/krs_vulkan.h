@@ -431,8 +431,10 @@ KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*poi
  * In simple scenes distances are accurate to a few units in the last place of the coordinates,
  * and so is t beyond the tolerance.  For sequences of dozens of mirrors it is some hundred
  * units.  Rays from far outside of a bounded scene lose no accuracy, since they begin at its
- * box.  Normals are differences over a thousandth of the coordinates.  At points far from many
- * alike parts, distances and normals are those of krs_sample.  A tolerance of 0 asks for
+ * box.  What is far from the origin for its size is asked about relative to a point near it, so that
+ * normals are those of the same thing at the origin: differences over a thousandth of what a batch
+ * of 16384 sees, or of its coordinates where those are no more than ten times as large.  At points far from
+ * many alike parts, distances and normals are those of krs_sample.  A tolerance of 0 asks for
  * the accuracy of single precision.  A ray is unresolved after 8192 steps.
  *
  * KRS_BAD_ARGUMENT (nothing is answered), KRS_OUT_OF_MEMORY, KRS_INTERNAL; what is written to

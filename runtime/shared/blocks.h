@@ -139,7 +139,8 @@ struct NextDispatch {
 
 /* push_constant of point_query.comp. */
 struct PointWork {
-    uint count, taps; /* points; distances for each: 1, or 7 with normals */
+    uint  count, taps; /* points; distances for each: 1, or 7 with normals */
+    float least_step;  /* to a tap for a normal */
 };
 
 #ifdef __STDC_VERSION__
@@ -156,7 +157,7 @@ static_assert(sizeof(WorkBlock) == 40, "std430");
 typedef struct NextDispatch NextDispatchBlock;
 static_assert(sizeof(NextDispatchBlock) == 28, "std430");
 typedef struct PointWork PointWorkBlock;
-static_assert(sizeof(PointWorkBlock) == 8, "std430");
+static_assert(sizeof(PointWorkBlock) == 12, "std430");
 #endif
 
 /* ---- The control block ---- */

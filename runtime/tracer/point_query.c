@@ -3,6 +3,7 @@
  */
 #include "runtime/tracer/query.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "runtime/shared/answers.h"
@@ -44,12 +45,22 @@ static void take_answer(const AnswerBlock *answer, float *distance, KrsSurfacePo
 #include "compiler/shape/surface.def"
 }
 
-bool point_query_run(KrsRendering *rendering, uint32_t count, bool normals)
+double point_query_size(const KrsRendering *rendering)
 {
-    const PointWorkBlock work   = {.count = count, .taps = normals ? 7 : 1};
-    Gpu                 *gpu    = &rendering->renderer->gpu;
-    Kernel              *kernel = rendering_point_query(rendering);
-    double               ms     = 0;
+    const KrsProgram *program = rendering->program;
+    double            size    = 0;
+    for (int k = 0; k < 3; k++)
+        size = fmax(size, program->rest_high[k] - program->rest_low[k]);
+    return size > 0 && isfinite(size) ? size : 1;
+}
+
+bool point_query_run(KrsRendering *rendering, uint32_t count, double step)
+{
+    const PointWorkBlock work = {
+        .count = count, .taps = step > 0 ? 7 : 1, .least_step = (float)step};
+    Gpu    *gpu    = &rendering->renderer->gpu;
+    Kernel *kernel = rendering_point_query(rendering);
+    double  ms     = 0;
     if (!kernel || !gpu_begin(gpu))
         return false;
     rendering_dispatch(rendering, kernel, rendering->points_set, &work, sizeof work,
@@ -75,7 +86,7 @@ KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*poi
             to[i] = (PointBlock){0};
             memcpy(to[i].point, points[first + i], sizeof points[0]);
         }
-        if (!point_query_run(rendering, batch, surfaces != NULL))
+        if (!point_query_run(rendering, batch, surfaces ? POINT_QUERY_STEP : 0))
             return rendering->renderer->gpu.status;
         const AnswerBlock *answers = rendering->answers.bytes;
         for (uint32_t i = 0; i < batch; i++)

@@ -18,6 +18,7 @@
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
+#include "runtime/tracer/slots.h"
 
 enum { MOST_STEPS = 8192, MOST_LANE_STEPS = 16384 };
 
@@ -56,25 +57,77 @@ static void describe(const AnswerBlock *answer, KrsHit *hit)
 #include "compiler/shape/surface.def"
 }
 
+/* ---- bases ---- */
+
+/* Points may be so many times as far from the base as from the middle between them: normals are differences
+   over a thousandth of the coordinates, which may be a hundredth of what is seen then. */
+static const double MOST_REACH = 10;
+/* How large the surroundings of a single point are, in parts of the scene. */
+static const double PART_OF_SCENE = 0.1;
+
+/* Who asks, and the base that points on the device are relative to. */
+typedef struct Asker {
+    KrsRendering *rendering;
+    KrsFrame     *frame;
+    double        base[3];
+    double        step; /* the least one to a tap for a normal */
+} Asker;
+
+static bool move_base(Asker *asker, const double base[3])
+{
+    memcpy(asker->base, base, sizeof asker->base);
+    return rendering_set_parameters(asker->rendering, asker->frame, base) &&
+           rendering_rebase(asker->rendering, asker->frame, base);
+}
+
+/* Finds the base that answers want, if the present one is too far away, and the least step to a tap: a
+   ten thousandth of the scene, or less where less of it is seen. */
+static bool wants_base(Asker *asker, const KrsHit *hits, uint32_t count, double base[3])
+{
+    const double size = point_query_size(asker->rendering), least = 1e-5 * fmin(1, size);
+    double       low[3], high[3], reach = 0, half = 0;
+    uint32_t     found = 0;
+    for (uint32_t i = 0; i < count; i++)
+        for (int k = 0; k < 3 && hits[i].hit; k++) {
+            const double at = hits[i].point[k];
+            low[k]          = found ? fmin(low[k], at) : at;
+            high[k]         = found ? fmax(high[k], at) : at;
+            reach           = fmax(reach, fabs(at - asker->base[k]));
+            found += k == 2;
+        }
+    for (int k = 0; k < 3 && found > 0; k++) {
+        base[k] = 0.5 * (low[k] + high[k]);
+        half    = fmax(half, 0.5 * (high[k] - low[k]));
+    }
+    if (found <= 1)
+        half = PART_OF_SCENE * size;
+    asker->step = fmax(least, fmin(10 * least, 1e-3 * half));
+    return rendering_rebases(asker->rendering) && reach > MOST_REACH * half;
+}
+
 /* ---- points ---- */
 
-static bool probe_batch(KrsRendering *rendering, const double (*points)[3], uint32_t count,
-                        KrsHit *hits)
+static bool probe_batch(Asker *asker, const double (*points)[3], uint32_t count, KrsHit *hits)
 {
-    PointBlock *to = rendering->points.bytes;
-    for (uint32_t i = 0; i < count; i++) {
-        to[i] = (PointBlock){0};
-        for (int k = 0; k < 3; k++)
-            to[i].point[k] = (float)points[i][k];
-    }
-    if (!point_query_run(rendering, count, true))
-        return false;
-    const AnswerBlock *answers = rendering->answers.bytes;
+    KrsRendering *rendering = asker->rendering;
+    PointBlock   *to        = rendering->points.bytes;
+    double        base[3];
     for (uint32_t i = 0; i < count; i++) {
         hits[i] = (KrsHit){.hit = true};
         memcpy(hits[i].point, points[i], sizeof hits[i].point);
-        describe(&answers[i], &hits[i]);
     }
+    if (wants_base(asker, hits, count, base) && !move_base(asker, base))
+        return false;
+    for (uint32_t i = 0; i < count; i++) {
+        to[i] = (PointBlock){0};
+        for (int k = 0; k < 3; k++)
+            to[i].point[k] = (float)(points[i][k] - asker->base[k]);
+    }
+    if (!point_query_run(rendering, count, asker->step))
+        return false;
+    const AnswerBlock *answers = rendering->answers.bytes;
+    for (uint32_t i = 0; i < count; i++)
+        describe(&answers[i], &hits[i]);
     return true;
 }
 
@@ -86,13 +139,14 @@ static uint32_t batch_of(size_t left)
 KrsStatus krs_device_probe(KrsRendering *rendering, KrsFrame *frame, const double (*points)[3],
                            size_t count, KrsHit *hits)
 {
+    Asker asker = {rendering, frame, {0}, POINT_QUERY_STEP};
     renderer_clear(rendering->renderer);
     if (!is_in_reach(points, count))
         return refuse(rendering, "a coordinate is not a number below 1e18");
     if (!point_query_prepare(rendering) || !rendering_set_parameters(rendering, frame, NULL))
         return rendering->renderer->gpu.status;
     for (size_t first = 0; first < count; first += POINTS_AT_ONCE)
-        if (!probe_batch(rendering, points + first, batch_of(count - first), hits + first))
+        if (!probe_batch(&asker, points + first, batch_of(count - first), hits + first))
             return rendering->renderer->gpu.status;
     return KRS_OK;
 }
@@ -131,14 +185,14 @@ static void set_frame(KrsRendering *rendering, double tolerance)
 }
 
 /* A ray of the device begins where the box around the scene does. */
-static QueryRayBlock query_ray_block(const KrsRay *ray)
+static QueryRayBlock query_ray_block(const KrsRay *ray, const double base[3])
 {
     QueryRayBlock query_ray = {.end  = (float)fmin(ray->end - ray->start, KRS_MOST_COORDINATE),
                                .kind = ray->start > 0 ? BEGINS_OUTSIDE
                                        : ray->walls   ? ENDS_AT_WALLS
                                                       : ENDS_ANYWHERE};
     for (int k = 0; k < 3; k++) {
-        query_ray.origin[k]    = (float)(ray->origin[k] + ray->start * ray->direction[k]);
+        query_ray.origin[k]    = (float)(ray->origin[k] + ray->start * ray->direction[k] - base[k]);
         query_ray.direction[k] = (float)ray->direction[k];
     }
     if (!(ray->start <= ray->end))
@@ -213,15 +267,20 @@ static bool took_wrong_side(KrsFrame *frame, const RayHitBlock *ray_hit, const d
            krs_distance(frame, origin, 1, &distance) == KRS_OK && (distance < 0) != inside;
 }
 
-static bool raycast_batch(KrsRendering *rendering, KrsFrame      *frame, const double (*origins)[3],
-                          const double (*directions)[3], uint32_t count, double farthest,
-                          double tolerance, KrsHit *hits)
+/* Rays that are asked about. */
+typedef struct Question {
+    const double (*origins)[3], (*directions)[3];
+    double farthest, tolerance;
+} Question;
+
+static bool answer_rays(Asker *asker, const Question *ask, uint32_t count, KrsHit *hits)
 {
+    KrsRendering   *rendering  = asker->rendering;
     const KrsScene *scene      = rendering->scene;
     QueryRayBlock  *query_rays = rendering->query_rays.bytes;
     for (uint32_t i = 0; i < count; i++) {
-        KrsRay ray    = krs_ray(scene, origins[i], directions[i], farthest);
-        query_rays[i] = query_ray_block(&ray);
+        KrsRay ray    = krs_ray(scene, ask->origins[i], ask->directions[i], ask->farthest);
+        query_rays[i] = query_ray_block(&ray, asker->base);
     }
     if (!march_rays(rendering, count))
         return false;
@@ -233,21 +292,49 @@ static bool raycast_batch(KrsRendering *rendering, KrsFrame      *frame, const d
                    "cannot read where rays end: the device answers with numbers that cannot be");
         return false;
     }
-    if (ends > 0 && !point_query_run(rendering, ends, true))
+    if (ends > 0 && !point_query_run(rendering, ends, asker->step))
         return false;
     for (uint32_t i = 0; i < count; i++) {
-        KrsRay ray = krs_ray(scene, origins[i], directions[i], farthest);
+        KrsRay ray = krs_ray(scene, ask->origins[i], ask->directions[i], ask->farthest);
         take_ray_hit(&ray, &ray_hits[i], rendering->answers.bytes, &hits[i]);
-        if (took_wrong_side(frame, &ray_hits[i], origins + i))
-            krs_raycast(frame, origins + i, directions + i, 1, farthest, tolerance, hits + i);
+        if (took_wrong_side(asker->frame, &ray_hits[i], ask->origins + i))
+            krs_raycast(asker->frame, ask->origins + i, ask->directions + i, 1, ask->farthest,
+                        ask->tolerance, hits + i);
     }
     return true;
+}
+
+/* Some rays of a batch tell what is hit, also where single precision would miss it. */
+static bool look(Asker *asker, const Question *ask, uint32_t count)
+{
+    enum { MOST_LOOKS = 16 };
+    KrsHit         hits[MOST_LOOKS];
+    const uint32_t looks = count < MOST_LOOKS ? count : MOST_LOOKS;
+    double         base[3];
+    for (uint32_t i = 0; i < looks; i++) {
+        const size_t ray = (size_t)i * count / looks;
+        if (krs_raycast(asker->frame, ask->origins + ray, ask->directions + ray, 1, ask->farthest,
+                        ask->tolerance, hits + i) != KRS_OK)
+            hits[i].hit = false;
+    }
+    return !wants_base(asker, hits, looks, base) || move_base(asker, base);
+}
+
+/* All that is hit is known when the rays have been marched. */
+static bool raycast_batch(Asker *asker, const Question *ask, uint32_t count, KrsHit *hits)
+{
+    double base[3];
+    return (!rendering_rebases(asker->rendering) || look(asker, ask, count)) &&
+           answer_rays(asker, ask, count, hits) &&
+           (!wants_base(asker, hits, count, base) ||
+            (move_base(asker, base) && answer_rays(asker, ask, count, hits)));
 }
 
 KrsStatus krs_device_raycast(KrsRendering *rendering, KrsFrame *frame, const double (*origins)[3],
                              const double (*directions)[3], size_t count, double farthest,
                              double tolerance, KrsHit *hits)
 {
+    Asker asker = {rendering, frame, {0}, POINT_QUERY_STEP};
     renderer_clear(rendering->renderer);
     if (!krs_rays_are_valid(origins, directions, count, farthest, tolerance) ||
         !is_in_reach(origins, count) || tolerance > KRS_MOST_COORDINATE)
@@ -256,9 +343,10 @@ KrsStatus krs_device_raycast(KrsRendering *rendering, KrsFrame *frame, const dou
     if (!prepare(rendering) || !rendering_set_parameters(rendering, frame, NULL))
         return rendering->renderer->gpu.status;
     set_frame(rendering, tolerance);
-    for (size_t first = 0; first < count; first += POINTS_AT_ONCE)
-        if (!raycast_batch(rendering, frame, origins + first, directions + first,
-                           batch_of(count - first), farthest, tolerance, hits + first))
+    for (size_t first = 0; first < count; first += POINTS_AT_ONCE) {
+        const Question ask = {origins + first, directions + first, farthest, tolerance};
+        if (!raycast_batch(&asker, &ask, batch_of(count - first), hits + first))
             return rendering->renderer->gpu.status;
+    }
     return KRS_OK;
 }

@@ -110,6 +110,7 @@ static const struct Zone {
 enum { FORMS = sizeof forms / sizeof forms[0], FAR_MEMBERS = 13 };
 
 enum { WIDTH = 64, HEIGHT = 36, PIXELS = WIDTH * HEIGHT, RAYS = 5, TRIALS = 4 };
+enum { ASKED = 3 }; /* every third shape is looked at by questions to the device as well */
 static const double FOV  = 0.66;
 static const Vec    AWAY = {1.2, 1, 2};
 
@@ -264,6 +265,29 @@ static void count_pixel(const KrsHit *hits, const float *seen, Counts *counts)
     counts->worst = fmax(counts->worst, off);
 }
 
+/* The rays in the middle of pixels, which the device answers, of the shape where the shot has it. */
+static void ask_device(const Subject *subject, const Shot *shot, KrsHit *answers)
+{
+    static double origins[PIXELS][3], directions[PIXELS][3];
+    uint32_t      width;
+    KrsWindow     window   = window_of(shot, &width);
+    const double  middle[] = {shot->middle.x, shot->middle.y, shot->middle.z};
+    Lens          lens = lens_make(shot->away, vec(0, 0, 0), tan(shot->fov / 2), false, (int)width,
+                                   (int)shot->lines);
+    for (int i = 0; i < PIXELS; i++) {
+        Line ray = lens_ray(&lens, window.x + i % WIDTH + 0.5, window.y + i / WIDTH + 0.5);
+        Vec  eye = vec_add(shot->middle, vec_scale(shot->size, ray.origin));
+        memcpy(origins[i], &eye, sizeof origins[i]);
+        memcpy(directions[i], &ray.direction, sizeof directions[i]);
+    }
+    assert_int_equal(krs_frame_set(subject->product.frame, "s", &shot->size, 1), KRS_OK);
+    assert_int_equal(krs_frame_set(subject->product.frame, "o", middle, 3), KRS_OK);
+    set_zone(subject->form, subject->product.frame, shot->size, shot->middle);
+    if (krs_device_raycast(subject->rendering, subject->product.frame, (const double(*)[3])origins,
+                           (const double(*)[3])directions, PIXELS, HUGE_VAL, 0, answers) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(renderer));
+}
+
 static Shot random_shot(Random *random, int trial)
 {
     static const uint32_t lines[TRIALS] = {60, 2000, 36, 120};
@@ -323,6 +347,42 @@ static void normals_are_right(void **state)
     subject_free(&subject);
 }
 
+static Counts count_answers(const Subject *subject, const Shot *shot, const KrsHit *hits)
+{
+    static KrsHit answers[PIXELS];
+    Counts        counts = {0};
+    ask_device(subject, shot, answers);
+    for (int i = 0; i < PIXELS; i++) {
+        const double *normal  = answers[i].normal;
+        const float   found[] = {(float)normal[0], (float)normal[1], (float)normal[2]};
+        count_pixel(&hits[RAYS * i], found, &counts);
+    }
+    return counts;
+}
+
+/* Rays that the device answers; beside edges its taps, which know no pixels, see both sides. */
+static void answers_are_right(void **state)
+{
+    static KrsHit      hits[RAYS * PIXELS];
+    const struct Form *form    = *state;
+    Random             random  = {(uint64_t)(form - forms) + 1};
+    Subject            subject = subject_new(form, NULL);
+    for (int trial = 0; trial < TRIALS; trial++) {
+        Shot shot = random_shot(&random, trial), there = shot;
+        there.size   = 1;
+        there.middle = vec(0, 0, 0);
+        cast_rays(form, &shot, hits);
+        Counts known  = count_answers(&subject, &there, hits),
+               counts = count_answers(&subject, &shot, hits);
+        if (counts.off > known.off + MOST_EVEN * counts.even + 1)
+            fail_msg(
+                "%s of size %g, %g units away, as the device answers: of %d even rays %d are off "
+                "by more than a degree, by up to %.1f, and %d at the origin",
+                form->name, shot.size, shot.far, counts.even, counts.off, counts.worst, known.off);
+    }
+    subject_free(&subject);
+}
+
 /* The compiler finds that points may have to be camera-relative. */
 static void numbers_do_as_well(void **state)
 {
@@ -340,10 +400,14 @@ static void numbers_do_as_well(void **state)
 
 int main(void)
 {
-    struct CMUnitTest tests[FORMS + 1];
+    struct CMUnitTest tests[2 * FORMS + 1];
+    size_t            count = 0;
     for (size_t i = 0; i < FORMS; i++)
-        tests[i] = (struct CMUnitTest){forms[i].name, normals_are_right, NULL, NULL,
-                                       (void *)(uintptr_t)&forms[i]};
-    tests[FORMS] = (struct CMUnitTest)cmocka_unit_test(numbers_do_as_well);
-    return _cmocka_run_group_tests("distant", tests, FORMS + 1, renderer_open, renderer_close);
+        tests[count++] = (struct CMUnitTest){forms[i].name, normals_are_right, NULL, NULL,
+                                             (void *)(uintptr_t)&forms[i]};
+    for (size_t i = 0; i < FORMS; i += ASKED)
+        tests[count++] = (struct CMUnitTest){forms[i].name, answers_are_right, NULL, NULL,
+                                             (void *)(uintptr_t)&forms[i]};
+    tests[count++] = (struct CMUnitTest)cmocka_unit_test(numbers_do_as_well);
+    return _cmocka_run_group_tests("distant", tests, count, renderer_open, renderer_close);
 }
