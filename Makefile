@@ -67,6 +67,7 @@ API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits
 MESH     := $(addprefix compiler/mesh/, solid.c field.c field_pieces.c numbering.c batches.c weights.c tets.c marks.c quadric.c roots.c contour.c contour_mesh.c bvh.c groups.c gradient.c lens.c around.c verify.c smooth.c pieces.c voids.c bounds.c rounds.c polygons.c flat_pieces.c flat_faces.c flat.c mesh.c placing.c assemble.c crossing.c settle.c slivers.c near.c collapse.c simplify.c)
 SLICE    := $(addprefix compiler/slice/, plane.c extent.c tree.c chords.c bend.c fit.c contours.c slice.c)
 GRID     := $(addprefix compiler/grid/, samples.c row.c grid.c)
+MEASURE  := $(addprefix compiler/measure/, cut.c volume.c places.c lying.c measure.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer integrators film display writer))))
 LIVE     := $(sort $(wildcard live/*.c))
 LIVE_BORDER := live/gui.cpp
@@ -105,7 +106,7 @@ CC_LINK  = $(CC) $(CFLAGS) $(LDFLAGS) -Wl,--exclude-libs,ALL
 HARDENED := -pie -Wl,-z,relro -Wl,-z,now
 include tools/libraries.mk
 
-COMPILER := $(BASE) $(IMAGE) $(OUTLINE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API) $(MESH) $(SLICE) $(GRID)
+COMPILER := $(BASE) $(IMAGE) $(OUTLINE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API) $(MESH) $(SLICE) $(GRID) $(MEASURE)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
             $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o $(B)/fingerprints.o
 

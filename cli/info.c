@@ -5,8 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "cli/commands.h"
-#include "cli/console.h"
+#include "cli/info.h"
 
 static void print_vector(const double *values, size_t count)
 {
@@ -306,21 +305,27 @@ void info_add_json(Text *json, const KrsScene *scene)
     add_slopes(json, scene);
 }
 
+static void print_json(const Options *options, const KrsScene *scene)
+{
+    Text json = {.arena = options->arena};
+    text_add(&json, "{");
+    info_add_json(&json, scene);
+    text_add(&json, "}");
+    puts(json.bytes);
+}
+
 KrsStatus command_info(Options *options)
 {
-    KrsScene *scene;
-    KrsStatus status = scene_open(options, options->files.items[0], &scene);
-    if (status != KRS_OK)
-        return status;
-    if (options->json) {
-        Text json = {.arena = options->arena};
-        text_add(&json, "{");
-        info_add_json(&json, scene);
-        text_add(&json, "}");
-        puts(json.bytes);
-    } else {
+    KrsScene *scene  = NULL;
+    KrsStatus status = info_check_options(options);
+    if (status == KRS_OK)
+        status = scene_open(options, options->files.items[0], &scene);
+    if (status == KRS_OK && options->print)
+        status = info_print(options, scene);
+    else if (status == KRS_OK && options->json)
+        print_json(options, scene);
+    else if (status == KRS_OK)
         print_text(scene);
-    }
     krs_scene_free(scene);
-    return KRS_OK;
+    return status;
 }

@@ -13,6 +13,7 @@
 #define ON_PICTURES     (ON(RENDER) | ON(WATCH))
 #define ON_SHOWN        (ON_PICTURES | ON(VIEW))
 #define ON_SCENE        (ON_SHOWN | ON(VALIDATE) | ON(QUERY))
+#define ON_SOLID        (ON(MESH) | ON(SLICE) | ON(GRID) | ON(INFO))
 #define ON_READING      (ON_ALL & ~(ON(DEVICES) | ON(EXPLAIN) | ON(HELP)))
 #define ON_COMPILING    (ON_READING & ~ON(IMPORT))
 #define TEXT_OF(macro)  TEXT_OF_(macro)

@@ -458,4 +458,5 @@ KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3], const double 
 #include "compiler/krs_grid.h"
 #include "compiler/krs_mesh.h"
 #include "compiler/krs_slice.h"
+#include "compiler/krs_measure.h"
 #endif

@@ -7,10 +7,10 @@
 set -u
 cd "$(dirname "$0")/.." || exit 1
 layers="compiler/base compiler/image compiler/outline compiler/graph compiler/shape compiler/lower compiler/family compiler/front
-        compiler/eval compiler/print compiler/print/glsl compiler/target compiler compiler/mesh compiler/slice compiler/grid
+        compiler/eval compiler/print compiler/print/glsl compiler/target compiler compiler/mesh compiler/slice compiler/grid compiler/measure
         runtime/device runtime/shared runtime/tracer runtime/integrators runtime/film runtime/display
         runtime/writer runtime live cli"
-api="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h compiler/krs_mesh.h compiler/krs_slice.h compiler/krs_grid.h compiler/krs_camera.h
+api="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h compiler/krs_mesh.h compiler/krs_slice.h compiler/krs_grid.h compiler/krs_measure.h compiler/krs_camera.h
      compiler/shape/surface.def compiler/print/variant.h compiler/target/spirv.h
      runtime/krs_vulkan.h runtime/krs_film.h runtime/krs_choices.h runtime/planes.def runtime/choices.def"
 

@@ -7,7 +7,7 @@ LIBDIR  ?= lib
 DESTDIR ?=
 TARGET   = $(DESTDIR)$(PREFIX)
 COMMANDS = $(shell sed -n 's/^COMMAND.[A-Z]*, "\([a-z]*\)".*/\1/p' cli/commands.def)
-INSTALLED = bin/krs $(LIBDIR)/libkrs.a $(LIBDIR)/$(SONAME) $(LIBDIR)/libkrs.so $(LIBDIR)/pkgconfig/krs.pc include/krs.h include/krs_mesh.h include/krs_slice.h include/krs_grid.h include/krs_camera.h include/krs_vulkan.h include/krs_film.h include/krs_choices.h \
+INSTALLED = bin/krs $(LIBDIR)/libkrs.a $(LIBDIR)/$(SONAME) $(LIBDIR)/libkrs.so $(LIBDIR)/pkgconfig/krs.pc include/krs.h include/krs_mesh.h include/krs_slice.h include/krs_grid.h include/krs_measure.h include/krs_camera.h include/krs_vulkan.h include/krs_film.h include/krs_choices.h \
             include/krs_planes.def include/krs_choices.def include/krs_surface.def \
             share/bash-completion/completions/krs share/zsh/site-functions/_krs \
             share/fish/vendor_completions.d/krs.fish share/man/man1/krs.1 \
@@ -33,7 +33,7 @@ install: $(B)/krs $(B)/libkrs.a $(B)/libkrs.so $(VDB)
 	@$(if $(VDB),install -m 644 $(VDB) $(TARGET)/lib/krs/krs-vdb.so)
 	@install -m 644 $(B)/libkrs.a $(B)/$(SONAME) $(TARGET)/$(LIBDIR)
 	@ln -sf $(SONAME) $(TARGET)/$(LIBDIR)/libkrs.so
-	@for header in compiler/krs.h compiler/krs_mesh.h compiler/krs_slice.h compiler/krs_grid.h compiler/krs_camera.h runtime/krs_vulkan.h runtime/krs_film.h runtime/krs_choices.h; do \
+	@for header in compiler/krs.h compiler/krs_mesh.h compiler/krs_slice.h compiler/krs_grid.h compiler/krs_measure.h compiler/krs_camera.h runtime/krs_vulkan.h runtime/krs_film.h runtime/krs_choices.h; do \
 	    sed 's|"[a-z]*/\(krs[a-z_]*.h\)"|"\1"|; s|^#include ".*/\(.*\.def\)"|#include "krs_\1"|' $$header \
 	        >$(TARGET)/include/$${header##*/} || exit 1; \
 	done

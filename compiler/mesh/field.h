@@ -96,6 +96,9 @@ bool field_pieces(MeshField *field, Box box, FieldPieces *pieces);
 void field_piece_values(const MeshField *field, const FieldPieces *pieces,
                         const double (*points)[3], size_t point_count, double *values);
 
+/* The slopes of the first piece, before its sign, in a part of that box which is no point; as of lane_slopes_run. */
+bool field_piece_slope(const MeshField *field, Box part, LaneSlope *slope);
+
 enum { MOST_FACES = 8 };
 
 /* Operands of a lane tape. */

@@ -370,3 +370,9 @@ void field_piece_values(const MeshField *field, const FieldPieces *pieces,
         values[i] = pieces->signs[i % pieces->count] * values[i] +
                     pieces->offsets[i % pieces->count];
 }
+
+bool field_piece_slope(const MeshField *field, Box part, LaneSlope *slope)
+{
+    lane_ranges_run(&field->pieces.tape, &field->ranges, part);
+    return lane_slopes_run(&field->pieces.tape, &field->ranges, field->slopes, slope);
+}

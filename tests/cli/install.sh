@@ -18,7 +18,7 @@ ended 0 "make install"
 soname=libkrs.so.$("$krs" --version | sed -n 's/^krs \([0-9]*\.[0-9]*\).*/\1/p')
 commands=$(sed -n 's/^COMMAND([A-Z]*, "\([a-z]*\)".*/\1/p' "$root/cli/commands.def")
 {
-    for file in bin/krs lib/libkrs.a lib/libkrs.so "lib/$soname" lib/pkgconfig/krs.pc include/krs.h include/krs_mesh.h include/krs_slice.h include/krs_grid.h include/krs_camera.h include/krs_vulkan.h include/krs_film.h include/krs_choices.h \
+    for file in bin/krs lib/libkrs.a lib/libkrs.so "lib/$soname" lib/pkgconfig/krs.pc include/krs.h include/krs_mesh.h include/krs_slice.h include/krs_grid.h include/krs_measure.h include/krs_camera.h include/krs_vulkan.h include/krs_film.h include/krs_choices.h \
         include/krs_planes.def include/krs_choices.def include/krs_surface.def \
         share/bash-completion/completions/krs share/zsh/site-functions/_krs \
         share/fish/vendor_completions.d/krs.fish share/man/man1/krs.1; do

@@ -1,0 +1,15 @@
+/*
+ * info.h: one run of `krs info`: info.c shows what a scene consists of, info_print.c the figures of a part.
+ */
+#ifndef KRS_INFO_H
+#define KRS_INFO_H
+
+#include "cli/commands.h"
+#include "cli/console.h"
+
+/* Refuses options that have no meaning without --print. */
+KrsStatus info_check_options(const Options *options);
+/* Measures what the scene shows, and prints that. */
+KrsStatus info_print(const Options *options, const KrsScene *scene);
+
+#endif

@@ -1,0 +1,54 @@
+/*
+ * measure.h: how a part is measured.
+ *
+ * 1. A mesh tells areas, and where the surface is.
+ * 2. Cells tell the volume and the center: in a cell where the derivatives are known to be in ranges, the solid is between
+ *    two half-spaces, whose volumes in the cell are exact (volume.c).
+ * 3. Triangles are halved until they are small.  The point of the surface at the middle of each is a place, with its normal
+ *    and the wall behind it (places.c).
+ * 4. Places tell what hangs over, and on which of its faces the part can lie (lying.c).
+ */
+#ifndef KRS_MEASURE_MEASURE_H
+#define KRS_MEASURE_MEASURE_H
+
+#include <stdatomic.h>
+
+#include "compiler/base/parallel.h"
+#include "compiler/mesh/field.h"
+
+/* A place of the surface. */
+typedef struct Place {
+    double at[3], normal[3];
+    double area;  /* of its triangle */
+    bool settled; /* it is on the surface, with the surface's normal; else those of the triangle */
+    double wall;  /* behind it; INFINITY: none */
+} Place;
+
+typedef struct Measurer {
+    Memory                   memory;
+    Arena                    arena;
+    const KrsMeasureOptions *options;
+    MeshSolid                solid;
+    double                   low[3], high[3], longest; /* the box of what is measured */
+    size_t                   parts;
+    MeshField                fields[MOST_PARTS];
+    KrsMesh                 *mesh;
+    KrsMeasures             *measures;
+    struct {
+        Place *items;
+        size_t count, capacity;
+    } places;
+    double        begun, goal; /* parts of all work that are done before and after this step */
+    atomic_bool   stopped;
+    atomic_size_t next; /* of what threads share */
+} Measurer;
+
+/* Whether to go on, asked by the first thread; all stop if not. */
+bool measurer_goes_on(Measurer *m, size_t part, double fraction);
+
+/* Each sets its members of the measures. */
+void measure_volume(Measurer *m);
+void measure_places(Measurer *m);
+void measure_lying(Measurer *m);
+
+#endif
