@@ -49,6 +49,30 @@ static const char *output_name(const Slicing *slicing, size_t index)
     return path.bytes;
 }
 
+/* A `%` that looks like the place for a number, as in other programs, and is none; NULL: there is none. */
+static const char *foreign_place(const char *path)
+{
+    for (const char *percent = path; (percent = strchr(percent, '%')); percent++) {
+        const char *flags = percent + 1, *digits = flags + strspn(flags, "-+ #'0");
+        const char *letter = digits + strspn(digits, "0123456789.");
+        const bool  ours   = *letter == 'd' &&
+                          strspn(flags, "0123456789") == (size_t)(letter - flags) &&
+                          letter - flags <= 2;
+        if (*letter && strchr("diouxX", *letter) && !ours)
+            return percent;
+    }
+    return NULL;
+}
+
+/* Whether two names are one file for the first layer or the last. */
+static bool are_one_output(const Options *options, const char *a, const char *b)
+{
+    bool one = output_is_same(numbered_path(options, a, 1), numbered_path(options, b, 1));
+    for (uint32_t n = 10; n <= MOST_LAYERS && options->layer > 0; n *= 10)
+        one = one || output_is_same(numbered_path(options, a, n), numbered_path(options, b, n));
+    return one;
+}
+
 static KrsStatus check_output(const Slicing *slicing, const char *path)
 {
     const Options     *options = slicing->options;
@@ -59,6 +83,14 @@ static KrsStatus check_output(const Slicing *slicing, const char *path)
         return say_usage(options, "`%s` is no section: its name must end in " SLICE_ENDINGS, path);
     if (frame_places(path) > 1)
         return say_usage(options, "`%s` has more than one place for the number of a layer", path);
+    const char *foreign = options->layer > 0 ? foreign_place(path) : NULL;
+    if (foreign)
+        return say_usage(options, "`%s` is no place for the number of a layer; %%d or %%04d is one",
+                         foreign);
+    for (size_t i = 0; i < options->outputs.count && options->outputs.items[i] != path; i++)
+        if (are_one_output(options, options->outputs.items[i], path))
+            return say_usage(options, "`%s` and `%s` are one file", options->outputs.items[i],
+                             path);
     if (!format->has_layers && frame_places(path) == 0 && options->layer > 0)
         return say_usage(
             options, "`%s` would have one layer; with %%04d in its name there is a file for each",

@@ -1,7 +1,7 @@
 #!/bin/sh
 # slice.sh: `krs slice`: files that other programs accept, their areas, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 40
+plan 46
 
 echo 'show sphere(0.5);' >ball.krs
 echo 'show box([4, 3, 2]) - cylinder(1, 5).rotate([1, 0, 0], 90deg);' >plate.krs
@@ -233,6 +233,16 @@ run slice ball.krs --layer nan -o a.svg
 said 2 "--layer wants a length" "what is no number is refused"
 run slice ball.krs --plane=0,0,0,0,0,0 -o a.svg
 said 2 "--plane wants" "and what is no direction"
+! grep -q 'not.*not' err
+result $? "in words without two nots"
+for name in 'a-%x.svg' 'a-%-4d.svg' 'a-%04i.svg'; do
+    run slice ball.krs --layer 0.1 -o "$name"
+    said 2 "no place for the number" "$name is no name"
+done
+run slice ball.krs --layer 0.1 -o a.svg -o ./a.svg
+said 2 "are one file" "a file is written once"
+run slice ball.krs --layer 0.1 -o 'a-%d.svg' -o 'a-%02d.svg'
+said 2 "are one file" "also where it is so from some layer on"
 run slice ball.krs --layer 0.1 --error 1e-12 -o a.svg
 said 2 "--error is too small" "and an error that numbers cannot tell"
 run slice floor.krs --layer 0.1
