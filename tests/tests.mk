@@ -27,7 +27,7 @@ ORACLES     := self distant patterns bumps primitives krs_expand folds trees map
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
                albedo furnace thin_film anisotropy tangents subsurface paths direct_glass enhanced emissive sky sky_means plate_light detail media cornell touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling closed_rooms \
                occlusion curves sweeps corners hulls lofts boundaries nothing places underestimates bounds stencils light sides steep scales agree far sheets ray_lists specialize outlines glyphs drawings \
-               imports imports_csg imports_csg_sizes imports_pov imports_pov_looks imports_pov_sheets flat_meshes slices grids measures meshes mesh_forms mesh_examples
+               imports imports_csg imports_csg_sizes imports_pov imports_pov_looks imports_pov_sheets flat_meshes round_meshes slices grids measures meshes mesh_forms mesh_examples
 FUZZ        := sentences
 # On SwiftShader, unless another device is tested: what shows that drivers agree.
 DRIVERS     := tests/oracle/drivers

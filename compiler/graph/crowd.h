@@ -67,6 +67,7 @@ typedef struct Crowd {
     double       reach, margin; /* of these grids */
     Box         *boxes;         /* of members of which only the nearest counts; NULL: not known */
     Box         *bounds;        /* of members, in all frames; NULL: not known */
+    double       widest;        /* the longest diagonal of `bounds` */
     CrowdArc    *arcs;          /* of members of an outline; NULL: it is none */
     double fades, slope; /* of a blend with tails, its width, and the slope of all distances */
     double stretch;      /* the distance of a member, times this, is at least that to its box */

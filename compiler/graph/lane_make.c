@@ -358,7 +358,7 @@ static LaneTape make(const Tape *tape, const Node *roots, size_t root_count, boo
     for (size_t i = 0; i < root_count; i++)
         add_outputs(&b, roots[i]);
     for (size_t i = 0; i < steps.steps.count; i++)
-        steps.steps.items[i].origin = (uint32_t)i + 1;
+        steps.steps.items[i].kin = steps.steps.items[i].origin = (uint32_t)i + 1;
     LaneTape made   = lane_steps_finish(&steps, tape);
     made.bodies_end = place_bodies(&made, tape, bodies);
     return made;

@@ -312,6 +312,8 @@ static bool find_least_members(const Pruning *p, const LaneCall *call, const Cro
     for (int k = 0; k < 3; k++)
         if (!number_at(p, call->operands[1][k], &at[k]))
             return false;
+    if (p->ranges->longest > 1)
+        farthest += (p->ranges->longest - 1) * (farthest + 0.5 * table->widest);
     for (uint32_t i = 0; i < table->rows; i++) {
         if (distance_of_boxes(&table->bounds[i], at) > farthest * table->stretch)
             continue;
@@ -343,6 +345,13 @@ static uint32_t body_scalar(Pruning *p, const LaneBody *body, uint32_t scalar)
                                          : p->ranges->values[source->node].v[source->component]);
 }
 
+/* Numbers of steps of bodies are above those of all tapes. */
+static uint32_t kin_of_member_step(uint32_t function, size_t step)
+{
+    static const uint32_t BODIES = 1u << 31, STEPS = 1u << 16;
+    return BODIES | (function * STEPS + (uint32_t)step % STEPS) % BODIES;
+}
+
 /* Adds the steps of a body for one member; returns the operand of its state. */
 static uint32_t add_member(Pruning *p, const LaneCall *call, const Crowd *table, uint32_t member,
                            uint32_t state, uint32_t *values)
@@ -358,6 +367,7 @@ static uint32_t add_member(Pruning *p, const LaneCall *call, const Crowd *table,
             values[LANE_INPUTS + i] = member_number(p, table, &step, member);
         else {
             step.origin = 0;
+            step.kin    = kin_of_member_step(body->function, i);
             for (uint32_t k = 0; k < step.operand_count; k++)
                 step.operands[k] = step.operands[k] & LANE_SCALAR
                                        ? body_scalar(p, body, step.operands[k] & ~LANE_SCALAR)

@@ -18,9 +18,11 @@
 LaneRanges lane_ranges_new(const LaneTape *tape, Arena *arena)
 {
     return (LaneRanges){
-        .ranges = arena_new_array(arena, Range, LANE_INPUTS + lane_most_steps(tape)),
-        .sure   = arena_new_array(arena, bool, LANE_INPUTS + lane_most_steps(tape)),
-        .middle = arena_new_array(arena, Range, LANE_INPUTS + lane_most_steps(tape))};
+        .ranges  = arena_new_array(arena, Range, LANE_INPUTS + lane_most_steps(tape)),
+        .sure    = arena_new_array(arena, bool, LANE_INPUTS + lane_most_steps(tape)),
+        .middle  = arena_new_array(arena, Range, LANE_INPUTS + lane_most_steps(tape)),
+        .stretch = 1,
+        .longest = 1};
 }
 
 /* ---- operands ---- */
@@ -149,12 +151,16 @@ static Range range_guard(const Operand *o)
                                    : range_hull(out, o[2].range);
 }
 
-static Range range_length(const Operand *o, uint32_t size)
+/* That of three numbers is the length of a pair of which one is the length of a pair, or nearly so. */
+static Range range_length(const LaneRanges *ranges, const Operand *o, uint32_t size)
 {
     Range sum = range_square(o[0].range);
     for (uint32_t i = 1; i < size; i++)
         sum = range_add(sum, range_square(o[i].range));
-    return range_sqrt(sum);
+    Range length = range_sqrt(sum);
+    if (ranges->stretch > 1 && size > 1)
+        length.high *= size > 2 ? ranges->longest : ranges->stretch;
+    return length;
 }
 
 static Range range_normalized(Range a, Range length)
@@ -226,6 +232,19 @@ static bool is_scalar(const LaneCall *call, uint32_t operand, GraphType type)
     return scalars == type_size(type);
 }
 
+/* How much farther a crowd may be if lengths are longer. */
+static double stretch_of_members(const LaneTape *tape, const LaneRanges *ranges,
+                                 const LaneCall *call, double value, double radius)
+{
+    if (ranges->stretch == 1)
+        return 0;
+    if (!call->body)
+        return INFINITY;
+    const Crowd *table = &tape->tape->graph->crowds->tables.items[call->body->table];
+    return table->bounds ? (ranges->longest - 1) * (fabs(value) + radius + 0.5 * table->widest)
+                         : INFINITY;
+}
+
 /* The distance to a crowd changes no faster than the point moves, times its slope.  The table of an outline has single
    precision, and the nearest place on a curve is found by some steps only.  False: there is no bound. */
 static bool range_of_crowd(const LaneTape *tape, const LaneRanges *ranges, const LaneCall *call,
@@ -253,8 +272,10 @@ static bool range_of_crowd(const LaneTape *tape, const LaneRanges *ranges, const
     double value = lane_call(tape->tape, ranges->values, call->node, operands).v[0];
     radius *= function->slope;
     radius += (function->either ? UNCERTAIN_OUTLINE : UNCERTAIN) * (radius + size + fabs(value));
+    radius += function->either ? ranges->astray
+                               : stretch_of_members(tape, ranges, call, value, radius);
     *range = (Range){value - radius, value + radius};
-    return isfinite(value);
+    return isfinite(value) && isfinite(radius);
 }
 
 static void run_call(const LaneTape *tape, const LaneRanges *ranges, size_t step)
@@ -307,7 +328,7 @@ static Range range_quotient(Range a, Range b)
     return b.low <= 0 && b.high >= 0 ? ANYTHING : range_div(a, b);
 }
 
-static Range range_of_step(const LaneStep *step, const Operand *o)
+static Range range_of_step(const LaneRanges *ranges, const LaneStep *step, const Operand *o)
 {
     Range a = o[0].range, b = o[1].range;
     switch (step->op) {
@@ -325,7 +346,7 @@ static Range range_of_step(const LaneStep *step, const Operand *o)
     case OP_not: return range_logic(step->op, o);
     case OP_select: return range_select(o);
     case OP_guard: return range_guard(o);
-    case OP_length: return range_length(o, step->operand_count);
+    case OP_length: return range_length(ranges, o, step->operand_count);
     case OP_normalize: return range_normalized(a, b);
     case OP_cell: return range_cell(o);
     case OP_blend_weight: return range_blend_weight(o);
@@ -376,12 +397,13 @@ typedef struct Ball {
 
 /* What changes no faster than that is as far from the value in the middle as that and the box permit.  Rounding is far
    below these parts of the numbers around. */
-static Range range_around(Range middle, double steepest, double radius, double size)
+static Range range_around(Range middle, double steepest, double stretch, const Ball *ball)
 {
     static const double UNCERTAIN = 1e-9, CANCELLED = 16;
-    double              reach = steepest * radius, value = range_largest(middle);
-    reach += UNCERTAIN * (reach + steepest * size + value);
-    reach += CANCELLED * (middle.high - middle.low);
+    double              reach = steepest * stretch * ball->radius, value = range_largest(middle);
+    reach += UNCERTAIN * (reach + steepest * ball->size + value);
+    if (stretch == 1)
+        reach += CANCELLED * (middle.high - middle.low);
     return (Range){middle.low - reach, middle.high + reach};
 }
 
@@ -395,13 +417,13 @@ static void run_step(const LaneTape *tape, const LaneRanges *ranges, const Ball 
         sure = sure && o[k].sure;
     }
     bool  square = step->op == OP_mul && step->operands[0] == step->operands[1];
-    Range range  = square ? range_square(o[0].range) : range_of_step(step, o);
+    Range range  = square ? range_square(o[0].range) : range_of_step(ranges, step, o);
     if (!(range.low <= range.high))
         range = ANYTHING; /* it is a number nowhere, or a rule gave up */
     sure = sure && is_defined(step, o);
     if (ball && sure && step->steepest > 0)
         range = range_intersect(range, range_around(ranges->middle[LANE_INPUTS + i], step->steepest,
-                                                    ball->radius, ball->size));
+                                                    ranges->longest, ball));
     ranges->ranges[LANE_INPUTS + i] = range;
     ranges->sure[LANE_INPUTS + i]   = sure;
 }
@@ -429,9 +451,10 @@ Range lane_ranges_run(const LaneTape *tape, const LaneRanges *ranges, Box box)
 
 Range lane_ranges_run_closer(const LaneTape *tape, const LaneRanges *ranges, Box box)
 {
-    LaneRanges middle = {ranges->middle, ranges->sure, ranges->values, NULL, false};
+    LaneRanges middle = *ranges;
     Ball       ball   = {0, 0};
     Box        point;
+    middle.ranges = ranges->middle;
     for (int k = 0; k < 3; k++) {
         Range  axis   = box.axis[k];
         double at     = 0.5 * (axis.low + axis.high);

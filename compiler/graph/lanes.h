@@ -47,6 +47,8 @@ typedef struct LaneStep {
         steepest; /* it changes no faster than that with the point, and jumps nowhere; 0: not known */
     uint32_t
         origin; /* 1 and the step of the tape before all pruning that has the same value; 0: not known */
+    uint32_t
+        kin; /* the same for steps that are one step of the tape, or of a body, at different members */
 } LaneStep;
 
 /* How a step is run: on rows and, where the bit of the operand is set, scalars. */
@@ -192,6 +194,10 @@ typedef struct LaneRanges {
     NodeValue *values; /* those of the frame, as of LaneWork: then crowds have ranges; NULL: not */
     Range     *middle; /* those in the middle of the box: for lane_ranges_run_closer */
     bool       unroll; /* pruning makes steps of calls of crowds of which few members are near */
+    double
+           stretch; /* 1, or above: ranges hold as well if the length of each pair is longer by up to this factor, */
+    double longest; /* what is made of several lengths by up to this one, */
+    double astray;  /* and if outlines are off by so much */
 } LaneRanges;
 
 /* Room for those of a lane tape, and of all that it is pruned to. */

@@ -241,6 +241,20 @@ static void fill_of_frame(const CrowdGroup *group, Graph *graph, Crowd *table, u
     }
 }
 
+static double widest_of(const Box *boxes, uint32_t count)
+{
+    double widest = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        double square = 0;
+        for (int k = 0; k < 3; k++) {
+            double side = boxes[i].axis[k].high - boxes[i].axis[k].low;
+            square += side * side;
+        }
+        widest = max2(widest, sqrt(square));
+    }
+    return widest;
+}
+
 void group_make_table(CrowdGroup *group, const GroupJoin *join, const Box *boxes, double reach,
                       double margin, Crowd table)
 {
@@ -264,6 +278,7 @@ void group_make_table(CrowdGroup *group, const GroupJoin *join, const Box *boxes
     if (!join->complement) {
         table.bounds = arena_new_array(table.arena, Box, rows);
         memcpy(table.bounds, own, rows * sizeof *own);
+        table.widest = widest_of(own, rows);
     }
     group_make_cells(group, join, own, reach, margin, &table);
     group->crowd = (uint32_t)crowds->tables.count;

@@ -1,27 +1,33 @@
 /*
  * flat.c: boxes that are halved until each has few planes.
  *
- * Where no surface is comes from ranges, and where one is, from its planes.  In the end each triangle is looked at
- * once: the surface must be in its middle.  Solids with round parts are given up where some of these are met: halving does not
- * end there.
+ * Where no surface is comes from ranges, and where one is, from its planes.  Circles are polygons, of as many sides as the
+ * error needs: a first pass finds how large they are, and flat_near.c whether they are near enough.  In the end
+ * each triangle is looked at once: the surface must be in its middle, or within the error of it.  Solids
+ * that are made of other things are given up as soon as some boxes have been looked at.
  */
 #include "compiler/mesh/flat.h"
 
-#include <string.h>
-
 #include "compiler/base/vec.h"
+#include "compiler/mesh/flat_near.h"
 
-enum { MOST_BOXES = 200000, MOST_HALVINGS = 45, HALVINGS_OF_REGION = 3, PATIENCE = 256 };
+enum { MOST_BOXES = 400000, MOST_HALVINGS = 45, HALVINGS_OF_REGION = 3, PATIENCE = 256 };
 /* Boxes that were looked at when more than a part of them must have been flat. */
 enum { FIRST_BOXES = 600 };
 static const double LEAST_KNOWN = 0.02;
+/* Parts of the size: how far faces are moved so that no four meet, about. */
+static const double ROUNDING_OF_FACES = 1e-6;
 
 typedef struct Halving {
     Mesher    *m;
     MeshField *field;
     FlatFaces  faces;
     FlatPieces pieces;
+    FlatRounds rounds;
+    FlatWork   work;
+    FlatBoxes  round_boxes;
     size_t     boxes, known;
+    uint32_t   turn;
 } Halving;
 
 static bool halve(Halving *h, Box box, int halvings);
@@ -55,6 +61,20 @@ static bool is_given_up(Halving *h, int halvings)
            (h->boxes > FIRST_BOXES && (double)h->known < LEAST_KNOWN * (double)h->boxes);
 }
 
+/* Whether faces will be found once more, with the right numbers of sides. */
+static bool is_only_looked_at(const Halving *h)
+{
+    return !h->rounds.counted && h->rounds.list.count > 0;
+}
+
+/* Many planes take long, so they are cut only where boxes are small, as at the tips of cones. */
+static bool find_few_pieces(Halving *h, Box box, int halvings)
+{
+    enum { FEW = 40, SMALL_FROM = 20 };
+    return flat_pieces(h->field, box, h->m->side, &h->rounds, FLAT_MAKING, &h->work, &h->pieces) &&
+           (h->pieces.count <= FEW || halvings >= SMALL_FROM);
+}
+
 static bool halve(Halving *h, Box box, int halvings)
 {
     Range range = field_range(h->field, box);
@@ -65,10 +85,12 @@ static bool halve(Halving *h, Box box, int halvings)
     bool done;
     if (entered)
         field_focus(h->field, box);
-    if (flat_pieces(h->field, box, h->m->side, &h->m->arena, &h->pieces)) {
+    if (find_few_pieces(h, box, halvings)) {
         h->known++;
         h->boxes++;
-        done = flat_faces_add(&h->faces, box, &h->pieces);
+        done = is_only_looked_at(h) || flat_faces_add(&h->faces, box, &h->pieces);
+        if (h->pieces.round)
+            array_push_large(&h->m->arena, &h->round_boxes, box);
     } else
         done = !is_given_up(h, halvings) && halve_at(h, box, halvings);
     if (entered)
@@ -77,14 +99,62 @@ static bool halve(Halving *h, Box box, int halvings)
 }
 
 /* Whether the surface is in the middle of each triangle: so all that was taken for a face is one. */
-static bool is_on_surface(Mesher *m, const FlatVertices *vertices, const Triangles *triangles)
+static bool is_on_surface(Mesher *m, const FlatVertices *vertices, const Triangles *triangles,
+                          double near)
 {
-    static const double NEAR = 1e-6;
     for (size_t i = 0; i < triangles->count; i++) {
         double middle[3] = {0, 0, 0};
         for (int k = 0; k < 3; k++)
             add_scaled3(middle, middle, 1.0 / 3, vertices->items[triangles->items[i][k]]);
-        if (!(fabs(field_distance(&m->fields[0], middle)) <= NEAR * m->side))
+        if (!(fabs(field_distance(&m->fields[0], middle)) <= near))
+            return false;
+    }
+    return true;
+}
+
+/* Looks at all boxes. */
+static bool halve_all(Halving *h)
+{
+    Mesher *m = h->m;
+    Box     box;
+    for (int k = 0; k < 3; k++) {
+        double middle = 0.5 * (m->low[k] + m->high[k]);
+        double half = 0.5 * (m->high[k] - m->low[k]) + m->error + 0.013 * m->side * (1 + 0.17 * k);
+        box.axis[k] = (Range){middle - half, middle + half};
+    }
+    h->faces       = (FlatFaces){.arena = &m->arena, .size = m->side, .turn = h->turn};
+    h->round_boxes = (FlatBoxes){NULL, 0, 0};
+    h->boxes       = 0;
+    h->known       = 0;
+    flat_rounds_open(&h->rounds, &h->field->ranges);
+    bool done = is_wanted(m) && halve(h, box, 0);
+    flat_rounds_close(&h->field->ranges);
+    return done;
+}
+
+/* With as many sides as the error needs; where even many are not enough, places are left unresolved. */
+static bool make_round(Halving *h)
+{
+    Mesher     *m       = h->m;
+    FlatVerdict verdict = FLAT_REFUTED;
+    flat_rounds_count(&h->rounds);
+    do {
+        if (!halve_all(h))
+            return false;
+        verdict = flat_near(m, &h->rounds, &h->round_boxes,
+                            m->error - 10 * ROUNDING_OF_FACES * m->side);
+    } while (verdict == FLAT_REFUTED && flat_rounds_refine(&h->rounds));
+    return verdict != FLAT_STOPPED;
+}
+
+/* Planes that are moved otherwise are mostly cut where some are not. */
+static bool finish(Halving *h, FlatVertices *vertices, Triangles *triangles)
+{
+    enum { TURNS = 3 };
+    while (!flat_faces_finish(&h->faces, vertices, triangles)) {
+        *vertices  = (FlatVertices){NULL, 0, 0};
+        *triangles = (Triangles){NULL, 0, 0};
+        if (++h->turn == TURNS || !halve_all(h))
             return false;
     }
     return true;
@@ -93,16 +163,12 @@ static bool is_on_surface(Mesher *m, const FlatVertices *vertices, const Triangl
 bool find_flat_mesh(Mesher *m, FlatVertices *vertices, Triangles *triangles)
 {
     Halving *h = arena_new(&m->arena, Halving);
-    Box      box;
-    *h = (Halving){.m = m, .field = &m->fields[0], .faces = {.arena = &m->arena, .size = m->side}};
-    for (int k = 0; k < 3; k++) {
-        double middle = 0.5 * (m->low[k] + m->high[k]);
-        double half = 0.5 * (m->high[k] - m->low[k]) + m->error + 0.013 * m->side * (1 + 0.17 * k);
-        box.axis[k] = (Range){middle - half, middle + half};
-    }
-    h->field->ranges.unroll = true;
-    bool done               = is_wanted(m) && halve(h, box, 0);
-    h->field->ranges.unroll = false;
-    return done && flat_faces_finish(&h->faces, vertices, triangles) &&
-           is_on_surface(m, vertices, triangles);
+    *h         = (Halving){.m = m, .field = &m->fields[0]};
+    h->work    = flat_work_new(h->field, &m->arena);
+    h->rounds  = flat_rounds_new(m->error, &m->arena);
+    if (!halve_all(h) || (is_only_looked_at(h) && !make_round(h)) ||
+        !finish(h, vertices, triangles))
+        return false;
+    double near = h->rounds.list.count > 0 ? m->error : ROUNDING_OF_FACES * m->side;
+    return is_on_surface(m, vertices, triangles, near);
 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/minmax.h"
 #include "compiler/base/vec.h"
 
 #define WALL UINT32_MAX
@@ -14,10 +15,10 @@ static const double MOVE = 1e-7, NARROW = 1e-14, SAME = 1e-13;
 
 /* ---- planes ---- */
 
-/* A number from -1 to 1 for each plane. */
-static double jitter(uint32_t number)
+/* A number from -1 to 1 for each plane, another one at each turn. */
+static double jitter(uint32_t number, uint32_t turn)
 {
-    uint32_t h = (number + 1) * 2654435761u;
+    uint32_t h = (number + 1) * 2654435761u + turn * 3266489917u;
     h ^= h >> 15;
     h *= 2246822519u;
     h ^= h >> 13;
@@ -55,7 +56,8 @@ static uint32_t find_plane(FlatFaces *faces, const HalfSpace *plane, int *sign)
                 return at;
     uint32_t  number = (uint32_t)faces->planes.count;
     uint32_t  first  = numbering_take(&faces->marks, (NumberKey){(uint64_t)slot, 0}, number);
-    FlatPlane fresh  = {*plane, plane->offset + MOVE * faces->size * jitter(number), NO_NUMBER};
+    FlatPlane fresh  = {*plane, plane->offset + MOVE * faces->size * jitter(number, faces->turn),
+                        NO_NUMBER};
     array_push_large(faces->arena, &faces->planes, fresh);
     if (first != number) {
         faces->planes.items[number].next = faces->planes.items[first].next;
@@ -72,7 +74,7 @@ static double above(const FlatPlane *plane, const double point[3])
 
 /* ---- polygons ---- */
 
-enum { MOST_CORNERS = 64 };
+enum { MOST_CORNERS = 96 };
 
 /* In the positive order around the normal of its plane; labels[i] is the plane at the edge from corner i. */
 typedef struct Polygon {
@@ -281,6 +283,14 @@ typedef struct Event {
     uint32_t plane;
 } Event;
 
+/* Of the angle between two planes: as much less is known of where their line is. */
+static double sine_between(const FlatFaces *faces, uint32_t a, uint32_t b)
+{
+    double product[3];
+    cross3(faces->planes.items[a].exact.normal, faces->planes.items[b].exact.normal, product);
+    return max2(length3(product), 1e-6);
+}
+
 static int compare_events(const void *first, const void *second)
 {
     const Event *a = first, *b = second;
@@ -361,11 +371,11 @@ static bool walk_on(Finishing *f, Walk *walk, uint32_t end, int change)
    two planes end the line there it has a short edge. */
 static bool find_edges_between(Finishing *f, const FlatSegment *of, Event *events, size_t count)
 {
-    Walk walk = {of, NO_NUMBER, 0};
+    Walk   walk = {of, NO_NUMBER, 0};
+    double same = SAME * f->faces->size / sine_between(f->faces, of->face / 2, of->line);
     for (size_t i = 0, next; i < count; i = next) {
         int at_walls = 0;
-        for (next = i; next < count && events[next].at - events[i].at < SAME * f->faces->size;
-             next++)
+        for (next = i; next < count && events[next].at - events[i].at < same; next++)
             at_walls += events[next].plane == WALL ? events[next].change : 0;
         for (size_t k = i; k < next; k++) {
             int change = at_walls;

@@ -32,8 +32,9 @@ typedef struct FlatSegment {
 } FlatSegment;
 
 typedef struct FlatFaces {
-    Arena *arena;
-    double size; /* of what is meshed */
+    Arena   *arena;
+    double   size; /* of what is meshed */
+    uint32_t turn; /* at another one planes are moved otherwise */
     struct {
         FlatPlane *items;
         size_t     count, capacity;

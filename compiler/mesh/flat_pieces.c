@@ -2,7 +2,9 @@
  * flat_pieces.c: half-spaces from the steps of a lane tape.
  *
  * Each linear step is a form: a sum of coordinates, and of kinks, which are minima, maxima and absolute values of forms.
- * A sum with a kink is the minimum or the maximum of two sums without it, by the sign of its factor.
+ * A sum with a kink is the minimum or the maximum of two sums without it, by the sign of its factor.  A length is a kink, too:
+ * that of a pair of numbers is the maximum of what the sides of a polygon tell, and that of three is the length of a pair of which
+ * one is the length of a pair.  So balls have bands.
  *
  * One thing is taken for granted and not proven: that a distance to a box is 0 or less where none of its faces is above 0.  So
  * who uses the half-spaces looks whether the surface is on the faces that come out (flat.c: is_on_surface).
@@ -33,7 +35,10 @@ typedef struct Finding {
     double           size;
     Form            *forms;      /* of inputs and steps */
     int             *conditions; /* of each operand, where it is true; UNKNOWN: not looked at */
+    FlatRounds      *rounds;
     FlatPieces      *pieces;
+    FlatSlack        slack;                  /* of what is being taken apart */
+    uint32_t         most_used, most_around; /* of the sides of a polygon */
     bool             failed;
 } Finding;
 
@@ -142,6 +147,11 @@ static bool is_lesser(const LaneStep *step)
     return step->op == OP_min || step->op == LANE_LESSER;
 }
 
+static bool is_kink(const Form *form, uint32_t value)
+{
+    return form->kink_count == 1 && form->kinks[0] == value;
+}
+
 /* One of two forms that is the lesser, or the greater, all over the box; else a kink. */
 static Form chosen(const Finding *f, const Form *a, const Form *b, bool greater, uint32_t value)
 {
@@ -160,6 +170,19 @@ static Form size_form(const Finding *f, const Form *a, uint32_t value)
 {
     Form negative = scaled(-1, a);
     return chosen(f, a, &negative, true, value);
+}
+
+/* A number between two others where it is one of them, or itself, all over the box. */
+static Form clamped_form(const Finding *f, const LaneStep *step, uint32_t value)
+{
+    Form number = form_of(f, step->operands[0]);
+    for (uint32_t k = 1; k < 3 && number.known; k++) {
+        Form limit = form_of(f, step->operands[k]);
+        number     = chosen(f, &number, &limit, k == 1, value);
+        if (is_kink(&number, value))
+            return number;
+    }
+    return number;
 }
 
 static Form product_of(const Form *a, const Form *b)
@@ -232,6 +255,8 @@ static Form form_of_step(const Finding *f, size_t i)
         form = size_form(f, &a, value);
     else if (is_greater(step) || is_lesser(step))
         form = chosen(f, &a, &b, is_greater(step), value);
+    else if (step->op == OP_clamp)
+        form = clamped_form(f, step, value);
     else if (step->op == OP_length)
         form = length_form(f, step, value);
     return form.known ? form : kink_form(value);
@@ -259,23 +284,75 @@ static int add_node(Finding *f, FlatNode node)
     return (int)f->pieces->node_count++;
 }
 
-static int both(Finding *f, int a, int b)
+static int join(Finding *f, int kind, int a, int b)
 {
-    if (a == FLAT_NONE || b == FLAT_NONE)
-        return FLAT_NONE;
-    if (a == FLAT_ALL || b == FLAT_ALL || a == b)
-        return a == FLAT_ALL ? b : a;
-    return add_node(f, (FlatNode){FLAT_BOTH, a, b});
+    int all  = kind == FLAT_BOTH ? FLAT_ALL : FLAT_NONE,
+        none = kind == FLAT_BOTH ? FLAT_NONE : FLAT_ALL;
+    if (a == none || b == none)
+        return none;
+    if (a == all || b == all || a == b)
+        return a == all ? b : a;
+    return add_node(f, (FlatNode){kind, a, b});
 }
 
-static int either(Finding *f, int a, int b)
+/* How two half-spaces lie whose planes are parallel. */
+typedef enum Placing { APART, COVERING, WITHIN, AROUND, CROSSING } Placing;
+
+static Placing find_placing(const Finding *f, const FlatNode *a, const FlatNode *b)
 {
-    if (a == FLAT_ALL || b == FLAT_ALL)
-        return FLAT_ALL;
-    if (a == FLAT_NONE || b == FLAT_NONE || a == b)
-        return a == FLAT_NONE ? b : a;
-    return add_node(f, (FlatNode){FLAT_EITHER, a, b});
+    const HalfSpace *first = &f->pieces->list[a->first], *second = &f->pieces->list[b->first];
+    double           off[3], turned = a->second * b->second * dot3(first->normal, second->normal);
+    double           sign = turned < 0 ? -1 : 1, margin = ROUNDING * f->size;
+    for (int k = 0; k < 3; k++)
+        off[k] = a->second * first->normal[k] - sign * b->second * second->normal[k];
+    double depth = a->second * first->offset - sign * b->second * second->offset;
+    if (!(largest3(off) < ROUNDING) || !isfinite(depth))
+        return CROSSING;
+    if (turned < 0)
+        return depth >= -margin ? APART : COVERING;
+    return depth >= -margin ? WITHIN : AROUND;
 }
+
+/* A solid where a half-space is, or else where it is not. */
+static int given(Finding *f, const FlatNode *known, bool inside, int solid)
+{
+    if (solid < 0 || f->failed)
+        return solid;
+    FlatNode node = f->pieces->nodes[solid];
+    if (node.kind == FLAT_HALF_SPACE) {
+        Placing placing = find_placing(f, &node, known);
+        if (inside)
+            return placing == APART ? FLAT_NONE : placing == AROUND ? FLAT_ALL : solid;
+        return placing == WITHIN ? FLAT_NONE : placing == COVERING ? FLAT_ALL : solid;
+    }
+    int first = given(f, known, inside, node.first), second = given(f, known, inside, node.second);
+    return first == node.first && second == node.second ? solid : join(f, node.kind, first, second);
+}
+
+/* The second solid where the half-spaces are that the first is an intersection with, or not those of a union. */
+static int given_solid(Finding *f, int kind, int known, int solid)
+{
+    if (known < 0 || solid < 0)
+        return solid;
+    FlatNode node = f->pieces->nodes[known];
+    if (node.kind == FLAT_HALF_SPACE)
+        return given(f, &node, kind == FLAT_BOTH, solid);
+    return (int)node.kind != kind
+               ? solid
+               : given_solid(f, kind, node.second, given_solid(f, kind, node.first, solid));
+}
+
+/* Leaves out what makes no difference: faces of parts within others, and where parts touch. */
+static int join_solids(Finding *f, int kind, int a, int b)
+{
+    b = given_solid(f, kind, a, b);
+    a = given_solid(f, kind, b, a);
+    return join(f, kind, a, b);
+}
+
+static int both(Finding *f, int a, int b) { return join_solids(f, FLAT_BOTH, a, b); }
+
+static int either(Finding *f, int a, int b) { return join_solids(f, FLAT_EITHER, a, b); }
 
 /* The number of a half-space, or of the one on its other side, whose sign is then -1. */
 static int find_half_space(Finding *f, const HalfSpace *plane, int *sign)
@@ -294,8 +371,16 @@ static int find_half_space(Finding *f, const HalfSpace *plane, int *sign)
         f->failed = true;
         return 0;
     }
-    pieces->list[pieces->count] = *plane;
+    pieces->list[pieces->count]  = *plane;
+    pieces->slack[pieces->count] = (FlatSlack){0, 0};
     return (int)pieces->count++;
+}
+
+static void add_slack(Finding *f, int number, double below, double above, double length)
+{
+    FlatSlack *slack = &f->pieces->slack[number];
+    slack->below     = max2(slack->below, below / length);
+    slack->above     = max2(slack->above, above / length);
 }
 
 /* Where a form without kinks is below 0. */
@@ -315,6 +400,8 @@ static int half_space(Finding *f, const Form *form)
         plane.normal[k] = form->by[k] / length;
     plane.offset = form->at / length;
     int number   = find_half_space(f, &plane, &sign);
+    add_slack(f, number, sign > 0 ? f->slack.below : f->slack.above,
+              sign > 0 ? f->slack.above : f->slack.below, length);
     return add_node(f, (FlatNode){FLAT_HALF_SPACE, number, sign});
 }
 
@@ -590,6 +677,273 @@ static int solid_of_choice(Finding *f, const Form *rest, double factor, const La
     return either(f, where, both(f, complement(f, condition), solid_of(f, &b)));
 }
 
+/* The greater of the least, and of the lesser of a number and the most. */
+static int solid_of_clamped(Finding *f, const Form *rest, double factor, const LaneStep *step)
+{
+    int solids[3];
+    for (int k = 0; k < 3; k++) {
+        Form own  = form_of(f, step->operands[k]);
+        Form form = sum_of(*rest, factor, &own);
+        solids[k] = solid_of(f, &form);
+    }
+    return factor > 0 ? both(f, either(f, solids[0], solids[2]), solids[1])
+                      : either(f, both(f, solids[0], solids[2]), solids[1]);
+}
+
+/* A distance to a box that is not the sum of its faces' kinks. */
+static int solid_of_sum(Finding *f, const Form *rest, double factor, const LaneStep *step)
+{
+    Form first = form_of(f, step->operands[0]), second = form_of(f, step->operands[1]);
+    Form both_of = sum_of(*rest, factor, &first);
+    both_of      = sum_of(both_of, factor, &second);
+    return solid_of(f, &both_of);
+}
+
+/* ---- what is round ---- */
+
+/* The polygon that stands for a circle, and those of its sides that are the farthest ones in directions of a rectangle. */
+typedef struct Sides {
+    double   angle, stretch; /* that of a side, and the radius over the distance to it */
+    uint32_t count, used;
+    int64_t  first;
+} Sides;
+
+static void find_sides(Range a, Range b, uint32_t count, Sides *sides)
+{
+    static const double SLACK  = 1e-9;
+    const double        around = 2 * acos(-1);
+    sides->count               = count;
+    sides->angle               = around / count;
+    sides->stretch             = 1 / cos(0.5 * sides->angle);
+    sides->first               = 0;
+    sides->used                = count;
+    if (a.low <= 0 && a.high >= 0 && b.low <= 0 && b.high >= 0)
+        return;
+    double middle = atan2(b.low + b.high, a.low + a.high), low = 0, high = 0;
+    for (int i = 0; i < 4; i++) {
+        double turn = atan2(i / 2 ? b.high : b.low, i % 2 ? a.high : a.low) - middle;
+        turn -= around * round(turn / around);
+        low  = min2(low, turn);
+        high = max2(high, turn);
+    }
+    sides->first = (int64_t)floor((middle + low) / sides->angle - SLACK);
+    double last  = floor((middle + high) / sides->angle + SLACK);
+    sides->used  = (uint32_t)min2(last - (double)sides->first + 1, count);
+}
+
+/* What a side tells of two numbers: that of the first, or of the second. */
+static double side_factor(const Sides *sides, uint32_t i, bool second)
+{
+    double angle = ((double)sides->first + i + 0.5) * sides->angle;
+    return sides->stretch * (second ? sin(angle) : cos(angle));
+}
+
+/* Where the first number is a length, only sides to the right count. */
+static void leave_out_behind(Sides *sides)
+{
+    while (sides->used > 0 && side_factor(sides, 0, false) < 0) {
+        sides->first++;
+        sides->used--;
+    }
+    while (sides->used > 0 && side_factor(sides, sides->used - 1, false) < 0)
+        sides->used--;
+}
+
+/* Whether a form has a length of several numbers in it. */
+static bool has_round(const Finding *f, const Form *form, int depth)
+{
+    enum { DEEPEST = 6 };
+    for (int i = 0; i < form->kink_count; i++) {
+        const LaneStep *step = step_of(f, form->kinks[i]);
+        if (!step || depth == DEEPEST || step->op == OP_length)
+            return true;
+        for (uint32_t k = 0; k < step->operand_count && step->op != LANE_CALL; k++) {
+            Form operand = form_of(f, step->operands[k]);
+            if (has_round(f, &operand, depth + 1))
+                return true;
+        }
+    }
+    return false;
+}
+
+/* How fast a form changes, about. */
+static double steepness(const Finding *f, const Form *form, int depth)
+{
+    enum { DEEPEST = 6 };
+    double slope = length3(form->by);
+    for (int i = 0; i < form->kink_count && depth < DEEPEST; i++) {
+        const LaneStep *step = step_of(f, form->kinks[i]);
+        for (uint32_t k = 0; step && step->op != LANE_CALL && k < step->operand_count; k++) {
+            Form operand = form_of(f, step->operands[k]);
+            slope        = max2(slope, fabs(form->factors[i]) * steepness(f, &operand, depth + 1));
+        }
+    }
+    return slope;
+}
+
+typedef struct Rounded {
+    Form     forms[3];
+    uint32_t count;
+} Rounded;
+
+/* Its numbers that are not 0, the one up as the last, so that balls have their poles there. */
+static Rounded rounded_of(const Finding *f, const LaneStep *step)
+{
+    static const uint32_t ORDER[3] = {0, 2, 1};
+    Rounded               rounded  = {.count = 0};
+    for (uint32_t i = 0; i < 3; i++) {
+        if (ORDER[i] >= step->operand_count)
+            continue;
+        Form form = form_of(f, step->operands[ORDER[i]]);
+        if (!is_constant(&form) || form.at != 0)
+            rounded.forms[rounded.count++] = form;
+    }
+    return rounded;
+}
+
+/* How large the circle is where the form is 0, in lengths of the scene; what the rest is says that. */
+static void note_round(Finding *f, const Form *rest, double factor, const LaneStep *step,
+                       const Rounded *rounded, double slope)
+{
+    Form   of_length = scaled(-1 / factor, rest);
+    Range  needed    = range_of_form(f, &of_length);
+    Range  known     = f->field->ranges.ranges[LANE_INPUTS + (size_t)(step - f->tape->steps)];
+    double radius    = min2(needed.high, known.high);
+    bool   shared    = rounded->count > 2 || has_round(f, rest, 0);
+    for (uint32_t i = 0; i < rounded->count; i++)
+        shared |= has_round(f, &rounded->forms[i], 0);
+    if (radius > 0 && slope > 0)
+        flat_rounds_note(f->rounds, step->kin, radius / slope, shared);
+}
+
+/* What one side, or one side of a band, tells; `across` and `up` are the factors of the band. */
+static int solid_of_side(Finding *f, const Form *rest, double factor, const Rounded *rounded,
+                         const double band[2], const Sides *sides, uint32_t i)
+{
+    double across = factor * band[0];
+    Form   form   = sum_of(*rest, across * side_factor(sides, i, false), &rounded->forms[0]);
+    form          = sum_of(form, across * side_factor(sides, i, true), &rounded->forms[1]);
+    if (rounded->count > 2)
+        form = sum_of(form, factor * band[1], &rounded->forms[2]);
+    return solid_of(f, &form);
+}
+
+/* The length of a pair is the largest distance that the sides of its polygon tell; of `part` of that. */
+static int solid_of_pair_length(Finding *f, const Form *rest, double factor, const Rounded *rounded,
+                                const double band[2], uint32_t count)
+{
+    Sides sides;
+    find_sides(range_of_form(f, &rounded->forms[0]), range_of_form(f, &rounded->forms[1]), count,
+               &sides);
+    bool around = sides.used == count;
+    if (sides.used > (around ? f->most_around : f->most_used)) {
+        f->failed = true;
+        return FLAT_NONE;
+    }
+    int solid = factor > 0 ? FLAT_ALL : FLAT_NONE;
+    for (uint32_t i = 0; i < sides.used; i++) {
+        int side = solid_of_side(f, rest, factor, rounded, band, &sides, i);
+        solid    = factor > 0 ? both(f, solid, side) : either(f, solid, side);
+    }
+    return solid;
+}
+
+/* Half as many, or a quarter, where that is enough for a band whose radius is this part of the largest: where numbers of
+   neighbours differ edges have more corners. */
+static uint32_t sides_of_band(uint32_t count, double part)
+{
+    uint32_t sides = count;
+    for (uint32_t fewer = count; fewer >= 4 && fewer >= count * part;
+         fewer          = 4 * ((fewer + 7) / 8)) {
+        sides = fewer;
+        if (fewer == 4)
+            break;
+    }
+    return sides;
+}
+
+/* A band of a ball: its factors, its number of sides, and how much longer lengths are by it. */
+typedef struct Band {
+    double   factors[2], longer;
+    uint32_t sides;
+} Band;
+
+/* That of three numbers is the length of a pair of which one is the length of a pair.  So balls have bands; those near
+   poles are shorter, and have fewer sides.  Where numbers of sides differ bands reach a bit farther. */
+static Sides find_bands(const Finding *f, const Rounded *rounded, uint32_t count)
+{
+    Range pair = range_sqrt(range_add(range_square(range_of_form(f, &rounded->forms[0])),
+                                      range_square(range_of_form(f, &rounded->forms[1]))));
+    Sides bands;
+    find_sides(pair, range_of_form(f, &rounded->forms[2]), count, &bands);
+    bands.first--;
+    bands.used = (uint32_t)min2(bands.used + 2, count);
+    leave_out_behind(&bands);
+    return bands;
+}
+
+static Band find_band(const Sides *bands, uint32_t i)
+{
+    Band   band    = {.factors = {side_factor(bands, i, false), side_factor(bands, i, true)}};
+    double part    = band.factors[0] / bands->stretch;
+    band.sides     = sides_of_band(bands->count, part);
+    double farther = 1 / cos(acos(-1) / band.sides) - 1;
+    band.longer    = bands->stretch * (1 + farther * part * min2(part + 0.5 * bands->angle, 1)) - 1;
+    return band;
+}
+
+/* What is too large, or too small, by a number at most. */
+static FlatSlack slack_with(FlatSlack slack, double excess)
+{
+    return (FlatSlack){slack.below + max2(excess, 0), slack.above - min2(excess, 0)};
+}
+
+static int solid_of_three(Finding *f, const Form *rest, double factor, const Rounded *rounded,
+                          uint32_t count, double reach)
+{
+    FlatSlack slack = f->slack;
+    Sides     bands = find_bands(f, rounded, count);
+    int       solid = factor > 0 ? FLAT_ALL : FLAT_NONE;
+    f->failed |= bands.used > f->most_used;
+    for (uint32_t i = 0; i < bands.used && !f->failed; i++) {
+        Band band = find_band(&bands, i);
+        f->slack  = slack_with(slack, factor * reach * band.longer);
+        int parts = solid_of_pair_length(f, rest, factor, rounded, band.factors, band.sides);
+        solid     = factor > 0 ? both(f, solid, parts) : either(f, solid, parts);
+    }
+    f->slack = slack;
+    return solid;
+}
+
+/* A length is longer by its part of stretch - 1 at most, and the direction of a side is half its angle off at most. */
+static int solid_of_length(Finding *f, const Form *rest, double factor, const LaneStep *step)
+{
+    static const double NO_BAND[2] = {1, 0};
+    Rounded             rounded    = rounded_of(f, step);
+    uint32_t            count      = flat_rounds_sides(f->rounds, step->kin);
+    FlatSlack           slack      = f->slack;
+    double              slope = 0, angle = 2 * acos(-1) / max2(count, 1);
+    double reach = f->field->ranges.ranges[LANE_INPUTS + (size_t)(step - f->tape->steps)].high;
+    if (rounded.count < 2 || count == 0 || step->kin == 0) {
+        f->failed = true;
+        return FLAT_NONE;
+    }
+    for (uint32_t i = 0; i < rounded.count; i++)
+        slope = max2(slope, steepness(f, &rounded.forms[i], 0));
+    note_round(f, rest, factor, step, &rounded, slope);
+    f->pieces->round = true;
+    int solid;
+    if (rounded.count > 2)
+        solid = solid_of_three(f, rest, factor, &rounded, count, reach);
+    else {
+        double longer = 1 / cos(0.5 * angle);
+        f->slack      = slack_with(slack, factor * reach * (longer - 1) * longer);
+        solid         = solid_of_pair_length(f, rest, factor, &rounded, NO_BAND, count);
+    }
+    f->slack = slack;
+    return solid;
+}
+
 /* Takes the last kink apart: no other depends on it. */
 static int solid_of_kink(Finding *f, const Form *form)
 {
@@ -613,9 +967,15 @@ static int solid_of_kink(Finding *f, const Form *form)
         pair[1] = scaled(-1, &pair[0]);
         return solid_of_pair(f, &rest, factor, pair, true);
     }
+    if (step->op == OP_clamp)
+        return solid_of_clamped(f, &rest, factor, step);
+    if (step->op == OP_length)
+        return solid_of_length(f, &rest, factor, step);
     double part;
     if (is_single_kink(form) && find_box_faces(f, value, rest.at / factor, &faces, &part))
         return solid_of_faces(f, &faces, factor * part, rest.at);
+    if (step->op == OP_add)
+        return solid_of_sum(f, &rest, factor, step);
     if (step->op == OP_select)
         return solid_of_choice(f, &rest, factor, step);
     int solid;
@@ -654,21 +1014,30 @@ static int cut(Finding *f, int solid)
     return solid;
 }
 
-bool flat_pieces(MeshField *field, Box box, double size, Arena *scratch, FlatPieces *pieces)
+FlatWork flat_work_new(const MeshField *field, Arena *arena)
 {
-    ArenaMark mark = arena_mark(scratch);
-    Finding   f    = {.field = field, .box = box, .size = size, .pieces = pieces};
-    f.tape         = &field->regions[field->region_count - 1].tape;
-    f.forms        = arena_new_array(scratch, Form, LANE_INPUTS + f.tape->count);
-    f.conditions   = arena_new_array(scratch, int, LANE_INPUTS + f.tape->count);
+    size_t most = LANE_INPUTS + lane_most_steps(&field->tape);
+    return (FlatWork){arena_new_array(arena, Form, most), arena_new_array(arena, int, most)};
+}
+
+bool flat_pieces(MeshField *field, Box box, double size, FlatRounds *rounds, FlatUse use,
+                 FlatWork *work, FlatPieces *pieces)
+{
+    static const uint32_t MOST_USED[] = {8, 24}, MOST_AROUND[] = {100, 100};
+    Finding f     = {.field = field, .box = box, .size = size, .rounds = rounds, .pieces = pieces};
+    f.most_used   = MOST_USED[use];
+    f.most_around = MOST_AROUND[use];
+    f.tape        = &field->regions[field->region_count - 1].tape;
+    f.forms       = work->forms;
+    f.conditions  = work->conditions;
     for (size_t i = 0; i < LANE_INPUTS + f.tape->count; i++)
         f.conditions[i] = UNKNOWN;
     pieces->count = pieces->node_count = 0;
+    pieces->round                      = false;
     lane_ranges_run(f.tape, &field->ranges, box);
     find_forms(&f);
     Form root    = form_of(&f, f.tape->outputs[0]);
     pieces->root = cut(&f, solid_of(&f, &root));
-    arena_rewind(scratch, mark);
     return !f.failed && field->frame->zone_count == 0;
 }
 

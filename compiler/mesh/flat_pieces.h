@@ -9,13 +9,19 @@
 #define KRS_MESH_FLAT_PIECES_H
 
 #include "compiler/mesh/field.h"
+#include "compiler/mesh/flat_rounds.h"
 
 /* normal . p + offset, below 0 inside; the normal has length 1. */
 typedef struct HalfSpace {
     double normal[3], offset;
 } HalfSpace;
 
-enum { MOST_FLATS = 48, MOST_FLAT_NODES = 256 };
+/* By how much less, or more, the number may be that a half-space stands for. */
+typedef struct FlatSlack {
+    double below, above;
+} FlatSlack;
+
+enum { MOST_FLATS = 128, MOST_FLAT_NODES = 1024 };
 
 /* A solid: all, none, or a node. */
 enum { FLAT_ALL = -1, FLAT_NONE = -2 };
@@ -28,13 +34,27 @@ typedef struct FlatNode {
 typedef struct FlatPieces {
     size_t    count, node_count;
     HalfSpace list[MOST_FLATS];
+    FlatSlack slack[MOST_FLATS];
     FlatNode  nodes[MOST_FLAT_NODES];
     int       root;
+    bool      round; /* some stand for what is round */
 } FlatPieces;
+
+/* Room for what is found of steps; for one thread. */
+typedef struct FlatWork {
+    struct Form *forms;
+    int         *conditions;
+} FlatWork;
+
+FlatWork flat_work_new(const MeshField *field, Arena *arena);
+
+/* For faces, or for a proof, which has less room around it and so more planes. */
+typedef enum FlatUse { FLAT_MAKING, FLAT_PROVING } FlatUse;
 
 /* In a box within that which was entered last.  `size`: of what is meshed; half-spaces that differ by less than
    rounding are one.  False: it is not made like that, or of more. */
-bool flat_pieces(MeshField *field, Box box, double size, Arena *scratch, FlatPieces *pieces);
+bool flat_pieces(MeshField *field, Box box, double size, FlatRounds *rounds, FlatUse use,
+                 FlatWork *work, FlatPieces *pieces);
 
 /* Whether a place is in the solid: -1, or 1 where it is outside, or 0 where that is not known.  `sides` says the same of each
    half-space; where it is not known, `unknown` is one of those that would tell. */

@@ -1,0 +1,244 @@
+/*
+ * round_meshes.c: solids of round and flat parts have few triangles, are within the error, and have the right shape.
+ *
+ * Random parts are joined by random set operations.  What is inside is told by the definitions of the parts.
+ *
+ * round_meshes [COUNT]: so many random solids.
+ */
+#include "tests/oracle/mesh_distance.h"
+#include "tests/oracle/mesh_shape.h"
+#include "tests/oracle/product.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const double PI     = 3.14159265358979323846;
+static uint64_t     wanted = 14; /* random solids */
+
+static KrsMesh *mesh_of_text(const char *text, double error)
+{
+    Product        product = product_compile(text);
+    KrsMeshOptions options = {.error = error};
+    KrsMesh       *mesh;
+    assert_int_equal(krs_mesh(product.frame, &options, &mesh), KRS_OK);
+    product_free(&product);
+    check_closed(mesh);
+    return mesh;
+}
+
+/* ---- closed forms ---- */
+
+/* So many sides a polygon has at least that is within the error of a circle and has its corners on it. */
+static double least_sides(double error, double radius) { return PI / acos(1 - error / radius); }
+
+static void solids_have_few_triangles(void **state)
+{
+    static const struct {
+        const char *text;
+        double error, each; /* triangles at least: that times the sides of one or two circles */
+        double radii[2];
+        double factor; /* and so many times these at most */
+        long   genus;
+        double volume, area;
+    } solids[] = {
+        {"show cylinder(1, 2);", 0.01, 4, {1}, 1.5, 0, 2 * PI, 6 * PI},
+        {"show cylinder(1, 2).rotate([1, 2, 3], 1).move([5, 6, 7]);",
+         0.001,
+         4,
+         {1},
+         1.3,
+         0,
+         2 * PI,
+         6 * PI},
+        {"show cylinder(1, 2) - cylinder(0.5, 3);", 0.01, 8, {1}, 1.5, 1, 1.5 * PI, 7.5 * PI},
+        {"show cone(1, 2);", 0.01, 2, {1}, 1.5, 0, 2 * PI / 3, 3.236 * PI},
+        {"show capped_cone(1, 0.5, 1);", 0.01, 4, {1}, 1.5, 0, 1.75 / 3 * PI, 3 * PI},
+        {"show sphere(1);", 0.01, 1, {1, 1}, 3, 0, 4 * PI / 3, 4 * PI},
+        {"show sphere(1);", 0.001, 1, {1, 1}, 3, 0, 4 * PI / 3, 4 * PI},
+        {"show torus(1, 0.3);", 0.005, 2, {1.3, 0.3}, 3, 1, 0.18 * PI * PI, 1.2 * PI * PI},
+        {"show capsule([-0.6, -0.3, 0], [0.6, 0.3, 0.1], radius: 0.3);",
+         0.005,
+         1,
+         {0.3, 0.3},
+         4,
+         0,
+         0.09 * PI * (1.3453624 + 0.4),
+         3.667},
+        /* The rim has 32 degrees. */
+        {"show sphere(20) - cylinder(17, 100);",
+         0.2,
+         1,
+         {20, 20},
+         7,
+         1,
+         4 * PI / 3 * 1169.4618,
+         4898.6},
+        {"show box([2, 1, 1]) - sphere(0.7);", 0.01, 1, {0.7, 0.7}, 7, 3, 0, 0},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof solids / sizeof *solids; i++) {
+        double    error = solids[i].error, least = solids[i].each;
+        KrsMesh  *mesh  = mesh_of_text(solids[i].text, error);
+        MeshShape shape = mesh_shape(mesh);
+        for (int k = 0; k < 2; k++)
+            least *= solids[i].radii[k] > 0 ? least_sides(error, solids[i].radii[k]) : 1;
+        print_message("# %zu triangles, at least %.0f; volume %.6f of %.6f: %s\n",
+                      mesh->triangle_count, least, shape.volume, solids[i].volume, solids[i].text);
+        assert_int_equal(mesh->unresolved, 0);
+        assert_true((double)mesh->triangle_count < solids[i].factor * least);
+        assert_int_equal(shape.parts, 1);
+        assert_int_equal(shape.euler, 2 - 2 * solids[i].genus);
+        if (solids[i].volume > 0)
+            assert_true(fabs(shape.volume - solids[i].volume) < error * solids[i].area);
+        krs_mesh_free(mesh);
+    }
+}
+
+/* ---- random solids ---- */
+
+enum { MOST_PARTS_HERE = 6 };
+
+typedef enum Kind { A_BALL, A_CYLINDER, A_CONE, A_RING, A_CAPSULE, A_BOX, KINDS } Kind;
+
+typedef struct Part {
+    Kind   kind;
+    double size[3];
+    Vec    axis, shift;
+    double angle;
+    char   joined; /* to what is before it */
+} Part;
+
+typedef struct Parts {
+    Part   list[MOST_PARTS_HERE];
+    size_t count;
+} Parts;
+
+static Part random_part(Random *random)
+{
+    Part part  = {.kind   = (Kind)random_below(random, KINDS),
+                  .axis   = random_unit(random),
+                  .angle  = random_below(random, 2) ? random_between(random, 0, 2 * PI) : 0,
+                  .joined = "|-&|-"[random_below(random, 5)]};
+    part.shift = vec_scale(random_between(random, 0, 0.9), random_unit(random));
+    for (int k = 0; k < 3; k++)
+        part.size[k] = random_between(random, 0.4, 1.2);
+    return part;
+}
+
+static void write_part(SceneText *text, const Part *part)
+{
+    static const char *const forms[KINDS] = {
+        [A_BALL]     = "sphere(%.17g)",
+        [A_CYLINDER] = "cylinder(%.17g, %.17g)",
+        [A_CONE]     = "cone(%.17g, %.17g)",
+        [A_RING]     = "torus(%.17g, 0.4 * %.17g)",
+        [A_CAPSULE]  = "capsule([0, -%.17g, 0], [0, 0, 0], %.17g)",
+        [A_BOX]      = "box([%.17g, %.17g, %.17g])"};
+    char form[256];
+    snprintf(form, sizeof form, forms[part->kind], part->size[0], part->size[1], part->size[2]);
+    scene_write(text, "%s.rotate([%.17g, %.17g, %.17g], %.17g).move([%.17g, %.17g, %.17g])", form,
+                part->axis.x, part->axis.y, part->axis.z, part->angle, part->shift.x, part->shift.y,
+                part->shift.z);
+}
+
+/* Rodrigues' formula, backwards. */
+static Vec turned_back(const Part *part, Vec point)
+{
+    Vec    at = vec_sub(point, part->shift);
+    double c = cos(part->angle), s = -sin(part->angle);
+    Vec    turned = vec_add(vec_scale(c, at), vec_scale(s, vec_cross(part->axis, at)));
+    return vec_add(turned, vec_scale((1 - c) * vec_dot(part->axis, at), part->axis));
+}
+
+static double value_of_part(const Part *part, Vec point)
+{
+    Vec           q    = turned_back(part, point);
+    const double *size = part->size;
+    double        out  = hypot(q.x, q.z);
+    switch (part->kind) {
+    case A_BALL: return vec_length(q) - size[0];
+    case A_CYLINDER: return fmax(out - size[0], fabs(q.y) - size[1] / 2);
+    case A_CONE: /* as far out as it is below the tip, times radius over height */
+        return fmax((out - size[0] / size[1] * (size[1] / 2 - q.y)) / hypot(1, size[0] / size[1]),
+                    -size[1] / 2 - q.y);
+    case A_RING: return hypot(out - size[0], q.y) - 0.4 * size[1];
+    case A_CAPSULE: return hypot(out, q.y - fmax(-size[0], fmin(q.y, 0))) - size[1];
+    default:
+        return fmax(fabs(q.x) - size[0] / 2,
+                    fmax(fabs(q.y) - size[1] / 2, fabs(q.z) - size[2] / 2));
+    }
+}
+
+static double value_of_parts(const void *user, Vec point)
+{
+    const Parts *parts = user;
+    double       value = value_of_part(&parts->list[0], point);
+    for (size_t i = 1; i < parts->count; i++) {
+        double next = value_of_part(&parts->list[i], point);
+        char   how  = parts->list[i].joined;
+        value       = how == '|' ? fmin(value, next) : fmax(value, how == '&' ? next : -next);
+    }
+    return value;
+}
+
+static void write_parts(SceneText *text, const Parts *parts)
+{
+    text->length = 0;
+    scene_write(text, "show ");
+    for (size_t i = 1; i < parts->count; i++)
+        scene_write(text, "(");
+    for (size_t i = 0; i < parts->count; i++) {
+        if (i > 0)
+            scene_write(text, " %c ", parts->list[i].joined);
+        write_part(text, &parts->list[i]);
+        if (i > 0)
+            scene_write(text, ")");
+    }
+    scene_write(text, ";");
+}
+
+static void random_solids_are_within_the_error(void **state)
+{
+    static SceneText text;
+    size_t           largest = 0, hits = 0, points = 0, reported = 0;
+    double           farthest = 0;
+    (void)state;
+    for (uint64_t turn = 0; turn < wanted; turn++) {
+        Random random = {7003 + turn};
+        Parts  parts  = {.count = 1 + (size_t)random_below(&random, MOST_PARTS_HERE)};
+        for (size_t i = 0; i < parts.count; i++)
+            parts.list[i] = random_part(&random);
+        double error = exp(random_between(&random, log(0.003), log(0.06)));
+        write_parts(&text, &parts);
+        KrsMesh *mesh    = mesh_of_text(text.bytes, error);
+        Surface  surface = {value_of_parts, &parts, vec(-3, -3, -3), vec(3, 3, 3)};
+        Apart    apart   = mesh_apart(mesh, &surface, error, 120, 600, &random);
+        if (apart.astray > 0 || (apart.lost > 0 && mesh->unresolved == 0) || apart.thick > 0)
+            fail_msg("%zu points astray, as %.9g %.9g %.9g; %zu hits lost, as %.9g %.9g %.9g: "
+                     "error %.17g of %s",
+                     apart.astray, apart.astray_at.x, apart.astray_at.y, apart.astray_at.z,
+                     apart.lost, apart.lost_at.x, apart.lost_at.y, apart.lost_at.z, error,
+                     text.bytes);
+        largest = mesh->triangle_count > largest ? mesh->triangle_count : largest;
+        reported += mesh->unresolved > 0;
+        hits += apart.hits;
+        points += apart.points;
+        farthest = fmax(farthest, apart.farthest_hit);
+        krs_mesh_free(mesh);
+    }
+    print_message("# %zu hits, at most %.3f errors away; %zu points; at most %zu triangles; %zu "
+                  "solids with reports\n",
+                  hits, farthest, points, largest, reported);
+    assert_true(hits > 100 * wanted && farthest > 0.3);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(solids_have_few_triangles),
+        cmocka_unit_test(random_solids_are_within_the_error),
+    };
+    if (argc > 1)
+        wanted = (uint64_t)atoi(argv[1]);
+    return cmocka_run_group_tests_name("round_meshes", tests, NULL, NULL);
+}
