@@ -24,7 +24,6 @@
 
 #include "cli/console.h"
 #include "cli/crash_report.h"
-#include "cli/terminate.h"
 #include "compiler/base/patience.h"
 #include "compiler/base/unchecked.h"
 
@@ -242,7 +241,6 @@ static _Noreturn void run_child(Options *options, Work *work, const sigset_t *ma
     limit_memory(options->limits.memory);
     atomic_store(&shared->unchecked, 0);
     unchecked_count_at(&shared->unchecked);
-    terminate_by_status();
     note_crashes();
     prctl(PR_SET_PDEATHSIG, SIGTERM); /* nobody would read what we do */
     catch_signal(SIGINT);

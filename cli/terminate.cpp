@@ -1,8 +1,7 @@
 // terminate.cpp: exceptions that nobody can catch.
 //
-// Libraries in C++ may need memory where they give up what they have: an exception there ends the process.
-#include "cli/terminate.h"
-
+// Libraries in C++ may need memory where they give up what they have, or for objects that are made before main: an
+// exception there ends the process, with KRS_OUT_OF_MEMORY and a line if it is want of memory.
 #include <cstdlib>
 #include <exception>
 #include <new>
@@ -29,6 +28,7 @@ namespace
     std::abort();
 }
 
-} // namespace
+/* Before objects of libraries are made that need memory, which is before main. */
+__attribute__((constructor(101))) void set_end_of_process() { std::set_terminate(end_process); }
 
-void terminate_by_status(void) { std::set_terminate(end_process); }
+} // namespace

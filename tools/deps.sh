@@ -1,15 +1,15 @@
 #!/bin/sh
 # deps.sh [test]: installs the Debian packages that are missing, of those that building and rendering need,
-# and with `test` also of those that only tests need.
+# and with `test` also of those that only tests need, and libopenvdb-dev, which is large and writes .vdb alone.
 # It knows Debian 12 and 13, and Ubuntu 24.04: what only tests need and the system does not offer is left out.
 # Says what it does; uses sudo when it is not run by root; does nothing when nothing is missing.
 building="g++ glslang-dev glslang-tools spirv-tools libvulkan-dev libopenexr-dev libdeflate-dev libpng-dev libxxhash-dev
           libqhull-dev libfreetype-dev libharfbuzz-dev libfontconfig-dev libexpat1-dev libglfw3-dev libimgui-dev libgl-dev
-          libchafa-dev libx11-dev libtinygltf-dev libzip-dev libmeshoptimizer-dev libopenvdb-dev pkgconf"
+          libchafa-dev libx11-dev libtinygltf-dev libzip-dev libmeshoptimizer-dev pkgconf"
 rendering="mesa-vulkan-drivers libgl1-mesa-dri fonts-dejavu-core"
 testing="vulkan-validationlayers xvfb xdotool openbox libcmocka-dev clang clang-format libclang-rt-dev lld
-         shellcheck strace openexr patch chromium-common admesh assimp-utils python3-numpy libcgal-dev
-         python3-openvdb python3-nibabel"
+         shellcheck strace procps openexr patch chromium-common admesh assimp-utils python3-numpy libcgal-dev
+         libopenvdb-dev python3-openvdb python3-nibabel"
 
 case ${1:-} in
 test) packages="$building $rendering $testing" ;;
