@@ -163,19 +163,19 @@ if command -v python3 >/dev/null; then
     run grid ball.krs --cell 0.0625 -o b.npy
     python3 read.py npy b.npy "$(first)" 0.0625 2>err
     result $? "NumPy's file has the distances"
-    run grid ball.krs --cell 0.0625 -o r.npy --color --material
+    run grid ball.krs --cell 0.0625 -o r.npy --surface-color --material
     python3 read.py records r.npy "$(first)" 0.0625 2>err
     result $? "and with colours and materials records"
     run grid ball.krs --cell 0.0625 -o b.nii --units cm
     python3 read.py nii b.nii 0.625 0.0625 2>err
     result $? "NIfTI has them in millimetres"
-    run grid --quiet ball.krs --cell 0.125 -o v.nii --color --material && python3 read.py volumes v.nii 2>err
+    run grid --quiet ball.krs --cell 0.125 -o v.nii --surface-color --material && python3 read.py volumes v.nii 2>err
     result $? "and the rest as volumes"
     run grid --quiet ball.krs --cell 0.0625 -o b.ktx2 && python3 read.py ktx2 b.ktx2 2>err
     result $? "KTX 2.0 has all fields of its specification"
-    run grid --quiet ball.krs --cell 0.0625 -o c.ktx2 --color && python3 read.py rgba c.ktx2 2>err
+    run grid --quiet ball.krs --cell 0.0625 -o c.ktx2 --surface-color && python3 read.py rgba c.ktx2 2>err
     result $? "and colours with them"
-    run grid --quiet ball.krs --cell 0.0625 -o b.vti --color --material && python3 read.py vti b.vti 2>err
+    run grid --quiet ball.krs --cell 0.0625 -o b.vti --surface-color --material && python3 read.py vti b.vti 2>err
     result $? "VTK's images have them"
     run grid --quiet ball.krs --cell 0.0625 -o b.vtu && python3 read.py vtu b.vtu 0.0625 2>err
     result $? "VTK's cells are all that the surface crosses"
@@ -185,7 +185,7 @@ fi
 
 # ---- other programs ----
 if python_with numpy; then
-    run grid --quiet ball.krs --cell 0.0625 -o n.npy --fog --color
+    run grid --quiet ball.krs --cell 0.0625 -o n.npy --fog --surface-color
     "$python" -c "
 import numpy
 a = numpy.load('n.npy')
@@ -226,11 +226,11 @@ else
 fi
 
 # ---- OpenVDB ----
-run grid --quiet ball.krs --cell 0.03125 -o b.vdb --color --material
+run grid --quiet ball.krs --cell 0.03125 -o b.vdb --surface-color --material
 if [ "$status" -eq 0 ]; then
     [ -s b.vdb ]
     result $? "OpenVDB has a file"
-    run grid --quiet ball.krs --cell 0.03125 -o again.vdb --color --material
+    run grid --quiet ball.krs --cell 0.03125 -o again.vdb --surface-color --material
     cmp b.vdb again.vdb 2>err
     result $? "which is the same each time"
     run grid --quiet ball.krs --cell 0.03125 --fog -o f.vdb
