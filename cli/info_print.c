@@ -243,7 +243,7 @@ static void warn(const Printing *printing)
             "first "
             "is at [%g, %g, %g]; a smaller --error tells",
             m->unresolved, m->error, at[0], at[1], at[2]);
-    if (m->wall.thickness < printing->options->nozzle)
+    if (m->thin_area > 0 || m->wall.thickness < (1 - 1e-6) * printing->options->nozzle)
         say("warning: a wall of %.4g %s at [%g, %g, %g] is thinner than the nozzle, %g %s; "
             "walls of %.4g %s2 in all are",
             m->wall.thickness, printing->unit, from[0], from[1], from[2], printing->options->nozzle,

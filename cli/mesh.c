@@ -343,6 +343,24 @@ static KrsStatus write_meshes(const Meshing *meshing)
     return status;
 }
 
+/* Far from the origin the numbers of a file are coarser than a mesh is near to the surface. */
+static void warn_of_rounding(const Meshing *meshing, const Summary *all)
+{
+    static const double SMALL   = 0.1; /* parts of the error that go without saying */
+    double              largest = 0;
+    for (int k = 0; k < 3; k++)
+        largest = fmax(largest, fmax(fabs(all->low[k]), fabs(all->high[k])));
+    for (size_t i = 0; i < output_count(meshing); i++) {
+        const char *path     = output_path(meshing, i);
+        double      rounding = largest * mesh_format(path)->rounding;
+        if (rounding > SMALL * all->error)
+            say("warning: numbers in `%s` are rounded, so that corners may be off by %.2g more: "
+                "its solid is "
+                "%.4g from the origin; `.move()` it there",
+                path, rounding * meshing->scale, largest * meshing->scale);
+    }
+}
+
 static void report(const Meshing *meshing, const Bodies *bodies)
 {
     Summary       all = summarize(bodies);
@@ -355,6 +373,7 @@ static void report(const Meshing *meshing, const Bodies *bodies)
         say("warning: %zu cells may hold what is thinner than the error, or solids that touch; "
             "the first is at [%g, %g, %g] of the %s; a smaller --error tells",
             all.unresolved, at[0], at[1], at[2], all.copies > 1 ? "kernel" : "scene");
+    warn_of_rounding(meshing, &all);
     if (bodies == &meshing->assembled && all.copies > (double)bodies->count)
         say("%.0f copies with %.0f triangles, within %.4g of the surface", all.copies,
             all.triangles, all.error * meshing->scale);

@@ -309,11 +309,15 @@ static bool take_bytes(void *user, const void *bytes, size_t count)
 static bool write_glb(MeshFile *file) { return mesh_border_glb(file->parts, take_bytes, file); }
 static bool write_3mf(MeshFile *file) { return mesh_border_3mf(file->parts, take_bytes, file); }
 
-static const MeshFormat formats[] = {{".stl", false, false, false, false, false, write_stl},
-                                     {".ply", false, false, false, true, true, write_ply},
-                                     {".obj", true, false, false, true, false, write_obj},
-                                     {".glb", true, true, true, true, true, write_glb},
-                                     {".3mf", true, true, false, false, false, write_3mf}};
+/* Numbers of 24 bits, and of nine digits. */
+static const double SINGLE = 5.9604645e-8, NINE_DIGITS = 5e-9;
+
+static const MeshFormat formats[] = {
+    {".stl", false, false, false, false, false, write_stl, SINGLE},
+    {".ply", false, false, false, true, true, write_ply, SINGLE},
+    {".obj", true, false, false, true, false, write_obj, NINE_DIGITS},
+    {".glb", true, true, true, true, true, write_glb, SINGLE},
+    {".3mf", true, true, false, false, false, write_3mf, NINE_DIGITS}};
 
 const MeshFormat *mesh_format(const char *path)
 {

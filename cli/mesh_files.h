@@ -32,6 +32,7 @@ typedef struct MeshFormat {
     bool        has_parts, has_copies, has_lods;
     bool        has_places, places_of_vertices; /* in textures: of corners, or of vertices only */
     bool (*write)(MeshFile *file);
+    double rounding; /* of coordinates, relative */
 } MeshFormat;
 
 /* The format by the ending of a path; NULL: there is none. */

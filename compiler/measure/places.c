@@ -324,8 +324,9 @@ static void find_thinnest(Measurer *m)
 
 void measure_places(Measurer *m)
 {
-    KrsMeasures *measures    = m->measures;
-    measures->wall.thickness = INFINITY;
+    static const double EQUAL    = 1e-6; /* walls as thick as the nozzle are not thinner */
+    KrsMeasures        *measures = m->measures;
+    measures->wall.thickness     = INFINITY;
     visit_triangles(m, add_area);
     measures->spacing = 2 * sqrt(measures->area / MOST_PLACES);
     visit_triangles(m, add_places);
@@ -334,7 +335,7 @@ void measure_places(Measurer *m)
     if (atomic_load(&m->stopped))
         return;
     for (size_t i = 0; i < m->places.count; i++)
-        if (m->places.items[i].wall < m->options->nozzle)
+        if (m->places.items[i].wall < (1 - EQUAL) * m->options->nozzle)
             measures->thin_area += m->places.items[i].area;
     find_thinnest(m);
 }

@@ -1,7 +1,7 @@
 #!/bin/sh
 # mesh.sh: `krs mesh`: files that other programs accept, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 33
+plan 34
 
 echo 'show sphere(0.5).paint(#ff8800);' >ball.krs
 echo 'let floor = half_space([0, 1, 0], 0); show floor; let ball = sphere(1); show ball;' >floor.krs
@@ -171,6 +171,11 @@ run mesh --quiet two.krs --error 0.05 --lods 2 -o lods.glb
 result $? "GLB has levels of detail"
 run mesh two.krs --error 0.05 --lods 2 -o lods.stl
 said 2 "for .glb, and none is written" "other files have none"
+# Half a place of 24 bits at 1e5 is 0.004.
+echo 'show sphere(1).move([100000, 0, 0]);' >far.krs
+run mesh far.krs --error 0.02 -o far.stl -o far.obj
+[ "$status" -eq 0 ] && [ "$(grep -c 'are rounded' err)" -eq 1 ] && grep -q 'far.stl. are rounded.* 0.006 more' err
+result $? "numbers that are too coarse are told"
 # What is there stays, whatever ends the command.
 echo old >kept.stl
 run mesh --quiet ball.krs --error 1e-4 --limit memory=4M -o kept.stl
