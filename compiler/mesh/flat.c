@@ -14,9 +14,11 @@
 enum { MOST_BOXES = 400000, MOST_HALVINGS = 45, HALVINGS_OF_REGION = 3, PATIENCE = 256 };
 /* Boxes that were looked at when more than a part of them must have been flat. */
 enum { FIRST_BOXES = 600 };
+/* At each turn planes are moved otherwise; at the last ones short edges stay, so that solids that touch stay apart. */
+enum { TURNS = 4, APART_FROM = 2 };
 static const double LEAST_KNOWN = 0.02;
 /* Parts of the size: how far faces are moved so that no four meet, about. */
-static const double ROUNDING_OF_FACES = 1e-6;
+static const double ROUNDING_OF_FACES = 1e-6, LEAST_SHORT = 1e-9;
 
 typedef struct Halving {
     Mesher    *m;
@@ -112,6 +114,13 @@ static bool is_on_surface(Mesher *m, const FlatVertices *vertices, const Triangl
     return true;
 }
 
+/* What of the error is for moved planes, and for edges that become points. */
+static double spare_of(const Mesher *m)
+{
+    static const double SHORT = 1e-5, PART = 0.2;
+    return min2(SHORT * m->side, PART * m->error);
+}
+
 /* Looks at all boxes. */
 static bool halve_all(Halving *h)
 {
@@ -122,7 +131,10 @@ static bool halve_all(Halving *h)
         double half = 0.5 * (m->high[k] - m->low[k]) + m->error + 0.013 * m->side * (1 + 0.17 * k);
         box.axis[k] = (Range){middle - half, middle + half};
     }
-    h->faces       = (FlatFaces){.arena = &m->arena, .size = m->side, .turn = h->turn};
+    h->faces       = (FlatFaces){.arena    = &m->arena,
+                                 .size     = m->side,
+                                 .shortest = h->turn < APART_FROM ? spare_of(m) : LEAST_SHORT * m->side,
+                                 .turn     = h->turn};
     h->round_boxes = (FlatBoxes){NULL, 0, 0};
     h->boxes       = 0;
     h->known       = 0;
@@ -141,8 +153,7 @@ static bool make_round(Halving *h)
     do {
         if (!halve_all(h))
             return false;
-        verdict = flat_near(m, &h->rounds, &h->round_boxes,
-                            m->error - 10 * ROUNDING_OF_FACES * m->side);
+        verdict = flat_near(m, &h->rounds, &h->round_boxes, m->error - spare_of(m));
     } while (verdict == FLAT_REFUTED && flat_rounds_refine(&h->rounds));
     return verdict != FLAT_STOPPED;
 }
@@ -150,7 +161,6 @@ static bool make_round(Halving *h)
 /* Planes that are moved otherwise are mostly cut where some are not. */
 static bool finish(Halving *h, FlatVertices *vertices, Triangles *triangles)
 {
-    enum { TURNS = 3 };
     while (!flat_faces_finish(&h->faces, vertices, triangles)) {
         *vertices  = (FlatVertices){NULL, 0, 0};
         *triangles = (Triangles){NULL, 0, 0};

@@ -6,6 +6,7 @@
 
 #include "compiler/base/minmax.h"
 #include "compiler/base/vec.h"
+#include "compiler/mesh/flat_apart.h"
 
 #define WALL UINT32_MAX
 
@@ -430,14 +431,13 @@ static uint32_t one_of(Finishing *f, uint32_t vertex)
 
 static void join_vertices(Finishing *f)
 {
-    static const double SHORT = 1e-5;
-    f->one                    = arena_new_array(f->faces->arena, uint32_t, f->vertices->count + 1);
+    f->one = arena_new_array(f->faces->arena, uint32_t, f->vertices->count + 1);
     for (uint32_t i = 0; i < f->vertices->count; i++)
         f->one[i] = i;
     for (size_t i = 0; i < f->edges.count; i++) {
         const Edge *edge     = &f->edges.items[i];
         const double(*at)[3] = (const double(*)[3])f->vertices->items;
-        if (distance3(at[edge->from], at[edge->to]) < SHORT * f->faces->size) {
+        if (distance3(at[edge->from], at[edge->to]) < f->faces->shortest) {
             uint32_t a = one_of(f, edge->from), b = one_of(f, edge->to);
             f->one[a < b ? b : a] = a < b ? a : b;
         }
@@ -546,34 +546,14 @@ static bool cut_faces(Finishing *f, Triangles *triangles)
         for (next = i; next < count && edges[next].face == edges[i].face; next++)
             ;
         if (!find_loops(f, &edges[i], next - i, normal, &loops) ||
-            !polygons_cut((const double(*)[3])f->vertices->items, normal, &loops, triangles,
-                          f->faces->arena))
+            !polygons_cut((const double(*)[3])f->vertices->items, normal, &loops,
+                          f->faces->shortest, triangles, f->faces->arena))
             return false;
     }
     return true;
 }
 
 /* ---- all ---- */
-
-/* Each edge of a triangle is once in the other direction. */
-static bool is_closed(const Finishing *f, const Triangles *triangles)
-{
-    Numbering edges = {.arena = f->faces->arena};
-    for (size_t i = 0; i < triangles->count; i++)
-        for (int k = 0; k < 3; k++) {
-            NumberKey key   = {triangles->items[i][k], triangles->items[i][(k + 1) % 3]};
-            uint32_t  fresh = (uint32_t)edges.count;
-            if (numbering_take(&edges, key, fresh) != fresh)
-                return false;
-        }
-    for (size_t i = 0; i < triangles->count; i++)
-        for (int k = 0; k < 3; k++) {
-            NumberKey key = {triangles->items[i][(k + 1) % 3], triangles->items[i][k]};
-            if (numbering_find(&edges, key) == NO_NUMBER)
-                return false;
-        }
-    return true;
-}
 
 /* Leaves out vertices that no triangle has. */
 static void number_vertices(Finishing *f, Triangles *triangles)
@@ -599,8 +579,8 @@ bool flat_faces_finish(FlatFaces *faces, FlatVertices *vertices, Triangles *tria
     if (!find_edges(&f))
         return false;
     join_vertices(&f);
-    if (!cut_faces(&f, triangles) || !is_closed(&f, triangles))
+    if (!cut_faces(&f, triangles))
         return false;
     number_vertices(&f, triangles);
-    return true;
+    return flat_take_apart(vertices, triangles, faces->arena);
 }

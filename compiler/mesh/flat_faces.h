@@ -33,8 +33,9 @@ typedef struct FlatSegment {
 
 typedef struct FlatFaces {
     Arena   *arena;
-    double   size; /* of what is meshed */
-    uint32_t turn; /* at another one planes are moved otherwise */
+    double   size;     /* of what is meshed */
+    double   shortest; /* edges that are not made a point */
+    uint32_t turn;     /* at another one planes are moved otherwise */
     struct {
         FlatPlane *items;
         size_t     count, capacity;
@@ -48,11 +49,6 @@ typedef struct FlatFaces {
 
 /* Adds what is in a box.  False: it is too near to what cannot be told apart. */
 bool flat_faces_add(FlatFaces *faces, Box box, const FlatPieces *pieces);
-
-typedef struct FlatVertices {
-    double (*items)[3];
-    size_t count, capacity;
-} FlatVertices;
 
 /* After all boxes.  False: they are no closed surface. */
 bool flat_faces_finish(FlatFaces *faces, FlatVertices *vertices, Triangles *triangles);

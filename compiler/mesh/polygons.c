@@ -20,6 +20,7 @@ typedef struct Ring {
     Corner *items;
     size_t  count, capacity;
     double  area;  /* twice */
+    double  thin;  /* twice the area that it has where it is hardly wider than a line */
     size_t  outer; /* of a hole: the ring around it */
     bool    joined;
 } Ring;
@@ -30,6 +31,7 @@ typedef struct Cutting {
     size_t     count;
     Triangles *triangles;
     double     tiny; /* twice the area of what counts as a line */
+    double     narrow;
 } Cutting;
 
 /* Twice the area of a triangle; above 0 where c is on the left of a to b. */
@@ -70,6 +72,11 @@ static void read_rings(Cutting *c, const double (*at)[3], const double normal[3]
         for (size_t i = 1; i + 1 < ring->count; i++)
             ring->area += area2(ring->items[0].at, ring->items[i].at, ring->items[i + 1].at);
         c->tiny += 1e-13 * fabs(ring->area);
+        for (size_t i = 0, j = ring->count - 1; i < ring->count; j = i++)
+            ring->thin += c->narrow * hypot(ring->items[i].at[0] - ring->items[j].at[0],
+                                            ring->items[i].at[1] - ring->items[j].at[1]);
+        if (fabs(ring->area) < ring->thin)
+            ring->area = fabs(ring->area); /* it is no hole, whichever way it goes round */
     }
 }
 
@@ -233,8 +240,8 @@ static bool join_holes(Cutting *c)
 
 /* ---- ears ---- */
 
-/* What counts as an ear.  First ears that no corner comes near; where there are none, those that corners may touch, and last
-   those without area: corners in a line are common. */
+/* What counts as an ear.  First ears that no corner comes near; where there are none, those that corners may touch, then
+   those without area, since corners in a line are common, and last any that is narrow: corners are known to that. */
 typedef struct EarRule {
     double least,
         touching; /* twice areas: of an ear, and of what a corner makes with each side of it */
@@ -338,7 +345,7 @@ static void cut_ear(Cutting *c, const Ring *ring, uint32_t *left, size_t *count,
 static bool cut_ring(Cutting *c, const Ring *ring)
 {
     const double  tiny    = c->tiny;
-    const EarRule rules[] = {{tiny, -tiny}, {tiny, tiny}, {-tiny, tiny}};
+    const EarRule rules[] = {{tiny, -tiny}, {tiny, tiny}, {-tiny, tiny}, {-ring->thin, HUGE_VAL}};
     uint32_t     *left    = arena_new_array(c->arena, uint32_t, ring->count);
     size_t        count = ring->count, at = 0, looked = 0, rule = 0;
     Buckets       buckets;
@@ -361,10 +368,10 @@ static bool cut_ring(Cutting *c, const Ring *ring)
     return true;
 }
 
-bool polygons_cut(const double (*at)[3], const double normal[3], const Loops *loops,
+bool polygons_cut(const double (*at)[3], const double normal[3], const Loops *loops, double narrow,
                   Triangles *triangles, Arena *arena)
 {
-    Cutting c = {.arena = arena, .triangles = triangles};
+    Cutting c = {.arena = arena, .triangles = triangles, .narrow = narrow};
     read_rings(&c, at, normal, loops);
     if (!join_holes(&c))
         return false;

@@ -20,14 +20,20 @@ typedef struct Loops {
     } ends;
 } Loops;
 
+typedef struct FlatVertices {
+    double (*items)[3];
+    size_t count, capacity;
+} FlatVertices;
+
 typedef struct Triangles {
     uint32_t (*items)[3];
     size_t count, capacity;
 } Triangles;
 
 /* Triangles between vertices of loops in a plane with this unit normal, in the order of the loops, which do
-   not cross.  Each edge is in one triangle, each line between two of them in two.  False: none were found. */
-bool polygons_cut(const double (*at)[3], const double normal[3], const Loops *loops,
+   not cross, but where they are closer than `narrow`.  Each edge is in one triangle, each line between two of them in two.
+   False: none were found. */
+bool polygons_cut(const double (*at)[3], const double normal[3], const Loops *loops, double narrow,
                   Triangles *triangles, Arena *arena);
 
 #endif

@@ -47,6 +47,11 @@ static void solids_have_no_more_triangles_than_their_faces_need(void **state)
         {"show box([2, 2, 2]) - box([1, 1, 3]);", 32, 1, 1, 6},
         {"show box([3, 3, 3]) - box([1, 1, 1]);", 24, 2, 0, 26},
         {"show box([2, 2, 2]) | box([1, 1, 1]).move([3, 0, 0]);", 24, 2, 0, 9},
+        /* Solids that touch along an edge, or in a point, stay two. */
+        {"show box([2, 2, 2]) | box([2, 2, 2]).move([2, 2, 0]);", 24, 2, 0, 16},
+        {"show box([2, 2, 2]) | box([2, 2, 2]).move([2, 2, 2]);", 24, 2, 0, 16},
+        {"show box([4, 4, 4]) - box([2, 2, 6]).move([1, 1, 0]) - box([2, 2, 6]).move([-1, -1, 0]);",
+         24, 2, 0, 32},
         /* Level faces are one. */
         {"show box([2, 1, 1]) | box([2, 1, 1]).move([1.5, 0, 0]);", 12, 1, 0, 3.5},
         {"show box([2, 1, 1]) - box([1, 1, 0.5]).move([0.5, 0, 0.25]);", 20, 1, 0, 1.5},

@@ -94,6 +94,62 @@ static void solids_have_few_triangles(void **state)
     }
 }
 
+/* ---- rims ---- */
+
+/* Where two round faces meet at a small angle, the rim is off by a multiple of what they are: there is a proof of its own. */
+static void sharp_rims_are_within_the_error(void **state)
+{
+    static const double ANGLES[] = {16, 24, 40, 70};
+    enum { AROUND = 720 };
+    (void)state;
+    for (size_t i = 0; i < sizeof ANGLES / sizeof *ANGLES; i++) {
+        double half = ANGLES[i] * PI / 360, error = 0.02 * sin(half), farthest = 0;
+        char   text[256];
+        snprintf(text, sizeof text,
+                 "show sphere(1).move([0, %.17g, 0]) & sphere(1).move([0, %.17g, 0]);", cos(half),
+                 -cos(half));
+        KrsMesh  *mesh = mesh_of_text(text, error);
+        MeshGrid *grid = mesh_grid_new(mesh, 8 * error);
+        for (int k = 0; k < AROUND; k++) {
+            double angle = k * 2 * PI / AROUND;
+            Vec    at    = vec(sin(half) * cos(angle), 0, sin(half) * sin(angle));
+            farthest     = fmax(farthest, mesh_grid_distance(grid, at) / error);
+        }
+        print_message(
+            "# a rim of %g degrees: %zu triangles, %zu unresolved, at most %.3f errors away\n",
+            ANGLES[i], mesh->triangle_count, mesh->unresolved, farthest);
+        assert_true(farthest <= 1);
+        mesh_grid_free(grid);
+        krs_mesh_free(mesh);
+    }
+}
+
+/* ---- what touches ---- */
+
+static void solids_that_touch_stay_apart(void **state)
+{
+    static const struct {
+        const char *text;
+        double      error;
+        long        parts, euler;
+    } solids[] = {
+        {"show cylinder(1, 2) | cylinder(1, 2).move([2, 0, 0]);", 0.1, 2, 4},
+        {"show sphere(0.5).move([0, 0.5, 0]) | box([1, 0.2, 1]).move([0, -0.1, 0]);", 0.02, 2, 4},
+        {"show cone(1, 2).move([0, -1, 0]) | cone(1, 2).rotate([1, 0, 0], 180deg).move([0, 1, 0]);",
+         0.02, 2, 4},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof solids / sizeof *solids; i++) {
+        KrsMesh  *mesh  = mesh_of_text(solids[i].text, solids[i].error);
+        MeshShape shape = mesh_shape(mesh);
+        print_message("# %zu triangles, %ld parts, Euler number %ld: %s\n", mesh->triangle_count,
+                      shape.parts, shape.euler, solids[i].text);
+        assert_int_equal(shape.parts, solids[i].parts);
+        assert_int_equal(shape.euler, solids[i].euler);
+        krs_mesh_free(mesh);
+    }
+}
+
 /* ---- random solids ---- */
 
 enum { MOST_PARTS_HERE = 6 };
@@ -236,6 +292,8 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(solids_have_few_triangles),
+        cmocka_unit_test(sharp_rims_are_within_the_error),
+        cmocka_unit_test(solids_that_touch_stay_apart),
         cmocka_unit_test(random_solids_are_within_the_error),
     };
     if (argc > 1)
