@@ -8,7 +8,7 @@
 enum {
     MOST_BLAMED        = 4,
     MOST_THIN          = 100,
-    MOST_LOOKS         = 1000000,
+    MOST_LOOKS         = 600000,
     PATIENCE           = 256,
     HALVINGS_OF_REGION = 3
 };
@@ -59,11 +59,16 @@ static bool goes_on(Looking *l)
            part->blamed_count < MOST_BLAMED && part->thin < MOST_THIN;
 }
 
+static void note_place(NearPart *part, const Box *box)
+{
+    for (int k = 0; k < 3; k++)
+        part->left_at[k] = 0.5 * (box->axis[k].low + box->axis[k].high);
+}
+
 static void leave(Looking *l, FlatNearness nearness, Box box, double way)
 {
     NearPart *part = l->part;
-    for (int k = 0; k < 3; k++)
-        part->left_at[k] = 0.5 * (box.axis[k].low + box.axis[k].high);
+    note_place(part, &box);
     if (nearness == FLAT_ROUGH)
         part->blamed[part->blamed_count++] = wider_box(box, way);
     else
@@ -86,8 +91,13 @@ static void look(Looking *l, Box box, int halvings)
     NearPart *part  = l->part;
     double    error = l->w->error;
     Range     range = field_range(l->field, box);
-    if (range.low > 0 || range.high < 0 || !goes_on(l))
+    if (range.low > 0 || range.high < 0)
         return;
+    if (!goes_on(l)) {
+        if (part->looks == MOST_LOOKS)
+            note_place(part, &box);
+        return;
+    }
     int    axis    = box_longest_axis(&box);
     double size    = box.axis[axis].high - box.axis[axis].low;
     double way     = size < SMALL * error ? SHORT_WAY * error : error;
@@ -137,8 +147,9 @@ static FlatVerdict judge(const NearWork *w, size_t parts)
     m->unresolved       = 0;
     for (size_t i = 0; i < parts; i++) {
         NearPart *part = &w->parts[i];
-        m->unresolved += part->thin + part->blamed_count + (part->looks == MOST_LOOKS);
-        if (part->thin + part->blamed_count > 0)
+        size_t    left = part->thin + part->blamed_count + (part->looks >= MOST_LOOKS);
+        m->unresolved += left;
+        if (left > 0)
             memcpy(m->unresolved_at, part->left_at, sizeof m->unresolved_at);
         blame(w, part);
         if (part->blamed_count > 0 && verdict == FLAT_PROVEN)
