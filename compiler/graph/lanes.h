@@ -196,8 +196,7 @@ typedef struct LaneRanges {
     bool       unroll; /* pruning makes steps of calls of crowds of which few members are near */
     double
            stretch; /* 1, or above: ranges hold as well if the length of each pair is longer by up to this factor, */
-    double longest; /* what is made of several lengths by up to this one, */
-    double astray;  /* and if outlines are off by so much */
+    double longest; /* what is made of several lengths by up to this one */
 } LaneRanges;
 
 /* Room for those of a lane tape, and of all that it is pruned to. */

@@ -48,7 +48,7 @@ typedef struct FlatWork {
 
 FlatWork flat_work_new(const MeshField *field, Arena *arena);
 
-/* For faces, or for a proof, which has less room around it and so more planes. */
+/* Faces are made in boxes of few planes.  A proof looks a way around its box, where there are more. */
 typedef enum FlatUse { FLAT_MAKING, FLAT_PROVING } FlatUse;
 
 /* In a box within that which was entered last.  `size`: of what is meshed; half-spaces that differ by less than

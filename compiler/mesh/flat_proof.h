@@ -1,10 +1,12 @@
 /*
  * flat_proof.h: whether planes that stand for what is round are within an error of it.
  *
- * In a box the solid is made of half-spaces by intersections and unions, and each number that one stands for is between
- * bounds that are its slack apart.  Let all grow by at least that along a way e n.  Then at p + e n none is less than any of its bounds at
- * p, and at p - e n none is more.  So where p is on the surface p + e n is outside of the planes' solid or on it, and p - e n
- * inside: its faces meet that way.  The same holds for faces and the surface.  What has the same sign all along need not grow.
+ * In a box the solid is made of half-spaces by intersections and unions.  The number that tells the side of each stands for
+ * another one, which is less or more by its slack at most.  Let n be a direction along which each number grows by at least
+ * its slack within the error e.  Let p be a place on the surface.  At p + e n each number is at least what it stands for at p, and
+ * at p - e n at most that.  So one of these places is outside of the planes' solid, and the other inside of it: a face is
+ * between them, within e of p.  In the same way the surface is within e of each face.  A number that has
+ * the same sign all along the way need not grow.
  */
 #ifndef KRS_MESH_FLAT_PROOF_H
 #define KRS_MESH_FLAT_PROOF_H
@@ -18,7 +20,7 @@ typedef enum FlatNearness {
     FLAT_UNKNOWN /* there are too many planes */
 } FlatNearness;
 
-/* In a box; `pieces` are those of a box that is larger by the error on all sides. */
+/* In a box, by ways as long as `error` at most; `pieces` are those of the box that is larger by that on all sides. */
 FlatNearness flat_nearness(const FlatPieces *pieces, const Box *box, double error);
 
 /* The axis along which half-spaces change most. */
