@@ -122,7 +122,7 @@ enum { DRAWN = sizeof drawn / sizeof *drawn };
 
 static void read_drawing(const char *element, SvgDrawing *drawing, Arena *arena)
 {
-    char text[1024];
+    char text[2048];
     snprintf(text, sizeof text, "<svg viewBox='0 0 100 100'>%s</svg>", element);
     *drawing = (SvgDrawing){.arena = arena};
     if (!svg_read(drawing, text, strlen(text)))
