@@ -63,12 +63,12 @@ typedef KrsStatus MakeBody(Meshing *meshing, Body *body);
 static KrsStatus make_body(Meshing *meshing, MakeBody *make, Bodies *bodies, double goal)
 {
     const char *path  = meshing->options->files.items[0];
-    bool        alone = !meshing->options->mesh_simplify && meshing->options->mesh_lods == 0;
+    bool        alone = meshing->options->mesh_lods == 0;
     Body        body  = {.component = meshing->how.component};
     enter_step(meshing, step_of(meshing, goal, alone ? 1 : 2));
     KrsStatus status = make(meshing, &body);
-    if (status == KRS_OK)
-        status = simplify_body(meshing, &body, goal);
+    if (status == KRS_OK && body.mesh && body.mesh->triangle_count > 0)
+        status = make_lods(meshing, &body, goal);
     if (status != KRS_OK)
         progress_end(&meshing->progress);
     if (status == KRS_BAD_ARGUMENT)
@@ -121,18 +121,17 @@ static KrsStatus find_error(Meshing *meshing, MakeBody *make)
     const Options *options = meshing->options;
     double         longest = 0;
     Bodies         coarse  = {0};
-    meshing->how.error     = mesher_part(options) * options->mesh_error;
+    meshing->how.error     = options->mesh_error;
     find_end(meshing, &longest);
     if (options->mesh_error == 0 && longest > 0)
-        meshing->how.error = mesher_part(options) * longest / 200;
+        meshing->how.error = longest / 200;
     if (options->mesh_size == 0 || options->mesh_error == 0)
         return KRS_OK;
     meshing->how.error = 0;
     KrsStatus status   = make_bodies(meshing, make, &coarse, COARSE_DONE);
     if (status == KRS_OK) {
         longest            = longest_side(&coarse) - 2 * summarize(&coarse).error;
-        meshing->how.error = mesher_part(options) * options->mesh_error * longest /
-                             options->mesh_size;
+        meshing->how.error = options->mesh_error * longest / options->mesh_size;
     }
     drop_bodies(&coarse);
     return status;
@@ -393,11 +392,9 @@ KrsStatus command_mesh(Options *options)
     if (status == KRS_OK)
         status = scene_frame(options, scene, &meshing.frame);
     if (status == KRS_OK) {
-        meshing.how = (KrsMeshOptions){.even         = options->mesh_even,
-                                       .memory_limit = options->limits.memory,
-                                       .go_on        = go_on,
-                                       .user         = &meshing};
-        status      = check_wishes(&meshing);
+        meshing.how = (KrsMeshOptions){
+            .memory_limit = options->limits.memory, .go_on = go_on, .user = &meshing};
+        status = check_wishes(&meshing);
     }
     if (status == KRS_OK)
         status = find_meshes(&meshing);

@@ -99,6 +99,15 @@ size_t output_count(const Meshing *meshing)
     return meshing->options->outputs.count ? meshing->options->outputs.count : 1;
 }
 
+/* Whether only the shape counts. */
+static bool is_shape_enough(const Meshing *meshing)
+{
+    bool colors = false;
+    for (size_t i = 0; i < output_count(meshing); i++)
+        colors = colors || mesh_format(output_path(meshing, i))->has_colors;
+    return meshing->options->mesh_simplify || !colors;
+}
+
 static bool can_have_lods(const Meshing *meshing)
 {
     for (size_t i = 0; i < output_count(meshing); i++)
@@ -117,6 +126,11 @@ KrsStatus check_wishes(Meshing *meshing)
         return status;
     if (options->mesh_lods > 0 && !can_have_lods(meshing))
         return say_usage(options, "--lods makes levels of detail for .glb, and none is written");
+    if (options->mesh_simplify && options->mesh_even)
+        return say_usage(options, "--even keeps triangles that --simplify leaves out; one of both");
+    meshing->how.even     = options->mesh_even;
+    meshing->how.simplify = !options->mesh_even;
+    meshing->how.shape    = is_shape_enough(meshing);
     if (options->within.given) {
         meshing->how.within = true;
         memcpy(meshing->how.low, options->within.low, sizeof meshing->how.low);

@@ -81,10 +81,8 @@ void set_units(const Meshing *meshing, const MeshFormat *format, MeshParts *part
 void   enter_step(Meshing *meshing, double goal);
 double step_of(const Meshing *meshing, double goal, double steps);
 
-/* mesh_simplify.c: leaves out triangles of a body, and makes its levels of detail, as options ask for. */
-KrsStatus simplify_body(Meshing *meshing, Body *body, double goal);
-/* The part of the error that is the mesher's. */
-double mesher_part(const Options *options);
+/* mesh_lods.c: levels of detail of a body that has triangles, as many as options ask for. */
+KrsStatus make_lods(Meshing *meshing, Body *body, double goal);
 
 /* Calls `visit` for each mesh of a body. */
 typedef void VisitMesh(void *user, const KrsMesh *mesh, const KrsItem *item);

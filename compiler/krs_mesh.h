@@ -23,9 +23,15 @@ typedef struct KrsMeshOptions {
     size_t component; /* from 1; 0: all */
     bool   within;    /* only what is in the box from `low` to `high`, for scenes without an end */
     double low[3], high[3];
-    /* Flat faces, too, are of about even triangles.  Without it a solid of flat faces and one material has no more
-       triangles than these need. */
-    bool   even;
+    /* Flat faces, too, are of about even triangles.  Without it a solid of flat and round faces has no more triangles
+       than these need. */
+    bool even;
+    /* Leaves out triangles that the error permits to leave out, as krs_mesh_simplify does.  Half of the error is for
+       that where not all faces are flat or round. */
+    bool simplify;
+    /* Only the shape counts.  Without it triangles stay as even as the mesher makes them where several materials are, or
+       one that varies, so that colours at their corners show it. */
+    bool   shape;
     size_t memory_limit; /* bytes; 0: KRS_USUAL_MEMORY */
     /* Told now and then which part of the work is done, as far as one can say; false: stop, with
        KRS_INTERRUPTED.  May be NULL. */

@@ -216,7 +216,8 @@ static KrsStatus mesh_part(Assembler *a, size_t number)
                                  .roots      = &root,
                                  .root_count = 1,
                                  .box        = item->box,
-                                 .estimate   = item->estimate};
+                                 .estimate   = item->estimate,
+                                 .plain      = has_one_material(a->frame->scene, NULL)};
     return mesh_item(a, number, &solid);
 }
 

@@ -9,6 +9,8 @@
 
 static const double DEFAULT_ERROR = 1.0 / 200, LEAST_ERROR = 1.0 / 500000;
 static const double CUBE_SIDE = 1.0973; /* in longest sides of the box */
+/* The part of the error that is for leaving out triangles. */
+static const double SPARED = 0.5;
 
 /* ---- what is asked for ---- */
 
@@ -95,26 +97,18 @@ static void close_voids(Mesher *m)
     m->unresolved += closed;
 }
 
-/* Whether all surfaces have one material, which is the same everywhere. */
-static bool has_one_material(const KrsScene *scene)
+/* Whether triangles may be as few as the shape permits. */
+static bool may_be_few(const Mesher *m)
 {
-    const Graph *graph = scene->graph;
-    for (size_t i = 0; i < scene->component_count; i++)
-        for (size_t k = 0; k < ROOT_COUNT; k++) {
-            Node node = surface_roots(&scene->roots, i)[k];
-            if (root_info[k].material && (graph->items[node].time == TIME_POINT ||
-                                          node != surface_roots(&scene->roots, 0)[k]))
-                return false;
-        }
-    return true;
+    return !m->options->even && (m->solid->plain || m->options->shape);
 }
 
 /* False: it is not wanted, or not flat. */
-static bool find_flat(Mesher *m, const KrsScene *scene)
+static bool find_flat(Mesher *m)
 {
     FlatVertices vertices  = {0};
     Triangles    triangles = {0};
-    if (m->options->even || !has_one_material(scene))
+    if (!may_be_few(m))
         return false;
     ArenaMark mark = arena_mark(&m->arena);
     if (!find_flat_mesh(m, &vertices, &triangles)) {
@@ -135,11 +129,13 @@ static KrsStatus run(Mesher *m, KrsFrame *frame, KrsMesh **mesh)
     if (setjmp(exhausted) != 0)
         return KRS_OUT_OF_MEMORY;
     KrsStatus status = is_nothing(m) ? KRS_OK : open_fields(m, frame);
-    if (status == KRS_OK && !is_nothing(m) && !find_flat(m, frame->scene)) {
+    if (status == KRS_OK && !is_nothing(m) && !find_flat(m)) {
+        m->error -= m->spared;
         status = find_proven_mesh(m) ? KRS_OK : KRS_INTERRUPTED;
         if (status == KRS_OK)
             close_voids(m);
-    }
+    } else
+        m->spared = 0;
     if (status == KRS_OK)
         status = copy_mesh(m, mesh);
     if (status == KRS_OK)
@@ -156,12 +152,50 @@ static bool options_are_valid(Mesher *m)
         return false;
     for (int k = 0; k < 3; k++)
         longest = fmax(longest, m->high[k] - m->low[k]);
-    m->error = options->error > 0 ? options->error : DEFAULT_ERROR * longest;
-    m->side  = CUBE_SIDE * longest + 4 * m->error;
+    m->error  = options->error > 0 ? options->error : DEFAULT_ERROR * longest;
+    m->side   = CUBE_SIDE * longest + 4 * m->error;
+    m->spared = options->simplify && may_be_few(m) ? SPARED * m->error : 0;
     return is_nothing(m) || m->error >= LEAST_ERROR * m->side;
 }
 
 static const KrsMeshOptions no_options = {0};
+
+/* The part of the work that is done when there is a mesh of all triangles. */
+static const double MESHED = 0.5;
+
+/* One of two steps of the work. */
+typedef struct Step {
+    const KrsMeshOptions *options;
+    double                begun, part;
+} Step;
+
+static bool go_on(void *user, double fraction)
+{
+    const Step *step = user;
+    return step->options->go_on(step->options->user, step->begun + fraction * step->part);
+}
+
+static KrsMeshOptions options_of_step(Step *step)
+{
+    KrsMeshOptions options = *step->options;
+    options.go_on          = options.go_on ? go_on : NULL;
+    options.user           = step;
+    return options;
+}
+
+/* Uses up what was spared of the error. */
+static KrsStatus leave_out(const KrsMeshOptions *options, double spared, KrsMesh **mesh)
+{
+    Step           step  = {options, MESHED, 1 - MESHED};
+    KrsMeshOptions these = options_of_step(&step);
+    KrsMesh       *all   = *mesh;
+    these.error          = spared;
+    KrsStatus status     = krs_mesh_simplify(all, &these, mesh);
+    krs_mesh_free(all);
+    if (status != KRS_OK)
+        *mesh = NULL;
+    return status;
+}
 
 KrsStatus mesh_solid(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
                      KrsMesh **mesh)
@@ -170,15 +204,18 @@ KrsStatus mesh_solid(KrsFrame *frame, const KrsMeshOptions *options, const MeshS
     Mesher *m = calloc(1, sizeof *m);
     if (!m)
         return KRS_OUT_OF_MEMORY;
-    m->options       = options;
-    m->solid         = solid;
-    m->memory        = frame->scene->memory;
-    m->memory.used   = 0;
-    m->memory.limit  = m->options->memory_limit ? m->options->memory_limit : KRS_USUAL_MEMORY;
-    m->arena.memory  = &m->memory;
-    KrsStatus status = options_are_valid(m) ? run(m, frame, mesh) : KRS_BAD_ARGUMENT;
+    Step           step  = {options, 0, options->simplify ? MESHED : 1};
+    KrsMeshOptions these = options_of_step(&step);
+    m->options           = &these;
+    m->solid             = solid;
+    m->memory            = frame->scene->memory;
+    m->memory.used       = 0;
+    m->memory.limit      = options->memory_limit ? options->memory_limit : KRS_USUAL_MEMORY;
+    m->arena.memory      = &m->memory;
+    KrsStatus status     = options_are_valid(m) ? run(m, frame, mesh) : KRS_BAD_ARGUMENT;
+    double    spared     = m->spared;
     close_mesher(m);
-    return status;
+    return status == KRS_OK && spared > 0 ? leave_out(options, spared, mesh) : status;
 }
 
 KrsStatus krs_mesh(KrsFrame *frame, const KrsMeshOptions *options, KrsMesh **mesh)

@@ -17,6 +17,7 @@ typedef struct Mesher {
     const KrsMeshOptions *options;
     const MeshSolid      *solid;
     double                low[3], high[3], error, side;
+    double                spared; /* of the error, for leaving out triangles */
     MeshField             fields[MOST_PARTS];
     Verifier              verifiers[MOST_PARTS];
     Tets                  tets;

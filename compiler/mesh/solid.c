@@ -6,6 +6,22 @@ size_t solid_root_bytes(const KrsScene *scene)
     return (scene->component_count + 2) * sizeof(Node);
 }
 
+bool has_one_material(const KrsScene *scene, const bool *wanted)
+{
+    const Node *first = NULL;
+    for (size_t i = 0; i < scene->component_count; i++) {
+        const Node *roots = surface_roots(&scene->roots, i);
+        if (wanted && !wanted[i])
+            continue;
+        first = first ? first : roots;
+        for (size_t k = 0; k < ROOT_COUNT; k++)
+            if (root_info[k].material &&
+                (scene->graph->items[roots[k]].time == TIME_POINT || roots[k] != first[k]))
+                return false;
+    }
+    return true;
+}
+
 void solid_of_components(const KrsScene *scene, const bool *wanted, MeshSolid *solid)
 {
     Node zone   = zone_root(scene);
@@ -26,4 +42,5 @@ void solid_of_components(const KrsScene *scene, const bool *wanted, MeshSolid *s
     }
     solid->roots[solid->root_count] = zone;
     solid->zoned                    = zone != NODE_NONE;
+    solid->plain                    = has_one_material(scene, wanted);
 }

@@ -13,10 +13,13 @@ typedef struct MeshSolid {
     bool        zoned; /* behind them is the depth in zones */
     Box         box;
     bool        estimate;
+    bool        plain; /* of one material, which is the same everywhere */
 } MeshSolid;
 
 /* All components, or those that are `wanted`, by their index among the lowered. */
 void solid_of_components(const KrsScene *scene, const bool *wanted, MeshSolid *solid);
+/* Whether they have one material, which is the same everywhere. */
+bool has_one_material(const KrsScene *scene, const bool *wanted);
 /* Bytes of `roots` that is enough. */
 size_t solid_root_bytes(const KrsScene *scene);
 

@@ -476,6 +476,42 @@ static void flat_faces_with_a_hole_are_simplified(void **context)
     scene_close(s);
 }
 
+/* By the options: within the error of the surface itself, and not where colours would be lost. */
+static void triangles_are_left_out_where_that_is_permitted(void **context)
+{
+    (void)context;
+    static const struct {
+        const char *text;
+        bool        shape, few;
+    } rows[] = {
+        {"show union(sphere(0.4), sphere(0.3).move([0.5, 0, 0]), blend: 0.2);", false, true},
+        {"show union(sphere(0.4), sphere(0.3).move([0.5, 0, 0]), blend: 0.2).paint(x * #ff0000);",
+         false, false},
+        {"show union(sphere(0.4), sphere(0.3).move([0.5, 0, 0]), blend: 0.2).paint(x * #ff0000);",
+         true, true},
+        {"show box([1, 0.5, 1]).paint(#ff0000); show box([0.5, 1, 0.5]).paint(#00ff00);", false,
+         false},
+        {"show box([1, 0.5, 1]).paint(#ff0000); show box([0.5, 1, 0.5]).paint(#00ff00);", true,
+         true},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        Scene    s    = scene_of(rows[i].text);
+        KrsMesh *even = even_mesh_of(s, 0.03);
+        KrsMesh *mesh = mesh_by(
+            s, (KrsMeshOptions){.error = 0.03, .simplify = true, .shape = rows[i].shape});
+        assert_int_equal(rows[i].few, 4 * mesh->triangle_count < even->triangle_count);
+        assert_true(mesh->error <= 0.03 * (1 + 1e-12));
+        assert_int_equal(mesh->unresolved, 0);
+        check_closed(mesh);
+        assert_false(crosses_itself(mesh));
+        check_hits(s, mesh, 1.2);
+        check_triangles(s, mesh);
+        krs_mesh_free(even);
+        krs_mesh_free(mesh);
+        scene_close(s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -490,6 +526,7 @@ int main(void)
         cmocka_unit_test(components_and_empty_scenes),
         cmocka_unit_test(simplified_meshes_are_near),
         cmocka_unit_test(flat_faces_with_a_hole_are_simplified),
+        cmocka_unit_test(triangles_are_left_out_where_that_is_permitted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
