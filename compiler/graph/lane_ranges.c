@@ -272,7 +272,9 @@ static bool range_of_crowd(const LaneTape *tape, const LaneRanges *ranges, const
     double value = lane_call(tape->tape, ranges->values, call->node, operands).v[0];
     radius *= function->slope;
     radius += (function->either ? UNCERTAIN_OUTLINE : UNCERTAIN) * (radius + size + fabs(value));
-    if (!function->either)
+    if (function->either)
+        radius += ranges->chords;
+    else
         radius += stretch_of_members(tape, ranges, call, value, radius);
     *range = (Range){value - radius, value + radius};
     return isfinite(value) && isfinite(radius);

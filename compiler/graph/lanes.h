@@ -197,6 +197,7 @@ typedef struct LaneRanges {
     double
            stretch; /* 1, or above: ranges hold as well if the length of each pair is longer by up to this factor, */
     double longest; /* what is made of several lengths by up to this one */
+    double chords;  /* 0, or above: and if curves of outlines are so far away from where they are */
 } LaneRanges;
 
 /* Room for those of a lane tape, and of all that it is pruned to. */

@@ -21,66 +21,124 @@ FlatRounds flat_rounds_new(double error, Arena *arena)
         .arena = arena, .numbers = {.arena = arena}, .error = error, .stretch = 1, .longest = 1};
 }
 
-void flat_rounds_note(FlatRounds *rounds, uint32_t kin, double radius, bool shared)
+/* NULL: all are known, and this one is blamed if one is looked for. */
+static FlatRound *note(FlatRounds *rounds, NumberKey key)
 {
-    NumberKey key   = {kin, 0};
-    uint32_t  fresh = (uint32_t)rounds->list.count;
+    uint32_t fresh = (uint32_t)rounds->list.count;
     if (rounds->counted) {
         if (rounds->blame)
             rounds->list.items[numbering_find(&rounds->numbers, key)].blamed = true;
-        return;
+        return NULL;
     }
     uint32_t number = numbering_take(&rounds->numbers, key, fresh);
     if (number == fresh)
         array_push_large(rounds->arena, &rounds->list, (FlatRound){.part = LARGEST_PART});
-    FlatRound *round = &rounds->list.items[number];
-    round->radius    = max2(round->radius, radius);
+    return &rounds->list.items[number];
+}
+
+static void widen(FlatRound *round, double radius, bool shared)
+{
+    round->radius = max2(round->radius, radius);
     round->shared |= shared;
+}
+
+static NumberKey key_of_kin(uint32_t kin) { return (NumberKey){kin, 0}; }
+
+static NumberKey key_of_table(uint32_t table) { return (NumberKey){table, 1}; }
+
+void flat_rounds_note(FlatRounds *rounds, uint32_t kin, double radius, bool shared)
+{
+    FlatRound *round = note(rounds, key_of_kin(kin));
+    if (round)
+        widen(round, radius, shared);
+}
+
+void flat_rounds_note_curves(FlatRounds *rounds, uint32_t table, double length, bool shared)
+{
+    FlatRound *round = note(rounds, key_of_table(table));
+    if (round) {
+        widen(round, length, shared);
+        round->curves = true;
+    }
+}
+
+/* What of the error a round may take, as a part of its radius. */
+static double part_of(const FlatRound *round, double error)
+{
+    return error * round->part * (round->shared ? 0.45 : 1) / round->radius;
 }
 
 /* The middle of a side is radius (1 - cos(pi / sides)) from the circle. */
 static uint32_t sides_of(const FlatRound *round, double error)
 {
-    double part  = error * round->part * (round->shared ? 0.45 : 1) / round->radius;
+    double part  = part_of(round, error);
     double sides = part < 1 ? PI / acos(1 - part) : 0;
     sides        = 4 * ceil(sides / 4);
     return (uint32_t)min2(max2(sides, FEWEST_SIDES), MOST_SIDES);
+}
+
+static void count_sides(FlatRounds *rounds, FlatRound *round)
+{
+    round->sides    = sides_of(round, rounds->error);
+    double stretch  = stretch_of(round->sides);
+    rounds->stretch = max2(rounds->stretch, stretch);
+    rounds->longest = max2(rounds->longest, round->shared ? stretch * stretch * stretch : stretch);
 }
 
 void flat_rounds_count(FlatRounds *rounds)
 {
     rounds->counted = true;
     rounds->stretch = rounds->longest = 1;
+    rounds->chords                    = 0;
     for (size_t i = 0; i < rounds->list.count; i++) {
         FlatRound *round = &rounds->list.items[i];
-        round->sides     = sides_of(round, rounds->error);
-        double stretch   = stretch_of(round->sides);
-        rounds->stretch  = max2(rounds->stretch, stretch);
-        rounds->longest  = max2(rounds->longest,
-                               round->shared ? stretch * stretch * stretch : stretch);
+        if (round->curves) {
+            round->chord   = part_of(round, rounds->error);
+            rounds->chords = max2(rounds->chords, round->chord);
+        } else
+            count_sides(rounds, round);
     }
+}
+
+static const FlatRound *find_round(const FlatRounds *rounds, NumberKey key)
+{
+    uint32_t number = numbering_find(&rounds->numbers, key);
+    return number == NO_NUMBER ? NULL : &rounds->list.items[number];
 }
 
 uint32_t flat_rounds_sides(const FlatRounds *rounds, uint32_t kin)
 {
+    const FlatRound *round = find_round(rounds, key_of_kin(kin));
     if (!rounds->counted)
         return FEWEST_SIDES;
-    uint32_t number = numbering_find(&rounds->numbers, (NumberKey){kin, 0});
-    return number == NO_NUMBER ? 0 : rounds->list.items[number].sides;
+    return round ? round->sides : 0;
+}
+
+double flat_rounds_chord(const FlatRounds *rounds, uint32_t table)
+{
+    const FlatRound *round = find_round(rounds, key_of_table(table));
+    return rounds->counted && round ? round->chord : INFINITY;
+}
+
+/* Until it has more sides.  False: it is fine enough. */
+static bool make_finer(FlatRound *round, double error)
+{
+    uint32_t sides = round->sides;
+    bool     any   = false;
+    while (round->part > LEAST_PART &&
+           !(any && (round->curves || sides_of(round, error) > sides))) {
+        round->part *= 0.6;
+        any = true;
+    }
+    return any;
 }
 
 bool flat_rounds_refine(FlatRounds *rounds)
 {
     bool any = false;
     for (size_t i = 0; i < rounds->list.count; i++) {
-        FlatRound *round = &rounds->list.items[i];
-        uint32_t   sides = round->sides;
-        while (round->blamed && round->part > LEAST_PART &&
-               sides_of(round, rounds->error) == sides) {
-            round->part *= 0.6;
-            any = true;
-        }
-        round->blamed = false;
+        any |= rounds->list.items[i].blamed && make_finer(&rounds->list.items[i], rounds->error);
+        rounds->list.items[i].blamed = false;
     }
     flat_rounds_count(rounds);
     return any;
@@ -91,10 +149,12 @@ void flat_rounds_open(const FlatRounds *rounds, LaneRanges *ranges)
     ranges->unroll  = true;
     ranges->stretch = rounds->stretch;
     ranges->longest = rounds->longest;
+    ranges->chords  = rounds->chords;
 }
 
 void flat_rounds_close(LaneRanges *ranges)
 {
     ranges->unroll  = false;
     ranges->stretch = ranges->longest = 1;
+    ranges->chords                    = 0;
 }

@@ -1,9 +1,9 @@
 /*
- * flat_rounds.h: how many sides the polygons have that stand for circles.
+ * flat_rounds.h: how many sides the polygons have that stand for circles, and how far chords are from curves.
  *
  * The length of a pair of numbers is taken for that of a regular polygon: its corners are on the circle, four of them on
  * the axes.  Steps of a lane tape that are kin have the same number of sides everywhere, as the largest radius needs that
- * the surface has.
+ * the surface has.  So have the curves of an outline chords that are near enough everywhere.
  */
 #ifndef KRS_MESH_FLAT_ROUNDS_H
 #define KRS_MESH_FLAT_ROUNDS_H
@@ -12,11 +12,13 @@
 #include "compiler/mesh/numbering.h"
 
 typedef struct FlatRound {
-    double   radius;
+    double   radius; /* of curves: how much of the scene a length of their plane is */
+    bool     curves;
     bool     shared; /* the error is shared with another circle */
     double   part;   /* of the error that its sides may take */
     bool     blamed; /* that was too much somewhere */
     uint32_t sides;
+    double   chord; /* how far chords may be from curves, in lengths of their plane */
 } FlatRound;
 
 typedef struct FlatRounds {
@@ -26,21 +28,25 @@ typedef struct FlatRounds {
         FlatRound *items;
         size_t     count, capacity;
     } list;
-    double error;            /* how far sides may be from the circle */
-    double stretch, longest; /* as of LaneRanges */
-    bool   counted;          /* sides are known; until then there are few */
-    bool   blame;            /* those that are noted are blamed */
+    double error;                    /* how far sides may be from the circle */
+    double stretch, longest, chords; /* as of LaneRanges */
+    bool   counted;                  /* sides are known; until then there are few */
+    bool   blame;                    /* those that are noted are blamed */
 } FlatRounds;
 
 FlatRounds flat_rounds_new(double error, Arena *arena);
 /* Says that a surface has a part of a circle. */
 void flat_rounds_note(FlatRounds *rounds, uint32_t kin, double radius, bool shared);
+/* Says that a surface has curves of an outline; a length of its plane is at most so long in the scene. */
+void flat_rounds_note_curves(FlatRounds *rounds, uint32_t table, double length, bool shared);
 /* After all are noted. */
 void flat_rounds_count(FlatRounds *rounds);
 /* Makes those finer that are blamed; false: no more than that is of use. */
 bool flat_rounds_refine(FlatRounds *rounds);
 /* 0: it has not been noted. */
 uint32_t flat_rounds_sides(const FlatRounds *rounds, uint32_t kin);
+/* How far chords of an outline may be from its curves; infinite until all are noted. */
+double flat_rounds_chord(const FlatRounds *rounds, uint32_t table);
 
 /* Has ranges hold for polygons, too, with crowds unrolled; and for the scene alone again. */
 void flat_rounds_open(const FlatRounds *rounds, LaneRanges *ranges);

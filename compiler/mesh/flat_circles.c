@@ -1,0 +1,249 @@
+/*
+ * flat_circles.c: lengths of pairs and triples, as the sides of polygons.
+ */
+#include "compiler/mesh/flat_circles.h"
+
+#include "compiler/base/vec.h"
+
+/* The polygon that stands for a circle, and those of its sides that are the farthest ones in directions of a rectangle. */
+typedef struct Sides {
+    double   angle, stretch; /* that of a side, and the radius over the distance to it */
+    uint32_t count, used;
+    int64_t  first;
+} Sides;
+
+static void find_sides(Range a, Range b, uint32_t count, Sides *sides)
+{
+    static const double SLACK  = 1e-9;
+    const double        around = 2 * acos(-1);
+    sides->count               = count;
+    sides->angle               = around / count;
+    sides->stretch             = 1 / cos(0.5 * sides->angle);
+    sides->first               = 0;
+    sides->used                = count;
+    if (a.low <= 0 && a.high >= 0 && b.low <= 0 && b.high >= 0)
+        return;
+    double middle = atan2(b.low + b.high, a.low + a.high), low = 0, high = 0;
+    for (int i = 0; i < 4; i++) {
+        double turn = atan2(i / 2 ? b.high : b.low, i % 2 ? a.high : a.low) - middle;
+        turn -= around * round(turn / around);
+        low  = min2(low, turn);
+        high = max2(high, turn);
+    }
+    sides->first = (int64_t)floor((middle + low) / sides->angle - SLACK);
+    double last  = floor((middle + high) / sides->angle + SLACK);
+    sides->used  = (uint32_t)min2(last - (double)sides->first + 1, count);
+}
+
+/* What a side tells of two numbers: that of the first, or of the second. */
+static double side_factor(const Sides *sides, uint32_t i, bool second)
+{
+    double angle = ((double)sides->first + i + 0.5) * sides->angle;
+    return sides->stretch * (second ? sin(angle) : cos(angle));
+}
+
+/* Where the first number is a length, only sides to the right count. */
+static void leave_out_behind(Sides *sides)
+{
+    while (sides->used > 0 && side_factor(sides, 0, false) < 0) {
+        sides->first++;
+        sides->used--;
+    }
+    while (sides->used > 0 && side_factor(sides, sides->used - 1, false) < 0)
+        sides->used--;
+}
+
+static bool has_round_within(const Finding *f, const Form *form, int depth)
+{
+    enum { DEEPEST = 6 };
+    for (int i = 0; i < form->kink_count; i++) {
+        const LaneStep *step = step_of_operand(f, form->kinks[i]);
+        if (!step || depth == DEEPEST || step->op == OP_length)
+            return true;
+        for (uint32_t k = 0; k < step->operand_count && step->op != LANE_CALL; k++) {
+            Form operand = form_of_operand(f, step->operands[k]);
+            if (has_round_within(f, &operand, depth + 1))
+                return true;
+        }
+    }
+    return false;
+}
+
+bool form_has_round(const Finding *f, const Form *form) { return has_round_within(f, form, 0); }
+
+static double steepness_within(const Finding *f, const Form *form, int depth)
+{
+    enum { DEEPEST = 6 };
+    double slope = length3(form->by);
+    for (int i = 0; i < form->kink_count && depth < DEEPEST; i++) {
+        const LaneStep *step = step_of_operand(f, form->kinks[i]);
+        for (uint32_t k = 0; step && step->op != LANE_CALL && k < step->operand_count; k++) {
+            Form operand = form_of_operand(f, step->operands[k]);
+            slope = max2(slope, fabs(form->factors[i]) * steepness_within(f, &operand, depth + 1));
+        }
+    }
+    return slope;
+}
+
+double form_steepness(const Finding *f, const Form *form) { return steepness_within(f, form, 0); }
+
+typedef struct Rounded {
+    Form     forms[3];
+    uint32_t count;
+} Rounded;
+
+/* Its numbers that are not 0, the one up as the last, so that balls have their poles there. */
+static Rounded rounded_of(const Finding *f, const LaneStep *step)
+{
+    static const uint32_t ORDER[3] = {0, 2, 1};
+    Rounded               rounded  = {.count = 0};
+    for (uint32_t i = 0; i < 3; i++) {
+        if (ORDER[i] >= step->operand_count)
+            continue;
+        Form form = form_of_operand(f, step->operands[ORDER[i]]);
+        if (!form_is_constant(&form) || form.at != 0)
+            rounded.forms[rounded.count++] = form;
+    }
+    return rounded;
+}
+
+/* How large the circle is where the form is 0, in lengths of the scene; what the rest is says that. */
+static void note_round(Finding *f, const Form *rest, double factor, const LaneStep *step,
+                       const Rounded *rounded, double slope)
+{
+    Form   of_length = form_scaled(-1 / factor, rest);
+    Range  needed    = form_range(f, &of_length);
+    Range  known     = f->field->ranges.ranges[LANE_INPUTS + (size_t)(step - f->tape->steps)];
+    double radius    = min2(needed.high, known.high);
+    bool   shared    = rounded->count > 2 || form_has_round(f, rest);
+    for (uint32_t i = 0; i < rounded->count; i++)
+        shared |= form_has_round(f, &rounded->forms[i]);
+    if (radius > 0 && slope > 0)
+        flat_rounds_note(f->rounds, step->kin, radius / slope, shared);
+}
+
+/* What one side, or one side of a band, tells; `across` and `up` are the factors of the band. */
+static int solid_of_side(Finding *f, const Form *rest, double factor, const Rounded *rounded,
+                         const double band[2], const Sides *sides, uint32_t i)
+{
+    double across = factor * band[0];
+    Form   form   = form_sum(*rest, across * side_factor(sides, i, false), &rounded->forms[0]);
+    form          = form_sum(form, across * side_factor(sides, i, true), &rounded->forms[1]);
+    if (rounded->count > 2)
+        form = form_sum(form, factor * band[1], &rounded->forms[2]);
+    return flat_solid(f, &form);
+}
+
+/* The length of a pair is the largest distance that the sides of its polygon tell; of `part` of that. */
+static int solid_of_pair_length(Finding *f, const Form *rest, double factor, const Rounded *rounded,
+                                const double band[2], uint32_t count)
+{
+    Sides sides;
+    find_sides(form_range(f, &rounded->forms[0]), form_range(f, &rounded->forms[1]), count, &sides);
+    bool around = sides.used == count;
+    if (sides.used > (around ? f->most_around : f->most_used)) {
+        f->failed = true;
+        return FLAT_NONE;
+    }
+    int solid = factor > 0 ? FLAT_ALL : FLAT_NONE;
+    for (uint32_t i = 0; i < sides.used; i++) {
+        int side = solid_of_side(f, rest, factor, rounded, band, &sides, i);
+        solid    = factor > 0 ? flat_both(f, solid, side) : flat_either(f, solid, side);
+    }
+    return solid;
+}
+
+/* Half as many, or a quarter, where that is enough for a band whose radius is this part of the largest: where numbers of
+   neighbours differ edges have more corners. */
+static uint32_t sides_of_band(uint32_t count, double part)
+{
+    uint32_t sides = count;
+    for (uint32_t fewer = count; fewer >= 4 && fewer >= count * part;
+         fewer          = 4 * ((fewer + 7) / 8)) {
+        sides = fewer;
+        if (fewer == 4)
+            break;
+    }
+    return sides;
+}
+
+/* A band of a ball: its factors, its number of sides, and how much longer lengths are by it. */
+typedef struct Band {
+    double   factors[2], longer;
+    uint32_t sides;
+} Band;
+
+/* That of three numbers is the length of a pair of which one is the length of a pair.  So balls have bands; those near
+   poles are shorter, and have fewer sides.  Where numbers of sides differ bands reach a bit farther. */
+static Sides find_bands(const Finding *f, const Rounded *rounded, uint32_t count)
+{
+    Range pair = range_sqrt(range_add(range_square(form_range(f, &rounded->forms[0])),
+                                      range_square(form_range(f, &rounded->forms[1]))));
+    Sides bands;
+    find_sides(pair, form_range(f, &rounded->forms[2]), count, &bands);
+    bands.first--;
+    bands.used = (uint32_t)min2(bands.used + 2, count);
+    leave_out_behind(&bands);
+    return bands;
+}
+
+static Band find_band(const Sides *bands, uint32_t i)
+{
+    Band   band    = {.factors = {side_factor(bands, i, false), side_factor(bands, i, true)}};
+    double part    = band.factors[0] / bands->stretch;
+    band.sides     = sides_of_band(bands->count, part);
+    double farther = 1 / cos(acos(-1) / band.sides) - 1;
+    band.longer    = bands->stretch * (1 + farther * part * min2(part + 0.5 * bands->angle, 1)) - 1;
+    return band;
+}
+
+FlatSlack flat_slack_with(FlatSlack slack, double excess)
+{
+    return (FlatSlack){slack.below + max2(excess, 0), slack.above - min2(excess, 0)};
+}
+
+static int solid_of_three(Finding *f, const Form *rest, double factor, const Rounded *rounded,
+                          uint32_t count, double reach)
+{
+    FlatSlack slack = f->slack;
+    Sides     bands = find_bands(f, rounded, count);
+    int       solid = factor > 0 ? FLAT_ALL : FLAT_NONE;
+    f->failed |= bands.used > f->most_used;
+    for (uint32_t i = 0; i < bands.used && !f->failed; i++) {
+        Band band = find_band(&bands, i);
+        f->slack  = flat_slack_with(slack, factor * reach * band.longer);
+        int parts = solid_of_pair_length(f, rest, factor, rounded, band.factors, band.sides);
+        solid     = factor > 0 ? flat_both(f, solid, parts) : flat_either(f, solid, parts);
+    }
+    f->slack = slack;
+    return solid;
+}
+
+/* A length is longer by its part of stretch - 1 at most, and the direction of a side is half its angle off at most. */
+int flat_solid_of_length(Finding *f, const Form *rest, double factor, const LaneStep *step)
+{
+    static const double NO_BAND[2] = {1, 0};
+    Rounded             rounded    = rounded_of(f, step);
+    uint32_t            count      = flat_rounds_sides(f->rounds, step->kin);
+    FlatSlack           slack      = f->slack;
+    double              slope = 0, angle = 2 * acos(-1) / max2(count, 1);
+    double reach = f->field->ranges.ranges[LANE_INPUTS + (size_t)(step - f->tape->steps)].high;
+    if (rounded.count < 2 || count == 0 || step->kin == 0) {
+        f->failed = true;
+        return FLAT_NONE;
+    }
+    for (uint32_t i = 0; i < rounded.count; i++)
+        slope = max2(slope, form_steepness(f, &rounded.forms[i]));
+    note_round(f, rest, factor, step, &rounded, slope);
+    f->pieces->round = true;
+    int solid;
+    if (rounded.count > 2)
+        solid = solid_of_three(f, rest, factor, &rounded, count, reach);
+    else {
+        double longer = 1 / cos(0.5 * angle);
+        f->slack      = flat_slack_with(slack, factor * reach * (longer - 1) * longer);
+        solid         = solid_of_pair_length(f, rest, factor, &rounded, NO_BAND, count);
+    }
+    f->slack = slack;
+    return solid;
+}
