@@ -72,7 +72,7 @@ RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tra
 LIVE     := $(sort $(wildcard live/*.c))
 LIVE_BORDER := live/gui.cpp
 CLI      := $(sort $(wildcard cli/*.c))
-CLI_BORDER := cli/mesh_glb.cpp cli/terminate.cpp
+CLI_BORDER := cli/glb_materials.cpp cli/mesh_glb.cpp cli/terminate.cpp
 # OpenVDB is loaded when a .vdb is written: it takes longer to load than most commands to run.
 VDB       = $(if $(VDB_LIBS),$(B)/krs-vdb.so)
 

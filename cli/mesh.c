@@ -322,14 +322,17 @@ static KrsStatus write_mesh(const Meshing *meshing, const char *path)
     if (status != KRS_OK)
         return status;
     find_parts(meshing, bodies, &parts);
+    find_materials(meshing, format, path, &parts);
     if (format->has_places)
         status = find_places(meshing, &parts);
     if (status != KRS_OK)
         return status;
+    if (format->has_looks)
+        find_frames(meshing, &parts);
     if (format->has_copies && copies_in(meshing->options, format) == COPIES_FLAT)
         flatten_parts(meshing, &parts);
     if (format->places_of_vertices)
-        split_places(meshing->options->arena, &parts);
+        split_corners(meshing->options->arena, &parts);
     set_units(meshing, format, &parts);
     return write_output(path, fill_mesh, &output);
 }

@@ -14,16 +14,31 @@
 extern "C" {
 #endif
 
+/* All properties of a material, as KrsHit has them. */
+typedef struct MeshLook {
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    double name KRS_NUMBERS_##type;
+#include "compiler/shape/surface.def"
+} MeshLook;
+
 typedef struct MeshMaterial {
     const char   *name;
-    unsigned char color[3]; /* sRGB */
-    double        roughness, metallic;
+    unsigned char color[3]; /* of its first triangle, sRGB */
+    MeshLook      look;     /* the mean over its triangles */
+    double
+        thickness; /* of the solids that it lets light into, in lengths of the vertices; 0: none */
 } MeshMaterial;
 
 /* A closed mesh. */
 typedef struct MeshPart {
     size_t first_vertex, vertex_count, first_triangle, triangle_count;
+    const double (*first_copy)[4]; /* where one of its copies is; NULL: it is where it is */
 } MeshPart;
+
+/* Unit vectors, across each other; zeros where no material asks for them. */
+typedef struct MeshFrame {
+    float normal[3], tangent[3];
+} MeshFrame;
 
 /* What has a name: a part, or copies of several. */
 typedef struct MeshBody {
@@ -41,10 +56,12 @@ typedef struct MeshParts {
     const uint32_t (*triangles)[3];   /* numbers count from the first vertex of all */
     const uint32_t *material_of;      /* of triangles */
     const double (*in_scene)[3];      /* where vertices are there: in one of the copies */
-    /* Where corners of triangles are in a texture, v upwards; NULL: there is none.  After split_places that is
-       told of vertices. */
+    /* Where corners of triangles are in a texture, v upwards, and their frames; NULL: there is none.  After
+       split_corners that is told of vertices. */
     const double (*corner_places)[3][2];
+    const MeshFrame (*corner_frames)[3];
     const double (*vertex_places)[2];
+    const MeshFrame    *vertex_frames;
     const MeshPart     *parts;
     const MeshBody     *bodies;
     const MeshMaterial *materials;
@@ -53,6 +70,9 @@ typedef struct MeshParts {
     const char         *unit;   /* of those: um, mm, cm, m, in or ft */
     double              metres; /* which is so long */
 } MeshParts;
+
+/* Whether corners of such triangles have frames. */
+bool mesh_needs_frames(const MeshMaterial *material);
 
 /* Whether a placing mirrors what it places. */
 bool mesh_is_reflection(const double matrix[3][4]);

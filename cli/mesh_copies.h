@@ -25,5 +25,8 @@ void mesh_copy_triangle(const MeshParts *parts, const MeshCopy *copy, size_t num
 /* Where its corners are in a texture, in the same order; there is one. */
 void mesh_copy_places(const MeshParts *parts, const MeshCopy *copy, size_t number,
                       double places[3][2]);
+/* Their frames, likewise. */
+void mesh_copy_frames(const MeshParts *parts, const MeshCopy *copy, size_t number,
+                      MeshFrame frames[3]);
 
 #endif

@@ -313,11 +313,11 @@ static bool write_3mf(MeshFile *file) { return mesh_border_3mf(file->parts, take
 static const double SINGLE = 5.9604645e-8, NINE_DIGITS = 5e-9;
 
 static const MeshFormat formats[] = {
-    {".stl", false, false, false, false, false, false, write_stl, SINGLE},
-    {".ply", true, false, false, false, true, true, write_ply, SINGLE},
-    {".obj", true, true, false, false, true, false, write_obj, NINE_DIGITS},
-    {".glb", true, true, true, true, true, true, write_glb, SINGLE},
-    {".3mf", true, true, true, false, false, false, write_3mf, NINE_DIGITS}};
+    {".stl", false, false, false, false, false, false, false, write_stl, SINGLE},
+    {".ply", true, false, false, false, false, true, true, write_ply, SINGLE},
+    {".obj", true, true, false, false, false, true, false, write_obj, NINE_DIGITS},
+    {".glb", true, true, true, true, true, true, true, write_glb, SINGLE},
+    {".3mf", true, true, true, false, false, false, false, write_3mf, NINE_DIGITS}};
 
 const MeshFormat *mesh_format(const char *path)
 {

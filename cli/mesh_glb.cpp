@@ -1,16 +1,8 @@
 // mesh_glb.cpp: the border to tinygltf.
-#include "cli/mesh_border.h"
+#include "cli/glb_materials.h"
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
-#include <string>
-#include <vector>
-
-#define TINYGLTF_NO_STB_IMAGE_WRITE
-#define TINYGLTF_NO_STB_IMAGE
-#define TINYGLTF_NO_EXTERNAL_IMAGE
-#include <tiny_gltf.h>
 
 namespace
 {
@@ -102,6 +94,37 @@ int add_places(tinygltf::Model &model, const MeshParts *parts, const MeshPart &p
     return end_accessor(model);
 }
 
+// Vertices without a frame are those of triangles that do not ask for it.
+int add_normals(tinygltf::Model &model, const MeshParts *parts, const MeshPart &part, bool mirrored)
+{
+    add_accessor(model, TINYGLTF_TARGET_ARRAY_BUFFER, TINYGLTF_COMPONENT_TYPE_FLOAT,
+                 TINYGLTF_TYPE_VEC3, part.vertex_count);
+    for (size_t i = part.first_vertex; i < part.first_vertex + part.vertex_count; i++) {
+        const float *n    = parts->vertex_frames[i].normal;
+        bool         none = n[0] == 0 && n[1] == 0 && n[2] == 0;
+        append(model.buffers[0].data, mirrored ? -n[0] : n[0]);
+        append(model.buffers[0].data, n[1]);
+        append(model.buffers[0].data, none ? 1.0f : n[2]);
+    }
+    return end_accessor(model);
+}
+
+int add_tangents(tinygltf::Model &model, const MeshParts *parts, const MeshPart &part,
+                 bool mirrored)
+{
+    add_accessor(model, TINYGLTF_TARGET_ARRAY_BUFFER, TINYGLTF_COMPONENT_TYPE_FLOAT,
+                 TINYGLTF_TYPE_VEC4, part.vertex_count);
+    for (size_t i = part.first_vertex; i < part.first_vertex + part.vertex_count; i++) {
+        const float *t    = parts->vertex_frames[i].tangent;
+        bool         none = t[0] == 0 && t[1] == 0 && t[2] == 0;
+        append(model.buffers[0].data, none ? 1.0f : mirrored ? -t[0] : t[0]);
+        append(model.buffers[0].data, t[1]);
+        append(model.buffers[0].data, t[2]);
+        append(model.buffers[0].data, 1.0f);
+    }
+    return end_accessor(model);
+}
+
 int add_triangles(tinygltf::Model &model, const MeshParts *parts, const MeshPart &part,
                   uint32_t material, bool mirrored)
 {
@@ -128,6 +151,7 @@ int add_mesh(tinygltf::Model &model, const MeshParts *parts, const MeshPart &par
     int            positions = add_positions(model, parts, part, mirrored);
     int            colors    = add_colors(model, parts, part);
     int            places    = parts->vertex_places ? add_places(model, parts, part) : -1;
+    int            normals = -1, tangents = -1;
     for (uint32_t material = 0; material < parts->material_count; material++) {
         int triangles = add_triangles(model, parts, part, material, mirrored);
         if (triangles < 0)
@@ -137,6 +161,14 @@ int add_mesh(tinygltf::Model &model, const MeshParts *parts, const MeshPart &par
         primitive.attributes["COLOR_0"]  = colors;
         if (places >= 0)
             primitive.attributes["TEXCOORD_0"] = places;
+        if (mesh_needs_frames(&parts->materials[material])) {
+            if (normals < 0) {
+                normals  = add_normals(model, parts, part, mirrored);
+                tangents = add_tangents(model, parts, part, mirrored);
+            }
+            primitive.attributes["NORMAL"]  = normals;
+            primitive.attributes["TANGENT"] = tangents;
+        }
         primitive.indices  = triangles;
         primitive.material = (int)material;
         primitive.mode     = TINYGLTF_MODE_TRIANGLES;
@@ -246,12 +278,6 @@ int add_instances(tinygltf::Model &model, const std::vector<Pose> &poses, int me
     return end_accessor(model);
 }
 
-void use_extension(std::vector<std::string> &extensions, const char *name)
-{
-    if (std::find(extensions.begin(), extensions.end(), name) == extensions.end())
-        extensions.push_back(name);
-}
-
 // One node with all copies, by the extension EXT_mesh_gpu_instancing.
 void place_by_instances(tinygltf::Model &model, int mesh, const std::vector<Pose> &poses,
                         tinygltf::Node &body)
@@ -265,8 +291,8 @@ void place_by_instances(tinygltf::Model &model, int mesh, const std::vector<Pose
     content["attributes"]      = tinygltf::Value(attributes);
     node.mesh                  = mesh;
     node.extensions[extension] = tinygltf::Value(content);
-    use_extension(model.extensionsRequired, extension);
-    use_extension(model.extensionsUsed, extension);
+    glb_use_extension(model.extensionsRequired, extension);
+    glb_use_extension(model.extensionsUsed, extension);
     body.children.push_back(add_node(model, node));
 }
 
@@ -330,7 +356,7 @@ void add_lods(tinygltf::Model &model, const MeshParts *parts, const MeshBody &bo
     extras["MSFT_screencoverage"] = tinygltf::Value(coverages);
     node.extras                   = tinygltf::Value(extras);
     put_in_lods(node, ids, 0);
-    use_extension(model.extensionsUsed, "MSFT_lod");
+    glb_use_extension(model.extensionsUsed, "MSFT_lod");
 }
 
 void add_body(tinygltf::Model &model, const MeshParts *parts, const MeshBody &body)
@@ -344,17 +370,6 @@ void add_body(tinygltf::Model &model, const MeshParts *parts, const MeshBody &bo
     if (body.lod_count > 0)
         add_lods(model, parts, body, node);
     model.scenes[0].nodes.push_back(add_node(model, node));
-}
-
-void add_materials(tinygltf::Model &model, const MeshParts *parts)
-{
-    for (size_t i = 0; i < parts->material_count; i++) {
-        tinygltf::Material material;
-        material.name                                 = parts->materials[i].name;
-        material.pbrMetallicRoughness.roughnessFactor = parts->materials[i].roughness;
-        material.pbrMetallicRoughness.metallicFactor  = parts->materials[i].metallic;
-        model.materials.push_back(material);
-    }
 }
 
 // A stream whose bytes go to the sink.
@@ -392,7 +407,7 @@ bool mesh_border_glb(const MeshParts *parts, MeshSink *sink, void *user)
         model.buffers.resize(1);
         model.scenes.resize(1);
         model.defaultScene = 0;
-        add_materials(model, parts);
+        glb_add_materials(model, parts);
         for (size_t i = 0; i < parts->body_count; i++)
             add_body(model, parts, parts->bodies[i]);
         return tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, stream, false, true) &&

@@ -49,8 +49,9 @@ static void join_mesh(void *user, const KrsMesh *mesh, const KrsItem *item)
 {
     Joined *joined = user;
     size_t  vertex = joined->vertex_count, triangle = joined->triangle_count;
-    joined->list[joined->parts.part_count++] = (MeshPart){vertex, mesh->vertex_count, triangle,
-                                                          mesh->triangle_count};
+    joined->list[joined->parts.part_count++] = (MeshPart){
+        vertex, mesh->vertex_count, triangle, mesh->triangle_count,
+        item ? (const double(*)[4])item->first_copy : NULL};
     for (size_t i = 0; i < mesh->vertex_count; i++) {
         memcpy(joined->vertices[vertex + i], mesh->vertices[i], sizeof *joined->vertices);
         place(item, mesh->vertices[i], joined->places[vertex + i]);
@@ -122,7 +123,7 @@ static void join_bodies(const Meshing *meshing, const Bodies *bodies, Joined *jo
 
 /* ---- looks ---- */
 
-static unsigned char byte_of(double linear)
+unsigned char color_byte(double linear)
 {
     double encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
     return (unsigned char)lrint(255 * fmin(fmax(encoded, 0), 1));
@@ -139,60 +140,9 @@ static void find_colors(const Meshing *meshing, Joined *joined)
         now = joined->vertex_count - i < PROBES ? joined->vertex_count - i : PROBES;
         krs_probe(meshing->frame, (const double(*)[3])joined->places + i, now, hits);
         for (size_t k = 0; k < 3 * now; k++)
-            colors[i + k / 3][k % 3] = byte_of(hits[k / 3].color[k % 3]);
+            colors[i + k / 3][k % 3] = color_byte(hits[k / 3].color[k % 3]);
     }
     joined->parts.colors = (const unsigned char(*)[3])colors;
-}
-
-/* Materials as they come, with the look of their first triangle. */
-typedef struct MaterialList {
-    uint32_t     *places; /* from 1, by the number that answers have */
-    MeshMaterial *items;
-    size_t        count;
-} MaterialList;
-
-static uint32_t take_material(const Meshing *meshing, MaterialList *list, const KrsHit *hit)
-{
-    bool        split  = meshing->options->mesh_split == SPLIT_MATERIALS;
-    uint32_t    number = split ? hit->material : 0;
-    const char *name   = split ? krs_material_name(meshing->scene, number) : NULL;
-    if (list->places[number] == 0) {
-        MeshMaterial *material = &list->items[list->count];
-        *material              = (MeshMaterial){.name      = name ? name : "material",
-                                                .roughness = hit->roughness,
-                                                .metallic  = hit->metallic};
-        for (int k = 0; k < 3; k++)
-            material->color[k] = byte_of(hit->color[k]);
-        list->places[number] = (uint32_t)++list->count;
-    }
-    return list->places[number] - 1;
-}
-
-static void find_materials(const Meshing *meshing, Joined *joined)
-{
-    Arena       *arena = meshing->options->arena;
-    size_t       known = krs_material_count(meshing->scene) + 2;
-    MaterialList list  = {arena_new_array(arena, uint32_t, known),
-                          arena_new_array(arena, MeshMaterial, known), 0};
-    uint32_t    *of    = arena_new_array(arena, uint32_t, joined->triangle_count);
-    double       middles[PROBES][3];
-    KrsHit       hits[PROBES];
-    for (size_t i = 0, now; i < joined->triangle_count; i += now) {
-        now = joined->triangle_count - i < PROBES ? joined->triangle_count - i : PROBES;
-        for (size_t t = 0; t < now; t++) {
-            const uint32_t *triangle = joined->triangles[i + t];
-            for (int k = 0; k < 3; k++)
-                middles[t][k] = (joined->places[triangle[0]][k] + joined->places[triangle[1]][k] +
-                                 joined->places[triangle[2]][k]) /
-                                3;
-        }
-        krs_probe(meshing->frame, (const double(*)[3])middles, now, hits);
-        for (size_t t = 0; t < now; t++)
-            of[i + t] = take_material(meshing, &list, &hits[t]);
-    }
-    joined->parts.material_of    = of;
-    joined->parts.materials      = list.items;
-    joined->parts.material_count = list.count;
 }
 
 /* Parts are one behind the other. */
@@ -214,7 +164,6 @@ void find_parts(const Meshing *meshing, const Bodies *bodies, MeshParts *parts)
     join_bodies(meshing, bodies, &joined);
     joined.parts.in_scene = (const double(*)[3])joined.places;
     find_colors(meshing, &joined);
-    find_materials(meshing, &joined);
     *parts = joined.parts;
 }
 
@@ -227,6 +176,7 @@ typedef struct Flat {
     uint32_t (*triangles)[3];
     uint32_t *material_of;
     double (*corner_places)[3][2];
+    MeshFrame (*corner_frames)[3];
     size_t vertex_count, triangle_count;
 } Flat;
 
@@ -253,6 +203,8 @@ static bool flatten_copy(void *user, const MeshCopy *copy)
         flat->material_of[flat->triangle_count + t] = from->material_of[part->first_triangle + t];
         if (from->corner_places)
             mesh_copy_places(from, copy, t, flat->corner_places[flat->triangle_count + t]);
+        if (from->corner_frames)
+            mesh_copy_frames(from, copy, t, flat->corner_frames[flat->triangle_count + t]);
     }
     return count_copy(flat, copy);
 }
@@ -271,6 +223,8 @@ void flatten_parts(const Meshing *meshing, MeshParts *parts)
     flat.material_of = arena_new_array(arena, uint32_t, flat.triangle_count);
     if (parts->corner_places)
         flat.corner_places = arena_alloc(arena, flat.triangle_count, sizeof *flat.corner_places);
+    if (parts->corner_frames)
+        flat.corner_frames = arena_alloc(arena, flat.triangle_count, sizeof *flat.corner_frames);
     flat.vertex_count = flat.triangle_count = 0;
     for (size_t i = 0; i < parts->body_count; i++) {
         MeshPart part = {.first_vertex = flat.vertex_count, .first_triangle = flat.triangle_count};
@@ -285,6 +239,7 @@ void flatten_parts(const Meshing *meshing, MeshParts *parts)
     parts->triangles     = (const uint32_t(*)[3])flat.triangles;
     parts->material_of   = flat.material_of;
     parts->corner_places = (const double(*)[3][2])flat.corner_places;
+    parts->corner_frames = (const MeshFrame(*)[3])flat.corner_frames;
     parts->parts         = list;
     parts->bodies        = bodies;
     parts->part_count    = parts->body_count;

@@ -67,11 +67,19 @@ double  longest_side(const Bodies *bodies);
 size_t parts_vertex_count(const MeshParts *parts);
 size_t parts_triangle_count(const MeshParts *parts);
 void   find_parts(const Meshing *meshing, const Bodies *bodies, MeshParts *parts);
+/* sRGB of a linear number. */
+unsigned char color_byte(double linear);
 /* The same without copies: a part has all triangles of a body. */
 void flatten_parts(const Meshing *meshing, MeshParts *parts);
-/* mesh_places.c: where triangles are in textures, if there are any; and vertices, by doubling those on seams. */
+/* mesh_looks.c: the materials of triangles, as a format has them; warns of what a file is without. */
+void find_materials(const Meshing *meshing, const MeshFormat *format, const char *path,
+                    MeshParts *parts);
+/* mesh_places.c: where triangles are in textures, if there are any. */
 KrsStatus find_places(const Meshing *meshing, MeshParts *parts);
-void      split_places(Arena *arena, MeshParts *parts);
+/* mesh_frames.c: frames of the corners of triangles whose materials ask for them. */
+void find_frames(const Meshing *meshing, MeshParts *parts);
+/* mesh_split.c: tells of vertices what is known of corners, by doubling those of which corners differ. */
+void split_corners(Arena *arena, MeshParts *parts);
 /* Of a length of 1, in the order of unit_choices. */
 extern const double metres_of_units[];
 /* What a length of 1 is in the file. */

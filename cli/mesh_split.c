@@ -1,0 +1,100 @@
+/*
+ * mesh_split.c: vertices that are doubled where triangles differ in what they know of them.
+ */
+#include <string.h>
+
+#include "cli/meshing.h"
+
+static const uint32_t NONE = UINT32_MAX;
+
+/* What is known of a corner: where it is in a texture, and its frame. */
+typedef struct Corner {
+    double    place[2];
+    MeshFrame frame;
+} Corner;
+
+typedef struct Split {
+    const MeshParts *from;
+    size_t          *source; /* of vertices: the one that it was */
+    double (*places)[2];
+    MeshFrame *frames;
+    uint32_t  *next, *first; /* vertices of one source: the first, and one by one */
+    uint32_t (*triangles)[3];
+    size_t count;
+} Split;
+
+static Corner corner_of(const MeshParts *parts, size_t triangle, int k)
+{
+    Corner corner;
+    memset(&corner, 0, sizeof corner);
+    if (parts->corner_places)
+        memcpy(corner.place, parts->corner_places[triangle][k], sizeof corner.place);
+    if (parts->corner_frames)
+        corner.frame = parts->corner_frames[triangle][k];
+    return corner;
+}
+
+static uint32_t take_vertex(Split *split, uint32_t source, const Corner *corner)
+{
+    uint32_t *at = &split->first[source];
+    for (; *at != NONE; at = &split->next[*at])
+        if (memcmp(split->places[*at], corner->place, sizeof corner->place) == 0 &&
+            memcmp(&split->frames[*at], &corner->frame, sizeof corner->frame) == 0)
+            return *at;
+    uint32_t number       = (uint32_t)split->count++;
+    *at                   = number;
+    split->next[number]   = NONE;
+    split->source[number] = source;
+    split->frames[number] = corner->frame;
+    memcpy(split->places[number], corner->place, sizeof corner->place);
+    return number;
+}
+
+static MeshPart split_part(Split *split, const MeshPart *part)
+{
+    MeshPart result     = *part;
+    result.first_vertex = split->count;
+    for (size_t i = part->first_triangle; i < part->first_triangle + part->triangle_count; i++)
+        for (int k = 0; k < 3; k++) {
+            Corner corner          = corner_of(split->from, i, k);
+            split->triangles[i][k] = take_vertex(split, split->from->triangles[i][k], &corner);
+        }
+    result.vertex_count = split->count - result.first_vertex;
+    return result;
+}
+
+static void copy_vertices(const Split *split, Arena *arena, MeshParts *parts)
+{
+    double(*vertices)[3]      = arena_alloc(arena, split->count, sizeof *vertices);
+    unsigned char(*colors)[3] = arena_alloc(arena, split->count, sizeof *colors);
+    for (size_t i = 0; i < split->count; i++) {
+        memcpy(vertices[i], parts->vertices[split->source[i]], sizeof *vertices);
+        memcpy(colors[i], parts->colors[split->source[i]], sizeof *colors);
+    }
+    parts->vertices = (const double(*)[3])vertices;
+    parts->colors   = (const unsigned char(*)[3])colors;
+}
+
+void split_corners(Arena *arena, MeshParts *parts)
+{
+    size_t    triangles = parts_triangle_count(parts), most = 3 * triangles;
+    size_t    vertices = parts_vertex_count(parts);
+    MeshPart *list     = arena_new_array(arena, MeshPart, parts->part_count);
+    if (!parts->corner_places && !parts->corner_frames)
+        return;
+    Split split = {.from      = parts,
+                   .source    = arena_alloc(arena, most, sizeof *split.source),
+                   .places    = arena_alloc(arena, most, sizeof *split.places),
+                   .frames    = arena_alloc(arena, most, sizeof *split.frames),
+                   .next      = arena_alloc(arena, most, sizeof *split.next),
+                   .first     = arena_alloc(arena, vertices, sizeof *split.first),
+                   .triangles = arena_alloc(arena, triangles, sizeof *split.triangles)};
+    memset(split.first, 0xff, vertices * sizeof *split.first);
+    for (size_t i = 0; i < parts->part_count; i++)
+        list[i] = split_part(&split, &parts->parts[i]);
+    copy_vertices(&split, arena, parts);
+    parts->triangles     = (const uint32_t(*)[3])split.triangles;
+    parts->vertex_places = parts->corner_places ? (const double(*)[2])split.places : NULL;
+    parts->vertex_frames = parts->corner_frames ? split.frames : NULL;
+    parts->parts         = list;
+}
