@@ -43,7 +43,7 @@ IMAGE    := $(addprefix compiler/image/, png.c exr.c image.c)
 LANES    := $(addprefix compiler/graph/lanes_, plain.c $(if $(filter x86_64, $(shell $(CC) -dumpmachine | cut -d - -f 1)), avx2.c avx512.c))
 GRAPH    := $(addprefix compiler/graph/, intern.c alike.c alike_copy.c graph.c crowd.c crowd_walk.c crowd_frame.c build.c substitute.c extract.c derive_rules.c \
                 derive_blends.c derive.c series.c zeros.c local_terms.c local_curves.c local.c rebase.c \
-                simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c frame_ranges.c turns.c parity.c texture.c texture_facts.c \
+                simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c frame_ranges.c turns.c timed.c parity.c texture.c texture_facts.c \
                 regions.c squares.c grid_build.c grid_find.c grid_clearance.c grid_halve.c grid_refine.c grid_sift.c grid_tails.c fractal.c blend_shares.c op_values.c tape.c evaluate.c lane_rows.c lane_make.c lane_run.c lane_crowds.c lane_ranges.c \
                 lane_steepest.c lane_slopes.c lane_cuts.c lane_partials.c lane_outlines.c lane_hessians.c lane_prune.c joints.c joint_needs.c print.c) $(LANES)
 SHAPE    := $(addprefix compiler/shape/, turn_boxes.c frame_boxes.c sequence_box.c box.c box_rules.c reach.c cover.c overlap.c map.c moebius.c builder.c sky_map.c slope.c print.c)
@@ -60,7 +60,7 @@ PRINT    := $(addprefix compiler/print/, frame_values.c media.c lines.c signatur
             $(sort $(wildcard compiler/print/*/*.c))
 TARGET   := $(addprefix compiler/target/, instructions.c inline.c dominators.c forward.c live.c flatten.c spirv.c)
 BORDER   := compiler/target/glslang_border.cpp
-API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c find_emissive.c find_assembly.c retain.c tables.c facts.c \
+API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c find_emissive.c find_assembly.c find_motion.c retain.c tables.c facts.c \
                 march_groups.c make_module.c program.c scene_text.c framing.c look.c daylight.c frame.c frame_boxes.c frame_tables.c frame_emissive.c points.c query.c texture_places.c \
                 update.c camera_moves.c search_pairs.c search_targets.c search_starts.c search.c refuter.c \
                 refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)

@@ -73,6 +73,10 @@ static KrsStatus make_body(Meshing *meshing, MakeBody *make, Bodies *bodies, dou
         progress_end(&meshing->progress);
     if (status == KRS_BAD_ARGUMENT)
         return say_usage(meshing->options, "--error is too small for the size of `%s`", path);
+    if (status == KRS_BAD_SCENE)
+        say("what moves in `%s` cannot be taken apart: a mirror cuts it, or a zone or --within "
+            "cuts the scene",
+            path);
     if (status == KRS_OUT_OF_MEMORY)
         say("a mesh of `%s` with this --error needs more memory than --limit memory permits", path);
     if (status == KRS_OK)
@@ -312,7 +316,7 @@ static KrsStatus check_size(const Meshing *meshing, const char *path, const Mesh
                                                 : "a larger --error needs fewer");
 }
 
-static KrsStatus write_mesh(const Meshing *meshing, const char *path)
+static KrsStatus write_mesh(Meshing *meshing, const char *path)
 {
     const MeshFormat *format = mesh_format(path);
     const Bodies     *bodies = bodies_of(meshing, format);
@@ -334,10 +338,14 @@ static KrsStatus write_mesh(const Meshing *meshing, const char *path)
     if (format->places_of_vertices)
         split_corners(meshing->options->arena, &parts);
     set_units(meshing, format, &parts);
+    if (meshing->options->animated)
+        status = find_motion(meshing, &parts);
+    if (status != KRS_OK)
+        return status;
     return write_output(path, fill_mesh, &output);
 }
 
-static KrsStatus write_meshes(const Meshing *meshing)
+static KrsStatus write_meshes(Meshing *meshing)
 {
     KrsStatus status = KRS_OK;
     for (size_t i = 0; i < output_count(meshing) && status == KRS_OK; i++)
@@ -376,6 +384,8 @@ static void report(const Meshing *meshing, const Bodies *bodies)
             "the first is at [%g, %g, %g] of the %s; a smaller --error tells",
             all.unresolved, at[0], at[1], at[2], all.copies > 1 ? "kernel" : "scene");
     warn_of_rounding(meshing, &all);
+    if (meshing->moving > 0)
+        say("%zu parts move, by %zu keyframes", meshing->moving, meshing->keys);
     if (bodies == &meshing->assembled && all.copies > (double)bodies->count)
         say("%.0f copies with %.0f triangles, within %.4g of the surface", all.copies,
             all.triangles, all.error * meshing->scale);
@@ -394,6 +404,9 @@ KrsStatus command_mesh(Options *options)
     meshing.scene = scene;
     if (status == KRS_OK)
         status = scene_frame(options, scene, &meshing.frame);
+    if (status == KRS_OK && options->animated)
+        status = scene_set_time(options, meshing.frame,
+                                options->time + options->first_frame / options->fps);
     if (status == KRS_OK) {
         meshing.how = (KrsMeshOptions){
             .memory_limit = options->limits.memory, .go_on = go_on, .user = &meshing};

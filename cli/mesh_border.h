@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "cli/mesh_poses.h"
 #include "compiler/krs.h"
 
 #ifdef __cplusplus
@@ -40,13 +41,27 @@ typedef struct MeshFrame {
     float normal[3], tangent[3];
 } MeshFrame;
 
+/* Where a copy is at some time, in seconds from 0, and in lengths of the scene. */
+typedef struct MeshKey {
+    double   time;
+    MeshPose pose;
+} MeshKey;
+
+/* Keyframes of a copy, one after the other; a single one: it stands still. */
+typedef struct MeshTrack {
+    const MeshKey *keys;
+    size_t         count;
+} MeshTrack;
+
 /* What has a name: a part, or copies of several. */
 typedef struct MeshBody {
-    const char        *name;
-    const KrsAssembly *assembly;   /* where copies are; NULL: it is its only part */
-    const size_t      *part_of;    /* the part of each item of the assembly that is a mesh */
-    size_t             first_part; /* of it, in the order of items */
-    size_t             lod_count;  /* parts behind its only one, which show it in less detail */
+    const char   *name;
+    KrsAssembly  *assembly;   /* where copies are; NULL: it is its only part */
+    const size_t *part_of;    /* the part of each item of the assembly that is a mesh */
+    size_t        first_part; /* of it, in the order of items */
+    size_t        lod_count;  /* parts behind its only one, which show it in less detail */
+    const MeshTrack
+        *tracks; /* of its copies, in the order of krs_assembly_visit; NULL: it does not move */
 } MeshBody;
 
 /* Parts, one behind the other, and bodies that are made of them. */
@@ -73,9 +88,6 @@ typedef struct MeshParts {
 
 /* Whether corners of such triangles have frames. */
 bool mesh_needs_frames(const MeshMaterial *material);
-
-/* Whether a placing mirrors what it places. */
-bool mesh_is_reflection(const double matrix[3][4]);
 
 /* Takes the next bytes of the file; false: there has been a failure. */
 typedef bool MeshSink(void *user, const void *bytes, size_t count);

@@ -5,13 +5,6 @@
 
 #include "compiler/base/vec.h"
 
-bool mesh_is_reflection(const double matrix[3][4])
-{
-    double cross[3];
-    cross3(matrix[0], matrix[1], cross);
-    return dot3(cross, matrix[2]) < 0;
-}
-
 typedef struct Visit {
     const MeshParts *parts;
     const MeshBody  *body;

@@ -313,11 +313,14 @@ static bool write_3mf(MeshFile *file) { return mesh_border_3mf(file->parts, take
 static const double SINGLE = 5.9604645e-8, NINE_DIGITS = 5e-9;
 
 static const MeshFormat formats[] = {
-    {".stl", false, false, false, false, false, false, false, write_stl, SINGLE},
-    {".ply", true, false, false, false, false, true, true, write_ply, SINGLE},
-    {".obj", true, true, false, false, false, true, false, write_obj, NINE_DIGITS},
-    {".glb", true, true, true, true, true, true, true, write_glb, SINGLE},
-    {".3mf", true, true, true, false, false, false, false, write_3mf, NINE_DIGITS}};
+    {".stl", .write = write_stl, .rounding = SINGLE},
+    {".ply", .has_colors = true, .has_places = true, .places_of_vertices = true, .write = write_ply,
+     .rounding = SINGLE},
+    {".obj", .has_colors = true, .has_parts = true, .has_places = true, .write = write_obj,
+     .rounding = NINE_DIGITS},
+    {".glb", true, true, true, true, true, true, true, true, write_glb, SINGLE},
+    {".3mf", .has_colors = true, .has_parts = true, .has_copies = true, .write = write_3mf,
+     .rounding = NINE_DIGITS}};
 
 const MeshFormat *mesh_format(const char *path)
 {

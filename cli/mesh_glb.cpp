@@ -185,109 +185,145 @@ int add_node(tinygltf::Model &model, const tinygltf::Node &node)
     return (int)model.nodes.size() - 1;
 }
 
-// Where a copy is: what a node has.
-struct Pose {
-    double translation[3], rotation[4], scale;
-};
-
-// The quaternion x, y, z, w of a rotation (Shepperd's method).
-void find_rotation(const double m[3][3], double q[4])
-{
-    double trace = m[0][0] + m[1][1] + m[2][2], most = trace;
-    int    which = 3;
-    for (int k = 0; k < 3; k++)
-        if (m[k][k] > most) {
-            most  = m[k][k];
-            which = k;
-        }
-    int i = which % 3, j = (i + 1) % 3, k = (i + 2) % 3;
-    if (which == 3) {
-        q[3] = 1 + trace;
-        for (int n = 0; n < 3; n++)
-            q[n] = m[(n + 2) % 3][(n + 1) % 3] - m[(n + 1) % 3][(n + 2) % 3];
-    } else {
-        q[i] = 1 + 2 * m[i][i] - trace;
-        q[j] = m[j][i] + m[i][j];
-        q[k] = m[k][i] + m[i][k];
-        q[3] = m[k][j] - m[j][k];
-    }
-    double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    for (int n = 0; n < 4; n++)
-        q[n] /= length;
-}
-
 // Copies of a part, and of its image in the plane x = 0: by that no copy is a reflection, of which
 // instances must not be, since all triangles that are drawn together face to one side.
-struct Copies {
-    std::vector<Pose> poses[2];
+struct Copy {
+    MeshPose         pose;
+    const MeshTrack *track; // nullptr: it stands still
 };
 
-void add_pose(Copies &copies, const double matrix[3][4], double lengths)
-{
-    bool   mirrored = mesh_is_reflection(matrix);
-    Pose   pose;
-    double turn[3][3];
-    pose.scale = std::sqrt(matrix[0][0] * matrix[0][0] + matrix[0][1] * matrix[0][1] +
-                           matrix[0][2] * matrix[0][2]);
-    for (int i = 0; i < 3; i++) {
-        pose.translation[i] = lengths * matrix[i][3];
-        for (int k = 0; k < 3; k++)
-            turn[i][k] = (mirrored && k == 0 ? -1 : 1) * matrix[i][k] / pose.scale;
-    }
-    find_rotation(turn, pose.rotation);
-    copies.poses[mirrored].push_back(pose);
-}
+struct Copies {
+    std::vector<Copy> still[2], moving[2];
+};
 
 // The copies of each item of an assembly.
 struct Collection {
-    const KrsAssembly  *assembly;
-    double              lengths;
+    const MeshBody     *body;
     std::vector<Copies> items;
+    size_t              count;
 };
 
 bool collect(void *user, const KrsItem *item, const double matrix[3][4])
 {
     Collection *collection = (Collection *)user;
-    add_pose(collection->items[item - collection->assembly->items], matrix, collection->lengths);
+    Copies     &copies     = collection->items[item - collection->body->assembly->items];
+    Copy        copy       = {};
+    mesh_pose_of(matrix, &copy.pose);
+    if (collection->body->tracks)
+        copy.track = &collection->body->tracks[collection->count++];
+    bool moves = copy.track && copy.track->count > 1;
+    (moves ? copies.moving : copies.still)[copy.pose.mirrored].push_back(copy);
     return true;
 }
 
-// A node for each copy.
-void place_by_nodes(tinygltf::Model &model, int mesh, const std::vector<Pose> &poses,
-                    tinygltf::Node &body)
+// The times of the last keyframes that were written, which others often share.
+struct Times {
+    std::vector<float> seconds;
+    int                accessor = -1;
+};
+
+int add_times(tinygltf::Model &model, const MeshTrack &track, Times &times)
 {
-    for (const Pose &pose : poses) {
-        tinygltf::Node node;
-        node.mesh = mesh;
-        node.translation.assign(pose.translation, pose.translation + 3);
+    std::vector<float> seconds;
+    for (size_t i = 0; i < track.count; i++)
+        seconds.push_back((float)track.keys[i].time);
+    if (times.accessor >= 0 && seconds == times.seconds)
+        return times.accessor;
+    tinygltf::Accessor &accessor = add_accessor(model, 0, TINYGLTF_COMPONENT_TYPE_FLOAT,
+                                                TINYGLTF_TYPE_SCALAR, track.count);
+    accessor.minValues.assign(1, seconds.front());
+    accessor.maxValues.assign(1, seconds.back());
+    for (float second : seconds)
+        append(model.buffers[0].data, second);
+    times.seconds  = seconds;
+    times.accessor = end_accessor(model);
+    return times.accessor;
+}
+
+// A channel for what a node has, unless it stays the same.
+void add_channel(tinygltf::Model &model, int node, const MeshTrack &track, bool turns,
+                 double lengths, Times &times)
+{
+    std::vector<float> values;
+    bool               stays = true;
+    const size_t       width = turns ? 4 : 3;
+    for (size_t i = 0; i < track.count; i++)
+        for (size_t k = 0; k < width; k++) {
+            const MeshPose &pose = track.keys[i].pose;
+            values.push_back((float)(turns ? pose.rotation[k] : lengths * pose.translation[k]));
+            stays = stays && values.back() == values[k];
+        }
+    if (stays)
+        return;
+    tinygltf::Animation       &animation = model.animations[0];
+    tinygltf::AnimationSampler sampler;
+    tinygltf::AnimationChannel channel;
+    sampler.input         = add_times(model, track, times);
+    sampler.interpolation = "LINEAR";
+    add_accessor(model, 0, TINYGLTF_COMPONENT_TYPE_FLOAT,
+                 turns ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3, track.count);
+    for (float value : values)
+        append(model.buffers[0].data, value);
+    sampler.output      = end_accessor(model);
+    channel.sampler     = (int)animation.samplers.size();
+    channel.target_node = node;
+    channel.target_path = turns ? "rotation" : "translation";
+    animation.samplers.push_back(sampler);
+    animation.channels.push_back(channel);
+}
+
+void animate(tinygltf::Model &model, int node, const MeshTrack &track, double lengths, Times &times)
+{
+    if (model.animations.empty()) {
+        model.animations.emplace_back();
+        model.animations[0].name = "frames";
+    }
+    add_channel(model, node, track, false, lengths, times);
+    add_channel(model, node, track, true, lengths, times);
+}
+
+// A node for each copy.
+void place_by_nodes(tinygltf::Model &model, int mesh, const std::vector<Copy> &copies,
+                    double lengths, tinygltf::Node &body)
+{
+    Times times;
+    for (const Copy &copy : copies) {
+        tinygltf::Node  node;
+        const MeshPose &pose = copy.pose;
+        node.mesh            = mesh;
+        for (double along : pose.translation)
+            node.translation.push_back(lengths * along);
         node.rotation.assign(pose.rotation, pose.rotation + 4);
         node.scale.assign(3, pose.scale);
         body.children.push_back(add_node(model, node));
+        if (copy.track && copy.track->count > 1)
+            animate(model, body.children.back(), *copy.track, lengths, times);
     }
 }
 
-int add_instances(tinygltf::Model &model, const std::vector<Pose> &poses, int member)
+int add_instances(tinygltf::Model &model, const std::vector<Copy> &copies, int member,
+                  double lengths)
 {
     int type = member == 1 ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3;
-    add_accessor(model, 0, TINYGLTF_COMPONENT_TYPE_FLOAT, type, poses.size());
-    for (const Pose &pose : poses)
+    add_accessor(model, 0, TINYGLTF_COMPONENT_TYPE_FLOAT, type, copies.size());
+    for (const Copy &copy : copies)
         for (int k = 0; k < (member == 1 ? 4 : 3); k++)
-            append(model.buffers[0].data, (float)(member == 0   ? pose.translation[k]
-                                                  : member == 1 ? pose.rotation[k]
-                                                                : pose.scale));
+            append(model.buffers[0].data, (float)(member == 0   ? lengths * copy.pose.translation[k]
+                                                  : member == 1 ? copy.pose.rotation[k]
+                                                                : copy.pose.scale));
     return end_accessor(model);
 }
 
 // One node with all copies, by the extension EXT_mesh_gpu_instancing.
-void place_by_instances(tinygltf::Model &model, int mesh, const std::vector<Pose> &poses,
-                        tinygltf::Node &body)
+void place_by_instances(tinygltf::Model &model, int mesh, const std::vector<Copy> &copies,
+                        double lengths, tinygltf::Node &body)
 {
     static const char *const names[]   = {"TRANSLATION", "ROTATION", "SCALE"};
     static const char *const extension = "EXT_mesh_gpu_instancing";
     tinygltf::Value::Object  attributes, content;
     tinygltf::Node           node;
     for (int member = 0; member < 3; member++)
-        attributes[names[member]] = tinygltf::Value(add_instances(model, poses, member));
+        attributes[names[member]] = tinygltf::Value(add_instances(model, copies, member, lengths));
     content["attributes"]      = tinygltf::Value(attributes);
     node.mesh                  = mesh;
     node.extensions[extension] = tinygltf::Value(content);
@@ -296,26 +332,28 @@ void place_by_instances(tinygltf::Model &model, int mesh, const std::vector<Pose
     body.children.push_back(add_node(model, node));
 }
 
-const double MOST_NODES = 1024; // for copies; more are instances
+const double MOST_NODES = 1024; // for copies that stand still; more are instances
 
 void add_copies(tinygltf::Model &model, const MeshParts *parts, const MeshBody &body,
                 tinygltf::Node &node)
 {
     const KrsAssembly *assembly   = body.assembly;
-    Collection         collection = {assembly, parts->scale * parts->metres,
-                                     std::vector<Copies>(assembly->item_count)};
+    const double       lengths    = parts->scale * parts->metres;
+    Collection         collection = {&body, std::vector<Copies>(assembly->item_count), 0};
     krs_assembly_visit(assembly, collect, &collection);
     for (size_t i = 0; i < assembly->item_count; i++)
         for (int mirrored = 0; mirrored < 2; mirrored++) {
-            const std::vector<Pose> &poses = collection.items[i].poses[mirrored];
-            const MeshPart          &part  = parts->parts[body.part_of[i]];
-            if (poses.empty() || part.triangle_count == 0)
+            const std::vector<Copy> &still  = collection.items[i].still[mirrored];
+            const std::vector<Copy> &moving = collection.items[i].moving[mirrored];
+            const MeshPart          &part   = parts->parts[body.part_of[i]];
+            if ((still.empty() && moving.empty()) || part.triangle_count == 0)
                 continue;
             int mesh = add_mesh(model, parts, part, mirrored != 0, body.name);
+            place_by_nodes(model, mesh, moving, lengths, node);
             if (assembly->copies <= MOST_NODES)
-                place_by_nodes(model, mesh, poses, node);
-            else
-                place_by_instances(model, mesh, poses, node);
+                place_by_nodes(model, mesh, still, lengths, node);
+            else if (!still.empty())
+                place_by_instances(model, mesh, still, lengths, node);
         }
 }
 

@@ -79,9 +79,11 @@ static void join_body(const Meshing *meshing, const Body *body, Joined *joined)
     size_t  part    = joined->parts.part_count;
     for (size_t i = 0; i < items; i++)
         part_of[i] = body->assembly->items[i].mesh ? part++ : 0;
-    joined->bodies[joined->parts.body_count++] = (MeshBody){
-        body_name(meshing, body), body->assembly, part_of, joined->parts.part_count,
-        body->lod_count};
+    joined->bodies[joined->parts.body_count++] = (MeshBody){.name       = body_name(meshing, body),
+                                                            .assembly   = body->assembly,
+                                                            .part_of    = part_of,
+                                                            .first_part = joined->parts.part_count,
+                                                            .lod_count  = body->lod_count};
     visit_meshes(body, join_mesh, joined);
     for (size_t i = 0; i < body->lod_count; i++)
         join_mesh(joined, body->lods[i], NULL);

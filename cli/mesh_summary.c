@@ -50,3 +50,12 @@ double longest_side(const Bodies *bodies)
         longest = fmax(longest, all.high[k] - all.low[k]);
     return longest;
 }
+
+double assembly_error(const KrsAssembly *assembly)
+{
+    Summary all = {.error = 0};
+    for (size_t i = 0; i < assembly->item_count; i++)
+        if (assembly->items[i].mesh)
+            add_mesh(&all, assembly->items[i].mesh, &assembly->items[i]);
+    return all.error;
+}

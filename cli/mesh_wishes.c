@@ -38,16 +38,37 @@ static KrsStatus find_component(Meshing *meshing)
                      count ? known.bytes : "none");
 }
 
+/* A component of --frames that is moved has no end for all times, as a rule: the parts that it has must have one. */
+static bool is_moved(const Meshing *meshing, size_t index)
+{
+    KrsMotion motion = {0};
+    return meshing->options->animated &&
+           krs_component_motion(meshing->scene, index, &motion) == KRS_OK && motion.moves;
+}
+
+static void find_box(const Meshing *meshing, double low[3], double high[3])
+{
+    for (int k = 0; k < 3; k++) {
+        low[k]  = INFINITY;
+        high[k] = -INFINITY;
+    }
+    for (size_t i = 0; i < krs_component_count(meshing->scene); i++) {
+        KrsComponent component;
+        bool         asked = meshing->how.component == 0 || meshing->how.component == i + 1;
+        if (!asked || is_moved(meshing, i))
+            continue;
+        krs_component(meshing->scene, i, &component);
+        for (int k = 0; k < 3; k++) {
+            low[k]  = fmin(low[k], component.low[k]);
+            high[k] = fmax(high[k], component.high[k]);
+        }
+    }
+}
+
 bool find_end(const Meshing *meshing, double *longest)
 {
-    const KrsProgram *program = krs_scene_program(meshing->scene);
-    KrsComponent      component;
-    const double     *low = program->low, *high = program->high;
-    if (meshing->how.component) {
-        krs_component(meshing->scene, meshing->how.component - 1, &component);
-        low  = component.low;
-        high = component.high;
-    }
+    double low[3], high[3];
+    find_box(meshing, low, high);
     *longest = 0;
     for (int k = 0; k < 3; k++) {
         double from = meshing->how.within ? fmax(low[k], meshing->how.low[k]) : low[k];
@@ -122,6 +143,9 @@ KrsStatus check_wishes(Meshing *meshing)
     const char    *path    = options->files.items[0];
     double         longest;
     KrsStatus      status = find_component(meshing);
+    if (status != KRS_OK)
+        return status;
+    status = check_motion(meshing);
     if (status != KRS_OK)
         return status;
     if (options->mesh_lods > 0 && !can_have_lods(meshing))

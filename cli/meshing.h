@@ -49,6 +49,7 @@ typedef struct Meshing {
     Progress        progress;
     double          done, begun, goal; /* of all work: done, and before and after this step of it */
     Bodies          merged, assembled; /* each is made if some file is of it */
+    size_t          moving, keys;      /* copies that move, and their keyframes */
 } Meshing;
 
 /* mesh_wishes.c: the files that are written. */
@@ -62,6 +63,8 @@ KrsStatus check_wishes(Meshing *meshing);
 /* mesh_summary.c: of all bodies; lengths are those of the scene. */
 Summary summarize(const Bodies *bodies);
 double  longest_side(const Bodies *bodies);
+/* The largest of its copies. */
+double assembly_error(const KrsAssembly *assembly);
 
 /* mesh_parts.c: what files have of bodies. */
 size_t parts_vertex_count(const MeshParts *parts);
@@ -91,6 +94,10 @@ double step_of(const Meshing *meshing, double goal, double steps);
 
 /* mesh_lods.c: levels of detail of a body that has triangles, as many as options ask for. */
 KrsStatus make_lods(Meshing *meshing, Body *body, double goal);
+
+/* mesh_motion.c: with --frames, whether the scene has what is asked for; and the tracks of bodies. */
+KrsStatus check_motion(const Meshing *meshing);
+KrsStatus find_motion(Meshing *meshing, MeshParts *parts);
 
 /* Calls `visit` for each mesh of a body. */
 typedef void VisitMesh(void *user, const KrsMesh *mesh, const KrsItem *item);

@@ -76,6 +76,7 @@ KrsOptions scene_options(DiagnosticSink *sink, const char *path)
                         .studio       = shows_pictures(options) && !options->no_studio,
                         .pictures     = shows_pictures(options),
                         .assembly     = options->command == COMMAND_MESH,
+                        .motion       = options->command == COMMAND_MESH && options->animated,
                         .figures      = options->command == COMMAND_SLICE,
                         .root         = scene_root(options, path),
                         .text         = is_input(options, path) ? options->input : NULL,

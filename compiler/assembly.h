@@ -8,6 +8,7 @@
 #define KRS_ASSEMBLY_H
 
 #include "compiler/graph/evaluate.h"
+#include "compiler/krs.h"
 #include "compiler/shape/box.h"
 
 #define NO_ITEM UINT32_MAX
@@ -44,8 +45,9 @@ typedef struct Assembly {
         AssemblyPlacing *items;
         size_t           count, capacity;
     } placings;
-    uint32_t *of_component; /* the item of each component that is lowered; or NO_ITEM */
-    Tape      tape;
+    uint32_t  *of_component; /* the item of each component that is lowered; or NO_ITEM */
+    KrsMotion *motions;      /* of these; NULL: nobody asks */
+    Tape       tape;
 } Assembly;
 
 #endif

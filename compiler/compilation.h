@@ -103,6 +103,8 @@ void refuse_component(Compilation *c, size_t component, size_t operations);
 
 /* find_assembly.c: finds the assembly of the scene, if the options ask for it, and returns its roots. */
 RootRange find_assembly(Compilation *c, struct LoweredCrowds *crowds);
+/* find_motion.c: finds what the time does to components that are lowered, if the options ask for it. */
+void find_motions(Compilation *c);
 
 /* march_groups.c: decides which components have a march group of their own.  Sets c->march_groups
    and the march groups of the program. */

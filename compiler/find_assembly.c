@@ -3,23 +3,31 @@
  *
  * Transforms, sharp unions and sequences are taken apart.  What else has copies in it is a part with
  * all of them.  Whether mirrors cut anything is asked for each frame (mesh/assemble.c).
+ *
+ * With KrsOptions.motion so is what the time moves: transforms that depend on it, and the unions and turns of
+ * loops around them.  What stands still in a union is one part.
  */
 #include <string.h>
 
 #include "compiler/compilation.h"
+#include "compiler/graph/timed.h"
+#include "compiler/graph/turns.h"
 
 enum { MOST_ITEMS = 4096 };
 
-/* A shape and its item. */
+/* A shape and its item, in a turn of a loop. */
 typedef struct Known {
-    const Shape *shape;
+    const Shape *shape, *turn; /* NULL: in none */
     uint32_t     item;
 } Known;
 
 typedef struct Finder {
-    Assembly *assembly;
-    Arena    *arena; /* of the assembly */
-    Arena    *work;
+    Assembly    *assembly;
+    Arena       *arena; /* of the assembly */
+    Arena       *work, *scratch;
+    Graph       *graph;
+    bool        *timed; /* nodes of shapes that depend on the time; NULL: nobody asks */
+    const Shape *turn;  /* around the shape that is looked at; NULL: none */
     struct {
         Node  *items;
         size_t count, capacity;
@@ -58,13 +66,22 @@ static uint32_t add_part(Finder *f, const Shape *shape)
               .root = add_roots(f, &later, 1), .box = shape->box, .estimate = shape->estimate};
     array_push(f->arena, &f->assembly->items, item);
     uint32_t number = (uint32_t)f->assembly->items.count - 1;
-    array_push(f->work, &f->parts, ((Known){shape, number}));
+    array_push(f->work, &f->parts, ((Known){shape, f->turn, number}));
     return number;
+}
+
+static Node in_turn(const Finder *f, Node node)
+{
+    return f->turn ? graph_in_turn(f->graph, node, f->turn->turn, f->turn->number, f->scratch)
+                   : node;
 }
 
 static AssemblyPlacing mapped(Finder *f, uint32_t item, const Map *map)
 {
-    const MapRoots roots = {map->scale, {map->rows[0], map->rows[1], map->rows[2]}, map->shift};
+    const MapRoots roots = {
+        in_turn(f, map->scale),
+        {in_turn(f, map->rows[0]), in_turn(f, map->rows[1]), in_turn(f, map->rows[2])},
+        in_turn(f, map->shift)};
     return (AssemblyPlacing){item, PLACED_MAPPED,
                              add_roots(f, (const Node *)&roots, NODES_OF(MapRoots))};
 }
@@ -103,12 +120,82 @@ static uint32_t take_sequence(Finder *f, const Shape *krs)
     return item == NO_ITEM ? add_part(f, krs) : item;
 }
 
+/* Whether the time moves parts of a shape. */
+static bool moves(const Finder *f, const Shape *shape)
+{
+    const Map *map = &shape->map;
+    switch (f->timed ? shape->kind : SHAPE_EMPTY) {
+    case SHAPE_PAINT:
+    case SHAPE_SMOOTH: return moves(f, shape->children[0]);
+    case SHAPE_TRANSFORM:
+        return f->timed[map->shift] || f->timed[map->rows[0]] || f->timed[map->rows[1]] ||
+               f->timed[map->rows[2]] || moves(f, shape->children[0]);
+    case SHAPE_TURN: return moves(f, shape->turned);
+    case SHAPE_UNION:
+        for (uint32_t i = 0; shape->blend.width == NODE_NONE && i < shape->child_count; i++)
+            if (moves(f, shape->children[i]))
+                return true;
+        return false;
+    default: return false;
+    }
+}
+
+/* Parts of a union, and of unions in it of which parts move. */
+typedef struct UnionParts {
+    const Shape **items;
+    size_t        count, capacity;
+} UnionParts;
+
+/* Those that neither move nor have copies go to `still`. */
+static void sort_parts(Finder *f, const Shape *shape, UnionParts *still, UnionParts *others)
+{
+    for (uint32_t i = 0; i < shape->child_count; i++) {
+        const Shape *part = shape->children[i];
+        if (!moves(f, part) && part->levels == 0)
+            array_push(f->work, still, part);
+        else if (part->kind == SHAPE_UNION && moves(f, part))
+            sort_parts(f, part, still, others);
+        else
+            array_push(f->work, others, part);
+    }
+}
+
+/* What stands still is one part. */
+static uint32_t take_moving_union(Finder *f, const Shape *shape)
+{
+    UnionParts still = {0}, others = {0};
+    sort_parts(f, shape, &still, &others);
+    AssemblyPlacing *placings = arena_new_array(f->work, AssemblyPlacing, others.count + 1);
+    uint32_t         count    = 0;
+    if (still.count > 0) {
+        Shape *whole           = arena_new(f->work, Shape);
+        *whole                 = *shape;
+        whole->children        = still.items;
+        whole->child_count     = (uint32_t)still.count;
+        whole->levels          = 0;
+        placings[count++].item = find_item(f, still.count > 1 ? whole : still.items[0]);
+    }
+    for (size_t i = 0; i < others.count; i++)
+        placings[count++].item = find_item(f, others.items[i]);
+    return add_item(f, placings, count);
+}
+
 static uint32_t take_union(Finder *f, const Shape *shape)
 {
+    if (moves(f, shape))
+        return take_moving_union(f, shape);
     AssemblyPlacing *placings = arena_new_array(f->work, AssemblyPlacing, shape->child_count);
     for (uint32_t i = 0; i < shape->child_count; i++)
         placings[i].item = find_item(f, shape->children[i]);
     return add_item(f, placings, shape->child_count);
+}
+
+static uint32_t take_turn(Finder *f, const Shape *shape)
+{
+    f->turn       = shape;
+    uint32_t item = find_item(f, shape->turned);
+    f->turn       = NULL;
+    return item;
 }
 
 static uint32_t take_transform(Finder *f, const Shape *shape)
@@ -129,7 +216,7 @@ static bool is_rigid(const Shape *krs)
 static uint32_t take_apart(Finder *f, const Shape *shape)
 {
     bool sharp = shape->blend.width == NODE_NONE;
-    if (shape->levels == 0 || f->assembly->items.count >= MOST_ITEMS)
+    if ((shape->levels == 0 && !moves(f, shape)) || f->assembly->items.count >= MOST_ITEMS)
         return add_part(f, shape);
     switch (shape->kind) {
     case SHAPE_PAINT:
@@ -137,6 +224,7 @@ static uint32_t take_apart(Finder *f, const Shape *shape)
     case SHAPE_TRANSFORM: return take_transform(f, shape);
     case SHAPE_UNION: return sharp ? take_union(f, shape) : add_part(f, shape);
     case SHAPE_KRS: return is_rigid(shape) ? take_sequence(f, shape) : add_part(f, shape);
+    case SHAPE_TURN: return f->timed && !f->turn ? take_turn(f, shape) : add_part(f, shape);
     default: return add_part(f, shape);
     }
 }
@@ -144,10 +232,10 @@ static uint32_t take_apart(Finder *f, const Shape *shape)
 static uint32_t find_item(Finder *f, const Shape *shape)
 {
     for (size_t i = 0; i < f->known.count; i++)
-        if (f->known.items[i].shape == shape)
+        if (f->known.items[i].shape == shape && f->known.items[i].turn == f->turn)
             return f->known.items[i].item;
     uint32_t item = take_apart(f, shape);
-    array_push(f->work, &f->known, ((Known){shape, item}));
+    array_push(f->work, &f->known, ((Known){shape, f->turn, item}));
     return item;
 }
 
@@ -156,23 +244,44 @@ static void find_components(Finder *f, const Scene *s)
     f->assembly->of_component = arena_new_array(f->arena, uint32_t, s->components.count + 1);
     for (size_t i = 0; i < s->components.count; i++) {
         const Component *component   = &s->components.items[i];
-        bool             loop        = component->count > 1;
+        bool             loop        = component->count > 1 && !moves(f, component->shape);
         uint32_t         item        = loop ? NO_ITEM : find_item(f, component->shape);
         bool             whole       = loop || f->assembly->items.items[item].count == 0;
         f->assembly->of_component[i] = whole ? NO_ITEM : item;
     }
 }
 
+/* The part in its turn. */
+static const Shape *part_shape(Finder *f, const Known *part)
+{
+    if (!part->turn)
+        return part->shape;
+    Shape *shape = arena_new(f->work, Shape);
+    *shape       = *part->turn;
+    shape_takes_over(shape, part->shape);
+    shape->turned = part->shape;
+    shape->box    = part->shape->box;
+    return shape;
+}
+
 RootRange find_assembly(Compilation *c, struct LoweredCrowds *crowds)
 {
-    Finder f = {.assembly = &c->scene->assembly, .arena = &c->scene->arena, .work = &c->work};
+    Finder f = {.assembly = &c->scene->assembly,
+                .arena    = &c->scene->arena,
+                .work     = &c->work,
+                .scratch  = &c->scratch,
+                .graph    = c->elaborated.graph};
     if (!c->options->assembly)
         return (RootRange){0};
+    if (c->options->motion) {
+        f.timed = arena_new_array(&c->work, bool, f.graph->count);
+        graph_mark_timed(f.graph, f.timed);
+    }
     find_components(&f, &c->elaborated);
     for (size_t i = 0; i < f.parts.count; i++) {
         const Known *part = &f.parts.items[i];
         uint32_t     root = f.assembly->items.items[part->item].root;
-        if (!lower_solid(c->elaborated.graph, part->shape, crowds, &c->scratch,
+        if (!lower_solid(f.graph, part_shape(&f, part), crowds, &c->scratch,
                          &f.roots.items[root])) {
             *f.assembly = (Assembly){0}; /* too large: it is meshed as a whole */
             return (RootRange){0};

@@ -104,6 +104,7 @@ typedef struct KrsOptions {
     bool pictures; /* six large parts that are alike share code, too: shorter kernels and faster
                       frames, but meshes take longer; for pictures */
     bool assembly; /* keep what krs_assemble and krs_texture_places need, which takes some time */
+    bool motion;   /* with `assembly`: what the time moves is taken apart, too */
     bool
         figures; /* plane figures may be shown: each is made solid along z, about as high as it is long.  Its section
                       by the plane z = 0 is the figure */

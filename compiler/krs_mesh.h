@@ -100,14 +100,28 @@ typedef struct KrsAssembly {
  * The error is that of copies; 0: a 200th of the longest side of each kernel's box.  Where kernels overlap,
  * so do meshes.  *assembly may be NULL on KRS_OK: there is no sequence that can be taken apart.  None can with
  * zones or `within`; one whose mirrors cut anything, or may, or that inverts, cannot.  The scene must have been
- * compiled with KrsOptions.assembly.
+ * compiled with KrsOptions.assembly.  With KrsOptions.motion what the time moves is taken apart as well.  Then KRS_BAD_SCENE:
+ * something that moves cannot be taken apart.
  */
 KrsStatus krs_assemble(KrsFrame *frame, const KrsMeshOptions *options, KrsAssembly **assembly);
 void      krs_assembly_free(KrsAssembly *assembly);
+/* Places the meshes of an assembly anew, as they are at the values and the time of the frame, of which it was made or of
+   another of this scene.  KRS_BAD_SCENE: a mirror would cut something.  The box and `first_copy` stay. */
+KrsStatus krs_assembly_place(KrsFrame *frame, KrsAssembly *assembly);
 /* Calls `visit` for each copy of each mesh, one behind the other, until it returns false; then that is
    returned. */
 typedef bool KrsVisitCopy(void *user, const KrsItem *item, const double matrix[3][4]);
 bool         krs_assembly_visit(const KrsAssembly *assembly, KrsVisitCopy *visit, void *user);
+
+/* What the time does to a component, of a scene that was compiled with KrsOptions.motion.  All are false for one that
+   stands still. */
+typedef struct KrsMotion {
+    bool moves;    /* parts of it are moved or turned: krs_assemble takes it apart */
+    bool deforms;  /* something changes its form, or its size: a mesh is that of one time */
+    bool recolors; /* its material changes */
+} KrsMotion;
+/* KRS_BAD_ARGUMENT: there is no component `index`, from 0, or nobody asked. */
+KrsStatus krs_component_motion(const KrsScene *scene, size_t index, KrsMotion *motion);
 
 /*
  * Where the material of the surface reads its texture, the first if there are several, at some points: 0, 0 is

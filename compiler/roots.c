@@ -248,6 +248,7 @@ KrsStatus pass_lower(Compilation *c)
     allocate_roots(c, find_assembly(c, crowds));
     if (!lower_components(c, s->graph, crowds))
         return KRS_BAD_SCENE;
+    find_motions(c);
     more->sheets          = any_thin_sheets(s);
     more->camera_relative = !more->sheets &&
                             may_need_rebase(s, s->graph, roots, c->options->pictures, &c->scratch);

@@ -275,6 +275,15 @@ static void find_box(Assembler *a)
 
 /* ---- what is asked for ---- */
 
+/* What moves would stand still where it is not taken apart. */
+static bool stands_still(const Assembler *a)
+{
+    for (size_t i = 0; a->from->motions && i < a->frame->scene->component_count; i++)
+        if (is_wanted(a, i) && !(a->apart && a->apart[i]) && a->from->motions[i].moves)
+            return true;
+    return false;
+}
+
 static KrsStatus assemble(Assembler *a)
 {
     if (!copy_items(a))
@@ -284,6 +293,8 @@ static KrsStatus assemble(Assembler *a)
         return KRS_OUT_OF_MEMORY;
     bool any = choose_components(a, asked);
     free(asked);
+    if (stands_still(a))
+        return KRS_BAD_SCENE;
     if (!any)
         return KRS_OK;
     add_last_items(a);
@@ -309,7 +320,7 @@ KrsStatus krs_assemble(KrsFrame *frame, const KrsMeshOptions *options, KrsAssemb
     if (a.options->component > frame->scene->shown_count || frame->scene->program.sheets)
         return KRS_BAD_ARGUMENT;
     if (!is_possible(frame, a.options))
-        return KRS_OK;
+        return stands_still(&a) ? KRS_BAD_SCENE : KRS_OK;
     frame_refresh(frame);
     a.to             = calloc(1, sizeof *a.to);
     KrsStatus status = a.to ? assemble(&a) : KRS_OUT_OF_MEMORY;
@@ -321,6 +332,53 @@ KrsStatus krs_assemble(KrsFrame *frame, const KrsMeshOptions *options, KrsAssemb
     free(a.scales);
     free(a.apart);
     return status;
+}
+
+/* Whether a mirror cuts what a copy is made of. */
+static bool any_is_cut(Assembler *a)
+{
+    for (size_t i = 0; i < a->to->item_count; i++)
+        find_item_bounds(&a->search, i);
+    for (size_t i = 0; i < a->from->items.count; i++) {
+        const AssemblyItem *item = &a->from->items.items[i];
+        for (uint32_t k = item->first; k < item->first + item->count; k++)
+            if (a->to->items[i].copies > 0 && is_cut(a, &a->from->placings.items[k]))
+                return true;
+    }
+    return false;
+}
+
+static bool has_mirrors(const Assembly *assembly)
+{
+    for (size_t i = 0; i < assembly->placings.count; i++)
+        if (assembly->placings.items[i].kind == PLACED_MIRRORED)
+            return true;
+    return false;
+}
+
+KrsStatus krs_assembly_place(KrsFrame *frame, KrsAssembly *assembly)
+{
+    Assembler a = {.frame = frame, .from = &frame->scene->assembly, .to = assembly};
+    frame_refresh(frame);
+    for (size_t i = 0; i < a.from->placings.count; i++)
+        read_placing(&a, &a.from->placings.items[i], &assembly->placings[i]);
+    if (!has_mirrors(a.from))
+        return KRS_OK;
+    a.search.assembly = assembly;
+    a.search.bounds   = calloc(assembly->item_count + 1, sizeof *a.search.bounds);
+    KrsStatus status  = KRS_OUT_OF_MEMORY;
+    if (a.search.bounds)
+        status = any_is_cut(&a) ? KRS_BAD_SCENE : KRS_OK;
+    free(a.search.bounds);
+    return status;
+}
+
+KrsStatus krs_component_motion(const KrsScene *scene, size_t index, KrsMotion *motion)
+{
+    if (index >= scene->shown_count || !scene->assembly.motions)
+        return KRS_BAD_ARGUMENT;
+    *motion = scene->assembly.motions[scene->lowered[index]];
+    return KRS_OK;
 }
 
 void krs_assembly_free(KrsAssembly *assembly)

@@ -1,0 +1,78 @@
+#!/bin/sh
+# mesh_motion.sh: `krs mesh --frames` writes how parts move into GLB.
+. "$(dirname "$0")/common.sh"
+plan 16
+
+cat >spin.krs <<'SCENE'
+show box([2, 0.2, 0.4]).rotate([1, 2, 0], 9 * time).move([3 * sin(time), 0, 0]);
+SCENE
+cat >orbit.krs <<'SCENE'
+show box([0.5, 1, 0.25]).move([5, 0, 0]).rotate([0, 1, 0], 9 * time) | box([1, 1, 0.5]).move([0, 0.25, -0.25]) | box([1, 1, 0.5]).move([0, 0.25, 0.25]);
+SCENE
+echo 'show box([1, 1, 1]).move([2 * time, 0, 0]);' >ride.krs
+echo 'for i in 0..40 { show box([0.2, 0.3, 0.4]).move([i, sin(time + i), 0]); }' >wave.krs
+cat >pair.krs <<'SCENE'
+show krs {
+    kernel box([0.6, 0.3, 0.2]).rotate([0, 0, 1], time).move([2 + sin(time), 0.5, 0]);
+    reflect plane([-1, 0, 0], 0);
+};
+SCENE
+# At four frames a second the spin turns by more than half a turn between two.
+moves() { # scene, its error, options
+    scene=$1 error=$2
+    shift 2
+    run mesh --quiet "$scene.krs" --error "$error" --fps 4 "$@" -o "$scene.glb"
+    if ! /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
+        skip "$scene" "no numpy"
+        return
+    fi
+    [ "$status" -eq 0 ] && /usr/bin/python3 "$root/tests/cli/mesh_motion.py" "$scene" "$scene.glb" "$error" >out 2>>err
+    result $? "at all times parts of \`$scene\` are where they belong"
+}
+moves spin 0.02 --frames 0..12
+moves orbit 0.02 --frames 0..12
+moves ride 0.02 --frames 0..12
+moves wave 0.02 --frames 0..12
+moves pair 0.02 --frames 0..12
+moves wave 0.02 --frames 0..12 --split components
+if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
+    run mesh --quiet spin.krs --error 0.02 --fps 4 --frames 100..112 -o spin.glb
+    /usr/bin/python3 "$root/tests/cli/mesh_motion.py" spin spin.glb 0.02 100 >out 2>err
+    result $? "the first frame is the beginning"
+else
+    skip "the first frame is the beginning" "no numpy"
+fi
+run mesh ride.krs --fps 4 --frames 0..12 -o ride.glb
+[ "$status" -eq 0 ] && grep -q '^krs: 1 parts move, by 13 keyframes$' err
+result $? "it is told how many parts move"
+cat >forms.krs <<'SCENE'
+let breath = sphere(1 + 0.1 * sin(time));
+let grown = sphere(1).scale(1 + 0.1 * sin(time)).move([4, 0, 0]);
+let cut = box([1, 1, 1]).move([8, 0, 0]) - sphere(0.5).move([8, sin(time), 0]);
+let still = sphere(1).move([12, 0, 0]);
+show breath; show grown; show cut; show still;
+SCENE
+run mesh forms.krs --frames 0..12 -o forms.glb
+said 2 "the form or the size of \`breath\`, \`grown\`, \`cut\`;" "what deforms is refused by its name"
+[ ! -e forms.glb ]
+result $? "and nothing is written"
+run mesh forms.krs --frames 0..12 --component still -o forms.glb
+said 0 "nothing in \`forms.krs\` moves" "what stands still is told"
+echo 'show box([1, 1, 1]).move([time, 0, 0]).paint(mix(red, blue, clamp(time, 0, 1)));' >paint.krs
+run mesh paint.krs --frames 0..12 -o paint.glb
+[ "$status" -eq 0 ] && grep -qF "the material of \`component 1\`, which stays that of frame 0" err
+result $? "and whose material changes"
+cat >cut.krs <<'SCENE'
+show krs { kernel box([1, 1, 1]).move([3 - time, 0, 0]); reflect plane([-1, 0, 0], 0); };
+SCENE
+run mesh cut.krs --fps 1 --frames 0..4 -o cut.glb
+[ "$status" -ne 0 ] && grep -q 'a mirror cuts what moves' err && [ ! -e cut.glb ]
+result $? "what comes into a mirror is refused"
+echo 'zone { center: [0, 0, 0], radius: 0.3 } show box([1, 1, 1]).move([time, 0, 0]);' >zone.krs
+run mesh zone.krs --frames 0..4 -o zone.glb
+[ "$status" -ne 0 ] && grep -q 'cannot be taken apart' err
+result $? "and what a zone cuts"
+run mesh ride.krs --frames 0..12 -o ride.stl
+said 2 "--frames is for .glb" "STL has no motion"
+run mesh ride.krs --frames 0..12 --copies flat -o ride.glb
+said 2 "must be instances" "nor have flat copies"
