@@ -2,7 +2,7 @@
 # scenes.sh: scenes that cannot be read, or are wrong, end in the right status and a diagnostic.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 33
+plan 39
 
 run check missing.krs
 said 74 "cannot read \`missing.krs\`: No such file or directory" "a missing file"
@@ -40,6 +40,22 @@ printf 'show spere(1);\n' >wrong.krs
 run check --diagnostics json wrong.krs
 [ "$status" -eq 1 ] && [ ! -s out ] && grep '^{' err | is_json && grep -q '"code":"E0201"' err
 result $? "diagnostics as JSON"
+# In a library, behind a letter of two bytes and one of two UTF-16 units: the text counts letters from 1,
+# JSON counts lines and UTF-16 units from 0.
+printf 'def ball(r) =\n    /* \303\251\360\237\230\200 */ assert(r > 0, "a radius of", r) in\n    sphere(r);\n' \
+    >library.krs
+printf 'use "library.krs";\n\n\tshow /* \360\237\230\200 */ ball(-1);\r\n' >asserts.krs
+run check asserts.krs
+[ "$status" -eq 1 ] && grep -q '^error\[E0315\]: a radius of -1$' err &&
+    grep -q -- '--> library.krs:2:21$' err && grep -q '::: asserts.krs:3:15$' err
+result $? "an assertion of a library is told with its place, and that of the call"
+for command in check render info query mesh; do
+    run "$command" --diagnostics json asserts.krs
+    [ "$status" -eq 1 ] && [ ! -s out ] && grep '^{' err | is_json &&
+        grep -q '"uri":"library.krs","range":{"start":{"line":1,"character":21},"end":{"line":1,"character":26}}' err &&
+        grep -q '"uri":"asserts.krs","range":{"start":{"line":2,"character":15},"end":{"line":2,"character":23}}' err
+    result $? "$command tells both places as JSON"
+done
 run check --color always wrong.krs
 [ "$status" -eq 1 ] && grep -q "$(printf '\033')" err
 result $? "diagnostics in colour"
