@@ -24,10 +24,10 @@ typedef struct MeshLook {
 
 typedef struct MeshMaterial {
     const char   *name;
-    unsigned char color[3]; /* of its first triangle, sRGB */
-    MeshLook      look;     /* the mean over its triangles */
-    double
-        thickness; /* of the solids that it lets light into, in lengths of the vertices; 0: none */
+    unsigned char color[3];  /* of its first triangle, sRGB */
+    MeshLook      look;      /* the mean over its triangles */
+    bool          varies;    /* from place to place: color and look are not those of all */
+    double        thickness; /* of solids that it lets light into, as vertices have lengths; or 0 */
 } MeshMaterial;
 
 /* A closed mesh. */

@@ -2,7 +2,8 @@
  * mesh_looks.c: the materials of triangles.
  *
  * A file with looks has a material for each look of each material of the scene: what its properties are but for the
- * color, which vertices have.  One that varies has more looks than a file needs: it becomes their mean.
+ * color, which vertices have.  One with colours of triangles has one for each of these.  A material that varies has more than
+ * a file needs: it becomes their mean.
  */
 #include <math.h>
 #include <stddef.h>
@@ -76,7 +77,7 @@ typedef struct Group {
 
 typedef struct Groups {
     Arena    *arena;
-    bool      by_name, by_look;
+    bool      by_name, by_look, by_color;
     uint32_t *of_number; /* from 1: the first group of a material */
     bool     *varies;    /* of materials: they have too many looks */
     struct {
@@ -85,11 +86,24 @@ typedef struct Groups {
     } list;
 } Groups;
 
+static void find_color(const KrsHit *hit, unsigned char color[3])
+{
+    for (int k = 0; k < 3; k++)
+        color[k] = color_byte(hit->color[k]);
+}
+
+static bool is_of(const Groups *groups, const Group *group, const KrsHit *hit, const MeshLook *look)
+{
+    unsigned char color[3];
+    find_color(hit, color);
+    return (!groups->by_look || is_same_look(&group->first, look)) &&
+           (!groups->by_color || memcmp(group->color, color, sizeof color) == 0);
+}
+
 static uint32_t add_group(Groups *groups, const KrsHit *hit, const MeshLook *look, uint32_t number)
 {
     Group group = {.first = *look, .low = *look, .high = *look, .number = number};
-    for (int k = 0; k < 3; k++)
-        group.color[k] = color_byte(hit->color[k]);
+    find_color(hit, group.color);
     array_push(groups->arena, &groups->list, group);
     return (uint32_t)groups->list.count;
 }
@@ -99,7 +113,7 @@ static uint32_t find_group(Groups *groups, const KrsHit *hit, const MeshLook *lo
 {
     uint32_t number = groups->by_name ? hit->material : 0, length = 0, last = 0;
     for (uint32_t i = groups->of_number[number]; i != 0; i = groups->list.items[i - 1].next) {
-        if (!groups->by_look || is_same_look(&groups->list.items[i - 1].first, look))
+        if (is_of(groups, &groups->list.items[i - 1], hit, look))
             return i - 1;
         last = i;
         length++;
@@ -201,6 +215,7 @@ static MeshMaterial material_of(const Meshing *meshing, const Groups *groups, co
             for (size_t k = properties[i].first; k < properties[i].first + properties[i].count; k++)
                 ((double *)&material.look)[k] = group->sum[k] / group->area;
     memcpy(material.color, group->color, sizeof material.color);
+    material.varies = groups->varies[group->number];
     return material;
 }
 
@@ -327,8 +342,9 @@ void find_materials(const Meshing *meshing, const MeshFormat *format, const char
     size_t    known  = krs_material_count(meshing->scene) + 2;
     bool      split  = meshing->options->mesh_split == SPLIT_MATERIALS;
     Groups    groups = {.arena     = arena,
-                        .by_name   = format->has_looks || split,
+                        .by_name   = format->has_looks || format->has_face_colors || split,
                         .by_look   = format->has_looks,
+                        .by_color  = format->has_face_colors,
                         .of_number = arena_new_array(arena, uint32_t, known),
                         .varies    = arena_new_array(arena, bool, known)};
     uint32_t *of     = arena_new_array(arena, uint32_t, parts_triangle_count(parts));

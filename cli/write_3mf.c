@@ -1,6 +1,7 @@
 /*
  * write_3mf.c: 3MF, an archive of three files in XML: what there is, where the model is, and the model, by
- * the core specification 1.3.  It has neither times nor random names: equal meshes are equal files.
+ * the core specification 1.3.  Where the color of a material varies triangles have those of their corners, by the
+ * materials extension 1.2.1.  It has neither times nor random names: equal meshes are equal files.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,13 +26,15 @@ static const char relationships[] = XML
 
 /* ---- the model ---- */
 
-/* The number of the materials; objects have those that follow, in the order of the file. */
-enum { MATERIALS = 1 };
+/* The numbers of the materials and of the colors; objects have those that follow, in the order of the file. */
+enum { MATERIALS = 1, COLORS };
 
 typedef struct Model {
     FILE            *out; /* remembers that it failed */
     const MeshParts *parts;
     size_t           last; /* number of an object */
+    uint32_t *colors;      /* of corners of triangles whose material varies, each once, ascending */
+    size_t    color_count;
 } Model;
 
 /* Within quotes; what XML has no characters for is left out. */
@@ -71,6 +74,69 @@ static void put_materials(const Model *model)
     fputs("</basematerials>\n", model->out);
 }
 
+/* ---- colors of corners ---- */
+
+static uint32_t color_of(const MeshParts *parts, uint32_t vertex)
+{
+    const unsigned char *c = parts->colors[vertex];
+    return (uint32_t)c[0] << 16 | (uint32_t)c[1] << 8 | c[2];
+}
+
+static int compare_colors(const void *a, const void *b)
+{
+    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    return x < y ? -1 : x > y;
+}
+
+static bool varies(const MeshParts *parts, size_t triangle)
+{
+    return parts->materials[parts->material_of[triangle]].varies;
+}
+
+/* False: memory has run out. */
+static bool find_colors(Model *model)
+{
+    const MeshParts *parts = model->parts;
+    size_t           count = 0, end = 0, kept = 0;
+    for (size_t i = 0; i < parts->part_count; i++)
+        end += parts->parts[i].triangle_count;
+    for (size_t t = 0; t < end; t++)
+        count += varies(parts, t) ? 3 : 0;
+    model->colors = calloc(count + 1, sizeof *model->colors);
+    if (!model->colors)
+        return false;
+    count = 0;
+    for (size_t t = 0; t < end; t++)
+        for (int k = 0; k < 3 && varies(parts, t); k++)
+            model->colors[count++] = color_of(parts, parts->triangles[t][k]);
+    qsort(model->colors, count, sizeof *model->colors, compare_colors);
+    for (size_t i = 0; i < count; i++)
+        if (i == 0 || model->colors[i] != model->colors[i - 1])
+            model->colors[kept++] = model->colors[i];
+    model->color_count = kept;
+    return true;
+}
+
+static void put_colors(const Model *model)
+{
+    if (model->color_count == 0)
+        return;
+    fprintf(model->out, "<m:colorgroup id=\"%d\">\n", COLORS);
+    for (size_t i = 0; i < model->color_count; i++)
+        fprintf(model->out, "<m:color color=\"#%06XFF\"/>\n", model->colors[i]);
+    fputs("</m:colorgroup>\n", model->out);
+}
+
+static size_t color_number(const Model *model, uint32_t vertex)
+{
+    const uint32_t  color = color_of(model->parts, vertex);
+    const uint32_t *found = bsearch(&color, model->colors, model->color_count, sizeof color,
+                                    compare_colors);
+    return (size_t)(found - model->colors);
+}
+
+/* ---- objects ---- */
+
 static void open_object(Model *model, const char *name)
 {
     fprintf(model->out, "<object id=\"%zu\" type=\"model\"", ++model->last);
@@ -94,18 +160,23 @@ static void put_vertices(const Model *model, const MeshPart *part, bool mirrored
     fputs("</vertices>\n", model->out);
 }
 
-/* Triangles name their material where it is not the object's. */
+/* Triangles name their material where it is not the object's, and colors where that varies. */
 static void put_triangles(const Model *model, const MeshPart *part, bool mirrored, uint32_t usual)
 {
+    const MeshParts *parts = model->parts;
     fputs("<triangles>\n", model->out);
-    for (size_t i = 0; i < part->triangle_count; i++) {
-        const uint32_t *corners  = model->parts->triangles[part->first_triangle + i];
-        const uint32_t  material = model->parts->material_of[part->first_triangle + i];
-        const size_t    first    = part->first_vertex;
+    for (size_t i = part->first_triangle; i < part->first_triangle + part->triangle_count; i++) {
+        const size_t   first      = part->first_vertex;
+        const uint32_t corners[3] = {parts->triangles[i][0], parts->triangles[i][mirrored ? 2 : 1],
+                                     parts->triangles[i][mirrored ? 1 : 2]};
         fprintf(model->out, "<triangle v1=\"%zu\" v2=\"%zu\" v3=\"%zu\"", corners[0] - first,
-                corners[mirrored ? 2 : 1] - first, corners[mirrored ? 1 : 2] - first);
-        if (material != usual)
-            fprintf(model->out, " pid=\"%d\" p1=\"%u\"", MATERIALS, material);
+                corners[1] - first, corners[2] - first);
+        if (varies(parts, i))
+            fprintf(model->out, " pid=\"%d\" p1=\"%zu\" p2=\"%zu\" p3=\"%zu\"", COLORS,
+                    color_number(model, corners[0]), color_number(model, corners[1]),
+                    color_number(model, corners[2]));
+        else if (parts->material_of[i] != usual)
+            fprintf(model->out, " pid=\"%d\" p1=\"%u\"", MATERIALS, parts->material_of[i]);
         fputs("/>\n", model->out);
     }
     fputs("</triangles>\n", model->out);
@@ -223,10 +294,14 @@ static bool put_model(Model *model, size_t *built)
     const MeshParts *parts = model->parts;
     fprintf(model->out,
             XML "<model unit=\"%s\" xml:lang=\"en-US\" "
-                "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n"
+                "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"%s>\n"
                 "<metadata name=\"Application\">krs " KRS_VERSION "</metadata>\n<resources>\n",
-            unit_name(parts->unit));
+            unit_name(parts->unit),
+            model->color_count == 0
+                ? ""
+                : " xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\"");
     put_materials(model);
+    put_colors(model);
     for (size_t i = 0; i < parts->body_count; i++) {
         const MeshBody *body = &parts->bodies[i];
         if (!body->assembly)
@@ -247,11 +322,13 @@ static char *model_text(const MeshParts *parts, size_t *length)
 {
     char   *text  = NULL;
     size_t *built = calloc(parts->body_count + 1, sizeof *built);
-    Model   model = {.parts = parts, .out = open_memstream(&text, length), .last = MATERIALS};
-    bool    good  = built && model.out && put_model(&model, built) && !ferror(model.out);
+    Model   model = {.parts = parts, .out = open_memstream(&text, length), .last = COLORS};
+    bool    good  = built && model.out && find_colors(&model) && put_model(&model, built) &&
+                !ferror(model.out);
     if (model.out && fclose(model.out) != 0)
         good = false;
     free(built);
+    free(model.colors);
     if (!good) {
         free(text);
         text = NULL;
