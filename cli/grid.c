@@ -20,7 +20,8 @@ typedef struct Gridding {
     const Options  *options;
     const KrsScene *scene;
     KrsFrame       *frame;
-    KrsGridOptions  how; /* but for what a format has */
+    Meshing         wishes; /* what they share with meshes */
+    KrsGridOptions  how;    /* but for what a format has */
     GridSheet       sheet;
     KrsGrid        *grid;
     bool            solid; /* some sample is in it */
@@ -112,23 +113,25 @@ static KrsStatus refuse_cell(const Gridding *gridding, const char *path, const c
 static KrsStatus take_wishes(Gridding *gridding)
 {
     const Options *options = gridding->options;
-    Meshing        meshing = {.options = options, .scene = gridding->scene};
-    KrsStatus      status  = check_wishes(&meshing);
+    Meshing       *wishes  = &gridding->wishes;
     double         longest;
+    wishes->options  = options;
+    wishes->scene    = gridding->scene;
+    KrsStatus status = check_wishes(wishes);
     if (status != KRS_OK)
         return status;
     gridding->how = (KrsGridOptions){.fog          = options->grid_fog,
                                      .exact        = options->grid_exact,
                                      .error        = options->grid_error,
                                      .materials    = options->grid_color || options->grid_material,
-                                     .component    = meshing.how.component,
-                                     .within       = meshing.how.within,
+                                     .component    = wishes->how.component,
+                                     .within       = wishes->how.within,
                                      .memory_limit = options->limits.memory,
                                      .go_on        = go_on,
                                      .user         = gridding};
-    memcpy(gridding->how.low, meshing.how.low, sizeof gridding->how.low);
-    memcpy(gridding->how.high, meshing.how.high, sizeof gridding->how.high);
-    find_end(&meshing, &longest);
+    memcpy(gridding->how.low, wishes->how.low, sizeof gridding->how.low);
+    memcpy(gridding->how.high, wishes->how.high, sizeof gridding->how.high);
+    find_end(wishes, &longest);
     gridding->how.cell = options->grid_cell > 0 ? options->grid_cell
                          : longest > 0          ? longest / USUAL_CELLS
                                                 : 1;
@@ -257,11 +260,8 @@ static KrsStatus open_grid(Gridding *gridding, const char *path, const GridForma
                                   .color    = options->grid_color,
                                   .material = options->grid_material,
                                   .metres   = metres_of_units[unit]};
-    if (gridding->sheet.shape.count[0] == 0) {
-        say("there is nothing to write: `%s` has nothing solid%s", options->files.items[0],
-            how.within ? " in this box" : "");
-        return KRS_BAD_SCENE;
-    }
+    if (gridding->sheet.shape.count[0] == 0)
+        return say_nothing(&gridding->wishes, "write", NULL, 0);
     status = check_size(gridding, path, format);
     return status == KRS_OK && format->sparse ? check_memory(gridding, path) : status;
 }

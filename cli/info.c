@@ -76,6 +76,8 @@ static void print_component(const KrsComponent *component, size_t number)
     print_vector(component->low, 3);
     fputs(" to ", stdout);
     print_vector(component->high, 3);
+    if (component->figure)
+        fputs("\n    figure     plane, for `krs slice`; other commands take what is solid", stdout);
     fputs("\n    slope      ", stdout);
     printf("%.6g%s", component->slope, component->slope > 1 + 1e-9 ? ", divided out" : "");
     puts(component->exact       ? " (the distance is exact, by claim)"
@@ -230,7 +232,8 @@ static void add_components(Text *json, const KrsScene *scene)
         json_vector(json, component.high, 3);
         text_add(json, ", \"slope\": ");
         json_number(json, component.slope);
-        text_format(json, ", \"per_frame\": %s", component.per_frame ? "true" : "false");
+        text_format(json, ", \"figure\": %s, \"per_frame\": %s",
+                    component.figure ? "true" : "false", component.per_frame ? "true" : "false");
         text_format(json, ", \"exact\": %s, \"estimate\": %s, \"levels\": %u, \"instances\": ",
                     component.exact ? "true" : "false", component.estimate ? "true" : "false",
                     component.levels);

@@ -291,11 +291,8 @@ static KrsStatus measure(Printing *printing, KrsFrame *frame)
                          options->print_error > 0 ? "error" : "nozzle", path);
     if (status == KRS_OUT_OF_MEMORY)
         say("figures of `%s` with this --error need more memory than --limit memory permits", path);
-    if (status == KRS_OK && printing->measures->area == 0) {
-        say("there is nothing to measure: `%s` has nothing solid%s", path,
-            meshing.how.within ? " in this box" : "");
-        return KRS_BAD_SCENE;
-    }
+    if (status == KRS_OK && printing->measures->area == 0)
+        return say_nothing(&meshing, "measure", NULL, how.error > 0 ? how.error : longest / 200);
     return status;
 }
 
@@ -328,10 +325,9 @@ KrsStatus info_check_options(const Options *options)
                                         OPTION_OVERHANG,    OPTION_NOZZLE, OPTION_DENSITY,
                                         OPTION_COMPONENT,   OPTION_WITHIN, OPTION_TIME,
                                         OPTION_SET,         OPTION_ZONE};
-    for (size_t i = 0; i < options->given.count && !options->print; i++)
-        for (size_t k = 0; k < sizeof of_print / sizeof *of_print; k++)
-            if (options->given.items[i].id == of_print[k])
-                return say_usage(options, "--%s is for the figures of --print",
-                                 option_info[of_print[k]].name);
+    for (size_t k = 0; k < sizeof of_print / sizeof *of_print && !options->print; k++)
+        if (option_is_given(options, of_print[k]))
+            return say_usage(options, "--%s is for the figures of --print",
+                             option_info[of_print[k]].name);
     return KRS_OK;
 }

@@ -235,11 +235,8 @@ static KrsStatus find_meshes(Meshing *meshing)
     if (status != KRS_OK)
         return status;
     const Bodies *bodies = meshing->merged.count > 0 ? &meshing->merged : &meshing->assembled;
-    if (summarize(bodies).triangles == 0) {
-        say("there is nothing to write: `%s` has nothing solid%s that is thicker than the error",
-            options->files.items[0], meshing->how.within ? " in this box" : "");
-        return KRS_BAD_SCENE;
-    }
+    if (summarize(bodies).triangles == 0)
+        return say_nothing(meshing, "write", NULL, summarize(bodies).error);
     if (options->mesh_size > 0)
         meshing->scale = options->mesh_size / longest_side(bodies);
     return KRS_OK;

@@ -1,5 +1,6 @@
 /* mesh_wishes.c: what `krs mesh` is asked for, and what of it is refused. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "cli/meshing.h"
@@ -168,4 +169,20 @@ KrsStatus check_wishes(Meshing *meshing)
     if (!find_end(meshing, &longest))
         return refuse_endless(meshing);
     return KRS_OK;
+}
+
+KrsStatus say_nothing(const Meshing *meshing, const char *what, const char *where, double error)
+{
+    char   than[128] = "";
+    double longest;
+    if (!where)
+        where = meshing->how.within ? " in this box" : "";
+    if (find_end(meshing, &longest) && longest > 0 && error > longest)
+        snprintf(than, sizeof than,
+                 " as large as the error, %.4g: --error is larger than the scene", error);
+    else if (error > 0 && longest > 0)
+        snprintf(than, sizeof than, " that is thicker than the error, %.4g", error);
+    say("there is nothing to %s: `%s` has nothing solid%s%s", what,
+        meshing->options->files.items[0], where, than);
+    return KRS_BAD_SCENE;
 }

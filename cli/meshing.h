@@ -59,6 +59,9 @@ const char *output_path(const Meshing *meshing, size_t index);
 bool find_end(const Meshing *meshing, double *longest);
 /* Fills in what is meshed, and how. */
 KrsStatus check_wishes(Meshing *meshing);
+/* That there is nothing to `what`, which is all that is said of empty results: where, unless that is all or the box of
+   --within, and which error may have left out what there is (0: none).  Returns KRS_BAD_SCENE. */
+KrsStatus say_nothing(const Meshing *meshing, const char *what, const char *where, double error);
 
 /* mesh_summary.c: of all bodies; lengths are those of the scene. */
 Summary summarize(const Bodies *bodies);

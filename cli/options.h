@@ -165,4 +165,7 @@ typedef struct Options {
     Arena *arena; /* for whatever a command needs until the process ends */
 } Options;
 
+/* Whether the command line has an option. */
+bool option_is_given(const Options *options, OptionId id);
+
 #endif

@@ -51,6 +51,14 @@ static bool take_value(Options *options, OptionId id, const char *value, int cho
     return taken;
 }
 
+bool option_is_given(const Options *options, OptionId id)
+{
+    for (size_t i = 0; i < options->given.count; i++)
+        if (options->given.items[i].id == id)
+            return true;
+    return false;
+}
+
 /* Takes one option and its argument (NULL when it has none). */
 static KrsStatus option_take(Options *options, OptionId id, const char *value)
 {

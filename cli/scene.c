@@ -65,6 +65,13 @@ static bool shows_pictures(const Options *options)
            options->command == COMMAND_VIEW;
 }
 
+/* Those that say something of a figure, or write it. */
+static bool takes_figures(const Options *options)
+{
+    return options->command == COMMAND_SLICE || options->command == COMMAND_CHECK ||
+           (options->command == COMMAND_INFO && !options->print);
+}
+
 KrsOptions scene_options(DiagnosticSink *sink, const char *path)
 {
     const Options *options = sink->options;
@@ -77,7 +84,7 @@ KrsOptions scene_options(DiagnosticSink *sink, const char *path)
                         .pictures     = shows_pictures(options),
                         .assembly     = options->command == COMMAND_MESH,
                         .motion       = options->command == COMMAND_MESH && options->animated,
-                        .figures      = options->command == COMMAND_SLICE,
+                        .figures      = takes_figures(options),
                         .root         = scene_root(options, path),
                         .text         = is_input(options, path) ? options->input : NULL,
                         .text_length  = options->input_length};

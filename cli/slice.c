@@ -14,15 +14,26 @@ enum { MOST_LAYERS = 1000000, AT_ONCE = 8, USUAL_PIXELS = 1024 };
 /* Bytes of a picture. */
 #define MOST_PIXELS 1073741824.0
 
+typedef struct SliceOutput {
+    const SliceFormat *format;
+    const char        *path;
+    SliceFile         *file; /* that has all layers; NULL: each has its own */
+} SliceOutput;
+
 typedef struct Slicing {
     const Options  *options;
     const KrsScene *scene;
     KrsFrame       *frame;
     KrsSlicer      *slicer;
     SliceSheet      sheet;
+    Meshing         wishes;  /* what they share with meshes */
     KrsSliceOptions how;     /* of the slicer */
     bool            figures; /* what is shown is plane figures */
     KrsSectionPlane plane;   /* of a section, or of layer 0 */
+    SliceOutput    *outputs;
+    size_t          output_count;
+    uint32_t        empty; /* layers before the first that is not */
+    bool            found; /* that one */
     Progress        progress;
 } Slicing;
 
@@ -33,11 +44,6 @@ static bool go_on(void *user)
 }
 
 /* ---- what is asked for ---- */
-
-static size_t output_total(const Slicing *slicing)
-{
-    return slicing->options->outputs.count ? slicing->options->outputs.count : 1;
-}
 
 static const char *output_name(const Slicing *slicing, size_t index)
 {
@@ -103,15 +109,22 @@ static KrsStatus check_output(const Slicing *slicing, const char *path)
     return status;
 }
 
-static KrsStatus check_options(const Slicing *slicing)
+static KrsStatus check_options(Slicing *slicing)
 {
     const Options *options = slicing->options;
     KrsStatus      status  = KRS_OK;
 
     if (options->layer > 0 && options->plane.given)
         return say_usage(options, "--layer makes many sections, and --plane one");
-    for (size_t i = 0; i < output_total(slicing) && status == KRS_OK; i++)
-        status = check_output(slicing, output_name(slicing, i));
+    if (options->plane.given && option_is_given(options, OPTION_AXIS))
+        return say_usage(options, "--axis is that of --layer; --plane has a direction of its own");
+    slicing->output_count = options->outputs.count ? options->outputs.count : 1;
+    slicing->outputs      = arena_new_array(options->arena, SliceOutput, slicing->output_count);
+    for (size_t i = 0; i < slicing->output_count && status == KRS_OK; i++) {
+        const char *path    = output_name(slicing, i);
+        status              = check_output(slicing, path);
+        slicing->outputs[i] = (SliceOutput){slice_format(path), path, NULL};
+    }
     return status;
 }
 
@@ -133,10 +146,6 @@ static KrsStatus check_figures(Slicing *slicing)
     if (figures > 0 && (options->layer > 0 || options->plane.given))
         return say_usage(options, "`%s` is a plane figure, which has neither --layer nor --plane",
                          options->files.items[0]);
-    if (figures == 0 && options->layer == 0 && !options->plane.given)
-        return say_usage(options,
-                         "say how thick layers are, as in --layer 0.05, or where a section "
-                         "is, as in --plane=0,0,0.5,0,0,1");
     return KRS_OK;
 }
 
@@ -165,6 +174,9 @@ static KrsStatus find_layers(Slicing *slicing, const double low[3], const double
     const Options *options = slicing->options;
     SliceSheet    *sheet   = &slicing->sheet;
     sheet->layer_count     = 1;
+    if (!slicing->figures && options->layer == 0 && !options->plane.given)
+        return say_usage(options, "say how thick layers are, as in --layer 0.05, or where a "
+                                  "section is, as in --plane=0,0,0.5,0,0,1");
     if (options->layer == 0) {
         slicing->plane = slicing->figures ? (KrsSectionPlane){.normal = {0, 0, 1}}
                                           : options->plane.at;
@@ -201,8 +213,8 @@ static void find_sides(Slicing *slicing, const double low[3], const double high[
 
 static bool has_pictures(const Slicing *slicing)
 {
-    for (size_t i = 0; i < output_total(slicing); i++)
-        if (!slice_format(output_name(slicing, i))->has_layers)
+    for (size_t i = 0; i < slicing->output_count; i++)
+        if (!slicing->outputs[i].format->has_layers)
             return true;
     return false;
 }
@@ -259,10 +271,42 @@ static void find_error(Slicing *slicing, const double low[3], const double high[
         slicing->how.error = fmin(slicing->how.error, of_pixel / slicing->sheet.per_unit);
 }
 
+/* Whether the box of the scene is on one side of the plane. */
+static bool misses_box(const Slicing *slicing)
+{
+    const KrsSectionPlane *plane = &slicing->plane;
+    double                 low[3], high[3], least = 0, most = 0;
+    if (!krs_slicer_box(slicing->slicer, low, high))
+        return true;
+    for (int k = 0; k < 3; k++) {
+        double from = plane->normal[k] * (low[k] - plane->point[k]);
+        double to   = plane->normal[k] * (high[k] - plane->point[k]);
+        least += fmin(from, to);
+        most += fmax(from, to);
+    }
+    return least > 0 || most < 0;
+}
+
+static KrsStatus say_no_section(const Slicing *slicing)
+{
+    if (!slicing->figures)
+        return say_nothing(&slicing->wishes, "write",
+                           slicing->options->plane.given ? " in this plane" : NULL,
+                           misses_box(slicing) ? 0 : slicing->how.error);
+    say("there is nothing to write: `%s` is a figure without area",
+        slicing->options->files.items[0]);
+    return KRS_BAD_SCENE;
+}
+
 static KrsStatus open_slicer(Slicing *slicing)
 {
     const Options *options = slicing->options;
     krs_slicer_free(slicing->slicer);
+    for (size_t i = 0; i < slicing->output_count; i++) {
+        const bool arcs    = slicing->outputs[i].format->has_arcs;
+        slicing->how.arcs  = slicing->how.arcs || arcs;
+        slicing->how.lines = slicing->how.lines || !arcs;
+    }
     KrsStatus status = krs_slicer_new(slicing->frame, &slicing->how, &slicing->slicer);
     if (status == KRS_BAD_ARGUMENT)
         return say_usage(options, "--error is too small for the size of `%s`",
@@ -273,15 +317,17 @@ static KrsStatus open_slicer(Slicing *slicing)
 /* Fills in how the scene is cut, but for where. */
 static KrsStatus take_wishes(Slicing *slicing)
 {
-    Meshing   meshing = {.options = slicing->options, .scene = slicing->scene};
-    KrsStatus status  = check_wishes(&meshing);
-    slicing->how      = (KrsSliceOptions){.error        = slicing->options->slice_error,
-                                          .component    = meshing.how.component,
-                                          .within       = meshing.how.within,
-                                          .memory_limit = slicing->options->limits.memory,
-                                          .go_on        = go_on};
-    memcpy(slicing->how.low, meshing.how.low, sizeof slicing->how.low);
-    memcpy(slicing->how.high, meshing.how.high, sizeof slicing->how.high);
+    Meshing *wishes  = &slicing->wishes;
+    wishes->options  = slicing->options;
+    wishes->scene    = slicing->scene;
+    KrsStatus status = check_wishes(wishes);
+    slicing->how     = (KrsSliceOptions){.error        = slicing->options->slice_error,
+                                         .component    = wishes->how.component,
+                                         .within       = wishes->how.within,
+                                         .memory_limit = slicing->options->limits.memory,
+                                         .go_on        = go_on};
+    memcpy(slicing->how.low, wishes->how.low, sizeof slicing->how.low);
+    memcpy(slicing->how.high, wishes->how.high, sizeof slicing->how.high);
     return status == KRS_OK ? check_figures(slicing) : status;
 }
 
@@ -293,11 +339,8 @@ static KrsStatus find_wishes(Slicing *slicing)
         status = open_slicer(slicing);
     if (status != KRS_OK)
         return status;
-    if (!krs_slicer_box(slicing->slicer, low, high)) {
-        say("there is nothing to write: `%s` has nothing solid%s", slicing->options->files.items[0],
-            slicing->how.within ? " in this box" : "");
-        return KRS_BAD_SCENE;
-    }
+    if (!krs_slicer_box(slicing->slicer, low, high))
+        return say_no_section(slicing);
     status = find_layers(slicing, low, high);
     find_sides(slicing, low, high);
     if (status == KRS_OK && has_pictures(slicing))
@@ -311,11 +354,59 @@ static KrsStatus find_wishes(Slicing *slicing)
 
 /* ---- files ---- */
 
-/* Calls `take` for each layer, in their order. */
-typedef KrsStatus TakeLayer(void *user, const Layer *layer);
+static const KrsSection *section_for(const SliceOutput *output, const KrsSection *section)
+{
+    return section->lines && !output->format->has_arcs ? section->lines : section;
+}
 
-static KrsStatus make_some(Slicing *slicing, uint32_t first, size_t count, TakeLayer *take,
-                           void *user)
+/* A file that has one layer. */
+typedef struct LayerFile {
+    const Slicing     *slicing;
+    const SliceOutput *output;
+    const Layer       *layer;
+} LayerFile;
+
+static bool fill_layer(const void *user, OutputFile *output, OutputError *error)
+{
+    const LayerFile   *of     = user;
+    const SliceFormat *format = of->output->format;
+    SliceFile          file   = {.sheet = &of->slicing->sheet, .file = output, .error = error};
+    return format->begin(&file) && format->add(&file, of->layer) && format->end(&file) &&
+           slice_file_flush(&file);
+}
+
+/* Adds a layer to all files. */
+static KrsStatus write_layer(const Slicing *slicing, Layer layer, const KrsSection *section)
+{
+    KrsStatus status = KRS_OK;
+    for (size_t i = 0; i < slicing->output_count && status == KRS_OK; i++) {
+        const SliceOutput *output = &slicing->outputs[i];
+        layer.section             = section_for(output, section);
+        if (output->file)
+            status = output->format->add(output->file, &layer) ? KRS_OK : KRS_IO_ERROR;
+        else
+            status = write_output(numbered_path(slicing->options, output->path, layer.number),
+                                  fill_layer, &(LayerFile){slicing, output, &layer});
+    }
+    return status;
+}
+
+/* Nothing is written before it is known that there is something to write. */
+static KrsStatus take_layer(Slicing *slicing, uint32_t index, const KrsSection *section)
+{
+    static const KrsSection nothing = {.contour_count = 0};
+    KrsStatus               status  = KRS_OK;
+    if (section->contour_count == 0 && !slicing->found) {
+        slicing->empty++;
+        return KRS_OK;
+    }
+    for (; slicing->empty > 0 && status == KRS_OK; slicing->empty--)
+        status = write_layer(slicing, layer_of(slicing, index - slicing->empty), &nothing);
+    slicing->found = true;
+    return status == KRS_OK ? write_layer(slicing, layer_of(slicing, index), section) : status;
+}
+
+static KrsStatus make_some(Slicing *slicing, uint32_t first, size_t count)
 {
     KrsSectionPlane planes[AT_ONCE];
     KrsSection     *sections[AT_ONCE];
@@ -327,82 +418,74 @@ static KrsStatus make_some(Slicing *slicing, uint32_t first, size_t count, TakeL
         return status == KRS_INTERRUPTED ? status
                                          : say_status(status, slicing->options->files.items[0]);
     for (size_t i = 0; i < count; i++) {
-        Layer layer   = layer_of(slicing, first + (uint32_t)i);
-        layer.section = sections[i];
         if (status == KRS_OK)
-            status = take(user, &layer);
+            status = take_layer(slicing, first + (uint32_t)i, sections[i]);
         krs_section_free(sections[i]);
     }
     return status;
 }
 
-static KrsStatus make_layers(Slicing *slicing, TakeLayer *take, void *user)
+static KrsStatus make_layers(Slicing *slicing)
 {
     uint32_t  all    = slicing->sheet.layer_count;
     KrsStatus status = KRS_OK;
     for (uint32_t i = 0; i < all && status == KRS_OK; i += AT_ONCE) {
         progress_show(&slicing->progress, (double)i / all);
-        status = make_some(slicing, i, all - i < AT_ONCE ? all - i : AT_ONCE, take, user);
+        status = make_some(slicing, i, all - i < AT_ONCE ? all - i : AT_ONCE);
     }
-    return status;
+    progress_end(&slicing->progress);
+    return status == KRS_OK && !slicing->found ? say_no_section(slicing) : status;
 }
 
-typedef struct Target {
-    Slicing           *slicing;
-    const SliceFormat *format;
-    const char        *path;
-    const Layer       *layer; /* the only one of the file; NULL: it has all */
-    SliceFile         *file;
-    KrsStatus         *status; /* of making sections */
-} Target;
+/* A file that has all layers. */
+typedef struct WholeFile {
+    Slicing   *slicing;
+    size_t     number;
+    KrsStatus *status; /* of the files behind it, and of the layers */
+} WholeFile;
 
-static KrsStatus add_layer(void *user, const Layer *layer)
+static KrsStatus write_from(Slicing *slicing, size_t number);
+
+/* The layers are made when the last file has begun, and each goes to all of them. */
+static bool fill_whole(const void *user, OutputFile *output, OutputError *error)
 {
-    const Target *target = user;
-    return target->format->add(target->file, layer) ? KRS_OK : KRS_IO_ERROR;
+    const WholeFile *of      = user;
+    Slicing         *slicing = of->slicing;
+    SliceOutput     *to      = &slicing->outputs[of->number];
+    to->file                 = arena_new(slicing->options->arena, SliceFile);
+    to->file->sheet          = &slicing->sheet;
+    to->file->file           = output;
+    to->file->error          = error;
+    if (!to->format->begin(to->file))
+        return false;
+    *of->status = write_from(slicing, of->number + 1);
+    if (*of->status != KRS_OK && error->status == KRS_OK)
+        error->status = KRS_INTERRUPTED; /* what else it was has been said */
+    return *of->status == KRS_OK && to->format->end(to->file) && slice_file_flush(to->file);
 }
 
-static bool fill_file(const void *user, OutputFile *output, OutputError *error)
+/* Writes the files from this one on. */
+static KrsStatus write_from(Slicing *slicing, size_t number)
 {
-    Target    target = *(const Target *)user;
-    SliceFile file   = {.sheet = &target.slicing->sheet, .file = output, .error = error};
-    target.file      = &file;
-    bool done        = target.format->begin(&file);
-    if (done && target.layer)
-        done = add_layer(&target, target.layer) == KRS_OK;
-    else if (done) {
-        KrsStatus status = make_layers(target.slicing, add_layer, &target);
-        done             = status == KRS_OK;
-        if (!done && error->status == KRS_OK) {
-            error->status  = KRS_INTERRUPTED; /* what else it was has been said */
-            *target.status = status;
-        }
-    }
-    return done && target.format->end(&file) && slice_file_flush(&file);
+    KrsStatus made = KRS_OK;
+    while (number < slicing->output_count && frame_places(slicing->outputs[number].path) > 0)
+        number++;
+    if (number == slicing->output_count)
+        return make_layers(slicing);
+    KrsStatus status = write_output(slicing->outputs[number].path, fill_whole,
+                                    &(WholeFile){slicing, number, &made});
+    return made == KRS_OK ? status : made;
 }
 
-static KrsStatus write_layer(void *user, const Layer *layer)
+static KrsStatus write_sections(Slicing *slicing)
 {
-    Target target = *(const Target *)user;
-    target.layer  = layer;
-    return write_output(numbered_path(target.slicing->options, target.path, layer->number),
-                        fill_file, &target);
-}
-
-static KrsStatus write_sections(Slicing *slicing, const char *path)
-{
-    KrsStatus made   = KRS_OK;
-    Target    target = {
-           .slicing = slicing, .format = slice_format(path), .path = path, .status = &made};
-    slicing->how.arcs = target.format->has_arcs;
-    KrsStatus status  = open_slicer(slicing);
+    KrsStatus status = open_slicer(slicing);
     if (status != KRS_OK)
         return status;
     progress_start(&slicing->progress, slicing->options, 1);
-    status = frame_places(path) > 0 ? make_layers(slicing, write_layer, &target)
-                                    : write_output(path, fill_file, &target);
+    status = write_from(slicing, 0);
     progress_end(&slicing->progress);
-    return made == KRS_OK ? status : made;
+    return status;
 }
 
 KrsStatus command_slice(Options *options)
@@ -417,8 +500,8 @@ KrsStatus command_slice(Options *options)
         status = scene_frame(options, scene, &slicing.frame);
     if (status == KRS_OK)
         status = find_wishes(&slicing);
-    for (size_t i = 0; i < output_total(&slicing) && status == KRS_OK; i++)
-        status = write_sections(&slicing, output_name(&slicing, i));
+    if (status == KRS_OK)
+        status = write_sections(&slicing);
     krs_slicer_free(slicing.slicer);
     krs_frame_free(slicing.frame);
     krs_scene_free(scene);

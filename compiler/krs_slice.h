@@ -23,7 +23,8 @@ typedef struct KrsSliceOptions {
     size_t component; /* from 1; 0: all */
     bool   within;    /* only what is in the box from `low` to `high`, for scenes without an end */
     double low[3], high[3];
-    bool   arcs; /* contours are of lines and arcs of circles, where these are within the error */
+    bool   arcs;  /* contours are of lines and arcs of circles, where these are within the error */
+    bool   lines; /* with `arcs`: sections also have contours of lines */
     size_t memory_limit; /* bytes; 0: KRS_USUAL_MEMORY */
     /* Asked now and then whether to go on; false: stop, with KRS_INTERRUPTED.  May be NULL. */
     bool (*go_on)(void *user);
@@ -53,6 +54,8 @@ typedef struct KrsSection {
     size_t      point_count;
     KrsContour *contours;
     size_t      contour_count;
+    /* With `arcs` and `lines`: the section without arcs, which is freed with this one.  Else NULL. */
+    struct KrsSection *lines;
 } KrsSection;
 
 typedef struct KrsSlicer KrsSlicer;

@@ -138,12 +138,16 @@ void warn_if_nothing_is_left(Elaboration *e, const Shape *shape, const char *nam
     else if (!can_vanish(inner) || inner->estimate || !box_is_finite(inner->box) ||
              !is_nowhere(e, inner))
         return;
-    if (shape_info[inner->kind].parts == 0)
+    const bool letters = inner->kind == SHAPE_EMPTY && inner->figure; /* a text without any */
+    if (shape_info[inner->kind].parts == 0 && !letters)
         return; /* what has no parts is warned of where it is made */
     Diag *diag  = diag_add(e->diags, DIAG_NO_EFFECT, span, "`%s` is empty", name);
     diag->label = "nothing of this can be seen";
     if (shape_info[inner->kind].leaves == LEAVES_MIRRORED)
         diag_secondary(e->diags, diag, inner->span, "the mirrors discard all of its kernels");
+    else if (letters)
+        diag_secondary(e->diags, diag, inner->span,
+                       diag_text(e->diags, "this `%s` is empty", inner->name));
     else
         diag_secondary(e->diags, diag, inner->span,
                        diag_text(e->diags, "nothing is left by this `%s`", inner->name));

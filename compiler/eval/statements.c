@@ -119,14 +119,15 @@ static bool show_one(Elaboration *e, Value value, const Syntax *syntax)
         type_error(e, syntax, value, "a shape");
         return false;
     }
-    bool figure = value.shape->figure && !value.shape->nothing;
+    bool figure = value.shape->figure;
     if (figure && e->figures)
         value.shape = thicken(e, value.shape, syntax->span);
     if (value.shape->figure) {
         Diag *diag  = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span,
                                "a plane figure cannot be shown");
         diag->label = "this has no thickness";
-        diag->help  = "make it solid with `.extrude(height)` or `.revolve()`";
+        diag->help = "make it solid with `.extrude(height)` or `.revolve()`; `krs slice` writes it "
+                     "as it is";
         return false;
     }
     if (!check_bounded(e->builder, value.shape) || !check_extent(e, value.shape, syntax))

@@ -69,7 +69,7 @@ const Shape *make_outline(ShapeBuilder *builder, const char *name, const Curves 
     if (!found)
         return NULL;
     if (found->members.count == 0) {
-        Shape *empty  = shape_new(builder, SHAPE_EMPTY, "nothing", span, NULL, 0);
+        Shape *empty  = shape_new(builder, SHAPE_EMPTY, name, span, NULL, 0);
         empty->figure = true;
         return empty;
     }

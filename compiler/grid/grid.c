@@ -36,18 +36,20 @@ static bool find_box(KrsGrid *grid, bool *empty)
     return *empty || !endless;
 }
 
-/* What is in the box that was narrowed, and a little beyond, if the first one has that. */
-static void narrow(KrsGrid *grid)
+/* What is in the box that was narrowed, and a little beyond, if the first one has that; false: nothing. */
+static bool narrow(KrsGrid *grid)
 {
     double low[3], high[3];
     memcpy(low, grid->low, sizeof low);
     memcpy(high, grid->high, sizeof high);
-    narrow_box(&grid->fields[0], grid->low, grid->high);
+    if (!narrow_box(&grid->fields[0], grid->low, grid->high))
+        return false;
     for (int k = 0; k < 3; k++) {
         double beyond = BEYOND * (high[k] - low[k]);
         grid->low[k]  = max2(low[k], grid->low[k] - beyond);
         grid->high[k] = min2(high[k], grid->high[k] + beyond);
     }
+    return true;
 }
 
 /* False: there are too many samples. */
@@ -143,7 +145,8 @@ static KrsStatus prepare(KrsGrid *grid, KrsFrame *frame)
     status = open_fields(grid, frame);
     if (status != KRS_OK)
         return status;
-    narrow(grid);
+    if (!narrow(grid))
+        return KRS_OK;
     if (!find_samples(grid))
         return KRS_BAD_ARGUMENT;
     return grid->options.exact && !grid->options.fog ? find_mesh(grid, frame) : KRS_OK;

@@ -8,11 +8,10 @@
 static const double PART_OF_POINTS = 0.5, PART_OF_ARCS = 0.002;
 
 typedef struct Result {
-    OutlinePoint *points; /* of the contour at hand */
-    double       *bulges;
-    size_t        capacity;
-    KrsSection   *section;
-    size_t        point_room, contour_room;
+    OutlinePoint *points,
+        *copy; /* of the contour at hand; a copy, of which one of both kinds is made */
+    double     *bulges;
+    KrsSection *section;
 } Result;
 
 /* Points from a crossing on until it comes again; 0: chords do not lead back. */
@@ -62,60 +61,82 @@ static bool is_dust(Section *s, const OutlinePoint *points, size_t count)
     return dust;
 }
 
-static void add_contour(Section *s, Result *result, size_t count)
+/* Adds the points at hand, of which few stay, to a section of lines, or of arcs as well. */
+static void add_points(Section *s, const Result *result, size_t count, bool arcs,
+                       KrsSection *section)
 {
-    if (is_dust(s, result->points, count))
-        return;
-    KrsSection *section = result->section;
-    KrsContour  contour = {.first = section->point_count};
-    contour.count       = s->arcs ? fit_arcs(result->points, result->bulges, count,
-                                             PART_OF_ARCS * s->error, &s->arena)
-                                  : leave_out_points(result->points, count, PART_OF_POINTS * s->error,
-                                                     &s->arena);
-    contour.area        = area_of(result->points, s->arcs ? result->bulges : NULL, contour.count);
-    if (contour.count < (s->arcs ? 2 : 3) || contour.area == 0)
+    OutlinePoint *points  = result->copy;
+    KrsContour    contour = {.first = section->point_count};
+    memcpy(points, result->points, count * sizeof *points);
+    contour.count = arcs ? fit_arcs(points, result->bulges, count, PART_OF_ARCS * s->error,
+                                    &s->arena)
+                         : leave_out_points(points, count, PART_OF_POINTS * s->error, &s->arena);
+    contour.area  = area_of(points, arcs ? result->bulges : NULL, contour.count);
+    if (contour.count < (arcs ? 2 : 3) || contour.area == 0)
         return;
     for (size_t i = 0; i < contour.count; i++) {
-        memcpy(section->points[contour.first + i], result->points[i].at, sizeof *section->points);
-        if (s->arcs)
+        memcpy(section->points[contour.first + i], points[i].at, sizeof *section->points);
+        if (arcs)
             section->bulges[contour.first + i] = result->bulges[i];
     }
     section->point_count += contour.count;
     section->contours[section->contour_count++] = contour;
 }
 
+static void add_contour(Section *s, const Result *result, size_t count)
+{
+    if (is_dust(s, result->points, count))
+        return;
+    add_points(s, result, count, s->arcs, result->section);
+    if (result->section->lines)
+        add_points(s, result, count, false, result->section->lines);
+}
+
 /* Room for all points, of which few stay. */
-static KrsSection *section_new(const Section *s, size_t points, size_t contours)
+static KrsSection *section_new(size_t points, size_t contours, bool arcs, bool lines)
 {
     KrsSection *section = calloc(1, sizeof *section);
     if (!section)
         return NULL;
     section->points   = malloc((points + 1) * sizeof *section->points);
-    section->bulges   = s->arcs ? malloc((points + 1) * sizeof *section->bulges) : NULL;
+    section->bulges   = arcs ? malloc((points + 1) * sizeof *section->bulges) : NULL;
     section->contours = malloc((contours + 1) * sizeof *section->contours);
-    if (section->points && section->contours && (section->bulges || !s->arcs))
+    section->lines    = lines ? section_new(points, contours, false, false) : NULL;
+    if (section->points && section->contours && (section->bulges || !arcs) &&
+        (section->lines || !lines))
         return section;
     krs_section_free(section);
     return NULL;
 }
 
-static void give_back_room(KrsSection *section)
+static void *shrunk(void *items, size_t count, size_t size)
 {
-    void *less = realloc(section->points, (section->point_count + 1) * sizeof *section->points);
-    section->points = less ? less : section->points;
-    less = realloc(section->contours, (section->contour_count + 1) * sizeof *section->contours);
-    section->contours = less ? less : section->contours;
+    void *less = realloc(items, (count + 1) * size);
+    return less ? less : items;
 }
 
-KrsSection *section_contours(Section *s)
+static void give_back_room(KrsSection *section)
 {
-    size_t room   = s->crossings.count + s->bends.count;
-    Result result = {.section = section_new(s, room, s->crossings.count)};
-    if (!result.section)
-        return NULL;
+    section->points   = shrunk(section->points, section->point_count, sizeof *section->points);
+    section->contours = shrunk(section->contours, section->contour_count,
+                               sizeof *section->contours);
+    if (section->bulges)
+        section->bulges = shrunk(section->bulges, section->point_count, sizeof *section->bulges);
+    if (section->lines)
+        give_back_room(section->lines);
+}
+
+bool section_contours(Section *s, KrsSection **section)
+{
+    size_t room = s->crossings.count + s->bends.count;
+    *section    = section_new(room, s->crossings.count, s->arcs, s->lines);
+    if (!*section)
+        return false;
+    Result    result = {.section = *section};
     bool     *seen   = arena_new_array(&s->arena, bool, s->crossings.count + 1);
     ArenaMark before = arena_mark(&s->arena);
     result.points    = arena_new_array(&s->arena, OutlinePoint, room + 1);
+    result.copy      = arena_new_array(&s->arena, OutlinePoint, room + 1);
     result.bulges    = arena_new_array(&s->arena, double, room + 1);
     for (uint32_t i = 0; i < s->crossings.count; i++) {
         size_t count = seen[i] ? 0 : follow(s, i, seen, result.points);
@@ -124,13 +145,14 @@ KrsSection *section_contours(Section *s)
     }
     arena_rewind(&s->arena, before);
     give_back_room(result.section);
-    return result.section;
+    return true;
 }
 
 void krs_section_free(KrsSection *section)
 {
     if (!section)
         return;
+    krs_section_free(section->lines);
     free(section->points);
     free(section->bulges);
     free(section->contours);

@@ -162,8 +162,21 @@ static double find_bottom(const MeshField *field, const Box *box, int axis, doub
     return e.best < INFINITY ? e.best : bottom;
 }
 
-void narrow_box(const MeshField *field, double low[3], double high[3])
+/* Whether nothing is solid in a box, as far as few boxes prove it. */
+static bool is_empty(const MeshField *field, const double low[3], const double high[3])
 {
+    Extent e = {.field = field, .sign = 1, .best = INFINITY};
+    Box    box;
+    for (int k = 0; k < 3; k++)
+        box.axis[k] = (Range){low[k], high[k]};
+    sample(&e, &box);
+    return e.best == INFINITY && prove(&e, box) && e.best == INFINITY;
+}
+
+bool narrow_box(const MeshField *field, double low[3], double high[3])
+{
+    if (is_empty(field, low, high))
+        return false;
     for (int axis = 0; axis < 3; axis++) {
         Box box;
         for (int k = 0; k < 3; k++)
@@ -177,4 +190,5 @@ void narrow_box(const MeshField *field, double low[3], double high[3])
             high[axis] = min2(high[axis], most);
         }
     }
+    return true;
 }

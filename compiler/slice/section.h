@@ -59,7 +59,7 @@ typedef struct Section {
     double     low[2], side; /* of the root */
     double     error, enough, skin;
     uint32_t   finest; /* side of the smallest cells */
-    bool       arcs;
+    bool       arcs, lines;
     bool (*go_on)(void *user); /* NULL: another thread asks */
     void        *user;
     atomic_bool *stopped;
@@ -119,8 +119,8 @@ void find_chords(Section *s);
 /* bend.c */
 void bend_chords(Section *s);
 
-/* contours.c: the points of a contour, which is closed; NULL behind the last. */
-KrsSection *section_contours(Section *s);
+/* contours.c: makes the section, which is there also where memory ends before it is whole; false: there is no memory. */
+bool section_contours(Section *s, KrsSection **section);
 /* fit.c: leaves out points, up to a distance; returns how many stay. */
 size_t leave_out_points(OutlinePoint *points, size_t count, double error, Arena *scratch);
 /* Makes lines and arcs of points, up to a distance; returns how many pieces there are. */

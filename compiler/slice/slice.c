@@ -90,8 +90,9 @@ static KrsStatus open_slicer(KrsSlicer *slicer, KrsFrame *frame)
     if (!find_box(slicer))
         return KRS_BAD_ARGUMENT;
     KrsStatus status = open_fields(slicer, frame);
-    if (status == KRS_OK && slicer->parts > 0)
-        narrow_box(&slicer->fields[0], slicer->low, slicer->high);
+    if (status == KRS_OK && slicer->parts > 0 &&
+        !narrow_box(&slicer->fields[0], slicer->low, slicer->high))
+        slicer->parts = 0;
     return status;
 }
 
@@ -162,8 +163,7 @@ static KrsStatus make_section(Section *s, const KrsSlicer *slicer, KrsSection **
         return KRS_INTERRUPTED;
     find_chords(s);
     bend_chords(s);
-    *result = section_contours(s);
-    return *result ? KRS_OK : KRS_OUT_OF_MEMORY;
+    return section_contours(s, result) ? KRS_OK : KRS_OUT_OF_MEMORY;
 }
 
 static bool plane_is_valid(const KrsSectionPlane *plane)
@@ -181,6 +181,7 @@ static KrsStatus slice_plane_of(Slicing *slicing, size_t part, size_t number)
                              .error   = slicer->error,
                              .enough  = ENOUGH * slicer->size,
                              .arcs    = slicer->options.arcs,
+                             .lines   = slicer->options.arcs && slicer->options.lines,
                              .skin    = SKIN * slicer->size,
                              .go_on   = part == 0 ? slicer->options.go_on : NULL,
                              .user    = slicer->options.user,

@@ -1,7 +1,14 @@
 #!/bin/sh
 # slice.sh: `krs slice`: files that other programs accept, their areas, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 46
+plan 64
+
+# None of these files is there.
+no_files() {
+    for name in "$@"; do
+        [ ! -e "$name" ] || return 1
+    done
+}
 
 echo 'show sphere(0.5);' >ball.krs
 echo 'show box([4, 3, 2]) - cylinder(1, 5).rotate([1, 0, 0], 90deg);' >plate.krs
@@ -138,13 +145,14 @@ if command -v python3 >/dev/null; then
     areas_are o.svg 0.01 $hole
     result $? "SVG goes to standard output"
     run slice --quiet plate.krs --plane=0,0,7,0,0,1 -o e.svg -o e.dxf -o e.png
-    [ "$status" -eq 0 ] && areas_are e.svg 0 0 && areas_are e.png 0 0
-    result $? "a plane that misses the solid has an empty section"
+    said 1 "nothing to write: \`plate.krs\` has nothing solid in this plane" "a plane that misses the solid has no section"
+    no_files e.svg e.dxf e.png
+    result $? "and writes nothing"
     run slice --quiet plate.krs --plane=0,0,1,0,0,1 -o t.svg
     areas_are t.svg 0.02 $hole
     result $? "and the plane of a face has the face"
 else
-    for i in 1 2 3 4 5 6 7 8 9 10 11; do skip "areas of files, $i" "no python3"; done
+    for i in 1 2 3 4 5 6 7 8 9 10 11 12; do skip "areas of files, $i" "no python3"; done
 fi
 # The most memory of a command, in kilobytes: memory_of KRS-ARGUMENTS...
 memory_of() {
@@ -252,6 +260,48 @@ run slice --quiet floor.krs --layer 0.5 --within=-2,-2,-2,2,2,2 -o w.svg
 result $? "but not what of it is in a box"
 run slice empty.krs --layer 0.1
 said 1 "nothing to write" "nothing has no sections"
+echo 'show box([1, 1, 1]) - box([2, 2, 2]);' >blank.krs
+for command in "slice --layer 0.1 -o n.svg" "mesh -o n.stl" "grid -o n.npy" "info --print"; do
+    # shellcheck disable=SC2086 # words are meant
+    run ${command%% *} blank.krs ${command#* }
+    said 1 "\`blank.krs\` has nothing solid" "${command%% *} says what is empty as all do"
+done
+no_files n.svg n.stl n.npy
+result $? "and writes no file"
+run slice ball.krs --layer 0.4 --error 3 -o 'm-%d.svg' -o m.cli
+said 1 "--error is larger than the scene" "what the error leaves nothing of is no file"
+no_files m-1.svg m.cli
+result $? "not even for its first layer"
+echo 'show rectangle([1, 1]) - rectangle([2, 2]);' >none.krs
+run slice none.krs -o n.svg
+said 1 "a figure without area" "nor is a figure without area"
+echo 'show text("");' >letters.krs
+run slice letters.krs -o n.svg
+said 1 "a figure without area" "or without letters"
+grep -q 'this .text. is empty' err
+result $? "which are warned of"
+run slice ball.krs --plane=0,0,0,0,0,1 --axis x
+said 2 "--axis is that of --layer" "a plane has no axis"
+echo 'show sphere(0.2).move([0, 0, -1]); show sphere(0.2).move([0, 0, 1]);' >gap.krs
+run slice --quiet gap.krs --layer 0.2 -o 'g-%02d.svg' -o g.cli
+[ "$status" -eq 0 ] && [ -s g-06.svg ] && [ "$(grep -c LAYER/ g.cli)" -eq 13 ] && ! grep -q '<path' g-06.svg
+result $? "layers between parts are empty"
+# All files are of the same sections, and as each alone.
+for file in a.svg a.dxf a.cli; do run slice --quiet plate.krs --layer 0.5 -o "$file" --error 0.001 --resolution 50; done
+run slice --quiet plate.krs --layer 0.5 -o 'a-%d.png' --error 0.001 --resolution 50
+run slice --quiet plate.krs --layer 0.5 --error 0.001 --resolution 50 -o 'b-%d.png' -o b.svg -o b.dxf -o 'c-%d.svg' -o b.cli
+cmp a.svg b.svg && cmp a.dxf b.dxf && cmp a.cli b.cli && cmp a-2.png b-2.png && [ -s c-4.svg ]
+result $? "many files at once are what each is alone"
+ln -s /dev/full full.cli
+run slice --quiet plate.krs --layer 0.5 -o one.svg -o full.cli -o 'two-%d.svg'
+said 74 "No space left" "a full disk is told"
+no_files one.svg && no_temporaries
+result $? "and files of all layers are not written then"
+run check figure.krs
+ended 0 "what can be cut is accepted by check"
+run info figure.krs
+[ "$status" -eq 0 ] && grep -q 'figure .*krs slice' out
+result $? "and told by info"
 mkdir inside && cp ball.krs inside && ln -s ../outside.svg inside/link.svg
 run slice --quiet --untrusted inside/ball.krs --layer 0.5 -o inside/link.svg
 [ "$status" -eq 73 ] && [ ! -e outside.svg ]
