@@ -258,17 +258,27 @@ static void find_units(Slicing *slicing)
     sheet->digits     = (int)fmax(0, fmin(15, ceil(-log10(slicing->how.error)) + 3));
 }
 
-static void find_error(Slicing *slicing, const double low[3], const double high[3])
+static KrsStatus refuse_error(const Slicing *slicing)
+{
+    return say_usage(slicing->options, "--error is too small for the size of `%s`",
+                     slicing->options->files.items[0]);
+}
+
+/* Without a wish, once the box is known. */
+static KrsStatus find_error(Slicing *slicing, const double low[3], const double high[3])
 {
     const double usual = 1.0 / 2000, of_pixel = 1.0 / 16;
     double       longest = 0;
     for (int k = 0; k < 3; k++)
         longest = fmax(longest, high[k] - low[k]);
     if (slicing->how.error > 0)
-        return;
+        return KRS_OK;
     slicing->how.error = usual * longest;
     if (slicing->sheet.width > 0)
         slicing->how.error = fmin(slicing->how.error, of_pixel / slicing->sheet.per_unit);
+    return krs_slicer_set_error(slicing->slicer, slicing->how.error) == KRS_OK
+               ? KRS_OK
+               : refuse_error(slicing);
 }
 
 /* Whether the box of the scene is on one side of the plane. */
@@ -301,7 +311,6 @@ static KrsStatus say_no_section(const Slicing *slicing)
 static KrsStatus open_slicer(Slicing *slicing)
 {
     const Options *options = slicing->options;
-    krs_slicer_free(slicing->slicer);
     for (size_t i = 0; i < slicing->output_count; i++) {
         const bool arcs    = slicing->outputs[i].format->has_arcs;
         slicing->how.arcs  = slicing->how.arcs || arcs;
@@ -309,8 +318,7 @@ static KrsStatus open_slicer(Slicing *slicing)
     }
     KrsStatus status = krs_slicer_new(slicing->frame, &slicing->how, &slicing->slicer);
     if (status == KRS_BAD_ARGUMENT)
-        return say_usage(options, "--error is too small for the size of `%s`",
-                         options->files.items[0]);
+        return refuse_error(slicing);
     return status == KRS_OK ? KRS_OK : say_status(status, options->files.items[0]);
 }
 
@@ -347,9 +355,9 @@ static KrsStatus find_wishes(Slicing *slicing)
         status = find_pixels(slicing);
     if (status != KRS_OK)
         return status;
-    find_error(slicing, low, high);
+    status = find_error(slicing, low, high);
     find_units(slicing);
-    return KRS_OK;
+    return status;
 }
 
 /* ---- files ---- */
@@ -479,11 +487,8 @@ static KrsStatus write_from(Slicing *slicing, size_t number)
 
 static KrsStatus write_sections(Slicing *slicing)
 {
-    KrsStatus status = open_slicer(slicing);
-    if (status != KRS_OK)
-        return status;
     progress_start(&slicing->progress, slicing->options, 1);
-    status = write_from(slicing, 0);
+    KrsStatus status = write_from(slicing, 0);
     progress_end(&slicing->progress);
     return status;
 }

@@ -67,6 +67,8 @@ typedef struct KrsSlicer KrsSlicer;
  */
 KrsStatus krs_slicer_new(KrsFrame *frame, const KrsSliceOptions *options, KrsSlicer **slicer);
 void      krs_slicer_free(KrsSlicer *slicer);
+/* Another error than that of the options, which the box may tell: at least a ten-millionth of the size. */
+KrsStatus krs_slicer_set_error(KrsSlicer *slicer, double error);
 /* The box around what is cut; false: there is nothing. */
 bool krs_slicer_box(const KrsSlicer *slicer, double low[3], double high[3]);
 

@@ -30,25 +30,30 @@ static void set_top(const Extent *e, Box *box, double height)
         box->axis[e->axis].low = max2(box->axis[e->axis].low, -height);
 }
 
-/* Down from a solid point to where it ends, or to a height: halved, since steps along a distance would be many. */
+/* Down from a solid point to where it ends, or to a height: by eighths, since steps along a distance would be many. */
 static void go_down(Extent *e, const double from[3], double bottom)
 {
-    enum { HALVINGS = 48 };
-    double point[3] = {from[0], from[1], from[2]}, inside = e->sign * from[e->axis],
-           outside = bottom;
-    for (int i = 0; i < HALVINGS && outside < inside; i++) {
-        double middle  = i == 0 ? outside : 0.5 * (inside + outside);
-        point[e->axis] = e->sign * middle;
-        if (field_distance(e->field, point) <= 0)
-            inside = middle;
-        else
-            outside = middle;
+    enum { ROUNDS = 16, PARTS = MOST_FIELD_POINTS };
+    double points[PARTS][3], distances[PARTS], inside = e->sign * from[e->axis], outside = bottom;
+    for (int round = 0; round < ROUNDS && outside < inside; round++) {
+        double side = (inside - outside) / PARTS, below = outside;
+        int    lowest = 0;
+        for (int i = 0; i < PARTS; i++) {
+            memcpy(points[i], from, sizeof points[i]);
+            points[i][e->axis] = e->sign * (below + i * side);
+        }
+        field_distances(e->field, (const double(*)[3])points, PARTS, distances);
+        while (lowest < PARTS && distances[lowest] > 0)
+            lowest++;
+        if (lowest < PARTS)
+            inside = below + lowest * side;
+        outside = lowest > 0 ? below + (lowest - 1) * side : inside;
     }
     if (inside >= e->best)
         return;
-    point[e->axis] = e->sign * inside;
+    memcpy(e->at, from, sizeof e->at);
+    e->at[e->axis] = e->sign * inside;
     e->best        = inside;
-    memcpy(e->at, point, sizeof e->at);
 }
 
 /* Looks at the middle of a box.  False: there is nothing in the box, as distances change no faster than points move. */
@@ -66,24 +71,32 @@ static bool look_in(Extent *e, const Box *box)
     return true;
 }
 
-/* From the lowest point that is known sideways, and down from there, by steps that become shorter. */
+/* From the lowest point that is known sideways, and down from there, by steps that become shorter.  What is lower by
+   less than a small part of the height is not looked for. */
 static void slide_down(Extent *e, const Box *box)
 {
-    enum { STEPS = 40, MOST_SLIDES = 400 };
-    const double bottom = bottom_of(e, box);
-    double step = 0.1 * (-bottom_of(&(Extent){.axis = e->axis, .sign = -e->sign}, box) - bottom);
-    for (int i = 0, slides = 0; i < STEPS && slides < MOST_SLIDES; i++, step *= 0.5)
-        for (int direction = 0; direction < 8 && slides < MOST_SLIDES; direction++) {
-            double point[3] = {e->at[0], e->at[1], e->at[2]}, before = e->best;
-            point[(e->axis + 1) % 3] += step * cos(M_PI_4 * direction);
-            point[(e->axis + 2) % 3] += step * sin(M_PI_4 * direction);
-            if (field_distance(e->field, point) <= 0)
-                go_down(e, point, bottom);
-            if (e->best < before) {
-                slides++;
-                direction--;
-            }
+    enum { STEPS = 40, MOST_SLIDES = 400, DIRECTIONS = MOST_FIELD_POINTS };
+    static const double LEAST  = 1e-8;
+    const double        bottom = bottom_of(e, box);
+    const double height = -bottom_of(&(Extent){.axis = e->axis, .sign = -e->sign}, box) - bottom;
+    double       step   = 0.1 * height;
+    for (int i = 0, slides = 0; i < STEPS && slides < MOST_SLIDES; slides++) {
+        double points[DIRECTIONS][3], distances[DIRECTIONS], before = e->best;
+        for (int k = 0; k < DIRECTIONS; k++) {
+            memcpy(points[k], e->at, sizeof points[k]);
+            points[k][e->axis] -= e->sign * LEAST * height;
+            points[k][(e->axis + 1) % 3] += step * cos(2 * M_PI / DIRECTIONS * k);
+            points[k][(e->axis + 2) % 3] += step * sin(2 * M_PI / DIRECTIONS * k);
         }
+        field_distances(e->field, (const double(*)[3])points, DIRECTIONS, distances);
+        for (int k = 0; k < DIRECTIONS && e->best == before; k++)
+            if (distances[k] <= 0)
+                go_down(e, points[k], bottom);
+        if (e->best == before) {
+            step *= 0.5;
+            i++;
+        }
+    }
 }
 
 static void halve(const Box *box, Box halves[2])

@@ -18,12 +18,20 @@ struct KrsSlicer {
     Arena           arena;
     KrsSliceOptions options;
     MeshSolid       solid;
-    double          low[3], high[3], error, size; /* the largest coordinate */
-    size_t          parts;
-    MeshField       fields[MOST_PARTS];
+    double    low[3], high[3], error, longest, size; /* the longest side, the largest coordinate */
+    size_t    parts;
+    MeshField fields[MOST_PARTS];
 };
 
 /* ---- the slicer ---- */
+
+KrsStatus krs_slicer_set_error(KrsSlicer *slicer, double error)
+{
+    if (!(error >= LEAST_ERROR * slicer->longest) || isinf(error))
+        return KRS_BAD_ARGUMENT;
+    slicer->error = error;
+    return KRS_OK;
+}
 
 static bool find_box(KrsSlicer *slicer)
 {
@@ -44,8 +52,10 @@ static bool find_box(KrsSlicer *slicer)
         slicer->parts = 0;
     if (!isfinite(slicer->size))
         return false;
-    slicer->error = slicer->options.error > 0 ? slicer->options.error : DEFAULT_ERROR * longest;
-    return empty || slicer->error >= LEAST_ERROR * longest;
+    slicer->longest = empty ? 0 : longest;
+    return krs_slicer_set_error(slicer, slicer->options.error > 0
+                                            ? slicer->options.error
+                                            : DEFAULT_ERROR * longest) == KRS_OK;
 }
 
 static KrsStatus open_fields(KrsSlicer *slicer, KrsFrame *frame)
