@@ -410,6 +410,8 @@ KrsStatus command_mesh(Options *options)
         status = check_wishes(&meshing);
     }
     if (status == KRS_OK)
+        status = check_mesh_wishes(&meshing);
+    if (status == KRS_OK)
         status = find_meshes(&meshing);
     if (status == KRS_OK)
         status = write_meshes(&meshing);

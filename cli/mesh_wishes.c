@@ -138,15 +138,10 @@ static bool can_have_lods(const Meshing *meshing)
     return false;
 }
 
-KrsStatus check_wishes(Meshing *meshing)
+KrsStatus check_mesh_wishes(Meshing *meshing)
 {
     const Options *options = meshing->options;
-    const char    *path    = options->files.items[0];
-    double         longest;
-    KrsStatus      status = find_component(meshing);
-    if (status != KRS_OK)
-        return status;
-    status = check_motion(meshing);
+    KrsStatus      status  = check_motion(meshing);
     if (status != KRS_OK)
         return status;
     if (options->mesh_lods > 0 && !can_have_lods(meshing))
@@ -156,6 +151,17 @@ KrsStatus check_wishes(Meshing *meshing)
     meshing->how.even     = options->mesh_even;
     meshing->how.simplify = !options->mesh_even;
     meshing->how.shape    = is_shape_enough(meshing);
+    return KRS_OK;
+}
+
+KrsStatus check_wishes(Meshing *meshing)
+{
+    const Options *options = meshing->options;
+    const char    *path    = options->files.items[0];
+    double         longest;
+    KrsStatus      status = find_component(meshing);
+    if (status != KRS_OK)
+        return status;
     if (options->within.given) {
         meshing->how.within = true;
         memcpy(meshing->how.low, options->within.low, sizeof meshing->how.low);
