@@ -382,7 +382,8 @@ static void report(const Meshing *meshing, const Bodies *bodies)
             all.unresolved, at[0], at[1], at[2], all.copies > 1 ? "kernel" : "scene");
     warn_of_rounding(meshing, &all);
     if (meshing->moving > 0)
-        say("%zu parts move, by %zu keyframes", meshing->moving, meshing->keys);
+        say("%zu part%s, by %zu keyframes", meshing->moving,
+            meshing->moving == 1 ? " moves" : "s move", meshing->keys);
     if (bodies == &meshing->assembled && all.copies > (double)bodies->count)
         say("%.0f copies with %.0f triangles, within %.4g of the surface", all.copies,
             all.triangles, all.error * meshing->scale);

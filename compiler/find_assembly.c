@@ -15,9 +15,9 @@
 
 enum { MOST_ITEMS = 4096 };
 
-/* A shape and its item, in a turn of a loop. */
+/* A shape and its item, in a turn of a loop and below the paint that counts. */
 typedef struct Known {
-    const Shape *shape, *turn; /* NULL: in none */
+    const Shape *shape, *turn, *paint; /* NULL: in none */
     uint32_t     item;
 } Known;
 
@@ -27,7 +27,8 @@ typedef struct Finder {
     Arena       *work, *scratch;
     Graph       *graph;
     bool        *timed; /* nodes of shapes that depend on the time; NULL: nobody asks */
-    const Shape *turn;  /* around the shape that is looked at; NULL: none */
+    const Shape *turn;  /* around the shape that is looked at; NULL: none, */
+    const Shape *paint; /* and above it, where the time moves something */
     struct {
         Node  *items;
         size_t count, capacity;
@@ -66,7 +67,7 @@ static uint32_t add_part(Finder *f, const Shape *shape)
               .root = add_roots(f, &later, 1), .box = shape->box, .estimate = shape->estimate};
     array_push(f->arena, &f->assembly->items, item);
     uint32_t number = (uint32_t)f->assembly->items.count - 1;
-    array_push(f->work, &f->parts, ((Known){shape, f->turn, number}));
+    array_push(f->work, &f->parts, ((Known){shape, f->turn, f->paint, number}));
     return number;
 }
 
@@ -190,6 +191,16 @@ static uint32_t take_union(Finder *f, const Shape *shape)
     return add_item(f, placings, shape->child_count);
 }
 
+/* The outermost paint counts.  Copies of a part are alike below it only. */
+static uint32_t take_paint(Finder *f, const Shape *shape)
+{
+    const Shape *above = f->paint;
+    f->paint           = above || !f->timed ? above : shape;
+    uint32_t item      = find_item(f, shape->children[0]);
+    f->paint           = above;
+    return item;
+}
+
 static uint32_t take_turn(Finder *f, const Shape *shape)
 {
     f->turn       = shape;
@@ -219,7 +230,7 @@ static uint32_t take_apart(Finder *f, const Shape *shape)
     if ((shape->levels == 0 && !moves(f, shape)) || f->assembly->items.count >= MOST_ITEMS)
         return add_part(f, shape);
     switch (shape->kind) {
-    case SHAPE_PAINT:
+    case SHAPE_PAINT: return take_paint(f, shape);
     case SHAPE_SMOOTH: return find_item(f, shape->children[0]);
     case SHAPE_TRANSFORM: return take_transform(f, shape);
     case SHAPE_UNION: return sharp ? take_union(f, shape) : add_part(f, shape);
@@ -229,13 +240,36 @@ static uint32_t take_apart(Finder *f, const Shape *shape)
     }
 }
 
+/* A material that differs from place to place. */
+static bool is_local(const Graph *graph, const Material *material)
+{
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends)          \
+    if (material->name != NODE_NONE && graph->items[material->name].time == TIME_POINT) \
+        return true;
+#include "compiler/shape/surface.def"
+    return false;
+}
+
+/* What is painted by its place has looks of its own in each copy. */
+static const Known *find_known(const Finder *f, const Shape *shape)
+{
+    if (f->paint && is_local(f->graph, f->paint->material))
+        return NULL;
+    for (size_t i = 0; i < f->known.count; i++) {
+        const Known *known = &f->known.items[i];
+        if (known->shape == shape && known->turn == f->turn && known->paint == f->paint)
+            return known;
+    }
+    return NULL;
+}
+
 static uint32_t find_item(Finder *f, const Shape *shape)
 {
-    for (size_t i = 0; i < f->known.count; i++)
-        if (f->known.items[i].shape == shape && f->known.items[i].turn == f->turn)
-            return f->known.items[i].item;
+    const Known *known = find_known(f, shape);
+    if (known)
+        return known->item;
     uint32_t item = take_apart(f, shape);
-    array_push(f->work, &f->known, ((Known){shape, f->turn, item}));
+    array_push(f->work, &f->known, ((Known){shape, f->turn, f->paint, item}));
     return item;
 }
 

@@ -73,9 +73,9 @@ def corners(size):
 
 
 def farthest(found, wanted):
-    """Boxes have no other vertices than corners."""
+    """Boxes have no other vertices than corners, but for those of several materials."""
     apart = np.linalg.norm(found[:, None] - wanted[None], axis=2)
-    return max(apart.min(0).max(), apart.min(1).max())
+    return max(apart.min(0).max(), 0 if kind == "paints" else apart.min(1).max())
 
 
 def spin(t):
@@ -99,11 +99,29 @@ def pair(t):
     return [image, image * [-1, 1, 1]]
 
 
+def paints(t):
+    wheel = corners([1, 0.2, 0.2]) @ turn([0, 0, 1], t).T
+    return [wheel, wheel + [3, 0, 0], wheel + [0, 0, 5], wheel + [0, 3, 5]]
+
+
+def check_paints(film):
+    """Nodes by where they are; two are at the origin."""
+    found = []
+    for node in film.nodes:
+        primitive = film.file.json["meshes"][film.file.json["nodes"][node]["mesh"]]["primitives"][0]
+        colors = film.file.accessor(primitive["attributes"]["COLOR_0"])[:, :3] // 65535
+        assert (colors == colors[0]).all()
+        found.append((*(int(x) for x in np.round(film.vertices(node, 0).mean(0))), *(int(c) for c in colors[0])))
+    assert sorted(found) == [(0, 0, 0, 1, 0, 0), (0, 0, 5, 0, 1, 0), (0, 3, 5, 1, 1, 1), (3, 0, 0, 0, 0, 1)], found
+
+
 kind, path, error = sys.argv[1], sys.argv[2], float(sys.argv[3])
 first = float(sys.argv[4]) / FPS if len(sys.argv) > 4 else 0
 film, at = Film(path), globals()[kind]
 assert abs(film.end - 3) < 1e-6, film.end
 worst = 0
+if kind == "paints":
+    check_paints(film)
 for time in np.concatenate([[0, 3], chance.uniform(0, 3, 60)]):
     found = [film.vertices(node, time) for node in film.nodes]
     wanted = at(first + time)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # mesh_motion.sh: `krs mesh --frames` writes how parts move into GLB.
 . "$(dirname "$0")/common.sh"
-plan 16
+plan 17
 
 cat >spin.krs <<'SCENE'
 show box([2, 0.2, 0.4]).rotate([1, 2, 0], 9 * time).move([3 * sin(time), 0, 0]);
@@ -35,6 +35,18 @@ moves ride 0.02 --frames 0..12
 moves wave 0.02 --frames 0..12
 moves pair 0.02 --frames 0..12
 moves wave 0.02 --frames 0..12 --split components
+cat >paints.krs <<'SCENE'
+let wheel = box([1, 0.2, 0.2]).rotate([0, 0, 1], time);
+show wheel.paint([1, 0, 0]) | wheel.paint([0, 0, 1]).move([3, 0, 0]);
+show union(wheel, wheel.move([0, 3, 0])).paint(if y < 1.5 then [0, 1, 0] else [1, 1, 1]).move([0, 0, 5]);
+SCENE
+if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
+    run mesh --quiet paints.krs --error 0.02 --fps 4 --frames 0..12 -o paints.glb
+    /usr/bin/python3 "$root/tests/cli/mesh_motion.py" paints paints.glb 0.02 >out 2>err
+    result $? "a part that is used twice has the color that it is painted with"
+else
+    skip "a part that is used twice has the color that it is painted with" "no numpy"
+fi
 if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
     run mesh --quiet spin.krs --error 0.02 --fps 4 --frames 100..112 -o spin.glb
     /usr/bin/python3 "$root/tests/cli/mesh_motion.py" spin spin.glb 0.02 100 >out 2>err
@@ -43,7 +55,7 @@ else
     skip "the first frame is the beginning" "no numpy"
 fi
 run mesh ride.krs --fps 4 --frames 0..12 -o ride.glb
-[ "$status" -eq 0 ] && grep -q '^krs: 1 parts move, by 13 keyframes$' err
+[ "$status" -eq 0 ] && grep -q '^krs: 1 part moves, by 13 keyframes$' err
 result $? "it is told how many parts move"
 cat >forms.krs <<'SCENE'
 let breath = sphere(1 + 0.1 * sin(time));
