@@ -103,6 +103,9 @@ static int one_only(Finding *f, int a, int b)
     if (a < 0 || b < 0)
         return a == FLAT_NONE || b == FLAT_NONE ? (a == FLAT_NONE ? b : a)
                                                 : flat_complement(f, a == FLAT_ALL ? b : a);
+    int common = flat_both(f, a, b), any = flat_either(f, a, b);
+    if (common == FLAT_NONE || any == FLAT_ALL)
+        return common == FLAT_NONE ? any : flat_complement(f, common);
     int first = flat_both(f, a, flat_complement(f, b));
     return flat_either(f, first, flat_both(f, flat_complement(f, a), b));
 }

@@ -98,6 +98,9 @@ static void make_pipeline(const Gpu *gpu, const uint32_t *words, size_t bytes)
     vkDestroyShaderModule(gpu->device, module, NULL);
 }
 
+/* Bytes that drivers keep at most of no pipeline: a header, and some numbers. */
+enum { NOTHING = sizeof(VkPipelineCacheHeaderVersionOne) + 32 };
+
 /* A run that makes one pipeline, or none; returns how much of the driver's data it began with. */
 static size_t run_on(Gpu *gpu, const uint32_t *words, size_t bytes)
 {
@@ -126,12 +129,11 @@ static void pipelines_are_kept(void **state)
     spirv_stop();
 
     assert_int_equal(run_on(&gpu, NULL, 0), 0);
-    assert_int_equal(count_files_that_end(".pipelines", name), 0); /* nothing to keep */
-    assert_int_equal(run_on(&gpu, words, 4 * count), 0);
+    assert_true(run_on(&gpu, words, 4 * count) <= NOTHING);
     assert_int_equal(count_files_that_end(".pipelines", name), 1);
     ino_t  number = number_of(name);
     size_t loaded = run_on(&gpu, words, 4 * count);
-    assert_true(loaded > sizeof(VkPipelineCacheHeaderVersionOne));
+    assert_true(loaded > NOTHING);
     assert_int_equal(number_of(name), number); /* it was known, so nothing has grown */
 
     assert_int_equal(truncate(name, 100), 0);
