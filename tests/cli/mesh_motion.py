@@ -99,6 +99,11 @@ def pair(t):
     return [image, image * [-1, 1, 1]]
 
 
+def twins(t):
+    arm = corners([1, 0.2, 0.2])
+    return [arm @ turn([0, 0, 1], t).T, arm @ turn([0, 0, 1], 2 * t).T + [3, 0, 0]]
+
+
 def paints(t):
     wheel = corners([1, 0.2, 0.2]) @ turn([0, 0, 1], t).T
     return [wheel, wheel + [3, 0, 0], wheel + [0, 0, 5], wheel + [0, 3, 5]]
@@ -122,6 +127,8 @@ assert abs(film.end - 3) < 1e-6, film.end
 worst = 0
 if kind == "paints":
     check_paints(film)
+if kind == "twins":  # which have one mesh
+    assert len(film.file.json["meshes"]) == 1
 for time in np.concatenate([[0, 3], chance.uniform(0, 3, 60)]):
     found = [film.vertices(node, time) for node in film.nodes]
     wanted = at(first + time)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # mesh_motion.sh: `krs mesh --frames` writes how parts move into GLB.
 . "$(dirname "$0")/common.sh"
-plan 17
+plan 18
 
 cat >spin.krs <<'SCENE'
 show box([2, 0.2, 0.4]).rotate([1, 2, 0], 9 * time).move([3 * sin(time), 0, 0]);
@@ -16,6 +16,10 @@ show krs {
     kernel box([0.6, 0.3, 0.2]).rotate([0, 0, 1], time).move([2 + sin(time), 0.5, 0]);
     reflect plane([-1, 0, 0], 0);
 };
+SCENE
+cat >twins.krs <<'SCENE'
+let arm = box([1, 0.2, 0.2]);
+show arm.rotate([0, 0, 1], time) | arm.rotate([0, 0, 1], 2 * time).move([3, 0, 0]);
 SCENE
 # At four frames a second the spin turns by more than half a turn between two.
 moves() { # scene, its error, options
@@ -35,6 +39,7 @@ moves ride 0.02 --frames 0..12
 moves wave 0.02 --frames 0..12
 moves pair 0.02 --frames 0..12
 moves wave 0.02 --frames 0..12 --split components
+moves twins 0.02 --frames 0..12
 cat >paints.krs <<'SCENE'
 let wheel = box([1, 0.2, 0.2]).rotate([0, 0, 1], time);
 show wheel.paint([1, 0, 0]) | wheel.paint([0, 0, 1]).move([3, 0, 0]);
