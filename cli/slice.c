@@ -34,6 +34,8 @@ typedef struct Slicing {
     size_t          output_count;
     uint32_t        empty; /* layers before the first that is not */
     bool            found; /* that one */
+    size_t          lost;  /* of all sections, as of KrsSection */
+    double          lost_at[3], thinnest;
     Progress        progress;
 } Slicing;
 
@@ -414,6 +416,23 @@ static KrsStatus take_layer(Slicing *slicing, uint32_t index, const KrsSection *
     return status == KRS_OK ? write_layer(slicing, layer_of(slicing, index), section) : status;
 }
 
+static void note_lost(Slicing *slicing, const KrsSection *section)
+{
+    if (slicing->lost == 0)
+        memcpy(slicing->lost_at, section->lost_at, sizeof slicing->lost_at);
+    slicing->lost += section->lost;
+    slicing->thinnest = fmax(slicing->thinnest, section->thinnest);
+}
+
+static void warn_of_lost(const Slicing *slicing)
+{
+    const double *at = slicing->lost_at;
+    if (slicing->lost > 0 && !slicing->options->quiet)
+        say("warning: in %zu places something is thinner than %.3g, and not in the sections; the "
+            "first is at [%g, %g, %g]; a smaller --error finds it",
+            slicing->lost, slicing->thinnest, at[0], at[1], at[2]);
+}
+
 static KrsStatus make_some(Slicing *slicing, uint32_t first, size_t count)
 {
     KrsSectionPlane planes[AT_ONCE];
@@ -426,6 +445,7 @@ static KrsStatus make_some(Slicing *slicing, uint32_t first, size_t count)
         return status == KRS_INTERRUPTED ? status
                                          : say_status(status, slicing->options->files.items[0]);
     for (size_t i = 0; i < count; i++) {
+        note_lost(slicing, sections[i]);
         if (status == KRS_OK)
             status = take_layer(slicing, first + (uint32_t)i, sections[i]);
         krs_section_free(sections[i]);
@@ -442,6 +462,7 @@ static KrsStatus make_layers(Slicing *slicing)
         status = make_some(slicing, i, all - i < AT_ONCE ? all - i : AT_ONCE);
     }
     progress_end(&slicing->progress);
+    warn_of_lost(slicing);
     return status == KRS_OK && !slicing->found ? say_no_section(slicing) : status;
 }
 

@@ -54,6 +54,10 @@ typedef struct KrsSection {
     size_t      point_count;
     KrsContour *contours;
     size_t      contour_count;
+    /* Places with something, solid or between solids, that is thinner than `thinnest` and not in the contours; the first
+       of them is a point of the scene. */
+    size_t lost;
+    double lost_at[3], thinnest;
     /* With `arcs` and `lines`: the section without arcs, which is freed with this one.  Else NULL. */
     struct KrsSection *lines;
 } KrsSection;

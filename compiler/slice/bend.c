@@ -201,6 +201,20 @@ static bool has_tangents(const Stretch *stretch, const Ends *ends, double reach)
     return true;
 }
 
+/* As near, or nearer beside what is thinner than that, where the other side is not to be met: on stretches that are
+   straight, or short. */
+static bool is_near_enough(const Section *s, const Stretch *stretch, const Ends *ends, double reach)
+{
+    static const double CLOSER = 1.0 / 8, SHORT = 0.5, SAME_COSINE = 1 - 1e-9;
+    const double(*n)[2] = ends->normals;
+    bool same           = n[0][0] * n[1][0] + n[0][1] * n[1][1] > SAME_COSINE;
+    bool thin           = s->split_thin && (same || stretch->length < SHORT * reach);
+    for (int i = 0; i < (thin ? 3 : 1); i++, reach *= CLOSER)
+        if (is_near(s, stretch, reach))
+            return true;
+    return false;
+}
+
 static void bend(Section *s, const OutlinePoint *from, const OutlinePoint *to, int depth)
 {
     enum { MOST_HALVINGS = 30 };
@@ -214,7 +228,9 @@ static void bend(Section *s, const OutlinePoint *from, const OutlinePoint *to, i
         return;
     if (!point.corner) {
         bool straight = !known || has_tangents(&stretch, &ends, reach);
-        if ((straight && is_near(s, &stretch, reach)) || !find_middle(s, &stretch, point.at))
+        bool near     = straight && (known ? is_near_enough(s, &stretch, &ends, reach)
+                                           : is_near(s, &stretch, reach));
+        if (near || !find_middle(s, &stretch, point.at))
             return;
     }
     bend(s, from, &point, depth + 1);

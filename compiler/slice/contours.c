@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/minmax.h"
+
 /* What is left out of contours, and where arcs may be, in errors; the rest is that of chords. */
 static const double PART_OF_POINTS = 0.5, PART_OF_ARCS = 0.002;
 
@@ -50,27 +52,51 @@ static double area_of(const OutlinePoint *points, const double *bulges, size_t c
     return area;
 }
 
-/* Whether points that are left out leave nothing: the contour is thinner than the error. */
-static bool is_dust(Section *s, const OutlinePoint *points, size_t count)
+/* What a contour encloses, as a strip of so much area and length. */
+static double width_of(const OutlinePoint *points, size_t count)
+{
+    double length = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double *a = points[i].at, *b = points[(i + 1) % count].at;
+        length += hypot(b[0] - a[0], b[1] - a[1]);
+    }
+    return length > 0 ? 2 * fabs(area_of(points, NULL, count)) / length : 0;
+}
+
+/* Whether points that are left out leave nothing of a contour. */
+static bool is_crumb(Section *s, const OutlinePoint *points, size_t count)
 {
     ArenaMark     before = arena_mark(&s->arena);
     OutlinePoint *copy   = arena_new_array(&s->arena, OutlinePoint, count + 1);
     memcpy(copy, points, count * sizeof *copy);
-    bool dust = leave_out_points(copy, count, PART_OF_POINTS * s->error, &s->arena) < 3;
+    bool crumb = leave_out_points(copy, count, PART_OF_POINTS * s->error, &s->arena) < 3;
     arena_rewind(&s->arena, before);
-    return dust;
+    return crumb;
+}
+
+/* Whether a contour is one of rounding, where nothing thin was found; or of what is thinner than what is looked for. */
+static bool is_dust(Section *s, const OutlinePoint *points, size_t count, double width)
+{
+    static const double LEAST = 1e-3;
+    double              thin  = s->side * ((double)s->thinnest / WHOLE_SIDE);
+    if (!s->split_thin)
+        return is_crumb(s, points, count);
+    if (width >= 0.25 * thin)
+        return false;
+    if (width > LEAST * thin && s->lost++ == 0)
+        memcpy(s->lost_at, points[0].at, sizeof s->lost_at);
+    return true;
 }
 
 /* Adds the points at hand, of which few stay, to a section of lines, or of arcs as well. */
-static void add_points(Section *s, const Result *result, size_t count, bool arcs,
+static void add_points(Section *s, const Result *result, size_t count, double error, bool arcs,
                        KrsSection *section)
 {
     OutlinePoint *points  = result->copy;
     KrsContour    contour = {.first = section->point_count};
     memcpy(points, result->points, count * sizeof *points);
-    contour.count = arcs ? fit_arcs(points, result->bulges, count, PART_OF_ARCS * s->error,
-                                    &s->arena)
-                         : leave_out_points(points, count, PART_OF_POINTS * s->error, &s->arena);
+    contour.count = arcs ? fit_arcs(points, result->bulges, count, PART_OF_ARCS * error, &s->arena)
+                         : leave_out_points(points, count, PART_OF_POINTS * error, &s->arena);
     contour.area  = area_of(points, arcs ? result->bulges : NULL, contour.count);
     if (contour.count < (arcs ? 2 : 3) || contour.area == 0)
         return;
@@ -85,11 +111,12 @@ static void add_points(Section *s, const Result *result, size_t count, bool arcs
 
 static void add_contour(Section *s, const Result *result, size_t count)
 {
-    if (is_dust(s, result->points, count))
+    double width = width_of(result->points, count), error = min2(s->error, 0.5 * width);
+    if (is_dust(s, result->points, count, width))
         return;
-    add_points(s, result, count, s->arcs, result->section);
+    add_points(s, result, count, error, s->arcs, result->section);
     if (result->section->lines)
-        add_points(s, result, count, false, result->section->lines);
+        add_points(s, result, count, error, false, result->section->lines);
 }
 
 /* Room for all points, of which few stay. */
@@ -144,6 +171,9 @@ bool section_contours(Section *s, KrsSection **section)
             add_contour(s, &result, count);
     }
     arena_rewind(&s->arena, before);
+    result.section->lost     = s->lost;
+    result.section->thinnest = s->side * ((double)s->thinnest / WHOLE_SIDE);
+    slice_point(&s->plane, s->lost_at, result.section->lost_at);
     give_back_room(result.section);
     return true;
 }

@@ -33,7 +33,7 @@ static void set_top(const Extent *e, Box *box, double height)
 /* Down from a solid point to where it ends, or to a height: by eighths, since steps along a distance would be many. */
 static void go_down(Extent *e, const double from[3], double bottom)
 {
-    enum { ROUNDS = 16, PARTS = MOST_FIELD_POINTS };
+    enum { ROUNDS = 10, PARTS = MOST_FIELD_POINTS }; /* to a part of 2^-50 */
     double points[PARTS][3], distances[PARTS], inside = e->sign * from[e->axis], outside = bottom;
     for (int round = 0; round < ROUNDS && outside < inside; round++) {
         double side = (inside - outside) / PARTS, below = outside;
@@ -75,7 +75,7 @@ static bool look_in(Extent *e, const Box *box)
    less than a small part of the height is not looked for. */
 static void slide_down(Extent *e, const Box *box)
 {
-    enum { STEPS = 40, MOST_SLIDES = 400, DIRECTIONS = MOST_FIELD_POINTS };
+    enum { STEPS = 40, MOST_SLIDES = 400, DIRECTIONS = 8 };
     static const double LEAST  = 1e-8;
     const double        bottom = bottom_of(e, box);
     const double height = -bottom_of(&(Extent){.axis = e->axis, .sign = -e->sign}, box) - bottom;

@@ -2,7 +2,8 @@
  * section.h: how one section is made.
  *
  * 1. A quadtree is refined where the outline may be, down to cells in which both derivatives are proven to keep their
- *    sign, or to cells of the error (tree.c).  Where they keep it, signs at corners tell all of the topology.
+ *    sign, or to cells of the error (tree.c).  Where they keep it, signs at corners tell all of the topology.  In others
+ *    what is thinner is looked for along gradients, and cells are refined there, or counted.
  * 2. Each edge of cells whose ends differ in sign has a crossing, an exact root.  Cells join their crossings by chords:
  *    next to each other along the cell's border, so that chords do not cross (chords.c).
  * 3. Chords are bent to the outline by exact roots across them; corners are where tangents of both ends meet (bend.c).
@@ -58,12 +59,15 @@ typedef struct Section {
     SlicePlane plane;
     double     low[2], side; /* of the root */
     double     error, enough, skin;
-    uint32_t   finest; /* side of the smallest cells */
-    bool       arcs, lines;
+    uint32_t finest, thinnest; /* side of the smallest cells, and of those around what is thinner */
+    bool     arcs, lines;
     bool (*go_on)(void *user); /* NULL: another thread asks */
     void        *user;
     atomic_bool *stopped;
-    size_t       looked; /* at cells */
+    size_t       looked;     /* at cells */
+    bool         split_thin; /* cells were, for what is thinner */
+    size_t       lost;       /* cells with something that is thinner than the smallest */
+    double       lost_at[2];
 
     struct {
         Corner *items;

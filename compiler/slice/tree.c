@@ -10,6 +10,8 @@ enum {
     ENTER_EVERY = 3,               /* halvings until the field is pruned again */
     ASK_EVERY   = 256
 };
+/* Of what is thinner than the smallest cells, cells are halved so often more; what is still thinner is counted. */
+enum { THIN_HALVINGS = 4 };
 /* Derivatives below that count as 0: a face that was turned by a right angle is straight. */
 static const double STRAIGHT = 1e-9;
 
@@ -33,6 +35,7 @@ void section_root(Section *s, const double low[3], const double high[3])
     s->finest = WHOLE_SIDE;
     while (s->finest > 2 && s->side * s->finest > s->error * WHOLE_SIDE)
         s->finest /= 2;
+    s->thinnest = s->finest >> THIN_HALVINGS > 2 ? s->finest >> THIN_HALVINGS : 2;
 }
 
 /* ---- corners ---- */
@@ -133,9 +136,169 @@ static bool is_monotone(const LaneSlope *slope, const double direction[3])
     return along.low >= -STRAIGHT || along.high <= STRAIGHT;
 }
 
+/* ---- what is thinner than cells ---- */
+
+/* Whether a value is on the other side by more than solids are thicker. */
+static bool is_other(const Section *s, double distance, bool inside)
+{
+    return inside ? distance > s->skin : distance < -2 * s->skin;
+}
+
+/* From a point of a cell to where the distance is 0, by its gradient, and on, up to a side of the cell: how thick at
+   most is what is there; INFINITY: no thinner than the cell; 0: nothing is found.  `at` is in it. */
+static double look_through(const Section *s, double side, const double from[2], double distance,
+                           double at[2])
+{
+    enum { STEPS = 3, PLACES = 16, NOWHERE = 1000 };
+    static const int halvings[PLACES] = {0,  1,  2,  3,  4,  5,  6,  8,
+                                         10, 12, 14, 16, 18, 20, 22, NOWHERE};
+    const bool       inside           = is_inside(distance);
+    double           points[PLACES][2], distances[PLACES], gradients[2][2], pair[2][2];
+    memcpy(pair[0], from, sizeof pair[0]);
+    for (int step = 0; step < STEPS; step++) {
+        memcpy(pair[1], pair[0], sizeof pair[1]);
+        slice_gradients(s->field, &s->plane, (const double(*)[2])pair, 1e-4 * side, gradients);
+        double steep = hypot(gradients[0][0], gradients[0][1]);
+        if (!(fabs(distance) < 2 * steep * side))
+            return 0;
+        for (int i = 0; i < PLACES; i++) {
+            double on = ldexp(side, -halvings[i]);
+            for (int k = 0; k < 2; k++)
+                points[i][k] = pair[0][k] -
+                               gradients[0][k] / steep * (distance / steep + (inside ? -on : on));
+        }
+        slice_distances(s->field, &s->plane, (const double(*)[2])points, PLACES, distances);
+        for (int i = 0; i < PLACES; i++)
+            if (is_other(s, distances[i], inside)) {
+                memcpy(at, points[i], sizeof points[i]);
+                return i == 0 ? INFINITY : ldexp(side, -halvings[i - 1]);
+            }
+        if (!(fabs(distances[PLACES - 1]) < 0.5 * fabs(distance)))
+            return 0;
+        memcpy(pair[0], points[PLACES - 1], sizeof pair[0]);
+        distance = distances[PLACES - 1];
+    }
+    return 0;
+}
+
+/* Whether all of a line is on the other side. */
+static bool is_joined(const Section *s, const double from[2], const double to[2], bool inside)
+{
+    enum { PLACES = 8 };
+    double points[PLACES][2], distances[PLACES];
+    bool   joined = true;
+    for (int i = 0; i < PLACES; i++)
+        for (int k = 0; k < 2; k++)
+            points[i][k] = from[k] + (to[k] - from[k]) * (i + 1.0) / (PLACES + 1);
+    slice_distances(s->field, &s->plane, (const double(*)[2])points, PLACES, distances);
+    for (int i = 0; i < PLACES && joined; i++)
+        joined = is_other(s, distances[i], inside);
+    return joined;
+}
+
+/* Whether what is thin at a place is the end of what is thicker, as at corners: around it in all directions, and then
+   around that in which it is deepest. */
+static bool is_tip(const Section *s, const double at[2], bool inside, double thick)
+{
+    enum { DIRECTIONS = MOST_FIELD_POINTS };
+    static const double WIDER = 16, DEEP = 0.6; /* a wall is half as deep as it is thick */
+    double              points[DIRECTIONS][2], distances[DIRECTIONS];
+    double              middle = 0, step = 2 * M_PI / DIRECTIONS;
+    for (int round = 0; round < 2; round++, step *= 2.0 / DIRECTIONS) {
+        int deepest = 0;
+        for (int i = 0; i < DIRECTIONS; i++) {
+            double angle = middle + step * (i - DIRECTIONS / 2);
+            points[i][0] = at[0] + WIDER * thick * cos(angle);
+            points[i][1] = at[1] + WIDER * thick * sin(angle);
+        }
+        slice_distances(s->field, &s->plane, (const double(*)[2])points, DIRECTIONS, distances);
+        for (int i = 0; i < DIRECTIONS; i++) {
+            if (is_other(s, distances[i], inside) && fabs(distances[i]) > DEEP * thick &&
+                is_joined(s, at, points[i], inside))
+                return true;
+            if (inside ? distances[i] > distances[deepest] : distances[i] < distances[deepest])
+                deepest = i;
+        }
+        middle += step * (deepest - DIRECTIONS / 2);
+    }
+    return false;
+}
+
+/* And where that is thick, back from there: the point may be in what is thin. */
+static double look_both_ways(const Section *s, double side, const double from[2], double distance,
+                             double at[2])
+{
+    double there, behind[2], thick = look_through(s, side, from, distance, at);
+    if (!isinf(thick))
+        return thick;
+    slice_distances(s->field, &s->plane, (const double(*)[2])at, 1, &there);
+    double back = look_through(s, side, at, there, behind);
+    if (back == 0 || isinf(back))
+        return thick;
+    memcpy(at, behind, sizeof behind);
+    return back;
+}
+
+/* What is found from the middles of the four quarters of a cell: the thinnest, and a place in it. */
+static double find_thinnest(const Section *s, const Cell *cell, bool same, double at[2])
+{
+    const double side = s->side * ((double)cell->side / WHOLE_SIDE);
+    /* Of a quarter without an outline nothing is to be found, unless it is where the thickness shows. */
+    const double reach = same ? 1.0001 * 0.25 * M_SQRT2 * side : 2 * side;
+    double       middles[4][2], distances[4], thinnest = 0;
+    for (uint32_t i = 0; i < 4; i++) {
+        middles[i][0] = place_of(s, 0, cell->at[0]) + (0.25 + 0.5 * (i % 2)) * side;
+        middles[i][1] = place_of(s, 1, cell->at[1]) + (0.25 + 0.5 * (i / 2)) * side;
+    }
+    slice_distances(s->field, &s->plane, (const double(*)[2])middles, 4, distances);
+    for (int i = 0; i < 4; i++) {
+        double place[2];
+        double thick = fabs(distances[i]) > reach
+                           ? 0
+                           : look_both_ways(s, side, middles[i], distances[i], place);
+        if (thick > 0 && (thinnest == 0 || thick < thinnest)) {
+            thinnest = thick;
+            memcpy(at, place, sizeof place);
+        }
+    }
+    return thinnest;
+}
+
+/* Whether a cell of the least size is split for what is thinner: corners do not tell what goes on between them.  What no
+   split would find is counted. */
+static bool hides_thin(Section *s, const Cell *cell)
+{
+    const bool inside = is_inside(find_corner(s, cell->at)->distance);
+    bool       same   = true;
+    double     at[2];
+    for (uint32_t i = 1; i < 4; i++) {
+        const uint32_t place[2] = {cell->at[0] + i % 2 * cell->side,
+                                   cell->at[1] + i / 2 * cell->side};
+        same                    = same && is_inside(find_corner(s, place)->distance) == inside;
+    }
+    const double side  = s->side * ((double)cell->side / WHOLE_SIDE);
+    const double least = s->side * ((double)s->thinnest / WHOLE_SIDE);
+    double       distance, thick = find_thinnest(s, cell, same, at);
+    if (thick == 0 || (isinf(thick) && !same))
+        return false;
+    thick = min2(thick, side);
+    slice_distances(s->field, &s->plane, (const double(*)[2])at, 1, &distance);
+    if (is_tip(s, at, !is_inside(distance), thick))
+        return false;
+    if (cell->side > s->thinnest && 0.5 * thick >= least) {
+        s->split_thin = true;
+        return true;
+    }
+    if (same && s->lost++ == 0)
+        memcpy(s->lost_at, at, sizeof at);
+    return false;
+}
+
+/* ---- the tree ---- */
+
 typedef enum CellState { CELL_EMPTY, CELL_LEAF, CELL_SPLIT } CellState;
 
-static CellState find_state(const Section *s, const Cell *cell, Box box)
+static CellState find_state(Section *s, const Cell *cell, Box box)
 {
     Range     range;
     LaneSlope slope;
@@ -145,7 +308,7 @@ static CellState find_state(const Section *s, const Cell *cell, Box box)
     if (range.low > s->skin || range.high < s->skin)
         return CELL_EMPTY;
     if (cell->side <= s->finest)
-        return CELL_LEAF;
+        return hides_thin(s, cell) ? CELL_SPLIT : CELL_LEAF;
     return known && cell->side <= COARSEST && is_monotone(&slope, s->plane.right) &&
                    is_monotone(&slope, s->plane.up)
                ? CELL_LEAF

@@ -458,11 +458,117 @@ static void sections_are_where_solids_are(void **state)
     print_message("# %zu points\n", told);
 }
 
+/* ---- what is thinner than the error ---- */
+
+/* A bar along z of a section of 1 by `thin`, or one whose ends are round, turned and moved. */
+typedef struct Bar {
+    bool   round;
+    double thin, angle, at[2];
+} Bar;
+
+static Product compile_bars(const Bar *bars, int count)
+{
+    SceneText text = {.length = 0};
+    for (int i = 0; i < count; i++) {
+        if (bars[i].round)
+            scene_write(&text, "show segment([-0.5, 0], [0.5, 0], %.17g).extrude(1)", bars[i].thin);
+        else
+            scene_write(&text, "show box([1, %.17g, 1])", bars[i].thin);
+        scene_write(&text, ".rotate([0, 0, 1], %.17g).move([%.17g, %.17g, 0]);\n", bars[i].angle,
+                    bars[i].at[0], bars[i].at[1]);
+    }
+    return product_compile(text.bytes);
+}
+
+static double area_of_bar(const Bar *bar)
+{
+    return bar->thin + (bar->round ? 0.25 * 3.14159265358979 * bar->thin * bar->thin : 0);
+}
+
+/* Bars and rods between twice the error and a twelfth of it have one contour each, of their area. */
+static void thin_parts_are_found(void **state)
+{
+    enum { SCENES = 24, BARS = 3 };
+    Random random = {11};
+    (void)state;
+    for (int i = 0; i < SCENES; i++) {
+        const double error = 0.002;
+        Bar          bars[BARS];
+        double       area = 0, thinnest = INFINITY;
+        for (int k = 0; k < BARS; k++) {
+            bars[k] = (Bar){random_below(&random, 3) == 0,
+                            error * pow(2, random_between(&random, -3.5, 1)),
+                            random_between(&random, -3, 3),
+                            {random_between(&random, -0.1, 0.1), 1.5 * k}};
+            if (i == 0)
+                bars[k].angle = 0;
+            area += area_of_bar(&bars[k]);
+            thinnest = fmin(thinnest, bars[k].thin);
+        }
+        Product     product = compile_bars(bars, BARS);
+        KrsSlicer  *slicer  = open_slicer(&product, error, false);
+        KrsSection *section = slice_at(slicer, vec(0, 0, 0.1), vec(0, 0, 1));
+        print_message(
+            "# %d: area %.9f for %.9f, %zu contours, thinnest %g of the error, %zu lost\n", i,
+            area_of_points(section), area, section->contour_count, thinnest / error, section->lost);
+        if (section->contour_count != BARS)
+            for (int k = 0; k < BARS; k++)
+                print_message("# %d %g %g at %g %g\n", bars[k].round, bars[k].thin / error,
+                              bars[k].angle, bars[k].at[0], bars[k].at[1]);
+        assert_int_equal(section->contour_count, BARS);
+        assert_true(section->lost <= 2 * BARS); /* of their ends */
+        assert_true(fabs(area_of_points(section) / area - 1) < 0.15);
+        krs_section_free(section);
+        krs_slicer_free(slicer);
+        product_free(&product);
+    }
+}
+
+/* What is thinner still is counted, at a place in it: bars and rods, and slots; corners of what is thick are not. */
+static void thinner_parts_are_counted(void **state)
+{
+    enum { SCENES = 24 };
+    Random random = {12};
+    (void)state;
+    for (int i = 0; i < SCENES; i++) {
+        const double thin = pow(10, random_between(&random, -8.5, -5.5)),
+                     turn = i % 4 ? 0.1 * i : 0;
+        Product product =
+            i % 3 == 0
+                ? product_format("show box([2, 2, 2]).rotate([0, 0, 1], %.17g) - box([1, %.17g, "
+                                 "3]).move([0.1, 0.05, 0]);",
+                                 turn, thin)
+            : i % 3 == 1
+                ? product_format(
+                      "show box([0.3, 0.2, 1]).rotate([0, 0, 1], %.17g); show box([%.17g, 1, "
+                      "1]).rotate([0, 0, 1], %.17g).move([1, 0, 0]);",
+                      turn, thin, -turn)
+                : product_format(
+                      "show prism(3, 0.3, 1).rotate([1, 0, 0], 90deg).rotate([0, 0, 1], %.17g); "
+                      "show sphere(%.17g).move([1, 0.1, 0]);",
+                      turn, 0.5 * thin);
+        KrsSlicer    *slicer  = open_slicer(&product, 0.002, false);
+        KrsSection   *section = slice_at(slicer, vec(0, 0, 0), vec(0, 0, 1));
+        const double *at      = section->lost_at;
+        print_message("# %d: thickness %g, %zu contours, %zu lost, at %g %g %g\n", i, thin,
+                      section->contour_count, section->lost, at[0], at[1], at[2]);
+        assert_int_equal(section->contour_count, 1);
+        assert_true(section->lost > 0);
+        assert_true(section->thinnest > thin && section->thinnest < 0.002);
+        assert_true(fabs(product_distance(&product, vec(at[0], at[1], at[2]))) < thin);
+        krs_section_free(section);
+        krs_slicer_free(slicer);
+        product_free(&product);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sections_are_where_solids_are),
         cmocka_unit_test(boxes_are_narrow),
+        cmocka_unit_test(thin_parts_are_found),
+        cmocka_unit_test(thinner_parts_are_counted),
         cmocka_unit_test(figures_are_of_lines_and_arcs),
         cmocka_unit_test(sections_have_the_areas_of_closed_forms),
     };
