@@ -268,7 +268,7 @@ for command in "slice --layer 0.1 -o n.svg" "mesh -o n.stl" "grid -o n.npy" "inf
 done
 no_files n.svg n.stl n.npy
 result $? "and writes no file"
-run slice ball.krs --layer 0.4 --error 3 -o 'm-%d.svg' -o m.cli
+run slice ball.krs --layer 0.4 --error 1000 -o 'm-%d.svg' -o m.cli
 said 1 "--error is larger than the scene" "what the error leaves nothing of is no file"
 no_files m-1.svg m.cli
 result $? "not even for its first layer"
