@@ -7,7 +7,9 @@
 #ifndef KRS_MESH_FLAT_FORMS_H
 #define KRS_MESH_FLAT_FORMS_H
 
-#include "compiler/mesh/flat_pieces.h"
+#include "compiler/mesh/field.h"
+#include "compiler/mesh/flat_planes.h"
+#include "compiler/mesh/flat_rounds.h"
 
 enum { MOST_KINKS = 6 };
 

@@ -235,7 +235,7 @@ int flat_solid(Finding *f, const Form *form)
         f->failed = true;
         return FLAT_NONE;
     }
-    if (range.low >= 0 || range.high < 0)
+    if (range.low >= 0 || range.high <= 0)
         return range.low >= 0 ? FLAT_NONE : FLAT_ALL;
     return form->kink_count == 0 ? flat_half_space(f, form) : solid_of_kink(f, form);
 }

@@ -9,36 +9,8 @@
 #define KRS_MESH_FLAT_PIECES_H
 
 #include "compiler/mesh/field.h"
+#include "compiler/mesh/flat_planes.h"
 #include "compiler/mesh/flat_rounds.h"
-
-/* normal . p + offset, below 0 inside; the normal has length 1. */
-typedef struct HalfSpace {
-    double normal[3], offset;
-} HalfSpace;
-
-/* By how much less, or more, the number may be that a half-space stands for. */
-typedef struct FlatSlack {
-    double below, above;
-} FlatSlack;
-
-enum { MOST_FLATS = 128, MOST_FLAT_NODES = 1024 };
-
-/* A solid: all, none, or a node. */
-enum { FLAT_ALL = -1, FLAT_NONE = -2 };
-
-typedef struct FlatNode {
-    enum { FLAT_HALF_SPACE, FLAT_BOTH, FLAT_EITHER } kind;
-    int first, second; /* of a half-space: its number, and its sign */
-} FlatNode;
-
-typedef struct FlatPieces {
-    size_t    count, node_count;
-    HalfSpace list[MOST_FLATS];
-    FlatSlack slack[MOST_FLATS];
-    FlatNode  nodes[MOST_FLAT_NODES];
-    int       root;
-    bool      round; /* some stand for what is round */
-} FlatPieces;
 
 /* Room for what is found of steps; for one thread. */
 typedef struct FlatWork {
@@ -47,9 +19,6 @@ typedef struct FlatWork {
 } FlatWork;
 
 FlatWork flat_work_new(const MeshField *field, Arena *arena);
-
-/* Faces are made in boxes of few planes.  A proof looks a way around its box, where there are more. */
-typedef enum FlatUse { FLAT_MAKING, FLAT_PROVING } FlatUse;
 
 /* In a box within that which was entered last.  `size`: of what is meshed; half-spaces that differ by less than
    rounding are one.  False: it is not made like that, or of more. */

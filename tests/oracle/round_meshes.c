@@ -8,6 +8,7 @@
 #include "tests/oracle/mesh_distance.h"
 #include "tests/oracle/mesh_shape.h"
 #include "tests/oracle/product.h"
+#include "tests/support/folder.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -288,6 +289,119 @@ static void random_solids_are_within_the_error(void **state)
     assert_true(hits > 100 * wanted && farthest > 0.3);
 }
 
+/* ---- random outlines ---- */
+
+/* A star of curves, of which each goes from a knot towards a handle and to the next; and its points, dense ones. */
+enum { KNOTS = 7, DENSE = 48, AROUND = KNOTS * DENSE };
+typedef struct Star {
+    double knots[KNOTS][2], handles[KNOTS][2], points[AROUND][2];
+    double height; /* of a column; 0: it goes around an axis */
+    Vec    axis;   /* and is turned about this one */
+    double angle;
+} Star;
+
+enum { TO_THE_AXIS = 2 };
+
+static Star random_star(Random *random)
+{
+    Star star = {.height = random_below(random, 2) ? random_between(random, 0.3, 1) : 0,
+                 .axis   = random_unit(random),
+                 .angle  = random_between(random, 0, 2 * PI)};
+    for (int i = 0; i < KNOTS; i++) {
+        double from = i * 2 * PI / KNOTS, to = (i + 0.5) * 2 * PI / KNOTS;
+        double radius = random_between(random, 0.5, 1), out = random_between(random, 0.3, 1.3);
+        star.knots[i][0]   = radius * cos(from);
+        star.knots[i][1]   = radius * sin(from);
+        star.handles[i][0] = out * cos(to);
+        star.handles[i][1] = out * sin(to);
+    }
+    for (int i = 0; i < AROUND; i++) {
+        int    piece = i / DENSE;
+        double t     = (double)(i % DENSE) / DENSE;
+        for (int k = 0; k < 2; k++)
+            star.points[i][k] = (1 - t) * (1 - t) * star.knots[piece][k] +
+                                2 * t * (1 - t) * star.handles[piece][k] +
+                                t * t * star.knots[(piece + 1) % KNOTS][k];
+    }
+    return star;
+}
+
+/* The y axis of drawings goes downwards. */
+static void write_star(const Star *star)
+{
+    FILE *file = fopen("star.svg", "w");
+    assert_non_null(file);
+    fprintf(file,
+            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='-2 -2 4 4'><path d='M%.17g %.17g",
+            star->knots[0][0], -star->knots[0][1]);
+    for (int i = 0; i < KNOTS; i++)
+        fprintf(file, "Q%.17g %.17g %.17g %.17g", star->handles[i][0], -star->handles[i][1],
+                star->knots[(i + 1) % KNOTS][0], -star->knots[(i + 1) % KNOTS][1]);
+    fprintf(file, "z'/></svg>");
+    assert_int_equal(fclose(file), 0);
+}
+
+/* The distance to the dense points' lines, below 0 where a ray to the right crosses them an odd number of times. */
+static double value_of_figure(const Star *star, double x, double y)
+{
+    double least  = HUGE_VAL;
+    bool   inside = false;
+    for (int i = 0; i < AROUND; i++) {
+        const double *a = star->points[i], *b = star->points[(i + 1) % AROUND];
+        double way[2] = {b[0] - a[0], b[1] - a[1]}, t = (x - a[0]) * way[0] + (y - a[1]) * way[1];
+        t     = fmax(0, fmin(1, t / (way[0] * way[0] + way[1] * way[1])));
+        least = fmin(least, hypot(x - a[0] - t * way[0], y - a[1] - t * way[1]));
+        if ((a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / way[1] * way[0])
+            inside = !inside;
+    }
+    return inside ? -least : least;
+}
+
+static double value_of_star(const void *user, Vec point)
+{
+    const Star *star = user;
+    Part        part = {.axis = star->axis, .angle = star->angle};
+    Vec         at   = turned_back(&part, point);
+    if (star->height == 0)
+        return value_of_figure(star, hypot(at.x, at.z) - TO_THE_AXIS, at.y);
+    return fmax(value_of_figure(star, at.x, at.y), fabs(at.z) - star->height / 2);
+}
+
+static void random_outlines_are_within_the_error(void **state)
+{
+    size_t most = 0, hits = 0;
+    double farthest = 0;
+    (void)state;
+    for (uint64_t turn = 0; turn < wanted; turn++) {
+        Random random = {9001 + turn};
+        Star   star   = random_star(&random);
+        double error  = exp(random_between(&random, log(0.004), log(0.04)));
+        char   text[512], solid[64];
+        write_star(&star);
+        snprintf(solid, sizeof solid, star.height > 0 ? "extrude(%.17g)" : "revolve(%g)",
+                 star.height > 0 ? star.height : (double)TO_THE_AXIS);
+        snprintf(text, sizeof text,
+                 "show union(svg(\"star.svg\", size: 4)).%s.rotate([%.17g, %.17g, %.17g], %.17g);",
+                 solid, star.axis.x, star.axis.y, star.axis.z, star.angle);
+        KrsMesh  *mesh    = mesh_of_text(text, error);
+        MeshShape shape   = mesh_shape(mesh);
+        Surface   surface = {value_of_star, &star, vec(-3.5, -3.5, -3.5), vec(3.5, 3.5, 3.5)};
+        Apart     apart   = mesh_apart(mesh, &surface, error, 60, 300, &random);
+        print_message("# error %.4f, %zu triangles, %zu unresolved: %s\n", error,
+                      mesh->triangle_count, mesh->unresolved, solid);
+        assert_int_equal(apart.astray, 0);
+        assert_true(apart.thick == 0 && (apart.lost == 0 || mesh->unresolved > 0));
+        assert_true(mesh->unresolved > 0 || shape.euler == (star.height > 0 ? 2 : 0));
+        hits += apart.hits;
+        farthest = fmax(farthest, apart.farthest_hit);
+        most     = mesh->triangle_count > most ? mesh->triangle_count : most;
+        krs_mesh_free(mesh);
+    }
+    print_message("# %zu hits, at most %.3f errors away; at most %zu triangles\n", hits, farthest,
+                  most);
+    assert_true(hits > 20 * wanted && farthest > 0.2 && most < 20000);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -295,6 +409,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(sharp_rims_are_within_the_error),
         cmocka_unit_test(solids_that_touch_stay_apart),
         cmocka_unit_test(random_solids_are_within_the_error),
+        cmocka_unit_test_setup_teardown(random_outlines_are_within_the_error, enter_folder,
+                                        leave_folder),
     };
     if (argc > 1)
         wanted = (uint64_t)atoi(argv[1]);
