@@ -177,7 +177,7 @@ show difference(union(foot, cylinder(0.85, 2).move([0, 0.9, 0]), blend: 0.5), cy
 END
 if command -v python3 >/dev/null && command -v admesh >/dev/null; then
     run slice --quiet flange.krs --layer 0.02 --axis y -o flange.cli
-    run mesh --quiet flange.krs --error 0.004 -o flange.stl
+    run mesh --quiet flange.krs --even --error 0.004 -o flange.stl
     admesh flange.stl >out
     python3 areas.py flange.cli | tr ' ' '\n' >areas.txt
     sed -n 's/.*Volume *: *\([0-9.]*\).*/\1/p' out | cat - areas.txt |
