@@ -78,7 +78,11 @@ static KrsStatus make_body(Meshing *meshing, MakeBody *make, Bodies *bodies, dou
             "cuts the scene",
             path);
     if (status == KRS_OUT_OF_MEMORY)
-        say("a mesh of `%s` with this --error needs more memory than --limit memory permits", path);
+        say("a mesh of `%s` with this --error needs more memory than %s; a larger --error needs "
+            "less",
+            path,
+            meshing->how.memory_limit ? "--limit memory permits"
+                                      : "2 GiB, and --limit memory=4G permits more");
     if (status == KRS_OK)
         array_push(meshing->options->arena, bodies, body);
     return status;
@@ -390,6 +394,10 @@ static void report(const Meshing *meshing, const Bodies *bodies)
     else
         say("%.0f triangles, within %.4g of the surface", all.triangles,
             all.error * meshing->scale);
+    if (all.colored)
+        say("triangles are kept for the colours of several materials; --simplify leaves out all "
+            "that "
+            "the shape does not need");
 }
 
 KrsStatus command_mesh(Options *options)

@@ -17,6 +17,7 @@ static void add_mesh(void *user, const KrsMesh *mesh, const KrsItem *item)
     all->unresolved += mesh->unresolved;
     all->error    = fmax(all->error, scale * mesh->error);
     all->estimate = all->estimate || mesh->estimate;
+    all->colored  = all->colored || mesh->colored;
     all->triangles += copies * (double)mesh->triangle_count;
     all->vertices += copies * (double)mesh->vertex_count;
     all->copies += copies;

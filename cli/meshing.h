@@ -37,7 +37,7 @@ typedef struct Summary {
     double error, triangles, vertices, copies;
     size_t unresolved;
     double unresolved_at[3];
-    bool   estimate;
+    bool   estimate, colored;
 } Summary;
 
 typedef struct Meshing {

@@ -85,6 +85,7 @@ KrsOptions scene_options(DiagnosticSink *sink, const char *path)
                         .assembly     = options->command == COMMAND_MESH,
                         .motion       = options->command == COMMAND_MESH && options->animated,
                         .figures      = takes_figures(options),
+                        .outlines     = options->command == COMMAND_MESH,
                         .root         = scene_root(options, path),
                         .text         = is_input(options, path) ? options->input : NULL,
                         .text_length  = options->input_length};

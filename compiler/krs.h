@@ -106,6 +106,9 @@ typedef struct KrsOptions {
     bool assembly; /* keep what krs_assemble and krs_texture_places need, which takes some time */
     bool motion;   /* with `assembly`: what the time moves is taken apart, too */
     bool
+        outlines; /* distances to polygons come from tables, however few corners they have: meshes of what is
+                      revolved need fewer triangles and less time */
+    bool
         figures; /* plane figures may be shown: each is made solid along z, about as high as it is long.  Its section
                       by the plane z = 0 is the figure */
     /* Only files in this folder, and below it, are read; others are E0504, also behind symbolic

@@ -27,7 +27,7 @@ typedef struct KrsMeshOptions {
        than these need. */
     bool even;
     /* Leaves out triangles that the error permits to leave out, as krs_mesh_simplify does.  Half of the error is for
-       that where not all faces are flat or round. */
+       that where not all faces are flat or round.  Where memory does not suffice for so small an error, none is left out. */
     bool simplify;
     /* Only the shape counts.  Without it triangles stay as even as the mesher makes them where several materials are, or
        one that varies, so that colours at their corners show it. */
@@ -53,6 +53,8 @@ typedef struct KrsMesh {
     size_t unresolved;
     double unresolved_at[3];
     bool   estimate; /* of a component nothing is proven, as of its distance */
+    bool
+        colored; /* no triangle was left out, since colours at their corners count: KrsMeshOptions.shape */
 } KrsMesh;
 
 /*

@@ -105,9 +105,10 @@ struct Elaboration {
     TextureKeys   textures;
     const Loader *loader;
     BuiltinName   builtins[MOST_BUILTIN_NAMES]; /* names looked up so far, by their addresses */
-    bool     studio;  /* a scene without lights and sky gets those of the library, and a floor */
-    bool     figures; /* plane figures may be shown */
-    bool     hoists;  /* numbers of the scene's own text are not those of the shaders' text */
+    bool     studio;   /* a scene without lights and sky gets those of the library, and a floor */
+    bool     figures;  /* plane figures may be shown */
+    bool     outlines; /* of polygons, also of those with few corners */
+    bool     hoists;   /* numbers of the scene's own text are not those of the shaders' text */
     uint32_t number_count;                     /* of such numbers so far */
     struct Derivations          *derivations;  /* which of them were computed from others: fold.c */
     uint64_t                     steps;        /* of evaluation, so far */

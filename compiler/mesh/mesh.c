@@ -197,8 +197,8 @@ static KrsStatus leave_out(const KrsMeshOptions *options, double spared, KrsMesh
     return status;
 }
 
-KrsStatus mesh_solid(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
-                     KrsMesh **mesh)
+static KrsStatus mesh_once(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
+                           KrsMesh **mesh)
 {
     *mesh     = NULL;
     Mesher *m = calloc(1, sizeof *m);
@@ -216,6 +216,20 @@ KrsStatus mesh_solid(KrsFrame *frame, const KrsMeshOptions *options, const MeshS
     double    spared     = m->spared;
     close_mesher(m);
     return status == KRS_OK && spared > 0 ? leave_out(options, spared, mesh) : status;
+}
+
+/* Half of the error needs several times the memory: where there is not so much, no triangle is left out. */
+KrsStatus mesh_solid(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
+                     KrsMesh **mesh)
+{
+    KrsMeshOptions all    = *options;
+    KrsStatus      status = mesh_once(frame, options, solid, mesh);
+    all.simplify          = false;
+    if (status == KRS_OUT_OF_MEMORY && options->simplify)
+        status = mesh_once(frame, &all, solid, mesh);
+    if (status == KRS_OK)
+        (*mesh)->colored = options->simplify && !options->even && !solid->plain && !options->shape;
+    return status;
 }
 
 KrsStatus krs_mesh(KrsFrame *frame, const KrsMeshOptions *options, KrsMesh **mesh)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # mesh.sh: `krs mesh`: files that other programs accept, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 36
+plan 39
 
 echo 'show sphere(0.5).paint(#ff8800);' >ball.krs
 echo 'let floor = half_space([0, 1, 0], 0); show floor; let ball = sphere(1); show ball;' >floor.krs
@@ -157,8 +157,24 @@ run mesh --quiet egg.krs --error 0.02 --even -o even.stl
 run mesh --quiet egg.krs --error 0.02 -o egg.obj
 [ "$status" -eq 0 ] && [ $((4 * $(grep -c '^f' egg.obj))) -lt $((($(wc -c <even.stl) - 84) / 50)) ]
 result $? "one material has a quarter of the triangles or fewer"
+run mesh --quiet egg.krs --error 0.004 --limit memory=64M -o kept.obj
+[ "$status" -eq 0 ] && [ "$(grep -c '^f' kept.obj)" -gt $((10 * $(grep -c '^f' egg.obj))) ]
+result $? "where memory does not suffice for half of the error, all triangles are left"
+# Lathes of few corners, on the axis and beside it, convex or not.
+bad=0
+for corners in '[0, 0], [10, 0], [10, 3], [4, 8], [4, 20], [0, 20]' '[3, 0], [5, 0], [4.5, 2]' '[0, 0], [5, 0], [3, 2], [0, 3]' \
+    '[2, 0], [4, 0], [5, 3], [1, 3], [0.5, 1]'; do
+    echo "show polygon([$corners]).revolve();" >lathe.krs
+    run mesh --quiet lathe.krs -o lathe.obj
+    [ "$status" -eq 0 ] && awk -v axis="$corners" '$1 == "v" { v++ } $1 == "f" { f++ }
+        END { exit !(f < 500 && v - f / 2 == (axis ~ /\[0,/ ? 2 : 0)) }' lathe.obj || bad=1
+done
+[ $bad -eq 0 ]
+result $? "lathes of few corners have few triangles"
 run mesh --quiet egg.krs --even --simplify -o egg.stl
 said 2 "one of both" "--even and --simplify contradict each other"
+run mesh two.krs --error 0.05 -o t.obj
+said 0 "--simplify leaves out" "colours that keep triangles are told of"
 run mesh --quiet two.krs --error 0.05 -o shape.stl
 run mesh --quiet two.krs --error 0.05 --simplify -o fewer.stl -o fewer.obj
 fewer=$(grep -c '^f' fewer.obj)
