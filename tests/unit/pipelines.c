@@ -131,14 +131,15 @@ static void pipelines_are_kept(void **state)
     assert_int_equal(run_on(&gpu, NULL, 0), 0);
     assert_true(run_on(&gpu, words, 4 * count) <= NOTHING);
     assert_int_equal(count_files_that_end(".pipelines", name), 1);
-    ino_t  number = number_of(name);
+    assert_true(run_on(&gpu, words, 4 * count) > NOTHING); /* some drivers fill up what they load */
     size_t loaded = run_on(&gpu, words, 4 * count);
-    assert_true(loaded > NOTHING);
+    ino_t  number = number_of(name);
+    assert_int_equal(run_on(&gpu, words, 4 * count), loaded);
     assert_int_equal(number_of(name), number); /* it was known, so nothing has grown */
 
     assert_int_equal(truncate(name, 100), 0);
     assert_int_equal(run_on(&gpu, words, 4 * count), 0);
-    assert_int_equal(run_on(&gpu, words, 4 * count), loaded);
+    assert_true(run_on(&gpu, words, 4 * count) > NOTHING);
 
     /* Another device finds nothing, and what its driver would not have made is not kept. */
     gpu.properties.vendorID ^= 1;
