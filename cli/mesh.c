@@ -78,11 +78,10 @@ static KrsStatus make_body(Meshing *meshing, MakeBody *make, Bodies *bodies, dou
             "cuts the scene",
             path);
     if (status == KRS_OUT_OF_MEMORY)
-        say("a mesh of `%s` with this --error needs more memory than %s; a larger --error needs "
-            "less",
-            path,
-            meshing->how.memory_limit ? "--limit memory permits"
-                                      : "2 GiB, and --limit memory=4G permits more");
+        say("a mesh of `%s` with this --error needs more memory than the %zu MiB of --limit "
+            "memory; a "
+            "larger --error needs less",
+            path, (meshing->how.memory_limit ? meshing->how.memory_limit : KRS_USUAL_MEMORY) >> 20);
     if (status == KRS_OK)
         array_push(meshing->options->arena, bodies, body);
     return status;

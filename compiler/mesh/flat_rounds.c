@@ -21,13 +21,14 @@ FlatRounds flat_rounds_new(double error, Arena *arena)
         .arena = arena, .numbers = {.arena = arena}, .error = error, .stretch = 1, .longest = 1};
 }
 
-/* NULL: all are known, and this one is blamed if one is looked for. */
+/* NULL: all are known, and this one is blamed if one is looked for; what is only near the surface is none of them. */
 static FlatRound *note(FlatRounds *rounds, NumberKey key)
 {
     uint32_t fresh = (uint32_t)rounds->list.count;
     if (rounds->counted) {
-        if (rounds->blame)
-            rounds->list.items[numbering_find(&rounds->numbers, key)].blamed = true;
+        uint32_t known = numbering_find(&rounds->numbers, key);
+        if (rounds->blame && known != NO_NUMBER)
+            rounds->list.items[known].blamed = true;
         return NULL;
     }
     uint32_t number = numbering_take(&rounds->numbers, key, fresh);
