@@ -148,6 +148,7 @@ KrsStatus check_mesh_wishes(Meshing *meshing)
         return say_usage(options, "--lods makes levels of detail for .glb, and none is written");
     if (options->mesh_simplify && options->mesh_even)
         return say_usage(options, "--even keeps triangles that --simplify leaves out; one of both");
+    meshing->how.draft    = options->mesh_draft;
     meshing->how.even     = options->mesh_even;
     meshing->how.simplify = !options->mesh_even;
     meshing->how.shape    = is_shape_enough(meshing);

@@ -400,11 +400,10 @@ uint32_t patch_turn(const Contour *contour, const Patch *patch)
     return distance3(at[1], at[3]) < distance3(at[0], at[2]);
 }
 
-bool patch_is_astray(const Contour *contour, const Patch *patch)
+double patch_off(const Contour *contour, const Patch *patch)
 {
-    static const double ASTRAY = 0.15; /* parts of the error */
-    double              most   = patch->off;
+    double most = patch->off;
     for (uint32_t i = 0; i < patch->corner_count; i++)
         most = max2(most, contour->lines.items[patch->lines[i]].off);
-    return most > ASTRAY * contour->error;
+    return most;
 }

@@ -83,9 +83,8 @@ void contour_find(Contour *contour);
 /* All triangles of a patch that is no fan have this crossing of it. */
 uint32_t patch_turn(const Contour *contour, const Patch *patch);
 
-/* Whether middles of its lines are far off the surface for the error: it goes through the tetrahedron or a face more often than
-   its corners tell. */
-bool patch_is_astray(const Contour *contour, const Patch *patch);
+/* How far middles of its lines are off the surface, at most; 0: little. */
+double patch_off(const Contour *contour, const Patch *patch);
 
 static inline bool point_is_inside(const Tets *tets, uint32_t point)
 {
