@@ -16,7 +16,7 @@
 /* `distance` is an expression of the point, negative inside; all of that is in the box.  What else
    is known of it may be filled in; then comes one of the next two. */
 Shape *primitive_new(ShapeBuilder *builder, const char *name, Node distance, Box box, Span span);
-/* Makes the distance safe, by a slope that is claimed of it. */
+/* Makes the distance safe, by a slope that is claimed of it, or by a lesser one that is derived. */
 void claim_slope(ShapeBuilder *builder, Shape *primitive, double slope);
 /* The same, by a slope that is derived over all space or, where that has no bound, over the box; the
    distance outside of that is then brought out from the nearest point in it (field.c).  False:

@@ -21,9 +21,12 @@ Shape *primitive_new(ShapeBuilder *builder, const char *name, Node distance, Box
 
 void claim_slope(ShapeBuilder *builder, Shape *primitive, double slope)
 {
-    primitive->claimed  = true;
-    primitive->derived  = slope;
-    primitive->distance = divide_by_slope(builder->graph, primitive->declared, slope);
+    double derived     = slope > 1 ? slope_everywhere(builder, primitive->declared) : HUGE_VAL;
+    primitive->claimed = !(derived < slope);
+    primitive->derived = primitive->claimed ? slope : derived;
+    if (!primitive->claimed)
+        own_field_facts(builder, primitive)->region = box_infinite;
+    primitive->distance = divide_by_slope(builder->graph, primitive->declared, primitive->derived);
 }
 
 bool derive_slope(ShapeBuilder *builder, Shape *primitive, Span distance, Blame *blame)

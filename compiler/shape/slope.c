@@ -6,13 +6,22 @@
  * the host finds it by the same rules, at the values of the frame, and puts it into a slot of the
  * parameter block.  That is promised only if the slope has a bound at first, at time 0 and the
  * defaults, and at other values tried here; a frame that has none is refused when it comes.
+ *
+ * The slope is a number of the frame, too, where that of all frames is many times as large: a value
+ * that is divided by so much says little about the surface.  Where it meets others, as the sides of a
+ * region, these are greater beside the edge, and normals are theirs.
  */
 #include "compiler/shape/slope.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { CELLS = 512, FRAME_CELLS = 64, TRIALS = 3 };
+enum { CELLS = 512, FRAME_CELLS = 64, TRIALS = 3, FIRST_TRIALS = 2 };
+
+/* A constant slope may be so many times as large as those of the first frames.  Normals beside edges
+   are wrong from some thirty on.  Half of the slots are left to expressions that have no constant. */
+static const double MOST_EXCESS = 16;
+enum { MOST_PREFERRED = MOST_FRAME_SLOPES / 2 };
 
 /* The time, and what is added to parameters without limits.  Numbers of no significance: what is
    bounded there is nowhere unbounded but by accident. */
@@ -45,8 +54,8 @@ static bool needs_the_endless(const Graph *graph, Node root, Arena *scratch)
     return false;
 }
 
-/* What has no limits becomes a single value; ranges stay. */
-static void try_values(const Parameters *parameters, Graph *plain, int trial)
+/* Gives every parameter that has no limits, or every one, a single value; other ranges stay. */
+static void try_values(const Parameters *parameters, Graph *plain, int trial, bool every)
 {
     GraphParameter *ranges = plain->parameters.items;
     ranges[0].low[0] = ranges[0].high[0] = trial_times[trial];
@@ -55,7 +64,7 @@ static void try_values(const Parameters *parameters, Graph *plain, int trial)
         GraphParameter  *range     = &ranges[parameter->slot];
         for (uint32_t k = 0; k < parameter->components; k++) {
             double low = parameter->low[k], high = parameter->high[k];
-            if (isfinite(low) && isfinite(high))
+            if (!every && isfinite(low) && isfinite(high))
                 continue;
             double value  = parameter->value[k] + trial_steps[trial];
             range->low[k] = range->high[k] = fmin(fmax(value, low), high);
@@ -118,18 +127,24 @@ static Blame blame_of(ShapeBuilder *builder, const Graph *plain, Node node, Span
     return blame;
 }
 
+/* The graph with ranges of its own, for try_values. */
+static Graph with_own_ranges(const Graph *plain, Arena *scratch)
+{
+    Graph own            = *plain;
+    own.parameters.items = arena_new_array(scratch, GraphParameter, plain->parameters.count);
+    memcpy(own.parameters.items, plain->parameters.items,
+           plain->parameters.count * sizeof *plain->parameters.items);
+    return own;
+}
+
 /* Whether frames have a slope over a region; `found` gets the first one, or whom to blame. */
 static bool bounded_in_frames(ShapeBuilder *builder, const Graph *plain, Node root, Box region,
                               Span span, Steepness *found)
 {
-    Graph tried            = *plain;
-    tried.parameters.items = arena_new_array(builder->scratch, GraphParameter,
-                                             plain->parameters.count);
-    memcpy(tried.parameters.items, plain->parameters.items,
-           plain->parameters.count * sizeof *plain->parameters.items);
+    Graph tried = with_own_ranges(plain, builder->scratch);
     for (int trial = TRIALS; trial-- > 0;) {
         Node blame = NODE_NONE;
-        try_values(builder->parameters, &tried, trial);
+        try_values(builder->parameters, &tried, trial, false);
         found->bound = graph_slope(&tried, root, region, NULL, frame_slope_cells(region), &blame,
                                    builder->scratch);
         if (isfinite(found->bound) && (trial > 0 || isfinite(frame_slope_upward(found->bound))))
@@ -171,6 +186,59 @@ static Node frame_slot(ShapeBuilder *builder, Node formula, Box region, Span spa
     return graph_parameter(builder->graph, slope.slot, TYPE_FLOAT);
 }
 
+/* Whether the expression depends on the frame by nothing but the time and the author's parameters.
+   Cells and turns have slots as well, but no single value in a frame. */
+static bool needs_the_frame_alone(const Parameters *parameters, const Graph *plain, Node root,
+                                  Arena *scratch)
+{
+    Tape   tape  = tape_new(plain, &root, 1, scratch);
+    size_t known = 0, all = 0;
+    for (size_t i = 0; i < tape.frame_count; i++) {
+        const Expr *e = &plain->items[tape.nodes[i]];
+        if (e->op != OP_PARAMETER)
+            continue;
+        all++;
+        bool found = e->index == 0; /* the time */
+        for (size_t k = 0; k < parameters->count && !found; k++)
+            found = parameters->items[k].slot == e->index;
+        known += found;
+    }
+    return all > 0 && known == all;
+}
+
+/* The slope of the first frames: the steepest, and with time 0 and the defaults. */
+typedef struct FirstSlopes {
+    double most, first;
+} FirstSlopes;
+
+static FirstSlopes slopes_at_first(ShapeBuilder *builder, const Graph *plain, Node root, Box region)
+{
+    FirstSlopes slopes = {0};
+    Graph       tried  = with_own_ranges(plain, builder->scratch);
+    for (int trial = FIRST_TRIALS; trial-- > 0;) {
+        Node blame = NODE_NONE;
+        try_values(builder->parameters, &tried, trial, true);
+        slopes.first = graph_slope(&tried, root, region, NULL, frame_slope_cells(region), &blame,
+                                   builder->scratch);
+        slopes.most  = fmax(slopes.most, slopes.first);
+    }
+    return slopes;
+}
+
+/* Takes slopes of frames where the constant is far above them. */
+static void prefer_frames(ShapeBuilder *builder, const Graph *plain, Node root, Node formula,
+                          Span span, Steepness *found)
+{
+    if (found->bound <= MOST_EXCESS || builder->slopes->count >= MOST_PREFERRED ||
+        !needs_the_frame_alone(builder->parameters, plain, root, builder->scratch))
+        return;
+    FirstSlopes slopes = slopes_at_first(builder, plain, root, found->region);
+    if (found->bound <= MOST_EXCESS * fmax(slopes.most, 1))
+        return;
+    found->bound = slopes.first;
+    found->slot  = frame_slot(builder, formula, found->region, span);
+}
+
 bool find_slope(ShapeBuilder *builder, Node formula, const Box *regions, int count, Span span,
                 Steepness *found)
 {
@@ -184,8 +252,10 @@ bool find_slope(ShapeBuilder *builder, Node formula, const Box *regions, int cou
         found->bound  = graph_slope(plain, root, regions[i], NULL,
                                    box_is_finite(regions[i]) ? CELLS : 1, &blame, builder->scratch);
         found->blame  = blame_of(builder, plain, blame, span);
-        if (isfinite(found->bound))
+        if (isfinite(found->bound)) {
+            prefer_frames(builder, plain, root, formula, span, found);
             return true;
+        }
     }
     bool frames = needs_the_endless(plain, root, builder->scratch);
     for (int i = 0; frames && i < count; i++) {
@@ -196,6 +266,13 @@ bool find_slope(ShapeBuilder *builder, Node formula, const Box *regions, int cou
         }
     }
     return false;
+}
+
+double slope_everywhere(ShapeBuilder *builder, Node formula)
+{
+    Node   root  = formula, blame;
+    Graph *plain = graph_simplify(builder->graph, &root, 1, builder->scratch);
+    return graph_slope(plain, root, box_infinite, NULL, 1, &blame, builder->scratch);
 }
 
 Node steepness_node(Graph *graph, const Steepness *slope)

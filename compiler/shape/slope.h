@@ -16,6 +16,8 @@ typedef struct Steepness {
    `span` is its place. */
 bool find_slope(ShapeBuilder *builder, Node formula, const Box *regions, int count, Span span,
                 Steepness *found);
+/* The slope of an expression over all space and in all frames; infinite: it has no bound. */
+double slope_everywhere(ShapeBuilder *builder, Node formula);
 /* Says in a diagnostic why an operation has no bound on its slope, and what to write instead. */
 void explain_steep(ShapeBuilder *builder, Diag *diag, Blame blame);
 Node steepness_node(Graph *graph, const Steepness *slope);

@@ -7,7 +7,7 @@
  * all pixels, also at edges, about as many may be off by more than 18 degrees as in a picture of the
  * surface at the origin.  Surfaces stand 20 to a million units away and are a thousandth of a unit to
  * thirty units large, and pixels are those of pictures of 36 to 2,000 lines.  Cameras are near them, or in the origin
- * with a long lens.
+ * with a long lens.  Nor may a bound on a slope matter that is hundreds of times too large.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -398,9 +398,46 @@ static void numbers_do_as_well(void **state)
     }
 }
 
+/* Shapes whose slope is far below the one that the text allows, and the same where it is not. */
+static const struct Form steep[][2] = {
+    {{"edges of a wide range", "field(abs(y) + k * abs(x) - 0.5).within(box([1.6, 1.6, 1.6]))"
+                               ".scale(s).move(o); param k = 0.3 in [0.3, 900]"},
+     {"edges", "field(abs(y) + 0.3 * abs(x) - 0.5).within(box([1.6, 1.6, 1.6])).scale(s).move(o)"}},
+    {{"waves of a wide range",
+      "field(y - 0.2 * sin(3 * k * x) * cos(2 * z)).within(box([1.6, 1.6, 1.6])).scale(s).move(o); "
+      "param k = 1 in [0.3, 3000]"},
+     {"waves",
+      "field(y - 0.2 * sin(3 * x) * cos(2 * z)).within(box([1.6, 1.6, 1.6])).scale(s).move(o)"}},
+    {{"a distance of a wide range",
+      "(w() & box([1.2, 1.2, 1.2])).scale(s).move(o); param k = 0.3 in [0.3, 900]; "
+      "shape w() { distance: length(p) + k * x - 0.7 }"},
+     {"a distance", "(w() & box([1.2, 1.2, 1.2])).scale(s).move(o); shape w() { distance: "
+                    "length(p) + 0.3 * x - 0.7 }"}},
+    {{"a slope that is claimed",
+      "(w() & box([1.2, 1.2, 1.2])).scale(s).move(o); shape w() { slope: 400, distance: "
+      "length(p) + 0.3 * x - 0.7 }"},
+     {"a slope that is derived", "(w() & box([1.2, 1.2, 1.2])).scale(s).move(o); shape w() { "
+                                 "distance: length(p) + 0.3 * x - 0.7 }"}},
+};
+
+enum { STEEP = sizeof steep / sizeof steep[0] };
+
+static void steep_bounds_do_as_well(void **state)
+{
+    const struct Form *form    = *state;
+    Random             random  = {(uint64_t)(form - steep[0]) + 1};
+    Subject            subject = subject_new(form, NULL), origin = subject_new(form + 1, NULL);
+    for (int trial = 0; trial < TRIALS; trial++) {
+        Shot shot = random_shot(&random, trial);
+        check(form, &subject, &shot, &origin);
+    }
+    subject_free(&subject);
+    subject_free(&origin);
+}
+
 int main(void)
 {
-    struct CMUnitTest tests[2 * FORMS + 1];
+    struct CMUnitTest tests[2 * FORMS + STEEP + 1];
     size_t            count = 0;
     for (size_t i = 0; i < FORMS; i++)
         tests[count++] = (struct CMUnitTest){forms[i].name, normals_are_right, NULL, NULL,
@@ -408,6 +445,9 @@ int main(void)
     for (size_t i = 0; i < FORMS; i += ASKED)
         tests[count++] = (struct CMUnitTest){forms[i].name, answers_are_right, NULL, NULL,
                                              (void *)(uintptr_t)&forms[i]};
+    for (size_t i = 0; i < STEEP; i++)
+        tests[count++] = (struct CMUnitTest){steep[i]->name, steep_bounds_do_as_well, NULL, NULL,
+                                             (void *)(uintptr_t)steep[i]};
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(numbers_do_as_well);
     return _cmocka_run_group_tests("distant", tests, count, renderer_open, renderer_close);
 }

@@ -250,6 +250,39 @@ static void a_cut_field_has_one_slope(void **state)
     close_scene(frame, scene);
 }
 
+/* A constant that is far above the slopes of frames gives way to them, whose values count. */
+static void far_steeper_ranges_have_slopes_of_frames(void **state)
+{
+    (void)state;
+    static const double values[] = {1, 0.5, 300, 900, 0};
+    KrsScene           *scene;
+    KrsFrameSlope       slope;
+    float               block[4][4];
+    KrsFrame *frame = open_scene("param k = 1 in [0, 900]; show field(y - sin(x * k));", &scene);
+    assert_int_equal(krs_frame_slope_count(scene), 1);
+    assert_int_equal(krs_frame_slope(scene, 0, &slope), KRS_OK);
+    for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+        const double steepest = hypot(1, values[i]);
+        assert_int_equal(krs_frame_set(frame, "k", &values[i], 1), KRS_OK);
+        krs_frame_parameters(frame, block);
+        assert_true((double)block[slope.slot][0] >= steepest);
+        assert_true((double)block[slope.slot][0] <= 1.00001 * steepest);
+        assert_true(fabs(distance_at(frame, 0, 3, 0)) <= 3 / steepest);
+    }
+    close_scene(frame, scene);
+
+    /* Not where the first frame is as steep, nor where cells without end have no slope in common. */
+    frame = open_scene("param k = 1 in [0, 900]; show field(y + 90 * x - sin(x * k));", &scene);
+    assert_int_equal(krs_frame_slope_count(scene), 0);
+    close_scene(frame, scene);
+    frame = open_scene("param k = 1 in [0, 900];\n"
+                       "def wave(cell) = field(y - 0.1 * sin(k * random(cell) * x))"
+                       ".within(box([0.5, 0.5, 0.5]));\nshow wave.repeat([1, 0, 1]);",
+                       &scene);
+    assert_int_equal(krs_frame_slope_count(scene), 0);
+    close_scene(frame, scene);
+}
+
 /* The angle between the view axis and a point, seen from the eye. */
 static double angle_to(const KrsCamera *camera, double x, double y, double z)
 {
@@ -445,6 +478,7 @@ int main(void)
         cmocka_unit_test(frames_without_a_slope_are_refused),
         cmocka_unit_test(nothing_over_nothing_has_no_slope),
         cmocka_unit_test(a_cut_field_has_one_slope),
+        cmocka_unit_test(far_steeper_ranges_have_slopes_of_frames),
         cmocka_unit_test(a_missing_camera_frames_the_scene),
         cmocka_unit_test(the_scene_fills_the_picture),
         cmocka_unit_test(thin_things_are_framed_whole),
