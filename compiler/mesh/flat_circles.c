@@ -220,14 +220,56 @@ static int solid_of_three(Finding *f, const Form *rest, double factor, const Rou
 }
 
 /* A length is longer by its part of stretch - 1 at most, and the direction of a side is half its angle off at most. */
+static int solid_of_polygon(Finding *f, const Form *rest, double factor, const Rounded *rounded,
+                            uint32_t count, double stretch, double reach)
+{
+    const double band[2] = {stretch, 0};
+    FlatSlack    slack   = f->slack;
+    double       longer  = stretch / cos(acos(-1) / max2(count, 1));
+    f->slack             = flat_slack_with(slack, factor * reach * (longer - 1) * longer);
+    int solid            = solid_of_pair_length(f, rest, factor, rounded, band, count);
+    f->slack             = slack;
+    return solid;
+}
+
+/* The part of a solid where a half-space is; it is not looked for where that is not. */
+static int polygon_where(Finding *f, int where, const Form *rest, double factor,
+                         const Rounded *rounded, uint32_t count, double stretch, double reach)
+{
+    return where == FLAT_NONE
+               ? FLAT_NONE
+               : flat_both(f, where,
+                           solid_of_polygon(f, rest, factor, rounded, count, stretch, reach));
+}
+
+/*
+ * Where the radius changes along the axis, as that of a cone does, there may be a tip.  Where many sides meet in a
+ * point, each pair of neighbours is near to parallel, and moved planes miss the point by far.  Circles near the tip are small, so
+ * there a polygon of fewer sides is as near: it is off by the radius over the square of their number.  It is smaller by a
+ * little, so that all of it is within the other polygon where they meet.
+ */
+static int solid_of_pair(Finding *f, const Form *rest, double factor, const Rounded *rounded,
+                         uint32_t count, double largest, double reach)
+{
+    enum { MANY = 64, AT_TIP = 32 };
+    if (count <= MANY || rest->kink_count > 0 || !(largest3(rest->by) > 0))
+        return solid_of_polygon(f, rest, factor, rounded, count, 1, reach);
+    double part = (double)AT_TIP / count, longer = 1.0001 / cos(acos(-1) / count);
+    double small = part * part / (1 + part * part) * largest;
+    Form   one = form_constant(1), at = form_sum(*rest, factor * small, &one);
+    int    below = flat_solid(f, &at), above = flat_complement(f, below);
+    int    wide = factor > 0 ? below : above, tip = factor > 0 ? above : below;
+    wide = polygon_where(f, wide, rest, factor, rounded, count, 1, reach);
+    tip  = polygon_where(f, tip, rest, factor, rounded, AT_TIP, longer, min2(reach, small));
+    return flat_either(f, wide, tip);
+}
+
 int flat_solid_of_length(Finding *f, const Form *rest, double factor, const LaneStep *step)
 {
-    static const double NO_BAND[2] = {1, 0};
-    Rounded             rounded    = rounded_of(f, step);
-    uint32_t            count      = flat_rounds_sides(f->rounds, step->kin);
-    FlatSlack           slack      = f->slack;
-    double              slope = 0, angle = 2 * acos(-1) / max2(count, 1);
-    double reach = f->field->ranges.ranges[LANE_INPUTS + (size_t)(step - f->tape->steps)].high;
+    Rounded  rounded = rounded_of(f, step);
+    uint32_t count   = flat_rounds_sides(f->rounds, step->kin);
+    double   slope   = 0;
+    double   reach   = f->field->ranges.ranges[LANE_INPUTS + (size_t)(step - f->tape->steps)].high;
     if (rounded.count < 2 || count == 0 || step->kin == 0) {
         f->failed = true;
         return FLAT_NONE;
@@ -236,14 +278,8 @@ int flat_solid_of_length(Finding *f, const Form *rest, double factor, const Lane
         slope = max2(slope, form_steepness(f, &rounded.forms[i]));
     note_round(f, rest, factor, step, &rounded, slope);
     f->pieces->round = true;
-    int solid;
     if (rounded.count > 2)
-        solid = solid_of_three(f, rest, factor, &rounded, count, reach);
-    else {
-        double longer = 1 / cos(0.5 * angle);
-        f->slack      = flat_slack_with(slack, factor * reach * (longer - 1) * longer);
-        solid         = solid_of_pair_length(f, rest, factor, &rounded, NO_BAND, count);
-    }
-    f->slack = slack;
-    return solid;
+        return solid_of_three(f, rest, factor, &rounded, count, reach);
+    return solid_of_pair(f, rest, factor, &rounded, count,
+                         slope * flat_rounds_radius(f->rounds, step->kin), reach);
 }

@@ -251,10 +251,18 @@ bool flat_faces_add(FlatFaces *faces, Box box, const FlatPieces *pieces)
 /* ---- edges ---- */
 
 typedef struct Edge {
-    uint32_t face, from, to;
+    uint32_t face, line, from, to; /* the line is the other plane, as of a segment */
+    double   begin, end;           /* on the line; it may go backwards */
     double   way[3];
     bool     walked;
 } Edge;
+
+/* A vertex on the line of two planes. */
+typedef struct Stop {
+    uint32_t low, high; /* the planes */
+    double   at;
+    uint32_t vertex;
+} Stop;
 
 typedef struct Finishing {
     FlatFaces    *faces;
@@ -290,6 +298,12 @@ static double sine_between(const FlatFaces *faces, uint32_t a, uint32_t b)
     double product[3];
     cross3(faces->planes.items[a].exact.normal, faces->planes.items[b].exact.normal, product);
     return max2(length3(product), 1e-6);
+}
+
+/* How near two ends on the line of two planes are one. */
+static double same_on(const FlatFaces *faces, uint32_t a, uint32_t b)
+{
+    return SAME * faces->size / sine_between(faces, a, b);
 }
 
 static int compare_events(const void *first, const void *second)
@@ -342,29 +356,35 @@ static uint32_t find_vertex(Finishing *f, uint32_t a, uint32_t b, uint32_t c)
 typedef struct Walk {
     const FlatSegment *of;
     uint32_t           last;
+    double             last_at;
     int                covered;
 } Walk;
 
-static bool walk_on(Finishing *f, Walk *walk, uint32_t end, int change)
+static bool walk_on(Finishing *f, Walk *walk, const Event *event, int change)
 {
     uint32_t plane = walk->of->face / 2;
     if (change == 0)
         return true;
-    uint32_t vertex = end == WALL ? NO_NUMBER : find_vertex(f, plane, walk->of->line, end);
+    uint32_t vertex = event->plane == WALL ? NO_NUMBER
+                                           : find_vertex(f, plane, walk->of->line, event->plane);
     if (vertex == NO_NUMBER)
         return false;
     if (walk->covered != 0) {
         bool along = walk->covered > 0;
-        Edge edge  = {.face = walk->of->face,
-                      .from = along ? walk->last : vertex,
-                      .to   = along ? vertex : walk->last};
+        Edge edge  = {.face  = walk->of->face,
+                      .line  = walk->of->line,
+                      .from  = along ? walk->last : vertex,
+                      .to    = along ? vertex : walk->last,
+                      .begin = along ? walk->last_at : event->at,
+                      .end   = along ? event->at : walk->last_at};
         line_direction(f->faces, plane, walk->of->line, edge.way);
         for (int k = 0; k < 3; k++)
             edge.way[k] *= walk->covered;
         array_push_large(f->faces->arena, &f->edges, edge);
     }
     walk->covered += change;
-    walk->last = vertex;
+    walk->last    = vertex;
+    walk->last_at = event->at;
     return walk->covered >= -1 && walk->covered <= 1;
 }
 
@@ -372,8 +392,8 @@ static bool walk_on(Finishing *f, Walk *walk, uint32_t end, int change)
    two planes end the line there it has a short edge. */
 static bool find_edges_between(Finishing *f, const FlatSegment *of, Event *events, size_t count)
 {
-    Walk   walk = {of, NO_NUMBER, 0};
-    double same = SAME * f->faces->size / sine_between(f->faces, of->face / 2, of->line);
+    Walk   walk = {of, NO_NUMBER, 0, 0};
+    double same = same_on(f->faces, of->face / 2, of->line);
     for (size_t i = 0, next; i < count; i = next) {
         int at_walls = 0;
         for (next = i; next < count && events[next].at - events[i].at < same; next++)
@@ -388,7 +408,7 @@ static bool find_edges_between(Finishing *f, const FlatSegment *of, Event *event
                     events[other].change = 0;
                 }
             at_walls = 0;
-            if (!walk_on(f, &walk, events[k].plane, change))
+            if (!walk_on(f, &walk, &events[k], change))
                 return false;
         }
         if (at_walls != 0)
@@ -418,6 +438,80 @@ static bool find_edges(Finishing *f)
             return false;
     }
     return true;
+}
+
+/* ---- edges that others end on ---- */
+
+static int compare_stops(const void *first, const void *second)
+{
+    const Stop *a = first, *b = second;
+    if (a->low != b->low)
+        return a->low < b->low ? -1 : 1;
+    if (a->high != b->high)
+        return a->high < b->high ? -1 : 1;
+    return (a->at > b->at) - (a->at < b->at);
+}
+
+static Stop stop_of(const Edge *edge, bool end)
+{
+    uint32_t plane = edge->face / 2;
+    return (Stop){plane < edge->line ? plane : edge->line, plane < edge->line ? edge->line : plane,
+                  end ? edge->end : edge->begin, end ? edge->to : edge->from};
+}
+
+static size_t first_behind(const Stop *stops, size_t count, const Stop *stop)
+{
+    size_t low = 0;
+    for (size_t high = count; low < high;) {
+        size_t middle = (low + high) / 2;
+        if (compare_stops(&stops[middle], stop) <= 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* The first part of an edge ends at the vertex; the rest becomes an edge of its own. */
+static size_t cut_edge(Finishing *f, size_t number, const Stop *stop, bool along)
+{
+    Edge *edge = &f->edges.items[number], rest = *edge;
+    if (along) {
+        rest.from = edge->to = stop->vertex;
+        rest.begin = edge->end = stop->at;
+    } else {
+        rest.to = edge->from = stop->vertex;
+        rest.end = edge->begin = stop->at;
+    }
+    array_push_large(f->faces->arena, &f->edges, rest);
+    return f->edges.count - 1;
+}
+
+/*
+ * An edge of one face may go on where the faces at its other side change: where a floor ends that is level with the underside of
+ * what is beside it, the wall below both has no corner.  So each edge gets the vertices of all others on its line.
+ */
+static void cut_edges(Finishing *f)
+{
+    size_t count = f->edges.count;
+    Stop  *stops = arena_new_array(f->faces->arena, Stop, 2 * count + 1);
+    for (size_t i = 0; i < 2 * count; i++)
+        stops[i] = stop_of(&f->edges.items[i / 2], i % 2);
+    if (count > 0)
+        qsort(stops, 2 * count, sizeof *stops, compare_stops);
+    for (size_t i = 0; i < count; i++) {
+        Edge   edge  = f->edges.items[i];
+        bool   along = edge.begin < edge.end;
+        Stop   first = stop_of(&edge, !along), last = stop_of(&edge, along);
+        double same   = same_on(f->faces, first.low, first.high);
+        size_t number = i;
+        for (size_t k = first_behind(stops, 2 * count, &first);
+             k < 2 * count && compare_stops(&stops[k], &last) < 0; k++)
+            if (stops[k].at - first.at > same && last.at - stops[k].at > same) {
+                number = cut_edge(f, number, &stops[k], along);
+                first  = stops[k];
+            }
+    }
 }
 
 /* ---- vertices at the same place ---- */
@@ -578,6 +672,7 @@ bool flat_faces_finish(FlatFaces *faces, FlatVertices *vertices, Triangles *tria
     Finishing f = {.faces = faces, .vertices = vertices, .numbers = {.arena = faces->arena}};
     if (!find_edges(&f))
         return false;
+    cut_edges(&f);
     join_vertices(&f);
     if (!cut_faces(&f, triangles))
         return false;

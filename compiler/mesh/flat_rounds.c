@@ -115,6 +115,12 @@ uint32_t flat_rounds_sides(const FlatRounds *rounds, uint32_t kin)
     return round ? round->sides : 0;
 }
 
+double flat_rounds_radius(const FlatRounds *rounds, uint32_t kin)
+{
+    const FlatRound *round = find_round(rounds, key_of_kin(kin));
+    return round ? round->radius : 0;
+}
+
 double flat_rounds_chord(const FlatRounds *rounds, uint32_t table)
 {
     const FlatRound *round = find_round(rounds, key_of_table(table));

@@ -45,6 +45,8 @@ void flat_rounds_count(FlatRounds *rounds);
 bool flat_rounds_refine(FlatRounds *rounds);
 /* 0: it has not been noted. */
 uint32_t flat_rounds_sides(const FlatRounds *rounds, uint32_t kin);
+/* The largest that has been noted, in lengths of the scene; 0: none has. */
+double flat_rounds_radius(const FlatRounds *rounds, uint32_t kin);
 /* How far chords of an outline may be from its curves; infinite until all are noted. */
 double flat_rounds_chord(const FlatRounds *rounds, uint32_t table);
 

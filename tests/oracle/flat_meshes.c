@@ -52,6 +52,10 @@ static void solids_have_no_more_triangles_than_their_faces_need(void **state)
         {"show box([2, 2, 2]) | box([2, 2, 2]).move([2, 2, 2]);", 24, 2, 0, 16},
         {"show box([4, 4, 4]) - box([2, 2, 6]).move([1, 1, 0]) - box([2, 2, 6]).move([-1, -1, 0]);",
          24, 2, 0, 32},
+        /* A floor that is level with an underside, which both end on the wall of what is below. */
+        {"show (box([1, 1, 1]).move([-0.1, -0.5, 0]) | box([1, 1, 1]).move([0, 0.5, 0])) - "
+         "prism(4, 0.25, 1).move([0.2, 0.5, 0]);",
+         52, 1, 1, 1.875},
         /* Level faces are one. */
         {"show box([2, 1, 1]) | box([2, 1, 1]).move([1.5, 0, 0]);", 12, 1, 0, 3.5},
         {"show box([2, 1, 1]) - box([1, 1, 0.5]).move([0.5, 0, 0.25]);", 20, 1, 0, 1.5},
