@@ -373,11 +373,12 @@ static void warn_of_rounding(const Meshing *meshing, const Summary *all)
 
 static void report(const Meshing *meshing, const Bodies *bodies)
 {
-    Summary       all = summarize(bodies);
-    const double *at  = all.unresolved_at;
+    Summary       all   = summarize(bodies);
+    const double *at    = all.unresolved_at;
+    const char   *about = all.estimate ? "about " : "";
     if (meshing->options->quiet || bodies->count == 0)
         return;
-    if (all.estimate)
+    if (all.estimate && !meshing->options->mesh_draft)
         say("warning: the distance is an estimate, so the error is one as well");
     if (all.unresolved > 0)
         say("warning: %zu cells may hold what is thinner than the error, or solids that touch; "
@@ -388,10 +389,10 @@ static void report(const Meshing *meshing, const Bodies *bodies)
         say("%zu part%s, by %zu keyframes", meshing->moving,
             meshing->moving == 1 ? " moves" : "s move", meshing->keys);
     if (bodies == &meshing->assembled && all.copies > (double)bodies->count)
-        say("%.0f copies with %.0f triangles, within %.4g of the surface", all.copies,
-            all.triangles, all.error * meshing->scale);
+        say("%.0f copies with %.0f triangles, within %s%.4g of the surface", all.copies,
+            all.triangles, about, all.error * meshing->scale);
     else
-        say("%.0f triangles, within %.4g of the surface", all.triangles,
+        say("%.0f triangles, within %s%.4g of the surface", all.triangles, about,
             all.error * meshing->scale);
     if (all.colored)
         say("triangles are kept for the colours of several materials; --simplify leaves out all "

@@ -55,7 +55,7 @@ typedef struct KrsMesh {
        it and nowhere longer than twice of it are closed. */
     size_t unresolved;
     double unresolved_at[3];
-    bool   estimate; /* of a component nothing is proven, as of its distance */
+    bool   estimate; /* of a component nothing is proven, as of its distance; or it is a draft */
     bool
         colored; /* no triangle was left out, since colours at their corners count: KrsMeshOptions.shape */
 } KrsMesh;

@@ -8,8 +8,9 @@
 
 #include "compiler/base/vec.h"
 #include "compiler/mesh/bvh.h"
+#include "compiler/mesh/fans.h"
 
-enum { MOST_STAR = 48 };
+enum { MOST_STAR = 48, PATIENCE = 256 };
 #define NO_VERTEX UINT32_MAX
 /* Height over the longest edge, of triangles that are made. */
 static const double THIN = 1e-5;
@@ -36,6 +37,9 @@ typedef struct Collapse {
     uint32_t *marks, mark;
     bool     *fixed;
     Quadric  *quadrics;
+    double   *off,
+        *missed; /* of a triangle, how far it is from the mesh that was simplified, at most, and what it replaces of that
+                             mesh is from it */
     uint32_t *points,
         *other; /* of a triangle, the first vertex + 1 that is near to it, and of a vertex the next */
     struct {
@@ -206,39 +210,72 @@ static void replace(const uint32_t old[3], uint32_t from, uint32_t to, uint32_t 
 typedef struct Made {
     uint32_t corners[MOST_STAR][3], numbers[MOST_STAR];
     size_t   count;
+    double   off, missed; /* as of Collapse */
 } Made;
 
-/* The nearest of them, if it is near enough. */
-static bool find_nearest(const Collapse *c, const Made *made, uint32_t vertex, size_t *found)
+/* The nearest of them, or the first that is much nearer than it must be; returns how far it is. */
+static double find_nearest(const Collapse *c, const Made *made, uint32_t vertex, size_t *found)
 {
-    double least = c->rules->error;
-    bool   any   = false;
-    for (size_t i = 0; i < made->count; i++) {
+    static const double NEAR_ENOUGH = 0.1; /* parts of the error */
+    double              least       = INFINITY;
+    for (size_t i = 0; i < made->count && least > NEAR_ENOUGH * c->rules->error; i++) {
         double corners[3][3], nearest[3];
         for (int k = 0; k < 3; k++)
             memcpy(corners[k], c->at[made->corners[i][k]], sizeof corners[k]);
         triangle_nearest((const double(*)[3])corners, c->at[vertex], nearest);
         double distance = distance3(nearest, c->at[vertex]);
-        if (distance <= least) {
+        if (distance < least) {
             least  = distance;
             *found = i;
-            any    = true;
         }
     }
-    return any;
+    return least;
 }
 
-static bool are_points_near(const Collapse *c, const uint32_t *star, size_t count, const Made *made,
-                            uint32_t from)
+/* Whether all that is made is within the error of the mesh that is simplified. */
+static bool are_made_near(const Collapse *c, Made *made)
+{
+    made->off = 0;
+    for (size_t i = 0; i < made->count; i++) {
+        double distance;
+        if (!c->rules->is_good(c->rules->user, made->corners[i], &distance))
+            return false;
+        made->off = fmax(made->off, distance);
+    }
+    return true;
+}
+
+/* Whether vertices of that mesh are within the error of what is made. */
+static bool are_points_near(const Collapse *c, const uint32_t *star, size_t count, uint32_t from,
+                            Made *made)
 {
     size_t found;
-    if (!find_nearest(c, made, from, &found))
-        return false;
+    made->missed = find_nearest(c, made, from, &found);
     for (size_t i = 0; i < count; i++)
-        for (uint32_t point = c->points[star[i]]; point; point = c->other[point - 1])
-            if (!find_nearest(c, made, point - 1, &found))
+        for (uint32_t point = c->points[star[i]]; point; point = c->other[point - 1]) {
+            if (made->missed > c->rules->error)
                 return false;
-    return true;
+            made->missed = fmax(made->missed, find_nearest(c, made, point - 1, &found));
+        }
+    return made->missed <= c->rules->error;
+}
+
+/* What is little farther than what it replaces need not be looked for. */
+static bool are_near(const Collapse *c, const uint32_t *star, size_t count, uint32_t from,
+                     uint32_t to, Made *made)
+{
+    static const double ROUNDING = 1e-6;
+    double              most     = (1 - ROUNDING) * c->rules->error;
+    double added = fan_distance(c->at, (const uint32_t(*)[3])c->triangles, star, count, from, to);
+    made->off = made->missed = 0;
+    for (size_t i = 0; i < count; i++) {
+        made->off    = fmax(made->off, c->off[star[i]]);
+        made->missed = fmax(made->missed, c->missed[star[i]]);
+    }
+    made->off += added;
+    made->missed += added;
+    return (made->missed <= most || are_points_near(c, star, count, from, made)) &&
+           (made->off <= most || are_made_near(c, made));
 }
 
 static bool may_collapse(Collapse *c, const uint32_t *star, size_t count, uint32_t from,
@@ -256,10 +293,7 @@ static bool may_collapse(Collapse *c, const uint32_t *star, size_t count, uint32
             return false;
         made->numbers[made->count++] = star[i];
     }
-    for (size_t i = 0; i < made->count; i++)
-        if (!c->rules->is_good(c->rules->user, made->corners[i]))
-            return false;
-    return are_points_near(c, star, count, made, from);
+    return are_near(c, star, count, from, to, made);
 }
 
 static void add_point(Collapse *c, uint32_t triangle, uint32_t vertex)
@@ -268,9 +302,9 @@ static void add_point(Collapse *c, uint32_t triangle, uint32_t vertex)
     c->points[triangle] = vertex + 1;
 }
 
-/* Points go over to the nearest triangles that are made. */
-static void move_points(Collapse *c, const uint32_t *star, size_t count, const Made *made,
-                        uint32_t from)
+/* Points go over to the nearest triangles that are made, and distances to all. */
+static void move_over(Collapse *c, const uint32_t *star, size_t count, const Made *made,
+                      uint32_t from)
 {
     size_t   found = 0;
     uint32_t all   = from + 1;
@@ -283,9 +317,13 @@ static void move_points(Collapse *c, const uint32_t *star, size_t count, const M
         }
         c->points[star[i]] = 0;
     }
+    for (size_t i = 0; i < made->count; i++) {
+        c->off[made->numbers[i]]    = made->off;
+        c->missed[made->numbers[i]] = made->missed;
+    }
     for (uint32_t point = all, next; point; point = next) {
         next = c->other[point - 1];
-        if (find_nearest(c, made, point - 1, &found))
+        if (find_nearest(c, made, point - 1, &found) <= c->rules->error)
             add_point(c, made->numbers[found], point - 1);
     }
 }
@@ -327,7 +365,11 @@ static void collapse(Collapse *c, const uint32_t *star, size_t count, uint32_t f
 
 static void collapse_all(Collapse *c)
 {
+    size_t tried = 0, most = c->heap.count;
     while (c->heap.count > 0) {
+        if (tried++ % PATIENCE == 0 &&
+            !c->rules->is_wanted(c->rules->user, 1 - (double)c->heap.count / (double)most))
+            return;
         Candidate candidate = pop(c);
         uint32_t  star[MOST_STAR];
         Made      made;
@@ -336,7 +378,7 @@ static void collapse_all(Collapse *c)
         size_t count = star_of(c, candidate.from, star);
         if (count <= MOST_STAR &&
             may_collapse(c, star, count, candidate.from, candidate.to, &made)) {
-            move_points(c, star, count, &made, candidate.from);
+            move_over(c, star, count, &made, candidate.from);
             collapse(c, star, count, candidate.from, candidate.to);
         } else
             propose_vertex(c, candidate.from, &candidate);
@@ -351,9 +393,13 @@ static void begin(Collapse *c, size_t vertex_count, size_t count)
     c->stamps   = arena_new_array(c->arena, uint32_t, vertex_count + 1);
     c->marks    = arena_new_array(c->arena, uint32_t, vertex_count + 1);
     c->fixed    = arena_new_array(c->arena, bool, vertex_count + 1);
+    c->off      = arena_new_array(c->arena, double, count + 1);
+    c->missed   = arena_new_array(c->arena, double, count + 1);
     c->points   = arena_new_array(c->arena, uint32_t, count + 1);
     c->other    = arena_new_array(c->arena, uint32_t, vertex_count + 1);
     c->quadrics = arena_new_array(c->arena, Quadric, vertex_count + 1);
+    for (size_t i = 0; i < count; i++)
+        c->off[i] = c->missed[i] = c->rules->distance;
     for (uint32_t i = 0; i < 3 * count; i++) {
         uint32_t vertex = c->triangles[i / 3][i % 3];
         add_corner(c, vertex, i);

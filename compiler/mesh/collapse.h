@@ -8,8 +8,10 @@
 
 #include <stdint.h>
 
-/* Whether a new triangle may be. */
-typedef bool IsGoodTriangle(void *user, const uint32_t triangle[3]);
+/* Whether a new triangle is within the error of the mesh that is simplified, and how far it is from it, at most. */
+typedef bool IsGoodTriangle(void *user, const uint32_t triangle[3], double *distance);
+/* Told now and then which part of the work is done, as far as one can say; false: stop. */
+typedef bool IsWanted(void *user, double part);
 
 typedef struct CollapseRules {
     const bool *kept; /* of triangles: those whose corners stay */
@@ -17,7 +19,9 @@ typedef struct CollapseRules {
         below; /* of vertices that are no corners: a triangle to which they are near; UINT32_MAX: none is
                               known.  What replaces it must be within the error of them. */
     double          error;
+    double          distance; /* between that mesh and the triangles before */
     IsGoodTriangle *is_good;
+    IsWanted       *is_wanted;
     void           *user;
 } CollapseRules;
 

@@ -11,7 +11,13 @@
 #include "compiler/base/vec.h"
 #include "compiler/mesh/flat_near.h"
 
-enum { MOST_BOXES = 400000, MOST_HALVINGS = 45, HALVINGS_OF_REGION = 3, PATIENCE = 256 };
+enum {
+    MOST_BOXES          = 400000,
+    MOST_BOXES_OF_DRAFT = 40000,
+    MOST_HALVINGS       = 45,
+    HALVINGS_OF_REGION  = 3,
+    PATIENCE            = 256
+};
 /* Boxes that were looked at when more than a part of them must have been flat. */
 enum { FIRST_BOXES = 600 };
 /* At each turn planes are moved otherwise; at the last ones short edges stay, so that solids that touch stay apart. */
@@ -59,7 +65,7 @@ static bool is_given_up(Halving *h, int halvings)
 {
     h->boxes++;
     return (h->boxes % PATIENCE == 0 && !is_wanted(h->m)) || halvings > MOST_HALVINGS ||
-           h->boxes > MOST_BOXES ||
+           h->boxes > (h->m->options->draft ? MOST_BOXES_OF_DRAFT : MOST_BOXES) ||
            (h->boxes > FIRST_BOXES && (double)h->known < LEAST_KNOWN * (double)h->boxes);
 }
 

@@ -128,8 +128,10 @@ static KrsStatus run(Mesher *m, KrsFrame *frame, KrsMesh **mesh)
     m->memory.exhausted = &exhausted;
     if (setjmp(exhausted) != 0)
         return KRS_OUT_OF_MEMORY;
+    bool      draft  = false;
     KrsStatus status = is_nothing(m) ? KRS_OK : open_fields(m, frame);
     if (status == KRS_OK && !is_nothing(m) && !find_flat(m)) {
+        draft = m->options->draft;
         m->error -= m->spared;
         status = find_proven_mesh(m) ? KRS_OK : KRS_INTERRUPTED;
         if (status == KRS_OK)
@@ -139,7 +141,7 @@ static KrsStatus run(Mesher *m, KrsFrame *frame, KrsMesh **mesh)
     if (status == KRS_OK)
         status = copy_mesh(m, mesh);
     if (status == KRS_OK)
-        (*mesh)->estimate = m->solid->estimate;
+        (*mesh)->estimate = m->solid->estimate || draft;
     m->memory.exhausted = NULL;
     return status;
 }

@@ -193,19 +193,24 @@ static bool has_layers(const Layers *layers)
     return false;
 }
 
-/* What a part is too high of is `*far`. */
-static bool is_low(const Frame *frame, const Seen triangle[3], Seen *far)
+/* What a part is too high of is `*far`; `*highest` is at least the height of all parts. */
+static bool is_low(const Frame *frame, const Seen triangle[3], Seen *far, double *highest)
 {
-    Seen corners[MOST_CORNERS + 1];
-    if (fabs(triangle[0].height) <= frame->error && fabs(triangle[1].height) <= frame->error &&
-        fabs(triangle[2].height) <= frame->error)
+    Seen   corners[MOST_CORNERS + 1];
+    double most = fmax(fabs(triangle[0].height),
+                       fmax(fabs(triangle[1].height), fabs(triangle[2].height)));
+    if (most <= frame->error) {
+        *highest = fmax(*highest, most);
         return true;
+    }
     int count = clip_all(triangle, frame->rounding, corners);
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count; i++) {
+        *highest = fmax(*highest, fabs(corners[i].height));
         if (fabs(corners[i].height) > frame->error) {
             *far = corners[i];
             return false;
         }
+    }
     return true;
 }
 
@@ -265,13 +270,14 @@ static bool is_far(const NearMesh *mesh, const double corners[3][3], double erro
 static Verdict face_all(const NearMesh *mesh, const double corners[3][3], double error,
                         const Frame *frame, NearLook *look)
 {
-    Layers layers = {.count = {0}};
-    bool   low    = true;
+    Layers layers  = {.count = {0}};
+    bool   low     = true;
+    double highest = 0;
     for (size_t i = 0; i < look->faced_count; i++) {
         uint32_t triangle = look->faced[i];
         Seen     seen[3], high;
         see_triangle(mesh, frame, triangle, seen);
-        if (low && !is_low(frame, seen, &high)) {
+        if (low && !is_low(frame, seen, &high, &highest)) {
             low = false;
             if (is_far(mesh, corners, error, &high, look))
                 return IS_FAR;
@@ -285,7 +291,10 @@ static Verdict face_all(const NearMesh *mesh, const double corners[3][3], double
                     return IS_UNDECIDED;
             }
     }
-    return low && has_layers(&layers) ? IS_NEAR : IS_UNDECIDED;
+    if (!low || !has_layers(&layers))
+        return IS_UNDECIDED;
+    look->distance = fmin(error, highest + (error - frame->error));
+    return IS_NEAR;
 }
 
 /* Begins with the first of `starts` that is faced. */
@@ -378,6 +387,7 @@ static bool is_near(const NearMesh *mesh, const double corners[3][3], double err
     }
     bool near         = are_parts_near(mesh, corners, error, starts, start_count, cuts, look);
     look->start_count = before;
+    look->distance    = error;
     return near;
 }
 
@@ -391,7 +401,8 @@ bool is_near_mesh(const NearMesh *mesh, const double corners[3][3], double error
                   const uint32_t *starts, size_t start_count, NearLook *look)
 {
     /* What was looked at before must not matter: threads share work as it comes. */
-    look->last = start_count > 0 ? starts[0] : 0;
+    look->last     = start_count > 0 ? starts[0] : 0;
+    look->distance = error;
     if (mesh->bvh.triangle_count == 0)
         return false;
     return is_near(mesh, corners, error, starts, start_count, MOST_CUTS, look);

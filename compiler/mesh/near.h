@@ -24,7 +24,8 @@ enum { MOST_FACED = 4096, FACED_SLOTS = 2 * MOST_FACED, MOST_STARTS = 4 * MOST_F
 
 /* What one thread looks with. */
 typedef struct NearLook {
-    uint32_t last; /* a triangle that may be near */
+    uint32_t last;     /* a triangle that may be near */
+    double   distance; /* how far the last triangle that was near is from the mesh, at most */
     uint32_t faced[MOST_FACED];
     size_t   faced_count;
     uint32_t slots[FACED_SLOTS];  /* `faced` by hash: number + 1 */

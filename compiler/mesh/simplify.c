@@ -40,9 +40,8 @@ typedef struct Simplifier {
     size_t triangle_count;
     uint32_t (*best)[3]; /* triangles that have been good */
     size_t    best_count;
-    Numbering judged; /* new triangles: 1 where they are within the error of the mesh, else 0 */
+    Numbering judged; /* new triangles, by how far they are from the mesh, at most, in steps */
     Numbering noted;  /* those that are, and of which `facing` was written down */
-    size_t    judged_before;
     NearMesh  original;
     /* Of each triangle of the mesh, one above or below it, by its vertices: of the last trial, and of the best;
        all 0: none. */
@@ -51,6 +50,9 @@ typedef struct Simplifier {
     double fraction, begun, goal; /* of the work: done, and before and after what is being done */
     atomic_bool stopped;
 } Simplifier;
+
+/* Distances are kept in so many steps of the error; one more step: it is more than the error. */
+enum { STEPS = 1 << 16, FAR_STEP = STEPS + 1 };
 
 /* ---- what is proposed ---- */
 
@@ -256,7 +258,7 @@ static void check_new(Judgement *judgement, const NearMesh *new, double goal)
             memcpy(s->facing[i], s->triangles[check.found_facing[i]], sizeof s->facing[i]);
     for (uint32_t i = 0; i < s->triangle_count && !atomic_load(&s->stopped); i++) {
         NumberKey key = key_of(s->triangles[i]);
-        numbering_take(&s->judged, key, !check.wrong[i]);
+        numbering_take(&s->judged, key, check.wrong[i] ? FAR_STEP : STEPS);
         if (!check.wrong[i])
             numbering_take(&s->noted, key, 0);
     }
@@ -308,23 +310,44 @@ static size_t count_faults(Simplifier *s, double radius, size_t most, double goa
 
 /* ---- one vertex after the other ---- */
 
-/* About as many triangles are judged as this for each that there is. */
-enum { JUDGED_EACH = 4 };
-
-static bool is_good(void *user, const uint32_t triangle[3])
+/* What is not is told so in little time. */
+static bool are_middles_near(const Simplifier *s, const uint32_t triangle[3], NearLook *look)
 {
-    Simplifier *s   = user;
-    uint32_t    was = numbering_find(&s->judged, key_of(triangle));
-    if (was != NO_NUMBER)
-        return was;
-    if (s->judged.count % 64 == 0 && !atomic_load(&s->stopped))
-        ask(s, fmin(1, (double)(s->judged.count - s->judged_before) /
-                           (JUDGED_EACH * (double)s->best_count)));
-    if (atomic_load(&s->stopped))
-        return false;
-    bool near = is_near_original(s, triangle, &s->looks[0]);
-    numbering_take(&s->judged, key_of(triangle), near);
-    return near;
+    for (int c = 0; c < 4; c++) {
+        double middle[3] = {0, 0, 0};
+        for (int k = 0; k < 3; k++)
+            add_scaled3(middle, middle,
+                        c == 3   ? 1.0 / 3
+                        : k == c ? 0
+                                 : 0.5,
+                        s->mesh->vertices[triangle[k]]);
+        if (!bvh_is_near(&s->original.bvh, middle, s->error, &look->last))
+            return false;
+    }
+    return true;
+}
+
+/* `*distance`: how far it is, at most. */
+static bool is_good(void *user, const uint32_t triangle[3], double *distance)
+{
+    Simplifier *s    = user;
+    NearLook   *look = &s->looks[0];
+    uint32_t    step = numbering_find(&s->judged, key_of(triangle));
+    if (step == NO_NUMBER) {
+        step = FAR_STEP;
+        if (are_middles_near(s, triangle, look) && is_near_original(s, triangle, look))
+            step = (uint32_t)ceil(STEPS * look->distance / s->error);
+        numbering_take(&s->judged, key_of(triangle), step);
+    }
+    *distance = s->error * step / STEPS;
+    return step <= STEPS;
+}
+
+static bool is_wanted(void *user, double part)
+{
+    Simplifier *s = user;
+    ask(s, fmin(fmax(part, 0), 1));
+    return !atomic_load(&s->stopped);
 }
 
 /* Of each vertex of the mesh that the best has not, its nearest triangle. */
@@ -348,10 +371,11 @@ static void propose_collapses(Simplifier *s, double error, double goal)
     const KrsMesh *mesh  = s->mesh;
     ArenaMark      mark  = arena_mark(&s->arena);
     uint32_t      *below = arena_new_array(&s->arena, uint32_t, mesh->vertex_count + 1);
-    CollapseRules  rules = {s->kept, below, error, is_good, s};
-    s->begun             = s->fraction;
-    s->goal              = goal;
-    s->judged_before     = s->judged.count;
+    CollapseRules  rules = {
+         s->kept, below,     error, s->best_count < mesh->triangle_count ? error : 0,
+         is_good, is_wanted, s};
+    s->begun = s->fraction;
+    s->goal  = goal;
     find_below(s, below);
     memcpy(s->triangles, s->best, s->best_count * sizeof *s->best);
     s->triangle_count = collapse_edges((const double(*)[3])mesh->vertices, mesh->vertex_count,

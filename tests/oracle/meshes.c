@@ -23,13 +23,21 @@ static size_t rays = 250, points = 1000; /* of each */
 /* Half of the box that is looked at. */
 static const double SIDE = 1.8;
 
-static KrsMesh *mesh_of(const Product *product, double error)
+static KrsMesh *mesh_by(const Product *product, double error, bool draft)
 {
-    KrsMeshOptions options = {
-        .error = error, .within = true, .low = {-SIDE, -SIDE, -SIDE}, .high = {SIDE, SIDE, SIDE}};
-    KrsMesh *mesh;
+    KrsMeshOptions options = {.error  = error,
+                              .draft  = draft,
+                              .within = true,
+                              .low    = {-SIDE, -SIDE, -SIDE},
+                              .high   = {SIDE, SIDE, SIDE}};
+    KrsMesh       *mesh;
     assert_int_equal(krs_mesh(product->frame, &options, &mesh), KRS_OK);
     return mesh;
+}
+
+static KrsMesh *mesh_of(const Product *product, double error)
+{
+    return mesh_by(product, error, false);
 }
 
 /* ---- random solids ---- */
@@ -140,6 +148,39 @@ static void random_solids_are_within_the_error(void **state)
     assert_true(tally.empty < tally.scenes / 4 && tally.reported < tally.scenes * 3 / 4);
 }
 
+/* ---- drafts ---- */
+
+/* Nothing is promised of single points, but of nearly all. */
+static void nearly_all_of_a_draft_is_within_the_error(void **state)
+{
+    enum { SCENES = 24 };
+    static const double MOST_FAR = 0.0005; /* part of all points */
+    static SceneText    text;
+    size_t              looked = 0, far = 0;
+    (void)state;
+    for (int turn = 0; turn < SCENES; turn++) {
+        Random      random = {9000 + (uint64_t)turn};
+        double      error  = error_of(turn);
+        KnownSolid *solid  = known_solid_random(&random, error);
+        text.length        = 0;
+        scene_write(&text, "show ");
+        known_solid_write(solid, &text);
+        scene_write(&text, ";");
+        Product  product = product_compile(text.bytes);
+        KrsMesh *mesh    = mesh_by(&product, error, true);
+        Surface  surface = {value_of_solid, solid, vec(-2, -2, -2), vec(2, 2, 2)};
+        check_closed(mesh);
+        Apart apart = mesh_apart(mesh, &surface, error, rays, 1000, &random);
+        looked += apart.hits + apart.points;
+        far += apart.thick + apart.astray;
+        krs_mesh_free(mesh);
+        product_free(&product);
+        known_solid_free(solid);
+    }
+    print_message("# drafts: %zu of %zu points are farther than the error\n", far, looked);
+    assert_true((double)far < MOST_FAR * (double)looked);
+}
+
 /* ---- random scenes ---- */
 
 /* False: the compiler refuses what was drawn, as what does not fit its cell. */
@@ -240,6 +281,7 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_solids_are_within_the_error),
+        cmocka_unit_test(nearly_all_of_a_draft_is_within_the_error),
         cmocka_unit_test(random_scenes_are_within_the_error),
         cmocka_unit_test(what_is_farther_than_the_error_is_seen),
     };

@@ -12,6 +12,7 @@
 #include "compiler/base/vec.h"
 #include "compiler/mesh/collapse.h"
 #include "compiler/mesh/crossing.h"
+#include "compiler/mesh/fans.h"
 #include "tests/support/random.h"
 
 enum { AROUND = 24, COUNT = AROUND * AROUND, TRIANGLES = 2 * COUNT };
@@ -28,6 +29,7 @@ typedef struct Ring {
     double   chance; /* that one is good */
     uint32_t below[COUNT];
     double   error;
+    double   apart; /* before anything is left out; above the error: each triangle is asked for */
 } Ring;
 
 static uint32_t at(int u, int v) { return (uint32_t)(u % AROUND * AROUND + v % AROUND); }
@@ -39,7 +41,8 @@ static Ring *ring_new(void)
     ring->arena.memory = &ring->memory;
     ring->most         = SIZE_MAX;
     ring->chance       = 1;
-    ring->error        = INFINITY;
+    ring->error        = 1e9;
+    ring->apart        = 1e10;
     memset(ring->below, 0xff, sizeof ring->below);
     for (int u = 0; u < AROUND; u++)
         for (int v = 0; v < AROUND; v++) {
@@ -62,12 +65,19 @@ static void ring_free(Ring *ring)
     free(ring);
 }
 
-static bool may_be(void *user, const uint32_t triangle[3])
+static bool may_be(void *user, const uint32_t triangle[3], double *distance)
 {
     Ring *ring = user;
+    *distance  = ring->error;
     assert_true(triangle[0] != triangle[1] && triangle[1] != triangle[2] &&
                 triangle[2] != triangle[0]);
     return ring->asked++ < ring->most && random_between(&ring->random, 0, 1) < ring->chance;
+}
+
+static bool goes_on(void *user, double part)
+{
+    (void)user;
+    return part <= 1;
 }
 
 static void count_report(void *user, uint32_t triangle)
@@ -78,7 +88,8 @@ static void count_report(void *user, uint32_t triangle)
 
 static size_t collapse(Ring *ring)
 {
-    CollapseRules rules = {ring->kept, ring->below, ring->error, may_be, ring};
+    CollapseRules rules = {ring->kept, ring->below, ring->error, ring->apart,
+                           may_be,     goes_on,     ring};
     size_t        left  = collapse_edges((const double(*)[3])ring->vertices, COUNT, ring->triangles,
                                          TRIANGLES, &rules, &ring->arena),
            open = 0, used = 0;
@@ -135,6 +146,7 @@ static void vertices_are_near(void **state)
     for (double error = 0.3; error > 0.005; error /= 3) {
         Ring *ring  = ring_new();
         ring->error = error;
+        ring->apart = 10 * error;
         size_t left = collapse(ring);
         for (size_t i = 0; i < COUNT; i++) {
             double least = INFINITY;
@@ -149,6 +161,96 @@ static void vertices_are_near(void **state)
         }
         assert_true(left > last && left < TRIANGLES);
         last = left;
+        ring_free(ring);
+    }
+}
+
+/* How far points of some triangles are from others, at most. */
+static double most_apart(const double (*vertices)[3], const uint32_t (*from)[3], size_t from_count,
+                         const uint32_t (*to)[3], size_t to_count)
+{
+    enum { STEPS = 12 };
+    double most = 0;
+    for (size_t i = 0; i < from_count; i++)
+        for (int a = 0; a <= STEPS; a++)
+            for (int b = 0; a + b <= STEPS; b++) {
+                double point[3], least = INFINITY;
+                for (int k = 0; k < 3; k++)
+                    point[k] = (a * vertices[from[i][0]][k] + b * vertices[from[i][1]][k] +
+                                (STEPS - a - b) * vertices[from[i][2]][k]) /
+                               STEPS;
+                for (size_t n = 0; n < to_count; n++) {
+                    double corners[3][3], nearest[3];
+                    for (int c = 0; c < 3; c++)
+                        memcpy(corners[c], vertices[to[n][c]], sizeof corners[c]);
+                    triangle_nearest((const double(*)[3])corners, point, nearest);
+                    least = fmin(least, distance3(nearest, point));
+                }
+                most = fmax(most, least);
+            }
+    return most;
+}
+
+/* A vertex in the middle of a polygon, not all in a plane, which goes to one of its corners. */
+static void distances_of_fans_are_enough(void **state)
+{
+    enum { MOST = 9, FANS = 300 };
+    (void)state;
+    Random random = {7};
+    size_t known  = 0;
+    for (int turn = 0; turn < FANS; turn++) {
+        double   vertices[MOST + 1][3], turned = random_between(&random, 0, 6), high = 0.15;
+        uint32_t old[MOST][3], new[MOST][3], star[MOST];
+        size_t   count = 4 + (size_t)random_between(&random, 0, 5.99), left = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            double angle = 6.283185307179586 * i / (double)count,
+                   reach = random_between(&random, 0.7, 1.3);
+            double x = reach * cos(angle), y = reach * sin(angle),
+                   z        = random_between(&random, -high, high);
+            double place[3] = {x * cos(turned) - z * sin(turned), y,
+                               x * sin(turned) + z * cos(turned)};
+            memcpy(vertices[i], place, sizeof place);
+            uint32_t corners[3] = {(uint32_t)count, i, (uint32_t)((i + 1) % count)};
+            memcpy(old[i], corners, sizeof corners);
+            star[i] = i;
+            if (i == 0 || i + 1 == count)
+                continue;
+            corners[0] = 0;
+            memcpy(new[left++], corners, sizeof corners);
+        }
+        random_vector(&random, 0.2, vertices[count]);
+        double found = fan_distance((const double(*)[3])vertices, (const uint32_t(*)[3])old, star,
+                                    count, (uint32_t)count, 0);
+        if (isinf(found))
+            continue;
+        double least = fmax(most_apart((const double(*)[3])vertices, (const uint32_t(*)[3])old,
+                                       count, (const uint32_t(*)[3]) new, left),
+                            most_apart((const double(*)[3])vertices, (const uint32_t(*)[3]) new,
+                                       left, (const uint32_t(*)[3])old, count));
+        known++;
+        if (found < least || found > 2 * least + 0.01)
+            fail_msg("fan %d: points are %g apart, and %g was found", turn, least, found);
+    }
+    assert_true(known > FANS / 3);
+}
+
+/* Nothing is permitted by asking: what is left out is near by the sum of all moves. */
+static void small_moves_need_no_questions(void **state)
+{
+    (void)state;
+    for (double error = 0.1; error > 0.03; error /= 2) {
+        Ring *ring                 = ring_new();
+        ring->most                 = 0;
+        ring->error                = error;
+        ring->apart                = 0;
+        size_t left                = collapse(ring);
+        const double(*vertices)[3] = (const double(*)[3])ring->vertices;
+        const uint32_t(*now)[3]    = (const uint32_t(*)[3])ring->triangles,
+              (*before)[3]         = (const uint32_t(*)[3])ring->whole;
+        assert_true(left < TRIANGLES * 2 / 3);
+        assert_true(most_apart(vertices, now, left, before, TRIANGLES) <= error);
+        assert_true(most_apart(vertices, before, TRIANGLES, now, left) <= error);
+        print_message("# %zu of %d triangles within %g\n", left, TRIANGLES, error);
         ring_free(ring);
     }
 }
@@ -175,6 +277,8 @@ int main(void)
         cmocka_unit_test(nothing_changes_that_may_not),
         cmocka_unit_test(what_is_kept_stays),
         cmocka_unit_test(vertices_are_near),
+        cmocka_unit_test(distances_of_fans_are_enough),
+        cmocka_unit_test(small_moves_need_no_questions),
         cmocka_unit_test(rules_by_chance_leave_it_closed),
     };
     return cmocka_run_group_tests_name("collapsed edges", tests, NULL, NULL);
