@@ -121,8 +121,9 @@ bench-lanes: $(B)/bench/lanes/lanes
 PEER := $(if $(wildcard /usr/include/CGAL/make_surface_mesh.h),$(B)/bench/mesh/peer)
 $(B)/bench/mesh/peer: $(B)/bench/mesh/peer.o
 	@$(CXX) $(CFLAGS) -o $@ $^ -lgmp -lmpfr
-bench-mesh: $(B)/krs $(PEER)
+bench-mesh: $(B)/krs $(PEER) $(MESH_JUDGE)
 	@bench/mesh/mesh.sh $(B)/krs $(PEER)
+	@bench/mesh/parts.sh $(B)/krs $(MESH_JUDGE)
 
 # For `make test`.
 ALONE += tests/bench.sh

@@ -61,7 +61,7 @@ BESIDE      := $(LONGEST) $(filter-out $(LONGEST) $(ALONE) tests/run.sh tests/se
 # to it, as they compile everything once more, the judge of meshes, whose headers take a minute, and what
 # compares switches of `krs help render --all` with each other.
 LONG        := $(addprefix tests/, examples.sh extend/extend.sh errors-sanitized.sh fuzz/fuzz.sh bench.sh \
-               $(addprefix cli/, cache.sh compose.sh failures.sh fingerprints.sh format.sh install.sh mesh_judges.sh outputs.sh \
+               $(addprefix cli/, cache.sh compose.sh failures.sh fingerprints.sh format.sh install.sh mesh_csg.sh mesh_judges.sh outputs.sh \
                pictures.sh query.sh resume.sh scale.sh view.sh view_limits.sh view_random.sh watch.sh) \
                $(addprefix unit/, arguments compiled crowd_grid drivers film light_groups memory mesh_proofs methods noise paths \
                per_component plates printing rendering saved schedules values) \
@@ -121,17 +121,22 @@ $(addprefix $(B)/tests/unit/, live saved_texts camera_text resolution painter sa
 # What CGAL finds of meshes, where it is installed: without it, tests say so.  At -O2 and with names for a
 # debugger it takes twice as long to compile.
 CGAL        := $(wildcard /usr/include/CGAL/Surface_mesh.h)
-JUDGE       := $(if $(CGAL),$(B)/tests/oracle/mesh_judge)
-$(B)/tests/oracle/mesh_judge.o: CFLAGS := -O1
-$(B)/tests/oracle/mesh_judge: $(B)/tests/oracle/mesh_judge.o
+JUDGE       := $(if $(CGAL),$(addprefix $(B)/tests/oracle/, mesh_judge csg_solids))
+MESH_JUDGE  := $(filter %/mesh_judge, $(JUDGE))
+$(JUDGE:%=%.o): CXXFLAGS := -O1 -g0
+# CGAL checks each step of its set operations otherwise, and gcc warns of its headers.
+$(B)/tests/oracle/csg_solids.o: CXXFLAGS += -DNDEBUG -Wno-maybe-uninitialized
+$(JUDGE): %: %.o
 	@$(CXX) $(CFLAGS) -o $@ $^ -lgmp -lmpfr
-# Meshes of 300 random scenes, of all examples, and a Menger sponge of three levels, by all judges: an hour.
+# Meshes of 300 random scenes, of all examples, and a Menger sponge of three levels, by all judges, and 1,000 solids beside
+# CGAL's: two hours.
 test-meshes: $(B)/krs $(addprefix $(B)/tests/oracle/, meshes mesh_forms mesh_examples) $(JUDGE)
 	@mkdir -p $(B)/meshes && rm -f $(B)/meshes/*.off
 	@$(B)/tests/oracle/meshes 300 $(B)/meshes
 	@$(B)/tests/oracle/mesh_forms $(B)/meshes
 	@$(B)/tests/oracle/mesh_examples examples/*.krs
-	@$(if $(JUDGE),$(JUDGE) $(B)/meshes/*.off,echo "no CGAL: nothing else looked at the meshes")
+	@$(if $(JUDGE),$(MESH_JUDGE) $(B)/meshes/*.off && mkdir -p $(B)/solids && \
+	    $(B)/tests/oracle/csg_solids $(B)/krs 1000 0 $(B)/solids,echo "no CGAL: nothing else looked at the meshes")
 # It runs the command.
 $(B)/tests/unit/table_files: | $(B)/krs
 # In no archive: system calls that can fail are for those two alone.
