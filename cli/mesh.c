@@ -335,8 +335,8 @@ static KrsStatus write_mesh(Meshing *meshing, const char *path)
         find_frames(meshing, &parts);
     if (format->has_copies && copies_in(meshing->options, format) == COPIES_FLAT)
         flatten_parts(meshing, &parts);
-    if (format->places_of_vertices)
-        split_corners(meshing->options->arena, &parts);
+    if (format->has_colors && !format->has_face_colors)
+        split_corners(meshing->options->arena, &parts, format->places_of_vertices);
     set_units(meshing, format, &parts);
     if (meshing->options->animated)
         status = find_motion(meshing, &parts);

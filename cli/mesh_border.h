@@ -34,6 +34,7 @@ typedef struct MeshMaterial {
 typedef struct MeshPart {
     size_t first_vertex, vertex_count, first_triangle, triangle_count;
     const double (*first_copy)[4]; /* where one of its copies is; NULL: it is where it is */
+    bool steps;                    /* each triangle has the color of its middle: KrsMesh.steps */
 } MeshPart;
 
 /* Unit vectors, across each other; zeros where no material asks for them. */
@@ -71,8 +72,10 @@ typedef struct MeshParts {
     const uint32_t (*triangles)[3];   /* numbers count from the first vertex of all */
     const uint32_t *material_of;      /* of triangles */
     const double (*in_scene)[3];      /* where vertices are there: in one of the copies */
+    /* Colors of the corners of triangles; NULL: they are those of the vertices. */
+    const unsigned char (*corner_colors)[3][3];
     /* Where corners of triangles are in a texture, v upwards, and their frames; NULL: there is none.  After
-       split_corners that is told of vertices. */
+       split_corners that is told of vertices, as are colors. */
     const double (*corner_places)[3][2];
     const MeshFrame (*corner_frames)[3];
     const double (*vertex_places)[2];
@@ -85,6 +88,13 @@ typedef struct MeshParts {
     const char         *unit;   /* of those: um, mm, cm, m, in or ft */
     double              metres; /* which is so long */
 } MeshParts;
+
+static inline const unsigned char *mesh_corner_color(const MeshParts *parts, size_t triangle,
+                                                     int corner)
+{
+    return parts->corner_colors ? parts->corner_colors[triangle][corner]
+                                : parts->colors[parts->triangles[triangle][corner]];
+}
 
 /* Whether corners of such triangles have frames. */
 bool mesh_needs_frames(const MeshMaterial *material);

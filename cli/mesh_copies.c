@@ -48,6 +48,15 @@ void mesh_copy_triangle(const MeshParts *parts, const MeshCopy *copy, size_t num
         triangle[k] = (uint32_t)(from[corner_of(copy, k)] - copy->part->first_vertex + base);
 }
 
+void mesh_copy_colors(const MeshParts *parts, const MeshCopy *copy, size_t number,
+                      unsigned char colors[3][3])
+{
+    for (int k = 0; k < 3; k++)
+        memcpy(colors[k],
+               parts->corner_colors[copy->part->first_triangle + number][corner_of(copy, k)],
+               sizeof colors[k]);
+}
+
 void mesh_copy_places(const MeshParts *parts, const MeshCopy *copy, size_t number,
                       double places[3][2])
 {

@@ -22,7 +22,10 @@ void mesh_copy_vertex(const MeshParts *parts, const MeshCopy *copy, size_t numbe
 /* A triangle, by its number in the part, of vertices that are numbered from `base`; it faces outwards. */
 void mesh_copy_triangle(const MeshParts *parts, const MeshCopy *copy, size_t number, size_t base,
                         uint32_t triangle[3]);
-/* Where its corners are in a texture, in the same order; there is one. */
+/* The colors of its corners, in the same order; there are such. */
+void mesh_copy_colors(const MeshParts *parts, const MeshCopy *copy, size_t number,
+                      unsigned char colors[3][3]);
+/* Where they are in a texture, in the same order; there is one. */
 void mesh_copy_places(const MeshParts *parts, const MeshCopy *copy, size_t number,
                       double places[3][2]);
 /* Their frames, likewise. */

@@ -177,7 +177,7 @@ static double area_of(const double (*points)[3], const uint32_t triangle[3])
     return 0.5 * length3(cross);
 }
 
-static void find_middle(const MeshParts *parts, size_t triangle, double middle[3])
+void mesh_middle(const MeshParts *parts, size_t triangle, double middle[3])
 {
     for (int k = 0; k < 3; k++) {
         middle[k] = 0;
@@ -195,7 +195,7 @@ static void group_triangles(const Meshing *meshing, const MeshParts *parts, Grou
     for (size_t i = 0, now; i < count; i += now) {
         now = count - i < PROBES ? count - i : PROBES;
         for (size_t t = 0; t < now; t++)
-            find_middle(parts, i + t, middles[t]);
+            mesh_middle(parts, i + t, middles[t]);
         krs_probe(meshing->frame, (const double(*)[3])middles, now, hits);
         for (size_t t = 0; t < now; t++)
             of[i + t] = take_triangle(groups, &hits[t],

@@ -50,8 +50,12 @@ static void join_mesh(void *user, const KrsMesh *mesh, const KrsItem *item)
     Joined *joined = user;
     size_t  vertex = joined->vertex_count, triangle = joined->triangle_count;
     joined->list[joined->parts.part_count++] = (MeshPart){
-        vertex, mesh->vertex_count, triangle, mesh->triangle_count,
-        item ? (const double(*)[4])item->first_copy : NULL};
+        vertex,
+        mesh->vertex_count,
+        triangle,
+        mesh->triangle_count,
+        item ? (const double(*)[4])item->first_copy : NULL,
+        mesh->steps};
     for (size_t i = 0; i < mesh->vertex_count; i++) {
         memcpy(joined->vertices[vertex + i], mesh->vertices[i], sizeof *joined->vertices);
         place(item, mesh->vertices[i], joined->places[vertex + i]);
@@ -147,6 +151,45 @@ static void find_colors(const Meshing *meshing, Joined *joined)
     joined->parts.colors = (const unsigned char(*)[3])colors;
 }
 
+static void find_middles(const MeshParts *parts, size_t first, size_t count, double (*middles)[3])
+{
+    for (size_t t = 0; t < count; t++)
+        mesh_middle(parts, first + t, middles[t]);
+}
+
+/* Colors of triangles; a corner is in triangles of several. */
+static void find_corner_colors(const Meshing *meshing, const MeshPart *part, MeshParts *parts,
+                               unsigned char (*colors)[3][3])
+{
+    KrsHit hits[PROBES];
+    double middles[PROBES][3];
+    size_t end = part->first_triangle + part->triangle_count;
+    for (size_t i = part->first_triangle, now; i < end; i += now) {
+        now = end - i < PROBES ? end - i : PROBES;
+        find_middles(parts, i, now, middles);
+        if (part->steps)
+            krs_probe(meshing->frame, (const double(*)[3])middles, now, hits);
+        for (size_t k = 0; k < 3 * now; k++) {
+            unsigned char *color = colors[i + k / 3][k % 3];
+            memcpy(color, parts->colors[parts->triangles[i + k / 3][k % 3]], 3);
+            for (int c = 0; c < 3 && part->steps; c++)
+                color[c] = color_byte(hits[k / 3].color[c]);
+        }
+    }
+}
+
+static void find_all_corner_colors(const Meshing *meshing, MeshParts *parts)
+{
+    unsigned char(*colors)[3][3] = NULL;
+    for (size_t i = 0; i < parts->part_count; i++)
+        if (parts->parts[i].steps && !colors)
+            colors = arena_alloc(meshing->options->arena, parts_triangle_count(parts),
+                                 sizeof *colors);
+    for (size_t i = 0; colors && i < parts->part_count; i++)
+        find_corner_colors(meshing, &parts->parts[i], parts, colors);
+    parts->corner_colors = (const unsigned char(*)[3][3])colors;
+}
+
 /* Parts are one behind the other. */
 size_t parts_vertex_count(const MeshParts *parts)
 {
@@ -166,6 +209,7 @@ void find_parts(const Meshing *meshing, const Bodies *bodies, MeshParts *parts)
     join_bodies(meshing, bodies, &joined);
     joined.parts.in_scene = (const double(*)[3])joined.places;
     find_colors(meshing, &joined);
+    find_all_corner_colors(meshing, &joined.parts);
     *parts = joined.parts;
 }
 
@@ -177,6 +221,7 @@ typedef struct Flat {
     unsigned char (*colors)[3];
     uint32_t (*triangles)[3];
     uint32_t *material_of;
+    unsigned char (*corner_colors)[3][3];
     double (*corner_places)[3][2];
     MeshFrame (*corner_frames)[3];
     size_t vertex_count, triangle_count;
@@ -203,6 +248,8 @@ static bool flatten_copy(void *user, const MeshCopy *copy)
     for (size_t t = 0; t < part->triangle_count; t++) {
         mesh_copy_triangle(from, copy, t, base, flat->triangles[flat->triangle_count + t]);
         flat->material_of[flat->triangle_count + t] = from->material_of[part->first_triangle + t];
+        if (from->corner_colors)
+            mesh_copy_colors(from, copy, t, flat->corner_colors[flat->triangle_count + t]);
         if (from->corner_places)
             mesh_copy_places(from, copy, t, flat->corner_places[flat->triangle_count + t]);
         if (from->corner_frames)
@@ -223,6 +270,8 @@ void flatten_parts(const Meshing *meshing, MeshParts *parts)
     flat.colors      = arena_alloc(arena, flat.vertex_count, sizeof *flat.colors);
     flat.triangles   = arena_alloc(arena, flat.triangle_count, sizeof *flat.triangles);
     flat.material_of = arena_new_array(arena, uint32_t, flat.triangle_count);
+    if (parts->corner_colors)
+        flat.corner_colors = arena_alloc(arena, flat.triangle_count, sizeof *flat.corner_colors);
     if (parts->corner_places)
         flat.corner_places = arena_alloc(arena, flat.triangle_count, sizeof *flat.corner_places);
     if (parts->corner_frames)
@@ -240,6 +289,7 @@ void flatten_parts(const Meshing *meshing, MeshParts *parts)
     parts->colors        = (const unsigned char(*)[3])flat.colors;
     parts->triangles     = (const uint32_t(*)[3])flat.triangles;
     parts->material_of   = flat.material_of;
+    parts->corner_colors = (const unsigned char(*)[3][3])flat.corner_colors;
     parts->corner_places = (const double(*)[3][2])flat.corner_places;
     parts->corner_frames = (const MeshFrame(*)[3])flat.corner_frames;
     parts->parts         = list;

@@ -7,29 +7,34 @@
 
 static const uint32_t NONE = UINT32_MAX;
 
-/* What is known of a corner: where it is in a texture, and its frame. */
+/* What is known of a corner: where it is in a texture, its frame and its color. */
 typedef struct Corner {
-    double    place[2];
-    MeshFrame frame;
+    double        place[2];
+    MeshFrame     frame;
+    unsigned char color[3];
 } Corner;
 
 typedef struct Split {
     const MeshParts *from;
     size_t          *source; /* of vertices: the one that it was */
+    bool             all;
     double (*places)[2];
     MeshFrame *frames;
-    uint32_t  *next, *first; /* vertices of one source: the first, and one by one */
+    unsigned char (*colors)[3];
+    uint32_t *next, *first; /* vertices of one source: the first, and one by one */
     uint32_t (*triangles)[3];
     size_t count;
 } Split;
 
-static Corner corner_of(const MeshParts *parts, size_t triangle, int k)
+static Corner corner_of(const Split *split, size_t triangle, int k)
 {
-    Corner corner;
+    const MeshParts *parts = split->from;
+    Corner           corner;
     memset(&corner, 0, sizeof corner);
-    if (parts->corner_places)
+    memcpy(corner.color, mesh_corner_color(parts, triangle, k), sizeof corner.color);
+    if (split->all && parts->corner_places)
         memcpy(corner.place, parts->corner_places[triangle][k], sizeof corner.place);
-    if (parts->corner_frames)
+    if (split->all && parts->corner_frames)
         corner.frame = parts->corner_frames[triangle][k];
     return corner;
 }
@@ -39,7 +44,8 @@ static uint32_t take_vertex(Split *split, uint32_t source, const Corner *corner)
     uint32_t *at = &split->first[source];
     for (; *at != NONE; at = &split->next[*at])
         if (memcmp(split->places[*at], corner->place, sizeof corner->place) == 0 &&
-            memcmp(&split->frames[*at], &corner->frame, sizeof corner->frame) == 0)
+            memcmp(&split->frames[*at], &corner->frame, sizeof corner->frame) == 0 &&
+            memcmp(split->colors[*at], corner->color, sizeof corner->color) == 0)
             return *at;
     uint32_t number       = (uint32_t)split->count++;
     *at                   = number;
@@ -47,6 +53,7 @@ static uint32_t take_vertex(Split *split, uint32_t source, const Corner *corner)
     split->source[number] = source;
     split->frames[number] = corner->frame;
     memcpy(split->places[number], corner->place, sizeof corner->place);
+    memcpy(split->colors[number], corner->color, sizeof corner->color);
     return number;
 }
 
@@ -56,7 +63,7 @@ static MeshPart split_part(Split *split, const MeshPart *part)
     result.first_vertex = split->count;
     for (size_t i = part->first_triangle; i < part->first_triangle + part->triangle_count; i++)
         for (int k = 0; k < 3; k++) {
-            Corner corner          = corner_of(split->from, i, k);
+            Corner corner          = corner_of(split, i, k);
             split->triangles[i][k] = take_vertex(split, split->from->triangles[i][k], &corner);
         }
     result.vertex_count = split->count - result.first_vertex;
@@ -65,24 +72,23 @@ static MeshPart split_part(Split *split, const MeshPart *part)
 
 static void copy_vertices(const Split *split, Arena *arena, MeshParts *parts)
 {
-    double(*vertices)[3]      = arena_alloc(arena, split->count, sizeof *vertices);
-    unsigned char(*colors)[3] = arena_alloc(arena, split->count, sizeof *colors);
-    for (size_t i = 0; i < split->count; i++) {
+    double(*vertices)[3] = arena_alloc(arena, split->count, sizeof *vertices);
+    for (size_t i = 0; i < split->count; i++)
         memcpy(vertices[i], parts->vertices[split->source[i]], sizeof *vertices);
-        memcpy(colors[i], parts->colors[split->source[i]], sizeof *colors);
-    }
     parts->vertices = (const double(*)[3])vertices;
-    parts->colors   = (const unsigned char(*)[3])colors;
+    parts->colors   = (const unsigned char(*)[3])split->colors;
 }
 
-void split_corners(Arena *arena, MeshParts *parts)
+void split_corners(Arena *arena, MeshParts *parts, bool all)
 {
     size_t    triangles = parts_triangle_count(parts), most = 3 * triangles;
     size_t    vertices = parts_vertex_count(parts);
     MeshPart *list     = arena_new_array(arena, MeshPart, parts->part_count);
-    if (!parts->corner_places && !parts->corner_frames)
+    if (!parts->corner_colors && !(all && (parts->corner_places || parts->corner_frames)))
         return;
     Split split = {.from      = parts,
+                   .all       = all,
+                   .colors    = arena_alloc(arena, most, sizeof *split.colors),
                    .source    = arena_alloc(arena, most, sizeof *split.source),
                    .places    = arena_alloc(arena, most, sizeof *split.places),
                    .frames    = arena_alloc(arena, most, sizeof *split.frames),
@@ -93,8 +99,9 @@ void split_corners(Arena *arena, MeshParts *parts)
     for (size_t i = 0; i < parts->part_count; i++)
         list[i] = split_part(&split, &parts->parts[i]);
     copy_vertices(&split, arena, parts);
+    parts->corner_colors = NULL;
     parts->triangles     = (const uint32_t(*)[3])split.triangles;
-    parts->vertex_places = parts->corner_places ? (const double(*)[2])split.places : NULL;
-    parts->vertex_frames = parts->corner_frames ? split.frames : NULL;
+    parts->vertex_places = all && parts->corner_places ? (const double(*)[2])split.places : NULL;
+    parts->vertex_frames = all && parts->corner_frames ? split.frames : NULL;
     parts->parts         = list;
 }

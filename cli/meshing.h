@@ -81,12 +81,15 @@ void flatten_parts(const Meshing *meshing, MeshParts *parts);
 /* mesh_looks.c: the materials of triangles, as a format has them; warns of what a file is without. */
 void find_materials(const Meshing *meshing, const MeshFormat *format, const char *path,
                     MeshParts *parts);
+/* Where the middle of a triangle is in the scene. */
+void mesh_middle(const MeshParts *parts, size_t triangle, double middle[3]);
 /* mesh_places.c: where triangles are in textures, if there are any. */
 KrsStatus find_places(const Meshing *meshing, MeshParts *parts);
 /* mesh_frames.c: frames of the corners of triangles whose materials ask for them. */
 void find_frames(const Meshing *meshing, MeshParts *parts);
-/* mesh_split.c: tells of vertices what is known of corners, by doubling those of which corners differ. */
-void split_corners(Arena *arena, MeshParts *parts);
+/* mesh_split.c: tells of vertices what is known of corners, by doubling those of which corners differ: colors, and
+   with `all` places and frames. */
+void split_corners(Arena *arena, MeshParts *parts, bool all);
 /* Of a length of 1, in the order of unit_choices. */
 extern const double metres_of_units[];
 /* What a length of 1 is in the file. */

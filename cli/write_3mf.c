@@ -76,9 +76,9 @@ static void put_materials(const Model *model)
 
 /* ---- colors of corners ---- */
 
-static uint32_t color_of(const MeshParts *parts, uint32_t vertex)
+static uint32_t color_of(const MeshParts *parts, size_t triangle, int corner)
 {
-    const unsigned char *c = parts->colors[vertex];
+    const unsigned char *c = mesh_corner_color(parts, triangle, corner);
     return (uint32_t)c[0] << 16 | (uint32_t)c[1] << 8 | c[2];
 }
 
@@ -108,7 +108,7 @@ static bool find_colors(Model *model)
     count = 0;
     for (size_t t = 0; t < end; t++)
         for (int k = 0; k < 3 && varies(parts, t); k++)
-            model->colors[count++] = color_of(parts, parts->triangles[t][k]);
+            model->colors[count++] = color_of(parts, t, k);
     qsort(model->colors, count, sizeof *model->colors, compare_colors);
     for (size_t i = 0; i < count; i++)
         if (i == 0 || model->colors[i] != model->colors[i - 1])
@@ -127,9 +127,9 @@ static void put_colors(const Model *model)
     fputs("</m:colorgroup>\n", model->out);
 }
 
-static size_t color_number(const Model *model, uint32_t vertex)
+static size_t color_number(const Model *model, size_t triangle, int corner)
 {
-    const uint32_t  color = color_of(model->parts, vertex);
+    const uint32_t  color = color_of(model->parts, triangle, corner);
     const uint32_t *found = bsearch(&color, model->colors, model->color_count, sizeof color,
                                     compare_colors);
     return (size_t)(found - model->colors);
@@ -166,15 +166,15 @@ static void put_triangles(const Model *model, const MeshPart *part, bool mirrore
     const MeshParts *parts = model->parts;
     fputs("<triangles>\n", model->out);
     for (size_t i = part->first_triangle; i < part->first_triangle + part->triangle_count; i++) {
-        const size_t   first      = part->first_vertex;
-        const uint32_t corners[3] = {parts->triangles[i][0], parts->triangles[i][mirrored ? 2 : 1],
-                                     parts->triangles[i][mirrored ? 1 : 2]};
+        const size_t    first  = part->first_vertex;
+        const int       second = mirrored ? 2 : 1, third = mirrored ? 1 : 2;
+        const uint32_t *corners = parts->triangles[i];
         fprintf(model->out, "<triangle v1=\"%zu\" v2=\"%zu\" v3=\"%zu\"", corners[0] - first,
-                corners[1] - first, corners[2] - first);
+                corners[second] - first, corners[third] - first);
         if (varies(parts, i))
             fprintf(model->out, " pid=\"%d\" p1=\"%zu\" p2=\"%zu\" p3=\"%zu\"", COLORS,
-                    color_number(model, corners[0]), color_number(model, corners[1]),
-                    color_number(model, corners[2]));
+                    color_number(model, i, 0), color_number(model, i, second),
+                    color_number(model, i, third));
         else if (parts->material_of[i] != usual)
             fprintf(model->out, " pid=\"%d\" p1=\"%u\"", MATERIALS, parts->material_of[i]);
         fputs("/>\n", model->out);

@@ -29,8 +29,9 @@ typedef struct KrsMeshOptions {
     /* Leaves out triangles that the error permits to leave out, as krs_mesh_simplify does.  Half of the error is for
        that where not all faces are flat or round.  Where memory does not suffice for so small an error, none is left out. */
     bool simplify;
-    /* Only the shape counts.  Without it triangles stay as even as the mesher makes them where several materials are, or
-       one that varies, so that colours at their corners show it. */
+    /* Only the shape counts.  Without it triangles have one material each where materials change in steps, as from part to
+       part (KrsMesh.steps).  Where they change evenly, or parts are blended, triangles stay as even as the mesher makes them, so that
+       colours at their corners show it. */
     bool   shape;
     /* Looks at points and proves nothing: several times as fast.  What is thinner than some errors may be missed, and the
        error is that of these points. */
@@ -58,6 +59,9 @@ typedef struct KrsMesh {
     bool   estimate; /* of a component nothing is proven, as of its distance; or it is a draft */
     bool
         colored; /* no triangle was left out, since colours at their corners count: KrsMeshOptions.shape */
+    /* There are several materials, which change in steps, as from part to part, and the mesh is not even: each triangle has
+       the material of its middle, but for what is nearer than about two errors to its edges.  At corners several meet. */
+    bool steps;
 } KrsMesh;
 
 /*

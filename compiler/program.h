@@ -233,6 +233,9 @@ KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view);
 KrsStatus frame_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
                         size_t count, double farthest, double tolerance, RayLimits limits,
                         KrsHit *hits);
+/* As krs_probe; without `normals` those of the answers may be 0, and materials must not depend on them. */
+KrsStatus frame_probe(KrsFrame *frame, const double (*points)[3], size_t count, bool normals,
+                      KrsHit *hits);
 void      scene_free(KrsScene *scene);
 /* A frame of the same scene with the same parameters, time and zones. */
 KrsStatus frame_copy_of(const KrsFrame *frame, KrsFrame **copy);

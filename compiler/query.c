@@ -257,11 +257,12 @@ static void probe(KrsFrame *frame, const double point[3], const double view[3], 
 }
 
 /* As many points as lanes. */
-static KrsStatus probe_lanes(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits)
+static KrsStatus probe_lanes(KrsFrame *frame, const double (*points)[3], size_t count,
+                             bool with_normals, KrsHit *hits)
 {
-    double    normals[LANES][3], distances[LANES];
+    double    normals[LANES][3] = {{0}}, distances[LANES];
     uint32_t  nearest[LANES];
-    KrsStatus status = krs_normal(frame, points, count, normals);
+    KrsStatus status = with_normals ? krs_normal(frame, points, count, normals) : KRS_OK;
     if (status != KRS_OK || !frame_lanes(frame))
         return KRS_OUT_OF_MEMORY;
     points_look(frame, points, (const double(*)[3])normals, count, distances, nearest);
@@ -277,6 +278,12 @@ static KrsStatus probe_lanes(KrsFrame *frame, const double (*points)[3], size_t 
 
 KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits)
 {
+    return frame_probe(frame, points, count, true, hits);
+}
+
+KrsStatus frame_probe(KrsFrame *frame, const double (*points)[3], size_t count, bool normals,
+                      KrsHit *hits)
+{
     if (!are_finite(points, count))
         return KRS_BAD_ARGUMENT;
     frame_refresh_points(frame);
@@ -284,7 +291,7 @@ KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, Kr
     size_t    i      = 0;
     for (size_t now; by_lanes(frame, count - i) && status == KRS_OK; i += now) {
         now    = count - i < LANES ? count - i : LANES;
-        status = probe_lanes(frame, points + i, now, hits + i);
+        status = probe_lanes(frame, points + i, now, normals, hits + i);
     }
     for (; i < count && status == KRS_OK; i++)
         probe(frame, points[i], NULL, &hits[i]);

@@ -7,6 +7,7 @@
 #include "compiler/base/vec.h"
 #include "compiler/mesh/placing.h"
 #include "compiler/mesh/solid.h"
+#include "compiler/mesh/steps.h"
 
 /* Items that a search for how far one reaches may look at. */
 enum { MOST_VISITS = 1 << 20 };
@@ -217,7 +218,9 @@ static KrsStatus mesh_part(Assembler *a, size_t number)
                                  .root_count = 1,
                                  .box        = item->box,
                                  .estimate   = item->estimate,
-                                 .plain      = has_one_material(a->frame->scene, NULL)};
+                                 .plain      = has_one_material(a->frame->scene, NULL),
+                                 .steps      = materials_step(a->frame->scene, NULL),
+                                 .copy       = (const double(*)[4])a->to->items[number].first_copy};
     return mesh_item(a, number, &solid);
 }
 

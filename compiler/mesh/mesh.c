@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/mesh/borders.h"
 #include "compiler/mesh/flat.h"
 #include "compiler/mesh/voids.h"
 #include "compiler/program.h"
@@ -100,7 +101,7 @@ static void close_voids(Mesher *m)
 /* Whether triangles may be as few as the shape permits. */
 static bool may_be_few(const Mesher *m)
 {
-    return !m->options->even && (m->solid->plain || m->options->shape);
+    return !m->options->even && (m->solid->plain || m->solid->steps || m->options->shape);
 }
 
 /* False: it is not wanted, or not flat. */
@@ -164,6 +165,8 @@ static const KrsMeshOptions no_options = {0};
 
 /* The part of the work that is done when there is a mesh of all triangles. */
 static const double MESHED = 0.5;
+/* The same when there are as few as are wanted, which are then split where materials change. */
+static const double ALL_MESHED = 0.8;
 
 /* One of two steps of the work. */
 typedef struct Step {
@@ -221,16 +224,46 @@ static KrsStatus mesh_once(KrsFrame *frame, const KrsMeshOptions *options, const
 }
 
 /* Half of the error needs several times the memory: where there is not so much, no triangle is left out. */
-KrsStatus mesh_solid(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
-                     KrsMesh **mesh)
+static KrsStatus mesh_all(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
+                          KrsMesh **mesh)
 {
     KrsMeshOptions all    = *options;
     KrsStatus      status = mesh_once(frame, options, solid, mesh);
     all.simplify          = false;
     if (status == KRS_OUT_OF_MEMORY && options->simplify)
         status = mesh_once(frame, &all, solid, mesh);
+    return status;
+}
+
+/* Triangles of one material each. */
+static KrsStatus split_at_borders(KrsFrame *frame, const KrsMeshOptions *options,
+                                  const MeshSolid *solid, KrsMesh **mesh)
+{
+    Step           step   = {options, ALL_MESHED, 1 - ALL_MESHED};
+    KrsMeshOptions these  = options_of_step(&step);
+    KrsStatus      status = mesh_split_at_borders(frame, &these, solid->copy, *mesh);
     if (status == KRS_OK)
-        (*mesh)->colored = options->simplify && !options->even && !solid->plain && !options->shape;
+        return KRS_OK;
+    krs_mesh_free(*mesh);
+    *mesh = NULL;
+    return status;
+}
+
+KrsStatus mesh_solid(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
+                     KrsMesh **mesh)
+{
+    bool           steps  = solid->steps && !solid->plain && !options->even;
+    bool           split  = steps && !options->shape;
+    Step           step   = {options, 0, split ? ALL_MESHED : 1};
+    KrsMeshOptions these  = options_of_step(&step);
+    KrsStatus      status = mesh_all(frame, &these, solid, mesh);
+    if (status == KRS_OK && split)
+        status = split_at_borders(frame, options, solid, mesh);
+    if (status == KRS_OK) {
+        (*mesh)->steps   = steps;
+        (*mesh)->colored = options->simplify && !options->even && !solid->plain && !steps &&
+                           !options->shape;
+    }
     return status;
 }
 

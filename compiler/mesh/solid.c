@@ -1,6 +1,8 @@
 /* solid.c: components as one solid. */
 #include "compiler/mesh/solid.h"
 
+#include "compiler/mesh/steps.h"
+
 size_t solid_root_bytes(const KrsScene *scene)
 {
     return (scene->component_count + 2) * sizeof(Node);
@@ -43,4 +45,6 @@ void solid_of_components(const KrsScene *scene, const bool *wanted, MeshSolid *s
     solid->roots[solid->root_count] = zone;
     solid->zoned                    = zone != NODE_NONE;
     solid->plain                    = has_one_material(scene, wanted);
+    solid->steps                    = !solid->plain && materials_step(scene, wanted);
+    solid->copy                     = NULL;
 }

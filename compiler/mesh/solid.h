@@ -13,7 +13,9 @@ typedef struct MeshSolid {
     bool        zoned; /* behind them is the depth in zones */
     Box         box;
     bool        estimate;
-    bool        plain; /* of one material, which is the same everywhere */
+    bool        plain;       /* of one material, which is the same everywhere */
+    bool        steps;       /* of materials that change in steps (steps.h) */
+    const double (*copy)[4]; /* where in the scene it is once; NULL: it is where it is */
 } MeshSolid;
 
 /* All components, or those that are `wanted`, by their index among the lowered. */

@@ -173,10 +173,15 @@ done
 result $? "lathes of few corners have few triangles"
 run mesh --quiet egg.krs --even --simplify -o egg.stl
 said 2 "one of both" "--even and --simplify contradict each other"
-run mesh two.krs --error 0.05 -o t.obj
+cat >shaded.krs <<'END'
+show sphere(0.5).paint(mix(red, blue, clamp(y, 0, 1)));
+show box([1, 0.3, 1]).move([0, -1, 0]).paint(green);
+END
+run mesh shaded.krs --error 0.05 -o shaded.obj
 said 0 "--simplify leaves out" "colours that keep triangles are told of"
-run mesh --quiet two.krs --error 0.05 -o shape.stl
-run mesh --quiet two.krs --error 0.05 --simplify -o fewer.stl -o fewer.obj
+triangles=$(grep -c '^f' shaded.obj)
+run mesh --quiet shaded.krs --error 0.05 -o shape.stl
+run mesh --quiet shaded.krs --error 0.05 --simplify -o fewer.stl -o fewer.obj
 fewer=$(grep -c '^f' fewer.obj)
 [ "$status" -eq 0 ] && [ "$fewer" -lt $((triangles / 2)) ] && [ $((($(wc -c <shape.stl) - 84) / 50)) -eq "$fewer" ]
 result $? "--simplify leaves out triangles that colours need, and STL has no colours"

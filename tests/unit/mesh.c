@@ -489,8 +489,11 @@ static void triangles_are_left_out_where_that_is_permitted(void **context)
          false, false},
         {"show union(sphere(0.4), sphere(0.3).move([0.5, 0, 0]), blend: 0.2).paint(x * #ff0000);",
          true, true},
+        {"show union(sphere(0.4).paint(#ff0000), sphere(0.3).move([0.5, 0, 0]).paint(#00ff00), "
+         "blend: 0.2);",
+         false, false},
         {"show box([1, 0.5, 1]).paint(#ff0000); show box([0.5, 1, 0.5]).paint(#00ff00);", false,
-         false},
+         true},
         {"show box([1, 0.5, 1]).paint(#ff0000); show box([0.5, 1, 0.5]).paint(#00ff00);", true,
          true},
     };

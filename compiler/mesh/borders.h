@@ -1,0 +1,18 @@
+/*
+ * borders.h: triangles of one material each.
+ */
+#ifndef KRS_MESH_BORDERS_H
+#define KRS_MESH_BORDERS_H
+
+#include "compiler/krs.h"
+
+/*
+ * Splits the triangles of a mesh, in place, along the borders between materials that change in steps (steps.h), so that
+ * each has the material of its middle everywhere but nearer than one and a half errors to its edges.  So the surface
+ * stays the same.  Triangles are looked at about two errors apart, or a 500th of the size of the mesh if that is more.  `copy`: where in the scene a copy of the mesh is; NULL: it is where it
+ * is.  Of the options it asks for error, memory_limit, go_on and user.  On failure the mesh is as it was.
+ */
+KrsStatus mesh_split_at_borders(KrsFrame *frame, const KrsMeshOptions *options,
+                                const double (*copy)[4], KrsMesh      *mesh);
+
+#endif
