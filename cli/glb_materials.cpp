@@ -14,6 +14,13 @@ std::vector<double> scaled(const double numbers[3], double factor)
     return {factor * numbers[0], factor * numbers[1], factor * numbers[2]};
 }
 
+std::vector<double> base_color_of(const MeshMaterial &m)
+{
+    const double *color = m.look.color;
+    return m.even ? std::vector<double>{color[0], color[1], color[2], 1}
+                  : std::vector<double>{1, 1, 1, 1};
+}
+
 // A factor of the emission, which is a color up to 1.
 double emission_of(const MeshMaterial &m) { return std::fmax(largest(m.look.emission), 1); }
 

@@ -27,6 +27,7 @@ typedef struct MeshMaterial {
     unsigned char color[3];  /* of its first triangle, sRGB */
     MeshLook      look;      /* the mean over its triangles */
     bool          varies;    /* from place to place: color and look are not those of all */
+    bool          even;      /* all its triangles have this color */
     double        thickness; /* of solids that it lets light into, as vertices have lengths; or 0 */
 } MeshMaterial;
 

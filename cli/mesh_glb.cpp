@@ -2,6 +2,7 @@
 #include "cli/glb_materials.h"
 
 #include <cmath>
+#include <cstring>
 #include <sstream>
 
 namespace
@@ -44,6 +45,43 @@ int end_accessor(tinygltf::Model &model)
     while (model.buffers[0].data.size() % 4 != 0)
         model.buffers[0].data.push_back(0);
     return (int)model.accessors.size() - 1;
+}
+
+// What has been written of a part, for parts of the same vertices and triangles that are painted otherwise.
+struct Written {
+    const MeshPart *part;
+    bool            mirrored;
+    int             positions, triangles; // of all triangles; -1: they are of several materials
+};
+
+// A file that is being made.
+struct File {
+    tinygltf::Model      model;
+    std::vector<Written> written;
+};
+
+bool is_same_shape(const MeshParts *parts, const MeshPart &a, const MeshPart &b)
+{
+    if (a.vertex_count != b.vertex_count || a.triangle_count != b.triangle_count ||
+        std::memcmp(parts->vertices + a.first_vertex, parts->vertices + b.first_vertex,
+                    a.vertex_count * sizeof *parts->vertices) != 0)
+        return false;
+    for (size_t t = 0; t < a.triangle_count; t++)
+        for (int k = 0; k < 3; k++)
+            if (parts->triangles[a.first_triangle + t][k] - a.first_vertex !=
+                parts->triangles[b.first_triangle + t][k] - b.first_vertex)
+                return false;
+    return true;
+}
+
+// Of the same shape; nullptr: there is none.
+const Written *find_written(const File &file, const MeshParts *parts, const MeshPart &part,
+                            bool mirrored)
+{
+    for (const Written &written : file.written)
+        if (written.mirrored == mirrored && is_same_shape(parts, *written.part, part))
+            return &written;
+    return nullptr;
 }
 
 // A mirrored part is its image in the plane x = 0.
@@ -144,36 +182,63 @@ int add_triangles(tinygltf::Model &model, const MeshParts *parts, const MeshPart
     return end_accessor(model);
 }
 
-int add_mesh(tinygltf::Model &model, const MeshParts *parts, const MeshPart &part, bool mirrored,
+// Normals and tangents, when a primitive asks for them first.
+void put_frames(tinygltf::Model &model, const MeshParts *parts, const MeshPart &part, bool mirrored,
+                int frames[2], tinygltf::Primitive &primitive)
+{
+    if (frames[0] < 0) {
+        frames[0] = add_normals(model, parts, part, mirrored);
+        frames[1] = add_tangents(model, parts, part, mirrored);
+    }
+    primitive.attributes["NORMAL"]  = frames[0];
+    primitive.attributes["TANGENT"] = frames[1];
+}
+
+bool has_one_material(const MeshParts *parts, const MeshPart &part)
+{
+    for (size_t i = 0; i < part.triangle_count; i++)
+        if (parts->material_of[part.first_triangle + i] != parts->material_of[part.first_triangle])
+            return false;
+    return part.triangle_count > 0;
+}
+
+int add_mesh(File &file, const MeshParts *parts, const MeshPart &part, bool mirrored,
              const char *name)
 {
-    tinygltf::Mesh mesh;
-    int            positions = add_positions(model, parts, part, mirrored);
-    int            colors    = add_colors(model, parts, part);
-    int            places    = parts->vertex_places ? add_places(model, parts, part) : -1;
-    int            normals = -1, tangents = -1;
+    tinygltf::Model &model = file.model;
+    tinygltf::Mesh   mesh;
+    const Written   *same   = find_written(file, parts, part, mirrored);
+    bool             single = has_one_material(parts, part);
+    Written          now    = {&part, mirrored, same ? same->positions : -1, -1};
+    int              colors = -1, frames[2] = {-1, -1};
+    if (!same)
+        now.positions = add_positions(model, parts, part, mirrored);
+    int places = parts->vertex_places ? add_places(model, parts, part) : -1;
     for (uint32_t material = 0; material < parts->material_count; material++) {
-        int triangles = add_triangles(model, parts, part, material, mirrored);
+        int triangles = single && same && same->triangles >= 0 &&
+                                material == parts->material_of[part.first_triangle]
+                            ? same->triangles
+                            : add_triangles(model, parts, part, material, mirrored);
         if (triangles < 0)
             continue;
+        if (single)
+            now.triangles = triangles;
         tinygltf::Primitive primitive;
-        primitive.attributes["POSITION"] = positions;
-        primitive.attributes["COLOR_0"]  = colors;
+        primitive.attributes["POSITION"] = now.positions;
+        if (!parts->materials[material].even) {
+            colors                          = colors < 0 ? add_colors(model, parts, part) : colors;
+            primitive.attributes["COLOR_0"] = colors;
+        }
         if (places >= 0)
             primitive.attributes["TEXCOORD_0"] = places;
-        if (mesh_needs_frames(&parts->materials[material])) {
-            if (normals < 0) {
-                normals  = add_normals(model, parts, part, mirrored);
-                tangents = add_tangents(model, parts, part, mirrored);
-            }
-            primitive.attributes["NORMAL"]  = normals;
-            primitive.attributes["TANGENT"] = tangents;
-        }
+        if (mesh_needs_frames(&parts->materials[material]))
+            put_frames(model, parts, part, mirrored, frames, primitive);
         primitive.indices  = triangles;
         primitive.material = (int)material;
         primitive.mode     = TINYGLTF_MODE_TRIANGLES;
         mesh.primitives.push_back(primitive);
     }
+    file.written.push_back(now);
     mesh.name = name;
     model.meshes.push_back(mesh);
     return (int)model.meshes.size() - 1;
@@ -334,8 +399,7 @@ void place_by_instances(tinygltf::Model &model, int mesh, const std::vector<Copy
 
 const double MOST_NODES = 1024; // for copies that stand still; more are instances
 
-void add_copies(tinygltf::Model &model, const MeshParts *parts, const MeshBody &body,
-                tinygltf::Node &node)
+void add_copies(File &file, const MeshParts *parts, const MeshBody &body, tinygltf::Node &node)
 {
     const KrsAssembly *assembly   = body.assembly;
     const double       lengths    = parts->scale * parts->metres;
@@ -348,12 +412,12 @@ void add_copies(tinygltf::Model &model, const MeshParts *parts, const MeshBody &
             const MeshPart          &part   = parts->parts[body.part_of[i]];
             if ((still.empty() && moving.empty()) || part.triangle_count == 0)
                 continue;
-            int mesh = add_mesh(model, parts, part, mirrored != 0, body.name);
-            place_by_nodes(model, mesh, moving, lengths, node);
+            int mesh = add_mesh(file, parts, part, mirrored != 0, body.name);
+            place_by_nodes(file.model, mesh, moving, lengths, node);
             if (assembly->copies <= MOST_NODES)
-                place_by_nodes(model, mesh, still, lengths, node);
+                place_by_nodes(file.model, mesh, still, lengths, node);
             else if (!still.empty())
-                place_by_instances(model, mesh, still, lengths, node);
+                place_by_instances(file.model, mesh, still, lengths, node);
         }
 }
 
@@ -376,8 +440,7 @@ template <typename Node> void put_in_lods(Node &node, const std::vector<int> &id
 
 // A node for each further level of detail, which the extension MSFT_lod names.  No scene has them: a
 // program without it shows the first level.
-void add_lods(tinygltf::Model &model, const MeshParts *parts, const MeshBody &body,
-              tinygltf::Node &node)
+void add_lods(File &file, const MeshParts *parts, const MeshBody &body, tinygltf::Node &node)
 {
     std::vector<int>        ids;
     tinygltf::Value::Array  coverages;
@@ -386,28 +449,28 @@ void add_lods(tinygltf::Model &model, const MeshParts *parts, const MeshBody &bo
     for (size_t i = 1; i <= body.lod_count; i++, coverage /= 4) {
         tinygltf::Node level;
         level.name = body.name;
-        level.mesh = add_mesh(model, parts, parts->parts[body.first_part + i], false, body.name);
-        ids.push_back(add_node(model, level));
+        level.mesh = add_mesh(file, parts, parts->parts[body.first_part + i], false, body.name);
+        ids.push_back(add_node(file.model, level));
         coverages.push_back(tinygltf::Value(coverage));
     }
     coverages.push_back(tinygltf::Value(0.0));
     extras["MSFT_screencoverage"] = tinygltf::Value(coverages);
     node.extras                   = tinygltf::Value(extras);
     put_in_lods(node, ids, 0);
-    glb_use_extension(model.extensionsUsed, "MSFT_lod");
+    glb_use_extension(file.model.extensionsUsed, "MSFT_lod");
 }
 
-void add_body(tinygltf::Model &model, const MeshParts *parts, const MeshBody &body)
+void add_body(File &file, const MeshParts *parts, const MeshBody &body)
 {
     tinygltf::Node node;
     node.name = body.name;
     if (body.assembly)
-        add_copies(model, parts, body, node);
+        add_copies(file, parts, body, node);
     else
-        node.mesh = add_mesh(model, parts, parts->parts[body.first_part], false, body.name);
+        node.mesh = add_mesh(file, parts, parts->parts[body.first_part], false, body.name);
     if (body.lod_count > 0)
-        add_lods(model, parts, body, node);
-    model.scenes[0].nodes.push_back(add_node(model, node));
+        add_lods(file, parts, body, node);
+    file.model.scenes[0].nodes.push_back(add_node(file.model, node));
 }
 
 // A stream whose bytes go to the sink.
@@ -437,9 +500,10 @@ class SinkStream : public std::streambuf
 bool mesh_border_glb(const MeshParts *parts, MeshSink *sink, void *user)
 {
     try {
-        tinygltf::Model model;
-        SinkStream      bytes(sink, user);
-        std::ostream    stream(&bytes);
+        File             file  = {};
+        tinygltf::Model &model = file.model;
+        SinkStream       bytes(sink, user);
+        std::ostream     stream(&bytes);
         model.asset.version   = "2.0";
         model.asset.generator = "krs";
         model.buffers.resize(1);
@@ -447,7 +511,7 @@ bool mesh_border_glb(const MeshParts *parts, MeshSink *sink, void *user)
         model.defaultScene = 0;
         glb_add_materials(model, parts);
         for (size_t i = 0; i < parts->body_count; i++)
-            add_body(model, parts, parts->bodies[i]);
+            add_body(file, parts, parts->bodies[i]);
         return tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, stream, false, true) &&
                stream.good();
     } catch (...) {

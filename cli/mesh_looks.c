@@ -16,6 +16,9 @@ enum { PROBES = 256, MOST_LOOKS = 8, LOOK_NUMBERS = sizeof(MeshLook) / sizeof(do
 /* Parts of a property by which looks of triangles differ. */
 static const double LEAST_DIFFERENCE = 1e-3;
 
+/* The name of a material that is only a color, in krs_material_name. */
+#define PLAIN_COLOR "colour"
+
 /* The properties, and which numbers of a look they are. */
 typedef struct Property {
     const char *name;
@@ -205,10 +208,27 @@ static void group_triangles(const Meshing *meshing, const MeshParts *parts, Grou
 
 /* ---- materials ---- */
 
+/* What is painted with a color has no name but that. */
+static const char *name_of(const Meshing *meshing, const Group *group, bool even)
+{
+    const char *name  = krs_material_name(meshing->scene, group->number);
+    Text        color = {.arena = meshing->options->arena};
+    if (!name || strcmp(name, PLAIN_COLOR) != 0 || !even)
+        return name;
+    text_format(&color, "#%02x%02x%02x", group->color[0], group->color[1], group->color[2]);
+    return color.bytes;
+}
+
+static bool has_one_color(const Group *group)
+{
+    return memcmp(group->low.color, group->high.color, sizeof group->low.color) == 0;
+}
+
 /* What does not vary is as in the scene, without the rounding of a mean. */
 static MeshMaterial material_of(const Meshing *meshing, const Groups *groups, const Group *group)
 {
-    const char  *name = groups->by_name ? krs_material_name(meshing->scene, group->number) : NULL;
+    bool         even     = has_one_color(group) && !groups->varies[group->number];
+    const char  *name     = groups->by_name ? name_of(meshing, group, even) : NULL;
     MeshMaterial material = {.name = name ? name : "material", .look = group->first};
     for (size_t i = 0; i < PROPERTIES; i++)
         if (group->area > 0 && differs(&group->low, &group->high, &properties[i]))
@@ -216,6 +236,7 @@ static MeshMaterial material_of(const Meshing *meshing, const Groups *groups, co
                 ((double *)&material.look)[k] = group->sum[k] / group->area;
     memcpy(material.color, group->color, sizeof material.color);
     material.varies = groups->varies[group->number];
+    material.even   = even;
     return material;
 }
 

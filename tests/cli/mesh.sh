@@ -101,7 +101,7 @@ for triangle in triangles:
 colors = {base.get("name"): base.get("displaycolor") for base in model.iter(name + "base")}
 assert len(triangles) == int(sys.argv[1]) and model.get("unit") == "inch"
 assert all(n == 1 and edges.get((b, a)) == 1 for (a, b), n in edges.items())
-assert colors == {"red": "#D02010FF", "colour": "#20C040FF"}
+assert colors == {"red": "#D02010FF", "#20c040": "#20C040FF"}
 assert len({triangle.get("p1") for triangle in triangles}) == 2
 END
     result $? "3MF has the closed mesh, its unit, and materials by triangle"

@@ -43,7 +43,8 @@ for item in resources.iter(CORE + "object"):
             kind = "shaded"
         else:
             kind = bases[pid][int(triangle.get("p1", item.get("pindex")))]
-            wanted = ("steel", "#808080FF") if x > 7.5 else ("colour", "#FF6347FF" if x < 4.5 else "#000080FF")
+            wanted = ("steel", "#808080FF") if x > 7.5 else (
+                ("#ff6347", "#FF6347FF") if x < 4.5 else ("#000080", "#000080FF"))
             assert kind == wanted, (x, kind)
         counts[kind] = counts.get(kind, 0) + 1
 assert len(counts) == 4, counts

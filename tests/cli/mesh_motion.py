@@ -110,14 +110,20 @@ def paints(t):
 
 
 def check_paints(film):
-    """Nodes by where they are; two are at the origin."""
-    found = []
+    """Nodes by where they are; two are at the origin.  Parts that differ in paint share vertices and triangles."""
+    found, shapes = [], set()
     for node in film.nodes:
         primitive = film.file.json["meshes"][film.file.json["nodes"][node]["mesh"]]["primitives"][0]
-        colors = film.file.accessor(primitive["attributes"]["COLOR_0"])[:, :3] // 65535
-        assert (colors == colors[0]).all()
-        found.append((*(int(x) for x in np.round(film.vertices(node, 0).mean(0))), *(int(c) for c in colors[0])))
+        core = film.file.json["materials"][primitive["material"]]["pbrMetallicRoughness"]
+        color = np.array(core.get("baseColorFactor", [1, 1, 1, 1])[:3])  # which is left out if it is white
+        if "COLOR_0" in primitive["attributes"]:  # of materials with several colors
+            colors = film.file.accessor(primitive["attributes"]["COLOR_0"])[:, :3] // 65535
+            assert (colors == colors[0]).all()
+            color = color * colors[0]
+        shapes.add((primitive["attributes"]["POSITION"], primitive["indices"]))
+        found.append((*(int(x) for x in np.round(film.vertices(node, 0).mean(0))), *(int(c) for c in color)))
     assert sorted(found) == [(0, 0, 0, 1, 0, 0), (0, 0, 5, 0, 1, 0), (0, 3, 5, 1, 1, 1), (3, 0, 0, 0, 0, 1)], found
+    assert len(shapes) == 1, shapes
 
 
 kind, path, error = sys.argv[1], sys.argv[2], float(sys.argv[3])
