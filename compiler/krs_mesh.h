@@ -32,10 +32,10 @@ typedef struct KrsMeshOptions {
     /* Only the shape counts.  Without it triangles have one material each where materials change in steps, as from part to
        part (KrsMesh.steps).  Where they change evenly, or parts are blended, triangles stay as even as the mesher makes them, so that
        colours at their corners show it. */
-    bool   shape;
+    bool shape;
     /* Looks at points and proves nothing: several times as fast.  What is thinner than some errors may be missed, and the
        error is that of these points. */
-    bool draft;
+    bool   draft;
     size_t memory_limit; /* bytes; 0: KRS_USUAL_MEMORY */
     /* Told now and then which part of the work is done, as far as one can say; false: stop, with
        KRS_INTERRUPTED.  May be NULL. */
