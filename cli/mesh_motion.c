@@ -2,7 +2,7 @@
  * mesh_motion.c: how copies move from frame to frame, as keyframes.
  *
  * Each frame is a keyframe.  Between two of them a program turns a copy at an even speed and moves it straight on.
- * Where that is not where the copy belongs, as far as three places between tell, there is another keyframe in the
+ * Where that is not where the copy belongs, as far as seven places between tell, there is another keyframe in the
  * middle, and so on.
  */
 #include <math.h>
@@ -11,8 +11,10 @@
 
 #include "cli/meshing.h"
 
-enum { MOST_HALVINGS = 10, PLACES = 3 };
-static const double MOST_SAMPLES = 1e7; /* copies times frames */
+enum { MOST_HALVINGS = 10, PLACES = 7 };
+/* Of the time between two keyframes.  They are uneven, so that what shakes is not met at rest each time; one is the middle. */
+static const double SHARES[PLACES] = {0.083, 0.219, 0.347, 0.5, 0.638, 0.791, 0.926};
+static const double MOST_SAMPLES   = 1e7; /* copies times frames */
 
 typedef double Matrix[3][4];
 
@@ -98,7 +100,7 @@ static bool wants_key(const Motion *motion, size_t copy, Matrix *const ends[2],
     mesh_pose_of((const double(*)[4])ends[0][copy], &first);
     mesh_pose_of((const double(*)[4])ends[1][copy], &last);
     for (int i = 0; i < PLACES; i++) {
-        mesh_pose_between(&first, &last, (i + 1.0) / (PLACES + 1), &between);
+        mesh_pose_between(&first, &last, SHARES[i], &between);
         if (distance_between(motion, copy, &between, (const double(*)[4])places[i][copy]) >
             motion->tolerance)
             return true;
@@ -136,8 +138,7 @@ static KrsStatus refine(Motion *motion, const double frames[2], Matrix *const en
     bool     *wanted = motion->wanting[depth];
     KrsStatus status = KRS_OK;
     for (int i = 0; i < PLACES && status == KRS_OK; i++)
-        status = sample(motion, frames[0] + (frames[1] - frames[0]) * (i + 1) / (PLACES + 1),
-                        places[i]);
+        status = sample(motion, frames[0] + (frames[1] - frames[0]) * SHARES[i], places[i]);
     for (size_t i = 0; i < motion->copies && status == KRS_OK; i++) {
         wanted[i] = (!asked || asked[i]) && wants_key(motion, i, ends, places);
         any       = any || wanted[i];

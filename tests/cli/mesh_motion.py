@@ -99,6 +99,11 @@ def pair(t):
     return [image, image * [-1, 1, 1]]
 
 
+def shake(t):
+    """At rest at each quarter of a frame."""
+    return [corners([1, 0.2, 0.2]) + [0.3 * np.sin(32 * np.pi * t), 0, 0]]
+
+
 def twins(t):
     arm = corners([1, 0.2, 0.2])
     return [arm @ turn([0, 0, 1], t).T, arm @ turn([0, 0, 1], 2 * t).T + [3, 0, 0]]

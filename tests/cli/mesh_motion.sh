@@ -1,7 +1,7 @@
 #!/bin/sh
 # mesh_motion.sh: `krs mesh --frames` writes how parts move into GLB.
 . "$(dirname "$0")/common.sh"
-plan 18
+plan 19
 
 cat >spin.krs <<'SCENE'
 show box([2, 0.2, 0.4]).rotate([1, 2, 0], 9 * time).move([3 * sin(time), 0, 0]);
@@ -21,6 +21,7 @@ cat >twins.krs <<'SCENE'
 let arm = box([1, 0.2, 0.2]);
 show arm.rotate([0, 0, 1], time) | arm.rotate([0, 0, 1], 2 * time).move([3, 0, 0]);
 SCENE
+echo 'show box([1, 0.2, 0.2]).move([0.3 * sin(16 * tau * time), 0, 0]);' >shake.krs
 # At four frames a second the spin turns by more than half a turn between two.
 moves() { # scene, its error, options
     scene=$1 error=$2
@@ -40,6 +41,7 @@ moves wave 0.02 --frames 0..12
 moves pair 0.02 --frames 0..12
 moves wave 0.02 --frames 0..12 --split components
 moves twins 0.02 --frames 0..12
+moves shake 0.02 --frames 0..12
 cat >paints.krs <<'SCENE'
 let wheel = box([1, 0.2, 0.2]).rotate([0, 0, 1], time);
 show wheel.paint([1, 0, 0]) | wheel.paint([0, 0, 1]).move([3, 0, 0]);
