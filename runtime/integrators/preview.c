@@ -28,6 +28,7 @@ typedef struct Preview {
     Job    *job;
     Plan   *plan;
     Kernel *secondary;       /* NULL: there is neither occlusion nor a light with shadows */
+    Kernel *occluders;       /* NULL: there is no occlusion */
     bool    by_roots;        /* secondary rays go from root to root */
     bool    filters_shadows; /* neighbouring pixels share what rays to lights find */
 } Preview;
@@ -54,9 +55,9 @@ static void add_pixels(Preview *p, KrsPhase phase, PixelKernel kernel, ListId in
     add_items(p, phase, job_pixel_kernel(p->job, kernel), in, out, constants, weight);
 }
 
-/* Adds a pass of rays from the hits of a list; `clears_shared`: no word of shared.glsl is known
-   before. */
-static void add_rays(Preview *p, KrsPhase phase, ListId in, bool clears_shared,
+/* Adds a pass of rays from the hits of a list, which may write a list; `clears_shared`: no word of
+   shared.glsl is known before. */
+static void add_rays(Preview *p, KrsPhase phase, ListId in, ListId out, bool clears_shared,
                      PassConstants constants, float weight)
 {
     plan_add(p->plan, (Pass){.kind          = PASS_RAYS,
@@ -64,7 +65,7 @@ static void add_rays(Preview *p, KrsPhase phase, ListId in, bool clears_shared,
                              .weight        = weight,
                              .kernel        = p->secondary,
                              .in            = in,
-                             .out           = NO_LIST,
+                             .out           = out,
                              .clears_shared = clears_shared,
                              .constants     = constants});
 }
@@ -101,9 +102,10 @@ static void add_background(Preview *p)
                    0);
 }
 
-/* Adds a ray over the hemisphere of each hit, and means over neighbouring pixels.  The means are
-   needed however many rays there are: the light between a surface and its occluders is no linear
-   function of openness (shade.comp).  So the mean of noisy pixels would be too dark. */
+/* Adds a ray over the hemisphere of each hit, what is known of its occluder, and means over neighbouring
+   pixels.  The means are needed however many rays there are: the light between a surface and its
+   occluders is no linear function of openness (openness.glsl).  So the mean of noisy pixels would be
+   too dark. */
 static void add_occlusion(Preview *p)
 {
     static const struct {
@@ -119,7 +121,10 @@ static void add_occlusion(Preview *p)
         .phase = RAYS_OVER_HEMISPHERE, .value = VALUE_OCCLUSION, .filters = 1};
     if (p->job->options.no_occlusion)
         return;
-    add_rays(p, KRS_PHASE_OCCLUSION, LIST_ALL, true, constants, 0.6f * WEIGHT_OCCLUSION);
+    add_rays(p, KRS_PHASE_OCCLUSION, LIST_ALL, LIST_REMAINING, true, constants,
+             0.6f * WEIGHT_OCCLUSION);
+    add_items(p, KRS_PHASE_OCCLUSION, p->occluders, LIST_REMAINING, NO_LIST, constants,
+              0.1f * WEIGHT_OCCLUSION);
     for (size_t i = 0; i < sizeof means / sizeof means[0]; i++) {
         constants.phase = means[i].phase;
         add_pixels(p, KRS_PHASE_OCCLUSION, PIXELS_OCCLUSION, means[i].in, means[i].out, constants,
@@ -133,8 +138,8 @@ static void add_occlusion(Preview *p)
 static void add_unproven(Preview *p, PassConstants constants, float weight)
 {
     constants.phase = RAYS_CONES;
-    add_rays(p, KRS_PHASE_SHADOWS, p->by_roots ? NO_LIST : LIST_OF_QUARTERS, true, constants,
-             0.5f * weight);
+    add_rays(p, KRS_PHASE_SHADOWS, p->by_roots ? NO_LIST : LIST_OF_QUARTERS, NO_LIST, true,
+             constants, 0.5f * weight);
     constants.phase = 0;
     add_pixels(p, KRS_PHASE_SHADOWS, PIXELS_UNPROVEN, LIST_OF_QUARTERS, LIST_REMAINING, constants,
                0.5f * weight);
@@ -164,7 +169,7 @@ static void add_visibility(Preview *p, uint32_t light, uint32_t value, float wei
         .phase = RAYS_TO_LIGHT, .light = light, .value = value, .filters = filters};
     if (shares)
         add_unproven(p, constants, 0.2f * weight);
-    add_rays(p, KRS_PHASE_SHADOWS, shares ? LIST_REMAINING : LIST_ALL, !shares, constants,
+    add_rays(p, KRS_PHASE_SHADOWS, shares ? LIST_REMAINING : LIST_ALL, NO_LIST, !shares, constants,
              0.6f * weight);
     if (filters)
         add_means(p, constants, 0.2f * weight);
@@ -300,7 +305,9 @@ static bool find_secondary(Preview *p)
         return true;
     p->by_roots  = rendering_has_roots(p->job->rendering, options->trace);
     p->secondary = rendering_secondary(p->job->rendering, options->schedule, p->by_roots);
-    return p->secondary != NULL;
+    if (!options->no_occlusion)
+        p->occluders = rendering_occluders(p->job->rendering);
+    return p->secondary && (options->no_occlusion || p->occluders);
 }
 
 bool preview_plan(Job *job, Plan *plan)

@@ -62,9 +62,8 @@ vec3 traced_by_layers(Layers layers, vec2 traced)
            layers.bsdf.under_coat * layers.bsdf.mirrored * traced.x;
 }
 
-// The light of the sky.  `bounce`: the part that reaches the body, with the light between it and
-// what occludes it.
-vec3 ambient_of_layers(Layers layers, vec3 toward_eye, vec3 normal, float openness, vec3 bounce,
+// The light of the sky: `to_body` and `to_mirrors` are the parts that reach the body and what mirrors.
+vec3 ambient_of_layers(Layers layers, vec3 toward_eye, vec3 normal, vec3 to_body, float to_mirrors,
                        vec2 traced)
 {
     Bsdf bsdf = layers.bsdf;
@@ -77,5 +76,6 @@ vec3 ambient_of_layers(Layers layers, vec3 toward_eye, vec3 normal, float openne
     vec3 coat = find_sky_mirrored(layers.axes.normal, toward_eye, layers.coat_roughness);
     vec3 mirrored = bsdf.under_sheen * bsdf.coated * (1.0 - traced.y) * coat +
                     bsdf.under_coat * bsdf.mirrored * (1.0 - traced.x) * body;
-    return layers.body * around * bounce + (bsdf.sheen * bsdf.fuzzy * around + mirrored) * openness;
+    return layers.body * around * to_body +
+           (bsdf.sheen * bsdf.fuzzy * around + mirrored) * to_mirrors;
 }

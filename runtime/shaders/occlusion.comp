@@ -7,20 +7,22 @@
  *
  * Means are computed three times.  The first are at sparse pixels (hit_lists.glsl), of all pixels
  * nearby, whose rays together are spread evenly.  The second are there as well, of every second of
- * the first means, as far as the occluders are.  The third are at all pixels, of the means at the
- * sparse pixels around.
+ * the first means.  Their reach follows from how far the occluders are: openness changes over the
+ * harmonic mean of their distances (Ward and others 1988).  The third are at all pixels, of the means
+ * at the sparse pixels around.
  */
 #include "frame.glsl"
 #include "hit_lists.glsl"
 #include "shared.glsl"
 #include "neighbours.glsl"
+#include "occluders.glsl"
+#include "openness.glsl"
 
 // A mean is over hits at most ON_PLANE pixels from the plane; the sum of their weights is at least
 // LEAST_WEIGHT.  The reaches are those of the three means, in pixels.
 const float ON_PLANE = 1.5, LEAST_WEIGHT = 0.5, NEAR_REACH = 3.0, WIDE_REACH = 8.0, FAR_REACH = 4.5;
-// The reach of the wider mean, relative to the distance of the occluders: nearer to them occlusion
-// changes within a pixel.
-const float REACH_OF_HITS = 0.25;
+// The reach of the wider mean, relative to the distance of the occluders.
+const float REACH_OF_HITS = 0.7;
 // Added to the mean squares of offsets, in reaches: slopes of few noisy taps count less.
 const float LEAST_SPREAD = 0.1;
 
@@ -38,40 +40,58 @@ ivec2 sparse_at(ivec2 pixel)
     return 4 * (pixel >> 3) + within;
 }
 
-// The reach of the wider mean, in pixels, by how open the hit is.
-float find_wide_reach(HitPoint hit, float openness)
+bool is_sparse(ivec2 pixel) { return pixel_of_sparse(sparse_at(pixel)) == pixel; }
+
+// The reach of the wider mean, in pixels, by the inverse of the distance of the occluders.
+float find_wide_reach(float nearness)
 {
-    float hit_distance = frame.occlusion_reach * sqrt(openness); // root of the mean square
-    return min(WIDE_REACH, REACH_OF_HITS * hit_distance / hit.width) *
-           inversesqrt(float(control.rays));
+    return REACH_OF_HITS * inversesqrt(float(control.rays)) / max(nearness, 1e-6);
 }
 
 // Sums over the pixels around, of weights and of weighted products; offsets are in reaches.
 struct Sums {
     float weight, openness;
+    float nearness;       // inverse distances of occluders, in pixels, if these are rays
+    float back;           // the part that is not open times the albedo of its occluders
     vec2  offset, sloped; // of offsets; of openness times offset
     vec3  square;         // of x x, x y and y y
 };
 
-// These are all of 5x5 pixels, or 3x3 sparse ones at this spacing.
-Sums sum_openness(uint list, ivec2 pixel, HitPoint hit, vec3 normal, int spacing, float radius)
+// What is read: a list of shared.glsl, and where albedos are.
+struct Source {
+    uint words, albedos;
+};
+
+// These are all of 5x5 pixels, or 3x3 sparse ones at this spacing, up to `radius` in the picture and
+// `farthest` in space, both in pixels.
+Sums sum_openness(Source source, ivec2 pixel, HitPoint hit, vec3 normal, int spacing, float radius,
+                  float farthest)
 {
     bool  sparse = spacing > 0;
     ivec2 nearest = sparse_at(pixel);
     int   reach = sparse ? 1 : 2;
     float within = 1.0 / radius, thin = 1.0 / (ON_PLANE * hit.width);
-    Sums  sums = Sums(0.0, 0.0, vec2(0.0), vec2(0.0), vec3(0.0));
+    float near = 1.0 / (farthest * hit.width);
+    Sums  sums = Sums(0.0, 0.0, 0.0, 0.0, vec2(0.0), vec2(0.0), vec3(0.0));
+    bool  are_means = control.phase != OCCLUSION_AT_SPARSE_PIXELS;
     ivec2 tap = ivec2(-reach);
     do {
         ivec2     at = sparse ? pixel_of_sparse(nearest + spacing * tap) : pixel + tap;
-        Neighbour there = find_neighbour(list, at);
+        Neighbour there = find_neighbour(source.words, at);
         vec2      lateral = vec2(at - pixel) * within;
-        float     above = dot(there.position - hit.position, normal) * thin;
-        float     weight = max(1.0 - above * above, 0.0) * max(1.0 - dot(lateral, lateral), 0.0);
+        vec3      difference = there.position - hit.position, apart = near * difference;
+        float     above = dot(difference, normal) * thin;
+        float     weight = max(1.0 - above * above, 0.0) * max(1.0 - dot(lateral, lateral), 0.0) *
+                       max(1.0 - dot(apart, apart), 0.0);
         weight = there.exists ? weight : 0.0;
-        float open = weight * openness_of_code(there.code);
+        bool  blocked = there.code >= NARROWEST;
+        bool  is_mean = are_means && (sparse || is_sparse(at));
+        float open = weight * (is_mean ? openness_of_code(there.code) : float(!blocked));
+        float closed = weight - open;
         sums.weight += weight;
         sums.openness += open;
+        sums.nearness += blocked ? weight / width_of_code(there.code) : 0.0;
+        sums.back += closed > 0.0 ? closed * find_occluder(source.albedos, at) : 0.0;
         sums.offset += weight * lateral;
         sums.sloped += open * lateral;
         sums.square += weight * lateral.xxy * lateral.xyy;
@@ -104,21 +124,28 @@ void do_item(uint number)
     uint  slot = find_listed(control.reading + number);
     bool  upsampled = control.phase == OCCLUSION_UPSAMPLED;
     bool  wider = control.phase == OCCLUSION_WIDER;
-    uint  list = wider ? MEANS_SHARED : RAYS_SHARED;
+    bool  first = control.phase == OCCLUSION_AT_SPARSE_PIXELS;
     int   spacing = wider ? 2 : upsampled ? 1 : 0;
+    Source source = wider ? Source(MEANS_SHARED, LIST_REMAINING) : Source(RAYS_SHARED, LIST_WIDE);
     HitPoint hit = hit_point_of_slot(slot);
-    float own = openness_of_code(max(find_shared(list, slot) & 255u, CLOSED));
-    float radius = wider ? find_wide_reach(hit, own) : upsampled ? FAR_REACH : NEAR_REACH;
+    float farthest = wider ? max(find_wide_reach(load_hit(LIGHTING, slot).x), 1.0) : INFINITE;
+    float radius = wider ? min(farthest, WIDE_REACH * inversesqrt(float(control.rays)))
+                   : upsampled ? FAR_REACH : NEAR_REACH;
     vec3  normal = load_hit(FACING, slot).xyz;
-    Sums  sums = sum_openness(list, ivec2(pixel_of(slot)), hit, normal, spacing, max(radius, 1.0));
+    ivec2 pixel = ivec2(pixel_of(slot));
+    Sums  sums = sum_openness(source, pixel, hit, normal, spacing, max(radius, 1.0), farthest);
     float openness = find_openness(sums);
+    float albedo = sums.back / max(sums.weight - sums.openness, 1e-6);
     // Remaining pixels also use the words of sparse ones, so the mean of a sparse pixel replaces
-    // the word of its ray.
-    if (control.phase == OCCLUSION_AT_SPARSE_PIXELS || wider)
+    // the word of its ray.  Until there is openness, its place has how near occluders are.
+    if (first)
+        store_lighting(control.value, slot, sums.nearness / max(sums.weight, 1e-6));
+    if (first || wider) {
         store_shared(wider ? RAYS_SHARED : MEANS_SHARED, slot, find_depth(hit),
                      code_of_openness(openness));
-    else if (!upsampled || sums.weight > LEAST_WEIGHT)
-        store_lighting(control.value, slot, openness);
+        store_occluder(wider ? LIST_WIDE : LIST_REMAINING, pixel, albedo);
+    } else if (!upsampled || sums.weight > LEAST_WEIGHT)
+        store_lighting(control.value, slot, pack_openness(Openness(openness, albedo)));
     else
         pixel_lists[LIST_REMAINING * band_pixels() + atomicAdd(counts.remaining, 1u)] = slot;
 }

@@ -19,30 +19,34 @@
 #include "frame.glsl"
 #include "hit_lists.glsl"
 #include "shared.glsl"
-#include "samples.glsl"
+#include "hemisphere.glsl"
+#include "occluders.glsl"
 #ifdef PATH_RAYS
 #include "results.glsl"
 #endif
 #include "media.glsl"
 
 const uint MOST_STEPS = 1024u;
-// How many pixels above the surface rays start, where it is even and where it is not.  Rays for
-// occlusion start at least this part of their reach above it, as finer detail does not count for
-// them.
-const float LIFT_OF_EVEN = 0.125, LIFT = 0.5, LIFT_OF_REACH = 1.0 / 128.0;
+// How many pixels above the surface rays start, where it is even and where it is not.
+const float LIFT_OF_EVEN = 0.125, LIFT = 0.5, LIFT_OF_OCCLUSION = 1.0;
 // The evenness below which a surface is uneven, and above which it is even.
 const float UNEVEN = 0.9, EVEN = 0.99;
 // Up to this many pixels from the start, a distance may be as small a part of the true one as it is
 // there.
 const float NEAR_START = 8.0;
 // The least step of a ray: the smaller of these parts of the permitted error and of a pixel.  It
-// grows by STEP_GROWTH with each step, so that a ray which creeps along a surface leaves it.
+// grows by STEP_GROWTH with each step, so that a ray which creeps along a surface leaves it; rays for
+// occlusion go farther.
 const float LEAST_STEP = 0.0625, LEAST_STEP_IN_PIXELS = 0.015625;
 #ifdef PATH_RAYS // they start nearer to the surface
 const float STEP_GROWTH = 1.02;
 #else
-const float STEP_GROWTH = 1.008;
+const float STEP_GROWTH = 1.008, STEP_GROWTH_OF_SKY = 1.08;
 #endif
+// A ray for occlusion that recedes from all there is takes steps of at least this part of its length, and
+// of all of it where it is farther than so many reaches: what is out there and counts is large.  Most of
+// those that recede more slowly graze a surface, so that they count little.
+const float LEAST_OF_LENGTH = 0.25, FAR_REACHES = 60.0;
 // For so long a ray of a path that begins behind its surface is not blocked by that.
 const float LEAVING_IN_PIXELS = 0.125;
 // The margin around a cone, in pixels: if the cone is empty, the light is visible from pixels as
@@ -67,7 +71,6 @@ float t;
 float end;         // of the ray
 float facing;      // cosine between the normal and the direction
 float lift;        // height of the start above the surface
-float lift_in_pixels;
 bool  is_cone;     // else a ray
 float spread;      // radius of the cone at distance 1
 float margin;      // width around the cone that must be empty, too
@@ -75,7 +78,7 @@ bool  blocked;
 bool  below_horizon;            // its point of the light is behind the surface
 float last_distance, last_step; // the distance before the last step, and its length
 bool  took_least_step;          // the last step was the least one, not the distance
-float least_step;
+float least_step, growth;
 float slope;                  // of the radius along the ray: a running mean
 #ifdef STEPS
 float most_ahead;             // how far it is to the next root, or less
@@ -118,10 +121,16 @@ float find_end_of_cone()
     return min(min(ends.x, ends.y), min(ends.z, end));
 }
 
+// How high a ray starts above a surface of this evenness.
+float find_lift(float evenness)
+{
+    float pixels = mix(LIFT, LIFT_OF_EVEN, smoothstep(UNEVEN, EVEN, evenness));
+    return pixels * hit.near + 4.0 * hit.rounding;
+}
+
 // Aims a cone at the centre of the light, or a ray at a random point of it.
 void aim_at_light(vec3 normal, vec2 square, vec2 disc)
 {
-    lift = lift_in_pixels * hit.near + 4.0 * hit.rounding;
     start = hit.position + normal * lift;
     vec3  toward = positional ? light.vector - start : light.vector;
     float light_distance = max(length(toward), 1e-12);
@@ -153,17 +162,15 @@ void aim_at_light(vec3 normal, vec2 square, vec2 disc)
     }
 }
 
-// Aims over the hemisphere, with a density in proportion to the cosine, as light from there counts.
-void aim_over_hemisphere(vec3 normal, vec2 point)
+// Aims over the hemisphere, up to the end of the scene.  Rays that fall end earlier: what they would meet
+// is mostly ground in the light, for which the colour of the sky's ground stands.
+void aim_over_hemisphere(vec3 normal, vec2 disc)
 {
-    vec3 right, up;
-    lift = max(lift_in_pixels * hit.near, LIFT_OF_REACH * frame.occlusion_reach) +
-           4.0 * hit.rounding;
+    vec3 toward = find_hemisphere_ray(normal, disc);
+    lift = max(lift, LIFT_OF_OCCLUSION * hit.near);
     start = hit.position + normal * lift;
-    end = frame.occlusion_reach;
-    find_frame(normal, right, up);
-    float rise = sqrt(max(1.0 - dot(point, point), 0.0));
-    begin_ray(normal, point.x * right + point.y * up + rise * normal);
+    end = toward.y < 0.0 ? frame.occlusion_reach : frame.farthest;
+    begin_ray(normal, toward);
 }
 
 #ifdef PATH_RAYS
@@ -234,10 +241,10 @@ void begin_item(uint number, bool saved)
     below_horizon = false;
     vec4 facing_and_evenness = load_hit(FACING, hit.slot);
     vec3 normal = facing_and_evenness.xyz;
-    lift_in_pixels = mix(LIFT, LIFT_OF_EVEN, smoothstep(UNEVEN, EVEN, facing_and_evenness.w));
 #ifdef PATH_RAYS
     aim_as_chosen(normal);
 #else
+    lift = find_lift(facing_and_evenness.w);
     vec2 square = sample_now(), disc = disc_of_square(square);
     if (control.phase == RAYS_OVER_HEMISPHERE)
         aim_over_hemisphere(normal, disc);
@@ -255,6 +262,10 @@ void begin_item(uint number, bool saved)
 #endif
     took_least_step = true;
     float least = min(LEAST_STEP * frame.error, LEAST_STEP_IN_PIXELS);
+    growth = STEP_GROWTH;
+#ifndef PATH_RAYS
+    growth = control.phase == RAYS_OVER_HEMISPHERE ? STEP_GROWTH_OF_SKY : growth;
+#endif
     least_step = (is_cone ? 1.0 : least) * hit.width + hit.rounding;
 }
 
@@ -311,6 +322,17 @@ bool is_blocked(float distance)
     return distance < (is_cone ? clearance_needed(t) : near * hit.rounding);
 }
 
+// The least step of a ray for occlusion that is as far from all there is, and was so far before.
+float hurry(float distance)
+{
+#ifdef PATH_RAYS
+    return 0.0;
+#else
+    bool recedes = control.phase == RAYS_OVER_HEMISPHERE && distance > last_distance;
+    return recedes ? (t > FAR_REACHES * frame.occlusion_reach ? 1.0 : LEAST_OF_LENGTH) * t : 0.0;
+#endif
+}
+
 void take_distance(float distance)
 {
     distance *= hit.side;
@@ -344,8 +366,14 @@ void take_distance(float distance)
     relaxed = min(relaxed, most_ahead);
 #endif
     float next = took_least_step ? least_step : max(relaxed, least_step);
+    float hurried = hurry(distance);
+#ifdef STEPS
+    hurried = min(hurried, most_ahead);
+#endif
+    took_least_step = took_least_step || !steps_back && hurried > next;
+    next = max(next, hurried);
     next = min(next, max(end - t, 0.0));
-    least_step *= STEP_GROWTH;
+    least_step *= growth;
     t += steps_back ? last_radius - last_step : inside && !is_cone ? min(crossing, 0.0) : next;
     last_step = steps_back ? last_radius : next;
     last_distance = steps_back ? last_distance : distance;
@@ -363,8 +391,14 @@ float find_penumbra()
     return width / hit.width;
 }
 
-// The openness of a ray that hits something after this fraction of its reach.
-float openness_of_hit(float fraction) { return fraction * fraction; }
+#ifndef PATH_RAYS
+// Lists the hit as one whose ray has met an occluder.
+void list_occluder()
+{
+    store_occluder(LIST_WIDE, ivec2(pixel_of(hit.slot)), t);
+    pixel_lists[LIST_REMAINING * band_pixels() + atomicAdd(counts.remaining, 1u)] = hit.slot;
+}
+#endif
 
 void end_ray()
 {
@@ -376,8 +410,9 @@ void end_ray()
     float visible = blocked || below_horizon ? 0.0 : 1.0;
     uint  code = below_horizon ? BELOW_HORIZON : blocked ? code_of_width(find_penumbra()) : LIT;
     if (control.phase == RAYS_OVER_HEMISPHERE) {
-        visible = blocked ? openness_of_hit(t / frame.occlusion_reach) : 1.0;
-        code = code_of_openness(visible);
+        code = blocked ? code_of_width(t / hit.width) : LIT;
+        if (blocked)
+            list_occluder();
     }
     if (control.filters != 0u)
         store_shared(RAYS_SHARED, hit.slot, find_depth(hit), code);

@@ -20,6 +20,8 @@
 #include "results.glsl"
 #include "planes.glsl"
 #include "sky_means.glsl"
+#include "optics.glsl"
+#include "openness.glsl"
 #ifdef MIRRORS
 #include "mirrors.glsl"
 #endif
@@ -153,20 +155,30 @@ vec3 direct_light(Light light, HitPoint hit, Coat coat, vec3 facing, float visib
     return visible * color * find_reflected(coat, toward);
 }
 
-// The light of the sky, as far as the hemisphere is open.  Occluders are taken to have the
-// surface's own colour, and give some light back.
-vec3 ambient(Coat coat, float openness)
+// A guess at the colour of occluders, of which only the mean brightness is known: that of the surface,
+// darkened or whitened.
+vec3 guess_color(vec3 own, float albedo)
 {
-    vec3 bounce = openness / max(1.0 - coat.color * (1.0 - openness), 0.05);
+    float lum = luminance(own);
+    vec3  darker = own * (albedo / max(lum, 1e-6));
+    vec3  lighter = mix(own, vec3(1.0), (albedo - lum) / max(1.0 - lum, 1e-6));
+    return albedo < lum ? darker : lighter;
+}
+
+// The light of the sky, with what occluders give back of it.
+vec3 ambient(Coat coat, Openness openness)
+{
+    vec3  body = with_bounces(openness.open, guess_color(coat.color, openness.albedo));
+    float mirror = with_bounces(openness.open, vec3(openness.albedo)).x;
 #ifdef LAYERS
-    return ambient_of_layers(coat.layers, coat.toward_eye, coat.mean_length * coat.normal, openness,
-                             bounce, coat.traced);
+    return ambient_of_layers(coat.layers, coat.toward_eye, coat.mean_length * coat.normal, body,
+                             mirror, coat.traced);
 #else
     vec3 scattered = coat.mirror.below * coat.color *
-                     find_sky_around(coat.mean_length * coat.normal) * bounce;
+                     find_sky_around(coat.mean_length * coat.normal) * body;
     vec3 mirrored = find_sky_mirrored(coat.normal, coat.toward_eye, coat.roughness) *
                     coat.mirror.around;
-    return scattered + mirrored * openness * (1.0 - coat.traced.x);
+    return scattered + mirrored * mirror * (1.0 - coat.traced.x);
 #endif
 }
 
@@ -214,6 +226,11 @@ void begin_group()
     rows = first ? control.rows : 1u << ROW_COLORS;
 }
 
+Openness find_openness(vec4 lighting)
+{
+    return control.no_occlusion != 0u ? Openness(1.0, 0.0) : unpack_openness(lighting.x);
+}
+
 #ifdef CATCHES
 // The irradiance over pi by a light at the plate, if nothing is in its way.
 vec3 light_on_plate(Light light, HitPoint hit, vec3 normal, out float above)
@@ -231,7 +248,7 @@ vec3 light_on_plate(Light light, HitPoint hit, vec3 normal, out float above)
 // the lights of this pass.
 void catch_light(HitPoint hit, uint index, vec3 normal, vec4 lighting)
 {
-    float openness = control.no_occlusion != 0u ? 1.0 : lighting.x;
+    float openness = find_openness(lighting).open;
     vec3  sky = first ? find_sky_around(normal) : vec3(0.0);
     vec3  found = openness * sky, without = sky;
     for (uint i = 0u; i < control.count; i++) {
@@ -274,10 +291,10 @@ void shade_item(HitPoint hit)
     Coat       coat = find_coat(hit, surface, facing.w);
     vec4       radiance = vec4(0.0);
     vec3       weight = vec3(1.0);
-    float      openness = control.no_occlusion != 0u ? 1.0 : lighting.x;
+    Openness   openness = find_openness(lighting);
 #ifdef MIRRORS
     if (are_of_paths()) {
-        openness = 1.0;
+        openness = Openness(1.0, 0.0);
         weight = load_path(PATH_WEIGHT, index).xyz;
         weight *= find_left(boundary, find_way(index, hit, find_end(index).t, false));
     }

@@ -9,9 +9,10 @@
 
 // Codes of rays to a light.  LIT: nothing is in between.  BELOW_HORIZON: the point of the light
 // lies behind the surface itself.  NARROWEST to WIDEST: the ray is blocked, and this is the width
-// of the penumbra.
+// of the penumbra.  Those of rays over the hemisphere are the same, but the width is how far away
+// the occluder is.
 const uint LIT = 1u, BELOW_HORIZON = 255u, NARROWEST = 2u, WIDEST = 254u;
-// Codes of the widths of penumbrae, in pixels: powers of 2^(1/8), from 2^-4 on.
+// Codes of widths, in pixels: powers of 2^(1/8), from 2^-4 on.
 const float WIDTHS_A_DOUBLING = 8.0, NARROWEST_LOG = -4.0;
 // Codes of openness: from CLOSED on, and OPEN_CODES above it where all is open.
 const uint CLOSED = 1u;

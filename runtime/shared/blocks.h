@@ -90,8 +90,9 @@ CONSTANT(SKY_ITSELF, 512 + 4 * 2048 + 8192 + 32768);
     ONE(11, fog_level) /* how fast it falls with the height, height of its base, 0, 0 */               \
     /* The size of the picture in pixels; a pixel at distance t is base + slope t wide. */             \
     THREE(12, size, pixel_base, pixel_slope)                                                           \
-    /* Permitted distance of a hit from the surface, in pixels; the longest ray for occlusion; */      \
-    /* radius of the taps for a normal, in pixels; mean irradiance by the sky, which paths use. */     \
+    /* Permitted distance of a hit from the surface, in pixels; the longest falling ray for */         \
+    /* occlusion; radius of the taps for a normal, in pixels; mean irradiance by the sky, which */     \
+    /* paths use. */                                                                                   \
     FLOATS(13, error, occlusion_reach, normal_reach, sky_power)                                        \
     /* Most steps of a ray; balls around what emits light; 1: hits are settled (march_step.glsl). */   \
     UINTS(14, most_steps, emissive_count, settles, gap_a)                                              \

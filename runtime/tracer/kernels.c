@@ -100,6 +100,11 @@ Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool 
                        variant_of_rays(rendering, schedule, by_roots, KRS_INTEGRATOR_PREVIEW));
 }
 
+Kernel *rendering_occluders(KrsRendering *rendering)
+{
+    return find_kernel(rendering, "occluders.comp", variant_of_occluders(rendering));
+}
+
 Kernel *rendering_normals_kernel(KrsRendering *rendering, KrsNormals normals, uint32_t march_group)
 {
     return find_kernel(
@@ -272,6 +277,7 @@ static void request_pictures(Requests *requests, KrsTrace trace, KrsSchedule sch
         request(requests, "normals.comp",
                 variant_of_normals(rendering, usual, by_group ? KRS_MARCH_GROUP_OF_PLANES : 0));
     request(requests, "shade.comp", variant_of_shade(rendering));
+    request(requests, "occluders.comp", variant_of_occluders(rendering));
     request(requests, "secondary.comp",
             variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace),
                             KRS_INTEGRATOR_PREVIEW));

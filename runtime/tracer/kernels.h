@@ -21,6 +21,8 @@ Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule sch
 Kernel *rendering_normals_kernel(KrsRendering *rendering, KrsNormals normals, uint32_t march_group);
 /* The kernel of rays to lights and for occlusion; `by_roots`: they go from root to root. */
 Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots);
+/* The kernel of the albedo of what rays for occlusion have met. */
+Kernel *rendering_occluders(KrsRendering *rendering);
 /* The kernel that evens hits out. */
 Kernel *rendering_even_hits(KrsRendering *rendering);
 Kernel *rendering_shade(KrsRendering *rendering);

@@ -152,6 +152,8 @@ static bool run_rays(Job *job, const Pass *pass, const WorkBlock *work)
         control->untaken       = 0;
         Dispatch dispatch      = dispatch_of_pass(job, pass, work);
         dispatch.clears_shared = pass->clears_shared && control->source == ITEMS_FRESH;
+        if (control->source != ITEMS_FRESH) /* the list goes on */
+            dispatch.clears = 0;
         if (!dispatch_run(job, &dispatch))
             return false;
         control->source = ITEMS_UNTAKEN;

@@ -306,6 +306,19 @@ KernelVariant variant_of_shade(const KrsRendering *rendering)
     return to;
 }
 
+/* The random directions of rays need sines.  What they pass through occludes nothing. */
+KernelVariant variant_of_occluders(const KrsRendering *rendering)
+{
+    KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    if (rendering->program->media)
+        to.scene.variant.glass = KRS_GLASS_LEFT_OUT;
+    want(&to, KRS_FUNCTION_SINES);
+    want(&to, KRS_FUNCTION_SURFACE);
+    to.scene.variant.gathers_noises = rendering_gathers_noises(rendering);
+    define_choices(&to);
+    return to;
+}
+
 /* The random directions of paths need sines. */
 KernelVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts,
                                  KrsIntegrator integrator)
@@ -383,6 +396,7 @@ KernelVariant variant_for_any(const KrsScene *scene, const char *file, const Krs
         {"even_hits.comp", false, {KRS_FUNCTION_DISTANCE}, 1},
         {"secondary.comp", false, {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_SINES}, 2},
         {"shade.comp", false, {KRS_FUNCTION_SURFACE}, 1},
+        {"occluders.comp", false, {KRS_FUNCTION_SURFACE, KRS_FUNCTION_SINES}, 2},
         {"scatter.comp", false, {KRS_FUNCTION_SURFACE, KRS_FUNCTION_SINES}, 2},
         {"point_query.comp", false, {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_SURFACE}, 2},
     };

@@ -38,6 +38,7 @@ KernelVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, Kr
 KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals normals, uint32_t group);
 KernelVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace,
                                    KrsSchedule schedule, KrsIntegrator integrator);
+KernelVariant variant_of_occluders(const KrsRendering *rendering);
 KernelVariant variant_of_shade(const KrsRendering *rendering);
 KernelVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts,
                                  KrsIntegrator integrator);

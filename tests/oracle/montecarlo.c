@@ -158,19 +158,20 @@ Seen see(const Setting *setting, Line ray, int rays, Random *random)
     return seen;
 }
 
-double openness(const Setting *setting, Vec point, Vec normal, double reach, double above, int rays,
+double openness(const Setting *setting, Vec point, Vec normal, double reach, int rays,
                 Random *random)
 {
-    Vec    start   = vec_add(point, vec_scale(above, normal));
+    Vec    start   = vec_add(point, vec_scale(ABOVE, normal));
     Vec    lateral = vec_across(normal), other = vec_cross(normal, lateral);
-    double turn = random_between(random, 0, 1), shift = random_between(random, 0, 1), sum = 0;
+    double turn = random_between(random, 0, 1), shift = random_between(random, 0, 1);
+    int    open = 0;
     for (int i = 0; i < rays; i++) {
         double distance = sqrt((i + shift) / rays), angle = 2 * M_PI * (turn + 0.6180339887 * i);
         Vec    direction = vec_add(vec_scale(sqrt(fmax(1 - distance * distance, 0)), normal),
                                    vec_add(vec_scale(distance * cos(angle), lateral),
                                            vec_scale(distance * sin(angle), other)));
-        double part = fmin(first_inside(setting, (Line){start, direction}, 0, reach) / reach, 1);
-        sum += part * part;
+        double end       = direction.y < 0 ? reach : FARTHEST;
+        open += first_inside(setting, (Line){start, direction}, 0, end) > end;
     }
-    return sum / rays;
+    return (double)open / rays;
 }

@@ -1,0 +1,19 @@
+/*
+ * hemisphere.glsl: rays over the hemisphere of a hit, and what they meet.
+ */
+#include "sines.glsl"
+#include "samples.glsl"
+
+// The least cosine between such a ray and the normal: others would creep along the surface.  It is
+// that of 1 in 2,500 of them.
+const float LEAST_RISE = 0.02;
+
+// The ray of a point of the disc, with a density in proportion to the cosine, as light from there
+// counts.
+vec3 find_hemisphere_ray(vec3 normal, vec2 disc)
+{
+    vec3 right, up;
+    find_frame(normal, right, up);
+    disc *= sqrt(1.0 - LEAST_RISE * LEAST_RISE);
+    return disc.x * right + disc.y * up + sqrt(1.0 - dot(disc, disc)) * normal;
+}

@@ -1,0 +1,26 @@
+/*
+ * openness.glsl: how open a hit is to the sky, and what gives light back where it is not.
+ */
+
+// The part of the hemisphere, by the cosine, that is open; and the mean albedo of what closes the
+// rest.
+struct Openness {
+    float open, albedo;
+};
+
+// Both in a number, with twelve bits each.
+const float OPEN_STEPS = 4095.0;
+
+float pack_openness(Openness of) { return floor(of.open * OPEN_STEPS + 0.5) + 0.5 * of.albedo; }
+
+Openness unpack_openness(float number)
+{
+    return Openness(floor(number) / OPEN_STEPS, 2.0 * fract(number));
+}
+
+// The light that reaches the hit, relative to that of the open sky.  As much reaches the occluders, and
+// they send the part `albedo` of it back, again and again.
+vec3 with_bounces(float open, vec3 albedo)
+{
+    return open / max(1.0 - albedo * (1.0 - open), 0.05);
+}
