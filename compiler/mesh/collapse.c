@@ -10,7 +10,7 @@
 #include "compiler/mesh/bvh.h"
 #include "compiler/mesh/fans.h"
 
-enum { MOST_STAR = 48, PATIENCE = 256 };
+enum { MOST_STAR = 48, PATIENCE = 32 };
 #define NO_VERTEX UINT32_MAX
 /* Height over the longest edge, of triangles that are made. */
 static const double THIN = 1e-5;

@@ -104,7 +104,7 @@ static bool is_near_patch(const Contour *contour, const Patch *patch, const doub
 
 /* Whether the surface is in it where it has no triangles. */
 static bool misses_surface(const Mesher *m, const MeshField *field, const Tet *tet,
-                           const Patch *patch)
+                           const Patch *patch, double off)
 {
     double corners[4][3], weights[4];
     Probe  probes[PROBES];
@@ -119,13 +119,61 @@ static bool misses_surface(const Mesher *m, const MeshField *field, const Tet *t
         tet_weights((const double(*)[3])corners, probes[i].at, weights);
         for (int c = 0; c < 4; c++)
             inside = inside && weights[c] >= deep;
-        if (inside && !(patch && is_near_patch(&m->contour, patch, probes[i].at, OFF * m->error)))
+        if (inside && !(patch && is_near_patch(&m->contour, patch, probes[i].at, off)))
             return true;
     }
     return false;
 }
 
-static TetState draft_state(const Mesher *m, const MeshField *field, const Tet *tet)
+/* Points of edges whose ends are on one side, and between which the surface may be. */
+enum { EDGES = 6, INNER = 3 };
+typedef struct Edges {
+    double points[EDGES * INNER][3], ends[EDGES][2];
+    size_t count; /* of edges */
+} Edges;
+
+static void find_edges(const Mesher *m, const Tet *tet, Edges *edges)
+{
+    double corners[4][3];
+    tets_corners(&m->tets, tet, corners);
+    edges->count = 0;
+    for (int i = 0; i < 4; i++)
+        for (int k = i + 1; k < 4; k++) {
+            double a = m->tets.points.items[tet->points[i]].distance,
+                   b = m->tets.points.items[tet->points[k]].distance;
+            if ((a < 0) != (b < 0) || fabs(a) + fabs(b) >= distance3(corners[i], corners[k]))
+                continue;
+            for (int n = 0; n < INNER; n++)
+                for (int c = 0; c < 3; c++)
+                    edges->points[INNER * edges->count + (size_t)n][c] =
+                        corners[i][c] + (corners[k][c] - corners[i][c]) * (n + 1) / (INNER + 1);
+            edges->ends[edges->count][0]   = a;
+            edges->ends[edges->count++][1] = b;
+        }
+}
+
+/* Whether an edge goes through the surface and back, as through a wall.  Beside a plane the distance is linear, so it does
+   also where that is much less than between the ends. */
+static bool goes_through(const Mesher *m, const MeshField *field, const Tet *tet)
+{
+    static const double BENT = 1, BENT_PART = 0.3;
+    Edges               edges;
+    double              values[EDGES * INNER];
+    find_edges(m, tet, &edges);
+    field_distances(field, (const double(*)[3])edges.points, INNER * edges.count, values);
+    for (size_t i = 0; i < INNER * edges.count; i++) {
+        const double *ends = edges.ends[i / INNER];
+        double        part = (double)(i % INNER + 1) / (INNER + 1);
+        double        even = fabs(ends[0] + part * (ends[1] - ends[0]));
+        double        bent = fmax(BENT * m->error, BENT_PART * fmin(fabs(ends[0]), fabs(ends[1])));
+        if ((values[i] < 0) != (ends[0] < 0) ? fabs(values[i]) > BENT * m->error
+                                             : fabs(values[i]) < even - bent)
+            return true;
+    }
+    return false;
+}
+
+TetState draft_state(const Mesher *m, const MeshField *field, const Tet *tet, double off)
 {
     const Contour *contour = &m->contour;
     const Patch   *patch   = tet->triangle_count > 0 ? &contour->patches.items[tet->patch] : NULL;
@@ -135,15 +183,19 @@ static TetState draft_state(const Mesher *m, const MeshField *field, const Tet *
         return TET_EMPTY;
     if (tets_longest_edge(&m->tets, tet) <= least)
         return fits;
-    if (patch && patch_off(contour, patch) > OFF * m->error)
+    if (patch && patch_off(contour, patch) > off)
         return TET_REFUTED;
-    return misses_surface(m, field, tet, patch) ? TET_REFUTED : fits;
+    return misses_surface(m, field, tet, patch, off) ? TET_REFUTED : fits;
 }
 
 void draft_group(Mesher *m, Verifier *verifier, const Group *group)
 {
     for (uint32_t i = 0; i < group->count; i++) {
         Tet *tet   = tet_of_group(m, group, i);
-        tet->state = (uint8_t)draft_state(m, verifier->field, tet);
+        tet->state = (uint8_t)draft_state(m, verifier->field, tet, OFF * m->error);
+        if ((tet->state == TET_FITS || tet->state == TET_EMPTY) &&
+            tets_longest_edge(&m->tets, tet) > LEAST_MISSED * m->error &&
+            goes_through(m, verifier->field, tet))
+            tet->state = TET_REFUTED;
     }
 }

@@ -204,7 +204,7 @@ static bool is_far_from_new(const Check *check, uint32_t triangle, NearLook *loo
 static void ask(Simplifier *s, double part)
 {
     const KrsMeshOptions *options = s->options;
-    s->fraction                   = s->begun + part * (s->goal - s->begun);
+    s->fraction                   = fmax(s->fraction, s->begun + part * (s->goal - s->begun));
     if (options->go_on && !options->go_on(options->user, s->fraction))
         atomic_store(&s->stopped, true);
 }
@@ -346,7 +346,8 @@ static bool is_good(void *user, const uint32_t triangle[3], double *distance)
 static bool is_wanted(void *user, double part)
 {
     Simplifier *s = user;
-    ask(s, fmin(fmax(part, 0), 1));
+    if (!atomic_load(&s->stopped))
+        ask(s, fmin(fmax(part, 0), 1));
     return !atomic_load(&s->stopped);
 }
 

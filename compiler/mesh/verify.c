@@ -114,10 +114,10 @@ static bool is_flat_by_slope(Verifier *verifier, const double corners[4][3], con
            (lens.above < verifier->error && fills_lens(verifier, &lens));
 }
 
-/* Whether, so far from a place, there is another side that is deep: beyond an edge it is in none of the directions
-   of its faces, but between them. */
-static bool is_deep_beyond(const Verifier *verifier, const double center[3], double distance,
-                           double step)
+/* Whether, so far from a place, there is another side that is at least so deep: at an edge it may be in none of the
+   directions of its faces, but between them. */
+static bool is_other_side_around(const Verifier *verifier, const double center[3], double distance,
+                                 double step, double deep)
 {
     enum { AROUND = 27, MIDDLE = 13 };
     double places[AROUND][3], distances[AROUND];
@@ -129,7 +129,7 @@ static bool is_deep_beyond(const Verifier *verifier, const double center[3], dou
     }
     field_distances(verifier->field, (const double(*)[3])places, AROUND, distances);
     for (int i = 0; i < AROUND; i++)
-        if ((distances[i] < 0) != (distance < 0) && fabs(distances[i]) > DEEP * verifier->error)
+        if ((distances[i] < 0) != (distance < 0) && fabs(distances[i]) >= deep)
             return true;
     return false;
 }
@@ -145,7 +145,7 @@ static bool leave_unresolved(Verifier *verifier, const double center[3], double 
         if ((field_distance(verifier->field, beyond) < 0) != (distance < 0))
             return false;
     }
-    if (is_deep_beyond(verifier, center, distance, step))
+    if (is_other_side_around(verifier, center, distance, step, DEEP * verifier->error))
         return false;
     note_need(verifier, center, verifier->error);
     verifier->unresolved++;
@@ -359,13 +359,15 @@ static Nearness find_nearness(const Verifier *verifier, const double corners[3][
                : NOT_KNOWN;
 }
 
+/* Near a sharp edge both directions may leave the solid on both sides. */
 static bool is_crossed_nearby(const Verifier *verifier, const double center[3], double radius,
-                              const double normal[3])
+                              double distance, const double normal[3])
 {
     double far = verifier->error - radius, gradient[3];
     return is_crossed(verifier, center, far, normal) ||
            (field_normal(verifier->field, center, 1e-3 * verifier->error, gradient) &&
-            is_crossed(verifier, center, far, gradient));
+            is_crossed(verifier, center, far, gradient)) ||
+           is_other_side_around(verifier, center, distance, far, 0);
 }
 
 static bool triangle_is_near_surface(Verifier *verifier, const double corners[3][3],
@@ -379,7 +381,7 @@ static bool triangle_is_near_surface(Verifier *verifier, const double corners[3]
     double distance = field_distance(verifier->field, center);
     if (--verifier->budget < 0 || fabs(distance) > error)
         return false;
-    if (radius <= 0.5 * error && is_crossed_nearby(verifier, center, radius, normal))
+    if (radius <= 0.5 * error && is_crossed_nearby(verifier, center, radius, distance, normal))
         return true;
     if (radius > 0.5 * error) {
         Lens lens = {.radius = radius};

@@ -7,6 +7,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -476,6 +477,30 @@ static void flat_faces_with_a_hole_are_simplified(void **context)
     scene_close(s);
 }
 
+/* Trays whose walls are of five errors and more, and stand along the axes. */
+static void drafts_keep_walls(void **context)
+{
+    Random random = {5};
+    (void)context;
+    for (int i = 0; i < 12; i++) {
+        char   text[256];
+        double a = random_between(&random, 3, 9), c = random_between(&random, 3, 9);
+        snprintf(text, sizeof text,
+                 "show box([%.3f, 2, %.3f]) - box([%.3f, 2, %.3f]).move([0, 0.25, 0]);", a, c,
+                 a - 0.5, c - 0.5);
+        Scene    s    = scene_of(text);
+        KrsMesh *mesh = mesh_by(
+            s, (KrsMeshOptions){.error = i % 2 ? 0.05 : 0.035, .even = true, .draft = true});
+        check_closed(mesh);
+        assert_true(mesh->estimate);
+        assert_int_equal(euler_number(mesh), 2);
+        assert_true(fabs(volume_of(mesh) - (a * c * 2 - (a - 0.5) * (c - 0.5) * 1.75)) <
+                    0.02 * a * c);
+        krs_mesh_free(mesh);
+        scene_close(s);
+    }
+}
+
 /* By the options: within the error of the surface itself, and not where colours would be lost. */
 static void triangles_are_left_out_where_that_is_permitted(void **context)
 {
@@ -529,6 +554,7 @@ int main(void)
         cmocka_unit_test(components_and_empty_scenes),
         cmocka_unit_test(simplified_meshes_are_near),
         cmocka_unit_test(flat_faces_with_a_hole_are_simplified),
+        cmocka_unit_test(drafts_keep_walls),
         cmocka_unit_test(triangles_are_left_out_where_that_is_permitted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
