@@ -297,6 +297,13 @@ static KrsStatus check_files(const Meshing *meshing)
     if (meshing->options->mesh_copies > 0)
         return say_usage(meshing->options,
                          "--frames moves parts of a file, so --copies must be instances");
+    if (meshing->options->mesh_lods > 0)
+        return say_usage(meshing->options,
+                         "parts that move are copies, which have no --lods; --frames or --lods");
+    if (meshing->options->first_frame == meshing->options->last_frame)
+        return say_usage(meshing->options,
+                         "nothing moves in one frame; --frames says the first and "
+                         "the last, as in --frames 0..48");
     return KRS_OK;
 }
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # mesh_motion.sh: `krs mesh --frames` writes how parts move into GLB.
 . "$(dirname "$0")/common.sh"
-plan 19
+plan 21
 
 cat >spin.krs <<'SCENE'
 show box([2, 0.2, 0.4]).rotate([1, 2, 0], 9 * time).move([3 * sin(time), 0, 0]);
@@ -95,3 +95,7 @@ run mesh ride.krs --frames 0..12 -o ride.stl
 said 2 "--frames is for .glb" "STL has no motion"
 run mesh ride.krs --frames 0..12 --copies flat -o ride.glb
 said 2 "must be instances" "nor have flat copies"
+run mesh ride.krs --frames 0..12 --lods 2 -o ride.glb
+said 2 "parts that move are copies, which have no --lods" "nor levels of detail"
+run mesh ride.krs --frames 5..5 -o ride.glb
+said 2 "nothing moves in one frame" "one frame is no motion"
