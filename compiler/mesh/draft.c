@@ -104,7 +104,7 @@ static bool is_near_patch(const Contour *contour, const Patch *patch, const doub
 
 /* Whether the surface is in it where it has no triangles. */
 static bool misses_surface(const Mesher *m, const MeshField *field, const Tet *tet,
-                           const Patch *patch, double off)
+                           const Patch *patch)
 {
     double corners[4][3], weights[4];
     Probe  probes[PROBES];
@@ -119,7 +119,7 @@ static bool misses_surface(const Mesher *m, const MeshField *field, const Tet *t
         tet_weights((const double(*)[3])corners, probes[i].at, weights);
         for (int c = 0; c < 4; c++)
             inside = inside && weights[c] >= deep;
-        if (inside && !(patch && is_near_patch(&m->contour, patch, probes[i].at, off)))
+        if (inside && !(patch && is_near_patch(&m->contour, patch, probes[i].at, OFF * m->error)))
             return true;
     }
     return false;
@@ -173,7 +173,7 @@ static bool goes_through(const Mesher *m, const MeshField *field, const Tet *tet
     return false;
 }
 
-TetState draft_state(const Mesher *m, const MeshField *field, const Tet *tet, double off)
+static TetState draft_state(const Mesher *m, const MeshField *field, const Tet *tet)
 {
     const Contour *contour = &m->contour;
     const Patch   *patch   = tet->triangle_count > 0 ? &contour->patches.items[tet->patch] : NULL;
@@ -183,16 +183,16 @@ TetState draft_state(const Mesher *m, const MeshField *field, const Tet *tet, do
         return TET_EMPTY;
     if (tets_longest_edge(&m->tets, tet) <= least)
         return fits;
-    if (patch && patch_off(contour, patch) > off)
+    if (patch && patch_off(contour, patch) > OFF * m->error)
         return TET_REFUTED;
-    return misses_surface(m, field, tet, patch, off) ? TET_REFUTED : fits;
+    return misses_surface(m, field, tet, patch) ? TET_REFUTED : fits;
 }
 
 void draft_group(Mesher *m, Verifier *verifier, const Group *group)
 {
     for (uint32_t i = 0; i < group->count; i++) {
         Tet *tet   = tet_of_group(m, group, i);
-        tet->state = (uint8_t)draft_state(m, verifier->field, tet, OFF * m->error);
+        tet->state = (uint8_t)draft_state(m, verifier->field, tet);
         if ((tet->state == TET_FITS || tet->state == TET_EMPTY) &&
             tets_longest_edge(&m->tets, tet) > LEAST_MISSED * m->error &&
             goes_through(m, verifier->field, tet))

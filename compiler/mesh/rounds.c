@@ -184,21 +184,6 @@ static bool is_near_surface(const Mesher *m, const Tet *tet)
            tets_longest_edge(&m->tets, tet) <= LEAST_ASTRAY * m->error;
 }
 
-/* Parts of the error: what is farther off by points is not left to cells. */
-static const double LIKELY = 0.3;
-
-/* Where nothing bounds derivatives, cells alone can prove, and they take long where they fail.  So points tell which
-   tetrahedra are likely to fit, however large they are. */
-static bool is_unbounded(const Tet *tet)
-{
-    return tet->deviation == INFINITY && (tet->state == TET_REFUTED || tet->state == TET_ROUGH);
-}
-
-static TetState likely_state(const Mesher *m, const MeshField *field, const Tet *tet)
-{
-    return draft_state(m, field, tet, LIKELY * m->error) == TET_REFUTED ? TET_REFUTED : TET_ROUGH;
-}
-
 /* By bounds; and those whose mesh is astray are refuted in any case. */
 static void judge_group(Mesher *m, Verifier *verifier, const Group *group)
 {
@@ -207,8 +192,6 @@ static void judge_group(Mesher *m, Verifier *verifier, const Group *group)
         Tet *tet = tet_of_group(m, group, i);
         if ((tet->state == TET_FITS || tet->state == TET_ROUGH) && !is_near_surface(m, tet))
             tet->state = TET_REFUTED;
-        else if (is_unbounded(tet))
-            tet->state = (uint8_t)likely_state(m, verifier->field, tet);
     }
 }
 
