@@ -7,12 +7,13 @@
 #include "compiler/base/minmax.h"
 #include "compiler/base/vec.h"
 #include "compiler/mesh/flat_apart.h"
+#include "compiler/mesh/flat_touches.h"
 
 #define WALL UINT32_MAX
 
-/* Parts of the size: by how much planes are moved at most; how near to a plane a corner must not be; and what is one
-   place on a line.  The latter are above rounding. */
-static const double MOVE = 1e-7, NARROW = 1e-14, SAME = 1e-13;
+/* Parts of the size: by how much planes are moved at most; how near to a plane a corner must not be; what is one place on a
+   line; and what is one place where planes meet.  The latter are above rounding. */
+static const double MOVE = 1e-7, NARROW = 1e-14, SAME = 1e-13, TOUCHING = 1e-10;
 
 /* ---- planes ---- */
 
@@ -487,26 +488,56 @@ static size_t cut_edge(Finishing *f, size_t number, const Stop *stop, bool along
     return f->edges.count - 1;
 }
 
+/* Vertices at one place become one; finds those on edges that do not end there. */
+static void join_touching(Finishing *f, FlatTouches *touches)
+{
+    Arena    *arena    = f->faces->arena;
+    double    near     = TOUCHING * f->faces->size;
+    size_t    count    = f->edges.count;
+    uint32_t *first    = arena_new_array(arena, uint32_t, f->vertices->count + 1);
+    uint32_t(*ends)[2] = (uint32_t(*)[2])arena_new_array(arena, uint32_t, 2 * count + 1);
+    flat_join_vertices(f->vertices, near, first, arena);
+    for (size_t i = 0; i < count; i++) {
+        Edge *edge = &f->edges.items[i];
+        edge->from = ends[i][0] = first[edge->from];
+        edge->to = ends[i][1] = first[edge->to];
+    }
+    flat_find_touches(f->vertices, (const uint32_t(*)[2])ends, count, first, near, touches, arena);
+}
+
+static Stop stop_at_touch(const Finishing *f, const FlatTouch *touch)
+{
+    Stop   stop = stop_of(&f->edges.items[touch->edge], false);
+    double along[3];
+    line_direction(f->faces, stop.low, stop.high, along);
+    stop.at     = dot3(along, f->vertices->items[touch->vertex]);
+    stop.vertex = touch->vertex;
+    return stop;
+}
+
 /*
  * An edge of one face may go on where the faces at its other side change: where a floor ends that is level with the underside of
- * what is beside it, the wall below both has no corner.  So each edge gets the vertices of all others on its line.
+ * what is beside it, the wall below both has no corner.  So each edge gets the vertices of all others on its line, and those
+ * that touch it.
  */
-static void cut_edges(Finishing *f)
+static void cut_edges(Finishing *f, const FlatTouches *touches)
 {
-    size_t count = f->edges.count;
-    Stop  *stops = arena_new_array(f->faces->arena, Stop, 2 * count + 1);
+    size_t count = f->edges.count, all = 2 * count + touches->count;
+    Stop  *stops = arena_new_array(f->faces->arena, Stop, all + 1);
     for (size_t i = 0; i < 2 * count; i++)
         stops[i] = stop_of(&f->edges.items[i / 2], i % 2);
-    if (count > 0)
-        qsort(stops, 2 * count, sizeof *stops, compare_stops);
+    for (size_t i = 0; i < touches->count; i++)
+        stops[2 * count + i] = stop_at_touch(f, &touches->items[i]);
+    if (all > 0)
+        qsort(stops, all, sizeof *stops, compare_stops);
     for (size_t i = 0; i < count; i++) {
         Edge   edge  = f->edges.items[i];
         bool   along = edge.begin < edge.end;
         Stop   first = stop_of(&edge, !along), last = stop_of(&edge, along);
         double same   = same_on(f->faces, first.low, first.high);
         size_t number = i;
-        for (size_t k = first_behind(stops, 2 * count, &first);
-             k < 2 * count && compare_stops(&stops[k], &last) < 0; k++)
+        for (size_t k = first_behind(stops, all, &first);
+             k < all && compare_stops(&stops[k], &last) < 0; k++)
             if (stops[k].at - first.at > same && last.at - stops[k].at > same) {
                 number = cut_edge(f, number, &stops[k], along);
                 first  = stops[k];
@@ -548,7 +579,17 @@ static int compare_edges(const void *first, const void *second)
     return (a->from > b->from) - (a->from < b->from);
 }
 
-/* The edge that follows: at a corner that two parts of a face share, the one to the left. */
+/* By how much a way turns to the left into another one; a way back is a turn to the left. */
+static double turn_to_left(const double way[3], const double next[3], const double normal[3])
+{
+    static const double NONE = 1e-9;
+    double              product[3];
+    cross3(way, next, product);
+    double left = dot3(product, normal), on = dot3(way, next);
+    return on < 0 && fabs(left) < NONE ? acos(-1) : atan2(left, on);
+}
+
+/* The edge that follows: at a corner that parts of a face share, the one most to the left. */
 static Edge *edge_behind(Edge *edges, size_t count, const Edge *edge, const double normal[3])
 {
     size_t low = 0, high = count;
@@ -559,12 +600,14 @@ static Edge *edge_behind(Edge *edges, size_t count, const Edge *edge, const doub
         else
             high = middle;
     }
-    Edge *found = NULL;
+    Edge  *found = NULL;
+    double most  = -HUGE_VAL;
     for (; low < count && edges[low].from == edge->to; low++) {
-        double turn[3];
-        cross3(edge->way, edges[low].way, turn);
-        if (!edges[low].walked && (!found || dot3(turn, normal) > 0))
+        double turn = turn_to_left(edge->way, edges[low].way, normal);
+        if (!edges[low].walked && turn > most) {
             found = &edges[low];
+            most  = turn;
+        }
     }
     return found;
 }
@@ -608,6 +651,8 @@ static bool find_loops(Finishing *f, Edge *edges, size_t count, const double nor
                        Loops *loops)
 {
     uint32_t *walked = arena_new_array(f->faces->arena, uint32_t, count);
+    for (size_t i = 0; i < count; i++)
+        edges[i].walked = edges[i].from == edges[i].to;
     for (size_t i = 0; i < count; i++) {
         size_t steps = 0;
         for (Edge *edge = &edges[i]; !edge->walked;) {
@@ -669,10 +714,12 @@ static void number_vertices(Finishing *f, Triangles *triangles)
 
 bool flat_faces_finish(FlatFaces *faces, FlatVertices *vertices, Triangles *triangles)
 {
-    Finishing f = {.faces = faces, .vertices = vertices, .numbers = {.arena = faces->arena}};
+    Finishing   f = {.faces = faces, .vertices = vertices, .numbers = {.arena = faces->arena}};
+    FlatTouches touches = {0};
     if (!find_edges(&f))
         return false;
-    cut_edges(&f);
+    join_touching(&f, &touches);
+    cut_edges(&f, &touches);
     join_vertices(&f);
     if (!cut_faces(&f, triangles))
         return false;

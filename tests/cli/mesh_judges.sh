@@ -2,7 +2,7 @@
 # mesh_judges.sh: CGAL, a slicer and Blender accept what `krs mesh` writes.  What is not installed is skipped.
 . "$(dirname "$0")/common.sh"
 judge=$(dirname "$krs")/tests/oracle/mesh_judge
-plan 8
+plan 9
 
 cat >vase.krs <<'END'
 let wall = field(sin(3 * x) * cos(3 * y) + sin(3 * y) * cos(3 * z) + sin(3 * z) * cos(3 * x)).shell(0.9);
@@ -45,7 +45,32 @@ if [ -x "$judge" ]; then
     result $? "and finds a planted crossing"
     ! "$judge" open.off >out && grep -q 'open' out
     result $? "and a planted hole"
+    # Edges that touch where they have no end: pipes, roofs and grooves that cross at one height.
+    awk 'function member(name, text) { print "show (" text ").rotate([1, 2, 3], " 37 * i "deg);" >name i ".krs" }
+        BEGIN {
+            for (i = 0; i < 8; i++) {
+                turn = i % 2 ? "90deg" : 50 + 5 * i "deg"
+                wide = 0.4 + 0.07 * i
+                pipe = "cylinder(" wide ", 4).rotate([1, 0, 0], 90deg)"
+                bore = "cylinder(" 0.8 * wide ", 5).rotate([1, 0, 0], 90deg)"
+                roof = "polygon([[-" wide ", 0], [" wide ", 0], [0, 0.6]]).extrude(4)"
+                other = "polygon([[-0.7, 0], [0.7, 0], [0, 0.6]]).extrude(4)"
+                cut = "polygon([[-0.7, 0], [0, -" wide "], [0.7, 0]]).extrude(6).move([0, 1, 0])"
+                member("pipes", "(" pipe " | " pipe ".rotate([0, 1, 0], " turn ")) - " bore " - " bore ".rotate([0, 1, 0], " turn ")")
+                member("roofs", roof " | " other ".rotate([0, 1, 0], " turn ")")
+                member("grooves", "box([4, 2, 4]) - " cut " - " cut ".rotate([0, 1, 0], " turn ")")
+            }
+        }'
+    for name in pipes roofs grooves; do
+        for i in 0 1 2 3 4 5 6 7; do
+            "$krs" mesh --quiet $name$i.krs --error 0.03 -o $name.obj && to_off $name.obj >$name$i.off
+        done
+    done
+    "$judge" pipes?.off roofs?.off grooves?.off >out
+    [ "$(grep -c 'pipes..off: good, .* genus 3, 1 parts' out) $(grep -c '[rg].*s..off: good, .* genus 0, 1 parts' out)" = "8 16" ]
+    result $? "and nothing where edges touch that have no end there"
 else
+    skip "and nothing where edges touch that have no end there" "no CGAL"
     skip "CGAL finds one part, closed, a manifold, without crossings" "no CGAL"
     skip "and finds a planted crossing" "no CGAL"
     skip "and a planted hole" "no CGAL"
