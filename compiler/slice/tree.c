@@ -196,31 +196,69 @@ static bool is_joined(const Section *s, const double from[2], const double to[2]
     return joined;
 }
 
-/* Whether what is thin at a place is the end of what is thicker, as at corners: around it in all directions, and then
-   around that in which it is deepest. */
-static bool is_tip(const Section *s, const double at[2], bool inside, double thick)
+/* Directions from a place, up to `spread` to either side of `angle`, and what is found in one: the angle and the place. */
+typedef struct Fan {
+    double at[2], angle, spread;
+    int    rounds; /* each looks around the deepest direction of the one before */
+} Fan;
+
+/* Whether what is thin at a place is joined to where it is so deep, so far off; then the fan is at the deepest of these
+   places, and its angle leads there. */
+static bool leads_to(const Section *s, Fan *fan, bool inside, double reach, double depth)
 {
     enum { DIRECTIONS = MOST_FIELD_POINTS };
-    static const double WIDER = 16, DEEP = 0.6; /* a wall is half as deep as it is thick */
-    double              points[DIRECTIONS][2], distances[DIRECTIONS];
-    double              middle = 0, step = 2 * M_PI / DIRECTIONS;
-    for (int round = 0; round < 2; round++, step *= 2.0 / DIRECTIONS) {
-        int deepest = 0;
+    double points[DIRECTIONS][2], distances[DIRECTIONS];
+    double middle = fan->angle, step = 2 * fan->spread / DIRECTIONS;
+    for (int round = 0; round < fan->rounds; round++, step *= 2.0 / DIRECTIONS) {
+        int deepest = 0, found = -1;
         for (int i = 0; i < DIRECTIONS; i++) {
             double angle = middle + step * (i - DIRECTIONS / 2);
-            points[i][0] = at[0] + WIDER * thick * cos(angle);
-            points[i][1] = at[1] + WIDER * thick * sin(angle);
+            points[i][0] = fan->at[0] + reach * cos(angle);
+            points[i][1] = fan->at[1] + reach * sin(angle);
         }
         slice_distances(s->field, &s->plane, (const double(*)[2])points, DIRECTIONS, distances);
         for (int i = 0; i < DIRECTIONS; i++) {
-            if (is_other(s, distances[i], inside) && fabs(distances[i]) > DEEP * thick &&
-                is_joined(s, at, points[i], inside))
-                return true;
+            if (is_other(s, distances[i], inside) && fabs(distances[i]) > depth &&
+                (found < 0 || fabs(distances[i]) > fabs(distances[found])) &&
+                is_joined(s, fan->at, points[i], inside))
+                found = i;
             if (inside ? distances[i] > distances[deepest] : distances[i] < distances[deepest])
                 deepest = i;
         }
-        middle += step * (deepest - DIRECTIONS / 2);
+        fan->angle = middle += step * ((found < 0 ? deepest : found) - DIRECTIONS / 2);
+        if (found < 0)
+            continue;
+        memcpy(fan->at, points[found], sizeof fan->at);
+        return true;
     }
+    return false;
+}
+
+static const double WIDER = 16; /* so many thicknesses away what is thin may be thick */
+
+/* Whether what is thin at a place leads to where it is thicker; `angle` becomes the direction. */
+static bool is_end(const Section *s, const double at[2], bool inside, double thick, double *angle)
+{
+    static const double DEEP = 0.6; /* a wall is half as deep as it is thick */
+    Fan                 fan  = {{at[0], at[1]}, 0, M_PI, 2};
+    bool                end  = leads_to(s, &fan, inside, WIDER * thick, DEEP * thick);
+    *angle                   = fan.angle;
+    return end;
+}
+
+/* Whether it only does so, as at corners: a neck between two thick parts goes on behind the place, and a wall on a thick
+   part does. */
+static bool is_tip(const Section *s, const double at[2], bool inside, double thick)
+{
+    enum { STEPS = 4 };
+    static const double LEAST = 0.02;
+    double              angle;
+    if (!is_end(s, at, inside, thick, &angle))
+        return false;
+    Fan fan = {{at[0], at[1]}, angle + M_PI, 0.5 * M_PI, 3};
+    for (int i = 0; i < STEPS; i++)
+        if (!leads_to(s, &fan, inside, WIDER / STEPS * thick, LEAST * thick))
+            return true;
     return false;
 }
 
@@ -278,20 +316,19 @@ static bool hides_thin(Section *s, const Cell *cell)
     }
     const double side  = s->side * ((double)cell->side / WHOLE_SIDE);
     const double least = s->side * ((double)s->thinnest / WHOLE_SIDE);
-    double       distance, thick = find_thinnest(s, cell, same, at);
+    double       distance, angle, thick = find_thinnest(s, cell, same, at);
     if (thick == 0 || (isinf(thick) && !same))
         return false;
-    thick = min2(thick, side);
     slice_distances(s->field, &s->plane, (const double(*)[2])at, 1, &distance);
-    if (is_tip(s, at, !is_inside(distance), thick))
+    const bool solid = is_inside(distance), known = !isinf(thick);
+    const bool splits = cell->side > s->thinnest && 0.5 * min2(thick, side) >= least;
+    if (splits && known ? is_tip(s, at, !solid, thick)
+                        : is_end(s, at, !solid, min2(thick, side), &angle))
         return false;
-    if (cell->side > s->thinnest && 0.5 * thick >= least) {
-        s->split_thin = true;
-        return true;
-    }
-    if (same && s->lost++ == 0)
+    s->split_thin = s->split_thin || splits;
+    if (!splits && same && s->lost++ == 0)
         memcpy(s->lost_at, at, sizeof at);
-    return false;
+    return splits;
 }
 
 /* ---- the tree ---- */

@@ -562,6 +562,150 @@ static void thinner_parts_are_counted(void **state)
     }
 }
 
+/* ---- saddles ---- */
+
+/* A section of known area: one contour, or two; parts as thick as `neck` are between two, or join them. */
+typedef struct Saddle {
+    Product product;
+    Vec     point, normal;
+    double  area, length; /* of the section, and of its outline */
+    size_t  contours;
+} Saddle;
+
+static const double PI = 3.14159265358979323846;
+
+/* Where it is moved and turned. */
+static void write_place(SceneText *text, Random *random)
+{
+    double angle = random_between(random, -3, 3), x = random_between(random, -0.3, 0.3);
+    scene_write(text, ".rotate([0, 0, 1], %.17g).move([%.17g, %.17g, 0])", angle, x,
+                random_between(random, -0.3, 0.3));
+}
+
+static Product compile_placed(Random *random, const char *format, double a, double b, double c)
+{
+    SceneText text = {.length = 0};
+    char      solid[512];
+    snprintf(solid, sizeof solid, format, a, b, c);
+    scene_write(&text, "show (%s)", solid);
+    write_place(&text, random);
+    scene_write(&text, ";");
+    print_message("# %s\n", text.bytes);
+    return product_compile(text.bytes);
+}
+
+/* Two discs that nearly touch, or two holes. */
+static Saddle make_discs(Random *random, double neck)
+{
+    const double r = random_between(random, 0.3, 1), q = random_between(random, 0.3, 1);
+    const bool   holes  = random_below(random, 2) > 0;
+    Saddle       saddle = {.normal = {0, 0, 1}};
+    saddle.product      = compile_placed(
+             random,
+        holes ? "sphere(4) - sphere(%.17g) - sphere(%.17g).move([%.17g, 0, 0])"
+                   : "sphere(%.17g) | sphere(%.17g).move([%.17g, 0, 0])",
+             r, q, r + q + neck);
+    saddle.area     = PI * (r * r + q * q);
+    saddle.length   = 2 * PI * (r + q + (holes ? 4 : 0));
+    saddle.contours = 2;
+    if (holes) {
+        saddle.area     = 16 * PI - saddle.area;
+        saddle.contours = 3;
+    }
+    return saddle;
+}
+
+/* Two lemniscates of Bernoulli's kind, of a half axis near 1: their neck joins or parts them. */
+static Saddle make_ovals(Random *random, double neck)
+{
+    const double half = 0.5 * neck, part = random_below(random, 2) ? -1 : 1;
+    const double level  = pow(half, 4) + part * 2 * half * half;
+    Saddle       saddle = {.normal = {0, 0, 1}, .length = 8};
+    saddle.product      = compile_placed(
+             random, "algebraic((x^2 + y^2)^2 - 2 * (x^2 - y^2) + %.17g * z^4 == %.17g)", 0.01, level,
+             0);
+    saddle.area     = 2; /* of the one between both, but for a part as small as the neck */
+    saddle.contours = part > 0 ? 1 : 2;
+    return saddle;
+}
+
+/* A torus cut beside the plane that touches it from within, a figure of eight.  The distance is shallow there, so necks
+   are wider. */
+static Saddle make_ring(Random *random, double least)
+{
+    const double neck  = 4 * least;
+    const double major = random_between(random, 0.8, 1.2), minor = random_between(random, 0.2, 0.5);
+    const double half = 0.5 * neck, inner = major - minor;
+    const bool   apart  = random_below(random, 2) > 0;
+    const double height = apart ? sqrt(inner * inner - half * half)
+                                : major - sqrt(minor * minor - half * half);
+    Saddle       saddle = {.point = {height, 0, 0}, .normal = {1, 0, 0}, .length = 8};
+    saddle.product  = product_format("show torus(%.17g, %.17g).rotate([1, 0, 0], %.17g);", major,
+                                     minor, random_between(random, -3, 3));
+    saddle.contours = apart ? 2 : 1;
+    /* Simpson's rule, of the width at each height over the plane's middle line. */
+    const int steps = 20000;
+    for (int i = 0; i <= steps; i++) {
+        double z = (major + minor) * i / steps, round = hypot(z, height) - major;
+        double wide = minor * minor - round * round;
+        saddle.area += (i == 0 || i == steps ? 1 : i % 2 ? 4 : 2) * (wide > 0 ? 2 * sqrt(wide) : 0);
+    }
+    saddle.area *= 2 * (major + minor) / steps / 3;
+    return saddle;
+}
+
+/* A wall that stands on a block, and a slot into one. */
+static Saddle make_wall(Random *random, double neck)
+{
+    const double length = random_between(random, 0.4, 0.55), at = random_between(random, -0.2, 0.2);
+    const bool   slot   = random_below(random, 2) > 0;
+    Saddle       saddle = {.normal = {0, 0, 1}, .length = 2, .contours = 1};
+    saddle.product      = compile_placed(
+             random,
+        slot ? "box([0.6, 0.6, 1]) - box([%.17g, %.17g, 2]).move([0.3, %.17g, 0])"
+                  : "box([0.6, 0.6, 1]) | box([%.17g, %.17g, 1]).move([0.3, %.17g, 0])",
+             2 * length, neck, at);
+    saddle.area = 0.36 + (slot ? -length : length) * neck;
+    return saddle;
+}
+
+/* Two blocks with a bar between them. */
+static Saddle make_bridge(Random *random, double neck)
+{
+    Saddle saddle  = {.normal = {0, 0, 1}, .length = 4, .contours = 1};
+    saddle.product = compile_placed(random,
+                                    "box([0.4, 0.4, 1]).move([-%.17g, 0, 0]) | box([0.4, 0.4, "
+                                    "1]).move([%.17g, 0, 0]) | box([0.8, %.17g, 1])",
+                                    0.4, 0.4, neck);
+    saddle.area    = 0.32 + 0.4 * neck;
+    return saddle;
+}
+
+/* What is between two contours, or joins them, is told down to an eighth of the error, also where it widens to both
+   sides, or to one. */
+static void saddles_are_told(void **state)
+{
+    enum { SADDLES = 75 };
+    typedef Saddle           MakeSaddle(Random * random, double neck);
+    static MakeSaddle *const makers[] = {make_discs, make_ovals, make_ring, make_wall, make_bridge};
+    Random                   random   = {13};
+    (void)state;
+    for (int i = 0; i < SADDLES; i++) {
+        const double error = 0.005, neck = error * pow(2, random_between(&random, -2.9, 1));
+        Saddle       saddle  = makers[i % 5](&random, neck);
+        KrsSlicer   *slicer  = open_slicer(&saddle.product, error, false);
+        KrsSection  *section = slice_at(slicer, saddle.point, saddle.normal);
+        double       area    = area_of_points(section);
+        print_message("# %d: neck %g of the error, area %.9f for %.9f, %zu contours for %zu\n", i,
+                      neck / error, area, saddle.area, section->contour_count, saddle.contours);
+        assert_int_equal(section->contour_count, saddle.contours);
+        assert_true(fabs(area - saddle.area) < error * saddle.length);
+        krs_section_free(section);
+        krs_slicer_free(slicer);
+        product_free(&saddle.product);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -569,6 +713,7 @@ int main(void)
         cmocka_unit_test(boxes_are_narrow),
         cmocka_unit_test(thin_parts_are_found),
         cmocka_unit_test(thinner_parts_are_counted),
+        cmocka_unit_test(saddles_are_told),
         cmocka_unit_test(figures_are_of_lines_and_arcs),
         cmocka_unit_test(sections_have_the_areas_of_closed_forms),
     };
