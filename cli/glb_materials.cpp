@@ -14,6 +14,7 @@ std::vector<double> scaled(const double numbers[3], double factor)
     return {factor * numbers[0], factor * numbers[1], factor * numbers[2]};
 }
 
+// Of what pictures show factors are 1.
 std::vector<double> base_color_of(const MeshMaterial &m)
 {
     const double *color = m.look.color;
@@ -31,26 +32,31 @@ double left_of(const double absorption[3], int color)
     return most > 0 ? std::exp(-absorption[color] / most) : 1;
 }
 
-// The widths of the lobe along the tangent and across it, as of OpenPBR (runtime/shaders/anisotropy.glsl).
-double width_along(const MeshMaterial &m)
+// The width of the lobe along the tangent, as of OpenPBR (runtime/shaders/anisotropy.glsl).
+double width_along(double roughness, double anisotropy)
 {
-    double across = 1 - m.look.specular_roughness_anisotropy;
-    return m.look.roughness * m.look.roughness * std::sqrt(2 / (1 + across * across));
+    double across = 1 - anisotropy;
+    return roughness * roughness * std::sqrt(2 / (1 + across * across));
 }
 
-double width_across(const MeshMaterial &m)
+double width_across(double roughness, double anisotropy)
 {
-    return (1 - m.look.specular_roughness_anisotropy) * width_along(m);
+    return (1 - anisotropy) * width_along(roughness, anisotropy);
 }
 
-double roughness_across(const MeshMaterial &m)
+double roughness_of(const MeshMaterial &m)
 {
-    return m.look.specular_roughness_anisotropy > 0 ? std::sqrt(width_across(m)) : m.look.roughness;
+    return m.baked[PICTURE_GLOSS]
+               ? 1
+               : glb_roughness(m.look.roughness, m.look.specular_roughness_anisotropy);
 }
+
+double metallic_of(const MeshMaterial &m) { return m.baked[PICTURE_GLOSS] ? 1 : m.look.metallic; }
 
 double anisotropy_of(const MeshMaterial &m)
 {
-    double across = width_across(m), wider = width_along(m) - across;
+    const double roughness = m.look.roughness, drawn = m.look.specular_roughness_anisotropy;
+    double across = width_across(roughness, drawn), wider = width_along(roughness, drawn) - across;
     return m.look.specular_roughness_anisotropy > 0 && wider > 0
                ? std::sqrt(std::fmin(wider / (1 - across), 1))
                : 0;
@@ -111,7 +117,60 @@ void add_extensions(tinygltf::Model &model, tinygltf::Material &material, const 
     }
 }
 
+// A texture for each picture; -1: there is none.
+void add_textures(tinygltf::Model &model, const MeshParts *parts, int textures[PICTURES])
+{
+    static const char *const names[] = {"base colour", "roughness and metallic", "emission"};
+    for (int k = 0; k < PICTURES; k++) {
+        textures[k] = -1;
+        if (!parts->pictures || parts->pictures[k].length == 0)
+            continue;
+        const MeshPicture          &picture = parts->pictures[k];
+        std::vector<unsigned char> &data    = model.buffers[0].data;
+        tinygltf::BufferView        view;
+        tinygltf::Image             image;
+        tinygltf::Texture           texture;
+        view.buffer      = 0;
+        view.byteOffset  = data.size();
+        view.byteLength  = picture.length;
+        image.name       = names[k];
+        image.mimeType   = "image/png";
+        image.bufferView = (int)model.bufferViews.size();
+        texture.source   = (int)model.images.size();
+        texture.sampler  = 0;
+        data.insert(data.end(), picture.bytes, picture.bytes + picture.length);
+        data.resize((data.size() + 3) / 4 * 4);
+        model.bufferViews.push_back(view);
+        model.images.push_back(image);
+        textures[k] = (int)model.textures.size();
+        model.textures.push_back(texture);
+    }
+    if (model.textures.empty())
+        return;
+    tinygltf::Sampler sampler;
+    sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
+    sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
+    sampler.wrapS = sampler.wrapT = TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+    model.samplers.push_back(sampler);
+}
+
+void name_textures(const int textures[PICTURES], const MeshMaterial &m,
+                   tinygltf::Material &material)
+{
+    if (m.baked[PICTURE_COLOR])
+        material.pbrMetallicRoughness.baseColorTexture.index = textures[PICTURE_COLOR];
+    if (m.baked[PICTURE_GLOSS])
+        material.pbrMetallicRoughness.metallicRoughnessTexture.index = textures[PICTURE_GLOSS];
+    if (m.baked[PICTURE_GLOW])
+        material.emissiveTexture.index = textures[PICTURE_GLOW];
+}
+
 } // namespace
+
+double glb_roughness(double roughness, double anisotropy)
+{
+    return anisotropy > 0 ? std::sqrt(width_across(roughness, anisotropy)) : roughness;
+}
 
 void glb_use_extension(std::vector<std::string> &extensions, const char *name)
 {
@@ -121,6 +180,8 @@ void glb_use_extension(std::vector<std::string> &extensions, const char *name)
 
 void glb_add_materials(tinygltf::Model &model, const MeshParts *parts)
 {
+    int textures[PICTURES];
+    add_textures(model, parts, textures);
     for (size_t i = 0; i < parts->material_count; i++) {
         const MeshMaterial &m = parts->materials[i];
         tinygltf::Material  material;
@@ -128,6 +189,7 @@ void glb_add_materials(tinygltf::Model &model, const MeshParts *parts)
 #define GLTF_CORE(member, ...) material.member = __VA_ARGS__;
 #include "cli/gltf_fields.def"
         add_extensions(model, material, m, parts->scale * parts->metres);
+        name_textures(textures, m, material);
         model.materials.push_back(material);
     }
 }

@@ -316,6 +316,16 @@ static KrsStatus check_size(const Meshing *meshing, const char *path, const Mesh
                                                 : "a larger --error needs fewer");
 }
 
+/* The largest error, that of levels of detail as well. */
+static double farthest(const Bodies *bodies)
+{
+    double error = summarize(bodies).error;
+    for (size_t i = 0; i < bodies->count; i++)
+        for (size_t k = 0; k < bodies->items[i].lod_count; k++)
+            error = fmax(error, bodies->items[i].lods[k]->error);
+    return error;
+}
+
 static KrsStatus write_mesh(Meshing *meshing, const char *path)
 {
     const MeshFormat *format = mesh_format(path);
@@ -327,7 +337,9 @@ static KrsStatus write_mesh(Meshing *meshing, const char *path)
         return status;
     find_parts(meshing, bodies, &parts);
     find_materials(meshing, format, path, &parts);
-    if (format->has_places)
+    if (format->has_looks && meshing->options->mesh_bake > 0)
+        status = bake_materials(meshing, &parts, farthest(bodies));
+    else if (format->has_places)
         status = find_places(meshing, &parts);
     if (status != KRS_OK)
         return status;
@@ -388,6 +400,11 @@ static void report(const Meshing *meshing, const Bodies *bodies)
     if (meshing->moving > 0)
         say("%zu part%s, by %zu keyframes", meshing->moving,
             meshing->moving == 1 ? " moves" : "s move", meshing->keys);
+    if (meshing->pixel > 0)
+        say("%u by %u pixels, each %.3g long on the surface", meshing->options->mesh_bake,
+            meshing->options->mesh_bake, meshing->pixel * meshing->scale);
+    else if (meshing->options->mesh_bake > 0)
+        say("warning: no material varies, so nothing was baked");
     if (bodies == &meshing->assembled && all.copies > (double)bodies->count)
         say("%.0f copies with %.0f triangles, within %s%.4g of the surface", all.copies,
             all.triangles, about, all.error * meshing->scale);

@@ -22,12 +22,23 @@ typedef struct MeshLook {
 #include "compiler/shape/surface.def"
 } MeshLook;
 
+/* What pictures show: colors; the roughness in green and the metallic in blue; and the emission, of which `look` has the
+   brightest. */
+enum { PICTURE_COLOR, PICTURE_GLOSS, PICTURE_GLOW, PICTURES };
+
+/* A PNG file; its length is 0 if there is none. */
+typedef struct MeshPicture {
+    const char *bytes;
+    size_t      length;
+} MeshPicture;
+
 typedef struct MeshMaterial {
     const char   *name;
-    unsigned char color[3];  /* of its first triangle, sRGB */
-    MeshLook      look;      /* the mean over its triangles */
-    bool          varies;    /* from place to place: color and look are not those of all */
-    bool          even;      /* all its triangles have this color */
+    unsigned char color[3];        /* of its first triangle, sRGB */
+    MeshLook      look;            /* the mean over its triangles */
+    bool          varies;          /* from place to place: color and look are not those of all */
+    bool          even;            /* all its triangles have this color */
+    bool          baked[PICTURES]; /* what a picture shows of it */
     double        thickness; /* of solids that it lets light into, as vertices have lengths; or 0 */
 } MeshMaterial;
 
@@ -84,10 +95,11 @@ typedef struct MeshParts {
     const MeshPart     *parts;
     const MeshBody     *bodies;
     const MeshMaterial *materials;
-    size_t              part_count, body_count, material_count;
-    double              scale;  /* from vertices to the lengths of the file */
-    const char         *unit;   /* of those: um, mm, cm, m, in or ft */
-    double              metres; /* which is so long */
+    const MeshPicture *pictures; /* all PICTURES, at the places of vertices; NULL: there are none */
+    size_t             part_count, body_count, material_count;
+    double             scale;  /* from vertices to the lengths of the file */
+    const char        *unit;   /* of those: um, mm, cm, m, in or ft */
+    double             metres; /* which is so long */
 } MeshParts;
 
 static inline const unsigned char *mesh_corner_color(const MeshParts *parts, size_t triangle,
@@ -99,6 +111,11 @@ static inline const unsigned char *mesh_corner_color(const MeshParts *parts, siz
 
 /* Whether corners of such triangles have frames. */
 bool mesh_needs_frames(const MeshMaterial *material);
+/* Whether a picture shows something of it. */
+bool mesh_is_baked(const MeshMaterial *material);
+
+/* What glTF has as roughness, which is that across the tangent. */
+double glb_roughness(double roughness, double anisotropy);
 
 /* Takes the next bytes of the file; false: there has been a failure. */
 typedef bool MeshSink(void *user, const void *bytes, size_t count);

@@ -194,6 +194,16 @@ void put_frames(tinygltf::Model &model, const MeshParts *parts, const MeshPart &
     primitive.attributes["TANGENT"] = frames[1];
 }
 
+// With pictures, if one shows something of the part.
+bool needs_places(const MeshParts *parts, const MeshPart &part)
+{
+    bool needs = parts->vertex_places && !parts->pictures;
+    for (size_t i = 0; i < part.triangle_count && parts->pictures; i++)
+        needs = needs ||
+                mesh_is_baked(&parts->materials[parts->material_of[part.first_triangle + i]]);
+    return needs;
+}
+
 bool has_one_material(const MeshParts *parts, const MeshPart &part)
 {
     for (size_t i = 0; i < part.triangle_count; i++)
@@ -213,7 +223,7 @@ int add_mesh(File &file, const MeshParts *parts, const MeshPart &part, bool mirr
     int              colors = -1, frames[2] = {-1, -1};
     if (!same)
         now.positions = add_positions(model, parts, part, mirrored);
-    int places = parts->vertex_places ? add_places(model, parts, part) : -1;
+    int places = needs_places(parts, part) ? add_places(model, parts, part) : -1;
     for (uint32_t material = 0; material < parts->material_count; material++) {
         int triangles = single && same && same->triangles >= 0 &&
                                 material == parts->material_of[part.first_triangle]
@@ -225,13 +235,14 @@ int add_mesh(File &file, const MeshParts *parts, const MeshPart &part, bool mirr
             now.triangles = triangles;
         tinygltf::Primitive primitive;
         primitive.attributes["POSITION"] = now.positions;
-        if (!parts->materials[material].even) {
+        const MeshMaterial &m            = parts->materials[material];
+        if (!m.even && !m.baked[PICTURE_COLOR]) {
             colors                          = colors < 0 ? add_colors(model, parts, part) : colors;
             primitive.attributes["COLOR_0"] = colors;
         }
-        if (places >= 0)
+        if (places >= 0 && (!parts->pictures || mesh_is_baked(&m)))
             primitive.attributes["TEXCOORD_0"] = places;
-        if (mesh_needs_frames(&parts->materials[material]))
+        if (mesh_needs_frames(&m))
             put_frames(model, parts, part, mirrored, frames, primitive);
         primitive.indices  = triangles;
         primitive.material = (int)material;

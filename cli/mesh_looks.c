@@ -16,9 +16,6 @@ enum { PROBES = 256, MOST_LOOKS = 8, LOOK_NUMBERS = sizeof(MeshLook) / sizeof(do
 /* Parts of a property by which looks of triangles differ. */
 static const double LEAST_DIFFERENCE = 1e-3;
 
-/* The name of a material that is only a color, in krs_material_name. */
-#define PLAIN_COLOR "colour"
-
 /* The properties, and which numbers of a look they are. */
 typedef struct Property {
     const char *name;
@@ -42,11 +39,19 @@ static MeshLook look_of(const KrsHit *hit)
     return look;
 }
 
-/* Colors are those of vertices, and tangents those of corners. */
-static bool is_told_elsewhere(const Property *property)
+static bool is_property(const Property *property, size_t offset)
 {
-    return property->first == offsetof(MeshLook, color) / sizeof(double) ||
-           property->first == offsetof(MeshLook, tangent) / sizeof(double);
+    return property->first == offset / sizeof(double);
+}
+
+/* Colors are those of vertices, and tangents those of corners; the rest is that of pictures, if there are any. */
+static bool is_told_elsewhere(const Property *property, bool baked)
+{
+    return is_property(property, offsetof(MeshLook, color)) ||
+           is_property(property, offsetof(MeshLook, tangent)) ||
+           (baked && (is_property(property, offsetof(MeshLook, roughness)) ||
+                      is_property(property, offsetof(MeshLook, metallic)) ||
+                      is_property(property, offsetof(MeshLook, emission))));
 }
 
 static bool differs(const MeshLook *a, const MeshLook *b, const Property *property)
@@ -59,10 +64,10 @@ static bool differs(const MeshLook *a, const MeshLook *b, const Property *proper
     return false;
 }
 
-static bool is_same_look(const MeshLook *a, const MeshLook *b)
+static bool is_same_look(const MeshLook *a, const MeshLook *b, bool baked)
 {
     for (size_t i = 0; i < PROPERTIES; i++)
-        if (!is_told_elsewhere(&properties[i]) && differs(a, b, &properties[i]))
+        if (!is_told_elsewhere(&properties[i], baked) && differs(a, b, &properties[i]))
             return false;
     return true;
 }
@@ -80,7 +85,7 @@ typedef struct Group {
 
 typedef struct Groups {
     Arena    *arena;
-    bool      by_name, by_look, by_color;
+    bool      by_name, by_look, by_color, baked;
     uint32_t *of_number; /* from 1: the first group of a material */
     bool     *varies;    /* of materials: they have too many looks */
     struct {
@@ -99,7 +104,7 @@ static bool is_of(const Groups *groups, const Group *group, const KrsHit *hit, c
 {
     unsigned char color[3];
     find_color(hit, color);
-    return (!groups->by_look || is_same_look(&group->first, look)) &&
+    return (!groups->by_look || is_same_look(&group->first, look, groups->baked)) &&
            (!groups->by_color || memcmp(group->color, color, sizeof color) == 0);
 }
 
@@ -245,7 +250,7 @@ static void warn_of_means(const Meshing *meshing, const char *path, const Group 
     Text        varying = {.arena = meshing->options->arena};
     const char *name    = krs_material_name(meshing->scene, group->number);
     for (size_t i = 0; i < PROPERTIES; i++)
-        if (!is_told_elsewhere(&properties[i]) &&
+        if (!is_told_elsewhere(&properties[i], meshing->options->mesh_bake > 0) &&
             differs(&group->low, &group->high, &properties[i]))
             text_format(&varying, "%s`%s`", varying.length ? ", " : "", properties[i].name);
     say("warning: in `%s` the material `%s` has the same %s everywhere, the mean of what it has in "
@@ -302,18 +307,33 @@ static uint32_t shell_of(const Shells *shells, uint32_t vertex)
     return vertex;
 }
 
-static void find_shells(Arena *arena, const MeshParts *parts, Shells *shells)
+static void join_shells(Arena *arena, const MeshParts *parts, Shells *shells)
 {
     size_t vertices = parts_vertex_count(parts), triangles = parts_triangle_count(parts);
-    shells->above  = arena_alloc(arena, vertices, sizeof *shells->above);
-    shells->volume = arena_new_array(arena, double, vertices);
-    shells->area   = arena_new_array(arena, double, vertices);
+    shells->above = arena_alloc(arena, vertices, sizeof *shells->above);
     for (uint32_t i = 0; i < vertices; i++)
         shells->above[i] = i;
     for (size_t t = 0; t < triangles; t++)
         for (int k = 1; k < 3; k++)
             shells->above[shell_of(shells, parts->triangles[t][k])] = shell_of(
                 shells, parts->triangles[t][0]);
+}
+
+const uint32_t *mesh_shells(Arena *arena, const MeshParts *parts)
+{
+    Shells shells = {0};
+    join_shells(arena, parts, &shells);
+    for (uint32_t i = 0; i < parts_vertex_count(parts); i++)
+        shells.above[i] = shell_of(&shells, i);
+    return shells.above;
+}
+
+static void find_shells(Arena *arena, const MeshParts *parts, Shells *shells)
+{
+    size_t vertices = parts_vertex_count(parts), triangles = parts_triangle_count(parts);
+    join_shells(arena, parts, shells);
+    shells->volume = arena_new_array(arena, double, vertices);
+    shells->area   = arena_new_array(arena, double, vertices);
     for (size_t t = 0; t < triangles; t++) {
         const uint32_t *corners = parts->triangles[t];
         uint32_t        shell   = shell_of(shells, corners[0]);
@@ -365,6 +385,7 @@ void find_materials(const Meshing *meshing, const MeshFormat *format, const char
     Groups    groups = {.arena     = arena,
                         .by_name   = format->has_looks || format->has_face_colors || split,
                         .by_look   = format->has_looks,
+                        .baked     = format->has_looks && meshing->options->mesh_bake > 0,
                         .by_color  = format->has_face_colors,
                         .of_number = arena_new_array(arena, uint32_t, known),
                         .varies    = arena_new_array(arena, bool, known)};

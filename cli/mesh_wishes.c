@@ -121,12 +121,27 @@ size_t output_count(const Meshing *meshing)
     return meshing->options->outputs.count ? meshing->options->outputs.count : 1;
 }
 
+/* Whether pictures show the colors of a file. */
+static bool is_baked(const Meshing *meshing, const MeshFormat *format)
+{
+    return meshing->options->mesh_bake > 0 && format->has_looks;
+}
+
+static bool can_be_baked(const Meshing *meshing)
+{
+    for (size_t i = 0; i < output_count(meshing); i++)
+        if (is_baked(meshing, mesh_format(output_path(meshing, i))))
+            return true;
+    return false;
+}
+
 /* Whether only the shape counts. */
 static bool is_shape_enough(const Meshing *meshing)
 {
     bool colors = false;
     for (size_t i = 0; i < output_count(meshing); i++)
-        colors = colors || mesh_format(output_path(meshing, i))->has_colors;
+        colors = colors || (mesh_format(output_path(meshing, i))->has_colors &&
+                            !is_baked(meshing, mesh_format(output_path(meshing, i))));
     return meshing->options->mesh_simplify || !colors;
 }
 
@@ -146,6 +161,8 @@ KrsStatus check_mesh_wishes(Meshing *meshing)
         return status;
     if (options->mesh_lods > 0 && !can_have_lods(meshing))
         return say_usage(options, "--lods makes levels of detail for .glb, and none is written");
+    if (options->mesh_bake > 0 && !can_be_baked(meshing))
+        return say_usage(options, "--bake makes pictures for .glb, and none is written");
     if (options->mesh_simplify && options->mesh_even)
         return say_usage(options, "--even keeps triangles that --simplify leaves out; one of both");
     meshing->how.draft    = options->mesh_draft;

@@ -50,6 +50,7 @@ typedef struct Meshing {
     double          done, begun, goal; /* of all work: done, and before and after this step of it */
     Bodies          merged, assembled; /* each is made if some file is of it */
     size_t          moving, keys;      /* copies that move, and their keyframes */
+    double          pixel; /* how long one of --bake is in the scene; 0: there is none */
 } Meshing;
 
 /* mesh_wishes.c: the files that are written. */
@@ -81,6 +82,10 @@ void flatten_parts(const Meshing *meshing, MeshParts *parts);
 /* mesh_looks.c: the materials of triangles, as a format has them; warns of what a file is without. */
 void find_materials(const Meshing *meshing, const MeshFormat *format, const char *path,
                     MeshParts *parts);
+/* The name of a material that is only a color, in krs_material_name. */
+#define PLAIN_COLOR "colour"
+/* Of vertices, one that is the same for all of a connected surface. */
+const uint32_t *mesh_shells(Arena *arena, const MeshParts *parts);
 /* Where the middle of a triangle is in the scene. */
 void mesh_middle(const MeshParts *parts, size_t triangle, double middle[3]);
 /* mesh_places.c: where triangles are in textures, if there are any. */
@@ -90,6 +95,8 @@ void find_frames(const Meshing *meshing, MeshParts *parts);
 /* mesh_split.c: tells of vertices what is known of corners, by doubling those of which corners differ: colors, and
    with `all` places and frames. */
 void split_corners(Arena *arena, MeshParts *parts, bool all);
+/* mesh_bake.c: with --bake, pictures of what varies, at places of corners.  Points are at most by `error` off the surface. */
+KrsStatus bake_materials(Meshing *meshing, MeshParts *parts, double error);
 /* Of a length of 1, in the order of unit_choices. */
 extern const double metres_of_units[];
 /* What a length of 1 is in the file. */

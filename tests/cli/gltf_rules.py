@@ -84,6 +84,25 @@ def check_material(material):
     assert "KHR_materials_volume" not in used or "KHR_materials_transmission" in used
 
 
+def textures_of(material):
+    core = material.get("pbrMetallicRoughness", {})
+    found = [core.get("baseColorTexture"), core.get("metallicRoughnessTexture"), material.get("emissiveTexture")]
+    return [texture for texture in found if texture]
+
+
+def check_textures(file):
+    for texture in file.all("textures"):
+        image = file.json["images"][texture["source"]]
+        view = file.json["bufferViews"][image["bufferView"]]
+        start = view.get("byteOffset", 0)
+        assert image["mimeType"] == "image/png" and "target" not in view
+        assert file.data[start:start + 8] == b"\x89PNG\r\n\x1a\n" and start + view["byteLength"] <= len(file.data)
+        sampler = file.json["samplers"][texture["sampler"]]
+        assert sampler["magFilter"] in (9728, 9729) and sampler["minFilter"] in (9728, 9729, 9984, 9985, 9986, 9987)
+        assert {sampler.get("wrapS", 10497), sampler.get("wrapT", 10497)} <= {33071, 33648, 10497}
+    assert len({texture["source"] for texture in file.all("textures")}) == len(file.all("images"))
+
+
 def check_primitive(file, primitive):
     attributes = primitive["attributes"]
     views = {name: file.json["accessors"][index] for name, index in attributes.items()}
@@ -101,6 +120,9 @@ def check_primitive(file, primitive):
         assert np.abs(np.linalg.norm(tangents[:, :3], axis=1) - 1).max() < 5e-4
         assert set(np.unique(tangents[:, 3])) <= {-1.0, 1.0}
     material = file.json["materials"][primitive["material"]]
+    for texture in textures_of(material):
+        assert texture["index"] < len(file.all("textures")) and "TEXCOORD_0" in attributes
+        assert texture.get("texCoord", 0) == 0
     assert "KHR_materials_anisotropy" not in material.get("extensions", {}) or "TANGENT" in attributes
 
 
@@ -147,6 +169,7 @@ def check(path):
     assert file.json["asset"]["version"] == "2.0"
     check_accessors(file)
     check_nodes(file)
+    check_textures(file)
     for material in file.all("materials"):
         check_material(material)
     for mesh in file.all("meshes"):

@@ -2,7 +2,7 @@
 # mesh_judges.sh: CGAL, a slicer and Blender accept what `krs mesh` writes.  What is not installed is skipped.
 . "$(dirname "$0")/common.sh"
 judge=$(dirname "$krs")/tests/oracle/mesh_judge
-plan 9
+plan 10
 
 cat >vase.krs <<'END'
 let wall = field(sin(3 * x) * cos(3 * y) + sin(3 * y) * cos(3 * z) + sin(3 * z) * cos(3 * x)).shell(0.9);
@@ -114,4 +114,17 @@ if command -v blender >/dev/null; then
     result $? "Blender reads a GLB: its parts, closed, their volume, colours and materials"
 else
     skip "Blender reads a GLB: its parts, closed, their volume, colours and materials" "no Blender"
+fi
+
+cat >baked.krs <<'END'
+material band { color: [0.5 + x / 4, 0.5, 0.5], roughness: 0.5 + x / 4, emission: [1 + x, 0, 0] }
+show box([1, 1, 1]).paint(band);
+END
+if command -v blender >/dev/null; then
+    "$krs" mesh --quiet baked.krs --bake 64 -o baked.glb
+    blender -b --factory-startup --python "$root/tests/cli/mesh_blender.py" -- "$work/baked.glb" >out 2>err
+    [ "$(grep '^picture' out | sort | tr '\n' ';')" = "picture band Base_Color 64 sRGB;picture band Emission 64 sRGB;picture band Metallic+Roughness 64 Non-Color;" ]
+    result $? "Blender has the pictures of a baked material, and what they are of"
+else
+    skip "Blender has the pictures of a baked material, and what they are of" "no Blender"
 fi
