@@ -16,13 +16,28 @@ static const double MOST_SAMPLES = 2147483648.0, MOST_BRICKS = 1073741824.0;
 /* Along the longest side; the library takes twice as many. */
 static const double MOST_CELLS = 0.5 * KRS_MOST_CELLS;
 
+typedef struct GridOutput {
+    const char       *path;
+    const GridFormat *format;
+    GridFile          file;
+} GridOutput;
+
+/* Files of the same samples, those that have all or those that have what is near the surface: they are sampled once. */
+typedef struct GridGroup {
+    GridOutput *outputs;
+    size_t      count;
+    GridSheet   sheet;
+} GridGroup;
+
+enum { GROUPS = 2 };
+
 typedef struct Gridding {
     const Options  *options;
     const KrsScene *scene;
     KrsFrame       *frame;
-    Meshing         wishes; /* what they share with meshes */
-    KrsGridOptions  how;    /* but for what a format has */
-    GridSheet       sheet;
+    Meshing         wishes;         /* what they share with meshes */
+    KrsGridOptions  how;            /* but for what a format has */
+    GridGroup       groups[GROUPS]; /* all, near */
     KrsGrid        *grid;
     bool            solid; /* some sample is in it */
     Progress        progress;
@@ -64,6 +79,10 @@ static KrsStatus check_file(const Gridding *gridding, const char *path)
         return say_usage(options, "`%s` is no grid: its name must end in " GRID_ENDINGS, path);
     if (options->grid_material && !format->has_material)
         return say_usage(options, "`%s` has no room for numbers of materials; .npy has", path);
+    for (size_t i = 0; i < options->outputs.count && options->outputs.items[i] != path; i++)
+        if (output_is_same(options->outputs.items[i], path))
+            return say_usage(options, "`%s` and `%s` are one file", options->outputs.items[i],
+                             path);
     KrsStatus status = check_scene_not_overwritten(options, path);
     if (status == KRS_OK && output_check(path, &error) != KRS_OK) {
         say("%s", error.message);
@@ -74,7 +93,17 @@ static KrsStatus check_file(const Gridding *gridding, const char *path)
     return status;
 }
 
-static KrsStatus check_options(const Gridding *gridding)
+static void add_output(Gridding *gridding, const char *path)
+{
+    const GridFormat *format = grid_format(path);
+    GridGroup        *group  = &gridding->groups[format->sparse];
+    if (!group->outputs)
+        group->outputs = arena_new_array(gridding->options->arena, GridOutput,
+                                         file_total(gridding));
+    group->outputs[group->count++] = (GridOutput){.path = path, .format = format};
+}
+
+static KrsStatus check_options(Gridding *gridding)
 {
     const Options *options = gridding->options;
     KrsStatus      status  = KRS_OK;
@@ -82,8 +111,12 @@ static KrsStatus check_options(const Gridding *gridding)
         return say_usage(options, "--fog writes no distances, which --exact and --band are about");
     if (options->grid_error > 0 && !options->grid_exact)
         return say_usage(options, "--error is that of --exact");
-    for (size_t i = 0; i < file_total(gridding) && status == KRS_OK; i++)
-        status = check_file(gridding, file_name(gridding, i));
+    for (size_t i = 0; i < file_total(gridding) && status == KRS_OK; i++) {
+        const char *path = file_name(gridding, i);
+        status           = check_file(gridding, path);
+        if (status == KRS_OK)
+            add_output(gridding, path);
+    }
     return status;
 }
 
@@ -147,9 +180,11 @@ static KrsStatus take_wishes(Gridding *gridding)
 /* ---- how large it is ---- */
 
 /* Before anything is computed. */
-static KrsStatus check_size(const Gridding *gridding, const char *path, const GridFormat *format)
+static KrsStatus check_size(const Gridding *gridding, const KrsGridShape *shape,
+                            const GridOutput *output)
 {
-    const KrsGridShape *shape = &gridding->sheet.shape;
+    const GridFormat *format = output->format;
+    const char       *path   = output->path;
     double longest = 0, samples = 1, most = format->sparse ? 512 * MOST_BRICKS : MOST_SAMPLES;
     char   what[128];
     for (int k = 0; k < 3; k++) {
@@ -174,13 +209,13 @@ static KrsStatus check_size(const Gridding *gridding, const char *path, const Gr
 }
 
 /* What is near the surface grows with its area. */
-static KrsStatus check_memory(Gridding *gridding, const char *path)
+static KrsStatus check_memory(Gridding *gridding, GridGroup *group)
 {
-    GridSheet *sheet  = &gridding->sheet;
+    GridSheet *sheet  = &group->sheet;
     size_t     limit  = gridding->options->limits.memory;
     double     most   = (double)(limit ? limit : KRS_USUAL_MEMORY);
     KrsStatus  status = krs_grid_count_near(gridding->grid, &sheet->near);
-    double     bytes  = (double)sheet->near *
+    double     bytes  = (double)sheet->near * (double)group->count *
                    (KRS_BRICK_SAMPLES * (double)grid_sample_bytes(sheet) + 256);
     char what[64];
     if (status != KRS_OK)
@@ -191,108 +226,163 @@ static KrsStatus check_memory(Gridding *gridding, const char *path)
     return say_usage(gridding->options,
                      "`%s` would have %s, and can have %.4g MB (--limit memory); --cell %.4g has "
                      "fewer",
-                     path, what, most * 1e-6,
+                     group->outputs[0].path, what, most * 1e-6,
                      round_up(sheet->shape.cell * sqrt(1.1 * bytes / most)));
+}
+
+/* Lays the samples out as the files of a group have them. */
+static KrsStatus lay_out(Gridding *gridding, const GridGroup *group)
+{
+    const Options *options = gridding->options;
+    bool           sparse  = group == &gridding->groups[true];
+    double         usual   = sparse ? USUAL_BAND : 0;
+    double band = options->grid_fog ? 0 : options->grid_band > 0 ? options->grid_band : usual;
+    return krs_grid_set_band(gridding->grid, band, sparse);
+}
+
+static KrsStatus check_group(Gridding *gridding, GridGroup *group)
+{
+    const Options *options = gridding->options;
+    KrsStatus      status  = lay_out(gridding, group);
+    if (status == KRS_BAD_ARGUMENT)
+        return say_usage(options, "--cell is too small for the size of `%s`",
+                         options->files.items[0]);
+    int unit     = options->mesh_units < 0 ? find_choice("mm", unit_choices) : options->mesh_units;
+    group->sheet = (GridSheet){.shape    = krs_grid_shape(gridding->grid),
+                               .fog      = options->grid_fog,
+                               .color    = options->grid_color,
+                               .material = options->grid_material,
+                               .metres   = metres_of_units[unit]};
+    if (group->sheet.shape.count[0] == 0)
+        return say_nothing(&gridding->wishes, "write", NULL, 0);
+    for (size_t i = 0; i < group->count && status == KRS_OK; i++)
+        status = check_size(gridding, &group->sheet.shape, &group->outputs[i]);
+    return status == KRS_OK && group->outputs[0].format->sparse ? check_memory(gridding, group)
+                                                                : status;
+}
+
+/* The mesh behind exact distances is the first half of the work. */
+static KrsStatus open_grid(Gridding *gridding)
+{
+    const Options *options = gridding->options;
+    gridding->goal         = 0.5;
+    KrsStatus status       = krs_grid_new(gridding->frame, &gridding->how, &gridding->grid);
+    if (status == KRS_BAD_ARGUMENT)
+        return say_usage(options, "%s is too small for the size of `%s`",
+                         gridding->how.error > 0 ? "--error" : "--cell", options->files.items[0]);
+    return status == KRS_OK ? KRS_OK : say_failure(gridding, status);
 }
 
 /* ---- files ---- */
 
 typedef struct Target {
-    Gridding         *gridding;
-    const GridFormat *format;
-    GridFile         *file;
+    Gridding  *gridding;
+    GridGroup *group;
+    size_t     number; /* of the file */
+    KrsStatus *status; /* of the files behind it, and of the samples */
 } Target;
 
 static bool add_brick(void *user, const KrsGridBrick *brick)
 {
-    Target   *target   = user;
-    Gridding *gridding = target->gridding;
+    const Target *target   = user;
+    Gridding     *gridding = target->gridding;
     for (int i = 0; i < KRS_BRICK_SAMPLES && !gridding->solid; i++)
-        gridding->solid = gridding->sheet.fog ? brick->values[i] > 0 : brick->values[i] <= 0;
-    return target->format->add(target->file, brick);
+        gridding->solid = target->group->sheet.fog ? brick->values[i] > 0 : brick->values[i] <= 0;
+    for (size_t i = 0; i < target->group->count; i++) {
+        GridOutput *output = &target->group->outputs[i];
+        if (!output->format->add(&output->file, brick))
+            return false;
+    }
+    return true;
 }
 
-/* What else went wrong is told as that of a file. */
-static bool fail(OutputError *error, KrsStatus status)
+/* What went wrong with a file is told with it. */
+static KrsStatus sample(Target *target)
 {
-    if (error->status != KRS_OK)
+    const GridGroup *group  = target->group;
+    KrsStatus        status = krs_grid_visit(target->gridding->grid, add_brick, target);
+    for (size_t i = 0; i < group->count; i++)
+        if (group->outputs[i].file.error->status != KRS_OK)
+            return group->outputs[i].file.error->status;
+    if (status != KRS_OK && status != KRS_INTERRUPTED)
+        say("not enough memory for this grid; a larger --cell needs less");
+    return status;
+}
+
+static KrsStatus write_from(const Target *target);
+
+/* The samples are made when the last file has begun, and each goes to all of them. */
+static bool fill_grid(const void *user, OutputFile *file, OutputError *error)
+{
+    const Target *target = user;
+    GridGroup    *group  = target->group;
+    GridOutput   *output = &group->outputs[target->number];
+    output->file         = (GridFile){.sheet = &group->sheet,
+                                      .file  = file,
+                                      .error = error,
+                                      .arena = target->gridding->options->arena};
+    if (!output->format->begin(&output->file))
         return false;
-    error->status = status;
-    snprintf(error->message, sizeof error->message, "%s",
-             "not enough memory for this grid; a larger --cell needs less");
-    return false;
+    Target next     = *target;
+    next.number     = target->number + 1;
+    *target->status = next.number == group->count ? sample(&next) : write_from(&next);
+    if (*target->status != KRS_OK && error->status == KRS_OK)
+        error->status = KRS_INTERRUPTED; /* what else it was has been said */
+    return *target->status == KRS_OK && output->format->end(&output->file);
 }
 
-static bool fill_grid(const void *user, OutputFile *output, OutputError *error)
+/* Writes the files of a group from this one on. */
+static KrsStatus write_from(const Target *target)
 {
-    Target    target   = *(const Target *)user;
-    Gridding *gridding = target.gridding;
-    GridFile  file     = {.sheet = &gridding->sheet,
-                          .file  = output,
-                          .error = error,
-                          .arena = gridding->options->arena};
-    target.file        = &file;
-    if (!target.format->begin(&file))
-        return false;
-    KrsStatus status = krs_grid_visit(gridding->grid, add_brick, &target);
-    if (status != KRS_OK)
-        return fail(error, status);
-    return target.format->end(&file);
+    KrsStatus made   = KRS_OK;
+    Target    own    = *target;
+    own.status       = &made;
+    KrsStatus status = write_output(own.group->outputs[own.number].path, fill_grid, &own);
+    return made == KRS_OK ? status : made;
 }
 
-static KrsStatus open_grid(Gridding *gridding, const char *path, const GridFormat *format)
+static KrsStatus write_group(Gridding *gridding, GridGroup *group)
 {
-    const Options *options = gridding->options;
-    KrsGridOptions how     = gridding->how;
-    double         usual   = format->sparse ? USUAL_BAND : 0;
-    how.aligned            = format->sparse;
-    how.band = options->grid_fog ? 0 : options->grid_band > 0 ? options->grid_band : usual;
-    krs_grid_free(gridding->grid);
-    KrsStatus status = krs_grid_new(gridding->frame, &how, &gridding->grid);
-    if (status == KRS_BAD_ARGUMENT)
-        return say_usage(options, "%s is too small for the size of `%s`",
-                         how.error > 0 ? "--error" : "--cell", options->files.items[0]);
-    if (status != KRS_OK)
-        return say_failure(gridding, status);
-    int unit = options->mesh_units < 0 ? find_choice("mm", unit_choices) : options->mesh_units;
-    gridding->sheet = (GridSheet){.shape    = krs_grid_shape(gridding->grid),
-                                  .fog      = options->grid_fog,
-                                  .color    = options->grid_color,
-                                  .material = options->grid_material,
-                                  .metres   = metres_of_units[unit]};
-    if (gridding->sheet.shape.count[0] == 0)
-        return say_nothing(&gridding->wishes, "write", NULL, 0);
-    status = check_size(gridding, path, format);
-    return status == KRS_OK && format->sparse ? check_memory(gridding, path) : status;
+    KrsStatus status = lay_out(gridding, group);
+    return status == KRS_OK ? write_from(&(Target){gridding, group, 0, NULL}) : status;
 }
 
-/* The mesh behind exact distances is the first half of the work of a file. */
-static KrsStatus write_grid(Gridding *gridding, size_t number)
+static KrsStatus write_groups(Gridding *gridding)
 {
-    const char       *path   = file_name(gridding, number);
-    const GridFormat *format = grid_format(path);
-    Target            target = {.gridding = gridding, .format = format};
-    const double      all    = (double)file_total(gridding);
-    gridding->begun          = (double)number / all;
-    gridding->goal           = ((double)number + 0.5) / all;
+    double    files  = 0;
+    KrsStatus status = KRS_OK;
+    gridding->begun  = gridding->options->grid_exact ? gridding->goal : 0;
+    for (int i = 0; i < GROUPS && status == KRS_OK; i++) {
+        GridGroup *group = &gridding->groups[i];
+        if (group->count == 0)
+            continue;
+        files += (double)group->count;
+        double part     = files / (double)file_total(gridding);
+        double begun    = gridding->options->grid_exact ? 0.5 : 0;
+        gridding->goal  = begun + (1 - begun) * part;
+        status          = write_group(gridding, group);
+        gridding->begun = gridding->goal;
+    }
+    return status;
+}
+
+static KrsStatus make_grid(Gridding *gridding)
+{
     stage_enter(STAGE_GRID);
     progress_start(&gridding->progress, gridding->options, 1);
-    KrsStatus status = open_grid(gridding, path, format);
-    gridding->begun  = gridding->options->grid_exact ? gridding->goal : gridding->begun;
-    gridding->goal   = ((double)number + 1) / all;
+    KrsStatus status = open_grid(gridding);
+    for (int i = 0; i < GROUPS && status == KRS_OK; i++)
+        if (gridding->groups[i].count > 0)
+            status = check_group(gridding, &gridding->groups[i]);
     if (status == KRS_OK)
-        status = write_output(path, fill_grid, &target);
+        status = write_groups(gridding);
     progress_end(&gridding->progress);
     return status;
 }
 
-static void report(const Gridding *gridding)
+static void warn(const Gridding *gridding, const KrsGridShape *shape)
 {
-    const KrsGridShape *shape = &gridding->sheet.shape;
-    const double       *at    = shape->unresolved_at;
-    char                what[128];
-    if (gridding->options->quiet)
-        return;
+    const double *at = shape->unresolved_at;
     if (shape->estimate)
         say("warning: the distance is an estimate, so nothing is proven of it");
     if (!gridding->solid)
@@ -302,7 +392,13 @@ static void report(const Gridding *gridding)
         say("warning: in %zu places distances may be too long, by what is thinner than the error; "
             "the first is at [%g, %g, %g]; a smaller --error tells",
             shape->unresolved, at[0], at[1], at[2]);
-    if (gridding->sheet.fog)
+}
+
+static void report(const Gridding *gridding, const GridGroup *group)
+{
+    const KrsGridShape *shape = &group->sheet.shape;
+    char                what[128];
+    if (group->sheet.fog)
         snprintf(what, sizeof what, "densities");
     else if (shape->estimate)
         snprintf(what, sizeof what, "distances are estimates");
@@ -317,6 +413,20 @@ static void report(const Gridding *gridding)
         what);
 }
 
+static void report_all(const Gridding *gridding)
+{
+    bool warned = gridding->options->quiet;
+    for (int i = 0; i < GROUPS; i++) {
+        const GridGroup *group = &gridding->groups[i];
+        if (group->count == 0 || gridding->options->quiet)
+            continue;
+        if (!warned)
+            warn(gridding, &group->sheet.shape);
+        warned = true;
+        report(gridding, group);
+    }
+}
+
 KrsStatus command_grid(Options *options)
 {
     Gridding  gridding = {.options = options};
@@ -329,10 +439,10 @@ KrsStatus command_grid(Options *options)
         status = scene_frame(options, scene, &gridding.frame);
     if (status == KRS_OK)
         status = take_wishes(&gridding);
-    for (size_t i = 0; i < file_total(&gridding) && status == KRS_OK; i++)
-        status = write_grid(&gridding, i);
     if (status == KRS_OK)
-        report(&gridding);
+        status = make_grid(&gridding);
+    if (status == KRS_OK)
+        report_all(&gridding);
     krs_grid_free(gridding.grid);
     krs_frame_free(gridding.frame);
     krs_scene_free(scene);

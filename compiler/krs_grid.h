@@ -83,6 +83,10 @@ KrsStatus    krs_grid_new(KrsFrame *frame, const KrsGridOptions *options, KrsGri
 void         krs_grid_free(KrsGrid *grid);
 KrsGridShape krs_grid_shape(const KrsGrid *grid);
 
+/* Another band and another alignment than those of the options, for other files of the same distances: what they come from
+   stays.  KRS_BAD_ARGUMENT: as of krs_grid_new; then this is to be called again before the samples are visited. */
+KrsStatus krs_grid_set_band(KrsGrid *grid, double band, bool aligned);
+
 /* Told of a brick, which lives until it returns; false: stop, with KRS_IO_ERROR. */
 typedef bool KrsVisitBrick(void *user, const KrsGridBrick *brick);
 

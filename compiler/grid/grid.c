@@ -179,11 +179,20 @@ static double find_near(const KrsGridOptions *options)
     return options->band > 0 ? options->band * options->cell : INFINITY;
 }
 
+static bool band_is_valid(double band) { return band >= 0 && band <= MOST_BAND; }
+
 static bool options_are_valid(const KrsGridOptions *options, const KrsScene *scene)
 {
-    return options->cell > 0 && isfinite(options->cell) && options->band >= 0 &&
-           options->band <= MOST_BAND && options->error >= 0 && isfinite(options->error) &&
+    return options->cell > 0 && isfinite(options->cell) && band_is_valid(options->band) &&
+           options->error >= 0 && isfinite(options->error) &&
            options->component <= scene->shown_count && !scene->program.sheets;
+}
+
+static void take_band(KrsGrid *grid)
+{
+    const KrsGridOptions *options = &grid->options;
+    grid->near                    = find_near(options);
+    grid->shape.band              = options->fog ? 0 : options->band * options->cell;
 }
 
 KrsStatus krs_grid_new(KrsFrame *frame, const KrsGridOptions *options, KrsGrid **result)
@@ -199,10 +208,9 @@ KrsStatus krs_grid_new(KrsFrame *frame, const KrsGridOptions *options, KrsGrid *
     grid->memory.limit = options->memory_limit ? options->memory_limit : KRS_USUAL_MEMORY;
     grid->arena.memory = &grid->memory;
     grid->parts        = parallel_parts();
-    grid->near         = find_near(options);
     grid->shape.cell   = options->cell;
-    grid->shape.band   = options->fog ? 0 : options->band * options->cell;
-    KrsStatus status   = choose_components(grid, scene);
+    take_band(grid);
+    KrsStatus status = choose_components(grid, scene);
     if (status == KRS_OK)
         status = prepare(grid, frame);
     grid->shape.estimate   = grid->solid.estimate;
@@ -225,6 +233,16 @@ void krs_grid_free(KrsGrid *grid)
     arena_free(&grid->arena);
     free(grid->solid.roots);
     free(grid);
+}
+
+KrsStatus krs_grid_set_band(KrsGrid *grid, double band, bool aligned)
+{
+    if (!band_is_valid(band))
+        return KRS_BAD_ARGUMENT;
+    grid->options.band    = band;
+    grid->options.aligned = aligned;
+    take_band(grid);
+    return grid->shape.count[0] == 0 || find_samples(grid) ? KRS_OK : KRS_BAD_ARGUMENT;
 }
 
 KrsGridShape krs_grid_shape(const KrsGrid *grid) { return grid->shape; }

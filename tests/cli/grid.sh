@@ -1,7 +1,7 @@
 #!/bin/sh
 # grid.sh: `krs grid`: files as their formats want them, what other programs read of them, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 46
+plan 50
 
 echo 'material red { color: [1, 0, 0] } show sphere(0.5).move([0.25, 0, 0]).paint(red);' >ball.krs
 echo 'let floor = half_space([0, 1, 0], 0); show floor; let ball = sphere(1); show ball;' >floor.krs
@@ -297,6 +297,20 @@ status=$?
 said 73 "built without OpenVDB" "a krs without its module says so"
 [ ! -e a.vdb ]
 result $? "and writes nothing"
+
+# ---- many files ----
+for file in s.npy s.nii s.vti s.ktx2 s.vtu; do run grid --quiet ball.krs --cell 0.0625 --surface-color -o "$file"; done
+run grid ball.krs --cell 0.0625 --surface-color -o m.npy -o m.vtu -o m.nii -o m.vti -o m.ktx2
+[ "$status" -eq 0 ] && [ "$(grep -c 'samples from' err)" -eq 2 ] && cmp s.npy m.npy && cmp s.nii m.nii &&
+    cmp s.vti m.vti && cmp s.ktx2 m.ktx2 && cmp s.vtu m.vtu
+result $? "many files at once are what each is alone"
+ln -s /dev/full full.nii
+run grid --quiet ball.krs --cell 0.02 -o one.npy -o full.nii
+said 74 "No space left" "a full disk is told once"
+[ ! -e one.npy ] && no_temporaries
+result $? "and a file that was begun before is not written then"
+run grid ball.krs --cell 0.1 -o one.npy -o ./one.npy
+said 2 "are one file" "a file is written once"
 
 # ---- how much it takes ----
 # The most memory of a command, in kilobytes: memory_of KRS-ARGUMENTS...

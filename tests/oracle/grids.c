@@ -66,10 +66,15 @@ static bool take_brick(void *user, const KrsGridBrick *brick)
 
 static Samples take_samples(const Product *product, const KrsGridOptions *options)
 {
-    KrsGrid *grid;
-    Samples  samples = {0};
-    size_t   all     = 1, near;
-    assert_int_equal(krs_grid_new(product->frame, options, &grid), KRS_OK);
+    KrsGrid       *grid;
+    Samples        samples = {0};
+    size_t         all     = 1, near;
+    KrsGridOptions first   = *options;
+    first.aligned          = false;
+    first.band             = options->aligned ? 7 : options->band; /* set below */
+    assert_int_equal(krs_grid_new(product->frame, &first, &grid), KRS_OK);
+    if (options->aligned)
+        assert_int_equal(krs_grid_set_band(grid, options->band, true), KRS_OK);
     samples.shape = krs_grid_shape(grid);
     assert_true(samples.shape.count[0] > 0);
     for (int k = 0; k < 3; k++) {
@@ -492,6 +497,7 @@ static void nonsense_is_refused(void **state)
     assert_int_equal(krs_grid_new(endless.frame, &usual, &grid), KRS_BAD_ARGUMENT);
     usual = (KrsGridOptions){.cell = 0.1, .within = true, .low = {-1, -1, -1}, .high = {1, 1, 1}};
     assert_int_equal(krs_grid_new(endless.frame, &usual, &grid), KRS_OK);
+    assert_int_equal(krs_grid_set_band(grid, NAN, false), KRS_BAD_ARGUMENT);
     krs_grid_free(grid);
     usual = (KrsGridOptions){.cell = 0.001, .memory_limit = 100000};
     assert_int_equal(krs_grid_new(product.frame, &usual, &grid), KRS_OUT_OF_MEMORY);
