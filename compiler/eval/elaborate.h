@@ -352,6 +352,9 @@ BuiltinFunction builtin_svg, builtin_texture, builtin_footprint;
 Value method_distance(Elaboration *e, const Shape *shape, Call *call);
 Value method_bounds(Elaboration *e, const Shape *shape, Call *call);
 
+/* ---- corners.c ---- */
+Value method_corners(Elaboration *e, const Shape *shape, Call *call);
+
 /* ---- functions.c ---- */
 /* Calls a function, or makes the shape of a declaration; `syntax` is the call. */
 Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax,

@@ -1,6 +1,6 @@
 /*
  * lofts.c: lofts against their definition: at each height the mean of two distances, which are known
- * in closed form here, decides what is inside.
+ * in closed form here, decides what is inside; or, between convex polygons, the means of their points.
  */
 #include <stdio.h>
 
@@ -79,6 +79,136 @@ static void lofts_are_their_definition(void **state)
     }
 }
 
+/* ---- between convex polygons ---- */
+
+enum { MOST_RING = 6, MOST_MEANS = MOST_RING * MOST_RING };
+
+typedef struct Ring {
+    double at[MOST_RING][2];
+    int    count;
+    double level;
+} Ring;
+
+typedef struct FlatLoft {
+    Ring   rings[MOST_STAGES];
+    int    count;
+    double height;
+} FlatLoft;
+
+/* Whether all points are on one side of a line from a point of the plane through one of them. */
+static bool is_outside(double (*points)[2], int count, const double at[2])
+{
+    for (int i = 0; i < count; i++) {
+        bool left = true, right = true;
+        for (int k = 0; k < count; k++) {
+            double side = (points[i][0] - at[0]) * (points[k][1] - at[1]) -
+                          (points[i][1] - at[1]) * (points[k][0] - at[0]);
+            left  = left && side >= 0;
+            right = right && side <= 0;
+        }
+        if (left || right)
+            return true;
+    }
+    return false;
+}
+
+static bool in_flat_loft(const void *user, Vec p)
+{
+    const FlatLoft *loft = user;
+    double          at   = p.z / loft->height + 0.5, means[MOST_MEANS][2];
+    int             i = 0, count = 0;
+    if (!(at >= 0 && at <= 1))
+        return false;
+    while (i + 2 < loft->count && at > loft->rings[i + 1].level)
+        i++;
+    const Ring *from = &loft->rings[i], *to = from + 1;
+    double      t = (at - from->level) / (to->level - from->level);
+    for (int a = 0; a < from->count; a++)
+        for (int b = 0; b < to->count; b++, count++)
+            for (int k = 0; k < 2; k++)
+                means[count][k] = (1 - t) * from->at[a][k] + t * to->at[b][k];
+    return !is_outside(means, count, (double[2]){p.x, p.y});
+}
+
+static Product flat_loft_product(const FlatLoft *loft)
+{
+    SceneText text = {.length = 0};
+    scene_write(&text, "show loft([");
+    for (int i = 0; i < loft->count; i++) {
+        scene_write(&text, "%spolygon([", i ? ", " : "");
+        for (int k = 0; k < loft->rings[i].count; k++)
+            scene_write(&text, "%s[%.17g, %.17g]", k ? ", " : "", loft->rings[i].at[k][0],
+                        loft->rings[i].at[k][1]);
+        scene_write(&text, "])");
+    }
+    scene_write(&text, "], %.17g, levels: [", loft->height);
+    for (int i = 0; i < loft->count; i++)
+        scene_write(&text, "%s%.17g", i ? ", " : "", loft->rings[i].level);
+    scene_write(&text, "]);");
+    return product_compile(text.bytes);
+}
+
+/* Corners of an ellipse somewhere, either way around. */
+static FlatLoft random_flat_loft(Random *random)
+{
+    static const double levels[2][MOST_STAGES] = {{0, 1, 1}, {0, 0.4, 1}};
+    FlatLoft            loft = {.count = random_between(random, 0, 1) < 0.5 ? 2 : 3};
+    loft.height              = random_between(random, 0.4, 1.6);
+    for (int i = 0; i < loft.count; i++) {
+        Ring  *ring = &loft.rings[i];
+        double turn = random_between(random, 0, 7), wide = random_between(random, 0.2, 0.8),
+               high = random_between(random, 0.2, 0.8), aside = random_between(random, -0.3, 0.3);
+        int way     = random_between(random, 0, 1) < 0.5 ? 1 : -1;
+        ring->count = 3 + (int)random_between(random, 0, MOST_RING - 2.001);
+        ring->level = levels[loft.count - 2][i];
+        for (int k = 0; k < ring->count; k++) {
+            double angle   = turn + way * 2 * acos(-1) * k / ring->count;
+            ring->at[k][0] = wide * cos(angle) + aside;
+            ring->at[k][1] = high * sin(angle);
+        }
+    }
+    return loft;
+}
+
+static void lofts_of_polygons_are_means(void **state)
+{
+    (void)state;
+    Random random = {11};
+    for (uint64_t i = 0; i < 12; i++) {
+        FlatLoft loft    = random_flat_loft(&random);
+        Product  product = flat_loft_product(&loft);
+        Trial    trial   = {product_field, &product, in_flat_loft, &loft,
+                            vec(0, 0, 0),  1.5,      POINTS,       30 + i};
+        judge_acquits(&trial, "loft of polygons");
+        judge_refutes_steeper(&trial, 1.6, "loft of polygons");
+        product_free(&product);
+    }
+}
+
+/* Corners are those of convex polygons alone; parameters may say where they are. */
+static void corners_are_of_convex_polygons(void **state)
+{
+    (void)state;
+    Product product = product_compile(
+        "param w = 1 in [0.5, 2];\n"
+        "def has(figure, n) = assert(len(figure.corners()) == n, n) in true;\n"
+        "let checks = [\n"
+        "    has(rectangle([w, 1]).rotate(20deg * w).move([w, 0]), 4), has(regular(7, w), 7),\n"
+        "    has(polygon([[0, 0], [1, 0], [1, 1]]).paint(red), 3),\n"
+        "    has(polygon([[0, 0], [1, 1], [1, 0]]).scale([2, 0.5]), 3),\n"
+        "    has(polygon([[0, 0], [1, 0], [2, 0], [2, 2]]), 4), has(circle(1), 0),\n"
+        "    has(polygon([[0, 0], [2, 0], [0.5, 0.5], [0, 2]]), 0), has(star(5, 1, 0.4), 0),\n"
+        "    has(polygon([[0, 0], [1, 1], [1, 0], [0, 1]]), 0), has(rectangle([1, 1]).round(0.1), "
+        "0),\n"
+        "    has(polygon([[0, 0], [w, 0], [1, 1]]), 0), has(regular(65, 1), 0),\n"
+        "    has(polygon([[cos(144deg * i), sin(144deg * i)] for i in 0..5]), 0),\n"
+        "    has(rectangle([1, 1]) | rectangle([1, 1]).move([3, 0]), 0), has(sphere(1), 0)];\n"
+        "show sphere(1 + len(checks));\n");
+    product_free(&product);
+}
+
+/* ---- slopes ---- */
+
 /* From a cone the bound differs by how much steeper than its own slope its walls may be. */
 static void lofts_are_sharp(void **state)
 {
@@ -143,6 +273,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lofts_are_their_definition),
+        cmocka_unit_test(lofts_of_polygons_are_means),
+        cmocka_unit_test(corners_are_of_convex_polygons),
         cmocka_unit_test(lofts_are_sharp),
         cmocka_unit_test(many_corners_are_mixed_as_well),
         cmocka_unit_test(extremes_are_bounds),
