@@ -66,7 +66,7 @@ API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits
                 refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)
 MESH     := $(addprefix compiler/mesh/, solid.c field.c field_pieces.c numbering.c batches.c weights.c tets.c marks.c quadric.c roots.c contour.c contour_mesh.c draft.c bvh.c groups.c gradient.c lens.c around.c verify.c smooth.c pieces.c voids.c bounds.c rounds.c polygons.c flat_rounds.c flat_forms.c flat_joins.c flat_circles.c flat_outlines.c flat_pieces.c flat_apart.c flat_touches.c flat_faces.c flat_proof.c flat_near.c flat.c steps.c borders.c mesh.c placing.c assemble.c crossing.c settle.c slivers.c near.c fans.c collapse.c simplify.c)
 SLICE    := $(addprefix compiler/slice/, plane.c extent.c tree.c chords.c bend.c fit.c contours.c slice.c)
-GRID     := $(addprefix compiler/grid/, samples.c row.c grid.c)
+GRID     := $(addprefix compiler/grid/, coverage.c samples.c row.c grid.c)
 MEASURE  := $(addprefix compiler/measure/, cut.c volume.c places.c lying.c measure.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer integrators film display writer))))
 LIVE     := $(sort $(wildcard live/*.c))

@@ -51,6 +51,9 @@ KrsStatus add_materials(const KrsGrid *grid, MeshField *field, const size_t at[3
 /* The value of samples that are so far from the surface, told by one of them. */
 float far_value(const KrsGrid *grid, double distance);
 
+/* coverage.c: the part of the cube around a point that is solid. */
+double coverage(const MeshField *field, const double point[3], double side);
+
 /* Bricks that follow each other along x: the numbers of the first, and how many. */
 typedef struct BrickRun {
     size_t first[3], count;

@@ -29,11 +29,11 @@ static Box box_of(const Row *row, size_t first, size_t count)
     return box;
 }
 
-/* Where the field is asked: half a cell around samples for what is solid of their cubes, and for normals. */
+/* Where the field is asked: around samples for what is solid of their cubes, and for normals. */
 static Box asked_box(const Row *row, Box box)
 {
     const KrsGridOptions *options = &row->grid->options;
-    double                margin  = options->fog || options->materials ? 0.5 * options->cell : 0;
+    double                margin  = options->fog || options->materials ? 0.63 * options->cell : 0;
     for (int k = 0; k < 3; k++)
         box.axis[k] = (Range){box.axis[k].low - margin, box.axis[k].high + margin};
     return box;

@@ -47,34 +47,12 @@ static double exact_distance(const KrsGrid *grid, const double point[3], double 
     return copysign(max2(fabs(distance), least), distance);
 }
 
-/* The part of the cube around a point that is solid, by cubes of a quarter of its side.  Each has that of a flat face at
-   the distance of its middle. */
-static double coverage(const KrsGrid *grid, const MeshField *field, const double point[3])
-{
-    enum { PARTS = 4, CUBES = PARTS * PARTS * PARTS };
-    const double side = grid->shape.cell / PARTS;
-    double       sum  = 0;
-    for (int first = 0; first < CUBES; first += MOST_FIELD_POINTS) {
-        double middles[MOST_FIELD_POINTS][3], distances[MOST_FIELD_POINTS];
-        for (int i = 0; i < MOST_FIELD_POINTS; i++) {
-            const int cube     = first + i;
-            const int steps[3] = {cube % PARTS, cube / PARTS % PARTS, cube / (PARTS * PARTS)};
-            for (int k = 0; k < 3; k++)
-                middles[i][k] = point[k] + (steps[k] - 0.5 * (PARTS - 1)) * side;
-        }
-        field_distances(field, (const double(*)[3])middles, MOST_FIELD_POINTS, distances);
-        for (int i = 0; i < MOST_FIELD_POINTS; i++)
-            sum += min2(max2(0.5 - distances[i] / side, 0), 1);
-    }
-    return sum / CUBES;
-}
-
 static float value_at(const KrsGrid *grid, const MeshField *field, const double point[3],
                       double distance, uint32_t *triangle)
 {
     if (grid->options.fog)
         return fabs(distance) > grid->near ? far_value(grid, distance)
-                                           : (float)coverage(grid, field, point);
+                                           : (float)coverage(field, point, grid->shape.cell);
     return rounded(banded(grid, exact_distance(grid, point, distance, triangle)));
 }
 
