@@ -383,6 +383,22 @@ static void warn_of_rounding(const Meshing *meshing, const Summary *all)
     }
 }
 
+/* Rounding is no distance. */
+static void report_motion(const Meshing *meshing, double error)
+{
+    static const double ROUNDING = 1e-6; /* of the error */
+    Text                between  = {.arena = meshing->options->arena};
+    if (meshing->farthest > ROUNDING * error)
+        text_format(&between, "; between them parts are within %.3g of where they belong",
+                    meshing->farthest * meshing->scale);
+    if (meshing->jumps > 0)
+        text_format(&between, "; %zu jump%s a 1024th of a frame", meshing->jumps,
+                    meshing->jumps == 1 ? " takes" : "s take");
+    say("%zu part%s, by %zu keyframes%s", meshing->moving,
+        meshing->moving == 1 ? " moves" : "s move", meshing->keys,
+        between.length > 0 ? between.bytes : "");
+}
+
 static void report(const Meshing *meshing, const Bodies *bodies)
 {
     Summary       all   = summarize(bodies);
@@ -398,8 +414,7 @@ static void report(const Meshing *meshing, const Bodies *bodies)
             all.unresolved, at[0], at[1], at[2], all.copies > 1 ? "kernel" : "scene");
     warn_of_rounding(meshing, &all);
     if (meshing->moving > 0)
-        say("%zu part%s, by %zu keyframes", meshing->moving,
-            meshing->moving == 1 ? " moves" : "s move", meshing->keys);
+        report_motion(meshing, all.error);
     if (meshing->pixel > 0)
         say("%u by %u pixels, each %.3g long on the surface", meshing->options->mesh_bake,
             meshing->options->mesh_bake, meshing->pixel * meshing->scale);

@@ -30,9 +30,11 @@ typedef struct Motion {
     double         tolerance;
     double (*lows)[3], (*highs)[3]; /* boxes of the meshes of copies */
     Track  *tracks;
-    Matrix *places[MOST_HALVINGS][PLACES];
-    bool   *wanting[MOST_HALVINGS]; /* copies that need a keyframe in the middle */
-    Matrix *to;                     /* what is being sampled */
+    Matrix *places[MOST_HALVINGS + 1][PLACES];
+    bool   *wanting[MOST_HALVINGS + 1]; /* copies that need a keyframe in the middle */
+    Matrix *to;                         /* what is being sampled */
+    double  farthest;                   /* from where they belong that copies are, but in jumps */
+    size_t  jumps; /* times between the nearest keyframes in which a copy goes farther */
 } Motion;
 
 static double seconds_of(const Motion *motion, double frame)
@@ -93,19 +95,33 @@ static double distance_between(const Motion *motion, size_t copy, const MeshPose
     return most;
 }
 
-static bool wants_key(const Motion *motion, size_t copy, Matrix *const ends[2],
-                      Matrix *const places[PLACES])
+/* How far a copy is from where it belongs between two keyframes. */
+static double distance_of(const Motion *motion, size_t copy, Matrix *const ends[2],
+                          Matrix *const places[PLACES])
 {
     MeshPose first, last, between;
+    double   most = 0;
     mesh_pose_of((const double(*)[4])ends[0][copy], &first);
     mesh_pose_of((const double(*)[4])ends[1][copy], &last);
     for (int i = 0; i < PLACES; i++) {
         mesh_pose_between(&first, &last, SHARES[i], &between);
-        if (distance_between(motion, copy, &between, (const double(*)[4])places[i][copy]) >
-            motion->tolerance)
-            return true;
+        most = fmax(most,
+                    distance_between(motion, copy, &between, (const double(*)[4])places[i][copy]));
     }
-    return false;
+    return most;
+}
+
+/* Whether it must have another keyframe in the middle, if there can be one. */
+static bool wants_key(Motion *motion, size_t copy, Matrix *const ends[2],
+                      Matrix *const places[PLACES], bool can)
+{
+    const double distance = distance_of(motion, copy, ends, places);
+    const bool   wants    = distance > motion->tolerance;
+    if (!wants)
+        motion->farthest = fmax(motion->farthest, distance);
+    else if (!can)
+        motion->jumps++;
+    return wants && can;
 }
 
 static void make_room(Motion *motion, int depth)
@@ -130,9 +146,8 @@ static bool can_be_halved(const Motion *motion, const double frames[2])
 static KrsStatus refine(Motion *motion, const double frames[2], Matrix *const ends[2],
                         const bool *asked, int depth)
 {
-    bool any = false;
-    if (depth >= MOST_HALVINGS || !can_be_halved(motion, frames))
-        return KRS_OK;
+    const bool can = depth < MOST_HALVINGS && can_be_halved(motion, frames);
+    bool       any = false;
     make_room(motion, depth);
     Matrix  **places = motion->places[depth];
     bool     *wanted = motion->wanting[depth];
@@ -140,7 +155,7 @@ static KrsStatus refine(Motion *motion, const double frames[2], Matrix *const en
     for (int i = 0; i < PLACES && status == KRS_OK; i++)
         status = sample(motion, frames[0] + (frames[1] - frames[0]) * SHARES[i], places[i]);
     for (size_t i = 0; i < motion->copies && status == KRS_OK; i++) {
-        wanted[i] = (!asked || asked[i]) && wants_key(motion, i, ends, places);
+        wanted[i] = (!asked || asked[i]) && wants_key(motion, i, ends, places, can);
         any       = any || wanted[i];
     }
     if (!any)
@@ -251,7 +266,9 @@ static KrsStatus find_tracks(Meshing *meshing, MeshBody *body)
         meshing->moving += tracks[i].count > 1;
         meshing->keys += tracks[i].count > 1 ? tracks[i].count : 0;
     }
-    body->tracks = tracks;
+    body->tracks      = tracks;
+    meshing->farthest = fmax(meshing->farthest, motion.farthest);
+    meshing->jumps += motion.jumps;
     return status;
 }
 
@@ -260,7 +277,8 @@ KrsStatus find_motion(Meshing *meshing, MeshParts *parts)
     const Options *options = meshing->options;
     KrsStatus      status  = KRS_OK;
     MeshBody      *bodies  = arena_new_array(options->arena, MeshBody, parts->body_count);
-    meshing->moving = meshing->keys = 0;
+    meshing->moving = meshing->keys = meshing->jumps = 0;
+    meshing->farthest                                = 0;
     for (size_t i = 0; i < parts->body_count && status == KRS_OK; i++) {
         bodies[i] = parts->bodies[i];
         if (bodies[i].assembly)

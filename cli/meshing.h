@@ -50,7 +50,10 @@ typedef struct Meshing {
     double          done, begun, goal; /* of all work: done, and before and after this step of it */
     Bodies          merged, assembled; /* each is made if some file is of it */
     size_t          moving, keys;      /* copies that move, and their keyframes */
-    double          pixel; /* how long one of --bake is in the scene; 0: there is none */
+    double
+        farthest; /* from where they belong that these are between keyframes, as far as samples tell, */
+    size_t jumps; /* but for so many times between two of the nearest */
+    double pixel; /* how long one of --bake is in the scene; 0: there is none */
 } Meshing;
 
 /* mesh_wishes.c: the files that are written. */

@@ -1,7 +1,7 @@
 #!/bin/sh
 # mesh_motion.sh: `krs mesh --frames` writes how parts move into GLB.
 . "$(dirname "$0")/common.sh"
-plan 21
+plan 23
 
 cat >spin.krs <<'SCENE'
 show box([2, 0.2, 0.4]).rotate([1, 2, 0], 9 * time).move([3 * sin(time), 0, 0]);
@@ -64,6 +64,32 @@ fi
 run mesh ride.krs --fps 4 --frames 0..12 -o ride.glb
 [ "$status" -eq 0 ] && grep -q '^krs: 1 part moves, by 13 keyframes$' err
 result $? "it is told how many parts move"
+# Halves of frames where a chord of 3 sin t is farther off than the error; the rest is told.
+cat >swing.krs <<'SCENE'
+show box([0.5, 0.3, 0.2]).move([3 * sin(time), 0, 0]);
+SCENE
+run mesh swing.krs --error 0.02 --fps 4 --frames 0..12 -o swing.glb
+awk 'function off(a, b, most, i, s, d) {
+         for (i = 1; i < 1000; i++) {
+             s = i / 1000
+             d = 3 * sin(a + s * (b - a)) - 3 * (1 - s) * sin(a) - 3 * s * sin(b)
+             if (d < 0) d = -d
+             if (d > most) most = d
+         }
+         return most
+     }
+     function visit(a, b, d) {
+         keys++
+         d = off(a, b)
+         if (d > 0.02) { keys--; visit(a, (a + b) / 2); visit((a + b) / 2, b) } else if (d > largest) largest = d
+     }
+     BEGIN { for (n = 0; n < 12; n++) visit(n / 4, (n + 1) / 4); print keys + 1, largest }' >wanted
+sed -n 's/^krs: 1 part moves, by \([0-9]*\) keyframes; between them parts are within \([0-9.]*\) of where they belong$/\1 \2/p' err |
+    cat wanted - | awk '{ keys[NR] = $1; most[NR] = $2 } END { exit !(NR == 2 && keys[1] == keys[2] && most[2] > 0.97 * most[1] && most[2] < 1.005 * most[1]) }'
+result $? "and how far they are from where they belong between keyframes"
+echo 'show box([1, 1, 1]).move([if time < 1.1 then 0 else 2, 0, 0]);' >leap.krs
+run mesh leap.krs --error 0.02 --fps 4 --frames 0..12 -o leap.glb
+said 0 "keyframes; 1 jump takes a 1024th of a frame" "and how often they jump"
 cat >forms.krs <<'SCENE'
 let breath = sphere(1 + 0.1 * sin(time));
 let grown = sphere(1).scale(1 + 0.1 * sin(time)).move([4, 0, 0]);
