@@ -367,6 +367,7 @@ void place_by_nodes(tinygltf::Model &model, int mesh, const std::vector<Copy> &c
         tinygltf::Node  node;
         const MeshPose &pose = copy.pose;
         node.mesh            = mesh;
+        node.name            = model.meshes[mesh].name;
         for (double along : pose.translation)
             node.translation.push_back(lengths * along);
         node.rotation.assign(pose.rotation, pose.rotation + 4);
@@ -402,6 +403,7 @@ void place_by_instances(tinygltf::Model &model, int mesh, const std::vector<Copy
         attributes[names[member]] = tinygltf::Value(add_instances(model, copies, member, lengths));
     content["attributes"]      = tinygltf::Value(attributes);
     node.mesh                  = mesh;
+    node.name                  = model.meshes[mesh].name;
     node.extensions[extension] = tinygltf::Value(content);
     glb_use_extension(model.extensionsRequired, extension);
     glb_use_extension(model.extensionsUsed, extension);
@@ -423,7 +425,8 @@ void add_copies(File &file, const MeshParts *parts, const MeshBody &body, tinygl
             const MeshPart          &part   = parts->parts[body.part_of[i]];
             if ((still.empty() && moving.empty()) || part.triangle_count == 0)
                 continue;
-            int mesh = add_mesh(file, parts, part, mirrored != 0, body.name);
+            const char *name = assembly->items[i].name ? assembly->items[i].name : body.name;
+            int         mesh = add_mesh(file, parts, part, mirrored != 0, name);
             place_by_nodes(file.model, mesh, moving, lengths, node);
             if (assembly->copies <= MOST_NODES)
                 place_by_nodes(file.model, mesh, still, lengths, node);

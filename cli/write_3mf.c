@@ -260,7 +260,7 @@ static size_t put_item(const Copies *copies, size_t number, bool mirrored)
     const bool      all  = number == body->assembly->item_count - 1;
     if (item->mesh)
         return put_part(copies->model, &copies->model->parts->parts[body->part_of[number]],
-                        mirrored, body->name);
+                        mirrored, item->name ? item->name : body->name);
     if (!has_components(copies, item))
         return 0;
     open_object(copies->model, all ? body->name : NULL);

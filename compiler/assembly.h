@@ -30,10 +30,11 @@ typedef struct MapRoots {
 } MapRoots;
 
 typedef struct AssemblyItem {
-    uint32_t first, count; /* its placings; 0: it is a part */
-    uint32_t root;         /* of a part: its distance */
-    Box      box;          /* of a part */
-    bool     estimate;     /* likewise: nothing is proven of its distance */
+    uint32_t    first, count; /* its placings; 0: it is a part */
+    uint32_t    root;         /* of a part: its distance */
+    Box         box;          /* of a part */
+    bool        estimate;     /* likewise: nothing is proven of its distance */
+    const char *name;         /* likewise, by the author */
 } AssemblyItem;
 
 typedef struct Assembly {

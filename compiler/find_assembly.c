@@ -29,6 +29,7 @@ typedef struct Finder {
     bool        *timed; /* nodes of shapes that depend on the time; NULL: nobody asks */
     const Shape *turn;  /* around the shape that is looked at; NULL: none, */
     const Shape *paint; /* and above it, where the time moves something */
+    const char  *name;  /* of the nearest shape at it or above that has one, or of the component */
     struct {
         Node  *items;
         size_t count, capacity;
@@ -63,8 +64,10 @@ static uint32_t add_item(Finder *f, const AssemblyPlacing *placings, uint32_t co
 static uint32_t add_part(Finder *f, const Shape *shape)
 {
     static const Node later = NODE_NONE;
-    AssemblyItem      item  = {
-              .root = add_roots(f, &later, 1), .box = shape->box, .estimate = shape->estimate};
+    AssemblyItem      item  = {.root     = add_roots(f, &later, 1),
+                               .box      = shape->box,
+                               .estimate = shape->estimate,
+                               .name     = arena_copy_text(f->arena, f->name, strlen(f->name))};
     array_push(f->arena, &f->assembly->items, item);
     uint32_t number = (uint32_t)f->assembly->items.count - 1;
     array_push(f->work, &f->parts, ((Known){shape, f->turn, f->paint, number}));
@@ -268,7 +271,10 @@ static uint32_t find_item(Finder *f, const Shape *shape)
     const Known *known = find_known(f, shape);
     if (known)
         return known->item;
-    uint32_t item = take_apart(f, shape);
+    const char *above = f->name;
+    f->name           = shape->given ? shape->given : above;
+    uint32_t item     = take_apart(f, shape);
+    f->name           = above;
     array_push(f->work, &f->known, ((Known){shape, f->turn, f->paint, item}));
     return item;
 }
@@ -278,9 +284,10 @@ static void find_components(Finder *f, const Scene *s)
     f->assembly->of_component = arena_new_array(f->arena, uint32_t, s->components.count + 1);
     for (size_t i = 0; i < s->components.count; i++) {
         const Component *component   = &s->components.items[i];
-        bool             loop        = component->count > 1 && !moves(f, component->shape);
-        uint32_t         item        = loop ? NO_ITEM : find_item(f, component->shape);
-        bool             whole       = loop || f->assembly->items.items[item].count == 0;
+        f->name                      = component->name;
+        bool     loop                = component->count > 1 && !moves(f, component->shape);
+        uint32_t item                = loop ? NO_ITEM : find_item(f, component->shape);
+        bool     whole               = loop || f->assembly->items.items[item].count == 0;
         f->assembly->of_component[i] = whole ? NO_ITEM : item;
     }
 }

@@ -49,7 +49,12 @@ Value run_definition(Elaboration *e, Definition *definition, Span use)
     Span          caller = e->graph->here;
     Node          turn   = turns_begin_definition(e, definition);
     switch (syntax->kind) {
-    case SYNTAX_LET: definition->value = evaluate(e, env, syntax->children[0]); break;
+    case SYNTAX_LET:
+        definition->value = evaluate(e, env, syntax->children[0]);
+        if (definition->value.type == VALUE_SHAPE)
+            definition->value.shape = shape_named(e->builder, definition->value.shape,
+                                                  syntax->name);
+        break;
     case SYNTAX_PARAM: definition->value = define_param(e, env, syntax); break;
     case SYNTAX_MATERIAL:
         definition->value = syntax_is_function(syntax) ? function_value(e, env, syntax)

@@ -64,7 +64,8 @@ const Shape *make_transform(ShapeBuilder *builder, const Shape *shape, const Map
     if (shape->kind == SHAPE_TRANSFORM || shape->kind == SHAPE_INVERSION) {
         const Map *product = map_product(builder, &single, &shape->map);
         if (!product->first)
-            return transform_by(builder, shape->children[0], product, span);
+            return shape_named(builder, transform_by(builder, shape->children[0], product, span),
+                               shape->given);
     }
     return transform_by(builder, shape, &single, span);
 }

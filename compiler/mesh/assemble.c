@@ -90,6 +90,7 @@ static bool copy_items(Assembler *a)
     for (size_t i = 0; i < items; i++) {
         to->items[i].first      = a->from->items.items[i].first;
         to->items[i].count      = a->from->items.items[i].count;
+        to->items[i].name       = a->from->items.items[i].name;
         a->search.bounds[i].box = a->from->items.items[i].box;
         find_item_bounds(&a->search, i);
     }

@@ -210,6 +210,16 @@ Shape *shape_around(ShapeBuilder *builder, ShapeKind kind, const char *name, con
     return shape_new(builder, kind, name, span, &shape, 1);
 }
 
+const Shape *shape_named(ShapeBuilder *builder, const Shape *shape, const char *given)
+{
+    if (!shape || shape->given || !given)
+        return shape;
+    Shape *named = arena_new(builder->arena, Shape);
+    *named       = *shape;
+    named->given = given;
+    return named;
+}
+
 static const Shape *find_estimate(const Shape *shape)
 {
     while (shape->child_count > 0) {

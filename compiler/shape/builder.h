@@ -33,6 +33,8 @@ Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span s
 /* The same with one child. */
 Shape *shape_around(ShapeBuilder *builder, ShapeKind kind, const char *name, const Shape *child,
                     Span span);
+/* The same shape by the name that the author gives it, unless it has one or that is NULL. */
+const Shape *shape_named(ShapeBuilder *builder, const Shape *shape, const char *given);
 /* What it takes over from a part that is not among its children. */
 void shape_takes_over(Shape *shape, const Shape *part);
 /* What is known of its formula, to be changed: no other shape has the same. */

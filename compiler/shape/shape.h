@@ -158,8 +158,9 @@ typedef struct Border {
 
 struct Shape {
     ShapeKind     kind;
-    Span          span; /* of the expression that made it */
-    const char   *name; /* of the declaration or operation, for dumps */
+    Span          span;  /* of the expression that made it */
+    const char   *name;  /* of the declaration or operation, for dumps */
+    const char   *given; /* what the author calls it: by the `let` that has it first; or NULL */
     const Shape **children;
     uint32_t      child_count;
     uint32_t      depth;  /* of the tree below, at most MOST_SHAPE_DEPTH */

@@ -1,7 +1,7 @@
 #!/bin/sh
 # mesh_motion.sh: `krs mesh --frames` writes how parts move into GLB.
 . "$(dirname "$0")/common.sh"
-plan 23
+plan 24
 
 cat >spin.krs <<'SCENE'
 show box([2, 0.2, 0.4]).rotate([1, 2, 0], 9 * time).move([3 * sin(time), 0, 0]);
@@ -90,6 +90,22 @@ result $? "and how far they are from where they belong between keyframes"
 echo 'show box([1, 1, 1]).move([if time < 1.1 then 0 else 2, 0, 0]);' >leap.krs
 run mesh leap.krs --error 0.02 --fps 4 --frames 0..12 -o leap.glb
 said 0 "keyframes; 1 jump takes a 1024th of a frame" "and how often they jump"
+cat >machine.krs <<'SCENE'
+let wheel = torus(0.4, 0.12).rotate([0, 1, 0], 3 * time);
+let frame = box([2, 0.5, 1]);
+let lid = frame.scale(0.25).move([0, 0.5 + 0.1 * sin(time), 0]);
+let machine = frame | wheel.move([0.7, -0.3, 0.6]) | wheel.move([-0.7, -0.3, 0.6]) | lid | sphere(0.2).move([sin(time), 2, 0]);
+show machine;
+show box([1, 1, 1]).move([5 + time, 0, 0]);
+SCENE
+# Names of a GLB's nodes that have a mesh, in their order.
+node_names() {
+    tr -d '\0' <"$1" | grep -ao '"nodes":.*"scene"' | grep -o '{[^{}]*"mesh":[^{}]*}' |
+        sed 's/.*"name":"\([^"]*\)".*/\1/' | sort | tr '\n' ';'
+}
+run mesh --quiet machine.krs --frames 0..4 -o machine.glb
+[ "$(node_names machine.glb)" = "component 2;frame;frame;machine;wheel;wheel;" ]
+result $? "parts have the names of what they are made of, or of their component"
 cat >forms.krs <<'SCENE'
 let breath = sphere(1 + 0.1 * sin(time));
 let grown = sphere(1).scale(1 + 0.1 * sin(time)).move([4, 0, 0]);
