@@ -79,6 +79,9 @@ static KrsStatus check_file(const Gridding *gridding, const char *path)
         return say_usage(options, "`%s` is no grid: its name must end in " GRID_ENDINGS, path);
     if (options->grid_material && !format->has_material)
         return say_usage(options, "`%s` has no room for numbers of materials; .npy has", path);
+    if (options->grid_half && !format->has_half)
+        return say_usage(options, "`%s` has no numbers of 16 bits; .vdb, .npy and .ktx2 have",
+                         path);
     for (size_t i = 0; i < options->outputs.count && options->outputs.items[i] != path; i++)
         if (output_is_same(options->outputs.items[i], path))
             return say_usage(options, "`%s` and `%s` are one file", options->outputs.items[i],
@@ -252,6 +255,7 @@ static KrsStatus check_group(Gridding *gridding, GridGroup *group)
                                .fog      = options->grid_fog,
                                .color    = options->grid_color,
                                .material = options->grid_material,
+                               .half     = options->grid_half,
                                .metres   = metres_of_units[unit]};
     if (group->sheet.shape.count[0] == 0)
         return say_nothing(&gridding->wishes, "write", NULL, 0);
@@ -397,7 +401,7 @@ static void warn(const Gridding *gridding, const KrsGridShape *shape)
 static void report(const Gridding *gridding, const GridGroup *group)
 {
     const KrsGridShape *shape = &group->sheet.shape;
-    char                what[128];
+    char                what[128], rounding[64] = "";
     if (group->sheet.fog)
         snprintf(what, sizeof what, "densities");
     else if (shape->estimate)
@@ -407,10 +411,12 @@ static void report(const Gridding *gridding, const GridGroup *group)
     else
         snprintf(what, sizeof what, "distances never above the true ones%s",
                  shape->outside ? ", and exact outside" : "; --exact computes these");
-    say("%zu x %zu x %zu samples from [%.9g, %.9g, %.9g] on, %g apart; %s", shape->count[0],
+    if (group->sheet.half)
+        snprintf(rounding, sizeof rounding, ", rounded by a 1024th at most");
+    say("%zu x %zu x %zu samples from [%.9g, %.9g, %.9g] on, %g apart; %s%s", shape->count[0],
         shape->count[1], shape->count[2], (double)shape->first[0] * shape->cell,
         (double)shape->first[1] * shape->cell, (double)shape->first[2] * shape->cell, shape->cell,
-        what);
+        what, rounding);
 }
 
 static void report_all(const Gridding *gridding)

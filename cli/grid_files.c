@@ -3,6 +3,7 @@
  *
  * Formats differ in what stands before and behind the samples, and in how their numbers are dealt out to arrays.
  */
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,8 +13,8 @@
 
 enum { SIDE = KRS_BRICK_SIDE, MOST_ARRAYS = 5, MOST_NUMBERS = 5, MOST_HEADER = 4096 };
 
-/* An array has some numbers for each sample, of 4 bytes each: the value, a part of the colour, the material as a whole
-   number or as another. */
+/* An array has some numbers for each sample, of 2 or 4 bytes each: the value, a part of the colour, the material as a
+   whole number or as another. */
 typedef enum GridNumber { VALUE, RED, GREEN, BLUE, MATERIAL, MATERIAL_FLOAT } GridNumber;
 
 typedef struct GridArray {
@@ -39,6 +40,38 @@ size_t grid_sample_bytes(const GridSheet *sheet)
     return sizeof(float) * (size_t)(1 + (sheet->color ? 3 : 0) + (sheet->material ? 1 : 0));
 }
 
+/* ---- halves ---- */
+
+static const float LARGEST_HALF = 65504;
+
+static uint32_t bits_of(float number)
+{
+    uint32_t bits;
+    memcpy(&bits, &number, sizeof bits);
+    return bits;
+}
+
+uint16_t half_bits(float number)
+{
+    enum { BIAS = 112, FEWER = 13, LEAST = 0x38800000 }; /* the least normal half, as a float */
+    const uint32_t sign = bits_of(number) >> 31 << 15;
+    const float    size = fabsf(number) < LARGEST_HALF ? fabsf(number) : LARGEST_HALF;
+    const uint32_t bits = bits_of(size);
+    uint32_t half = bits >= LEAST ? (bits >> FEWER) - (BIAS << 10) : (uint32_t)(size * 0x1p24f);
+    if (half == 0 && number < 0)
+        half = 1;
+    return (uint16_t)(sign | half);
+}
+
+float half_value(float number)
+{
+    const uint16_t bits  = half_bits(number);
+    const uint32_t whole = bits & 0x7FFF, power = whole >> 10;
+    const float    size = power > 0 ? ldexpf((float)((whole & 0x3FF) | 0x400), (int)power - 25)
+                                    : (float)whole * 0x1p-24f;
+    return bits >> 15 ? -size : size;
+}
+
 /* ---- rows ---- */
 
 static uint64_t sample_total(const GridSheet *sheet)
@@ -46,9 +79,23 @@ static uint64_t sample_total(const GridSheet *sheet)
     return (uint64_t)sheet->shape.count[0] * sheet->shape.count[1] * sheet->shape.count[2];
 }
 
+static size_t number_bytes(const GridSheet *sheet, GridNumber number)
+{
+    return sheet->half && number != MATERIAL ? 2 : 4;
+}
+
+/* Of a sample. */
+static size_t array_step(const GridSheet *sheet, const GridArray *array)
+{
+    size_t bytes = 0;
+    for (size_t k = 0; k < array->count; k++)
+        bytes += number_bytes(sheet, array->numbers[k]);
+    return bytes;
+}
+
 static uint64_t array_bytes(const GridSheet *sheet, const GridArray *array)
 {
-    return 4 * array->count * sample_total(sheet);
+    return array_step(sheet, array) * sample_total(sheet);
 }
 
 static size_t row_samples(const GridSheet *sheet) { return sheet->shape.count[0] * SIDE * SIDE; }
@@ -77,7 +124,8 @@ static GridArray *add_array(GridRows *rows, size_t count, ...)
     return array;
 }
 
-static void put_number(const GridRows *rows, GridNumber number, size_t sample, unsigned char *to)
+static void put_number(const GridRows *rows, GridNumber number, bool half, size_t sample,
+                       unsigned char *to)
 {
     float part;
     switch (number) {
@@ -86,7 +134,11 @@ static void put_number(const GridRows *rows, GridNumber number, size_t sample, u
     case VALUE: part = rows->values[sample]; break;
     default: part = rows->colors[sample][number - RED];
     }
-    memcpy(to, &part, 4);
+    const uint16_t bits = half ? half_bits(part) : 0;
+    if (half)
+        memcpy(to, &bits, 2);
+    else
+        memcpy(to, &part, 4);
 }
 
 /* The part of a row of bricks that is in one layer, for one array: rows of samples that follow each other. */
@@ -95,11 +147,13 @@ static bool write_layer(GridFile *file, const GridArray *array, const size_t at[
     const GridRows *rows    = file->own;
     const size_t   *count   = file->sheet->shape.count;
     size_t          lines   = count[1] - at[1] < SIDE ? count[1] - at[1] : SIDE;
-    size_t          samples = lines * count[0], bytes = 4 * array->count;
+    size_t          samples = lines * count[0], bytes = array_step(file->sheet, array);
+    unsigned char  *to = rows->row;
     for (size_t i = 0; i < samples; i++)
-        for (size_t k = 0; k < array->count; k++)
-            put_number(rows, array->numbers[k], layer * SIDE * count[0] + i,
-                       rows->row + i * bytes + 4 * k);
+        for (size_t k = 0; k < array->count; k++) {
+            put_number(rows, array->numbers[k], file->sheet->half, layer * SIDE * count[0] + i, to);
+            to += number_bytes(file->sheet, array->numbers[k]);
+        }
     uint64_t first = ((uint64_t)(at[2] + layer) * count[1] + at[1]) * count[0];
     return output_write(file->file, rows->row, samples * bytes, array->offset + first * bytes);
 }
@@ -163,11 +217,15 @@ static bool begin_npy(GridFile *file)
     const size_t    *count = sheet->shape.count;
     GridRows        *rows  = new_rows(file);
     GridArray       *array = add_array(rows, 1, VALUE);
-    char             text[MOST_HEADER], type[256] = "'<f4'";
+    char             text[MOST_HEADER], type[256];
+    const int        bytes = (int)number_bytes(sheet, VALUE);
     enum { BEFORE = 10, ALIGNED = 64 };
+    snprintf(type, sizeof type, "'<f%d'", bytes);
     if (sheet->color || sheet->material)
-        snprintf(type, sizeof type, "[('%s', '<f4')%s%s]", grid_name(sheet),
-                 sheet->color ? ", ('color', '<f4', (3,))" : "",
+        snprintf(type, sizeof type, "[('%s', '<f%d')%s%s]", grid_name(sheet), bytes,
+                 sheet->color && bytes == 2 ? ", ('color', '<f2', (3,))"
+                 : sheet->color             ? ", ('color', '<f4', (3,))"
+                                            : "",
                  sheet->material ? ", ('material', '<u4')" : "");
     for (GridNumber k = RED; sheet->color && k <= BLUE; k++)
         array->numbers[array->count++] = k;
@@ -278,8 +336,8 @@ static size_t put_keys(const GridSheet *sheet, unsigned char *to)
     return length + put_key(to + length, "krs.box", box);
 }
 
-/* The basic data format descriptor: channels of 32 bits, signed, floating, linear. */
-static size_t put_format(unsigned char *to, size_t channels)
+/* The basic data format descriptor: channels of so many bytes, signed, floating, linear. */
+static size_t put_format(unsigned char *to, size_t channels, size_t bytes)
 {
     static const unsigned char channel_ids[] = {0, 1, 2, 15}; /* red, green, blue, alpha */
     enum { RGBSDA = 1, BT709 = 1, LINEAR = 1, SIGNED_FLOAT = 0xC0, BEGIN = 28, SAMPLE = 16 };
@@ -289,11 +347,12 @@ static size_t put_format(unsigned char *to, size_t channels)
     to[12] = RGBSDA;
     to[13] = BT709;
     to[14] = LINEAR;
-    to[20] = (unsigned char)(4 * channels);
+    to[20] = (unsigned char)(bytes * channels);
     for (size_t i = 0; i < channels; i++) {
         unsigned char *sample = to + BEGIN + SAMPLE * i;
         put_int(sample, 0,
-                (uint32_t)(32 * i) | 31u << 16 | (uint32_t)(channel_ids[i] | SIGNED_FLOAT) << 24);
+                (uint32_t)(8 * bytes * i) | (uint32_t)(8 * bytes - 1) << 16 |
+                    (uint32_t)(channel_ids[i] | SIGNED_FLOAT) << 24);
         put_int(sample, 8, 0xBF800000u);
         put_int(sample, 12, 0x3F800000u);
     }
@@ -303,21 +362,23 @@ static size_t put_format(unsigned char *to, size_t channels)
 /* A texture in three dimensions: the values as red, or the colour with the values as alpha. */
 static bool begin_ktx2(GridFile *file)
 {
-    static const char mark[] = "\xABKTX 20\xBB\r\n\x1A\n";
-    enum { R32_SFLOAT = 100, R32G32B32A32_SFLOAT = 109, HEADER = 104, ALIGNED = 16 };
+    static const char     mark[]      = "\xABKTX 20\xBB\r\n\x1A\n";
+    static const uint32_t kinds[2][2] = {{100, 109},
+                                         {76, 97}}; /* R32_SFLOAT, R32G32B32A32_SFLOAT, R16... */
+    enum { HEADER = 104, ALIGNED = 16 };
     const GridSheet *sheet               = file->sheet;
     unsigned char    header[MOST_HEADER] = {0};
     GridRows        *rows                = new_rows(file);
     GridArray       *array = sheet->color ? add_array(rows, 4, RED, GREEN, BLUE, VALUE)
                                           : add_array(rows, 1, VALUE);
     memcpy(header, mark, 12);
-    put_int(header, 12, sheet->color ? R32G32B32A32_SFLOAT : R32_SFLOAT);
-    put_int(header, 16, 4);
+    put_int(header, 12, kinds[sheet->half][sheet->color]);
+    put_int(header, 16, (uint32_t)number_bytes(sheet, VALUE));
     for (size_t k = 0; k < 3; k++)
         put_int(header, 20 + 4 * k, (uint32_t)sheet->shape.count[k]);
     put_int(header, 36, 1); /* face */
     put_int(header, 40, 1); /* level */
-    size_t format = put_format(header + HEADER, array->count);
+    size_t format = put_format(header + HEADER, array->count, number_bytes(sheet, VALUE));
     size_t keys   = put_keys(sheet, header + HEADER + format);
     size_t begin  = (HEADER + format + keys + ALIGNED - 1) / ALIGNED * ALIGNED;
     put_int(header, 48, HEADER);
@@ -388,12 +449,12 @@ static bool begin_vti(GridFile *file)
 #define LEAST_VDB  1.5e-5
 
 static const GridFormat formats[] = {
-    {".npy", false, true, MOST_ROW, 0, begin_npy, add_to_row, end_rows},
-    {".vdb", true, true, MOST_INDEX, LEAST_VDB, grid_begin_vdb, grid_add_vdb, grid_end_vdb},
-    {".nii", false, true, INT16_MAX, 0, begin_nii, add_to_row, end_rows},
-    {".ktx2", false, false, MOST_ROW, 0, begin_ktx2, add_to_row, end_rows},
-    {".vti", false, true, MOST_ROW, 0, begin_vti, add_to_row, end_rows},
-    {".vtu", true, true, MOST_INDEX, 0, grid_begin_vtu, grid_add_vtu, grid_end_vtu}};
+    {".npy", false, true, true, MOST_ROW, 0, begin_npy, add_to_row, end_rows},
+    {".vdb", true, true, true, MOST_INDEX, LEAST_VDB, grid_begin_vdb, grid_add_vdb, grid_end_vdb},
+    {".nii", false, true, false, INT16_MAX, 0, begin_nii, add_to_row, end_rows},
+    {".ktx2", false, false, true, MOST_ROW, 0, begin_ktx2, add_to_row, end_rows},
+    {".vti", false, true, false, MOST_ROW, 0, begin_vti, add_to_row, end_rows},
+    {".vtu", true, true, false, MOST_INDEX, 0, grid_begin_vtu, grid_add_vtu, grid_end_vtu}};
 
 const GridFormat *grid_format(const char *path)
 {

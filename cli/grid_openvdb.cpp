@@ -33,6 +33,7 @@ openvdb::Coord coordinates(const VdbHow &how, const size_t at[3])
 template <typename Grid> void set_up(Grid &grid, const File &file, const char *name)
 {
     grid.setName(name);
+    grid.setSaveFloatAsHalf(file.how.half);
     grid.setTransform(openvdb::math::Transform::createLinearTransform(file.how.shape.cell));
 }
 

@@ -54,14 +54,22 @@ static bool out_of_memory(GridFile *file)
 bool grid_begin_vdb(GridFile *file)
 {
     const GridSheet *sheet = file->sheet;
-    VdbHow           how   = {sheet->shape, sheet->fog, sheet->color, sheet->material};
-    file->own              = load("")->begin(&how);
+    VdbHow           how   = {sheet->shape, sheet->fog, sheet->color, sheet->material, sheet->half};
+    if (sheet->half)
+        how.shape.band = half_value((float)sheet->shape.band);
+    file->own = load("")->begin(&how);
     return file->own || out_of_memory(file);
 }
 
 bool grid_add_vdb(GridFile *file, const KrsGridBrick *brick)
 {
-    return load("")->add(file->own, brick) || out_of_memory(file);
+    KrsGridBrick rounded = *brick;
+    float        values[KRS_BRICK_SAMPLES];
+    for (int i = 0; i < KRS_BRICK_SAMPLES && file->sheet->half; i++)
+        values[i] = half_value(brick->values[i]);
+    if (file->sheet->half)
+        rounded.values = values;
+    return load("")->add(file->own, &rounded) || out_of_memory(file);
 }
 
 static bool sink(void *user, const void *bytes, size_t count, uint64_t offset)

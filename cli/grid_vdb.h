@@ -20,7 +20,7 @@ typedef bool VdbSink(void *user, const void *bytes, size_t count, uint64_t offse
 /* What a file has: a level set `surface`, or a fog volume `density`; and with them Cd and `material`. */
 typedef struct VdbHow {
     KrsGridShape shape;
-    bool         fog, color, material;
+    bool         fog, color, material, half; /* half: numbers of the file have 16 bits, and fit */
 } VdbHow;
 
 typedef struct VdbModule {

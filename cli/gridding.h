@@ -11,9 +11,9 @@
 /* What files have in common. */
 typedef struct GridSheet {
     KrsGridShape shape;
-    bool         fog, color, material;
-    double       metres; /* a length of 1, in files that say it */
-    size_t       near;   /* bricks that sparse files have */
+    bool         fog, color, material, half; /* half: numbers but those of materials have 16 bits */
+    double       metres;                     /* a length of 1, in files that say it */
+    size_t       near;                       /* bricks that sparse files have */
 } GridSheet;
 
 /* A file that is written. */
@@ -29,6 +29,7 @@ typedef struct GridFormat {
     const char *ending;
     bool        sparse;       /* it has bricks that are near, and a band */
     bool        has_material; /* numbers of materials */
+    bool        has_half;     /* numbers of 16 bits */
     double      most_side;    /* samples along an axis */
     double      least_cell;   /* a length */
     bool (*begin)(GridFile *file);
@@ -39,6 +40,9 @@ typedef struct GridFormat {
 /* grid_files.c: the format by the ending of a path, or that of standard output; NULL: there is none. */
 const GridFormat *grid_format(const char *path);
 #define GRID_ENDINGS ".vdb, .npy, .nii, .ktx2, .vti or .vtu"
+/* A number in 16 bits as IEEE 754 has it, rounded towards 0, but what is below 0 stays so; and what these bits are. */
+uint16_t half_bits(float number);
+float    half_value(float number);
 /* "distance" or "density". */
 const char *grid_name(const GridSheet *sheet);
 /* Bytes of a sample in files that are made in memory. */

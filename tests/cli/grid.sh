@@ -1,7 +1,7 @@
 #!/bin/sh
 # grid.sh: `krs grid`: files as their formats want them, what other programs read of them, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 50
+plan 54
 
 echo 'material red { color: [1, 0, 0] } show sphere(0.5).move([0.25, 0, 0]).paint(red);' >ball.krs
 echo 'let floor = half_space([0, 1, 0], 0); show floor; let ball = sphere(1); show ball;' >floor.krs
@@ -234,6 +234,7 @@ if [ "$status" -eq 0 ]; then
     cmp b.vdb again.vdb 2>err
     result $? "which is the same each time"
     run grid --quiet ball.krs --cell 0.03125 --fog -o f.vdb
+    run grid --quiet ball.krs --cell 0.03125 --half -o half.vdb
     if python_with pyopenvdb; then
         "$python" -c "
 import pyopenvdb as vdb
@@ -249,6 +250,13 @@ for i in range(-24, 40):
             assert abs(value - max(-0.09375, min(0.09375, truth))) < 1e-6
             assert abs(abs(truth) - 0.09375) < 1e-6 or active == (abs(truth) < 0.09375)
 assert vdb.read('b.vdb', 'Cd').getConstAccessor().probeValue((24, 0, 0)) == ((1, 0, 0), True)
+h = vdb.read('half.vdb', 'surface')
+b, wide = h.getConstAccessor(), g.background
+assert h.saveFloatAsHalf and 0.998 * wide < h.background <= wide
+for i in range(-24, 40):
+    for j in range(-24, 25):
+        fine, rough = a.getValue((i, j, 3)), b.getValue((i, j, 3))
+        assert 0.999 * abs(fine) <= abs(rough) <= abs(fine) and (fine < 0) == (rough < 0), (fine, rough)
 f = vdb.read('f.vdb', 'density')
 assert f.gridClass == 'fog volume' and f.background == 0
 total = sum(item.value * item.count for item in f.citerOnValues())
@@ -297,6 +305,42 @@ status=$?
 said 73 "built without OpenVDB" "a krs without its module says so"
 [ ! -e a.vdb ]
 result $? "and writes nothing"
+
+# ---- numbers of 16 bits ----
+run grid ball.krs --cell 0.0625 --half --surface-color --material -o h.npy
+grep -q 'rounded by a 1024th' err
+result $? "that numbers are rounded is said"
+run grid --quiet ball.krs --cell 0.0625 --half -o h.ktx2 -o d.npy
+if python_with numpy; then
+    run grid --quiet ball.krs --cell 0.0625 -o whole.npy
+    "$python" -c "
+import numpy, struct
+h, d, f = numpy.load('h.npy'), numpy.load('d.npy'), numpy.load('whole.npy')
+assert h['distance'].dtype == d.dtype == h['color'].dtype == numpy.float16 and h['material'].dtype == numpy.uint32
+assert (h['distance'] == d).all() and set(h['material'].flat) == {1} and set(h['color'][..., 0].flat) == {1}
+d = d.astype('f8')
+assert (abs(d) <= abs(f)).all() and (abs(f) - abs(d) <= abs(f) / 1024).all() and ((d < 0) == (f < 0)).all() and (d != f).any()
+data = open('h.ktx2', 'rb').read()
+assert struct.unpack('<II', data[12:20]) == (76, 2)
+begin, size = struct.unpack('<QQ', data[80:96])
+assert data[begin:] == numpy.load('d.npy').tobytes() and len(data) == begin + size" 2>err
+    result $? "they are a 1024th shorter at most, never longer, and as few bytes"
+else
+    skip "they are a 1024th shorter at most" "no numpy"
+fi
+echo 'show box([2, 2, 2]).move([0, 0, -0.99999999]);' >level.krs
+run grid --quiet level.krs --cell 1 --half -o l.npy
+if python_with numpy; then
+    "$python" -c "
+import numpy
+a = numpy.load('l.npy')
+assert (a < 0).sum() == 2, a" 2>err
+    result $? "what is inside stays so, however near the surface"
+else
+    skip "what is inside stays so" "no numpy"
+fi
+run grid ball.krs --half -o h.vti
+said 2 "no numbers of 16 bits" "formats without them are named"
 
 # ---- many files ----
 for file in s.npy s.nii s.vti s.ktx2 s.vtu; do run grid --quiet ball.krs --cell 0.0625 --surface-color -o "$file"; done
