@@ -102,10 +102,13 @@ static void drop_bodies(Bodies *bodies)
 static KrsStatus make_bodies(Meshing *meshing, MakeBody *make, Bodies *bodies, double goal)
 {
     size_t    asked  = meshing->how.component;
-    bool      split  = meshing->options->mesh_split == SPLIT_COMPONENTS && asked == 0;
+    bool      beams  = meshing->options->mesh_beams;
+    bool      split  = (meshing->options->mesh_split == SPLIT_COMPONENTS || beams) && asked == 0;
     size_t    count  = split ? krs_component_count(meshing->scene) : 1;
     KrsStatus status = KRS_OK;
     for (size_t i = 0; i < count && status == KRS_OK; i++) {
+        if (beams && add_beams(meshing, split ? i + 1 : asked, bodies))
+            continue;
         if (split && krs_joined_rank(meshing->scene, i) > 0)
             continue;
         if (split)
@@ -238,7 +241,7 @@ static KrsStatus find_meshes(Meshing *meshing)
     if (status != KRS_OK)
         return status;
     const Bodies *bodies = meshing->merged.count > 0 ? &meshing->merged : &meshing->assembled;
-    if (summarize(bodies).triangles == 0)
+    if (summarize(bodies).triangles == 0 && summarize(bodies).beams == 0)
         return say_nothing(meshing, "write", NULL, summarize(bodies).error);
     if (options->mesh_size > 0)
         meshing->scale = options->mesh_size / longest_side(bodies);
@@ -412,9 +415,13 @@ static void report(const Meshing *meshing, const Bodies *bodies)
         say("warning: %zu cells may hold what is thinner than the error, or solids that touch; "
             "the first is at [%g, %g, %g] of the %s; a smaller --error tells",
             all.unresolved, at[0], at[1], at[2], all.copies > 1 ? "kernel" : "scene");
-    warn_of_rounding(meshing, &all);
     if (meshing->moving > 0)
         report_motion(meshing, all.error);
+    if (all.beams > 0)
+        say("%zu beam%s", all.beams, all.beams == 1 ? "" : "s");
+    if (all.triangles == 0)
+        return;
+    warn_of_rounding(meshing, &all);
     if (meshing->pixel > 0)
         say("%u by %u pixels, each %.3g long on the surface", meshing->options->mesh_bake,
             meshing->options->mesh_bake, meshing->pixel * meshing->scale);

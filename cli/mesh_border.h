@@ -68,11 +68,14 @@ typedef struct MeshTrack {
 
 /* What has a name: a part, or copies of several. */
 typedef struct MeshBody {
-    const char   *name;
-    KrsAssembly  *assembly;   /* where copies are; NULL: it is its only part */
-    const size_t *part_of;    /* the part of each item of the assembly that is a mesh */
-    size_t        first_part; /* of it, in the order of items */
-    size_t        lod_count;  /* parts behind its only one, which show it in less detail */
+    const char    *name;
+    KrsAssembly   *assembly;   /* where copies are; NULL: it is its only part */
+    const size_t  *part_of;    /* the part of each item of the assembly that is a mesh */
+    size_t         first_part; /* of it, in the order of items */
+    size_t         lod_count;  /* parts behind its only one, which show it in less detail */
+    const KrsBeam *beams;      /* that it is, without a part; by mesh_beams.c */
+    size_t         beam_count;
+    unsigned char  color[3]; /* of the beams */
     const MeshTrack
         *tracks; /* of its copies, in the order of krs_assembly_visit; NULL: it does not move */
 } MeshBody;

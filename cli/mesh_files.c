@@ -318,9 +318,9 @@ static const MeshFormat formats[] = {
      .rounding = SINGLE},
     {".obj", .has_colors = true, .has_parts = true, .has_places = true, .write = write_obj,
      .rounding = NINE_DIGITS},
-    {".glb", true, true, true, true, true, true, false, true, true, write_glb, SINGLE},
-    {".3mf", .has_colors = true, .has_parts = true, .has_copies = true, .has_face_colors = true,
-     .write = write_3mf, .rounding = NINE_DIGITS}};
+    {".glb", true, true, true, true, true, true, false, false, true, true, write_glb, SINGLE},
+    {".3mf", .has_beams = true, .has_colors = true, .has_parts = true, .has_copies = true,
+     .has_face_colors = true, .write = write_3mf, .rounding = NINE_DIGITS}};
 
 const MeshFormat *mesh_format(const char *path)
 {

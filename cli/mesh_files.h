@@ -30,6 +30,7 @@ typedef struct MeshFile {
 typedef struct MeshFormat {
     const char *ending;
     bool        has_colors, has_parts, has_copies, has_lods, has_looks, has_motion, has_face_colors;
+    bool        has_beams;
     bool        has_places, places_of_vertices; /* in textures: of corners, or of vertices only */
     bool (*write)(MeshFile *file);
     double rounding; /* of coordinates, relative */

@@ -88,13 +88,16 @@ static void join_body(const Meshing *meshing, const Body *body, Joined *joined)
                                                             .part_of    = part_of,
                                                             .first_part = joined->parts.part_count,
                                                             .lod_count  = body->lod_count};
+    take_beams(meshing, body, &joined->bodies[joined->parts.body_count - 1]);
     visit_meshes(body, join_mesh, joined);
     for (size_t i = 0; i < body->lod_count; i++)
         join_mesh(joined, body->lods[i], NULL);
 }
 
-static bool has_triangles(const Body *body)
+static bool has_anything(const Body *body)
 {
+    if (body->beam_count > 0)
+        return true;
     return body->assembly ? body->assembly->triangles > 0 : body->mesh->triangle_count > 0;
 }
 
@@ -119,7 +122,7 @@ static void join_bodies(const Meshing *meshing, const Bodies *bodies, Joined *jo
     joined->triangle_count = 0;
     joined->parts.part_count = 0;
     for (size_t i = 0; i < bodies->count; i++)
-        if (has_triangles(&bodies->items[i]))
+        if (has_anything(&bodies->items[i]))
             join_body(meshing, &bodies->items[i], joined);
     joined->parts.vertices  = (const double(*)[3])joined->vertices;
     joined->parts.triangles = (const uint32_t(*)[3])joined->triangles;

@@ -28,6 +28,17 @@ static void add_mesh(void *user, const KrsMesh *mesh, const KrsItem *item)
         }
 }
 
+static void add_body_beams(const Body *body, Summary *all)
+{
+    all->beams += body->beam_count;
+    for (size_t i = 0; i < 2 * body->beam_count; i++)
+        for (int k = 0; k < 3; k++) {
+            const KrsBeam *beam = &body->beams[i / 2];
+            all->low[k]         = fmin(all->low[k], beam->ends[i % 2][k] - beam->radii[i % 2]);
+            all->high[k]        = fmax(all->high[k], beam->ends[i % 2][k] + beam->radii[i % 2]);
+        }
+}
+
 Summary summarize(const Bodies *bodies)
 {
     Summary all = {.low  = {INFINITY, INFINITY, INFINITY},
@@ -35,6 +46,7 @@ Summary summarize(const Bodies *bodies)
     for (size_t i = 0; i < bodies->count; i++) {
         const KrsAssembly *assembly = bodies->items[i].assembly;
         visit_meshes(&bodies->items[i], add_mesh, &all);
+        add_body_beams(&bodies->items[i], &all);
         for (int k = 0; assembly && k < 3; k++) {
             all.low[k]  = fmin(all.low[k], assembly->low[k]);
             all.high[k] = fmax(all.high[k], assembly->high[k]);

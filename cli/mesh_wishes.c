@@ -157,6 +157,8 @@ KrsStatus check_mesh_wishes(Meshing *meshing)
 {
     const Options *options = meshing->options;
     KrsStatus      status  = check_motion(meshing);
+    if (status == KRS_OK)
+        status = check_beams(meshing);
     if (status != KRS_OK)
         return status;
     if (options->mesh_lods > 0 && !can_have_lods(meshing))

@@ -24,6 +24,8 @@ typedef struct Body {
     size_t       component;       /* from 1; 0: all that is shown */
     KrsMesh     *lods[MOST_LODS]; /* levels of detail of the mesh, each coarser */
     size_t       lod_count;
+    KrsBeam     *beams; /* instead of a mesh, with --beams */
+    size_t       beam_count;
 } Body;
 
 typedef struct Bodies {
@@ -38,6 +40,7 @@ typedef struct Summary {
     size_t unresolved;
     double unresolved_at[3];
     bool   estimate, colored;
+    size_t beams;
 } Summary;
 
 typedef struct Meshing {
@@ -108,6 +111,12 @@ void set_units(const Meshing *meshing, const MeshFormat *format, MeshParts *part
 /* mesh.c: the next step of the work, which is done to `goal` behind it; and the goal of the first of so many until one. */
 void   enter_step(Meshing *meshing, double goal);
 double step_of(const Meshing *meshing, double goal, double steps);
+
+/* mesh_beams.c: with --beams, whether files have them; a body of beams, if a component is made of them (from 1; 0: the only
+   one); and what files have of it. */
+KrsStatus check_beams(const Meshing *meshing);
+bool      add_beams(const Meshing *meshing, size_t component, Bodies *bodies);
+void      take_beams(const Meshing *meshing, const Body *body, MeshBody *to);
 
 /* mesh_lods.c: levels of detail of a body that has triangles, as many as options ask for. */
 KrsStatus make_lods(Meshing *meshing, Body *body, double goal);

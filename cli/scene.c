@@ -84,6 +84,7 @@ KrsOptions scene_options(DiagnosticSink *sink, const char *path)
                         .pictures     = shows_pictures(options),
                         .assembly     = options->command == COMMAND_MESH,
                         .motion       = options->command == COMMAND_MESH && options->animated,
+                        .beams        = options->command == COMMAND_MESH && options->mesh_beams,
                         .figures      = takes_figures(options),
                         .outlines     = options->command == COMMAND_MESH,
                         .root         = scene_root(options, path),

@@ -1,14 +1,16 @@
 /*
  * write_3mf.c: 3MF, an archive of three files in XML: what there is, where the model is, and the model, by
  * the core specification 1.3.  Where the color of a material varies triangles have those of their corners, by the
- * materials extension 1.2.1.  It has neither times nor random names: equal meshes are equal files.
+ * materials extension 1.2.1; beams are those of the beam lattice extension 1.0 (2017/02).  It has neither times nor random names: equal meshes are equal files.
  */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zip.h>
 
 #include "cli/mesh_border.h"
+#include "compiler/base/vec.h"
 
 #define XML "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
 
@@ -196,6 +198,105 @@ static size_t put_part(Model *model, const MeshPart *part, bool mirrored, const 
     return model->last;
 }
 
+/* ---- beams ---- */
+
+static void put_number(const Model *model, const char *name, double number)
+{
+    fprintf(model->out, " %s=\"%.9g\"", name, (float)(model->parts->scale * number));
+}
+
+/* Shorter beams are none, by the specification. */
+static double least_length(const MeshBody *body)
+{
+    double least = HUGE_VAL;
+    for (size_t i = 0; i < body->beam_count; i++)
+        least = fmin(least, distance3(body->beams[i].ends[0], body->beams[i].ends[1]));
+    return 0.5 * least;
+}
+
+/* An end of a beam, and its vertex. */
+typedef struct End {
+    const double *at;
+    size_t        number; /* twice that of the beam, + 1 for the second end */
+} End;
+
+static int compare_ends(const void *a, const void *b)
+{
+    const End *x = a, *y = b;
+    for (int k = 0; k < 3; k++)
+        if (x->at[k] != y->at[k])
+            return x->at[k] < y->at[k] ? -1 : 1;
+    return 0;
+}
+
+static void put_end(const Model *model, const double at[3])
+{
+    fputs("<vertex", model->out);
+    put_number(model, "x", at[0]);
+    put_number(model, "y", at[1]);
+    put_number(model, "z", at[2]);
+    fputs("/>\n", model->out);
+}
+
+/* Ends at one place are one vertex; `vertices` are those of ends. */
+static void put_ends(const Model *model, const MeshBody *body, End *ends, size_t *vertices)
+{
+    const size_t count  = 2 * body->beam_count;
+    size_t       vertex = 0;
+    for (size_t i = 0; i < count; i++)
+        ends[i] = (End){body->beams[i / 2].ends[i % 2], i};
+    qsort(ends, count, sizeof *ends, compare_ends);
+    fputs("<vertices>\n", model->out);
+    for (size_t i = 0; i < count; i++) {
+        const bool again = i > 0 && compare_ends(&ends[i - 1], &ends[i]) == 0;
+        vertex += i > 0 && !again;
+        vertices[ends[i].number] = vertex;
+        if (!again)
+            put_end(model, ends[i].at);
+    }
+    fputs("</vertices>\n<triangles/>\n", model->out);
+}
+
+static void put_beams(const Model *model, const MeshBody *body, const size_t *vertices)
+{
+    fputs("<b:beamlattice", model->out);
+    put_number(model, "radius", body->beams[0].radii[0]);
+    put_number(model, "minlength", least_length(body));
+    fputs(" cap=\"sphere\" clippingmode=\"none\">\n<b:beams>\n", model->out);
+    for (size_t i = 0; i < body->beam_count; i++) {
+        fprintf(model->out, "<b:beam v1=\"%zu\" v2=\"%zu\"", vertices[2 * i], vertices[2 * i + 1]);
+        put_number(model, "r1", body->beams[i].radii[0]);
+        put_number(model, "r2", body->beams[i].radii[1]);
+        fputs("/>\n", model->out);
+    }
+    fputs("</b:beams>\n</b:beamlattice>\n", model->out);
+}
+
+/* An object of beams with round ends, and a material of its own.  False: memory has run out. */
+static bool put_lattice(Model *model, const MeshBody *body, size_t *built)
+{
+    const size_t         material = ++model->last;
+    const unsigned char *color    = body->color;
+    End                 *ends     = calloc(2 * body->beam_count, sizeof *ends);
+    size_t              *vertices = calloc(2 * body->beam_count, sizeof *vertices);
+    const bool           good     = ends && vertices;
+    if (good) {
+        fprintf(model->out,
+                "<basematerials id=\"%zu\">\n<base name=\"beams\" "
+                "displaycolor=\"#%02X%02X%02XFF\"/>\n</basematerials>\n",
+                material, color[0], color[1], color[2]);
+        open_object(model, body->name);
+        fprintf(model->out, " pid=\"%zu\" pindex=\"0\">\n<mesh>\n", material);
+        put_ends(model, body, ends, vertices);
+        put_beams(model, body, vertices);
+        fputs("</mesh>\n</object>\n", model->out);
+        *built = model->last;
+    }
+    free(ends);
+    free(vertices);
+    return good;
+}
+
 /* ---- copies ---- */
 
 /* Of an item of an assembly: as it is, and as its image in the plane x = 0.  By that no transform is a
@@ -288,22 +389,38 @@ static bool put_assembly(Model *model, const MeshBody *body, size_t *built)
     return true;
 }
 
+static bool has_beams(const MeshParts *parts)
+{
+    for (size_t i = 0; i < parts->body_count; i++)
+        if (parts->bodies[i].beam_count > 0)
+            return true;
+    return false;
+}
+
 /* `built` has room for the number of each body's object. */
 static bool put_model(Model *model, size_t *built)
 {
     const MeshParts *parts = model->parts;
     fprintf(model->out,
             XML "<model unit=\"%s\" xml:lang=\"en-US\" "
-                "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"%s>\n"
+                "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"%s%s>\n"
                 "<metadata name=\"Application\">krs " KRS_VERSION "</metadata>\n<resources>\n",
             unit_name(parts->unit),
             model->color_count == 0
                 ? ""
-                : " xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\"");
-    put_materials(model);
+                : " xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\"",
+            has_beams(parts) ? " xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/"
+                               "beamlattice/2017/02\" requiredextensions=\"b\""
+                             : "");
+    if (parts->material_count > 0)
+        put_materials(model);
     put_colors(model);
     for (size_t i = 0; i < parts->body_count; i++) {
         const MeshBody *body = &parts->bodies[i];
+        if (body->beam_count > 0 && !put_lattice(model, body, &built[i]))
+            return false;
+        if (body->beam_count > 0)
+            continue;
         if (!body->assembly)
             built[i] = put_part(model, &parts->parts[body->first_part], false, body->name);
         else if (!put_assembly(model, body, &built[i]))

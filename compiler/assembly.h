@@ -37,6 +37,12 @@ typedef struct AssemblyItem {
     const char *name;         /* likewise, by the author */
 } AssemblyItem;
 
+/* Of a component that is shown: the first of its numbers, each a SceneBeam. */
+typedef struct AssemblyBeams {
+    uint32_t root;
+    size_t   count;
+} AssemblyBeams;
+
 typedef struct Assembly {
     struct {
         AssemblyItem *items;
@@ -46,9 +52,10 @@ typedef struct Assembly {
         AssemblyPlacing *items;
         size_t           count, capacity;
     } placings;
-    uint32_t  *of_component; /* the item of each component that is lowered; or NO_ITEM */
-    KrsMotion *motions;      /* of these; NULL: nobody asks */
-    Tape       tape;
+    uint32_t      *of_component; /* the item of each component that is lowered; or NO_ITEM */
+    KrsMotion     *motions;      /* of these; NULL: nobody asks */
+    AssemblyBeams *beams;        /* of components that are shown; NULL: nobody asks */
+    Tape           tape;
 } Assembly;
 
 #endif

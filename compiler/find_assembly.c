@@ -292,6 +292,20 @@ static void find_components(Finder *f, const Scene *s)
     }
 }
 
+static void keep_beams(Finder *f, const Compilation *c)
+{
+    const Scene *s = &c->elaborated;
+    if (!c->options->beams)
+        return;
+    f->assembly->beams = arena_new_array(f->arena, AssemblyBeams, s->shown.count + 1);
+    for (size_t i = 0; i < s->shown.count; i++) {
+        const Component *shown = &s->shown.items[i];
+        f->assembly->beams[i]  = (AssemblyBeams){
+             add_roots(f, (const Node *)shown->beams, shown->beam_count * NODES_OF(SceneBeam)),
+             shown->beam_count};
+    }
+}
+
 /* The part in its turn. */
 static const Shape *part_shape(Finder *f, const Known *part)
 {
@@ -319,6 +333,7 @@ RootRange find_assembly(Compilation *c, struct LoweredCrowds *crowds)
         graph_mark_timed(f.graph, f.timed);
     }
     find_components(&f, &c->elaborated);
+    keep_beams(&f, c);
     for (size_t i = 0; i < f.parts.count; i++) {
         const Known *part = &f.parts.items[i];
         uint32_t     root = f.assembly->items.items[part->item].root;

@@ -105,6 +105,7 @@ typedef struct KrsOptions {
                       frames, but meshes take longer; for pictures */
     bool assembly; /* keep what krs_assemble and krs_texture_places need, which takes some time */
     bool motion;   /* with `assembly`: what the time moves is taken apart, too */
+    bool beams;    /* with `assembly`: keep what krs_component_beams needs */
     bool
         outlines; /* distances to polygons come from tables, however few corners they have: meshes of what is
                       revolved need fewer triangles and less time */

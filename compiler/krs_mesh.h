@@ -134,6 +134,15 @@ typedef struct KrsMotion {
 /* KRS_BAD_ARGUMENT: there is no component `index`, from 0, or nobody asked. */
 KrsStatus krs_component_motion(const KrsScene *scene, size_t index, KrsMotion *motion);
 
+/* The convex hull of two balls. */
+typedef struct KrsBeam {
+    double ends[2][3], radii[2];
+} KrsBeam;
+/* Capsules and balls that a component is the sharp union of, at the values and the time of the frame: writes them, unless `beams`
+   is NULL, and returns how many they are.  0: it is something else, zones cut the scene, or nobody asked
+   (KrsOptions.beams). */
+size_t krs_component_beams(KrsFrame *frame, size_t index, KrsBeam *beams);
+
 /*
  * Where the material of the surface reads its texture, the first if there are several, at some points: 0, 0 is
  * the lower left corner of the picture and 1, 1 the upper right one.  Not a number: it reads none.  These are

@@ -121,6 +121,7 @@ static void elaborate_with(Compilation *c, TurnTrials *turns)
                             .turns    = turns,
                             .studio   = c->options->studio,
                             .figures  = c->options->figures,
+                            .beams    = c->options->beams,
                             .outlines = c->options->outlines,
                             .hoists   = hoists(c),
                             .textures = {.arena = &c->scene->arena}};

@@ -121,6 +121,7 @@ struct Elaboration {
     bool               uses_uv;     /* a material may need the coordinates on surfaces */
     struct TurnTrials *turns;       /* loops whose turns are made at once: turns.c; NULL: none is */
     Node               turn;        /* what stands for the variable of such a loop, or NODE_NONE */
+    bool               beams;       /* someone asks for capsules that are shown */
     const Syntax      *joining;     /* a call that joins shapes, or a `show`, of which
                                     the arguments are evaluated; or NULL */
 };
@@ -313,6 +314,10 @@ Value value_index(Elaboration *e, const Syntax *syntax, Value list, Value index)
 /* ---- lists.c ---- */
 BuiltinFunction builtin_sum, builtin_product, builtin_any, builtin_all, builtin_least,
     builtin_greatest, builtin_len, builtin_range;
+
+/* ---- beams.c ---- */
+/* With KrsOptions.beams: what a component is the union of. */
+void find_beams(Elaboration *e, Component *component);
 
 /* ---- hull.c ---- */
 BuiltinFunction builtin_hull, builtin_hull_triangles;

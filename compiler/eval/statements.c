@@ -145,6 +145,7 @@ static bool show_one(Elaboration *e, Value value, const Syntax *syntax)
                            .span   = syntax->span};
     if (!shape_plane(e->builder, value.shape, &component.plane_normal, &component.plane_offset))
         component.plane_normal = component.plane_offset = NODE_NONE;
+    find_beams(e, &component);
     array_push_large(e->arena, &e->scene->components, component);
     warn_if_nothing_is_left(e, value.shape, component.name, syntax->span);
     return true;

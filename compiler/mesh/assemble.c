@@ -385,6 +385,25 @@ KrsStatus krs_component_motion(const KrsScene *scene, size_t index, KrsMotion *m
     return KRS_OK;
 }
 
+size_t krs_component_beams(KrsFrame *frame, size_t index, KrsBeam *beams)
+{
+    const KrsScene *scene = frame->scene;
+    if (index >= scene->shown_count || !scene->assembly.beams || frame->zone_count > 0 ||
+        zone_root(scene) != NODE_NONE)
+        return 0;
+    const AssemblyBeams *found = &scene->assembly.beams[index];
+    const SceneBeam     *nodes = (const SceneBeam *)(roots_of(&scene->roots, ROOTS_ASSEMBLY).items +
+                                                 found->root);
+    frame_refresh(frame);
+    for (size_t i = 0; beams && i < found->count; i++)
+        for (int end = 0; end < 2; end++) {
+            beams[i].radii[end] = frame->values[nodes[i].radii[end]].v[0];
+            for (int k = 0; k < 3; k++)
+                beams[i].ends[end][k] = frame->values[nodes[i].ends[end]].v[k];
+        }
+    return found->count;
+}
+
 void krs_assembly_free(KrsAssembly *assembly)
 {
     if (!assembly)

@@ -11,6 +11,11 @@
 
 #define NO_COMPONENT SIZE_MAX
 
+/* A capsule between two balls, or one ball twice. */
+typedef struct SceneBeam {
+    Node ends[2], radii[2];
+} SceneBeam;
+
 /* What a `show` shows; or, where many are alike, all that are lowered as one. */
 typedef struct Component {
     const char *name;
@@ -22,6 +27,8 @@ typedef struct Component {
     Span         span;
     Node         plane_normal, plane_offset; /* of a half-space and nothing else, or NODE_NONE */
     bool         figure;                     /* a plane figure, made solid */
+    const SceneBeam *beams; /* that it is the sharp union of; none: it is not, or nobody asks */
+    size_t           beam_count;
 } Component;
 
 /* Numbers and vectors here are frame-time nodes. */
