@@ -511,6 +511,12 @@ static double total_area(const Layout *l)
     return area;
 }
 
+/* Charts have margins, however small they are; larger pixels do not make them fewer. */
+static bool may_fit(const Layout *l)
+{
+    return l->charts.count * 4 * MARGIN * MARGIN <= (size_t)l->side * l->side;
+}
+
 bool atlas_make(Arena *arena, const MeshParts *parts, const float *fineness, uint32_t side,
                 Atlas *atlas)
 {
@@ -534,7 +540,7 @@ bool atlas_make(Arena *arena, const MeshParts *parts, const float *fineness, uin
     find_neighbours(&l);
     find_order(&l);
     l.pixel = sqrt(total_area(&l) / MOST_FILLED) / side;
-    for (int i = 0; i < MOST_TRIES && l.pixel > 0 && !done; i++) {
+    for (int i = 0; i < MOST_TRIES && l.pixel > 0 && !done && may_fit(&l); i++) {
         l.pixel *= GROWTH;
         done = lay_out(&l);
     }

@@ -15,18 +15,20 @@ show sphere(0.7).move([2, 0, 0]).paint([0.5 + x / 6, 0.5 + 0.5 * y, 0.5]);
 show torus(0.5, 0.2).move([0, 2, 0]).paint(glow);
 show cylinder(0.5, 1).move([-2, 0, 0]).paint(green);
 SCENE
-shows() { # options
-    run mesh --quiet bake.krs --bake 512 "$@" -o bake.glb
+shows() { # pixels, options
+    side=$1
+    shift
+    run mesh --quiet bake.krs --bake "$side" "$@" -o bake.glb
     if ! /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
         skip "pictures show what closed forms say: $*" "no numpy"
         return
     fi
-    [ "$status" -eq 0 ] && [ ! -s err ] && /usr/bin/python3 "$root/tests/cli/mesh_bake.py" bake.glb 512 >out 2>>err
+    [ "$status" -eq 0 ] && [ ! -s err ] && /usr/bin/python3 "$root/tests/cli/mesh_bake.py" bake.glb "$side" >out 2>>err
     result $? "pictures show what closed forms say: $*"
 }
-shows --error 0.03
-shows --error 0.02 --lods 1
-shows --error 0.03 --copies flat
+shows 256 --error 0.03
+shows 512 --error 0.02 --lods 1
+shows 256 --error 0.03 --copies flat
 run mesh bake.krs --error 0.03 --bake 64 -o bake.glb -o bake.stl
 [ "$status" -eq 0 ] && grep -q '64 by 64 pixels, each 0.[0-9]* long' err
 result $? "it is told how long pixels are"
