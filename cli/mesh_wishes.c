@@ -1,6 +1,8 @@
 /* mesh_wishes.c: what `krs mesh` is asked for, and what of it is refused. */
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/meshing.h"
@@ -15,6 +17,17 @@ static bool is_first_of_name(const Meshing *meshing, size_t index)
         if (strcmp(other.name, component.name) == 0)
             return false;
     }
+    return true;
+}
+
+/* No name begins with a digit, so a number is that of `krs info`. */
+static bool is_number_of_component(const char *text, size_t count, size_t *number)
+{
+    char               *end;
+    const unsigned long value = strtoul(text, &end, 10);
+    if (!isdigit((unsigned char)text[0]) || *end != '\0' || value < 1 || value > count)
+        return false;
+    *number = value;
     return true;
 }
 
@@ -33,7 +46,7 @@ static KrsStatus find_component(Meshing *meshing)
         if (is_first_of_name(meshing, i))
             text_format(&known, "%s`%s`", i ? ", " : "", component.name);
     }
-    if (!wanted)
+    if (!wanted || is_number_of_component(wanted, count, &meshing->how.component))
         return KRS_OK;
     return say_usage(meshing->options, "the scene has no component `%s`; it has %s", wanted,
                      count ? known.bytes : "none");

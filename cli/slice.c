@@ -301,9 +301,11 @@ static bool misses_box(const Slicing *slicing)
 
 static KrsStatus say_no_section(const Slicing *slicing)
 {
+    const char *where = slicing->options->plane.given ? " in this plane"
+                        : slicing->sheet.stacked      ? " in the planes of its layers"
+                                                      : NULL;
     if (!slicing->figures)
-        return say_nothing(&slicing->wishes, "write",
-                           slicing->options->plane.given ? " in this plane" : NULL,
+        return say_nothing(&slicing->wishes, "write", where,
                            misses_box(slicing) ? 0 : slicing->how.error);
     say("there is nothing to write: `%s` is a figure without area",
         slicing->options->files.items[0]);

@@ -1,7 +1,7 @@
 #!/bin/sh
 # slice.sh: `krs slice`: files that other programs accept, their areas, and what is refused.
 . "$(dirname "$0")/common.sh"
-plan 64
+plan 66
 
 # None of these files is there.
 no_files() {
@@ -286,6 +286,12 @@ echo 'show sphere(0.2).move([0, 0, -1]); show sphere(0.2).move([0, 0, 1]);' >gap
 run slice --quiet gap.krs --layer 0.2 -o 'g-%02d.svg' -o g.cli
 [ "$status" -eq 0 ] && [ -s g-06.svg ] && [ "$(grep -c LAYER/ g.cli)" -eq 13 ] && ! grep -q '<path' g-06.svg
 result $? "layers between parts are empty"
+echo 'show sphere(0.4).repeat(1) & box([4, 4, 4]);' >between.krs
+run slice --quiet between.krs --layer 1 -o n.svg
+said 1 "nothing solid in the planes of its layers" "layers between all parts are said to be so"
+run slice --quiet both.krs --component 1 -o n.svg
+cmp n.svg plate.svg
+result $? "a component may be told by its number"
 # All files are of the same sections, and as each alone.
 for file in a.svg a.dxf a.cli; do run slice --quiet plate.krs --layer 0.5 -o "$file" --error 0.001 --resolution 50; done
 run slice --quiet plate.krs --layer 0.5 -o 'a-%d.png' --error 0.001 --resolution 50
