@@ -1,6 +1,6 @@
 /* coverage.c: which part of a cube is solid, for fog.
  *
- * A cube is looked at in 64 parts, and in 26 places around it.  Where the distance is linear in it, each part has that of a
+ * A cube is looked at in 64 parts, and in 26 places around it.  Where the distance is linear inside and outside, each part has that of a
  * flat face at the distance of its middle.  Else parts that the surface may meet are divided in the same way.
  */
 #include "compiler/grid/grid.h"
@@ -10,12 +10,12 @@
 #include "compiler/base/vec.h"
 
 enum { SIDE = 4, PARTS = SIDE * SIDE * SIDE, AROUND = 26, PLACES = PARTS + AROUND };
-/* How often parts of a cube are divided, and how many parts of parts are at most: those along edges and rods are few. */
-enum { DEEPEST = 2, MOST_DIVIDED = 150 };
+/* How often parts of a cube are divided: once more where few are, as along rods; and how many parts of parts are at most. */
+enum { DEEPEST = 2, FEW = 20, MOST_DIVIDED = 150 };
 /* Half the diagonal of a part, in its sides; and how far from linear its distance may be. */
 static const double HALF_DIAGONAL = 0.8661, STRAIGHT = 0.3;
-/* Below that gradients tell no distance. */
-static const double LEAST_SLOPE = 0.1;
+/* Below that slopes are those of what is thin. */
+static const double LEAST_SLOPE = 0.25;
 
 typedef struct Cube {
     double middle[3], part; /* the side of its parts */
@@ -46,37 +46,88 @@ static void look(const MeshField *field, Cube *cube)
     }
 }
 
-/* The slope of the plane that fits best; false: the distance is not linear, and the slope stays.  The sums of places are 0. */
-static bool is_straight(const Cube *cube, double *slope)
+/* The direction of the gradient; the sums of places are 0. */
+static bool find_direction(const Cube *cube, double direction[3])
 {
-    double mean = 0, gradient[3] = {0}, squares = 0, at[3];
-    for (int i = 0; i < PLACES; i++) {
-        place_of(i, at);
-        mean += cube->distances[i] / PLACES;
-        squares += at[0] * at[0];
-        add_scaled3(gradient, gradient, cube->distances[i], at);
-    }
+    double at[3];
     for (int k = 0; k < 3; k++)
-        gradient[k] /= squares;
+        direction[k] = 0;
     for (int i = 0; i < PLACES; i++) {
         place_of(i, at);
-        if (!(fabs(cube->distances[i] - mean - dot3(gradient, at)) < STRAIGHT * cube->part))
-            return false;
+        add_scaled3(direction, direction, cube->distances[i], at);
     }
-    *slope = length3(gradient) / cube->part;
+    return normalize3(direction);
+}
+
+/* Whether distances inside, or those outside, are linear along a direction; and their slope: a bound may have another
+   one on each side. */
+static bool is_side_straight(const Cube *cube, const double direction[3], bool inside,
+                             double *slope)
+{
+    double along[PLACES], count = 0, mean = 0, middle = 0, squares = 0, products = 0, at[3];
+    for (int i = 0; i < PLACES; i++) {
+        place_of(i, at);
+        along[i] = cube->part * dot3(at, direction);
+        if ((cube->distances[i] <= 0) != inside)
+            continue;
+        count++;
+        mean += cube->distances[i];
+        middle += along[i];
+    }
+    if (count == 0)
+        return true;
+    mean /= count;
+    middle /= count;
+    for (int i = 0; i < PLACES; i++)
+        if ((cube->distances[i] <= 0) == inside) {
+            squares += (along[i] - middle) * (along[i] - middle);
+            products += (along[i] - middle) * (cube->distances[i] - mean);
+        }
+    const double steep = squares > 1e-6 * cube->part * cube->part ? products / squares : 1;
+    if (steep < LEAST_SLOPE)
+        return false;
+    for (int i = 0; i < PLACES; i++)
+        if ((cube->distances[i] <= 0) == inside &&
+            !(fabs(cube->distances[i] - mean - steep * (along[i] - middle)) <
+              STRAIGHT * cube->part))
+            return false;
+    *slope = steep;
     return true;
+}
+
+/* Slopes outside and inside; false: they are not straight, and slopes stay. */
+static bool is_straight(const Cube *cube, double slopes[2])
+{
+    double direction[3], found[2] = {1, 1};
+    if (!find_direction(cube, direction) || !is_side_straight(cube, direction, false, &found[0]) ||
+        !is_side_straight(cube, direction, true, &found[1]))
+        return false;
+    memcpy(slopes, found, sizeof found);
+    return true;
+}
+
+/* How many parts the surface may meet. */
+static int count_met(const Cube *cube)
+{
+    int count = 0;
+    for (int i = 0; i < PARTS; i++)
+        count += fabs(cube->distances[i]) <= HALF_DIAGONAL * cube->part;
+    return count;
 }
 
 static double divide(const MeshField *field, const double middle[3], double side, int depth,
                      int *left)
 {
-    Cube   cube  = {.part = side / SIDE};
-    double slope = 1, sum = 0;
+    Cube   cube      = {.part = side / SIDE};
+    double slopes[2] = {1, 1}, sum = 0;
     memcpy(cube.middle, middle, sizeof cube.middle);
     look(field, &cube);
-    const bool straight = is_straight(&cube, &slope), last = depth == DEEPEST;
+    const bool straight = is_straight(&cube, slopes), last = depth == DEEPEST;
+    if (depth == 0)
+        *left = count_met(&cube) > FEW ? 0 : MOST_DIVIDED;
     for (int i = 0; i < PARTS; i++) {
-        double distance = cube.distances[i] / (cube.part * max2(slope, LEAST_SLOPE)), at[3];
+        double slope    = slopes[cube.distances[i] <= 0], at[3];
+        double distance = cube.distances[i] / (cube.part * slope);
         if (straight || last || fabs(cube.distances[i]) > HALF_DIAGONAL * cube.part ||
             (depth > 0 && *left == 0)) {
             sum += min2(max2(0.5 - distance, 0), 1);
@@ -92,6 +143,6 @@ static double divide(const MeshField *field, const double middle[3], double side
 
 double coverage(const MeshField *field, const double point[3], double side)
 {
-    int left = MOST_DIVIDED;
+    int left;
     return divide(field, point, side, 0, &left);
 }
