@@ -268,6 +268,7 @@ const Method methods[] = {
     {"revolve", NULL, NULL, NULL, 0, false, ""},
     {"distance", NULL, NULL, NULL, 0, false, ""},
     {"bounds", NULL, NULL, NULL, 0, false, ""},
+    {"corners", NULL, NULL, NULL, 0, false, ""},
     {"hull", NULL, NULL, NULL, 0, false, ""}, /* tests/oracle/hulls.c */
 };
 const size_t method_count = sizeof methods / sizeof *methods;
