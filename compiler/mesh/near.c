@@ -7,7 +7,9 @@
  * Where one point has some, all have.  Heights are linear where the triangle and one of the mesh cover each other, so
  * the corners of that polygon tell the largest.
  *
- * Where that does not decide (where sharp edges are cut off) there is a slower test.  A triangle is within an
+ * Beside sharp edges heights are aslant, so that both their sides are seen from above.
+ *
+ * Where that does not decide there is a slower test.  A triangle is within an
  * error of a mesh if its corners are within it of the same triangle of that mesh, since that is convex; if they
  * are not, it is cut into four.
  */
@@ -47,9 +49,9 @@ void near_mesh_new(NearMesh *mesh, const double (*vertices)[3], const uint32_t (
 
 /* ---- by what it faces ---- */
 
-/* Coordinates of a triangle: shares of its corners, and the height above its plane. */
+/* Coordinates of a triangle: shares of its corners, and the height above its plane, along its normal or aslant. */
 typedef struct Frame {
-    double origin[3], first[3], second[3], normal[3];
+    double origin[3], first[3], second[3], height[3];
     double rounding; /* more than what shares are off by it */
     double error;
 } Frame;
@@ -58,24 +60,31 @@ typedef struct Seen {
     double shares[3], height;
 } Seen;
 
-/* False: it is so thin that rounding matters. */
-static bool frame_new(const NearMesh *mesh, const double corners[3][3], double error, Frame *frame)
+/* Heights are along the normal, and as much as `aslant` says besides; NULL: that alone.  False: it is so thin that rounding
+   matters. */
+static bool frame_new(const NearMesh *mesh, const double corners[3][3], double error,
+                      const double *aslant, Frame *frame)
 {
     static const double least = 1e-9, most = 1e-5;
-    double              edges[2][3], normal[3], longest = 0;
+    double              edges[2][3], normal[3], along[3], longest = 0;
     add_scaled3(edges[0], corners[1], -1, corners[0]);
     add_scaled3(edges[1], corners[2], -1, corners[0]);
     cross3(edges[0], edges[1], normal);
-    double square = dot3(normal, normal);
-    if (!(square > 0))
+    double twice = length3(normal);
+    if (!normalize3(normal))
         return false;
+    memcpy(along, normal, sizeof along);
+    if (aslant)
+        add_scaled3(along, along, 1, aslant);
+    normalize3(along);
+    double upright = dot3(along, normal);
     memcpy(frame->origin, corners[0], sizeof frame->origin);
-    cross3(edges[1], normal, frame->first);
-    cross3(normal, edges[0], frame->second);
+    cross3(edges[1], along, frame->first);
+    cross3(along, edges[0], frame->second);
     for (int k = 0; k < 3; k++) {
-        frame->first[k] /= square;
-        frame->second[k] /= square;
-        frame->normal[k] = normal[k] / sqrt(square);
+        frame->first[k] /= twice * upright;
+        frame->second[k] /= twice * upright;
+        frame->height[k] = normal[k] / upright;
     }
     for (int c = 0; c < 3; c++)
         longest = fmax(longest, distance3(corners[c], corners[(c + 1) % 3]));
@@ -93,7 +102,7 @@ static void see(const Frame *frame, const double point[3], Seen *seen)
     seen->shares[1] = dot3(offset, frame->first);
     seen->shares[2] = dot3(offset, frame->second);
     seen->shares[0] = 1 - seen->shares[1] - seen->shares[2];
-    seen->height    = dot3(offset, frame->normal);
+    seen->height    = dot3(offset, frame->height);
 }
 
 /* Whether points between two are above or below the triangle. */
@@ -266,23 +275,22 @@ static bool is_far(const NearMesh *mesh, const double corners[3][3], double erro
     return !bvh_is_near(&mesh->bvh, at, error, &look->last);
 }
 
-/* Goes on from those that are faced already. */
+/* Goes on from those that are faced already.  `*steep`: one that is too high, though what of the triangle is below it is near. */
 static Verdict face_all(const NearMesh *mesh, const double corners[3][3], double error,
-                        const Frame *frame, NearLook *look)
+                        const Frame *frame, NearLook *look, uint32_t *steep)
 {
-    Layers layers  = {.count = {0}};
-    bool   low     = true;
+    Layers layers = {.count = {0}};
+
     double highest = 0;
     for (size_t i = 0; i < look->faced_count; i++) {
         uint32_t triangle = look->faced[i];
         Seen     seen[3], high;
         see_triangle(mesh, frame, triangle, seen);
-        if (low && !is_low(frame, seen, &high, &highest)) {
-            low = false;
-            if (is_far(mesh, corners, error, &high, look))
-                return IS_FAR;
+        if (!is_low(frame, seen, &high, &highest)) {
+            *steep = triangle;
+            return is_far(mesh, corners, error, &high, look) ? IS_FAR : IS_UNDECIDED;
         }
-        for (int point = 0; low && point < POINTS; point++)
+        for (int point = 0; point < POINTS; point++)
             count_layer(frame, seen, point, &layers);
         for (int c = 0; c < 3; c++)
             if (is_edge_seen(frame, &seen[c], &seen[(c + 1) % 3])) {
@@ -291,23 +299,77 @@ static Verdict face_all(const NearMesh *mesh, const double corners[3][3], double
                     return IS_UNDECIDED;
             }
     }
-    if (!low || !has_layers(&layers))
+    if (!has_layers(&layers))
         return IS_UNDECIDED;
     look->distance = fmin(error, highest + (error - frame->error));
     return IS_NEAR;
 }
 
-/* Begins with the first of `starts` that is faced. */
-static Verdict face_from(const NearMesh *mesh, const double corners[3][3], double error,
-                         const uint32_t *starts, size_t start_count, NearLook *look)
+typedef struct Start {
+    const NearMesh *mesh;
+    const Frame    *frame;
+    NearLook       *look;
+} Start;
+
+/* Stops at a triangle that is faced. */
+static bool look_for_start(void *user, uint32_t triangle, const double corners[3][3])
+{
+    Start *start = user;
+    (void)corners;
+    return !is_faced(start->mesh, start->frame, triangle) || !face(start->look, triangle);
+}
+
+/* Begins with the first of `starts` that is faced, or without any with one that is near to the middle. */
+static Verdict face_along(const NearMesh *mesh, const double corners[3][3], double error,
+                          const double *aslant, const uint32_t *starts, size_t start_count,
+                          NearLook *look, uint32_t *steep)
 {
     Frame frame;
-    if (!frame_new(mesh, corners, error, &frame))
+    forget_faced(look);
+    if (!frame_new(mesh, corners, error, aslant, &frame))
         return IS_UNDECIDED;
     for (size_t i = 0; i < start_count && look->faced_count == 0; i++)
         if (is_faced(mesh, &frame, starts[i]))
             face(look, starts[i]);
-    return face_all(mesh, corners, error, &frame, look);
+    if (start_count == 0) {
+        Start  start     = {mesh, &frame, look};
+        double middle[3] = {0, 0, 0};
+        for (int c = 0; c < 3; c++)
+            add_scaled3(middle, middle, 1.0 / 3, corners[c]);
+        bvh_visit(&mesh->bvh, middle, error, look_for_start, &start);
+    }
+    return face_all(mesh, corners, error, &frame, look, steep);
+}
+
+static void unit_normal(const double corners[3][3], double normal[3])
+{
+    double edges[2][3];
+    add_scaled3(edges[0], corners[1], -1, corners[0]);
+    add_scaled3(edges[1], corners[2], -1, corners[0]);
+    cross3(edges[0], edges[1], normal);
+    normalize3(normal);
+}
+
+/* Where a triangle goes a little beyond a sharp edge, the other side of that edge is above or below it as a high wall.  Seen
+   aslant, from where both sides are seen, it is not. */
+static Verdict face_from(const NearMesh *mesh, const double corners[3][3], double error,
+                         const uint32_t *starts, size_t start_count, NearLook *look)
+{
+    static const double ASLANT = 0.4, STEEPEST = -0.8;
+    uint32_t            steep = NO_TRIANGLE;
+    Verdict verdict = face_along(mesh, corners, error, NULL, starts, start_count, look, &steep);
+    if (verdict != IS_UNDECIDED || steep == NO_TRIANGLE)
+        return verdict;
+    double wall[3][3], normals[2][3], aslant[3] = {0, 0, 0};
+    for (int c = 0; c < 3; c++)
+        memcpy(wall[c], mesh->bvh.vertices[mesh->bvh.triangles[steep][c]], sizeof wall[c]);
+    unit_normal((const double(*)[3])wall, normals[0]);
+    unit_normal(corners, normals[1]);
+    double turn = dot3(normals[0], normals[1]);
+    if (turn < STEEPEST)
+        return IS_UNDECIDED;
+    add_scaled3(aslant, aslant, ASLANT + max2(0, -turn), normals[0]);
+    return face_along(mesh, corners, error, aslant, starts, start_count, look, &steep);
 }
 
 /* ---- by cutting ---- */
@@ -340,8 +402,8 @@ static bool look_on(void *user, uint32_t triangle, const double corners[3][3])
 static bool is_near(const NearMesh *mesh, const double corners[3][3], double error,
                     const uint32_t *starts, size_t start_count, int cuts, NearLook *look);
 
-static bool are_parts_near(const NearMesh *mesh, const double corners[3][3], double error,
-                           const uint32_t *starts, size_t start_count, int cuts, NearLook *look)
+static bool are_parts_near(const NearMesh *mesh, const double corners[3][3], double error, int cuts,
+                           NearLook *look)
 {
     double middles[3][3];
     for (int c = 0; c < 3; c++)
@@ -353,13 +415,14 @@ static bool are_parts_near(const NearMesh *mesh, const double corners[3][3], dou
         memcpy(corner[1], middles[c], sizeof corner[1]);
         memcpy(corner[2], middles[(c + 2) % 3], sizeof corner[2]);
         if (!bvh_is_near(&mesh->bvh, corner[0], error, &look->last) ||
-            !is_near(mesh, (const double(*)[3])corner, error, starts, start_count, cuts - 1, look))
+            !is_near(mesh, (const double(*)[3])corner, error, NULL, 0, cuts - 1, look))
             return false;
     }
-    return is_near(mesh, (const double(*)[3])middles, error, starts, start_count, cuts - 1, look);
+    return is_near(mesh, (const double(*)[3])middles, error, NULL, 0, cuts - 1, look);
 }
 
-/* Parts begin with what the whole faces.  Of the whole one wants to know what it faces, where that can be found. */
+/* Of the whole one wants to know what it faces, where that can be found. */
+
 static bool is_near(const NearMesh *mesh, const double corners[3][3], double error,
                     const uint32_t *starts, size_t start_count, int cuts, NearLook *look)
 {
@@ -378,16 +441,8 @@ static bool is_near(const NearMesh *mesh, const double corners[3][3], double err
     }
     if (cuts == 0)
         return false;
-    size_t before = look->start_count, count = look->faced_count;
-    if (count > 0 && before + count <= MOST_STARTS) {
-        starts      = look->starts + before;
-        start_count = count;
-        memcpy(look->starts + before, look->faced, count * sizeof *look->faced);
-        look->start_count += count;
-    }
-    bool near         = are_parts_near(mesh, corners, error, starts, start_count, cuts, look);
-    look->start_count = before;
-    look->distance    = error;
+    bool near      = are_parts_near(mesh, corners, error, cuts, look);
+    look->distance = error;
     return near;
 }
 

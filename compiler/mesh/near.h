@@ -20,7 +20,7 @@ typedef struct NearMesh {
 void near_mesh_new(NearMesh *mesh, const double (*vertices)[3], const uint32_t (*triangles)[3],
                    size_t count, Arena *arena);
 
-enum { MOST_FACED = 4096, FACED_SLOTS = 2 * MOST_FACED, MOST_STARTS = 4 * MOST_FACED };
+enum { MOST_FACED = 4096, FACED_SLOTS = 2 * MOST_FACED };
 
 /* What one thread looks with. */
 typedef struct NearLook {
@@ -28,9 +28,7 @@ typedef struct NearLook {
     double   distance; /* how far the last triangle that was near is from the mesh, at most */
     uint32_t faced[MOST_FACED];
     size_t   faced_count;
-    uint32_t slots[FACED_SLOTS];  /* `faced` by hash: number + 1 */
-    uint32_t starts[MOST_STARTS]; /* what triangles that were cut faced */
-    size_t   start_count;
+    uint32_t slots[FACED_SLOTS]; /* `faced` by hash: number + 1 */
 } NearLook;
 
 /* Whether a triangle is within the error of one of a mesh. */

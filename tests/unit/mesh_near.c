@@ -199,12 +199,56 @@ static void random_triangles_are_judged(void **state)
     assert_true(accepted > 300 && refused > 300);
 }
 
+/* Beyond a border of the sheet, where walls go down, or stand on it as the sides of a trough. */
+static void triangles_beyond_rims_are_judged(void **state)
+{
+    (void)state;
+    Random random   = {77};
+    size_t accepted = 0, refused = 0;
+    for (int turn = 0; turn < 20; turn++) {
+        Sheet *sheet = sheet_new();
+        double rough = random_between(&random, 0.01, 0.2);
+        for (size_t i = 0; i < 2 * (size_t)BELOW; i++)
+            sheet->vertices[i][2] = random_between(&random, -rough, rough);
+        if (turn % 2)
+            for (size_t i = 0; i <= SIDE; i++)
+                sheet->vertices[at(i, 0)][2] = 5;
+        build_sheet(sheet, 8);
+        for (int i = 0; i < 60; i++) {
+            double   places[3][3], error = random_between(&random, 0.3, 4) * rough;
+            double   beyond     = random_between(&random, 0, 2) * error;
+            size_t   row        = (size_t)(turn % 2);
+            size_t   corners[3] = {at((size_t)random_below(&random, SIDE / 2), row),
+                                   at(SIDE / 2 + (size_t)random_below(&random, SIDE / 2), row),
+                                   at((size_t)random_below(&random, SIDE), SIDE / 2)};
+            uint32_t start      = 0;
+            for (int c = 0; c < 3; c++)
+                memcpy(places[c], sheet->vertices[corners[c]], sizeof places[c]);
+            places[0][1] -= beyond;
+            places[1][1] -= beyond;
+            start       = sheet->mesh.edges.items[sheet->mesh.edges.begins[corners[2]]].triangle;
+            bool   near = is_near_mesh(&sheet->mesh, (const double(*)[3])places, error, &start, 1,
+                                       &sheet->look);
+            double farthest = farthest_of(&sheet->mesh, (const double(*)[3])places, error);
+            if (near)
+                assert_true(farthest < 1.01);
+            else
+                assert_true(farthest > 0.89);
+            accepted += near;
+            refused += !near;
+        }
+        sheet_free(sheet);
+    }
+    assert_true(accepted > 300 && refused > 300);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(flat_sheets_are_near),
         cmocka_unit_test(what_is_planted_is_found),
         cmocka_unit_test(random_triangles_are_judged),
+        cmocka_unit_test(triangles_beyond_rims_are_judged),
     };
     return cmocka_run_group_tests_name("near meshes", tests, NULL, NULL);
 }
