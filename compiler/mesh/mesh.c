@@ -5,11 +5,15 @@
 
 #include "compiler/mesh/borders.h"
 #include "compiler/mesh/flat.h"
+#include "compiler/mesh/handles.h"
 #include "compiler/mesh/voids.h"
 #include "compiler/program.h"
 
 static const double DEFAULT_ERROR = 1.0 / 200, LEAST_ERROR = 1.0 / 500000;
 static const double CUBE_SIDE = 1.0973; /* in longest sides of the box */
+/* Errors besides, at each turn: tetrahedra lie otherwise then. */
+enum { TURNS = 3 };
+static const double MORE_SIDE[TURNS] = {4, 6, 9.5};
 /* The part of the error that is for leaving out triangles. */
 static const double SPARED = 0.5;
 
@@ -98,6 +102,17 @@ static void close_voids(Mesher *m)
     m->unresolved += closed;
 }
 
+/* What goes around a rod or through a hole that is thinner than the error, where nothing was said of any. */
+static void count_handles(Mesher *m)
+{
+    double at[3];
+    size_t count = m->unresolved == 0 ? handles_count(&m->contour, m->error, at) : 0;
+    if (count > 0)
+        memcpy(m->unresolved_at, at, sizeof m->unresolved_at);
+    m->unresolved += count;
+    m->handles = count;
+}
+
 /* Whether triangles may be as few as the shape permits. */
 static bool may_be_few(const Mesher *m)
 {
@@ -135,8 +150,10 @@ static KrsStatus run(Mesher *m, KrsFrame *frame, KrsMesh **mesh)
         draft = m->options->draft;
         m->error -= m->spared;
         status = find_proven_mesh(m) ? KRS_OK : KRS_INTERRUPTED;
-        if (status == KRS_OK)
+        if (status == KRS_OK) {
             close_voids(m);
+            count_handles(m);
+        }
     } else
         m->spared = 0;
     if (status == KRS_OK)
@@ -147,7 +164,7 @@ static KrsStatus run(Mesher *m, KrsFrame *frame, KrsMesh **mesh)
     return status;
 }
 
-static bool options_are_valid(Mesher *m)
+static bool options_are_valid(Mesher *m, int turn)
 {
     const KrsMeshOptions *options = m->options;
     double                longest = 0;
@@ -156,7 +173,7 @@ static bool options_are_valid(Mesher *m)
     for (int k = 0; k < 3; k++)
         longest = fmax(longest, m->high[k] - m->low[k]);
     m->error  = options->error > 0 ? options->error : DEFAULT_ERROR * longest;
-    m->side   = CUBE_SIDE * longest + 4 * m->error;
+    m->side   = CUBE_SIDE * longest + MORE_SIDE[turn] * m->error;
     m->spared = options->simplify && may_be_few(m) ? SPARED * m->error : 0;
     return is_nothing(m) || m->error >= LEAST_ERROR * m->side;
 }
@@ -171,13 +188,14 @@ static const double ALL_MESHED = 0.8;
 /* One of two steps of the work. */
 typedef struct Step {
     const KrsMeshOptions *options;
-    double                begun, part;
+    double                begun, part, said; /* what is done is never less than was said */
 } Step;
 
 static bool go_on(void *user, double fraction)
 {
-    const Step *step = user;
-    return step->options->go_on(step->options->user, step->begun + fraction * step->part);
+    Step *step = user;
+    step->said = fmax(step->said, step->begun + fraction * step->part);
+    return step->options->go_on(step->options->user, step->said);
 }
 
 static KrsMeshOptions options_of_step(Step *step)
@@ -191,7 +209,7 @@ static KrsMeshOptions options_of_step(Step *step)
 /* Uses up what was spared of the error. */
 static KrsStatus leave_out(const KrsMeshOptions *options, double spared, KrsMesh **mesh)
 {
-    Step           step  = {options, MESHED, 1 - MESHED};
+    Step           step  = {options, MESHED, 1 - MESHED, 0};
     KrsMeshOptions these = options_of_step(&step);
     KrsMesh       *all   = *mesh;
     these.error          = spared;
@@ -202,24 +220,42 @@ static KrsStatus leave_out(const KrsMeshOptions *options, double spared, KrsMesh
     return status;
 }
 
-static KrsStatus mesh_once(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
-                           KrsMesh **mesh)
+/* `*spared`: of the error, for leaving out triangles; `*handles`: as of Mesher. */
+static KrsStatus mesh_in_turn(KrsFrame *frame, const KrsMeshOptions *options,
+                              const MeshSolid *solid, int turn, KrsMesh **mesh, double *spared,
+                              size_t *handles)
 {
-    *mesh     = NULL;
     Mesher *m = calloc(1, sizeof *m);
     if (!m)
         return KRS_OUT_OF_MEMORY;
-    Step           step  = {options, 0, options->simplify ? MESHED : 1};
-    KrsMeshOptions these = options_of_step(&step);
-    m->options           = &these;
-    m->solid             = solid;
-    m->memory            = frame->scene->memory;
-    m->memory.used       = 0;
-    m->memory.limit      = options->memory_limit ? options->memory_limit : KRS_USUAL_MEMORY;
-    m->arena.memory      = &m->memory;
-    KrsStatus status     = options_are_valid(m) ? run(m, frame, mesh) : KRS_BAD_ARGUMENT;
-    double    spared     = m->spared;
+    m->options       = options;
+    m->solid         = solid;
+    m->memory        = frame->scene->memory;
+    m->memory.used   = 0;
+    m->memory.limit  = options->memory_limit ? options->memory_limit : KRS_USUAL_MEMORY;
+    m->arena.memory  = &m->memory;
+    KrsStatus status = options_are_valid(m, turn) ? run(m, frame, mesh) : KRS_BAD_ARGUMENT;
+    *spared          = m->spared;
+    *handles         = m->handles;
     close_mesher(m);
+    return status;
+}
+
+/* Where a mesh has handles they are mostly those of its tetrahedra at a sharp edge, so others are tried. */
+static KrsStatus mesh_once(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
+                           KrsMesh **mesh)
+{
+    Step           step    = {options, 0, options->simplify ? MESHED : 1, 0};
+    KrsMeshOptions these   = options_of_step(&step);
+    KrsStatus      status  = KRS_OK;
+    double         spared  = 0;
+    size_t         handles = 1;
+    *mesh                  = NULL;
+    for (int turn = 0; turn < TURNS && status == KRS_OK && handles > 0; turn++) {
+        krs_mesh_free(*mesh);
+        *mesh  = NULL;
+        status = mesh_in_turn(frame, &these, solid, turn, mesh, &spared, &handles);
+    }
     return status == KRS_OK && spared > 0 ? leave_out(options, spared, mesh) : status;
 }
 
@@ -239,7 +275,7 @@ static KrsStatus mesh_all(KrsFrame *frame, const KrsMeshOptions *options, const 
 static KrsStatus split_at_borders(KrsFrame *frame, const KrsMeshOptions *options,
                                   const MeshSolid *solid, KrsMesh **mesh)
 {
-    Step           step   = {options, ALL_MESHED, 1 - ALL_MESHED};
+    Step           step   = {options, ALL_MESHED, 1 - ALL_MESHED, 0};
     KrsMeshOptions these  = options_of_step(&step);
     KrsStatus      status = mesh_split_at_borders(frame, &these, solid->copy, *mesh);
     if (status == KRS_OK)
@@ -254,7 +290,7 @@ KrsStatus mesh_solid(KrsFrame *frame, const KrsMeshOptions *options, const MeshS
 {
     bool           steps  = solid->steps && !solid->plain && !options->even;
     bool           split  = steps && !options->shape;
-    Step           step   = {options, 0, split ? ALL_MESHED : 1};
+    Step           step   = {options, 0, split ? ALL_MESHED : 1, 0};
     KrsMeshOptions these  = options_of_step(&step);
     KrsStatus      status = mesh_all(frame, &these, solid, mesh);
     if (status == KRS_OK && split)

@@ -33,6 +33,7 @@ typedef struct Mesher {
     Groups        groups; /* of tetrahedra to be looked at */
     atomic_size_t next_group;
     size_t        unresolved; /* tetrahedra */
+    size_t        handles;    /* places in a mesh that is thought to be right (handles.h) */
     double        unresolved_at[3];
     double        fraction;    /* of the work, as was last said, */
     double        begun, goal; /* where the round began, and will end */
