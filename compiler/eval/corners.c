@@ -6,7 +6,7 @@
 #include "compiler/shape/map.h"
 
 /* Of more corners a figure is as good as round. */
-enum { MOST_CORNERS = 64 };
+enum { MOST_CORNERS = 128 };
 
 typedef struct Corners {
     Node   at[MOST_CORNERS]; /* [x, y, 0] */

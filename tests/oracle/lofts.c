@@ -200,7 +200,7 @@ static void corners_are_of_convex_polygons(void **state)
         "    has(polygon([[0, 0], [2, 0], [0.5, 0.5], [0, 2]]), 0), has(star(5, 1, 0.4), 0),\n"
         "    has(polygon([[0, 0], [1, 1], [1, 0], [0, 1]]), 0), has(rectangle([1, 1]).round(0.1), "
         "0),\n"
-        "    has(polygon([[0, 0], [w, 0], [1, 1]]), 0), has(regular(65, 1), 0),\n"
+        "    has(polygon([[0, 0], [w, 0], [1, 1]]), 0), has(regular(129, 1), 0),\n"
         "    has(polygon([[cos(144deg * i), sin(144deg * i)] for i in 0..5]), 0),\n"
         "    has(rectangle([1, 1]) | rectangle([1, 1]).move([3, 0]), 0), has(sphere(1), 0)];\n"
         "show sphere(1 + len(checks));\n");
