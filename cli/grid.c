@@ -401,6 +401,7 @@ static void warn(const Gridding *gridding, const KrsGridShape *shape)
 static void report(const Gridding *gridding, const GridGroup *group)
 {
     const KrsGridShape *shape = &group->sheet.shape;
+    Text                of    = {.arena = gridding->options->arena};
     char                what[128], rounding[64] = "";
     if (group->sheet.fog)
         snprintf(what, sizeof what, "densities");
@@ -413,10 +414,14 @@ static void report(const Gridding *gridding, const GridGroup *group)
                  shape->outside ? ", and exact outside" : "; --exact computes these");
     if (group->sheet.half)
         snprintf(rounding, sizeof rounding, ", rounded by a 1024th at most");
-    say("%zu x %zu x %zu samples from [%.9g, %.9g, %.9g] on, %g apart; %s%s", shape->count[0],
-        shape->count[1], shape->count[2], (double)shape->first[0] * shape->cell,
-        (double)shape->first[1] * shape->cell, (double)shape->first[2] * shape->cell, shape->cell,
-        what, rounding);
+    for (size_t i = 0; i < group->count && file_total(gridding) > group->count; i++)
+        text_format(&of, "%s`%s`", i == 0 ? "" : ", ", group->outputs[i].path);
+    if (of.length > 0)
+        text_format(&of, ": ");
+    say("%s%zu x %zu x %zu samples from [%.9g, %.9g, %.9g] on, %g apart; %s%s",
+        of.length > 0 ? of.bytes : "", shape->count[0], shape->count[1], shape->count[2],
+        (double)shape->first[0] * shape->cell, (double)shape->first[1] * shape->cell,
+        (double)shape->first[2] * shape->cell, shape->cell, what, rounding);
 }
 
 static void report_all(const Gridding *gridding)

@@ -28,8 +28,8 @@ static const VdbModule *load(const char *for_path)
     if (loaded)
         return loaded;
     if (!find_beside(VDB_FILE, path) && !find_beside(VDB_INSTALLED, path)) {
-        say("cannot write `%s`: this krs was built without OpenVDB; build it again where "
-            "libopenvdb-dev is installed, or write .npy, .nii, .ktx2, .vti or .vtu",
+        say("cannot write `%s`: there is no `" VDB_FILE "` beside this krs, which is built where "
+            "libopenvdb-dev is installed; or write .npy, .nii, .ktx2, .vti or .vtu",
             for_path);
         return NULL;
     }

@@ -404,9 +404,10 @@ static void report_motion(const Meshing *meshing, double error)
 
 static void report(const Meshing *meshing, const Bodies *bodies)
 {
-    Summary       all   = summarize(bodies);
-    const double *at    = all.unresolved_at;
-    const char   *about = all.estimate ? "about " : "";
+    Summary       all     = summarize(bodies);
+    const double *at      = all.unresolved_at;
+    const char   *about   = all.estimate ? "about " : "";
+    bool          kernels = bodies == &meshing->assembled && all.copies > 1;
     if (meshing->options->quiet || bodies->count == 0)
         return;
     if (all.estimate && !meshing->options->mesh_draft)
@@ -414,11 +415,13 @@ static void report(const Meshing *meshing, const Bodies *bodies)
     if (all.unresolved > 0)
         say("warning: %zu cells may hold what is thinner than the error, or solids that touch; "
             "the first is at [%g, %g, %g] of the %s; a smaller --error tells",
-            all.unresolved, at[0], at[1], at[2], all.copies > 1 ? "kernel" : "scene");
+            all.unresolved, at[0], at[1], at[2], kernels ? "kernel" : "scene");
     if (meshing->moving > 0)
         report_motion(meshing, all.error);
     if (all.beams > 0)
         say("%zu beam%s", all.beams, all.beams == 1 ? "" : "s");
+    else if (meshing->options->mesh_beams)
+        say("warning: no component is a union of capsules alone, so there are no beams");
     if (all.triangles == 0)
         return;
     warn_of_rounding(meshing, &all);
@@ -427,7 +430,7 @@ static void report(const Meshing *meshing, const Bodies *bodies)
             meshing->options->mesh_bake, meshing->pixel * meshing->scale);
     else if (meshing->options->mesh_bake > 0)
         say("warning: no material varies, so nothing was baked");
-    if (bodies == &meshing->assembled && all.copies > (double)bodies->count)
+    if (kernels && all.copies > (double)bodies->count)
         say("%.0f copies with %.0f triangles, within %s%.4g of the surface", all.copies,
             all.triangles, about, all.error * meshing->scale);
     else

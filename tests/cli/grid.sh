@@ -302,7 +302,7 @@ fi
 mkdir alone && cp "$krs" alone/krs
 alone/krs grid ball.krs -o a.vdb >out 2>err
 status=$?
-said 73 "built without OpenVDB" "a krs without its module says so"
+said 73 "beside this krs" "a krs without its module says so"
 [ ! -e a.vdb ]
 result $? "and writes nothing"
 
