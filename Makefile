@@ -51,7 +51,7 @@ LOWER    := $(addprefix compiler/lower/, footprint.c bump.c context.c box_distan
                 outline.c boundary.c sphere_fold.c guards.c ray_images.c ray_step.c lower.c)
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
 EVAL     := $(addprefix compiler/eval/, scope.c forget.c expression.c turns.c turn_statements.c arithmetic.c fold.c reports.c units.c arguments.c components.c records.c data.c csv.c json.c builtins.c indices.c lists.c \
-                random.c files.c text.c drawing.c texture.c functions.c kinds.c blame.c csg.c fractal.c declare.c extremes.c claim_pairs.c claims.c empty.c cells.c measure.c corners.c methods.c properties.c \
+                random.c files.c text.c drawing.c texture.c functions.c kinds.c blame.c csg.c fractal.c declare.c extremes.c claim_pairs.c claims.c empty.c cells.c measure.c corners.c grown.c methods.c properties.c \
                 material.c camera.c view.c sky.c palette.c remarks.c params.c statements.c shown.c studio.c hull.c hull_parts.c beams.c \
                 hull_supports.c hull_triangles.c extents.c fillet_zone.c hull_region.c fillet.c)
 PRINT    := $(addprefix compiler/print/, frame_values.c media.c lines.c signatures.c helpers.c mirrors.c statements.c noises.c \

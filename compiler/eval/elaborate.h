@@ -357,6 +357,10 @@ BuiltinFunction builtin_svg, builtin_texture, builtin_footprint;
 Value method_distance(Elaboration *e, const Shape *shape, Call *call);
 Value method_bounds(Elaboration *e, const Shape *shape, Call *call);
 
+/* ---- grown.c ---- */
+/* A figure that is grown: an outline of its own, where outlines are wanted and that of the figure is known. */
+const Shape *grown_outline(Elaboration *e, const Shape *figure, const Shape *grown);
+
 /* ---- corners.c ---- */
 Value method_corners(Elaboration *e, const Shape *shape, Call *call);
 

@@ -170,8 +170,10 @@ static Value method_repeat_polar(Elaboration *e, const Shape *shape, Call *call)
 static Value method_offset(Elaboration *e, const Shape *shape, Call *call)
 {
     Node r = want_number(e, call, 0, 0);
-    return r == NODE_NONE ? value_error()
-                          : value_shape(make_offset(e->builder, shape, r, call->syntax->span));
+    if (r == NODE_NONE)
+        return value_error();
+    return value_shape(
+        grown_outline(e, shape, make_offset(e->builder, shape, r, call->syntax->span)));
 }
 
 /* The shape that, grown by r, is `shape` with round edges; NULL when it does not know one.  *good
@@ -204,7 +206,7 @@ static Value method_round(Elaboration *e, const Shape *shape, Call *call)
         return value_error();
     Span span = call->syntax->span;
     return value_shape(core ? make_rounded(e->builder, shape, core, r, span)
-                            : make_offset(e->builder, shape, r, span));
+                            : grown_outline(e, shape, make_offset(e->builder, shape, r, span)));
 }
 
 static Value method_shell(Elaboration *e, const Shape *shape, Call *call)

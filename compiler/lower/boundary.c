@@ -469,6 +469,12 @@ static bool gather(Gathering *g, const Shape *shape, Curves *curves)
     }
 }
 
+bool boundary_outline(Graph *graph, const Shape *figure, Arena *arena, Curves *curves)
+{
+    Gathering g = {.graph = graph, .scratch = arena};
+    return gather(&g, figure, curves);
+}
+
 /* ---- arcs ---- */
 
 static Arc arc_of(const Curve *curve)

@@ -2,7 +2,7 @@
 # mesh_judges.sh: CGAL, a slicer and Blender accept what `krs mesh` writes.  What is not installed is skipped.
 . "$(dirname "$0")/common.sh"
 judge=$(dirname "$krs")/tests/oracle/mesh_judge
-plan 10
+plan 11
 
 cat >vase.krs <<'END'
 let wall = field(sin(3 * x) * cos(3 * y) + sin(3 * y) * cos(3 * z) + sin(3 * z) * cos(3 * x)).shell(0.9);
@@ -69,7 +69,27 @@ if [ -x "$judge" ]; then
     "$judge" pipes?.off roofs?.off grooves?.off >out
     [ "$(grep -c 'pipes..off: good, .* genus 3, 1 parts' out) $(grep -c '[rg].*s..off: good, .* genus 0, 1 parts' out)" = "8 16" ]
     result $? "and nothing where edges touch that have no end there"
+    # Polygons that shrink and grow: their volumes by area, perimeter and corners.
+    echo 'show polygon([[-3, 0], [3, 0], [5, 4], [-5, 4]]).offset(-0.1).extrude(20);' >shrunk.krs
+    echo 'show polygon([[0, 0], [4, 0], [0, 3]]).round(0.3).extrude(2);' >rounded.krs
+    echo 'show (polygon([[0, 0], [6, 0], [6, 4], [3, 1], [0, 4]]).offset(-0.2) | rectangle([1, 1]).move([9, 0])).extrude(1);' >notched.krs
+    for name in shrunk rounded notched; do
+        "$krs" mesh --quiet $name.krs --error 0.01 --limit time=20 -o $name.obj && to_off $name.obj >$name.off
+    done
+    "$judge" shrunk.off rounded.off notched.off | awk '{
+            sub(/,/, "", $5); shape[$1] = $5; volume[$1] = $NF; good += $2 == "good," && / genus 0/
+        }
+        END {
+            pi = atan2(0, -1)
+            trapezoid = 32 - 0.1 * (16 + 2 * sqrt(20)) + 0.01 * 2 * sqrt(5) # the cotangents of half its angles
+            exit !(good == 3 && shape["shrunk.off:"] == 12 && shape["rounded.off:"] < 700 &&
+                near(volume["shrunk.off:"], 20 * trapezoid, 0.001) &&
+                near(volume["rounded.off:"], 2 * (6 + 12 * 0.3 + pi * 0.09), 0.05))
+        }
+        function near(a, b, by) { return a - b < by && b - a < by }'
+    result $? "and the volumes of polygons that shrink and grow"
 else
+    skip "and the volumes of polygons that shrink and grow" "no CGAL"
     skip "and nothing where edges touch that have no end there" "no CGAL"
     skip "CGAL finds one part, closed, a manifold, without crossings" "no CGAL"
     skip "and finds a planted crossing" "no CGAL"
