@@ -6,8 +6,8 @@
 
 #include "compiler/mesh/contour.h"
 
-/* Counts the places where what is within the radius of a vertex, of a closed mesh that hangs together there, is no disc but goes
-   around a rod, or through a hole.  None is missed around which it goes within half of the radius.  `at`: the first of them. */
+/* Counts the places of a closed mesh where the connected part within the radius of a vertex is no disc, but goes around a rod or
+   through a hole.  One that fits into half of the radius is not missed.  `at`: the first place; unchanged where there is none. */
 size_t handles_count(const Contour *contour, double radius, double at[3]);
 
 #endif
