@@ -35,10 +35,18 @@ static void add_arc(Arena *arena, Curves *curves, const Curve *arc, double off)
     }
 }
 
+/* An outline that is drawn, wherever it was moved. */
+static bool is_drawn(const Shape *figure)
+{
+    while (figure->kind == SHAPE_TRANSFORM)
+        figure = figure->children[0];
+    return figure->outline != NULL;
+}
+
 const Shape *grown_outline(Elaboration *e, const Shape *figure, const Shape *grown)
 {
     Curves found = {0}, curves = {0};
-    if (!e->outlines || !figure->outline ||
+    if (!e->outlines || !grown->figure || !is_drawn(figure) ||
         !boundary_outline(e->graph, grown, e->scratch, &found) || found.count == 0)
         return grown;
     double size = 0;

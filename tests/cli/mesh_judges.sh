@@ -70,7 +70,7 @@ if [ -x "$judge" ]; then
     [ "$(grep -c 'pipes..off: good, .* genus 3, 1 parts' out) $(grep -c '[rg].*s..off: good, .* genus 0, 1 parts' out)" = "8 16" ]
     result $? "and nothing where edges touch that have no end there"
     # Polygons that shrink and grow: their volumes by area, perimeter and corners.
-    echo 'show polygon([[-3, 0], [3, 0], [5, 4], [-5, 4]]).offset(-0.1).extrude(20);' >shrunk.krs
+    echo 'show polygon([[-3, 0], [3, 0], [5, 4], [-5, 4]]).rotate(10deg).move([1, 2]).offset(-0.1).extrude(20);' >shrunk.krs
     echo 'show polygon([[0, 0], [4, 0], [0, 3]]).round(0.3).extrude(2);' >rounded.krs
     echo 'show (polygon([[0, 0], [6, 0], [6, 4], [3, 1], [0, 4]]).offset(-0.2) | rectangle([1, 1]).move([9, 0])).extrude(1);' >notched.krs
     for name in shrunk rounded notched; do
