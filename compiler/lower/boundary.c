@@ -161,8 +161,9 @@ static bool map_all(const PlaneMap *map, Curves *curves)
 static bool gather_transform(Gathering *g, const Shape *shape, Curves *curves)
 {
     PlaneMap map;
-    double   scale;
-    if (!known(g, shape->map.scale, 0, &scale) || !gather(g, shape->children[0], curves))
+    double   scale, upright;
+    if (!known(g, shape->map.scale, 0, &scale) || !known(g, shape->map.rows[2], 2, &upright) ||
+        !(fabs(upright) > 1 - 1e-9) || !gather(g, shape->children[0], curves))
         return false;
     for (uint32_t i = 0; i < 2; i++) {
         if (!known(g, shape->map.shift, i, &map.shift[i]))
