@@ -1,4 +1,4 @@
-# make            build/krs, build/libkrs.a; WERROR=1: warnings are errors
+# make            build/krs, build/libkrs.a, build/libkrs.so; WERROR=1: warnings are errors
 # make demo       set up, build, render the best examples in two minutes: open build/demo/index.html
 # make gallery    all of them, as the README has them, to build/gallery/: about an hour
 # make test       set up, build, run every test but the longest; the last line is `N passed, N failed`, and
@@ -80,7 +80,7 @@ VDB       = $(if $(VDB_LIBS),$(B)/krs-vdb.so)
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))
 HELPERS  := $(sort $(wildcard compiler/print/glsl/*.glsl))
 SHADERS  := $(sort $(wildcard runtime/shaders/*.comp runtime/shaders/*.glsl runtime/shared/*.h)) \
-            compiler/shape/surface.def
+            include/krs/surface.def
 # Kernels without a scene are compiled here and now, not on every machine again; what is optimized
 # here, drivers need not.
 MODULES  := $(shell grep -L 'include "scene.glsl"' runtime/shaders/*.comp)
@@ -94,7 +94,7 @@ EXAMPLES := $(sort $(wildcard examples/*.krs))
 WERROR   ?=
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow $(if $(filter 1,$(WERROR)),-Werror)
 # All can be linked into a shared library, and no name of ours is seen outside but those of the public headers.
-COMMON   := -I. -MMD -MP -pthread -fPIC -fvisibility=hidden
+COMMON   := -I. -Iinclude -MMD -MP -pthread -fPIC -fvisibility=hidden
 STYLE    := -std=c17 -D_GNU_SOURCE $(WARNINGS) $(COMMON)
 CC_C     = $(CC) $(STYLE) $(HEADERS) $(CPPFLAGS) $(CFLAGS)
 # Headers of libraries in C++ are long: under the sanitizers -O1 would take three times as long as -O0.
@@ -112,11 +112,12 @@ OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files
 
 # Programs of this project are linked with the library's parts; others with the library, which shows its API alone.
 INTERNAL := $(B)/libkrs-internal.a
-# Before 1.0 each minor version may break what is linked with the one before.
-VERSION  := $(shell sed -n 's/^.define KRS_VERSION  *"\(.*\)"/\1/p' compiler/krs.h)
+# The library is loaded by a name that says what it is compatible with: before 1.0 the minor version.
+VERSION  := $(shell sed -n 's/^.define KRS_VERSION  *"\(.*\)"/\1/p' include/krs/krs.h)
 SONAME   := libkrs.so.$(basename $(VERSION))
+SHARED   := libkrs.so.$(VERSION)
 
-all: $(B)/krs $(B)/libkrs.a $(VDB)
+all: $(B)/krs $(B)/libkrs.a $(B)/libkrs.so $(VDB)
 $(B)/krs: $(CLI:%.c=$(B)/%.o) $(B)/commit.o $(CLI_BORDER:%.cpp=$(B)/%.o) $(B)/live.a $(INTERNAL)
 	@echo "link   $@"
 	@$(CC_LINK) $(HARDENED) -o $@ $^ $(WINDOW_LIBS) $(MESH_LIBS) $(LIBS)
@@ -142,10 +143,11 @@ $(B)/libkrs.a: $(B)/krs.o
 	@echo "pack   $@"
 	@rm -f $@
 	@$(AR) rcs $@ $^
-$(B)/$(SONAME): $(B)/krs.o
+$(B)/$(SHARED): $(B)/krs.o
 	@echo "link   $@"
 	@$(CC_LINK) -shared -Wl,-soname,$(SONAME) -o $@ $^ $(LIBS)
-$(B)/libkrs.so: $(B)/$(SONAME)
+$(B)/libkrs.so: $(B)/$(SHARED)
+	@ln -sf $(SHARED) $(B)/$(SONAME)
 	@ln -sf $(SONAME) $@
 # What archives hold: one whose list has changed is packed again, although a new member may be older.
 MEMBERS  := $(OBJECTS) $(LIVE:%.c=$(B)/%.o) $(LIVE_BORDER:%.cpp=$(B)/%.o)
@@ -183,18 +185,18 @@ $(B)/%.o: %.cpp $(B)/flags
 $(B)/%.o: $(B)/%.c $(B)/flags
 	@$(CC_C) -c -o $@ $<
 $(B)/library_files.c: $(B)/embed $(LIBRARY)
-	@$(B)/embed library_files compiler/library/ $(LIBRARY) >$@
+	@$(B)/embed library_files compiler/library/ -- $(LIBRARY) >$@
 $(B)/helper_files.c: $(B)/embed $(HELPERS)
-	@$(B)/embed helper_files compiler/print/glsl/ $(HELPERS) >$@
+	@$(B)/embed helper_files compiler/print/glsl/ -- $(HELPERS) >$@
 $(B)/shader_files.c: $(B)/embed $(SHADERS)
-	@$(B)/embed shader_files runtime/shaders/ $(SHADERS) >$@
+	@$(B)/embed shader_files runtime/shaders/ include/ -- $(SHADERS) >$@
 $(B)/module_files.c: $(B)/embed $(MODULES)
-	@$(B)/embed module_files $(B)/modules/ $(MODULES) >$@
+	@$(B)/embed module_files $(B)/modules/ -- $(MODULES) >$@
 # A module of a kernel: FILE.spv, or FILE-NAME-NAME.spv with these names defined.
 define MAKE_MODULE
 	@mkdir -p $(@D)
 	@echo "shader $<$(addprefix -D,$(1))"
-	@glslangValidator -V --target-env vulkan1.1 $(addprefix -D,$(1)) -I. -Iruntime/shaders -Icompiler/print/glsl -o $@ $< >/dev/null
+	@glslangValidator -V --target-env vulkan1.1 $(addprefix -D,$(1)) -I. -Iinclude -Iruntime/shaders -Icompiler/print/glsl -o $@ $< >/dev/null
 	@spirv-opt --target-env=vulkan1.1 -O $@ -o $@
 	@spirv-val --target-env vulkan1.1 $@
 endef

@@ -4,7 +4,7 @@
 #ifndef KRS_BENCH_IMAGE_H
 #define KRS_BENCH_IMAGE_H
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 typedef struct Image {
     uint32_t width, height;

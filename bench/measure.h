@@ -4,7 +4,7 @@
 #ifndef KRS_BENCH_MEASURE_H
 #define KRS_BENCH_MEASURE_H
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 /* What one picture took, in milliseconds; only doubles, so that medians are taken of all alike. */
 typedef struct Times {

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 typedef struct Sheet {
     const char *bench; /* its name, and that of its file */

@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 typedef struct Stage {
     const char   *name;

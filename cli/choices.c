@@ -13,43 +13,43 @@
 
 const Choice integrator_choices[] = {{"default", "as the scene says, or preview"},
 #define KRS_INTEGRATOR(id, name, about) {#name, about},
-#include "runtime/choices.def"
+#include "krs/choices.def"
                                      LAST};
 const Choice trace_choices[] = {
 #define KRS_TRACE(id, name, about) {name, about},
-#include "runtime/choices.def"
+#include "krs/choices.def"
     LAST};
 const Choice schedule_choices[] = {
 #define KRS_SCHEDULE(id, name, about) {name, about},
-#include "runtime/choices.def"
+#include "krs/choices.def"
     LAST};
 const Choice components_choices[] = {
 #define KRS_COMPONENTS(id, name, about) {name, about},
-#include "runtime/choices.def"
+#include "krs/choices.def"
     LAST};
 const Choice normals_choices[] = {
 #define KRS_NORMALS(id, name, about) {name, about},
-#include "runtime/choices.def"
+#include "krs/choices.def"
     LAST};
 const Choice shadows_choices[] = {
 #define KRS_SHADOWS(id, name, about) {name, about},
-#include "runtime/choices.def"
+#include "krs/choices.def"
     LAST};
 const Choice starts_choices[] = {
 #define KRS_STARTS(id, name, about) {name, about},
-#include "runtime/choices.def"
+#include "krs/choices.def"
     LAST};
 const Choice catcher_choices[] = {
 #define KRS_CATCHER(id, name, about) {name, about},
-#include "runtime/choices.def"
+#include "krs/choices.def"
     LAST};
 const Choice pixel_filter_choices[] = {
 #define KRS_PIXEL_FILTER(id, name, reach, integral, about) {name, about},
-#include "runtime/choices.def"
+#include "krs/choices.def"
     LAST};
 const Choice plane_choices[] = {
 #define KRS_PLANE(id, bit, aov, about, arrays) {aov, about},
-#include "runtime/planes.def"
+#include "krs/planes.def"
 #undef KRS_PLANE
     LAST};
 const Choice tone_map_choices[] = {

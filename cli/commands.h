@@ -7,7 +7,7 @@
 #include "cli/options.h"
 #include "compiler/base/text.h"
 #include "compiler/compile.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 #define COMMAND(id, name, function, arguments, files, summary, examples) \
     KrsStatus function(Options *options);

@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -5,7 +5,7 @@
 #define KRS_IMPORT_FILE_H
 
 #include "cli/import_text.h"
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 /* Those that are known, a blank between two. */
 const char *import_endings(void);

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 
 #include "compiler/base/text.h"
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 /* From here on, the text of the scene comes from this line of the file. */
 typedef struct ImportMark {

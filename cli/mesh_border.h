@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 #include "cli/mesh_poses.h"
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -19,7 +19,7 @@ extern "C" {
 typedef struct MeshLook {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     double name KRS_NUMBERS_##type;
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 } MeshLook;
 
 /* What pictures show: colors; the roughness in green and the metallic in blue; and the emission, of which `look` has the

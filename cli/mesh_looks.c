@@ -26,7 +26,7 @@ static const Property properties[] = {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     {#name, offsetof(MeshLook, name) / sizeof(double),                         \
      sizeof(((MeshLook *)0)->name) / sizeof(double)},
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 };
 enum { PROPERTIES = sizeof properties / sizeof *properties };
 
@@ -35,7 +35,7 @@ static MeshLook look_of(const KrsHit *hit)
     MeshLook look;
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     memcpy(&look.name, &hit->name, sizeof look.name);
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     return look;
 }
 

@@ -10,7 +10,7 @@
 
 #include "cli/choices.h"
 #include "compiler/base/arena.h"
-#include "compiler/krs.h"
+#include "krs/krs.h"
 #include "runtime/display/display.h"
 #include "runtime/writer/atomic.h"
 

@@ -30,7 +30,7 @@ static const PlaneArray plane_arrays[] = {
 #define KRS_PLANE(id, bit, aov, about, arrays) arrays
 #define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
     {KRS_PLANE_##plane, offsetof(KrsPicture, member), numbers, SAMPLE_##sample, {__VA_ARGS__}},
-#include "runtime/planes.def"
+#include "krs/planes.def"
 #undef KRS_ARRAY
 };
 #undef KRS_PLANE

@@ -6,7 +6,7 @@
 #define KRS_RENDER_FAULTS_H
 
 #include "cli/options.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 /* Of all pictures of a command. */
 typedef struct RenderFaults {

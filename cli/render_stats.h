@@ -5,7 +5,7 @@
 #define KRS_CLI_RENDER_STATS_H
 
 #include "cli/commands.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 /* Prints in the form that was asked for; one JSON object a frame, each on a line of its own. */
 void render_stats_show(const Options *options, const KrsRendering *rendering,

@@ -7,7 +7,7 @@
 #include <new>
 #include <unistd.h>
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 namespace
 {

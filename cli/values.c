@@ -196,7 +196,7 @@ static uint32_t find_aov(const char *word, size_t length)
         KrsPlane    plane;
     } aovs[] = {
 #define KRS_PLANE(id, bit, aov, about, arrays) {aov, KRS_PLANE_##id},
-#include "runtime/planes.def"
+#include "krs/planes.def"
 #undef KRS_PLANE
     };
     for (size_t i = 0; length > 0 && i < sizeof aovs / sizeof *aovs; i++)

@@ -8,7 +8,7 @@
 #define KRS_ASSEMBLY_H
 
 #include "compiler/graph/evaluate.h"
-#include "compiler/krs.h"
+#include "krs/krs.h"
 #include "compiler/shape/box.h"
 
 #define NO_ITEM UINT32_MAX

@@ -5,7 +5,7 @@
 #define KRS_BOUNDS_H
 
 #include "compiler/shape/shape.h"
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 enum { KRS_MOST_BOUNDS = 256 }; /* of one component */
 

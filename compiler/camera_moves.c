@@ -1,7 +1,7 @@
 /*
  * camera_moves.c: moves a camera as a mouse and keys do.
  */
-#include "compiler/krs_camera.h"
+#include "krs/camera.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #ifndef KRS_COMPILED_H
 #define KRS_COMPILED_H
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 #include "compiler/print/variant.h"
 #include "compiler/shape/sky_map.h"
 

@@ -249,7 +249,7 @@ static bool is_local(const Graph *graph, const Material *material)
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends)          \
     if (material->name != NODE_NONE && graph->items[material->name].time == TIME_POINT) \
         return true;
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     return false;
 }
 

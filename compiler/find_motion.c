@@ -50,7 +50,7 @@ static bool is_timed_material(const MotionFinder *f, const Material *material)
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     if (material->name != NODE_NONE && f->timed[material->name])               \
         return true;
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     return material->bump != NODE_NONE && f->timed[material->bump];
 }
 

@@ -3,7 +3,7 @@
  */
 #include <math.h>
 
-#include "compiler/krs_camera.h"
+#include "krs/camera.h"
 #include "compiler/program.h"
 
 const Box *frame_find_boxes(KrsFrame *frame)

@@ -6,7 +6,7 @@
 #define KRS_INSPECT_H
 
 #include "compiler/base/diag.h"
-#include "compiler/krs.h"
+#include "krs/krs.h"
 #include "compiler/shape/scene.h"
 
 /* An elaborated scene, for the time of the call.  `diags` is empty; what is added is reported. */

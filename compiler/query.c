@@ -217,7 +217,7 @@ static void copy_surface(const KrsFrame *frame, uint32_t nearest, KrsHit *hit)
     copy_property(frame, root, ROOT_##name, (double *)&hit->name);
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) \
     hit->name = (uint32_t)frame->values[root[ROOT_##name]].v[0];
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     /* Mirrors do not smooth the surface of a zone. */
     if (hit->distance > frame->values[root[ROOT_DISTANCE]].v[0])
         memcpy(hit->shading, hit->normal, sizeof hit->shading);

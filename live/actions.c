@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/krs_camera.h"
+#include "krs/camera.h"
 #include "live/camera_text.h"
 #include "live/saving.h"
 #include "live/text_edit.h"

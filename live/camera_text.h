@@ -4,7 +4,7 @@
 #ifndef KRS_CAMERA_TEXT_H
 #define KRS_CAMERA_TEXT_H
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 /* A `camera` block, with its newline; the caller frees it.  NULL: without memory. */
 char *camera_text(const KrsCamera *camera);

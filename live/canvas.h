@@ -8,7 +8,7 @@
 
 #include "live/document.h"
 #include "live/false_color.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 /* What is to be seen. */
 typedef struct View {

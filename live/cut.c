@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "compiler/krs_camera.h"
+#include "krs/camera.h"
 
 /* Radius of the ball that stands for a plane, in sizes of the scene.  Over one size it deviates from a
    plane by a thousandth of it; single precision still tells a ten thousandth. */

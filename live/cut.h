@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 typedef struct Cut {
     bool   plane, ball;

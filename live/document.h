@@ -4,7 +4,7 @@
 #ifndef KRS_DOCUMENT_H
 #define KRS_DOCUMENT_H
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 /* A text that compiled.  Several threads may hold it; the last one to let go frees the scene. */
 typedef struct Version Version;

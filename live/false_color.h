@@ -4,7 +4,7 @@
 #ifndef KRS_FALSE_COLOR_H
 #define KRS_FALSE_COLOR_H
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 typedef enum Look {
 #define LOOK(id, name, about) LOOK_##id,

@@ -9,7 +9,7 @@
 
 #include <stdbool.h>
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 typedef struct PresetValue {
     char   name[64];

@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "compiler/krs_camera.h"
+#include "krs/camera.h"
 #include "live/picture_file.h"
 
 /* Of an order, how much is done when its shaders are compiled; not more than a frame is. */

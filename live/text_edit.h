@@ -4,7 +4,7 @@
 #ifndef KRS_TEXT_EDIT_H
 #define KRS_TEXT_EDIT_H
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 /* Writes values into the defaults of the scene's parameters, where they differ, and changes nothing
    else of its files.  *written is how many were.  KRS_BAD_ARGUMENT: a file is not what the scene was

@@ -4,7 +4,7 @@
 #ifndef KRS_VIEWER_OPTIONS_H
 #define KRS_VIEWER_OPTIONS_H
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 /* A value of a parameter to begin with. */
 typedef struct ViewerSetting {

@@ -78,7 +78,7 @@ report $? "what is said of the shaders by hand is there as well"
 report $? "every scene has a table"
 
 for shader in bench/*.comp bench/handwritten/*.comp; do
-    glslangValidator -V --target-env vulkan1.1 -Ibench -Ibench/handwritten -I. -Iruntime/shaders \
+    glslangValidator -V --target-env vulkan1.1 -Ibench -Ibench/handwritten -I. -Iinclude -Iruntime/shaders \
         -Icompiler/print/glsl -o /dev/null "$shader" || echo "$shader" >>"$work/refused"
 done >"$work/said"
 [ ! -e "$work/refused" ] || sed 's/^/# /' "$work/said"

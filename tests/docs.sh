@@ -155,7 +155,7 @@ done >"$work/said"
 none "every file that a page names exists"
 
 # ---- versions ----
-[ "$(sed -n 's/^## \[\([0-9.]*\)\].*/\1/p' CHANGELOG.md | head -n 1)" = "$(sed -n 's/^#define KRS_VERSION *"\(.*\)"/\1/p' compiler/krs.h)" ]
+[ "$(sed -n 's/^## \[\([0-9.]*\)\].*/\1/p' CHANGELOG.md | head -n 1)" = "$(sed -n 's/^#define KRS_VERSION *"\(.*\)"/\1/p' include/krs/krs.h)" ]
 report $? "the last version of the changelog is the program's"
 
 # ---- links ----
@@ -189,7 +189,7 @@ report $? "docs/architecture.md has at most 200 lines"
 report $? "docs/glossary.md has at most 30 words, below its heading"
 
 # ---- the C library ----
-sed -n 's/^[A-Za-z].*\(krs_[a-z_0-9]*\)(.*/\1/p' compiler/krs.h compiler/krs_mesh.h compiler/krs_slice.h compiler/krs_grid.h compiler/krs_measure.h compiler/krs_camera.h runtime/krs_vulkan.h runtime/krs_film.h |
+sed -n 's/^[A-Za-z].*\(krs_[a-z_0-9]*\)(.*/\1/p' include/krs/*.h |
     sort -u >"$work/declared"
 # shellcheck disable=SC2016 # backquotes that are meant
 sed -n '/^## All functions/,$p' docs/library.md | grep -o '`krs_[a-z_0-9]*`' | tr -d '`' |

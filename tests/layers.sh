@@ -1,7 +1,7 @@
 #!/bin/sh
 # layers.sh: each folder may include itself and the folders before it in this list; of the
-# compiler, the runtime and the command may see only its api.  The installed headers (types
-# and prototypes for everybody) may be included by the half that they belong to.
+# compiler, the runtime and the command may see only its api.  The public headers (types and
+# prototypes for everybody) may be included by the half that they belong to.
 #
 # Units (NAME.c with NAME.h) do not include each other in circles.
 set -u
@@ -10,18 +10,18 @@ layers="compiler/base compiler/image compiler/outline compiler/graph compiler/sh
         compiler/eval compiler/print compiler/print/glsl compiler/target compiler compiler/mesh compiler/slice compiler/grid compiler/measure
         runtime/device runtime/shared runtime/tracer runtime/integrators runtime/film runtime/display
         runtime/writer runtime live cli"
-api="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h compiler/krs_mesh.h compiler/krs_slice.h compiler/krs_grid.h compiler/krs_measure.h compiler/krs_camera.h
-     compiler/shape/surface.def compiler/print/variant.h compiler/target/spirv.h
-     runtime/krs_vulkan.h runtime/krs_film.h runtime/krs_choices.h runtime/planes.def runtime/choices.def"
+public="include/krs/krs.h include/krs/camera.h include/krs/mesh.h include/krs/slice.h include/krs/grid.h
+        include/krs/measure.h include/krs/surface.def"
+api="include/krs/ compiler/base/ compiler/compile.h compiler/passes.def compiler/print/variant.h compiler/target/spirv.h"
 
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 
 # "FILE HEADER", both from the repository's root.
-for layer in $layers; do
+for layer in include/krs $layers; do
     for ending in c h cpp def; do
         grep -H '^ *# *include *"' "$layer"/*.$ending 2>/dev/null
     done
-done | sed 's/ *# *include *"//; s/".*//; s/:/ /' >"$work/includes"
+done | sed 's/ *# *include *"//; s/".*//; s/:/ /; s, krs/, include/krs/,' >"$work/includes"
 
 # Whether a header is one of the files, or in one of the folders (with a slash at the end).
 allowed() { # header, files and folders
@@ -34,8 +34,8 @@ allowed() { # header, files and folders
     return 1
 }
 
-echo "1..$(echo "$layers 1" | wc -w)"
-places="compiler/krs.h" number=0 bad=0
+echo "1..$(echo "$layers public circles" | wc -w)"
+places=$public number=0 bad=0
 
 result() { # what is wrong, or nothing; what was looked at
     number=$((number + 1))
@@ -72,6 +72,10 @@ for layer in $layers; do
     result "$wrong" "$layer"
     describe "$layer"
 done
+
+# ---- public headers ----
+
+result "$(grep '^include/' "$work/includes" | grep -v ' include/krs/')" "public headers include each other alone"
 
 # ---- circles ----
 

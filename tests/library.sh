@@ -21,7 +21,7 @@ block() {
 }
 compile() { # source
     # shellcheck disable=SC2086 # many words
-    ${CC:-cc} -std=c17 -Wall -Wextra -Wpedantic -Werror -I. -o "$work/program" "$1" \
+    ${CC:-cc} -std=c17 -Wall -Wextra -Wpedantic -Werror -Iinclude -o "$work/program" "$1" \
         "$build/libkrs.a" $libs
 }
 libs=$(make --no-print-directory B="$build" libs)
@@ -35,7 +35,7 @@ report $? "1 - the program of the page compiles"
 report $? "2 - and prints what the page says"
 {
     echo '#include <stdio.h>'
-    echo '#include "runtime/krs_vulkan.h"'
+    echo '#include <krs/vulkan.h>'
     echo 'int main(void) {'
     echo 'KrsScene *scene; KrsFrame *frame; KrsHit hits[1]; size_t count = 1;'
     echo 'const double origins[1][3] = {{0, 0, 9}}, directions[1][3] = {{0, 0, -1}};'
@@ -49,7 +49,7 @@ report $? "3 - a device answers as the page asks it"
 {
     echo '#include <stdio.h>'
     echo '#include <stdlib.h>'
-    echo '#include "compiler/krs.h"'
+    echo '#include <krs/krs.h>'
     echo 'int main(void) {'
     echo 'KrsScene *scene; KrsFrame *frame; double seconds = 2.5;'
     echo 'if (krs_compile_text("show sphere(1);", 15, "a", NULL, &scene) != KRS_OK) return 2;'
@@ -60,7 +60,7 @@ report $? "3 - a device answers as the page asks it"
 compile "$work/block.c" >"$work/said" 2>&1 && "$work/program" >"$work/said" 2>&1
 report $? "4 - a frame fills the parameters of a shader"
 {
-    echo '#include "compiler/krs.h"'
+    echo '#include <krs/krs.h>'
     echo 'typedef struct Archive { const char *text; } Archive;'
     echo 'static const char *archive_find(const Archive *a, const char *path, size_t *length)'
     echo '{ (void)path; *length = 15; return a->text; }'

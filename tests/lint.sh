@@ -8,18 +8,18 @@ report() { # name, status
     if [ "$2" -eq 0 ]; then echo "ok - $1"; else echo "not ok - $1"; failed=1; fi
 }
 for kernel in runtime/shaders/*.comp; do
-    glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl -o /dev/null "$kernel" >/dev/null
+    glslangValidator -V --target-env vulkan1.1 -I. -Iinclude -Iruntime/shaders -Icompiler/print/glsl -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL" $?
-    glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl -DNO_TEXELS \
+    glslangValidator -V --target-env vulkan1.1 -I. -Iinclude -Iruntime/shaders -Icompiler/print/glsl -DNO_TEXELS \
         -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL without texels" $?
-    glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl -DFRAME_TEXELS \
+    glslangValidator -V --target-env vulkan1.1 -I. -Iinclude -Iruntime/shaders -Icompiler/print/glsl -DFRAME_TEXELS \
         -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL with the frame as texels" $?
-    glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl -DSUBGROUPS \
+    glslangValidator -V --target-env vulkan1.1 -I. -Iinclude -Iruntime/shaders -Icompiler/print/glsl -DSUBGROUPS \
         -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL with sums of subgroups" $?
-    glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl -DPANORAMIC -DLENS \
+    glslangValidator -V --target-env vulkan1.1 -I. -Iinclude -Iruntime/shaders -Icompiler/print/glsl -DPANORAMIC -DLENS \
         -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL with lenses" $?
 done
@@ -81,7 +81,7 @@ unlisted=$(grep -lE '^int main' tests/*/*.c | sed 's/\.c$//' | grep -vE '^tests/
 status=$?
 [ $status -eq 0 ] || echo "$unlisted" | sed 's/^/# no list has it: /'
 report "every program of a test is run" $status
-formatted=$(find bench cli compiler examples live runtime tests -name '*.[ch]' -o -name '*.cpp')
+formatted=$(find bench cli compiler examples include live runtime tests -name '*.[ch]' -o -name '*.cpp')
 # The style is that of version 14; what others think of it is heard only where they agree.
 styled() { # the command
     # shellcheck disable=SC2086 # the list is words
@@ -101,7 +101,7 @@ else
     echo "ok - $style # SKIP clang-format ${version:-of no version} has other tastes than 14"
 fi
 # A file of more than 700 lines may have two subjects: look whether it has.
-find Makefile .ci bench cli compiler grammar live runtime tests tools -name results -prune -o \
+find Makefile .ci bench cli compiler grammar include live runtime tests tools -name results -prune -o \
     -type f ! -path 'tests/golden/*.glsl' \( -name Makefile -o -name run -o -name '*.[ch]' \
     -o -name '*.cpp' -o -name '*.def' -o -name '*.glsl' -o -name '*.comp' -o -name '*.sh' \
     -o -name '*.mk' -o -name '*.py' \) -exec wc -l {} + |

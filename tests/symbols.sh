@@ -29,10 +29,10 @@ defined() { # options of nm, files
         sort -u
 }
 # What the headers declare: functions and tables.
-for header in compiler/krs.h compiler/krs_camera.h runtime/krs_vulkan.h; do
-    printf '#include "%s"\n' "$header"
+for header in krs camera vulkan; do
+    printf '#include <krs/%s.h>\n' "$header"
 done >"$work/headers.c"
-"$cc" -std=c17 -I. -E -P "$work/headers.c" | grep -o '\bkrs_[a-z0-9_]* *[[(]' | sed 's/ *[[(]//' |
+"$cc" -std=c17 -Iinclude -E -P "$work/headers.c" | grep -o '\bkrs_[a-z0-9_]* *[[(]' | sed 's/ *[[(]//' |
     sort -u >"$work/api"
 
 # Of the linker, not of ours.
@@ -69,7 +69,7 @@ cat >"$work/server.c" <<'EOF'
 #include <sys/socket.h>
 #include <sys/times.h>
 
-#include "compiler/krs.h"
+#include <krs/krs.h>
 
 /* Names of ours that a program has for itself. */
 int   times_called, arena_new = 7;
@@ -102,7 +102,7 @@ serve() { # name, options of the compiler
     program=$1
     shift
     # shellcheck disable=SC2086 # many words
-    "$cc" -std=c17 -D_GNU_SOURCE -Wall -Wextra -Werror -I. -o "$work/server" "$work/server.c" "$@" >"$work/said" 2>&1 &&
+    "$cc" -std=c17 -D_GNU_SOURCE -Wall -Wextra -Werror -Iinclude -o "$work/server" "$work/server.c" "$@" >"$work/said" 2>&1 &&
         LD_LIBRARY_PATH="$build" "$work/server" >>"$work/said" 2>&1
     report $? "$program"
 }
@@ -120,8 +120,8 @@ done
 serve "a server with the shared library" -L"$build" -lkrs
 
 numbers() { # from the header
-    sed -n 's/^#define KRS_VERSION_[A-Z]* *//p' compiler/krs.h | paste -s -d .
+    sed -n 's/^#define KRS_VERSION_[A-Z]* *//p' include/krs/krs.h | paste -s -d .
 }
-[ "$(sed -n 's/^#define KRS_VERSION *"\(.*\)"/\1/p' compiler/krs.h)" = "$(numbers)" ]
+[ "$(sed -n 's/^#define KRS_VERSION *"\(.*\)"/\1/p' include/krs/krs.h)" = "$(numbers)" ]
 report $? "the numbers of the version are those of its text"
 exit $failed

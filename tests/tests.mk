@@ -183,7 +183,7 @@ layers:
 docs: $(B)/krs
 	@tests/docs.sh
 format:
-	@clang-format -i $$(find bench cli compiler examples live runtime tests -name '*.[ch]' -o -name '*.cpp')
+	@clang-format -i $$(find bench cli compiler examples include live runtime tests -name '*.[ch]' -o -name '*.cpp')
 bless: $(B)/krs
 	@tests/errors.sh --bless
 
@@ -198,7 +198,7 @@ programs   = $(patsubst %,$(B)/%,$(programs_$(SET)))
 sanitized  = $(patsubst %,$(B)/asan/%,$(sanitized_$(SET)))
 test test-long test-all: export WERROR = 1
 test test-long test-all: test-deps
-	@$(MAKE) --no-print-directory -j$(JOBS) all $(B)/libkrs.so $(B)/bench/bench $(programs) $(if $(DEVICE),$(DRIVERS:%=$(B)/%)) \
+	@$(MAKE) --no-print-directory -j$(JOBS) all $(B)/bench/bench $(programs) $(if $(DEVICE),$(DRIVERS:%=$(B)/%)) \
 	    $(if $(filter short, $(SET)),,$(JUDGE) $(SECOND:%=$(B)/%) sanitize clang-check fuzzers)
 	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=900 \
 	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") \

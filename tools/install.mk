@@ -7,8 +7,10 @@ LIBDIR  ?= lib
 DESTDIR ?=
 TARGET   = $(DESTDIR)$(PREFIX)
 COMMANDS = $(shell sed -n 's/^COMMAND.[A-Z]*, "\([a-z]*\)".*/\1/p' cli/commands.def)
-INSTALLED = bin/krs $(LIBDIR)/libkrs.a $(LIBDIR)/$(SONAME) $(LIBDIR)/libkrs.so $(LIBDIR)/pkgconfig/krs.pc include/krs.h include/krs_mesh.h include/krs_slice.h include/krs_grid.h include/krs_measure.h include/krs_camera.h include/krs_vulkan.h include/krs_film.h include/krs_choices.h \
-            include/krs_planes.def include/krs_choices.def include/krs_surface.def \
+# Programs include <krs/krs.h>, and older ones <krs.h>: names of before 0.3, which only lead to these.
+PUBLIC   = $(sort $(wildcard include/krs/*))
+OLD_NAMES = krs.h krs_vulkan.h krs_camera.h
+INSTALLED = bin/krs $(LIBDIR)/libkrs.a $(LIBDIR)/$(SHARED) $(LIBDIR)/$(SONAME) $(LIBDIR)/libkrs.so $(LIBDIR)/pkgconfig/krs.pc $(PUBLIC) $(OLD_NAMES:%=include/%) \
             share/bash-completion/completions/krs share/zsh/site-functions/_krs \
             share/fish/vendor_completions.d/krs.fish share/man/man1/krs.1 \
             $(COMMANDS:%=share/man/man1/krs-%.1) $(if $(VDB),lib/krs/krs-vdb.so)
@@ -31,15 +33,13 @@ install: $(B)/krs $(B)/libkrs.a $(B)/libkrs.so $(VDB)
 	@install -d $(sort $(dir $(INSTALLED:%=$(TARGET)/%)))
 	@install -m 755 $(B)/krs $(TARGET)/bin/krs
 	@$(if $(VDB),install -m 644 $(VDB) $(TARGET)/lib/krs/krs-vdb.so)
-	@install -m 644 $(B)/libkrs.a $(B)/$(SONAME) $(TARGET)/$(LIBDIR)
+	@install -m 644 $(B)/libkrs.a $(B)/$(SHARED) $(TARGET)/$(LIBDIR)
+	@ln -sf $(SHARED) $(TARGET)/$(LIBDIR)/$(SONAME)
 	@ln -sf $(SONAME) $(TARGET)/$(LIBDIR)/libkrs.so
-	@for header in compiler/krs.h compiler/krs_mesh.h compiler/krs_slice.h compiler/krs_grid.h compiler/krs_measure.h compiler/krs_camera.h runtime/krs_vulkan.h runtime/krs_film.h runtime/krs_choices.h; do \
-	    sed 's|"[a-z]*/\(krs[a-z_]*.h\)"|"\1"|; s|^#include ".*/\(.*\.def\)"|#include "krs_\1"|' $$header \
-	        >$(TARGET)/include/$${header##*/} || exit 1; \
+	@install -m 644 $(PUBLIC) $(TARGET)/include/krs
+	@for name in $(OLD_NAMES); do \
+	    echo "#include \"krs/$${name#krs_}\"" >$(TARGET)/include/$$name || exit 1; \
 	done
-	@install -m 644 runtime/planes.def $(TARGET)/include/krs_planes.def
-	@install -m 644 runtime/choices.def $(TARGET)/include/krs_choices.def
-	@install -m 644 compiler/shape/surface.def $(TARGET)/include/krs_surface.def
 	@echo "$$KRS_PC" >$(TARGET)/$(LIBDIR)/pkgconfig/krs.pc
 	@$(B)/krs --completion bash >$(TARGET)/share/bash-completion/completions/krs
 	@$(B)/krs --completion zsh >$(TARGET)/share/zsh/site-functions/_krs
@@ -51,5 +51,6 @@ install: $(B)/krs $(B)/libkrs.a $(B)/libkrs.so $(VDB)
 	@echo "installed in $(TARGET)"
 uninstall:
 	@rm -f $(INSTALLED:%=$(TARGET)/%)
+	@rmdir $(TARGET)/include/krs 2>/dev/null || :
 	@echo "removed from $(TARGET)"
 .PHONY: install uninstall

@@ -18,7 +18,7 @@
 
 #include "bench/algebraic/judge.h"
 #include "bench/algebraic/processes.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 static const Subject subjects[] = {
 #define SURFACE(name, call, oracle, degree, radius, text) \

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "bench/stage.h"
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 enum { RAYS = 1000, MOST_STEPS = 1000 };
 

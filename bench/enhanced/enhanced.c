@@ -17,7 +17,7 @@
 #include "bench/sheet.h"
 #include "bench/stage.h"
 #include "compiler/compile.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 #include "runtime/writer/png.h"
 
 enum { WIDTH = 320, HEIGHT = 180, PIXELS = WIDTH * HEIGHT, TURNS = 3, PATH_SAMPLES = 4 };

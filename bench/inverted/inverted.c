@@ -14,7 +14,7 @@
 #include "bench/sheet.h"
 #include "bench/stage.h"
 #include "compiler/compile.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 enum { WIDTH = 640, HEIGHT = 360, PIXELS = WIDTH * HEIGHT, MOST_REPEATS = 15 };
 

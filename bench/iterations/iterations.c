@@ -12,7 +12,7 @@
 #include "bench/sheet.h"
 #include "bench/stage.h"
 #include "compiler/compile.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 #include "runtime/writer/png.h"
 
 static const char path[] = "bench/scenes/palm-leaf.krs";

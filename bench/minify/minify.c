@@ -18,7 +18,7 @@
 #include "bench/stage.h"
 #include "compiler/compile.h"
 #include "runtime/display/display.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 enum { WIDTH = 320, HEIGHT = 180, PIXELS = WIDTH * HEIGHT, FRAMES = 3 };
 

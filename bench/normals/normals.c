@@ -14,7 +14,7 @@
 #include "bench/measure.h"
 #include "bench/sheet.h"
 #include "bench/stage.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 #include "runtime/shaders/stencil.h"
 
 enum { POINTS = 2000, WIDTH = 640, HEIGHT = 360, PIXELS = WIDTH * HEIGHT, TURNS = 5 };

@@ -14,7 +14,7 @@
 #include "bench/sheet.h"
 #include "bench/stage.h"
 #include "bench/view/number_edit.h"
-#include "compiler/krs_camera.h"
+#include "krs/camera.h"
 #include "live/painter.h"
 
 enum { WIDTH = 640, HEIGHT = 360, EDITS = 5 };

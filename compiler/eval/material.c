@@ -71,7 +71,7 @@ static Material *material_new(Elaboration *e, const char *name)
     material->number   = number_of_name(e, name);
 #define KRS_MATERIAL(property, type, otherwise, nothing, low, high, asked, blends) \
     material->property = root_otherwise(e->graph, ROOT_##property);
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     return material;
 }
 
@@ -108,7 +108,7 @@ Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *s
     e->in_material     = true;
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     material_property(e, env, syntax, #name, TYPE_##type, (high) <= 1, &material->name);
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     material_property(e, env, syntax, "bump", TYPE_FLOAT, false, &material->bump);
     e->in_material        = outer;
     e->scene->mirrors     = e->scene->mirrors || sends_rays(e, material);

@@ -100,7 +100,7 @@ Value method_color_by(Elaboration *e, const Shape *shape, Call *call)
     material->bump     = NODE_NONE;
 #define KRS_MATERIAL(property, type, otherwise, nothing, low, high, asked, blends) \
     material->property = NODE_NONE;
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     material->color = color_at(e->graph, number, colors, count);
     return value_shape(make_paint(e->builder, shape, material, call->syntax->span));
 }

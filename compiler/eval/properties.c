@@ -16,7 +16,7 @@ static const struct BlockProperty {
 } block_properties[] = {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     {SYNTAX_MATERIAL, #name, false},
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     /* clang-format off */
     {SYNTAX_MATERIAL, "bump", false},
     {SYNTAX_CAMERA, "eye", false},

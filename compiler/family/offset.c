@@ -119,7 +119,7 @@ static bool surface_asks_front(Lowering *l, const Surface *surface)
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     asks = asks || asks_front(l, surface->name);
 #define KRS_INNER(name, blends) asks = asks || asks_front(l, surface->name);
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     return asks;
 }
 
@@ -161,7 +161,7 @@ static void set_front(Lowering *l, const Shape *shape, LowerContext context, boo
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     replace_front(l, &solid->surface.name, front);
 #define KRS_INNER(name, blends) replace_front(l, &solid->surface.name, front);
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     solid->surface.front = front;
 }
 

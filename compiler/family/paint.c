@@ -25,7 +25,7 @@ static Tape material_tape(const Graph *graph, const Material *material, Arena *a
 {
     const Node all[] = {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) material->name,
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
         material->bump,
     };
     Node   roots[sizeof all / sizeof *all];
@@ -140,7 +140,7 @@ Lowered lower_paint(Lowering *l, const Shape *shape, LowerContext context)
     with.normal              = unit_normal(l->graph, result.surface.normal, context.normal);
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     paint_with(l, &result.surface.name, material->name, with);
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     paint_tangent(l, material, context.point, &result.surface);
     if (l->places)
         paint_place(l, material, with, &result.surface);

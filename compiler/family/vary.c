@@ -47,7 +47,7 @@ static void copy_surface(const Copying *c, Surface *surface)
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     KRS_INNER(name, blends)
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) KRS_INNER(name, blends)
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 }
 
 /* What counts as a constant in the content does so in its copies. */

@@ -20,7 +20,7 @@ const Lowered lowered_nothing = {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     KRS_INNER(name, blends)
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) KRS_INNER(name, blends)
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 };
 
 LowerContext context_new(Node point, bool lipschitz)

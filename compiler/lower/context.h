@@ -16,7 +16,7 @@ typedef struct Surface {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) Node name;
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends)            Node name;
 #define KRS_INNER(name, blends)                                                Node name;
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 } Surface;
 
 typedef struct Lowered {

@@ -37,7 +37,7 @@ static bool is_mixed(uint32_t root)
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     KRS_INNER(name, blends)
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) KRS_INNER(name, blends)
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     };
     return mixed[root];
 }
@@ -339,7 +339,7 @@ Surface group_surface(CrowdGroup *group, const GroupJoin *join, Node threshold,
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     KRS_INNER(name, blends)
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) KRS_INNER(name, blends)
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     surface.tangent = tangent_outwards(join->graph, surface.tangent, context.point, join->scratch);
     return surface;
 }

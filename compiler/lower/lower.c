@@ -17,7 +17,7 @@ const RootInfo root_info[ROOT_COUNT] = {
     [ROOT_##name] = {#name, TYPE_##type, TYPE_##type, otherwise, nothing, true, low, high, asked},
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) \
     [ROOT_##name] = {#name, TYPE_##type, TYPE_##shown, otherwise, nothing, false, 0, 0, false},
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 };
 
 Node root_otherwise(Graph *graph, ComponentRoot root)
@@ -49,7 +49,7 @@ bool lower_component(Graph *graph, const Shape *shape, uint32_t number,
     roots[ROOT_##name] = or_else(all.surface.name, root_otherwise(graph, ROOT_##name));
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) \
     roots[ROOT_##name] = or_else(all.surface.name, root_otherwise(graph, ROOT_##name));
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     if (all.surface.component == NODE_NONE)
         roots[ROOT_component] = graph_uint(graph, number);
     if (place)

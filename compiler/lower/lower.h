@@ -14,7 +14,7 @@ typedef enum ComponentRoot {
     ROOT_DISTANCE, /* FLOAT, divided by the slope of the shape, so that it is a safe step */
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) ROOT_##name,
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends)            ROOT_##name,
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     ROOT_NORMAL, /* VEC3, unit: OP_NORMAL, unless smooth mirrors or bumps change it */
     ROOT_COUNT
 } ComponentRoot;

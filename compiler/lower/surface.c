@@ -37,7 +37,7 @@ Surface choose_surface(Graph *g, Node condition, Surface a, Surface b)
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     KRS_INNER(name, blends)
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) KRS_INNER(name, blends)
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     return chosen;
 }
 
@@ -60,6 +60,6 @@ Surface mix_surface(Graph *g, Node nearer, Node weight, Surface a, Surface b)
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     KRS_INNER(name, blends)
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) KRS_INNER(name, blends)
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     return mixed;
 }

@@ -82,7 +82,7 @@ static uint64_t label_of(const KrsHit *hit)
     uint64_t label = 14695981039346656037u;
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     label = mix_in(label, &hit->name, sizeof hit->name);
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     return mix_in(label, &hit->material, sizeof hit->material);
 }
 

@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_BORDERS_H
 #define KRS_MESH_BORDERS_H
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 /*
  * Splits the triangles of a mesh, in place, along the borders between materials that change in steps (steps.h), so that

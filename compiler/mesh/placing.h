@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_PLACING_H
 #define KRS_MESH_PLACING_H
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 #include "compiler/shape/box.h"
 
 extern const double placing_identity[3][4];

@@ -11,7 +11,7 @@
 
 #include "compiler/base/parallel.h"
 #include "compiler/base/vec.h"
-#include "compiler/krs.h"
+#include "krs/krs.h"
 #include "compiler/mesh/collapse.h"
 #include "compiler/mesh/near.h"
 #include "compiler/mesh/numbering.h"

@@ -54,7 +54,7 @@ typedef enum KrsFunction {
        of the pixel's cone there in world units (0 for a point).  The normal that it returns is the
        one to light: unit, outwards, and the given one unless mirrors are smooth or there are bumps.
 
-       KrsSurface has float distance; properties of the material (shape/surface.def): vec3 color,
+       KrsSurface has float distance; properties of the material (krs/surface.def): vec3 color,
        float roughness and others; uint component, level, instance; vec3 normal. */
     KRS_FUNCTION_SURFACE,
     /* uint krs_medium_at(vec3 p): the medium there, as in krs_medium; where glass is nested. */

@@ -27,7 +27,7 @@ typedef struct Material {
     const char *name;
     uint32_t number; /* of the name among those of the scene, from 1; 0: it only changes another */
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) Node name;
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     Node bump; /* a height of the surface, as light sees it; or NODE_NONE */
 } Material;
 

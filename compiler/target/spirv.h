@@ -4,7 +4,7 @@
 #ifndef KRS_SPIRV_H
 #define KRS_SPIRV_H
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 /* Compiles GLSL to SPIR-V by glslang, and validates the result.  `entry` names the compute shader
    in messages.  On KRS_OK *words is malloc'ed, and the caller frees it.  KRS_INTERNAL: glslang or

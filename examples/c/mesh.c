@@ -4,13 +4,13 @@
  * It prints the triangles, the volume, and whether each edge is in two triangles that agree which side is inside.  This
  * needs the library alone:
  *
- *     cc -I. -o mesh examples/c/mesh.c build/libkrs.a $(make libs)
+ *     cc -Iinclude -o mesh examples/c/mesh.c build/libkrs.a $(make libs)
  */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/krs.h"
+#include <krs/krs.h>
 
 static int compare_edges(const void *a, const void *b)
 {

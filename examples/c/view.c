@@ -4,7 +4,7 @@
  * The left button turns, the wheel goes nearer, a click says what is there, Q ends.  A file that was
  * saved is compiled in the background.  This needs the library, GLFW and OpenGL:
  *
- *     cc -I. -o view examples/c/view.c build/libkrs.a $(make libs) -lglfw -lGL
+ *     cc -Iinclude -o view examples/c/view.c build/libkrs.a $(make libs) -lglfw -lGL
  */
 #include <GLFW/glfw3.h>
 #include <math.h>
@@ -15,8 +15,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "compiler/krs_camera.h"
-#include "runtime/krs_vulkan.h"
+#include <krs/camera.h>
+#include <krs/vulkan.h>
 
 /* While something moves, each side of a picture has COARSE times fewer pixels. */
 enum { SAMPLES = 8, COARSE = 4 };

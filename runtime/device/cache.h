@@ -17,7 +17,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 #define CACHE_BYTES (UINT64_C(64) << 20)
 enum { CACHE_FILES = 4096, CACHE_ENTRY_BYTES = 16 << 20 /* a longer one is not kept */ };

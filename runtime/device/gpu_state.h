@@ -10,7 +10,7 @@
 #include <vulkan/vulkan.h>
 
 #include "runtime/device/cache.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 /* What a stage of a kernel binds of storage buffers (layouts.h), and how many more in place of
    texels; devices may have four and no more, but those of desktops have 16 and more. */

@@ -5,7 +5,7 @@
 #define KRS_DISPLAY_H
 
 #include "runtime/display/white_balance.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 /* Curves from [0, infinity) to [0, 1]. */
 typedef enum ToneMap {

@@ -26,7 +26,7 @@
 static IntegratorPlan *const integrators[KRS_INTEGRATOR_COUNT] = {
     NULL, /* the default is replaced before (settings.c) */
 #define KRS_INTEGRATOR(id, name, about) name##_plan,
-#include "runtime/choices.def"
+#include "krs/choices.def"
 };
 
 /* ---- films ---- */

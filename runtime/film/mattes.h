@@ -5,7 +5,7 @@
 #define KRS_MATTES_H
 
 #include "runtime/device/gpu.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 #include "runtime/shared/blocks.h"
 
 /* The rows of results that mattes come from. */

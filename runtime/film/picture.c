@@ -20,7 +20,7 @@ static const struct Plane {
 #define KRS_PLANE(id, bit, aov, about, arrays) arrays
 #define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
     {offsetof(KrsPicture, member), KRS_PLANE_##plane, sizeof(type[numbers]), row, first},
-#include "runtime/planes.def"
+#include "krs/planes.def"
 #undef KRS_ARRAY
 #undef KRS_PLANE
 };
@@ -33,12 +33,12 @@ enum { PLANE_COUNT = sizeof planes / sizeof planes[0] };
 static_assert((0
 #define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
     +(BITS(row, first, numbers))
-#include "runtime/planes.def"
+#include "krs/planes.def"
 #undef KRS_ARRAY
                ) == (0
 #define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
     | (BITS(row, first, numbers))
-#include "runtime/planes.def"
+#include "krs/planes.def"
 #undef KRS_ARRAY
                      ),
               "planes.def");

@@ -12,6 +12,6 @@
 typedef bool IntegratorPlan(Job *job, Plan *plan);
 
 #define KRS_INTEGRATOR(id, name, about) IntegratorPlan name##_plan;
-#include "runtime/choices.def"
+#include "krs/choices.def"
 
 #endif

@@ -46,7 +46,7 @@ KrsSurface within_limits(KrsSurface surface)
 {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     surface.name = within(surface.name, low, high);
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     return surface;
 }
 
@@ -377,7 +377,7 @@ Bsdf make_glossy(KrsSurface surface, float roughness, float head_on, vec3 eye)
 {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     surface.name *= 0.0;
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     float root = sqrt(head_on);
     surface.ior = (1.0 + root) / (1.0 - root);
     surface.specular = 1.0;

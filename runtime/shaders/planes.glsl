@@ -1,5 +1,5 @@
 /*
- * planes.glsl: stores the planes of a picture (runtime/planes.def) where something is hit.
+ * planes.glsl: stores the planes of a picture (krs/planes.def) where something is hit.
  */
 // Stores the results of a pixel, one wanted row after the other.  Without the loop lavapipe would
 // take as long for unwanted rows as for wanted ones.

@@ -72,6 +72,6 @@ void main()
     answer.name = uvec4(surface.name);
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     answer.name = asked(row_of(surface.name), low, high);
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     answers[index] = answer;
 }

@@ -16,9 +16,9 @@ layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[
 struct KrsSurface {
     float distance;
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) type name;
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) shown name;
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     vec3 normal;
 };
 
@@ -34,9 +34,9 @@ KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)
     surface.distance = krs_distance(p);
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     surface.name = type(otherwise);
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) surface.name = shown(otherwise);
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     surface.normal = normal;
     return surface;
 }

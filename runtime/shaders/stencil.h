@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <sys/types.h>
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 typedef struct vec3 {
     float x, y, z;

@@ -21,7 +21,7 @@ struct Answer {
     float surface_distance;
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends)            uvec4 name;
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) vec4 name;
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 };
 
 #ifdef __STDC_VERSION__

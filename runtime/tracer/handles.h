@@ -1,5 +1,5 @@
 /*
- * handles.h: the structs behind the handles of krs_vulkan.h, except KrsFilm (film/held.h).
+ * handles.h: the structs behind the handles of krs/vulkan.h, except KrsFilm (film/held.h).
  * Functions for them are in renderer.h, rendering.h and kernels.h.
  */
 #ifndef KRS_HANDLES_H

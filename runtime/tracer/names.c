@@ -1,55 +1,55 @@
 /*
- * names.c: the names of the enumerators of krs_vulkan.h, in options and statistics.
+ * names.c: the names of the enumerators of krs/vulkan.h, in options and statistics.
  */
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 const char *const krs_phase_names[KRS_PHASE_COUNT] = {
 #define KRS_PHASE(id, name) name,
-#include "runtime/choices.def"
+#include "krs/choices.def"
 };
 
 const char *const krs_integrator_names[KRS_INTEGRATOR_COUNT] = {
     "default",
 #define KRS_INTEGRATOR(id, name, about) #name,
-#include "runtime/choices.def"
+#include "krs/choices.def"
 };
 
 const char *const krs_trace_names[KRS_TRACE_COUNT] = {
 #define KRS_TRACE(id, name, about) name,
-#include "runtime/choices.def"
+#include "krs/choices.def"
 };
 
 const char *const krs_schedule_names[KRS_SCHEDULE_COUNT] = {
 #define KRS_SCHEDULE(id, name, about) name,
-#include "runtime/choices.def"
+#include "krs/choices.def"
 };
 
 const char *const krs_components_names[KRS_COMPONENTS_COUNT] = {
 #define KRS_COMPONENTS(id, name, about) name,
-#include "runtime/choices.def"
+#include "krs/choices.def"
 };
 
 const char *const krs_normals_names[KRS_NORMALS_COUNT] = {
 #define KRS_NORMALS(id, name, about) name,
-#include "runtime/choices.def"
+#include "krs/choices.def"
 };
 
 const char *const krs_shadows_names[KRS_SHADOWS_COUNT] = {
 #define KRS_SHADOWS(id, name, about) name,
-#include "runtime/choices.def"
+#include "krs/choices.def"
 };
 
 const char *const krs_starts_names[KRS_STARTS_COUNT] = {
 #define KRS_STARTS(id, name, about) name,
-#include "runtime/choices.def"
+#include "krs/choices.def"
 };
 
 const char *const krs_catcher_names[KRS_CATCHER_COUNT] = {
 #define KRS_CATCHER(id, name, about) name,
-#include "runtime/choices.def"
+#include "krs/choices.def"
 };
 
 const char *const krs_pixel_filter_names[KRS_PIXEL_FILTER_COUNT] = {
 #define KRS_PIXEL_FILTER(id, name, reach, integral, about) name,
-#include "runtime/choices.def"
+#include "krs/choices.def"
 };

@@ -34,7 +34,7 @@ static const struct {
     Integral *integral;
 } filters[KRS_PIXEL_FILTER_COUNT] = {
 #define KRS_PIXEL_FILTER(id, name, reach, integral, about) {reach, integral_##integral},
-#include "runtime/choices.def"
+#include "krs/choices.def"
 };
 
 double pixel_filter_reach(KrsPixelFilter filter) { return filters[filter].reach; }

@@ -7,7 +7,7 @@
 #ifndef KRS_PIXEL_FILTER_H
 #define KRS_PIXEL_FILTER_H
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 /* How far rays go from the middle of their pixel at most, in pixels. */
 double pixel_filter_reach(KrsPixelFilter filter);

@@ -42,7 +42,7 @@ static void take_answer(const AnswerBlock *answer, float *distance, KrsSurfacePo
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) surface->name = answer->name[0];
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     memcpy(&surface->name, answer->name, sizeof surface->name);
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 }
 
 double point_query_size(const KrsRendering *rendering)

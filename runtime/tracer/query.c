@@ -54,7 +54,7 @@ static void describe(const AnswerBlock *answer, KrsHit *hit)
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) hit->name = answer->name[0];
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     widen(answer->name, sizeof hit->name / sizeof(double), (double *)&hit->name);
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 }
 
 /* ---- bases ---- */

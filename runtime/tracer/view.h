@@ -5,7 +5,7 @@
 #define KRS_VIEW_H
 
 #include "compiler/compile.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 #include "runtime/shared/blocks.h"
 
 /* Fills in all of `block` but error and most_steps.  False when the camera cannot be used: an

@@ -18,7 +18,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 /* The path of standard output: what is written goes where other output of the process goes. */
 #define OUTPUT_STANDARD "/dev/stdout"

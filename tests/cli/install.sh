@@ -15,15 +15,15 @@ make_it() { # words
 make_it install PREFIX=/usr DESTDIR="$work/stage"
 ended 0 "make install"
 (cd stage && find . -type f -o -type l | sort) >files
-soname=libkrs.so.$("$krs" --version | sed -n 's/^krs \([0-9]*\.[0-9]*\).*/\1/p')
+version=$("$krs" --version | sed -n 's/^krs \([0-9.]*\).*/\1/p')
 commands=$(sed -n 's/^COMMAND([A-Z]*, "\([a-z]*\)".*/\1/p' "$root/cli/commands.def")
 {
-    for file in bin/krs lib/libkrs.a lib/libkrs.so "lib/$soname" lib/pkgconfig/krs.pc include/krs.h include/krs_mesh.h include/krs_slice.h include/krs_grid.h include/krs_measure.h include/krs_camera.h include/krs_vulkan.h include/krs_film.h include/krs_choices.h \
-        include/krs_planes.def include/krs_choices.def include/krs_surface.def \
+    for file in bin/krs lib/libkrs.a lib/libkrs.so "lib/libkrs.so.$version" "lib/libkrs.so.${version%.*}" lib/pkgconfig/krs.pc include/krs.h include/krs_vulkan.h include/krs_camera.h \
         share/bash-completion/completions/krs share/zsh/site-functions/_krs \
         share/fish/vendor_completions.d/krs.fish share/man/man1/krs.1; do
         echo "./usr/$file"
     done
+    (cd "$root" && find include/krs -type f) | sed 's,^,./usr/,'
     for command in $commands; do echo "./usr/share/man/man1/krs-$command.1"; done
     [ ! -e "$build/krs-vdb.so" ] || echo ./usr/lib/krs/krs-vdb.so
 } | sort >wanted
@@ -125,10 +125,12 @@ ended 0 "make install for use"
 export PKG_CONFIG_PATH="$work/usr/lib/pkgconfig"
 if command -v pkg-config >/dev/null; then
     awk '/^```/ { inside = !inside; block += inside; next }
-         inside && block == 1 { sub(/"compiler\/krs.h"/, "<krs.h>"); print > "outside.c" }
+         inside && block == 1 { print > "outside.c" }
          inside && block == 2 { print > "expected" }' "$root/docs/library.md"
-    echo '#include <krs_vulkan.h>' >vulkan.c
+    # The names of before, which programs may still use.
+    printf '#include <%s.h>\n' krs krs_camera krs_vulkan >vulkan.c
     echo 'KrsStatus (*function)(void) = (KrsStatus (*)(void))krs_render;' >>vulkan.c
+    echo 'void (*turn)(KrsCamera *, double, double) = krs_camera_turn;' >>vulkan.c
     # shellcheck disable=SC2046 # words are meant
     ${CC:-cc} -std=c17 -Wall -Werror $(pkg-config --cflags krs) outside.c vulkan.c \
         $(pkg-config --libs krs) -o outside >out 2>err && LD_LIBRARY_PATH="$work/usr/lib" ./outside >printed 2>err &&
@@ -139,7 +141,7 @@ if command -v pkg-config >/dev/null; then
         $(pkg-config --static --libs krs | sed 's/-lkrs/-l:libkrs.a/') -o outside >out 2>err && ./outside >printed 2>err &&
         cmp -s printed expected
     result $? "and linked with the archive it needs nothing that is installed"
-    [ "$(pkg-config --modversion krs)" = "$("$krs" --version | sed -n 's/^krs \([0-9.]*\).*/\1/p')" ]
+    [ "$(pkg-config --modversion krs)" = "$version" ]
     result $? "krs.pc has the version"
 else
     skip "the program of docs/library.md, built by krs.pc" "no pkg-config"

@@ -217,7 +217,7 @@ grep -q 'interrupted' err && [ "$(cat kept.stl)" = old ] && no_temporaries
 result $? "Ctrl C ends it and leaves the file as it was"
 # A ball of radius 0.5 has the volume 0.5236; its mesh within 0.02 of it, at most 0.063 more or less.
 # shellcheck disable=SC2046 # many words
-(cd "$root" && "${CC:-cc}" -Wall -Wextra -Werror -I. -o "$work/own" examples/c/mesh.c "${B:-build}/libkrs.a" \
+(cd "$root" && "${CC:-cc}" -Wall -Wextra -Werror -Iinclude -o "$work/own" examples/c/mesh.c "${B:-build}/libkrs.a" \
     $(make --no-print-directory -s libs)) >out 2>&1
 result $? "the mesher of examples/c compiles"
 [ -x own ] && ./own ball.krs 0.02 >out 2>err && awk '/closed, within 0.02$/ && $4 + 0 > 0.4606 && $4 + 0 < 0.5866 { good = 1 }

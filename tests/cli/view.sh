@@ -188,7 +188,7 @@ grep -q 'target: \[0.5, 1, 0\]' scene.krs
 result $? "a key frames what is under the mouse"
 printf 'camera { eye: [4, 3, 6] } show sphere(1);' >own.krs
 # shellcheck disable=SC2046 # many words
-(cd "$root" && "${CC:-cc}" -Wall -Wextra -Werror -I. -o "$work/own" examples/c/view.c "${B:-build}/libkrs.a" \
+(cd "$root" && "${CC:-cc}" -Wall -Wextra -Werror -Iinclude -o "$work/own" examples/c/view.c "${B:-build}/libkrs.a" \
     $(make --no-print-directory -s libs) -lglfw -lGL) >out 2>&1
 result $? "the viewer of examples/c compiles"
 [ "$(wc -l <"$root/examples/c/view.c")" -le 200 ]

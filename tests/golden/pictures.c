@@ -11,8 +11,8 @@
 #include <string.h>
 #include <xxhash.h>
 
-#include "compiler/krs.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/krs.h"
+#include "krs/vulkan.h"
 
 enum { WIDTH = 192, HEIGHT = 108, PIXELS = WIDTH * HEIGHT };
 

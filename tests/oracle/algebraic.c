@@ -6,7 +6,7 @@
  * among them, every pixel must see what its ray meets, and where; at outlines it may be off by
  * one pixel.
  */
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 #include "tests/oracle/formulas.h"
 #include "tests/oracle/product.h"
 #include "tests/support/device.h"

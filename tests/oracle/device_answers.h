@@ -8,7 +8,7 @@
 #ifndef ORACLE_DEVICE_ANSWERS_H
 #define ORACLE_DEVICE_ANSWERS_H
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 #include "tests/support/random.h"
 
 typedef struct Scene {

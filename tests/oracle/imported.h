@@ -4,7 +4,7 @@
 #ifndef ORACLE_IMPORTED_H
 #define ORACLE_IMPORTED_H
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 #include "tests/support/random.h"
 
 /* What came of a file; valid until the next one. */

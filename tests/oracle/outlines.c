@@ -17,7 +17,7 @@
 #include "compiler/outline/letters.h"
 #include "compiler/program.h"
 #include "compiler/tables.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 #include "tests/oracle/outline_truth.h"
 #include "tests/support/bench.h"
 #include "tests/support/device.h"

@@ -5,7 +5,7 @@
 #ifndef ORACLE_PATH_STAGE_H
 #define ORACLE_PATH_STAGE_H
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 #include "tests/oracle/product.h"
 
 /* A scene on the renderer of the tests. */

@@ -1,5 +1,5 @@
 /*
- * product.h: the compiler as the oracle sees it, through compiler/krs.h alone.
+ * product.h: the compiler as the oracle sees it, through krs/krs.h alone.
  */
 #ifndef ORACLE_PRODUCT_H
 #define ORACLE_PRODUCT_H
@@ -9,7 +9,7 @@
 #include <setjmp.h>
 #include <cmocka.h>
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 #include "tests/oracle/brute.h"
 
 /* A scene and its frame at default parameters. */

@@ -7,7 +7,7 @@
 #ifndef ORACLE_SHADOW_STAGE_H
 #define ORACLE_SHADOW_STAGE_H
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 #include "tests/oracle/exact.h"
 #include "tests/oracle/product.h"
 

@@ -16,7 +16,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 #include "tests/support/device.h"
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };

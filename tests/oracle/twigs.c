@@ -17,7 +17,7 @@
 #include "compiler/compile.h"
 #include "tests/support/renderer.h"
 
-#define DEFAULT_ERROR 0.25 /* krs_vulkan.h */
+#define DEFAULT_ERROR 0.25 /* krs/vulkan.h */
 #define ROUGH_ERROR   0.5  /* of a scene that asks for it */
 
 static Scene scenes[SCENES];

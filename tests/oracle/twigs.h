@@ -4,7 +4,7 @@
 #ifndef ORACLE_TWIGS_H
 #define ORACLE_TWIGS_H
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 #include "tests/oracle/exact.h"
 #include "tests/oracle/product.h"
 
@@ -16,7 +16,7 @@ struct CMUnitTest;
 #define MOST_OFF       0.001 /* the share of hits whose depth is off by more than is permitted */
 #define PLANTED_ERROR  0.1   /* a fault shows at least this much */
 
-#define DEFAULT_ERROR 0.25 /* krs_vulkan.h */
+#define DEFAULT_ERROR 0.25 /* krs/vulkan.h */
 #define ROUGH_ERROR   0.5  /* of a scene that asks for it */
 enum { WIDTH = 400, HEIGHT = 225, PIXELS = WIDTH * HEIGHT };
 

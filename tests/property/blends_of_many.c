@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 #include "tests/support/random.h"
 
 enum { MOST = 200, POINTS = 160, SHARERS = 8, KINDS = 6 };

@@ -98,7 +98,7 @@ const Shape *painted(const Shape *shape)
     Material *material = arena_new(&arena, Material);
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     material->name = NODE_NONE;
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     double red = between(0, 1), green = between(0, 1), blue = between(0, 1);
     material->bump      = NODE_NONE;
     material->name      = "random";

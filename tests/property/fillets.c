@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 #include "tests/support/random.h"
 
 enum { POINTS = 240, MOST = 130 };

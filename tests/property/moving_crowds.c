@@ -21,7 +21,7 @@ static const Shape *tinted(const Shape *shape, Node number)
     Material *material = arena_new(&arena, Material);
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     material->name = NODE_NONE;
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     material->bump  = NODE_NONE;
     material->name  = "moving";
     material->color = graph_op3(g, OP_vec3, bright, graph_number(g, between(0, 1)), bright);

@@ -9,7 +9,7 @@
 #include <time.h>
 #include <cmocka.h>
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 #include "tests/property/reach_crowd.h"
 

@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 /* Planes that are compared. */
 enum { AGREEMENT_PLANES = KRS_PLANE_DEPTH | KRS_PLANE_IDS };

@@ -4,7 +4,7 @@
 #ifndef SUPPORT_RENDERER_H
 #define SUPPORT_RENDERER_H
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 extern KrsRenderer *renderer;
 

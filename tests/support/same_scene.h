@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 /* The texts of what kernels call, without comments. */
 bool same_kernels(const KrsScene *a, const KrsScene *b);

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 /* Zero it: then no allocation fails. */
 typedef struct Scarce {

@@ -29,13 +29,13 @@ static const struct {
 } properties[] = {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     {#name, type, low, high, asked},
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 };
 enum { PROPERTIES = sizeof properties / sizeof *properties };
 
 static const double otherwise_of[PROPERTIES] = {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) otherwise,
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 };
 
 /* What an answer says of the properties. */
@@ -46,7 +46,7 @@ static void take_hit(const KrsHit *hit, Material material)
     int i = 0;
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     memcpy(material[i++], &hit->name, type * sizeof(double));
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 }
 
 static void take_surface(const KrsSurfacePoint *surface, Material material)
@@ -58,7 +58,7 @@ static void take_surface(const KrsSurfacePoint *surface, Material material)
     for (int k = 0; k < type; k++)                                             \
         material[i][k] = from[k];                                              \
     i++;
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 }
 
 /* ---- A material with something else in each of its numbers ---- */

@@ -17,7 +17,7 @@
 #include <cmocka.h>
 
 #include "compiler/base/embedded.h"
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 enum { MOST_FUNCTIONS = 200, MOST_OF_ONE = 16, LONGEST = 8192 };
 

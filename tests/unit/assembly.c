@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 typedef struct Taken {
     KrsScene    *scene;

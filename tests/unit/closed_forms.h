@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 #include "tests/support/random.h"
 
 typedef enum Form { BALL, RING, EQUATION, CAN, CONE, BLOCK, FORMS } Form;

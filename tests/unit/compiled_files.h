@@ -7,7 +7,7 @@
 #include <limits.h>
 #include <sys/types.h>
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 /* The files that end in `ending`: how many, and which of them is the last in the alphabet. */
 int       count_files_that_end(const char *ending, char last[NAME_MAX + 1]);

@@ -16,7 +16,7 @@
 
 #include "compiler/graph/crowd.h"
 #include "compiler/program.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 #include "tests/support/device.h"
 #include "tests/support/random.h"
 

@@ -14,7 +14,7 @@
 
 #include "compiler/program.h"
 #include "compiler/tables.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 #include "tests/support/device.h"
 #include "tests/unit/crowd_scene.h"
 

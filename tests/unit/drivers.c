@@ -17,7 +17,7 @@
 #include <cmocka.h>
 
 #include "compiler/compile.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 #include "tests/support/device.h"
 
 static char complaint[2048]; /* the last */

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 #include "tests/support/random.h"
 
 /* Eight of these are enough, and five are too few. */

@@ -68,7 +68,7 @@ static size_t difference(const KrsPicture *a, const KrsPicture *b)
 #define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...)      \
     for (size_t i = 0; a->member && i < pixels * numbers * sizeof(type); i++) \
         differ += ((const unsigned char *)a->member)[i] != ((const unsigned char *)b->member)[i];
-#include "runtime/planes.def"
+#include "krs/planes.def"
 #undef KRS_ARRAY
 #undef KRS_PLANE
     for (int kind = 0; a->mattes[0] && kind < KRS_MATTE_COUNT; kind++)

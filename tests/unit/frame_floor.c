@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "compiler/compile.h"
-#include "compiler/krs_camera.h"
+#include "krs/camera.h"
 
 enum { MOST_TEXT = 1024 };
 

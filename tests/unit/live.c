@@ -15,7 +15,7 @@
 #include <cmocka.h>
 #include <png.h>
 
-#include "compiler/krs_camera.h"
+#include "krs/camera.h"
 #include "live/cut.h"
 #include "live/document.h"
 #include "live/false_color.h"

@@ -17,7 +17,7 @@
 #include <unistd.h>
 
 #include "compiler/base/beneath.h"
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 /* ---- a folder ---- */
 

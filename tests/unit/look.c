@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 #include "tests/support/random.h"
 
 enum { SCENES = 120, SIDE = 24 };

@@ -22,7 +22,7 @@
 #include "tests/unit/traced_scenes.h"
 
 #define FINE_ERROR    0.01 /* of the pictures to compare with, in pixels */
-#define DEFAULT_ERROR 0.25 /* krs_vulkan.h */
+#define DEFAULT_ERROR 0.25 /* krs/vulkan.h */
 
 /* ---- Every method sees the same ---- */
 

@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "compiler/compile.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 #include "tests/support/device.h"
 
 enum { WIDTH = 96, HEIGHT = 64, PIXELS = WIDTH * HEIGHT };

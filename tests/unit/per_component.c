@@ -20,7 +20,7 @@
 #include <cmocka.h>
 
 #include "compiler/compile.h"
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 #include "tests/support/device.h"
 
 enum { WIDTH = 160, HEIGHT = 100, PIXELS = WIDTH * HEIGHT };

@@ -4,7 +4,7 @@
 #ifndef UNIT_QUERIED_H
 #define UNIT_QUERIED_H
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 #include "tests/support/random.h"
 
 typedef struct Scene {

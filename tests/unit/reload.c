@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 static KrsScene *compile(const char *text)
 {

@@ -212,7 +212,7 @@ static void planes_do_not_hang_on_others(void **state)
 #define KRS_PLANE(id, bit, aov, about, arrays) arrays
 #define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
     {part->member, whole->member, numbers},
-#include "runtime/planes.def"
+#include "krs/planes.def"
 #undef KRS_ARRAY
 #undef KRS_PLANE
         };

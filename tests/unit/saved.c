@@ -71,7 +71,7 @@ static void assert_same(KrsPicture *a, KrsPicture *b)
     assert_int_equal(a->member != NULL, b->member != NULL);              \
     if (a->member)                                                       \
         assert_memory_equal(a->member, b->member, pixels *numbers * sizeof(type));
-#include "runtime/planes.def"
+#include "krs/planes.def"
 #undef KRS_ARRAY
 #undef KRS_PLANE
     assert_int_equal(a->light_count, b->light_count);

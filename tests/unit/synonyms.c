@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "compiler/front/synonyms.h"
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 enum { LONGEST = 1024 };
 

@@ -5,7 +5,7 @@
 #ifndef UNIT_TRACED_SCENES_H
 #define UNIT_TRACED_SCENES_H
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 enum { WIDTH = 160, HEIGHT = 100, PIXELS = WIDTH * HEIGHT };
 
@@ -15,7 +15,7 @@ enum { SMALL_WIDTH = 100, SMALL_HEIGHT = 70 };
 /* ---- Scenes ---- */
 
 #define FINE_ERROR    0.01 /* of the pictures to compare with, in pixels */
-#define DEFAULT_ERROR 0.25 /* krs_vulkan.h */
+#define DEFAULT_ERROR 0.25 /* krs/vulkan.h */
 typedef struct Scene {
     const char   *name, *text;
     double        fov; /* of its camera, which is perspective */

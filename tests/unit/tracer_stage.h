@@ -4,7 +4,7 @@
 #ifndef UNIT_TRACER_STAGE_H
 #define UNIT_TRACER_STAGE_H
 
-#include "runtime/krs_vulkan.h"
+#include "krs/vulkan.h"
 
 #define assert_near(value, expected, within) assert_true(fabs((value) - (expected)) <= (within))
 

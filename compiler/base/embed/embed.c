@@ -1,19 +1,28 @@
 /*
  * embed.c: a build tool that writes files as a C array, so that the program contains them.
- * `embed NAME PREFIX FILE...` prints `const EmbeddedFile NAME[]`.  PREFIX is cut from file names.
+ * `embed NAME PREFIX... -- FILE...` prints `const EmbeddedFile NAME[]`.  The first PREFIX that a file's name begins with
+ * is cut from it.
  */
 #include <stdio.h>
 #include <string.h>
 
-static int embed(const char *path, const char *prefix)
+/* How much of a path the first prefix is that it begins with; prefixes end with "--". */
+static size_t prefix_length(const char *path, char **prefixes)
+{
+    for (; strcmp(*prefixes, "--") != 0; prefixes++)
+        if (strncmp(path, *prefixes, strlen(*prefixes)) == 0)
+            return strlen(*prefixes);
+    return 0;
+}
+
+static int embed(const char *path, char **prefixes)
 {
     FILE *file = fopen(path, "rb");
     if (!file) {
         perror(path);
         return 1;
     }
-    size_t skip = strncmp(path, prefix, strlen(prefix)) == 0 ? strlen(prefix) : 0;
-    printf("    {\"%s\", (const char[]){", path + skip);
+    printf("    {\"%s\", (const char[]){", path + prefix_length(path, prefixes));
     size_t length = 0;
     for (int c; (c = getc(file)) != EOF; length++)
         printf(length % 20 == 0 ? "\n%d," : "%d,", c > 127 ? c - 256 : c);
@@ -23,13 +32,16 @@ static int embed(const char *path, const char *prefix)
 
 int main(int argc, char **argv)
 {
-    if (argc < 3) {
-        fprintf(stderr, "usage: embed NAME PREFIX FILE...\n");
+    int first = 2;
+    while (first < argc && strcmp(argv[first], "--") != 0)
+        first++;
+    if (first >= argc) {
+        fprintf(stderr, "usage: embed NAME PREFIX... -- FILE...\n");
         return 2;
     }
     printf("#include \"compiler/base/embedded.h\"\nconst EmbeddedFile %s[] = {\n", argv[1]);
-    for (int i = 3; i < argc; i++)
-        if (embed(argv[i], argv[2]) != 0)
+    for (int i = first + 1; i < argc; i++)
+        if (embed(argv[i], argv + 2) != 0)
             return 1;
     printf("    {0, 0, 0}\n};\n");
     return fflush(stdout) != 0;

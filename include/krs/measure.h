@@ -1,5 +1,5 @@
 /*
- * krs_measure.h: the part of krs.h that is about the figures of a part that is to be made; it is included there.
+ * measure.h: the part of krs.h that is about the figures of a part that is to be made; it is included there.
  */
 #ifndef KRS_MEASURE_H
 #define KRS_MEASURE_H

@@ -1,5 +1,5 @@
 /*
- * krs_camera.h: moves a camera as a mouse and keys do.
+ * camera.h: moves a camera as a mouse and keys do.
  *
  * Directions are those of the picture.  Lengths are in parts of the picture's height, at the distance
  * of the target, so that what is under the mouse stays under it.
@@ -7,7 +7,7 @@
 #ifndef KRS_CAMERA_H
 #define KRS_CAMERA_H
 
-#include "compiler/krs.h"
+#include "krs/krs.h"
 
 #ifdef __cplusplus
 extern "C" {

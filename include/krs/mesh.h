@@ -1,5 +1,5 @@
 /*
- * krs_mesh.h: the part of krs.h that is about meshes; it is included there.
+ * mesh.h: the part of krs.h that is about meshes; it is included there.
  */
 #ifndef KRS_MESH_H
 #define KRS_MESH_H

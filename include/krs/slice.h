@@ -1,5 +1,5 @@
 /*
- * krs_slice.h: the part of krs.h that is about sections; it is included there.
+ * slice.h: the part of krs.h that is about sections; it is included there.
  */
 #ifndef KRS_SLICE_H
 #define KRS_SLICE_H

@@ -1,5 +1,5 @@
 /*
- * krs_film.h: the part of krs_vulkan.h that is about films which are kept; it is included there.
+ * film.h: the part of vulkan.h that is about films which are kept; it is included there.
  */
 #ifndef KRS_FILM_H
 #define KRS_FILM_H

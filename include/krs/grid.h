@@ -1,5 +1,5 @@
 /*
- * krs_grid.h: the part of krs.h that is about grids; it is included there.
+ * grid.h: the part of krs.h that is about grids; it is included there.
  */
 #ifndef KRS_KRS_GRID_H
 #define KRS_KRS_GRID_H

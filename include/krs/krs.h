@@ -1,6 +1,6 @@
 /*
  * krs.h: compile scenes and ask them questions.  No Vulkan is needed; rendering is in
- * krs_vulkan.h.
+ * vulkan.h.
  *
  * There is no global state.  A compiled scene never changes, so many threads may use it at the same
  * time.  What varies (the values of parameters, the time, zones of the caller) is in a KrsFrame,
@@ -175,7 +175,7 @@ typedef struct KrsChanges {
  * other status *updated is NULL, as of krs_compile_text.
  *
  * Frames and renderings belong to the scene that they were made of.  krs_frame_update and
- * krs_rendering_update (krs_vulkan.h) take them over to the new one.
+ * krs_rendering_update (vulkan.h) take them over to the new one.
  */
 KrsStatus krs_scene_update(const KrsScene *scene, const char *text, size_t length,
                            KrsScene **updated, KrsChanges *changes);
@@ -426,10 +426,10 @@ typedef struct KrsHit {
        section 1), a hash beyond 31 mirrors, 1 without a sequence; material: the number of its name; color[3] and emission[3]: linear
        Rec.709; roughness; metallic.  All but the emission are limited as in pictures. */
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) uint32_t name;
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     double name KRS_NUMBERS_##type;
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 } KrsHit;
 
 /* Distance, normal and identity at points. */
@@ -460,8 +460,8 @@ KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3], const double 
 }
 #endif
 
-#include "compiler/krs_grid.h"
-#include "compiler/krs_mesh.h"
-#include "compiler/krs_slice.h"
-#include "compiler/krs_measure.h"
+#include "krs/grid.h"
+#include "krs/mesh.h"
+#include "krs/slice.h"
+#include "krs/measure.h"
 #endif

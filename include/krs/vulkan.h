@@ -1,5 +1,5 @@
 /*
- * krs_vulkan.h: render compiled scenes on a Vulkan device.
+ * vulkan.h: render compiled scenes on a Vulkan device.
  *
  * A KrsRenderer is an open device.  A KrsRendering is a scene whose shaders are compiled for it.
  * krs_render turns one frame of the scene into a KrsPicture in host memory.  A KrsFilm is a picture
@@ -11,8 +11,8 @@
 #ifndef KRS_VULKAN_H
 #define KRS_VULKAN_H
 
-#include "compiler/krs.h"
-#include "runtime/krs_choices.h"
+#include "krs/krs.h"
+#include "krs/choices.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -160,11 +160,11 @@ KrsStatus krs_rendering_update(KrsRendering *rendering, const KrsScene *scene);
 /* The parts of a picture, as bits: KRS_PLANE_COLOR and so on, a row of planes.def each. */
 typedef enum KrsPlane {
 #define KRS_PLANE(id, bit, aov, about, arrays) KRS_PLANE_##id = 1 << bit,
-#include "runtime/planes.def"
+#include "krs/planes.def"
 #undef KRS_PLANE
     KRS_PLANE_ALL = 0
 #define KRS_PLANE(id, bit, aov, about, arrays) | 1 << bit
-#include "runtime/planes.def"
+#include "krs/planes.def"
 #undef KRS_PLANE
 } KrsPlane;
 
@@ -259,7 +259,7 @@ typedef struct KrsRenderOptions {
 
 typedef enum KrsPhase {
 #define KRS_PHASE(id, name) KRS_PHASE_##id,
-#include "runtime/choices.def"
+#include "krs/choices.def"
     KRS_PHASE_COUNT
 } KrsPhase;
 extern const char *const krs_phase_names[KRS_PHASE_COUNT]; /* "beams", ... */
@@ -309,7 +309,7 @@ typedef struct KrsPicture {
        what they are, and how many numbers a pixel has. */
 #define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) type *member;
 #define KRS_PLANE(id, bit, aov, about, arrays)                           arrays
-#include "runtime/planes.def"
+#include "krs/planes.def"
 #undef KRS_ARRAY
 #undef KRS_PLANE
     /* With KrsRenderOptions.mattes, KRS_MATTE_RANKS for each pixel, the most covered first; else
@@ -409,9 +409,9 @@ typedef struct KrsSurfacePoint {
     float distance; /* as the function of the surface computes it */
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     float name KRS_NUMBERS_##type;
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) uint32_t name;
-#include "compiler/shape/surface.def"
+#include "krs/surface.def"
     float normal[3]; /* for lighting */
 } KrsSurfacePoint;
 
@@ -453,5 +453,5 @@ KrsStatus krs_device_raycast(KrsRendering *rendering, KrsFrame *frame, const dou
 }
 #endif
 
-#include "runtime/krs_film.h"
+#include "krs/film.h"
 #endif

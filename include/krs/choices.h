@@ -1,5 +1,5 @@
 /*
- * krs_choices.h: the part of krs_vulkan.h that is about what there is to choose from for a picture; it
+ * choices.h: the part of vulkan.h that is about what there is to choose from for a picture; it
  * is included there.  Each choice has its rows, with what they mean, in choices.def.
  */
 #ifndef KRS_PICTURE_CHOICES_H
@@ -16,7 +16,7 @@ extern "C" {
 typedef enum KrsIntegrator {
     KRS_INTEGRATOR_DEFAULT, /* as the scene says, or preview */
 #define KRS_INTEGRATOR(id, name, about) KRS_INTEGRATOR_##id,
-#include "runtime/choices.def"
+#include "krs/choices.def"
     KRS_INTEGRATOR_COUNT
 } KrsIntegrator;
 extern const char *const krs_integrator_names[KRS_INTEGRATOR_COUNT]; /* "default", "preview", ... */
@@ -24,7 +24,7 @@ extern const char *const krs_integrator_names[KRS_INTEGRATOR_COUNT]; /* "default
 /* How rays advance: KRS_TRACE_DEFAULT, KRS_TRACE_PLAIN and so on. */
 typedef enum KrsTrace {
 #define KRS_TRACE(id, name, about) KRS_TRACE_##id,
-#include "runtime/choices.def"
+#include "krs/choices.def"
     KRS_TRACE_COUNT
 } KrsTrace;
 extern const char *const krs_trace_names[KRS_TRACE_COUNT]; /* "default", "plain", ... */
@@ -32,7 +32,7 @@ extern const char *const krs_trace_names[KRS_TRACE_COUNT]; /* "default", "plain"
 /* How rays are assigned to the lanes of the device: KRS_SCHEDULE_PIXEL and so on. */
 typedef enum KrsSchedule {
 #define KRS_SCHEDULE(id, name, about) KRS_SCHEDULE_##id,
-#include "runtime/choices.def"
+#include "krs/choices.def"
     KRS_SCHEDULE_COUNT
 } KrsSchedule;
 extern const char *const krs_schedule_names[KRS_SCHEDULE_COUNT];
@@ -41,7 +41,7 @@ extern const char *const krs_schedule_names[KRS_SCHEDULE_COUNT];
    KRS_COMPONENTS_TOGETHER and so on. */
 typedef enum KrsComponents {
 #define KRS_COMPONENTS(id, name, about) KRS_COMPONENTS_##id,
-#include "runtime/choices.def"
+#include "krs/choices.def"
     KRS_COMPONENTS_COUNT
 } KrsComponents;
 extern const char *const krs_components_names[KRS_COMPONENTS_COUNT];
@@ -52,7 +52,7 @@ extern const char *const krs_components_names[KRS_COMPONENTS_COUNT];
    than a pixel: as with no_filter. */
 typedef enum KrsNormals {
 #define KRS_NORMALS(id, name, about) KRS_NORMALS_##id,
-#include "runtime/choices.def"
+#include "krs/choices.def"
     KRS_NORMALS_COUNT
 } KrsNormals;
 extern const char *const krs_normals_names[KRS_NORMALS_COUNT];
@@ -60,7 +60,7 @@ extern const char *const krs_normals_names[KRS_NORMALS_COUNT];
 /* The shadows of lights that have a size: KRS_SHADOWS_SOFT, KRS_SHADOWS_AREA. */
 typedef enum KrsShadows {
 #define KRS_SHADOWS(id, name, about) KRS_SHADOWS_##id,
-#include "runtime/choices.def"
+#include "krs/choices.def"
     KRS_SHADOWS_COUNT
 } KrsShadows;
 extern const char *const krs_shadows_names[KRS_SHADOWS_COUNT];
@@ -68,7 +68,7 @@ extern const char *const krs_shadows_names[KRS_SHADOWS_COUNT];
 /* How far above surfaces rays of paths begin: KRS_STARTS_PRECISION, KRS_STARTS_DISTANCE. */
 typedef enum KrsStarts {
 #define KRS_STARTS(id, name, about) KRS_STARTS_##id,
-#include "runtime/choices.def"
+#include "krs/choices.def"
     KRS_STARTS_COUNT
 } KrsStarts;
 extern const char *const krs_starts_names[KRS_STARTS_COUNT];
@@ -76,7 +76,7 @@ extern const char *const krs_starts_names[KRS_STARTS_COUNT];
 /* How the rays of a pixel are weighed by their place: KRS_PIXEL_FILTER_BOX and so on. */
 typedef enum KrsPixelFilter {
 #define KRS_PIXEL_FILTER(id, name, reach, integral, about) KRS_PIXEL_FILTER_##id,
-#include "runtime/choices.def"
+#include "krs/choices.def"
     KRS_PIXEL_FILTER_COUNT
 } KrsPixelFilter;
 extern const char *const krs_pixel_filter_names[KRS_PIXEL_FILTER_COUNT];
@@ -84,7 +84,7 @@ extern const char *const krs_pixel_filter_names[KRS_PIXEL_FILTER_COUNT];
 /* What falls on a plate: KRS_CATCHER_DEFAULT, KRS_CATCHER_SHADOWS and so on. */
 typedef enum KrsCatcher {
 #define KRS_CATCHER(id, name, about) KRS_CATCHER_##id,
-#include "runtime/choices.def"
+#include "krs/choices.def"
     KRS_CATCHER_COUNT
 } KrsCatcher;
 extern const char *const krs_catcher_names[KRS_CATCHER_COUNT];
