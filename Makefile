@@ -32,46 +32,22 @@ DEVICE  ?= $(KRS_DEVICE)
 # Of `make test`, while it builds.
 JOBS    ?= $(shell nproc)
 
-# Sources in the order of the pipeline: reading down this list is reading the program.
-BASE     := $(addprefix compiler/base/, arena.c patience.c unchecked.c exr_chunks.c half.c parallel.c text.c visible.c paths.c source.c beneath.c loader.c diag.c diag_text.c)
-FRONT    := $(addprefix compiler/front/, lexer.c lex_literals.c syntax.c format.c format_pieces.c parser.c parse_expression.c \
-                parse_declaration.c parse.c synonyms.c names.c files.c)
-OUTLINE  := $(addprefix compiler/outline/, path.c knots.c edge_cuts.c edge_sides.c resolve.c members.c letters.c \
-                svg_shapes.c svg.c svg_stroke.c svg_style.c svg_tree.c)
-IMAGE    := $(addprefix compiler/image/, png.c exr.c image.c)
+# Sources by folder, in the order of the pipeline: reading down this list is reading the program.
+ROOMS    := base image outline graph shape lower family front eval print print/glsl target scene passes refute mesh slice grid measure
+sources   = $(sort $(wildcard $(1)/*.c))
+COMPILER := $(foreach room,$(ROOMS),$(call sources,compiler/$(room)))
 # Points side by side, once for each instruction set.
-LANES    := $(addprefix compiler/graph/lanes_, plain.c $(if $(filter x86_64, $(shell $(CC) -dumpmachine | cut -d - -f 1)), avx2.c avx512.c))
-GRAPH    := $(addprefix compiler/graph/, intern.c alike.c alike_copy.c graph.c crowd.c crowd_walk.c crowd_frame.c build.c substitute.c extract.c derive_rules.c \
-                derive_blends.c derive.c series.c zeros.c local_terms.c local_curves.c local.c rebase.c \
-                simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c frame_ranges.c turns.c timed.c parity.c texture.c texture_facts.c \
-                regions.c squares.c grid_build.c grid_find.c grid_clearance.c grid_halve.c grid_refine.c grid_sift.c grid_tails.c fractal.c blend_shares.c op_values.c tape.c evaluate.c lane_rows.c lane_make.c lane_run.c lane_crowds.c lane_ranges.c \
-                lane_steepest.c lane_slopes.c lane_cuts.c lane_partials.c lane_outlines.c lane_hessians.c lane_prune.c joints.c joint_needs.c print.c) $(LANES)
-SHAPE    := $(addprefix compiler/shape/, turn_boxes.c frame_boxes.c sequence_box.c box.c box_rules.c reach.c cover.c overlap.c map.c moebius.c builder.c sky_map.c slope.c print.c)
-LOWER    := $(addprefix compiler/lower/, footprint.c bump.c context.c box_distance.c surface.c nearest.c join.c blend.c crowd_table.c crowd_cells.c crowd_functions.c crowd_turns.c crowd_find.c crowd.c normal.c tangent.c map_chain.c \
-                outline.c boundary.c sphere_fold.c guards.c ray_images.c ray_step.c lower.c)
-FAMILY   := $(sort $(wildcard compiler/family/*.c))
-EVAL     := $(addprefix compiler/eval/, scope.c forget.c expression.c turns.c turn_statements.c arithmetic.c fold.c reports.c units.c arguments.c components.c records.c data.c csv.c json.c builtins.c indices.c lists.c \
-                random.c files.c text.c drawing.c texture.c functions.c kinds.c blame.c csg.c fractal.c declare.c extremes.c claim_pairs.c claims.c empty.c cells.c measure.c corners.c grown.c methods.c properties.c \
-                material.c camera.c view.c sky.c palette.c remarks.c params.c statements.c shown.c studio.c hull.c hull_parts.c beams.c \
-                hull_supports.c hull_triangles.c extents.c fillet_zone.c hull_region.c fillet.c)
-PRINT    := $(addprefix compiler/print/, frame_values.c media.c lines.c signatures.c helpers.c mirrors.c statements.c noises.c \
-                prepare.c crowds.c textures.c distances.c shared.c surfaces.c boxes.c early_outs.c march.c \
-                module_print.c) \
-            $(sort $(wildcard compiler/print/*/*.c))
-TARGET   := $(addprefix compiler/target/, instructions.c inline.c dominators.c forward.c live.c flatten.c spirv.c)
+LANES    := $(filter compiler/graph/lanes_%,$(COMPILER))
+ifneq ($(firstword $(subst -, ,$(shell $(CC) -dumpmachine))),x86_64)
+COMPILER := $(filter-out %_avx2.c %_avx512.c,$(COMPILER))
+LANES    := $(filter-out %_avx2.c %_avx512.c,$(LANES))
+endif
+TARGET   := $(call sources,compiler/target)
 BORDER   := compiler/target/glslang_border.cpp
-API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c find_emissive.c find_assembly.c find_motion.c retain.c tables.c facts.c \
-                march_groups.c make_module.c program.c scene_text.c framing.c look.c daylight.c frame.c frame_boxes.c frame_tables.c frame_emissive.c points.c query.c texture_places.c \
-                update.c camera_moves.c search_pairs.c search_targets.c search_starts.c search.c refuter.c \
-                refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)
-MESH     := $(addprefix compiler/mesh/, solid.c field.c field_pieces.c numbering.c batches.c weights.c tets.c marks.c quadric.c roots.c contour.c contour_mesh.c draft.c bvh.c groups.c gradient.c lens.c around.c verify.c smooth.c pieces.c voids.c handles.c bounds.c rounds.c polygons.c flat_rounds.c flat_forms.c flat_joins.c flat_circles.c flat_outlines.c flat_pieces.c flat_apart.c flat_touches.c flat_faces.c flat_proof.c flat_near.c flat.c steps.c borders.c mesh.c placing.c assemble.c crossing.c settle.c slivers.c near.c fans.c collapse.c simplify.c)
-SLICE    := $(addprefix compiler/slice/, plane.c extent.c tree.c chords.c bend.c fit.c contours.c slice.c)
-GRID     := $(addprefix compiler/grid/, coverage.c samples.c row.c grid.c)
-MEASURE  := $(addprefix compiler/measure/, cut.c volume.c places.c lying.c measure.c)
-RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer integrators film display writer))))
-LIVE     := $(sort $(wildcard live/*.c))
+RUNTIME  := $(foreach room,device tracer integrators film display writer,$(call sources,runtime/$(room)))
+LIVE     := $(call sources,live)
 LIVE_BORDER := live/gui.cpp
-CLI      := $(sort $(wildcard cli/*.c))
+CLI      := $(call sources,cli)
 CLI_BORDER := cli/glb_materials.cpp cli/mesh_glb.cpp cli/terminate.cpp
 # OpenVDB is loaded when a .vdb is written: it takes longer to load than most commands to run.
 VDB       = $(if $(VDB_LIBS),$(B)/krs-vdb.so)
@@ -106,7 +82,6 @@ CC_LINK  = $(CC) $(CFLAGS) $(LDFLAGS) -Wl,--exclude-libs,ALL
 HARDENED := -pie -Wl,-z,relro -Wl,-z,now
 include tools/libraries.mk
 
-COMPILER := $(BASE) $(IMAGE) $(OUTLINE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API) $(MESH) $(SLICE) $(GRID) $(MEASURE)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
             $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o $(B)/fingerprints.o
 

@@ -7,7 +7,7 @@
 #include "bench/image.h"
 #include "bench/measure.h"
 #include "bench/shader.h"
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 
 typedef struct Handwritten {
     Shader shader;

@@ -7,7 +7,7 @@
 #include "bench/bench.h"
 #include "bench/image.h"
 #include "bench/measure.h"
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 
 typedef struct Subject {
     KrsScene         *scene;

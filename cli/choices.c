@@ -86,7 +86,7 @@ const Choice json_choices[]     = {{"json", ""}, LAST};
 const Choice pass_choices[]     = {
 #define PASS(name, validate, meaning)          {#name, ""},
 #define PASS_TO(form, name, validate, meaning) {form, ""}, {#name, ""},
-#include "compiler/passes.def"
+#include "compiler/passes/passes.def"
     {"spirv", ""}, LAST};
 
 int find_choice(const char *word, const Choice *choices)

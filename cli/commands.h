@@ -6,7 +6,7 @@
 
 #include "cli/options.h"
 #include "compiler/base/text.h"
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "krs/vulkan.h"
 
 #define COMMAND(id, name, function, arguments, files, summary, examples) \

@@ -7,7 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 
 const char exit_statuses[] =
     "0 done; 1 the scene is wrong or beyond a limit; 2 wrong usage; 69 no device; 70 a bug, or\n"

@@ -14,7 +14,7 @@
 #include "cli/import_pov.h"
 #include "cli/import_svg.h"
 #include "cli/import_tape.h"
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 
 static const struct {
     const char *ending;

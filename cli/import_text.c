@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 
 enum { MOST_NOTES = 100 };
 

@@ -1,7 +1,7 @@
 /*
  * validate.c: `krs validate`: tries to refute what the compiler claims of a scene.
  *
- * Four attempts.  A directed search (compiler/search.h) looks for points where the distance of a
+ * Four attempts.  A directed search (compiler/refute/search.h) looks for points where the distance of a
  * component, or of a shape in it, breaks its bound, and blames a shape.  The SPIR-V validator
  * looks at every module.  On the processor, in double precision, a distance claims that the ball
  * around its point is empty, so anywhere inside the ball the sign must be the same; the places

@@ -11,6 +11,8 @@ trap 'rm -rf "$work"' EXIT
 pages="README.md CONTRIBUTING.md SECURITY.md docs/features.md docs/figures.md docs/code.md docs/building.md
 docs/tutorial.md docs/coming-from.md docs/language.md docs/library.md docs/architecture.md docs/details.md
 docs/viewer.md docs/meshes.md docs/slices.md docs/grids.md docs/how-it-works.md docs/glossary.md bench/README.md bench/measurements.md"
+rooms=$(find compiler runtime live cli -name README.md | sort)
+pages="$pages $rooms"
 failed=0
 report() { # status, name
     if [ "$1" -eq 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failed=1; fi
@@ -183,6 +185,9 @@ printf '%s\n' 'This is short.  But' 'one two three four five six seven eight nin
     'six seven eight nine ten eleven.' >"$work/long"
 awk -v most=30 -f tests/sentences.awk "$work/long" | grep -q ': 32 words: '
 report $? "a long sentence would be found"
+# shellcheck disable=SC2086
+wc -l $rooms | awk '$1 > 40 && $2 != "total" { print $2 " has " $1 " lines" }' >"$work/said"
+none "pages of folders have at most 40 lines"
 [ "$(wc -l <docs/architecture.md)" -le 200 ]
 report $? "docs/architecture.md has at most 200 lines"
 [ "$(grep -c '^| [a-z]' docs/glossary.md)" -le 31 ]

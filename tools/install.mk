@@ -5,7 +5,7 @@
 PREFIX  ?= /usr/local
 LIBDIR  ?= lib
 DESTDIR ?=
-TARGET   = $(DESTDIR)$(PREFIX)
+INTO     = $(DESTDIR)$(PREFIX)
 COMMANDS = $(shell sed -n 's/^COMMAND.[A-Z]*, "\([a-z]*\)".*/\1/p' cli/commands.def)
 # Programs include <krs/krs.h>, and older ones <krs.h>: names of before 0.3, which only lead to these.
 PUBLIC   = $(sort $(wildcard include/krs/*))
@@ -30,27 +30,27 @@ endef
 export KRS_PC
 
 install: $(B)/krs $(B)/libkrs.a $(B)/libkrs.so $(VDB)
-	@install -d $(sort $(dir $(INSTALLED:%=$(TARGET)/%)))
-	@install -m 755 $(B)/krs $(TARGET)/bin/krs
-	@$(if $(VDB),install -m 644 $(VDB) $(TARGET)/lib/krs/krs-vdb.so)
-	@install -m 644 $(B)/libkrs.a $(B)/$(SHARED) $(TARGET)/$(LIBDIR)
-	@ln -sf $(SHARED) $(TARGET)/$(LIBDIR)/$(SONAME)
-	@ln -sf $(SONAME) $(TARGET)/$(LIBDIR)/libkrs.so
-	@install -m 644 $(PUBLIC) $(TARGET)/include/krs
+	@install -d $(sort $(dir $(INSTALLED:%=$(INTO)/%)))
+	@install -m 755 $(B)/krs $(INTO)/bin/krs
+	@$(if $(VDB),install -m 644 $(VDB) $(INTO)/lib/krs/krs-vdb.so)
+	@install -m 644 $(B)/libkrs.a $(B)/$(SHARED) $(INTO)/$(LIBDIR)
+	@ln -sf $(SHARED) $(INTO)/$(LIBDIR)/$(SONAME)
+	@ln -sf $(SONAME) $(INTO)/$(LIBDIR)/libkrs.so
+	@install -m 644 $(PUBLIC) $(INTO)/include/krs
 	@for name in $(OLD_NAMES); do \
-	    echo "#include \"krs/$${name#krs_}\"" >$(TARGET)/include/$$name || exit 1; \
+	    echo "#include \"krs/$${name#krs_}\"" >$(INTO)/include/$$name || exit 1; \
 	done
-	@echo "$$KRS_PC" >$(TARGET)/$(LIBDIR)/pkgconfig/krs.pc
-	@$(B)/krs --completion bash >$(TARGET)/share/bash-completion/completions/krs
-	@$(B)/krs --completion zsh >$(TARGET)/share/zsh/site-functions/_krs
-	@$(B)/krs --completion fish >$(TARGET)/share/fish/vendor_completions.d/krs.fish
-	@$(B)/krs --manual >$(TARGET)/share/man/man1/krs.1
+	@echo "$$KRS_PC" >$(INTO)/$(LIBDIR)/pkgconfig/krs.pc
+	@$(B)/krs --completion bash >$(INTO)/share/bash-completion/completions/krs
+	@$(B)/krs --completion zsh >$(INTO)/share/zsh/site-functions/_krs
+	@$(B)/krs --completion fish >$(INTO)/share/fish/vendor_completions.d/krs.fish
+	@$(B)/krs --manual >$(INTO)/share/man/man1/krs.1
 	@for command in $(COMMANDS); do \
-	    $(B)/krs --manual $$command >$(TARGET)/share/man/man1/krs-$$command.1 || exit 1; \
+	    $(B)/krs --manual $$command >$(INTO)/share/man/man1/krs-$$command.1 || exit 1; \
 	done
-	@echo "installed in $(TARGET)"
+	@echo "installed in $(INTO)"
 uninstall:
-	@rm -f $(INSTALLED:%=$(TARGET)/%)
-	@rmdir $(TARGET)/include/krs 2>/dev/null || :
-	@echo "removed from $(TARGET)"
+	@rm -f $(INSTALLED:%=$(INTO)/%)
+	@rmdir $(INTO)/include/krs 2>/dev/null || :
+	@echo "removed from $(INTO)"
 .PHONY: install uninstall

@@ -13,7 +13,7 @@
 #include "bench/measure.h"
 #include "bench/sheet.h"
 #include "bench/stage.h"
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "krs/vulkan.h"
 
 enum { WIDTH = 640, HEIGHT = 360, PIXELS = WIDTH * HEIGHT, MOST_REPEATS = 15 };

@@ -11,7 +11,7 @@
 
 #include "bench/sheet.h"
 #include "bench/stage.h"
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "krs/vulkan.h"
 #include "runtime/writer/png.h"
 

@@ -8,7 +8,7 @@
 #include <time.h>
 
 #include "compiler/graph/lanes.h"
-#include "compiler/program.h"
+#include "compiler/scene/program.h"
 
 enum { POINTS = 4096, BOXES = 64, PRUNED_FOR = 256 };
 

@@ -16,7 +16,7 @@
 #include "bench/minify/pixel_filter.h"
 #include "bench/sheet.h"
 #include "bench/stage.h"
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "runtime/display/display.h"
 #include "krs/vulkan.h"
 

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/compile.h"
-#include "compiler/inspect.h"
+#include "compiler/passes/compile.h"
+#include "compiler/passes/inspect.h"
 
 static const int counts[] = {1000, 10000, 100000};
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/points.h"
+#include "compiler/scene/points.h"
 #include "compiler/slice/extent.h"
 
 /* Cells around what is solid where there is no band. */

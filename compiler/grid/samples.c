@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/points.h"
+#include "compiler/scene/points.h"
 
 /* Sample `i` of a brick, x first. */
 static void sample_place(const KrsGrid *grid, const size_t at[3], size_t i, double point[3])

@@ -7,7 +7,7 @@
 #include "compiler/mesh/flat.h"
 #include "compiler/mesh/handles.h"
 #include "compiler/mesh/voids.h"
-#include "compiler/program.h"
+#include "compiler/scene/program.h"
 
 static const double DEFAULT_ERROR = 1.0 / 200, LEAST_ERROR = 1.0 / 500000;
 static const double CUBE_SIDE = 1.0973; /* in longest sides of the box */

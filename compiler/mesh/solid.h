@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_SOLID_H
 #define KRS_MESH_SOLID_H
 
-#include "compiler/program.h"
+#include "compiler/scene/program.h"
 
 typedef struct MeshSolid {
     const Tape *tape;  /* has the roots; NULL: that of the distance in the frame */

@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_STEPS_H
 #define KRS_MESH_STEPS_H
 
-#include "compiler/program.h"
+#include "compiler/scene/program.h"
 
 /* Whether around almost every point all properties of the materials stay the same: those of parts in one paint each, and
    patterns of such.  `wanted`: components by their index among the lowered, or NULL for all. */

@@ -16,7 +16,7 @@
 
 #include "compiler/base/embedded.h"
 #include "runtime/device/shared_kernels.h"
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 
 /* A kernel on its way to SPIR-V, in a thread of its own when it must be compiled. */
 typedef struct KernelBuild {

@@ -4,7 +4,7 @@
 #ifndef KRS_KERNEL_H
 #define KRS_KERNEL_H
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "runtime/device/gpu.h"
 
 typedef struct Kernel {

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "compiler/base/embedded.h"
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 
 static const char *find_in(const EmbeddedFile *file, const char *name, size_t length)
 {

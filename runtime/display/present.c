@@ -1,7 +1,7 @@
 /*
  * present.c: pictures as their scene wants them shown.
  */
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "runtime/display/display.h"
 
 KrsStatus krs_picture_to_srgb8(const KrsPicture *picture, const KrsScene *scene, double stops,

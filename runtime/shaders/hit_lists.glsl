@@ -122,7 +122,7 @@ HitPoint find_hit_point(uint number)
 }
 
 // The reach of the differences of which normals are made.  Its least, relative to the coordinates:
-// less would be noise.  compiler/precision.c decides where it is too much.
+// less would be noise.  compiler/passes/precision.c decides where it is too much.
 const float NOISE = 1e-4;
 float find_reach(HitPoint hit)
 {

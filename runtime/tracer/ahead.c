@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 
 struct KernelsAhead {
     KrsRenderer   renderer; /* a copy: its device counts, and takes the note when something fails */

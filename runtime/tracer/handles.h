@@ -5,7 +5,7 @@
 #ifndef KRS_HANDLES_H
 #define KRS_HANDLES_H
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "runtime/device/buffer.h"
 #include "runtime/device/kernel.h"
 #include "runtime/shared/blocks.h"

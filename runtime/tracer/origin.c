@@ -2,7 +2,7 @@
  * origin.c: whether points on the device are relative to an origin near the eye, and to which.
  *
  * Rounding is visible where surfaces are far from the origin of the scene and near to the eye
- * (compiler/precision.c).  The distance at the eye tells how near they may be.  Where that is too near,
+ * (compiler/passes/precision.c).  The distance at the eye tells how near they may be.  Where that is too near,
  * rays through a grid over the picture tell what is seen: the ground below a camera that looks
  * ahead is not.
  */

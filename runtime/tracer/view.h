@@ -4,7 +4,7 @@
 #ifndef KRS_VIEW_H
 #define KRS_VIEW_H
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "krs/vulkan.h"
 #include "runtime/shared/blocks.h"
 

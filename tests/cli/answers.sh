@@ -151,7 +151,7 @@ result $? "devices as JSON"
 
 empty=""
 passes=$(sed -n 's/^PASS( *\([a-z]*\),.*/\1/p; s/^PASS_TO("\([a-z]*\)", *\([a-z]*\),.*/\1 \2/p' \
-    "$root/compiler/passes.def")
+    "$root/compiler/passes/passes.def")
 for pass in tokens syntax scene graph simplify glsl spirv $passes; do
     run dump --after="$pass" ball.krs
     [ "$status" -eq 0 ] && [ -s out ] || empty="$empty $pass"

@@ -107,7 +107,7 @@ picture --stats json -o a.exr
 is_json <out && [ "$(wc -l <out)" -eq 1 ]
 result $? "statistics are one JSON object"
 missing=""
-passes=$(sed -n 's/^PASS.*[( ]\([a-z]*\), *\(NULL\|validate_[a-z]*\),.*/\1/p' "$root/compiler/passes.def")
+passes=$(sed -n 's/^PASS.*[( ]\([a-z]*\), *\(NULL\|validate_[a-z]*\),.*/\1/p' "$root/compiler/passes/passes.def")
 # shellcheck disable=SC2086 # names without blanks
 for member in compile front glsl spirv pipeline passes $passes render beams primary normals shadows occlusion shading resolve total wall \
     rays evaluations evaluations_per_ray flops_per_evaluation gflops unresolved device \

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 
 /* abort() is what libFuzzer takes for a finding. */
 static void demand(bool holds)

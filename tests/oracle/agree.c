@@ -18,7 +18,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/oracle/exact.h"
 #include "tests/oracle/random_scene.h"
 #include "tests/support/renderer.h"

@@ -16,7 +16,7 @@
 #include "tests/oracle/judge.h"
 #include "tests/oracle/product.h"
 
-#include "compiler/program.h"
+#include "compiler/scene/program.h"
 
 /* What rays are marched by, of a scene at given parameters. */
 typedef struct March {

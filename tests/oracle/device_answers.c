@@ -15,7 +15,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/support/renderer.h"
 
 Scene scene_ready(KrsStatus status, KrsScene *scene, KrsPurpose purpose)

@@ -20,7 +20,7 @@
 #include <cmocka.h>
 #include <glob.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/support/agreement.h"
 #include "tests/support/renderer.h"
 

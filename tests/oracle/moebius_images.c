@@ -2,7 +2,7 @@
  * moebius_images.c: steps along rays through conformal maps, and balls that are said to be empty,
  * against clouds of points (map_chain.h).
  */
-#include "compiler/program.h"
+#include "compiler/scene/program.h"
 #include "tests/oracle/map_chain.h"
 
 #include <stdio.h>

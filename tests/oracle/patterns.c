@@ -16,7 +16,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "runtime/writer/exr.h"
 #include "tests/oracle/product.h"
 #include "tests/support/folder.h"

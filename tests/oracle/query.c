@@ -16,7 +16,7 @@
 #include <cmocka.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "runtime/tracer/handles.h"
 #include "tests/oracle/device_answers.h"
 #include "tests/support/renderer.h"

@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "runtime/tracer/query.h"
 #include "tests/oracle/device_answers.h"
 #include "tests/support/device.h"

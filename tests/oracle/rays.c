@@ -5,7 +5,7 @@
  * No step may go beyond the root, and marching must arrive there: soon, where steps are exact.
  * Random polynomials are put to the question of krs_raycast as well.
  */
-#include "compiler/program.h"
+#include "compiler/scene/program.h"
 #include "tests/oracle/formulas.h"
 #include "tests/oracle/product.h"
 

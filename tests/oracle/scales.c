@@ -22,7 +22,7 @@
 #include "tests/oracle/product.h"
 #include "tests/support/renderer.h"
 
-/* Of a pixel: what a march leaves open, and as much again for rounding (compiler/precision.c). */
+/* Of a pixel: what a march leaves open, and as much again for rounding (compiler/passes/precision.c). */
 #define SLACK (2.0 / 64)
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };

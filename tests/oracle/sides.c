@@ -16,7 +16,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/oracle/exact.h"
 #include "tests/oracle/product.h"
 #include "tests/support/renderer.h"

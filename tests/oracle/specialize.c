@@ -19,7 +19,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/support/random.h"
 #include "tests/support/renderer.h"
 

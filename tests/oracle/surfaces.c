@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 
 static Product surface_compile(const Surface *surface, double radius, bool open)
 {

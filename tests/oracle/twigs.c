@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/support/renderer.h"
 
 #define DEFAULT_ERROR 0.25 /* krs/vulkan.h */

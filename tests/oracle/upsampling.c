@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "runtime/display/display.h"
 #include "tests/oracle/shadow_stage.h"
 

@@ -14,7 +14,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "compiler/program.h"
+#include "compiler/scene/program.h"
 
 typedef double Formula(const double p[3]);
 

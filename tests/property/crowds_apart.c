@@ -14,8 +14,8 @@
 #include <cmocka.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/inspect.h"
-#include "compiler/program.h"
+#include "compiler/passes/inspect.h"
+#include "compiler/scene/program.h"
 #include "tests/support/crowd_texts.h"
 #include "tests/support/random.h"
 

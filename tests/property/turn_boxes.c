@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/inspect.h"
+#include "compiler/passes/inspect.h"
 #include "compiler/shape/turn_boxes.h"
 #include "tests/support/random.h"
 

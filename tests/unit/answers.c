@@ -11,7 +11,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "compiler/compiled.h"
+#include "compiler/scene/compiled.h"
 #include "tests/unit/tracer_stage.h"
 
 /* ---- The rows ---- */

@@ -17,7 +17,7 @@
 #include <unistd.h>
 
 #include "compiler/base/embedded.h"
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "runtime/device/kernel.h"
 #include "runtime/tracer/handles.h"
 #include "tests/support/device.h"

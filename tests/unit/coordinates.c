@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compiled.h"
+#include "compiler/scene/compiled.h"
 #include "tests/support/same_scene.h"
 
 static KrsScene *compile(const char *text)

@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 
 /* Whether an edge goes through a triangle that has none of its ends. */
 bool crosses_itself(const KrsMesh *mesh);

@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "compiler/graph/crowd.h"
-#include "compiler/program.h"
+#include "compiler/scene/program.h"
 #include "krs/vulkan.h"
 #include "tests/support/device.h"
 #include "tests/support/random.h"

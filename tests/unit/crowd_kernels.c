@@ -12,8 +12,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "compiler/program.h"
-#include "compiler/tables.h"
+#include "compiler/scene/program.h"
+#include "compiler/scene/tables.h"
 #include "krs/vulkan.h"
 #include "tests/support/device.h"
 #include "tests/unit/crowd_scene.h"

@@ -15,7 +15,7 @@
 #include <cmocka.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/inspect.h"
+#include "compiler/passes/inspect.h"
 #include "tests/support/crowd_texts.h"
 #include "tests/support/random.h"
 #include "tests/support/renderer.h"

@@ -15,7 +15,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/daylight.h"
+#include "compiler/scene/daylight.h"
 #include "tests/support/random.h"
 
 #define EARTH  6360.0

@@ -16,8 +16,8 @@
 
 #include <math.h>
 
-#include "compiler/program.h"
-#include "compiler/tables.h"
+#include "compiler/scene/program.h"
+#include "compiler/scene/tables.h"
 #include "runtime/device/gpu.h"
 #include "runtime/tracer/handles.h"
 #include "tests/support/agreement.h"

@@ -12,7 +12,7 @@
 #include <strings.h>
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "runtime/device/buffer.h"
 #include "tests/support/device.h"
 #include "tests/unit/tracer_stage.h"

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 
 static KrsFrame *open_scene(const char *text, KrsScene **scene)
 {

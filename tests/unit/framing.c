@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/program.h"
+#include "compiler/scene/program.h"
 #include "tests/support/random.h"
 
 enum { SCENES = 6, MOST_TEXT = 1 << 16, PLACES = 2000 };

@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
-#include "compiler/compiled.h"
+#include "compiler/passes/compile.h"
+#include "compiler/scene/compiled.h"
 
 enum { MOST_TURNS = 256 }; /* times 64 surfaces of a lane: a quarter of what lavapipe permits */
 

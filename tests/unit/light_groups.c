@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/unit/traced_scenes.h"
 
 enum { LIGHTS = 5 };

@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/support/scarce.h"
 
 static const char *const scenes[] = {

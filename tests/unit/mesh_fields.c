@@ -11,7 +11,7 @@
 
 #include "compiler/base/vec.h"
 #include "compiler/mesh/smooth.h"
-#include "compiler/program.h"
+#include "compiler/scene/program.h"
 #include "tests/support/random.h"
 
 enum { BOXES = 400, POINTS = 32 };

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "compiler/mesh/bounds.h"
-#include "compiler/program.h"
+#include "compiler/scene/program.h"
 #include "tests/support/random.h"
 
 static Random chance = {11};

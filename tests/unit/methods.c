@@ -17,7 +17,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/support/device.h"
 #include "tests/unit/traced_scenes.h"
 

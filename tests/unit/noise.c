@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/unit/traced_scenes.h"
 
 #define NOISE 0.05

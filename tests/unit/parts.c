@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/inspect.h"
+#include "compiler/passes/inspect.h"
 
 static const size_t MEGABYTE = 1000 * 1000;
 

@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 
 static const char example[] = "examples/03-machined-part.krs";
 

@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/unit/traced_scenes.h"
 
 /* All kinds of materials and lights, a plane, and a solid in which paths bounce, with a solid and

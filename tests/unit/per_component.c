@@ -19,7 +19,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "krs/vulkan.h"
 #include "tests/support/device.h"
 

@@ -16,7 +16,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "runtime/device/pipelines.h"
 #include "tests/support/folder.h"
 #include "tests/unit/compiled_files.h"

@@ -13,7 +13,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/unit/tracer_stage.h"
 
 enum { ACROSS = 24, DOWN = 12, SAMPLES = 128 };

@@ -16,7 +16,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "compiler/program.h"
+#include "compiler/scene/program.h"
 
 /* ---- the words of GLSL ---- */
 

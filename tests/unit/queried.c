@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 
 Scene scene_of(const char *text)
 {

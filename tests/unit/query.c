@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/unit/queried.h"
 
 static void arrays_are_answered_in_order(void **context)

@@ -23,7 +23,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/refute.h"
+#include "compiler/refute/refute.h"
 
 typedef struct Said {
     uint32_t line, count;

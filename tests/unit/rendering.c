@@ -12,7 +12,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/support/device.h"
 #include "tests/support/scarce.h"
 #include "tests/unit/tracer_stage.h"

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/unit/tracer_stage.h"
 
 enum { SAMPLES = 24 };

@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/search.h"
+#include "compiler/refute/search.h"
 
 #include "tests/support/bench.h"
 

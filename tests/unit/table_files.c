@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #include "compiler/base/text.h"
-#include "compiler/compiled.h"
+#include "compiler/scene/compiled.h"
 #include "compiler/target/spirv.h"
 #include "tests/support/folder.h"
 

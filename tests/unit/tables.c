@@ -1,5 +1,5 @@
 /*
- * tables.c: what kernels read of tables (compiler/tables.h) is what the compiler has: rows, cells, lists
+ * tables.c: what kernels read of tables (compiler/scene/tables.h) is what the compiler has: rows, cells, lists
  * and headers are read back in the way of kernels.
  */
 #include <math.h>
@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "compiler/base/far.h"
-#include "compiler/tables.h"
+#include "compiler/scene/tables.h"
 #include "tests/support/bench.h"
 
 /* Tables of so many rows and columns, the last one without bounds. */

@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/support/device.h"
 
 /* ---- Scenes ---- */

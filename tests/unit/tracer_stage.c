@@ -11,7 +11,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/support/device.h"
 
 #define assert_near(value, expected, within) assert_true(fabs((value) - (expected)) <= (within))

@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/support/random.h"
 #include "tests/support/same_scene.h"
 #include "tests/support/scarce.h"

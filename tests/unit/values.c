@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/compiled.h"
+#include "compiler/scene/compiled.h"
 #include "tests/support/random.h"
 
 /* ---- scenes, and the files that they read ---- */

@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/compile.h"
+#include "compiler/passes/compile.h"
 #include "tests/unit/queried.h"
 
 /* [low, high] of the ray within a ball (center, radius); false: it passes by. */

@@ -1,7 +1,7 @@
 /*
  * crowds.glsl: tables of parts that are alike but for numbers, and which members are near a point.
  *
- * The header of a table has 10 texels of krs_cells; compiler/tables.c writes them.
+ * The header of a table has 10 texels of krs_cells; compiler/scene/tables.c writes them.
  */
 
 // The header of a table.

@@ -2,7 +2,7 @@
  * textures.glsl: texels of krs_cells, between them bilinear, and levels as fine as pixels; the same
  * formulas as in graph/texture.c.
  *
- * compiler/tables.c writes the header of a texture, a texel, and the list of its levels behind it.
+ * compiler/scene/tables.c writes the header of a texture, a texel, and the list of its levels behind it.
  */
 
 KrsTexture krs_read_texture(uint header)

@@ -1,0 +1,233 @@
+/*
+ * passes.c: passes that consist of a few calls, each with the function that prints its result.
+ */
+#include <stdlib.h>
+
+#include "compiler/passes/compilation.h"
+#include "compiler/graph/crowd.h"
+#include "compiler/graph/hoist.h"
+#include "compiler/graph/joints.h"
+#include "compiler/lower/crowd.h"
+
+/* ---- the front end ---- */
+
+/* Reports a mistake of the scene as a whole, without lines of its text. */
+static KrsStatus refuse_scene(Compilation *c, DiagCode code, const char *message)
+{
+    uint32_t source = source_add(&c->sources, c->name, "", 0, false);
+    diag_add(&c->diags, code, (Span){source, 0, 0}, "%s", message);
+    return KRS_BAD_SCENE;
+}
+
+KrsStatus pass_load(Compilation *c)
+{
+    source_add(&c->sources, "", "", 0, true); /* source 0: no place */
+    if (!c->loaded.text)
+        c->loaded = loader_read_scene(c->loader, c->name);
+    if (c->loaded.outside)
+        return refuse_scene(c, DIAG_OUTSIDE_ROOT,
+                            "the scene is outside of the folder that scenes may read from");
+    if (!c->loaded.text && c->loaded.reason == source_no_memory)
+        return KRS_OUT_OF_MEMORY;
+    if (!c->loaded.text) {
+        const char *reason = c->loaded.reason ? c->loaded.reason : "unknown";
+        refuse_scene(c, DIAG_CANNOT_READ, diag_text(&c->diags, "cannot be read: %s", reason));
+        return KRS_IO_ERROR;
+    }
+    if (c->loaded.length > MOST_SOURCE_BYTES)
+        return refuse_scene(c, DIAG_LIMIT, "the file is longer than 16 MiB");
+    files_load(&c->files, c->name, c->loaded.text, c->loaded.length);
+    free(c->loaded.owned); /* `files` has a copy */
+    c->loaded = (Loaded){0};
+    return KRS_OK;
+}
+
+void print_load(Compilation *c, Text *out) { files_print_texts(&c->files, out); }
+
+/* Mistakes end the run only after the pass `names`, which may find more. */
+KrsStatus pass_lex(Compilation *c)
+{
+    files_lex(&c->files);
+    return KRS_OK;
+}
+
+void print_lex(Compilation *c, Text *out)
+{
+    tokens_print(&c->files.items[0]->tokens, &c->sources, out);
+}
+
+KrsStatus pass_parse(Compilation *c)
+{
+    files_parse(&c->files);
+    return KRS_OK;
+}
+
+void print_parse(Compilation *c, Text *out)
+{
+    syntax_print(c->files.items[0]->syntax, &c->sources, out);
+}
+
+KrsStatus pass_use(Compilation *c)
+{
+    files_load_used(&c->files);
+    return KRS_OK;
+}
+
+void print_use(Compilation *c, Text *out) { files_print_uses(&c->files, out); }
+
+KrsStatus pass_names(Compilation *c)
+{
+    const char *builtin[512];
+    size_t      count = builtin_names(builtin, sizeof builtin / sizeof *builtin);
+    files_check_names(&c->files, builtin, count);
+    return c->diags.errors ? KRS_BAD_SCENE : KRS_OK;
+}
+
+void print_names(Compilation *c, Text *out) { files_print_names(&c->files, out); }
+
+static bool hoists(const Compilation *c)
+{
+    return c->options->specialize == KRS_SPECIALIZE_STRUCTURE;
+}
+
+uint32_t least_crowd(const Compilation *c)
+{
+    return c->request->least_crowd ? c->request->least_crowd : LEAST_CROWD;
+}
+
+static void elaborate_with(Compilation *c, TurnTrials *turns)
+{
+    Graph *graph         = graph_new(&c->work);
+    c->elaborated        = (Scene){.graph = graph,
+                                   .sky   = {.zenith = NODE_NONE},
+                                   .zone  = NODE_NONE,
+                                   .fog   = {.color = NODE_NONE}};
+    ShapeBuilder builder = {.arena      = &c->work,
+                            .scratch    = &c->scratch,
+                            .diags      = &c->diags,
+                            .graph      = graph,
+                            .parameters = &c->elaborated.parameters,
+                            .slopes     = &c->elaborated.slopes};
+    Elaboration  e       = {.builder  = &builder,
+                            .arena    = &c->work,
+                            .values   = &c->values,
+                            .scratch  = &c->scratch,
+                            .diags    = &c->diags,
+                            .sources  = &c->sources,
+                            .files    = &c->files,
+                            .graph    = graph,
+                            .scene    = &c->elaborated,
+                            .loader   = c->loader,
+                            .turns    = turns,
+                            .studio   = c->options->studio,
+                            .figures  = c->options->figures,
+                            .beams    = c->options->beams,
+                            .outlines = c->options->outlines,
+                            .hoists   = hoists(c),
+                            .textures = {.arena = &c->scene->arena}};
+    elaborate(&e);
+    graph_drop_older(graph);
+}
+
+/* Where something asks for the numbers of single turns, all begins again, turn by turn. */
+KrsStatus pass_elaborate(Compilation *c)
+{
+    const Diags before = c->diags;
+    TurnTrials  turns  = {.least = least_crowd(c)};
+    elaborate_with(c, c->request->turn_by_turn ? NULL : &turns);
+    if (turns.refused) {
+        c->diags.count    = before.count;
+        c->diags.errors   = before.errors;
+        c->diags.warnings = before.warnings;
+        elaborate_with(c, NULL);
+    }
+    if (!c->request->inspect) {
+        arena_free(&c->syntax);
+        arena_free(&c->values);
+    }
+    return c->diags.errors ? KRS_BAD_SCENE : KRS_OK;
+}
+
+void print_elaborate(Compilation *c, Text *out) { scene_print(&c->elaborated, &c->sources, out); }
+
+/* ---- graph and GLSL ---- */
+
+/* Prints the roots of surfaces and the view only; those for the march would repeat much of them. */
+static void print_graph(const Compilation *c, const Graph *graph, Text *out)
+{
+    RootRange shown = roots_from(&c->scene->roots, ROOTS_SURFACE, ROOTS_SKY);
+    graph_print(graph, &c->sources, shown.items, shown.count, out);
+}
+
+void print_lower(Compilation *c, Text *out) { print_graph(c, c->elaborated.graph, out); }
+
+KrsStatus pass_simplify(Compilation *c)
+{
+    Roots *roots    = &c->scene->roots;
+    Graph *graph    = graph_simplify(c->elaborated.graph, roots->all, roots->first[ROOT_KINDS],
+                                     &c->scene->arena);
+    c->scene->graph = c->simplified = graph;
+    if (graph->crowds)
+        crowds_keep(graph->crowds, &c->scene->arena);
+    return KRS_OK;
+}
+
+/* Other roots may be the distance itself. */
+static bool prune_component(Compilation *c, size_t component)
+{
+    Roots     *roots = &c->scene->roots;
+    const Node old   = distance_root(roots, component);
+    const Box  box   = c->elaborated.components.items[component].shape->box;
+    Node new         = joints_prune(c->simplified, old, box, &c->scratch);
+    arena_free(&c->scratch);
+    for (size_t i = 0; new != old &&i < roots->first[ROOT_KINDS]; i++)
+        if (roots->all[i] == old)
+            roots->all[i] = new;
+    return new != old;
+}
+
+/* What is needed depends on numbers, so it stays where these are to be apart from the shaders. */
+KrsStatus pass_prune(Compilation *c)
+{
+    Roots *roots  = &c->scene->roots;
+    bool   pruned = false;
+    for (size_t i = 0; !hoists(c) && i < c->elaborated.components.count; i++)
+        pruned |= prune_component(c, i);
+    if (pruned)
+        c->scene->graph = graph_simplify(c->scene->graph, roots->all, roots->first[ROOT_KINDS],
+                                         &c->scene->arena);
+    return KRS_OK;
+}
+
+void print_prune(Compilation *c, Text *out) { print_graph(c, c->scene->graph, out); }
+
+void validate_pruned(const Compilation *c) { graph_validate(c->scene->graph, "prune"); }
+
+/* Only where numbers of the text are to be apart from the shaders. */
+KrsStatus pass_hoist(Compilation *c)
+{
+    Roots *roots = &c->scene->roots;
+    Arena *arena = &c->scene->arena;
+    if (!hoists(c))
+        return KRS_OK;
+    /* Apart from what is counted in the text, and then in the graph. */
+    const uint32_t of_graph = 1u << 30, of_boxes = 1u << 31;
+    Graph *graph = graph_hoist(c->scene->graph, roots->all, roots->first[ROOT_KINDS], of_graph,
+                               arena);
+    const size_t count = c->elaborated.components.count;
+    Box         *boxes = arena_new_array(&c->scratch, Box, count + 1);
+    for (size_t i = 0; i < count; i++)
+        boxes[i] = c->elaborated.components.items[i].shape->box;
+    c->mirror_nodes = module_hoist_mirrors(graph, arena);
+    c->box_nodes    = module_hoist_boxes(graph, boxes, count, of_boxes, arena);
+    c->scene->graph = graph;
+    return KRS_OK;
+}
+
+void print_hoist(Compilation *c, Text *out) { print_graph(c, c->scene->graph, out); }
+
+void validate_hoisted(const Compilation *c) { graph_validate(c->scene->graph, "hoist"); }
+
+void print_simplify(Compilation *c, Text *out) { print_graph(c, c->scene->graph, out); }
+
+void validate_simplified(const Compilation *c) { graph_validate(c->scene->graph, "simplify"); }

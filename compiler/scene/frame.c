@@ -1,0 +1,495 @@
+/*
+ * frame.c: frames: the values of parameters, time and zones, and the view that depends on them.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "compiler/base/vec.h"
+#include "compiler/scene/points.h"
+#include "compiler/scene/program.h"
+#include "compiler/shape/slope.h"
+
+/* Zeroed memory from the scene's allocator, or NULL. */
+static void *frame_alloc(const KrsScene *scene, size_t count, size_t size)
+{
+    const Memory *memory = &scene->memory;
+    size_t        bytes  = (count ? count : 1) * size;
+    void         *block  = memory->allocate ? memory->allocate(memory->user, bytes) : malloc(bytes);
+    if (block)
+        memset(block, 0, bytes);
+    return block;
+}
+
+static void frame_release(const KrsScene *scene, void *block)
+{
+    const Memory *memory = &scene->memory;
+    if (block && memory->allocate)
+        memory->release(memory->user, block);
+    else
+        free(block);
+}
+
+static size_t slope_workspace(const KrsScene *scene)
+{
+    size_t most = 0;
+    for (size_t i = 0; i < scene->slope_count; i++) {
+        size_t workspace = slope_task_size(&scene->slopes[i].task);
+        most             = workspace > most ? workspace : most;
+    }
+    return most;
+}
+
+bool tape_depends_on(const Tape *tape, uint32_t slot)
+{
+    for (size_t i = 0; i < tape->frame_count; i++) {
+        const Expr *e = &tape->graph->items[tape->nodes[i]];
+        if (e->op == OP_PARAMETER && (e->index == slot || slot == ANY_SLOT))
+            return true;
+    }
+    return false;
+}
+
+/* Computes the slopes and the floor that depend on a slot.  False, and `unbounded` is set, if one has no
+   bound. */
+static bool find_slopes(KrsFrame *frame, uint32_t changed)
+{
+    const double(*parameters)[4] = (const double(*)[4])frame->parameters;
+    frame->unbounded             = NULL;
+    for (size_t i = 0; i < frame->scene->slope_count; i++) {
+        const RetainedSlope *slope = &frame->scene->slopes[i];
+        if (!tape_depends_on(&slope->task.tape, changed))
+            continue;
+        double found = slope_task_run(&slope->task, parameters, frame->workspace, NULL);
+        found        = frame_slope_upward(found);
+        frame->parameters[slope->slot].v[0] = found;
+        if (!isfinite(found) && !frame->unbounded)
+            frame->unbounded = slope->place;
+    }
+    frame_find_floor(frame, changed);
+    return !frame->unbounded;
+}
+
+KrsStatus frame_new(const KrsScene *scene, KrsFrame **result)
+{
+    *result         = NULL;
+    KrsFrame *frame = frame_alloc(scene, 1, sizeof *frame);
+    if (!frame)
+        return KRS_OUT_OF_MEMORY;
+    frame->scene      = scene;
+    frame->parameters = frame_alloc(scene, scene->program.parameter_slots,
+                                    sizeof *frame->parameters);
+    frame->values     = frame_alloc(scene, scene->graph->count, sizeof *frame->values);
+    frame->lights     = frame_alloc(scene, scene->light_count, sizeof *frame->lights);
+    frame->lit        = frame_alloc(scene, scene->emissive_count, sizeof *frame->lit);
+    frame->workspace  = frame_alloc(scene, slope_workspace(scene), 1);
+    frame->boxes      = frame_alloc(scene, scene->boxes.shapes.count, sizeof *frame->boxes);
+    frame->sky        = frame_alloc(scene, scene->daylight ? DAYLIGHT_WIDTH * DAYLIGHT_HEIGHT : 0,
+                                    sizeof *frame->sky);
+    if (!frame->parameters || !frame->values || !frame->lights || !frame->workspace ||
+        !frame->boxes || !frame->sky || !frame->lit || !frame_tables_new(frame)) {
+        frame_free(frame);
+        return KRS_OUT_OF_MEMORY;
+    }
+    memcpy(frame->framed_eye, scene->framed_eye, sizeof frame->framed_eye);
+    memcpy(frame->framed_target, scene->framed_target, sizeof frame->framed_target);
+    for (size_t i = 0; i < scene->parameter_count; i++)
+        memcpy(frame->parameters[scene->parameters[i].slot].v, scene->parameters[i].value,
+               sizeof scene->parameters[i].value);
+    if (!find_slopes(frame, ANY_SLOT)) { /* a bug: the compiler refuses such scenes */
+        frame_free(frame);
+        return KRS_INTERNAL;
+    }
+    *result = frame;
+    return KRS_OK;
+}
+
+void frame_free(KrsFrame *frame)
+{
+    if (!frame)
+        return;
+    const KrsScene *scene = frame->scene;
+    frame_lanes_free(frame);
+    frame_tables_free(frame);
+    frame_release(scene, frame->parameters);
+    frame_release(scene, frame->values);
+    frame_release(scene, frame->lights);
+    frame_release(scene, frame->sky);
+    frame_release(scene, frame->lit);
+    frame_release(scene, frame->workspace);
+    frame_release(scene, frame->boxes);
+    frame_release(scene, frame);
+}
+
+KrsStatus frame_copy_of(const KrsFrame *frame, KrsFrame **copy)
+{
+    KrsStatus status = frame_new(frame->scene, copy);
+    if (status != KRS_OK)
+        return status;
+    memcpy((*copy)->parameters, frame->parameters,
+           frame->scene->program.parameter_slots * sizeof *frame->parameters);
+    memcpy((*copy)->framed_eye, frame->framed_eye, sizeof frame->framed_eye);
+    memcpy((*copy)->framed_target, frame->framed_target, sizeof frame->framed_target);
+    memcpy((*copy)->zones, frame->zones, sizeof frame->zones);
+    (*copy)->zone_count = frame->zone_count;
+    return KRS_OK;
+}
+
+void frame_refresh(KrsFrame *frame)
+{
+    if (frame->fresh)
+        return;
+    tape_run_frame(&frame->scene->frame, frame->parameters, frame->values);
+    frame->fresh = true;
+    frame_tables_change(frame);
+    frame_lanes_refresh(frame);
+}
+
+void frame_refresh_points(KrsFrame *frame)
+{
+    frame_refresh(frame);
+    frame_tables_refresh(frame);
+}
+
+Node frame_infinite(KrsFrame *frame)
+{
+    const KrsScene *scene = frame->scene;
+    RootRange       view  = roots_from(&scene->roots, ROOTS_CAMERA, ROOTS_SKY);
+    frame_refresh(frame);
+    for (size_t i = 0; i < view.count; i++)
+        if (!node_value_is_finite(scene->graph, view.items[i], frame->values))
+            return view.items[i];
+    Node found = tape_frame_infinite(&scene->surface, frame->values);
+    return found != NODE_NONE ? found : tape_frame_infinite(&scene->distance, frame->values);
+}
+
+/* Sets the values of a slot of the parameter block, unless the scene would not be finite. */
+static KrsStatus change_slot(KrsFrame *frame, uint32_t slot, const double *values, size_t count)
+{
+    NodeValue before = frame->parameters[slot];
+    if (memcmp(before.v, values, count * sizeof *values) == 0)
+        return KRS_OK; /* viewers set all parameters when one changes */
+    memcpy(frame->parameters[slot].v, values, count * sizeof *values);
+    frame->fresh = false;
+    if (find_slopes(frame, slot) && frame_infinite(frame) == NODE_NONE)
+        return KRS_OK;
+    const char *unbounded   = frame->unbounded;
+    frame->parameters[slot] = before;
+    frame->fresh            = false;
+    find_slopes(frame, slot);
+    frame->unbounded = unbounded;
+    return KRS_BAD_ARGUMENT;
+}
+
+KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values, size_t count)
+{
+    const KrsScene *scene = frame->scene;
+    frame->unbounded      = NULL;
+    if (!name || (!values && count > 0))
+        return KRS_BAD_ARGUMENT;
+    for (size_t i = 0; i < scene->parameter_count; i++) {
+        const Parameter *parameter = &scene->parameters[i];
+        if (strcmp(parameter->name, name) != 0)
+            continue;
+        if (count != parameter->components)
+            return KRS_BAD_ARGUMENT;
+        for (size_t k = 0; k < count; k++)
+            if (!isfinite(values[k]) || values[k] < parameter->low[k] ||
+                values[k] > parameter->high[k])
+                return KRS_BAD_ARGUMENT;
+        return change_slot(frame, parameter->slot, values, count);
+    }
+    return KRS_BAD_ARGUMENT;
+}
+
+const char *krs_frame_unbounded(const KrsFrame *frame) { return frame->unbounded; }
+
+KrsStatus krs_frame_set_time(KrsFrame *frame, double time)
+{
+    frame->unbounded = NULL;
+    return isfinite(time) ? change_slot(frame, 0, &time, 1) : KRS_BAD_ARGUMENT;
+}
+
+double krs_frame_time(const KrsFrame *frame) { return frame->parameters[0].v[0]; }
+
+/* Whether a parameter of a frame has another value than its default. */
+static bool is_set(const KrsFrame *frame, const Parameter *parameter)
+{
+    return memcmp(frame->parameters[parameter->slot].v, parameter->value,
+                  parameter->components * sizeof *parameter->value) != 0;
+}
+
+KrsStatus krs_frame_update(KrsFrame *frame, const KrsScene *scene)
+{
+    const KrsScene *old = frame->scene;
+    KrsFrame       *fresh;
+    KrsStatus       status = frame_new(scene, &fresh);
+    if (status != KRS_OK)
+        return status;
+    for (size_t i = 0; i < old->parameter_count; i++) {
+        const Parameter *from = &old->parameters[i];
+        if (is_set(frame, from))
+            krs_frame_set(fresh, from->name, frame->parameters[from->slot].v, from->components);
+    }
+    krs_frame_set_time(fresh, frame->parameters[0].v[0]);
+    krs_frame_set_zones(fresh, (const double(*)[4])frame->zones, frame->zone_count);
+    fresh->unbounded = NULL;
+    KrsFrame other   = *frame;
+    *frame           = *fresh;
+    *fresh           = other;
+    frame_count_operations(frame);
+    frame_free(fresh);
+    return KRS_OK;
+}
+
+/* Numbers are limited so that their squares are finite in single precision. */
+static bool zone_is_valid(const double zone[4])
+{
+    for (int k = 0; k < 4; k++)
+        if (!(fabs(zone[k]) <= KRS_MOST_COORDINATE))
+            return false;
+    return zone[3] >= 0;
+}
+
+KrsStatus krs_frame_set_zones(KrsFrame *frame, const double (*zones)[4], size_t count)
+{
+    if (count > KRS_MOST_ZONES || (!zones && count > 0))
+        return KRS_BAD_ARGUMENT;
+    for (size_t i = 0; i < count; i++)
+        if (!zone_is_valid(zones[i]))
+            return KRS_BAD_ARGUMENT;
+    if (count > 0)
+        memmove(frame->zones, zones, count * sizeof *zones);
+    frame->zone_count = count;
+    return KRS_OK;
+}
+
+size_t krs_frame_zones(const KrsFrame *frame, const double *rebase_origin, float (*zones)[4])
+{
+    static const double nowhere[3] = {0};
+    const double       *origin     = rebase_origin ? rebase_origin : nowhere;
+    for (size_t i = 0; i < frame->zone_count; i++) {
+        const double *zone = frame->zones[i];
+        for (int k = 0; k < 3; k++)
+            zones[i][k] = (float)(zone[k] - origin[k]);
+        zones[i][3] = (float)(zone[3] - (rebase_origin ? distance3(zone, origin) : 0));
+    }
+    return frame->zone_count;
+}
+
+/* The origin is the last slot of the parameter block. */
+void krs_frame_rebase(KrsFrame *frame, const double rebase_origin[3], float (*block)[4])
+{
+    const KrsScene *scene = frame->scene;
+    if (!scene->program.camera_relative)
+        return;
+    memcpy(frame->parameters[scene->program.parameter_slots - 1].v, rebase_origin,
+           3 * sizeof *rebase_origin);
+    frame_values_find(&scene->module.slots.camera_relative, frame->parameters, frame->values,
+                      block);
+}
+
+void krs_frame_values(const KrsFrame *frame, float (*block)[4])
+{
+    frame_values_find(&frame->scene->module.slots.plain, frame->parameters, frame->values, block);
+}
+
+void krs_frame_parameters(const KrsFrame *frame, float (*block)[4])
+{
+    for (uint32_t i = 0; i < frame->scene->program.parameter_slots; i++)
+        for (int k = 0; k < 4; k++)
+            block[i][k] = (float)frame->parameters[i].v[k];
+}
+
+void frame_copy(const KrsFrame *frame, Node node, double to[3])
+{
+    memcpy(to, frame->values[node].v, 3 * sizeof *to);
+}
+
+void vector_normalize(double v[3])
+{
+    double largest = largest3(v);
+    if (!(largest > 0))
+        return;
+    for (int i = 0; i < 3; i++)
+        v[i] /= largest;
+    double length = length3(v);
+    for (int i = 0; i < 3; i++)
+        v[i] /= length;
+}
+
+static void view_camera(const KrsFrame *frame, size_t index, KrsCamera *camera)
+{
+    const KrsScene    *scene = frame->scene;
+    const CameraRoots *roots = camera_roots(&scene->roots, index);
+    *camera                  = (KrsCamera){.projection = scene->cameras[index].projection,
+                                           .fov        = frame->values[roots->fov].v[0],
+                                           .height     = frame->values[roots->height].v[0]};
+    camera->aperture         = frame->values[roots->aperture].v[0];
+    camera->focus            = frame->values[roots->focus].v[0];
+    camera->blades           = scene->cameras[index].blades;
+    camera->eyes             = frame->values[roots->eyes].v[0];
+    memcpy(camera->shift, frame->values[roots->shift].v, sizeof camera->shift);
+    memcpy(camera->shutter, frame->values[roots->shutter].v, sizeof camera->shutter);
+    frame_copy(frame, roots->eye, camera->eye);
+    frame_copy(frame, roots->target, camera->target);
+    frame_copy(frame, roots->up, camera->up);
+    if (scene->framed && index == 0) {
+        memcpy(camera->eye, frame->framed_eye, sizeof camera->eye);
+        memcpy(camera->target, frame->framed_target, sizeof camera->target);
+    }
+}
+
+/* Where a light shines, and what is right of it and above it, with y up. */
+static void aim_light(const KrsFrame *frame, const LightRoots *roots, KrsLight *light)
+{
+    const double upright[3] = {0, 1, 0}, ahead[3] = {0, 0, -1}, down[3] = {0, -1, 0};
+    double       target[3], size[3];
+    frame_copy(frame, roots->target, target);
+    frame_copy(frame, roots->size, size);
+    for (int i = 0; i < 3; i++)
+        light->axis[i] = target[i] - light->vector[i];
+    if (!normalize3(light->axis))
+        memcpy(light->axis, down, sizeof light->axis);
+    cross3(fabs(light->axis[1]) < 0.999 ? upright : ahead, light->axis, light->right);
+    normalize3(light->right);
+    cross3(light->axis, light->right, light->up);
+    light->size[0] = size[0];
+    light->size[1] = size[1];
+    light->angle   = fmin(fmax(frame->values[roots->angle].v[0], 0), 2 * M_PI);
+    light->edge    = fmin(fmax(frame->values[roots->edge].v[0], 0), 1);
+}
+
+static void view_light(const KrsFrame *frame, size_t index, KrsLight *light)
+{
+    const SceneLight *from  = &frame->scene->lights[index];
+    const LightRoots *roots = light_roots(&frame->scene->roots, index);
+    *light                  = (KrsLight){.positional = from->positional,
+                                         .shadow     = from->shadow,
+                                         .rectangle  = from->rectangle,
+                                         .spot       = from->spot,
+                                         .softness   = frame->values[roots->softness].v[0]};
+    frame_copy(frame, roots->vector, light->vector);
+    frame_copy(frame, roots->color, light->color);
+    if (!light->positional)
+        vector_normalize(light->vector);
+    else if (light->rectangle || light->spot)
+        aim_light(frame, roots, light);
+}
+
+/* ---- daylight ---- */
+
+/* The sun, once lights are known. */
+static Daylight find_daylight(const KrsFrame *frame)
+{
+    const KrsScene *scene = frame->scene;
+    const SkyRoots *sky   = sky_roots(&scene->roots);
+    Daylight        light = {.rise      = frame->lights[scene->daylight_by].vector[1],
+                             .turbidity = frame->values[sky->turbidity].v[0]};
+    frame_copy(frame, sky->ground, light.ground);
+    return light;
+}
+
+/* Air takes light from the sun, unless its colour is given. */
+static void dim_sun(const KrsFrame *frame)
+{
+    const size_t   sun   = frame->scene->daylight_by;
+    const Daylight light = find_daylight(frame);
+    double         part[3];
+    if (frame->scene->lights[sun].colored)
+        return;
+    daylight_sun(&light, part);
+    for (int i = 0; i < 3; i++)
+        frame->lights[sun].color[i] *= part[i];
+}
+
+static bool make_sky(KrsFrame *frame, const Daylight *light)
+{
+    if (memcmp(&frame->sky_made, light, sizeof *light) == 0)
+        return true;
+    frame->sky_made = (Daylight){0};
+    if (!daylight_sky(light, frame->sky))
+        return false;
+    frame->sky_made = *light;
+    frame->sky_map = (KrsSkyMap){DAYLIGHT_WIDTH, DAYLIGHT_HEIGHT, 0, (const float(*)[3])frame->sky};
+    frame->sky_map.version = sky_map_version(&frame->sky_map);
+    return true;
+}
+
+/* The sun is in the middle of the map, so that the map does not depend on where it is round about. */
+static KrsStatus view_daylight(KrsFrame *frame, KrsView *view)
+{
+    const size_t    sun   = frame->scene->daylight_by;
+    const Daylight  light = find_daylight(frame);
+    const KrsLight *day   = &frame->lights[sun];
+    if (!make_sky(frame, &light))
+        return KRS_OUT_OF_MEMORY;
+    view->sky.map      = &frame->sky_map;
+    view->sky.rotation = -atan2(day->vector[0], -day->vector[2]);
+    view->sky.intensity *= frame->values[light_roots(&frame->scene->roots, sun)->intensity].v[0];
+    return KRS_OK;
+}
+
+KrsImage krs_scene_image(const KrsScene *scene)
+{
+    const SceneImage *image = &scene->image;
+    return (KrsImage){.width         = image->width,
+                      .height        = image->height,
+                      .samples       = image->samples,
+                      .bounces       = image->bounces,
+                      .integrator    = image->integrator,
+                      .exposure      = image->exposure,
+                      .tone_map      = image->tone_map,
+                      .error         = image->error,
+                      .noise         = image->noise,
+                      .pixel_filter  = image->pixel_filter,
+                      .white_balance = {image->white_balance[0], image->white_balance[1]}};
+}
+
+KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view)
+{
+    const KrsScene *scene = frame->scene;
+    const SkyRoots *sky   = sky_roots(&scene->roots);
+    if (camera >= scene->camera_count)
+        return KRS_BAD_ARGUMENT;
+    frame_refresh(frame);
+    *view = (KrsView){.light_count = scene->light_count, .lights = frame->lights};
+    view_camera(frame, camera, &view->camera);
+    frame_copy(frame, sky->zenith, view->sky.zenith);
+    frame_copy(frame, sky->horizon, view->sky.horizon);
+    frame_copy(frame, sky->ground, view->sky.ground);
+    view->sky.map       = scene->sky_map;
+    view->sky.rotation  = frame->values[sky->rotation].v[0];
+    view->sky.intensity = frame->values[sky->intensity].v[0];
+    frame_copy(frame, sky->fog_color, view->fog.color);
+    view->fog.density = frame->values[sky->fog_density].v[0];
+    view->fog.fall    = frame->values[sky->fog_fall].v[0];
+    view->fog.base    = frame->values[sky->fog_base].v[0];
+    for (size_t i = 0; i < scene->light_count; i++)
+        view_light(frame, i, &frame->lights[i]);
+    if (scene->daylight)
+        dim_sun(frame);
+    view->image = krs_scene_image(scene);
+    return KRS_OK;
+}
+
+/* ---- the functions of krs.h and compiled.h ---- */
+
+KrsStatus krs_frame_new(const KrsScene *scene, KrsFrame **frame) { return frame_new(scene, frame); }
+
+void krs_frame_free(KrsFrame *frame) { frame_free(frame); }
+
+KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view)
+{
+    KrsStatus status = frame_view(frame, camera, view);
+    return status == KRS_OK && frame->scene->daylight ? view_daylight(frame, view) : status;
+}
+
+KrsStatus krs_frame_camera(KrsFrame *frame, size_t index, KrsCamera *camera)
+{
+    if (index >= frame->scene->camera_count)
+        return KRS_BAD_ARGUMENT;
+    frame_refresh(frame);
+    view_camera(frame, index, camera);
+    return KRS_OK;
+}

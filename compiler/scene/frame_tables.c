@@ -1,0 +1,196 @@
+/*
+ * frame_tables.c: the tables of crowds in a frame.  Where members move, a frame has tables and a graph of
+ * its own, which its tapes read; nodes are those of the scene.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "compiler/graph/crowd_frame.h"
+#include "compiler/scene/program.h"
+#include "compiler/scene/tables.h"
+
+struct FrameTables {
+    Memory  memory;
+    Arena   arena;          /* of all but grids */
+    Arena   grids, scratch; /* freed for each frame */
+    Graph   graph;          /* that of the scene with tables of the frame */
+    Crowds *crowds;
+    bool    found; /* they are those of the values */
+};
+
+/* ---- tapes ---- */
+
+/* A tape of the scene over the tables of the frame; so are those of functions that it calls. */
+static Tape tape_of_frame(const Tape *tape, struct FrameTables *tables)
+{
+    Tape  copy      = *tape;
+    Tape *functions = arena_new_array(&tables->arena, Tape, tape->function_count + 1);
+    copy.graph      = &tables->graph;
+    copy.functions  = functions;
+    for (uint32_t i = 0; i < tape->function_count; i++) {
+        functions[i]           = tape->functions[i];
+        functions[i].graph     = functions[i].graph ? &tables->graph : NULL; /* not called */
+        functions[i].functions = functions;
+    }
+    return copy;
+}
+
+void frame_count_operations(KrsFrame *frame)
+{
+    FrameTapes *tapes   = &frame->tapes;
+    tapes->distance.ran = tapes->guarded.ran = tapes->ahead.ran = &frame->ran;
+    tapes->turned.ran = tapes->surface.ran = tapes->places.ran = &frame->ran;
+}
+
+static void make_tables(KrsFrame *frame, struct FrameTables *tables)
+{
+    const KrsScene *scene    = frame->scene;
+    Tape           *copies[] = {&frame->tapes.distance, &frame->tapes.guarded, &frame->tapes.ahead,
+                                &frame->tapes.turned,   &frame->tapes.surface, &frame->tapes.places};
+    const Tape     *tapes[]  = {&scene->distance, &scene->guarded, &scene->ahead,
+                                &scene->turned,   &scene->surface, &scene->places};
+    tables->graph            = *scene->graph;
+    tables->crowds           = crowds_for_frames(scene->graph->crowds, &tables->arena);
+    tables->graph.crowds     = tables->crowds;
+    for (size_t i = 0; i < sizeof tapes / sizeof *tapes; i++)
+        *copies[i] = tape_of_frame(tapes[i], tables);
+}
+
+static void *allocate(const Memory *memory, size_t size)
+{
+    return memory->allocate ? memory->allocate(memory->user, size) : malloc(size);
+}
+
+static void release(const Memory *memory, void *block)
+{
+    if (memory->allocate)
+        memory->release(memory->user, block);
+    else
+        free(block);
+}
+
+bool frame_tables_new(KrsFrame *frame)
+{
+    const KrsScene *scene = frame->scene;
+    frame->tapes          = (FrameTapes){scene->distance, scene->guarded, scene->ahead,
+                                         scene->turned,   scene->surface, scene->places};
+    frame_count_operations(frame);
+    if (!crowds_move(scene->graph->crowds))
+        return true;
+    struct FrameTables *tables = allocate(&scene->memory, sizeof *tables);
+    if (!tables)
+        return false;
+    *tables       = (struct FrameTables){.memory = {.allocate = scene->memory.allocate,
+                                                    .release  = scene->memory.release,
+                                                    .user     = scene->memory.user}};
+    tables->arena = tables->grids = tables->scratch = (Arena){.memory = &tables->memory};
+    frame->tables                                   = tables;
+    jmp_buf exhausted;
+    tables->memory.exhausted = &exhausted;
+    if (setjmp(exhausted) != 0)
+        return false;
+    make_tables(frame, tables);
+    frame_count_operations(frame);
+    tables->memory.exhausted = NULL;
+    return true;
+}
+
+void frame_tables_free(KrsFrame *frame)
+{
+    struct FrameTables *tables = frame->tables;
+    if (!tables)
+        return;
+    arena_free(&tables->arena);
+    arena_free(&tables->grids);
+    arena_free(&tables->scratch);
+    release(&frame->scene->memory, tables);
+    frame->tables = NULL;
+}
+
+/* ---- grids ---- */
+
+void frame_tables_change(KrsFrame *frame)
+{
+    if (frame->tables)
+        frame->tables->found = false;
+}
+
+/* Where memory runs out the grids are those for all frames, which are right in each. */
+static void find_grids(struct FrameTables *tables, const Crowds *of_scene, const NodeValue *values)
+{
+    jmp_buf exhausted;
+    arena_clear(&tables->grids);
+    tables->memory.exhausted = &exhausted;
+    if (setjmp(exhausted) == 0)
+        crowds_enter_frame(tables->crowds, values, &tables->grids, &tables->scratch);
+    else
+        memcpy(tables->crowds->tables.items, of_scene->tables.items,
+               of_scene->tables.count * sizeof *of_scene->tables.items);
+    tables->memory.exhausted = NULL;
+    arena_clear(&tables->scratch);
+}
+
+void frame_tables_refresh(const KrsFrame *frame)
+{
+    struct FrameTables *tables = frame->tables;
+    const KrsScene     *scene  = frame->scene;
+    if (!tables || tables->found)
+        return;
+    if (!frame->fresh)
+        tape_run_frame(&scene->rows, frame->parameters, frame->values);
+    find_grids(tables, scene->graph->crowds, frame->values);
+    tables->found = true;
+}
+
+/* ---- as kernels read them ---- */
+
+/* The origin is the last slot of the parameter block. */
+static bool is_origin(const KrsScene *scene, uint32_t slot)
+{
+    return scene->program.camera_relative && slot == scene->program.parameter_slots - 1;
+}
+
+void krs_frame_tables_in_use(const KrsFrame *frame, const double *rebase_origin, float (*rows)[4],
+                             uint32_t (*cells)[2], size_t *row_count, size_t *cell_count)
+{
+    const KrsScene *scene  = frame->scene;
+    const Crowds   *crowds = frame->tables ? frame->tables->crowds : scene->graph->crowds;
+    if (rebase_origin)
+        memcpy(frame->parameters[scene->program.parameter_slots - 1].v, rebase_origin,
+               3 * sizeof *rebase_origin);
+    if (!frame->fresh || rebase_origin)
+        tape_run_frame(&scene->rows, frame->parameters, frame->values);
+    frame_tables_refresh(frame);
+    TableSizes used = tables_pack(crowds, scene->graph->textures, frame->values,
+                                  rebase_origin != NULL, rows, cells);
+    *row_count      = used.rows;
+    *cell_count     = used.cells;
+}
+
+void krs_frame_tables(const KrsFrame *frame, float (*rows)[4], uint32_t (*cells)[2])
+{
+    const KrsProgram *program = &frame->scene->program;
+    size_t            row_count, cell_count;
+    if (program->table_cells == 0)
+        return;
+    if (frame->tables)
+        memset(cells, 0, program->table_cells * sizeof *cells);
+    krs_frame_tables_in_use(frame, NULL, rows, cells, &row_count, &cell_count);
+    memset(rows + row_count, 0, (program->table_rows - row_count) * sizeof *rows);
+}
+
+void krs_frame_table_inputs(const KrsFrame *frame, const double *rebase_origin, double (*inputs)[4])
+{
+    const KrsScene *scene = frame->scene;
+    const Tape     *rows  = &scene->rows;
+    memset(inputs, 0, scene->program.parameter_slots * sizeof *inputs);
+    for (size_t i = 0; i < rows->frame_count; i++) {
+        const Expr *e = &rows->graph->items[rows->nodes[i]];
+        if (e->op != OP_PARAMETER)
+            continue;
+        if (!is_origin(scene, e->index))
+            memcpy(inputs[e->index], frame->parameters[e->index].v, sizeof *inputs);
+        else if (rebase_origin)
+            memcpy(inputs[e->index], rebase_origin, 3 * sizeof *rebase_origin);
+    }
+}

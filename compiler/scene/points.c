@@ -1,0 +1,305 @@
+/*
+ * points.c: queries in many points at once, by lane tapes and on all processors.
+ */
+#include "compiler/scene/points.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "compiler/base/parallel.h"
+#include "compiler/base/vec.h"
+#include "compiler/graph/lanes.h"
+
+/* Of one frame. */
+struct FrameLanes {
+    Memory   memory;
+    Arena    arena;
+    Tape     bound; /* the scene's tape of distances, where crowds have the list of one cell */
+    LaneTape distance, surface;
+    size_t  *surface_outputs; /* the first one of each component */
+    LaneWork distance_work, surface_work;
+};
+
+static LaneWork new_work(struct FrameLanes *lanes, const LaneTape *tape, NodeValue *values)
+{
+    return lane_work_in(arena_alloc(&lanes->arena, lane_work_bytes(tape), 1), values);
+}
+
+static void room_for_scalars(struct FrameLanes *lanes, LaneTape *tape)
+{
+    tape->scalars = arena_new_array(&lanes->arena, double, tape->scalar_count + 1);
+}
+
+/* The distances of all components, and the zones, whose least is output 0. */
+static void make_distance(struct FrameLanes *lanes, KrsFrame *frame)
+{
+    const KrsScene *scene = frame->scene;
+    size_t          count = scene->component_count;
+    Node            zone  = zone_root(scene);
+    Node           *roots = arena_new_array(&lanes->arena, Node, count + 1);
+    for (size_t i = 0; i < count; i++)
+        roots[i] = distance_root(&scene->roots, i);
+    roots[count]          = zone;
+    size_t cuts           = zone != NODE_NONE;
+    lanes->distance       = lane_tape_new(&frame->tapes.distance, roots, count + cuts, true, cuts,
+                                          &lanes->arena);
+    lanes->bound          = frame->tapes.distance;
+    lanes->bound.by_cells = true;
+    room_for_scalars(lanes, &lanes->distance);
+    lanes->distance_work = new_work(lanes, &lanes->distance, frame->values);
+}
+
+static uint32_t outputs_of(const KrsScene *scene, Node root)
+{
+    GraphType type = (GraphType)scene->graph->items[root].type;
+    return type <= TYPE_VEC4 ? (uint32_t)type : 1;
+}
+
+static void make_surface(struct FrameLanes *lanes, KrsFrame *frame)
+{
+    const KrsScene *scene = frame->scene;
+    size_t          count = scene->component_count, outputs = 0;
+    Node           *roots  = arena_new_array(&lanes->arena, Node, count * ROOT_COUNT + 1);
+    lanes->surface_outputs = arena_new_array(&lanes->arena, size_t, count + 1);
+    for (size_t i = 0; i < count; i++) {
+        const Node *of            = surface_roots(&scene->roots, i);
+        lanes->surface_outputs[i] = outputs;
+        for (size_t k = 0; k < ROOT_COUNT; k++) {
+            roots[i * ROOT_COUNT + k] = of[k];
+            outputs += outputs_of(scene, of[k]);
+        }
+    }
+    lanes->surface = lane_tape_new(&frame->tapes.surface, roots, count * ROOT_COUNT, false, 0,
+                                   &lanes->arena);
+    room_for_scalars(lanes, &lanes->surface);
+    lanes->surface_work = new_work(lanes, &lanes->surface, frame->values);
+}
+
+void frame_lanes_refresh(KrsFrame *frame)
+{
+    if (!frame->lanes)
+        return;
+    lane_tape_scalars(&frame->lanes->distance, frame->values, frame->lanes->distance.scalars);
+    lane_tape_scalars(&frame->lanes->surface, frame->values, frame->lanes->surface.scalars);
+}
+
+bool frame_lanes(KrsFrame *frame)
+{
+    const Memory *from = &frame->scene->memory;
+    if (frame->lanes)
+        return true;
+    struct FrameLanes *lanes = from->allocate ? from->allocate(from->user, sizeof *lanes)
+                                              : malloc(sizeof *lanes);
+    if (!lanes)
+        return false;
+    *lanes = (struct FrameLanes){
+        .memory = {.allocate = from->allocate, .release = from->release, .user = from->user}};
+    lanes->arena = (Arena){.memory = &lanes->memory};
+    frame->lanes = lanes;
+    jmp_buf exhausted;
+    lanes->memory.exhausted = &exhausted;
+    if (setjmp(exhausted) != 0) {
+        frame_lanes_free(frame);
+        return false;
+    }
+    make_distance(frame->lanes, frame);
+    make_surface(frame->lanes, frame);
+    frame->lanes->memory.exhausted = NULL;
+    frame_lanes_refresh(frame);
+    return true;
+}
+
+void frame_lanes_free(KrsFrame *frame)
+{
+    const Memory *from = &frame->scene->memory;
+    if (!frame->lanes)
+        return;
+    arena_free(&frame->lanes->arena);
+    if (from->allocate)
+        from->release(from->user, frame->lanes);
+    else
+        free(frame->lanes);
+    frame->lanes = NULL;
+}
+
+/* ---- zones of the caller ---- */
+
+static double cut_by_zones(const KrsFrame *frame, const double point[3], double least)
+{
+    double depth = -INFINITY;
+    for (size_t i = 0; i < frame->zone_count; i++)
+        depth = fmax(depth, frame->zones[i][3] - distance3(point, frame->zones[i]));
+    return least < depth ? depth : least;
+}
+
+/* ---- many processors ---- */
+
+/* From so many steps of single points on, threads are worth their making. */
+#define STEPS_FOR_THREADS 4e6
+
+/* Points that are dealt out; what each part needs to run its own. */
+typedef struct Deal {
+    const KrsFrame *frame;
+    const LaneTape *tape;
+    const double (*points)[3];
+    size_t    count;
+    double   *distances;
+    LaneWork *works;
+} Deal;
+
+static void deal_part(void *task, size_t part, size_t parts)
+{
+    const Deal *deal  = task;
+    size_t      begin = part_begin(deal->count, part, parts);
+    size_t      end   = part_begin(deal->count, part + 1, parts);
+    lane_run(deal->tape, &deal->works[part], LANE_DOUBLE,
+             (LanePoints){.points = deal->points + begin, .count = end - begin}, 0, 1,
+             deal->distances + begin);
+    for (size_t i = begin; i < end && deal->frame->zone_count > 0; i++)
+        deal->distances[i] = cut_by_zones(deal->frame, deal->points[i], deal->distances[i]);
+}
+
+/* Rows and, where it reads tables, values of the frame, for each part but the first. */
+static void give_works(struct FrameLanes *lanes, const KrsFrame *frame, LaneWork *works)
+{
+    size_t parts = parallel_parts(), count = frame->scene->graph->count;
+    for (size_t i = 1; i < parts; i++) {
+        NodeValue *values = NULL;
+        if (lanes->distance.reads_tables) {
+            values = arena_new_array(&lanes->arena, NodeValue, count);
+            memcpy(values, frame->values, count * sizeof *values);
+        }
+        works[i] = new_work(lanes, &lanes->distance, values);
+    }
+}
+
+static bool worth_threads(const Deal *deal)
+{
+    return (double)deal->count * (double)(deal->tape->count + 1) >= STEPS_FOR_THREADS;
+}
+
+static bool deal_out(struct FrameLanes *lanes, Deal *deal)
+{
+    const ArenaMark mark = arena_mark(&lanes->arena);
+    volatile bool   done = false; /* it lives through a jump */
+    jmp_buf         exhausted;
+    lanes->memory.exhausted = &exhausted;
+    if (setjmp(exhausted) == 0) {
+        give_works(lanes, deal->frame, deal->works);
+        run_in_parallel(deal_part, deal);
+        done = true;
+    }
+    lanes->memory.exhausted = NULL;
+    arena_rewind(&lanes->arena, mark);
+    return done;
+}
+
+/* ---- distances and normals ---- */
+
+KrsStatus points_distances(KrsFrame *frame, const double (*points)[3], size_t count, bool bound,
+                           double *distances)
+{
+    LaneWork works[MOST_PARTS];
+    if (!frame_lanes(frame))
+        return KRS_OUT_OF_MEMORY;
+    LaneTape tape = frame->lanes->distance;
+    if (bound)
+        tape.tape = &frame->lanes->bound;
+    works[0]  = frame->lanes->distance_work;
+    Deal deal = {frame, &tape, points, count, distances, works};
+    if (!worth_threads(&deal))
+        deal_part(&deal, 0, 1);
+    else if (!deal_out(frame->lanes, &deal))
+        return KRS_OUT_OF_MEMORY;
+    return KRS_OK;
+}
+
+enum { BESIDE = 6, AT_ONCE = 1024 };
+
+/* Where a normal needs distances: behind and before the point along each axis. */
+static double place_beside(const double point[3], double (*to)[3])
+{
+    double step = 1e-6 * (1 + largest3(point));
+    for (int k = 0; k < BESIDE; k++) {
+        memcpy(to[k], point, 3 * sizeof *point);
+        to[k][k / 2] += k % 2 ? step : -step;
+    }
+    return step;
+}
+
+static void normal_of_differences(const double *beside, double step, double normal[3])
+{
+    for (int k = 0; k < 3; k++)
+        normal[k] = beside[2 * k + 1] - beside[2 * k];
+    double length = length3(normal);
+    for (int k = 0; k < 3; k++)
+        normal[k] = length > 1e-3 * step ? normal[k] / length : 0;
+}
+
+KrsStatus points_normals(KrsFrame *frame, const double (*points)[3], size_t count,
+                         double (*normals)[3])
+{
+    double    places[AT_ONCE * BESIDE][3], found[AT_ONCE * BESIDE], steps[AT_ONCE];
+    KrsStatus status = KRS_OK;
+    for (size_t begin = 0; begin < count && status == KRS_OK; begin += AT_ONCE) {
+        size_t now = count - begin < AT_ONCE ? count - begin : AT_ONCE;
+        for (size_t i = 0; i < now; i++)
+            steps[i] = place_beside(points[begin + i], &places[i * BESIDE]);
+        status = points_distances(frame, (const double(*)[3])places, now * BESIDE, false, found);
+        for (size_t i = 0; i < now && status == KRS_OK; i++)
+            normal_of_differences(&found[i * BESIDE], steps[i], normals[begin + i]);
+    }
+    return status;
+}
+
+/* ---- surfaces ---- */
+
+static double output_of(const LaneTape *tape, const LaneWork *work, size_t output, size_t lane)
+{
+    uint32_t row = tape->output_rows[output];
+    if (row & LANE_SCALAR)
+        return tape->scalars[row & ~LANE_SCALAR];
+    return ((const double *)work->rows)[(size_t)row * LANES + lane];
+}
+
+/* As distance_by of query.c: behind output 0 are the distances of the components. */
+static uint32_t nearest_component(const KrsFrame *frame, size_t lane)
+{
+    const struct FrameLanes *lanes   = frame->lanes;
+    double                   least   = INFINITY;
+    uint32_t                 nearest = 0;
+    for (size_t i = 0; i < frame->scene->component_count; i++) {
+        double distance = output_of(&lanes->distance, &lanes->distance_work, 1 + i, lane);
+        if (distance < least || i == 0) {
+            least   = distance;
+            nearest = (uint32_t)i + 1;
+        }
+    }
+    return nearest;
+}
+
+void points_look(KrsFrame *frame, const double (*points)[3], const double (*normals)[3],
+                 size_t count, double *distances, uint32_t *nearest)
+{
+    struct FrameLanes *lanes = frame->lanes;
+    LanePoints         all   = {.points = points, .normals = normals, .count = count};
+    lane_run(&lanes->distance, &lanes->distance_work, LANE_DOUBLE, all, 0, 1, distances);
+    for (size_t i = 0; i < count; i++) {
+        distances[i] = cut_by_zones(frame, points[i], distances[i]);
+        nearest[i]   = nearest_component(frame, i);
+    }
+    lane_run(&lanes->surface, &lanes->surface_work, LANE_DOUBLE, all, 0, 0, NULL);
+}
+
+void points_surface(KrsFrame *frame, size_t point, uint32_t nearest)
+{
+    const KrsScene          *scene  = frame->scene;
+    const struct FrameLanes *lanes  = frame->lanes;
+    const Node              *roots  = surface_roots(&scene->roots, nearest - 1);
+    size_t                   output = lanes->surface_outputs[nearest - 1];
+    for (size_t k = 0; k < ROOT_COUNT; k++)
+        for (uint32_t c = 0; c < outputs_of(scene, roots[k]); c++)
+            frame->values[roots[k]].v[c] = output_of(&lanes->surface, &lanes->surface_work,
+                                                     output++, point);
+}

@@ -1,0 +1,293 @@
+/*
+ * program.h: a compiled scene: made by the passes, used by program.c, frame.c and query.c.
+ */
+#ifndef KRS_PROGRAM_H
+#define KRS_PROGRAM_H
+
+#include "compiler/scene/bounds.h"
+#include "compiler/scene/compiled.h"
+#include "compiler/scene/assembly.h"
+#include "compiler/scene/daylight.h"
+#include "compiler/scene/emissive.h"
+#include "compiler/lower/lower.h"
+#include "compiler/shape/scene.h"
+#include "compiler/graph/evaluate.h"
+#include "compiler/print/module.h"
+
+/*
+ * Kinds of roots of the graph.  All roots are in one array, ordered by kind, so that they are
+ * simplified together.
+ */
+typedef enum RootKind {
+    ROOTS_SURFACE, /* for each component an array that is indexed by ComponentRoot */
+    ROOTS_ZONE,    /* the depth in the zones; none if there are no zones */
+    ROOTS_CAMERA,  /* CameraRoots of each camera */
+    ROOTS_LIGHT,   /* LightRoots of each light */
+    ROOTS_SKY,     /* SkyRoots, with fog */
+    /* The kinds from here on are for the march, gradients and slopes only. */
+    ROOTS_GUARDED,         /* for each component: lower_guarded */
+    ROOTS_ALONG,           /* for each method, for each component: lower_along */
+    ROOTS_PLANE,           /* PlaneRoots of the nearest half-space */
+    ROOTS_GRADIENT,        /* GradientRoots of each component, then of all zones */
+    ROOTS_SLOPE,           /* each slope that is computed per frame */
+    ROOTS_BOX,             /* numbers by which boxes of a frame are found */
+    ROOTS_ASSEMBLY,        /* what the assembly's items refer to */
+    ROOTS_PLACE,           /* for meshes: where each component reads its texture; FLOAT: nowhere */
+    ROOTS_CAMERA_RELATIVE, /* surfaces, plane and zones again for camera-relative points, or none */
+    ROOT_KINDS
+} RootKind;
+
+typedef struct CameraRoots {
+    Node eye, target, up, fov, height, aperture, focus, shift, shutter, eyes;
+} CameraRoots;
+typedef struct LightRoots {
+    Node vector, color, softness, target, angle, edge, size, intensity;
+} LightRoots;
+typedef struct SkyRoots {
+    Node zenith, horizon, ground, rotation, intensity, turbidity;
+    Node fog_color, fog_density, fog_fall, fog_base;
+} SkyRoots;
+typedef struct PlaneRoots {
+    Node step, cosine; /* length of the ray up to the plane; dot product of normal and direction */
+} PlaneRoots;
+typedef struct GradientRoots {
+    Node gradient, near; /* results of lower_gradient; without one both are the distance */
+} GradientRoots;
+
+/* The number of nodes in such a struct of roots. */
+#define NODES_OF(type) (sizeof(type) / sizeof(Node))
+
+typedef struct Roots {
+    Node  *all;
+    size_t first[ROOT_KINDS + 1]; /* index where each kind begins; the last is the total number */
+} Roots;
+
+/* A range of consecutive roots. */
+typedef struct RootRange {
+    Node  *items;
+    size_t count;
+} RootRange;
+
+static inline RootRange roots_from(const Roots *roots, RootKind first, RootKind last)
+{
+    return (RootRange){roots->all + roots->first[first],
+                       roots->first[last + 1] - roots->first[first]};
+}
+
+static inline RootRange roots_of(const Roots *roots, RootKind kind)
+{
+    return roots_from(roots, kind, kind);
+}
+
+/* The roots of a component, to be indexed by ComponentRoot. */
+static inline Node *surface_roots(const Roots *roots, size_t component)
+{
+    return roots_of(roots, ROOTS_SURFACE).items + component * ROOT_COUNT;
+}
+
+static inline Node distance_root(const Roots *roots, size_t component)
+{
+    return surface_roots(roots, component)[ROOT_DISTANCE];
+}
+
+/* The root of each component for one method of lower_along. */
+static inline Node *along_roots(const Roots *roots, AlongMethod method)
+{
+    RootRange along = roots_of(roots, ROOTS_ALONG);
+    return along.items + method * (along.count / ALONG_COUNT);
+}
+
+static inline CameraRoots *camera_roots(const Roots *roots, size_t camera)
+{
+    return (CameraRoots *)roots_of(roots, ROOTS_CAMERA).items + camera;
+}
+
+static inline LightRoots *light_roots(const Roots *roots, size_t light)
+{
+    return (LightRoots *)roots_of(roots, ROOTS_LIGHT).items + light;
+}
+
+static inline SkyRoots *sky_roots(const Roots *roots)
+{
+    return (SkyRoots *)roots_of(roots, ROOTS_SKY).items;
+}
+
+static inline PlaneRoots *plane_roots(const Roots *roots)
+{
+    return (PlaneRoots *)roots_of(roots, ROOTS_PLANE).items;
+}
+
+/* Those of a component; with the number of components, those of all zones. */
+static inline GradientRoots *gradient_roots(const Roots *roots, size_t component)
+{
+    return (GradientRoots *)roots_of(roots, ROOTS_GRADIENT).items + component;
+}
+
+/* A slope that is computed per frame (shape/slope.c). */
+typedef struct RetainedSlope {
+    uint32_t    slot;
+    SlopeTask   task;
+    const char *place; /* "scene.krs:3:14" */
+} RetainedSlope;
+
+/* Where something is in the texts of the scene. */
+typedef struct RetainedPlace {
+    const char *source; /* name of the text */
+    Position    position;
+} RetainedPlace;
+
+struct KrsScene {
+    Memory           memory;
+    Arena            arena;   /* of all that is below: graph, names, program */
+    const char      *name;    /* as it was compiled, */
+    KrsOptions       options; /* and how: for krs_scene_update */
+    KrsProgram       program;
+    const Graph     *graph;
+    Module           module; /* what text is printed from */
+    Roots            roots;
+    size_t           component_count, shown_count, camera_count, light_count;
+    size_t           zone_count; /* zones that the scene declares; they share one root */
+    KrsComponent    *components; /* all that are shown */
+    size_t          *lowered;    /* of each of these: its index among those that are lowered, */
+    size_t          *rank;       /* and krs_joined_rank */
+    KrsBounds       *bounds;     /* of each component */
+    Assembly         assembly;   /* nothing unless the options ask for it */
+    RetainedSlope   *slopes;     /* slopes that are computed per frame */
+    size_t           slope_count;
+    FrameBoxes       boxes; /* of shown components in a frame, */
+    FrameFloor       floor; /* and what stands below them */
+    Tape             box_numbers;
+    EmissivePart    *emissive;
+    size_t           emissive_count;
+    Parameter       *parameters;
+    RetainedPlace   *parameter_places; /* of their names */
+    RetainedPlace   *camera_places;    /* of their blocks */
+    size_t           parameter_count;
+    size_t           material_count;
+    const char     **materials; /* names; the numbers of surfaces count from 1 */
+    SceneCamera     *cameras;   /* for their values use the roots, not the nodes in here */
+    SceneLight      *lights;
+    const KrsSkyMap *sky_map; /* NULL: the sky is colours, or daylight, */
+    bool             daylight;
+    size_t           daylight_by; /* which is that of this light */
+    bool             framed;      /* the scene has no camera, and framing.c has placed one: */
+    double           framed_eye[3], framed_target[3];
+    SceneImage       image;
+    char             hash[17];
+    Tape             distance; /* distances of all components, and zones */
+    Tape             guarded;  /* distances with guards (ROOTS_GUARDED) of all components, and
+    zones */
+    Tape             ahead;    /* if there are sheets: ALONG_EXACT of all components, and zones */
+    Tape             turned;   /* if there are sheets: gradients of all components */
+    Tape             surface;  /* all roots of all components, and zones */
+    Tape             places;   /* ROOTS_PLACE; empty if nobody asks for meshes */
+    Tape             view;     /* cameras, lights and sky */
+    Tape             rows;     /* numbers of tables that depend on the frame */
+    Tape             frame;    /* of all these, what does not depend on points */
+};
+
+/* Those tapes of the scene that read tables, over the tables of a frame where these are its own. */
+typedef struct FrameTapes {
+    Tape distance, guarded, ahead, turned, surface, places;
+} FrameTapes;
+
+/* A frame: values of the parameters, and memory for the values of all nodes. */
+struct KrsFrame {
+    const KrsScene *scene;
+    NodeValue      *parameters; /* the parameter block: the time in slot 0, parameters, slopes.  The
+                                   slopes always belong to the other values */
+    size_t         *lit;        /* parts of the scene that may emit light (frame_emissive.c) */
+    void           *workspace;  /* memory for the computation of slopes */
+    Box            *boxes;      /* memory for those of planned shapes (FrameBoxes) */
+    double          framed_eye[3], framed_target[3]; /* if the scene is framed: as there, or placed
+                                                        for this frame */
+    const char     *unbounded; /* location of the slope without a bound in the last refused
+    frame */
+    NodeValue      *values;    /* of every node */
+    KrsLight       *lights;
+    float (*sky)[3];              /* of daylight, */
+    KrsSkyMap           sky_map;  /* which these texels are of, */
+    Daylight            sky_made; /* as it was made; turbidity 0: not yet */
+    FrameTapes          tapes;
+    struct FrameTables *tables; /* NULL: they are those of the scene */
+    struct FrameLanes  *lanes;  /* points.h; NULL: nobody has asked for many points */
+    bool                exact;  /* rays are marched with exact distances of crowds */
+    uint64_t            ran; /* operations that marching rays has taken; one for many points at once
+                                   counts as one */
+    bool                fresh; /* the frame values in `values` belong to the parameters */
+    double              zones[KRS_MOST_ZONES][4];
+    size_t              zone_count; /* zones of the caller */
+};
+
+/* Rays remain unresolved after so many steps each, or when the frame has run so many operations. */
+typedef struct RayLimits {
+    size_t   steps;
+    uint64_t ran;
+} RayLimits;
+
+/* The functions of krs.h and compiled.h with the same names.  The compiler itself calls them, after
+   the pass `retain`. */
+KrsStatus frame_new(const KrsScene *scene, KrsFrame **frame);
+void      frame_free(KrsFrame *frame);
+KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view);
+KrsStatus frame_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
+                        size_t count, double farthest, double tolerance, RayLimits limits,
+                        KrsHit *hits);
+/* As krs_probe; without `normals` those of the answers may be 0, and materials must not depend on them. */
+KrsStatus frame_probe(KrsFrame *frame, const double (*points)[3], size_t count, bool normals,
+                      KrsHit *hits);
+void      scene_free(KrsScene *scene);
+/* A frame of the same scene with the same parameters, time and zones. */
+KrsStatus frame_copy_of(const KrsFrame *frame, KrsFrame **copy);
+
+/* The GLSL of all functions that the scene has in a variant, without comments, so that it says
+   nothing of names and lines. */
+char *scene_plain_text(const KrsScene *scene, const KrsVariant *variant, Arena *arena);
+
+/* Evaluates the nodes that depend on parameters only, unless their values are up to date. */
+void frame_refresh(KrsFrame *frame);
+/* The same, and the tables of the frame: for values at points. */
+void frame_refresh_points(KrsFrame *frame);
+
+/* frame_boxes.c: the boxes of the shown components, but for a floor, at the values of the frame; NULL:
+   they are those of all frames. */
+const Box *frame_find_boxes(KrsFrame *frame);
+/* With these boxes: that of a component, and that around all which have an end, empty if none has. */
+Box frame_box(const KrsFrame *frame, const Box *boxes, size_t component);
+Box frame_outer_box(const KrsFrame *frame, const Box *boxes);
+/* Puts the height of the floor into its slot, if it depends on another one. */
+void frame_find_floor(KrsFrame *frame, uint32_t changed);
+/* Whether a tape needs the value of a slot; ANY_SLOT: of any. */
+#define ANY_SLOT UINT32_MAX
+bool tape_depends_on(const Tape *tape, uint32_t slot);
+
+/* frame_tables.c: tables where members of crowds move, and tapes over them.  False: memory has run out. */
+bool frame_tables_new(KrsFrame *frame);
+/* Its tapes add what they run to its own count: after it was copied to another place. */
+void frame_count_operations(KrsFrame *frame);
+void frame_tables_free(KrsFrame *frame);
+/* Values of the frame have changed; the tables are found when they are needed. */
+void frame_tables_change(KrsFrame *frame);
+void frame_tables_refresh(const KrsFrame *frame);
+
+/* The distance of a component, counted from 1, or of all (0), cut by the zones; frame_refresh_points
+   was called before. */
+double frame_component_distance(KrsFrame *frame, size_t component, const double point[3]);
+/* The component that is nearest, counted from 1; 0: there is none. */
+uint32_t frame_nearest_component(KrsFrame *frame, const double point[3]);
+/* A value of the frame, used by points or the view, that is not finite; NODE_NONE: there is
+   none. */
+Node frame_infinite(KrsFrame *frame);
+/* Copies the value of a node of type VEC3. */
+void frame_copy(const KrsFrame *frame, Node node, double to[3]);
+/* Scales a vector to length 1, unless it is 0.  It may be so long or short that the square of its
+   length would overflow or be 0. */
+void vector_normalize(double v[3]);
+
+static inline Node zone_root(const KrsScene *scene)
+{
+    RootRange zone = roots_of(&scene->roots, ROOTS_ZONE);
+    return zone.count ? zone.items[0] : NODE_NONE;
+}
+
+#endif
