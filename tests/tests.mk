@@ -12,7 +12,7 @@ SUPPORT     := $(addprefix tests/support/, agreement.c bench.c crowd_texts.c dev
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c \
                formulas.c montecarlo.c quaternions.c chain.c chain_random.c map_chain.c \
                deformed.c methods.c primitive_solids.c primitive_figures.c random_scene.c \
-               device_answers.c known_solid.c mesh_distance.c mesh_shape.c outline_truth.c path_stage.c rooms.c shadow_stage.c shadow_truth.c twigs.c)
+               device_answers.c known_solid.c mesh_distance.c mesh_shape.c outline_truth.c path_stage.c rooms.c shadow_stage.c shadow_truth.c truetype.c twigs.c)
 UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c queried.c \
                cache_folder.c compiled_files.c crossings.c crowd_scene.c closed_forms.c)
 PROPERTY_SHARED := $(addprefix tests/property/, crowd_parts.c garden.c op_trial.c reach_crowd.c)
@@ -123,10 +123,13 @@ $(addprefix $(B)/tests/unit/, live saved_texts camera_text resolution painter sa
 CGAL        := $(wildcard /usr/include/CGAL/Surface_mesh.h)
 JUDGE       := $(if $(CGAL),$(addprefix $(B)/tests/oracle/, mesh_judge csg_solids))
 MESH_JUDGE  := $(filter %/mesh_judge, $(JUDGE))
-$(JUDGE:%=%.o): CXXFLAGS := -O1 -g0
+CSG_SOLIDS  := $(addprefix $(B)/tests/oracle/, csg_random.o csg_text.o csg_polyhedra.o csg_truth.o csg_triangles.o truetype.o)
+MESH_FAULTS := $(B)/tests/oracle/mesh_faults.o
+$(JUDGE:%=%.o) $(CSG_SOLIDS) $(MESH_FAULTS): CXXFLAGS := -O1 -g0
 # CGAL checks each step of its set operations otherwise, and gcc warns of its headers.
-$(B)/tests/oracle/csg_solids.o: CXXFLAGS += -DNDEBUG -Wno-maybe-uninitialized
-$(JUDGE): %: %.o
+$(B)/tests/oracle/csg_truth.o: CXXFLAGS += -DNDEBUG -Wno-maybe-uninitialized
+$(B)/tests/oracle/csg_solids: $(CSG_SOLIDS)
+$(JUDGE): %: %.o $(MESH_FAULTS)
 	@$(CXX) $(CFLAGS) -o $@ $^ -lgmp -lmpfr
 # Meshes of 300 random scenes, of all examples, and a Menger sponge of three levels, by all judges, and 1,000 solids beside
 # CGAL's: two hours.

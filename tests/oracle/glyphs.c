@@ -4,136 +4,24 @@
  * TrueType does not write points of a curve that stand halfway between two of its control points.
  * Points of all curves must lie on the border of the letter, as exactly as its numbers tell.
  */
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "compiler/outline/letters.h"
 #include "tests/oracle/product.h"
+#include "tests/oracle/truetype.h"
 
 /* In ems: a unit is 1/2048 of it, and points that are cut to units are off by 1.7e-4. */
 static const double TOLERANCE = 1e-6;
 
-enum { MOST_BYTES = 4 << 20, MOST_POINTS = 1000, ON_CURVE = 1, REPEATED = 8, PIECES = 4 };
-
-typedef struct Reader {
-    unsigned char bytes[MOST_BYTES];
-    size_t        cmap, loca, glyf, head; /* offsets of tables */
-} Reader;
-
-typedef struct Glyph {
-    double x[MOST_POINTS], y[MOST_POINTS]; /* in ems */
-    bool   on[MOST_POINTS];
-    size_t ends[MOST_POINTS], contours, points;
-} Glyph;
-
-static Reader reader;
-
-/* ---- the file ---- */
-
-static unsigned u16(size_t at) { return reader.bytes[at] * 256u + reader.bytes[at + 1]; }
-static int      s16(size_t at) { return (int16_t)u16(at); }
-static size_t   u32(size_t at) { return ((size_t)u16(at) << 16) + u16(at + 2); }
-
-static size_t table(const char *tag)
-{
-    for (size_t i = 0, at = 12; i < u16(4); i++, at += 16)
-        if (memcmp(reader.bytes + at, tag, 4) == 0)
-            return u32(at + 8);
-    fail_msg("no table %s", tag);
-    return 0;
-}
+enum { PIECES = 4 };
 
 static void open_font(const char *name)
 {
     FoundFont found;
     assert_int_equal(font_find(name, &found), FONT_FOUND);
-    FILE *file = fopen(found.path, "rb");
-    assert_non_null(file);
-    assert_true(fread(reader.bytes, 1, MOST_BYTES, file) > 0);
-    fclose(file);
+    assert_true(truetype_open(found.path));
     free(found.path);
-    reader.cmap = table("cmap");
-    reader.loca = table("loca");
-    reader.glyf = table("glyf");
-    reader.head = table("head");
 }
-
-/* The glyph of a character, by a map of format 4; 0: none. */
-static unsigned glyph_of(unsigned character)
-{
-    for (size_t i = 0; i < u16(reader.cmap + 2); i++) {
-        size_t map = reader.cmap + u32(reader.cmap + 8 + 8 * i);
-        if (u16(map) != 4)
-            continue;
-        unsigned size = u16(map + 6); /* of each row of segments */
-        for (size_t at = map + 14; at < map + 14 + size; at += 2) {
-            size_t   first = at + size + 2, delta = first + size, offset = delta + size;
-            unsigned low = u16(first);
-            if (character > u16(at) || character < low)
-                continue;
-            if (u16(offset) == 0)
-                return (character + u16(delta)) & 0xFFFF;
-            return u16(offset + u16(offset) + 2 * (character - low));
-        }
-    }
-    return 0;
-}
-
-static size_t place_of(unsigned glyph)
-{
-    bool wide = u16(reader.head + 50) != 0;
-    return reader.glyf + (wide ? u32(reader.loca + 4 * glyph) : 2 * u16(reader.loca + 2 * glyph));
-}
-
-/* ---- one glyph ---- */
-
-/* The coordinates along one axis: each as the way from the one before. */
-static size_t read_axis(size_t at, const unsigned char *flags, size_t count, unsigned is_short,
-                        unsigned is_same, double *numbers)
-{
-    int number = 0;
-    for (size_t i = 0; i < count; i++) {
-        if (flags[i] & is_short) {
-            number += flags[i] & is_same ? reader.bytes[at] : -reader.bytes[at];
-            at++;
-        } else if (!(flags[i] & is_same)) {
-            number += s16(at);
-            at += 2;
-        }
-        numbers[i] = (double)number / u16(reader.head + 18);
-    }
-    return at;
-}
-
-/* False: it has parts, or nothing. */
-static bool read_glyph(unsigned number, Glyph *glyph)
-{
-    unsigned char flags[MOST_POINTS];
-    size_t        at = place_of(number), count = 0;
-    if (at == place_of(number + 1) || s16(at) <= 0)
-        return false;
-    glyph->contours = u16(at);
-    at += 10;
-    for (size_t i = 0; i < glyph->contours; i++, at += 2)
-        glyph->ends[i] = u16(at) + 1;
-    glyph->points = glyph->ends[glyph->contours - 1];
-    assert_true(glyph->points <= MOST_POINTS);
-    at += 2 + u16(at); /* without instructions */
-    while (count < glyph->points) {
-        unsigned char flag  = reader.bytes[at++];
-        int           times = flag & REPEATED ? 1 + reader.bytes[at++] : 1;
-        for (; times > 0 && count < glyph->points; times--)
-            flags[count++] = flag;
-    }
-    for (size_t i = 0; i < glyph->points; i++)
-        glyph->on[i] = flags[i] & ON_CURVE;
-    at = read_axis(at, flags, count, 2, 16, glyph->x);
-    read_axis(at, flags, count, 4, 32, glyph->y);
-    return true;
-}
-
-/* ---- what is compared ---- */
 
 /* Where a curve begins or ends that has the point i for control point, beside the point j. */
 static void end_of(const Glyph *glyph, size_t i, size_t j, double end[2])
@@ -164,7 +52,7 @@ static size_t judge_letter(const char *font, char letter)
     static Glyph glyph;
     double       worst  = 0;
     size_t       curves = 0;
-    if (!read_glyph(glyph_of((unsigned char)letter), &glyph))
+    if (!truetype_read(truetype_glyph((unsigned char)letter), &glyph))
         return 0;
     Product product = product_format("show text(\"%c\", font: \"%s\").extrude(2);", letter, font);
     for (size_t c = 0, first = 0; c < glyph.contours; first = glyph.ends[c++]) {
