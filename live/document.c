@@ -206,7 +206,7 @@ static KrsStatus compile(Document *document, KrsScene **scene, KrsChanges *chang
     with.opened_user = document;
     if (document->version)
         return krs_scene_reload(version_before(document)->scene, scene, changes);
-    *changes = (KrsChanges){KRS_CHANGE_STRUCTURE, true, true, true, true, true};
+    *changes = (KrsChanges){KRS_CHANGE_STRUCTURE, true, true, true, true, true, true, true};
     return krs_compile_file(document->path, &with, scene);
 }
 

@@ -34,6 +34,16 @@ typedef struct RootList {
     size_t count, capacity;
 } RootList;
 
+/* The nodes that functions of crowds and their tables have. */
+static void add_crowds(RootList *list, const KrsScene *scene, Arena *arena)
+{
+    const Crowds *crowds = scene->graph->crowds;
+    for (size_t i = 0; crowds && i < crowds->bodies.count; i++)
+        array_push(arena, list, crowds->bodies.items[i]);
+    for (size_t i = 0; crowds && i < crowds->frame_numbers.count; i++)
+        array_push(arena, list, crowds->frame_numbers.items[i]);
+}
+
 /* The roots that kernels are made of, or those of the view. */
 static RootList collect_roots(const KrsScene *scene, bool of_kernels, RootKind first, RootKind last,
                               Arena *arena)
@@ -45,9 +55,24 @@ static RootList collect_roots(const KrsScene *scene, bool of_kernels, RootKind f
         for (size_t i = 0; i < range.count && view != of_kernels; i++)
             array_push(arena, &list, range.items[i]);
     }
-    const Crowds *crowds = scene->graph->crowds;
-    for (size_t i = 0; of_kernels && crowds && i < crowds->frame_numbers.count; i++)
-        array_push(arena, &list, crowds->frame_numbers.items[i]);
+    if (of_kernels)
+        add_crowds(&list, scene, arena);
+    return list;
+}
+
+/* The roots that say what is solid, of which meshes of shapes alone are made. */
+static RootList collect_solid_roots(const KrsScene *scene, Arena *arena)
+{
+    static const RootKind kinds[] = {ROOTS_ZONE, ROOTS_SLOPE, ROOTS_BOX, ROOTS_ASSEMBLY};
+    RootList              list    = {0};
+    for (size_t i = 0; i < scene->component_count; i++)
+        array_push(arena, &list, distance_root(&scene->roots, i));
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        RootRange range = roots_of(&scene->roots, kinds[k]);
+        for (size_t i = 0; i < range.count; i++)
+            array_push(arena, &list, range.items[i]);
+    }
+    add_crowds(&list, scene, arena);
     return list;
 }
 
@@ -65,11 +90,9 @@ static Likeness compare_nodes(const Tape *a, const Tape *b, size_t at)
     return equal_if(x->index == y->index && same_number);
 }
 
-/* Compares the roots of these kinds, with all nodes that they need. */
-static Likeness compare_graphs(Comparison *c, bool of_kernels, RootKind first, RootKind last)
+/* Compares roots, with all nodes that they need. */
+static Likeness compare_roots(Comparison *c, RootList a, RootList b)
 {
-    RootList a     = collect_roots(c->a, of_kernels, first, last, &c->arena);
-    RootList b     = collect_roots(c->b, of_kernels, first, last, &c->arena);
     Tape     x     = tape_new(c->a->graph, a.items, a.count, &c->arena);
     Tape     y     = tape_new(c->b->graph, b.items, b.count, &c->arena);
     Likeness found = equal_if(a.count == b.count && x.count == y.count &&
@@ -79,6 +102,13 @@ static Likeness compare_graphs(Comparison *c, bool of_kernels, RootKind first, R
     for (size_t i = 0; i < a.count && found != DIFFERENT; i++)
         found = least(found, equal_if(tape_index(&x, a.items[i]) == tape_index(&y, b.items[i])));
     return found;
+}
+
+/* The roots of these kinds. */
+static Likeness compare_graphs(Comparison *c, bool of_kernels, RootKind first, RootKind last)
+{
+    return compare_roots(c, collect_roots(c->a, of_kernels, first, last, &c->arena),
+                         collect_roots(c->b, of_kernels, first, last, &c->arena));
 }
 
 /* ---- crowds ---- */
@@ -350,6 +380,82 @@ static bool same_image(const SceneImage *a, const SceneImage *b)
            a->white_balance[0] == b->white_balance[0] && a->white_balance[1] == b->white_balance[1];
 }
 
+/* ---- what meshes are made of ---- */
+
+static bool same_items(const Assembly *a, const Assembly *b)
+{
+    bool same = a->items.count == b->items.count;
+    for (size_t i = 0; same && i < a->items.count; i++) {
+        const AssemblyItem *x = &a->items.items[i], *y = &b->items.items[i];
+        same = x->first == y->first && x->count == y->count && x->root == y->root &&
+               x->estimate == y->estimate && memcmp(&x->box, &y->box, sizeof x->box) == 0;
+    }
+    return same;
+}
+
+static bool same_placings(const Assembly *a, const Assembly *b)
+{
+    bool same = a->placings.count == b->placings.count;
+    for (size_t i = 0; same && i < a->placings.count; i++) {
+        const AssemblyPlacing *x = &a->placings.items[i], *y = &b->placings.items[i];
+        same = x->item == y->item && x->kind == y->kind && x->root == y->root;
+    }
+    return same;
+}
+
+/* Of the components, as many in both. */
+static bool same_parts(const KrsScene *a, const KrsScene *b)
+{
+    const Assembly *x = &a->assembly, *y = &b->assembly;
+    bool same = same_items(x, y) && same_placings(x, y) && !x->of_component == !y->of_component &&
+                !x->motions == !y->motions && !x->beams == !y->beams;
+    for (size_t i = 0; same && i < a->component_count; i++) {
+        same = !x->of_component || x->of_component[i] == y->of_component[i];
+        if (same && x->motions)
+            same = memcmp(&x->motions[i], &y->motions[i], sizeof *x->motions) == 0;
+    }
+    for (size_t i = 0; same && x->beams && i < a->shown_count; i++)
+        same = x->beams[i].root == y->beams[i].root && x->beams[i].count == y->beams[i].count;
+    return same;
+}
+
+/* All that is shown. */
+static bool same_shown(const KrsScene *a, const KrsScene *b)
+{
+    bool same = a->component_count == b->component_count && a->shown_count == b->shown_count;
+    for (size_t i = 0; same && i < a->shown_count; i++) {
+        const KrsComponent *x = &a->components[i], *y = &b->components[i];
+        same = a->lowered[i] == b->lowered[i] && a->rank[i] == b->rank[i] &&
+               x->estimate == y->estimate && x->figure == y->figure && x->levels == y->levels &&
+               x->instances == y->instances && memcmp(x->low, y->low, sizeof x->low) == 0 &&
+               memcmp(x->high, y->high, sizeof x->high) == 0;
+    }
+    return same && same_parts(a, b);
+}
+
+static bool same_solids(Comparison *c)
+{
+    return same_shown(c->a, c->b) && same_parameters(c->a, c->b) && same_bounds(c->a, c->b) &&
+           compare_roots(c, collect_solid_roots(c->a, &c->arena),
+                         collect_solid_roots(c->b, &c->arena)) == EQUAL &&
+           same_crowds(c->a->graph->crowds, c->b->graph->crowds) &&
+           same_textures(c->a->graph->textures, c->b->graph->textures);
+}
+
+/* As files of meshes have them: of components, materials and parts. */
+static bool same_names(const KrsScene *a, const KrsScene *b)
+{
+    bool same = a->shown_count == b->shown_count && a->material_count == b->material_count &&
+                a->assembly.items.count == b->assembly.items.count;
+    for (size_t i = 0; same && i < a->shown_count; i++)
+        same = same_name(a->components[i].name, b->components[i].name);
+    for (size_t i = 0; same && i < a->material_count; i++)
+        same = same_name(a->materials[i], b->materials[i]);
+    for (size_t i = 0; same && i < a->assembly.items.count; i++)
+        same = same_name(a->assembly.items.items[i].name, b->assembly.items.items[i].name);
+    return same;
+}
+
 /* ---- all together ---- */
 
 static void compare(Comparison *c)
@@ -365,9 +471,11 @@ static void compare(Comparison *c)
     changes->image = !same_image(&c->a->image, &c->b->image);
     bool values = kernels != EQUAL || changes->parameters || changes->cameras || changes->lights ||
                   changes->image || !same_bounds(c->a, c->b);
-    changes->kind = kernels == DIFFERENT ? KRS_CHANGE_STRUCTURE
-                    : values             ? KRS_CHANGE_VALUES
-                                         : KRS_CHANGE_NOTHING;
+    changes->kind     = kernels == DIFFERENT ? KRS_CHANGE_STRUCTURE
+                        : values             ? KRS_CHANGE_VALUES
+                                             : KRS_CHANGE_NOTHING;
+    changes->solids   = !same_solids(c);
+    changes->surfaces = changes->solids || kernels != EQUAL || !same_names(c->a, c->b);
 }
 
 /* Where memory runs out, longjmp returns here. */

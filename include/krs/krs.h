@@ -164,6 +164,8 @@ typedef struct KrsChanges {
     bool      cameras;    /* their number, names or properties */
     bool      lights;     /* lights, sky or fog */
     bool      image;      /* the `image` block */
+    bool      solids;     /* what components enclose, or where their copies are */
+    bool surfaces; /* that, or materials or names of it; else meshes are the same in every way */
 } KrsChanges;
 
 /*

@@ -64,33 +64,38 @@ static KrsScene *update(const KrsScene *scene, const char *text, KrsChanges *cha
 typedef struct Edit {
     const char *what, *from, *to;
     KrsChange   kind;
-    bool        parameters, components, cameras, lights, image;
+    bool        parameters, components, cameras, lights, image, solids, surfaces;
 } Edit;
 
 static const Edit edits[] = {
-    {"nothing", "", "", KRS_CHANGE_NOTHING, 0, 0, 0, 0, 0},
-    {"a comment", "show", "// the ball\n\n  show", KRS_CHANGE_NOTHING, 0, 0, 0, 0, 0},
-    {"a name of a camera", "front", "side", KRS_CHANGE_VALUES, 0, 0, 1, 0, 0},
-    {"a place", "0.25, 0, 0", "0.5, 0.1, 0", KRS_CHANGE_VALUES, 0, 0, 0, 0, 0},
-    {"a size", "[2, 1, 1]", "[2, 1.5, 1]", KRS_CHANGE_VALUES, 0, 0, 0, 0, 0},
-    {"a width", "blend: 0.25", "blend: 0.3", KRS_CHANGE_VALUES, 0, 0, 0, 0, 0},
-    {"a colour", "#ff8000", "#20c040", KRS_CHANGE_VALUES, 0, 0, 0, 0, 0},
-    {"a material", "roughness: 0.5", "roughness: 0.3", KRS_CHANGE_VALUES, 0, 0, 0, 0, 0},
-    {"a default", "r = 1", "r = 1.5", KRS_CHANGE_VALUES, 1, 0, 0, 0, 0},
-    {"an eye", "[4, 3, 5]", "[4, 3, 6]", KRS_CHANGE_VALUES, 0, 0, 1, 0, 0},
-    {"another camera", "light", "camera { eye: [1, 9, 1] } light", KRS_CHANGE_VALUES, 0, 0, 1, 0,
-     0},
-    {"a light", "intensity: 2", "intensity: 3", KRS_CHANGE_VALUES, 0, 0, 0, 1, 0},
+    {"nothing", "", "", KRS_CHANGE_NOTHING, 0, 0, 0, 0, 0, 0, 0},
+    {"a comment", "show", "// the ball\n\n  show", KRS_CHANGE_NOTHING, 0, 0, 0, 0, 0, 0, 0},
+    {"a name of a camera", "front", "side", KRS_CHANGE_VALUES, 0, 0, 1, 0, 0, 0, 0},
+    {"a place", "0.25, 0, 0", "0.5, 0.1, 0", KRS_CHANGE_VALUES, 0, 0, 0, 0, 0, 1, 1},
+    {"a size", "[2, 1, 1]", "[2, 1.5, 1]", KRS_CHANGE_VALUES, 0, 0, 0, 0, 0, 1, 1},
+    {"a width", "blend: 0.25", "blend: 0.3", KRS_CHANGE_VALUES, 0, 0, 0, 0, 0, 1, 1},
+    {"a colour", "#ff8000", "#20c040", KRS_CHANGE_VALUES, 0, 0, 0, 0, 0, 0, 1},
+    {"a material", "roughness: 0.5", "roughness: 0.3", KRS_CHANGE_VALUES, 0, 0, 0, 0, 0, 0, 1},
+    {"a name of a component", "show union([ball, box([2, 1, 1])], blend: 0.25).paint(m);",
+     "let part = union([ball, box([2, 1, 1])], blend: 0.25).paint(m); show part;",
+     KRS_CHANGE_NOTHING, 0, 1, 0, 0, 0, 0, 1},
+    {"a default", "r = 1", "r = 1.5", KRS_CHANGE_VALUES, 1, 0, 0, 0, 0, 1, 1},
+    {"an eye", "[4, 3, 5]", "[4, 3, 6]", KRS_CHANGE_VALUES, 0, 0, 1, 0, 0, 0, 0},
+    {"another camera", "light", "camera { eye: [1, 9, 1] } light", KRS_CHANGE_VALUES, 0, 0, 1, 0, 0,
+     0, 0},
+    {"a light", "intensity: 2", "intensity: 3", KRS_CHANGE_VALUES, 0, 0, 0, 1, 0, 0, 0},
     {"another light", "light", "light { direction: [0, 1, 0] } light", KRS_CHANGE_VALUES, 0, 0, 0,
-     1, 0},
-    {"a sky", "light", "sky { zenith: #8090ff } light", KRS_CHANGE_VALUES, 0, 0, 0, 1, 0},
-    {"fog", "light", "fog { density: 0.1 } light", KRS_CHANGE_VALUES, 0, 0, 0, 1, 0},
-    {"a picture", "light", "image { size: [64, 48] } light", KRS_CHANGE_VALUES, 0, 0, 0, 0, 1},
-    {"another parameter", "let", "param s = 1; let", KRS_CHANGE_STRUCTURE, 1, 0, 0, 0, 0},
-    {"another shape", "box([2, 1, 1])", "cylinder(0.5, 2)", KRS_CHANGE_STRUCTURE, 0, 0, 0, 0, 0},
-    {"another operator", ", blend: 0.25", "", KRS_CHANGE_STRUCTURE, 0, 0, 0, 0, 0},
-    {"another component", "light", "show torus(3, 0.2); light", KRS_CHANGE_STRUCTURE, 0, 1, 0, 0,
+     1, 0, 0, 0},
+    {"a sky", "light", "sky { zenith: #8090ff } light", KRS_CHANGE_VALUES, 0, 0, 0, 1, 0, 0, 0},
+    {"fog", "light", "fog { density: 0.1 } light", KRS_CHANGE_VALUES, 0, 0, 0, 1, 0, 0, 0},
+    {"a picture", "light", "image { size: [64, 48] } light", KRS_CHANGE_VALUES, 0, 0, 0, 0, 1, 0,
      0},
+    {"another parameter", "let", "param s = 1; let", KRS_CHANGE_STRUCTURE, 1, 0, 0, 0, 0, 1, 1},
+    {"another shape", "box([2, 1, 1])", "cylinder(0.5, 2)", KRS_CHANGE_STRUCTURE, 0, 0, 0, 0, 0, 1,
+     1},
+    {"another operator", ", blend: 0.25", "", KRS_CHANGE_STRUCTURE, 0, 0, 0, 0, 0, 1, 1},
+    {"another component", "light", "show torus(3, 0.2); light", KRS_CHANGE_STRUCTURE, 0, 1, 0, 0, 0,
+     1, 1},
 };
 
 /* The text with the first occurrence of one string replaced by another. */
@@ -107,10 +112,13 @@ static void assert_changes(const Edit *edit, const KrsChanges *changes)
 {
     if (changes->kind != edit->kind || changes->parameters != edit->parameters ||
         changes->components != edit->components || changes->cameras != edit->cameras ||
-        changes->lights != edit->lights || changes->image != edit->image)
-        fail_msg("%s: kind %d, parameters %d, components %d, cameras %d, lights %d, image %d",
+        changes->lights != edit->lights || changes->image != edit->image ||
+        changes->solids != edit->solids || changes->surfaces != edit->surfaces)
+        fail_msg("%s: kind %d, parameters %d, components %d, cameras %d, lights %d, image %d, "
+                 "solids %d, surfaces %d",
                  edit->what, changes->kind, changes->parameters, changes->components,
-                 changes->cameras, changes->lights, changes->image);
+                 changes->cameras, changes->lights, changes->image, changes->solids,
+                 changes->surfaces);
 }
 
 static void changes_are_told(void **state)
@@ -254,6 +262,25 @@ static void tables_are_values(void **state)
         assert_crowd_edit(&crowd_edits[i], KRS_SPECIALIZE_NUMBERS);
         assert_crowd_edit(&crowd_edits[i], KRS_SPECIALIZE_STRUCTURE);
     }
+}
+
+/* Members with the same numbers and the same boxes: only operations of the body tell them apart. */
+static void bodies_are_compared(void **state)
+{
+    (void)state;
+    const char *waves = "show union([sphere(0.1).displace(0.01 * sin(20 * x))"
+                        ".move([i % 10, 0, floor(i / 10)]) for i in 0..100]);";
+    KrsChanges  changes;
+    char        others[200];
+    snprintf(others, sizeof others, "%s", edited(waves, "sin", "cos"));
+    KrsScene *scene   = compile(waves, KRS_SPECIALIZE_NUMBERS);
+    KrsScene *updated = update(scene, others, &changes);
+    assert_true(krs_table_rows(scene) > 0 && krs_table_rows(updated) > 0);
+    assert_int_equal(changes.kind, KRS_CHANGE_STRUCTURE);
+    assert_true(changes.solids && changes.surfaces);
+    assert_false(same_kernels(scene, updated));
+    krs_scene_free(updated);
+    krs_scene_free(scene);
 }
 
 /* ---- loops that are evaluated once ---- */
@@ -450,6 +477,7 @@ int main(void)
         cmocka_unit_test(auto_takes_numbers_out_with_the_first_edit),
         cmocka_unit_test(auto_keeps_very_many_numbers),
         cmocka_unit_test(tables_are_values),
+        cmocka_unit_test(bodies_are_compared),
         cmocka_unit_test(numbers_of_loops_are_values),
         cmocka_unit_test(mistakes_leave_the_scene),
         cmocka_unit_test(used_files_are_read_again),
