@@ -32,13 +32,18 @@ double step_of(const Meshing *meshing, double goal, double steps)
     return meshing->goal + (goal - meshing->goal) / steps;
 }
 
+bool mesh_goes_on(const Meshing *meshing)
+{
+    return !*interrupted() && !(meshing->outdated && meshing->outdated(meshing->user));
+}
+
 static bool go_on(void *user, double fraction)
 {
     Meshing *meshing = user;
     double   done    = meshing->begun + fraction * (meshing->goal - meshing->begun);
     meshing->done    = fmax(meshing->done, done);
     progress_show(&meshing->progress, meshing->done);
-    return !*interrupted();
+    return mesh_goes_on(meshing);
 }
 
 static KrsStatus make_merged(Meshing *meshing, Body *body)
@@ -276,7 +281,7 @@ static bool fill_mesh(const void *user, OutputFile *file, OutputError *error)
     return written;
 }
 
-static KrsStatus check_outputs(const Meshing *meshing)
+KrsStatus check_mesh_outputs(const Meshing *meshing)
 {
     for (size_t i = 0; i < output_count(meshing); i++) {
         const char *path = output_path(meshing, i);
@@ -360,7 +365,7 @@ static KrsStatus write_mesh(Meshing *meshing, const char *path)
     return write_output(path, fill_mesh, &output);
 }
 
-static KrsStatus write_meshes(Meshing *meshing)
+static KrsStatus write_files(Meshing *meshing)
 {
     KrsStatus status = KRS_OK;
     for (size_t i = 0; i < output_count(meshing) && status == KRS_OK; i++)
@@ -442,37 +447,45 @@ static void report(const Meshing *meshing, const Bodies *bodies)
             "the shape does not need");
 }
 
+KrsStatus write_meshes(Meshing *meshing)
+{
+    const Options *options = meshing->options;
+    KrsStatus      status  = scene_frame(options, meshing->scene, &meshing->frame);
+    meshing->scale         = 1;
+    if (status == KRS_OK && options->animated)
+        status = scene_set_time(options, meshing->frame,
+                                options->time + options->first_frame / options->fps);
+    if (status == KRS_OK) {
+        meshing->how = (KrsMeshOptions){
+            .memory_limit = options->limits.memory, .go_on = go_on, .user = meshing};
+        status = check_wishes(meshing);
+    }
+    if (status == KRS_OK)
+        status = check_mesh_wishes(meshing);
+    if (status == KRS_OK)
+        status = find_meshes(meshing);
+    if (status == KRS_OK)
+        status = write_files(meshing);
+    if (status == KRS_OK && (is_any(meshing, false) || meshing->merged.count == 0))
+        report(meshing, &meshing->assembled);
+    if (status == KRS_OK)
+        report(meshing, &meshing->merged);
+    drop_bodies(&meshing->assembled);
+    drop_bodies(&meshing->merged);
+    krs_frame_free(meshing->frame);
+    return status;
+}
+
 KrsStatus command_mesh(Options *options)
 {
-    Meshing   meshing = {.options = options, .scale = 1};
+    Meshing   meshing = {.options = options};
     KrsScene *scene   = NULL;
-    KrsStatus status  = check_outputs(&meshing);
+    KrsStatus status  = check_mesh_outputs(&meshing);
     if (status == KRS_OK)
         status = scene_open(options, options->files.items[0], &scene);
     meshing.scene = scene;
     if (status == KRS_OK)
-        status = scene_frame(options, scene, &meshing.frame);
-    if (status == KRS_OK && options->animated)
-        status = scene_set_time(options, meshing.frame,
-                                options->time + options->first_frame / options->fps);
-    if (status == KRS_OK) {
-        meshing.how = (KrsMeshOptions){
-            .memory_limit = options->limits.memory, .go_on = go_on, .user = &meshing};
-        status = check_wishes(&meshing);
-    }
-    if (status == KRS_OK)
-        status = check_mesh_wishes(&meshing);
-    if (status == KRS_OK)
-        status = find_meshes(&meshing);
-    if (status == KRS_OK)
         status = write_meshes(&meshing);
-    if (status == KRS_OK && (is_any(&meshing, false) || meshing.merged.count == 0))
-        report(&meshing, &meshing.assembled);
-    if (status == KRS_OK)
-        report(&meshing, &meshing.merged);
-    drop_bodies(&meshing.assembled);
-    drop_bodies(&meshing.merged);
-    krs_frame_free(meshing.frame);
     krs_scene_free(scene);
     return status;
 }

@@ -62,12 +62,12 @@ typedef struct Baking {
     KrsFrame      *frames[MOST_PARTS];
     double         error;
     Texel         *texels;
-    uint32_t      *piece_of;     /* of triangles */
-    Pieces         pieces, rows; /* rows: materials of the file */
-    MeshMaterial  *materials;    /* of rows */
-    uint32_t      *row_of;       /* of triangles */
-    atomic_size_t  next;         /* row of pixels */
-    atomic_bool    failed;
+    uint32_t      *piece_of;      /* of triangles */
+    Pieces         pieces, rows;  /* rows: materials of the file */
+    MeshMaterial  *materials;     /* of rows */
+    uint32_t      *row_of;        /* of triangles */
+    atomic_size_t  next;          /* row of pixels */
+    atomic_bool    failed, ended; /* ended: nobody wants it any more */
 } Baking;
 
 /* ---- points ---- */
@@ -157,7 +157,9 @@ static void bake_rows(void *task, size_t part, size_t parts)
 {
     Baking *b = task;
     (void)parts;
-    while (!atomic_load(&b->failed) && !*interrupted()) {
+    while (!atomic_load(&b->failed) && !atomic_load(&b->ended)) {
+        if (part == 0)
+            atomic_store(&b->ended, !mesh_goes_on(b->meshing));
         size_t row = atomic_fetch_add(&b->next, 1);
         if (row >= b->atlas.side)
             return;
@@ -388,7 +390,7 @@ static KrsStatus bake(Baking *b, bool all)
         b->texels = arena_new_array(options->arena, Texel, side * side);
     atomic_store(&b->next, 0);
     run_in_parallel(bake_rows, b);
-    if (*interrupted())
+    if (!mesh_goes_on(b->meshing))
         return KRS_INTERRUPTED;
     if (atomic_load(&b->failed))
         return say_status(KRS_OUT_OF_MEMORY, options->files.items[0]);

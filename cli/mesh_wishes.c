@@ -158,6 +158,17 @@ static bool is_shape_enough(const Meshing *meshing)
     return meshing->options->mesh_simplify || !colors;
 }
 
+bool has_shapes_alone(const Meshing *meshing)
+{
+    bool alone = true;
+    for (size_t i = 0; i < output_count(meshing); i++) {
+        const MeshFormat *format = mesh_format(output_path(meshing, i));
+        alone = alone && !format->has_colors && !format->has_parts && !format->has_looks &&
+                !format->has_places;
+    }
+    return alone;
+}
+
 static bool can_have_lods(const Meshing *meshing)
 {
     for (size_t i = 0; i < output_count(meshing); i++)

@@ -1,5 +1,6 @@
 /*
- * meshing.h: one run of `krs mesh`: mesh.c makes the meshes, mesh_parts.c what files have of them.
+ * meshing.h: one run of `krs mesh`, or one of an edit that `krs watch` makes: mesh.c makes the meshes, mesh_parts.c what
+ * files have of them.
  */
 #ifndef KRS_MESHING_H
 #define KRS_MESHING_H
@@ -57,7 +58,17 @@ typedef struct Meshing {
         farthest; /* from where they belong that these are between keyframes, as far as samples tell, */
     size_t jumps; /* but for so many times between two of the nearest */
     double pixel; /* how long one of --bake is in the scene; 0: there is none */
+    bool (*outdated)(
+        void *user); /* asked by one thread at a time: true ends the work; NULL: it never is */
+    void *user;      /* handed to `outdated` */
 } Meshing;
+
+/* mesh.c: the steps of `krs mesh`, which `krs watch` takes again and again: whether the files can be written; then makes
+   the meshes of the scene, writes them, and says what they are.  A Meshing is for one scene. */
+KrsStatus check_mesh_outputs(const Meshing *meshing);
+KrsStatus write_meshes(Meshing *meshing);
+/* False: the work is to end, with KRS_INTERRUPTED. */
+bool mesh_goes_on(const Meshing *meshing);
 
 /* mesh_wishes.c: the files that are written. */
 size_t      output_count(const Meshing *meshing);
@@ -67,6 +78,8 @@ bool find_end(const Meshing *meshing, double *longest);
 /* Fills in what is meshed, as of all commands that take a solid; and how, as of `krs mesh` alone. */
 KrsStatus check_wishes(Meshing *meshing);
 KrsStatus check_mesh_wishes(Meshing *meshing);
+/* Whether files have neither colors nor parts with names. */
+bool has_shapes_alone(const Meshing *meshing);
 /* That there is nothing to `what`, which is all that is said of empty results: where, unless that is all or the box of
    --within, and which error may have left out what there is (0: none).  Returns KRS_BAD_SCENE. */
 KrsStatus say_nothing(const Meshing *meshing, const char *what, const char *where, double error);

@@ -131,6 +131,8 @@ typedef struct Options {
     CommandId command;
     int       argc; /* the whole command line, for a report of a crash */
     char    **argv;
+    bool      meshes,
+        others; /* whether a command that writes both writes meshes, and what else it does */
 
     struct {
         const char **items;

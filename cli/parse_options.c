@@ -10,6 +10,8 @@
 #include <string.h>
 
 #include "cli/console.h"
+#include "cli/mesh_files.h"
+#include "cli/picture.h"
 #include "cli/values.h"
 #include "compiler/base/text.h"
 
@@ -59,21 +61,69 @@ bool option_is_given(const Options *options, OptionId id)
     return false;
 }
 
-/* Takes one option and its argument (NULL when it has none). */
-static KrsStatus option_take(Options *options, OptionId id, const char *value)
+/* Whether the command takes it for what it writes: `krs watch` has the options of `krs mesh` for meshes. */
+static bool is_wanted(const Options *options, OptionId id)
 {
+    return (options->meshes && option_belongs(id, COMMAND_MESH)) ||
+           (options->others && option_belongs(id, options->command));
+}
+
+/* From this row on, the one of the option that "name" or "name=value" begins with, or OPTION_COUNT.  Where one name has
+   two meanings, that of meshes comes first. */
+static OptionId option_find(const Options *options, OptionId id, const char *name, size_t length)
+{
+    while (id < OPTION_COUNT &&
+           !(is_wanted(options, id) && strlen(option_info[id].name) == length &&
+             strncmp(option_info[id].name, name, length) == 0))
+        id++;
+    return id;
+}
+
+/* False: nothing is changed. */
+static bool row_takes(Options *options, OptionId id, const char *value)
+{
+    const Options     before = *options;
     const OptionInfo *info   = &option_info[id];
     bool              chosen = value && info->choices && !info->wants;
     int               choice = chosen ? find_choice(value, info->choices) : 0;
+    if (choice >= 0 && take_value(options, id, value, choice))
+        return true;
+    *options = before;
+    return false;
+}
+
+/* Takes one option and its argument (NULL when it has none), by the first row that takes this value. */
+static KrsStatus option_take(Options *options, OptionId id, const char *value)
+{
+    const OptionInfo *info = &option_info[id];
     char              wants[OPTION_TEXT];
     KrsStatus         status = check_number(options, id);
     if (status != KRS_OK)
         return status;
-    array_push(options->arena, &options->given, ((GivenOption){id, value}));
-    if (choice >= 0 && take_value(options, id, value, choice))
+    while (id < OPTION_COUNT && !row_takes(options, id, value))
+        id = option_find(options, id + 1, info->name, strlen(info->name));
+    if (id < OPTION_COUNT) {
+        array_push(options->arena, &options->given, ((GivenOption){id, value}));
         return KRS_OK;
+    }
     return say_usage(options, "--%s wants %s, not `%s`", info->name, option_wants(info, wants),
                      value);
+}
+
+/* An option of the command that is about what it does not write. */
+static KrsStatus refuse_unwanted(const Options *options, const char *name)
+{
+    const bool watches = options->command == COMMAND_WATCH;
+    for (OptionId id = 0; watches && id < OPTION_COUNT; id++) {
+        if (strcmp(option_info[id].name, name) != 0)
+            continue;
+        if (option_belongs(id, COMMAND_MESH))
+            return say_usage(options, "--%s is of meshes, and none is written: -o FILE.stl", name);
+        if (option_belongs(id, COMMAND_WATCH))
+            return say_usage(options, "--%s is of pictures, and none is written: -o FILE.png",
+                             name);
+    }
+    return KRS_OK;
 }
 
 static KrsStatus unknown_option(const Options *options, const char *name, size_t length)
@@ -81,9 +131,11 @@ static KrsStatus unknown_option(const Options *options, const char *name, size_t
     const char *candidates[OPTION_COUNT];
     size_t      count = 0;
     for (OptionId id = 0; id < OPTION_COUNT; id++)
-        if (option_belongs(id, options->command))
+        if (is_wanted(options, id))
             candidates[count++] = option_info[id].name;
-    const char *word    = arena_copy_text(options->arena, name, length);
+    const char *word = arena_copy_text(options->arena, name, length);
+    if (refuse_unwanted(options, word) != KRS_OK)
+        return KRS_BAD_ARGUMENT;
     const char *nearest = nearest_name(word, candidates, count);
     const char *command = command_table[options->command].name;
     if (nearest)
@@ -92,20 +144,10 @@ static KrsStatus unknown_option(const Options *options, const char *name, size_t
     return say_usage(options, "%s has no option --%s", command, word);
 }
 
-/* The option that "--name" or "--name=value" begins with, or OPTION_COUNT. */
-static OptionId option_find(const Options *options, const char *name, size_t length)
-{
-    for (OptionId id = 0; id < OPTION_COUNT; id++)
-        if (option_belongs(id, options->command) && strlen(option_info[id].name) == length &&
-            strncmp(option_info[id].name, name, length) == 0)
-            return id;
-    return OPTION_COUNT;
-}
-
 static OptionId option_find_letter(const Options *options, char letter)
 {
     for (OptionId id = 0; id < OPTION_COUNT; id++)
-        if (option_belongs(id, options->command) && option_info[id].letter == letter)
+        if (is_wanted(options, id) && option_info[id].letter == letter)
             return id;
     return OPTION_COUNT;
 }
@@ -138,7 +180,7 @@ static KrsStatus take_option(Options *options, int *next)
     const char *word = options->argv[(*next)++];
     if (word[1] == '-') {
         size_t   length = strcspn(word + 2, "=");
-        OptionId id     = option_find(options, word + 2, length);
+        OptionId id     = option_find(options, 0, word + 2, length);
         if (id == OPTION_COUNT)
             return unknown_option(options, word + 2, length);
         const char *equals = word + 2 + length;
@@ -210,6 +252,18 @@ static KrsStatus check_together(Options *options)
     return KRS_OK;
 }
 
+/* What is written, by the endings of all words: outputs may stand behind the options of them. */
+static void find_written(Options *options)
+{
+    bool pictures   = false;
+    options->meshes = false;
+    for (int i = 2; i < options->argc && options->command == COMMAND_WATCH; i++) {
+        options->meshes = options->meshes || mesh_format(options->argv[i]);
+        pictures        = pictures || file_form(options->argv[i]) != FORM_UNKNOWN;
+    }
+    options->others = pictures || !options->meshes;
+}
+
 KrsStatus options_parse(Options *options, int argc, char **argv)
 {
     options->argc    = argc;
@@ -224,6 +278,7 @@ KrsStatus options_parse(Options *options, int argc, char **argv)
         return say_usage(options, "no command is given");
     KrsStatus status     = take_command(options, argv[1]);
     bool      words_only = false; /* after "--" */
+    find_written(options);
     for (int next = 2; next < argc && status == KRS_OK;) {
         const char *word = argv[next];
         if (!words_only && strcmp(word, "--") == 0) {

@@ -38,6 +38,8 @@ KrsStatus render_choose(Render *render);
 KrsStatus render_compile(Render *render);
 /* Renders and writes all frames.  KRS_INTERRUPTED also where a picture is outdated. */
 KrsStatus render_frames(Render *render);
+/* "`a.exr`, `b.exr` and `a.png`" */
+const char *output_names(Arena *arena, const char *const *outputs, size_t count);
 /* "wrote `a.exr` and `a.png` in 0.4 s"; `seconds` 0: not how long it took. */
 void render_say_written(const Render *render, double seconds);
 void render_free(Render *render);

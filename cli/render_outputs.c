@@ -27,18 +27,21 @@ static void choose_outputs(Render *render)
     }
 }
 
+const char *output_names(Arena *arena, const char *const *outputs, size_t count)
+{
+    Text names = {.arena = arena};
+    for (size_t i = 0; i < count; i++)
+        text_format(&names, "%s`%s`", i == 0 ? "" : i + 1 < count ? ", " : " and ", outputs[i]);
+    return names.bytes;
+}
+
 void render_say_written(const Render *render, double seconds)
 {
     const Options *options = render->options;
     Text           names   = {.arena = options->arena};
     if (options->quiet || render->output_count == 0)
         return;
-    for (size_t i = 0; i < render->output_count; i++)
-        text_format(&names, "%s`%s`",
-                    i == 0                         ? ""
-                    : i + 1 < render->output_count ? ", "
-                                                   : " and ",
-                    render->outputs[i]);
+    text_add(&names, output_names(options->arena, render->outputs, render->output_count));
     if (strcmp(render->outputs[0], STANDARD_OUTPUT) == 0)
         return; /* who reads it knows */
     if (seconds > 0)

@@ -1,15 +1,18 @@
 /*
- * watch.c: `krs watch`: render, wait until the scene is saved, render again.
+ * watch.c: `krs watch`: render or mesh, wait until the scene is saved, and again.
  *
  * One process keeps the device and all that has been compiled, so an edit of a number costs little
- * more than the picture.  A mistake changes nothing: the last picture stays, and the next edit is
- * compared to the scene that was right.
+ * more than the picture.  A mistake changes nothing: the last files stay, and the next edit is
+ * compared to the scene that was right.  Pictures and meshes are of scenes that are compiled in different ways, so
+ * where both are written the text is read twice.
  */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/input.h"
+#include "cli/meshing.h"
 #include "cli/render.h"
 #include "cli/supervise.h"
 #include "live/document.h"
@@ -18,14 +21,16 @@
 #define LONGEST_WAIT 3600.0
 
 typedef struct Watch {
-    const Options *options;
     const char    *path;
-    Render         render; /* its scene is that of the version */
-    Document      *document;
-    Version       *version; /* that is rendered; NULL: none yet */
-    DiagnosticSink sink;
+    Options        pictures, meshes; /* the command line as it is for either, with outputs of it */
+    bool           draws, meshing;   /* whether there is any */
+    Render         render;           /* its scene is that of the version */
+    Document      *document, *solid; /* of pictures, or else of meshes; and that of meshes */
+    Version       *version;          /* that is rendered; NULL: none yet */
+    DiagnosticSink sink, unheard;
+    bool           stale;   /* the files of meshes are not of the scene that was read last */
     bool           refused; /* the system does not let us watch a file */
-    bool           changed; /* files were saved while a picture was rendered */
+    bool           changed; /* files were saved while something was made */
 } Watch;
 
 static bool has_changed(void *user)
@@ -72,8 +77,7 @@ static KrsStatus compile_scene(Watch *watch)
     KrsStatus status = document_read(watch->document);
     scene_print_counts(&watch->sink);
     watch->refused = status == KRS_CANNOT_CREATE;
-    say_status(status, watch->path);
-    return status == KRS_OK ? adopt(watch) : status;
+    return say_status(status, watch->path);
 }
 
 /* ---- a picture ---- */
@@ -83,18 +87,17 @@ static KrsStatus make_kernels(Watch *watch)
     Render   *render = &watch->render;
     KrsStatus status = KRS_OK;
     if (!render->renderer)
-        status = open_renderer(watch->options, &render->renderer);
+        status = open_renderer(render->options, &render->renderer);
     if (status == KRS_OK && !render->rendering)
         status = render_compile(render);
     return status;
 }
 
-static KrsStatus make_picture(Watch *watch)
+static KrsStatus make_picture(Watch *watch, double start)
 {
-    const double start = clock_now();
     krs_frame_free(watch->render.frame);
     watch->render.frame = NULL;
-    KrsStatus status    = compile_scene(watch);
+    KrsStatus status    = adopt(watch);
     if (status == KRS_OK)
         status = render_choose(&watch->render);
     if (status == KRS_OK)
@@ -104,6 +107,81 @@ static KrsStatus make_picture(Watch *watch)
     progress_end(&watch->render.progress);
     if (status == KRS_OK)
         render_say_written(&watch->render, clock_now() - start);
+    return status;
+}
+
+/* ---- a mesh ---- */
+
+/* Reads the text as meshes are made of it, if that is not done. */
+static KrsStatus read_solid(Watch *watch)
+{
+    KrsStatus status = KRS_OK;
+    if (watch->draws) {
+        scene_enter_compile(watch->path);
+        status = document_read(watch->solid);
+    }
+    if (status != KRS_OK)
+        return say_status(status, watch->path);
+    Version         *version = document_version(watch->solid);
+    const KrsChanges changes = version_changes(version);
+    const Meshing    meshing = {.options = &watch->meshes};
+    watch->stale = watch->stale || (has_shapes_alone(&meshing) ? changes.solids : changes.surfaces);
+    version_release(version);
+    return KRS_OK;
+}
+
+static bool are_there(const Options *options)
+{
+    bool there = true;
+    for (size_t i = 0; i < options->outputs.count; i++)
+        there = there && access(options->outputs.items[i], F_OK) == 0;
+    return there;
+}
+
+/* Of the document's version, in memory that is free again behind it. */
+static KrsStatus write_solid(Watch *watch)
+{
+    Arena    arena    = {.memory = watch->meshes.arena->memory};
+    Options  options  = watch->meshes;
+    Version *version  = document_version(watch->solid);
+    options.arena     = &arena;
+    Meshing   meshing = {.options  = &options,
+                         .scene    = version_scene(version),
+                         .outdated = has_changed,
+                         .user     = watch};
+    KrsStatus status  = write_meshes(&meshing);
+    watch->stale      = status != KRS_OK;
+    version_release(version);
+    arena_free(&arena);
+    return status;
+}
+
+static KrsStatus make_mesh(Watch *watch, double start)
+{
+    const Options *options = &watch->meshes;
+    const char    *names   = output_names(options->arena, options->outputs.items,
+                                          options->outputs.count);
+    KrsStatus      status  = read_solid(watch);
+    const bool     kept    = status == KRS_OK && !watch->stale && are_there(options);
+    if (status == KRS_OK && !kept)
+        status = write_solid(watch);
+    if (status == KRS_OK && kept && !options->quiet)
+        say("nothing of %s has changed", names);
+    else if (status == KRS_OK && !options->quiet)
+        say("wrote %s in %.2f s", names, clock_now() - start);
+    return status;
+}
+
+/* ---- edits ---- */
+
+static KrsStatus make_all(Watch *watch)
+{
+    const double start  = clock_now();
+    KrsStatus    status = compile_scene(watch);
+    if (status == KRS_OK && watch->draws)
+        status = make_picture(watch, start);
+    if (status == KRS_OK && watch->meshing)
+        status = make_mesh(watch, start);
     return status;
 }
 
@@ -138,7 +216,7 @@ static KrsStatus watch_scene(Watch *watch)
     if (stage_again(watch_again, watch, &watch->changed))
         wait_for_change(watch);
     for (bool first = true; !*interrupted(); first = false) {
-        status = make_picture(watch);
+        status = make_all(watch);
         if (*interrupted() || (!watch->refused && !can_be_mended(watch, status, first)))
             break;
         if (watch->refused) {
@@ -148,6 +226,27 @@ static KrsStatus watch_scene(Watch *watch)
         wait_for_change(watch);
     }
     return *interrupted() ? KRS_OK : status; /* Ctrl-C is how it ends */
+}
+
+/* ---- what is written ---- */
+
+/* Tells outputs of meshes from pictures; those that have no other name are pictures. */
+static void sort_outputs(Watch *watch, Options *options)
+{
+    Options *pictures = &watch->pictures, *meshes = &watch->meshes;
+    *pictures = *meshes = *options;
+    memset(&pictures->outputs, 0, sizeof pictures->outputs);
+    memset(&meshes->outputs, 0, sizeof meshes->outputs);
+    meshes->command       = COMMAND_MESH;
+    pictures->animated    = false; /* that is asked for in the other file */
+    pictures->first_frame = pictures->last_frame = 0;
+    for (size_t i = 0; i < options->outputs.count; i++) {
+        const char *path = options->outputs.items[i];
+        Options    *of   = mesh_format(path) ? meshes : pictures;
+        array_push(options->arena, &of->outputs, path);
+    }
+    watch->meshing = meshes->outputs.count > 0;
+    watch->draws   = pictures->outputs.count > 0 || !watch->meshing;
 }
 
 static KrsStatus check_use(const Options *options)
@@ -160,30 +259,59 @@ static KrsStatus check_use(const Options *options)
     return scene_readable(options, options->files.items[0]);
 }
 
+static KrsStatus check_outputs(Watch *watch)
+{
+    const Meshing meshing = {.options = &watch->meshes};
+    KrsStatus     status  = KRS_OK;
+    if (watch->draws)
+        status = render_begin(&watch->render, &watch->pictures);
+    if (status == KRS_OK && watch->meshing)
+        status = check_mesh_outputs(&meshing);
+    return status;
+}
+
+/* False, and words: the system does not let files be watched. */
+static bool open_documents(Watch *watch)
+{
+    watch->sink.options    = watch->draws ? &watch->pictures : &watch->meshes;
+    watch->unheard.options = &watch->meshes;
+    KrsOptions with        = scene_options(&watch->sink, watch->path);
+    with.opened            = note_read;
+    watch->document        = document_new(watch->path, &with);
+    watch->solid           = watch->document;
+    if (watch->document && watch->draws && watch->meshing) {
+        with            = scene_options(&watch->unheard, watch->path);
+        with.diagnostic = NULL;
+        watch->solid    = document_new(watch->path, &with);
+    }
+    if (!watch->document || !watch->solid)
+        say("the system does not let files be watched: too many programs do");
+    return watch->document && watch->solid;
+}
+
+static void close_documents(Watch *watch)
+{
+    version_release(watch->version);
+    if (watch->solid != watch->document)
+        document_free(watch->solid);
+    document_free(watch->document);
+}
+
 KrsStatus command_watch(Options *options)
 {
-    Watch *watch        = arena_new(options->arena, Watch);
-    watch->options      = options;
-    watch->path         = options->files.items[0];
-    watch->sink.options = options;
-    KrsStatus status    = check_use(options);
+    Watch *watch     = arena_new(options->arena, Watch);
+    watch->path      = options->files.items[0];
+    KrsStatus status = check_use(options);
+    sort_outputs(watch, options);
     if (status == KRS_OK)
-        status = render_begin(&watch->render, options);
+        status = check_outputs(watch);
     if (status != KRS_OK)
         return status;
     watch->render.outdated = has_changed;
     watch->render.user     = watch;
-    KrsOptions with        = scene_options(&watch->sink, watch->path);
-    with.opened            = note_read;
-    watch->document        = document_new(watch->path, &with);
-    if (!watch->document) {
-        say("the system does not let files be watched: too many programs do");
-        return KRS_IO_ERROR;
-    }
-    status              = watch_scene(watch);
-    watch->render.scene = NULL;
+    status                 = open_documents(watch) ? watch_scene(watch) : KRS_IO_ERROR;
+    watch->render.scene    = NULL;
     render_free(&watch->render);
-    version_release(watch->version);
-    document_free(watch->document);
+    close_documents(watch);
     return status;
 }

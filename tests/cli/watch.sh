@@ -2,7 +2,7 @@
 # watch.sh: `krs watch` renders what `krs render` would, whenever the scene is saved.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 18
+plan 22
 export XDG_CACHE_HOME="$work/caches"
 : >out
 
@@ -98,5 +98,19 @@ for _ in $(seq 600); do
 done
 [ "$(grep -o '"trace.comp"' out | wc -l)" -eq 2 ]
 result $? "small pictures have the kernels of large ones"
+kill -TERM "$watcher"
+wait "$watcher"
+# Both together: options go where they belong.
+scene 0.7 >scene.krs
+"$krs" watch scene.krs --size 24x16 --error 0.02 -o a.png -o a.obj >out 2>err &
+watcher=$!
+pictures=0
+how=numbers shows "a picture beside a mesh"
+heard "wrote \`a.obj\`" 1 && "$krs" mesh scene.krs -q --error 0.02 -o b.obj && cmp -s a.obj b.obj
+result $? "the mesh beside it"
+scene 0.8 >scene.krs
+shows "the next picture"
+heard "wrote \`a.obj\`" 2 && "$krs" mesh scene.krs -q --error 0.02 -o b.obj && cmp -s a.obj b.obj
+result $? "the next mesh"
 kill -TERM "$watcher"
 wait "$watcher"
