@@ -65,8 +65,8 @@ part frustum 2 'loft([rectangle([2, 2]), rectangle([1, 1])], height: 1)' \
 part flange 4 'difference(cylinder(1.9, 0.5) | (cone(1.5, 2).move([0, 0.9, 0]) & cylinder(2, 1.1).move([0, 0.75, 0])), cylinder(0.42, 5), [cylinder(0.22, 2).move([1.45 * cos(i * 60deg), 0, 1.45 * sin(i * 60deg)]) for i in 0..6])' \
     'difference() { union() { tube(0.5, 1.9); intersection() { translate([0, 0, 0.9]) cylinder(h = 2, r1 = 1.5, r2 = 0, center = true, $fn = sides(1.5)); translate([0, 0, 0.75]) tube(1.1, 2); } } tube(5, 0.42); for (i = [0:5]) rotate(60 * i) translate([1.45, 0, 0]) tube(2, 0.22); }'
 part "flange with fillet" 4 'difference(union(box([4, 0.7, 2.4]).round(0.15), cylinder(0.85, 2).move([0, 0.9, 0]), blend: 0.5), cylinder(0.5, 5), [cylinder(0.3, 2).move([s * 1.45, 0, 0]) for s in [-1, 1]])'
-part gear 3 'union([cylinder(1.2, 0.5), [prism(4, 0.22, 0.5).move([1.25 * cos(i * 18deg), 0, 1.25 * sin(i * 18deg)]) for i in 0..20]]) - cylinder(0.4, height: 1)' \
-    'difference() { union() { tube(0.5, 1.2); for (i = [0:19]) rotate(18 * i) translate([1.25, 0, 0]) rotate(45) cylinder(h = 0.5, r = 0.22 * sqrt(2), center = true, $fn = 4); } tube(1, 0.4); }'
+part gear 3 'union([cylinder(1.2, 0.5), [box([0.44, 0.5, 0.44]).move([1.25, 0, 0]).rotate([0, 1, 0], i * 18deg) for i in 0..20]]) - cylinder(0.4, height: 1)' \
+    'difference() { union() { tube(0.5, 1.2); for (i = [0:19]) rotate(18 * i) translate([1.25, 0, 0]) block([0.44, 0.44, 0.5]); } tube(1, 0.4); }'
 part bolt 6 'prism(6, 1.6, 1.2).move([0, 2.6, 0]) & sphere(2.2).move([0, 1.6, 0]) | cylinder(0.8, 5)' \
     'union() { tube(5, 0.8); intersection() { translate([0, 0, 2.6]) cylinder(h = 1.2, r = 1.6 / cos(30), center = true, $fn = 6); translate([0, 0, 1.6]) ball(2.2); } }'
 part mug 2 '(cylinder(0.8, 2) | torus(0.5, 0.12).rotate([1, 0, 0], 90deg).move([0.9, 0, 0])) - cylinder(0.7, 2).move([0, 0.1, 0])' \

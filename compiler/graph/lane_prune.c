@@ -313,7 +313,8 @@ static bool find_least_members(const Pruning *p, const LaneCall *call, const Cro
         if (!number_at(p, call->operands[1][k], &at[k]))
             return false;
     if (p->ranges->longest > 1)
-        farthest += (p->ranges->longest - 1) * (farthest + 0.5 * table->widest);
+        farthest += (p->ranges->longest * p->ranges->longest - 1) *
+                    (farthest + 0.5 * table->widest);
     for (uint32_t i = 0; i < table->rows; i++) {
         if (distance_of_boxes(&table->bounds[i], at) > farthest * table->stretch)
             continue;

@@ -158,8 +158,10 @@ static Range range_length(const LaneRanges *ranges, const Operand *o, uint32_t s
     for (uint32_t i = 1; i < size; i++)
         sum = range_add(sum, range_square(o[i].range));
     Range length = range_sqrt(sum);
-    if (ranges->stretch > 1 && size > 1)
-        length.high *= size > 2 ? ranges->longest : ranges->stretch;
+    if (ranges->stretch > 1 && size > 1) {
+        double by = size > 2 ? ranges->longest : ranges->stretch;
+        length    = (Range){length.low / by, length.high * by};
+    }
     return length;
 }
 

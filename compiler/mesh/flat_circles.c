@@ -7,18 +7,19 @@
 
 /* The polygon that stands for a circle, and those of its sides that are the farthest ones in directions of a rectangle. */
 typedef struct Sides {
-    double   angle, stretch; /* that of a side, and the radius over the distance to it */
+    double angle,
+        wide; /* of a side; how far corners are that are not on the axes, where the circle has radius 1 */
     uint32_t count, used;
     int64_t  first;
 } Sides;
 
-static void find_sides(Range a, Range b, uint32_t count, Sides *sides)
+static void find_sides(Range a, Range b, uint32_t count, double wide, Sides *sides)
 {
     static const double SLACK  = 1e-9;
     const double        around = 2 * acos(-1);
     sides->count               = count;
     sides->angle               = around / count;
-    sides->stretch             = 1 / cos(0.5 * sides->angle);
+    sides->wide                = wide;
     sides->first               = 0;
     sides->used                = count;
     if (a.low <= 0 && a.high >= 0 && b.low <= 0 && b.high >= 0)
@@ -35,11 +36,19 @@ static void find_sides(Range a, Range b, uint32_t count, Sides *sides)
     sides->used  = (uint32_t)min2(last - (double)sides->first + 1, count);
 }
 
-/* What a side tells of two numbers: that of the first, or of the second. */
+/* What a side tells of two numbers is 1 at both its corners: its factor of the first number, or of the second. */
 static double side_factor(const Sides *sides, uint32_t i, bool second)
 {
-    double angle = ((double)sides->first + i + 0.5) * sides->angle;
-    return sides->stretch * (second ? sin(angle) : cos(angle));
+    int64_t number = sides->first + i;
+    double  corner[2][2];
+    for (int end = 0; end < 2; end++, number++) {
+        double angle   = (double)number * sides->angle;
+        double radius  = 4 * number % sides->count == 0 ? 1 : sides->wide;
+        corner[end][0] = radius * cos(angle);
+        corner[end][1] = radius * sin(angle);
+    }
+    double cross = corner[0][0] * corner[1][1] - corner[0][1] * corner[1][0];
+    return (second ? corner[0][0] - corner[1][0] : corner[1][1] - corner[0][1]) / cross;
 }
 
 /* Where the first number is a length, only sides to the right count. */
@@ -136,10 +145,11 @@ static int solid_of_side(Finding *f, const Form *rest, double factor, const Roun
 
 /* The length of a pair is the largest distance that the sides of its polygon tell; of `part` of that. */
 static int solid_of_pair_length(Finding *f, const Form *rest, double factor, const Rounded *rounded,
-                                const double band[2], uint32_t count)
+                                const double band[2], uint32_t count, double wide)
 {
     Sides sides;
-    find_sides(form_range(f, &rounded->forms[0]), form_range(f, &rounded->forms[1]), count, &sides);
+    find_sides(form_range(f, &rounded->forms[0]), form_range(f, &rounded->forms[1]), count, wide,
+               &sides);
     bool around = sides.used == count;
     if (sides.used > (around ? f->most_around : f->most_used)) {
         f->failed = true;
@@ -167,9 +177,9 @@ static uint32_t sides_of_band(uint32_t count, double part)
     return sides;
 }
 
-/* A band of a ball: its factors, its number of sides, and how much longer lengths are by it. */
+/* A band of a ball: its factors, its number of sides, and how much longer and shorter lengths are by it. */
 typedef struct Band {
-    double   factors[2], longer;
+    double   factors[2], longer, shorter;
     uint32_t sides;
 } Band;
 
@@ -180,7 +190,7 @@ static Sides find_bands(const Finding *f, const Rounded *rounded, uint32_t count
     Range pair = range_sqrt(range_add(range_square(form_range(f, &rounded->forms[0])),
                                       range_square(form_range(f, &rounded->forms[1]))));
     Sides bands;
-    find_sides(pair, form_range(f, &rounded->forms[2]), count, &bands);
+    find_sides(pair, form_range(f, &rounded->forms[2]), count, flat_corner_radius(count), &bands);
     bands.first--;
     bands.used = (uint32_t)min2(bands.used + 2, count);
     leave_out_behind(&bands);
@@ -190,16 +200,25 @@ static Sides find_bands(const Finding *f, const Rounded *rounded, uint32_t count
 static Band find_band(const Sides *bands, uint32_t i)
 {
     Band   band    = {.factors = {side_factor(bands, i, false), side_factor(bands, i, true)}};
-    double part    = band.factors[0] / bands->stretch;
+    double nearest = flat_side_distance(bands->count, bands->wide);
+    double part    = band.factors[0] * nearest;
+    double share   = part * min2(part + 0.5 * bands->angle, 1);
     band.sides     = sides_of_band(bands->count, part);
-    double farther = 1 / cos(acos(-1) / band.sides) - 1;
-    band.longer    = bands->stretch * (1 + farther * part * min2(part + 0.5 * bands->angle, 1)) - 1;
+    double wide    = flat_corner_radius(band.sides);
+    double longer  = 1 / flat_side_distance(band.sides, wide) - 1;
+    band.longer    = (1 + longer * share) / nearest - 1;
+    band.shorter   = 1 - 1 / (bands->wide * (1 + (wide - 1) * share));
     return band;
 }
 
 FlatSlack flat_slack_with(FlatSlack slack, double excess)
 {
     return (FlatSlack){slack.below + max2(excess, 0), slack.above - min2(excess, 0)};
+}
+
+static FlatSlack slack_of_length(FlatSlack slack, double by, double longer, double shorter)
+{
+    return flat_slack_with(flat_slack_with(slack, by * longer), -by * shorter);
 }
 
 static int solid_of_three(Finding *f, const Form *rest, double factor, const Rounded *rounded,
@@ -211,35 +230,42 @@ static int solid_of_three(Finding *f, const Form *rest, double factor, const Rou
     f->failed |= bands.used > f->most_used;
     for (uint32_t i = 0; i < bands.used && !f->failed; i++) {
         Band band = find_band(&bands, i);
-        f->slack  = flat_slack_with(slack, factor * reach * band.longer);
-        int parts = solid_of_pair_length(f, rest, factor, rounded, band.factors, band.sides);
+        f->slack  = slack_of_length(slack, factor * reach, band.longer, band.shorter);
+        int parts = solid_of_pair_length(f, rest, factor, rounded, band.factors, band.sides,
+                                         flat_corner_radius(band.sides));
         solid     = factor > 0 ? flat_both(f, solid, parts) : flat_either(f, solid, parts);
     }
     f->slack = slack;
     return solid;
 }
 
-/* A length is longer by its part of stretch - 1 at most, and the direction of a side is half its angle off at most. */
+/* A polygon whose lengths are multiplied by `stretch`. */
+typedef struct Polygon {
+    uint32_t sides;
+    double   wide, stretch;
+} Polygon;
+
+/* The direction of a side is about half its angle off at most. */
 static int solid_of_polygon(Finding *f, const Form *rest, double factor, const Rounded *rounded,
-                            uint32_t count, double stretch, double reach)
+                            const Polygon *polygon, double reach)
 {
-    const double band[2] = {stretch, 0};
+    const double band[2] = {polygon->stretch, 0};
     FlatSlack    slack   = f->slack;
-    double       longer  = stretch / cos(acos(-1) / max2(count, 1));
-    f->slack             = flat_slack_with(slack, factor * reach * (longer - 1) * longer);
-    int solid            = solid_of_pair_length(f, rest, factor, rounded, band, count);
-    f->slack             = slack;
+    double       longer  = polygon->stretch / flat_side_distance(polygon->sides, polygon->wide);
+    double       shorter = max2(1 - polygon->stretch / polygon->wide, 0);
+    f->slack  = slack_of_length(slack, factor * reach, (longer - 1) * longer, shorter * longer);
+    int solid = solid_of_pair_length(f, rest, factor, rounded, band, polygon->sides, polygon->wide);
+    f->slack  = slack;
     return solid;
 }
 
 /* The part of a solid where a half-space is; it is not looked for where that is not. */
 static int polygon_where(Finding *f, int where, const Form *rest, double factor,
-                         const Rounded *rounded, uint32_t count, double stretch, double reach)
+                         const Rounded *rounded, const Polygon *polygon, double reach)
 {
     return where == FLAT_NONE
                ? FLAT_NONE
-               : flat_both(f, where,
-                           solid_of_polygon(f, rest, factor, rounded, count, stretch, reach));
+               : flat_both(f, where, solid_of_polygon(f, rest, factor, rounded, polygon, reach));
 }
 
 /*
@@ -252,15 +278,17 @@ static int solid_of_pair(Finding *f, const Form *rest, double factor, const Roun
                          uint32_t count, double largest, double reach)
 {
     enum { MANY = 64, AT_TIP = 32 };
+    Polygon polygon = {count, flat_corner_radius(count), 1};
     if (count <= MANY || rest->kink_count > 0 || !(largest3(rest->by) > 0))
-        return solid_of_polygon(f, rest, factor, rounded, count, 1, reach);
-    double part = (double)AT_TIP / count, longer = 1.0001 / cos(acos(-1) / count);
-    double small = part * part / (1 + part * part) * largest;
-    Form   one = form_constant(1), at = form_sum(*rest, factor * small, &one);
-    int    below = flat_solid(f, &at), above = flat_complement(f, below);
-    int    wide = factor > 0 ? below : above, tip = factor > 0 ? above : below;
-    wide = polygon_where(f, wide, rest, factor, rounded, count, 1, reach);
-    tip  = polygon_where(f, tip, rest, factor, rounded, AT_TIP, longer, min2(reach, small));
+        return solid_of_polygon(f, rest, factor, rounded, &polygon, reach);
+    double  part   = (double)AT_TIP / count;
+    Polygon at_tip = {AT_TIP, 1, 1.0001 / flat_side_distance(count, polygon.wide)};
+    double  small  = part * part / (1 + part * part) * largest;
+    Form    one = form_constant(1), at = form_sum(*rest, factor * small, &one);
+    int     below = flat_solid(f, &at), above = flat_complement(f, below);
+    int     wide = factor > 0 ? below : above, tip = factor > 0 ? above : below;
+    wide = polygon_where(f, wide, rest, factor, rounded, &polygon, reach);
+    tip  = polygon_where(f, tip, rest, factor, rounded, &at_tip, min2(reach, small));
     return flat_either(f, wide, tip);
 }
 

@@ -6,14 +6,41 @@
 #include "compiler/base/minmax.h"
 
 /* A multiple of four. */
-enum { FEWEST_SIDES = 12, MOST_SIDES = 4096 };
+enum { FEWEST_SIDES = 8, MOST_SIDES = 4096 };
 
 static const double PI = 3.14159265358979323846;
 
 /* What is left over is for edges, at which faces are farther from the surface than beside them. */
-static const double LARGEST_PART = 0.8, LEAST_PART = 0.04;
+static const double LARGEST_PART = 0.85, LEAST_PART = 0.04;
 
-static double stretch_of(uint32_t sides) { return 1 / cos(PI / sides); }
+/*
+ * A side between two corners that are w outside of a unit circle comes within it by a^2 / 8 - w, where a is its angle; one
+ * between such a corner and one on the circle by (a^2 / 2 - w)^2 / (2 a^2).  That is w as well if w = (3 - sqrt(8)) a^2 / 2.
+ */
+double flat_corner_radius(uint32_t sides)
+{
+    double angle = 2 * PI / sides;
+    return sides > 4 ? 1 + 0.5 * (3 - sqrt(8)) * angle * angle : 1;
+}
+
+/* The distance of the origin from the line through (1, 0) and (wide cos angle, wide sin angle). */
+double flat_side_distance(uint32_t sides, double wide)
+{
+    double angle = 2 * PI / sides, across = wide * sin(angle), along = wide * cos(angle) - 1;
+    return min2(across / hypot(across, along), wide * cos(0.5 * angle));
+}
+
+static double off_of(uint32_t sides)
+{
+    double wide = flat_corner_radius(sides);
+    return max2(wide - 1, 1 - flat_side_distance(sides, wide));
+}
+
+static double stretch_of(uint32_t sides)
+{
+    double wide = flat_corner_radius(sides);
+    return max2(wide, 1 / flat_side_distance(sides, wide));
+}
 
 FlatRounds flat_rounds_new(double error, Arena *arena)
 {
@@ -69,13 +96,14 @@ static double part_of(const FlatRound *round, double error)
     return error * round->part * (round->shared ? 0.45 : 1) / round->radius;
 }
 
-/* The middle of a side is radius (1 - cos(pi / sides)) from the circle. */
 static uint32_t sides_of(const FlatRound *round, double error)
 {
-    double part  = part_of(round, error);
-    double sides = part < 1 ? PI / acos(1 - part) : 0;
-    sides        = 4 * ceil(sides / 4);
-    return (uint32_t)min2(max2(sides, FEWEST_SIDES), MOST_SIDES);
+    double   part  = part_of(round, error);
+    double   about = 2 * PI * sqrt(0.5 * (3 - sqrt(8)) / part);
+    uint32_t sides = 4 * (uint32_t)(min2(max2(about, FEWEST_SIDES), MOST_SIDES) / 4);
+    while (sides < MOST_SIDES && off_of(sides) > part)
+        sides += 4;
+    return sides;
 }
 
 static void count_sides(FlatRounds *rounds, FlatRound *round)
@@ -134,7 +162,7 @@ static bool make_finer(FlatRound *round, double error)
     bool     any   = false;
     while (round->part > LEAST_PART &&
            !(any && (round->curves || sides_of(round, error) > sides))) {
-        round->part *= 0.6;
+        round->part *= 0.8;
         any = true;
     }
     return any;

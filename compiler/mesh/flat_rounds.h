@@ -1,8 +1,8 @@
 /*
  * flat_rounds.h: how many sides the polygons have that stand for circles, and how far chords are from curves.
  *
- * The length of a pair of numbers is taken for that of a regular polygon: its corners are on the circle, four of them on
- * the axes.  Steps of a lane tape that are kin have the same number of sides everywhere, as the largest radius needs that
+ * The length of a pair of numbers is taken for that of a polygon whose sides have equal angles.  Its corners on the axes are on
+ * the circle, so that what touches it there still does; the others are as far outside as sides are within.  Steps of a lane tape that are kin have the same number of sides everywhere, as the largest radius needs that
  * the surface has.  So have the curves of an outline chords that are near enough everywhere.
  */
 #ifndef KRS_MESH_FLAT_ROUNDS_H
@@ -33,6 +33,11 @@ typedef struct FlatRounds {
     bool   counted;                  /* sides are known; until then there are few */
     bool   blame;                    /* those that are noted are blamed */
 } FlatRounds;
+
+/* How far corners of a polygon of so many sides are that are not on the axes, of a circle of radius 1; a multiple of four. */
+double flat_corner_radius(uint32_t sides);
+/* How far the sides of a polygon are whose corners are so far; 1: on the circle. */
+double flat_side_distance(uint32_t sides, double wide);
 
 FlatRounds flat_rounds_new(double error, Arena *arena);
 /* Says that a surface has a part of a circle. */

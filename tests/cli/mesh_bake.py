@@ -75,14 +75,14 @@ def to_linear(encoded):
 
 # ---- the scene ----
 
-CELL, SHIFT = 3, 0.37
+CELL, SHIFT = 3, 0.1
 
 
 def to_block(p):
-    """Onto the bore and its rims: all else of the block is flat."""
+    """Onto the bore and its rims, on both sides of which corners are: all else of the block is flat."""
     radius, farthest = np.hypot(p[:, 0], p[:, 2]), np.abs(p).max(0)
     assert (farthest <= [1.0001, 0.5001, 0.5001]).all()
-    factor = np.where(radius < 0.3001, 0.3 / radius, 1)
+    factor = np.where((radius < 0.3001) | ((radius < 0.35) & (np.abs(p[:, 1]) < 0.4999)), 0.3 / radius, 1)
     return np.stack([p[:, 0] * factor, p[:, 1], p[:, 2] * factor], 1)
 
 

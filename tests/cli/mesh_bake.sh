@@ -4,7 +4,7 @@
 plan 9
 
 cat >bake.krs <<'SCENE'
-def cell(q) = floor(3 * q + 0.37);
+def cell(q) = floor(3 * q + 0.1);
 material board {
     color: if (cell(x) + cell(y) + cell(z)) % 2 < 0.5 then [0.9, 0.1, 0.1] else [0.9, 0.9, 0.8],
     roughness: 0.2 + 0.6 * clamp(y + 0.5, 0, 1), metallic: clamp(z + 0.5, 0, 1)
