@@ -45,6 +45,8 @@ endif
 TARGET   := $(call sources,compiler/target)
 BORDER   := compiler/target/glslang_border.cpp
 RUNTIME  := $(foreach room,device tracer integrators film display writer,$(call sources,runtime/$(room)))
+# What programs link with of other versions, too (api/README.md).
+API      := $(call sources,api)
 LIVE     := $(call sources,live)
 LIVE_BORDER := live/gui.cpp
 CLI      := $(call sources,cli)
@@ -70,7 +72,8 @@ EXAMPLES := $(sort $(wildcard examples/*.krs))
 WERROR   ?=
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow $(if $(filter 1,$(WERROR)),-Werror)
 # All can be linked into a shared library, and no name of ours is seen outside but those of the public headers.
-COMMON   := -I. -Iinclude -MMD -MP -pthread -fPIC -fvisibility=hidden
+# Structs of programs here have the size that the library knows (KRS_SIZED in krs/krs.h).
+COMMON   := -I. -Iinclude -DKRS_LIBRARY -MMD -MP -pthread -fPIC -fvisibility=hidden
 STYLE    := -std=c17 -D_GNU_SOURCE $(WARNINGS) $(COMMON)
 CC_C     = $(CC) $(STYLE) $(HEADERS) $(CPPFLAGS) $(CFLAGS)
 # Headers of libraries in C++ are long: under the sanitizers -O1 would take three times as long as -O0.
@@ -83,7 +86,7 @@ HARDENED := -pie -Wl,-z,relro -Wl,-z,now
 include tools/libraries.mk
 
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
-            $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o $(B)/fingerprints.o
+            $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(API:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o $(B)/fingerprints.o
 
 # Programs of this project are linked with the library's parts; others with the library, which shows its API alone.
 INTERNAL := $(B)/libkrs-internal.a

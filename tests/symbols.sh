@@ -28,12 +28,13 @@ defined() { # options of nm, files
     nm --defined-only "$@" 2>/dev/null | awk 'NF == 3 && $2 ~ /^[A-Zuvw]$/ { sub(/@.*/, "", $3); print $3 }' |
         sort -u
 }
-# What the headers declare: functions and tables.
+# What the headers declare: functions and tables.  One that there is for structs of any size is not linked by its own name.
 for header in krs camera vulkan; do
     printf '#include <krs/%s.h>\n' "$header"
 done >"$work/headers.c"
 "$cc" -std=c17 -Iinclude -E -P "$work/headers.c" | grep -o '\bkrs_[a-z0-9_]* *[[(]' | sed 's/ *[[(]//' |
-    sort -u >"$work/api"
+    sort -u >"$work/declared"
+sed -n 's/_sized$//p' "$work/declared" | sort | comm -23 "$work/declared" - >"$work/api"
 
 # Of the linker, not of ours.
 linkers='^(_init|_fini|_start|_end|_edata|__bss_start|_DYNAMIC|_GLOBAL_OFFSET_TABLE_)$'

@@ -160,7 +160,7 @@ sanitize:
 # here become vector instructions.  Its objects are not linked, and no warning needs more than -O0.
 clang-check: $(B)/library_files.c $(B)/shader_files.c
 	@$(MAKE) --no-print-directory clang-objects B=$(B)/clang CC=$(CLANG) CFLAGS=-O0
-clang-objects: $(patsubst %.c,$(B)/%.o,$(LANES) $(TARGET) $(RUNTIME) $(LIVE) $(CLI))
+clang-objects: $(patsubst %.c,$(B)/%.o,$(LANES) $(TARGET) $(RUNTIME) $(API) $(LIVE) $(CLI))
 
 # The front end (lexer, parser, names) and the whole compiler but glslang under libFuzzer.
 HARNESSES   := front_fuzz scene_fuzz
@@ -186,7 +186,7 @@ layers:
 docs: $(B)/krs
 	@tests/docs.sh
 format:
-	@clang-format -i $$(find bench cli compiler examples include live runtime tests -name '*.[ch]' -o -name '*.cpp')
+	@clang-format -i $$(find api bench cli compiler examples include live runtime tests -name '*.[ch]' -o -name '*.cpp')
 bless: $(B)/krs
 	@tests/errors.sh --bless
 

@@ -79,9 +79,9 @@ typedef struct KrsGrid KrsGrid;
  * thickness); the grid is longer than KRS_MOST_CELLS along an axis, or that far from the origin; or the error is below
  * what krs_mesh takes.
  */
-KrsStatus    krs_grid_new(KrsFrame *frame, const KrsGridOptions *options, KrsGrid **grid);
-void         krs_grid_free(KrsGrid *grid);
-KrsGridShape krs_grid_shape(const KrsGrid *grid);
+KRS_SIZED KrsStatus    krs_grid_new(KrsFrame *frame, const KrsGridOptions *options, KrsGrid **grid);
+void                   krs_grid_free(KrsGrid *grid);
+KRS_SIZED KrsGridShape krs_grid_shape(const KrsGrid *grid);
 
 /* Another band and another alignment than those of the options, for other files of the same distances: what they come from
    stays.  KRS_BAD_ARGUMENT: as of krs_grid_new; then this is to be called again before the samples are visited. */

@@ -25,6 +25,20 @@ extern "C" {
 #define KRS_VERSION_MAJOR 0
 #define KRS_VERSION_MINOR 2
 #define KRS_VERSION_PATCH 0
+/* Grows by 1 whenever the headers have something new: a function, a member, a choice. */
+#define KRS_API_VERSION 1
+
+/*
+ * Structs that a program owns get new members, always behind the others: options, what is told of a scene, answers.
+ * Functions with this word hand on how large such a struct is for the program (sized.h).  So a program that was
+ * compiled with older headers runs with a newer library, which takes 0 for the members that the program does not know.
+ * Those that the library does not know must be 0: else it is KRS_BAD_ARGUMENT.
+ */
+#ifdef KRS_LIBRARY /* this is the library itself */
+#define KRS_SIZED __attribute__((visibility("hidden")))
+#else
+#define KRS_SIZED static inline
+#endif
 
 /* The version of the library that a program runs with, as KRS_VERSION has it. */
 const char *krs_version(void);
@@ -132,9 +146,9 @@ typedef struct KrsOptions {
    and by krs_scene_update the callbacks with what is handed to them.
    `options` may be NULL.  On KRS_OK the caller owns *scene; on any other status it is NULL.
    KRS_BAD_SCENE: see the diagnostics; KRS_IO_ERROR: the file cannot be read; KRS_OUT_OF_MEMORY. */
-KrsStatus krs_compile_text(const char *text, size_t length, const char *name,
-                           const KrsOptions *options, KrsScene **scene);
-KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene **scene);
+KRS_SIZED KrsStatus krs_compile_text(const char *text, size_t length, const char *name,
+                                     const KrsOptions *options, KrsScene **scene);
+KRS_SIZED KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene **scene);
 /* The frames and renderings of the scene must be freed, or updated to another scene, before.  NULL
    is ignored, as in all functions that free. */
 void krs_scene_free(KrsScene *scene);
@@ -148,7 +162,8 @@ void krs_scene_free(KrsScene *scene);
  * that was read.  On any other status *formatted is NULL.  KRS_BAD_SCENE: the text is no scene, and
  * diagnostics say why; KRS_IO_ERROR: it cannot be read; KRS_OUT_OF_MEMORY.
  */
-KrsStatus krs_format(const char *path, const KrsOptions *options, char **formatted, bool *same);
+KRS_SIZED KrsStatus krs_format(const char *path, const KrsOptions *options, char **formatted,
+                               bool *same);
 
 /* What is different in an edited scene. */
 typedef enum KrsChange {
@@ -179,12 +194,13 @@ typedef struct KrsChanges {
  * Frames and renderings belong to the scene that they were made of.  krs_frame_update and
  * krs_rendering_update (vulkan.h) take them over to the new one.
  */
-KrsStatus krs_scene_update(const KrsScene *scene, const char *text, size_t length,
-                           KrsScene **updated, KrsChanges *changes);
+KRS_SIZED KrsStatus krs_scene_update(const KrsScene *scene, const char *text, size_t length,
+                                     KrsScene **updated, KrsChanges *changes);
 
 /* The same with the scene's own file as it is now, which is read by the rules of the first
    compilation, and told of to KrsOptions.opened.  KRS_IO_ERROR: it cannot be read. */
-KrsStatus krs_scene_reload(const KrsScene *scene, KrsScene **updated, KrsChanges *changes);
+KRS_SIZED KrsStatus krs_scene_reload(const KrsScene *scene, KrsScene **updated,
+                                     KrsChanges *changes);
 
 /* Strings that the functions below return (names, places, rules) live as long as the scene. */
 
@@ -206,7 +222,7 @@ typedef struct KrsParameter {
 
 size_t krs_parameter_count(const KrsScene *scene);
 /* Parameter `index` in the order of the text; KRS_BAD_ARGUMENT when there is none. */
-KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *parameter);
+KRS_SIZED KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *parameter);
 
 /* The properties of the `image` block; 0 or NULL where one is not given. */
 typedef struct KrsImage {
@@ -220,7 +236,7 @@ typedef struct KrsImage {
     const char *pixel_filter; /* or NULL */
     double      white_balance[2]; /* the white of the light: kelvins, tint; 0: as it is */
 } KrsImage;
-KrsImage krs_scene_image(const KrsScene *scene);
+KRS_SIZED KrsImage krs_scene_image(const KrsScene *scene);
 
 /* Makes a frame: parameters at their defaults, time 0, no zones of the caller.  The scene must
    outlive the frame.  KRS_OUT_OF_MEMORY: *frame is NULL. */
@@ -281,8 +297,8 @@ typedef struct KrsTexture {
     size_t      header; /* texel of its header, which the GLSL reads */
     size_t      first;  /* first texel of its finest level */
 } KrsTexture;
-size_t    krs_texture_count(const KrsScene *scene);
-KrsStatus krs_texture(const KrsScene *scene, size_t index, KrsTexture *texture);
+size_t              krs_texture_count(const KrsScene *scene);
+KRS_SIZED KrsStatus krs_texture(const KrsScene *scene, size_t index, KrsTexture *texture);
 /* A slope that is computed for each frame: its slot, and the location of its expression.
    KRS_BAD_ARGUMENT: there is none of this index. */
 typedef struct KrsFrameSlope {
@@ -290,8 +306,8 @@ typedef struct KrsFrameSlope {
     const char *place;           /* "scene.krs:3:14" */
     double      low[3], high[3]; /* the box for which the slope holds; may be infinite */
 } KrsFrameSlope;
-size_t    krs_frame_slope_count(const KrsScene *scene);
-KrsStatus krs_frame_slope(const KrsScene *scene, size_t index, KrsFrameSlope *slope);
+size_t              krs_frame_slope_count(const KrsScene *scene);
+KRS_SIZED KrsStatus krs_frame_slope(const KrsScene *scene, size_t index, KrsFrameSlope *slope);
 
 /*
  * Sets the caller's zones: spheres (center and radius) that are kept empty, so that the caller can
@@ -338,10 +354,10 @@ typedef struct KrsPlace {
     uint32_t    start, end;
     uint32_t    line, column; /* of its beginning, from 1 */
 } KrsPlace;
-KrsStatus krs_camera_place(const KrsScene *scene, size_t index, KrsPlace *place);
+KRS_SIZED KrsStatus krs_camera_place(const KrsScene *scene, size_t index, KrsPlace *place);
 /* A camera at the frame's parameters and time.  KRS_BAD_ARGUMENT when there is none of that
    index. */
-KrsStatus krs_frame_camera(KrsFrame *frame, size_t index, KrsCamera *camera);
+KRS_SIZED KrsStatus krs_frame_camera(KrsFrame *frame, size_t index, KrsCamera *camera);
 
 /* The lights of the scene or, if it has none, one that the compiler places.  The name is NULL if the
    light has none. */
@@ -366,7 +382,7 @@ typedef struct KrsComponent {
 
 size_t krs_component_count(const KrsScene *scene);
 /* Component `index`, from 0 in the order of the text; KRS_BAD_ARGUMENT when there is none. */
-KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *component);
+KRS_SIZED KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *component);
 
 /* Names of the scene's materials, each once, for the numbers that answers and mattes have: from 1 on.
    Plain colours are all "colour".  NULL where there is no such number: nothing is painted. */
@@ -393,7 +409,8 @@ typedef struct KrsBound {
    the number of shapes for which there was no room. */
 size_t krs_bound_count(const KrsScene *scene, size_t component, size_t *more);
 /* KRS_BAD_ARGUMENT when there is no such entry. */
-KrsStatus krs_bound(const KrsScene *scene, size_t component, size_t index, KrsBound *bound);
+KRS_SIZED KrsStatus krs_bound(const KrsScene *scene, size_t component, size_t index,
+                              KrsBound *bound);
 
 /*
  * Queries of a frame, in double precision.  Arrays belong to the caller and have `count` elements;
@@ -435,7 +452,8 @@ typedef struct KrsHit {
 } KrsHit;
 
 /* Distance, normal and identity at points. */
-KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits);
+KRS_SIZED KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count,
+                              KrsHit *hits);
 
 /*
  * First hits of rays in [0, farthest], which may be infinite; directions of any length but 0.
@@ -452,8 +470,9 @@ KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, Kr
  * surface, for example along an infinite plane.
  */
 #define KRS_MOST_STEPS 100000
-KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
-                      size_t count, double farthest, double tolerance, KrsHit *hits);
+KRS_SIZED KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3],
+                                const double (*directions)[3], size_t count, double farthest,
+                                double tolerance, KrsHit *hits);
 
 #ifdef __GNUC__
 #pragma GCC visibility pop
@@ -466,4 +485,5 @@ KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3], const double 
 #include "krs/mesh.h"
 #include "krs/slice.h"
 #include "krs/measure.h"
+#include "krs/sized.h"
 #endif

@@ -75,8 +75,9 @@ typedef struct KrsMeasures {
  * On KRS_OK the caller frees *measures with krs_measures_free; where nothing is solid, volume and area are 0.
  * KRS_BAD_ARGUMENT as of krs_mesh, and if an angle or a length cannot be.
  */
-KrsStatus krs_measure(KrsFrame *frame, const KrsMeasureOptions *options, KrsMeasures **measures);
-void      krs_measures_free(KrsMeasures *measures);
+KRS_SIZED KrsStatus krs_measure(KrsFrame *frame, const KrsMeasureOptions *options,
+                                KrsMeasures **measures);
+void                krs_measures_free(KrsMeasures *measures);
 
 #ifdef __GNUC__
 #pragma GCC visibility pop

@@ -70,16 +70,16 @@ typedef struct KrsMesh {
  * there is no such component; what is meshed has no end, or is no solid (surfaces without
  * thickness); or the error is below a 500,000th of the size.
  */
-KrsStatus krs_mesh(KrsFrame *frame, const KrsMeshOptions *options, KrsMesh **mesh);
-void      krs_mesh_free(KrsMesh *mesh);
+KRS_SIZED KrsStatus krs_mesh(KrsFrame *frame, const KrsMeshOptions *options, KrsMesh **mesh);
+void                krs_mesh_free(KrsMesh *mesh);
 
 /*
  * Leaves out triangles that are not needed for the mesh to stay within an error of what it was, in both
  * directions.  Of the options it asks for error, which must not be 0, go_on and user.  That is proven, and so is that the mesh is still closed and does not cross itself; where
  * it cannot be, fewer are left out, or none.  mesh->error grows by it.  *simplified is a mesh of its own.
  */
-KrsStatus krs_mesh_simplify(const KrsMesh *mesh, const KrsMeshOptions *options,
-                            KrsMesh **simplified);
+KRS_SIZED KrsStatus krs_mesh_simplify(const KrsMesh *mesh, const KrsMeshOptions *options,
+                                      KrsMesh **simplified);
 
 /* How an item is placed: x -> matrix (x, 1), which turns, moves, mirrors and scales evenly. */
 typedef struct KrsPlacing {
@@ -114,8 +114,9 @@ typedef struct KrsAssembly {
  * compiled with KrsOptions.assembly.  With KrsOptions.motion what the time moves is taken apart as well.  Then KRS_BAD_SCENE:
  * something that moves cannot be taken apart.
  */
-KrsStatus krs_assemble(KrsFrame *frame, const KrsMeshOptions *options, KrsAssembly **assembly);
-void      krs_assembly_free(KrsAssembly *assembly);
+KRS_SIZED KrsStatus krs_assemble(KrsFrame *frame, const KrsMeshOptions *options,
+                                 KrsAssembly **assembly);
+void                krs_assembly_free(KrsAssembly *assembly);
 /* Places the meshes of an assembly anew, as they are at the values and the time of the frame, of which it was made or of
    another of this scene.  KRS_BAD_SCENE: a mirror would cut something.  The box and `first_copy` stay. */
 KrsStatus krs_assembly_place(KrsFrame *frame, KrsAssembly *assembly);
@@ -132,7 +133,7 @@ typedef struct KrsMotion {
     bool recolors; /* its material changes */
 } KrsMotion;
 /* KRS_BAD_ARGUMENT: there is no component `index`, from 0, or nobody asked. */
-KrsStatus krs_component_motion(const KrsScene *scene, size_t index, KrsMotion *motion);
+KRS_SIZED KrsStatus krs_component_motion(const KrsScene *scene, size_t index, KrsMotion *motion);
 
 /* The convex hull of two balls. */
 typedef struct KrsBeam {

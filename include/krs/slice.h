@@ -69,8 +69,9 @@ typedef struct KrsSlicer KrsSlicer;
  * KRS_BAD_ARGUMENT: there is no such component; what is cut has no end, or is no solid (surfaces without thickness);
  * or the error is below a ten-millionth of the size.
  */
-KrsStatus krs_slicer_new(KrsFrame *frame, const KrsSliceOptions *options, KrsSlicer **slicer);
-void      krs_slicer_free(KrsSlicer *slicer);
+KRS_SIZED KrsStatus krs_slicer_new(KrsFrame *frame, const KrsSliceOptions *options,
+                                   KrsSlicer **slicer);
+void                krs_slicer_free(KrsSlicer *slicer);
 /* Another error than that of the options, which the box may tell: at least a ten-millionth of the size. */
 KrsStatus krs_slicer_set_error(KrsSlicer *slicer, double error);
 /* The box around what is cut; false: there is nothing. */

@@ -93,19 +93,19 @@ typedef struct KrsRendererOptions {
 
 /* The devices of this machine, in Vulkan's order.  *count is how many there are, of which the
    first `capacity` are written.  KRS_NO_DEVICE: Vulkan cannot be started, or knows no device. */
-KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count);
+KRS_SIZED KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count);
 
 /* Opens a device.  *renderer is the caller's to free whatever the status, so that its message
-   can be read; it is NULL only when memory ran out.  KRS_NO_DEVICE, KRS_OUT_OF_MEMORY,
-   KRS_INTERNAL.  A renderer whose opening failed must only be freed. */
-KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **renderer);
-void      krs_renderer_free(KrsRenderer *renderer); /* its renderings must be freed before */
+   can be read; it is NULL only when memory ran out, and with options that this library does not know.
+   KRS_NO_DEVICE, KRS_OUT_OF_MEMORY, KRS_INTERNAL.  A renderer whose opening failed must only be freed. */
+KRS_SIZED KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **renderer);
+void krs_renderer_free(KrsRenderer *renderer); /* its renderings must be freed before */
 
 /* Why the last call on this renderer, or on one of its renderings, failed: one line, "" when it
    did not.  Lives until the next such call. */
 const char *krs_renderer_message(const KrsRenderer *renderer);
 /* The device that was opened. */
-KrsDevice krs_renderer_device(const KrsRenderer *renderer);
+KRS_SIZED KrsDevice krs_renderer_device(const KrsRenderer *renderer);
 /* Complaints of the validation layers so far. */
 uint64_t krs_renderer_complaints(const KrsRenderer *renderer);
 
@@ -141,8 +141,8 @@ typedef struct KrsKernelStats {
 
 /* The kernels made so far, those without a scene first.  Writes up to `capacity` of them, and
    returns how many there are. */
-size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelStats *kernels,
-                             size_t capacity);
+KRS_SIZED size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelStats *kernels,
+                                       size_t capacity);
 
 /*
  * Takes a rendering over to an update of its scene (krs_scene_update), or to one that its scene is
@@ -262,13 +262,13 @@ typedef enum KrsPhase {
 #include "krs/choices.def"
     KRS_PHASE_COUNT
 } KrsPhase;
-extern const char *const krs_phase_names[KRS_PHASE_COUNT]; /* "beams", ... */
+extern const char *const krs_phase_names[KRS_MOST_CHOICES]; /* "beams", ... */
 
 typedef struct KrsRenderStats {
-    double   spirv_ms, pipeline_ms;     /* compiling shaders: to SPIR-V, by the driver */
-    double   phase_ms[KRS_PHASE_COUNT]; /* on the device */
-    double   total_ms;                  /* their sum */
-    double   wall_ms;                   /* of krs_render, without compiling */
+    double   spirv_ms, pipeline_ms;      /* compiling shaders: to SPIR-V, by the driver */
+    double   phase_ms[KRS_MOST_CHOICES]; /* on the device */
+    double   total_ms;                   /* their sum */
+    double   wall_ms;                    /* of krs_render, without compiling */
     bool     device_time;         /* phases by timestamps of the device, else by the host's clock */
     uint64_t rays;                /* primary rays */
     uint64_t evaluations;         /* of the distance, spent on them */
@@ -282,6 +282,7 @@ typedef struct KrsRenderStats {
     uint64_t kernels;           /* that the renderer has made since it was opened, for all scenes */
     uint64_t peak_memory_bytes; /* the most held at once on the device, and the picture */
     char     device[256];
+    uint64_t reserved[8]; /* 0: this is a part of KrsPicture, and keeps its size */
 } KrsRenderStats;
 
 /* Rays of a pixel that hit a component, one of its instances, or a material. */
@@ -305,13 +306,6 @@ typedef enum KrsMatteKind {
 typedef struct KrsPicture {
     uint32_t  width, height; /* of the whole picture */
     KrsWindow window;        /* the part of it that was rendered */
-    /* color, depth, position, normal, albedo, component, level, instance and steps: planes.def says
-       what they are, and how many numbers a pixel has. */
-#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) type *member;
-#define KRS_PLANE(id, bit, aov, about, arrays)                           arrays
-#include "krs/planes.def"
-#undef KRS_ARRAY
-#undef KRS_PLANE
     /* With KrsRenderOptions.mattes, KRS_MATTE_RANKS for each pixel, the most covered first; else
        NULL.  The share of a pixel that one covers is its rays / samples, or / pixel_samples where they differ. */
     KrsMatte *mattes[KRS_MATTE_COUNT];
@@ -330,15 +324,22 @@ typedef struct KrsPicture {
     float          world_to_camera[4][4], world_to_ndc[4][4];
     KrsRenderStats stats;
     KrsAllocator   allocator; /* where the memory came from */
+    /* color, depth, position, normal, albedo, component, level, instance and steps: planes.def says
+       what they are, and how many numbers a pixel has.  They are last, as there will be more. */
+#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) type *member;
+#define KRS_PLANE(id, bit, aov, about, arrays)                           arrays
+#include "krs/planes.def"
+#undef KRS_ARRAY
+#undef KRS_PLANE
 } KrsPicture;
 
 /* Renders a frame of the rendering's own scene.  On KRS_OK the caller owns *picture; on any
    other status it is NULL.  `options` may be NULL.  KRS_BAD_ARGUMENT, KRS_OUT_OF_MEMORY (host or
    device), KRS_INTERRUPTED, KRS_INTERNAL.  Equal arguments on an equal device give equal
    pictures, bit by bit, whatever the crop and the slices. */
-KrsStatus krs_render(KrsRendering *rendering, KrsFrame *frame, const KrsRenderOptions *options,
-                     KrsPicture **picture);
-void      krs_picture_free(KrsPicture *picture);
+KRS_SIZED KrsStatus krs_render(KrsRendering *rendering, KrsFrame *frame,
+                               const KrsRenderOptions *options, KrsPicture **picture);
+void                krs_picture_free(KrsPicture *picture);
 
 /* What a screen shows of a picture: its window as 8-bit sRGB, `channels` bytes a pixel (3, or 4 with
    an alpha of 255), as a PNG of `krs render` has it.  The curve, the exposure and the white balance
@@ -371,15 +372,17 @@ typedef struct KrsFilm KrsFilm;
 
 /* A film of a rendering's scene; `options` (or NULL) are checked and copied, and hold for all of its
    samples.  Where it fails *film is NULL: KRS_BAD_ARGUMENT, KRS_OUT_OF_MEMORY. */
-KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options, KrsFilm **film);
-void      krs_film_free(KrsFilm *film);  /* before its rendering */
-void      krs_film_clear(KrsFilm *film); /* forgets all samples, as after the camera has moved */
-uint32_t  krs_film_samples(const KrsFilm *film); /* of each pixel so far */
+KRS_SIZED KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options,
+                                 KrsFilm **film);
+void                krs_film_free(KrsFilm *film); /* before its rendering */
+void     krs_film_clear(KrsFilm *film); /* forgets all samples, as after the camera has moved */
+uint32_t krs_film_samples(const KrsFilm *film); /* of each pixel so far */
 
 /* Adds samples of a frame, as seen by the camera, or by the one of the options where it is NULL.
    krs_frame_camera gives the scene's own to begin with.  KRS_BAD_ARGUMENT, KRS_OUT_OF_MEMORY,
    KRS_INTERRUPTED, KRS_INTERNAL. */
-KrsStatus krs_film_add(KrsFilm *film, KrsFrame *frame, const KrsCamera *camera, uint32_t samples);
+KRS_SIZED KrsStatus krs_film_add(KrsFilm *film, KrsFrame *frame, const KrsCamera *camera,
+                                 uint32_t samples);
 
 /* A ray for each pixel of the whole picture, row by row from the top, also where there is a crop:
    lenses and projections of the caller's own. */
@@ -396,7 +399,7 @@ typedef struct KrsRays {
 
 /* Adds a sample of each pixel by rays of a list, which share no beams; its depth is the distance
    along the ray.  The first time it compiles shaders. */
-KrsStatus krs_film_add_rays(KrsFilm *film, KrsFrame *frame, const KrsRays *rays);
+KRS_SIZED KrsStatus krs_film_add_rays(KrsFilm *film, KrsFrame *frame, const KrsRays *rays);
 
 /* The mean of the samples so far, with planes of the options (bits; 0: all of these).  The film
    stays as it is.  On KRS_OK the caller owns *picture; its statistics are sums over the samples.
@@ -406,13 +409,13 @@ KrsStatus krs_film_read(KrsFilm *film, uint32_t planes, KrsPicture **picture);
 /* The material and surface at a point, as the device computes them: the members of KrsHit that
    surface.def has, and these. */
 typedef struct KrsSurfacePoint {
-    float distance; /* as the function of the surface computes it */
+    float distance;  /* as the function of the surface computes it */
+    float normal[3]; /* for lighting */
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) uint32_t name;
+#include "krs/surface.def"
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     float name KRS_NUMBERS_##type;
 #include "krs/surface.def"
-#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) uint32_t name;
-#include "krs/surface.def"
-    float normal[3]; /* for lighting */
 } KrsSurfacePoint;
 
 /* Evaluates the scene on the device at `count` points in world units: distances, as krs_distance
@@ -421,8 +424,8 @@ typedef struct KrsSurfacePoint {
    Where it is constant around a point the normal by differences is 0, and what is there is that of
    some part.  KRS_BAD_ARGUMENT: `points` is NULL and `count` is not 0; KRS_OUT_OF_MEMORY,
    KRS_INTERNAL. */
-KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3],
-                     size_t count, float *distances, KrsSurfacePoint *surfaces);
+KRS_SIZED KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3],
+                               size_t count, float *distances, KrsSurfacePoint *surfaces);
 
 /*
  * Queries of the device, for large batches: krs_probe and krs_raycast (krs.h) in single
@@ -440,11 +443,12 @@ KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*poi
  * KRS_BAD_ARGUMENT (nothing is answered), KRS_OUT_OF_MEMORY, KRS_INTERNAL; what is written to
  * `hits` is then undefined.  Memory does not grow with `count`.
  */
-KrsStatus krs_device_probe(KrsRendering *rendering, KrsFrame *frame, const double (*points)[3],
-                           size_t count, KrsHit *hits);
-KrsStatus krs_device_raycast(KrsRendering *rendering, KrsFrame *frame, const double (*origins)[3],
-                             const double (*directions)[3], size_t count, double farthest,
-                             double tolerance, KrsHit *hits);
+KRS_SIZED KrsStatus krs_device_probe(KrsRendering *rendering, KrsFrame *frame,
+                                     const double (*points)[3], size_t count, KrsHit *hits);
+KRS_SIZED KrsStatus krs_device_raycast(KrsRendering *rendering, KrsFrame *frame,
+                                       const double (*origins)[3], const double (*directions)[3],
+                                       size_t count, double farthest, double tolerance,
+                                       KrsHit *hits);
 
 #ifdef __GNUC__
 #pragma GCC visibility pop
@@ -454,4 +458,5 @@ KrsStatus krs_device_raycast(KrsRendering *rendering, KrsFrame *frame, const dou
 #endif
 
 #include "krs/film.h"
+#include "krs/sized_vulkan.h"
 #endif

@@ -1,0 +1,228 @@
+/*
+ * sized_krs.c: the functions of krs.h and its parts that programs link with, for structs of any size.
+ */
+#include "krs/krs.h"
+
+#include "api/sized.h"
+
+KrsStatus krs_compile_text_sized(const char *text, size_t length, const char *name,
+                                 const KrsOptions *options, size_t size, KrsScene **scene)
+{
+    KrsOptions own;
+    *scene = NULL;
+    if (!sized_take(&own, sizeof own, options, size))
+        return KRS_BAD_ARGUMENT;
+    return krs_compile_text(text, length, name, options ? &own : NULL, scene);
+}
+
+KrsStatus krs_compile_file_sized(const char *path, const KrsOptions *options, size_t size,
+                                 KrsScene **scene)
+{
+    KrsOptions own;
+    *scene = NULL;
+    if (!sized_take(&own, sizeof own, options, size))
+        return KRS_BAD_ARGUMENT;
+    return krs_compile_file(path, options ? &own : NULL, scene);
+}
+
+KrsStatus krs_format_sized(const char *path, const KrsOptions *options, size_t size,
+                           char **formatted, bool *same)
+{
+    KrsOptions own;
+    *formatted = NULL;
+    *same      = false;
+    if (!sized_take(&own, sizeof own, options, size))
+        return KRS_BAD_ARGUMENT;
+    return krs_format(path, options ? &own : NULL, formatted, same);
+}
+
+KrsStatus krs_scene_update_sized(const KrsScene *scene, const char *text, size_t length,
+                                 KrsScene **updated, KrsChanges *changes, size_t size)
+{
+    KrsChanges      own    = {0};
+    const KrsStatus status = krs_scene_update(scene, text, length, updated, &own);
+    sized_give(changes, size, &own, sizeof own);
+    return status;
+}
+
+KrsStatus krs_scene_reload_sized(const KrsScene *scene, KrsScene **updated, KrsChanges *changes,
+                                 size_t size)
+{
+    KrsChanges      own    = {0};
+    const KrsStatus status = krs_scene_reload(scene, updated, &own);
+    sized_give(changes, size, &own, sizeof own);
+    return status;
+}
+
+KrsStatus krs_parameter_sized(const KrsScene *scene, size_t index, KrsParameter *parameter,
+                              size_t size)
+{
+    KrsParameter    own;
+    const KrsStatus status = krs_parameter(scene, index, &own);
+    if (status == KRS_OK)
+        sized_give(parameter, size, &own, sizeof own);
+    return status;
+}
+
+void krs_scene_image_sized(const KrsScene *scene, KrsImage *image, size_t size)
+{
+    const KrsImage own = krs_scene_image(scene);
+    sized_give(image, size, &own, sizeof own);
+}
+
+KrsStatus krs_texture_sized(const KrsScene *scene, size_t index, KrsTexture *texture, size_t size)
+{
+    KrsTexture      own;
+    const KrsStatus status = krs_texture(scene, index, &own);
+    if (status == KRS_OK)
+        sized_give(texture, size, &own, sizeof own);
+    return status;
+}
+
+KrsStatus krs_frame_slope_sized(const KrsScene *scene, size_t index, KrsFrameSlope *slope,
+                                size_t size)
+{
+    KrsFrameSlope   own;
+    const KrsStatus status = krs_frame_slope(scene, index, &own);
+    if (status == KRS_OK)
+        sized_give(slope, size, &own, sizeof own);
+    return status;
+}
+
+KrsStatus krs_camera_place_sized(const KrsScene *scene, size_t index, KrsPlace *place, size_t size)
+{
+    KrsPlace        own;
+    const KrsStatus status = krs_camera_place(scene, index, &own);
+    if (status == KRS_OK)
+        sized_give(place, size, &own, sizeof own);
+    return status;
+}
+
+KrsStatus krs_frame_camera_sized(KrsFrame *frame, size_t index, KrsCamera *camera, size_t size)
+{
+    KrsCamera       own;
+    const KrsStatus status = krs_frame_camera(frame, index, &own);
+    if (status == KRS_OK)
+        sized_give(camera, size, &own, sizeof own);
+    return status;
+}
+
+KrsStatus krs_component_sized(const KrsScene *scene, size_t index, KrsComponent *component,
+                              size_t size)
+{
+    KrsComponent    own;
+    const KrsStatus status = krs_component(scene, index, &own);
+    if (status == KRS_OK)
+        sized_give(component, size, &own, sizeof own);
+    return status;
+}
+
+KrsStatus krs_bound_sized(const KrsScene *scene, size_t component, size_t index, KrsBound *bound,
+                          size_t size)
+{
+    KrsBound        own;
+    const KrsStatus status = krs_bound(scene, component, index, &own);
+    if (status == KRS_OK)
+        sized_give(bound, size, &own, sizeof own);
+    return status;
+}
+
+KrsStatus krs_probe_sized(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits,
+                          size_t size)
+{
+    SizedArray array;
+    if (!sized_open(&array, hits, size, sizeof(KrsHit), count))
+        return KRS_OUT_OF_MEMORY;
+    const KrsStatus status = krs_probe(frame, points, count, array.own);
+    sized_close(&array, status == KRS_OK ? count : 0);
+    return status;
+}
+
+KrsStatus krs_raycast_sized(KrsFrame *frame, const double (*origins)[3],
+                            const double (*directions)[3], size_t count, double farthest,
+                            double tolerance, KrsHit *hits, size_t size)
+{
+    SizedArray array;
+    if (!sized_open(&array, hits, size, sizeof(KrsHit), count))
+        return KRS_OUT_OF_MEMORY;
+    const KrsStatus status = krs_raycast(frame, origins, directions, count, farthest, tolerance,
+                                         array.own);
+    sized_close(&array, status == KRS_OK ? count : 0);
+    return status;
+}
+
+KrsStatus krs_mesh_sized(KrsFrame *frame, const KrsMeshOptions *options, size_t size,
+                         KrsMesh **mesh)
+{
+    KrsMeshOptions own;
+    *mesh = NULL;
+    if (!sized_take(&own, sizeof own, options, size))
+        return KRS_BAD_ARGUMENT;
+    return krs_mesh(frame, options ? &own : NULL, mesh);
+}
+
+KrsStatus krs_mesh_simplify_sized(const KrsMesh *mesh, const KrsMeshOptions *options, size_t size,
+                                  KrsMesh **simplified)
+{
+    KrsMeshOptions own;
+    *simplified = NULL;
+    if (!sized_take(&own, sizeof own, options, size))
+        return KRS_BAD_ARGUMENT;
+    return krs_mesh_simplify(mesh, options ? &own : NULL, simplified);
+}
+
+KrsStatus krs_assemble_sized(KrsFrame *frame, const KrsMeshOptions *options, size_t size,
+                             KrsAssembly **assembly)
+{
+    KrsMeshOptions own;
+    *assembly = NULL;
+    if (!sized_take(&own, sizeof own, options, size))
+        return KRS_BAD_ARGUMENT;
+    return krs_assemble(frame, options ? &own : NULL, assembly);
+}
+
+KrsStatus krs_component_motion_sized(const KrsScene *scene, size_t index, KrsMotion *motion,
+                                     size_t size)
+{
+    KrsMotion       own;
+    const KrsStatus status = krs_component_motion(scene, index, &own);
+    if (status == KRS_OK)
+        sized_give(motion, size, &own, sizeof own);
+    return status;
+}
+
+KrsStatus krs_grid_new_sized(KrsFrame *frame, const KrsGridOptions *options, size_t size,
+                             KrsGrid **grid)
+{
+    KrsGridOptions own;
+    *grid = NULL;
+    if (!sized_take(&own, sizeof own, options, size))
+        return KRS_BAD_ARGUMENT;
+    return krs_grid_new(frame, options ? &own : NULL, grid);
+}
+
+void krs_grid_shape_sized(const KrsGrid *grid, KrsGridShape *shape, size_t size)
+{
+    const KrsGridShape own = krs_grid_shape(grid);
+    sized_give(shape, size, &own, sizeof own);
+}
+
+KrsStatus krs_slicer_new_sized(KrsFrame *frame, const KrsSliceOptions *options, size_t size,
+                               KrsSlicer **slicer)
+{
+    KrsSliceOptions own;
+    *slicer = NULL;
+    if (!sized_take(&own, sizeof own, options, size))
+        return KRS_BAD_ARGUMENT;
+    return krs_slicer_new(frame, options ? &own : NULL, slicer);
+}
+
+KrsStatus krs_measure_sized(KrsFrame *frame, const KrsMeasureOptions *options, size_t size,
+                            KrsMeasures **measures)
+{
+    KrsMeasureOptions own;
+    *measures = NULL;
+    if (!sized_take(&own, sizeof own, options, size))
+        return KRS_BAD_ARGUMENT;
+    return krs_measure(frame, options ? &own : NULL, measures);
+}

@@ -1,0 +1,117 @@
+/*
+ * sized_vulkan.c: the functions of vulkan.h that programs link with, for structs of any size.
+ */
+#include "krs/vulkan.h"
+
+#include "api/sized.h"
+
+KrsStatus krs_devices_sized(KrsDevice *devices, size_t size, size_t capacity, size_t *count)
+{
+    SizedArray array;
+    *count = 0;
+    if (!sized_open(&array, devices, size, sizeof(KrsDevice), capacity))
+        return KRS_OUT_OF_MEMORY;
+    const KrsStatus status = krs_devices(array.own, capacity, count);
+    sized_close(&array, status == KRS_OK ? *count < capacity ? *count : capacity : 0);
+    return status;
+}
+
+KrsStatus krs_renderer_new_sized(const KrsRendererOptions *options, size_t size,
+                                 KrsRenderer **renderer)
+{
+    KrsRendererOptions own;
+    *renderer = NULL;
+    if (!sized_take(&own, sizeof own, options, size))
+        return KRS_BAD_ARGUMENT;
+    return krs_renderer_new(options ? &own : NULL, renderer);
+}
+
+void krs_renderer_device_sized(const KrsRenderer *renderer, KrsDevice *device, size_t size)
+{
+    const KrsDevice own = krs_renderer_device(renderer);
+    sized_give(device, size, &own, sizeof own);
+}
+
+size_t krs_rendering_kernels_sized(const KrsRendering *rendering, KrsKernelStats *kernels,
+                                   size_t size, size_t capacity)
+{
+    SizedArray array;
+    if (!sized_open(&array, kernels, size, sizeof(KrsKernelStats), capacity))
+        return 0;
+    const size_t found = krs_rendering_kernels(rendering, array.own, capacity);
+    sized_close(&array, found < capacity ? found : capacity);
+    return found;
+}
+
+KrsStatus krs_render_sized(KrsRendering *rendering, KrsFrame *frame,
+                           const KrsRenderOptions *options, size_t size, KrsPicture **picture)
+{
+    KrsRenderOptions own;
+    *picture = NULL;
+    if (!sized_take(&own, sizeof own, options, size))
+        return KRS_BAD_ARGUMENT;
+    return krs_render(rendering, frame, options ? &own : NULL, picture);
+}
+
+KrsStatus krs_film_new_sized(KrsRendering *rendering, const KrsRenderOptions *options, size_t size,
+                             KrsFilm **film)
+{
+    KrsRenderOptions own;
+    *film = NULL;
+    if (!sized_take(&own, sizeof own, options, size))
+        return KRS_BAD_ARGUMENT;
+    return krs_film_new(rendering, options ? &own : NULL, film);
+}
+
+KrsStatus krs_film_add_sized(KrsFilm *film, KrsFrame *frame, const KrsCamera *camera, size_t size,
+                             uint32_t samples)
+{
+    KrsCamera own;
+    if (!sized_take(&own, sizeof own, camera, size))
+        return KRS_BAD_ARGUMENT;
+    return krs_film_add(film, frame, camera ? &own : NULL, samples);
+}
+
+KrsStatus krs_film_add_rays_sized(KrsFilm *film, KrsFrame *frame, const KrsRays *rays, size_t size)
+{
+    KrsRays own;
+    if (!sized_take(&own, sizeof own, rays, size))
+        return KRS_BAD_ARGUMENT;
+    return krs_film_add_rays(film, frame, rays ? &own : NULL);
+}
+
+KrsStatus krs_sample_sized(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3],
+                           size_t count, float *distances, KrsSurfacePoint *surfaces, size_t size)
+{
+    SizedArray array;
+    if (!sized_open(&array, surfaces, size, sizeof(KrsSurfacePoint), count))
+        return KRS_OUT_OF_MEMORY;
+    const KrsStatus status = krs_sample(rendering, frame, points, count, distances, array.own);
+    sized_close(&array, status == KRS_OK ? count : 0);
+    return status;
+}
+
+KrsStatus krs_device_probe_sized(KrsRendering *rendering, KrsFrame *frame,
+                                 const double (*points)[3], size_t count, KrsHit *hits, size_t size)
+{
+    SizedArray array;
+    if (!sized_open(&array, hits, size, sizeof(KrsHit), count))
+        return KRS_OUT_OF_MEMORY;
+    const KrsStatus status = krs_device_probe(rendering, frame, points, count, array.own);
+    sized_close(&array, status == KRS_OK ? count : 0);
+    return status;
+}
+
+KrsStatus krs_device_raycast_sized(KrsRendering *rendering, KrsFrame *frame,
+                                   const double (*origins)[3], const double (*directions)[3],
+                                   size_t count, double farthest, double tolerance, KrsHit *hits,
+                                   size_t size)
+{
+    SizedArray array;
+    if (!sized_open(&array, hits, size, sizeof(KrsHit), count))
+        return KRS_OUT_OF_MEMORY;
+    const KrsStatus status = krs_device_raycast(rendering, frame, origins, directions, count,
+                                                farthest, tolerance, array.own);
+    sized_close(&array, status == KRS_OK ? count : 0);
+    return status;
+}

@@ -1,0 +1,108 @@
+#!/bin/sh
+# api.sh: a program that was compiled with headers of before, or of later, runs with the library as it is.
+#
+# Structs and choices grow at their end alone: tests/api/layouts.txt has where everything was in the last version that
+# was released; `api.sh --bless` writes it anew, for a release.
+cd "$(dirname "$0")/.." || exit 1
+build=${B:-build}
+cc=${CC:-cc}
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+failed=0
+number=0
+report() { # status, name
+    number=$((number + 1))
+    [ "$1" -eq 0 ] && echo "ok $number - $2" && return
+    echo "not ok $number - $2"
+    failed=1
+    head -n 20 "$work/said" | sed 's/^/# /'
+}
+
+# ---- where members are ----
+
+# Elements of arrays and parts of other structs, which keep their size.
+fixed="KrsAllocator KrsWindow KrsContour KrsSectionPlane KrsPlacing KrsItem KrsMatte KrsBeam KrsWall KrsOrientation
+       KrsRenderStats"
+layouts() { # folder of headers
+    printf '#include <krs/%s.h>\n' camera vulkan >"$work/all.c"
+    "$cc" -std=c17 -I"$1" -E -P "$work/all.c" | awk -f tests/api/layout.awk >"$work/layouts.c" &&
+        "$cc" -std=c17 -I"$1" -o "$work/layouts" "$work/layouts.c" && "$work/layouts"
+}
+# What is different of the recorded ones.
+compare() { # recorded, layouts
+    awk -v fixed="$fixed" '
+        BEGIN { count = split(fixed, names, " "); for (i = 1; i <= count; i++) keeps[names[i]] = 1 }
+        NR == FNR { first[$1] = $2; size[$1] = $3; next }
+        { seen[$1] = 1; owner = $1; sub(/\..*/, "", owner) }
+        !($1 in first) && owner != $1 && owner in first && $2 < first[owner] { print $1 " is not behind the others" }
+        !($1 in first) { next }
+        $1 in keeps && $2 != first[$1] { print $1 " keeps its size: it is a part of others" }
+        $1 ~ /^Krs[A-Za-z0-9]*$/ { if ($2 < first[$1]) print $1 " is shorter"; next }
+        $2 != first[$1] || $3 != size[$1] { print $1 " was " first[$1] " " size[$1] ", is " $2 " " $3 }
+        END { for (name in first) if (!(name in seen)) print name " is gone" }' "$1" "$2"
+}
+layouts include >"$work/layouts_now" 2>"$work/said"
+if [ "${1:-}" = --bless ]; then
+    cp "$work/layouts_now" tests/api/layouts.txt
+    exit
+fi
+echo "1..11"
+[ "$(wc -l <"$work/layouts_now")" -gt 400 ]
+report $? "the headers have $(wc -l <"$work/layouts_now") sizes, members and choices"
+compare tests/api/layouts.txt "$work/layouts_now" >"$work/said"
+[ ! -s "$work/said" ]
+report $? "all that was released is where it was"
+
+# Headers with a change that breaks compiled programs.
+broken() { # name, file, words for sed
+    rm -rf "$work/broken" && mkdir "$work/broken" && cp -r include/krs "$work/broken"
+    sed "$3" "include/krs/$2" >"$work/broken/krs/$2"
+    layouts "$work/broken" >"$work/layout" 2>"$work/said" && compare tests/api/layouts.txt "$work/layout" >>"$work/said"
+    [ -s "$work/said" ] && ! cmp -s "include/krs/$2" "$work/broken/krs/$2"
+    report $? "$1 is found"
+}
+broken "a member before others" krs.h 's/^    uint32_t    components; .*/    int early; &/'
+broken "a property before others" surface.def 's/^KRS_MATERIAL(coat, .*/KRS_MATERIAL(early, FLOAT, 0, 0, 0, 1, LIMITED, MIXED)\n&/'
+broken "a choice before others" choices.def 's/^KRS_TRACE(RELAXED, .*/KRS_TRACE(EARLY, "early", "")\n&/'
+broken "a member that is gone" mesh.h 's/^    bool   draft;//'
+broken "an element that grows" slice.h 's/^    double area; .*/&\n    double late;/'
+
+# ---- programs ----
+
+all="KrsOptions KrsChanges KrsParameter KrsImage KrsTexture KrsFrameSlope KrsCamera KrsPlace KrsComponent KrsBound KrsMeshOptions
+     KrsMotion KrsGridOptions KrsGridShape KrsSliceOptions KrsMeasureOptions KrsDevice KrsRendererOptions KrsRenderOptions
+     KrsKernelStats KrsRays"
+headers() { # older or later
+    mkdir -p "$work/$1/krs" && cp include/krs/*.def "$work/$1/krs"
+    for header in include/krs/*.h; do
+        awk -v change="$1" -v structs="$(echo "$all" | tr '\n' ' ')" -f tests/api/headers.awk "$header" >"$work/$1/krs/${header##*/}"
+    done
+}
+headers older
+awk '/^KRS_MATERIAL/ { last = NR } { line[NR] = $0 } END { for (i = 1; i <= NR; i++) if (i != last) print line[i] }' \
+    include/krs/surface.def >"$work/older/krs/surface.def"
+sed '/^KRS_PLANE(NOISE/,$d' include/krs/planes.def >"$work/older/krs/planes.def"
+headers later
+sed 's/^KRS_IDENTITY(component/KRS_MATERIAL(later, FLOAT, 0, 0, 0, 1, LIMITED, MIXED)\n&/' include/krs/surface.def \
+    >"$work/later/krs/surface.def"
+layouts "$work/older" >"$work/layouts_older" 2>"$work/said"
+layouts "$work/later" >"$work/layouts_later" 2>>"$work/said"
+# Of each struct the size is another one, but for bytes that were there to fill it up.
+differ=$(cat "$work/layouts_older" "$work/layouts_now" "$work/layouts_later" | grep -v '[._]' | sort -u | cut -d ' ' -f 1 | uniq -c |
+    awk '$1 == 3' | wc -l)
+[ "$differ" -ge 18 ]
+report $? "$differ structs are shorter in older headers, and longer in later ones"
+
+run() { # folder of headers, name, options of the compiler
+    "$cc" -std=c17 -Wall -Wextra -Werror ${3:+"$3"} -I"$1" -o "$work/program" tests/api/program.c -L"$build" -lkrs \
+        >"$work/said" 2>&1 && LD_LIBRARY_PATH="$build" "$work/program" >"$work/$2" 2>>"$work/said"
+    status=$?
+    [ ! -e "$work/$2" ] || cat "$work/$2" >>"$work/said"
+    return $status
+}
+run include now
+report $? "a program with these headers is told what it asks"
+run "$work/older" before && cmp "$work/now" "$work/before" >>"$work/said"
+report $? "one that was compiled before is told the same"
+run "$work/later" after -DLATER && cmp "$work/now" "$work/after" >>"$work/said"
+report $? "one of later is, too, and cannot ask for what the library does not know"
+exit $failed
