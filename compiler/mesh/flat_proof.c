@@ -1,5 +1,5 @@
 /*
- * flat_proof.c: looks for a way along which all half-spaces change by more than they are off.
+ * flat_proof.c: looks for ways on which half-spaces change by more than they are off.
  *
  * Let each be off by no more than its slack.  A solid is made of them by intersections and unions alone, so if each
  * that is entered at one end of a way, slack and all, is also entered at the other, so is the solid.
@@ -9,145 +9,236 @@
 #include <string.h>
 
 #include "compiler/base/minmax.h"
-#include "compiler/base/vec.h"
+#include "compiler/mesh/flat_ways.h"
 
-enum { MOST_LEVELS = 3 };
+/* What is looked at: a box, ways that are so long at most, and a part of the slack. */
+typedef struct Proof {
+    const FlatPieces *pieces;
+    const Box        *box;
+    double            way, part;
+} Proof;
 
-/* What a box meets of a half-space. */
-typedef struct Growth {
-    double    normal[3]; /* outwards */
-    double    low, high; /* its values in the box */
-    FlatSlack slack;
-} Growth;
-
-typedef struct Growths {
-    Growth list[MOST_FLATS];
-    double levels[MOST_LEVELS]
-                 [3]; /* normals of what must not change, at right angles to each other */
-    size_t count, level_count;
-    bool   seen[2][MOST_FLATS];
-} Growths;
-
-static void collect(const FlatPieces *pieces, int root, Growths *growths)
+static FlatGrowth growth_of(const Proof *proof, size_t plane, int sign)
 {
-    if (root < 0)
-        return;
-    const FlatNode *node = &pieces->nodes[root];
-    if (node->kind == FLAT_HALF_SPACE)
-        growths->seen[node->second > 0][node->first] = true;
-    else {
-        collect(pieces, node->first, growths);
-        collect(pieces, node->second, growths);
-    }
+    FlatGrowth growth = flat_growth(proof->pieces, plane, sign, proof->box);
+    growth.slack.below *= proof->part;
+    growth.slack.above *= proof->part;
+    return growth;
 }
 
 static double largest_of(FlatSlack slack) { return max2(slack.below, slack.above); }
 
-static bool add_level(Growths *growths, const double normal[3])
+/* ---- one way for all ---- */
+
+typedef struct Seen {
+    bool by_sign[2][MOST_FLATS];
+} Seen;
+
+/* 1: all of the box is outside, -1: all is inside, each by its slack. */
+static int side_of(const FlatGrowth *growth)
 {
-    if (growths->level_count == MOST_LEVELS)
-        return false;
-    double *level = growths->levels[growths->level_count];
-    memcpy(level, normal, sizeof growths->levels[0]);
-    for (size_t k = 0; k < growths->level_count; k++)
-        add_scaled3(level, level, -dot3(level, growths->levels[k]), growths->levels[k]);
-    if (length3(level) > 1e-6 && normalize3(level))
-        growths->level_count++;
-    return true;
+    return growth->low - growth->slack.below > 0    ? 1
+           : growth->high + growth->slack.above < 0 ? -1
+                                                    : 0;
 }
 
-static void add_growth(Growths *growths, const HalfSpace *plane, double sign, FlatSlack slack,
-                       const Box *box)
+/* Those whose side makes a difference where some sides are known; NULL: none is. */
+static void collect(const FlatPieces *pieces, int root, const signed char *sides, Seen *seen)
 {
-    Growth *growth = &growths->list[growths->count++];
-    double  middle = plane->offset, half = 0;
-    for (int k = 0; k < 3; k++) {
-        const Range *along = &box->axis[k];
-        middle += plane->normal[k] * 0.5 * (along->low + along->high);
-        half += fabs(plane->normal[k]) * 0.5 * (along->high - along->low);
-        growth->normal[k] = sign * plane->normal[k];
+    int unknown;
+    if (root < 0 || (sides && flat_side(pieces, root, sides, &unknown) != 0))
+        return;
+    const FlatNode *node = &pieces->nodes[root];
+    if (node->kind == FLAT_HALF_SPACE)
+        seen->by_sign[node->second > 0][node->first] = true;
+    else {
+        collect(pieces, node->first, sides, seen);
+        collect(pieces, node->second, sides, seen);
     }
-    growth->low   = sign * middle - half;
-    growth->high  = sign * middle + half;
-    growth->slack = sign > 0 ? slack : (FlatSlack){slack.above, slack.below};
 }
 
-/* What is exact and has the solid on both sides must not change at all. */
-static bool list_growths(const FlatPieces *pieces, const Box *box, Growths *growths)
+/* On one side of all of the box it may become less, until it is not. */
+static double need_of(const FlatGrowth *growth)
 {
-    for (size_t i = 0; i < pieces->count; i++) {
-        bool below = growths->seen[1][i], above = growths->seen[0][i];
+    int side = side_of(growth);
+    return side == 0  ? largest_of(growth->slack)
+           : side > 0 ? growth->slack.below - growth->low
+                      : growth->slack.above + growth->high;
+}
+
+static bool have_one_way(const Proof *proof, const signed char *sides)
+{
+    Seen        seen = {{{false}}};
+    FlatGrowths growths;
+    growths.count = 0;
+    growths.level = (FlatWay){{0, 0, 0}, {{0}}, 0};
+    collect(proof->pieces, proof->pieces->root, sides, &seen);
+    for (size_t i = 0; i < proof->pieces->count; i++) {
+        bool below = seen.by_sign[1][i], above = seen.by_sign[0][i];
         if (below && above) {
-            if (largest_of(pieces->slack[i]) > 0 || !add_level(growths, pieces->list[i].normal))
+            if (largest_of(proof->pieces->slack[i]) > 0)
                 return false;
-        } else if (below || above)
-            add_growth(growths, &pieces->list[i], below ? 1 : -1, pieces->slack[i], box);
+            flat_growths_level(&growths, proof->pieces->list[i].normal);
+        } else if (below || above) {
+            FlatGrowth *growth = &growths.list[growths.count++];
+            *growth            = growth_of(proof, i, below ? 1 : -1);
+            growth->need       = need_of(growth);
+        }
+    }
+    return flat_has_way(&growths, proof->way);
+}
+
+/* All that is in the box or beside it. */
+static bool all_have_one_way(const Proof *proof) { return have_one_way(proof, NULL); }
+
+/* What makes a difference in the box: so no two parts of the surface come together there, nor does a hole close. */
+static bool is_one_sheet(const Proof *proof)
+{
+    signed char sides[MOST_FLATS];
+    for (size_t i = 0; i < proof->pieces->count; i++) {
+        FlatGrowth growth = growth_of(proof, i, 1);
+        sides[i]          = (signed char)side_of(&growth);
+    }
+    return have_one_way(proof, sides);
+}
+
+/* ---- a way for each set ---- */
+
+enum { MOST_MEMBERS = 64, MOST_SETS = 128 };
+
+/* Of half-spaces and complements; bit i is the growth i. */
+typedef struct Sets {
+    uint64_t items[MOST_SETS];
+    size_t   count;
+    bool     failed; /* there are more, or more members */
+} Sets;
+
+typedef struct Members {
+    const Proof *proof;
+    FlatGrowths  growths;
+    int          numbers[2][MOST_FLATS]; /* of growths, by sign; or one of those below */
+} Members;
+
+enum { UNSEEN = -1, NEVER = -2, ALWAYS = -3 };
+
+/* Leaves out what has another one within it. */
+static void add_set(Sets *sets, uint64_t set)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < sets->count; i++)
+        if ((sets->items[i] & set) == sets->items[i])
+            return;
+    for (size_t i = 0; i < sets->count; i++)
+        if ((sets->items[i] & set) != set)
+            sets->items[kept++] = sets->items[i];
+    sets->count  = kept;
+    sets->failed = sets->failed || kept == MOST_SETS;
+    if (!sets->failed)
+        sets->items[sets->count++] = set;
+}
+
+/* What is above 0 on all ways need not grow. */
+static int member_of(Members *members, size_t plane, int sign)
+{
+    int *number = &members->numbers[sign > 0][plane];
+    if (*number != UNSEEN || members->growths.count == MOST_MEMBERS)
+        return *number;
+    FlatGrowth *growth = &members->growths.list[members->growths.count];
+    *growth            = growth_of(members->proof, plane, sign);
+    growth->need       = min2(growth->slack.below - growth->low, largest_of(growth->slack));
+    if (growth->high + growth->slack.above < 0)
+        return *number = NEVER;
+    if (growth->need <= -members->proof->way)
+        return *number = ALWAYS;
+    return *number = (int)members->growths.count++;
+}
+
+static void add_all(const Sets *from, Sets *to)
+{
+    for (size_t i = 0; i < from->count && !to->failed; i++)
+        add_set(to, from->items[i]);
+}
+
+static void add_common(const Sets *first, const Sets *second, Sets *to)
+{
+    for (size_t i = 0; i < first->count; i++)
+        for (size_t k = 0; k < second->count && !to->failed; k++)
+            add_set(to, first->items[i] | second->items[k]);
+}
+
+/* Of numbers that are above 0 together where a place is outside of the solid; `inside`: of less these numbers, where it is inside. */
+static void find_sets(Members *members, int root, bool inside, Sets *sets)
+{
+    sets->count  = 0;
+    sets->failed = false;
+    if (root < 0) {
+        if ((root == FLAT_ALL) == inside)
+            add_set(sets, 0);
+        return;
+    }
+    const FlatNode *node = &members->proof->pieces->nodes[root];
+    if (node->kind == FLAT_HALF_SPACE) {
+        int member = member_of(members, (size_t)node->first, inside ? -node->second : node->second);
+        sets->failed = member == UNSEEN;
+        if (member >= 0 || member == ALWAYS)
+            add_set(sets, member >= 0 ? (uint64_t)1 << member : 0);
+        return;
+    }
+    Sets first, second;
+    find_sets(members, node->first, inside, &first);
+    find_sets(members, node->second, inside, &second);
+    sets->failed = first.failed || second.failed;
+    if ((node->kind == FLAT_EITHER) != inside)
+        add_common(&first, &second, sets);
+    else {
+        add_all(&first, sets);
+        add_all(&second, sets);
+    }
+}
+
+static bool set_has_way(const Members *members, uint64_t set)
+{
+    FlatGrowths growths;
+    growths.count = 0;
+    growths.level = (FlatWay){{0, 0, 0}, {{0}}, 0};
+    for (size_t i = 0; i < members->growths.count; i++)
+        if (set >> i & 1)
+            growths.list[growths.count++] = members->growths.list[i];
+    return flat_has_way(&growths, members->proof->way);
+}
+
+static bool sets_have_ways(const Proof *proof)
+{
+    Members members;
+    members.proof         = proof;
+    members.growths.count = 0;
+    for (int sign = 0; sign < 2; sign++)
+        for (size_t i = 0; i < proof->pieces->count; i++)
+            members.numbers[sign][i] = UNSEEN;
+    for (int inside = 0; inside < 2; inside++) {
+        Sets sets;
+        find_sets(&members, proof->pieces->root, inside, &sets);
+        for (size_t i = 0; i < sets.count && !sets.failed; i++)
+            sets.failed = !set_has_way(&members, sets.items[i]);
+        if (sets.failed)
+            return false;
     }
     return true;
 }
 
-static bool make_level(const Growths *growths, double direction[3])
-{
-    for (size_t k = 0; k < growths->level_count; k++)
-        add_scaled3(direction, direction, -dot3(direction, growths->levels[k]), growths->levels[k]);
-    return length3(direction) > 1e-9 && normalize3(direction);
-}
+/* ---- boxes ---- */
 
-/* By how much less than needed a half-space grows along a way from all points of the box; none where all stay on one side. */
-static double lack_of(const Growth *growth, const double direction[3], double way, double part)
+static bool is_near(const FlatPieces *pieces, const Box *box, double way, double part)
 {
-    double grown = way * dot3(growth->normal, direction);
-    double below = part * growth->slack.below, above = part * growth->slack.above;
-    bool   inwards  = growth->low - below > 0 || growth->high - grown + above <= 0;
-    bool   outwards = growth->high + above < 0 || growth->low + grown - below >= 0;
-    return inwards && outwards ? 0 : max2(below, above) - grown;
-}
-
-/* Goes towards what grows too slowly, by smaller and smaller steps.  `part`: of the slack. */
-static bool find_direction(const Growths *growths, double way, double part)
-{
-    enum { TRIES = 20 };
-    double direction[3] = {0, 0, 0};
-    bool   any          = false;
-    for (size_t i = 0; i < growths->count; i++) {
-        const Growth *growth = &growths->list[i];
-        if (growth->low - growth->slack.below > 0 || growth->high + growth->slack.above < 0)
-            continue;
-        add_scaled3(direction, direction, 0.1 * way + largest_of(growth->slack), growth->normal);
-        any = true;
-    }
-    if (!any)
-        return true;
-    for (int i = 0; i < TRIES && make_level(growths, direction); i++) {
-        const Growth *worst = NULL;
-        double        most  = 0;
-        for (size_t k = 0; k < growths->count; k++) {
-            double lack = lack_of(&growths->list[k], direction, way, part);
-            if (lack > most) {
-                worst = &growths->list[k];
-                most  = lack;
-            }
-        }
-        if (!worst)
-            return true;
-        add_scaled3(direction, direction, 1.0 / (2 + i), worst->normal);
-    }
-    return false;
+    Proof proof = {pieces, box, way, part};
+    return all_have_one_way(&proof) || (is_one_sheet(&proof) && sets_have_ways(&proof));
 }
 
 FlatNearness flat_nearness(const FlatPieces *pieces, const Box *box, double error)
 {
-    static const double WAYS[] = {1, 0.75, 0.55, 0.4};
-    Growths             growths;
-    growths.count = growths.level_count = 0;
-    memset(growths.seen, 0, sizeof growths.seen);
-    collect(pieces, pieces->root, &growths);
-    if (!list_growths(pieces, box, &growths))
-        return FLAT_THIN;
-    for (int i = 0; i < 4; i++)
-        if (find_direction(&growths, WAYS[i] * error, 1))
-            return FLAT_NEAR;
-    return find_direction(&growths, 0.3 * error, 0.1) ? FLAT_ROUGH : FLAT_THIN;
+    if (is_near(pieces, box, error, 1))
+        return FLAT_NEAR;
+    return is_near(pieces, box, 0.3 * error, 0.1) ? FLAT_ROUGH : FLAT_THIN;
 }
 
 int flat_widest_axis(const FlatPieces *pieces, const Box *box)
