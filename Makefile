@@ -47,6 +47,7 @@ BORDER   := compiler/target/glslang_border.cpp
 RUNTIME  := $(foreach room,device tracer integrators film display writer,$(call sources,runtime/$(room)))
 # What programs link with of other versions, too (api/README.md).
 API      := $(call sources,api)
+IMPORT   := $(foreach room,import/common import/csg import/surfer import/pov import,$(call sources,$(room)))
 LIVE     := $(call sources,live)
 LIVE_BORDER := live/gui.cpp
 CLI      := $(call sources,cli)
@@ -96,7 +97,7 @@ SONAME   := libkrs.so.$(basename $(VERSION))
 SHARED   := libkrs.so.$(VERSION)
 
 all: $(B)/krs $(B)/libkrs.a $(B)/libkrs.so $(VDB)
-$(B)/krs: $(CLI:%.c=$(B)/%.o) $(B)/commit.o $(CLI_BORDER:%.cpp=$(B)/%.o) $(B)/live.a $(INTERNAL)
+$(B)/krs: $(CLI:%.c=$(B)/%.o) $(B)/commit.o $(CLI_BORDER:%.cpp=$(B)/%.o) $(B)/live.a $(B)/import.a $(INTERNAL)
 	@echo "link   $@"
 	@$(CC_LINK) $(HARDENED) -o $@ $^ $(WINDOW_LIBS) $(MESH_LIBS) $(LIBS)
 # Its headers take a minute to compile, and twice that with names for a debugger.
@@ -104,8 +105,11 @@ $(B)/cli/grid_openvdb.o: CXXFLAGS += -O1 -g0
 $(B)/krs-vdb.so: $(B)/cli/grid_openvdb.o
 	@echo "link   $@"
 	@$(CXX) $(CXXFLAGS) $(LDFLAGS) -shared -o $@ $< $(VDB_LIBS)
-# What the command has for scenes that are open: a client of the library, and no part of it.
-$(B)/live.a: $(LIVE:%.c=$(B)/%.o) $(LIVE_BORDER:%.cpp=$(B)/%.o) $(B)/members
+# What the command has for scenes that are open, and for files of other programs: clients of the library, and no
+# part of it.
+$(B)/live.a: $(LIVE:%.c=$(B)/%.o) $(LIVE_BORDER:%.cpp=$(B)/%.o)
+$(B)/import.a: $(IMPORT:%.c=$(B)/%.o)
+$(B)/live.a $(B)/import.a: $(B)/members
 	@rm -f $@
 	@$(AR) rcs $@ $(filter %.o, $^)
 $(INTERNAL): $(OBJECTS) $(B)/members
@@ -128,7 +132,7 @@ $(B)/libkrs.so: $(B)/$(SHARED)
 	@ln -sf $(SHARED) $(B)/$(SONAME)
 	@ln -sf $(SONAME) $@
 # What archives hold: one whose list has changed is packed again, although a new member may be older.
-MEMBERS  := $(OBJECTS) $(LIVE:%.c=$(B)/%.o) $(LIVE_BORDER:%.cpp=$(B)/%.o)
+MEMBERS  := $(OBJECTS) $(IMPORT:%.c=$(B)/%.o) $(LIVE:%.c=$(B)/%.o) $(LIVE_BORDER:%.cpp=$(B)/%.o)
 ifneq ($(file <$(B)/members),$(MEMBERS))
 .PHONY: $(B)/members
 endif

@@ -7,7 +7,7 @@
  */
 #include <string.h>
 
-#include "cli/import_file.h"
+#include "import/file.h"
 #include "cli/help.h"
 #include "compiler/base/diag.h"
 

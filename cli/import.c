@@ -11,7 +11,7 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
-#include "cli/import_file.h"
+#include "import/file.h"
 #include "cli/supervise.h"
 #include "compiler/base/loader.h"
 #include "compiler/base/source.h"

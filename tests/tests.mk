@@ -110,10 +110,9 @@ $(B)/tests/property/%: $(B)/tests/property/%.o $(B)/tests/property/property.a $(
 	@$(LINK)
 $(B)/tests/%: $(B)/tests/%.o $(LINKED)
 	@$(LINK)
-# Who reads files of other programs belongs to the command, not to the library.
 IMPORTS     := imports imports_csg imports_csg_sizes imports_pov imports_pov_looks imports_pov_sheets
 $(IMPORTS:%=$(B)/tests/oracle/%): $(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/imported.o $(B)/tests/oracle/pov_trees.o \
-        $(patsubst %.c,$(B)/%.o,$(wildcard cli/import_*.c)) $(LINKED)
+        $(B)/import.a $(LINKED)
 	@$(LINK)
 $(B)/tests/unit/watcher: $(B)/live.a
 $(addprefix $(B)/tests/unit/, live saved_texts camera_text resolution painter saver): $(B)/tests/unit/%: $(B)/tests/unit/%.o $(B)/live.a $(LINKED)
@@ -160,7 +159,7 @@ sanitize:
 # here become vector instructions.  Its objects are not linked, and no warning needs more than -O0.
 clang-check: $(B)/library_files.c $(B)/shader_files.c
 	@$(MAKE) --no-print-directory clang-objects B=$(B)/clang CC=$(CLANG) CFLAGS=-O0
-clang-objects: $(patsubst %.c,$(B)/%.o,$(LANES) $(TARGET) $(RUNTIME) $(API) $(LIVE) $(CLI))
+clang-objects: $(patsubst %.c,$(B)/%.o,$(LANES) $(TARGET) $(RUNTIME) $(API) $(IMPORT) $(LIVE) $(CLI))
 
 # The front end (lexer, parser, names) and the whole compiler but glslang under libFuzzer.
 HARNESSES   := front_fuzz scene_fuzz
@@ -186,7 +185,7 @@ layers:
 docs: $(B)/krs
 	@tests/docs.sh
 format:
-	@clang-format -i $$(find api bench cli compiler examples include live runtime tests -name '*.[ch]' -o -name '*.cpp')
+	@clang-format -i $$(find api bench cli compiler examples import include live runtime tests -name '*.[ch]' -o -name '*.cpp')
 bless: $(B)/krs
 	@tests/errors.sh --bless
 

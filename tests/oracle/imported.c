@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "cli/import_file.h"
+#include "import/file.h"
 
 static jmp_buf exhausted;
 static Memory  memory = {.exhausted = &exhausted};

@@ -1,0 +1,648 @@
+/*
+ * looks.c: colours, transparency and highlights of POV-Ray.  A
+ * pattern is one colour, the mean of its colours; bumps and what is inside of
+ * things are left out.  None of that changes a shape.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "import/pov/reader.h"
+
+/* Places of a pattern's distribution, and those below which its values are. */
+enum { SHARES = 17 };
+
+static const double shares[SHARES] = {0,     0.002, 0.01,  0.03,   0.0625, 0.125, 0.25,  0.375, 0.5,
+                                      0.625, 0.75,  0.875, 0.9375, 0.97,   0.99,  0.998, 1};
+
+static const struct {
+    const char *name;
+    double      values[SHARES];
+} distributions[] = {
+#define PATTERN(name, ...) {#name, {__VA_ARGS__}},
+#include "import/pov/patterns.def"
+#undef PATTERN
+};
+enum { DISTRIBUTIONS = sizeof distributions / sizeof *distributions };
+
+/* A sum of colours by their shares: red, green, blue, filter, transmit, and the
+ * shares. */
+typedef struct Mean {
+    double sum[6];
+} Mean;
+
+static void add_color(Mean *mean, const double color[5], double share)
+{
+    for (int i = 0; i < 5; i++)
+        mean->sum[i] += share * color[i];
+    mean->sum[5] += share;
+}
+
+static void set_color(PovLook *look, const double color[5])
+{
+    memcpy(look->color, color, sizeof look->color);
+    look->filter   = color[3];
+    look->transmit = color[4];
+    look->colored  = true;
+}
+
+static void set_mean(PovLook *look, const Mean *mean)
+{
+    double color[5];
+    for (int i = 0; i < 5 && mean->sum[5] > 0; i++)
+        color[i] = mean->sum[i] / mean->sum[5];
+    if (mean->sum[5] > 0)
+        set_color(look, color);
+    look->patterned = true;
+}
+
+static void look_color(const PovLook *look, double color[5])
+{
+    static const double gray[3] = {0.6, 0.6, 0.6};
+    memcpy(color, look->colored ? look->color : gray, sizeof look->color);
+    color[3] = look->filter;
+    color[4] = look->transmit;
+}
+
+/* Takes the name of a look that was declared. */
+static bool take_declared(PovReader *reader, PovLook *look)
+{
+    PovCell *own = pov_take(reader, POV_LOOK);
+    if (!own)
+        return false;
+    if (own->look.colored) {
+        memcpy(look->color, own->look.color, sizeof look->color);
+        look->filter    = own->look.filter;
+        look->transmit  = own->look.transmit;
+        look->patterned = own->look.patterned;
+        look->pattern   = own->look.pattern;
+        look->colored   = true;
+    }
+    if (own->look.finished) {
+        look->finished = true;
+        look->finish   = own->look.finish;
+    }
+    look->ior = own->look.ior > 0 ? own->look.ior : look->ior;
+    return true;
+}
+
+/* ---- maps of colours ---- */
+
+typedef bool ReadEntry(PovReader *reader, double color[5]);
+
+static bool read_pigment_entry(PovReader *reader, double color[5])
+{
+    PovLook look = pov_usual_look();
+    if (!pov_look_inside(reader, &look))
+        return false;
+    look_color(&look, color);
+    return true;
+}
+
+/* Colours of a map; between two of them it is linear. */
+typedef struct Knots {
+    struct Knot {
+        double place, color[5];
+    } * items;
+    size_t count, capacity;
+} Knots;
+
+/* The part of a map from `from` to `to`, where a pattern has so large a share of its values. */
+static void add_span(Mean *mean, const Knots *map, double from, double to, double share)
+{
+    for (size_t i = 0; i <= map->count; i++) {
+        const struct Knot *a    = &map->items[i > 0 ? i - 1 : 0];
+        const struct Knot *b    = &map->items[i < map->count ? i : i - 1];
+        double             low  = i > 0 ? fmax(from, a->place) : from;
+        double             high = i < map->count ? fmin(to, b->place) : to, color[5];
+        if (!(high > low) && !(from == to && low == high))
+            continue;
+        double t = b->place > a->place ? ((low + high) / 2 - a->place) / (b->place - a->place) : 0;
+        for (int k = 0; k < 5; k++)
+            color[k] = a->color[k] + t * (b->color[k] - a->color[k]);
+        add_color(mean, color, to > from ? share * (high - low) / (to - from) : share);
+        if (from == to)
+            return;
+    }
+}
+
+/* The mean over the values of the pattern; those of `average` are weights instead of places. */
+static void set_mean_of_map(PovLook *look, const Knots *map, bool weights)
+{
+    Mean mean = {{0}};
+    for (size_t i = 0; i < map->count && weights; i++)
+        add_color(&mean, map->items[i].color, fmax(map->items[i].place, 0));
+    for (int i = 0; i + 1 < SHARES && map->count > 0 && !weights && look->pattern > 0; i++) {
+        const double *values = distributions[look->pattern - 1].values;
+        add_span(&mean, map, values[i], values[i + 1], shares[i + 1] - shares[i]);
+    }
+    if (map->count > 0 && !weights && look->pattern == 0)
+        add_span(&mean, map, 0, 1, 1);
+    set_mean(look, &mean);
+}
+
+static void add_knot(PovReader *reader, Knots *map, double place, const double color[5])
+{
+    struct Knot knot = {.place = place};
+    memcpy(knot.color, color, sizeof knot.color);
+    array_push(reader->import->arena, map, knot);
+}
+
+/* `[place entry] ...`, or in old files `[place, place color A color B]`. */
+static bool read_entries(PovReader *reader, ReadEntry *read, PovLook *look)
+{
+    WordReader *words   = &reader->words;
+    Knots       map     = {0};
+    bool        average = look->averages;
+    while (word_accept(words, "[")) {
+        double place, end, color[5], other[5];
+        if (!pov_number(reader, &place))
+            return false;
+        end = place;
+        word_accept(words, ",");
+        if (words->word.kind == IMPORT_WORD_NUMBER && !pov_number(reader, &end))
+            return false;
+        word_accept(words, ",");
+        if (!read(reader, color))
+            return false;
+        memcpy(other, color, sizeof other);
+        word_accept(words, ",");
+        bool two = !word_is(words, "]");
+        if (two && !read(reader, other))
+            return false;
+        add_knot(reader, &map, place, color);
+        if (two || end > place)
+            add_knot(reader, &map, end, other);
+        if (!word_expect(words, "]"))
+            return false;
+    }
+    set_mean_of_map(look, &map, average);
+    return true;
+}
+
+/* A block of entries, or the name of one that was declared. */
+static bool read_map(PovReader *reader, ReadEntry *read, PovLook *look)
+{
+    words_advance(&reader->words);
+    return word_expect(&reader->words, "{") &&
+           (take_declared(reader, look) || read_entries(reader, read, look)) &&
+           word_expect(&reader->words, "}");
+}
+
+/* `checker A, B`: each has its share. */
+static bool read_list_of_looks(PovReader *reader, int most, PovLook *look)
+{
+    Mean mean = {{0}};
+    words_advance(&reader->words);
+    for (int i = 0; i < most; i++) {
+        double  color[5];
+        PovLook part  = pov_usual_look();
+        bool    taken = false;
+        if (!take_declared(reader, &part) && !pov_look(reader, &part, &taken))
+            return false;
+        if (taken || part.colored) {
+            look_color(&part, color);
+        } else if (!pov_color_follows(reader)) {
+            break;
+        } else if (!pov_color(reader, color)) {
+            return false;
+        }
+        add_color(&mean, color, 1);
+        word_accept(&reader->words, ",");
+    }
+    static const double usual[2][5] = {{0, 0, 1}, {0, 1, 0}};
+    for (int i = 0; i < 2 && mean.sum[5] == 0; i++)
+        add_color(&mean, usual[i], 0.5);
+    set_mean(look, &mean);
+    return true;
+}
+
+static const struct {
+    const char *name;
+    ReadEntry  *read;
+    int         list; /* how many looks stand behind it */
+} patterns[] = {{"color_map", pov_color, 0},
+                {"colour_map", pov_color, 0},
+                {"pigment_map", read_pigment_entry, 0},
+                {"texture_map", read_pigment_entry, 0},
+                {"checker", NULL, 2},
+                {"brick", NULL, 2},
+                {"hexagon", NULL, 3},
+                {"square", NULL, 4},
+                {"triangular", NULL, 6},
+                {"cubic", NULL, 6},
+                {"object", NULL, 0}};
+
+static bool read_pattern(PovReader *reader, PovLook *look, bool *taken)
+{
+    *taken = false;
+    for (size_t i = 0; i < sizeof patterns / sizeof *patterns; i++) {
+        if (!word_is(&reader->words, patterns[i].name) || (!patterns[i].read && !patterns[i].list))
+            continue;
+        *taken = true;
+        return patterns[i].read ? read_map(reader, patterns[i].read, look)
+                                : read_list_of_looks(reader, patterns[i].list, look);
+    }
+    return true;
+}
+
+/* ---- blocks ---- */
+
+/* The word may be the name of a pattern. */
+static void name_pattern(const PovReader *reader, PovLook *look)
+{
+    for (int i = 0; i < DISTRIBUTIONS; i++)
+        if (word_is(&reader->words, distributions[i].name))
+            look->pattern = i + 1;
+    look->averages = look->averages || word_is(&reader->words, "average");
+}
+
+static bool pigment(PovReader *reader, PovLook *look)
+{
+    Place ignored = place_identity();
+    while (!word_is(&reader->words, "}") && !word_is(&reader->words, "]")) {
+        bool   taken = false;
+        double color[5];
+        if (!pov_release(reader))
+            return false;
+        if (take_declared(reader, look))
+            continue;
+        if (!pov_place(reader, &ignored, &taken) || (!taken && !read_pattern(reader, look, &taken)))
+            return false;
+        if (taken)
+            continue;
+        if (pov_color_follows(reader)) {
+            if (!pov_color(reader, color))
+                return false;
+            set_color(look, color);
+        } else {
+            look->patterned = true;
+            name_pattern(reader, look);
+            if (!pov_leave_out(reader, NULL))
+                return false;
+        }
+        word_accept(&reader->words, ",");
+    }
+    return true;
+}
+
+/* Whatever stands in a look: parts of a texture, or of a pigment alone. */
+bool pov_look_inside(PovReader *reader, PovLook *look)
+{
+    bool taken = false;
+    if (!pov_look(reader, look, &taken))
+        return false;
+    while (taken && !word_is(&reader->words, "]") && !word_is(&reader->words, "}"))
+        if (!pov_look(reader, look, &taken) || (!taken && !pov_leave_out(reader, NULL)))
+            return false;
+    return taken || pigment(reader, look);
+}
+
+/* An optional number behind a word. */
+static bool amount(PovReader *reader, double otherwise, double *number)
+{
+    PovValue value = {.v = {otherwise}};
+    words_advance(&reader->words);
+    if (pov_value_follows(reader) && !pov_value(reader, &value))
+        return false;
+    *number = value.v[0];
+    return true;
+}
+
+/* A number, or a colour, for each of three channels. */
+static bool channels(PovReader *reader, double channels[3])
+{
+    double color[5];
+    words_advance(&reader->words);
+    if (!pov_color(reader, color))
+        return false;
+    memcpy(channels, color, 3 * sizeof *channels);
+    return true;
+}
+
+/* `diffuse albedo 0.6, 0.2`: the second one is for what is lit from behind. */
+static bool diffuse(PovReader *reader, PovFinish *finish)
+{
+    double behind;
+    words_advance(&reader->words);
+    word_accept(&reader->words, "albedo");
+    if (!pov_number(reader, &finish->diffuse))
+        return false;
+    if (!word_accept(&reader->words, ",") || !pov_value_follows(reader))
+        return true;
+    import_note(reader->import, reader->words.word.line, "light from behind is left out");
+    return pov_number(reader, &behind);
+}
+
+/* `reflection R`, or `reflection { least, most ... }`, of which the first one is seen from above. */
+static bool reflection(PovReader *reader, PovFinish *finish)
+{
+    unsigned line = reader->words.word.line;
+    double   most[5], number;
+    words_advance(&reader->words);
+    if (!word_is(&reader->words, "{")) {
+        if (!pov_color(reader, most))
+            return false;
+        memcpy(finish->reflection, most, sizeof finish->reflection);
+        return true;
+    }
+    words_advance(&reader->words);
+    if (!pov_color(reader, most))
+        return false;
+    memcpy(finish->reflection, most, sizeof finish->reflection);
+    if (word_accept(&reader->words, ",")) {
+        import_note(reader->import, line, "`reflection` is the same from all sides, as from above");
+        if (!pov_color(reader, most))
+            return false;
+    }
+    while (!word_is(&reader->words, "}")) {
+        if (!pov_release(reader))
+            return false;
+        if (word_is(&reader->words, "metallic")) {
+            if (!amount(reader, 1, &number))
+                return false;
+            finish->mirrors_metal = number > 0;
+        } else if (!pov_leave_out(reader, "of a reflection is")) {
+            return false;
+        }
+    }
+    words_advance(&reader->words);
+    return true;
+}
+
+/* How wide a highlight is: a cosine with phong_size for its exponent, between the mirrored ray and
+   the light, is about one with four times that between the normal and their middle; 1 / roughness is
+   such an exponent. */
+static bool finish_word(PovReader *reader, PovLook *look)
+{
+    WordReader *words  = &reader->words;
+    PovFinish  *finish = &look->finish;
+    bool        phong = word_is(words, "phong"), specular = word_is(words, "specular");
+    double      number;
+    if (phong || specular) {
+        words_advance(words);
+        word_accept(words, "albedo");
+        if (!pov_number(reader, &number))
+            return false;
+        finish->specular = finish->specular || number > 0;
+        if (finish->exponent == 0)
+            finish->exponent = phong ? 160 : 20;
+        return true;
+    }
+    if (word_is(words, "phong_size")) {
+        if (!amount(reader, 40, &number))
+            return false;
+        finish->exponent = 4 * number;
+        return true;
+    }
+    if (word_is(words, "roughness")) {
+        if (!amount(reader, 0.05, &number))
+            return false;
+        finish->exponent = number > 0 ? 1 / number : 1e6;
+        return true;
+    }
+    if (word_is(words, "metallic"))
+        return amount(reader, 1, &finish->metallic);
+    if (word_is(words, "diffuse"))
+        return diffuse(reader, finish);
+    if (word_is(words, "ambient"))
+        return channels(reader, finish->ambient);
+    if (word_is(words, "emission"))
+        return channels(reader, finish->emission);
+    if (word_is(words, "reflection"))
+        return reflection(reader, finish);
+    return pov_leave_out(reader, "of a finish is");
+}
+
+static bool finish(PovReader *reader, PovLook *look)
+{
+    look->finished = true;
+    while (!word_is(&reader->words, "}")) {
+        if (!pov_release(reader) || (!take_declared(reader, look) && !finish_word(reader, look)))
+            return false;
+        word_accept(&reader->words, ",");
+    }
+    return true;
+}
+
+/* Of all that is inside of a thing, its index of refraction shows. */
+static bool interior(PovReader *reader, PovLook *look)
+{
+    while (!word_is(&reader->words, "}")) {
+        if (!pov_release(reader))
+            return false;
+        if (word_is(&reader->words, "ior")) {
+            if (!amount(reader, 1, &look->ior))
+                return false;
+        } else if (!take_declared(reader, look) && !pov_leave_out(reader, NULL)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool block(PovReader *reader, PovLook *look,
+                  bool (*inside)(PovReader *reader, PovLook *look))
+{
+    return word_expect(&reader->words, "{") && inside(reader, look) &&
+           word_expect(&reader->words, "}");
+}
+
+static bool texture(PovReader *reader, PovLook *look)
+{
+    Place ignored = place_identity();
+    while (!word_is(&reader->words, "}")) {
+        if (!pov_release(reader))
+            return false;
+        bool taken = take_declared(reader, look);
+        if (!taken &&
+            (!pov_look(reader, look, &taken) || (!taken && !pov_place(reader, &ignored, &taken)) ||
+             (!taken && !read_pattern(reader, look, &taken))))
+            return false;
+        if (!taken && !pov_leave_out(reader, NULL))
+            return false;
+        word_accept(&reader->words, ",");
+    }
+    return true;
+}
+
+void pov_add_layer(PovLook *below, const PovLook *layer)
+{
+    double through = fmin(fmax(layer->filter + layer->transmit, 0), 1);
+    for (int i = 0; i < 3; i++)
+        below->color[i] = (1 - through) * layer->color[i] +
+                          through * (below->colored ? below->color[i] : 0);
+    below->colored = true;
+}
+
+/* A texture lies on those before it: they show as far as light goes through. */
+static bool read_layer(PovReader *reader, PovLook *look)
+{
+    PovLook layer = *look, below = *look;
+    if (below.textured) {
+        layer.colored = false;
+        layer.filter = layer.transmit = 0;
+        layer.finish                  = reader->usual.finish;
+    }
+    layer.textured = false;
+    if (!block(reader, &layer, texture))
+        return false;
+    double through = fmin(fmax(layer.filter + layer.transmit, 0), 1);
+    bool   both    = below.textured && layer.colored;
+    for (int i = 0; i < 3 && both; i++)
+        layer.color[i] = (1 - through) * layer.color[i] +
+                         through * (below.colored ? below.color[i] : 0.6);
+    if (both) {
+        layer.filter   = through * below.filter;
+        layer.transmit = through * below.transmit;
+    } else if (!layer.colored) {
+        memcpy(layer.color, below.color, sizeof layer.color);
+        layer.colored  = below.colored;
+        layer.filter   = below.filter;
+        layer.transmit = below.transmit;
+    }
+    layer.textured = true;
+    *look          = layer;
+    return true;
+}
+
+bool pov_look(PovReader *reader, PovLook *look, bool *taken)
+{
+    WordReader *words = &reader->words;
+    *taken            = true;
+    if (!pov_release(reader) || !pov_deeper(reader))
+        return false;
+    bool good;
+    if (word_accept(words, "pigment"))
+        good = block(reader, look, pigment);
+    else if (word_accept(words, "finish"))
+        good = block(reader, look, finish);
+    else if (word_accept(words, "interior"))
+        good = block(reader, look, interior);
+    else if (word_accept(words, "texture") || word_accept(words, "material"))
+        good = read_layer(reader, look);
+    else if (word_is(words, "color_map") || word_is(words, "colour_map"))
+        good = read_map(reader, pov_color, look);
+    else if (word_is(words, "pigment_map") || word_is(words, "texture_map"))
+        good = read_map(reader, read_pigment_entry, look);
+    else
+        good = true, *taken = false;
+    look->said = look->said || *taken;
+    reader->depth--;
+    return good;
+}
+
+PovLook pov_usual_look(void)
+{
+    return (PovLook){.finish = {.diffuse = 0.6, .ambient = {0.1, 0.1, 0.1}}};
+}
+
+/* Four digits of a colour, which the curve of a screen hides the rest of. */
+static const char *color_text(PovReader *reader, const double color[3])
+{
+    double rounded[3];
+    for (int i = 0; i < 3; i++)
+        rounded[i] = round(1e4 * color[i]) / 1e4;
+    return import_vector_text(reader->import, rounded, 3);
+}
+
+/* What a look mirrors of each channel; *part: of what it mirrors and scatters, on average.  The colour of
+   a metal is that of both: the more it scatters, the more of that hue its mirror gets. */
+static void mirrored(PovReader *reader, const PovLook *look, double light[3], double *part)
+{
+    double sum = 0, all = 0, body[3], share;
+    for (int i = 0; i < 3; i++) {
+        double pigment = look->colored ? look->color[i] : 0.6;
+        double mirror  = fmax(look->finish.reflection[i], 0);
+        light[i]       = pov_light_of(reader, mirror * (look->finish.mirrors_metal ? pigment : 1));
+        body[i]        = pov_light_of(reader, look->finish.diffuse * pigment);
+        sum += light[i];
+        all += light[i] + body[i];
+    }
+    *part = share = sum > 0 ? sum / all : 0;
+    for (int i = 0; i < 3 && all > sum; i++)
+        light[i] = share * light[i] + (1 - share) * (sum / 3) * 3 * body[i] / (all - sum);
+}
+
+/* `color` and `emission`, as POV-Ray has them: what is transmitted has no colour of the thing, what
+   is filtered has, and neither is scattered.  A metal mirrors in its colour, which a part of it
+   scatters: so the colour is the sum of both. */
+static void add_colors(PovReader *reader, const PovLook *look, double through,
+                       const double mirror[3], Text *text)
+{
+    const PovFinish *finish = &look->finish;
+    double           color[3], emission[3], most = 0;
+    double           filter = fmax(look->filter, 0), transmit = fmax(look->transmit, 0);
+    for (int i = 0; i < 3; i++) {
+        double pigment = look->colored ? look->color[i] : 0.6;
+        double tint    = through > 0 ? (filter * pigment + transmit) / (filter + transmit) : 0;
+        double body    = pov_light_of(reader, finish->diffuse * pigment);
+        color[i] = fmin((1 - through) * body + through * pov_light_of(reader, tint) + mirror[i], 1);
+        emission[i] = (1 - through) *
+                      pov_light_of(reader, pigment * (finish->ambient[i] * reader->ambient[i] +
+                                                      finish->emission[i]));
+        most = fmax(most, emission[i]);
+    }
+    text_format(text, "color: %s", color_text(reader, color));
+    if (most >= 5e-5)
+        text_format(text, ", emission: %s", color_text(reader, emission));
+}
+
+/* The name of a material with this text in its braces. */
+static const char *material_name(PovReader *reader, const char *inside)
+{
+    Text   name   = {.arena = reader->import->arena};
+    size_t number = 0;
+    while (number < reader->material_texts.count &&
+           strcmp(reader->material_texts.items[number], inside) != 0)
+        number++;
+    text_format(&name, "look_%zu", number + 1);
+    if (number < reader->material_texts.count)
+        return name.bytes;
+    array_push(reader->import->arena, &reader->material_texts, inside);
+    text_format(&reader->materials, "material %s { %s }\n", name.bytes, inside);
+    return name.bytes;
+}
+
+const char *pov_look_text(PovReader *reader, const PovLook *look)
+{
+    const PovFinish *finish  = &look->finish;
+    double           through = fmin(fmax(look->filter + look->transmit, 0), 1);
+    Text             inside  = {.arena = reader->import->arena};
+    if (!look->said)
+        return NULL;
+    if (look->patterned)
+        import_note(reader->import, reader->words.word.line,
+                    "patterns of pigments are one colour, their mean");
+    if (!look->colored && !look->patterned)
+        import_note(reader->import, reader->words.word.line,
+                    "what has no pigment is grey, not black");
+    double mirror[3] = {0}, part = 0;
+    mirrored(reader, look, mirror, &part);
+    if (part > 0 && through > 0) {
+        import_note(reader->import, reader->words.word.line,
+                    "`reflection` of what is transparent is that of its index of refraction");
+        part = mirror[0] = mirror[1] = mirror[2] = 0;
+    }
+    add_colors(reader, look, through, mirror, &inside);
+    if (part > 0) {
+        import_note(reader->import, reader->words.word.line,
+                    "`reflection` has the colour of the thing, and highlights as sharp as itself");
+        text_format(&inside, ", specular: 0, roughness: 0.02, metallic: %.4g", part);
+        return material_name(reader, inside.bytes);
+    }
+    if (finish->specular)
+        text_format(&inside, ", roughness: %.3g",
+                    fmax(pow(2 / (fmax(finish->exponent, 0) + 2), 0.25), 0.01));
+    else if (through > 0)
+        text_add(&inside, ", roughness: 0.01");
+    else if (finish->metallic <= 0)
+        text_add(&inside, ", specular: 0");
+    if (finish->metallic > 0)
+        text_format(&inside, ", metallic: %s",
+                    import_number_text(reader->import, fmin(finish->metallic, 1)));
+    if (through > 0)
+        text_format(
+            &inside, ", transmission: %s, ior: %s", import_number_text(reader->import, through),
+            import_number_text(reader->import, look->ior > 0 ? fmin(fmax(look->ior, 1), 4) : 1));
+    return material_name(reader, inside.bytes);
+}
