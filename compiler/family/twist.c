@@ -24,14 +24,27 @@ static Box twist_box(Box box, Range rate)
     return box_common(whole, hull);
 }
 
+/* The same in a larger box. */
+static const Shape *with_room(ShapeBuilder *builder, const Shape *shape)
+{
+    if (builder->room <= 0)
+        return shape;
+    Shape *roomy = arena_new(builder->arena, Shape);
+    *roomy       = *shape;
+    roomy->box   = box_grow(
+          shape->box, builder->room * range_largest(shape->box.axis[box_longest_axis(&shape->box)]));
+    return roomy;
+}
+
 static const Shape *twist_upright(ShapeBuilder *builder, const Shape *shape,
                                   const DeformArguments *asked)
 {
-    Shape *twisted     = deformed_shape(builder, SHAPE_TWIST, "twist", shape, asked);
-    twisted->values[0] = asked->numbers[0];
-    Range rate         = node_range(builder, asked->numbers[0], 0);
-    twisted->box       = twist_box(shape->box, rate);
-    twisted->divided   = shear_slope(range_largest(rate) * box_radius(shape->box));
+    const Shape *child   = with_room(builder, shape);
+    Shape       *twisted = deformed_shape(builder, SHAPE_TWIST, "twist", child, asked);
+    twisted->values[0]   = asked->numbers[0];
+    Range rate           = node_range(builder, asked->numbers[0], 0);
+    twisted->box         = twist_box(shape->box, rate);
+    twisted->divided     = shear_slope(range_largest(rate) * box_radius(child->box));
     note_slope(twisted, twisted->divided);
     return twisted;
 }

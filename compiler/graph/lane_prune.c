@@ -132,6 +132,13 @@ static bool is_complement(const Question *q)
     return q->step->op == OP_abs && range_at(q, 0).high <= 0;
 }
 
+/* What is clamped may stay what it was; then it is that less itself. */
+static bool is_less_itself(const Question *q, const LaneStep *pruned)
+{
+    return pruned->operands[0] == pruned->operands[1] && is_sure(q, 0) &&
+           isfinite(range_largest(range_at(q, 0)));
+}
+
 /* ---- the shorter tape ---- */
 
 typedef struct Pruning {
@@ -177,6 +184,10 @@ static void prune_step(Pruning *p, size_t i)
         step.operands[k] = stand_in(p, step.operands[k]);
     if (step.op == LANE_PART)
         step.operands[0] = p->call_at;
+    if (step.op == OP_sub && is_less_itself(&q, &step)) {
+        single = true;
+        number = 0;
+    }
     if (is_complement(&q))
         step.op = OP_neg;
     uint32_t added = lane_steps_add(&p->to, step);

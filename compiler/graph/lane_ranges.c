@@ -157,7 +157,7 @@ static Range range_length(const LaneRanges *ranges, const Operand *o, uint32_t s
     Range sum = range_square(o[0].range);
     for (uint32_t i = 1; i < size; i++)
         sum = range_add(sum, range_square(o[i].range));
-    Range length = range_sqrt(sum);
+    Range length = sum.high == 0 ? range_of(0) : range_sqrt(sum);
     if (ranges->stretch > 1 && size > 1) {
         double by = size > 2 ? ranges->longest : ranges->stretch;
         length    = (Range){length.low / by, length.high * by};
@@ -332,11 +332,18 @@ static Range range_quotient(Range a, Range b)
     return b.low <= 0 && b.high >= 0 ? ANYTHING : range_div(a, b);
 }
 
+/* Pruning leaves such differences, of a number and what is clamped of it. */
+static bool is_less_itself(const LaneStep *step, Range a)
+{
+    return step->operands[0] == step->operands[1] && is_finite(a);
+}
+
 static Range range_of_step(const LaneRanges *ranges, const LaneStep *step, const Operand *o)
 {
     Range a = o[0].range, b = o[1].range;
     switch (step->op) {
     case OP_div: return range_quotient(a, b);
+    case OP_sub: return is_less_itself(step, a) ? range_of(0) : range_sub(a, b);
     case OP_smoothstep: /* infinite / infinite counts as 0 */
         return is_finite(a) && is_finite(b) && is_finite(o[2].range)
                    ? range_by_row(OP_smoothstep, o, 3)

@@ -4,6 +4,7 @@
  * Only its sign is kept.  So the distance to a box, whose part outside is a length and whose part inside a
  * maximum, is the maximum of what its faces cut.
  */
+#include <math.h>
 #include <string.h>
 
 #include "compiler/mesh/field.h"
@@ -260,6 +261,20 @@ static bool add_shifted(Finding *f, const LaneStep *step, double sign, double of
     return find_pieces(f, step->operands[1], sign * way, offset + sign * shift);
 }
 
+/* Only signs are kept, so a factor that is the same everywhere scales the offset instead. */
+static bool add_scaled(Finding *f, const LaneStep *step, double sign, double offset)
+{
+    for (int k = step->op == OP_div; k < 2; k++) {
+        if (!(step->operands[k] & LANE_SCALAR))
+            continue;
+        double factor = f->tape->scalars[step->operands[k] & ~LANE_SCALAR];
+        double size   = step->op == OP_mul ? fabs(factor) : 1 / fabs(factor);
+        if (size > 0 && isfinite(size))
+            return find_pieces(f, step->operands[1 - k], copysign(1, factor) * sign, offset / size);
+    }
+    return false;
+}
+
 static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset)
 {
     enum { MOST_DEPTH = 40 };
@@ -279,6 +294,8 @@ static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset
         found = add_box(f, &faces, sign, offset);
     else if (step->op == OP_add || step->op == OP_sub)
         found = add_shifted(f, step, sign, offset);
+    else if (step->op == OP_mul || step->op == OP_div)
+        found = add_scaled(f, step, sign, offset);
     f->depth--;
     return found;
 }

@@ -85,6 +85,9 @@ KrsStatus pass_names(Compilation *c)
 
 void print_names(Compilation *c, Text *out) { files_print_names(&c->files, out); }
 
+/* Of the size of what is deformed. */
+static const double ROOM_FOR_MESHES = 0.25;
+
 static bool hoists(const Compilation *c)
 {
     return c->options->specialize == KRS_SPECIALIZE_STRUCTURE;
@@ -107,7 +110,8 @@ static void elaborate_with(Compilation *c, TurnTrials *turns)
                             .diags      = &c->diags,
                             .graph      = graph,
                             .parameters = &c->elaborated.parameters,
-                            .slopes     = &c->elaborated.slopes};
+                            .slopes     = &c->elaborated.slopes,
+                            .room       = c->options->outlines ? ROOM_FOR_MESHES : 0};
     Elaboration  e       = {.builder  = &builder,
                             .arena    = &c->work,
                             .values   = &c->values,

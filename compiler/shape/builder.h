@@ -24,7 +24,9 @@ typedef struct ShapeBuilder {
         size_t                count, capacity;
     } outlines;          /* all that were made */
     size_t nodes_before; /* of the graph, when a shape was last made */
-    bool   stopped;      /* a limit was reached, and reported: nothing more is */
+    double
+         room; /* around what is deformed, as a part of its size: no corner of the distance is at the surface then */
+    bool stopped; /* a limit was reached, and reported: nothing more is */
 } ShapeBuilder;
 
 /* A shape with these children, and what most kinds take over from them. */
