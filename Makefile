@@ -50,8 +50,8 @@ API      := $(call sources,api)
 IMPORT   := $(foreach room,import/common import/csg import/surfer import/pov import,$(call sources,$(room)))
 LIVE     := $(call sources,live)
 LIVE_BORDER := live/gui.cpp
-CLI      := $(call sources,cli)
-CLI_BORDER := cli/glb_materials.cpp cli/mesh_glb.cpp cli/terminate.cpp
+CLI      := $(foreach room,cli/options cli/shell cli/picture cli/mesh cli/grid cli/slice cli,$(call sources,$(room)))
+CLI_BORDER := cli/mesh/glb_materials.cpp cli/mesh/glb.cpp cli/shell/terminate.cpp
 # OpenVDB is loaded when a .vdb is written: it takes longer to load than most commands to run.
 VDB       = $(if $(VDB_LIBS),$(B)/krs-vdb.so)
 
@@ -101,8 +101,8 @@ $(B)/krs: $(CLI:%.c=$(B)/%.o) $(B)/commit.o $(CLI_BORDER:%.cpp=$(B)/%.o) $(B)/li
 	@echo "link   $@"
 	@$(CC_LINK) $(HARDENED) -o $@ $^ $(WINDOW_LIBS) $(MESH_LIBS) $(LIBS)
 # Its headers take a minute to compile, and twice that with names for a debugger.
-$(B)/cli/grid_openvdb.o: CXXFLAGS += -O1 -g0
-$(B)/krs-vdb.so: $(B)/cli/grid_openvdb.o
+$(B)/cli/grid/openvdb.o: CXXFLAGS += -O1 -g0
+$(B)/krs-vdb.so: $(B)/cli/grid/openvdb.o
 	@echo "link   $@"
 	@$(CXX) $(CXXFLAGS) $(LDFLAGS) -shared -o $@ $< $(VDB_LIBS)
 # What the command has for scenes that are open, and for files of other programs: clients of the library, and no

@@ -1,7 +1,7 @@
 /*
  * check.c: `krs check`: mistakes in scenes, without a device.
  */
-#include "cli/commands.h"
+#include "cli/shell/commands.h"
 
 /* Goes through all files and returns the status of the first that failed. */
 KrsStatus command_check(Options *options)

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/commands.h"
-#include "cli/console.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/console.h"
 #include "cli/modules.h"
-#include "cli/supervise.h"
+#include "cli/shell/supervise.h"
 
 static KrsStatus write_output_file(const Options *options, const char *base, const char *ending,
                                    const void *bytes, size_t length)

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/supervise.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/console.h"
+#include "cli/shell/supervise.h"
 
 static const char *const kind_names[] = {[KRS_DEVICE_OTHER]      = "other",
                                          [KRS_DEVICE_CPU]        = "cpu",

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/commands.h"
-#include "cli/console.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/console.h"
 #include "cli/modules.h"
-#include "cli/supervise.h"
+#include "cli/shell/supervise.h"
 
 /* SPIR-V comes behind the passes that the library knows, one module for each kernel. */
 static KrsStatus dump_spirv(const Options *options, const char *path)

@@ -5,8 +5,8 @@
  */
 #include <string.h>
 
-#include "cli/console.h"
-#include "cli/values.h"
+#include "cli/shell/console.h"
+#include "cli/options/values.h"
 #include "compiler/base/text.h"
 
 /* The first mistake in a value. */

@@ -6,10 +6,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/input.h"
-#include "cli/supervise.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/console.h"
+#include "cli/shell/input.h"
+#include "cli/shell/supervise.h"
 
 /* Hands a text on: to its file, to standard output, or only its name where that would change. */
 static KrsStatus deliver(const Options *options, const char *path, const char *text, bool same)

@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "cli/console.h"
-#include "cli/gridding.h"
-#include "cli/meshing.h"
+#include "cli/shell/console.h"
+#include "cli/grid/gridding.h"
+#include "cli/mesh/meshing.h"
 
 /* Cells along the longest side, and in a band, where nothing else is asked for. */
 static const double USUAL_CELLS = 128, USUAL_BAND = 3;

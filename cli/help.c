@@ -5,8 +5,8 @@
 
 #include <string.h>
 
-#include "cli/commands.h"
-#include "cli/console.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/console.h"
 #include "compiler/passes/compile.h"
 
 const char exit_statuses[] =

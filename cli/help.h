@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-#include "cli/options.h"
+#include "cli/options/options.h"
 
 /* What each exit status means, in a sentence of several lines. */
 extern const char exit_statuses[];

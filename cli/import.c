@@ -9,10 +9,10 @@
 #include <string.h>
 #include <strings.h>
 
-#include "cli/commands.h"
-#include "cli/console.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/console.h"
 #include "import/file.h"
-#include "cli/supervise.h"
+#include "cli/shell/supervise.h"
 #include "compiler/base/loader.h"
 #include "compiler/base/source.h"
 

@@ -4,8 +4,8 @@
 #ifndef KRS_INFO_H
 #define KRS_INFO_H
 
-#include "cli/commands.h"
-#include "cli/console.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/console.h"
 
 /* Refuses options that have no meaning without --print. */
 KrsStatus info_check_options(const Options *options);

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "cli/info.h"
-#include "cli/meshing.h"
+#include "cli/mesh/meshing.h"
 
 typedef struct Printing {
     const Options  *options;

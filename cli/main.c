@@ -16,16 +16,16 @@
 #include <unistd.h>
 #include <vulkan/vulkan.h>
 
-#include "cli/commands.h"
-#include "cli/console.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/console.h"
 #include "cli/help.h"
-#include "cli/input.h"
+#include "cli/shell/input.h"
 #include "cli/parse_options.h"
-#include "cli/supervise.h"
+#include "cli/shell/supervise.h"
 
 static Work *const works[COMMAND_COUNT] = {
 #define COMMAND(id, name, function, arguments, files, summary, examples) [COMMAND_##id] = function,
-#include "cli/commands.def"
+#include "cli/options/commands.def"
 #undef COMMAND
 };
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/meshing.h"
+#include "cli/mesh/meshing.h"
 
 /* --copies, in the order of copies_choices. */
 enum { COPIES_INSTANCES, COPIES_FLAT, COPIES_MERGED };

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/console.h"
-#include "cli/supervise.h"
+#include "cli/shell/console.h"
+#include "cli/shell/supervise.h"
 #include "compiler/base/embedded.h"
 #include "runtime/tracer/variants.h"
 

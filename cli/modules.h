@@ -4,7 +4,7 @@
 #ifndef KRS_MODULES_H
 #define KRS_MODULES_H
 
-#include "cli/commands.h"
+#include "cli/shell/commands.h"
 
 typedef struct SpirvModule {
     const char *entry; /* "trace" */

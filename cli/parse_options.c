@@ -9,10 +9,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "cli/console.h"
-#include "cli/mesh_files.h"
-#include "cli/picture.h"
-#include "cli/values.h"
+#include "cli/shell/console.h"
+#include "cli/mesh/files.h"
+#include "cli/picture/picture.h"
+#include "cli/options/values.h"
 #include "compiler/base/text.h"
 
 /* `-` is standard output. */
@@ -47,7 +47,7 @@ static bool take_value(Options *options, OptionId id, const char *value, int cho
     case OPTION_##id:                                                            \
         taken = (value);                                                         \
         break;
-#include "cli/options.def"
+#include "cli/options/options.def"
     case OPTION_COUNT: break;
     }
     return taken;
@@ -273,7 +273,7 @@ KrsStatus options_parse(Options *options, int argc, char **argv)
 #define MEMBER(type, name, value)                                                options->name = value;
 #define DEFAULT(type, name, value)                                               options->name = value;
 #define OPTION(id, letter, name, argument, commands, group, member, value, help) member
-#include "cli/options.def"
+#include "cli/options/options.def"
     if (argc < 2)
         return say_usage(options, "no command is given");
     KrsStatus status     = take_command(options, argv[1]);

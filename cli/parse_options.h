@@ -4,7 +4,7 @@
 #ifndef KRS_PARSE_OPTIONS_H
 #define KRS_PARSE_OPTIONS_H
 
-#include "cli/options.h"
+#include "cli/options/options.h"
 
 /* Understands the words behind `krs`.  KRS_OK, or KRS_BAD_ARGUMENT after one line on standard
    error that says what is wrong.  `options->arena` must be set. */

@@ -13,9 +13,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/supervise.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/console.h"
+#include "cli/shell/supervise.h"
 
 enum {
     BATCH      = 16384,

@@ -9,16 +9,16 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/commands.h"
-#include "cli/choices.h"
-#include "cli/console.h"
-#include "cli/frame_paths.h"
-#include "cli/picture.h"
-#include "cli/read_exr.h"
-#include "cli/render.h"
-#include "cli/render_stats.h"
-#include "cli/supervise.h"
-#include "cli/whole.h"
+#include "cli/shell/commands.h"
+#include "cli/options/choices.h"
+#include "cli/shell/console.h"
+#include "cli/picture/frame_paths.h"
+#include "cli/picture/picture.h"
+#include "cli/picture/read_exr.h"
+#include "cli/picture/render.h"
+#include "cli/picture/render_stats.h"
+#include "cli/shell/supervise.h"
+#include "cli/picture/whole.h"
 
 static KrsStatus say_unknown_camera(const Options *options, const char *const *names, size_t count)
 {

@@ -5,10 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "cli/console.h"
-#include "cli/frame_paths.h"
-#include "cli/meshing.h"
-#include "cli/slicing.h"
+#include "cli/shell/console.h"
+#include "cli/picture/frame_paths.h"
+#include "cli/mesh/meshing.h"
+#include "cli/slice/slicing.h"
 
 enum { MOST_LAYERS = 1000000, AT_ONCE = 8, USUAL_PIXELS = 1024 };
 /* Bytes of a picture. */

@@ -13,8 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/commands.h"
-#include "cli/supervise.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/supervise.h"
 #include "runtime/device/cache.h"
 
 /* With more samples, literals are better even if they are new.  At 640x360, 16 samples of

@@ -19,10 +19,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "cli/commands.h"
-#include "cli/console.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/console.h"
 #include "cli/modules.h"
-#include "cli/supervise.h"
+#include "cli/shell/supervise.h"
 #include "compiler/base/splitmix.h"
 
 enum { BATCH = 1024, PROBES = 8, MARCH_STEPS = 64, MEASURE_STEPS = 96 };

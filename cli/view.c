@@ -5,10 +5,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/input.h"
-#include "cli/supervise.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/console.h"
+#include "cli/shell/input.h"
+#include "cli/shell/supervise.h"
 #include "live/viewer.h"
 
 /* A window without display has nothing to free, and nobody to ask. */

@@ -11,10 +11,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/input.h"
-#include "cli/meshing.h"
-#include "cli/render.h"
-#include "cli/supervise.h"
+#include "cli/shell/input.h"
+#include "cli/mesh/meshing.h"
+#include "cli/picture/render.h"
+#include "cli/shell/supervise.h"
 #include "live/document.h"
 
 /* How long a signal may go unnoticed where the system does not end the wait for it. */

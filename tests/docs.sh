@@ -134,7 +134,7 @@ sed -n 's/^let \([a-z]*\) *= #\([0-9a-f]*\);.*/\1 \2/p' compiler/library/colours
 report $? "the library has the colours of CSS"
 
 # ---- options, codes, files ----
-sed -n 's/^OPTION([A-Z_]*, *[^,]*, *"\([a-z-]*\)".*/--\1/p' cli/options.def >"$work/options"
+sed -n 's/^OPTION([A-Z_]*, *[^,]*, *"\([a-z-]*\)".*/--\1/p' cli/options/options.def >"$work/options"
 sed -n 's/.*"usage: bench \(.*\)/\1/p' bench/bench.c | grep -o -e '--[a-z-]*' >>"$work/options"
 printf "%s\n" --version --bless >>"$work/options"
 # shellcheck disable=SC2086 # several pages

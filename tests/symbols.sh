@@ -47,7 +47,7 @@ report $? "the shared library defines these and no others"
 
 # Parts have global names.  The command's must not be seen by its shared libraries; no static one may
 # want a name that is also ours.
-defined -g "$build/libkrs-internal.a" "$build/live.a" "$build/import.a" "$build"/cli/*.o | grep -v '^_Z' >"$work/ours"
+defined -g "$build/libkrs-internal.a" "$build/live.a" "$build/import.a" "$build"/cli/*.o "$build"/cli/*/*.o | grep -v '^_Z' >"$work/ours"
 defined -D "$build/krs" | comm -12 - "$work/ours" >"$work/said"
 [ ! -s "$work/said" ]
 report $? "the command lends none of its $(wc -l <"$work/ours") names"

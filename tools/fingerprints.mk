@@ -14,8 +14,8 @@ KEEPS_film       := $(filter-out compiler/front/format% compiler/front/synonyms%
                     compiler/base/diag% include/krs/mesh.h include/krs/slice.h include/krs/grid.h include/krs/measure.h, $(call sources_of,include/krs $(filter-out compiler/refute compiler/mesh% compiler/slice% compiler/grid% compiler/measure% \
                     compiler/base/embed runtime/writer runtime/display, $(call folders_of,compiler runtime))))
 # A picture that has begun: also the layout of the file, and what the command makes of its options.
-KEEPS_checkpoint := $(KEEPS_film) $(wildcard $(addprefix cli/, checkpoint.[ch] render.[ch] picture.[ch] light_groups.[ch] \
-                    frame_paths.[ch] options.* parse_options.c choices.[ch] values.[ch] read_exr.[ch]))
+KEEPS_checkpoint := $(KEEPS_film) $(wildcard $(addprefix cli/, render.c parse_options.c options/options.* options/choices.[ch] options/values.[ch] \
+                    $(addprefix picture/, checkpoint.[ch] render.h picture.[ch] light_groups.[ch] frame_paths.[ch] read_exr.[ch])))
 KEEPS            := cache film checkpoint
 
 fingerprint = LC_ALL=C sha256sum $(sort $(1)) | sha256sum | cut -c 1-16

@@ -6,7 +6,7 @@ PREFIX  ?= /usr/local
 LIBDIR  ?= lib
 DESTDIR ?=
 INTO     = $(DESTDIR)$(PREFIX)
-COMMANDS = $(shell sed -n 's/^COMMAND.[A-Z]*, "\([a-z]*\)".*/\1/p' cli/commands.def)
+COMMANDS = $(shell sed -n 's/^COMMAND.[A-Z]*, "\([a-z]*\)".*/\1/p' cli/options/commands.def)
 # Programs include <krs/krs.h>, and older ones <krs.h>: names of before 0.3, which only lead to these.
 PUBLIC   = $(sort $(wildcard include/krs/*))
 OLD_NAMES = krs.h krs_vulkan.h krs_camera.h

@@ -42,7 +42,7 @@ decides compiler/graph/ops.def "checkpoint film"
 decides compiler/library/std/trees.krs "checkpoint film"
 decides runtime/shaders/bsdf.glsl "checkpoint film"
 decides runtime/film/saved.c "checkpoint film"
-decides cli/checkpoint.c "checkpoint"
+decides cli/picture/checkpoint.c "checkpoint"
 for file in cli/mesh.c compiler/mesh/contour.c compiler/base/diag.def live/viewer.c runtime/writer/png.c; do
     [ ! -e "tree/$file" ] || [ -z "$(changed_by "$file")" ] || echo "$file"
 done >deciding

@@ -16,7 +16,7 @@ make_it install PREFIX=/usr DESTDIR="$work/stage"
 ended 0 "make install"
 (cd stage && find . -type f -o -type l | sort) >files
 version=$("$krs" --version | sed -n 's/^krs \([0-9.]*\).*/\1/p')
-commands=$(sed -n 's/^COMMAND([A-Z]*, "\([a-z]*\)".*/\1/p' "$root/cli/commands.def")
+commands=$(sed -n 's/^COMMAND([A-Z]*, "\([a-z]*\)".*/\1/p' "$root/cli/options/commands.def")
 {
     for file in bin/krs lib/libkrs.a lib/libkrs.so "lib/libkrs.so.$version" "lib/libkrs.so.${version%.*}" lib/pkgconfig/krs.pc include/krs.h include/krs_vulkan.h include/krs_camera.h \
         share/bash-completion/completions/krs share/zsh/site-functions/_krs \

@@ -141,14 +141,14 @@ done >out
 result $? "options stand under the heading of what they are about"
 # By the rows themselves: a command that is not given is none of the page.
 wrong=""
-commands=$(sed -n 's/^COMMAND([A-Z]*, "\([a-z]*\)".*/\1/p' "$root/cli/commands.def")
+commands=$(sed -n 's/^COMMAND([A-Z]*, "\([a-z]*\)".*/\1/p' "$root/cli/options/commands.def")
 for command in $commands; do
     run help "$command" --all
     listed <out | sed 's/.*://' | sort >shown
     name=$(echo "$command" | tr '[:lower:]' '[:upper:]')
     for word in ON_ALL "ON($name)"; do
         sed -n "s/^OPTION([^\"]*\"\([a-z-]*\)\".*[ |]$(echo "$word" | sed 's/[()]/[&]/g')[ ,].*/\1/p" \
-            "$root/cli/options.def"
+            "$root/cli/options/options.def"
     done | sort | comm -23 - shown >out
     [ ! -s out ] && [ -s shown ] && [ -z "$(uniq -d shown)" ] || wrong="$wrong $command"
     # A heading stands once, and above a screen's half of options at most.

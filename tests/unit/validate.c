@@ -11,11 +11,11 @@
 
 #include <cmocka.h>
 
-#include "cli/console.c"
-#include "cli/choices.c"
-#include "cli/options.c"
+#include "cli/shell/console.c"
+#include "cli/options/choices.c"
+#include "cli/options/options.c"
 #include "cli/parse_options.c"
-#include "cli/values.c"
+#include "cli/options/values.c"
 #include "cli/validate.c"
 
 /* How the ball's distance is falsified. */
@@ -155,6 +155,19 @@ KrsOptions scene_options(DiagnosticSink *sink, const char *path)
 {
     (void)sink, (void)path;
     return (KrsOptions){0};
+}
+
+/* What `krs watch` is asked to write. */
+const MeshFormat *mesh_format(const char *path)
+{
+    (void)path;
+    return NULL;
+}
+
+FileForm file_form(const char *path)
+{
+    (void)path;
+    return FORM_UNKNOWN;
 }
 
 void scene_print_counts(const DiagnosticSink *sink) { (void)sink; }

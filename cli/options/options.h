@@ -1,0 +1,175 @@
+/*
+ * options.h: commands and options: their tables, and what a command line asks for.
+ */
+#ifndef KRS_OPTIONS_H
+#define KRS_OPTIONS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cli/options/choices.h"
+#include "compiler/base/arena.h"
+#include "krs/krs.h"
+#include "runtime/display/display.h"
+#include "runtime/writer/atomic.h"
+
+enum {
+    MANY_FILES      = -1, /* a command that takes one or more files */
+    MAYBE_A_WORD    = -2, /* one that takes a word, which is no file, or nothing */
+    MOST_LODS       = 8,  /* of --lods */
+    LEAST_BAKED     = 16, /* pixels of --bake */
+    MOST_BAKED      = 4096,
+    OPTION_TEXT     = 256, /* bytes of what is said about an option, at most */
+    DEVICE_PATIENCE = 5    /* deadlines that one step of a device may take */
+};
+
+typedef enum CommandId {
+#define COMMAND(id, name, function, arguments, files, summary, examples) COMMAND_##id,
+#include "cli/options/commands.def"
+#undef COMMAND
+    COMMAND_COUNT
+} CommandId;
+
+typedef struct CommandInfo {
+    const char *name, *arguments;
+    int         files; /* how many scenes, MANY_FILES or MAYBE_A_WORD */
+    const char *summary, *examples;
+} CommandInfo;
+
+extern const CommandInfo command_table[COMMAND_COUNT];
+
+/* The command of this name, or COMMAND_COUNT. */
+CommandId find_command(const char *name);
+/* The one whose name is most like this, or NULL. */
+const char *nearest_command(const char *name);
+
+typedef enum OptionId {
+#define OPTION(id, letter, name, argument, commands, group, member, value, help) OPTION_##id,
+#include "cli/options/options.def"
+    OPTION_COUNT
+} OptionId;
+
+/* A heading of a page: the options that are about one matter. */
+typedef enum OptionGroup {
+#define GROUP(id, heading) GROUP_##id,
+#include "cli/options/option_groups.def"
+#undef GROUP
+    GROUP_COUNT
+} OptionGroup;
+
+extern const char *const group_headings[GROUP_COUNT];
+
+/* A row of options.def; {} in a text stands for the choices. */
+typedef struct OptionInfo {
+    char          letter;          /* 0: none */
+    const char   *name, *argument; /* `argument` NULL: it takes none; "": the choices */
+    unsigned      commands;
+    OptionGroup   group;
+    const char   *help, *wants;
+    const Choice *choices; /* NULL: other values; with `wants` these are for lists of them */
+} OptionInfo;
+
+extern const OptionInfo option_info[OPTION_COUNT];
+
+/* Texts of a row, with its choices in place. */
+const char *option_argument(const OptionInfo *option, char text[OPTION_TEXT]);
+const char *option_wants(const OptionInfo *option, char text[OPTION_TEXT]);
+const char *option_help(const OptionInfo *option, char text[OPTION_TEXT]);
+/* Its choices with blanks between; NULL: other values are possible. */
+const char *option_words(const OptionInfo *option, char text[OPTION_TEXT]);
+
+bool option_belongs(OptionId id, CommandId command);
+/* Whether the command has options of this group. */
+bool group_belongs(OptionGroup group, CommandId command);
+/* False: whatever its value, samples of pictures are the same. */
+bool option_changes_pictures(OptionId id);
+
+typedef enum When { WHEN_AUTO, WHEN_ALWAYS, WHEN_NEVER } When;
+typedef enum StatsForm { STATS_NONE, STATS_TEXT, STATS_JSON } StatsForm;
+
+/* --set */
+typedef struct Setting {
+    const char *name;
+    double      values[4];
+    size_t      count;
+} Setting;
+
+/* An option of the command line. */
+typedef struct GivenOption {
+    OptionId    id;
+    const char *value; /* NULL: none */
+} GivenOption;
+
+typedef struct ExitPair {
+    int from, to;
+} ExitPair;
+
+/* --limit; 0: none */
+typedef struct Limits {
+    double   time;   /* seconds, of the whole command */
+    uint64_t memory; /* bytes */
+    uint64_t pixels, samples;
+} Limits;
+
+/* --within */
+typedef struct WithinBox {
+    bool   given;
+    double low[3], high[3];
+} WithinBox;
+
+/* --plane */
+typedef struct SectionPlane {
+    bool            given;
+    KrsSectionPlane at;
+} SectionPlane;
+
+/* The path of standard output, which `-o -` is. */
+#define STANDARD_OUTPUT OUTPUT_STANDARD
+
+typedef struct Options {
+    CommandId command;
+    int       argc; /* the whole command line, for a report of a crash */
+    char    **argv;
+    bool      meshes,
+        others; /* whether a command that writes both writes meshes, and what else it does */
+
+    struct {
+        const char **items;
+        size_t       count, capacity;
+    } files, outputs;
+    struct {
+        GivenOption *items;
+        size_t       count, capacity;
+    } given;
+    struct {
+        Setting *items;
+        size_t   count, capacity;
+    } settings;
+    struct {
+        ExitPair *items;
+        size_t    count, capacity;
+    } exit_map;
+    double zones[KRS_MOST_ZONES][4];
+    size_t zone_count;
+
+    bool     animated; /* --frames */
+    uint32_t first_frame, last_frame;
+
+    KrsRenderOptions how; /* what the rows put there; all else is 0 */
+#define NO_MEMBER
+#define MEMBER(type, name, value)                                                type name;
+#define DEFAULT(type, name, value)                                               type name;
+#define OPTION(id, letter, name, argument, commands, group, member, value, help) member
+#include "cli/options/options.def"
+
+    const char *input; /* the scene that standard input has, or NULL */
+    size_t      input_length;
+
+    Arena *arena; /* for whatever a command needs until the process ends */
+} Options;
+
+/* Whether the command line has an option. */
+bool option_is_given(const Options *options, OptionId id);
+
+#endif

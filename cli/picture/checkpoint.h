@@ -1,0 +1,39 @@
+/*
+ * checkpoint.h: `krs render --resume`: what has been rendered stays when the command ends too early.
+ */
+#ifndef KRS_CHECKPOINT_H
+#define KRS_CHECKPOINT_H
+
+#include "cli/shell/commands.h"
+
+typedef struct Checkpoint {
+    const Options *options;
+    const char    *path;
+    uint64_t       key;    /* of the options, the scene and the device */
+    bool           found;  /* there is one, which has not been read */
+    bool           failed; /* it cannot be written, which has been said */
+    double done, share;    /* of the samples: before those that are added at present, and these */
+} Checkpoint;
+
+/* What the samples of a frame are made by. */
+typedef struct CheckpointFrame {
+    KrsRendering           *rendering;
+    KrsFrame               *frame;
+    const KrsRenderOptions *how;
+    uint32_t                samples, number;
+} CheckpointFrame;
+
+/* For a command whose first output has this name, or that has none: NULL.  KRS_OK, or wrong usage and
+   words: there is no place for a checkpoint, or what is asked for has none. */
+KrsStatus checkpoint_begin(Checkpoint *checkpoint, const Options *options, const char *output);
+/* Looks for the checkpoint of this command line, scene and device.  The number of the frame from which
+   on it goes on; that of the first one where there is none. */
+uint32_t checkpoint_find(Checkpoint *checkpoint, const KrsScene *scene,
+                         const KrsRenderer *renderer);
+/* Does what krs_render does, from where the checkpoint has the frame, and writes new ones. */
+KrsStatus checkpoint_render(Checkpoint *checkpoint, const CheckpointFrame *frame,
+                            KrsPicture **picture);
+/* The frame of this number has been written: the next one is what remains, or nothing is. */
+KrsStatus checkpoint_advance(Checkpoint *checkpoint, uint32_t frame);
+
+#endif

@@ -1,0 +1,33 @@
+/*
+ * picture.h: from a rendered frame to the files that were asked for.
+ */
+#ifndef KRS_CLI_PICTURE_H
+#define KRS_CLI_PICTURE_H
+
+#include "cli/shell/commands.h"
+#include "cli/picture/light_groups.h"
+
+typedef enum FileForm { FORM_UNKNOWN, FORM_EXR, FORM_PNG } FileForm;
+
+/* By the ending of the name, in any case. */
+FileForm file_form(const char *path);
+
+/* The planes (bits of KrsPlane) that writing these forms takes. */
+uint32_t picture_planes(const Options *options, bool exr);
+
+/* What stands in the files beside the pixels. */
+typedef struct PictureNotes {
+    const KrsScene *scene;
+    double          time;    /* of the scene */
+    DisplayOptions  display; /* for PNG */
+    LightGroups     groups;  /* further channels for EXR, or none */
+} PictureNotes;
+
+/* Writes the pixels to standard output, as a PNG shows them: rows from the top, R G B, a byte each. */
+KrsStatus picture_write_raw(const KrsPicture *picture, const DisplayOptions *display);
+
+/* Writes the picture to a file in the form its name tells. */
+KrsStatus picture_write(const Options *options, const KrsPicture *picture,
+                        const PictureNotes *notes, const char *path);
+
+#endif

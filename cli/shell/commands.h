@@ -1,0 +1,80 @@
+/*
+ * commands.h: one function per subcommand, each in the file of its name, and what they share.
+ */
+#ifndef KRS_COMMANDS_H
+#define KRS_COMMANDS_H
+
+#include "cli/options/options.h"
+#include "compiler/base/text.h"
+#include "compiler/passes/compile.h"
+#include "krs/vulkan.h"
+
+#define COMMAND(id, name, function, arguments, files, summary, examples) \
+    KrsStatus function(Options *options);
+#include "cli/options/commands.def"
+#undef COMMAND
+
+/* The commit that the program was built from, written by the build; empty without git. */
+extern const char commit[];
+
+/* scene.c */
+
+/* Compiles a scene file, its diagnostics to standard error.  On KRS_OK the caller owns *scene,
+   else it is NULL and the user knows why. */
+KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene);
+/* KRS_OK, or KRS_IO_ERROR and words: the file is missing, a folder, or not ours to read. */
+KrsStatus scene_readable(const Options *options, const char *path);
+/* KRS_OK, or wrong usage and words: `output` is the file that is read, by whatever name. */
+KrsStatus check_scene_not_overwritten(const Options *options, const char *output);
+
+/* Prints diagnostics as they come, and counts them. */
+typedef struct DiagnosticSink {
+    const Options *options;
+    size_t         errors, warnings; /* printed so far */
+} DiagnosticSink;
+
+/* For krs_compile_file and krs_dump of that scene; `sink` must outlive the call. */
+KrsOptions scene_options(DiagnosticSink *sink, const char *path);
+/* The folder that the scene may read from; NULL: any. */
+const char *scene_root(const Options *options, const char *path);
+/* From here on the scene of that file is compiled. */
+void scene_enter_compile(const char *path);
+/* "2 errors, 1 warning", unless there were none. */
+void scene_print_counts(const DiagnosticSink *sink);
+
+/* A frame with --set, --zone and --time; KRS_BAD_ARGUMENT and words when a setting does not fit. */
+KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsFrame **frame);
+/* Words as well where the frame cannot have this time. */
+KrsStatus scene_set_time(const Options *options, KrsFrame *frame, double time);
+/* "a/ring.krs" is called "ring". */
+const char *scene_name(Arena *arena, const char *path);
+/* Says what a status means after a call of the library that has no words of its own. */
+KrsStatus say_status(KrsStatus status, const char *path);
+
+/* specialize.c, for --specialize auto: compiles the scene again with its numbers in the parameter
+   block if that is better for what is to be rendered, which has so many samples in all.  NULL: its
+   literals are. */
+KrsScene *specialize_edited(const Options *options, const KrsScene *literals, double samples);
+
+/* devices.c */
+
+/* Where compiled shaders are kept; NULL: nowhere. */
+const char *cache_folder(const Options *options);
+/* For krs_renderer_new, as the options ask for it. */
+KrsRendererOptions renderer_options(const Options *options);
+/* Opens the device that --device asks for.  On KRS_OK the caller owns *renderer,
+   else it is NULL and the user knows why. */
+KrsStatus open_renderer(const Options *options, KrsRenderer **renderer);
+/* The same in two steps, for pictures: between them a scene is compiled, whose mistakes the user is to
+   know first.  The second step gets the status of the first. */
+KrsStatus open_renderer_ahead(const Options *options, KrsRenderer **renderer);
+KrsStatus opened_renderer(KrsStatus status, KrsRenderer **renderer);
+
+/* info.c: the members that `krs info --json` and `krs compile` have in common. */
+void info_add_json(Text *json, const KrsScene *scene);
+
+/* Numbers in JSON; what is not finite becomes null. */
+void json_number(Text *json, double number);
+void json_vector(Text *json, const double *values, size_t count);
+
+#endif
