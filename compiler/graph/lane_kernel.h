@@ -46,21 +46,24 @@ LESSER(float, float)
 
 #define LOCAL(name) LANE_NAME(LANE_KERNEL, name)
 
-/* Where the sum of squares overflows or loses what is small, the scalar operation goes on. */
+/* Where the sum of squares overflows or loses what is small, the scalar operation goes on.  All are often 0: within a box. */
 static void LOCAL(length)(REAL *to, const REAL *const *x, uint32_t size, size_t blocks)
 {
     const REAL small = sizeof(REAL) == 4 ? (REAL)1e-30 : (REAL)1e-200, large = 1 / small;
-    REAL       sums[LANES];
+    REAL       sums[LANES], tops[LANES];
     int        odd = 0;
     EACH_LANE(blocks)
     {
-        REAL sum = 0;
-        for (uint32_t k = 0; k < size; k++)
+        REAL sum = 0, most = 0;
+        for (uint32_t k = 0; k < size; k++) {
             sum += x[k][i] * x[k][i];
+            most = fmax(most, fabs(x[k][i]));
+        }
         sums[i] = sum;
+        tops[i] = most;
     }
     for (size_t i = 0; i < LANE_BLOCK * blocks; i++)
-        odd |= !(sums[i] > small && sums[i] < large);
+        odd |= !((sums[i] > small) | (tops[i] == 0)) | !(sums[i] < large);
     if (!odd) {
         EACH_LANE(blocks)
         to[i] = sqrt(sums[i]);

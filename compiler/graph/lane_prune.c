@@ -106,6 +106,18 @@ static bool is_plus_zero(const Question *q, int k)
     return is_sure(q, k) && range_is_zero(range_at(q, k)) && !signbit(range_at(q, k).low);
 }
 
+/* Zero has no sign (op_values.c), so a sum with it is the other number. */
+static bool is_zero(const Question *q, int k)
+{
+    return is_sure(q, k) && range_is_zero(range_at(q, k));
+}
+
+static bool is_one(const Question *q, int k)
+{
+    Range range = range_at(q, k);
+    return is_sure(q, k) && range.low == 1 && range.high == 1;
+}
+
 /* The operand whose value the step has in every point; NODE_NONE: there is none. */
 static uint32_t same_operand(const Question *q)
 {
@@ -114,7 +126,10 @@ static uint32_t same_operand(const Question *q)
     case OP_max: return greater(q, 0, 1);
     case LANE_LESSER: return is_sure(q, 0) && is_sure(q, 1) ? lesser(q, 0, 1) : NODE_NONE;
     case LANE_GREATER: return is_sure(q, 0) && is_sure(q, 1) ? greater(q, 0, 1) : NODE_NONE;
+    case OP_add: return is_zero(q, 1) ? taken(q, 0) : is_zero(q, 0) ? taken(q, 1) : NODE_NONE;
     case OP_sub: return is_plus_zero(q, 1) ? taken(q, 0) : NODE_NONE;
+    case OP_mul: return is_one(q, 1) ? taken(q, 0) : is_one(q, 0) ? taken(q, 1) : NODE_NONE;
+    case OP_div: return is_one(q, 1) ? taken(q, 0) : NODE_NONE;
     case OP_abs: return range_at(q, 0).low >= 0 ? taken(q, 0) : NODE_NONE;
     case OP_clamp: return clamped(q);
     case OP_select: return selected(q);
