@@ -42,6 +42,7 @@ void field_open(MeshField *field, Arena *arena)
     for (int i = 0; i < MOST_REGIONS; i++)
         field->regions[i].memory = arena_alloc(arena, field->region_bytes, 1);
     field->pieces.memory = arena_alloc(arena, field->region_bytes, 1);
+    field->spare         = arena_alloc(arena, field->region_bytes, 1);
 }
 
 /* ---- regions ---- */
@@ -63,7 +64,7 @@ static void *take_bytes(void *user, size_t bytes)
 
 static void give_bytes(void *user, void *block) { (void)user, (void)block; }
 
-static const LaneTape *outer_tape(const MeshField *field)
+const LaneTape *field_tape(const MeshField *field)
 {
     return field->region_count ? &field->regions[field->region_count - 1].tape : &field->tape;
 }
@@ -85,7 +86,7 @@ static bool prune(MeshField *field, const LaneTape *outer, FieldRegion *region)
 
 bool field_keep(MeshField *field, uint32_t *outputs, size_t count)
 {
-    LaneTape tape     = *outer_tape(field);
+    LaneTape tape     = *field_tape(field);
     tape.outputs      = outputs;
     tape.output_count = count;
     return prune(field, &tape, &field->pieces) &&
@@ -276,12 +277,24 @@ bool field_hessian(const MeshField *field, Box box, Range *range, LaneSlope *slo
            lane_hessians_run(tape, &field->ranges, field->slopes, field->hessians, hessian);
 }
 
+/* Of steps that have taken the place of a call nothing is known yet. */
+static void prune_again(MeshField *field, FieldRegion *region)
+{
+    FieldRegion again = {.box = region->box, .memory = field->spare};
+    lane_ranges_run(&region->tape, &field->ranges, region->box);
+    if (!prune(field, &region->tape, &again))
+        return;
+    field->spare = region->memory;
+    *region      = again;
+}
+
 /* The ranges of the box are known. */
 static void enter(MeshField *field, const LaneTape *outer, Box box)
 {
     FieldRegion *region = &field->regions[field->region_count];
     region->box         = box;
-    prune(field, outer, region);
+    if (prune(field, outer, region) && region->tape.call_count < outer->call_count)
+        prune_again(field, region);
     field->region_count++;
 }
 
@@ -315,7 +328,7 @@ bool field_enter(MeshField *field, Box box)
         stay(field);
         return true;
     }
-    const LaneTape *outer = outer_tape(field);
+    const LaneTape *outer = field_tape(field);
     Range           own   = lane_ranges_run_closer(outer, &field->ranges, box);
     Range           range = range_max(own, range_of_cuts(field, box));
     if (range.low > 0 || range.high < 0)
@@ -326,13 +339,13 @@ bool field_enter(MeshField *field, Box box)
 
 void field_focus(MeshField *field, Box box)
 {
-    lane_ranges_run_closer(outer_tape(field), &field->ranges, box);
-    enter(field, outer_tape(field), box);
+    lane_ranges_run_closer(field_tape(field), &field->ranges, box);
+    enter(field, field_tape(field), box);
 }
 
 void field_narrow(MeshField *field, Box box)
 {
-    if (field->region_count > 0 && outer_tape(field)->count <= SHORT)
+    if (field->region_count > 0 && field_tape(field)->count <= SHORT)
         stay(field);
     else
         field_focus(field, box);

@@ -39,6 +39,7 @@ typedef struct MeshField {
     FieldRegion  regions[MOST_REGIONS]; /* each within the one before */
     size_t       region_count, region_bytes;
     FieldRegion  pieces; /* of field_pieces */
+    char        *spare;  /* as much memory as that of a region */
 } MeshField;
 
 /* What it needs to answer; frame, solid and box are set, and the frame is up to date. */
@@ -52,6 +53,8 @@ bool field_enter(MeshField *field, Box box);
 void field_focus(MeshField *field, Box box);
 void field_narrow(MeshField *field, Box box);
 void field_leave(MeshField *field);
+/* The tape of the box that was entered last. */
+const LaneTape *field_tape(const MeshField *field);
 
 /* At up to MOST_FIELD_POINTS points. */
 void   field_distances(const MeshField *field, const double (*points)[3], size_t count,

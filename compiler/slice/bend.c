@@ -62,6 +62,64 @@ static bool is_near(const Section *s, const Stretch *stretch, double reach)
     return true;
 }
 
+/* A search for the outline between a point inside and one outside, by parts of the way. */
+typedef struct Search {
+    double inside[2], outside[2], low, high, at_low, at_high;
+} Search;
+
+static void place_on_way(const Search *search, double part, double at[2])
+{
+    for (int k = 0; k < 2; k++)
+        at[k] = search->inside[k] + part * (search->outside[k] - search->inside[k]);
+}
+
+static double place_of_zero(const Search *search)
+{
+    bool finite = isfinite(search->at_low) && isfinite(search->at_high);
+    return finite && search->at_low < search->at_high
+               ? search->at_low / (search->at_low - search->at_high)
+               : 0.5;
+}
+
+/* Looks around where a line through both ends is 0, since eight points cost as much as one; or evenly. */
+static void narrow(const Section *s, Search *search, bool evenly)
+{
+    enum { PLACES = 8 };
+    static const double around[PLACES] = {-0.2, -0.02, -1e-3, -1e-5, 1e-5, 1e-3, 0.02, 0.2};
+    double points[PLACES][2], values[PLACES], parts[PLACES], width = search->high - search->low;
+    double zero = place_of_zero(search);
+    for (int i = 0; i < PLACES; i++) {
+        double part = evenly ? (i + 1.0) / (PLACES + 1) : min2(max2(zero + around[i], 0), 1);
+        parts[i]    = search->low + width * part;
+        place_on_way(search, parts[i], points[i]);
+    }
+    slice_distances(s->field, &s->plane, (const double(*)[2])points, PLACES, values);
+    for (int i = 0; i < PLACES; i++)
+        if (is_inside(values[i])) {
+            search->low    = parts[i];
+            search->at_low = values[i];
+        } else {
+            search->high    = parts[i];
+            search->at_high = values[i];
+            return;
+        }
+}
+
+/* Until it is known to `enough`; evenly where a line through the ends leads astray. */
+static void find_between(const Section *s, Search *search, double at[2])
+{
+    enum { MOST_ROUNDS = 30 };
+    const double length = hypot(search->outside[0] - search->inside[0],
+                                search->outside[1] - search->inside[1]);
+    bool         evenly = false;
+    for (int i = 0; i < MOST_ROUNDS && (search->high - search->low) * length > s->enough; i++) {
+        double width = search->high - search->low;
+        narrow(s, search, evenly);
+        evenly = search->high - search->low > 0.25 * width;
+    }
+    place_on_way(search, search->low + (search->high - search->low) * place_of_zero(search), at);
+}
+
 /* The outline across the middle of a stretch, no farther off than that is long: to the right of what is inside, or to
    the left.  False: it is not there. */
 static bool find_middle(const Section *s, const Stretch *stretch, double at[2])
@@ -75,14 +133,13 @@ static bool find_middle(const Section *s, const Stretch *stretch, double at[2])
         beside(stretch, 0.5, inside ? -reach : reach, points[i]);
     slice_distances(s->field, &s->plane, (const double(*)[2])points, STEPS + 1, distances);
     for (int i = 1; i <= STEPS; i++) {
-        int       in = inside ? i - 1 : i, out = inside ? i : i - 1;
-        PlaneRoot root = {.at_outside = distances[out], .at_inside = distances[in]};
+        int    in = inside ? i - 1 : i, out = inside ? i : i - 1;
+        Search search = {.high = 1, .at_low = distances[in], .at_high = distances[out]};
         if (is_inside(distances[i]) == inside)
             continue;
-        memcpy(root.outside, points[out], sizeof root.outside);
-        memcpy(root.inside, points[in], sizeof root.inside);
-        slice_roots(s->field, &s->plane, &root, 1, s->enough);
-        memcpy(at, root.at, sizeof root.at);
+        memcpy(search.outside, points[out], sizeof search.outside);
+        memcpy(search.inside, points[in], sizeof search.inside);
+        find_between(s, &search, at);
         return true;
     }
     return false;
@@ -215,6 +272,30 @@ static bool is_near_enough(const Section *s, const Stretch *stretch, const Ends 
     return false;
 }
 
+/* Where the distance is looked at between two points of the outline, as a rule. */
+static void box_between(const Section *s, const double from[2], const double to[2], double low[2],
+                        double high[2])
+{
+    double wider = width_beside(s, hypot(to[0] - from[0], to[1] - from[1]));
+    for (int k = 0; k < 2; k++) {
+        low[k]  = min2(from[k], to[k]) - wider;
+        high[k] = max2(from[k], to[k]) + wider;
+    }
+}
+
+static void bend(Section *s, const OutlinePoint *from, const OutlinePoint *to, int depth);
+
+/* Where half of a stretch is much shorter, less of the scene is near to it. */
+static void bend_half(Section *s, const OutlinePoint *from, const OutlinePoint *to, int depth)
+{
+    double low[2], high[2];
+    box_between(s, from->at, to->at, low, high);
+    bool entered = enter_square(s, low, high);
+    bend(s, from, to, depth);
+    if (entered)
+        field_leave(s->field);
+}
+
 static void bend(Section *s, const OutlinePoint *from, const OutlinePoint *to, int depth)
 {
     enum { MOST_HALVINGS = 30 };
@@ -233,34 +314,16 @@ static void bend(Section *s, const OutlinePoint *from, const OutlinePoint *to, i
         if (near || !find_middle(s, &stretch, point.at))
             return;
     }
-    bend(s, from, &point, depth + 1);
+    bend_half(s, from, &point, depth + 1);
     array_push_large(&s->arena, &s->bends, point);
-    bend(s, &point, to, depth + 1);
+    bend_half(s, &point, to, depth + 1);
 }
 
 static void box_of_chord(const Section *s, size_t item, double low[2], double high[2])
 {
-    const Chord  *chord = &s->chords.items[item];
-    const double *from  = s->crossings.items[chord->from].point;
-    const double *to    = s->crossings.items[chord->to].point;
-    double        wider = width_beside(s, hypot(to[0] - from[0], to[1] - from[1]));
-    for (int k = 0; k < 2; k++) {
-        low[k]  = min2(from[k], to[k]) - wider;
-        high[k] = max2(from[k], to[k]) + wider;
-    }
-}
-
-static void bend_some(Section *s, size_t first, size_t count)
-{
-    for (size_t i = first; i < first + count; i++) {
-        Chord *chord      = &s->chords.items[i];
-        chord->first      = (uint32_t)s->bends.count;
-        OutlinePoint from = {.corner = false}, to = from;
-        memcpy(from.at, s->crossings.items[chord->from].point, sizeof from.at);
-        memcpy(to.at, s->crossings.items[chord->to].point, sizeof to.at);
-        bend(s, &from, &to, 0);
-        chord->count = (uint32_t)s->bends.count - chord->first;
-    }
+    const Chord *chord = &s->chords.items[item];
+    box_between(s, s->crossings.items[chord->from].point, s->crossings.items[chord->to].point, low,
+                high);
 }
 
 /* ---- corners at the ends of stretches ---- */
@@ -298,9 +361,10 @@ static OutlinePoint point_of_chord(const Section *s, const Chord *chord, size_t 
 
 static void box_of_joint(const Section *s, size_t item, double low[2], double high[2])
 {
-    uint32_t next = s->crossings.items[s->chords.items[item].to].chord;
+    uint32_t number = s->loose.items[item];
+    uint32_t next   = s->crossings.items[s->chords.items[number].to].chord;
     double   from[2], to[2];
-    box_of_chord(s, item, low, high);
+    box_of_chord(s, number, low, high);
     if (next == 0)
         return;
     box_of_chord(s, next - 1, from, to);
@@ -310,30 +374,60 @@ static void box_of_joint(const Section *s, size_t item, double low[2], double hi
     }
 }
 
-static void look_at_ends(Section *s, size_t first, size_t count)
+/* Of a chord: those of its bends, and the one with the next, if that is bent; false: it is not. */
+static bool look_at_ends(Section *s, const Chord *chord)
 {
-    for (size_t i = first; i < first + count; i++) {
-        const Chord    *chord  = &s->chords.items[i];
-        const Crossing *start  = &s->crossings.items[chord->from];
-        Crossing       *end    = &s->crossings.items[chord->to];
-        OutlinePoint    before = {{start->point[0], start->point[1]}, start->corner};
-        for (size_t k = 0; k < chord->count; k++) {
-            OutlinePoint behind = point_of_chord(s, chord, k + 1);
-            find_corner_at(s, &before, &s->bends.items[chord->first + k], &behind);
-            before = s->bends.items[chord->first + k];
-        }
-        if (end->chord == 0)
-            continue;
-        OutlinePoint point  = point_of_chord(s, chord, chord->count);
-        OutlinePoint behind = point_of_chord(s, &s->chords.items[end->chord - 1], 0);
-        find_corner_at(s, &before, &point, &behind);
-        memcpy(end->point, point.at, sizeof end->point);
-        end->corner = point.corner;
+    const Crossing *start  = &s->crossings.items[chord->from];
+    Crossing       *end    = &s->crossings.items[chord->to];
+    OutlinePoint    before = {{start->point[0], start->point[1]}, start->corner};
+    if (end->chord > 0 && !s->chords.items[end->chord - 1].bent)
+        return false;
+    for (size_t k = 0; k < chord->count; k++) {
+        OutlinePoint behind = point_of_chord(s, chord, k + 1);
+        find_corner_at(s, &before, &s->bends.items[chord->first + k], &behind);
+        before = s->bends.items[chord->first + k];
     }
+    if (end->chord == 0)
+        return true;
+    OutlinePoint point  = point_of_chord(s, chord, chord->count);
+    OutlinePoint behind = point_of_chord(s, &s->chords.items[end->chord - 1], 0);
+    find_corner_at(s, &before, &point, &behind);
+    memcpy(end->point, point.at, sizeof end->point);
+    end->corner = point.corner;
+    return true;
+}
+
+static void look_at_loose(Section *s, size_t first, size_t count)
+{
+    for (size_t i = first; i < first + count; i++)
+        look_at_ends(s, &s->chords.items[s->loose.items[i]]);
+}
+
+/* ---- all ---- */
+
+static void bend_chord(Section *s, Chord *chord)
+{
+    OutlinePoint from = {.corner = false}, to = from;
+    chord->first = (uint32_t)s->bends.count;
+    memcpy(from.at, s->crossings.items[chord->from].point, sizeof from.at);
+    memcpy(to.at, s->crossings.items[chord->to].point, sizeof to.at);
+    bend(s, &from, &to, 0);
+    chord->count = (uint32_t)s->bends.count - chord->first;
+    chord->bent  = true;
+}
+
+/* Most are followed by one of the same group. */
+static void bend_some(Section *s, size_t first, size_t count)
+{
+    for (size_t i = first; i < first + count; i++)
+        bend_chord(s, &s->chords.items[i]);
+    for (size_t i = first; i < first + count; i++)
+        if (!look_at_ends(s, &s->chords.items[i]))
+            array_push_large(&s->arena, &s->loose, (uint32_t)i);
 }
 
 void bend_chords(Section *s)
 {
     in_groups(s, s->chords.count, box_of_chord, bend_some);
-    in_groups(s, s->chords.count, box_of_joint, look_at_ends);
+    in_groups(s, s->loose.count, box_of_joint, look_at_loose);
 }

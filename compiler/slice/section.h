@@ -1,9 +1,10 @@
 /*
  * section.h: how one section is made.
  *
- * 1. A quadtree is refined where the outline may be, down to cells in which both derivatives are proven to keep their
- *    sign, or to cells of the error (tree.c).  Where they keep it, signs at corners tell all of the topology.  In others
- *    what is thinner is looked for along gradients, and cells are refined there, or counted.
+ * 1. A quadtree is refined where the outline may be, down to cells in which a derivative is proven to keep its sign, and
+ *    the other one as well, or what matters of it at two edges; or to cells of the error (tree.c).  In the former signs at
+ *    corners tell all of the topology.  In others what is thinner is looked for along gradients, and cells are refined
+ *    there, or counted.
  * 2. Each edge of cells whose ends differ in sign has a crossing, an exact root.  Cells join their crossings by chords:
  *    next to each other along the cell's border, so that chords do not cross (chords.c).
  * 3. Chords are bent to the outline by exact roots across them; corners are where tangents of both ends meet (bend.c).
@@ -45,6 +46,7 @@ typedef struct Crossing {
 /* From a crossing to the next; in between are bends. */
 typedef struct Chord {
     uint32_t from, to, first, count;
+    bool     bent;
 } Chord;
 
 typedef struct OutlinePoint {
@@ -92,7 +94,8 @@ typedef struct Section {
     struct {
         uint32_t *items;
         size_t    count, capacity;
-    } around; /* crossings of the cell at hand */
+    } around,  /* crossings of the cell at hand */
+        loose; /* chords that were bent before the next one */
     struct SlotTable {
         uint32_t *items;
         size_t    count;
@@ -113,6 +116,8 @@ void section_root(Section *s, const double low[3], const double high[3]);
 bool          find_leaves(Section *s);
 const Corner *find_corner(const Section *s, const uint32_t at[2]);
 uint64_t      hash_place(const uint32_t at[2], uint32_t more);
+/* Prunes the field to a square, which field_leave ends; false: little would be won, and it was not. */
+bool enter_square(Section *s, const double low[2], const double high[2]);
 /* Calls `work` for groups of few items that are next to each other, with the field pruned to their boxes. */
 typedef void BoxOfItem(const Section *s, size_t item, double low[2], double high[2]);
 typedef void WorkOnItems(Section *s, size_t first, size_t count);

@@ -335,6 +335,29 @@ static bool hides_thin(Section *s, const Cell *cell)
 
 typedef enum CellState { CELL_EMPTY, CELL_LEAF, CELL_SPLIT } CellState;
 
+/* Whether the outline crosses an edge of a cell as often as its ends tell: not at all, or once at most. */
+static bool is_plain_edge(const Section *s, const Cell *cell, int axis, uint32_t across)
+{
+    double    low[2], high[2];
+    Range     range;
+    LaneSlope slope;
+    cell_square(s, cell, low, high);
+    low[1 - axis] = high[1 - axis] = place_of(s, 1 - axis, cell->at[1 - axis] + across);
+    bool known = field_slope(s->field, slice_box(&s->plane, low, high, s->enough), &range, &slope);
+    return range.low > s->skin || range.high < s->skin ||
+           (known && is_monotone(&slope, axis == 0 ? s->plane.right : s->plane.up));
+}
+
+/* Whether signs at corners tell where the outline is: both derivatives keep their sign; or one does, so that it is crossed
+   once at most on each line along that axis, and both edges across are plain. */
+static bool is_told_by_corners(const Section *s, const Cell *cell, const LaneSlope *slope)
+{
+    bool right = is_monotone(slope, s->plane.right), up = is_monotone(slope, s->plane.up);
+    int  across = right ? 1 : 0;
+    return (right && up) || ((right || up) && is_plain_edge(s, cell, across, 0) &&
+                             is_plain_edge(s, cell, across, cell->side));
+}
+
 static CellState find_state(Section *s, const Cell *cell, Box box)
 {
     Range     range;
@@ -346,10 +369,8 @@ static CellState find_state(Section *s, const Cell *cell, Box box)
         return CELL_EMPTY;
     if (cell->side <= s->finest)
         return hides_thin(s, cell) ? CELL_SPLIT : CELL_LEAF;
-    return known && cell->side <= COARSEST && is_monotone(&slope, s->plane.right) &&
-                   is_monotone(&slope, s->plane.up)
-               ? CELL_LEAF
-               : CELL_SPLIT;
+    return known && cell->side <= COARSEST && is_told_by_corners(s, cell, &slope) ? CELL_LEAF
+                                                                                  : CELL_SPLIT;
 }
 
 static bool goes_on(Section *s)
@@ -407,39 +428,110 @@ bool find_leaves(Section *s)
 
 /* ---- groups ---- */
 
-enum { FEW = MOST_FIELD_POINTS, PARTS_OF_GROUP = 16, SHORT_TAPE = 48 };
+enum { FEW = MOST_FIELD_POINTS, PARTS_OF_GROUP = 16, SHORT_TAPE = 48, FEWEST = 3 };
 
-static void enter_group(Section *s, size_t first, size_t count, BoxOfItem *box)
+typedef struct Square {
+    double low[2], high[2];
+} Square;
+
+static Square square_of_nothing(void)
 {
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    for (size_t i = 0; i < count; i++) {
-        double from[2], to[2];
-        box(s, first + i, from, to);
-        for (int k = 0; k < 2; k++) {
-            low[k]  = min2(low[k], from[k]);
-            high[k] = max2(high[k], to[k]);
-        }
+    return (Square){{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+}
+
+static void widen(Square *square, const Square *by)
+{
+    for (int k = 0; k < 2; k++) {
+        square->low[k]  = min2(square->low[k], by->low[k]);
+        square->high[k] = max2(square->high[k], by->high[k]);
     }
-    field_focus(s->field, slice_box(&s->plane, low, high, s->enough));
+}
+
+static Square square_of_items(const Section *s, size_t first, size_t count, BoxOfItem *box)
+{
+    Square square = square_of_nothing();
+    for (size_t i = 0; i < count; i++) {
+        Square item;
+        box(s, first + i, item.low, item.high);
+        widen(&square, &item);
+    }
+    return square;
+}
+
+static double size_of(const Square *square)
+{
+    return square->high[0] - square->low[0] + square->high[1] - square->low[1];
+}
+
+/* Where items are split so that both halves are small: the items of each, times the size of their square, are fewest. */
+static size_t find_split(const Section *s, size_t first, size_t count, BoxOfItem *box)
+{
+    Square parts[PARTS_OF_GROUP], ahead = square_of_nothing(), behind = square_of_nothing();
+    size_t part = (count + PARTS_OF_GROUP - 1) / PARTS_OF_GROUP, number = (count + part - 1) / part;
+    double costs[PARTS_OF_GROUP] = {0};
+    size_t best                  = 1;
+    for (size_t i = 0; i < number; i++) {
+        size_t from = i * part;
+        parts[i] = square_of_items(s, first + from, count - from < part ? count - from : part, box);
+    }
+    for (size_t i = 1; i < number; i++) {
+        widen(&ahead, &parts[i - 1]);
+        widen(&behind, &parts[number - i]);
+        costs[i] += size_of(&ahead) * (double)i;
+        costs[number - i] += size_of(&behind) * (double)i;
+    }
+    for (size_t i = 2; i < number; i++)
+        if (costs[i] < costs[best])
+            best = i;
+    return best * part;
+}
+
+/* Whether the tape that was entered last is worth another look in smaller boxes. */
+static bool is_long(const MeshField *field)
+{
+    const LaneTape *tape = field_tape(field);
+    return tape->count > SHORT_TAPE || tape->call_count > 0;
+}
+
+static double size_of_box(const Box *box)
+{
+    double size = 0;
+    for (int k = 0; k < 3; k++)
+        size += box->axis[k].high - box->axis[k].low;
+    return size;
+}
+
+bool enter_square(Section *s, const double low[2], const double high[2])
+{
+    static const double MUCH_SMALLER = 0.5;
+    MeshField          *field        = s->field;
+    Box                 box          = slice_box(&s->plane, low, high, s->enough);
+    if (!is_long(field) || field->region_count == MOST_REGIONS ||
+        (field->region_count > 0 &&
+         size_of_box(&box) >
+             MUCH_SMALLER * size_of_box(&field->regions[field->region_count - 1].box)))
+        return false;
+    field_focus(field, box);
+    return true;
 }
 
 static void in_group(Section *s, size_t first, size_t count, BoxOfItem *box, WorkOnItems *work)
 {
-    size_t part  = count <= FEW ? count : max2(FEW, ceil((double)count / PARTS_OF_GROUP));
-    bool   enter = s->field->tape.count > SHORT_TAPE && s->field->region_count < MOST_REGIONS;
-    if (count == 0)
-        return;
-    if (enter)
-        enter_group(s, first, count, box);
-    if (count <= FEW)
+    Square square = square_of_items(s, first, count, box);
+    bool   enter  = enter_square(s, square.low, square.high);
+    if (count <= (is_long(s->field) ? FEWEST : FEW))
         work(s, first, count);
-    for (size_t i = 0; count > FEW && i < count; i += part)
-        in_group(s, first + i, count - i < part ? count - i : part, box, work);
+    else {
+        size_t half = find_split(s, first, count, box);
+        in_group(s, first, half, box, work);
+        in_group(s, first + half, count - half, box, work);
+    }
     if (enter)
         field_leave(s->field);
 }
 
 void in_groups(Section *s, size_t count, BoxOfItem *box, WorkOnItems *work)
 {
-    in_group(s, 0, count, box, work);
+    if (count > 0)
+        in_group(s, 0, count, box, work);
 }
