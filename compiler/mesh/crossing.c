@@ -154,7 +154,7 @@ typedef struct Search {
     const Bvh *bvh;
     uint32_t   triangle;
     double     corners[3][3];
-    double     rounding;
+    double     margin, rounding;
 } Search;
 
 static int count_shared(const uint32_t a[3], const uint32_t b[3])
@@ -170,13 +170,13 @@ static bool is_apart(void *user, uint32_t other, const double corners[3][3])
     const Search *search = user;
     int           shared = count_shared(search->bvh->triangles[search->triangle],
                                         search->bvh->triangles[other]);
-    Pair          pair   = {(const double(*)[3])search->corners, corners, search->rounding};
+    Pair          pair   = {(const double(*)[3])search->corners, corners, search->margin};
     if (other == search->triangle)
         return true;
     if (shared >= 2)
         return shared == 2 && !are_folded(pair.a, pair.b);
     if (shared == 1)
-        pair.margin = -search->rounding;
+        pair.margin = fmin(pair.margin, -search->rounding);
     return separated_by_plane(&pair, pair.a) || separated_by_plane(&pair, pair.b) ||
            separated_by_edges(&pair);
 }
@@ -189,9 +189,10 @@ static double size_of(const Bvh *bvh)
     return size;
 }
 
-bool triangle_crosses(const Bvh *bvh, uint32_t triangle)
+bool triangle_crosses(const Bvh *bvh, uint32_t triangle, double depth)
 {
     Search search  = {.bvh = bvh, .triangle = triangle, .rounding = 1e-13 * size_of(bvh)};
+    search.margin  = depth > 0 ? -depth : search.rounding;
     double low[3]  = {INFINITY, INFINITY, INFINITY};
     double high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (int c = 0; c < 3; c++) {

@@ -29,7 +29,7 @@ typedef void ReportTriangle(void *user, uint32_t triangle);
 /* Reports triangles with an edge that is not in two triangles with opposite directions. */
 void report_open(const TriangleEdges *edges, ReportTriangle *report, void *user);
 /* Whether a triangle has points in common with another but corners and edges that both have; as well where
-   rounding does not tell. */
-bool triangle_crosses(const Bvh *bvh, uint32_t triangle);
+   rounding does not tell.  Both may be within each other by `depth`: above 0 what only touches does not cross. */
+bool triangle_crosses(const Bvh *bvh, uint32_t triangle, double depth);
 
 #endif

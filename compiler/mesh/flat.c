@@ -9,6 +9,7 @@
 #include "compiler/mesh/flat.h"
 
 #include "compiler/base/vec.h"
+#include "compiler/mesh/crossing.h"
 #include "compiler/mesh/flat_near.h"
 
 enum {
@@ -24,7 +25,7 @@ enum { FIRST_BOXES = 600 };
 enum { TURNS = 4, APART_FROM = 2 };
 static const double LEAST_KNOWN = 0.02;
 /* Parts of the size: how far faces are moved so that no four meet, about. */
-static const double ROUNDING_OF_FACES = 1e-6, LEAST_SHORT = 1e-9;
+static const double ROUNDING_OF_FACES = 1e-6, LEAST_SHORT = 1e-9, TOUCHING = 1e-8;
 
 typedef struct Halving {
     Mesher    *m;
@@ -164,10 +165,37 @@ static bool make_round(Halving *h)
     return verdict != FLAT_STOPPED;
 }
 
+static void note_open(void *user, uint32_t triangle)
+{
+    (void)triangle;
+    *(bool *)user = true;
+}
+
+/* Edges that become points take faces along, and that may be too far where others are near; those that are there as planes are moved
+   are shorter.  Solids may touch. */
+static bool is_sound(const Halving *h, const FlatVertices *vertices, const Triangles *triangles)
+{
+    Mesher *m = h->m;
+    if (h->faces.joined < ROUNDING_OF_FACES * m->side)
+        return true;
+    ArenaMark mark = arena_mark(&m->arena);
+    bool      open = false, crosses = false;
+    Bvh       bvh;
+    const uint32_t(*corners)[3] = (const uint32_t(*)[3])triangles->items;
+    TriangleEdges edges         = sort_edges(corners, triangles->count, &m->arena);
+    report_open(&edges, note_open, &open);
+    bvh_new(&bvh, (const double(*)[3])vertices->items, corners, triangles->count, &m->arena);
+    for (uint32_t i = 0; i < triangles->count && !crosses && !open; i++)
+        crosses = triangle_crosses(&bvh, i, TOUCHING * m->side);
+    arena_rewind(&m->arena, mark);
+    return !open && !crosses;
+}
+
 /* Planes that are moved otherwise are mostly cut where some are not. */
 static bool finish(Halving *h, FlatVertices *vertices, Triangles *triangles)
 {
-    while (!flat_faces_finish(&h->faces, vertices, triangles)) {
+    while (!flat_faces_finish(&h->faces, vertices, triangles) ||
+           !is_sound(h, vertices, triangles)) {
         *vertices  = (FlatVertices){NULL, 0, 0};
         *triangles = (Triangles){NULL, 0, 0};
         if (++h->turn == TURNS || !halve_all(h))

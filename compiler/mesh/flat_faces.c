@@ -562,9 +562,11 @@ static void join_vertices(Finishing *f)
     for (size_t i = 0; i < f->edges.count; i++) {
         const Edge *edge     = &f->edges.items[i];
         const double(*at)[3] = (const double(*)[3])f->vertices->items;
-        if (distance3(at[edge->from], at[edge->to]) < f->faces->shortest) {
+        double length        = distance3(at[edge->from], at[edge->to]);
+        if (length < f->faces->shortest) {
             uint32_t a = one_of(f, edge->from), b = one_of(f, edge->to);
             f->one[a < b ? b : a] = a < b ? a : b;
+            f->faces->joined      = fmax(f->faces->joined, length);
         }
     }
 }

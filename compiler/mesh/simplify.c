@@ -142,7 +142,7 @@ static NumberKey key_of(const uint32_t triangle[3])
 static bool crosses(const Check *check, uint32_t triangle, NearLook *look)
 {
     (void)look;
-    return triangle_crosses(check->triangles, triangle);
+    return triangle_crosses(check->triangles, triangle, 0);
 }
 
 /* The first, whatever the threads do. */

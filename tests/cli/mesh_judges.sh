@@ -2,7 +2,7 @@
 # mesh_judges.sh: CGAL, a slicer and Blender accept what `krs mesh` writes.  What is not installed is skipped.
 . "$(dirname "$0")/common.sh"
 judge=$(dirname "$krs")/tests/oracle/mesh_judge
-plan 11
+plan 12
 
 cat >vase.krs <<'END'
 let wall = field(sin(3 * x) * cos(3 * y) + sin(3 * y) * cos(3 * z) + sin(3 * z) * cos(3 * x)).shell(0.9);
@@ -69,6 +69,23 @@ if [ -x "$judge" ]; then
     "$judge" pipes?.off roofs?.off grooves?.off >out
     [ "$(grep -c 'pipes..off: good, .* genus 3, 1 parts' out) $(grep -c '[rg].*s..off: good, .* genus 0, 1 parts' out)" = "8 16" ]
     result $? "and nothing where edges touch that have no end there"
+    # Mitred corners, whose parts overlap by little more than what becomes a point.
+    awk 'BEGIN {
+        for (i = 0; i < 24; i++) {
+            bent = (49 + 1.5 * i) * atan2(0, -1) / 180
+            x = 0.7 * cos(bent)
+            z = 0.7 * sin(bent)
+            printf "show sweep(rectangle([%g, %g]), [[-0.7, 0, 0], [0.1, 0, 0], [%.9f, 0, %.9f], [%.9f, 0, %.9f]])" \
+                ".rotate([%d, -4, 1], %d);\n", 0.2 + (i + 2) % 7 * 0.02, 0.2 + (i + 1) % 5 * 0.05, \
+                0.1 + x, z, 0.8 + x, z, i - 4, (i + 4) % 6 + 1 >"bent" i ".krs"
+        }
+    }'
+    for i in 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23; do
+        "$krs" mesh --quiet bent$i.krs --error 0.03 -o bent.obj && to_off bent.obj >bent$i.off
+    done
+    "$judge" bent*.off >out
+    [ "$(grep -c 'good, .* genus 0, 1 parts' out)" = 24 ]
+    result $? "and nothing at corners of sweeps"
     # Polygons that shrink and grow: their volumes by area, perimeter and corners.
     echo 'show polygon([[-3, 0], [3, 0], [5, 4], [-5, 4]]).rotate(10deg).move([1, 2]).offset(-0.1).extrude(20);' >shrunk.krs
     echo 'show polygon([[0, 0], [4, 0], [0, 3]]).round(0.3).extrude(2);' >rounded.krs
@@ -89,6 +106,7 @@ if [ -x "$judge" ]; then
         function near(a, b, by) { return a - b < by && b - a < by }'
     result $? "and the volumes of polygons that shrink and grow"
 else
+    skip "and nothing at corners of sweeps" "no CGAL"
     skip "and the volumes of polygons that shrink and grow" "no CGAL"
     skip "and nothing where edges touch that have no end there" "no CGAL"
     skip "CGAL finds one part, closed, a manifold, without crossings" "no CGAL"
