@@ -171,6 +171,14 @@ static std::string fault_of(const Triangles &mesh)
     return words;
 }
 
+/* From the truth to the mesh, or back. */
+static double farthest_of(const Solid &solid, Triangles truth, const Triangles &mesh)
+{
+    for (Vec &v : truth.vertices)
+        v = solid.turn(v);
+    return std::fmax(farthest(mesh, truth), farthest(truth, mesh));
+}
+
 static Verdict verdict_of(const Solid &solid, const Triangles &truth, const Shape &shape,
                           const Answer &answer, int sides, std::string &why)
 {
@@ -196,10 +204,12 @@ static Verdict verdict_of(const Solid &solid, const Triangles &truth, const Shap
     if (!answer.said.empty() && is_robust(solid, shape, sides))
         return FALSE_REPORT;
     if (answer.said.empty()) {
-        Triangles turned = truth;
-        for (Vec &v : turned.vertices)
-            v = solid.turn(v);
-        most = std::fmax(farthest(answer.mesh, turned), farthest(turned, answer.mesh));
+        most = farthest_of(solid, truth, answer.mesh);
+        if (most > solid.error) { /* by facets of the truth, perhaps */
+            sides *= 4;
+            sag  = sag_of(*solid.tree, sides);
+            most = farthest_of(solid, truth_of(solid, 0, sides), answer.mesh);
+        }
         std::snprintf(words, sizeof words, "; %.3f errors away", most / solid.error);
         why += words;
         /* Edges are farther from those of facets than faces are. */
