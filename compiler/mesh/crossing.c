@@ -73,6 +73,23 @@ void report_open(const TriangleEdges *edges, ReportTriangle *report, void *user)
     }
 }
 
+/* From one triangle to the next, which begins where this one ends. */
+bool is_one_ring(const TriangleEdges *edges, const uint32_t (*triangles)[3], uint32_t vertex)
+{
+    uint32_t begin = edges->begins[vertex], count = edges->begins[vertex + 1] - begin;
+    if (count == 0)
+        return true;
+    const TriangleEdge *first = &edges->items[begin], *edge = first;
+    for (uint32_t i = 1; i < count; i++) {
+        const uint32_t *own = triangles[edge->triangle];
+        int             c   = own[0] == vertex ? 0 : own[1] == vertex ? 1 : 2;
+        edge                = find_edge(edges, vertex, own[(c + 2) % 3]);
+        if (!edge || edge == first)
+            return false;
+    }
+    return true;
+}
+
 /* ---- two triangles ---- */
 
 typedef struct Pair {

@@ -289,6 +289,16 @@ static void check_original(Judgement *judgement, const NearMesh *new, double goa
     check_all(judgement, &check, goal);
 }
 
+/* Vertices at which two sheets meet that do not so in the mesh. */
+static void check_rings(Judgement *judgement, const NearMesh *new)
+{
+    const TriangleEdges *edges = &new->edges, *original = &judgement->s->original.edges;
+    for (uint32_t i = 0; i < edges->vertex_count; i++)
+        if (!is_one_ring(edges, new->bvh.triangles, i) &&
+            is_one_ring(original, (const uint32_t(*)[3])judgement->s->mesh->triangles, i))
+            note_fault(judgement, edges->items[edges->begins[i]].triangle);
+}
+
 /* `most`: when there are more, they need not be counted. */
 static size_t count_faults(Simplifier *s, double radius, size_t most, double goal)
 {
@@ -299,6 +309,7 @@ static size_t count_faults(Simplifier *s, double radius, size_t most, double goa
     near_mesh_new(&new, at, (const uint32_t(*)[3])s->triangles, s->triangle_count, &s->arena);
     Judgement judgement = {.s = s, .now = &new.bvh, .radius = radius};
     report_open(&new.edges, note_fault, &judgement);
+    check_rings(&judgement, &new);
     check_crossings(&judgement, &new, begun + (goal - begun) / 3);
     if (judgement.faults <= most) {
         check_new(&judgement, &new, begun + 2 * (goal - begun) / 3);

@@ -270,6 +270,25 @@ static void rules_by_chance_leave_it_closed(void **state)
     }
 }
 
+/* Two tetrahedra, with a corner in common and apart. */
+static void sheets_that_meet_in_a_vertex_are_told(void **state)
+{
+    static const uint32_t met[8][3]   = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3},
+                                         {0, 5, 4}, {0, 4, 6}, {0, 6, 5}, {4, 5, 6}},
+                          apart[8][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3},
+                                         {7, 5, 4}, {7, 4, 6}, {7, 6, 5}, {4, 5, 6}};
+    Memory memory                     = {0};
+    Arena  arena                      = {.memory = &memory};
+    (void)state;
+    TriangleEdges met_edges   = sort_edges(met, 8, &arena),
+                  apart_edges = sort_edges(apart, 8, &arena);
+    for (uint32_t i = 0; i < 7; i++)
+        assert_int_equal(is_one_ring(&met_edges, met, i), i != 0);
+    for (uint32_t i = 0; i < 8; i++)
+        assert_true(is_one_ring(&apart_edges, apart, i));
+    arena_free(&arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -280,6 +299,7 @@ int main(void)
         cmocka_unit_test(distances_of_fans_are_enough),
         cmocka_unit_test(small_moves_need_no_questions),
         cmocka_unit_test(rules_by_chance_leave_it_closed),
+        cmocka_unit_test(sheets_that_meet_in_a_vertex_are_told),
     };
     return cmocka_run_group_tests_name("collapsed edges", tests, NULL, NULL);
 }
