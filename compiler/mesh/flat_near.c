@@ -8,6 +8,7 @@
 enum {
     MOST_BLAMED        = 4,
     MOST_THIN          = 100,
+    MOST_HARD          = 10000,
     MOST_LOOKS         = 600000,
     PATIENCE           = 256,
     HALVINGS_OF_REGION = 3
@@ -19,7 +20,7 @@ static const double SMALLEST = 0.1, SMALL = 1.5, SHORT_WAY = 0.6;
 typedef struct NearPart {
     FlatPieces pieces;
     FlatWork   work;
-    size_t     looks, thin, blamed_count;
+    size_t     looks, hard, thin, blamed_count;
     double     left_at[3]; /* where one is */
     Box        blamed[MOST_BLAMED];
 } NearPart;
@@ -55,7 +56,7 @@ static bool goes_on(Looking *l)
     if (++part->looks % PATIENCE == 0 && l->asks && m->options->go_on &&
         !m->options->go_on(m->options->user, 0))
         atomic_store(&m->stopped, true);
-    return !atomic_load(&m->stopped) && part->looks < MOST_LOOKS &&
+    return !atomic_load(&m->stopped) && part->looks < MOST_LOOKS && part->hard < MOST_HARD &&
            part->blamed_count < MOST_BLAMED && part->thin < MOST_THIN;
 }
 
@@ -94,7 +95,7 @@ static void look(Looking *l, Box box, int halvings)
     if (range.low > 0 || range.high < 0)
         return;
     if (!goes_on(l)) {
-        if (part->looks == MOST_LOOKS)
+        if (part->looks == MOST_LOOKS || part->hard == MOST_HARD)
             note_place(part, &box);
         return;
     }
@@ -110,9 +111,10 @@ static void look(Looking *l, Box box, int halvings)
         nearness = flat_nearness(&part->pieces, &box, way);
         axis     = flat_widest_axis(&part->pieces, &box);
     }
-    if (nearness != FLAT_NEAR && size > SMALLEST * error)
+    part->hard += nearness == FLAT_HARD;
+    if (nearness > FLAT_HARD && size > SMALLEST * error)
         look_at_halves(l, box, axis, halvings);
-    else if (nearness != FLAT_NEAR)
+    else if (nearness > FLAT_HARD)
         leave(l, nearness, box, way);
     if (entered)
         field_leave(l->field);
@@ -140,14 +142,18 @@ static void blame(const NearWork *w, NearPart *part)
     w->rounds->blame = false;
 }
 
+/* More sides are of no use where much is thin anyway. */
 static FlatVerdict judge(const NearWork *w, size_t parts)
 {
     FlatVerdict verdict = FLAT_PROVEN;
     Mesher     *m       = w->m;
+    bool        in_vain = false;
     m->unresolved       = 0;
     for (size_t i = 0; i < parts; i++) {
         NearPart *part = &w->parts[i];
-        size_t    left = part->thin + part->blamed_count + (part->looks >= MOST_LOOKS);
+        size_t    left = part->thin + part->blamed_count +
+                      (part->looks >= MOST_LOOKS || part->hard >= MOST_HARD);
+        in_vain |= part->thin >= MOST_THIN;
         m->unresolved += left;
         if (left > 0)
             memcpy(m->unresolved_at, part->left_at, sizeof m->unresolved_at);
@@ -155,6 +161,8 @@ static FlatVerdict judge(const NearWork *w, size_t parts)
         if (part->blamed_count > 0 && verdict == FLAT_PROVEN)
             verdict = FLAT_REFUTED;
     }
+    if (in_vain)
+        verdict = FLAT_PROVEN;
     return atomic_load(&m->stopped) ? FLAT_STOPPED : verdict;
 }
 

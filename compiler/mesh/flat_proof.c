@@ -11,18 +11,23 @@
 #include "compiler/base/minmax.h"
 #include "compiler/mesh/flat_ways.h"
 
-/* What is looked at: a box, ways that are so long at most, and a part of the slack. */
+/* What is looked at: a box, ways that are so long at most, and a part of the slack, but where that is less than the least. */
 typedef struct Proof {
     const FlatPieces *pieces;
     const Box        *box;
-    double            way, part;
+    double            way, part, least;
 } Proof;
+
+static double slack_of(const Proof *proof, double slack)
+{
+    return max2(proof->part * slack, min2(slack, proof->least));
+}
 
 static FlatGrowth growth_of(const Proof *proof, size_t plane, int sign)
 {
-    FlatGrowth growth = flat_growth(proof->pieces, plane, sign, proof->box);
-    growth.slack.below *= proof->part;
-    growth.slack.above *= proof->part;
+    FlatGrowth growth  = flat_growth(proof->pieces, plane, sign, proof->box);
+    growth.slack.below = slack_of(proof, growth.slack.below);
+    growth.slack.above = slack_of(proof, growth.slack.above);
     return growth;
 }
 
@@ -228,17 +233,16 @@ static bool sets_have_ways(const Proof *proof)
 
 /* ---- boxes ---- */
 
-static bool is_near(const FlatPieces *pieces, const Box *box, double way, double part)
-{
-    Proof proof = {pieces, box, way, part};
-    return all_have_one_way(&proof) || (is_one_sheet(&proof) && sets_have_ways(&proof));
-}
-
+/* In sharp wedges no planes are near enough, for their number has an end. */
 FlatNearness flat_nearness(const FlatPieces *pieces, const Box *box, double error)
 {
-    if (is_near(pieces, box, error, 1))
+    Proof now = {pieces, box, error, 1, 0}, finer = {pieces, box, 0.3 * error, 0.1, 0.02 * error};
+    if (all_have_one_way(&now))
         return FLAT_NEAR;
-    return is_near(pieces, box, 0.3 * error, 0.1) ? FLAT_ROUGH : FLAT_THIN;
+    if (is_one_sheet(&now) && sets_have_ways(&now))
+        return FLAT_HARD;
+    return all_have_one_way(&finer) || (is_one_sheet(&finer) && sets_have_ways(&finer)) ? FLAT_ROUGH
+                                                                                        : FLAT_THIN;
 }
 
 int flat_widest_axis(const FlatPieces *pieces, const Box *box)

@@ -21,6 +21,7 @@
 
 typedef enum FlatNearness {
     FLAT_NEAR,   /* faces and surface are within the error of each other */
+    FLAT_HARD,   /* they are, by more than one way */
     FLAT_ROUGH,  /* they may not be: with planes that are nearer to what they stand for they are */
     FLAT_THIN,   /* there is no such way, not even where planes are exact */
     FLAT_UNKNOWN /* there are too many planes */
