@@ -288,11 +288,7 @@ static void add_ridge_vertices(Ridges &ridges)
 /* An end: the tip, and the ridges that are seen in the column of vertices i from j on. */
 static void add_ridge_end(Ridges &ridges, std::size_t tip, int i, int j, bool above)
 {
-    auto add = [&](std::vector<std::size_t> face) {
-        if (above)
-            std::reverse(face.begin(), face.end());
-        ridges.solid.faces.push_back(face);
-    };
+    auto add = [&](const std::vector<std::size_t> &face) { ridges.solid.faces.push_back(face); };
     for (int k = 0; k < ridges.starts; k++) {
         int foot = j + 4 * k;
         if (!above) { /* from the first foot up to that of the ridge a turn on */
