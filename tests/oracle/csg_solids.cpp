@@ -179,7 +179,7 @@ static double farthest_of(const Solid &solid, Triangles truth, const Triangles &
     return std::fmax(farthest(mesh, truth), farthest(truth, mesh));
 }
 
-static Verdict verdict_of(const Solid &solid, const Triangles &truth, const Shape &shape,
+static Verdict verdict_of(const Solid &solid, const Triangles &truth, Shape shape,
                           const Answer &answer, int sides, std::string &why)
 {
     char words[256];
@@ -196,6 +196,15 @@ static Verdict verdict_of(const Solid &solid, const Triangles &truth, const Shap
     why               = fault + words;
     if (!fault.empty())
         return CROSSED;
+    if (!found.same(shape) &&
+        answer.said.empty()) { /* of what is that small, facets may have another shape */
+        sides *= 4;
+        shape = shape_of(truth_of(solid, 0, sides));
+        std::snprintf(words, sizeof words,
+                      "; %ld shells, Euler number %ld of four times as many facets", shape.shells,
+                      shape.euler);
+        why += words;
+    }
     if (!found.closed || !found.same(shape)) {
         if (is_robust(solid, shape, sides))
             return WRONG;
