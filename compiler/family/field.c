@@ -30,10 +30,15 @@
 
 /* ---- polynomials ---- */
 
-static Node series_distance(Graph *g, const Series *s)
+/* The radius is no less than 0; meshes are told so, since then the sign is that of a smooth number. */
+static Node series_distance(const ShapeBuilder *builder, const Series *s)
 {
-    Node sign = graph_op1(g, OP_sign, s->c[0]);
-    return graph_op2(g, OP_mul, sign, series_radius(g, s));
+    Graph *g      = builder->graph;
+    Node   sign   = graph_op1(g, OP_sign, s->c[0]);
+    Node   radius = series_radius(g, s);
+    if (builder->for_meshes)
+        radius = graph_op2(g, OP_max, radius, graph_number(g, 0));
+    return graph_op2(g, OP_mul, sign, radius);
 }
 
 static const Shape *refuse_polynomial(ShapeBuilder *builder, SeriesFault fault, Span span)
@@ -102,14 +107,15 @@ static Node near_zeros(ShapeBuilder *builder, Node distance, ZeroBox zeros)
     Graph *g = builder->graph;
     if (!box_is_finite(zeros.box))
         return distance;
-    distance = at_nearest(builder, distance, zeros.box);
-    return zeros.sign > 0 ? extend_from_box(g, distance, zeros.box)
-                          : opposite(g, extend_from_box(g, opposite(g, distance), zeros.box));
+    const Box region = builder_region(builder, zeros.box);
+    distance         = at_nearest(builder, distance, region);
+    return zeros.sign > 0 ? extend_from_box(g, distance, region)
+                          : opposite(g, extend_from_box(g, opposite(g, distance), region));
 }
 
 static void settle_polynomial(ShapeBuilder *builder, Shape *shape, const Series *series)
 {
-    Node        distance = series_distance(builder->graph, series);
+    Node        distance = series_distance(builder, series);
     FieldFacts *field    = own_field_facts(builder, shape);
     field->degree        = series->degree;
     field->zeros         = graph_zero_box(builder->graph, shape->formula, builder->scratch);

@@ -24,22 +24,10 @@ static Box twist_box(Box box, Range rate)
     return box_common(whole, hull);
 }
 
-/* The same in a larger box. */
-static const Shape *with_room(ShapeBuilder *builder, const Shape *shape)
-{
-    if (builder->room <= 0)
-        return shape;
-    Shape *roomy = arena_new(builder->arena, Shape);
-    *roomy       = *shape;
-    roomy->box   = box_grow(
-          shape->box, builder->room * range_largest(shape->box.axis[box_longest_axis(&shape->box)]));
-    return roomy;
-}
-
 static const Shape *twist_upright(ShapeBuilder *builder, const Shape *shape,
                                   const DeformArguments *asked)
 {
-    const Shape *child   = with_room(builder, shape);
+    const Shape *child   = in_region(builder, shape, INFINITY);
     Shape       *twisted = deformed_shape(builder, SHAPE_TWIST, "twist", child, asked);
     twisted->values[0]   = asked->numbers[0];
     Range rate           = node_range(builder, asked->numbers[0], 0);

@@ -83,7 +83,7 @@ static void narrow_space(MeshField *field, const double middle[3], const double 
     Box                near_middle;
     for (int k = 0; k < 3; k++)
         near_middle.axis[k] = (Range){middle[k] - NEAR * half[k], middle[k] + NEAR * half[k]};
-    if (!hessian->known || !field_piece_slope(field, near_middle, &slope))
+    if (!hessian->known || !field_piece_slope(field, pieces, near_middle, &slope))
         return;
     set_space(&narrow, 0, model->spaces.items[0].at, pieces->signs[0], &slope, half);
     for (int k = 0; k < 3; k++)

@@ -87,8 +87,8 @@ typedef struct FieldPieces {
     uint32_t origin; /* if it is one piece: of its step, as of LaneStep; else 0 */
     size_t   count, step_count;
     int      steps[MOST_PIECE_STEPS];
-    double   signs[MOST_PIECES],
-        offsets[MOST_PIECES]; /* a piece is sign times a value, and the offset */
+    /* a piece is sign times size times a value, and the offset; derivatives are those of size times the value */
+    double      signs[MOST_PIECES], sizes[MOST_PIECES], offsets[MOST_PIECES];
     LaneSlope   slopes[MOST_PIECES];
     LaneHessian hessians[MOST_PIECES];
 } FieldPieces;
@@ -100,7 +100,8 @@ void field_piece_values(const MeshField *field, const FieldPieces *pieces,
                         const double (*points)[3], size_t point_count, double *values);
 
 /* The slopes of the first piece, before its sign, in a part of that box which is no point; as of lane_slopes_run. */
-bool field_piece_slope(const MeshField *field, Box part, LaneSlope *slope);
+bool field_piece_slope(const MeshField *field, const FieldPieces *pieces, Box part,
+                       LaneSlope *slope);
 
 enum { MOST_FACES = 8 };
 

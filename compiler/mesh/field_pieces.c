@@ -38,27 +38,50 @@ static bool add_step(Finding *f, int step)
     return true;
 }
 
-static bool add_piece(Finding *f, uint32_t operand, double sign, double offset)
+static bool has_slope(const LaneSlope *slope)
+{
+    for (int j = 0; j < 3; j++)
+        if (!isfinite(slope->by[j].low) || !isfinite(slope->by[j].high))
+            return false;
+    return true;
+}
+
+static LaneSlope slope_times(const LaneSlope *slope, double size)
+{
+    LaneSlope sized = *slope;
+    for (int j = 0; j < 3 && size != 1; j++)
+        sized.by[j] = range_mul(range_of(size), slope->by[j]);
+    return sized;
+}
+
+static LaneHessian hessian_times(const LaneHessian *hessian, double size)
+{
+    LaneHessian sized = *hessian;
+    for (int j = 0; j < 6 && size != 1; j++)
+        sized.by[j] = range_mul(range_of(size), hessian->by[j]);
+    return sized;
+}
+
+static bool add_piece(Finding *f, uint32_t operand, double factor, double offset)
 {
     FieldPieces *pieces = f->pieces;
+    double       size = fabs(factor), sign = copysign(1, factor);
     if ((operand & LANE_SCALAR) || !f->field->hessians[operand].known ||
-        !f->field->ranges.sure[operand])
+        !f->field->ranges.sure[operand] || !has_slope(&f->field->slopes[operand]))
         return false;
     size_t i = 0;
-    while (i < pieces->count &&
-           (f->outputs[i] != operand || pieces->signs[i] != sign || pieces->offsets[i] != offset))
+    while (i < pieces->count && (f->outputs[i] != operand || pieces->signs[i] != sign ||
+                                 pieces->sizes[i] != size || pieces->offsets[i] != offset))
         i++;
     if (i == MOST_PIECES)
         return false;
     if (i == pieces->count) {
         f->outputs[i]       = operand;
         pieces->signs[i]    = sign;
+        pieces->sizes[i]    = size;
         pieces->offsets[i]  = offset;
-        pieces->slopes[i]   = f->field->slopes[operand];
-        pieces->hessians[i] = f->field->hessians[operand];
-        for (int j = 0; j < 3; j++)
-            if (!isfinite(pieces->slopes[i].by[j].low) || !isfinite(pieces->slopes[i].by[j].high))
-                return false;
+        pieces->slopes[i]   = slope_times(&f->field->slopes[operand], size);
+        pieces->hessians[i] = hessian_times(&f->field->hessians[operand], size);
         pieces->count++;
     }
     return add_step(f, (int)i);
@@ -193,7 +216,7 @@ static bool find_faces(const Finding *f, const LaneStep *step, double offset, Fi
 
 /* ---- all ---- */
 
-/* sign times an operand, and the offset. */
+/* A factor times an operand, and the offset. */
 static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset);
 
 /* A number below 0 decides no sign of a maximum, and one above 0 none of a minimum. */
@@ -261,18 +284,42 @@ static bool add_shifted(Finding *f, const LaneStep *step, double sign, double of
     return find_pieces(f, step->operands[1], sign * way, offset + sign * shift);
 }
 
-/* Only signs are kept, so a factor that is the same everywhere scales the offset instead. */
 static bool add_scaled(Finding *f, const LaneStep *step, double sign, double offset)
 {
     for (int k = step->op == OP_div; k < 2; k++) {
         if (!(step->operands[k] & LANE_SCALAR))
             continue;
-        double factor = f->tape->scalars[step->operands[k] & ~LANE_SCALAR];
-        double size   = step->op == OP_mul ? fabs(factor) : 1 / fabs(factor);
-        if (size > 0 && isfinite(size))
-            return find_pieces(f, step->operands[1 - k], copysign(1, factor) * sign, offset / size);
+        double scalar = f->tape->scalars[step->operands[k] & ~LANE_SCALAR];
+        double factor = sign * (step->op == OP_mul ? scalar : 1 / scalar);
+        if (factor != 0 && isfinite(factor))
+            return find_pieces(f, step->operands[1 - k], factor, offset);
     }
     return false;
+}
+
+/* A product or quotient with what is above 0, and a sign times what is nowhere below. */
+static bool add_signed(Finding *f, const LaneStep *step, double sign)
+{
+    for (int k = 0; k < (step->op == OP_div ? 1 : 2); k++) {
+        uint32_t        other  = step->operands[1 - k];
+        const LaneStep *factor = step_of(f, step->operands[k]);
+        if (!(other & LANE_SCALAR) && !f->field->ranges.sure[other])
+            continue;
+        double least = range_of_operand(f, other).low;
+        if (factor && factor->op == OP_sign && least >= 0)
+            return find_pieces(f, factor->operands[0], sign, 0);
+        if (least > 0)
+            return find_pieces(f, step->operands[k], sign, 0);
+    }
+    return false;
+}
+
+/* Between numbers below and above 0. */
+static bool add_clamped(Finding *f, const LaneStep *step, double sign)
+{
+    return range_of_operand(f, step->operands[1]).high < 0 &&
+           range_of_operand(f, step->operands[2]).low > 0 &&
+           find_pieces(f, step->operands[0], sign, 0);
 }
 
 static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset)
@@ -295,7 +342,9 @@ static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset
     else if (step->op == OP_add || step->op == OP_sub)
         found = add_shifted(f, step, sign, offset);
     else if (step->op == OP_mul || step->op == OP_div)
-        found = add_scaled(f, step, sign, offset);
+        found = add_scaled(f, step, sign, offset) || (offset == 0 && add_signed(f, step, sign));
+    else if (step->op == OP_clamp && offset == 0)
+        found = add_clamped(f, step, sign);
     f->depth--;
     return found;
 }
@@ -373,7 +422,8 @@ bool field_pieces(MeshField *field, Box box, FieldPieces *pieces)
     pieces->count = pieces->step_count = 0;
     if (!find_pieces(&f, f.tape->outputs[0], 1, 0))
         return false;
-    bool one       = pieces->count == 1 && pieces->signs[0] > 0 && pieces->offsets[0] == 0;
+    bool one = pieces->count == 1 && pieces->signs[0] * pieces->sizes[0] == 1 &&
+               pieces->offsets[0] == 0;
     pieces->origin = one ? origin_of(f.tape, f.outputs[0]) : 0;
     return field_keep(field, f.outputs, pieces->count);
 }
@@ -384,12 +434,17 @@ void field_piece_values(const MeshField *field, const FieldPieces *pieces,
     lane_run(&field->pieces.tape, &field->work, LANE_DOUBLE,
              (LanePoints){.points = points, .count = point_count}, 0, pieces->count, values);
     for (size_t i = 0; i < point_count * pieces->count; i++)
-        values[i] = pieces->signs[i % pieces->count] * values[i] +
+        values[i] = pieces->signs[i % pieces->count] * pieces->sizes[i % pieces->count] *
+                        values[i] +
                     pieces->offsets[i % pieces->count];
 }
 
-bool field_piece_slope(const MeshField *field, Box part, LaneSlope *slope)
+bool field_piece_slope(const MeshField *field, const FieldPieces *pieces, Box part,
+                       LaneSlope *slope)
 {
     lane_ranges_run(&field->pieces.tape, &field->ranges, part);
-    return lane_slopes_run(&field->pieces.tape, &field->ranges, field->slopes, slope);
+    bool found = lane_slopes_run(&field->pieces.tape, &field->ranges, field->slopes, slope);
+    if (found)
+        *slope = slope_times(slope, pieces->sizes[0]);
+    return found;
 }

@@ -85,9 +85,6 @@ KrsStatus pass_names(Compilation *c)
 
 void print_names(Compilation *c, Text *out) { files_print_names(&c->files, out); }
 
-/* Of the size of what is deformed. */
-static const double ROOM_FOR_MESHES = 0.25;
-
 static bool hoists(const Compilation *c)
 {
     return c->options->specialize == KRS_SPECIALIZE_STRUCTURE;
@@ -111,7 +108,7 @@ static void elaborate_with(Compilation *c, TurnTrials *turns)
                             .graph      = graph,
                             .parameters = &c->elaborated.parameters,
                             .slopes     = &c->elaborated.slopes,
-                            .room       = c->options->outlines ? ROOM_FOR_MESHES : 0};
+                            .for_meshes = c->options->outlines};
     Elaboration  e       = {.builder  = &builder,
                             .arena    = &c->work,
                             .values   = &c->values,

@@ -231,6 +231,15 @@ static const Shape *find_estimate(const Shape *shape)
     return shape;
 }
 
+Box builder_region(const ShapeBuilder *builder, Box box)
+{
+    static const double ROOM = 0.25; /* of the longest side: cells are large in the beginning */
+    if (!builder->for_meshes || !box_is_finite(box) || box_is_empty(box))
+        return box;
+    const Range *longest = &box.axis[box_longest_axis(&box)];
+    return box_grow(box, ROOM * (longest->high - longest->low));
+}
+
 void check_lipschitz(ShapeBuilder *builder, const Shape *shape, const char *what, Span span)
 {
     if (!shape->estimate)

@@ -24,9 +24,8 @@ typedef struct ShapeBuilder {
         size_t                count, capacity;
     } outlines;          /* all that were made */
     size_t nodes_before; /* of the graph, when a shape was last made */
-    double
-         room; /* around what is deformed, as a part of its size: no corner of the distance is at the surface then */
-    bool stopped; /* a limit was reached, and reported: nothing more is */
+    bool   for_meshes;   /* distances are such that meshes see what is smooth */
+    bool   stopped;      /* a limit was reached, and reported: nothing more is */
 } ShapeBuilder;
 
 /* A shape with these children, and what most kinds take over from them. */
@@ -51,6 +50,10 @@ typedef struct BuilderNumbers {
 } BuilderNumbers;
 BuilderNumbers builder_numbers(ShapeBuilder *builder);
 Box            builder_box(ShapeBuilder *builder, const Shape *shape);
+
+/* The region in which a distance is found, for the box of its surface: for meshes it is larger, so that no corner of the
+   distance is at the surface. */
+Box builder_region(const ShapeBuilder *builder, Box box);
 
 /* Reports a distance of which nothing is proven, below something (`what`) that moves a surface. */
 void check_lipschitz(ShapeBuilder *builder, const Shape *shape, const char *what, Span span);
