@@ -36,6 +36,23 @@ static uint32_t constants_of(Elaboration *e, Value value, const Syntax *syntax, 
     return 0;
 }
 
+static void refuse_range(Elaboration *e, const Syntax *syntax, Value range)
+{
+    const Syntax *written = syntax->children[1];
+    if (written->kind == SYNTAX_RANGE && range.type == VALUE_LIST && range.list->count != 2) {
+        Diag *diag  = diag_add(e->diags, DIAG_RANGE_OF_PARAM, written->span,
+                               "the range of `%s` is a list of %zu numbers", syntax->name,
+                               range.list->count);
+        diag->label = "two are needed, the lowest and the highest";
+        diag->help  = form_help(e->diags, FORM_RANGE_ENDS);
+        return;
+    }
+    Diag *diag  = diag_add(e->diags, DIAG_RANGE_OF_PARAM, written->span,
+                           "the range of `%s` does not fit its default", syntax->name);
+    diag->label = "[low, high] with low <= default <= high";
+    diag_secondary(e->diags, diag, syntax->children[0]->span, "the default");
+}
+
 /* The range of a `param`, endless when it has none; a number counts for all components. */
 static bool param_range(Elaboration *e, const Environment *env, const Syntax *syntax,
                         Parameter *parameter)
@@ -67,12 +84,7 @@ static bool param_range(Elaboration *e, const Environment *env, const Syntax *sy
     }
     if (good)
         return true;
-    Diag *diag  = diag_add(e->diags, DIAG_RANGE_OF_PARAM, syntax->children[1]->span,
-                           "the range of `%s` does not fit its default", syntax->name);
-    diag->label = "[low, high] with low <= default <= high";
-    if (syntax->children[1]->kind == SYNTAX_RANGE)
-        diag->help = form_help(e->diags, FORM_RANGE_ENDS);
-    diag_secondary(e->diags, diag, syntax->children[0]->span, "the default");
+    refuse_range(e, syntax, range);
     return false;
 }
 
