@@ -77,35 +77,20 @@ static bool check_bend(ShapeBuilder *builder, const DeformArguments *asked, Box 
     return false;
 }
 
-/* Of what is bent, in lengths that it had. */
-static double least_length(Box box, Range rate)
-{
-    return fmin(1 - range_mul(rate, box.axis[2]).high, 1);
-}
-
-/* The region stays well away from the axis of the bend. */
-static const Shape *in_bend_region(ShapeBuilder *builder, const Shape *shape, Range rate)
-{
-    double       most  = 0.5 * least_length(shape->box, rate) / fmax(range_largest(rate), 1e-9);
-    const Shape *child = in_region(builder, shape, most);
-    return bend_segments(child->box, rate) <= MOST_BEND_SEGMENTS ? child : shape;
-}
-
 static const Shape *bend_upright(ShapeBuilder *builder, const Shape *shape,
                                  const DeformArguments *asked)
 {
     Range rate = node_range(builder, asked->numbers[0], 0);
     if (!check_bend(builder, asked, shape->box, rate))
         return NULL;
-    const Shape *child = in_bend_region(builder, shape, rate);
-    Shape       *bent  = deformed_shape(builder, SHAPE_BEND, "bend", child, asked);
-    bent->values[0]    = asked->numbers[0];
-    bent->cells[0]     = bend_segments(child->box, rate);
-    bent->box          = bend_box(shape->box, rate);
+    Shape *bent     = deformed_shape(builder, SHAPE_BEND, "bend", shape, asked);
+    bent->values[0] = asked->numbers[0];
+    bent->cells[0]  = bend_segments(shape->box, rate);
+    bent->box       = bend_box(shape->box, rate);
     /* Segments overlap by the depth of the solid, so that they have no walls between them. */
     double depth  = 0.5 * (shape->box.axis[2].high - shape->box.axis[2].low);
     bent->overlap = fmin(depth, 0.6 / fmax(range_largest(rate), 1e-9));
-    double least  = least_length(child->box, rate);
+    double least  = fmin(1 - range_mul(rate, shape->box.axis[2]).high, 1); /* of lengths */
     bent->divided = (1 + COST_OF_WEIGHT) / least;
     return bent;
 }

@@ -9,14 +9,6 @@
 
 /* ---- how it is made ---- */
 
-/* How far the region reaches beyond the box: as far as the factor stays well above 0. */
-static double taper_room(const ShapeBuilder *builder, Box box, Range scale)
-{
-    double height = box.axis[1].high - box.axis[1].low;
-    return fmin(region_room(builder, box),
-                0.5 * fmax(scale.low, 0) / fmax(scale.high - scale.low, 1e-9) * height);
-}
-
 static const Shape *taper_upright(ShapeBuilder *builder, const Shape *shape,
                                   const DeformArguments *asked)
 {
@@ -27,10 +19,8 @@ static const Shape *taper_upright(ShapeBuilder *builder, const Shape *shape,
                                     node_range(builder, asked->numbers[1], 0));
     for (int i = 0; i < 3; i += 2)
         tapered->box.axis[i] = range_mul(shape->box.axis[i], scale);
-    tapered->overlap = taper_room(builder, shape->box, scale);
     double height    = shape->box.axis[1].high - shape->box.axis[1].low;
-    double radius    = box_radius(box_grow(shape->box, tapered->overlap));
-    double shear     = shear_slope((scale.high - scale.low) / height * radius);
+    double shear     = shear_slope((scale.high - scale.low) / height * box_radius(shape->box));
     tapered->divided = (shear + COST_OF_WEIGHT) / fmin(fmax(scale.low, 0), 1);
     note_slope(tapered, shear);
     return tapered;
@@ -84,15 +74,6 @@ static Node frustum_nearest(Graph *g, const Frustum *f, Node r, Node y)
     return graph_op3(g, OP_select, inside, position, outside);
 }
 
-/* The factor where the region ends, so far beyond an end of the box. */
-static Node factor_beyond(Graph *g, const Shape *shape, int end, double beyond)
-{
-    if (beyond == 0)
-        return shape->values[end];
-    Node change = sub(g, shape->values[end], shape->values[1 - end]);
-    return add(g, shape->values[end], mul(g, change, graph_number(g, beyond)));
-}
-
 /* (x, y, z) -> (x / s, y, z / s) with s = scale(y), whose slope is `rise`. */
 static void undo_taper(Lowering *l, Node point, Node scale, Node rise, InverseDeformation *inverse)
 {
@@ -116,18 +97,15 @@ static void undo_taper(Lowering *l, Node point, Node scale, Node rise, InverseDe
 
 Lowered lower_taper(Lowering *l, const Shape *shape, LowerContext context)
 {
-    Graph  *g       = l->graph;
-    Box     inner   = shape->children[0]->box;
-    Box     box     = box_grow(inner, shape->overlap);
-    double  radius  = axis_radius(box);
-    Range   side    = box.axis[1];
-    double  beyond  = shape->overlap / fmax(inner.axis[1].high - inner.axis[1].low, 1e-9);
-    Node    ends[2] = {factor_beyond(g, shape, 0, beyond), factor_beyond(g, shape, 1, beyond)};
+    Graph  *g      = l->graph;
+    Box     box    = shape->children[0]->box;
+    double  radius = axis_radius(box);
+    Range   side   = box.axis[1];
     Node    wide = graph_number(g, radius), tiny = graph_number(g, 1e-20);
     Node    one = graph_number(g, 1), cost;
     Frustum f   = {.bottom = graph_number(g, side.low), .top = graph_number(g, side.high)};
-    f.low       = mul(g, wide, ends[0]);
-    f.high      = mul(g, wide, ends[1]);
+    f.low       = mul(g, wide, shape->values[0]);
+    f.high      = mul(g, wide, shape->values[1]);
     f.height    = fmax(side.high - side.low, 1e-9);
     Node y = graph_component(g, context.point, 1), r = radius_of(g, context.point);
     Node nearest = frustum_nearest(g, &f, r, y), offset = graph_op2(g, OP_vec2, r, y);
@@ -135,8 +113,8 @@ Lowered lower_taper(Lowering *l, const Shape *shape, LowerContext context)
     Node inside                = over(g, inner_r, most(g, r, tiny));
     Node height                = graph_number(g, f.height);
     Node level                 = over(g, sub(g, inner_y, f.bottom), height);
-    Node scale                 = graph_op3(g, OP_mix, ends[0], ends[1], level);
-    Node rise                  = over(g, sub(g, ends[1], ends[0]), height);
+    Node scale                 = graph_op3(g, OP_mix, shape->values[0], shape->values[1], level);
+    Node rise                  = over(g, sub(g, shape->values[1], shape->values[0]), height);
     InverseDeformation inverse = {.offset = graph_op1(g, OP_length, sub(g, offset, nearest))};
     undo_taper(l, across_scaled(g, context.point, inner_y, inside), scale, rise, &inverse);
     Lowered result = lower_undone(l, shape, context, &inverse);

@@ -193,7 +193,7 @@ struct Shape {
     /* PRIMITIVE, in its own coordinates; bound, uv and trap (VEC2) may be NODE_NONE. */
     Node   formula;  /* of a field, algebraic surface (field.c) or DISPLACE, else NODE_NONE */
     Node   declared; /* where a declaration made it: its `distance` as it is written */
-    double overlap;  /* BEND, TAPER: by how much regions reach beyond ends */
+    double overlap;  /* BEND: by how much the segments reach beyond their ends */
     double reach;    /* DISPLACE: largest size of the formula in the box; OFFSET, SHELL: how far
                          they take the surface, at most */
     double divided;  /* DISPLACE, TWIST, TAPER, BEND: what distances are divided by, at most */
