@@ -297,29 +297,15 @@ static bool add_scaled(Finding *f, const LaneStep *step, double sign, double off
     return false;
 }
 
-/* A product or quotient with what is above 0, and a sign times what is nowhere below. */
+/* A sign times what is nowhere below 0: a maximum of 0 and anything is a number, at least. */
 static bool add_signed(Finding *f, const LaneStep *step, double sign)
 {
-    for (int k = 0; k < (step->op == OP_div ? 1 : 2); k++) {
-        uint32_t        other  = step->operands[1 - k];
+    for (int k = 0; k < 2; k++) {
         const LaneStep *factor = step_of(f, step->operands[k]);
-        if (!(other & LANE_SCALAR) && !f->field->ranges.sure[other])
-            continue;
-        double least = range_of_operand(f, other).low;
-        if (factor && factor->op == OP_sign && least >= 0)
+        if (factor && factor->op == OP_sign && range_of_operand(f, step->operands[1 - k]).low >= 0)
             return find_pieces(f, factor->operands[0], sign, 0);
-        if (least > 0)
-            return find_pieces(f, step->operands[k], sign, 0);
     }
     return false;
-}
-
-/* Between numbers below and above 0. */
-static bool add_clamped(Finding *f, const LaneStep *step, double sign)
-{
-    return range_of_operand(f, step->operands[1]).high < 0 &&
-           range_of_operand(f, step->operands[2]).low > 0 &&
-           find_pieces(f, step->operands[0], sign, 0);
 }
 
 static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset)
@@ -342,9 +328,8 @@ static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset
     else if (step->op == OP_add || step->op == OP_sub)
         found = add_shifted(f, step, sign, offset);
     else if (step->op == OP_mul || step->op == OP_div)
-        found = add_scaled(f, step, sign, offset) || (offset == 0 && add_signed(f, step, sign));
-    else if (step->op == OP_clamp && offset == 0)
-        found = add_clamped(f, step, sign);
+        found = add_scaled(f, step, sign, offset) ||
+                (step->op == OP_mul && offset == 0 && add_signed(f, step, sign));
     f->depth--;
     return found;
 }

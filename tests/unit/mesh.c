@@ -549,6 +549,7 @@ static void smooth_surfaces_have_large_triangles(void **context)
         double      error;
         size_t      most;
     } rows[] = {{"show field(x^2 + y^2 + z^2 - 1);", 0.03, 9000},
+                {"show field(x^4 + y^4 + z^4 - 1);", 0.02, 20000},
                 {"show sphere(1).twist([0, 1, 0], 0.5);", 0.03, 8000},
                 {"show box([1.6, 3, 1.6]).twist([0, 1, 0], 0.5);", 0.05, 17000}};
     (void)context;
