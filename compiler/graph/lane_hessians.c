@@ -14,6 +14,7 @@
 #include "compiler/graph/lane_cuts.h"
 #include "compiler/graph/lane_outlines.h"
 #include "compiler/graph/lane_partials.h"
+#include "compiler/graph/lane_segments.h"
 
 /* A run over a tape, and the step that it is at. */
 typedef struct Run {
@@ -189,9 +190,12 @@ static LaneHessian hessian_of_length(const Run *run)
         return sum;
     if (!bend.known)
         return UNKNOWN_BEND;
+    uint32_t from[MAX_OPERANDS];
+    bool     segment = lane_from_segment(run->tape, run->step, from);
     for (uint32_t k = 0; k < run->step->operand_count; k++) {
         uint32_t operand = run->step->operands[k], inner = without_corner(run, operand);
-        add_hessian(&sum, unit_part(run, operand, length), hessian_at(run, inner));
+        add_hessian(&sum, unit_part(run, operand, length),
+                    hessian_at(run, segment ? from[k] : inner));
         add_square(&bend, range_of(1), slope_at(run, sign_counts(run, operand) ? operand : inner));
     }
     add_square(&bend, range_of(-1), &run->slopes[LANE_INPUTS + run->at]);

@@ -75,6 +75,16 @@ static Partials partials_of_choice(int chosen)
 
 static int lesser(Range a, Range b) { return a.high <= b.low ? 0 : b.high <= a.low ? 1 : -1; }
 
+/* The operand that a clamped number is, all over the box. */
+static int clamped(Range a, Range low, Range high)
+{
+    if (a.high <= low.low && low.high <= high.low)
+        return 1;
+    if (max2(a.low, low.low) >= high.high)
+        return 2;
+    return a.low >= low.high && a.high <= high.low ? 0 : -1;
+}
+
 static Partials partials_of_quotient(Range a, Range b)
 {
     Partials p = {.known = (b.low > 0 || b.high < 0) && is_finite(a) && is_finite(b)};
@@ -165,6 +175,7 @@ Partials partials_of(uint16_t op, Range a, Range b, Range c, Range r)
     case LANE_LESSER: return partials_of_choice(lesser(a, b));
     case OP_max:
     case LANE_GREATER: return partials_of_choice(lesser(minus(a), minus(b)));
+    case OP_clamp: return partials_of_choice(clamped(a, b, c));
     case OP_select: return partials_of_choice(a.low > 0 ? 1 : a.high <= 0 ? 2 : -1);
     default: return partials_of_one(op, a, r);
     }

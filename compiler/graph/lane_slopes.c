@@ -13,6 +13,7 @@
 #include "compiler/graph/lane_call.h"
 #include "compiler/graph/lane_cuts.h"
 #include "compiler/graph/lane_outlines.h"
+#include "compiler/graph/lane_segments.h"
 #include "compiler/graph/rules.h"
 #include "compiler/graph/texture.h"
 
@@ -185,9 +186,12 @@ static LaneSlope slope_of_length(const Run *run)
     }
     double    longest[3] = {0, 0, 0};
     LaneSlope sum        = NO_SLOPE;
+    uint32_t  from[MAX_OPERANDS];
+    bool      segment = lane_from_segment(run->tape, run->step, from);
     for (uint32_t k = 0; k < run->step->operand_count; k++) {
         LaneSlope slope = slope_in(run, (int)k);
-        add_times(&sum, unit_part(range_in(run, (int)k), result(run)), slope);
+        add_times(&sum, unit_part(range_in(run, (int)k), result(run)),
+                  segment ? slope_at(run, from[k]) : slope);
         for (int j = 0; j < 3; j++)
             longest[j] = hypot_upward(longest[j], range_largest(slope.by[j]));
     }

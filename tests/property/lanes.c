@@ -396,7 +396,7 @@ static void hessians_hold(void **state)
     assert_true(bounded > GRAPHS / 2 && wrong > 20 && halved > 50);
 }
 
-/* What random graphs seldom have: roots, lengths with corners that do not count, blends, faces of boxes. */
+/* What random graphs seldom have: roots, lengths with corners that do not count, blends, faces of boxes, segments. */
 typedef enum Form {
     ROOT,
     LENGTH,
@@ -408,8 +408,27 @@ typedef enum Form {
     LENGTH_OF_ONE,
     QUOTIENT,
     POWER,
-    FORMS
+    SEGMENT,
+    FORMS,
+    ASKEW_SEGMENT =
+        FORMS /* not the nearest point of it: there is a corner where t meets its bounds */
 } Form;
+
+/* |q + e - t d| with t = (q + e).d / d.d from 0 to 1, of which about a half is in the box; e keeps it away from the segment
+   itself. */
+static Node distance_to_segment(Graph *g, const Node q[3], Box box, double askew)
+{
+    double x = box.axis[0].high - box.axis[0].low, y = box.axis[1].high - box.axis[1].low;
+    Node   along[3] = {graph_number(g, x), graph_number(g, 0.5 * y), graph_number(g, 0)};
+    Node   away[3]  = {q[0], q[1], graph_op2(g, OP_add, q[2], graph_number(g, 2))};
+    Node   from = graph_op(g, OP_vec3, away), way = graph_op(g, OP_vec3, along);
+    Node   share   = graph_op2(g, OP_add, graph_op2(g, OP_dot, from, way),
+                               graph_op2(g, OP_mul, q[1], graph_number(g, askew * y)));
+    Node   part    = graph_op2(g, OP_div, share, graph_number(g, x * x + 0.25 * y * y));
+    Node   clamped = graph_op3(g, OP_clamp, part, graph_number(g, 0), graph_number(g, 1));
+    return graph_op1(g, OP_length,
+                     graph_op2(g, OP_sub, from, graph_op2(g, OP_scale, way, clamped)));
+}
 
 static Node form_node(Graph *g, Form form, Box box)
 {
@@ -444,6 +463,8 @@ static Node form_node(Graph *g, Form form, Box box)
         return graph_op2(g, OP_add, graph_op1(g, OP_length, graph_op(g, OP_vec3, one)), a);
     }
     case QUOTIENT: return graph_op2(g, OP_div, a, far);
+    case SEGMENT: return graph_op2(g, OP_add, distance_to_segment(g, q, box, 0), a);
+    case ASKEW_SEGMENT: return graph_op2(g, OP_add, distance_to_segment(g, q, box, 0.5), a);
     default: return graph_op2(g, OP_pow, far, graph_number(g, 2.5));
     }
 }
@@ -474,6 +495,22 @@ static void hessians_of_forms_hold(void **state)
     }
 }
 
+static void corners_have_no_second_derivatives(void **state)
+{
+    Bench *b = *state;
+    for (int turn = 0; turn < 40; turn++) {
+        Pair pair = {0};
+        Box  box  = random_box(b);
+        bool known;
+        b->graph = graph_new(&b->arena);
+        for (int i = 0; i < ROOTS; i++)
+            pair.roots[i] = form_node(b->graph, ASKEW_SEGMENT, box);
+        pair_finish(b, &pair, NULL);
+        if (try_hessians(b, &pair, box, box, 1, &known))
+            fail_msg("a corner has second derivatives");
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -485,6 +522,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(slopes_hold, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(hessians_hold, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(hessians_of_forms_hold, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(corners_have_no_second_derivatives, bench_start,
+                                        bench_stop),
     };
     return cmocka_run_group_tests_name("lanes", tests, NULL, NULL);
 }
