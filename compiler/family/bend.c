@@ -77,20 +77,35 @@ static bool check_bend(ShapeBuilder *builder, const DeformArguments *asked, Box 
     return false;
 }
 
+/* Of what is bent, in lengths that it had. */
+static double least_length(Box box, Range rate)
+{
+    return fmin(1 - range_mul(rate, box.axis[2]).high, 1);
+}
+
+/* The region stays well away from the axis of the bend. */
+static const Shape *in_bend_region(ShapeBuilder *builder, const Shape *shape, Range rate)
+{
+    double       most  = 0.5 * least_length(shape->box, rate) / fmax(range_largest(rate), 1e-9);
+    const Shape *child = in_region(builder, shape, most);
+    return bend_segments(child->box, rate) <= MOST_BEND_SEGMENTS ? child : shape;
+}
+
 static const Shape *bend_upright(ShapeBuilder *builder, const Shape *shape,
                                  const DeformArguments *asked)
 {
     Range rate = node_range(builder, asked->numbers[0], 0);
     if (!check_bend(builder, asked, shape->box, rate))
         return NULL;
-    Shape *bent     = deformed_shape(builder, SHAPE_BEND, "bend", shape, asked);
-    bent->values[0] = asked->numbers[0];
-    bent->cells[0]  = bend_segments(shape->box, rate);
-    bent->box       = bend_box(shape->box, rate);
+    const Shape *child = in_bend_region(builder, shape, rate);
+    Shape       *bent  = deformed_shape(builder, SHAPE_BEND, "bend", child, asked);
+    bent->values[0]    = asked->numbers[0];
+    bent->cells[0]     = bend_segments(child->box, rate);
+    bent->box          = bend_box(shape->box, rate);
     /* Segments overlap by the depth of the solid, so that they have no walls between them. */
     double depth  = 0.5 * (shape->box.axis[2].high - shape->box.axis[2].low);
     bent->overlap = fmin(depth, 0.6 / fmax(range_largest(rate), 1e-9));
-    double least  = fmin(1 - range_mul(rate, shape->box.axis[2]).high, 1); /* of lengths */
+    double least  = least_length(child->box, rate);
     bent->divided = (1 + COST_OF_WEIGHT) / least;
     return bent;
 }
@@ -191,6 +206,15 @@ static void segment_region(Graph *g, const BendSegment *segment, Box box, Node *
     *high = row(g, graph_number(g, box.axis[0].high), y, top);
 }
 
+/* Where on y a point was: atan(u / w) / rate, and y / w for the rate 0. */
+static Node unbent_height(Graph *g, Node rate, Node y, Node u, Node w)
+{
+    Node tangent = over(g, u, w);
+    if (graph_is_constant(g, rate)) /* it is not 0: make_bend */
+        return over(g, graph_op1(g, OP_atan, tangent), rate);
+    return mul(g, over(g, y, w), over_angle(g, OP_atan, tangent));
+}
+
 /* *lengths: how much longer things along y are there than they were. */
 static void undo_bend(Lowering *l, const BendSegment *segment, Node point,
                       InverseDeformation *inverse, Node *lengths)
@@ -200,8 +224,7 @@ static void undo_bend(Lowering *l, const BendSegment *segment, Node point,
     Node   x = graph_component(g, point, 0), y = graph_component(g, point, 1);
     Node   z = graph_component(g, point, 2);
     Node   u = mul(g, segment->rate, y), w = sub(g, one, mul(g, segment->rate, z));
-    Node   along  = over_angle(g, OP_atan, over(g, u, w));
-    Node   y_less = over(g, y, w), y_old = mul(g, y_less, along);
+    Node   y_old    = unbent_height(g, segment->rate, y, u, w);
     Node   y_part   = mul(g, u, y); /* z (2 - rate z) - rate y^2 over 1 + lengths */
     Node   z_part   = mul(g, z, add(g, w, one));
     *lengths        = length_of(g, u, w);

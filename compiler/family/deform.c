@@ -77,6 +77,22 @@ void note_slope(Shape *deformed, double slope)
         deformed->derived = child->derived * child->slope * slope;
 }
 
+double region_room(const ShapeBuilder *builder, Box box)
+{
+    return builder_region(builder, box).axis[1].high - box.axis[1].high;
+}
+
+const Shape *in_region(ShapeBuilder *builder, const Shape *shape, double most)
+{
+    double room = fmin(region_room(builder, shape->box), most);
+    if (!(room > 0))
+        return shape;
+    Shape *wider = arena_new(builder->arena, Shape);
+    *wider       = *shape;
+    wider->box   = box_grow(shape->box, room);
+    return wider;
+}
+
 double shear_slope(double b) { return 0.5 * (b + hypot(b, 2)); }
 
 Range range_cell(Range range, int i)

@@ -25,6 +25,11 @@ Shape *deformed_shape(ShapeBuilder *builder, ShapeKind kind, const char *name, c
                       const DeformArguments *asked);
 /* What the deformation was divided by, at most, if there is a limit: for reports. */
 void note_slope(Shape *deformed, double slope);
+/* How far regions reach beyond a box for meshes (builder_region), else 0; and the shape in a box that is larger by that, and
+   by no more than `most`. */
+double       region_room(const ShapeBuilder *builder, Box box);
+const Shape *in_region(ShapeBuilder *builder, const Shape *shape, double most);
+
 /* (b + sqrt(b^2 + 4)) / 2, the norm of a shear by b. */
 double shear_slope(double b);
 /* Cell `i` of the DEFORM_CELLS of a range. */

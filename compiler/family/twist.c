@@ -24,19 +24,10 @@ static Box twist_box(Box box, Range rate)
     return box_common(whole, hull);
 }
 
-/* The same in the box of the region. */
-static const Shape *in_region(ShapeBuilder *builder, const Shape *shape)
-{
-    Shape *wider = arena_new(builder->arena, Shape);
-    *wider       = *shape;
-    wider->box   = builder_region(builder, shape->box);
-    return wider;
-}
-
 static const Shape *twist_upright(ShapeBuilder *builder, const Shape *shape,
                                   const DeformArguments *asked)
 {
-    const Shape *child   = in_region(builder, shape);
+    const Shape *child   = in_region(builder, shape, INFINITY);
     Shape       *twisted = deformed_shape(builder, SHAPE_TWIST, "twist", child, asked);
     twisted->values[0]   = asked->numbers[0];
     Range rate           = node_range(builder, asked->numbers[0], 0);
