@@ -269,17 +269,21 @@ static bool uv_property(Elaboration *e, const Environment *env, const Syntax *de
 /* Fewer corners are a formula, unless all outlines are wanted: a loop over a list costs as much as some. */
 enum { LEAST_CORNERS = 64 };
 
-/* A corner that is known now. */
-static bool known_corner(Value value, double corner[2])
+/* A corner that is known now, where no arc begins. */
+static bool known_corner(Value value, double corner[4])
 {
-    if (value.type != VALUE_LIST || value.list->count != 2)
-        return false;
-    for (size_t k = 0; k < 2; k++) {
-        if (value.list->items[k].type != VALUE_NUMBER)
-            return false;
-        corner[k] = value.list->items[k].number;
-    }
-    return true;
+    uint32_t count = value_numbers(value, corner);
+    return count == 2 || (count == 3 && corner[2] == 0);
+}
+
+/* Where outlines are wanted, of figures of the library that cannot be rounded better by their `core`, too: their formulas
+   fold the plane, and meshes do not see where that is smooth. */
+static const Syntax *outline_syntax(const Elaboration *e, const Syntax *declaration)
+{
+    const Syntax *outline = find_property(declaration, "outline");
+    bool          wanted  = !outline && e->outlines && is_declared_in_library(e, declaration);
+    return wanted && !find_property(declaration, "core") ? find_property(declaration, border_name)
+                                                         : outline;
 }
 
 /* `outline`: the corners of a polygon.  Where they are many and known now, its distance comes from a
@@ -287,12 +291,12 @@ static bool known_corner(Value value, double corner[2])
 static bool outline_property(Elaboration *e, const Environment *env, const Syntax *declaration,
                              Path *path)
 {
-    const Syntax *syntax = find_property(declaration, "outline");
+    const Syntax *syntax = outline_syntax(e, declaration);
     Value         points = syntax ? evaluate(e, env, syntax) : value_error();
     if (points.type != VALUE_LIST || points.list->count < (e->outlines ? 3 : LEAST_CORNERS))
         return false;
     for (size_t i = 0; i < points.list->count; i++) {
-        double corner[2];
+        double corner[4];
         if (!known_corner(points.list->items[i], corner))
             return false;
         if (i == 0)

@@ -105,13 +105,72 @@ bool lane_outline_members(const LaneTape *tape, const LaneRanges *ranges, size_t
     return look(tape, ranges, step, &view) && find_members(&view, members, count);
 }
 
-/* ---- one curve ---- */
+/* ---- lines ---- */
 
 static void point_at(const CrowdArc *arc, double t, double point[2])
 {
     for (int k = 0; k < 2; k++)
         point[k] = arc->start[k] + t * (2 * arc->way[k] + t * arc->bend[k]);
 }
+
+/* The distance to the line of a straight curve, below 0 on its left. */
+static bool find_line(const CrowdArc *arc, double line[3])
+{
+    double length = hypot(arc->way[0], arc->way[1]);
+    line[0]       = arc->way[1] / length;
+    line[1]       = -arc->way[0] / length;
+    line[2]       = -(line[0] * arc->start[0] + line[1] * arc->start[1]);
+    return arc->bend[0] == 0 && arc->bend[1] == 0 && length > 0;
+}
+
+/* The one that begins where the first ends comes second; false: they do not meet at one point. */
+static bool put_in_order(const CrowdArc *arcs[2], double ends[2][2], double size)
+{
+    bool forth = distance_to_point(ends[0], arcs[1]->start) <= UNCERTAIN * size;
+    bool back  = distance_to_point(ends[1], arcs[0]->start) <= UNCERTAIN * size;
+    if (back) {
+        const CrowdArc *first = arcs[1];
+        arcs[1]               = arcs[0];
+        arcs[0]               = first;
+    }
+    return forth != back;
+}
+
+/* What changes sides within `reach` of the middle are curves that come so near; if their other ends are farther, they are as
+   good as rays there.  The nearest curve to the middle is one of them, so sides are the same there, and so all over the box. */
+bool lane_outline_lines(const LaneTape *tape, const LaneRanges *ranges, size_t step, double level,
+                        OutlineLines *lines)
+{
+    View            view;
+    const CrowdArc *arcs[2];
+    double          ends[2][2];
+    if (!look(tape, ranges, step, &view) || !view.call->members)
+        return false;
+    double reach = view.radius + fabs(level) * (1 + UNCERTAIN);
+    lines->count = 0;
+    for (uint32_t i = 0; i < view.call->member_count; i++) {
+        const CrowdArc *arc = &view.table->arcs[view.call->members[i]];
+        if (least_distance(arc, view.middle) > reach)
+            continue;
+        if (lines->count == 2)
+            return false;
+        point_at(arc, 1, ends[lines->count]);
+        arcs[lines->count++] = arc;
+    }
+    if (lines->count == 0 || (lines->count == 2 && !put_in_order(arcs, ends, view.radius)))
+        return false;
+    point_at(arcs[lines->count - 1], 1, ends[0]);
+    lines->convex = lines->count == 1 ||
+                    arcs[0]->way[0] * arcs[1]->way[1] - arcs[0]->way[1] * arcs[1]->way[0] >= 0;
+    for (uint32_t i = 0; i < lines->count; i++)
+        if (!find_line(arcs[i], lines->lines[i]))
+            return false;
+    return distance_to_point(view.middle, arcs[0]->start) > reach &&
+           distance_to_point(view.middle, ends[0]) > reach &&
+           (lines->count == 1 || (lines->convex ? level <= 0 : level >= 0));
+}
+
+/* ---- one curve ---- */
 
 /* The unit tangent where the curve is nearest to the middle; false: that is not found. */
 static bool nearest_tangent(const View *view, const CrowdArc *arc, double tangent[2])

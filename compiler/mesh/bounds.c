@@ -191,6 +191,11 @@ static void look_at_cell(Mesher *m, Verifier *verifier, const Placed *placed, si
         return;
     }
     smooth_look(verifier->field, box, m->error, &cell);
+    if (!cell.known && !cell.empty) {
+        field_leave(verifier->field);
+        field_focus(verifier->field, wide);
+        smooth_look(verifier->field, box, m->error, &cell);
+    }
     measure_in_cell(m, verifier, &cell, placed, count);
     if (cell.known) {
         look_closer(m, verifier, &cell, placed, count);

@@ -78,7 +78,7 @@ bool field_is_cut(const MeshField *field, Box box);
 /* Keeps values of the tape that was entered last, to be found at points. */
 bool field_keep(MeshField *field, uint32_t *outputs, size_t count);
 
-enum { MOST_PIECES = 8, MOST_PIECE_STEPS = 32 };
+enum { MOST_PIECES = 8, MOST_PIECE_STEPS = 32, PIECE_VALUES = 2 };
 
 /* In a box, a number of the same sign as the distance, and as often 0: made of pieces whose derivatives do not jump by
    minima and maxima.  It is told in the order of a stack: a number of a piece, or one of these. */
@@ -87,8 +87,9 @@ typedef struct FieldPieces {
     uint32_t origin; /* if it is one piece: of its step, as of LaneStep; else 0 */
     size_t   count, step_count;
     int      steps[MOST_PIECE_STEPS];
-    /* a piece is sign times size times a value, and the offset; derivatives are those of size times the value */
-    double      signs[MOST_PIECES], sizes[MOST_PIECES], offsets[MOST_PIECES];
+    /* a piece is sign times a sum of values times weights, and the offset; derivatives are those of the sum */
+    double      signs[MOST_PIECES], offsets[MOST_PIECES], weights[MOST_PIECES][PIECE_VALUES];
+    uint32_t    values[MOST_PIECES]; /* how many there are in its sum */
     LaneSlope   slopes[MOST_PIECES];
     LaneHessian hessians[MOST_PIECES];
 } FieldPieces;

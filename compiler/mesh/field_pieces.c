@@ -7,13 +7,14 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/graph/lane_outlines.h"
 #include "compiler/mesh/field.h"
 
 typedef struct Finding {
     const MeshField *field;
     const LaneTape  *tape;
     FieldPieces     *pieces;
-    uint32_t         outputs[MOST_PIECES];
+    uint32_t         operands[MOST_PIECES][PIECE_VALUES];
     int              depth;
 } Finding;
 
@@ -46,45 +47,84 @@ static bool has_slope(const LaneSlope *slope)
     return true;
 }
 
-static LaneSlope slope_times(const LaneSlope *slope, double size)
+/* A sum of operands times weights; what all weights are 0 for counts as no operand. */
+typedef struct Sum {
+    uint32_t operands[PIECE_VALUES];
+    double   weights[PIECE_VALUES];
+    uint32_t count;
+} Sum;
+
+static bool sums_are_equal(const Sum *sum, const uint32_t *operands, const double *weights,
+                           uint32_t count)
 {
-    LaneSlope sized = *slope;
-    for (int j = 0; j < 3 && size != 1; j++)
-        sized.by[j] = range_mul(range_of(size), slope->by[j]);
-    return sized;
+    bool equal = sum->count == count;
+    for (uint32_t k = 0; equal && k < count; k++)
+        equal = sum->operands[k] == operands[k] && sum->weights[k] == weights[k];
+    return equal;
 }
 
-static LaneHessian hessian_times(const LaneHessian *hessian, double size)
+static LaneSlope slope_of_sum(const LaneSlope *slopes, const Sum *sum)
 {
-    LaneHessian sized = *hessian;
-    for (int j = 0; j < 6 && size != 1; j++)
-        sized.by[j] = range_mul(range_of(size), hessian->by[j]);
-    return sized;
+    LaneSlope slope = {{{0, 0}, {0, 0}, {0, 0}}};
+    for (uint32_t k = 0; k < sum->count; k++)
+        for (int j = 0; j < 3; j++) {
+            Range by    = range_mul(range_of(sum->weights[k]), slopes[sum->operands[k]].by[j]);
+            slope.by[j] = k == 0 ? by : range_add(slope.by[j], by);
+        }
+    return slope;
+}
+
+static LaneHessian hessian_of_sum(const LaneHessian *hessians, const Sum *sum)
+{
+    LaneHessian hessian = {.known = true, .flat = true};
+    for (uint32_t k = 0; k < sum->count; k++) {
+        const LaneHessian *of = &hessians[sum->operands[k]];
+        hessian.known         = hessian.known && of->known;
+        hessian.flat          = hessian.flat && of->flat;
+        for (int j = 0; j < 6 && of->known; j++) {
+            Range by      = range_mul(range_of(sum->weights[k]), of->by[j]);
+            hessian.by[j] = k == 0 ? by : range_add(hessian.by[j], by);
+        }
+    }
+    return hessian;
+}
+
+static bool has_derivatives(const Finding *f, uint32_t operand)
+{
+    return f->field->hessians[operand].known && f->field->ranges.sure[operand] &&
+           has_slope(&f->field->slopes[operand]);
+}
+
+static bool add_sum(Finding *f, const Sum *sum, double sign, double offset)
+{
+    FieldPieces *pieces = f->pieces;
+    size_t       i      = 0;
+    for (uint32_t k = 0; k < sum->count; k++)
+        if (!has_derivatives(f, sum->operands[k]))
+            return false;
+    while (i < pieces->count &&
+           !(pieces->signs[i] == sign && pieces->offsets[i] == offset &&
+             sums_are_equal(sum, f->operands[i], pieces->weights[i], pieces->values[i])))
+        i++;
+    if (i == MOST_PIECES || sum->count == 0)
+        return false;
+    if (i == pieces->count) {
+        memcpy(f->operands[i], sum->operands, sizeof f->operands[i]);
+        memcpy(pieces->weights[i], sum->weights, sizeof pieces->weights[i]);
+        pieces->values[i]   = sum->count;
+        pieces->signs[i]    = sign;
+        pieces->offsets[i]  = offset;
+        pieces->slopes[i]   = slope_of_sum(f->field->slopes, sum);
+        pieces->hessians[i] = hessian_of_sum(f->field->hessians, sum);
+        pieces->count++;
+    }
+    return add_step(f, (int)i);
 }
 
 static bool add_piece(Finding *f, uint32_t operand, double factor, double offset)
 {
-    FieldPieces *pieces = f->pieces;
-    double       size = fabs(factor), sign = copysign(1, factor);
-    if ((operand & LANE_SCALAR) || !f->field->hessians[operand].known ||
-        !f->field->ranges.sure[operand] || !has_slope(&f->field->slopes[operand]))
-        return false;
-    size_t i = 0;
-    while (i < pieces->count && (f->outputs[i] != operand || pieces->signs[i] != sign ||
-                                 pieces->sizes[i] != size || pieces->offsets[i] != offset))
-        i++;
-    if (i == MOST_PIECES)
-        return false;
-    if (i == pieces->count) {
-        f->outputs[i]       = operand;
-        pieces->signs[i]    = sign;
-        pieces->sizes[i]    = size;
-        pieces->offsets[i]  = offset;
-        pieces->slopes[i]   = slope_times(&f->field->slopes[operand], size);
-        pieces->hessians[i] = hessian_times(&f->field->hessians[operand], size);
-        pieces->count++;
-    }
-    return add_step(f, (int)i);
+    const Sum sum = {{operand}, {fabs(factor)}, 1};
+    return !(operand & LANE_SCALAR) && add_sum(f, &sum, copysign(1, factor), offset);
 }
 
 static bool is_greater(const LaneStep *step)
@@ -297,15 +337,59 @@ static bool add_scaled(Finding *f, const LaneStep *step, double sign, double off
     return false;
 }
 
-/* A sign times what is nowhere below 0: a maximum of 0 and anything is a number, at least. */
+/* A product or quotient with what is above 0, or a sign times what is nowhere below: a maximum of 0 and anything is a
+   number, at least, whether that is sure or not. */
 static bool add_signed(Finding *f, const LaneStep *step, double sign)
 {
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < (step->op == OP_div ? 1 : 2); k++) {
+        uint32_t        other  = step->operands[1 - k];
         const LaneStep *factor = step_of(f, step->operands[k]);
-        if (factor && factor->op == OP_sign && range_of_operand(f, step->operands[1 - k]).low >= 0)
+        double          least  = range_of_operand(f, other).low;
+        if (factor && factor->op == OP_sign && least >= 0)
             return find_pieces(f, factor->operands[0], sign, 0);
+        if (least > 0 && ((other & LANE_SCALAR) || f->field->ranges.sure[other]))
+            return find_pieces(f, step->operands[k], sign, 0);
     }
     return false;
+}
+
+/* Between numbers below and above 0. */
+static bool add_clamped(Finding *f, const LaneStep *step, double sign)
+{
+    return range_of_operand(f, step->operands[1]).high < 0 &&
+           range_of_operand(f, step->operands[2]).low > 0 &&
+           find_pieces(f, step->operands[0], sign, 0);
+}
+
+/* A line of an outline is a weighted sum of the two coordinates. */
+static bool add_line(Finding *f, const LaneStep *step, const double line[3], double factor,
+                     double offset)
+{
+    const uint32_t *point = f->tape->calls[step->operands[0]].operands[1];
+    Sum             sum   = {.count = 0};
+    double          at    = line[2];
+    for (int k = 0; k < 2; k++) {
+        if (point[k] & LANE_SCALAR)
+            at += line[k] * f->tape->scalars[point[k] & ~LANE_SCALAR];
+        else if (line[k] != 0) {
+            sum.operands[sum.count]  = point[k];
+            sum.weights[sum.count++] = fabs(factor) * line[k];
+        }
+    }
+    return add_sum(f, &sum, copysign(1, factor), offset + factor * at);
+}
+
+/* The distance to an outline, by one or two of its lines. */
+static bool add_outline(Finding *f, const LaneStep *step, double factor, double offset)
+{
+    OutlineLines lines;
+    if (!lane_outline_lines(f->tape, &f->field->ranges, (size_t)(step - f->tape->steps),
+                            -offset / factor, &lines))
+        return false;
+    return add_line(f, step, lines.lines[0], factor, offset) &&
+           (lines.count == 1 ||
+            (add_line(f, step, lines.lines[1], factor, offset) &&
+             add_step(f, lines.convex == (factor > 0) ? PIECE_MAX : PIECE_MIN)));
 }
 
 static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset)
@@ -316,6 +400,8 @@ static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset
     bool            found = false;
     if (!step || f->field->hessians[operand].known || f->depth == MOST_DEPTH)
         return add_piece(f, operand, sign, offset);
+    if (step->op == LANE_CALL)
+        return add_outline(f, step, sign, offset);
     f->depth++;
     if (step->op == OP_neg)
         found = find_pieces(f, step->operands[0], -sign, offset);
@@ -328,8 +414,9 @@ static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset
     else if (step->op == OP_add || step->op == OP_sub)
         found = add_shifted(f, step, sign, offset);
     else if (step->op == OP_mul || step->op == OP_div)
-        found = add_scaled(f, step, sign, offset) ||
-                (step->op == OP_mul && offset == 0 && add_signed(f, step, sign));
+        found = add_scaled(f, step, sign, offset) || (offset == 0 && add_signed(f, step, sign));
+    else if (step->op == OP_clamp && offset == 0)
+        found = add_clamped(f, step, sign);
     f->depth--;
     return found;
 }
@@ -363,12 +450,12 @@ static bool count_pieces(Finding *f, uint32_t operand, double sign, double offse
     if (step && step->op == OP_neg)
         return count_pieces(f, step->operands[0], -sign, offset);
     size_t i = 0;
-    while (i < f->pieces->count && f->outputs[i] != operand)
+    while (i < f->pieces->count && f->operands[i][0] != operand)
         i++;
     if (i == MOST_PIECES ||
         (step && is_whole(step) && lane_is_boundless(f->tape, &f->field->ranges, operand)))
         return false;
-    f->outputs[i] = operand;
+    f->operands[i][0] = operand;
     f->pieces->count += i == f->pieces->count;
     return true;
 }
@@ -391,6 +478,16 @@ uint32_t field_origin(const MeshField *field, Box box)
     return field_is_cut(field, box) ? 0 : origin_of(tape, tape->outputs[0]);
 }
 
+static bool keep_values(MeshField *field, const Finding *f)
+{
+    uint32_t outputs[MOST_PIECES * PIECE_VALUES];
+    size_t   count = 0;
+    for (size_t i = 0; i < f->pieces->count; i++)
+        for (uint32_t k = 0; k < f->pieces->values[i]; k++)
+            outputs[count++] = f->operands[i][k];
+    return field_keep(field, outputs, count);
+}
+
 bool field_pieces(MeshField *field, Box box, FieldPieces *pieces)
 {
     LaneSlope   slope;
@@ -407,29 +504,43 @@ bool field_pieces(MeshField *field, Box box, FieldPieces *pieces)
     pieces->count = pieces->step_count = 0;
     if (!find_pieces(&f, f.tape->outputs[0], 1, 0))
         return false;
-    bool one = pieces->count == 1 && pieces->signs[0] * pieces->sizes[0] == 1 &&
-               pieces->offsets[0] == 0;
-    pieces->origin = one ? origin_of(f.tape, f.outputs[0]) : 0;
-    return field_keep(field, f.outputs, pieces->count);
+    bool one = pieces->count == 1 && pieces->values[0] == 1 &&
+               pieces->signs[0] * pieces->weights[0][0] == 1 && pieces->offsets[0] == 0;
+    pieces->origin = one ? origin_of(f.tape, f.operands[0][0]) : 0;
+    return keep_values(field, &f);
 }
 
 void field_piece_values(const MeshField *field, const FieldPieces *pieces,
                         const double (*points)[3], size_t point_count, double *values)
 {
+    double        all[MOST_FIELD_POINTS * MOST_PIECES * PIECE_VALUES];
+    const double *value = all;
     lane_run(&field->pieces.tape, &field->work, LANE_DOUBLE,
-             (LanePoints){.points = points, .count = point_count}, 0, pieces->count, values);
-    for (size_t i = 0; i < point_count * pieces->count; i++)
-        values[i] = pieces->signs[i % pieces->count] * pieces->sizes[i % pieces->count] *
-                        values[i] +
-                    pieces->offsets[i % pieces->count];
+             (LanePoints){.points = points, .count = point_count}, 0,
+             field->pieces.tape.output_count, all);
+    for (size_t i = 0; i < point_count * pieces->count; i++) {
+        size_t piece = i % pieces->count;
+        double sum   = 0;
+        for (uint32_t k = 0; k < pieces->values[piece]; k++)
+            sum += pieces->weights[piece][k] * *value++;
+        values[i] = pieces->signs[piece] * sum + pieces->offsets[piece];
+    }
 }
 
 bool field_piece_slope(const MeshField *field, const FieldPieces *pieces, Box part,
                        LaneSlope *slope)
 {
-    lane_ranges_run(&field->pieces.tape, &field->ranges, part);
-    bool found = lane_slopes_run(&field->pieces.tape, &field->ranges, field->slopes, slope);
-    if (found)
-        *slope = slope_times(slope, pieces->sizes[0]);
-    return found;
+    const LaneTape *tape = &field->pieces.tape;
+    Sum             sum  = {.count = pieces->values[0]};
+    lane_ranges_run(tape, &field->ranges, part);
+    if (!lane_slopes_run(tape, &field->ranges, field->slopes, slope))
+        return false;
+    for (uint32_t k = 0; k < sum.count; k++) {
+        sum.operands[k] = tape->outputs[k];
+        sum.weights[k]  = pieces->weights[0][k];
+        if ((sum.operands[k] & LANE_SCALAR) || !has_slope(&field->slopes[sum.operands[k]]))
+            return false;
+    }
+    *slope = slope_of_sum(field->slopes, &sum);
+    return true;
 }

@@ -32,8 +32,10 @@ static Opened *open_field(const char *text)
 {
     Opened *o = calloc(1, sizeof *o);
     assert_non_null(o);
-    KrsFrame *frame;
-    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &o->scene), KRS_OK);
+    KrsFrame  *frame;
+    KrsOptions options = {.outlines = true};
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", &options, &o->scene),
+                     KRS_OK);
     assert_int_equal(krs_frame_new(o->scene, &frame), KRS_OK);
     o->memory       = o->scene->memory;
     o->memory.used  = 0;
@@ -158,6 +160,10 @@ static void pieces_have_the_sign_of_the_distance(void **context)
     assert_true(try_pieces("show rectangle([2, 1]).extrude(1.5).offset(0.05);") > 0);
     assert_true(try_pieces("show box([2, 1, 1.5]).round(0.2) - cylinder(0.5, 3).offset(0.1);") > 0);
     assert_true(try_pieces("show cylinder(0.2, 3).move([0.8, 0, 0]).repeat_polar(5);") > 0);
+    assert_true(try_pieces("show star(5, 1, 0.4).extrude(1).twist([0, 0, 1], 0.5);") > 20);
+    assert_true(try_pieces("show star(5, 1, 0.4).offset(0.05).extrude(1);") > 0);
+    assert_true(try_pieces("show star(5, 1, 0.4).offset(-0.05).extrude(1);") > 0);
+    assert_true(try_pieces("show box([2, 1, 0.5]).bend([1, 0, 0], 0.5);") > 20);
 }
 
 /* In one half of a plate, beyond its middle plane, only one of its faces decides. */
