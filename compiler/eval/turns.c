@@ -12,7 +12,7 @@
 #include <math.h>
 
 #include "compiler/graph/crowd.h"
-#include "compiler/graph/turns.h"
+#include "compiler/graph/instances/turns.h"
 #include "compiler/shape/turn_boxes.h"
 
 /* Of loops made at once: each takes a slot of the parameter block. */

@@ -7,7 +7,7 @@
  */
 #include "compiler/family/family.h"
 #include "compiler/family/vary.h"
-#include "compiler/graph/turns.h"
+#include "compiler/graph/instances/turns.h"
 
 void make_turns(ShapeBuilder *builder, const Shape *shared, Node leaf, const double *numbers,
                 const Box *boxes, size_t count, const Shape **turns)

@@ -28,52 +28,6 @@ typedef struct Grid {
 } Grid;
 
 /*
- * Builds a grid of `count` boxes, at least one.  The clearance is more than `margin`, by a part of a cell,
- * wherever a list does not have all members, and NOWHERE where it does: taps for normals need more.  Where a box or
- * the margin is infinite there is one cell for all of space, its size is infinite, and its list has all
- * members.  Empty boxes are in no list.  Kernels read `texels` of 16 bytes for each entry of a list, at
- * least one: the more, the fewer entries there are.
- */
-void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
-                uint32_t texels, Arena *arena, Arena *scratch);
-
-/* What a grid has at most: cells, and entries of all lists together. */
-typedef struct GridLimits {
-    double cells, entries;
-} GridLimits;
-
-/* Those of a grid that is built for each frame, of so many boxes. */
-GridLimits grid_limits_of_frame(uint32_t count);
-
-/* The same as grid_build, within limits that one cell for all is always within. */
-void grid_build_within(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
-                       GridLimits most, Arena *arena, Arena *scratch);
-
-/*
- * The same with large cells, for grid_refine.  False: all of space would be one cell, or lists would be so
- * long that refining them takes too long; then there is no grid.
- */
-bool grid_build_coarse(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
-                       Arena *arena, Arena *scratch);
-
-/* How many cells a cell becomes when a grid is refined, along each axis and in all. */
-enum { GRID_REFINED_ALONG = 4, GRID_REFINED = 64 };
-
-/* Members in the plane z = 0, of which the nearest one decides. */
-typedef struct GridMembers {
-    double (*distance)(const void *members, uint32_t member, const double point[2]);
-    const void *members;
-} GridMembers;
-
-/*
- * The same for members in that plane, with one layer of cells.  Where something is so near to a cell
- * that it may be in it, the list has all members that are nearest anywhere in the cell; its clearance
- * is NOWHERE.  So no member is in a cell with another clearance.
- */
-void grid_build_flat(Grid *grid, const Box *boxes, uint32_t count, double margin, uint32_t texels,
-                     GridMembers members, Arena *arena, Arena *scratch);
-
-/*
  * The list for a point, of *count members.  No other member is nearer than *clearance, after all that
  * `reach` allows for.  Outside of the grid the list is empty, and the clearance is the distance to
  * `inner`, which is there larger than some constant.

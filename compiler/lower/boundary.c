@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "compiler/graph/build.h"
-#include "compiler/graph/turns.h"
+#include "compiler/graph/instances/turns.h"
 #include "compiler/lower/crowd.h"
 #include "compiler/lower/outline.h"
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/graph/crowd_frame.h"
+#include "compiler/graph/instances/crowd_frame.h"
 #include "compiler/lower/crowd_group.h"
 #include "compiler/lower/join.h"
 

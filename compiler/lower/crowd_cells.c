@@ -4,8 +4,9 @@
  */
 #include <math.h>
 
-#include "compiler/graph/grid_refine.h"
-#include "compiler/graph/grid_sift.h"
+#include "compiler/graph/instances/grid_of_boxes.h"
+#include "compiler/graph/instances/grid_refine.h"
+#include "compiler/graph/instances/grid_sift.h"
 #include "compiler/lower/crowd_group.h"
 #include "compiler/lower/join.h"
 

@@ -4,8 +4,8 @@
 #ifndef KRS_CROWD_GROUP_H
 #define KRS_CROWD_GROUP_H
 
-#include "compiler/graph/alike.h"
 #include "compiler/graph/crowd.h"
+#include "compiler/graph/instances/alike.h"
 #include "compiler/lower/context.h"
 #include "compiler/lower/nearest.h"
 

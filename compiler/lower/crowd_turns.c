@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "compiler/graph/turns.h"
+#include "compiler/graph/instances/turns.h"
 #include "compiler/lower/crowd_group.h"
 
 static uint32_t elements(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }

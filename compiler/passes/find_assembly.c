@@ -11,7 +11,7 @@
 
 #include "compiler/passes/compilation.h"
 #include "compiler/graph/timed.h"
-#include "compiler/graph/turns.h"
+#include "compiler/graph/instances/turns.h"
 
 enum { MOST_ITEMS = 4096 };
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/graph/crowd_frame.h"
+#include "compiler/graph/instances/crowd_frame.h"
 #include "compiler/scene/program.h"
 #include "compiler/scene/tables.h"
 

@@ -9,8 +9,8 @@
 #include <math.h>
 
 #include "compiler/graph/facts.h"
+#include "compiler/graph/instances/turns.h"
 #include "compiler/graph/op_values.h"
-#include "compiler/graph/turns.h"
 
 enum { BLOCK = 64 /* turns whose boxes are found together */ };
 

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/graph/crowd_frame.h"
+#include "compiler/graph/instances/crowd_frame.h"
 #include "tests/property/crowd_parts.h"
 
 /* In a colour that a number of the frame makes brighter. */

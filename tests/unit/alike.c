@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "compiler/graph/alike.h"
 #include "compiler/graph/evaluate.h"
+#include "compiler/graph/instances/alike.h"
 
 #include "tests/support/bench.h"
 

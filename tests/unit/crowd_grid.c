@@ -1,5 +1,5 @@
 /*
- * crowd_grid.c: compiler/graph/grid_build.c lists all boxes that are near.  The oracle measures the
+ * crowd_grid.c: compiler/graph/instances/grid_build.c lists all boxes that are near.  The oracle measures the
  * distance to each box.
  */
 #include <math.h>
@@ -14,7 +14,7 @@
 
 #include "compiler/base/far.h"
 #include "compiler/base/vec.h"
-#include "compiler/graph/grid.h"
+#include "compiler/graph/instances/grid_of_boxes.h"
 #include "tests/support/bench.h"
 #include "tests/support/processors.h"
 

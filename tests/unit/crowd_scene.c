@@ -8,6 +8,7 @@
 
 #include "compiler/base/far.h"
 #include "compiler/graph/build.h"
+#include "compiler/graph/instances/grid_of_boxes.h"
 
 /* ---- tables ---- */
 

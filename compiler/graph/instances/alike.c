@@ -4,7 +4,7 @@
  * A hash that leaves numbers out finds the template.  Then both are walked together, users before
  * operands: each node of the template gets an image, and one that would get two has none.
  */
-#include "compiler/graph/alike.h"
+#include "compiler/graph/instances/alike.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /*
  * alike_copy.c: copies of templates, with other nodes in their slots and for their leaves.
  */
-#include "compiler/graph/alike.h"
+#include "compiler/graph/instances/alike.h"
 
 /* ---- copies ---- */
 

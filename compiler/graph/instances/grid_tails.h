@@ -8,7 +8,7 @@
 #ifndef KRS_GRID_TAILS_H
 #define KRS_GRID_TAILS_H
 
-#include "compiler/graph/grid_blend.h"
+#include "compiler/graph/instances/grid_blend.h"
 
 /* Whether sums are numbers of single precision anywhere in a cell of this size. */
 bool grid_may_have_tails(const GridBlend *blend, double size);

@@ -4,7 +4,7 @@
 #ifndef KRS_GRID_HALVE_H
 #define KRS_GRID_HALVE_H
 
-#include "compiler/graph/grid_blend.h"
+#include "compiler/graph/instances/grid_blend.h"
 
 /* Bit k of a part's number is its place along axis k. */
 enum { GRID_PARTS = 8 };

@@ -6,8 +6,8 @@
 
 #include "compiler/base/far.h"
 #include "compiler/base/parallel.h"
-#include "compiler/graph/grid_builder.h"
-#include "compiler/graph/squares.h"
+#include "compiler/graph/instances/grid_builder.h"
+#include "compiler/graph/instances/squares.h"
 
 /* ---- Cells around boxes ---- */
 

@@ -5,16 +5,16 @@
  * that change something in them (grid_halve.h), down to the cells.  Upper cubes need nearly all members, but
  * there are few of them.
  */
-#include "compiler/graph/grid_sift.h"
+#include "compiler/graph/instances/grid_sift.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "compiler/base/far.h"
 #include "compiler/base/parallel.h"
-#include "compiler/graph/grid_builder.h"
-#include "compiler/graph/grid_halve.h"
-#include "compiler/graph/grid_refine.h"
+#include "compiler/graph/instances/grid_builder.h"
+#include "compiler/graph/instances/grid_halve.h"
+#include "compiler/graph/instances/grid_refine.h"
 
 /* Levels of cubes; the entries of lists, and the distances of members in eight points, of a processor. */
 enum { MOST_LEVELS = 16, MOST_ENTRIES = 1 << 21, MOST_EVALUATED = 1 << 22 };

@@ -9,7 +9,7 @@
  * Kernels find the cell of a point in single precision, and may find a neighbour of it.  So boxes are
  * taken to be larger by what single precision can miss: the pad.
  */
-#include "compiler/graph/grid_builder.h"
+#include "compiler/graph/instances/grid_builder.h"
 
 #include <assert.h>
 #include <float.h>

@@ -4,7 +4,7 @@
 #ifndef KRS_GRID_BUILDER_H
 #define KRS_GRID_BUILDER_H
 
-#include "compiler/graph/grid.h"
+#include "compiler/graph/instances/grid_of_boxes.h"
 
 #define FLOAT_MISSES 0x1p-21 /* several roundings in single precision, of coordinates */
 #define ROUNDED_DOWN (1 - 0x1p-22)

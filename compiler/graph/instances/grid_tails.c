@@ -3,7 +3,7 @@
  *
  * The sums are right in any order, so members are sorted by steps of a part of a width, in linear time.
  */
-#include "compiler/graph/grid_tails.h"
+#include "compiler/graph/instances/grid_tails.h"
 
 #include <math.h>
 #include <string.h>

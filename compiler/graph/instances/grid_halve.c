@@ -8,14 +8,14 @@
  * Of a blend that fades, those are left out that make the least of the sum.  Where results are large, no
  * member is needed: the least of them is the clearance.
  */
-#include "compiler/graph/grid_halve.h"
+#include "compiler/graph/instances/grid_halve.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "compiler/base/far.h"
 #include "compiler/graph/blend_shares.h"
-#include "compiler/graph/grid_builder.h"
+#include "compiler/graph/instances/grid_builder.h"
 #include "compiler/graph/op_values.h"
 
 /* How much of the sum of a blend that fades may be left out: so many widths a result is wrong. */

@@ -2,7 +2,7 @@
  * squares.c: a distance transform, axis by axis (Felzenszwalb and Huttenlocher, "Distance transforms
  * of sampled functions", 2012).
  */
-#include "compiler/graph/squares.h"
+#include "compiler/graph/instances/squares.h"
 
 #include <math.h>
 

@@ -3,7 +3,7 @@
  *
  * Lanes run the same expressions at many points, so the turn stands in the place of a coordinate.
  */
-#include "compiler/graph/turns.h"
+#include "compiler/graph/instances/turns.h"
 
 #include <string.h>
 

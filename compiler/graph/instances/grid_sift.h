@@ -4,7 +4,7 @@
 #ifndef KRS_GRID_SIFT_H
 #define KRS_GRID_SIFT_H
 
-#include "compiler/graph/grid_blend.h"
+#include "compiler/graph/instances/grid_blend.h"
 
 /* To be refined (grid_refine.h).  Its lists, which are in the arena `scratch`, are found by halving a cube
    around all.  False: that would take too long. */

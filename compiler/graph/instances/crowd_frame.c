@@ -1,12 +1,12 @@
 /*
  * crowd_frame.c: where members are in a frame, and grids for that.
  */
-#include "compiler/graph/crowd_frame.h"
+#include "compiler/graph/instances/crowd_frame.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "compiler/graph/grid_builder.h"
+#include "compiler/graph/instances/grid_builder.h"
 
 bool crowds_move(const Crowds *crowds)
 {

@@ -5,7 +5,7 @@
 #ifndef KRS_GRID_REFINE_H
 #define KRS_GRID_REFINE_H
 
-#include "compiler/graph/grid_blend.h"
+#include "compiler/graph/instances/grid_blend.h"
 
 /*
  * Each cell of a coarse grid becomes GRID_REFINED cells.  In each of them the members of its list make the

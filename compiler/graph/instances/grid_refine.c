@@ -3,7 +3,7 @@
  *
  * A cell is halved along each axis, and each half again, with the members that the first has left.
  */
-#include "compiler/graph/grid_refine.h"
+#include "compiler/graph/instances/grid_refine.h"
 
 #include <math.h>
 #include <string.h>
@@ -11,9 +11,9 @@
 #include "compiler/base/bits.h"
 #include "compiler/base/far.h"
 #include "compiler/base/parallel.h"
-#include "compiler/graph/grid_builder.h"
-#include "compiler/graph/grid_halve.h"
-#include "compiler/graph/grid_tails.h"
+#include "compiler/graph/instances/grid_builder.h"
+#include "compiler/graph/instances/grid_halve.h"
+#include "compiler/graph/instances/grid_tails.h"
 
 /* Lists are empty where results are at least so many sides of a refined cell, beyond the margin.  Half and
    twice as many are no faster. */
