@@ -25,7 +25,7 @@
 #include <math.h>
 
 #include "compiler/family/field_bounds.h"
-#include "compiler/graph/series.h"
+#include "compiler/graph/symbolic/series.h"
 #include "compiler/lower/box_distance.h"
 
 /* ---- polynomials ---- */

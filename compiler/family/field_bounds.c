@@ -8,7 +8,7 @@
  *   heads: of a sum whose rest lies within m +- h over C, the whole can be 0 only where |head + m|
  *     is at most h, so (|head + m| - h) / slope of the head is a bound too, longer far away;
  *   second order: the r of |f| = |grad f| r + H r^2 / 2, H the slope of the gradient over C;
- *   local: the same with what f can change near the point alone (graph/local.h).
+ *   local: the same with what f can change near the point alone (graph/symbolic/local.h).
  * All count only zeros in C, from points in C.  The first two are 1-Lipschitz, and so distances as
  * good as f / L: that of second order is, because on the way h to another point the gradient grows
  * by H h at most, so what can change within r there can change within r + h here, less what can
@@ -21,9 +21,9 @@
 #include <math.h>
 
 #include "compiler/graph/build.h"
-#include "compiler/graph/derive.h"
 #include "compiler/graph/evaluate.h"
-#include "compiler/graph/local.h"
+#include "compiler/graph/symbolic/derive.h"
+#include "compiler/graph/symbolic/local.h"
 #include "compiler/shape/slope.h"
 
 /* Into how many cells a region is cut for slopes: of gradients, which decide how long all steps

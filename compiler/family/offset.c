@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "compiler/graph/derive.h"
+#include "compiler/graph/symbolic/derive.h"
 #include "compiler/lower/join.h"
 
 /* ---- how it is made ---- */

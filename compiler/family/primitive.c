@@ -4,7 +4,7 @@
  */
 #include "compiler/family/family.h"
 
-#include "compiler/graph/derive.h"
+#include "compiler/graph/symbolic/derive.h"
 #include "compiler/lower/context.h"
 
 /* ---- how it is made ---- */

@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-#include "compiler/graph/parity.h"
+#include "compiler/graph/symbolic/parity.h"
 #include "compiler/lower/boundary.h"
 #include "compiler/lower/box_distance.h"
 #include "compiler/lower/join.h"

@@ -16,8 +16,8 @@
 
 #include "compiler/graph/build.h"
 #include "compiler/graph/crowd.h"
-#include "compiler/graph/derive.h"
 #include "compiler/graph/evaluate.h"
+#include "compiler/graph/symbolic/derive.h"
 
 /* Nearer to grazing than this cosine, pixels are taken to be no longer. */
 static const double LEAST_COSINE_SQUARED = 1e-6;

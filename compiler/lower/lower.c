@@ -4,8 +4,8 @@
 #include "compiler/lower/lower.h"
 
 #include "compiler/base/far.h"
-#include "compiler/graph/derive.h"
 #include "compiler/graph/evaluate.h"
+#include "compiler/graph/symbolic/derive.h"
 #include "compiler/lower/crowd.h"
 #include "compiler/lower/normal.h"
 #include "compiler/shape/slope.h"

@@ -27,7 +27,7 @@
 
 #include "compiler/base/far.h"
 #include "compiler/graph/build.h"
-#include "compiler/graph/series.h"
+#include "compiler/graph/symbolic/series.h"
 #include "compiler/lower/lower.h"
 #include "compiler/lower/map_chain.h"
 #include "compiler/lower/ray_images.h"

@@ -13,7 +13,7 @@
 #include "compiler/lower/tangent.h"
 
 #include "compiler/graph/build.h"
-#include "compiler/graph/derive.h"
+#include "compiler/graph/symbolic/derive.h"
 #include "compiler/lower/footprint.h"
 
 /* The part of v's gradient that is along the surface, squared: less is none. */

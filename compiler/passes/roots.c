@@ -13,7 +13,7 @@
 #include "compiler/graph/build.h"
 #include "compiler/graph/facts.h"
 #include "compiler/graph/rebase.h"
-#include "compiler/graph/derive.h"
+#include "compiler/graph/symbolic/derive.h"
 #include "compiler/lower/crowd.h"
 
 /* Allocates all roots, ordered by kind.  Those for camera-relative points are last, so that they

@@ -9,7 +9,7 @@
 #define KRS_SHAPE_H
 
 #include "compiler/base/source.h"
-#include "compiler/graph/zeros.h"
+#include "compiler/graph/symbolic/zeros.h"
 #include "compiler/shape/box.h"
 
 typedef struct Shape Shape;

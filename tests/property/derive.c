@@ -13,8 +13,8 @@
 #include <stdio.h>
 #include <cmocka.h>
 
-#include "compiler/graph/derive.h"
 #include "compiler/graph/evaluate.h"
+#include "compiler/graph/symbolic/derive.h"
 
 #include "tests/support/bench.h"
 

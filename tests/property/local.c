@@ -11,9 +11,9 @@
 #include <stddef.h>
 #include <cmocka.h>
 
-#include "compiler/graph/derive.h"
 #include "compiler/graph/evaluate.h"
-#include "compiler/graph/local.h"
+#include "compiler/graph/symbolic/derive.h"
+#include "compiler/graph/symbolic/local.h"
 
 #include "tests/support/bench.h"
 

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "compiler/graph/evaluate.h"
-#include "compiler/graph/parity.h"
+#include "compiler/graph/symbolic/parity.h"
 #include "tests/support/random.h"
 
 static jmp_buf exhausted;

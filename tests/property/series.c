@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "compiler/graph/evaluate.h"
-#include "compiler/graph/series.h"
+#include "compiler/graph/symbolic/series.h"
 
 #include "tests/support/bench.h"
 

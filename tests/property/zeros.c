@@ -13,7 +13,7 @@
 
 #include "compiler/graph/build.h"
 #include "compiler/graph/evaluate.h"
-#include "compiler/graph/zeros.h"
+#include "compiler/graph/symbolic/zeros.h"
 
 #include "tests/support/bench.h"
 

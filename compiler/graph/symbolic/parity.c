@@ -5,7 +5,7 @@
  * (odd), or does something else.  Sums need equal parities, products multiply them, and whatever
  * depends on even things only is even.
  */
-#include "compiler/graph/parity.h"
+#include "compiler/graph/symbolic/parity.h"
 
 #include "compiler/graph/evaluate.h"
 

@@ -1,7 +1,7 @@
 /*
  * local_terms.c: sums and products of what is known of numbers in the ball.
  */
-#include "compiler/graph/local_terms.h"
+#include "compiler/graph/symbolic/local_terms.h"
 
 #include <math.h>
 

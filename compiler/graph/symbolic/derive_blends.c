@@ -2,7 +2,7 @@
  * derive_blends.c: derivatives of smooth minima of a and b over a width: those of a and b, weighted;
  * and of the weight of each.
  */
-#include "compiler/graph/derive_rules.h"
+#include "compiler/graph/symbolic/derive_rules.h"
 
 #include <math.h>
 

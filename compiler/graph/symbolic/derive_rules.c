@@ -4,7 +4,7 @@
  * Those of operations that work component by component are the columns da, db, dc of ops.def,
  * written there for ranges and read here as makers of nodes; the others follow.
  */
-#include "compiler/graph/derive_rules.h"
+#include "compiler/graph/symbolic/derive_rules.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /*
  * local_curves.c: smooth functions of one number in the ball.
  */
-#include "compiler/graph/local_curves.h"
+#include "compiler/graph/symbolic/local_curves.h"
 
 #include <math.h>
 

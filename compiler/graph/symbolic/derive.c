@@ -4,12 +4,12 @@
  * One loop over the needed nodes, operands first (forward mode): three derivatives a node.  The
  * rules are in derive_rules.c and derive_blends.c.
  */
-#include "compiler/graph/derive.h"
+#include "compiler/graph/symbolic/derive.h"
 
 #include <assert.h>
 
-#include "compiler/graph/derive_rules.h"
 #include "compiler/graph/evaluate.h"
+#include "compiler/graph/symbolic/derive_rules.h"
 
 static DeriveRule *const rules[OP_COUNT] = {
 #define RULES(name, cost, promises, simplify, derive, ...) [OP_##name] = derive,

@@ -10,11 +10,11 @@
  *     written, does not hold 0.  That also finds (x^2 (1 - x^2) - y^2)^2 + z^2 = 0.01 bounded, whose
  *     leading form is x^8 alone.
  */
-#include "compiler/graph/zeros.h"
+#include "compiler/graph/symbolic/zeros.h"
 
 #include <math.h>
 
-#include "compiler/graph/series.h"
+#include "compiler/graph/symbolic/series.h"
 #include "compiler/graph/range.h"
 
 /* How much is tried, in operations over boxes. */

@@ -6,7 +6,7 @@
  * is at most the product of the sizes; the first order alone is exact, as its gradient is carried
  * along, because it decides where the bound is needed most, near the surface.
  */
-#include "compiler/graph/series.h"
+#include "compiler/graph/symbolic/series.h"
 
 #include <assert.h>
 #include <math.h>

@@ -15,14 +15,14 @@
  *   everything else, noise for one: its slope over the box, as `first`.
  * Where f'' has a pole, M holds half the way there, and the radius ends there.
  */
-#include "compiler/graph/local.h"
+#include "compiler/graph/symbolic/local.h"
 
 #include <math.h>
 
 #include "compiler/graph/build.h"
 #include "compiler/graph/evaluate.h"
-#include "compiler/graph/local_curves.h"
-#include "compiler/graph/parity.h"
+#include "compiler/graph/symbolic/local_curves.h"
+#include "compiler/graph/symbolic/parity.h"
 
 typedef struct BallTerms {
     uint32_t  count;

@@ -4,7 +4,7 @@
 #ifndef KRS_LOCAL_CURVES_H
 #define KRS_LOCAL_CURVES_H
 
-#include "compiler/graph/local_terms.h"
+#include "compiler/graph/symbolic/local_terms.h"
 
 /* f'(u) and M, the largest |f''| in the ball. */
 typedef struct Curve {
