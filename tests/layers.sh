@@ -6,7 +6,7 @@
 # Units (NAME.c with NAME.h) do not include each other in circles.
 set -u
 cd "$(dirname "$0")/.." || exit 1
-layers="compiler/base compiler/image compiler/outline compiler/graph compiler/graph/symbolic compiler/graph/instances compiler/shape compiler/lower compiler/family compiler/front
+layers="compiler/base compiler/image compiler/outline compiler/graph compiler/graph/rewrite compiler/graph/symbolic compiler/graph/instances compiler/shape compiler/lower compiler/family compiler/front
         compiler/eval compiler/print compiler/print/glsl compiler/target compiler/scene compiler/passes compiler/refute compiler/mesh compiler/slice compiler/grid compiler/measure
         runtime/device runtime/shared runtime/tracer runtime/integrators runtime/film runtime/display
         runtime/writer runtime api import/common import/csg import/surfer import/pov import live cli/options cli/shell cli/picture cli/mesh cli/grid cli/slice cli"

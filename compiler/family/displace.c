@@ -7,6 +7,7 @@
 #include <math.h>
 
 #include "compiler/graph/build.h"
+#include "compiler/graph/rewrite/simplify.h"
 
 /* ---- how it is made ---- */
 

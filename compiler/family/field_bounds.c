@@ -22,6 +22,7 @@
 
 #include "compiler/graph/build.h"
 #include "compiler/graph/evaluate.h"
+#include "compiler/graph/rewrite/simplify.h"
 #include "compiler/graph/symbolic/derive.h"
 #include "compiler/graph/symbolic/local.h"
 #include "compiler/shape/slope.h"

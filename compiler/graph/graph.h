@@ -198,12 +198,6 @@ Graph *graph_extract_with_crowds(const Graph *graph, Node *roots, size_t root_co
 Graph *graph_extract_along(const Graph *graph, const Node *roots, size_t root_count, Node leaf,
                            Node *copies, Arena *arena);
 
-/* Algebraic simplification of everything `roots` need, into a new graph (same parameters):
-   the roots are renumbered in place.  Rules keep values: x+0, x*1, x*0 (x finite), --x,
-   min(x,x), component of a built vector, a built vector of all components of one vector, select
-   with equal branches or known condition, constants gathered.  Dead nodes are gone. */
-Graph *graph_simplify(const Graph *graph, Node *roots, size_t root_count, Arena *arena);
-
 /* Asserts what every pass must keep: operands first, types right, arity right, times right. */
 void graph_validate(const Graph *graph, const char *pass);
 

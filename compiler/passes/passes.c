@@ -5,8 +5,9 @@
 
 #include "compiler/passes/compilation.h"
 #include "compiler/graph/crowd.h"
-#include "compiler/graph/hoist.h"
-#include "compiler/graph/joints.h"
+#include "compiler/graph/rewrite/hoist.h"
+#include "compiler/graph/rewrite/joints.h"
+#include "compiler/graph/rewrite/simplify.h"
 #include "compiler/lower/crowd.h"
 
 /* ---- the front end ---- */

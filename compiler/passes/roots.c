@@ -12,7 +12,7 @@
 #include "compiler/passes/compilation.h"
 #include "compiler/graph/build.h"
 #include "compiler/graph/facts.h"
-#include "compiler/graph/rebase.h"
+#include "compiler/graph/rewrite/rebase.h"
 #include "compiler/graph/symbolic/derive.h"
 #include "compiler/lower/crowd.h"
 

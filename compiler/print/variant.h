@@ -102,7 +102,7 @@ typedef struct KrsVariant {
     KrsRayStep step;        /* of krs_along */
     KrsGlass   glass;       /* what distances say of components that may let light through */
     bool       planes;      /* distances leave out the planes that krs_plane_t knows */
-    bool       camera_relative; /* points are relative to an origin near them (graph/rebase.h) */
+    bool camera_relative; /* points are relative to an origin near them (graph/rewrite/rebase.h) */
     bool many_threads; /* for devices with many threads: operations count, and branches save work.
                            Elsewhere what has to be waited for counts, and built-in min and max of
                            variables are three instructions, since they mind what is not a number */

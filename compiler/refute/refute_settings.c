@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "compiler/base/splitmix.h"
+#include "compiler/graph/rewrite/simplify.h"
 #include "compiler/shape/slope.h"
 
 enum { SETTING_ATTEMPTS = 8 };

@@ -3,6 +3,7 @@
  */
 #include "compiler/refute/refuter.h"
 
+#include "compiler/graph/rewrite/simplify.h"
 #include "compiler/refute/search.h"
 #include "compiler/shape/slope.h"
 

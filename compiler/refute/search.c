@@ -9,6 +9,7 @@
 #include "compiler/base/splitmix.h"
 #include "compiler/base/vec.h"
 #include "compiler/graph/crowd.h"
+#include "compiler/graph/rewrite/simplify.h"
 #include "compiler/refute/search_pairs.h"
 #include "compiler/refute/search_starts.h"
 #include "compiler/refute/search_targets.h"

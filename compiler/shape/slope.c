@@ -16,6 +16,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/graph/rewrite/simplify.h"
+
 enum { CELLS = 512, FRAME_CELLS = 64, TRIALS = 3, FIRST_TRIALS = 2 };
 
 /* A constant slope may be so many times as large as those of the first frames.  Normals beside edges

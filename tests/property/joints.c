@@ -11,7 +11,8 @@
 
 #include <cmocka.h>
 
-#include "compiler/graph/joints.h"
+#include "compiler/graph/evaluate.h"
+#include "compiler/graph/rewrite/joints.h"
 #include "tests/support/bench.h"
 
 enum { TREES = 150, POINTS = 3000, MOST_PARTS = 24 };

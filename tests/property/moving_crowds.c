@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "compiler/graph/instances/crowd_frame.h"
+#include "compiler/graph/rewrite/simplify.h"
 #include "tests/property/crowd_parts.h"
 
 /* In a colour that a number of the frame makes brighter. */

@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <cmocka.h>
 
-#include "compiler/graph/rebase.h"
+#include "compiler/graph/rewrite/rebase.h"
 #include "compiler/graph/evaluate.h"
 
 typedef struct Bench {

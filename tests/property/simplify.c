@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "compiler/graph/evaluate.h"
+#include "compiler/graph/rewrite/simplify.h"
 
 #include "tests/property/garden.h"
 

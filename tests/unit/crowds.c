@@ -15,7 +15,8 @@
 #include <string.h>
 
 #include "compiler/graph/evaluate.h"
-#include "compiler/graph/hoist.h"
+#include "compiler/graph/rewrite/hoist.h"
+#include "compiler/graph/rewrite/simplify.h"
 #include "compiler/print/module.h"
 #include "compiler/target/spirv.h"
 #include "tests/unit/crowd_scene.h"

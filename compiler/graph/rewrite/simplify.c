@@ -6,6 +6,8 @@
  * no root needs any more.  Rules keep values exactly, but for the sign of zero and, where
  * constants are gathered, the last digit.
  */
+#include "compiler/graph/rewrite/simplify.h"
+
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,9 +1,11 @@
 /*
  * joints.c: the tree of joints of a distance, and what is left of it.
  */
-#include "compiler/graph/joints.h"
+#include "compiler/graph/rewrite/joints.h"
 
 #include "compiler/base/far.h"
+#include "compiler/graph/evaluate.h"
+#include "compiler/graph/rewrite/joint_needs.h"
 
 /* A larger tree would take longer to look at than what is saved. */
 enum { MOST_NODES = 4000 };

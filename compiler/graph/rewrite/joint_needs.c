@@ -9,12 +9,13 @@
  * the distance with or without each of what is not needed, in all combinations.  A box counts unless the
  * whole has one sign in all of them.  What turns out to have an influence is needed as well.
  */
+#include "compiler/graph/rewrite/joint_needs.h"
+
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
 #include "compiler/base/far.h"
-#include "compiler/graph/joints.h"
 #include "compiler/graph/lanes.h"
 
 /* Relative to the longest side of all: the smallest boxes; those where only edges of tools are in

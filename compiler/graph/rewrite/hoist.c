@@ -6,7 +6,7 @@
  * constant like those of formulas.  The latter are mostly 0, 1, 2 and one half, which stay, since
  * literals cost nothing.
  */
-#include "compiler/graph/hoist.h"
+#include "compiler/graph/rewrite/hoist.h"
 
 #include <math.h>
 

@@ -10,7 +10,7 @@
  * limits keep both, too, so that repetition does.  Everything else gets the sum: near a surface
  * of a kernel it is no larger than the kernel.
  */
-#include "compiler/graph/rebase.h"
+#include "compiler/graph/rewrite/rebase.h"
 
 #include "compiler/graph/crowd.h"
 #include "compiler/graph/evaluate.h"
