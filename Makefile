@@ -48,8 +48,8 @@ RUNTIME  := $(foreach room,device tracer integrators film display writer,$(call 
 # What programs link with of other versions, too (api/README.md).
 API      := $(call sources,api)
 IMPORT   := $(foreach room,import/common import/csg import/surfer import/pov import,$(call sources,$(room)))
-LIVE     := $(call sources,live)
-LIVE_BORDER := live/gui.cpp
+LIVE     := $(foreach room,live/text live/pictures live/window live,$(call sources,$(room)))
+LIVE_BORDER := live/window/gui.cpp
 CLI      := $(foreach room,cli/options cli/shell cli/picture cli/mesh cli/grid cli/slice cli,$(call sources,$(room)))
 CLI_BORDER := cli/mesh/glb_materials.cpp cli/mesh/glb.cpp cli/shell/terminate.cpp
 # OpenVDB is loaded when a .vdb is written: it takes longer to load than most commands to run.
@@ -151,7 +151,7 @@ $(B)/%.o: %.c $(B)/flags
 	@mkdir -p $(@D)
 	@echo "compile $<"
 	@$(CC_C) $(FAST) -c -o $@ $<
-$(B)/live/cells.o: FAST = $(if $(CHAFA),-DKRS_HAS_CHAFA)
+$(B)/live/window/cells.o: FAST = $(if $(CHAFA),-DKRS_HAS_CHAFA)
 # Loops over lanes become vector instructions; results are the same on every machine.  What sanitizers
 # watch cannot become such: trying it takes minutes, and clang warns that it failed.
 $(LANES:%.c=$(B)/%.o): FAST := $(if $(findstring -fsanitize,$(CFLAGS)),-Wno-pass-failed,-O3) \

@@ -15,7 +15,7 @@
 #include "cli/mesh/meshing.h"
 #include "cli/picture/render.h"
 #include "cli/shell/supervise.h"
-#include "live/document.h"
+#include "live/text/document.h"
 
 /* How long a signal may go unnoticed where the system does not end the wait for it. */
 #define LONGEST_WAIT 3600.0

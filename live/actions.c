@@ -10,9 +10,9 @@
 #include <string.h>
 
 #include "krs/camera.h"
-#include "live/camera_text.h"
 #include "live/saving.h"
-#include "live/text_edit.h"
+#include "live/text/camera_text.h"
+#include "live/text/text_edit.h"
 
 /* Of a turn for the height of the window. */
 #define DRAG_TURN M_PI

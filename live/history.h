@@ -4,7 +4,7 @@
 #ifndef KRS_HISTORY_H
 #define KRS_HISTORY_H
 
-#include "live/canvas.h"
+#include "live/pictures/canvas.h"
 
 typedef struct History History;
 

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "live/actions.h"
-#include "live/gui.h"
+#include "live/window/gui.h"
 
 #define PANEL_WIDTH 320
 /* Less is no panel to work with. */

@@ -8,14 +8,14 @@
 #include <stdatomic.h>
 
 #include "live/cut.h"
-#include "live/document.h"
 #include "live/history.h"
-#include "live/painter.h"
-#include "live/presets.h"
-#include "live/saver.h"
-#include "live/terminal.h"
+#include "live/pictures/painter.h"
+#include "live/pictures/saver.h"
+#include "live/text/document.h"
+#include "live/text/presets.h"
 #include "live/viewer_options.h"
-#include "live/window.h"
+#include "live/window/terminal.h"
+#include "live/window/window.h"
 
 typedef struct Viewing {
     const ViewerOptions *options;

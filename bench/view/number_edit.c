@@ -9,7 +9,7 @@
 #include <time.h>
 
 #include "bench/stage.h"
-#include "live/text_file.h"
+#include "live/text/text_file.h"
 
 enum { MOST_TRIES = 60 };
 /* Some texts take seconds to compile. */

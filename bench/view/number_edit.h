@@ -4,7 +4,7 @@
 #ifndef KRS_BENCH_NUMBER_EDIT_H
 #define KRS_BENCH_NUMBER_EDIT_H
 
-#include "live/document.h"
+#include "live/text/document.h"
 
 typedef struct NumberEdit {
     const char *path;

@@ -1,7 +1,7 @@
 /*
  * view.c: how fast `krs view` follows an edit, a slider and the camera, at 640x360.
  *
- * It drives what the window shows pictures of (live/painter.h), without the window.  IDLE in the
+ * It drives what the window shows pictures of (live/pictures/painter.h), without the window.  IDLE in the
  * environment is what view.sh has measured of the window itself.
  */
 #include <math.h>
@@ -15,7 +15,7 @@
 #include "bench/stage.h"
 #include "bench/view/number_edit.h"
 #include "krs/camera.h"
-#include "live/painter.h"
+#include "live/pictures/painter.h"
 
 enum { WIDTH = 640, HEIGHT = 360, EDITS = 5 };
 static const double SECONDS = 2; /* that the camera, and a slider, move */

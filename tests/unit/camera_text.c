@@ -14,8 +14,8 @@
 
 #include <cmocka.h>
 
-#include "live/camera_text.h"
-#include "live/text_file.h"
+#include "live/text/camera_text.h"
+#include "live/text/text_file.h"
 #include "tests/support/random.h"
 
 static const KrsCamera start = {

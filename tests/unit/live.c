@@ -17,11 +17,11 @@
 
 #include "krs/camera.h"
 #include "live/cut.h"
-#include "live/document.h"
-#include "live/false_color.h"
 #include "live/history.h"
-#include "live/presets.h"
-#include "live/text_edit.h"
+#include "live/pictures/false_color.h"
+#include "live/text/document.h"
+#include "live/text/presets.h"
+#include "live/text/text_edit.h"
 
 static const KrsCamera start = {.projection = KRS_PERSPECTIVE,
                                 .eye        = {3, 2, 5},

@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-#include "live/painter.h"
+#include "live/pictures/painter.h"
 #include "tests/support/device.h"
 #include "tests/support/renderer.h"
 

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "live/resolution.h"
+#include "live/pictures/resolution.h"
 
 static const double PIXELS = 640 * 360, BUDGET = 40;
 

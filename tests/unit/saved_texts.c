@@ -15,8 +15,8 @@
 
 #include <cmocka.h>
 
-#include "live/document.h"
-#include "live/watcher.h"
+#include "live/text/document.h"
+#include "live/text/watcher.h"
 
 enum { TRIES = 20 };
 

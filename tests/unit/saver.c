@@ -18,8 +18,8 @@
 #include <cmocka.h>
 
 #include "compiler/image/image.h"
-#include "live/saver.h"
-#include "live/text_file.h"
+#include "live/pictures/saver.h"
+#include "live/text/text_file.h"
 #include "tests/support/device.h"
 #include "tests/support/folder.h"
 #include "tests/support/renderer.h"

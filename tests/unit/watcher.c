@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "live/watcher.h"
+#include "live/text/watcher.h"
 
 static void put(const char *path, const char *text)
 {

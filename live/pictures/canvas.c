@@ -1,7 +1,7 @@
 /*
  * canvas.c: a scene on a device, and the films of it that a viewer shows.
  */
-#include "live/canvas.h"
+#include "live/pictures/canvas.h"
 
 #include <math.h>
 #include <stdlib.h>

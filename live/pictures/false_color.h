@@ -8,7 +8,7 @@
 
 typedef enum Look {
 #define LOOK(id, name, about) LOOK_##id,
-#include "live/looks.def"
+#include "live/pictures/looks.def"
 #undef LOOK
     LOOK_COUNT
 } Look;

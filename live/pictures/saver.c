@@ -4,7 +4,7 @@
  * Each order has a canvas of its own, which is freed behind it: what is shown goes on meanwhile, only
  * more slowly.
  */
-#include "live/saver.h"
+#include "live/pictures/saver.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -13,14 +13,14 @@
 #include <stdlib.h>
 
 #include "krs/camera.h"
-#include "live/picture_file.h"
+#include "live/pictures/picture_file.h"
 
 /* Of an order, how much is done when its shaders are compiled; not more than a frame is. */
 #define COMPILED_PART 0.2
 
 const char *const save_names[SAVE_COUNT] = {
 #define SAVE(id, name, about) name,
-#include "live/saves.def"
+#include "live/pictures/saves.def"
 #undef SAVE
 };
 

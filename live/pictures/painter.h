@@ -7,7 +7,7 @@
 #ifndef KRS_PAINTER_H
 #define KRS_PAINTER_H
 
-#include "live/canvas.h"
+#include "live/pictures/canvas.h"
 
 typedef struct PainterOptions {
     KrsRendererOptions renderer;

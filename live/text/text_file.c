@@ -1,7 +1,7 @@
 /*
  * text_file.c: reads and writes whole files.
  */
-#include "live/text_file.h"
+#include "live/text/text_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

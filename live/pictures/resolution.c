@@ -8,7 +8,7 @@
  * other kind.  What is late although its size should do is tried with fewer of them: pictures of one size
  * would never tell that their pixels are underrated.
  */
-#include "live/resolution.h"
+#include "live/pictures/resolution.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /*
  * picture_file.c: pictures as files, in the forms of `krs render`.
  */
-#include "live/picture_file.h"
+#include "live/pictures/picture_file.h"
 
 #include <stddef.h>
 #include <stdio.h>

@@ -6,8 +6,8 @@
 #ifndef KRS_CANVAS_H
 #define KRS_CANVAS_H
 
-#include "live/document.h"
-#include "live/false_color.h"
+#include "live/pictures/false_color.h"
+#include "live/text/document.h"
 #include "krs/vulkan.h"
 
 /* What is to be seen. */

@@ -4,7 +4,7 @@
 #ifndef KRS_PICTURE_FILE_H
 #define KRS_PICTURE_FILE_H
 
-#include "live/canvas.h"
+#include "live/pictures/canvas.h"
 
 /* Writes the picture of a view: as EXR with all its planes where the name ends in .exr, else as PNG.
    The file appears whole or not at all.  On any status but KRS_OK `why` is one line. */

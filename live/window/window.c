@@ -1,7 +1,7 @@
 /*
  * window.c: a window with a picture, by GLFW and OpenGL.
  */
-#include "live/window.h"
+#include "live/window/window.h"
 
 #include <GL/gl.h>
 #include <GLFW/glfw3.h>
@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "live/gui.h"
-#include "live/lost_display.h"
+#include "live/window/gui.h"
+#include "live/window/lost_display.h"
 
 /* OpenGL 1.2; the header has what is older. */
 #define CLAMP_TO_EDGE 0x812F

@@ -4,7 +4,7 @@
 #ifndef KRS_BUILDER_H
 #define KRS_BUILDER_H
 
-#include "live/canvas.h"
+#include "live/pictures/canvas.h"
 
 typedef struct BuilderState {
     bool      building;

@@ -1,7 +1,7 @@
 /*
  * text_edit.c: from the viewer back to the text of the scene.
  */
-#include "live/text_edit.h"
+#include "live/text/text_edit.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "live/text_file.h"
+#include "live/text/text_file.h"
 
 /* ---- values ---- */
 

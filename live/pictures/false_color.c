@@ -1,13 +1,13 @@
 /*
  * false_color.c: depth, normals, numbers and steps as colours.
  */
-#include "live/false_color.h"
+#include "live/pictures/false_color.h"
 
 #include <math.h>
 
 const char *const look_names[LOOK_COUNT] = {
 #define LOOK(id, name, about) name,
-#include "live/looks.def"
+#include "live/pictures/looks.def"
 #undef LOOK
 };
 

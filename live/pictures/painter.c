@@ -8,10 +8,10 @@
  * moves, each is shown.  Whole ones are interrupted at once, though what the device has begun must
  * end first.  So none is begun while the next change is to be expected at any moment.
  */
-#include "live/painter.h"
+#include "live/pictures/painter.h"
 
-#include "live/builder.h"
-#include "live/resolution.h"
+#include "live/pictures/builder.h"
+#include "live/pictures/resolution.h"
 
 #include <math.h>
 #include <pthread.h>

@@ -1,7 +1,7 @@
 /*
  * camera_text.c: cameras as text of the language.
  */
-#include "live/camera_text.h"
+#include "live/text/camera_text.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "live/text_file.h"
+#include "live/text/text_file.h"
 
 /* ---- properties ---- */
 

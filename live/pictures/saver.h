@@ -4,13 +4,13 @@
 #ifndef KRS_SAVER_H
 #define KRS_SAVER_H
 
-#include "live/canvas.h"
+#include "live/pictures/canvas.h"
 
 /* What is saved: one picture, a turn around the target, or a range of time; a row of saves.def
    each. */
 typedef enum SaveKind {
 #define SAVE(id, name, about) SAVE_##id,
-#include "live/saves.def"
+#include "live/pictures/saves.def"
 #undef SAVE
     SAVE_COUNT
 } SaveKind;

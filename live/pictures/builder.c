@@ -4,7 +4,7 @@
  * It has a canvas of its own, so a device of its own: while that compiles, the other shows.  When a
  * build is done the two are exchanged, and each keeps the shaders that it has made.
  */
-#include "live/builder.h"
+#include "live/pictures/builder.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

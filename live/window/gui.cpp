@@ -1,5 +1,5 @@
 // gui.cpp: the border to Dear ImGui.  Nothing is decided here but how things look.
-#include "live/gui.h"
+#include "live/window/gui.h"
 
 #include <GLFW/glfw3.h>
 #include <imgui.h>

@@ -4,7 +4,7 @@
  * Many editors do not write into a file, but put a new one in its place.  So folders are watched,
  * for the names of files in them.
  */
-#include "live/watcher.h"
+#include "live/text/watcher.h"
 
 #include <errno.h>
 #include <limits.h>

@@ -1,7 +1,7 @@
 /*
  * presets.c: named values of a scene's parameters, in a file beside the scene.
  */
-#include "live/presets.h"
+#include "live/text/presets.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 #include "compiler/base/loader.h"
 #include "compiler/base/paths.h"
 #include "compiler/base/source.h"
-#include "live/text_file.h"
+#include "live/text/text_file.h"
 
 static bool file_name(const char *scene_path, char path[4096])
 {

@@ -1,7 +1,7 @@
 /*
  * cells.c: pictures as characters of a terminal, by libchafa, which the build may lack.
  */
-#include "live/cells.h"
+#include "live/window/cells.h"
 
 #include <stddef.h>
 

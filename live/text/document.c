@@ -4,7 +4,7 @@
  * Edits are compared to the version before.  So a scene that is right again after a mistake is an
  * update of the one that was right before it, and its shaders are not compiled again.
  */
-#include "live/document.h"
+#include "live/text/document.h"
 
 #include <limits.h>
 #include <poll.h>
@@ -17,7 +17,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "live/watcher.h"
+#include "live/text/watcher.h"
 
 struct Version {
     KrsScene   *scene;

@@ -3,7 +3,7 @@
  *
  * Xlib hands nothing of the caller's to its handler, so a variable of the file has it.
  */
-#include "live/lost_display.h"
+#include "live/window/lost_display.h"
 
 #include <X11/Xlib.h>
 #include <stddef.h>

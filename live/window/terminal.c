@@ -1,7 +1,7 @@
 /*
  * terminal.c: a terminal with a picture.
  */
-#include "live/terminal.h"
+#include "live/window/terminal.h"
 
 #include <GLFW/glfw3.h>
 #include <errno.h>
@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 #include "compiler/base/visible.h"
-#include "live/cells.h"
+#include "live/window/cells.h"
 
 /* Pixels of a cell where the terminal does not tell.  Characters are about twice as high as wide. */
 enum { CELL_WIDTH = 8, CELL_HEIGHT = 16 };
