@@ -160,3 +160,12 @@ void scene_free(KrsScene *scene)
 }
 
 void krs_scene_free(KrsScene *scene) { scene_free(scene); }
+
+/* Drivers keep the values of the frame in registers, and need minutes where there are thousands:
+   bench/measurements.md. */
+enum { MOST_VALUE_SLOTS = 1000 };
+
+bool krs_structure_is_affordable(const KrsScene *scene)
+{
+    return scene->program.value_slots <= MOST_VALUE_SLOTS;
+}

@@ -1,17 +1,18 @@
 /*
- * update.c: compiles an edited text of a scene, and finds what is different.
+ * changes.c: finds what is different in a scene that was edited.
  *
  * Two scenes have the same kernels if these are made of the same nodes, apart from numbers of the
  * frame, and if all else that decides about their text is equal.  Some constants never get into the
  * text, and tables of crowds and textures do not, but what is derived from them may.  So scenes of
  * which nodes, tables or textures differ are compared by their text as well.
  */
+#include "compiler/scene/changes.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "compiler/graph/crowd.h"
 #include "compiler/graph/texture.h"
-#include "compiler/scene/program.h"
 
 /* What two parts of scenes have in common, the least first. */
 typedef enum Likeness { DIFFERENT, ALIKE_BUT_NUMBERS, EQUAL } Likeness;
@@ -489,7 +490,7 @@ static KrsStatus compare_guarded(Comparison *c)
     return KRS_OK;
 }
 
-static KrsStatus find_changes(const KrsScene *a, const KrsScene *b, KrsChanges *changes)
+KrsStatus scene_changes(const KrsScene *a, const KrsScene *b, KrsChanges *changes)
 {
     const KrsAllocator *allocator = &a->options.allocator;
     Comparison          c         = {.a      = a,
@@ -502,74 +503,4 @@ static KrsStatus find_changes(const KrsScene *a, const KrsScene *b, KrsChanges *
     arena_free(&c.arena);
     *changes = c.changes;
     return status;
-}
-
-/* Drivers keep the values of the frame in registers, and need minutes where there are thousands:
-   bench/measurements.md. */
-enum { MOST_VALUE_SLOTS = 1000 };
-
-bool krs_structure_is_affordable(const KrsScene *scene)
-{
-    return scene->program.value_slots <= MOST_VALUE_SLOTS;
-}
-
-/* Of the text or, when that is NULL, of the scene's file. */
-static KrsStatus compile_again(const KrsScene *scene, const char *text, size_t length,
-                               const KrsOptions *options, KrsScene **updated)
-{
-    return text ? krs_compile_text(text, length, scene->name, options, updated)
-                : krs_compile_file(scene->name, options, updated);
-}
-
-static KrsStatus compile_edited(const KrsScene *scene, const char *text, size_t length,
-                                KrsScene **updated)
-{
-    KrsOptions options   = scene->options;
-    const bool automatic = options.specialize == KRS_SPECIALIZE_AUTO;
-    options.text         = NULL; /* that of the first compilation */
-    if (automatic)
-        options.specialize = KRS_SPECIALIZE_STRUCTURE;
-    KrsStatus status = compile_again(scene, text, length, &options, updated);
-    if (status != KRS_OK || !automatic || krs_structure_is_affordable(*updated))
-        return status;
-    krs_scene_free(*updated);
-    options.specialize = KRS_SPECIALIZE_AUTO;
-    options.diagnostic = NULL; /* all has been said */
-    status             = compile_again(scene, text, length, &options, updated);
-    if (status == KRS_OK)
-        (*updated)->options.diagnostic = scene->options.diagnostic;
-    return status;
-}
-
-static KrsStatus update(const KrsScene *scene, const char *text, size_t length, KrsScene **updated,
-                        KrsChanges *changes)
-{
-    KrsChanges found  = {0};
-    KrsStatus  status = compile_edited(scene, text, length, updated);
-    if (status == KRS_OK)
-        status = find_changes(scene, *updated, &found);
-    if (status == KRS_OK && found.kind != KRS_CHANGE_STRUCTURE)
-        (*updated)->program.kernels = scene->program.kernels;
-    if (status != KRS_OK) {
-        krs_scene_free(*updated);
-        *updated = NULL;
-    }
-    if (changes)
-        *changes = found;
-    return status;
-}
-
-KrsStatus krs_scene_update(const KrsScene *scene, const char *text, size_t length,
-                           KrsScene **updated, KrsChanges *changes)
-{
-    if (!text && length > 0) {
-        *updated = NULL;
-        return KRS_BAD_ARGUMENT;
-    }
-    return update(scene, text ? text : "", length, updated, changes);
-}
-
-KrsStatus krs_scene_reload(const KrsScene *scene, KrsScene **updated, KrsChanges *changes)
-{
-    return update(scene, NULL, 0, updated, changes);
 }
