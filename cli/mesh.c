@@ -21,22 +21,6 @@ static int copies_in(const Options *options, const MeshFormat *format)
 
 /* ---- the mesh ---- */
 
-void enter_step(Meshing *meshing, double goal)
-{
-    meshing->begun = meshing->done = meshing->goal;
-    meshing->goal                  = goal;
-}
-
-double step_of(const Meshing *meshing, double goal, double steps)
-{
-    return meshing->goal + (goal - meshing->goal) / steps;
-}
-
-bool mesh_goes_on(const Meshing *meshing)
-{
-    return !*interrupted() && !(meshing->outdated && meshing->outdated(meshing->user));
-}
-
 static bool go_on(void *user, double fraction)
 {
     Meshing *meshing = user;

@@ -67,8 +67,6 @@ typedef struct Meshing {
    the meshes of the scene, writes them, and says what they are.  A Meshing is for one scene. */
 KrsStatus check_mesh_outputs(const Meshing *meshing);
 KrsStatus write_meshes(Meshing *meshing);
-/* False: the work is to end, with KRS_INTERRUPTED. */
-bool mesh_goes_on(const Meshing *meshing);
 
 /* wishes.c: the files that are written. */
 size_t      output_count(const Meshing *meshing);
@@ -121,9 +119,11 @@ extern const double metres_of_units[];
 /* What a length of 1 is in the file. */
 void set_units(const Meshing *meshing, const MeshFormat *format, MeshParts *parts);
 
-/* mesh.c: the next step of the work, which is done to `goal` behind it; and the goal of the first of so many until one. */
+/* steps.c: the next step of the work, which is done to `goal` behind it; and the goal of the first of so many until one. */
 void   enter_step(Meshing *meshing, double goal);
 double step_of(const Meshing *meshing, double goal, double steps);
+/* False: the work is to end, with KRS_INTERRUPTED. */
+bool mesh_goes_on(const Meshing *meshing);
 
 /* beams.c: with --beams, whether files have them; a body of beams, if a component is made of them (from 1; 0: the only
    one); and what files have of it. */
