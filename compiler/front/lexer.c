@@ -5,11 +5,52 @@
  * curly quote.  These are reported with a replacement, and become the token that was meant, so that
  * one mistake is one error.
  */
-#include "compiler/front/lexer.h"
-
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/srgb.h"
 #include "compiler/front/synonyms.h"
+#include "compiler/front/token.h"
+
+typedef struct Lexer {
+    const char *text;
+    uint32_t    length, at; /* bytes of the text; offset of the next byte */
+    uint32_t    source;
+    uint32_t    line_end; /* result of the last find_line_end, or 0 */
+    Names      *names;
+    Diags      *diags;
+    Arena      *arena;
+    Tokens      tokens;
+    Text        doc;     /* the `///` lines since the last token */
+    Text        scratch; /* the number or string being read */
+    /* By the first byte: find_beginnings. */
+    bool    begins[256];    /* whether something can begin with it */
+    bool    lookalike[256]; /* whether a lookalike can */
+    uint8_t sign[256];      /* the first kind of token that is a sign and begins with it */
+} Lexer;
+
+/* ---- characters ---- */
+
+/* ASCII only, whatever the locale. */
+static bool is_digit(char c) { return c >= '0' && c <= '9'; }
+static bool is_letter(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+static bool is_word(char c) { return is_letter(c) || is_digit(c); }
+static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+/* The byte that is `ahead` bytes behind the next one; NUL beyond the end. */
+static char peek(const Lexer *lexer, uint32_t ahead)
+{
+    return ahead < lexer->length - lexer->at ? lexer->text[lexer->at + ahead] : '\0';
+}
+
+static Span span_from(const Lexer *lexer, uint32_t start)
+{
+    return (Span){lexer->source, start, lexer->at};
+}
 
 /* ---- rows of token.def ---- */
 
@@ -61,7 +102,8 @@ static bool is_next(const Lexer *lexer, const char *spelling)
 
 /* ---- tokens ---- */
 
-Token *add_token(Lexer *lexer, TokenKind kind, uint32_t start)
+/* Adds the token from `start` up to here, with the documentation before it. */
+static Token *add_token(Lexer *lexer, TokenKind kind, uint32_t start)
 {
     Token token = {.kind = kind, .span = span_from(lexer, start)};
     if (lexer->doc.length > 0)
@@ -71,8 +113,9 @@ Token *add_token(Lexer *lexer, TokenKind kind, uint32_t start)
     return &lexer->tokens.items[lexer->tokens.count - 1];
 }
 
-Diag *report_from(Lexer *lexer, DiagCode code, uint32_t start, const char *message,
-                  const char *help)
+/* Reports a mistake in the bytes from `start` up to here; `help` may be NULL. */
+static Diag *report_from(Lexer *lexer, DiagCode code, uint32_t start, const char *message,
+                         const char *help)
 {
     Diag *diag = diag_add(lexer->diags, code, span_from(lexer, start), "%s", message);
     diag->help = help;
@@ -81,7 +124,8 @@ Diag *report_from(Lexer *lexer, DiagCode code, uint32_t start, const char *messa
 
 /* ---- comments ---- */
 
-void skip_text(Lexer *lexer, uint32_t end)
+/* Skips the inside of a comment or string, up to `end`.  Bytes that are not UTF-8 are reported. */
+static void skip_text(Lexer *lexer, uint32_t end)
 {
     bool reported = false;
     while (lexer->at < end) {
@@ -97,8 +141,9 @@ void skip_text(Lexer *lexer, uint32_t end)
     }
 }
 
-/* The result is stored, so that a line with many strings is searched once. */
-uint32_t find_line_end(Lexer *lexer)
+/* The offset of the end of the line that is being read.  It is stored, so that a line with many strings is searched
+   once. */
+static uint32_t find_line_end(Lexer *lexer)
 {
     if (lexer->line_end > lexer->at)
         return lexer->line_end;
@@ -311,6 +356,245 @@ static void lex_stray(Lexer *lexer)
                 utf8 ? "characters that mean nothing here" : "bytes that are not UTF-8", help);
     add_token(lexer, TOKEN_ERROR, start);
 }
+
+/* ---- numbers and colours ---- */
+
+static void skip_digits(Lexer *lexer)
+{
+    while (is_digit(peek(lexer, 0)))
+        lexer->at++;
+}
+
+static void bad_number(Lexer *lexer, uint32_t start, const char *message, const char *help,
+                       const char *instead)
+{
+    Diag *diag        = report_from(lexer, DIAG_BAD_NUMBER, start, message, help);
+    diag->replacement = instead;
+}
+
+/* Skips the fraction and the exponent of a number; false after a mistake, which is reported. */
+static bool skip_fraction(Lexer *lexer, uint32_t start)
+{
+    bool exponent_follows = peek(lexer, 1) == 'e' && is_digit(peek(lexer, 2));
+    if (peek(lexer, 0) == '.' && is_digit(peek(lexer, 1))) {
+        lexer->at++;
+        skip_digits(lexer);
+    } else if (peek(lexer, 0) == '.' && peek(lexer, 1) != '.' &&
+               (!is_letter(peek(lexer, 1)) || exponent_follows)) {
+        int         length  = (int)(lexer->at - start);
+        const char *instead = diag_text(lexer->diags, "%.*s.0", length, lexer->text + start);
+        lexer->at++;
+        bad_number(lexer, start, "a number needs digits behind its point", NULL, instead);
+        return false;
+    }
+    if (peek(lexer, 0) != 'e')
+        return true;
+    uint32_t sign = peek(lexer, 1) == '-' || peek(lexer, 1) == '+';
+    if (is_digit(peek(lexer, 1 + sign))) {
+        lexer->at += 1 + sign;
+        skip_digits(lexer);
+    }
+    return true;
+}
+
+/* Reads letters directly behind a number: the unit `deg`, or a mistake.  Returns the number, an
+   angle in radians. */
+static double read_unit(Lexer *lexer, uint32_t start, double number)
+{
+    uint32_t unit = lexer->at;
+    while (is_word(peek(lexer, 0)))
+        lexer->at++;
+    uint32_t length = lexer->at - unit;
+    if (isinf(number)) {
+        bad_number(lexer, start, "a number that is too large", "the largest is about 1.8e308",
+                   NULL);
+        return 0;
+    }
+    if (length == 3 && memcmp(lexer->text + unit, "deg", 3) == 0)
+        return number / 180 * M_PI;
+    if (length > 0)
+        bad_number(lexer, unit, "letters that do not belong to a number",
+                   lexer->text[unit] == 'x' && number == 0
+                       ? form_help(lexer->diags, FORM_HEXADECIMAL)
+                       : "the only unit is `deg`, as in `30deg`; a million is `1e6`",
+                   NULL);
+    else if (peek(lexer, 0) == '.' && is_digit(peek(lexer, 1))) {
+        lexer->at++;
+        skip_digits(lexer);
+        bad_number(lexer, start, "a number with two points", NULL, NULL);
+    }
+    return number;
+}
+
+static double decimal(Lexer *lexer, uint32_t start)
+{
+    return text_decimal(&lexer->scratch, lexer->text + start, lexer->at - start);
+}
+
+static void lex_number(Lexer *lexer)
+{
+    uint32_t start  = lexer->at;
+    double   number = 0;
+    if (peek(lexer, 0) == '.') {
+        lexer->at++;
+        skip_digits(lexer);
+        int length = (int)(lexer->at - start);
+        bad_number(lexer, start, "a number needs digits before its point", NULL,
+                   diag_text(lexer->diags, "0%.*s", length, lexer->text + start));
+    } else {
+        skip_digits(lexer);
+        if (skip_fraction(lexer, start))
+            number = read_unit(lexer, start, decimal(lexer, start));
+    }
+    while (is_word(peek(lexer, 0))) /* there are letters left after a mistake only */
+        lexer->at++;
+    add_token(lexer, TOKEN_NUMBER, start)->number = number;
+}
+
+void linear_from_srgb(uint32_t rgb, double linear[3])
+{
+    for (int i = 0; i < 3; i++)
+        linear[i] = linear_of_srgb((rgb >> (16 - 8 * i) & 255) / 255.0);
+}
+
+static const char *six_digits(Lexer *lexer, uint32_t start)
+{
+    const char *d = lexer->text + start + 1;
+    if (lexer->at - start != 4 || strspn(d, "0123456789abcdefABCDEF") < 3)
+        return NULL;
+    return diag_text(lexer->diags, "#%c%c%c%c%c%c", d[0], d[0], d[1], d[1], d[2], d[2]);
+}
+
+static void bad_colour(Lexer *lexer, uint32_t start)
+{
+    const char *instead = six_digits(lexer, start);
+    if (instead)
+        bad_number(lexer, start, "a colour has six digits, not three",
+                   "each digit is written twice", instead);
+    else
+        bad_number(lexer, start, "a colour has six hexadecimal digits", "for example `#c8553d`",
+                   NULL);
+}
+
+/* Reports a directive of another language, as in `#include`; false: it is none. */
+static bool lex_directive(Lexer *lexer, uint32_t start)
+{
+    int         length = (int)(lexer->at - start);
+    const char *text   = diag_text(lexer->diags, "%.*s", length, lexer->text + start);
+    if (!is_synonym(SYNONYM_DIRECTIVE, text + 1))
+        return false;
+    Diag *diag    = report_from(lexer, DIAG_UNEXPECTED_TOKEN, start, "", NULL);
+    diag->message = diag_text(lexer->diags, "`%s` is not part of the language", text);
+    explain_word(lexer->diags, diag, SYNONYM_DIRECTIVE, text + 1, "");
+    add_token(lexer, TOKEN_ERROR, start);
+    return true;
+}
+
+/* Reports a comment of another language and skips it: a `#` with nothing behind it, or a blank. */
+static void lex_foreign_comment(Lexer *lexer, uint32_t start)
+{
+    report_from(lexer, DIAG_UNEXPECTED_TOKEN, start, "`#` begins colours",
+                "comments begin with `//`");
+    while (peek(lexer, 0) != '\n' && peek(lexer, 0) != '\0')
+        lexer->at++;
+}
+
+static void lex_colour(Lexer *lexer)
+{
+    uint32_t start = lexer->at++;
+    if (strchr(" \t\r\n#", peek(lexer, 0))) { /* or the end of the text */
+        lex_foreign_comment(lexer, start);
+        return;
+    }
+    while (is_word(peek(lexer, 0)))
+        lexer->at++;
+    const char *digits = lexer->text + start + 1;
+    bool        good   = lexer->at - start == 7 && strspn(digits, "0123456789abcdefABCDEF") >= 6;
+    if (!good && lex_directive(lexer, start))
+        return;
+    if (!good)
+        bad_colour(lexer, start);
+    unsigned long rgb                          = good ? strtoul(digits, NULL, 16) : 0;
+    add_token(lexer, TOKEN_COLOUR, start)->rgb = (uint32_t)rgb;
+}
+
+/* ---- strings ---- */
+
+/* Reads a backslash and the byte after it, and adds the character that they stand for. */
+static void read_escape(Lexer *lexer)
+{
+    uint32_t start = lexer->at;
+    char     c     = peek(lexer, 1);
+    lexer->at += 2;
+    if (c == 'n')
+        text_add(&lexer->scratch, "\n");
+    else if (c == 't')
+        text_add(&lexer->scratch, "\t");
+    else if (c == '"' || c == '\\' || c == '\'')
+        text_add_bytes(&lexer->scratch, &c, 1);
+    else {
+        lexer->at = start + 1;
+        report_from(lexer, DIAG_STRAY_BYTES, start, "a backslash that means nothing",
+                    "there are \\\\, \\\", \\n and \\t");
+    }
+}
+
+/* Adds the bytes of a string up to `end`, which have no escapes.  Control characters are reported,
+   since strings are mostly names of files. */
+static void read_plain(Lexer *lexer, uint32_t end)
+{
+    uint32_t start = lexer->at;
+    skip_text(lexer, end);
+    for (uint32_t i = start; i < end; i++) {
+        unsigned char c = (unsigned char)lexer->text[i];
+        if (c >= 0x20 || c == '\t')
+            continue;
+        diag_add(lexer->diags, DIAG_STRAY_BYTES, (Span){lexer->source, i, i + 1},
+                 "a control character in a string");
+        return;
+    }
+    text_add_bytes(&lexer->scratch, lexer->text + start, end - start);
+}
+
+static void lex_string(Lexer *lexer, char quote)
+{
+    uint32_t start = lexer->at++, end = find_line_end(lexer);
+    if (end > lexer->at && lexer->text[end - 1] == '\r')
+        end--;
+    lexer->scratch.length = 0;
+    text_add(&lexer->scratch, "");
+    while (lexer->at < end && peek(lexer, 0) != quote) {
+        uint32_t next = lexer->at;
+        while (next < end && lexer->text[next] != quote && lexer->text[next] != '\\')
+            next++;
+        if (next > lexer->at)
+            read_plain(lexer, next);
+        else if (next + 1 < end)
+            read_escape(lexer);
+        else
+            lexer->at++;
+    }
+    if (lexer->at < end) {
+        lexer->at++;
+        if (quote == '\'') {
+            Diag *diag        = report_from(lexer, DIAG_UNEXPECTED_TOKEN, start,
+                                            "a string in single quotes", NULL);
+            diag->help        = "strings have double quotes";
+            diag->replacement = diag_text(lexer->diags, "\"%s\"", lexer->scratch.bytes);
+        }
+    } else {
+        Diag *diag  = report_from(lexer, DIAG_UNCLOSED, start, "a string is not closed",
+                                  "close it with a quote on the same line");
+        diag->label = "begins here";
+        add_token(lexer, TOKEN_ERROR, start); /* the rest of the statement is in the string */
+        return;
+    }
+    const Text *read                            = &lexer->scratch;
+    add_token(lexer, TOKEN_STRING, start)->name = name_intern(lexer->names, read->bytes,
+                                                              read->length);
+}
+
+/* ---- texts ---- */
 
 static void lex_token(Lexer *lexer)
 {
