@@ -3,7 +3,8 @@
 # compiler, the runtime and the command may see only its api.  The public headers (types and
 # prototypes for everybody) may be included by the half that they belong to.
 #
-# Units (NAME.c with NAME.h) do not include each other in circles.
+# Units (NAME.c with NAME.h) do not include each other in circles.  A folder with a page (README.md) is
+# small enough to be read: it has 30 sources at most, and the page 40 lines.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 layers="compiler/base compiler/image compiler/outline compiler/graph compiler/graph/rewrite compiler/graph/symbolic compiler/graph/instances compiler/shape compiler/lower compiler/family compiler/front
@@ -34,7 +35,7 @@ allowed() { # header, files and folders
     return 1
 }
 
-echo "1..$(echo "$layers public circles" | wc -w)"
+echo "1..$(echo "$layers public circles pages" | wc -w)"
 places=$public number=0 bad=0
 
 result() { # what is wrong, or nothing; what was looked at
@@ -85,4 +86,12 @@ awk '{ for (i = 1; i <= 2; i++) sub(/\.(c|h|cpp)$/, "", $i) } $1 != $2' "$work/i
 # What stands in a circle, or nothing.
 result "$(tsort "$work/units" 2>&1 >/dev/null | sed 's/^tsort: //')" \
     "units do not include each other in circles"
+
+# ---- pages ----
+
+result "$(for layer in $layers; do
+    [ -f "$layer/README.md" ] || continue
+    [ "$(wc -l <"$layer/README.md")" -le 40 ] || echo "$layer/README.md has more than 40 lines"
+    [ "$(find "$layer" -maxdepth 1 -name '*.c' | wc -l)" -le 30 ] || echo "$layer has more than 30 sources"
+done)" "folders with a page have at most 30 sources, and the page 40 lines"
 exit $bad
