@@ -33,11 +33,11 @@ DEVICE  ?= $(KRS_DEVICE)
 JOBS    ?= $(shell nproc)
 
 # Sources by folder, in the order of the pipeline: reading down this list is reading the program.
-ROOMS    := base image outline graph graph/rewrite graph/symbolic graph/instances shape lower family front eval print print/glsl target scene passes refute mesh slice grid measure
+ROOMS    := base image outline graph graph/lanes graph/rewrite graph/symbolic graph/instances shape lower family front eval print print/glsl target scene passes refute mesh slice grid measure
 sources   = $(sort $(wildcard $(1)/*.c))
 COMPILER := $(foreach room,$(ROOMS),$(call sources,compiler/$(room)))
 # Points side by side, once for each instruction set.
-LANES    := $(filter compiler/graph/lanes_%,$(COMPILER))
+LANES    := $(filter compiler/graph/lanes/lanes_%,$(COMPILER))
 ifneq ($(firstword $(subst -, ,$(shell $(CC) -dumpmachine))),x86_64)
 COMPILER := $(filter-out %_avx2.c %_avx512.c,$(COMPILER))
 LANES    := $(filter-out %_avx2.c %_avx512.c,$(LANES))
@@ -156,10 +156,10 @@ $(B)/live/window/cells.o: FAST = $(if $(CHAFA),-DKRS_HAS_CHAFA)
 # watch cannot become such: trying it takes minutes, and clang warns that it failed.
 $(LANES:%.c=$(B)/%.o): FAST := $(if $(findstring -fsanitize,$(CFLAGS)),-Wno-pass-failed,-O3) \
                                -ffp-contract=off -fno-math-errno -fno-trapping-math
-$(B)/compiler/graph/lanes_avx2.o: FAST += -mavx2
-$(B)/compiler/graph/lanes_avx512.o: FAST += -mavx512f -mavx512dq -mavx512vl -mprefer-vector-width=512
+$(B)/compiler/graph/lanes/lanes_avx2.o: FAST += -mavx2
+$(B)/compiler/graph/lanes/lanes_avx512.o: FAST += -mavx512f -mavx512dq -mavx512vl -mprefer-vector-width=512
 # Intervals are two numbers that come in registers: joined into a vector they would go through memory, and wait there.
-$(B)/compiler/graph/range.o $(B)/compiler/graph/lane_ranges.o $(B)/compiler/graph/lane_slopes.o $(B)/compiler/graph/lane_hessians.o $(B)/compiler/graph/lane_partials.o: FAST := -fno-tree-slp-vectorize
+$(B)/compiler/graph/range.o $(B)/compiler/graph/lanes/lane_ranges.o $(B)/compiler/graph/lanes/lane_slopes.o $(B)/compiler/graph/lanes/lane_hessians.o $(B)/compiler/graph/lanes/lane_partials.o: FAST := -fno-tree-slp-vectorize
 $(B)/%.o: %.cpp $(B)/flags
 	@mkdir -p $(@D)
 	@echo "compile $<"

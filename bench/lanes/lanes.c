@@ -7,7 +7,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 #include "compiler/scene/program.h"
 
 enum { POINTS = 4096, BOXES = 64, PRUNED_FOR = 256 };

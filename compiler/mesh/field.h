@@ -4,13 +4,13 @@
  * Its sign says what is solid (negative inside), and its size is never above the distance to the
  * nearest surface.  Nothing else here asks the scene.
  *
- * Questions are answered by lane tapes (graph/lanes.h).  Who asks much within one box enters it: the lane
+ * Questions are answered by lane tapes (graph/lanes/lanes.h).  Who asks much within one box enters it: the lane
  * tape is then pruned to that box.  Answers are the same, bit for bit.
  */
 #ifndef KRS_MESH_FIELD_H
 #define KRS_MESH_FIELD_H
 
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 #include "compiler/mesh/solid.h"
 
 /* A box that was entered, and its lane tape. */

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "compiler/graph/lane_outlines.h"
+#include "compiler/graph/lanes/lane_outlines.h"
 #include "compiler/mesh/field.h"
 
 typedef struct Finding {

@@ -8,7 +8,7 @@
 
 #include "compiler/base/vec.h"
 #include "compiler/graph/crowd.h"
-#include "compiler/graph/lane_outlines.h"
+#include "compiler/graph/lanes/lane_outlines.h"
 #include "compiler/mesh/flat_circles.h"
 
 enum { MOST_CHORDS = 8 };

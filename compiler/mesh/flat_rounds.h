@@ -8,7 +8,7 @@
 #ifndef KRS_MESH_FLAT_ROUNDS_H
 #define KRS_MESH_FLAT_ROUNDS_H
 
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 #include "compiler/mesh/numbering.h"
 
 typedef struct FlatRound {

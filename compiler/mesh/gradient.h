@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_GRADIENT_H
 #define KRS_MESH_GRADIENT_H
 
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 
 /* Derivatives in a box: those along the direction of their middle are from `least` to `most`, and those
    across it up to `across`. */

@@ -17,7 +17,7 @@
 
 #include "compiler/base/vec.h"
 #include "compiler/passes/compilation.h"
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 #include "compiler/shape/box.h"
 
 enum { RAYS = 512, FEWEST_RAYS = 64, ROUNDS = 3, BATCH = LANES, MOST_UNRESOLVED = 4 };

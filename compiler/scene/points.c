@@ -9,7 +9,7 @@
 
 #include "compiler/base/parallel.h"
 #include "compiler/base/vec.h"
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 
 /* Of one frame. */
 struct FrameLanes {

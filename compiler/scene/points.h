@@ -1,5 +1,5 @@
 /*
- * points.h: queries in many points at once, by lane tapes (graph/lanes.h) and on all processors.
+ * points.h: queries in many points at once, by lane tapes (graph/lanes/lanes.h) and on all processors.
  *
  * Answers are equal to those point by point, bit for bit.
  */

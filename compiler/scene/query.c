@@ -9,7 +9,7 @@
 
 #include "compiler/base/far.h"
 #include "compiler/base/vec.h"
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 #include "compiler/scene/points.h"
 #include "compiler/scene/program.h"
 

@@ -163,7 +163,7 @@ done
 # What is known of operations stands in columns of ops.def.  Lane tapes have some of them once more,
 # to be fast; all others, and new ones, are evaluated by those columns.
 grep -rnE 'case OP_[A-Za-z0-9_]+:' compiler runtime api import live cli --include='*.[ch]' |
-    grep -vE '^compiler/graph/lane_|case OP_(COUNT|COMPONENT):' >"$work/log"
+    grep -vE '^compiler/graph/lanes/|case OP_(COUNT|COMPONENT):' >"$work/log"
 [ ! -s "$work/log" ]
 result $? "no switch lists operations" "$work/log"
 echo "1..$number"

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 
 #include "tests/property/garden.h"
 

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 #include "compiler/passes/inspect.h"
 #include "compiler/scene/program.h"
 #include "tests/support/crowd_texts.h"

@@ -5,7 +5,7 @@
 #define KRS_GRID_BLEND_H
 
 #include "compiler/graph/grid.h"
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 
 typedef struct GridBlend {
     Op     op; /* a smooth minimum of which the slope is 1 (blends.def): of two, or of eight and */

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 #include "compiler/graph/op_values.h"
 
 void graph_mark_turned(const Graph *graph, Node leaf, bool *depends)

@@ -16,7 +16,7 @@
 #include <string.h>
 
 #include "compiler/base/far.h"
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 
 /* Relative to the longest side of all: the smallest boxes; those where only edges of tools are in
    question; what counts as the surface on both of its sides. */

@@ -1,5 +1,5 @@
 /* lane_segments.c: lengths from a point to the nearest one of a segment. */
-#include "compiler/graph/lane_segments.h"
+#include "compiler/graph/lanes/lane_segments.h"
 
 #include <math.h>
 

@@ -25,7 +25,7 @@ LESSER(float, float)
 #define fmin(a, b) _Generic((a) + (b), float : float_least, default : double_least)(a, b)
 #define fmax(a, b) _Generic((a) + (b), float : float_greatest, default : double_greatest)(a, b)
 
-#include "compiler/graph/lane_call.h"
+#include "compiler/graph/lanes/lane_call.h"
 #include "compiler/graph/op_values.h"
 
 #ifdef __clang__

@@ -10,11 +10,11 @@
 #include <string.h>
 
 #include "compiler/graph/blend_shares.h"
-#include "compiler/graph/lane_call.h"
-#include "compiler/graph/lane_cuts.h"
-#include "compiler/graph/lane_outlines.h"
-#include "compiler/graph/lane_partials.h"
-#include "compiler/graph/lane_segments.h"
+#include "compiler/graph/lanes/lane_call.h"
+#include "compiler/graph/lanes/lane_cuts.h"
+#include "compiler/graph/lanes/lane_outlines.h"
+#include "compiler/graph/lanes/lane_partials.h"
+#include "compiler/graph/lanes/lane_segments.h"
 
 /* A run over a tape, and the step that it is at. */
 typedef struct Run {

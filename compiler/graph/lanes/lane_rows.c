@@ -4,7 +4,7 @@
  * Rows are given out in one pass: a row is free again behind the last step that reads it, so there are
  * never more rows than values that are needed at the same time.
  */
-#include "compiler/graph/lane_rows.h"
+#include "compiler/graph/lanes/lane_rows.h"
 
 #include <string.h>
 

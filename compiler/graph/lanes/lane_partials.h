@@ -6,7 +6,7 @@
 #ifndef KRS_LANE_PARTIALS_H
 #define KRS_LANE_PARTIALS_H
 
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 
 /* By the first three operands.  Not known: the first may jump, or there is no bound. */
 typedef struct Partials {

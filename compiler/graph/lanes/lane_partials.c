@@ -1,5 +1,5 @@
 /* lane_partials.c: rules for the second derivatives of operations on numbers. */
-#include "compiler/graph/lane_partials.h"
+#include "compiler/graph/lanes/lane_partials.h"
 
 /* ---- of one number ---- */
 

@@ -7,7 +7,7 @@
 #ifndef KRS_LANE_CUTS_H
 #define KRS_LANE_CUTS_H
 
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 
 /* The operand of a length that alone is not 0 all over the box of the ranges; NODE_NONE: there is no such. */
 uint32_t lane_only_operand(const LaneTape *tape, const LaneRanges *ranges, const LaneStep *step);

@@ -1,5 +1,5 @@
 /* lane_cuts.c: parts of numbers above and below 0, and their sums. */
-#include "compiler/graph/lane_cuts.h"
+#include "compiler/graph/lanes/lane_cuts.h"
 
 static Range range_at(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand)
 {

@@ -5,14 +5,14 @@
  * middle than that and the box's radius do not count.  Where one curve is left, and the nearest point is never an
  * end of it, the gradient is its normal.  Off a curve by d, the normal turns by the curvature k as k / (1 - k d).
  */
-#include "compiler/graph/lane_outlines.h"
+#include "compiler/graph/lanes/lane_outlines.h"
 
 #include <math.h>
 
 #include "compiler/base/vec.h"
 #include "compiler/graph/crowd.h"
-#include "compiler/graph/lane_call.h"
-#include "compiler/graph/lane_partials.h"
+#include "compiler/graph/lanes/lane_call.h"
+#include "compiler/graph/lanes/lane_partials.h"
 
 /* Widens what rounding may have changed: a share of all lengths. */
 static const double UNCERTAIN = 1e-9;

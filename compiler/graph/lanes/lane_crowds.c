@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "compiler/graph/crowd_walk.h"
-#include "compiler/graph/lane_call.h"
+#include "compiler/graph/lanes/lane_call.h"
 #include "compiler/graph/op_values.h"
 
 enum { STATE_NUMBERS = 4 * MOST_CROWD_STATES };

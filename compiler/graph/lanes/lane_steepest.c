@@ -7,7 +7,7 @@
 #include <math.h>
 
 #include "compiler/graph/facts.h"
-#include "compiler/graph/lane_rows.h"
+#include "compiler/graph/lanes/lane_rows.h"
 #include "compiler/graph/rules.h"
 
 static bool op_never_jumps(uint16_t op)

@@ -10,10 +10,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "compiler/graph/lane_call.h"
-#include "compiler/graph/lane_cuts.h"
-#include "compiler/graph/lane_outlines.h"
-#include "compiler/graph/lane_segments.h"
+#include "compiler/graph/lanes/lane_call.h"
+#include "compiler/graph/lanes/lane_cuts.h"
+#include "compiler/graph/lanes/lane_outlines.h"
+#include "compiler/graph/lanes/lane_segments.h"
 #include "compiler/graph/rules.h"
 #include "compiler/graph/texture.h"
 

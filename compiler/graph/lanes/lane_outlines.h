@@ -5,7 +5,7 @@
 #ifndef KRS_LANE_OUTLINES_H
 #define KRS_LANE_OUTLINES_H
 
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 
 /* After a run over a box: those that may be the nearest in it, of the call that is step `step`.  False: it is no
    outline, or there are more of them. */

@@ -10,7 +10,7 @@
 
 #include "compiler/graph/crowd.h"
 #include "compiler/graph/facts.h"
-#include "compiler/graph/lane_call.h"
+#include "compiler/graph/lanes/lane_call.h"
 #include "compiler/graph/op_values.h"
 #include "compiler/graph/rules.h"
 #include "compiler/graph/texture.h"

@@ -7,7 +7,7 @@
 #ifndef KRS_LANE_SEGMENTS_H
 #define KRS_LANE_SEGMENTS_H
 
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 
 /* The components of q, if a step is such a length: its derivatives are those of |q - t d| with t held where it is.
    False: it is none. */

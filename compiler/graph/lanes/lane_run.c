@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/graph/lane_call.h"
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lane_call.h"
+#include "compiler/graph/lanes/lanes.h"
 #include "compiler/graph/op_values.h"
 
 /* ---- instruction sets ---- */

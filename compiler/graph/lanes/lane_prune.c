@@ -11,9 +11,9 @@
 
 #include "compiler/graph/blend_shares.h"
 #include "compiler/graph/crowd.h"
-#include "compiler/graph/lane_call.h"
-#include "compiler/graph/lane_outlines.h"
-#include "compiler/graph/lane_rows.h"
+#include "compiler/graph/lanes/lane_call.h"
+#include "compiler/graph/lanes/lane_outlines.h"
+#include "compiler/graph/lanes/lane_rows.h"
 
 /* A step whose value is being looked for, and what is known of its operands. */
 typedef struct Question {

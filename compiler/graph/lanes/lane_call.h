@@ -4,7 +4,7 @@
 #ifndef KRS_LANE_CALL_H
 #define KRS_LANE_CALL_H
 
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 
 /* An operation at one point; `values`, which only those that read tables need, are of the frame. */
 NodeValue lane_call(const Tape *tape, NodeValue *values, Node node, const NodeValue *operands);

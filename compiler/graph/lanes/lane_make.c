@@ -1,14 +1,14 @@
 /*
  * lane_make.c: lane tapes are made of tapes: vectors are taken apart into scalar steps.
  */
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
 #include "compiler/graph/crowd.h"
-#include "compiler/graph/lane_rows.h"
+#include "compiler/graph/lanes/lane_rows.h"
 #include "compiler/graph/op_values.h"
 
 /* The components of a node, as operands of steps; NODE_NONE behind the last. */

@@ -4,7 +4,7 @@
 #ifndef KRS_LANE_ROWS_H
 #define KRS_LANE_ROWS_H
 
-#include "compiler/graph/lanes.h"
+#include "compiler/graph/lanes/lanes.h"
 
 typedef struct LaneSteps {
     Arena *arena;
