@@ -7,7 +7,7 @@
 # small enough to be read: it has 30 sources at most, and the page 40 lines.
 set -u
 cd "$(dirname "$0")/.." || exit 1
-layers="compiler/base compiler/image compiler/outline compiler/graph compiler/graph/lanes compiler/graph/rewrite compiler/graph/symbolic compiler/graph/instances compiler/shape compiler/lower compiler/family compiler/front
+layers="compiler/base compiler/image compiler/outline compiler/graph compiler/graph/bounds compiler/graph/lanes compiler/graph/rewrite compiler/graph/symbolic compiler/graph/instances compiler/shape compiler/lower compiler/family compiler/front
         compiler/eval compiler/print compiler/print/glsl compiler/target compiler/scene compiler/passes compiler/refute compiler/mesh compiler/slice compiler/grid compiler/measure
         runtime/device runtime/shared runtime/tracer runtime/integrators runtime/film runtime/display
         runtime/writer runtime api import/common import/csg import/surfer import/pov import live/text live/pictures live/window live cli/options cli/shell cli/picture cli/mesh cli/grid cli/slice cli"

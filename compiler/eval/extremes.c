@@ -9,7 +9,7 @@
 #include <math.h>
 
 #include "compiler/eval/elaborate.h"
-#include "compiler/graph/facts.h"
+#include "compiler/graph/bounds/facts.h"
 
 enum { MOST_CELLS = 4000, MOST_CUTS = 24 };
 

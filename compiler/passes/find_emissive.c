@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "compiler/passes/compilation.h"
-#include "compiler/graph/facts.h"
+#include "compiler/graph/bounds/facts.h"
 
 /* ---- which components ---- */
 

@@ -11,7 +11,7 @@
 
 #include "compiler/passes/compilation.h"
 #include "compiler/graph/crowd.h"
-#include "compiler/graph/facts.h"
+#include "compiler/graph/bounds/facts.h"
 
 enum { MOST_OPERATIONS = 20000, MOST_GLSL_BYTES = 1500000 };
 

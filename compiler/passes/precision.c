@@ -18,7 +18,7 @@
 #include "compiler/base/vec.h"
 #include "compiler/passes/compilation.h"
 #include "compiler/graph/evaluate.h"
-#include "compiler/graph/facts.h"
+#include "compiler/graph/bounds/facts.h"
 
 /* The relative error of a coordinate that kernels assume (ROUNDING in frame.glsl). */
 static const double ROUNDING = 2.4e-7;

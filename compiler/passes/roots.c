@@ -11,7 +11,7 @@
 #include "compiler/base/far.h"
 #include "compiler/passes/compilation.h"
 #include "compiler/graph/build.h"
-#include "compiler/graph/facts.h"
+#include "compiler/graph/bounds/facts.h"
 #include "compiler/graph/rewrite/rebase.h"
 #include "compiler/graph/symbolic/derive.h"
 #include "compiler/lower/crowd.h"

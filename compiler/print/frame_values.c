@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "compiler/graph/facts.h"
+#include "compiler/graph/bounds/facts.h"
 
 static uint32_t width_of(const Graph *graph, Node node)
 {

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#include "compiler/graph/facts.h"
+#include "compiler/graph/bounds/facts.h"
 #include "compiler/graph/op_values.h"
 #include "compiler/shape/sequence_box.h"
 

@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-#include "compiler/graph/facts.h"
+#include "compiler/graph/bounds/facts.h"
 #include "compiler/graph/instances/turns.h"
 #include "compiler/graph/op_values.h"
 

@@ -8,8 +8,8 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "compiler/graph/bounds/facts.h"
 #include "compiler/graph/evaluate.h"
-#include "compiler/graph/facts.h"
 
 #include "tests/property/garden.h"
 

@@ -17,8 +17,8 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
+#include "compiler/graph/bounds/facts.h"
 #include "compiler/graph/evaluate.h"
-#include "compiler/graph/facts.h"
 #include "tests/support/random.h"
 
 static Random chance = {7};

@@ -6,8 +6,8 @@
 #ifndef PROPERTY_OP_TRIAL_H
 #define PROPERTY_OP_TRIAL_H
 
+#include "compiler/graph/bounds/facts.h"
 #include "compiler/graph/evaluate.h"
-#include "compiler/graph/facts.h"
 
 #include "tests/support/random.h"
 

@@ -10,8 +10,8 @@
 #include <stddef.h>
 #include <cmocka.h>
 
+#include "compiler/graph/bounds/facts.h"
 #include "compiler/graph/evaluate.h"
-#include "compiler/graph/facts.h"
 
 #include "tests/support/bench.h"
 

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/graph/facts.h"
+#include "compiler/graph/bounds/facts.h"
 #include "compiler/graph/texture.h"
 #include "tests/support/bench.h"
 

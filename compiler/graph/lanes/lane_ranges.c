@@ -8,11 +8,11 @@
 #include <assert.h>
 #include <math.h>
 
+#include "compiler/graph/bounds/facts.h"
+#include "compiler/graph/bounds/rules.h"
 #include "compiler/graph/crowd.h"
-#include "compiler/graph/facts.h"
 #include "compiler/graph/lanes/lane_call.h"
 #include "compiler/graph/op_values.h"
-#include "compiler/graph/rules.h"
 #include "compiler/graph/texture.h"
 
 LaneRanges lane_ranges_new(const LaneTape *tape, Arena *arena)

@@ -10,11 +10,11 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/graph/bounds/rules.h"
 #include "compiler/graph/lanes/lane_call.h"
 #include "compiler/graph/lanes/lane_cuts.h"
 #include "compiler/graph/lanes/lane_outlines.h"
 #include "compiler/graph/lanes/lane_segments.h"
-#include "compiler/graph/rules.h"
 #include "compiler/graph/texture.h"
 
 static const LaneSlope NO_SLOPE  = {{{0, 0}, {0, 0}, {0, 0}}};

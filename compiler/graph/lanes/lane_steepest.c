@@ -6,9 +6,9 @@
  */
 #include <math.h>
 
-#include "compiler/graph/facts.h"
+#include "compiler/graph/bounds/facts.h"
+#include "compiler/graph/bounds/rules.h"
 #include "compiler/graph/lanes/lane_rows.h"
-#include "compiler/graph/rules.h"
 
 static bool op_never_jumps(uint16_t op)
 {

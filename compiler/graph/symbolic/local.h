@@ -8,7 +8,7 @@
 #ifndef KRS_LOCAL_H
 #define KRS_LOCAL_H
 
-#include "compiler/graph/facts.h"
+#include "compiler/graph/bounds/facts.h"
 
 /* For p and p + r v in the box, v of length 1, and 0 <= r <= radius
        |root(p + r v) - root(p)| <= first r + second r^2.

@@ -4,7 +4,7 @@
 #ifndef KRS_LOCAL_TERMS_H
 #define KRS_LOCAL_TERMS_H
 
-#include "compiler/graph/facts.h"
+#include "compiler/graph/bounds/facts.h"
 
 /* A number in the ball. */
 typedef struct BallTerm {

@@ -7,7 +7,7 @@
 #ifndef KRS_ZEROS_H
 #define KRS_ZEROS_H
 
-#include "compiler/graph/facts.h"
+#include "compiler/graph/bounds/facts.h"
 
 typedef struct ZeroBox {
     Box box;  /* all zeros are in it; infinite where nothing is known */

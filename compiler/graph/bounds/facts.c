@@ -4,7 +4,7 @@
  * Facts of a graph are one loop over its nodes (rules.c has the rules).  The slope of an
  * expression is refined by cutting the box where it is steepest.
  */
-#include "compiler/graph/facts.h"
+#include "compiler/graph/bounds/facts.h"
 
 #include <assert.h>
 #include <math.h>

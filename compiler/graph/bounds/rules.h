@@ -6,7 +6,7 @@
 #ifndef KRS_RULES_H
 #define KRS_RULES_H
 
-#include "compiler/graph/facts.h"
+#include "compiler/graph/bounds/facts.h"
 #include "compiler/graph/range.h"
 
 /* An operation and the facts of its operands. */

@@ -1,7 +1,7 @@
 /*
  * texture_facts.c: ranges and slopes of textures.
  */
-#include "compiler/graph/rules.h"
+#include "compiler/graph/bounds/rules.h"
 #include "compiler/graph/texture.h"
 
 static Range either_sign(double size) { return (Range){-size, size}; }

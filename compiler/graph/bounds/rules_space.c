@@ -3,8 +3,8 @@
  */
 #include <math.h>
 
+#include "compiler/graph/bounds/rules.h"
 #include "compiler/graph/fractal.h"
-#include "compiler/graph/rules.h"
 
 /* ---- maps of space ---- */
 

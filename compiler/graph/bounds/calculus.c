@@ -4,7 +4,7 @@
  */
 #include <math.h>
 
-#include "compiler/graph/rules.h"
+#include "compiler/graph/bounds/rules.h"
 
 /* ---- one component with its gradient ---- */
 

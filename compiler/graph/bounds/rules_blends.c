@@ -3,7 +3,7 @@
  */
 #include <math.h>
 
-#include "compiler/graph/rules.h"
+#include "compiler/graph/bounds/rules.h"
 
 static double smooth_corner(const RuleInput *input, double a, double b, double k, double n)
 {

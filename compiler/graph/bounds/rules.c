@@ -12,7 +12,7 @@
 #include <assert.h>
 #include <math.h>
 
-#include "compiler/graph/rules.h"
+#include "compiler/graph/bounds/rules.h"
 
 /* ---- OP rows: vectors ---- */
 

@@ -1,5 +1,5 @@
 /*
- * grid_find.c: which members of a grid are near a point.
+ * grid.c: which members of a grid are near a point.
  */
 #include <math.h>
 #include <string.h>

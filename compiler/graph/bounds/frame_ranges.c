@@ -9,8 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "compiler/graph/facts.h"
-#include "compiler/graph/rules.h"
+#include "compiler/graph/bounds/facts.h"
+#include "compiler/graph/bounds/rules.h"
 
 /* In place of the range of a node that depends on parameters. */
 static Range varies;
