@@ -4,7 +4,7 @@
  */
 #include <math.h>
 
-#include "compiler/graph/instances/grid_of_boxes.h"
+#include "compiler/graph/instances/grid_build.h"
 #include "compiler/graph/instances/grid_refine.h"
 #include "compiler/graph/instances/grid_sift.h"
 #include "compiler/lower/crowd_group.h"

@@ -7,7 +7,7 @@
 
 #include "compiler/base/far.h"
 #include "compiler/graph/build.h"
-#include "compiler/graph/instances/grid_of_boxes.h"
+#include "compiler/graph/instances/grid_build.h"
 
 /* ---- the body ---- */
 

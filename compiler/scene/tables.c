@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "compiler/base/far.h"
-#include "compiler/graph/instances/grid_of_boxes.h"
+#include "compiler/graph/instances/grid_build.h"
 
 typedef uint32_t Texel[2];
 

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "compiler/base/far.h"
-#include "compiler/graph/instances/grid_of_boxes.h"
+#include "compiler/graph/instances/grid_build.h"
 #include "tests/property/crowd_parts.h"
 
 /* ---- sharp joints ---- */

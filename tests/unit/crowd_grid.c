@@ -14,7 +14,7 @@
 
 #include "compiler/base/far.h"
 #include "compiler/base/vec.h"
-#include "compiler/graph/instances/grid_of_boxes.h"
+#include "compiler/graph/instances/grid_build.h"
 #include "tests/support/bench.h"
 #include "tests/support/processors.h"
 

@@ -16,7 +16,7 @@
 
 #include <math.h>
 
-#include "compiler/graph/instances/grid_of_boxes.h"
+#include "compiler/graph/instances/grid_build.h"
 #include "compiler/scene/program.h"
 #include "compiler/scene/tables.h"
 #include "runtime/device/gpu.h"

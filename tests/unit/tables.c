@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "compiler/base/far.h"
-#include "compiler/graph/instances/grid_of_boxes.h"
+#include "compiler/graph/instances/grid_build.h"
 #include "compiler/scene/tables.h"
 #include "tests/support/bench.h"
 

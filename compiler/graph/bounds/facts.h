@@ -65,7 +65,7 @@ double range_task_slope(const RangeTask *task, Node node);
 Fact op_fact(Op op, GraphType type, uint32_t index, const GraphType *types, const Fact *operands,
              const double *constant);
 
-/* texture_facts.c: the same of a node that reads a texture of the graph. */
+/* rules_space.c: the same of a node that reads a texture of the graph. */
 Fact texture_fact_of(const Graph *graph, const Expr *e, const Fact *operands);
 
 #endif

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "compiler/graph/instances/grid_builder.h"
+#include "compiler/graph/instances/grid_build.h"
 
 bool crowds_move(const Crowds *crowds)
 {

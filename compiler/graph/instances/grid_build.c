@@ -9,13 +9,15 @@
  * Kernels find the cell of a point in single precision, and may find a neighbour of it.  So boxes are
  * taken to be larger by what single precision can miss: the pad.
  */
-#include "compiler/graph/instances/grid_builder.h"
+#include "compiler/graph/instances/grid_build.h"
 
 #include <assert.h>
 #include <float.h>
+#include <math.h>
 
 #include "compiler/base/far.h"
 #include "compiler/base/parallel.h"
+#include "compiler/graph/instances/squares.h"
 
 /* Most cells and entries: few members may have more cells each, so that they may form a curve, and
    more entries, so that blends that reach far have short lists.  A loop over a list is most of a
@@ -50,6 +52,76 @@ static bool box_is_bounded(const Box *box)
         if (!(box->axis[k].low > -FAR_SIDE && box->axis[k].high < FAR_SIDE))
             return false;
     return true;
+}
+
+typedef struct Builder {
+    Grid       *grid;
+    const Box  *boxes;
+    uint32_t    count, present; /* boxes; those that are not empty */
+    double      reach, margin;
+    double      given_margin;
+    uint32_t    texels;      /* of an entry */
+    bool        coarse, few; /* it will be refined; with half the cells, since lists are long */
+    GridLimits  most;        /* 0: as for all frames */
+    double      pad[3];
+    double      listed, seen; /* boxes up to this distance are in the list, or are measured */
+    float      *nearest;      /* of each cell: the square of the distance to the nearest box that is
+                                seen and not listed */
+    GridMembers flat;         /* of a flat grid */
+    double      half;         /* and half the diagonal of its cells, */
+    float      *centers;   /* and of each cell the distance from its center to the nearest member */
+    bool        measuring; /* these distances */
+    Arena      *scratch;
+} Builder;
+
+/* Cells from first to last along each axis. */
+typedef struct Cover {
+    uint32_t first[3], last[3];
+} Cover;
+
+/* Cells [low, high) along an axis, of which one processor fills the lists. */
+typedef struct Slab {
+    int      axis; /* z, or y in a flat grid */
+    uint32_t low, high;
+} Slab;
+
+/* ---- Cells around boxes ---- */
+
+bool grid_box_is_empty(const Box *box)
+{
+    for (int k = 0; k < 3; k++)
+        if (box->axis[k].low > box->axis[k].high)
+            return true;
+    return false;
+}
+
+/* The cells that are up to `distance` away from a box along each axis. */
+static Cover cover_box(const Builder *b, const Box *box, double distance)
+{
+    Cover cover;
+    for (int k = 0; k < 3; k++) {
+        double grown   = distance + b->pad[k];
+        cover.first[k] = grid_cell_along(b->grid, k, box->axis[k].low - grown);
+        cover.last[k]  = grid_cell_along(b->grid, k, box->axis[k].high + grown);
+    }
+    return cover;
+}
+
+/* That of a processor. */
+static Slab slab_of_part(const Builder *b, size_t part, size_t parts)
+{
+    int      axis  = b->flat.distance ? 1 : 2;
+    uint32_t cells = b->grid->cells[axis];
+    return (Slab){axis, (uint32_t)part_begin(cells, part, parts),
+                  (uint32_t)part_begin(cells, part + 1, parts)};
+}
+
+static Cover cover_in_slab(Cover cover, Slab slab)
+{
+    uint32_t *first = &cover.first[slab.axis], *last = &cover.last[slab.axis];
+    *first = *first > slab.low ? *first : slab.low;
+    *last  = *last < slab.high ? *last : slab.high - 1;
+    return cover;
 }
 
 /* ---- One cell for all of space ---- */
@@ -183,7 +255,7 @@ static double count_entries(const Builder *b)
         if (grid_box_is_empty(&b->boxes[i]))
             continue;
         double far   = b->flat.distance ? fmax(b->listed, b->grid->size) : b->listed;
-        Cover  cover = grid_cover_box(b, &b->boxes[i], far);
+        Cover  cover = cover_box(b, &b->boxes[i], far);
         double cells = 1;
         for (int k = 0; k < 3; k++)
             cells *= (double)(cover.last[k] - cover.first[k]) + 1;
@@ -252,8 +324,8 @@ static void visit_cells(const Builder *b, uint32_t member, Slab slab)
     const Grid *grid   = b->grid;
     const Box  *box    = &b->boxes[member];
     double      listed = b->listed * b->listed;
-    Cover       cover  = grid_cover_box(b, box, grid->members ? b->listed : b->seen);
-    cover              = grid_cover_in_slab(cover, slab);
+    Cover       cover  = cover_box(b, box, grid->members ? b->listed : b->seen);
+    cover              = cover_in_slab(cover, slab);
     for (uint32_t z = cover.first[2]; z <= cover.last[2]; z++) {
         double gap_z = gap_along(b, box, 2, z);
         for (uint32_t y = cover.first[1]; y <= cover.last[1]; y++) {
@@ -292,7 +364,7 @@ static void visit_flat_cells(const Builder *b, uint32_t member, Slab slab)
 {
     const Grid *grid  = b->grid;
     const Box  *box   = &b->boxes[member];
-    Cover       cover = grid_cover_in_slab(grid_cover_box(b, box, b->seen), slab);
+    Cover       cover = cover_in_slab(cover_box(b, box, b->seen), slab);
     for (uint32_t y = cover.first[1]; y <= cover.last[1]; y++) {
         double gap_y = gap_along(b, box, 1, y);
         for (uint32_t x = cover.first[0]; x <= cover.last[0]; x++) {
@@ -308,7 +380,7 @@ static void visit_flat_cells(const Builder *b, uint32_t member, Slab slab)
 static void visit_all(void *task, size_t part, size_t parts)
 {
     const Builder *b    = task;
-    Slab           slab = grid_slab_of_part(b, part, parts);
+    Slab           slab = slab_of_part(b, part, parts);
     for (uint32_t i = 0; i < b->count && slab.low < slab.high; i++)
         if (grid_box_is_empty(&b->boxes[i]))
             continue;
@@ -350,6 +422,74 @@ static void fill_lists(Builder *b, Arena *arena)
     grid_end_lists(grid);
 }
 
+/* ---- Distances in cells to the nearest cell with a box ---- */
+
+/* 0 in cells that touch a cell with a part of this box. */
+static void mark_box(const Builder *b, const Box *box, double *squares, Slab slab)
+{
+    const Grid *grid  = b->grid;
+    Cover       cover = cover_box(b, box, 0);
+    for (int k = 0; k < 3; k++) {
+        cover.first[k] -= cover.first[k] > 0;
+        cover.last[k] += cover.last[k] + 1 < grid->cells[k];
+    }
+    cover = cover_in_slab(cover, slab);
+    for (uint32_t z = cover.first[2]; z <= cover.last[2]; z++)
+        for (uint32_t y = cover.first[1]; y <= cover.last[1]; y++)
+            for (uint32_t x = cover.first[0]; x <= cover.last[0]; x++)
+                squares[((size_t)z * grid->cells[1] + y) * grid->cells[0] + x] = 0;
+}
+
+/* Of all boxes. */
+typedef struct Marking {
+    const Builder *builder;
+    double        *squares;
+} Marking;
+
+static void mark_all(void *task, size_t part, size_t parts)
+{
+    const Marking *marking = task;
+    const Builder *b       = marking->builder;
+    Slab           slab    = slab_of_part(b, part, parts);
+    for (uint32_t i = 0; i < b->count && slab.low < slab.high; i++)
+        if (!grid_box_is_empty(&b->boxes[i]))
+            mark_box(b, &b->boxes[i], marking->squares, slab);
+}
+
+/* Squares of lower bounds on the distance between a cell and the nearest box, in cells.  The walls
+   of cells i and k are |i - k| - 1 cells apart: as far as centers when one of them touches. */
+static double *cells_to_boxes(const Builder *b)
+{
+    size_t  cells   = grid_cell_count(b->grid);
+    Marking marking = {b, arena_new_array(b->scratch, double, cells)};
+    for (size_t c = 0; c < cells; c++)
+        marking.squares[c] = HUGE_VAL;
+    run_in_parallel(mark_all, &marking);
+    squares_transform(b->grid->cells, marking.squares, b->scratch);
+    return marking.squares;
+}
+
+/* ---- Clearance ---- */
+
+static float rounded_down(double number) { return (float)fmax(number * ROUNDED_DOWN, FLT_MIN); }
+
+/* When all lists are filled. */
+static void find_clearances(const Builder *b, Arena *arena)
+{
+    Grid         *grid    = b->grid;
+    size_t        cells   = grid_cell_count(grid);
+    const double *squares = cells_to_boxes(b);
+    grid->clearance       = arena_new_array(arena, float, cells);
+    for (size_t c = 0; c < cells; c++) {
+        double seen = fmin(sqrt((double)b->nearest[c]) * ROUNDED_DOWN, b->seen);
+        double far  = fmax(seen, sqrt(squares[c]) * grid->size);
+        bool   all  = grid->first[c + 1] - grid->first[c] == b->present ||
+                   (b->flat.distance && (double)b->centers[c] <= b->half);
+
+        grid->clearance[c] = all ? (float)NOWHERE : rounded_down(fmax(far - b->reach, b->margin));
+    }
+}
+
 /* ---- All ---- */
 
 /* False: nothing has an end, or there is nothing. */
@@ -367,7 +507,7 @@ static bool begin(Builder *b)
 static void fill(Builder *b, Arena *arena)
 {
     fill_lists(b, arena);
-    grid_find_clearances(b, arena);
+    find_clearances(b, arena);
 }
 
 static void build(Builder *b, Arena *arena)

@@ -15,7 +15,7 @@
 
 #include "compiler/base/far.h"
 #include "compiler/graph/blend_shares.h"
-#include "compiler/graph/instances/grid_builder.h"
+#include "compiler/graph/instances/grid_build.h"
 #include "compiler/graph/op_values.h"
 
 /* How much of the sum of a blend that fades may be left out: so many widths a result is wrong. */

@@ -12,7 +12,7 @@
 
 #include "compiler/base/far.h"
 #include "compiler/base/parallel.h"
-#include "compiler/graph/instances/grid_builder.h"
+#include "compiler/graph/instances/grid_build.h"
 #include "compiler/graph/instances/grid_halve.h"
 #include "compiler/graph/instances/grid_refine.h"
 

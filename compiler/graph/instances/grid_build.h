@@ -1,8 +1,8 @@
 /*
- * grid_of_boxes.h: builds grids of boxes (graph/grid.h).
+ * grid_build.h: builds grids of boxes (graph/grid.h).
  */
-#ifndef KRS_GRID_OF_BOXES_H
-#define KRS_GRID_OF_BOXES_H
+#ifndef KRS_GRID_BUILD_H
+#define KRS_GRID_BUILD_H
 
 #include "compiler/graph/grid.h"
 
@@ -51,5 +51,20 @@ typedef struct GridMembers {
  */
 void grid_build_flat(Grid *grid, const Box *boxes, uint32_t count, double margin, uint32_t texels,
                      GridMembers members, Arena *arena, Arena *scratch);
+
+bool grid_box_is_empty(const Box *box);
+
+/* ---- for grids of blends: grid_refine.c, grid_sift.c ---- */
+
+#define FLOAT_MISSES 0x1p-21 /* several roundings in single precision, of coordinates */
+#define ROUNDED_DOWN (1 - 0x1p-22)
+
+/* Lists are filled in three steps: first[] has the length of each; between these two the next place in it. */
+void grid_begin_lists(Grid *grid, Arena *arena);
+void grid_end_lists(Grid *grid);
+
+/* Where the cells, or few, of a grid are that will be refined; false: there are too many boxes, or one is endless. */
+bool grid_place_coarse(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
+                       bool few, Arena *scratch);
 
 #endif
