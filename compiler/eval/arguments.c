@@ -101,6 +101,23 @@ bool check_positive(Elaboration *e, Node number, const Syntax *syntax, const cha
     return require_positive(e->builder, number, syntax->span, what);
 }
 
+bool check_not_negative(Elaboration *e, Node node, const Syntax *syntax, const char *what)
+{
+    for (uint32_t i = 0; i < e->graph->items[node].type; i++) {
+        Range range = node_range(e->builder, node, i);
+        if (range.low >= 0)
+            continue;
+        bool  known = range.low == range.high;
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "%s cannot be negative",
+                               what);
+        diag->label = known ? "negative" : diag_text(e->diags, "this can be %g", range.low);
+        if (!known)
+            diag->help = "give the `param` a range that is not negative, or use `max(..., 0)`";
+        return false;
+    }
+    return true;
+}
+
 /* ---- what an argument must be ---- */
 
 bool is_given(const Call *call, uint32_t index) { return call->arguments[index].syntax != NULL; }
@@ -155,6 +172,15 @@ Node want_numeric(Elaboration *e, const Call *call, uint32_t index)
         return node;
     type_error(e, argument->syntax, argument->value, "a vector");
     return NODE_NONE;
+}
+
+const List *want_list(Elaboration *e, const Call *call, uint32_t index)
+{
+    const Argument *argument = &call->arguments[index];
+    if (argument->value.type == VALUE_LIST)
+        return argument->value.list;
+    type_error(e, argument->syntax, argument->value, "a list");
+    return NULL;
 }
 
 bool want_constant(Elaboration *e, const Call *call, uint32_t index, double *number)

@@ -77,6 +77,8 @@ bool is_given(const Call *call, uint32_t index);
 /* Reports a direction that is always the zero vector, or a size that can be 0 or less. */
 bool check_direction(Elaboration *e, Node vector, const Syntax *syntax, const char *what);
 bool check_positive(Elaboration *e, Node number, const Syntax *syntax, const char *what);
+/* Reports a number or vector of which some part can be negative. */
+bool check_not_negative(Elaboration *e, Node node, const Syntax *syntax, const char *what);
 /* Reports a number that can be infinite for some permitted value of the parameters. */
 bool check_finite(Elaboration *e, Node node, const Syntax *syntax);
 

@@ -353,11 +353,6 @@ static bool check_at_surface(Elaboration *e, const Shape *shape)
            (shape->uv == NODE_NONE || check_uv(e, shape, &s, &surfaces));
 }
 
-bool is_of_library(const Elaboration *e, const Shape *shape)
-{
-    return e->sources->items[shape->declaration->syntax->span.source].library;
-}
-
 bool check_claims(Elaboration *e, const Shape *shape, double slope)
 {
     if (!check_slope_and_box(e, shape, slope))

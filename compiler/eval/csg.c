@@ -102,13 +102,6 @@ static const Shape **joinable_shapes(Elaboration *e, const Call *call, const Val
     return shapes;
 }
 
-Value value_of_joint(Elaboration *e, const Shape *joint)
-{
-    if (joint && joint->boundary)
-        find_borders(e, joint);
-    return value_shape(joint);
-}
-
 /* The hull of its parts, which a fillet does not leave, says nothing about what is cut away. */
 static bool refuse_fillet(Elaboration *e, const Call *call, uint32_t first_option)
 {

@@ -216,6 +216,11 @@ static void report_steep(Elaboration *e, const Syntax *declaration, const Syntax
                  "zero and jumps";
 }
 
+bool is_of_library(const Elaboration *e, const Shape *shape)
+{
+    return e->sources->items[shape->declaration->syntax->span.source].library;
+}
+
 bool needs_check(Elaboration *e, const Syntax *syntax)
 {
     for (size_t i = 0; i < e->checked.count; i++)
@@ -223,28 +228,6 @@ bool needs_check(Elaboration *e, const Syntax *syntax)
             return false;
     array_push(e->arena, &e->checked, syntax);
     return true;
-}
-
-/* Materials use these coordinates by the names `u` and `v`, or are anisotropic along them.  `declared`: a declaration of
-   them counts as well. */
-static bool mentions_uv(const Syntax *syntax, bool declared)
-{
-    const char *name  = syntax->name;
-    bool        found = name &&
-                 (strcmp(name, "u") == 0 || strcmp(name, "v") == 0 ||
-                  (declared && strcmp(name, "uv") == 0) || strstr(name, "anisotrop") != NULL);
-    for (uint32_t i = 0; i < syntax->count && !found; i++)
-        found = mentions_uv(syntax->children[i], declared);
-    return found;
-}
-
-/* What a scene declares is put to the test; the library's claims are true. */
-bool files_mention_uv(const Files *files)
-{
-    bool found = false;
-    for (size_t i = 0; i < files->count && !found; i++)
-        found = mentions_uv(files->items[i]->syntax, !files->items[i]->library);
-    return found;
 }
 
 /* Two coordinates on the surface, which materials know as `u` and `v`.  Thousands of shapes need not
@@ -367,6 +350,13 @@ void find_borders(Elaboration *e, const Shape *shape)
     for (uint32_t i = 0; i < shape->child_count; i++)
         if (!shape->children[i]->boundary)
             find_borders(e, shape->children[i]);
+}
+
+Value value_of_joint(Elaboration *e, const Shape *joint)
+{
+    if (joint && joint->boundary)
+        find_borders(e, joint);
+    return value_shape(joint);
 }
 
 /* ---- properties ---- */

@@ -379,10 +379,10 @@ Value call_library(Elaboration *e, const char *name, Value first, const Syntax *
 bool made_for_author(const Elaboration *e, const char **name, Span *span);
 
 /* ---- declare.c: shapes declared in the language ---- */
-/* Whether a material of these files may need the coordinates on surfaces. */
-bool files_mention_uv(const Files *files);
 /* The shape of a declaration whose parameters `env` binds; `span` is the call. */
 Value declare_instance(Elaboration *e, const Function *function, const Environment *env, Span span);
+/* The library's claims hold for all sizes: tests search them, and compiling does not wait. */
+bool is_of_library(const Elaboration *e, const Shape *shape);
 /* Whether a declaration or property has not been put to the test yet; it counts as tested from
    here on. */
 bool needs_check(Elaboration *e, const Syntax *syntax);
@@ -397,8 +397,6 @@ void find_borders(Elaboration *e, const Shape *joint);
 Value value_of_joint(Elaboration *e, const Shape *joint);
 
 /* ---- claims.c: what declarations claim ---- */
-/* The library's claims hold for all sizes: tests search them, and compiling does not wait. */
-bool is_of_library(const Elaboration *e, const Shape *shape);
 /* Samples the claims of a declared shape at its sizes; `slope` is claimed, 0: none is.  False:
    reported. */
 bool check_claims(Elaboration *e, const Shape *shape, double slope);
@@ -429,9 +427,6 @@ BuiltinFunction builtin_read_csv, builtin_read_json;
 
 /* ---- methods.c ---- */
 Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax);
-
-/* Reports a number or vector of which some part can be negative. */
-bool check_not_negative(Elaboration *e, Node node, const Syntax *syntax, const char *what);
 
 /* ---- cells.c ---- */
 /* The period of a lattice and its counts, 0 for endless; false: reported. */

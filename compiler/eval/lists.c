@@ -5,15 +5,6 @@
 
 #include <math.h>
 
-const List *want_list(Elaboration *e, const Call *call, uint32_t index)
-{
-    const Argument *argument = &call->arguments[index];
-    if (argument->value.type == VALUE_LIST)
-        return argument->value.list;
-    type_error(e, argument->syntax, argument->value, "a list");
-    return NULL;
-}
-
 /* Reduces values with a binary operation, in pairs, so that the graph stays shallow. */
 static Value reduce(Elaboration *e, Op op, const Value *items, size_t count, const Syntax *origin)
 {

@@ -118,23 +118,6 @@ static Value method_transform(Elaboration *e, const Shape *shape, Call *call)
     return moved(e, shape, map->value.map, call);
 }
 
-bool check_not_negative(Elaboration *e, Node node, const Syntax *syntax, const char *what)
-{
-    for (uint32_t i = 0; i < e->graph->items[node].type; i++) {
-        Range range = node_range(e->builder, node, i);
-        if (range.low >= 0)
-            continue;
-        bool  known = range.low == range.high;
-        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "%s cannot be negative",
-                               what);
-        diag->label = known ? "negative" : diag_text(e->diags, "this can be %g", range.low);
-        if (!known)
-            diag->help = "give the `param` a range that is not negative, or use `max(..., 0)`";
-        return false;
-    }
-    return true;
-}
-
 static Value method_repeat(Elaboration *e, const Shape *shape, Call *call)
 {
     uint32_t cells[3];

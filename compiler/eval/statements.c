@@ -372,6 +372,28 @@ Value elaborate_krs(Elaboration *e, const Environment *env, const Syntax *syntax
 
 /* ---- the file ---- */
 
+/* Materials use these coordinates by the names `u` and `v`, or are anisotropic along them.  `declared`: a declaration of
+   them counts as well. */
+static bool mentions_uv(const Syntax *syntax, bool declared)
+{
+    const char *name  = syntax->name;
+    bool        found = name &&
+                 (strcmp(name, "u") == 0 || strcmp(name, "v") == 0 ||
+                  (declared && strcmp(name, "uv") == 0) || strstr(name, "anisotrop") != NULL);
+    for (uint32_t i = 0; i < syntax->count && !found; i++)
+        found = mentions_uv(syntax->children[i], declared);
+    return found;
+}
+
+/* What a scene declares is put to the test; the library's claims are true. */
+static bool files_mention_uv(const Files *files)
+{
+    bool found = false;
+    for (size_t i = 0; i < files->count && !found; i++)
+        found = mentions_uv(files->items[i]->syntax, !files->items[i]->library);
+    return found;
+}
+
 void run_file(Elaboration *e, Scope *scope)
 {
     Environment env = scope->environment;
