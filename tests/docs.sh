@@ -70,16 +70,16 @@ sed -n "s/^TOKEN([A-Z_]*, *\"\([a-z]*\)\", *\($words\))/\1/p" compiler/front/tok
 none "every word of the language is on its page"
 sed -n '/not_supported/d; s/^FUNCTION(\([a-z_0-9]*\), *"\([^"]*\)".*/\1(\2)/p
     s/^MAP(\([a-z_0-9]*\), *[1-4], *"\([a-z ]*\)".*/\1(\2)/p' \
-    compiler/eval/functions.def compiler/graph/ops.def | signature | undocumented
+    compiler/eval/builtins/functions.def compiler/graph/ops.def | signature | undocumented
 none "every function is on the page, with its parameters"
 sed -n '/not_supported/d; s/^METHOD(\([a-z_]*\), *"\([^"]*\)".*/.\1(\2)/p
     s/^DEFORMATION([A-Z]*, *\([a-z_]*\), *"\([^"]*\)".*/.\1(\2)/p' \
-    compiler/eval/methods.def compiler/shape/shapes.def | signature | while read -r wanted; do
+    compiler/eval/builtins/methods.def compiler/shape/shapes.def | signature | while read -r wanted; do
         grep -qF -- "$wanted" "$work/signatures" || echo "$wanted"
     done >"$work/said"
 none "every method is on the page, with its parameters"
 sed -n 's/^\(FALLOFF\|PALETTE\)([A-Z_, ]*"\([a-z]*\)".*/\2/p; s/^BLEND(\([a-z]*\),.*/\1/p; s/^    "\([a-z]*\)",$/\1/p' \
-    compiler/graph/blends.def compiler/eval/csg.c compiler/shape/falloffs.def compiler/eval/palettes.def |
+    compiler/graph/blends.def compiler/eval/builtins/csg.c compiler/shape/falloffs.def compiler/eval/palettes.def |
     while read -r kind; do
         grep -qF -- "\"$kind\"" "$work/spans" || echo "$kind"
     done >"$work/said"

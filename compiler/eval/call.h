@@ -32,6 +32,15 @@ typedef struct Call {
     uint32_t      rest_count;
 } Call;
 
+/* A function that is built in. */
+typedef Value BuiltinFunction(Elaboration *e, Call *call);
+typedef struct Builtin {
+    const char      *name;
+    const char      *parameters;
+    Op               op;       /* of componentwise functions, else OP_COUNT */
+    BuiltinFunction *function; /* NULL: componentwise `op` */
+} Builtin;
+
 /*
  * Each `want_` says what an argument must be, reports when it is not and then returns NODE_NONE,
  * NULL or false.  A missing argument gives the default and no report.  Values that are VALUE_ERROR

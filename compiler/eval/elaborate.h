@@ -292,28 +292,9 @@ const Definition *definition_of(const Elaboration *e, const Syntax *name);
 /* If `syntax` is a top-level name, marks where it was defined as a second place of `diag`. */
 void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax);
 
-/* ---- builtins.c ---- */
-typedef Value BuiltinFunction(Elaboration *e, Call *call);
-typedef struct Builtin {
-    const char      *name;
-    const char      *parameters;
-    Op               op;       /* of componentwise functions, else OP_COUNT */
-    BuiltinFunction *function; /* NULL: componentwise `op` */
-} Builtin;
-/* What a name means that no file defines; it is valid until the next call. */
-const BuiltinName *builtin_find(Elaboration *e, const char *name);
-/* A constant (pi, x, time).  One that has no meaning at this place is reported. */
-Value builtin_constant(Elaboration *e, const char *name, Span span);
-/* All names that need no definition, for names_check; returns how many, at most `capacity`. */
-size_t builtin_names(const char **names, size_t capacity);
-
 /* ---- indices.c ---- */
 /* `list[index]`, also of vectors and records. */
 Value value_index(Elaboration *e, const Syntax *syntax, Value list, Value index);
-
-/* ---- lists.c ---- */
-BuiltinFunction builtin_sum, builtin_product, builtin_any, builtin_all, builtin_least,
-    builtin_greatest, builtin_len, builtin_range;
 
 /* ---- beams.c ---- */
 /* With KrsOptions.beams: what a component is the union of. */
@@ -322,23 +303,6 @@ void find_beams(Elaboration *e, Component *component);
 /* ---- hull.c ---- */
 BuiltinFunction builtin_hull, builtin_hull_triangles;
 Value           method_hull(Elaboration *e, const Shape *shape, Call *call);
-
-/* ---- extremes.c ---- */
-BuiltinFunction builtin_extremes;
-
-/* ---- random.c ---- */
-BuiltinFunction builtin_random, builtin_random_direction, builtin_noise, builtin_fbm;
-
-/* ---- csg.c ---- */
-/* `a | b`, `a & b` and `a - b` of shapes; `if` on a condition that frames know. */
-Value join_shapes(Elaboration *e, const Syntax *syntax, const Shape *a, const Shape *b);
-Value choose_shape(Elaboration *e, const Syntax *syntax, Value condition, const Shape *yes,
-                   const Shape *no);
-BuiltinFunction builtin_union, builtin_intersection, builtin_difference, builtin_xor, builtin_morph,
-    builtin_meta;
-
-/* ---- fractal.c ---- */
-BuiltinFunction builtin_julia, builtin_mandelbulb;
 
 /* ---- files.c ---- */
 /* Reads a file that an argument names, relative to the file that has the call; false: reported.  It is
@@ -352,17 +316,6 @@ BuiltinFunction builtin_text;
 
 /* ---- drawing.c, texture.c ---- */
 BuiltinFunction builtin_svg, builtin_texture, builtin_footprint;
-
-/* ---- measure.c ---- */
-Value method_distance(Elaboration *e, const Shape *shape, Call *call);
-Value method_bounds(Elaboration *e, const Shape *shape, Call *call);
-
-/* ---- grown.c ---- */
-/* A figure that is grown: an outline of its own, where outlines are wanted and that of the figure is known. */
-const Shape *grown_outline(Elaboration *e, const Shape *figure, const Shape *grown);
-
-/* ---- corners.c ---- */
-Value method_corners(Elaboration *e, const Shape *shape, Call *call);
 
 /* ---- functions.c ---- */
 /* Calls a function, or makes the shape of a declaration; `syntax` is the call. */
@@ -424,18 +377,6 @@ Value record_member(Elaboration *e, const Record *record, const char *name, Span
 
 /* ---- data.c: files of data ---- */
 BuiltinFunction builtin_read_csv, builtin_read_json;
-
-/* ---- methods.c ---- */
-Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax);
-
-/* ---- cells.c ---- */
-/* The period of a lattice and its counts, 0 for endless; false: reported. */
-bool want_lattice(Elaboration *e, const Call *call, Node *period, uint32_t cells[3]);
-/* Whether functions have this method: `.repeat` and `.repeat_polar` of one that makes the shape of a
-   cell. */
-bool  repeats_functions(const char *method);
-Value repeat_function(Elaboration *e, const Environment *env, const Syntax *syntax,
-                      const Function *function);
 
 /* ---- palette.c ---- */
 Value method_color_by(Elaboration *e, const Shape *shape, Call *call);
@@ -508,5 +449,26 @@ Value elaborate_krs(Elaboration *e, const Environment *env, const Syntax *syntax
 /* ---- shown.c ---- */
 /* Gathers the components that turns of a loop have shown; fills Scene.shown with all of them. */
 void gather_shown(Elaboration *e);
+
+/* ---- what evaluation asks of the rooms of this folder ---- */
+
+/* builtins/builtins.c */
+/* What a name means that no file defines; it is valid until the next call. */
+const BuiltinName *builtin_find(Elaboration *e, const char *name);
+/* A constant (pi, x, time).  One that has no meaning at this place is reported. */
+Value builtin_constant(Elaboration *e, const char *name, Span span);
+/* All names that need no definition, for names_check; returns how many, at most `capacity`. */
+size_t builtin_names(const char **names, size_t capacity);
+
+/* builtins/methods.c */
+Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax);
+
+/* builtins/csg.c */
+/* Whether it is `union`, `intersection` or `difference`. */
+bool joins_shapes(const Builtin *builtin);
+/* `a | b`, `a & b` and `a - b` of shapes; `if` on a condition that frames know. */
+Value join_shapes(Elaboration *e, const Syntax *syntax, const Shape *a, const Shape *b);
+Value choose_shape(Elaboration *e, const Syntax *syntax, Value condition, const Shape *yes,
+                   const Shape *no);
 
 #endif

@@ -252,18 +252,12 @@ static Value call_values(Elaboration *e, const Function *function, const Value *
     return result;
 }
 
-static bool joins(const Builtin *builtin)
-{
-    return builtin->function == builtin_union || builtin->function == builtin_intersection ||
-           builtin->function == builtin_difference;
-}
-
 static Value call_builtin(Elaboration *e, const Environment *env, const Syntax *syntax,
                           const Builtin *builtin)
 {
     Call          call;
     const Syntax *outer = e->joining;
-    e->joining          = joins(builtin) ? syntax : NULL;
+    e->joining          = joins_shapes(builtin) ? syntax : NULL;
     const bool bound = bind_arguments(e, env, syntax, 1, builtin->name, builtin->parameters, &call);
     e->joining       = outer;
     if (!bound)

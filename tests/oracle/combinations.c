@@ -226,7 +226,7 @@ static void every_method_has_a_row(void **state)
 {
     static const char *const names[] = {
 #define METHOD(name, parameters, function, meaning) #name,
-#include "compiler/eval/methods.def"
+#include "compiler/eval/builtins/methods.def"
 #undef METHOD
     };
     (void)state;

@@ -333,10 +333,10 @@ static void functions_are_found(void **state)
     read_library();
     assert_true(function_count > 80);
 #define FUNCTION(name, parameters, function, meaning) add_builtin(#name, parameters, "");
-#include "compiler/eval/functions.def"
+#include "compiler/eval/builtins/functions.def"
 #undef FUNCTION
 #define METHOD(name, parameters, method, meaning) add_builtin(#name, parameters, "sphere(1).");
-#include "compiler/eval/methods.def"
+#include "compiler/eval/builtins/methods.def"
 #undef METHOD
 }
 

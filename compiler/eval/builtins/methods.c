@@ -1,7 +1,7 @@
 /*
  * methods.c: what can be done to shapes and maps with a dot.
  */
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/builtins/builtins.h"
 #include "compiler/eval/texture.h"
 
 #include <math.h>
@@ -365,7 +365,7 @@ static const struct {
     Method     *method;
 } methods[] = {
 #define METHOD(name, parameters, function, meaning) {#name, parameters, method_##function},
-#include "compiler/eval/methods.def"
+#include "compiler/eval/builtins/methods.def"
 #undef METHOD
 };
 enum { METHOD_COUNT = sizeof methods / sizeof *methods };

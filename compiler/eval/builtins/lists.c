@@ -1,7 +1,7 @@
 /*
  * lists.c: the built-in functions of lists, and of several numbers as if they were one.
  */
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/builtins/builtins.h"
 
 #include <math.h>
 

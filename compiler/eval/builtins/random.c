@@ -1,7 +1,7 @@
 /*
  * random.c: random numbers, known at compile time, and noise, which is a value at each point.
  */
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/builtins/builtins.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/builtins/builtins.h"
 #include "compiler/family/vary.h"
 
 /* ---- the lattice ---- */

@@ -1,5 +1,5 @@
 /* grown.c: figures of known outlines that are grown, as outlines of their own. */
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/builtins/builtins.h"
 #include "compiler/family/family.h"
 #include "compiler/lower/boundary.h"
 

@@ -8,7 +8,7 @@
  */
 #include <math.h>
 
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/builtins/builtins.h"
 #include "compiler/graph/bounds/facts.h"
 
 enum { MOST_CELLS = 4000, MOST_CUTS = 24 };

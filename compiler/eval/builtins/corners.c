@@ -1,7 +1,7 @@
 /* corners.c: the corners of plane figures that are convex polygons. */
 #include <string.h>
 
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/builtins/builtins.h"
 #include "compiler/lower/outline.h"
 #include "compiler/shape/map.h"
 

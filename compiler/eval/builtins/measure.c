@@ -1,7 +1,7 @@
 /*
  * measure.c: what shapes tell of themselves: their distance at a point, and their bounds.
  */
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/builtins/builtins.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /*
  * csg.c: operators and built-in functions that make one shape of several.
  */
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/builtins/builtins.h"
 #include "compiler/eval/fillet.h"
 
 /* Behind the kinds of blends: fillets are unions of circular ones, cut. */
@@ -196,6 +196,12 @@ Value builtin_intersection(Elaboration *e, Call *call)
 Value builtin_difference(Elaboration *e, Call *call)
 {
     return join_rest(e, call, SHAPE_DIFFERENCE);
+}
+
+bool joins_shapes(const Builtin *builtin)
+{
+    return builtin->function == builtin_union || builtin->function == builtin_intersection ||
+           builtin->function == builtin_difference;
 }
 
 Value builtin_xor(Elaboration *e, Call *call)

@@ -3,7 +3,7 @@
  *
  * Those of lists, random numbers and CSG have files of their own.
  */
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/builtins/builtins.h"
 
 #include <math.h>
 #include <string.h>
@@ -185,7 +185,7 @@ static const Builtin builtins[] = {
 #include "compiler/graph/ops.def"
 #define FUNCTION(name, parameters, function, meaning) \
     {#name, parameters, OP_COUNT, builtin_##function},
-#include "compiler/eval/functions.def"
+#include "compiler/eval/builtins/functions.def"
 };
 enum { BUILTIN_COUNT = sizeof builtins / sizeof *builtins };
 

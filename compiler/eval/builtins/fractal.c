@@ -1,7 +1,7 @@
 /*
  * fractal.c: the built-in functions that make fractals.
  */
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/builtins/builtins.h"
 
 #include <math.h>
 
