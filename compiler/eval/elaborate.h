@@ -296,14 +296,6 @@ void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax);
 /* `list[index]`, also of vectors and records. */
 Value value_index(Elaboration *e, const Syntax *syntax, Value list, Value index);
 
-/* ---- beams.c ---- */
-/* With KrsOptions.beams: what a component is the union of. */
-void find_beams(Elaboration *e, Component *component);
-
-/* ---- hull.c ---- */
-BuiltinFunction builtin_hull, builtin_hull_triangles;
-Value           method_hull(Elaboration *e, const Shape *shape, Call *call);
-
 /* ---- files.c ---- */
 /* Reads a file that an argument names, relative to the file that has the call; false: reported.  It is
    read once. */
@@ -470,5 +462,9 @@ bool joins_shapes(const Builtin *builtin);
 Value join_shapes(Elaboration *e, const Syntax *syntax, const Shape *a, const Shape *b);
 Value choose_shape(Elaboration *e, const Syntax *syntax, Value condition, const Shape *yes,
                    const Shape *no);
+
+/* hulls/beams.c */
+/* With KrsOptions.beams: what a component is the union of. */
+void find_beams(Elaboration *e, Component *component);
 
 #endif

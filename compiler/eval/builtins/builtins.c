@@ -8,6 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/eval/hulls/hull.h"
+
 /* ---- vectors ---- */
 
 static Value vector_op(Elaboration *e, Call *call, Op op, uint32_t arity)

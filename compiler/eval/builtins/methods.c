@@ -2,10 +2,12 @@
  * methods.c: what can be done to shapes and maps with a dot.
  */
 #include "compiler/eval/builtins/builtins.h"
-#include "compiler/eval/texture.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "compiler/eval/hulls/hull.h"
+#include "compiler/eval/texture.h"
 
 typedef Value Method(Elaboration *e, const Shape *shape, Call *call);
 

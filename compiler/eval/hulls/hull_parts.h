@@ -7,7 +7,7 @@
 #ifndef KRS_HULL_PARTS_H
 #define KRS_HULL_PARTS_H
 
-#include "compiler/eval/hull_supports.h"
+#include "compiler/eval/hulls/hull_supports.h"
 #include "compiler/eval/elaborate.h"
 
 /* A ball whose centre goes around `ball.centre`: `rim` is along the axis and as long as the circle's
@@ -33,8 +33,5 @@ bool hull_parts(Elaboration *e, const Call *call, HullParts *parts);
 /* Adds the parts of a shape; false: reported at `syntax`. */
 bool hull_parts_of_shape(Elaboration *e, const Call *call, const Syntax *syntax, const Shape *shape,
                          HullParts *parts);
-
-/* hull.c: the hull of parts; NULL: they are corners of a solid, too many, or more than can be said. */
-const Shape *round_hull(Elaboration *e, const Call *call, const HullParts *parts);
 
 #endif

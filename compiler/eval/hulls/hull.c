@@ -5,11 +5,11 @@
  * Dobkin and Huhdanpaa, "The Quickhull algorithm for convex hulls", 1996).  Others have supports
  * (hull_supports.h).  Rims about one axis, or between two planes across it, are a plane figure's hull.
  */
+#include "compiler/eval/hulls/hull.h"
+
 #include <math.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/eval/elaborate.h"
-#include "compiler/eval/hull_parts.h"
 #include "compiler/shape/map.h"
 
 /* Of one size; of others, whose number counts by its third power. */

@@ -3,7 +3,7 @@
  * followed from the outside inwards; where nothing more is known, the corners of a box stand for a
  * shape.
  */
-#include "compiler/eval/extents.h"
+#include "compiler/eval/hulls/extents.h"
 
 #include <math.h>
 

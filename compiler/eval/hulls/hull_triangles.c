@@ -9,8 +9,8 @@
 #include <libqhull_r/qhull_ra.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/eval/elaborate.h"
-#include "compiler/eval/hull_normals.h"
+#include "compiler/eval/hulls/hull.h"
+#include "compiler/eval/hulls/hull_normals.h"
 
 enum { MOST_POINTS = 4096 };
 

@@ -2,7 +2,7 @@
  * hull_parts.c: from shapes and points to the balls and rims of which a hull is made.  Maps and joints are
  * followed from the outside inwards.
  */
-#include "compiler/eval/hull_parts.h"
+#include "compiler/eval/hulls/hull_parts.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,14 +1,14 @@
 /*
  * hull_region.c: a region that holds parts, and is their convex hull or little more.
  */
-#include "compiler/eval/hull_region.h"
+#include "compiler/eval/hulls/hull_region.h"
 
 #include <math.h>
 #include <stdint.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/eval/hull_normals.h"
-#include "compiler/eval/hull_parts.h"
+#include "compiler/eval/hulls/hull.h"
+#include "compiler/eval/hulls/hull_normals.h"
 #include "compiler/family/family.h"
 #include "compiler/graph/build.h"
 #include "compiler/lower/lower.h"

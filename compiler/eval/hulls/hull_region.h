@@ -4,8 +4,8 @@
 #ifndef KRS_HULL_REGION_H
 #define KRS_HULL_REGION_H
 
-#include "compiler/eval/extents.h"
-#include "compiler/eval/fillet_zone.h"
+#include "compiler/eval/hulls/extents.h"
+#include "compiler/eval/hulls/fillet_zone.h"
 
 /* As far as that matters in a zone; NULL: all of the zone is in it.  `crowd`: it is one of many, which had
    best be alike. */

@@ -2,7 +2,7 @@
  * fillet_zone.c: where a fillet can add something to two parts.  The box is halved as long as distances
  * in the middle of a half do not tell that it is all inside of a part, or all outside of the blend.
  */
-#include "compiler/eval/fillet_zone.h"
+#include "compiler/eval/hulls/fillet_zone.h"
 
 #include <math.h>
 

@@ -6,12 +6,12 @@
  * is round in them.  Of more parts it is the union of all pairs.  What is a sharp union counts as its
  * parts, without fillets between these.
  */
-#include "compiler/eval/fillet.h"
+#include "compiler/eval/hulls/fillet.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "compiler/eval/hull_region.h"
+#include "compiler/eval/hulls/hull_region.h"
 #include "compiler/family/family.h"
 #include "compiler/lower/crowd.h"
 

@@ -3,7 +3,7 @@
  * ball is beyond it.  That takes time by the third power of their number, and needs no care where
  * more than three balls touch a plane: such a plane is found several times, and kept once.
  */
-#include "compiler/eval/hull_supports.h"
+#include "compiler/eval/hulls/hull_supports.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
  *
  * A capsule is the convex hull of two balls, and the declarations of the library tell of which.
  */
-#include "compiler/eval/extents.h"
+#include "compiler/eval/hulls/extents.h"
 
 typedef struct Beams {
     Elaboration *e;
