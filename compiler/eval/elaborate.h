@@ -303,12 +303,6 @@ bool read_beside(Elaboration *e, const Argument *argument, const char *path, Fil
 /* A file of the system, which scenes cannot name; false: it cannot be read. */
 bool read_system_file(Elaboration *e, const char *path, FileBytes *bytes);
 
-/* ---- text.c ---- */
-BuiltinFunction builtin_text;
-
-/* ---- drawing.c, texture.c ---- */
-BuiltinFunction builtin_svg, builtin_texture, builtin_footprint;
-
 /* ---- functions.c ---- */
 /* Calls a function, or makes the shape of a declaration; `syntax` is the call. */
 Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax,
@@ -366,9 +360,6 @@ Value value_components(Elaboration *e, const Syntax *syntax, Value vector);
 Value value_record(Elaboration *e, const Value *names, const Value *values, size_t count);
 /* What stands under a name, which is written at `span`. */
 Value record_member(Elaboration *e, const Record *record, const char *name, Span span);
-
-/* ---- data.c: files of data ---- */
-BuiltinFunction builtin_read_csv, builtin_read_json;
 
 /* ---- palette.c ---- */
 Value method_color_by(Elaboration *e, const Shape *shape, Call *call);
@@ -466,5 +457,9 @@ Value choose_shape(Elaboration *e, const Syntax *syntax, Value condition, const 
 /* hulls/beams.c */
 /* With KrsOptions.beams: what a component is the union of. */
 void find_beams(Elaboration *e, Component *component);
+
+/* data/texture.c */
+/* `t(u, v)` of the texture of this number. */
+Value call_texture(Elaboration *e, const Environment *env, const Syntax *syntax, uint32_t number);
 
 #endif

@@ -2,7 +2,6 @@
  * expression.c: the value of an expression.
  */
 #include "compiler/eval/elaborate.h"
-#include "compiler/eval/texture.h"
 
 #include <math.h>
 

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/eval/data/from_files.h"
 #include "compiler/eval/hulls/hull.h"
 
 /* ---- vectors ---- */

@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/eval/data/from_files.h"
 #include "compiler/eval/hulls/hull.h"
-#include "compiler/eval/texture.h"
 
 typedef Value Method(Elaboration *e, const Shape *shape, Call *call);
 

@@ -1,7 +1,7 @@
 /*
- * json.c: JSON, RFC 8259: arrays are lists, objects are records, null is an empty list.
+ * json.c: `read_json`: JSON, RFC 8259: arrays are lists, objects are records, null is an empty list.
  */
-#include "compiler/eval/data.h"
+#include "compiler/eval/data/data.h"
 
 #include <string.h>
 
@@ -228,7 +228,8 @@ static Value read_value(DataText *data, uint32_t level)
     }
 }
 
-Value read_json_text(DataText *data)
+/* The value of a whole text. */
+static Value read_text(DataText *data)
 {
     Value value = read_value(data, 0);
     if (value.type == VALUE_ERROR)
@@ -236,4 +237,10 @@ Value read_json_text(DataText *data)
     skip_blanks(data);
     bool good = data->at == data->length || unexpected(data, "nothing behind the value");
     return good ? value : value_error();
+}
+
+Value builtin_read_json(Elaboration *e, Call *call)
+{
+    DataText data;
+    return data_open(e, call, &data) ? read_text(&data) : value_error();
 }

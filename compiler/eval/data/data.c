@@ -1,7 +1,7 @@
 /*
- * data.c: `read_csv` and `read_json`, and what both have in common.
+ * data.c: what `read_csv` and `read_json` have in common.
  */
-#include "compiler/eval/data.h"
+#include "compiler/eval/data/data.h"
 
 #include <math.h>
 #include <string.h>
@@ -99,8 +99,7 @@ Value data_string(DataText *data, uint32_t start, uint32_t end)
 
 /* ---- calls ---- */
 
-/* Opens the file that the first argument names; false: reported. */
-static bool open_data(Elaboration *e, const Call *call, DataText *data)
+bool data_open(Elaboration *e, const Call *call, DataText *data)
 {
     static const char mark[] = "\xEF\xBB\xBF"; /* that some programs begin UTF-8 with */
     const Argument   *path   = &call->arguments[0];
@@ -118,41 +117,4 @@ static bool open_data(Elaboration *e, const Call *call, DataText *data)
     data->scratch.arena = e->scratch;
     data->at            = strncmp(file->text, mark, 3) == 0 ? 3 : 0;
     return count_steps(e, file->length, call->syntax->span);
-}
-
-Value builtin_read_json(Elaboration *e, Call *call)
-{
-    DataText data;
-    return open_data(e, call, &data) ? read_json_text(&data) : value_error();
-}
-
-/* One character, a comma unless given; 0: reported. */
-static char separator_argument(Elaboration *e, const Call *call)
-{
-    const Argument *argument = &call->arguments[2];
-    if (!argument->syntax)
-        return ',';
-    Value value = argument->value;
-    if (value.type == VALUE_STRING && strlen(value.string) == 1 &&
-        !strchr("\"\n\r.+-", value.string[0]) && !is_digit(value.string[0]))
-        return value.string[0];
-    if (value.type == VALUE_STRING) {
-        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, argument->syntax->span,
-                               "this cannot stand between cells");
-        diag->label = "one character is needed, such as `\",\"`, `\";\"` or `\"\\t\"`";
-    } else
-        type_error(e, argument->syntax, value, "a string");
-    return 0;
-}
-
-Value builtin_read_csv(Elaboration *e, Call *call)
-{
-    DataText data;
-    uint32_t skip;
-    if (!want_count(e, call, 1, 0, MOST_ELEMENTS, 0, &skip))
-        return value_error();
-    char separator = separator_argument(e, call);
-    if (!separator || !open_data(e, call, &data))
-        return value_error();
-    return read_csv_text(&data, separator, skip);
 }

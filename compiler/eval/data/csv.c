@@ -1,7 +1,9 @@
 /*
- * csv.c: tables of cells: RFC 4180, with numbers where a cell is one.
+ * csv.c: `read_csv`: tables of cells: RFC 4180, with numbers where a cell is one.
  */
-#include "compiler/eval/data.h"
+#include "compiler/eval/data/data.h"
+
+#include <string.h>
 
 typedef struct Table {
     DataText *data;
@@ -102,7 +104,8 @@ static bool keep_row(Table *table, const Values *cells, uint32_t start)
     return data_push(data, &table->rows, value_list(data->e, cells->items, cells->count));
 }
 
-Value read_csv_text(DataText *data, char separator, uint32_t skip)
+/* Rows of cells, without the first `skip` ones. */
+static Value read_text(DataText *data, char separator, uint32_t skip)
 {
     Table table = {.data = data, .separator = separator};
     while (!at_end(data)) {
@@ -117,4 +120,35 @@ Value read_csv_text(DataText *data, char separator, uint32_t skip)
         skip_line_end(data);
     }
     return value_list(data->e, table.rows.items, table.rows.count);
+}
+
+/* One character, a comma unless given; 0: reported. */
+static char separator_argument(Elaboration *e, const Call *call)
+{
+    const Argument *argument = &call->arguments[2];
+    if (!argument->syntax)
+        return ',';
+    Value value = argument->value;
+    if (value.type == VALUE_STRING && strlen(value.string) == 1 &&
+        !strchr("\"\n\r.+-0123456789", value.string[0]))
+        return value.string[0];
+    if (value.type == VALUE_STRING) {
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, argument->syntax->span,
+                               "this cannot stand between cells");
+        diag->label = "one character is needed, such as `\",\"`, `\";\"` or `\"\\t\"`";
+    } else
+        type_error(e, argument->syntax, value, "a string");
+    return 0;
+}
+
+Value builtin_read_csv(Elaboration *e, Call *call)
+{
+    DataText data;
+    uint32_t skip;
+    if (!want_count(e, call, 1, 0, MOST_ELEMENTS, 0, &skip))
+        return value_error();
+    char separator = separator_argument(e, call);
+    if (!separator || !data_open(e, call, &data))
+        return value_error();
+    return read_text(&data, separator, skip);
 }

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/data/from_files.h"
 #include "compiler/outline/letters.h"
 
 /* Of cubic curves, in ems. */

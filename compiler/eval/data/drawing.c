@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/data/from_files.h"
 #include "compiler/front/token.h"
 #include "compiler/outline/svg.h"
 

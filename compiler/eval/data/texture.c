@@ -1,7 +1,7 @@
 /*
  * texture.c: `texture`, what its value does, and `footprint`.
  */
-#include "compiler/eval/texture.h"
+#include "compiler/eval/data/from_files.h"
 
 #include <string.h>
 

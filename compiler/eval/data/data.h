@@ -6,7 +6,7 @@
 #ifndef KRS_DATA_H
 #define KRS_DATA_H
 
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/data/from_files.h"
 
 typedef struct DataText {
     Elaboration  *e;
@@ -17,6 +17,8 @@ typedef struct DataText {
     Text          scratch; /* the number or string being read */
 } DataText;
 
+/* Opens the file that the first argument of a call names; false: reported. */
+bool data_open(Elaboration *e, const Call *call, DataText *data);
 /* Bytes [start, end) are not what such a file has. */
 Diag *data_error(DataText *data, uint32_t start, uint32_t end, const char *message);
 /* The length of the number that begins at a place, 0 without one.  `strict`: as JSON has it; else
@@ -28,10 +30,5 @@ Value data_number(DataText *data, uint32_t start, uint32_t end);
 Value data_string(DataText *data, uint32_t start, uint32_t end);
 /* Adds an element to a list; false: too many, which is reported. */
 bool data_push(DataText *data, Values *values, Value value);
-
-/* The value of a whole text. */
-Value read_json_text(DataText *data);
-/* Rows of cells, without the first `skip` ones. */
-Value read_csv_text(DataText *data, char separator, uint32_t skip);
 
 #endif
