@@ -79,7 +79,7 @@ sed -n '/not_supported/d; s/^METHOD(\([a-z_]*\), *"\([^"]*\)".*/.\1(\2)/p
     done >"$work/said"
 none "every method is on the page, with its parameters"
 sed -n 's/^\(FALLOFF\|PALETTE\)([A-Z_, ]*"\([a-z]*\)".*/\2/p; s/^BLEND(\([a-z]*\),.*/\1/p; s/^    "\([a-z]*\)",$/\1/p' \
-    compiler/graph/blends.def compiler/eval/builtins/csg.c compiler/shape/falloffs.def compiler/eval/palettes.def |
+    compiler/graph/blends.def compiler/eval/builtins/csg.c compiler/shape/falloffs.def compiler/eval/view/palettes.def |
     while read -r kind; do
         grep -qF -- "\"$kind\"" "$work/spans" || echo "$kind"
     done >"$work/said"

@@ -361,9 +361,6 @@ Value value_record(Elaboration *e, const Value *names, const Value *values, size
 /* What stands under a name, which is written at `span`. */
 Value record_member(Elaboration *e, const Record *record, const char *name, Span span);
 
-/* ---- palette.c ---- */
-Value method_color_by(Elaboration *e, const Shape *shape, Call *call);
-
 /* ---- remarks.c: `print`, `assert`, strings ---- */
 /* Prints, or reports a condition that does not hold: then false. */
 bool run_remark(Elaboration *e, const Environment *env, const Syntax *syntax);
@@ -395,28 +392,6 @@ double constant_property(Elaboration *e, const Environment *env, const Syntax *b
    is not given, or not one that is there. */
 const char *word_property(Elaboration *e, const Environment *env, const Syntax *block,
                           const char *name, const char *const *words, size_t count, size_t later);
-
-/* ---- material.c ---- */
-Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *syntax);
-/* A material, or a colour that becomes one; NULL: reported. */
-const Material *to_material(Elaboration *e, Value value, const Syntax *syntax);
-
-/* ---- studio.c ---- */
-/* Plans which boxes of components are to be found in each frame. */
-void plan_boxes(Elaboration *e);
-/* Then adds lights, a sky and a floor to a scene that has none, if that is wanted. */
-void run_studio(Elaboration *e, const Files *files);
-
-/* ---- sky.c ---- */
-void elaborate_sky(Elaboration *e, const Environment *env, const Syntax *syntax);
-/* Finds the light that is the sun of daylight, once all lights are known. */
-void complete_sky(Elaboration *e);
-
-/* ---- view.c: lights, image, zones; cameras by camera.c ---- */
-/* Adds a camera, a light or a zone to the scene, or sets its sky or image. */
-void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax);
-/* Adds what the scene leaves out: a camera, a sun, a sky. */
-void complete_view(Elaboration *e);
 
 /* ---- params.c ---- */
 Value define_param(Elaboration *e, const Environment *env, const Syntax *syntax);
@@ -461,5 +436,20 @@ void find_beams(Elaboration *e, Component *component);
 /* data/texture.c */
 /* `t(u, v)` of the texture of this number. */
 Value call_texture(Elaboration *e, const Environment *env, const Syntax *syntax, uint32_t number);
+
+/* view/material.c: the value of a `material` block. */
+Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *syntax);
+
+/* view/view.c */
+/* Adds a camera, a light or a zone to the scene, or sets its sky or image. */
+void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax);
+/* Adds what the scene leaves out: a camera, a sun, a sky. */
+void complete_view(Elaboration *e);
+
+/* view/studio.c */
+/* Plans which boxes of components are to be found in each frame. */
+void plan_boxes(Elaboration *e);
+/* Then adds lights, a sky and a floor to a scene that has none, if that is wanted. */
+void run_studio(Elaboration *e, const Files *files);
 
 #endif

@@ -8,6 +8,7 @@
 
 #include "compiler/eval/data/from_files.h"
 #include "compiler/eval/hulls/hull.h"
+#include "compiler/eval/view/material.h"
 
 typedef Value Method(Elaboration *e, const Shape *shape, Call *call);
 

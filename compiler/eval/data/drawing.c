@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "compiler/eval/data/from_files.h"
+#include "compiler/eval/view/material.h"
 #include "compiler/front/token.h"
 #include "compiler/outline/svg.h"
 

@@ -1,7 +1,7 @@
 /*
  * view.c: lights, sky, fog, image and zones, and defaults for those that a scene leaves out.
  */
-#include "compiler/eval/camera.h"
+#include "compiler/eval/view/view.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /*
  * camera.c: cameras: where they stand, their lens and shutter.
  */
-#include "compiler/eval/camera.h"
+#include "compiler/eval/view/view.h"
 
 #include <math.h>
 

@@ -3,7 +3,7 @@
  *
  * The colours stand at equal steps from 0 to 1, and between them light is mixed linearly.
  */
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/view/material.h"
 
 #include "compiler/front/token.h"
 
@@ -12,12 +12,12 @@ enum { STOPS = 6, MOST_STOPS = 64 };
 /* sRGB */
 static const uint32_t palettes[][STOPS] = {
 #define PALETTE(name, ...) {__VA_ARGS__},
-#include "compiler/eval/palettes.def"
+#include "compiler/eval/view/palettes.def"
 #undef PALETTE
 };
 static const char *const palette_spellings[] = {
 #define PALETTE(name, ...) name,
-#include "compiler/eval/palettes.def"
+#include "compiler/eval/view/palettes.def"
 #undef PALETTE
 };
 static const Choices palette_names = {

@@ -1,7 +1,7 @@
 /*
  * sky.c: the sky of a scene: three colours, a picture of all directions, or daylight.
  */
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/view/view.h"
 
 #include <math.h>
 #include <string.h>

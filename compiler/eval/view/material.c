@@ -1,7 +1,7 @@
 /*
  * material.c: materials, and colours that stand for one.
  */
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/view/material.h"
 
 #include <string.h>
 
