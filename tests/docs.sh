@@ -94,7 +94,7 @@ tr '{' '\n' <compiler/eval/properties.c |
             grep -q "[\` ]${property}[\`:]" || echo "$property of $block"
     done >"$work/said"
 none "every property of a block is in its row"
-sed -n '/property_names\[\]/,/};/p' compiler/eval/declare.c | grep -o '"[a-z]*"' |
+sed -n '/property_names\[\]/,/};/p' compiler/eval/declared/declare.c | grep -o '"[a-z]*"' |
     tr -d '"' >"$work/properties"
 [ -s "$work/properties" ]
 report $? "the properties of shapes are found"

@@ -135,6 +135,12 @@ struct Declaration {
     Environment   names;  /* what these expressions see */
 };
 
+/* The library's claims hold for all sizes: tests search them, and compiling does not wait. */
+static inline bool is_of_library(const Elaboration *e, const Shape *shape)
+{
+    return e->sources->items[shape->declaration->syntax->span.source].library;
+}
+
 /* Whether a limit was reached: everything is an error from here, silently. */
 static inline bool is_stopped(const Elaboration *e) { return e->builder->stopped; }
 
@@ -317,33 +323,6 @@ Value call_library(Elaboration *e, const char *name, Value first, const Syntax *
    the scene makes it itself. */
 bool made_for_author(const Elaboration *e, const char **name, Span *span);
 
-/* ---- declare.c: shapes declared in the language ---- */
-/* The shape of a declaration whose parameters `env` binds; `span` is the call. */
-Value declare_instance(Elaboration *e, const Function *function, const Environment *env, Span span);
-/* The library's claims hold for all sizes: tests search them, and compiling does not wait. */
-bool is_of_library(const Elaboration *e, const Shape *shape);
-/* Whether a declaration or property has not been put to the test yet; it counts as tested from
-   here on. */
-bool needs_check(Elaboration *e, const Syntax *syntax);
-
-/* What `core` is for this `rounding`; NULL: reported. */
-const Shape *declared_core(Elaboration *e, const Shape *shape, Node rounding);
-/* The value of `hull`. */
-Value declared_hull(Elaboration *e, const Shape *shape);
-/* Finds the corners of all figures below a sharp joint. */
-void find_borders(Elaboration *e, const Shape *joint);
-/* Shapes that are joined or copied, or NULL; of figures one knows then where the boundary is. */
-Value value_of_joint(Elaboration *e, const Shape *joint);
-
-/* ---- claims.c: what declarations claim ---- */
-/* Samples the claims of a declared shape at its sizes; `slope` is claimed, 0: none is.  False:
-   reported. */
-bool check_claims(Elaboration *e, const Shape *shape, double slope);
-/* The same of the `core` of a declared shape, for this `rounding`. */
-bool check_core(Elaboration *e, const Shape *shape, const Shape *core, Node rounding);
-/* That nothing of a declared shape is outside of this hull. */
-bool check_hull(Elaboration *e, const Shape *shape, const Shape *hull);
-
 /* ---- empty.c ---- */
 /* Whether a shape can be empty though its parts are not. */
 bool may_vanish(const Shape *shape);
@@ -451,5 +430,9 @@ void complete_view(Elaboration *e);
 void plan_boxes(Elaboration *e);
 /* Then adds lights, a sky and a floor to a scene that has none, if that is wanted. */
 void run_studio(Elaboration *e, const Files *files);
+
+/* declared/declare.c */
+/* The shape of a declaration whose parameters `env` binds; `span` is the call. */
+Value declare_instance(Elaboration *e, const Function *function, const Environment *env, Span span);
 
 #endif

@@ -5,7 +5,7 @@
 #define KRS_REFUTER_H
 
 #include "compiler/passes/compile.h"
-#include "compiler/eval/claims.h"
+#include "compiler/eval/declared/claim_pairs.h"
 #include "compiler/passes/inspect.h"
 #include "compiler/lower/context.h"
 #include "compiler/refute/search_types.h"

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "compiler/eval/builtins/builtins.h"
+#include "compiler/eval/declared/declare.h"
 #include "compiler/lower/outline.h"
 #include "compiler/shape/map.h"
 

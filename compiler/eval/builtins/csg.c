@@ -2,6 +2,7 @@
  * csg.c: operators and built-in functions that make one shape of several.
  */
 #include "compiler/eval/builtins/builtins.h"
+#include "compiler/eval/declared/declare.h"
 #include "compiler/eval/hulls/fillet.h"
 
 /* Behind the kinds of blends: fillets are unions of circular ones, cut. */

@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "compiler/eval/data/from_files.h"
+#include "compiler/eval/declared/claims.h"
+#include "compiler/eval/declared/declare.h"
 #include "compiler/eval/hulls/hull.h"
 #include "compiler/eval/view/material.h"
 

@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "compiler/base/vec.h"
+#include "compiler/eval/declared/declare.h"
 #include "compiler/family/family.h"
 #include "compiler/graph/build.h"
 

@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "compiler/eval/declared/declare.h"
 #include "compiler/eval/hulls/hull_region.h"
 #include "compiler/family/family.h"
 #include "compiler/lower/crowd.h"

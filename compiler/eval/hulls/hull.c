@@ -10,6 +10,7 @@
 #include <math.h>
 
 #include "compiler/base/vec.h"
+#include "compiler/eval/declared/claims.h"
 #include "compiler/shape/map.h"
 
 /* Of one size; of others, whose number counts by its third power. */

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
+#include "compiler/eval/declared/declare.h"
 
 /* An affine map; `scale` is that of all lengths, or 0 where it is not the same in all directions. */
 typedef struct Place {

@@ -1,11 +1,11 @@
 /*
- * claims.h: what a declaration claims of its shape beside the slope and the box.
+ * claim_pairs.h: what a declaration claims of its shape beside the slope and the box.
  *
  * Each claim says that two numbers are nowhere above 0 both.  The compiler samples it when the
  * declaration is first used (claims.c), and `krs validate` searches for a point that refutes it.
  */
-#ifndef KRS_CLAIMS_H
-#define KRS_CLAIMS_H
+#ifndef KRS_CLAIM_PAIRS_H
+#define KRS_CLAIM_PAIRS_H
 
 #include "compiler/shape/shape.h"
 

@@ -1,7 +1,7 @@
 /*
  * claim_pairs.c: claims of a declaration as pairs of numbers that are nowhere above 0 both.
  */
-#include "compiler/eval/claims.h"
+#include "compiler/eval/declared/claim_pairs.h"
 #include "compiler/eval/elaborate.h"
 #include "compiler/lower/context.h"
 #include "compiler/shape/slope.h"

@@ -5,10 +5,12 @@
  * test when it is first used (claims.c).  Where no slope is claimed one is derived and the distance
  * divided by it, so that every primitive is 1-Lipschitz from here on.
  */
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/declared/declare.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "compiler/eval/declared/claims.h"
 
 static const char *const property_names[] = {"distance", "bound", "exact",  "slope",  "within",
                                              "uv",       "plane", "ball",   "figure", "core",
@@ -214,11 +216,6 @@ static void report_steep(Elaboration *e, const Syntax *declaration, const Syntax
     explain_steep(e->builder, diag, blame);
     diag->help = "give the shape a bounded `within`, or keep this part away from divisions by "
                  "zero and jumps";
-}
-
-bool is_of_library(const Elaboration *e, const Shape *shape)
-{
-    return e->sources->items[shape->declaration->syntax->span.source].library;
 }
 
 bool needs_check(Elaboration *e, const Syntax *syntax)

@@ -2,16 +2,16 @@
  * claims.c: the claims of a declaration, put to the test by sampling when it is first used.
  *
  * Pairs of near points refute a slope, single points a solid outside of `within`.  The other claims
- * are pairs of numbers that are nowhere above 0 both (claims.h).  Where such a pair is above 0 may
+ * are pairs of numbers that are nowhere above 0 both (claim_pairs.h).  Where such a pair is above 0 may
  * be thin, but it then lies at the surface of one of the two.  So between any two samples on
  * different sides of a surface the surface is found by halving, and its sides are looked at.
  */
-#include "compiler/eval/claims.h"
+#include "compiler/eval/declared/claims.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "compiler/eval/elaborate.h"
+#include "compiler/eval/declared/claim_pairs.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/shape/slope.h"
 

@@ -1,0 +1,22 @@
+/*
+ * declare.h: shapes declared in the language, and their properties.
+ */
+#ifndef KRS_DECLARE_H
+#define KRS_DECLARE_H
+
+#include "compiler/eval/elaborate.h"
+
+/* Whether a declaration or property has not been put to the test yet; it counts as tested from
+   here on. */
+bool needs_check(Elaboration *e, const Syntax *syntax);
+
+/* What `core` is for this `rounding`; NULL: reported. */
+const Shape *declared_core(Elaboration *e, const Shape *shape, Node rounding);
+/* The value of `hull`. */
+Value declared_hull(Elaboration *e, const Shape *shape);
+/* Finds the corners of all figures below a sharp joint. */
+void find_borders(Elaboration *e, const Shape *joint);
+/* Shapes that are joined or copied, or NULL; of figures one knows then where the boundary is. */
+Value value_of_joint(Elaboration *e, const Shape *joint);
+
+#endif
