@@ -6,7 +6,7 @@
  * VALUE_ERROR, and everything that meets such a value stays silent, so that one run reports
  * several independent mistakes.
  *
- * This header is for the files of this folder; the rest of the compiler calls elaborate() only.
+ * This header is for the files of this folder and its rooms; the rest of the compiler calls elaborate() only.
  */
 #ifndef KRS_ELABORATE_H
 #define KRS_ELABORATE_H
@@ -298,7 +298,14 @@ const Definition *definition_of(const Elaboration *e, const Syntax *name);
 /* If `syntax` is a top-level name, marks where it was defined as a second place of `diag`. */
 void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax);
 
-/* ---- indices.c ---- */
+/* ---- members.c ---- */
+/* Whether `value.name` has the letters of components behind a vector: `v.x`, `c.rgb`. */
+bool is_component(const Elaboration *e, Value value, const Syntax *syntax);
+/* A number, or a vector of as many components as the name has letters. */
+Value value_components(Elaboration *e, const Syntax *syntax, Value vector);
+Value value_record(Elaboration *e, const Value *names, const Value *values, size_t count);
+/* What stands under a name, which is written at `span`. */
+Value record_member(Elaboration *e, const Record *record, const char *name, Span span);
 /* `list[index]`, also of vectors and records. */
 Value value_index(Elaboration *e, const Syntax *syntax, Value list, Value index);
 
@@ -328,17 +335,6 @@ bool made_for_author(const Elaboration *e, const char **name, Span *span);
 bool may_vanish(const Shape *shape);
 /* Warns of a component, shown at `span`, that is known to be empty. */
 void warn_if_nothing_is_left(Elaboration *e, const Shape *shape, const char *name, Span span);
-
-/* ---- components.c ---- */
-/* Whether `value.name` has the letters of components behind a vector: `v.x`, `c.rgb`. */
-bool is_component(const Elaboration *e, Value value, const Syntax *syntax);
-/* A number, or a vector of as many components as the name has letters. */
-Value value_components(Elaboration *e, const Syntax *syntax, Value vector);
-
-/* ---- records.c ---- */
-Value value_record(Elaboration *e, const Value *names, const Value *values, size_t count);
-/* What stands under a name, which is written at `span`. */
-Value record_member(Elaboration *e, const Record *record, const char *name, Span span);
 
 /* ---- remarks.c: `print`, `assert`, strings ---- */
 /* Prints, or reports a condition that does not hold: then false. */

@@ -1,9 +1,95 @@
 /*
- * indices.c: `list[i]`, of an index that is known now or in each frame.
+ * members.c: parts of values: `v.x` and `c.rgb` of vectors, `city.name` of records, and `list[i]`, of an index that
+ * is known now or in each frame.
  */
 #include <math.h>
+#include <string.h>
 
 #include "compiler/eval/elaborate.h"
+
+/* One element of a list, or of a vector known only as a node. */
+static Value element(Elaboration *e, Value list, size_t index)
+{
+    if (list.type == VALUE_LIST)
+        return list.list->items[index];
+    return value_of_node(e, graph_component(e->graph, list.node, (uint32_t)index));
+}
+
+/* ---- components of vectors, by their letters ---- */
+
+/* Letters of points and of colours, in the order of the components. */
+static const char *const alphabets[] = {"xyzw", "rgba"};
+enum { ALPHABETS = sizeof alphabets / sizeof *alphabets, MOST_LETTERS = 4 };
+
+/* The alphabet that all letters of a name are from; NULL: no name of components. */
+static const char *alphabet_of(const char *name)
+{
+    size_t length = strlen(name);
+    for (size_t i = 0; i < ALPHABETS; i++)
+        if (length >= 1 && length <= MOST_LETTERS && strspn(name, alphabets[i]) == length)
+            return alphabets[i];
+    return NULL;
+}
+
+bool is_component(const Elaboration *e, Value value, const Syntax *syntax)
+{
+    return value_size(e, value) >= 2 && syntax->count == 1 && alphabet_of(syntax->name);
+}
+
+static Value missing_component(Elaboration *e, const Syntax *syntax, char letter, Value vector,
+                               const char *alphabet)
+{
+    uint32_t size = value_size(e, vector);
+    Diag    *diag = diag_add(e->diags, DIAG_INDEX_RANGE, syntax->name_span,
+                             "a vector of %u has no `%c`", size, letter);
+    diag->label   = diag_text(e->diags, "its components are `%.*s`", (int)size, alphabet);
+    diag_secondary(e->diags, diag, syntax->children[0]->span,
+                   diag_text(e->diags, "this is a vector of %u", size));
+    return value_error();
+}
+
+Value value_components(Elaboration *e, const Syntax *syntax, Value vector)
+{
+    const char *name = syntax->name, *alphabet = alphabet_of(name);
+    size_t      count = strlen(name);
+    Value      *items = arena_new_array(e->arena, Value, count);
+    for (size_t i = 0; i < count; i++) {
+        uint32_t index = (uint32_t)(strchr(alphabet, name[i]) - alphabet);
+        if (index >= value_size(e, vector))
+            return missing_component(e, syntax, name[i], vector, alphabet);
+        items[i] = element(e, vector, index);
+    }
+    return count == 1 ? items[0] : value_list(e, items, count);
+}
+
+/* ---- records: values with names, as JSON has them ---- */
+
+Value value_record(Elaboration *e, const Value *names, const Value *values, size_t count)
+{
+    Record *record = arena_new(e->arena, Record);
+    *record        = (Record){count, names, values};
+    return (Value){.type = VALUE_RECORD, .record = record};
+}
+
+Value record_member(Elaboration *e, const Record *record, const char *name, Span span)
+{
+    for (size_t i = 0; i < record->count; i++)
+        if (record->names[i].string == name)
+            return record->values[i];
+    const char **names = arena_new_array(e->diags->arena, const char *, record->count + 1);
+    for (size_t i = 0; i < record->count; i++)
+        names[i] = record->names[i].string;
+    Diag *diag  = diag_add(e->diags, DIAG_UNKNOWN_PROPERTY, span, "the record has no member `%s`",
+                           name);
+    diag->label = "unknown member";
+    diag->help  = nearest_name(name, names, record->count);
+    if (diag->help)
+        diag->help = diag_text(e->diags, "a member with a similar name exists: `%s`", diag->help);
+    note_names(e, diag, "its members", names, record->count);
+    return value_error();
+}
+
+/* ---- indices ---- */
 
 /* An index of frames chooses from all elements, which are all computed. */
 enum { MOST_CHOSEN = 256 };
@@ -14,14 +100,6 @@ static Value index_record(Elaboration *e, const Record *record, Value name, cons
         return record_member(e, record, name.string, index->span);
     type_error(e, index, name, "the name of a member, a string");
     return value_error();
-}
-
-/* One element of a list, or of a vector known only as a node. */
-static Value element(Elaboration *e, Value list, size_t index)
-{
-    if (list.type == VALUE_LIST)
-        return list.list->items[index];
-    return value_of_node(e, graph_component(e->graph, list.node, (uint32_t)index));
 }
 
 static void label_possible(Elaboration *e, Diag *diag, size_t count)
