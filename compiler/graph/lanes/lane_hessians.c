@@ -110,7 +110,7 @@ static void add_product(LaneHessian *sum, Range factor, const LaneSlope *a, cons
     }
 }
 
-static LaneHessian hessian_by_partials(const Run *run, const Partials *p)
+static LaneHessian hessian_by_partials(const Run *run, const LanePartials *p)
 {
     LaneHessian sum   = NO_BEND;
     uint32_t    count = run->step->operand_count;
@@ -343,9 +343,10 @@ static LaneHessian hessian_of_step(const Run *run)
     uint32_t whole = lane_sum_of_cuts(run->tape, run->ranges, step);
     if (whole != NODE_NONE)
         return *hessian_at(run, whole);
-    uint32_t count = step->operand_count;
-    Partials p = partials_of(step->op, range_in(run, 0), count > 1 ? range_in(run, 1) : range_of(0),
-                             count > 2 ? range_in(run, 2) : range_of(0), result(run));
+    uint32_t     count = step->operand_count;
+    LanePartials p     = partials_of(step->op, range_in(run, 0),
+                                 count > 1 ? range_in(run, 1) : range_of(0),
+                                 count > 2 ? range_in(run, 2) : range_of(0), result(run));
     return hessian_by_partials(run, &p);
 }
 

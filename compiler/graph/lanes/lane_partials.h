@@ -9,13 +9,13 @@
 #include "compiler/graph/lanes/lanes.h"
 
 /* By the first three operands.  Not known: the first may jump, or there is no bound. */
-typedef struct Partials {
+typedef struct LanePartials {
     Range first[3], second[3][3]; /* second[k][l] with k <= l */
     bool  known;
-} Partials;
+} LanePartials;
 
 /* What an operation has at the operands' ranges a, b and c; r is that of its result. */
-Partials partials_of(uint16_t op, Range a, Range b, Range c, Range r);
+LanePartials partials_of(uint16_t op, Range a, Range b, Range c, Range r);
 
 static inline Range widened(double low, double high)
 {

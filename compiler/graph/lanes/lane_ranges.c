@@ -43,36 +43,15 @@ static Operand operand_of(const LaneTape *tape, const LaneRanges *ranges, uint32
 /* Whether the result is a number only if all operands are.  A minimum is not like that. */
 static bool needs_numbers(uint16_t op)
 {
+    enum { TAKES = false, NEEDS = true };
     switch (op) {
-    case OP_neg:
-    case OP_precise:
-    case OP_abs:
-    case OP_floor:
-    case OP_ceil:
-    case OP_round:
-    case OP_fract:
-    case OP_square:
-    case OP_sqrt:
-    case OP_inversesqrt:
-    case OP_exp:
-    case OP_exp2:
-    case OP_log:
-    case OP_log2:
-    case OP_sin:
-    case OP_cos:
-    case OP_tan:
-    case OP_atan:
-    case OP_sinh:
-    case OP_cosh:
-    case OP_tanh:
-    case OP_add:
-    case OP_sub:
-    case OP_mul:
-    case OP_div:
-    case OP_atan2:
-    case OP_mod:
-    case OP_mix:
-    case OP_normalize: return true;
+#define LANES1(name, takes, ...) \
+    case OP_##name:              \
+        return takes;
+#define LANES2 LANES1
+#define LANES3 LANES1
+#include "compiler/graph/ops.def"
+    case OP_normalize:
     case OP_select: return true; /* the one that is selected; conditions are numbers */
     default: return false;
     }
@@ -375,28 +354,16 @@ static bool is_defined(const LaneStep *step, const Operand *o)
     for (uint32_t k = 0; k < step->operand_count; k++)
         finite = finite && is_finite(o[k].range);
     switch (step->op) {
-    case OP_neg:
-    case OP_precise:
-    case OP_abs:
-    case OP_min:
-    case OP_max:
-    case OP_clamp:
+#define LANES1(name, takes, defined, ...) \
+    case OP_##name:                       \
+        return (defined);
+#define LANES2 LANES1
+#define LANES3 LANES1
+#include "compiler/graph/ops.def"
     case OP_select:
     case OP_guard:
-    case OP_step:
-    case OP_exp:
-    case OP_exp2:
     case LANE_LESSER:
     case LANE_GREATER: return true;
-    case OP_sqrt: return a.low >= 0;
-    case OP_inversesqrt:
-    case OP_log:
-    case OP_log2: return a.low > 0;
-    case OP_add:
-    case OP_sub: return is_finite(a) || is_finite(b);
-    case OP_div:
-    case OP_mod: return finite && (b.low > 0 || b.high < 0);
-    case OP_pow: return finite && a.low > 0;
     default: return finite && op_promises((Op)step->op, STAYS_FINITE);
     }
 }
