@@ -151,18 +151,39 @@ static bool halve_all(Halving *h)
     return done;
 }
 
+/* More sides, until they are enough in the boxes in which they were not.  Where they never are, as few as leave fewest boxes.
+   False: they are as they were. */
+static bool refine(Halving *h, double error, FlatVerdict *verdict)
+{
+    size_t fewest = h->round_boxes.count;
+    bool   any    = false;
+    *verdict      = FLAT_REFUTED;
+    flat_rounds_keep(&h->rounds);
+    while (*verdict == FLAT_REFUTED && flat_rounds_refine(&h->rounds)) {
+        *verdict = flat_near(h->m, &h->rounds, &h->round_boxes, error);
+        if (*verdict != FLAT_STOPPED && h->round_boxes.count < fewest) {
+            fewest = h->round_boxes.count;
+            flat_rounds_keep(&h->rounds);
+            any = true;
+        }
+    }
+    flat_rounds_go_back(&h->rounds);
+    return any;
+}
+
 /* With as many sides as the error needs; where even many are not enough, places are left unresolved. */
 static bool make_round(Halving *h)
 {
-    Mesher     *m       = h->m;
-    FlatVerdict verdict = FLAT_REFUTED;
+    double      error   = h->m->error - spare_of(h->m);
+    FlatVerdict refined = FLAT_PROVEN, verdict;
     flat_rounds_count(&h->rounds);
     do {
         if (!halve_all(h))
             return false;
-        verdict = flat_near(m, &h->rounds, &h->round_boxes, m->error - spare_of(m));
-    } while (verdict == FLAT_REFUTED && flat_rounds_refine(&h->rounds));
-    return verdict != FLAT_STOPPED;
+        verdict = flat_near(h->m, &h->rounds, &h->round_boxes, error);
+    } while (verdict != FLAT_STOPPED && h->round_boxes.count > 0 && refined == FLAT_PROVEN &&
+             refine(h, error, &refined));
+    return verdict != FLAT_STOPPED && refined != FLAT_STOPPED;
 }
 
 static void note_open(void *user, uint32_t triangle)

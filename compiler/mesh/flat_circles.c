@@ -36,29 +36,40 @@ static void find_sides(Range a, Range b, uint32_t count, double wide, Sides *sid
     sides->used  = (uint32_t)min2(last - (double)sides->first + 1, count);
 }
 
-/* What a side tells of two numbers is 1 at both its corners: its factor of the first number, or of the second. */
-static double side_factor(const Sides *sides, uint32_t i, bool second)
+static void find_corner(const Sides *sides, int64_t number, double corner[2])
 {
-    int64_t number = sides->first + i;
-    double  corner[2][2];
-    for (int end = 0; end < 2; end++, number++) {
-        double angle   = (double)number * sides->angle;
-        double radius  = 4 * number % sides->count == 0 ? 1 : sides->wide;
-        corner[end][0] = radius * cos(angle);
-        corner[end][1] = radius * sin(angle);
-    }
-    double cross = corner[0][0] * corner[1][1] - corner[0][1] * corner[1][0];
-    return (second ? corner[0][0] - corner[1][0] : corner[1][1] - corner[0][1]) / cross;
+    double angle  = (double)number * sides->angle;
+    double radius = 4 * number % sides->count == 0 ? 1 : sides->wide;
+    corner[0]     = radius * cos(angle);
+    corner[1]     = radius * sin(angle);
+}
+
+/* What a side tells of two numbers is 1 at both its corners: its factors of these numbers. */
+static void find_factors(const Sides *sides, uint32_t i, double factors[2])
+{
+    double from[2], to[2];
+    find_corner(sides, sides->first + i, from);
+    find_corner(sides, sides->first + i + 1, to);
+    double cross = from[0] * to[1] - from[1] * to[0];
+    factors[0]   = (to[1] - from[1]) / cross;
+    factors[1]   = (from[0] - to[0]) / cross;
+}
+
+static bool is_behind(const Sides *sides, uint32_t i)
+{
+    double factors[2];
+    find_factors(sides, i, factors);
+    return factors[0] < 0;
 }
 
 /* Where the first number is a length, only sides to the right count. */
 static void leave_out_behind(Sides *sides)
 {
-    while (sides->used > 0 && side_factor(sides, 0, false) < 0) {
+    while (sides->used > 0 && is_behind(sides, 0)) {
         sides->first++;
         sides->used--;
     }
-    while (sides->used > 0 && side_factor(sides, sides->used - 1, false) < 0)
+    while (sides->used > 0 && is_behind(sides, sides->used - 1))
         sides->used--;
 }
 
@@ -135,9 +146,10 @@ static void note_round(Finding *f, const Form *rest, double factor, const LaneSt
 static int solid_of_side(Finding *f, const Form *rest, double factor, const Rounded *rounded,
                          const double band[2], const Sides *sides, uint32_t i)
 {
-    double across = factor * band[0];
-    Form   form   = form_sum(*rest, across * side_factor(sides, i, false), &rounded->forms[0]);
-    form          = form_sum(form, across * side_factor(sides, i, true), &rounded->forms[1]);
+    double across = factor * band[0], factors[2];
+    find_factors(sides, i, factors);
+    Form form = form_sum(*rest, across * factors[0], &rounded->forms[0]);
+    form      = form_sum(form, across * factors[1], &rounded->forms[1]);
     if (rounded->count > 2)
         form = form_sum(form, factor * band[1], &rounded->forms[2]);
     return flat_solid(f, &form);
@@ -199,7 +211,8 @@ static Sides find_bands(const Finding *f, const Rounded *rounded, uint32_t count
 
 static Band find_band(const Sides *bands, uint32_t i)
 {
-    Band   band    = {.factors = {side_factor(bands, i, false), side_factor(bands, i, true)}};
+    Band band;
+    find_factors(bands, i, band.factors);
     double nearest = flat_side_distance(bands->count, bands->wide);
     double part    = band.factors[0] * nearest;
     double share   = part * min2(part + 0.5 * bands->angle, 1);

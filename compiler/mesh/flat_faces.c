@@ -85,14 +85,17 @@ typedef struct Polygon {
     uint32_t labels[MOST_CORNERS];
 } Polygon;
 
+enum { MOST_CELL_NODES = 16 * MOST_FLAT_NODES };
+
 typedef struct Cell {
-    FlatFaces        *faces;
-    const FlatPieces *pieces;
-    Box               box;
-    uint32_t          planes[MOST_FLATS]; /* of half-spaces */
-    int               signs[MOST_FLATS];
-    int               own; /* the half-space that is cut */
-    bool              failed;
+    FlatFaces *faces;
+    Box        box;
+    uint32_t   planes[MOST_FLATS]; /* of half-spaces */
+    int        signs[MOST_FLATS];
+    int        own;                    /* the half-space that is cut */
+    FlatNode   nodes[MOST_CELL_NODES]; /* those of the pieces, and what is left of them */
+    int        node_count;
+    bool       failed;
 } Cell;
 
 static void add_corner(Polygon *polygon, const double at[3], uint32_t label)
@@ -197,26 +200,55 @@ static void add_part(Cell *cell, const Polygon *polygon, int outward)
     }
 }
 
-static void cut_part(Cell *cell, const Polygon *polygon, signed char *sides)
+/* What is left to be known of a solid where the sides of some half-spaces are: 1, -1, or 0. */
+static int rest_of(Cell *cell, int solid, const signed char *sides)
 {
-    const FlatPieces *pieces = cell->pieces;
-    int               side[2];
+    if (solid < 0)
+        return solid;
+    FlatNode node = cell->nodes[solid];
+    if (node.kind == FLAT_HALF_SPACE) {
+        int side = node.second * sides[node.first];
+        return side == 0 ? solid : side < 0 ? FLAT_ALL : FLAT_NONE;
+    }
+    int decides = node.kind == FLAT_BOTH ? FLAT_NONE : FLAT_ALL;
+    int second  = rest_of(cell, node.second, sides);
+    if (second == decides)
+        return second;
+    int first = rest_of(cell, node.first, sides);
+    if (first == decides || second < 0)
+        return first;
+    if (first < 0 || (first == node.first && second == node.second))
+        return first < 0 ? second : solid;
+    if (cell->node_count == MOST_CELL_NODES) {
+        cell->failed = true;
+        return solid;
+    }
+    cell->nodes[cell->node_count] = (FlatNode){node.kind, first, second};
+    return cell->node_count++;
+}
+
+/* One of those that a solid depends on. */
+static int half_space_of(const Cell *cell, int solid)
+{
+    while (cell->nodes[solid].kind != FLAT_HALF_SPACE)
+        solid = cell->nodes[solid].first;
+    return cell->nodes[solid].first;
+}
+
+/* `within`, `beyond`: what is left of the solid below the plane that is cut, and above it. */
+static void cut_part(Cell *cell, const Polygon *polygon, int within, int beyond, signed char *sides)
+{
     if (polygon->count < 3 || cell->failed)
         return;
-    int unknown = -1;
-    for (int i = 0; i < 2; i++) {
-        sides[cell->own] = (signed char)(i == 0 ? -1 : 1);
-        int missing      = -1;
-        side[i]          = flat_side(pieces, pieces->root, sides, &missing);
-        if (side[i] == 0)
-            unknown = missing;
-    }
-    if (unknown < 0) {
-        if (side[0] != side[1])
-            add_part(cell, polygon, side[0] < 0 ? cell->signs[cell->own] : -cell->signs[cell->own]);
+    if (within < 0 && beyond < 0) {
+        if (within != beyond)
+            add_part(cell, polygon,
+                     within == FLAT_ALL ? cell->signs[cell->own] : -cell->signs[cell->own]);
         return;
     }
-    const FlatPlane *plane = &cell->faces->planes.items[cell->planes[unknown]];
+    int              unknown = half_space_of(cell, beyond >= 0 ? beyond : within);
+    int              nodes   = cell->node_count;
+    const FlatPlane *plane   = &cell->faces->planes.items[cell->planes[unknown]];
     double           values[MOST_CORNERS];
     for (int i = 0; i < polygon->count; i++) {
         values[i] = above(plane, polygon->at[i]);
@@ -226,25 +258,37 @@ static void cut_part(Cell *cell, const Polygon *polygon, signed char *sides)
         Polygon part;
         cut_polygon(cell, polygon, values, -sign, cell->planes[unknown], &part);
         sides[unknown] = (signed char)(sign * cell->signs[unknown]);
-        cut_part(cell, &part, sides);
+        cut_part(cell, &part, rest_of(cell, within, sides), rest_of(cell, beyond, sides), sides);
+        cell->node_count = nodes;
     }
     sides[unknown] = 0;
 }
 
 bool flat_faces_add(FlatFaces *faces, Box box, const FlatPieces *pieces)
 {
-    Cell        cell = {.faces = faces, .pieces = pieces, .box = box};
     signed char sides[MOST_FLATS];
+    Cell        cell;
     if (pieces->root < 0)
         return true;
+    cell.faces  = faces;
+    cell.box    = box;
+    cell.failed = false;
+    memcpy(cell.nodes, pieces->nodes, pieces->node_count * sizeof *cell.nodes);
     for (size_t i = 0; i < pieces->count; i++)
         cell.planes[i] = find_plane(faces, &pieces->list[i], &cell.signs[i]);
     for (size_t i = 0; i < pieces->count && !cell.failed; i++) {
         Polygon polygon;
-        cell.own = (int)i;
+        int     solids[2];
+        cell.own        = (int)i;
+        cell.node_count = (int)pieces->node_count;
         memset(sides, 0, sizeof sides);
+        for (int side = 0; side < 2; side++) {
+            sides[i]     = (signed char)(2 * side - 1);
+            solids[side] = rest_of(&cell, pieces->root, sides);
+        }
+        sides[i] = 0;
         begin_polygon(&cell, &faces->planes.items[cell.planes[i]], &polygon);
-        cut_part(&cell, &polygon, sides);
+        cut_part(&cell, &polygon, solids[0], solids[1], sides);
     }
     return !cell.failed;
 }

@@ -34,6 +34,7 @@ typedef struct Finding {
     FlatPieces      *pieces;
     FlatUse          use;
     FlatSlack        slack;                  /* of what is being taken apart */
+    bool             chooses;                /* that is a condition */
     uint32_t         most_used, most_around; /* of the sides of a polygon */
     bool             failed;
 } Finding;

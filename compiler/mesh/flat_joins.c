@@ -100,8 +100,9 @@ static int find_half_space(Finding *f, const HalfSpace *plane, int *sign)
         f->failed = true;
         return 0;
     }
-    pieces->list[pieces->count]  = *plane;
-    pieces->slack[pieces->count] = (FlatSlack){0, 0};
+    pieces->list[pieces->count]    = *plane;
+    pieces->slack[pieces->count]   = (FlatSlack){0, 0};
+    pieces->chooses[pieces->count] = false;
     return (int)pieces->count++;
 }
 
@@ -131,6 +132,7 @@ int flat_half_space(Finding *f, const Form *form)
     int number   = find_half_space(f, &plane, &sign);
     add_slack(f, number, sign > 0 ? f->slack.below : f->slack.above,
               sign > 0 ? f->slack.above : f->slack.below, length);
+    f->pieces->chooses[number] |= f->chooses;
     return flat_node(f, (FlatNode){FLAT_HALF_SPACE, number, sign});
 }
 

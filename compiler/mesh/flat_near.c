@@ -6,29 +6,33 @@
 #include "compiler/base/vec.h"
 
 enum {
-    MOST_BLAMED        = 4,
-    MOST_THIN          = 100,
-    MOST_HARD          = 10000,
-    MOST_LOOKS         = 600000,
-    PATIENCE           = 256,
-    HALVINGS_OF_REGION = 3
+    MOST_THIN              = 100,
+    MANY                   = 8,
+    MOST_SEAMS             = 50,
+    MOST_HARD              = 10000,
+    MOST_LOOKS             = 600000,
+    MOST_LOOKS_WHERE_ROUGH = 100, /* for each box; all will be looked at again */
+    PATIENCE               = 256,
+    HALVINGS_OF_REGION     = 3
 };
-/* In errors: boxes that are not halved any more, and those in which ways may be shorter than the error. */
-static const double SMALLEST = 0.1, SMALL = 1.5, SHORT_WAY = 0.6;
+/* In errors: boxes that are not halved any more, first and after some have been left; and those in which ways may be shorter than
+   the error. */
+static const double SMALLEST = 0.02, SMALLEST_OF_MANY = 0.1, SMALL = 1.5, SHORT_WAY = 0.6;
 
 /* What one thread finds. */
 typedef struct NearPart {
     FlatPieces pieces;
     FlatWork   work;
-    size_t     looks, hard, thin, blamed_count;
+    size_t     looks, hard, thin, seams, rough;
     double     left_at[3]; /* where one is */
-    Box        blamed[MOST_BLAMED];
 } NearPart;
 
 typedef struct NearWork {
     Mesher          *m;
     FlatRounds      *rounds;
     const FlatBoxes *boxes;
+    bool            *is_rough; /* of each box, whether planes are too rough somewhere in it */
+    Box             *rough;    /* and where that is */
     double           error;
     NearPart        *parts;
 } NearWork;
@@ -37,7 +41,8 @@ typedef struct Looking {
     const NearWork *w;
     NearPart       *part;
     MeshField      *field;
-    bool            asks; /* whether the mesh is still wanted */
+    size_t          number; /* of the box */
+    bool            asks;   /* whether the mesh is still wanted */
 } Looking;
 
 static Box wider_box(Box box, double by)
@@ -56,8 +61,9 @@ static bool goes_on(Looking *l)
     if (++part->looks % PATIENCE == 0 && l->asks && m->options->go_on &&
         !m->options->go_on(m->options->user, 0))
         atomic_store(&m->stopped, true);
-    return !atomic_load(&m->stopped) && part->looks < MOST_LOOKS && part->hard < MOST_HARD &&
-           part->blamed_count < MOST_BLAMED && part->thin < MOST_THIN;
+    return !atomic_load(&m->stopped) && part->looks < MOST_LOOKS &&
+           (part->rough == 0 || part->looks < MOST_LOOKS_WHERE_ROUGH * l->w->boxes->count) &&
+           part->hard < MOST_HARD && part->thin < MOST_THIN && part->seams < MOST_SEAMS;
 }
 
 static void note_place(NearPart *part, const Box *box)
@@ -70,10 +76,18 @@ static void leave(Looking *l, FlatNearness nearness, Box box, double way)
 {
     NearPart *part = l->part;
     note_place(part, &box);
-    if (nearness == FLAT_ROUGH)
-        part->blamed[part->blamed_count++] = wider_box(box, way);
-    else
+    if (nearness == FLAT_ROUGH) {
+        l->w->is_rough[l->number] = true;
+        l->w->rough[l->number]    = wider_box(box, way);
+        part->rough++;
+    } else
         part->thin++;
+    part->seams += nearness == FLAT_SEAM && !flat_rounds_has_curves(l->w->rounds);
+}
+
+static double smallest_of(const NearPart *part)
+{
+    return part->thin + part->rough < MANY ? SMALLEST : SMALLEST_OF_MANY;
 }
 
 static void look(Looking *l, Box box, int halvings);
@@ -91,7 +105,9 @@ static void look(Looking *l, Box box, int halvings)
 {
     NearPart *part  = l->part;
     double    error = l->w->error;
-    Range     range = field_range(l->field, box);
+    if (l->w->is_rough[l->number])
+        return;
+    Range range = field_range(l->field, box);
     if (range.low > 0 || range.high < 0)
         return;
     if (!goes_on(l)) {
@@ -112,7 +128,7 @@ static void look(Looking *l, Box box, int halvings)
         axis     = flat_widest_axis(&part->pieces, &box);
     }
     part->hard += nearness == FLAT_HARD;
-    if (nearness > FLAT_HARD && size > SMALLEST * error)
+    if (nearness > FLAT_HARD && size > smallest_of(part) * error)
         look_at_halves(l, box, axis, halvings);
     else if (nearness > FLAT_HARD)
         leave(l, nearness, box, way);
@@ -123,54 +139,67 @@ static void look(Looking *l, Box box, int halvings)
 static void look_at_part(void *task, size_t part, size_t parts)
 {
     const NearWork *w = task;
-    Looking         l = {w, &w->parts[part], &w->m->fields[part], part == 0};
-    for (size_t i = part; i < w->boxes->count; i += parts)
-        look(&l, w->boxes->items[i], 0);
+    Looking         l = {w, &w->parts[part], &w->m->fields[part], 0, part == 0};
+    for (l.number = part; l.number < w->boxes->count; l.number += parts)
+        look(&l, w->boxes->items[l.number], 0);
 }
 
-/* In boxes in which the sides are too far. */
-static void blame(const NearWork *w, NearPart *part)
+/* Where the sides are too far.  Other boxes are left out. */
+static void blame(const NearWork *w, FlatBoxes *boxes)
 {
     MeshField *field = &w->m->fields[0];
+    NearPart  *part  = &w->parts[0];
+    size_t     kept  = 0;
     w->rounds->blame = true;
-    for (size_t i = 0; i < part->blamed_count; i++) {
-        field_focus(field, part->blamed[i]);
-        flat_pieces(field, part->blamed[i], w->m->side, w->rounds, FLAT_PROVING, &part->work,
+    for (size_t i = 0; i < boxes->count; i++) {
+        if (!w->is_rough[i])
+            continue;
+        field_focus(field, w->rough[i]);
+        flat_pieces(field, w->rough[i], w->m->side, w->rounds, FLAT_PROVING, &part->work,
                     &part->pieces);
         field_leave(field);
+        boxes->items[kept++] = boxes->items[i];
     }
+    boxes->count     = kept;
     w->rounds->blame = false;
 }
 
-/* More sides are of no use where much is thin anyway. */
+/* More sides are of no use where much is thin anyway, or would take too long.  Solids with seams of surfaces that are not exact, as
+   hulls of balls, are better made otherwise, but for those with curves. */
 static FlatVerdict judge(const NearWork *w, size_t parts)
 {
     FlatVerdict verdict = FLAT_PROVEN;
     Mesher     *m       = w->m;
-    bool        in_vain = false;
-    m->unresolved       = 0;
+    bool        in_vain = false, by_seams = false;
+    m->unresolved = 0;
     for (size_t i = 0; i < parts; i++) {
-        NearPart *part = &w->parts[i];
-        size_t    left = part->thin + part->blamed_count +
-                      (part->looks >= MOST_LOOKS || part->hard >= MOST_HARD);
+        const NearPart *part      = &w->parts[i];
+        bool            cut_short = part->looks >= MOST_LOOKS || part->hard >= MOST_HARD;
+        size_t          left      = part->thin + part->rough + cut_short;
         in_vain |= part->thin >= MOST_THIN;
+        by_seams |= part->seams >= MOST_SEAMS;
         m->unresolved += left;
         if (left > 0)
             memcpy(m->unresolved_at, part->left_at, sizeof m->unresolved_at);
-        blame(w, part);
-        if (part->blamed_count > 0 && verdict == FLAT_PROVEN)
+        if (part->rough > 0)
             verdict = FLAT_REFUTED;
     }
     if (in_vain)
-        verdict = FLAT_PROVEN;
-    return atomic_load(&m->stopped) ? FLAT_STOPPED : verdict;
+        verdict = FLAT_IN_VAIN;
+    return by_seams || atomic_load(&m->stopped) ? FLAT_STOPPED : verdict;
 }
 
-FlatVerdict flat_near(Mesher *m, FlatRounds *rounds, const FlatBoxes *boxes, double error)
+FlatVerdict flat_near(Mesher *m, FlatRounds *rounds, FlatBoxes *boxes, double error)
 {
     size_t    parts = parallel_parts();
     ArenaMark mark  = arena_mark(&m->arena);
-    NearWork  w     = {m, rounds, boxes, error, arena_new_array(&m->arena, NearPart, parts)};
+    NearWork  w     = {.m        = m,
+                       .rounds   = rounds,
+                       .boxes    = boxes,
+                       .rough    = arena_new_array(&m->arena, Box, boxes->count + 1),
+                       .is_rough = arena_new_array(&m->arena, bool, boxes->count + 1),
+                       .error    = error,
+                       .parts    = arena_new_array(&m->arena, NearPart, parts)};
     memset(w.parts, 0, parts * sizeof *w.parts);
     for (size_t i = 0; i < parts; i++) {
         w.parts[i].work = flat_work_new(&m->fields[i], &m->arena);
@@ -178,6 +207,7 @@ FlatVerdict flat_near(Mesher *m, FlatRounds *rounds, const FlatBoxes *boxes, dou
     }
     run_in_parallel(look_at_part, &w);
     FlatVerdict verdict = judge(&w, parts);
+    blame(&w, boxes);
     for (size_t i = 0; i < parts; i++)
         flat_rounds_close(&m->fields[i].ranges);
     arena_rewind(&m->arena, mark);

@@ -16,9 +16,11 @@ typedef struct FlatBoxes {
 typedef enum FlatVerdict {
     FLAT_PROVEN, /* but for where the solid is about as thin as the error: the mesher's `unresolved` */
     FLAT_REFUTED, /* more sides are needed; `rounds` have been blamed */
-    FLAT_STOPPED  /* it was not wanted any more, or would take too long */
+    FLAT_IN_VAIN, /* more sides would be of no use */
+    FLAT_STOPPED  /* it was not wanted any more, or there are seams that have no proofs */
 } FlatVerdict;
 
-FlatVerdict flat_near(Mesher *m, FlatRounds *rounds, const FlatBoxes *boxes, double error);
+/* Leaves those boxes in which more sides are needed. */
+FlatVerdict flat_near(Mesher *m, FlatRounds *rounds, FlatBoxes *boxes, double error);
 
 #endif

@@ -64,7 +64,11 @@ static int solid_of_less(Finding *f, uint32_t first, uint32_t second)
 {
     Form a = form_of_operand(f, first), b = form_of_operand(f, second),
          difference = form_sum(a, -1, &b);
-    return flat_solid(f, &difference);
+    bool chooses    = f->chooses;
+    f->chooses      = true;
+    int solid       = flat_solid(f, &difference);
+    f->chooses      = chooses;
+    return solid;
 }
 
 /* Where a condition is true. */
@@ -278,26 +282,4 @@ bool flat_pieces(MeshField *field, Box box, double size, FlatRounds *rounds, Fla
     Form root    = form_of_operand(&f, f.tape->outputs[0]);
     pieces->root = cut(&f, flat_solid(&f, &root));
     return !f.failed && field->frame->zone_count == 0;
-}
-
-int flat_side(const FlatPieces *pieces, int root, const signed char *sides, int *unknown)
-{
-    if (root == FLAT_ALL || root == FLAT_NONE)
-        return root == FLAT_ALL ? -1 : 1;
-    const FlatNode *node = &pieces->nodes[root];
-    if (node->kind == FLAT_HALF_SPACE) {
-        if (sides[node->first] == 0)
-            *unknown = node->first;
-        return node->second * sides[node->first];
-    }
-    int decides = node->kind == FLAT_BOTH ? 1 : -1, missing = -1;
-    int second = flat_side(pieces, node->second, sides, &missing);
-    if (second == decides)
-        return second;
-    int first = flat_side(pieces, node->first, sides, second == 0 ? unknown : &missing);
-    if (first == decides || first == second)
-        return first;
-    if (missing >= 0)
-        *unknown = missing;
-    return 0;
 }

@@ -25,8 +25,4 @@ FlatWork flat_work_new(const MeshField *field, Arena *arena);
 bool flat_pieces(MeshField *field, Box box, double size, FlatRounds *rounds, FlatUse use,
                  FlatWork *work, FlatPieces *pieces);
 
-/* Whether a place is in the solid: -1, or 1 where it is outside, or 0 where that is not known.  `sides` says the same of each
-   half-space; where it is not known, `unknown` is one of those that would tell. */
-int flat_side(const FlatPieces *pieces, int root, const signed char *sides, int *unknown);
-
 #endif

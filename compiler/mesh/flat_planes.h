@@ -31,9 +31,10 @@ typedef struct FlatPieces {
     size_t    count, node_count;
     HalfSpace list[MOST_FLATS];
     FlatSlack slack[MOST_FLATS];
-    FlatNode  nodes[MOST_FLAT_NODES];
-    int       root;
-    bool      round; /* some stand for what is round */
+    bool chooses[MOST_FLATS]; /* its side is a condition by which one of two surfaces is taken */
+    FlatNode nodes[MOST_FLAT_NODES];
+    int      root;
+    bool     round; /* some stand for what is round */
 } FlatPieces;
 
 /* Faces are made in boxes of few planes.  A proof looks a way around its box, where there are more. */

@@ -47,18 +47,40 @@ static int side_of(const FlatGrowth *growth)
                                                     : 0;
 }
 
-/* Those whose side makes a difference where some sides are known; NULL: none is. */
-static void collect(const FlatPieces *pieces, int root, const signed char *sides, Seen *seen)
+/* By the sides of its parts: 1, -1, or 0 where that is not known. */
+static signed char side_of_node(const FlatNode *node, const signed char *sides,
+                                const signed char *known)
 {
-    int unknown;
-    if (root < 0 || (sides && flat_side(pieces, root, sides, &unknown) != 0))
-        return;
-    const FlatNode *node = &pieces->nodes[root];
     if (node->kind == FLAT_HALF_SPACE)
-        seen->by_sign[node->second > 0][node->first] = true;
-    else {
-        collect(pieces, node->first, sides, seen);
-        collect(pieces, node->second, sides, seen);
+        return (signed char)(node->second * sides[node->first]);
+    signed char first = known[node->first], second = known[node->second];
+    signed char decides = node->kind == FLAT_BOTH ? 1 : -1;
+    if (first == decides || second == decides)
+        return decides;
+    return first == second ? first : 0;
+}
+
+/* Those whose side makes a difference where some sides are known; NULL: none is.  Parts of a node are before it. */
+static void collect(const FlatPieces *pieces, const signed char *sides, Seen *seen)
+{
+    signed char known[MOST_FLAT_NODES];
+    bool        counts[MOST_FLAT_NODES];
+    size_t      count = (size_t)(pieces->root + 1);
+    if (pieces->root < 0)
+        return;
+    memset(known, 0, count);
+    memset(counts, 0, count);
+    for (size_t i = 0; sides && i < count; i++)
+        known[i] = side_of_node(&pieces->nodes[i], sides, known);
+    counts[pieces->root] = true;
+    for (size_t i = count; i-- > 0;) {
+        const FlatNode *node = &pieces->nodes[i];
+        if (!counts[i] || known[i] != 0)
+            continue;
+        if (node->kind == FLAT_HALF_SPACE)
+            seen->by_sign[node->second > 0][node->first] = true;
+        else
+            counts[node->first] = counts[node->second] = true;
     }
 }
 
@@ -71,18 +93,20 @@ static double need_of(const FlatGrowth *growth)
                       : growth->slack.above + growth->high;
 }
 
-static bool have_one_way(const Proof *proof, const signed char *sides)
+typedef enum OneWay { ONE_WAY, NO_WAY, SEAM } OneWay;
+
+static OneWay find_one_way(const Proof *proof, const signed char *sides)
 {
     Seen        seen = {{{false}}};
     FlatGrowths growths;
     growths.count = 0;
     growths.level = (FlatWay){{0, 0, 0}, {{0}}, 0};
-    collect(proof->pieces, proof->pieces->root, sides, &seen);
+    collect(proof->pieces, sides, &seen);
     for (size_t i = 0; i < proof->pieces->count; i++) {
         bool below = seen.by_sign[1][i], above = seen.by_sign[0][i];
         if (below && above) {
             if (largest_of(proof->pieces->slack[i]) > 0)
-                return false;
+                return proof->pieces->chooses[i] ? SEAM : NO_WAY;
             flat_growths_level(&growths, proof->pieces->list[i].normal);
         } else if (below || above) {
             FlatGrowth *growth = &growths.list[growths.count++];
@@ -90,21 +114,21 @@ static bool have_one_way(const Proof *proof, const signed char *sides)
             growth->need       = need_of(growth);
         }
     }
-    return flat_has_way(&growths, proof->way);
+    return flat_has_way(&growths, proof->way) ? ONE_WAY : NO_WAY;
 }
 
 /* All that is in the box or beside it. */
-static bool all_have_one_way(const Proof *proof) { return have_one_way(proof, NULL); }
+static bool all_have_one_way(const Proof *proof) { return find_one_way(proof, NULL) == ONE_WAY; }
 
 /* What makes a difference in the box: so no two parts of the surface come together there, nor does a hole close. */
-static bool is_one_sheet(const Proof *proof)
+static OneWay find_one_sheet(const Proof *proof)
 {
     signed char sides[MOST_FLATS];
     for (size_t i = 0; i < proof->pieces->count; i++) {
         FlatGrowth growth = growth_of(proof, i, 1);
         sides[i]          = (signed char)side_of(&growth);
     }
-    return have_one_way(proof, sides);
+    return find_one_way(proof, sides);
 }
 
 /* ---- a way for each set ---- */
@@ -239,10 +263,14 @@ FlatNearness flat_nearness(const FlatPieces *pieces, const Box *box, double erro
     Proof now = {pieces, box, error, 1, 0}, finer = {pieces, box, 0.3 * error, 0.1, 0.02 * error};
     if (all_have_one_way(&now))
         return FLAT_NEAR;
-    if (is_one_sheet(&now) && sets_have_ways(&now))
+    if (find_one_sheet(&now) == ONE_WAY && sets_have_ways(&now))
         return FLAT_HARD;
-    return all_have_one_way(&finer) || (is_one_sheet(&finer) && sets_have_ways(&finer)) ? FLAT_ROUGH
-                                                                                        : FLAT_THIN;
+    if (all_have_one_way(&finer))
+        return FLAT_ROUGH;
+    OneWay sheet = find_one_sheet(&finer);
+    if (sheet == ONE_WAY && sets_have_ways(&finer))
+        return FLAT_ROUGH;
+    return sheet == SEAM ? FLAT_SEAM : FLAT_THIN;
 }
 
 int flat_widest_axis(const FlatPieces *pieces, const Box *box)

@@ -179,6 +179,21 @@ bool flat_rounds_refine(FlatRounds *rounds)
     return any;
 }
 
+void flat_rounds_keep(FlatRounds *rounds)
+{
+    for (size_t i = 0; i < rounds->list.count; i++)
+        rounds->list.items[i].kept = rounds->list.items[i].part;
+}
+
+void flat_rounds_go_back(FlatRounds *rounds)
+{
+    for (size_t i = 0; i < rounds->list.count; i++)
+        rounds->list.items[i].part = rounds->list.items[i].kept;
+    flat_rounds_count(rounds);
+}
+
+bool flat_rounds_has_curves(const FlatRounds *rounds) { return rounds->chords > 0; }
+
 void flat_rounds_open(const FlatRounds *rounds, LaneRanges *ranges)
 {
     ranges->unroll  = true;

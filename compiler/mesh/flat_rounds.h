@@ -16,6 +16,7 @@ typedef struct FlatRound {
     bool     curves;
     bool     shared; /* the error is shared with another circle */
     double   part;   /* of the error that its sides may take */
+    double   kept;   /* that part, when it was kept */
     bool     blamed; /* that was too much somewhere */
     uint32_t sides;
     double   chord; /* how far chords may be from curves, in lengths of their plane */
@@ -48,6 +49,10 @@ void flat_rounds_note_curves(FlatRounds *rounds, uint32_t table, double length, 
 void flat_rounds_count(FlatRounds *rounds);
 /* Makes those finer that are blamed; false: no more than that is of use. */
 bool flat_rounds_refine(FlatRounds *rounds);
+/* Keeps how fine all are, and makes them so again. */
+void flat_rounds_keep(FlatRounds *rounds);
+void flat_rounds_go_back(FlatRounds *rounds);
+bool flat_rounds_has_curves(const FlatRounds *rounds);
 /* 0: it has not been noted. */
 uint32_t flat_rounds_sides(const FlatRounds *rounds, uint32_t kin);
 /* The largest that has been noted, in lengths of the scene; 0: none has. */
