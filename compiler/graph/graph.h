@@ -48,7 +48,9 @@ typedef enum OpPromises {
     BUILDS           = 4,
     READS_TABLES     = 8,
     FIRST_SETTING    = 16, /* and three more: operand k is a setting, FIRST_SETTING << k */
-    OF_HOST          = 256
+    OF_HOST          = 256,
+    COMPONENTWISE    = 512,
+    STEADY           = 1024
 } OpPromises;
 
 /* All operands from this one on are settings. */

@@ -156,23 +156,24 @@ static void emit_call(Builder *b, Node node, uint32_t *to)
         to[k] = emit1(b, LANE_PART, to[0]);
 }
 
+static void emit_by_promise(Builder *b, Node node, const Operands *o, uint32_t *to)
+{
+    const Expr *e = &b->graph->items[node];
+    if (op_promises((Op)e->op, BUILDS))
+        for (uint32_t k = 0; k < components(e->type); k++)
+            to[k] = e->operand_count == 1 ? o->x[0]
+                                          : (const uint32_t *[]){o->x, o->y, o->z, o->w}[k][0];
+    else if (op_promises((Op)e->op, COMPONENTWISE))
+        emit_each(b, e, o, to);
+    else
+        emit_call(b, node, to);
+}
+
 static void emit_operation(Builder *b, Node node, const Operands *o, uint32_t *to)
 {
     const Expr *e = &b->graph->items[node];
     switch ((Op)e->op) {
     case OP_COMPONENT: to[0] = o->x[e->index]; return;
-    case OP_splat2:
-    case OP_splat3:
-    case OP_splat4:
-        for (uint32_t k = 0; k < components(e->type); k++)
-            to[k] = o->x[0];
-        return;
-    case OP_vec2:
-    case OP_vec3:
-    case OP_vec4:
-        for (uint32_t k = 0; k < components(e->type); k++)
-            to[k] = (const uint32_t *[]){o->x, o->y, o->z, o->w}[k][0];
-        return;
     case OP_dot: to[0] = emit_dot(b, o->x, o->y, o->size); return;
     case OP_cross: emit_cross(b, o, to); return;
     case OP_turn: emit_turn(b, o, to); return;
@@ -192,21 +193,9 @@ static void emit_operation(Builder *b, Node node, const Operands *o, uint32_t *t
     }
 #define MAP(name, ...) case OP_##name:
 #include "compiler/graph/ops.def"
-#define BLEND(name, ...) case OP_smin_##name:
-#include "compiler/graph/blends.def"
-    case OP_scale:
-    case OP_cell:
-    case OP_select:
-    case OP_guard:
-    case OP_blend_weight:
-    case OP_less:
-    case OP_less_equal:
-    case OP_equal:
-    case OP_not_equal:
-    case OP_and:
-    case OP_or:
-    case OP_not: emit_each(b, e, o, to); return;
-    default: emit_call(b, node, to);
+        emit_each(b, e, o, to);
+        return;
+    default: emit_by_promise(b, node, o, to);
     }
 }
 

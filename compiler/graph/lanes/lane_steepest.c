@@ -14,30 +14,11 @@ static bool op_never_jumps(uint16_t op)
 {
     switch (op) {
 #define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning) \
-    case OP_##name:                                                             \
-        return (norm) != NORM_NONE;
+    case OP_##name: {                                                           \
+        return (norm) != NORM_NONE;                                             \
+    }
 #include "compiler/graph/ops.def"
-#define BLEND(name, ...) case OP_smin_##name:
-#define BLEND_SHARES(name, ...) \
-    case OP_smin4_##name:       \
-    case OP_smin8_##name:       \
-    case OP_threshold4_##name:  \
-    case OP_threshold8_##name:
-#include "compiler/graph/blends.def"
-    case OP_COMPONENT:
-    case OP_splat2:
-    case OP_splat3:
-    case OP_splat4:
-    case OP_vec2:
-    case OP_vec3:
-    case OP_vec4:
-    case OP_dot:
-    case OP_cross:
-    case OP_length:
-    case OP_scale:
-    case OP_turn:
-    case OP_fold: return true;
-    default: return false;
+    default: return op_promises((Op)op, BUILDS) || op_promises((Op)op, STEADY);
     }
 }
 
