@@ -133,18 +133,17 @@ float krs_distance_2(vec3 p)
     vec3 v2 = min(max(v1, vec3((-0.15), (-0.22478913), (-1.0))), vec3(0.15, 0.22478913, 1.0028112));
     float t3 = v2.y * 0.5;
     float t4 = 1.0 - (v2.z * 0.5);
-    float t5 = max(abs((t3 / t4)), 1e-06);
-    float t6 = length(vec2(t3, t4));
-    vec3 v7 = vec3(v2.x, ((krs_atan(t5) / t5) * (v2.y / t4)), (((v2.z * (t4 + 1.0)) - (v2.y * t3)) / (t6 + 1.0)));
-    vec3 v8 = vec3(dot(vec3(0.0, 0.0, (-1.0)), v7), dot(vec3(0.0, 1.0, 0.0), v7), dot(vec3(1.0, 0.0, 0.0), v7));
+    float t5 = length(vec2(t3, t4));
+    vec3 v6 = vec3(v2.x, (krs_atan((t3 / t4)) * 2.0), (((v2.z * (t4 + 1.0)) - (v2.y * t3)) / (t5 + 1.0)));
+    vec3 v7 = vec3(dot(vec3(0.0, 0.0, (-1.0)), v6), dot(vec3(0.0, 1.0, 0.0), v6), dot(vec3(1.0, 0.0, 0.0), v6));
     // library:solids.krs
-    vec3 v9 = abs(v8) - vec3(1.0, 0.15, 0.15);
-    float t10 = max(v9.y, v9.z);
+    vec3 v8 = abs(v7) - vec3(1.0, 0.15, 0.15);
+    float t9 = max(v8.y, v8.z);
     // tests/golden/deformed.krs:3
-    float t11 = min(max((length(max(v9, vec3(0.0))) + min(max(v9.x, t10), 0.0)), (-0.5)), 0.5);
-    float t12 = (t11 * min(t6, 1.0)) * 0.8;
-    float t13 = length(vec2(length((v1 - v2)), max(t12, 0.0))) + min(t12, 0.0);
-    return t13;
+    float t10 = min(max((length(max(v8, vec3(0.0))) + min(max(v8.x, t9), 0.0)), (-0.5)), 0.5);
+    float t11 = (t10 * min(t5, 1.0)) * 0.8;
+    float t12 = length(vec2(length((v1 - v2)), max(t11, 0.0))) + min(t11, 0.0);
+    return t12;
 }
 
 float krs_distance_3(vec3 p)
