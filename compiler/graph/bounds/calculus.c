@@ -106,11 +106,12 @@ Range length_range(const Range *sides, uint32_t size)
     return (Range){size > 1 && isfinite(least) ? least - least * 0x1p-50 : least, largest};
 }
 
-Fact fact_truth(const RuleInput *input, uint32_t count, bool always, bool never)
+Fact fact_of_truth(const RuleInput *input, uint32_t count, Range value)
 {
     Fact fact     = fact_unknown(1);
-    fact.value[0] = (Range){always, !never};
-    fact.slope    = always || never || operands_constant(input, 0, count) ? 0 : HUGE_VAL;
+    bool constant = range_is_single(value) || operands_constant(input, 0, count);
+    fact.value[0] = value;
+    fact.slope    = constant ? 0 : HUGE_VAL;
     return fact;
 }
 

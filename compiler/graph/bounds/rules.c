@@ -133,53 +133,41 @@ static Fact fact_component(const Fact *vector, uint32_t index)
 
 /* ---- OP rows: truth and choice ---- */
 
-static Fact fact_less(const RuleInput *input)
+Range range_of_truth(Op op, Range a, Range b)
 {
-    Range a = input->operands[0].value[0], b = input->operands[1].value[0];
-    return fact_truth(input, 2, a.high < b.low, a.low >= b.high);
+    bool always = false, never = false;
+    switch (op) {
+#define TRUTH(name, count, when_always, when_never) \
+    case OP_##name: {                               \
+        always = (when_always);                     \
+        never  = (when_never);                      \
+        break;                                      \
+    }
+#include "compiler/graph/ops.def"
+    default: break;
+    }
+    return (Range){always, always || !never};
 }
 
-static Fact fact_less_equal(const RuleInput *input)
+static uint32_t operands_of_truth(Op op)
 {
-    Range a = input->operands[0].value[0], b = input->operands[1].value[0];
-    return fact_truth(input, 2, a.high <= b.low, a.low > b.high);
+    switch (op) {
+#define TRUTH(name, count, ...) \
+    case OP_##name: {           \
+        return count;           \
+    }
+#include "compiler/graph/ops.def"
+    default: return 0;
+    }
 }
 
-static bool always_equal(Range a, Range b)
+/* Where it is neither always true nor never, it may jump. */
+static Fact fact_truth(const RuleInput *input)
 {
-    return range_is_single(a) && range_is_single(b) && a.low == b.low;
-}
-
-static bool never_equal(Range a, Range b) { return a.high < b.low || b.high < a.low; }
-
-static Fact fact_equal(const RuleInput *input)
-{
-    Range a = input->operands[0].value[0], b = input->operands[1].value[0];
-    return fact_truth(input, 2, always_equal(a, b), never_equal(a, b));
-}
-
-static Fact fact_not_equal(const RuleInput *input)
-{
-    Range a = input->operands[0].value[0], b = input->operands[1].value[0];
-    return fact_truth(input, 2, never_equal(a, b), always_equal(a, b));
-}
-
-static Fact fact_and(const RuleInput *input)
-{
-    Range a = input->operands[0].value[0], b = input->operands[1].value[0];
-    return fact_truth(input, 2, a.low > 0 && b.low > 0, a.high == 0 || b.high == 0);
-}
-
-static Fact fact_or(const RuleInput *input)
-{
-    Range a = input->operands[0].value[0], b = input->operands[1].value[0];
-    return fact_truth(input, 2, a.low > 0 || b.low > 0, a.high == 0 && b.high == 0);
-}
-
-static Fact fact_not(const RuleInput *input)
-{
-    Range a = input->operands[0].value[0];
-    return fact_truth(input, 1, a.high == 0, a.low > 0);
+    uint32_t    count = operands_of_truth(input->op);
+    const Fact *o     = input->operands;
+    Range       value = range_of_truth(input->op, o[0].value[0], count > 1 ? o[1].value[0] : ZERO);
+    return fact_of_truth(input, count, value);
 }
 
 /* Where the condition changes within the box, the value may jump. */

@@ -63,8 +63,8 @@ Fact fact_map(Norm norm, int arity, const Fact *operands, const Partials *rows, 
    come from operands that are defined nowhere in the box. */
 Fact fact_agreed(Fact fact, uint32_t size);
 
-/* A truth value of so many operands; where it is neither always true nor never, it may jump. */
-Fact fact_truth(const RuleInput *input, uint32_t count, bool always, bool never);
+/* A truth value of so many operands: 1, 0, or, where it may jump, both. */
+Fact fact_of_truth(const RuleInput *input, uint32_t count, Range value);
 
 /* ---- rules of rows ---- */
 
@@ -72,7 +72,9 @@ Fact fact_truth(const RuleInput *input, uint32_t count, bool always, bool never)
    has no RANGES. */
 typedef void RangeRule(uint32_t size, Range *const *operands, Range *result);
 RangeRule   *range_rule(Op op);
-RangeRule    range_scale, range_cross, range_normalize;
+/* Of TRUTH rows: 1, 0, or both. */
+Range     range_of_truth(Op op, Range a, Range b);
+RangeRule range_scale, range_cross, range_normalize;
 
 /* What the columns of derivatives are written in. */
 #define ZERO      range_of(0)

@@ -56,7 +56,7 @@ Fact fact_fold(const RuleInput *input)
 Fact fact_front(const RuleInput *input)
 {
     Range height = mirror_height(input).value;
-    return fact_truth(input, 3, height.low > 0, height.high <= 0);
+    return fact_of_truth(input, 3, (Range){height.low > 0, height.high > 0});
 }
 
 /* Of p - period * k for the cell k in [low, high] that is nearest. */

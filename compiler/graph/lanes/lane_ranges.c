@@ -69,47 +69,15 @@ static Operand operand_for(const LaneTape *tape, const LaneRanges *ranges, uint1
 
 static bool is_finite(Range a) { return isfinite(a.low) && isfinite(a.high); }
 
-static const Range TRUTH = {0, 1};
-
-static Range truth(bool always, bool never)
-{
-    return always ? range_of(1) : never ? range_of(0) : TRUTH;
-}
+static const Range TRUTHS = {0, 1};
 
 /* ---- steps that are no MAP rows ---- */
 
-static Range range_compare(uint16_t op, const Operand *o)
-{
-    Range a = o[0].range, b = o[1].range;
-    bool  apart = a.high < b.low || b.high < a.low, same = a.low == b.high && b.low == a.high;
-    if (!o[0].sure || !o[1].sure)
-        return TRUTH;
-    switch (op) {
-    case OP_less: return truth(a.high < b.low, a.low >= b.high);
-    case OP_less_equal: return truth(a.high <= b.low, a.low > b.high);
-    case OP_equal: return truth(same, apart);
-    default: return truth(apart, same); /* OP_not_equal */
-    }
-}
-
-static bool always_true(Range a) { return a.low > 0; }
-static bool never_true(Range a) { return a.high <= 0; }
-
-static Range range_logic(uint16_t op, const Operand *o)
-{
-    Range a = o[0].range, b = o[1].range;
-    switch (op) {
-    case OP_and: return truth(always_true(a) && always_true(b), never_true(a) || never_true(b));
-    case OP_or: return truth(always_true(a) || always_true(b), never_true(a) && never_true(b));
-    default: return truth(never_true(a), always_true(a)); /* OP_not */
-    }
-}
-
 static Range range_select(const Operand *o)
 {
-    if (always_true(o[0].range))
+    if (o[0].range.low > 0)
         return o[1].range;
-    return never_true(o[0].range) ? o[2].range : range_hull(o[1].range, o[2].range);
+    return o[0].range.high <= 0 ? o[2].range : range_hull(o[1].range, o[2].range);
 }
 
 /* guard_decides: everywhere, nowhere, or neither. */
@@ -179,7 +147,7 @@ static Range range_blend_weight(const Operand *o)
 {
     Range a = o[0].range, b = o[1].range, width = o[2].range;
     if (!(width.low > 0) || !o[0].sure || !o[1].sure || !is_finite(a) || !is_finite(b))
-        return TRUTH;
+        return TRUTHS;
     Range share = range_div(range_mul(range_of(0.5), range_sub(b, a)), width);
     return range_max(range_min(range_add(range_of(0.5), share), range_of(1)), range_of(0));
 }
@@ -326,14 +294,12 @@ static Range range_of_step(const LaneRanges *ranges, const LaneStep *step, const
     case OP_smoothstep: /* infinite / infinite counts as 0 */
         return is_finite(a) && is_finite(b) && is_finite(o[2].range)
                    ? range_by_row(OP_smoothstep, o, 3)
-                   : TRUTH;
-    case OP_less:
-    case OP_less_equal:
-    case OP_equal:
-    case OP_not_equal: return range_compare(step->op, o);
-    case OP_and:
-    case OP_or:
-    case OP_not: return range_logic(step->op, o);
+                   : TRUTHS;
+#define TRUTH(name, ...)                           \
+    case OP_##name: {                              \
+        return range_of_truth((Op)step->op, a, b); \
+    }
+#include "compiler/graph/ops.def"
     case OP_select: return range_select(o);
     case OP_guard: return range_guard(o);
     case OP_length: return range_length(ranges, o, step->operand_count);
