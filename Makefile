@@ -33,7 +33,7 @@ DEVICE  ?= $(KRS_DEVICE)
 JOBS    ?= $(shell nproc)
 
 # Sources by folder, in the order of the pipeline: reading down this list is reading the program.
-ROOMS    := base image outline graph graph/bounds graph/lanes graph/rewrite graph/symbolic graph/instances shape lower family front eval eval/declared eval/view eval/data eval/hulls eval/builtins print print/glsl target scene passes refute mesh slice grid measure
+ROOMS    := base image outline graph graph/bounds graph/lanes graph/rewrite graph/symbolic graph/instances shape lower family front eval eval/declared eval/view eval/data eval/hulls eval/builtins print print/glsl target scene passes refute field mesh slice grid measure
 sources   = $(sort $(wildcard $(1)/*.c))
 COMPILER := $(foreach room,$(ROOMS),$(call sources,compiler/$(room)))
 # Points side by side, once for each instruction set.

@@ -8,8 +8,8 @@
 #define KRS_GRID_GRID_H
 
 #include "compiler/base/parallel.h"
-#include "compiler/mesh/bvh.h"
-#include "compiler/mesh/field.h"
+#include "compiler/field/bvh.h"
+#include "compiler/field/field.h"
 
 enum { BRICK = KRS_BRICK_SIDE, BRICK_SAMPLES = KRS_BRICK_SAMPLES };
 

@@ -6,7 +6,7 @@
 
 #include <stdbool.h>
 
-#include "compiler/mesh/field.h"
+#include "compiler/field/field.h"
 
 /* Where at + slope . p is below 0. */
 typedef struct HalfSpace {

@@ -14,7 +14,7 @@
 #include <stdatomic.h>
 
 #include "compiler/base/parallel.h"
-#include "compiler/mesh/field.h"
+#include "compiler/field/field.h"
 
 /* A place of the surface. */
 typedef struct Place {

@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
+#include "compiler/field/steps.h"
+#include "compiler/mesh/mesh.h"
 #include "compiler/mesh/placing.h"
-#include "compiler/mesh/solid.h"
-#include "compiler/mesh/steps.h"
 
 /* Items that a search for how far one reaches may look at. */
 enum { MOST_VISITS = 1 << 20 };

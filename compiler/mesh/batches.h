@@ -6,7 +6,7 @@
 #ifndef KRS_MESH_BATCHES_H
 #define KRS_MESH_BATCHES_H
 
-#include "compiler/mesh/field.h"
+#include "compiler/field/field.h"
 #include "compiler/mesh/groups.h"
 
 /* What is done: `find` for up to MOST_FIELD_POINTS of them, which have a box around each that holds all points

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/mesh/bvh.h"
+#include "compiler/field/bvh.h"
 #include "compiler/mesh/fans.h"
 
 enum { MOST_STAR = 48, PATIENCE = 32 };

@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
+#include "compiler/field/roots.h"
 #include "compiler/mesh/batches.h"
 #include "compiler/mesh/quadric.h"
-#include "compiler/mesh/roots.h"
 #include "compiler/mesh/settle.h"
 #include "compiler/mesh/weights.h"
 

@@ -11,7 +11,7 @@
 #ifndef KRS_MESH_CONTOUR_H
 #define KRS_MESH_CONTOUR_H
 
-#include "compiler/mesh/field.h"
+#include "compiler/field/field.h"
 #include "compiler/mesh/groups.h"
 #include "compiler/mesh/tets.h"
 

@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_CROSSING_H
 #define KRS_MESH_CROSSING_H
 
-#include "compiler/mesh/bvh.h"
+#include "compiler/field/bvh.h"
 
 /* A directed edge, from the upper half of `ends` to the lower, and its triangle. */
 typedef struct TriangleEdge {

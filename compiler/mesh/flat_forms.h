@@ -7,7 +7,7 @@
 #ifndef KRS_MESH_FLAT_FORMS_H
 #define KRS_MESH_FLAT_FORMS_H
 
-#include "compiler/mesh/field.h"
+#include "compiler/field/field.h"
 #include "compiler/mesh/flat_planes.h"
 #include "compiler/mesh/flat_rounds.h"
 

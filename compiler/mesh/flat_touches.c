@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/mesh/bvh.h"
+#include "compiler/field/bvh.h"
 #include "compiler/mesh/numbering.h"
 
 /* ---- vertices at one place ---- */

@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_FLAT_WAYS_H
 #define KRS_MESH_FLAT_WAYS_H
 
-#include "compiler/mesh/field.h"
+#include "compiler/field/field.h"
 #include "compiler/mesh/flat_planes.h"
 
 /* A half-space, or its complement, from the places of a box. */

@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_LENS_H
 #define KRS_MESH_LENS_H
 
-#include "compiler/mesh/gradient.h"
+#include "compiler/field/gradient.h"
 #include "compiler/mesh/verifier.h"
 
 /* For what rounding may take from a proof. */

@@ -6,6 +6,7 @@
 #include "compiler/mesh/borders.h"
 #include "compiler/mesh/flat.h"
 #include "compiler/mesh/handles.h"
+#include "compiler/mesh/mesh.h"
 #include "compiler/mesh/voids.h"
 #include "compiler/scene/program.h"
 

@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_SETTLE_H
 #define KRS_MESH_SETTLE_H
 
-#include "compiler/mesh/field.h"
+#include "compiler/field/field.h"
 
 /* A vertex of a face or a tetrahedron, which may go to the surface within it. */
 typedef struct Settling {

@@ -11,7 +11,7 @@
 #ifndef KRS_MESH_SMOOTH_H
 #define KRS_MESH_SMOOTH_H
 
-#include "compiler/mesh/gradient.h"
+#include "compiler/field/gradient.h"
 #include "compiler/mesh/verifier.h"
 
 /* What is known of a box: d^T (second derivatives) d is at most d^T above d, and at least -d^T below d, for all d; and along

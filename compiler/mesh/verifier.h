@@ -4,8 +4,8 @@
 #ifndef KRS_MESH_VERIFIER_H
 #define KRS_MESH_VERIFIER_H
 
+#include "compiler/field/bvh.h"
 #include "compiler/mesh/around.h"
-#include "compiler/mesh/bvh.h"
 #include "compiler/mesh/contour.h"
 
 /* For one thread. */

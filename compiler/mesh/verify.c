@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/mesh/gradient.h"
+#include "compiler/field/gradient.h"
 #include "compiler/mesh/lens.h"
 #include "compiler/mesh/marks.h"
 

@@ -4,7 +4,7 @@
 #ifndef KRS_SLICE_EXTENT_H
 #define KRS_SLICE_EXTENT_H
 
-#include "compiler/mesh/field.h"
+#include "compiler/field/field.h"
 
 /* Narrows a box around all that is solid.  A side becomes that of the outermost point that is found, if it is proven that
    none is farther out by more than a 500th of the box; else it is where nothing is beyond.  False: it is proven that

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/mesh/gradient.h"
-#include "compiler/mesh/roots.h"
+#include "compiler/field/gradient.h"
+#include "compiler/field/roots.h"
 
 void krs_plane_axes(const KrsSectionPlane *plane, double right[3], double up[3])
 {

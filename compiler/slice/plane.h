@@ -4,7 +4,7 @@
 #ifndef KRS_SLICE_PLANE_H
 #define KRS_SLICE_PLANE_H
 
-#include "compiler/mesh/field.h"
+#include "compiler/field/field.h"
 
 /* A point of it is origin + x right + y up. */
 typedef struct SlicePlane {

@@ -14,7 +14,7 @@
 #include <cmocka.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/mesh/bvh.h"
+#include "compiler/field/bvh.h"
 #include "tests/unit/crossings.h"
 #include "tests/unit/queried.h"
 

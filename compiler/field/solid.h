@@ -1,8 +1,8 @@
 /*
- * solid.h: what is meshed: some components of a scene, or a part of its assembly.
+ * solid.h: what is asked about: some components of a scene, or a part of its assembly.
  */
-#ifndef KRS_MESH_SOLID_H
-#define KRS_MESH_SOLID_H
+#ifndef KRS_FIELD_SOLID_H
+#define KRS_FIELD_SOLID_H
 
 #include "compiler/scene/program.h"
 
@@ -24,9 +24,5 @@ void solid_of_components(const KrsScene *scene, const bool *wanted, MeshSolid *s
 bool has_one_material(const KrsScene *scene, const bool *wanted);
 /* Bytes of `roots` that is enough. */
 size_t solid_root_bytes(const KrsScene *scene);
-
-/* As krs_mesh, which it is behind; the component of the options does not count. */
-KrsStatus mesh_solid(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
-                     KrsMesh **mesh);
 
 #endif

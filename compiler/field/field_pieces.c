@@ -7,8 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/field/field.h"
 #include "compiler/graph/lanes/lane_outlines.h"
-#include "compiler/mesh/field.h"
 
 typedef struct Finding {
     const MeshField *field;

@@ -1,8 +1,8 @@
 /*
  * bvh.h: triangles by where they are: a tree of boxes.
  */
-#ifndef KRS_MESH_BVH_H
-#define KRS_MESH_BVH_H
+#ifndef KRS_FIELD_BVH_H
+#define KRS_FIELD_BVH_H
 
 #include "compiler/base/arena.h"
 

@@ -1,5 +1,5 @@
 /*
- * field.h: what the mesher knows of a scene: a number at a point, and ranges of it in a box.
+ * field.h: what is known of a solid: a number at a point, and ranges of it in a box.
  *
  * Its sign says what is solid (negative inside), and its size is never above the distance to the
  * nearest surface.  Nothing else here asks the scene.
@@ -7,11 +7,11 @@
  * Questions are answered by lane tapes (graph/lanes/lanes.h).  Who asks much within one box enters it: the lane
  * tape is then pruned to that box.  Answers are the same, bit for bit.
  */
-#ifndef KRS_MESH_FIELD_H
-#define KRS_MESH_FIELD_H
+#ifndef KRS_FIELD_FIELD_H
+#define KRS_FIELD_FIELD_H
 
+#include "compiler/field/solid.h"
 #include "compiler/graph/lanes/lanes.h"
-#include "compiler/mesh/solid.h"
 
 /* A box that was entered, and its lane tape. */
 typedef struct FieldRegion {

@@ -1,8 +1,8 @@
 /*
  * steps.h: materials that change in steps only.
  */
-#ifndef KRS_MESH_STEPS_H
-#define KRS_MESH_STEPS_H
+#ifndef KRS_FIELD_STEPS_H
+#define KRS_FIELD_STEPS_H
 
 #include "compiler/scene/program.h"
 

@@ -1,7 +1,7 @@
 /* solid.c: components as one solid. */
-#include "compiler/mesh/solid.h"
+#include "compiler/field/solid.h"
 
-#include "compiler/mesh/steps.h"
+#include "compiler/field/steps.h"
 
 size_t solid_root_bytes(const KrsScene *scene)
 {

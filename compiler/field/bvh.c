@@ -1,5 +1,5 @@
 /* bvh.c: boxes of triangles, halved at the middle of their centres. */
-#include "compiler/mesh/bvh.h"
+#include "compiler/field/bvh.h"
 
 #include <string.h>
 

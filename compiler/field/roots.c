@@ -1,5 +1,5 @@
 /* roots.c: false position that halves an end that stays (Illinois). */
-#include "compiler/mesh/roots.h"
+#include "compiler/field/roots.h"
 
 #include <math.h>
 

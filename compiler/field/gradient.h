@@ -1,8 +1,8 @@
 /*
  * gradient.h: ranges of derivatives, as a direction and how far they are from it.
  */
-#ifndef KRS_MESH_GRADIENT_H
-#define KRS_MESH_GRADIENT_H
+#ifndef KRS_FIELD_GRADIENT_H
+#define KRS_FIELD_GRADIENT_H
 
 #include "compiler/graph/lanes/lanes.h"
 

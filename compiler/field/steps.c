@@ -1,5 +1,5 @@
 /* steps.c: which nodes of a graph change in steps: choices between what does, and all that is computed of such. */
-#include "compiler/mesh/steps.h"
+#include "compiler/field/steps.h"
 
 #include <stdlib.h>
 #include <string.h>

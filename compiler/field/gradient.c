@@ -1,5 +1,5 @@
 /* gradient.c: derivatives in a box. */
-#include "compiler/mesh/gradient.h"
+#include "compiler/field/gradient.h"
 
 #include <string.h>
 

@@ -1,10 +1,10 @@
 /*
  * roots.h: where the sign changes on edges, found for many at once.
  */
-#ifndef KRS_MESH_ROOTS_H
-#define KRS_MESH_ROOTS_H
+#ifndef KRS_FIELD_ROOTS_H
+#define KRS_FIELD_ROOTS_H
 
-#include "compiler/mesh/field.h"
+#include "compiler/field/field.h"
 
 /* A search for the place on an edge where the sign changes; values at the ends. */
 typedef struct RootSearch {

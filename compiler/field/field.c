@@ -1,5 +1,5 @@
 /* field.c: the distance of the meshed components, cut by a box and by zones. */
-#include "compiler/mesh/field.h"
+#include "compiler/field/field.h"
 
 #include <string.h>
 
