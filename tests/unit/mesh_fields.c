@@ -166,6 +166,41 @@ static void pieces_have_the_sign_of_the_distance(void **context)
     assert_true(try_pieces("show box([2, 1, 0.5]).bend([1, 0, 0], 0.5);") > 20);
 }
 
+/* A box that is not entered has no surface, and in one that is distances are as before. */
+static void boxes_that_are_left_out_are_empty(void **context)
+{
+    static const char *const TEXTS[] = {
+        "show text(\"S8&\", size: 2).extrude(1);",
+        "show text(\"S8&\", size: 2).extrude(1).taper([0, 0, 1], 1, 0.7);",
+        "show polygon([[0, 0], [1, 0], [0, 1]]).extrude(1).taper([0, 0, 1], 1, 0.7);",
+        "show star(5, 1, 0.5).extrude(1).bend([1, 0, 0], 0.3);"};
+    static const Box ALL = {
+        {{-1.1, 1.1}, {-1.1, 1.1}, {-1.1, 1.1}}}; /* at its axis a taper goes far */
+    (void)context;
+    for (size_t t = 0; t < sizeof TEXTS / sizeof *TEXTS; t++) {
+        Opened *o       = open_field(TEXTS[t]);
+        size_t  entered = 0;
+        for (int i = 0; i < BOXES; i++) {
+            double points[POINTS][3], before[POINTS], after[POINTS];
+            Box    box = i == 0 ? ALL : random_box(1.5, 0.5);
+            points_in(box, points);
+            field_distances(&o->field, (const double(*)[3])points, POINTS, before);
+            bool inside = field_enter(&o->field, box);
+            if (inside)
+                field_distances(&o->field, (const double(*)[3])points, POINTS, after);
+            for (int k = 0; k < POINTS; k++)
+                if (inside ? after[k] != before[k] : (before[k] > 0) != (before[0] > 0))
+                    fail_msg("%s: box %d, point %d: %g, %g", TEXTS[t], i, k, before[k],
+                             inside ? after[k] : before[0]);
+            entered += inside;
+            if (inside)
+                field_leave(&o->field);
+        }
+        assert_true(entered > BOXES / 20);
+        close_field(o);
+    }
+}
+
 /* In one half of a plate, beyond its middle plane, only one of its faces decides. */
 static void faces_that_are_far_are_no_pieces(void **context)
 {
@@ -327,6 +362,7 @@ int main(void)
         cmocka_unit_test(parts_of_a_number_are_that_number),
         cmocka_unit_test(little_is_gained_in_boxes_of_the_same_size),
         cmocka_unit_test(slopes_of_ways_hold),
+        cmocka_unit_test(boxes_that_are_left_out_are_empty),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

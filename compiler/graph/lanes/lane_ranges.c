@@ -195,11 +195,12 @@ static double stretch_of_members(const LaneTape *tape, const LaneRanges *ranges,
 }
 
 /* The distance to a crowd changes no faster than the point moves, times its slope.  The table of an outline has single
-   precision, and the nearest place on a curve is found by some steps only.  False: there is no bound. */
+   precision, and the nearest place on a curve is found by some steps only.  False: there is no bound, as where squares are
+   too large for that precision: no member is near then. */
 static bool range_of_crowd(const LaneTape *tape, const LaneRanges *ranges, const LaneCall *call,
                            const Fact *facts, Range *range)
 {
-    static const double UNCERTAIN_OUTLINE = 1e-5, UNCERTAIN = 1e-9;
+    static const double UNCERTAIN_OUTLINE = 1e-5, UNCERTAIN = 1e-9, FARTHEST = 1e15;
     const Graph        *graph = tape->tape->graph;
     const Expr         *e     = &graph->items[call->node];
     NodeValue           operands[2];
@@ -216,7 +217,7 @@ static bool range_of_crowd(const LaneTape *tape, const LaneRanges *ranges, const
         radius = hypot_upward(radius, max2(at.high - operands[1].v[k], operands[1].v[k] - at.low));
         size   = max2(size, range_largest(at));
     }
-    if (!isfinite(radius))
+    if (!(radius + size < FARTHEST))
         return false;
     double value = lane_call(tape->tape, ranges->values, call->node, operands).v[0];
     radius *= function->slope;
