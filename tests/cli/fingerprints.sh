@@ -8,7 +8,7 @@ plan 18
 
 # ---- sources ----
 mkdir tree tree/tests tree/bench
-(cd "$root" && cp -r Makefile tools api cli compiler import include runtime live "$work/tree" && cp tests/*.mk "$work/tree/tests" &&
+(cd "$root" && cp -r Makefile tools api cli compiler import include mesh runtime live "$work/tree" && cp tests/*.mk "$work/tree/tests" &&
     cp bench/*.mk "$work/tree/bench")
 fingerprints() { make --no-print-directory -s -C tree "$@" fingerprints 2>>err; }
 fingerprints >before
@@ -43,7 +43,7 @@ decides compiler/library/std/trees.krs "checkpoint film"
 decides runtime/shaders/bsdf.glsl "checkpoint film"
 decides runtime/film/saved.c "checkpoint film"
 decides cli/picture/checkpoint.c "checkpoint"
-for file in cli/mesh.c compiler/mesh/contour.c compiler/base/diag.def live/viewer.c runtime/writer/png.c; do
+for file in cli/mesh.c mesh/contour.c compiler/base/diag.def live/viewer.c runtime/writer/png.c; do
     [ ! -e "tree/$file" ] || [ -z "$(changed_by "$file")" ] || echo "$file"
 done >deciding
 [ ! -s deciding ]

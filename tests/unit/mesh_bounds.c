@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/mesh/smooth.h"
+#include "mesh/smooth.h"
 
 enum { TIMES = 300, STEPS = 60 };
 

@@ -10,9 +10,9 @@
 #include <cmocka.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/mesh/collapse.h"
-#include "compiler/mesh/crossing.h"
-#include "compiler/mesh/fans.h"
+#include "mesh/collapse.h"
+#include "mesh/crossing.h"
+#include "mesh/fans.h"
 #include "tests/support/random.h"
 
 enum { AROUND = 24, COUNT = AROUND * AROUND, TRIANGLES = 2 * COUNT };

@@ -10,8 +10,8 @@
 #include <cmocka.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/mesh/smooth.h"
 #include "compiler/scene/program.h"
+#include "mesh/smooth.h"
 #include "tests/support/random.h"
 
 enum { BOXES = 400, POINTS = 32 };

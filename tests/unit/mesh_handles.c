@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/mesh/handles.h"
+#include "mesh/handles.h"
 
 enum { AROUND = 60, ACROSS = 24 };
 

@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#include "compiler/mesh/bounds.h"
 #include "compiler/scene/program.h"
+#include "mesh/bounds.h"
 #include "tests/support/random.h"
 
 static Random chance = {11};

@@ -17,7 +17,7 @@
 
 #include "compiler/base/parallel.h"
 #include "compiler/base/vec.h"
-#include "compiler/mesh/pieces.h"
+#include "mesh/pieces.h"
 #include "tests/unit/closed_forms.h"
 
 static Random chance = {2026};

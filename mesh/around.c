@@ -1,0 +1,109 @@
+/*
+ * around.c: the way from a point of the surface along which the distance grows ends where the bounds of some tetrahedron
+ * tell on which side of the mesh it is (docs/math.md, section 8).
+ *
+ * It ends in one that has a corner with the first in common, if it is shorter than all around are wide.  Let some of the
+ * corners be good: all that have one of them are bounded.  The sum of barycentric coordinates for good corners
+ * is 0 where none has one, and along a way it falls by no more than its length over the least width.  So where it is
+ * more than that in the beginning, the way ends where there are bounds.
+ */
+#include "mesh/around.h"
+
+#include <string.h>
+
+#include "compiler/base/minmax.h"
+#include "compiler/base/vec.h"
+
+static const double ROUNDING = 1 + 1e-6, ROUNDED = 1e-9;
+
+static float distance_of(const Tet *tet)
+{
+    return tet->slope > 0 ? tet->deviation / tet->slope * (1 + 1e-6F) : INFINITY;
+}
+
+static void add_function(Around *around, const Tet *tet)
+{
+    bool other        = around->origin != 0 && around->origin != tet->origin;
+    around->mixed     = around->mixed || tet->origin == 0 || other;
+    around->in_pieces = around->in_pieces || tet->steep > 0;
+    around->origin    = tet->origin;
+}
+
+void arounds_find(Arounds *arounds, const Tets *tets, Arena *arena)
+{
+    static const Around nothing = {.width = INFINITY};
+    while (arounds->count < tets->points.count)
+        array_push_large(arena, arounds, nothing);
+    for (size_t i = 0; i < arounds->count; i++)
+        arounds->items[i] = nothing;
+    for (size_t i = 0; i < tets->list.count; i++) {
+        const Tet *tet       = &tets->list.items[i];
+        bool       none      = tet->state == TET_EMPTY;
+        float      deviation = none ? 0 : tet->deviation, distance = none ? 0 : distance_of(tet);
+        for (int k = 0; k < 4; k++) {
+            Around *around    = &arounds->items[tet->points[k]];
+            around->deviation = deviation > around->deviation ? deviation : around->deviation;
+            around->width     = tet->width < around->width ? tet->width : around->width;
+            around->distance  = distance > around->distance ? distance : around->distance;
+            if (!none)
+                add_function(around, tet);
+        }
+    }
+}
+
+/* How long the way is, at most, until no point around the corner is on the wrong side of the mesh.  Pieces have the sign of
+   the distance, but not its size.  So from one to another only the greatest distance to the surface tells, unless it is
+   the same one. */
+static double way_of(const Around *around, const Tet *tet, double error)
+{
+    double steep = tet->steep > 0 ? tet->steep : 1;
+    if (!around->in_pieces || !around->mixed)
+        return around->deviation / tet->slope;
+    return around->distance <= error ? steep * around->distance / tet->slope : INFINITY;
+}
+
+/* The linear function that is 1 at some corners and 0 at the others. */
+static void find_sum(const double corners[4][3], const bool good[4], Sure *sure)
+{
+    double edges[3][3], normals[3][3];
+    for (int i = 0; i < 3; i++)
+        add_scaled3(edges[i], corners[i + 1], -1, corners[0]);
+    for (int i = 0; i < 3; i++)
+        cross3(edges[(i + 1) % 3], edges[(i + 2) % 3], normals[i]);
+    double volume = dot3(edges[0], normals[0]);
+    memset(sure->slope, 0, sizeof sure->slope);
+    for (int i = 0; i < 3; i++)
+        add_scaled3(sure->slope, sure->slope, (good[i + 1] - good[0]) / volume, normals[i]);
+    sure->offset = good[0] - dot3(sure->slope, corners[0]);
+}
+
+void sure_find(const Arounds *arounds, const Tets *tets, const Tet *tet, double error, Sure *sure)
+{
+    double corners[4][3], longest = 0, width = INFINITY;
+    bool   good[4];
+    int    count = 0;
+    for (int k = 0; k < 4; k++) {
+        const Around *around = &arounds->items[tet->points[k]];
+        double        way    = ROUNDING * way_of(around, tet, error);
+        good[k]              = way <= error && way < around->width;
+        if (!good[k])
+            continue;
+        longest = max2(longest, way);
+        width   = min2(width, around->width);
+        count++;
+    }
+    *sure            = (Sure){.least = ROUNDING * longest / width + ROUNDED};
+    sure->anywhere   = count > 0 && sure->least < 1;
+    sure->everywhere = count == 4 && sure->anywhere;
+    tets_corners(tets, tet, corners);
+    if (sure->anywhere)
+        find_sum((const double(*)[3])corners, good, sure);
+}
+
+bool sure_has(const Sure *sure, const double corners[4][3])
+{
+    for (int i = 0; i < 4; i++)
+        if (!(dot3(sure->slope, corners[i]) + sure->offset > sure->least))
+            return false;
+    return true;
+}

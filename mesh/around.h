@@ -1,0 +1,35 @@
+/*
+ * around.h: where bounds of a tetrahedron and of those around it prove that the surface is near to the mesh.
+ */
+#ifndef KRS_MESH_AROUND_H
+#define KRS_MESH_AROUND_H
+
+#include "mesh/tets.h"
+
+/* What a point of the tetrahedra knows of those that have it: smooth.h. */
+typedef struct Around {
+    float    deviation, width; /* the largest and the least */
+    float    distance;         /* to the surface, at most: the largest deviation over the slope */
+    uint32_t origin;           /* of the function that is bounded in one of them */
+    bool     in_pieces;        /* some are bounded by pieces, */
+    bool     mixed;            /* and perhaps not all by the same function */
+} Around;
+
+typedef struct Arounds {
+    Around *items;
+    size_t  count, capacity;
+} Arounds;
+
+/* The part of a tetrahedron in which the surface is proven to be near to the mesh: where dot(slope, p) + offset is above
+   `least`. */
+typedef struct Sure {
+    bool   anywhere, everywhere;
+    double slope[3], offset, least;
+} Sure;
+
+void arounds_find(Arounds *arounds, const Tets *tets, Arena *arena);
+/* Of one that fits. */
+void sure_find(const Arounds *arounds, const Tets *tets, const Tet *tet, double error, Sure *sure);
+bool sure_has(const Sure *sure, const double corners[4][3]);
+
+#endif

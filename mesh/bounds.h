@@ -1,0 +1,19 @@
+/*
+ * bounds.h: which tetrahedra fit by bounds of derivatives.
+ */
+#ifndef KRS_MESH_BOUNDS_H
+#define KRS_MESH_BOUNDS_H
+
+#include "mesh/mesher.h"
+
+double proven_error(const Mesher *m);
+void   tet_box(const Mesher *m, const Tet *tet, double low[3], double high[3]);
+Box    box_and_margin(double margin, const double low[3], const double high[3]);
+Tet   *tet_of_group(Mesher *m, const Group *group, uint32_t i);
+
+/* That of one whose deviation and slope are known. */
+TetState state_by_bounds(const Mesher *m, const Tet *tet);
+/* Finds the states of a group that is new. */
+void bound_group(Mesher *m, Verifier *verifier, const Group *group);
+
+#endif

@@ -1,0 +1,239 @@
+/*
+ * flat.c: boxes that are halved until each has few planes.
+ *
+ * Where no surface is comes from ranges, and where one is, from its planes.  Circles are polygons, of as many sides as the
+ * error needs: a first pass finds how large they are, and flat_near.c whether they are near enough.  In the end
+ * each triangle is looked at once: the surface must be in its middle, or within the error of it.  Solids
+ * that are made of other things are given up as soon as some boxes have been looked at.
+ */
+#include "mesh/flat.h"
+
+#include "compiler/base/vec.h"
+#include "mesh/crossing.h"
+#include "mesh/flat_near.h"
+
+enum {
+    MOST_BOXES          = 400000,
+    MOST_BOXES_OF_DRAFT = 40000,
+    MOST_HALVINGS       = 45,
+    HALVINGS_OF_REGION  = 3,
+    PATIENCE            = 256
+};
+/* Boxes that were looked at when more than a part of them must have been flat. */
+enum { FIRST_BOXES = 600 };
+/* At each turn planes are moved otherwise; at the last ones short edges stay, so that solids that touch stay apart. */
+enum { TURNS = 4, APART_FROM = 2 };
+static const double LEAST_KNOWN = 0.02;
+/* Parts of the size: how far faces are moved so that no four meet, about. */
+static const double ROUNDING_OF_FACES = 1e-6, LEAST_SHORT = 1e-9, TOUCHING = 1e-8;
+
+typedef struct Halving {
+    Mesher    *m;
+    MeshField *field;
+    FlatFaces  faces;
+    FlatPieces pieces;
+    FlatRounds rounds;
+    FlatWork   work;
+    FlatBoxes  round_boxes;
+    size_t     boxes, known;
+    uint32_t   turn;
+} Halving;
+
+static bool halve(Halving *h, Box box, int halvings);
+
+static bool halve_at(Halving *h, Box box, int halvings)
+{
+    static const double MIDDLE = 0.4873; /* planes of scenes are seldom there */
+    int                 axis   = box_longest_axis(&box);
+    Range              *along  = &box.axis[axis];
+    double              low = along->low, high = along->high, middle = low + MIDDLE * (high - low);
+    along->high = middle;
+    if (!halve(h, box, halvings + 1))
+        return false;
+    along->low  = middle;
+    along->high = high;
+    return halve(h, box, halvings + 1);
+}
+
+static bool is_wanted(Mesher *m)
+{
+    if (m->options->go_on && !m->options->go_on(m->options->user, 0))
+        atomic_store(&m->stopped, true);
+    return !atomic_load(&m->stopped);
+}
+
+static bool is_given_up(Halving *h, int halvings)
+{
+    h->boxes++;
+    return (h->boxes % PATIENCE == 0 && !is_wanted(h->m)) || halvings > MOST_HALVINGS ||
+           h->boxes > (h->m->options->draft ? MOST_BOXES_OF_DRAFT : MOST_BOXES) ||
+           (h->boxes > FIRST_BOXES && (double)h->known < LEAST_KNOWN * (double)h->boxes);
+}
+
+/* Whether faces will be found once more, with the right numbers of sides. */
+static bool is_only_looked_at(const Halving *h)
+{
+    return !h->rounds.counted && h->rounds.list.count > 0;
+}
+
+/* Many planes take long, so they are cut only where boxes are small, as at the tips of cones. */
+static bool find_few_pieces(Halving *h, Box box, int halvings)
+{
+    enum { FEW = 40, SMALL_FROM = 20 };
+    return flat_pieces(h->field, box, h->m->side, &h->rounds, FLAT_MAKING, &h->work, &h->pieces) &&
+           (h->pieces.count <= FEW || halvings >= SMALL_FROM);
+}
+
+static bool halve(Halving *h, Box box, int halvings)
+{
+    Range range = field_range(h->field, box);
+    if (range.low > 0 || range.high < 0)
+        return true;
+    bool entered = halvings % HALVINGS_OF_REGION == 0 &&
+                   halvings < MOST_REGIONS * HALVINGS_OF_REGION;
+    bool done;
+    if (entered)
+        field_focus(h->field, box);
+    if (find_few_pieces(h, box, halvings)) {
+        h->known++;
+        h->boxes++;
+        done = is_only_looked_at(h) || flat_faces_add(&h->faces, box, &h->pieces);
+        if (h->pieces.round)
+            array_push_large(&h->m->arena, &h->round_boxes, box);
+    } else
+        done = !is_given_up(h, halvings) && halve_at(h, box, halvings);
+    if (entered)
+        field_leave(h->field);
+    return done;
+}
+
+/* Whether the surface is in the middle of each triangle: so all that was taken for a face is one. */
+static bool is_on_surface(Mesher *m, const FlatVertices *vertices, const Triangles *triangles,
+                          double near)
+{
+    for (size_t i = 0; i < triangles->count; i++) {
+        double middle[3] = {0, 0, 0};
+        for (int k = 0; k < 3; k++)
+            add_scaled3(middle, middle, 1.0 / 3, vertices->items[triangles->items[i][k]]);
+        if (!(fabs(field_distance(&m->fields[0], middle)) <= near))
+            return false;
+    }
+    return true;
+}
+
+/* What of the error is for moved planes, and for edges that become points. */
+static double spare_of(const Mesher *m)
+{
+    static const double SHORT = 1e-5, PART = 0.2;
+    return min2(SHORT * m->side, PART * m->error);
+}
+
+/* Looks at all boxes. */
+static bool halve_all(Halving *h)
+{
+    Mesher *m = h->m;
+    Box     box;
+    for (int k = 0; k < 3; k++) {
+        double middle = 0.5 * (m->low[k] + m->high[k]);
+        double half = 0.5 * (m->high[k] - m->low[k]) + m->error + 0.013 * m->side * (1 + 0.17 * k);
+        box.axis[k] = (Range){middle - half, middle + half};
+    }
+    h->faces       = (FlatFaces){.arena    = &m->arena,
+                                 .size     = m->side,
+                                 .shortest = h->turn < APART_FROM ? spare_of(m) : LEAST_SHORT * m->side,
+                                 .turn     = h->turn};
+    h->round_boxes = (FlatBoxes){NULL, 0, 0};
+    h->boxes       = 0;
+    h->known       = 0;
+    flat_rounds_open(&h->rounds, &h->field->ranges);
+    bool done = is_wanted(m) && halve(h, box, 0);
+    flat_rounds_close(&h->field->ranges);
+    return done;
+}
+
+/* More sides, until they are enough in the boxes in which they were not.  Where they never are, as few as leave fewest boxes.
+   False: they are as they were. */
+static bool refine(Halving *h, double error, FlatVerdict *verdict)
+{
+    size_t fewest = h->round_boxes.count;
+    bool   any    = false;
+    *verdict      = FLAT_REFUTED;
+    flat_rounds_keep(&h->rounds);
+    while (*verdict == FLAT_REFUTED && flat_rounds_refine(&h->rounds)) {
+        *verdict = flat_near(h->m, &h->rounds, &h->round_boxes, error);
+        if (*verdict != FLAT_STOPPED && h->round_boxes.count < fewest) {
+            fewest = h->round_boxes.count;
+            flat_rounds_keep(&h->rounds);
+            any = true;
+        }
+    }
+    flat_rounds_go_back(&h->rounds);
+    return any;
+}
+
+/* With as many sides as the error needs; where even many are not enough, places are left unresolved. */
+static bool make_round(Halving *h)
+{
+    double      error   = h->m->error - spare_of(h->m);
+    FlatVerdict refined = FLAT_PROVEN, verdict;
+    flat_rounds_count(&h->rounds);
+    do {
+        if (!halve_all(h))
+            return false;
+        verdict = flat_near(h->m, &h->rounds, &h->round_boxes, error);
+    } while (verdict != FLAT_STOPPED && h->round_boxes.count > 0 && refined == FLAT_PROVEN &&
+             refine(h, error, &refined));
+    return verdict != FLAT_STOPPED && refined != FLAT_STOPPED;
+}
+
+static void note_open(void *user, uint32_t triangle)
+{
+    (void)triangle;
+    *(bool *)user = true;
+}
+
+/* Edges that become points take faces along, and that may be too far where others are near; those that are there as planes are moved
+   are shorter.  Solids may touch. */
+static bool is_sound(const Halving *h, const FlatVertices *vertices, const Triangles *triangles)
+{
+    Mesher *m = h->m;
+    if (h->faces.joined < ROUNDING_OF_FACES * m->side)
+        return true;
+    ArenaMark mark = arena_mark(&m->arena);
+    bool      open = false, crosses = false;
+    Bvh       bvh;
+    const uint32_t(*corners)[3] = (const uint32_t(*)[3])triangles->items;
+    TriangleEdges edges         = sort_edges(corners, triangles->count, &m->arena);
+    report_open(&edges, note_open, &open);
+    bvh_new(&bvh, (const double(*)[3])vertices->items, corners, triangles->count, &m->arena);
+    for (uint32_t i = 0; i < triangles->count && !crosses && !open; i++)
+        crosses = triangle_crosses(&bvh, i, TOUCHING * m->side);
+    arena_rewind(&m->arena, mark);
+    return !open && !crosses;
+}
+
+/* Planes that are moved otherwise are mostly cut where some are not. */
+static bool finish(Halving *h, FlatVertices *vertices, Triangles *triangles)
+{
+    while (!flat_faces_finish(&h->faces, vertices, triangles) ||
+           !is_sound(h, vertices, triangles)) {
+        *vertices  = (FlatVertices){NULL, 0, 0};
+        *triangles = (Triangles){NULL, 0, 0};
+        if (++h->turn == TURNS || !halve_all(h))
+            return false;
+    }
+    return true;
+}
+
+bool find_flat_mesh(Mesher *m, FlatVertices *vertices, Triangles *triangles)
+{
+    Halving *h = arena_new(&m->arena, Halving);
+    *h         = (Halving){.m = m, .field = &m->fields[0]};
+    h->work    = flat_work_new(h->field, &m->arena);
+    h->rounds  = flat_rounds_new(m->error, &m->arena);
+    if (!halve_all(h) || (is_only_looked_at(h) && !make_round(h)) ||
+        !finish(h, vertices, triangles))
+        return false;
+    double near = h->rounds.list.count > 0 ? m->error : ROUNDING_OF_FACES * m->side;
+    return is_on_surface(m, vertices, triangles, near);
+}

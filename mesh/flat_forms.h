@@ -1,0 +1,70 @@
+/*
+ * flat_forms.h: linear numbers in a box, as sums of coordinates and of kinks.
+ *
+ * Each linear step of a lane tape is a form: a sum of coordinates, and of kinks, which are minima, maxima, absolute values and lengths of
+ * forms.
+ */
+#ifndef KRS_MESH_FLAT_FORMS_H
+#define KRS_MESH_FLAT_FORMS_H
+
+#include "compiler/field/field.h"
+#include "mesh/flat_planes.h"
+#include "mesh/flat_rounds.h"
+
+enum { MOST_KINKS = 6 };
+
+/* by . p + at, and kinks: results of steps, by their numbers as operands, the last ones first. */
+typedef struct Form {
+    bool     known;
+    double   by[3], at;
+    uint32_t kinks[MOST_KINKS];
+    double   factors[MOST_KINKS];
+    int      kink_count;
+} Form;
+
+/* What is found of one box. */
+typedef struct Finding {
+    const MeshField *field;
+    const LaneTape  *tape;
+    Box              box;
+    double           size;
+    Form            *forms;      /* of inputs and steps */
+    int             *conditions; /* of each operand, where it is true; UNKNOWN: not looked at */
+    FlatRounds      *rounds;
+    FlatPieces      *pieces;
+    FlatUse          use;
+    FlatSlack        slack;                  /* of what is being taken apart */
+    bool             chooses;                /* that is a condition */
+    uint32_t         most_used, most_around; /* of the sides of a polygon */
+    bool             failed;
+} Finding;
+
+/* Of the size: what is less apart is one. */
+#define FLAT_ROUNDING 1e-11
+
+void find_forms(Finding *f);
+/* NULL: it is an input, or a number. */
+const LaneStep *step_of_operand(const Finding *f, uint32_t operand);
+Form            form_of_operand(const Finding *f, uint32_t operand);
+
+Form form_constant(double number);
+bool form_is_constant(const Form *form);
+/* a + factor b */
+Form form_sum(Form a, double factor, const Form *b);
+Form form_scaled(double factor, const Form *form);
+void form_drop_kink(Form *form, int i);
+/* Whether it is a kink and a number that is added to it. */
+bool form_is_kink_alone(const Form *form);
+/* The values of a form in the box, by the ranges of its kinks. */
+Range form_range(const Finding *f, const Form *form);
+
+static inline bool is_greater(const LaneStep *step)
+{
+    return step->op == OP_max || step->op == LANE_GREATER;
+}
+static inline bool is_lesser(const LaneStep *step)
+{
+    return step->op == OP_min || step->op == LANE_LESSER;
+}
+
+#endif

@@ -1,0 +1,148 @@
+/* flat_joins.c: half-spaces and how they are joined, without what makes no difference. */
+#include "mesh/flat_joins.h"
+
+#include "compiler/base/vec.h"
+
+int flat_node(Finding *f, FlatNode node)
+{
+    if (f->pieces->node_count == MOST_FLAT_NODES) {
+        f->failed = true;
+        return FLAT_NONE;
+    }
+    f->pieces->nodes[f->pieces->node_count] = node;
+    return (int)f->pieces->node_count++;
+}
+
+static int join(Finding *f, int kind, int a, int b)
+{
+    int all  = kind == FLAT_BOTH ? FLAT_ALL : FLAT_NONE,
+        none = kind == FLAT_BOTH ? FLAT_NONE : FLAT_ALL;
+    if (a == none || b == none)
+        return none;
+    if (a == all || b == all || a == b)
+        return a == all ? b : a;
+    return flat_node(f, (FlatNode){kind, a, b});
+}
+
+/* How two half-spaces lie whose planes are parallel. */
+typedef enum Placing { APART, COVERING, WITHIN, AROUND, CROSSING } Placing;
+
+static Placing find_placing(const Finding *f, const FlatNode *a, const FlatNode *b)
+{
+    const HalfSpace *first = &f->pieces->list[a->first], *second = &f->pieces->list[b->first];
+    double           off[3], turned = a->second * b->second * dot3(first->normal, second->normal);
+    double           sign = turned < 0 ? -1 : 1, margin = FLAT_ROUNDING * f->size;
+    for (int k = 0; k < 3; k++)
+        off[k] = a->second * first->normal[k] - sign * b->second * second->normal[k];
+    double depth = a->second * first->offset - sign * b->second * second->offset;
+    if (!(largest3(off) < FLAT_ROUNDING) || !isfinite(depth))
+        return CROSSING;
+    if (turned < 0)
+        return depth >= -margin ? APART : COVERING;
+    return depth >= -margin ? WITHIN : AROUND;
+}
+
+/* A solid where a half-space is, or else where it is not. */
+static int given(Finding *f, const FlatNode *known, bool inside, int solid)
+{
+    if (solid < 0 || f->failed)
+        return solid;
+    FlatNode node = f->pieces->nodes[solid];
+    if (node.kind == FLAT_HALF_SPACE) {
+        Placing placing = find_placing(f, &node, known);
+        if (inside)
+            return placing == APART ? FLAT_NONE : placing == AROUND ? FLAT_ALL : solid;
+        return placing == WITHIN ? FLAT_NONE : placing == COVERING ? FLAT_ALL : solid;
+    }
+    int first = given(f, known, inside, node.first), second = given(f, known, inside, node.second);
+    return first == node.first && second == node.second ? solid : join(f, node.kind, first, second);
+}
+
+/* The second solid where the half-spaces are that the first is an intersection with, or not those of a union. */
+static int given_solid(Finding *f, int kind, int known, int solid)
+{
+    if (known < 0 || solid < 0)
+        return solid;
+    FlatNode node = f->pieces->nodes[known];
+    if (node.kind == FLAT_HALF_SPACE)
+        return given(f, &node, kind == FLAT_BOTH, solid);
+    return (int)node.kind != kind
+               ? solid
+               : given_solid(f, kind, node.second, given_solid(f, kind, node.first, solid));
+}
+
+/* Leaves out what makes no difference: faces of parts within others, and where parts touch. */
+static int join_solids(Finding *f, int kind, int a, int b)
+{
+    b = given_solid(f, kind, a, b);
+    a = given_solid(f, kind, b, a);
+    return join(f, kind, a, b);
+}
+
+int flat_both(Finding *f, int a, int b) { return join_solids(f, FLAT_BOTH, a, b); }
+
+int flat_either(Finding *f, int a, int b) { return join_solids(f, FLAT_EITHER, a, b); }
+
+/* The number of a half-space, or of the one on its other side, whose sign is then -1. */
+static int find_half_space(Finding *f, const HalfSpace *plane, int *sign)
+{
+    FlatPieces *pieces = f->pieces;
+    for (size_t i = 0; i < pieces->count; i++) {
+        *sign = dot3(plane->normal, pieces->list[i].normal) < 0 ? -1 : 1;
+        double off[3];
+        add_scaled3(off, plane->normal, -*sign, pieces->list[i].normal);
+        if (largest3(off) < FLAT_ROUNDING &&
+            fabs(plane->offset - *sign * pieces->list[i].offset) < FLAT_ROUNDING * f->size)
+            return (int)i;
+    }
+    *sign = 1;
+    if (pieces->count == MOST_FLATS) {
+        f->failed = true;
+        return 0;
+    }
+    pieces->list[pieces->count]    = *plane;
+    pieces->slack[pieces->count]   = (FlatSlack){0, 0};
+    pieces->chooses[pieces->count] = false;
+    return (int)pieces->count++;
+}
+
+static void add_slack(Finding *f, int number, double below, double above, double length)
+{
+    FlatSlack *slack = &f->pieces->slack[number];
+    slack->below     = max2(slack->below, below / length);
+    slack->above     = max2(slack->above, above / length);
+}
+
+/* Where a form without kinks is below 0. */
+int flat_half_space(Finding *f, const Form *form)
+{
+    Range     range  = form_range(f, form);
+    double    length = length3(form->by);
+    HalfSpace plane;
+    int       sign;
+    if (range.low > 0 || range.high < 0)
+        return range.low > 0 ? FLAT_NONE : FLAT_ALL;
+    if (!(length > 0)) {
+        f->failed = true;
+        return FLAT_NONE;
+    }
+    for (int k = 0; k < 3; k++)
+        plane.normal[k] = form->by[k] / length;
+    plane.offset = form->at / length;
+    int number   = find_half_space(f, &plane, &sign);
+    add_slack(f, number, sign > 0 ? f->slack.below : f->slack.above,
+              sign > 0 ? f->slack.above : f->slack.below, length);
+    f->pieces->chooses[number] |= f->chooses;
+    return flat_node(f, (FlatNode){FLAT_HALF_SPACE, number, sign});
+}
+
+int flat_complement(Finding *f, int solid)
+{
+    if (solid == FLAT_ALL || solid == FLAT_NONE)
+        return solid == FLAT_ALL ? FLAT_NONE : FLAT_ALL;
+    FlatNode node = f->pieces->nodes[solid];
+    if (node.kind == FLAT_HALF_SPACE)
+        return flat_node(f, (FlatNode){FLAT_HALF_SPACE, node.first, -node.second});
+    int first = flat_complement(f, node.first), second = flat_complement(f, node.second);
+    return node.kind == FLAT_BOTH ? flat_either(f, first, second) : flat_both(f, first, second);
+}

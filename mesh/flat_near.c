@@ -1,0 +1,215 @@
+/* flat_near.c: boxes are halved until there is a proof in each. */
+#include "mesh/flat_near.h"
+
+#include <string.h>
+
+#include "compiler/base/vec.h"
+
+enum {
+    MOST_THIN              = 100,
+    MANY                   = 8,
+    MOST_SEAMS             = 50,
+    MOST_HARD              = 10000,
+    MOST_LOOKS             = 600000,
+    MOST_LOOKS_WHERE_ROUGH = 100, /* for each box; all will be looked at again */
+    PATIENCE               = 256,
+    HALVINGS_OF_REGION     = 3
+};
+/* In errors: boxes that are not halved any more, first and after some have been left; and those in which ways may be shorter than
+   the error. */
+static const double SMALLEST = 0.02, SMALLEST_OF_MANY = 0.1, SMALL = 1.5, SHORT_WAY = 0.6;
+
+/* What one thread finds. */
+typedef struct NearPart {
+    FlatPieces pieces;
+    FlatWork   work;
+    size_t     looks, hard, thin, seams, rough;
+    double     left_at[3]; /* where one is */
+} NearPart;
+
+typedef struct NearWork {
+    Mesher          *m;
+    FlatRounds      *rounds;
+    const FlatBoxes *boxes;
+    bool            *is_rough; /* of each box, whether planes are too rough somewhere in it */
+    Box             *rough;    /* and where that is */
+    double           error;
+    NearPart        *parts;
+} NearWork;
+
+typedef struct Looking {
+    const NearWork *w;
+    NearPart       *part;
+    MeshField      *field;
+    size_t          number; /* of the box */
+    bool            asks;   /* whether the mesh is still wanted */
+} Looking;
+
+static Box wider_box(Box box, double by)
+{
+    for (int k = 0; k < 3; k++) {
+        box.axis[k].low -= by;
+        box.axis[k].high += by;
+    }
+    return box;
+}
+
+static bool goes_on(Looking *l)
+{
+    Mesher   *m    = l->w->m;
+    NearPart *part = l->part;
+    if (++part->looks % PATIENCE == 0 && l->asks && m->options->go_on &&
+        !m->options->go_on(m->options->user, 0))
+        atomic_store(&m->stopped, true);
+    return !atomic_load(&m->stopped) && part->looks < MOST_LOOKS &&
+           (part->rough == 0 || part->looks < MOST_LOOKS_WHERE_ROUGH * l->w->boxes->count) &&
+           part->hard < MOST_HARD && part->thin < MOST_THIN && part->seams < MOST_SEAMS;
+}
+
+static void note_place(NearPart *part, const Box *box)
+{
+    for (int k = 0; k < 3; k++)
+        part->left_at[k] = 0.5 * (box->axis[k].low + box->axis[k].high);
+}
+
+static void leave(Looking *l, FlatNearness nearness, Box box, double way)
+{
+    NearPart *part = l->part;
+    note_place(part, &box);
+    if (nearness == FLAT_ROUGH) {
+        l->w->is_rough[l->number] = true;
+        l->w->rough[l->number]    = wider_box(box, way);
+        part->rough++;
+    } else
+        part->thin++;
+    part->seams += nearness == FLAT_SEAM && !flat_rounds_has_curves(l->w->rounds);
+}
+
+static double smallest_of(const NearPart *part)
+{
+    return part->thin + part->rough < MANY ? SMALLEST : SMALLEST_OF_MANY;
+}
+
+static void look(Looking *l, Box box, int halvings);
+
+static void look_at_halves(Looking *l, Box box, int axis, int halvings)
+{
+    Box    halves[2]          = {box, box};
+    double middle             = 0.5 * (box.axis[axis].low + box.axis[axis].high);
+    halves[0].axis[axis].high = halves[1].axis[axis].low = middle;
+    look(l, halves[0], halvings + 1);
+    look(l, halves[1], halvings + 1);
+}
+
+static void look(Looking *l, Box box, int halvings)
+{
+    NearPart *part  = l->part;
+    double    error = l->w->error;
+    if (l->w->is_rough[l->number])
+        return;
+    Range range = field_range(l->field, box);
+    if (range.low > 0 || range.high < 0)
+        return;
+    if (!goes_on(l)) {
+        if (part->looks == MOST_LOOKS || part->hard == MOST_HARD)
+            note_place(part, &box);
+        return;
+    }
+    int    axis    = box_longest_axis(&box);
+    double size    = box.axis[axis].high - box.axis[axis].low;
+    double way     = size < SMALL * error ? SHORT_WAY * error : error;
+    bool   entered = halvings % HALVINGS_OF_REGION == 0 && l->field->region_count < MOST_REGIONS;
+    if (entered)
+        field_focus(l->field, wider_box(box, error));
+    FlatNearness nearness = FLAT_UNKNOWN;
+    if (flat_pieces(l->field, wider_box(box, way), l->w->m->side, l->w->rounds, FLAT_PROVING,
+                    &part->work, &part->pieces)) {
+        nearness = flat_nearness(&part->pieces, &box, way);
+        axis     = flat_widest_axis(&part->pieces, &box);
+    }
+    part->hard += nearness == FLAT_HARD;
+    if (nearness > FLAT_HARD && size > smallest_of(part) * error)
+        look_at_halves(l, box, axis, halvings);
+    else if (nearness > FLAT_HARD)
+        leave(l, nearness, box, way);
+    if (entered)
+        field_leave(l->field);
+}
+
+static void look_at_part(void *task, size_t part, size_t parts)
+{
+    const NearWork *w = task;
+    Looking         l = {w, &w->parts[part], &w->m->fields[part], 0, part == 0};
+    for (l.number = part; l.number < w->boxes->count; l.number += parts)
+        look(&l, w->boxes->items[l.number], 0);
+}
+
+/* Where the sides are too far.  Other boxes are left out. */
+static void blame(const NearWork *w, FlatBoxes *boxes)
+{
+    MeshField *field = &w->m->fields[0];
+    NearPart  *part  = &w->parts[0];
+    size_t     kept  = 0;
+    w->rounds->blame = true;
+    for (size_t i = 0; i < boxes->count; i++) {
+        if (!w->is_rough[i])
+            continue;
+        field_focus(field, w->rough[i]);
+        flat_pieces(field, w->rough[i], w->m->side, w->rounds, FLAT_PROVING, &part->work,
+                    &part->pieces);
+        field_leave(field);
+        boxes->items[kept++] = boxes->items[i];
+    }
+    boxes->count     = kept;
+    w->rounds->blame = false;
+}
+
+/* More sides are of no use where much is thin anyway, or would take too long.  Solids with seams of surfaces that are not exact, as
+   hulls of balls, are better made otherwise, but for those with curves. */
+static FlatVerdict judge(const NearWork *w, size_t parts)
+{
+    FlatVerdict verdict = FLAT_PROVEN;
+    Mesher     *m       = w->m;
+    bool        in_vain = false, by_seams = false;
+    m->unresolved = 0;
+    for (size_t i = 0; i < parts; i++) {
+        const NearPart *part      = &w->parts[i];
+        bool            cut_short = part->looks >= MOST_LOOKS || part->hard >= MOST_HARD;
+        size_t          left      = part->thin + part->rough + cut_short;
+        in_vain |= part->thin >= MOST_THIN;
+        by_seams |= part->seams >= MOST_SEAMS;
+        m->unresolved += left;
+        if (left > 0)
+            memcpy(m->unresolved_at, part->left_at, sizeof m->unresolved_at);
+        if (part->rough > 0)
+            verdict = FLAT_REFUTED;
+    }
+    if (in_vain)
+        verdict = FLAT_IN_VAIN;
+    return by_seams || atomic_load(&m->stopped) ? FLAT_STOPPED : verdict;
+}
+
+FlatVerdict flat_near(Mesher *m, FlatRounds *rounds, FlatBoxes *boxes, double error)
+{
+    size_t    parts = parallel_parts();
+    ArenaMark mark  = arena_mark(&m->arena);
+    NearWork  w     = {.m        = m,
+                       .rounds   = rounds,
+                       .boxes    = boxes,
+                       .rough    = arena_new_array(&m->arena, Box, boxes->count + 1),
+                       .is_rough = arena_new_array(&m->arena, bool, boxes->count + 1),
+                       .error    = error,
+                       .parts    = arena_new_array(&m->arena, NearPart, parts)};
+    memset(w.parts, 0, parts * sizeof *w.parts);
+    for (size_t i = 0; i < parts; i++) {
+        w.parts[i].work = flat_work_new(&m->fields[i], &m->arena);
+        flat_rounds_open(rounds, &m->fields[i].ranges);
+    }
+    run_in_parallel(look_at_part, &w);
+    FlatVerdict verdict = judge(&w, parts);
+    blame(&w, boxes);
+    for (size_t i = 0; i < parts; i++)
+        flat_rounds_close(&m->fields[i].ranges);
+    arena_rewind(&m->arena, mark);
+    return verdict;
+}

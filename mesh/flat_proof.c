@@ -1,0 +1,292 @@
+/*
+ * flat_proof.c: looks for ways on which half-spaces change by more than they are off.
+ *
+ * Let each be off by no more than its slack.  A solid is made of them by intersections and unions alone, so if each
+ * that is entered at one end of a way, slack and all, is also entered at the other, so is the solid.
+ */
+#include "mesh/flat_proof.h"
+
+#include <string.h>
+
+#include "compiler/base/minmax.h"
+#include "mesh/flat_ways.h"
+
+/* What is looked at: a box, ways that are so long at most, and a part of the slack, but where that is less than the least. */
+typedef struct Proof {
+    const FlatPieces *pieces;
+    const Box        *box;
+    double            way, part, least;
+} Proof;
+
+static double slack_of(const Proof *proof, double slack)
+{
+    return max2(proof->part * slack, min2(slack, proof->least));
+}
+
+static FlatGrowth growth_of(const Proof *proof, size_t plane, int sign)
+{
+    FlatGrowth growth  = flat_growth(proof->pieces, plane, sign, proof->box);
+    growth.slack.below = slack_of(proof, growth.slack.below);
+    growth.slack.above = slack_of(proof, growth.slack.above);
+    return growth;
+}
+
+static double largest_of(FlatSlack slack) { return max2(slack.below, slack.above); }
+
+/* ---- one way for all ---- */
+
+typedef struct Seen {
+    bool by_sign[2][MOST_FLATS];
+} Seen;
+
+/* 1: all of the box is outside, -1: all is inside, each by its slack. */
+static int side_of(const FlatGrowth *growth)
+{
+    return growth->low - growth->slack.below > 0    ? 1
+           : growth->high + growth->slack.above < 0 ? -1
+                                                    : 0;
+}
+
+/* By the sides of its parts: 1, -1, or 0 where that is not known. */
+static signed char side_of_node(const FlatNode *node, const signed char *sides,
+                                const signed char *known)
+{
+    if (node->kind == FLAT_HALF_SPACE)
+        return (signed char)(node->second * sides[node->first]);
+    signed char first = known[node->first], second = known[node->second];
+    signed char decides = node->kind == FLAT_BOTH ? 1 : -1;
+    if (first == decides || second == decides)
+        return decides;
+    return first == second ? first : 0;
+}
+
+/* Those whose side makes a difference where some sides are known; NULL: none is.  Parts of a node are before it. */
+static void collect(const FlatPieces *pieces, const signed char *sides, Seen *seen)
+{
+    signed char known[MOST_FLAT_NODES];
+    bool        counts[MOST_FLAT_NODES];
+    size_t      count = (size_t)(pieces->root + 1);
+    if (pieces->root < 0)
+        return;
+    memset(known, 0, count);
+    memset(counts, 0, count);
+    for (size_t i = 0; sides && i < count; i++)
+        known[i] = side_of_node(&pieces->nodes[i], sides, known);
+    counts[pieces->root] = true;
+    for (size_t i = count; i-- > 0;) {
+        const FlatNode *node = &pieces->nodes[i];
+        if (!counts[i] || known[i] != 0)
+            continue;
+        if (node->kind == FLAT_HALF_SPACE)
+            seen->by_sign[node->second > 0][node->first] = true;
+        else
+            counts[node->first] = counts[node->second] = true;
+    }
+}
+
+/* On one side of all of the box it may become less, until it is not. */
+static double need_of(const FlatGrowth *growth)
+{
+    int side = side_of(growth);
+    return side == 0  ? largest_of(growth->slack)
+           : side > 0 ? growth->slack.below - growth->low
+                      : growth->slack.above + growth->high;
+}
+
+typedef enum OneWay { ONE_WAY, NO_WAY, SEAM } OneWay;
+
+static OneWay find_one_way(const Proof *proof, const signed char *sides)
+{
+    Seen        seen = {{{false}}};
+    FlatGrowths growths;
+    growths.count = 0;
+    growths.level = (FlatWay){{0, 0, 0}, {{0}}, 0};
+    collect(proof->pieces, sides, &seen);
+    for (size_t i = 0; i < proof->pieces->count; i++) {
+        bool below = seen.by_sign[1][i], above = seen.by_sign[0][i];
+        if (below && above) {
+            if (largest_of(proof->pieces->slack[i]) > 0)
+                return proof->pieces->chooses[i] ? SEAM : NO_WAY;
+            flat_growths_level(&growths, proof->pieces->list[i].normal);
+        } else if (below || above) {
+            FlatGrowth *growth = &growths.list[growths.count++];
+            *growth            = growth_of(proof, i, below ? 1 : -1);
+            growth->need       = need_of(growth);
+        }
+    }
+    return flat_has_way(&growths, proof->way) ? ONE_WAY : NO_WAY;
+}
+
+/* All that is in the box or beside it. */
+static bool all_have_one_way(const Proof *proof) { return find_one_way(proof, NULL) == ONE_WAY; }
+
+/* What makes a difference in the box: so no two parts of the surface come together there, nor does a hole close. */
+static OneWay find_one_sheet(const Proof *proof)
+{
+    signed char sides[MOST_FLATS];
+    for (size_t i = 0; i < proof->pieces->count; i++) {
+        FlatGrowth growth = growth_of(proof, i, 1);
+        sides[i]          = (signed char)side_of(&growth);
+    }
+    return find_one_way(proof, sides);
+}
+
+/* ---- a way for each set ---- */
+
+enum { MOST_MEMBERS = 64, MOST_SETS = 128 };
+
+/* Of half-spaces and complements; bit i is the growth i. */
+typedef struct Sets {
+    uint64_t items[MOST_SETS];
+    size_t   count;
+    bool     failed; /* there are more, or more members */
+} Sets;
+
+typedef struct Members {
+    const Proof *proof;
+    FlatGrowths  growths;
+    int          numbers[2][MOST_FLATS]; /* of growths, by sign; or one of those below */
+} Members;
+
+enum { UNSEEN = -1, NEVER = -2, ALWAYS = -3 };
+
+/* Leaves out what has another one within it. */
+static void add_set(Sets *sets, uint64_t set)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < sets->count; i++)
+        if ((sets->items[i] & set) == sets->items[i])
+            return;
+    for (size_t i = 0; i < sets->count; i++)
+        if ((sets->items[i] & set) != set)
+            sets->items[kept++] = sets->items[i];
+    sets->count  = kept;
+    sets->failed = sets->failed || kept == MOST_SETS;
+    if (!sets->failed)
+        sets->items[sets->count++] = set;
+}
+
+/* What is above 0 on all ways need not grow. */
+static int member_of(Members *members, size_t plane, int sign)
+{
+    int *number = &members->numbers[sign > 0][plane];
+    if (*number != UNSEEN || members->growths.count == MOST_MEMBERS)
+        return *number;
+    FlatGrowth *growth = &members->growths.list[members->growths.count];
+    *growth            = growth_of(members->proof, plane, sign);
+    growth->need       = min2(growth->slack.below - growth->low, largest_of(growth->slack));
+    if (growth->high + growth->slack.above < 0)
+        return *number = NEVER;
+    if (growth->need <= -members->proof->way)
+        return *number = ALWAYS;
+    return *number = (int)members->growths.count++;
+}
+
+static void add_all(const Sets *from, Sets *to)
+{
+    for (size_t i = 0; i < from->count && !to->failed; i++)
+        add_set(to, from->items[i]);
+}
+
+static void add_common(const Sets *first, const Sets *second, Sets *to)
+{
+    for (size_t i = 0; i < first->count; i++)
+        for (size_t k = 0; k < second->count && !to->failed; k++)
+            add_set(to, first->items[i] | second->items[k]);
+}
+
+/* Of numbers that are above 0 together where a place is outside of the solid; `inside`: of less these numbers, where it is inside. */
+static void find_sets(Members *members, int root, bool inside, Sets *sets)
+{
+    sets->count  = 0;
+    sets->failed = false;
+    if (root < 0) {
+        if ((root == FLAT_ALL) == inside)
+            add_set(sets, 0);
+        return;
+    }
+    const FlatNode *node = &members->proof->pieces->nodes[root];
+    if (node->kind == FLAT_HALF_SPACE) {
+        int member = member_of(members, (size_t)node->first, inside ? -node->second : node->second);
+        sets->failed = member == UNSEEN;
+        if (member >= 0 || member == ALWAYS)
+            add_set(sets, member >= 0 ? (uint64_t)1 << member : 0);
+        return;
+    }
+    Sets first, second;
+    find_sets(members, node->first, inside, &first);
+    find_sets(members, node->second, inside, &second);
+    sets->failed = first.failed || second.failed;
+    if ((node->kind == FLAT_EITHER) != inside)
+        add_common(&first, &second, sets);
+    else {
+        add_all(&first, sets);
+        add_all(&second, sets);
+    }
+}
+
+static bool set_has_way(const Members *members, uint64_t set)
+{
+    FlatGrowths growths;
+    growths.count = 0;
+    growths.level = (FlatWay){{0, 0, 0}, {{0}}, 0};
+    for (size_t i = 0; i < members->growths.count; i++)
+        if (set >> i & 1)
+            growths.list[growths.count++] = members->growths.list[i];
+    return flat_has_way(&growths, members->proof->way);
+}
+
+static bool sets_have_ways(const Proof *proof)
+{
+    Members members;
+    members.proof         = proof;
+    members.growths.count = 0;
+    for (int sign = 0; sign < 2; sign++)
+        for (size_t i = 0; i < proof->pieces->count; i++)
+            members.numbers[sign][i] = UNSEEN;
+    for (int inside = 0; inside < 2; inside++) {
+        Sets sets;
+        find_sets(&members, proof->pieces->root, inside, &sets);
+        for (size_t i = 0; i < sets.count && !sets.failed; i++)
+            sets.failed = !set_has_way(&members, sets.items[i]);
+        if (sets.failed)
+            return false;
+    }
+    return true;
+}
+
+/* ---- boxes ---- */
+
+/* In sharp wedges no planes are near enough, for their number has an end. */
+FlatNearness flat_nearness(const FlatPieces *pieces, const Box *box, double error)
+{
+    Proof now = {pieces, box, error, 1, 0}, finer = {pieces, box, 0.3 * error, 0.1, 0.02 * error};
+    if (all_have_one_way(&now))
+        return FLAT_NEAR;
+    if (find_one_sheet(&now) == ONE_WAY && sets_have_ways(&now))
+        return FLAT_HARD;
+    if (all_have_one_way(&finer))
+        return FLAT_ROUGH;
+    OneWay sheet = find_one_sheet(&finer);
+    if (sheet == ONE_WAY && sets_have_ways(&finer))
+        return FLAT_ROUGH;
+    return sheet == SEAM ? FLAT_SEAM : FLAT_THIN;
+}
+
+int flat_widest_axis(const FlatPieces *pieces, const Box *box)
+{
+    static const double LEAST  = 1e-3;
+    int                 widest = 0;
+    double              most   = 0;
+    for (int k = 0; k < 3; k++) {
+        double change = LEAST;
+        for (size_t i = 0; i < pieces->count; i++)
+            change = max2(change, fabs(pieces->list[i].normal[k]));
+        double width = change * (box->axis[k].high - box->axis[k].low);
+        if (width > most) {
+            widest = k;
+            most   = width;
+        }
+    }
+    return widest;
+}

@@ -1,0 +1,210 @@
+/* flat_rounds.c: how many sides the polygons have that stand for circles. */
+#include "mesh/flat_rounds.h"
+
+#include <math.h>
+
+#include "compiler/base/minmax.h"
+
+/* A multiple of four. */
+enum { FEWEST_SIDES = 8, MOST_SIDES = 4096 };
+
+static const double PI = 3.14159265358979323846;
+
+/* What is left over is for edges, at which faces are farther from the surface than beside them. */
+static const double LARGEST_PART = 0.85, LEAST_PART = 0.04;
+
+/*
+ * A side between two corners that are w outside of a unit circle comes within it by a^2 / 8 - w, where a is its angle; one
+ * between such a corner and one on the circle by (a^2 / 2 - w)^2 / (2 a^2).  That is w as well if w = (3 - sqrt(8)) a^2 / 2.
+ */
+double flat_corner_radius(uint32_t sides)
+{
+    double angle = 2 * PI / sides;
+    return sides > 4 ? 1 + 0.5 * (3 - sqrt(8)) * angle * angle : 1;
+}
+
+/* The distance of the origin from the line through (1, 0) and (wide cos angle, wide sin angle). */
+double flat_side_distance(uint32_t sides, double wide)
+{
+    double angle = 2 * PI / sides, across = wide * sin(angle), along = wide * cos(angle) - 1;
+    return min2(across / hypot(across, along), wide * cos(0.5 * angle));
+}
+
+static double off_of(uint32_t sides)
+{
+    double wide = flat_corner_radius(sides);
+    return max2(wide - 1, 1 - flat_side_distance(sides, wide));
+}
+
+static double stretch_of(uint32_t sides)
+{
+    double wide = flat_corner_radius(sides);
+    return max2(wide, 1 / flat_side_distance(sides, wide));
+}
+
+FlatRounds flat_rounds_new(double error, Arena *arena)
+{
+    return (FlatRounds){
+        .arena = arena, .numbers = {.arena = arena}, .error = error, .stretch = 1, .longest = 1};
+}
+
+/* NULL: all are known, and this one is blamed if one is looked for; what is only near the surface is none of them. */
+static FlatRound *note(FlatRounds *rounds, NumberKey key)
+{
+    uint32_t fresh = (uint32_t)rounds->list.count;
+    if (rounds->counted) {
+        uint32_t known = numbering_find(&rounds->numbers, key);
+        if (rounds->blame && known != NO_NUMBER)
+            rounds->list.items[known].blamed = true;
+        return NULL;
+    }
+    uint32_t number = numbering_take(&rounds->numbers, key, fresh);
+    if (number == fresh)
+        array_push_large(rounds->arena, &rounds->list, (FlatRound){.part = LARGEST_PART});
+    return &rounds->list.items[number];
+}
+
+static void widen(FlatRound *round, double radius, bool shared)
+{
+    round->radius = max2(round->radius, radius);
+    round->shared |= shared;
+}
+
+static NumberKey key_of_kin(uint32_t kin) { return (NumberKey){kin, 0}; }
+
+static NumberKey key_of_table(uint32_t table) { return (NumberKey){table, 1}; }
+
+void flat_rounds_note(FlatRounds *rounds, uint32_t kin, double radius, bool shared)
+{
+    FlatRound *round = note(rounds, key_of_kin(kin));
+    if (round)
+        widen(round, radius, shared);
+}
+
+void flat_rounds_note_curves(FlatRounds *rounds, uint32_t table, double length, bool shared)
+{
+    FlatRound *round = note(rounds, key_of_table(table));
+    if (round) {
+        widen(round, length, shared);
+        round->curves = true;
+    }
+}
+
+/* What of the error a round may take, as a part of its radius. */
+static double part_of(const FlatRound *round, double error)
+{
+    return error * round->part * (round->shared ? 0.45 : 1) / round->radius;
+}
+
+static uint32_t sides_of(const FlatRound *round, double error)
+{
+    double   part  = part_of(round, error);
+    double   about = 2 * PI * sqrt(0.5 * (3 - sqrt(8)) / part);
+    uint32_t sides = 4 * (uint32_t)(min2(max2(about, FEWEST_SIDES), MOST_SIDES) / 4);
+    while (sides < MOST_SIDES && off_of(sides) > part)
+        sides += 4;
+    return sides;
+}
+
+static void count_sides(FlatRounds *rounds, FlatRound *round)
+{
+    round->sides    = sides_of(round, rounds->error);
+    double stretch  = stretch_of(round->sides);
+    rounds->stretch = max2(rounds->stretch, stretch);
+    rounds->longest = max2(rounds->longest, round->shared ? stretch * stretch * stretch : stretch);
+}
+
+void flat_rounds_count(FlatRounds *rounds)
+{
+    rounds->counted = true;
+    rounds->stretch = rounds->longest = 1;
+    rounds->chords                    = 0;
+    for (size_t i = 0; i < rounds->list.count; i++) {
+        FlatRound *round = &rounds->list.items[i];
+        if (round->curves) {
+            round->chord   = part_of(round, rounds->error);
+            rounds->chords = max2(rounds->chords, round->chord);
+        } else
+            count_sides(rounds, round);
+    }
+}
+
+static const FlatRound *find_round(const FlatRounds *rounds, NumberKey key)
+{
+    uint32_t number = numbering_find(&rounds->numbers, key);
+    return number == NO_NUMBER ? NULL : &rounds->list.items[number];
+}
+
+uint32_t flat_rounds_sides(const FlatRounds *rounds, uint32_t kin)
+{
+    const FlatRound *round = find_round(rounds, key_of_kin(kin));
+    if (!rounds->counted)
+        return FEWEST_SIDES;
+    return round ? round->sides : 0;
+}
+
+double flat_rounds_radius(const FlatRounds *rounds, uint32_t kin)
+{
+    const FlatRound *round = find_round(rounds, key_of_kin(kin));
+    return round ? round->radius : 0;
+}
+
+double flat_rounds_chord(const FlatRounds *rounds, uint32_t table)
+{
+    const FlatRound *round = find_round(rounds, key_of_table(table));
+    return rounds->counted && round ? round->chord : INFINITY;
+}
+
+/* Until it has more sides.  False: it is fine enough. */
+static bool make_finer(FlatRound *round, double error)
+{
+    uint32_t sides = round->sides;
+    bool     any   = false;
+    while (round->part > LEAST_PART &&
+           !(any && (round->curves || sides_of(round, error) > sides))) {
+        round->part *= 0.8;
+        any = true;
+    }
+    return any;
+}
+
+bool flat_rounds_refine(FlatRounds *rounds)
+{
+    bool any = false;
+    for (size_t i = 0; i < rounds->list.count; i++) {
+        any |= rounds->list.items[i].blamed && make_finer(&rounds->list.items[i], rounds->error);
+        rounds->list.items[i].blamed = false;
+    }
+    flat_rounds_count(rounds);
+    return any;
+}
+
+void flat_rounds_keep(FlatRounds *rounds)
+{
+    for (size_t i = 0; i < rounds->list.count; i++)
+        rounds->list.items[i].kept = rounds->list.items[i].part;
+}
+
+void flat_rounds_go_back(FlatRounds *rounds)
+{
+    for (size_t i = 0; i < rounds->list.count; i++)
+        rounds->list.items[i].part = rounds->list.items[i].kept;
+    flat_rounds_count(rounds);
+}
+
+bool flat_rounds_has_curves(const FlatRounds *rounds) { return rounds->chords > 0; }
+
+void flat_rounds_open(const FlatRounds *rounds, LaneRanges *ranges)
+{
+    ranges->unroll  = true;
+    ranges->stretch = rounds->stretch;
+    ranges->longest = rounds->longest;
+    ranges->chords  = rounds->chords;
+}
+
+void flat_rounds_close(LaneRanges *ranges)
+{
+    ranges->unroll  = false;
+    ranges->stretch = ranges->longest = 1;
+    ranges->chords                    = 0;
+}

@@ -1,0 +1,25 @@
+/*
+ * marks.h: where the mesh is new, by the cells of a grid, and where the proof of a tetrahedron asks for the mesh.
+ */
+#ifndef KRS_MESH_MARKS_H
+#define KRS_MESH_MARKS_H
+
+#include "mesh/tets.h"
+
+enum { MARKS = 512, MARKS_IN_WORD = 64 }; /* cells along a side */
+
+typedef struct Marks {
+    bool     any;
+    uint64_t cells[MARKS][MARKS][MARKS / MARKS_IN_WORD];
+} Marks;
+
+void marks_clear(Marks *marks);
+void marks_set(Marks *marks, const MarkBox *box);
+/* Whether a cell of the box is marked. */
+bool marks_touch(const Marks *marks, const MarkBox *box);
+
+/* Nowhere, and a box that has another as well. */
+MarkBox mark_box_none(void);
+void    mark_box_add(const Tets *tets, const double low[3], const double high[3], MarkBox *box);
+
+#endif

@@ -1,0 +1,335 @@
+/* mesh.c: krs_mesh: what is asked for, and what is given back. */
+#include <setjmp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "compiler/scene/program.h"
+#include "mesh/borders.h"
+#include "mesh/flat.h"
+#include "mesh/handles.h"
+#include "mesh/mesh.h"
+#include "mesh/voids.h"
+
+static const double DEFAULT_ERROR = 1.0 / 200, LEAST_ERROR = 1.0 / 500000;
+static const double CUBE_SIDE = 1.0973; /* in longest sides of the box */
+/* Errors besides, at each turn: tetrahedra lie otherwise then. */
+enum { TURNS = 3 };
+static const double MORE_SIDE[TURNS] = {4, 6, 9.5};
+/* The part of the error that is for leaving out triangles. */
+static const double SPARED = 0.5;
+
+/* ---- what is asked for ---- */
+
+/* The box of what is meshed; false: it has no end. */
+static bool find_box(Mesher *m)
+{
+    const KrsMeshOptions *options = m->options;
+    for (int k = 0; k < 3; k++) {
+        Range range = m->solid->box.axis[k];
+        m->low[k]   = options->within ? fmax(range.low, options->low[k]) : range.low;
+        m->high[k]  = options->within ? fmin(range.high, options->high[k]) : range.high;
+        if (!isfinite(m->low[k]) || !isfinite(m->high[k])) {
+            bool empty = m->low[k] > m->high[k];
+            if (!empty)
+                return false;
+        }
+    }
+    return true;
+}
+
+static bool is_nothing(const Mesher *m)
+{
+    return m->low[0] >= m->high[0] || m->low[1] >= m->high[1] || m->low[2] >= m->high[2];
+}
+
+static KrsStatus open_fields(Mesher *m, KrsFrame *frame)
+{
+    KrsStatus status = KRS_OK;
+    for (size_t i = 0; i < parallel_parts() && status == KRS_OK; i++) {
+        MeshField *field = &m->fields[i];
+        *field           = (MeshField){.solid = m->solid, .cut = m->options->within};
+        memcpy(field->low, m->low, sizeof field->low);
+        memcpy(field->high, m->high, sizeof field->high);
+        status = frame_copy_of(frame, &field->frame);
+        if (status == KRS_OK) {
+            frame_refresh_points(field->frame);
+            field_open(field, &m->arena);
+        }
+    }
+    return status;
+}
+
+static void close_mesher(Mesher *m)
+{
+    for (int i = 0; i < MOST_PARTS; i++)
+        frame_free(m->fields[i].frame);
+    arena_free(&m->arena);
+    free(m);
+}
+
+static KrsStatus copy_mesh(const Mesher *m, KrsMesh **result)
+{
+    const Contour *contour = &m->contour;
+    KrsMesh       *mesh    = calloc(1, sizeof *mesh);
+    if (!mesh)
+        return KRS_OUT_OF_MEMORY;
+    mesh->error          = m->error;
+    mesh->unresolved     = m->unresolved;
+    mesh->vertex_count   = contour->vertices.count;
+    mesh->triangle_count = contour->triangles.count;
+    mesh->vertices       = malloc((mesh->vertex_count + 1) * sizeof *mesh->vertices);
+    mesh->triangles      = malloc((mesh->triangle_count + 1) * sizeof *mesh->triangles);
+    memcpy(mesh->unresolved_at, m->unresolved_at, sizeof mesh->unresolved_at);
+    if (!mesh->vertices || !mesh->triangles) {
+        krs_mesh_free(mesh);
+        return KRS_OUT_OF_MEMORY;
+    }
+    if (mesh->triangle_count > 0) {
+        memcpy(mesh->vertices, contour->vertices.items,
+               mesh->vertex_count * sizeof *mesh->vertices);
+        memcpy(mesh->triangles, contour->triangles.items,
+               mesh->triangle_count * sizeof *mesh->triangles);
+    }
+    *result = mesh;
+    return KRS_OK;
+}
+
+static void close_voids(Mesher *m)
+{
+    double at[3];
+    size_t closed = voids_close(&m->contour, at);
+    if (closed > 0 && m->unresolved == 0)
+        memcpy(m->unresolved_at, at, sizeof m->unresolved_at);
+    m->unresolved += closed;
+}
+
+/* What goes around a rod or through a hole that is thinner than the error, where nothing was said of any. */
+static void count_handles(Mesher *m)
+{
+    double at[3];
+    size_t count = m->unresolved == 0 ? handles_count(&m->contour, m->error, at) : 0;
+    if (count > 0)
+        memcpy(m->unresolved_at, at, sizeof m->unresolved_at);
+    m->unresolved += count;
+    m->handles = count;
+}
+
+/* Whether triangles may be as few as the shape permits. */
+static bool may_be_few(const Mesher *m)
+{
+    return !m->options->even && (m->solid->plain || m->solid->steps || m->options->shape);
+}
+
+/* False: it is not wanted, or not flat. */
+static bool find_flat(Mesher *m)
+{
+    FlatVertices vertices  = {0};
+    Triangles    triangles = {0};
+    if (!may_be_few(m))
+        return false;
+    ArenaMark mark = arena_mark(&m->arena);
+    if (!find_flat_mesh(m, &vertices, &triangles)) {
+        arena_rewind(&m->arena, mark);
+        return false;
+    }
+    m->contour.vertices.items  = vertices.items;
+    m->contour.vertices.count  = vertices.count;
+    m->contour.triangles.items = triangles.items;
+    m->contour.triangles.count = triangles.count;
+    return true;
+}
+
+static KrsStatus run(Mesher *m, KrsFrame *frame, KrsMesh **mesh)
+{
+    jmp_buf exhausted;
+    m->memory.exhausted = &exhausted;
+    if (setjmp(exhausted) != 0)
+        return KRS_OUT_OF_MEMORY;
+    bool      draft  = false;
+    KrsStatus status = is_nothing(m) ? KRS_OK : open_fields(m, frame);
+    if (status == KRS_OK && !is_nothing(m) && !find_flat(m)) {
+        draft = m->options->draft;
+        m->error -= m->spared;
+        status = find_proven_mesh(m) ? KRS_OK : KRS_INTERRUPTED;
+        if (status == KRS_OK) {
+            close_voids(m);
+            count_handles(m);
+        }
+    } else
+        m->spared = 0;
+    if (status == KRS_OK)
+        status = copy_mesh(m, mesh);
+    if (status == KRS_OK)
+        (*mesh)->estimate = m->solid->estimate || draft;
+    m->memory.exhausted = NULL;
+    return status;
+}
+
+static bool options_are_valid(Mesher *m, int turn)
+{
+    const KrsMeshOptions *options = m->options;
+    double                longest = 0;
+    if (!find_box(m) || !(options->error >= 0) || isinf(options->error))
+        return false;
+    for (int k = 0; k < 3; k++)
+        longest = fmax(longest, m->high[k] - m->low[k]);
+    m->error  = options->error > 0 ? options->error : DEFAULT_ERROR * longest;
+    m->side   = CUBE_SIDE * longest + MORE_SIDE[turn] * m->error;
+    m->spared = options->simplify && may_be_few(m) ? SPARED * m->error : 0;
+    return is_nothing(m) || m->error >= LEAST_ERROR * m->side;
+}
+
+static const KrsMeshOptions no_options = {0};
+
+/* The part of the work that is done when there is a mesh of all triangles. */
+static const double MESHED = 0.5;
+/* The same when there are as few as are wanted, which are then split where materials change. */
+static const double ALL_MESHED = 0.8;
+
+/* One of two steps of the work. */
+typedef struct Step {
+    const KrsMeshOptions *options;
+    double                begun, part, said; /* what is done is never less than was said */
+} Step;
+
+static bool go_on(void *user, double fraction)
+{
+    Step *step = user;
+    step->said = fmax(step->said, step->begun + fraction * step->part);
+    return step->options->go_on(step->options->user, step->said);
+}
+
+static KrsMeshOptions options_of_step(Step *step)
+{
+    KrsMeshOptions options = *step->options;
+    options.go_on          = options.go_on ? go_on : NULL;
+    options.user           = step;
+    return options;
+}
+
+/* Uses up what was spared of the error. */
+static KrsStatus leave_out(const KrsMeshOptions *options, double spared, KrsMesh **mesh)
+{
+    Step           step  = {options, MESHED, 1 - MESHED, 0};
+    KrsMeshOptions these = options_of_step(&step);
+    KrsMesh       *all   = *mesh;
+    these.error          = spared;
+    KrsStatus status     = krs_mesh_simplify(all, &these, mesh);
+    krs_mesh_free(all);
+    if (status != KRS_OK)
+        *mesh = NULL;
+    return status;
+}
+
+/* `*spared`: of the error, for leaving out triangles; `*handles`: as of Mesher. */
+static KrsStatus mesh_in_turn(KrsFrame *frame, const KrsMeshOptions *options,
+                              const MeshSolid *solid, int turn, KrsMesh **mesh, double *spared,
+                              size_t *handles)
+{
+    Mesher *m = calloc(1, sizeof *m);
+    if (!m)
+        return KRS_OUT_OF_MEMORY;
+    m->options       = options;
+    m->solid         = solid;
+    m->memory        = frame->scene->memory;
+    m->memory.used   = 0;
+    m->memory.limit  = options->memory_limit ? options->memory_limit : KRS_USUAL_MEMORY;
+    m->arena.memory  = &m->memory;
+    KrsStatus status = options_are_valid(m, turn) ? run(m, frame, mesh) : KRS_BAD_ARGUMENT;
+    *spared          = m->spared;
+    *handles         = m->handles;
+    close_mesher(m);
+    return status;
+}
+
+/* Where a mesh has handles they are mostly those of its tetrahedra at a sharp edge, so others are tried. */
+static KrsStatus mesh_once(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
+                           KrsMesh **mesh)
+{
+    Step           step    = {options, 0, options->simplify ? MESHED : 1, 0};
+    KrsMeshOptions these   = options_of_step(&step);
+    KrsStatus      status  = KRS_OK;
+    double         spared  = 0;
+    size_t         handles = 1;
+    *mesh                  = NULL;
+    for (int turn = 0; turn < TURNS && status == KRS_OK && handles > 0; turn++) {
+        krs_mesh_free(*mesh);
+        *mesh  = NULL;
+        status = mesh_in_turn(frame, &these, solid, turn, mesh, &spared, &handles);
+    }
+    return status == KRS_OK && spared > 0 ? leave_out(options, spared, mesh) : status;
+}
+
+/* Half of the error needs several times the memory: where there is not so much, no triangle is left out. */
+static KrsStatus mesh_all(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
+                          KrsMesh **mesh)
+{
+    KrsMeshOptions all    = *options;
+    KrsStatus      status = mesh_once(frame, options, solid, mesh);
+    all.simplify          = false;
+    if (status == KRS_OUT_OF_MEMORY && options->simplify)
+        status = mesh_once(frame, &all, solid, mesh);
+    return status;
+}
+
+/* Triangles of one material each. */
+static KrsStatus split_at_borders(KrsFrame *frame, const KrsMeshOptions *options,
+                                  const MeshSolid *solid, KrsMesh **mesh)
+{
+    Step           step   = {options, ALL_MESHED, 1 - ALL_MESHED, 0};
+    KrsMeshOptions these  = options_of_step(&step);
+    KrsStatus      status = mesh_split_at_borders(frame, &these, solid->copy, *mesh);
+    if (status == KRS_OK)
+        return KRS_OK;
+    krs_mesh_free(*mesh);
+    *mesh = NULL;
+    return status;
+}
+
+KrsStatus mesh_solid(KrsFrame *frame, const KrsMeshOptions *options, const MeshSolid *solid,
+                     KrsMesh **mesh)
+{
+    bool           steps  = solid->steps && !solid->plain && !options->even;
+    bool           split  = steps && !options->shape;
+    Step           step   = {options, 0, split ? ALL_MESHED : 1, 0};
+    KrsMeshOptions these  = options_of_step(&step);
+    KrsStatus      status = mesh_all(frame, &these, solid, mesh);
+    if (status == KRS_OK && split)
+        status = split_at_borders(frame, options, solid, mesh);
+    if (status == KRS_OK) {
+        (*mesh)->steps   = steps;
+        (*mesh)->colored = options->simplify && !options->even && !solid->plain && !steps &&
+                           !options->shape;
+    }
+    return status;
+}
+
+KrsStatus krs_mesh(KrsFrame *frame, const KrsMeshOptions *options, KrsMesh **mesh)
+{
+    const KrsScene *scene  = frame->scene;
+    size_t          number = options ? options->component : 0;
+    MeshSolid       solid  = {.roots = malloc(solid_root_bytes(scene))};
+    bool           *wanted = number ? calloc(scene->component_count + 1, sizeof *wanted) : NULL;
+    KrsStatus       status = KRS_OUT_OF_MEMORY;
+    *mesh                  = NULL;
+    if (number > scene->shown_count || scene->program.sheets)
+        status = KRS_BAD_ARGUMENT;
+    else if (solid.roots && (wanted || !number)) {
+        if (wanted)
+            wanted[scene->lowered[number - 1]] = true;
+        solid_of_components(scene, wanted, &solid);
+        status = mesh_solid(frame, options ? options : &no_options, &solid, mesh);
+    }
+    free(wanted);
+    free(solid.roots);
+    return status;
+}
+
+void krs_mesh_free(KrsMesh *mesh)
+{
+    if (!mesh)
+        return;
+    free(mesh->vertices);
+    free(mesh->triangles);
+    free(mesh);
+}

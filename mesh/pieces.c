@@ -1,0 +1,355 @@
+/* pieces.c: how far inside and outside of the mesh are from those of the surface, where it has edges. */
+#include "mesh/pieces.h"
+
+#include <string.h>
+
+#include "compiler/base/vec.h"
+
+static const double ROUNDING = 1 + 1e-9;
+
+/* ---- cells ---- */
+
+/* How fast a piece grows along a direction, at least. */
+static double growth(const FieldPieces *pieces, size_t i, const double direction[3])
+{
+    double sum = 0;
+    for (int k = 0; k < 3; k++) {
+        Range  by   = pieces->slopes[i].by[k];
+        double step = pieces->signs[i] * direction[k];
+        sum += min2(step * by.low, step * by.high);
+    }
+    return sum;
+}
+
+/* A direction in which all grow, from that of their mean, turned to the one that grows least. */
+static double find_slope(const FieldPieces *pieces)
+{
+    enum { TURNS = 24 };
+    double direction[3] = {0, 0, 0}, own[MOST_PIECES][3], best = 0;
+    for (size_t i = 0; i < pieces->count; i++) {
+        for (int k = 0; k < 3; k++)
+            own[i][k] = pieces->signs[i] * 0.5 *
+                        (pieces->slopes[i].by[k].low + pieces->slopes[i].by[k].high);
+        if (!normalize3(own[i]))
+            return 0;
+        add_scaled3(direction, direction, 1, own[i]);
+    }
+    for (int turn = 0; turn < TURNS && normalize3(direction); turn++) {
+        double least = INFINITY;
+        size_t worst = 0;
+        for (size_t i = 0; i < pieces->count; i++) {
+            double grows = growth(pieces, i, direction);
+            if (grows < least) {
+                least = grows;
+                worst = i;
+            }
+        }
+        best = max2(best, least);
+        add_scaled3(direction, direction, 0.5 / (turn + 1), own[worst]);
+    }
+    return best / ROUNDING;
+}
+
+void pieces_look(MeshField *field, Box box, PieceCell *cell)
+{
+    cell->known = field_pieces(field, box, &cell->pieces);
+    if (!cell->known)
+        return;
+    cell->slope = find_slope(&cell->pieces);
+    cell->known = cell->slope > 0;
+    cell->steep = 0;
+    for (size_t i = 0; i < cell->pieces.count && cell->known; i++) {
+        bool   turned = cell->pieces.signs[i] < 0;
+        double square = 0;
+        for (int k = 0; k < 3; k++) {
+            double most = range_largest(cell->pieces.slopes[i].by[k]);
+            square += most * most;
+        }
+        cell->steep = max2(cell->steep, ROUNDING * sqrt(square));
+        smooth_forms(&cell->pieces.hessians[i], turned ? cell->below[i] : cell->above[i],
+                     turned ? cell->above[i] : cell->below[i]);
+    }
+}
+
+/* ---- parts ---- */
+
+/* Values are those of pieces with the sign of the side: what is asked for is how far above 0 they may be. */
+typedef struct PartPoint {
+    double at[3], values[MOST_PIECES];
+} PartPoint;
+
+typedef struct Part {
+    PartPoint points[4];
+} Part;
+
+typedef struct Measure {
+    const PieceCell *cell;
+    double           side; /* 1: values, -1: their complements */
+    double           enough;
+    int              budget;
+} Measure;
+
+static double bend(const Measure *m, size_t piece, const double a[3], const double b[3])
+{
+    return smooth_bend(m->side > 0 ? m->cell->below[piece] : m->cell->above[piece], a, b);
+}
+
+/* The most that a piece may be in a part.  Points are taken in the order of their values: those so low that pairs with
+   them add nothing leave what the others permit. */
+static double most_of_piece(const Measure *m, size_t piece, const Part *part)
+{
+    double q[4][4], values[4], least = INFINITY, low = -INFINITY;
+    int    order[4] = {0, 1, 2, 3};
+    for (int i = 0; i < 4; i++)
+        for (int k = i; k > 0 && part->points[order[k]].values[piece] >
+                                     part->points[order[k - 1]].values[piece];
+             k--) {
+            int swap     = order[k];
+            order[k]     = order[k - 1];
+            order[k - 1] = swap;
+        }
+    for (int i = 0; i < 4; i++) {
+        values[i] = part->points[order[i]].values[piece];
+        for (int j = 0; j < i; j++)
+            q[i][j] = q[j][i] = bend(m, piece, part->points[order[i]].at,
+                                     part->points[order[j]].at);
+        q[i][i] = 0;
+    }
+    for (int count = 4; count > 0; count--) {
+        double pairs = 0;
+        for (int i = 0; i < count; i++)
+            for (int j = 0; j < i; j++)
+                pairs = max2(pairs, q[i][j]);
+        double rest    = count == 3   ? smooth_most_of_three(q[0][1], q[1][2], q[2][0])
+                         : count == 4 ? 0.375 * pairs
+                                      : 0.25 * pairs;
+        least          = min2(least, max2(low, values[0] + 0.5 * rest));
+        double longest = 0;
+        for (int j = 0; j < 4; j++)
+            longest = max2(longest, q[count - 1][j]);
+        low = max2(low, values[count - 1] + 0.5 * longest);
+    }
+    return least;
+}
+
+static double most_of_part(const Measure *m, const Part *part)
+{
+    const FieldPieces *pieces = &m->cell->pieces;
+    double             most[MOST_PIECES], stack[MOST_PIECE_STEPS];
+    int                depth = 0;
+    for (size_t i = 0; i < pieces->count; i++)
+        most[i] = most_of_piece(m, i, part);
+    for (size_t i = 0; i < pieces->step_count; i++) {
+        int step = pieces->steps[i];
+        if (step >= 0) {
+            stack[depth++] = most[step];
+            continue;
+        }
+        double b = stack[--depth], a = stack[depth - 1];
+        bool   greater   = (step == PIECE_MAX) == (m->side > 0);
+        stack[depth - 1] = greater ? max2(a, b) : min2(a, b);
+    }
+    return stack[0];
+}
+
+/* The two halves at the longest edge; pieces in its middle are no more than the mean and what they bend. */
+static void halve_part(const Measure *m, const Part *part, Part halves[2])
+{
+    int       from = 0, to = 1;
+    double    longest = 0;
+    PartPoint middle;
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < i; j++) {
+            double length = distance3(part->points[i].at, part->points[j].at);
+            if (length > longest) {
+                longest = length;
+                from    = i;
+                to      = j;
+            }
+        }
+    const PartPoint *a = &part->points[from], *b = &part->points[to];
+    for (int k = 0; k < 3; k++)
+        middle.at[k] = 0.5 * (a->at[k] + b->at[k]);
+    for (size_t i = 0; i < m->cell->pieces.count; i++)
+        middle.values[i] = 0.5 * (a->values[i] + b->values[i]) + 0.125 * bend(m, i, a->at, b->at);
+    halves[0] = halves[1]  = *part;
+    halves[0].points[from] = middle;
+    halves[1].points[to]   = middle;
+}
+
+static double measure_part(Measure *m, const Part *part, int halvings)
+{
+    enum { MOST_HALVINGS = 9 };
+    double most = most_of_part(m, part);
+    if (most <= m->enough || halvings == MOST_HALVINGS || --m->budget < 0)
+        return most;
+    Part   halves[2];
+    double parts;
+    halve_part(m, part, halves);
+    parts = measure_part(m, &halves[0], halvings + 1);
+    if (parts <= m->enough)
+        parts = max2(parts, measure_part(m, &halves[1], halvings + 1));
+    return min2(most, parts > m->enough ? INFINITY : parts);
+}
+
+/* ---- cones ---- */
+
+/* Points of a tetrahedron: its corners, then the mesh's vertices there. */
+enum { CROSSINGS = 4, BENDS = 8, APEX = 12, POINTS = 13, NONE = -1 };
+
+typedef struct Points {
+    double at[POINTS][3], values[POINTS][MOST_PIECES];
+    bool   inside[4];
+} Points;
+
+typedef struct Cones {
+    Measure       m;
+    const Points *points;
+    int           apex;
+    double        most;
+} Cones;
+
+static void add_cone(Cones *c, int p, int q, int r)
+{
+    Part part;
+    int  numbers[4] = {c->apex, p, q, r};
+    if (p == c->apex || q == c->apex || r == c->apex || c->most > c->m.enough)
+        return;
+    for (int i = 0; i < 4; i++) {
+        memcpy(part.points[i].at, c->points->at[numbers[i]], sizeof part.points[i].at);
+        for (size_t k = 0; k < c->m.cell->pieces.count; k++)
+            part.points[i].values[k] = c->m.side * c->points->values[numbers[i]][k];
+    }
+    c->most = max2(c->most, measure_part(&c->m, &part, 0));
+}
+
+/* A face of three corners, and where the mesh cuts it, from an edge of `single` and `a` to one of `single` and `b`. */
+typedef struct FaceCut {
+    int single, a, b, at_a, at_b, bend; /* `single` NONE: it does not */
+} FaceCut;
+
+static void add_face_side(Cones *c, const FaceCut *cut, const int corners[3], bool inside)
+{
+    if (cut->single == NONE) {
+        if (c->points->inside[corners[0]] == inside)
+            add_cone(c, corners[0], corners[1], corners[2]);
+        return;
+    }
+    bool single = c->points->inside[cut->single] == inside;
+    if (cut->bend == NONE && single)
+        add_cone(c, cut->at_a, cut->at_b, cut->single);
+    else if (cut->bend == NONE) {
+        add_cone(c, cut->at_a, cut->a, cut->b);
+        add_cone(c, cut->at_a, cut->b, cut->at_b);
+    } else if (single) {
+        add_cone(c, cut->bend, cut->at_a, cut->single);
+        add_cone(c, cut->bend, cut->single, cut->at_b);
+    } else {
+        add_cone(c, cut->bend, cut->at_a, cut->a);
+        add_cone(c, cut->bend, cut->a, cut->b);
+        add_cone(c, cut->bend, cut->b, cut->at_b);
+    }
+}
+
+static int crossing_between(const Contour *contour, const Patch *patch, uint32_t a, uint32_t b)
+{
+    for (uint32_t i = 0; i < patch->corner_count; i++) {
+        const Crossing *crossing = &contour->crossings.items[patch->crossings[i]];
+        if ((crossing->from == a && crossing->to == b) ||
+            (crossing->from == b && crossing->to == a))
+            return (int)i;
+    }
+    return NONE;
+}
+
+static FaceCut find_cut(const Contour *contour, const Tet *tet, const Points *points,
+                        const int corners[3])
+{
+    FaceCut cut   = {.single = NONE, .bend = NONE};
+    int     count = points->inside[corners[0]] + points->inside[corners[1]] +
+                points->inside[corners[2]];
+    if (count == 0 || count == 3)
+        return cut;
+    const Patch *patch = &contour->patches.items[tet->patch];
+    int          i     = 0;
+    while (points->inside[corners[i]] != (count == 1))
+        i++;
+    cut.single = corners[i];
+    cut.a      = corners[(i + 1) % 3];
+    cut.b      = corners[(i + 2) % 3];
+    int a      = crossing_between(contour, patch, tet->points[cut.single], tet->points[cut.a]);
+    int b      = crossing_between(contour, patch, tet->points[cut.single], tet->points[cut.b]);
+    cut.at_a   = CROSSINGS + a;
+    cut.at_b   = CROSSINGS + b;
+    int before = (a + 1) % (int)patch->corner_count == b ? a : b; /* the line follows it */
+    if (contour->lines.items[patch->lines[before]].bent)
+        cut.bend = BENDS + before;
+    return cut;
+}
+
+static void find_points(const Contour *contour, const MeshField *field, const PieceCell *cell,
+                        const Tet *tet, Points *points)
+{
+    double at[POINTS][3], values[POINTS * MOST_PIECES];
+    tets_corners(contour->tets, tet, at);
+    for (int i = 4; i < POINTS; i++)
+        memcpy(at[i], at[0], sizeof at[i]);
+    for (int i = 0; i < 4; i++)
+        points->inside[i] = point_is_inside(contour->tets, tet->points[i]);
+    if (tet->triangle_count > 0) {
+        const Patch *patch = &contour->patches.items[tet->patch];
+        for (uint32_t i = 0; i < patch->corner_count; i++) {
+            memcpy(at[CROSSINGS + i], contour->crossings.items[patch->crossings[i]].at, sizeof *at);
+            memcpy(at[BENDS + i], contour->lines.items[patch->lines[i]].at, sizeof *at);
+        }
+        if (patch->fan)
+            memcpy(at[APEX], patch->apex, sizeof *at);
+    }
+    field_piece_values(field, &cell->pieces, (const double(*)[3])at, POINTS, values);
+    memcpy(points->at, at, sizeof at);
+    for (size_t i = 0; i < POINTS * cell->pieces.count; i++)
+        points->values[i / cell->pieces.count][i % cell->pieces.count] = values[i];
+}
+
+static double deviation_of_side(const Contour *contour, const Tet *tet, const Points *points,
+                                const Measure *m)
+{
+    static const int FACES[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+    Cones            c           = {.m = *m, .points = points, .apex = 0, .most = -INFINITY};
+    bool             inside      = m->side > 0;
+    if (tet->triangle_count > 0) {
+        const Patch *patch = &contour->patches.items[tet->patch];
+        c.apex             = patch->fan ? APEX : CROSSINGS + (int)patch_turn(contour, patch);
+    }
+    for (int i = 0; i < 4; i++) {
+        FaceCut cut = find_cut(contour, tet, points, FACES[i]);
+        if (cut.single == NONE || (cut.at_a != c.apex && cut.at_b != c.apex))
+            add_face_side(&c, &cut, FACES[i], inside);
+    }
+    return c.most;
+}
+
+bool pieces_measure(const Contour *contour, const MeshField *field, const PieceCell *cell,
+                    double error, Tet *tet)
+{
+    enum { BUDGET = 200 };
+    Points points;
+    tet->slope  = (float)(cell->slope * (1 - 1e-6));
+    tet->steep  = (float)(cell->steep * (1 + 1e-6));
+    tet->origin = cell->pieces.origin;
+    find_points(contour, field, cell, tet, &points);
+    Measure m         = {.cell = cell, .budget = BUDGET, .enough = tet->slope * error};
+    double  deviation = -INFINITY;
+    if (tet->triangle_count > 0 || points.inside[0]) {
+        m.side    = 1;
+        deviation = max2(deviation, deviation_of_side(contour, tet, &points, &m));
+    }
+    if (tet->triangle_count > 0 || !points.inside[0]) {
+        m.side    = -1;
+        deviation = max2(deviation, deviation_of_side(contour, tet, &points, &m));
+    }
+    /* what is more was not looked at to the end */
+    tet->deviation = deviation > m.enough ? INFINITY
+                                          : (float)(deviation * (1 + copysign(1e-6, deviation)));
+    return deviation < 0;
+}

@@ -1,0 +1,28 @@
+/*
+ * pieces.h: as smooth.h, where the surface has edges: the sign of the distance is that of minima and maxima of
+ * pieces whose derivatives do not jump.
+ *
+ * A tetrahedron is cut into smaller ones, cones from a vertex of the mesh over the parts of its boundary on
+ * both sides.  In each of them every piece is bounded by its values at the corners and its second derivatives,
+ * and minima and maxima of the bounds are bounds.  Where that is not enough a part is halved.
+ */
+#ifndef KRS_MESH_PIECES_H
+#define KRS_MESH_PIECES_H
+
+#include "mesh/smooth.h"
+
+typedef struct PieceCell {
+    bool        known;
+    FieldPieces pieces;
+    double      above[MOST_PIECES][6], below[MOST_PIECES][6]; /* as of SmoothCell */
+    double      slope,
+        steep; /* all pieces grow by that along one direction, and none by more along any */
+} PieceCell;
+
+/* The field has entered the box last. */
+void pieces_look(MeshField *field, Box box, PieceCell *cell);
+/* As smooth_measure; a deviation that fits the error is not looked at more closely. */
+bool pieces_measure(const Contour *contour, const MeshField *field, const PieceCell *cell,
+                    double error, Tet *tet);
+
+#endif

@@ -1,0 +1,430 @@
+/*
+ * rounds.c: a coarse mesh, and a finer one where it is refuted, until it is proven.
+ *
+ * Where the surface is smooth a proof takes no more than values that are known (smooth.h), so a mesh is
+ * refined there first.  Then parts that have edges are proven by cells (verify.h).  Such a proof holds
+ * until the mesh changes where it asked for it: those that were bisected mark the cells of a grid.  What is refuted
+ * is bisected and proven first.  When nothing is refuted any more, proofs that have become stale are
+ * found again.
+ */
+#include <string.h>
+
+#include "compiler/base/vec.h"
+#include "mesh/bounds.h"
+#include "mesh/draft.h"
+
+enum { PATIENCE = 16 }; /* groups between two questions */
+/* The cube's corner is nowhere in particular, so that planes of the scene seldom have points of the
+   grid. */
+static const double CUBE_CORNER[3] = {0.04417, 0.04731, 0.04553};
+
+/* ---- marks ---- */
+
+/* Where a tetrahedron is, and so far around. */
+static void add_place(const Mesher *m, const Tet *tet, double around, MarkBox *box)
+{
+    double low[3], high[3];
+    tet_box(m, tet, low, high);
+    for (int k = 0; k < 3; k++) {
+        low[k] -= around;
+        high[k] += around;
+    }
+    mark_box_add(&m->tets, low, high, box);
+}
+
+/* What is fresh has triangles now, or had some before it was bisected.  Until there are proofs none can become stale. */
+static void mark_fresh(Mesher *m)
+{
+    for (size_t i = 0; i < m->tets.fresh.count; i++) {
+        Tet    *tet = &m->tets.list.items[m->tets.fresh.items[i]];
+        MarkBox box = mark_box_none();
+        if (m->has_proofs && (tet->replaced || tet->triangle_count > 0)) {
+            add_place(m, tet, 0, &box);
+            marks_set(&m->marks, &box);
+        }
+        tet->replaced = false;
+    }
+}
+
+/* ---- groups ---- */
+
+/* ---- how far the work is ---- */
+
+/* The parts of the work that are done when nothing is refuted by bounds, and when all has been looked at by cells.  After
+   that, each round of cells does about half of what is left. */
+static const double BOUNDS_DONE = 0.35, CELLS_DONE = 0.8;
+/* Tetrahedra that are looked at by bounds for each that is refuted, until none is. */
+static const double FOLLOWING = 8;
+
+/* When so many have been looked at by bounds and so many are refuted. */
+static double fraction_by_bounds(double looked, double refuted)
+{
+    return looked > 0 ? BOUNDS_DONE * looked / (looked + FOLLOWING * refuted) : 0;
+}
+
+static double fraction_by_cells(const Mesher *m)
+{
+    return m->fraction <= BOUNDS_DONE ? CELLS_DONE : 0.5 * (1 + m->fraction);
+}
+
+static void advance(Mesher *m, double part)
+{
+    m->fraction = max2(m->fraction, m->begun + part * (m->goal - m->begun));
+}
+
+/* The first part of a round runs in the thread of the caller, so it may ask. */
+static bool is_wanted(const Mesher *m)
+{
+    return !m->options->go_on || m->options->go_on(m->options->user, m->fraction);
+}
+
+static void add_to_groups(Mesher *m, size_t index)
+{
+    double corners[4][3], center[3];
+    tets_corners(&m->tets, &m->tets.list.items[index], corners);
+    corners_ball((const double(*)[3])corners, center);
+    for (int k = 0; k < 3; k++)
+        center[k] = (center[k] - m->tets.origin[k]) / m->side;
+    groups_add(&m->groups, (uint32_t)index, center);
+}
+
+static void find_fresh_groups(Mesher *m)
+{
+    groups_clear(&m->groups);
+    for (size_t i = 0; i < m->tets.fresh.count; i++)
+        if (m->tets.list.items[m->tets.fresh.items[i]].state == TET_NEW)
+            add_to_groups(m, m->tets.fresh.items[i]);
+    groups_finish(&m->groups);
+    atomic_store(&m->next_group, 0);
+}
+
+/* Tetrahedra of these states, by where they are. */
+static void find_groups(Mesher *m, TetState first, TetState last)
+{
+    groups_clear(&m->groups);
+    for (size_t i = 0; i < m->tets.list.count; i++)
+        if (m->tets.list.items[i].state >= first && m->tets.list.items[i].state <= last)
+            add_to_groups(m, i);
+    groups_finish(&m->groups);
+    atomic_store(&m->next_group, 0);
+}
+
+/* Twice the error around is within it. */
+static Box box_of_group(Mesher *m, const Group *group)
+{
+    double low[3], high[3], least[3], most[3];
+    tet_box(m, tet_of_group(m, group, 0), low, high);
+    for (uint32_t i = 1; i < group->count; i++) {
+        tet_box(m, tet_of_group(m, group, i), least, most);
+        for (int k = 0; k < 3; k++) {
+            low[k]  = min2(low[k], least[k]);
+            high[k] = max2(high[k], most[k]);
+        }
+    }
+    return box_and_margin(2 * m->error, low, high);
+}
+
+typedef void WorkOnGroup(Mesher *m, Verifier *verifier, const Group *group);
+
+typedef struct GroupWork {
+    Mesher      *m;
+    WorkOnGroup *work;
+} GroupWork;
+
+static void work_on_groups(void *task, size_t part, size_t parts)
+{
+    GroupWork *w        = task;
+    Mesher    *m        = w->m;
+    Verifier  *verifier = &m->verifiers[part];
+    size_t     asked    = 0;
+    (void)parts;
+    *verifier = (Verifier){
+        .field = &m->fields[part], .tets = &m->tets, .mesh = &m->bvh, .error = proven_error(m)};
+    while (!atomic_load(&m->stopped)) {
+        size_t next = atomic_fetch_add(&m->next_group, 1);
+        if (next >= m->groups.list.count)
+            return;
+        if (part == 0 && asked++ % PATIENCE == 0) {
+            advance(m, (double)next / (double)m->groups.list.count);
+            if (!is_wanted(m))
+                atomic_store(&m->stopped, true);
+        }
+        const Group *group   = &m->groups.list.items[next];
+        bool         entered = field_enter(verifier->field, box_of_group(m, group));
+        w->work(m, verifier, group);
+        if (entered)
+            field_leave(verifier->field);
+    }
+}
+
+/* `goal`: the part of all work that is done then. */
+static bool for_groups(Mesher *m, WorkOnGroup *work, double goal)
+{
+    GroupWork w = {m, work};
+    m->begun    = m->fraction;
+    m->goal     = goal;
+    run_in_parallel(work_on_groups, &w);
+    return !atomic_load(&m->stopped);
+}
+
+/* ---- where no cells are needed ---- */
+
+/* Edges, in errors, of the smallest tetrahedra that are bisected since their mesh is not on the surface, where it is within the
+   error of it. */
+static const double LEAST_ASTRAY = 1;
+/* Parts of the error: a mesh whose middles are farther off goes through a tetrahedron or a face more often than their corners
+   tell. */
+static const double ASTRAY = 0.15;
+
+/* Whether its mesh passes near the surface, or it is too small to be bisected for that. */
+static bool is_near_surface(const Mesher *m, const Tet *tet)
+{
+    return tet->triangle_count == 0 ||
+           patch_off(&m->contour, &m->contour.patches.items[tet->patch]) <= ASTRAY * m->error ||
+           tets_longest_edge(&m->tets, tet) <= LEAST_ASTRAY * m->error;
+}
+
+/* By bounds; and those whose mesh is astray are refuted in any case. */
+static void judge_group(Mesher *m, Verifier *verifier, const Group *group)
+{
+    bound_group(m, verifier, group);
+    for (uint32_t i = 0; i < group->count; i++) {
+        Tet *tet = tet_of_group(m, group, i);
+        if ((tet->state == TET_FITS || tet->state == TET_ROUGH) && !is_near_surface(m, tet))
+            tet->state = TET_REFUTED;
+    }
+}
+
+/* What needs no cells. */
+static void judge_smooth(Mesher *m)
+{
+    Sure sure;
+    arounds_find(&m->around, &m->tets, &m->arena);
+    for (size_t i = 0; i < m->tets.list.count; i++) {
+        Tet *tet = &m->tets.list.items[i];
+        if (tet->state != TET_FITS)
+            continue;
+        sure_find(&m->around, &m->tets, tet, proven_error(m), &sure);
+        if (sure.everywhere) {
+            tet->state = TET_PROVEN;
+            tet->needs = mark_box_none();
+            add_place(m, tet, m->error, &tet->needs);
+        }
+    }
+}
+
+/* ---- where it has edges ---- */
+
+static void verify_group(Mesher *m, Verifier *verifier, const Group *group)
+{
+    for (uint32_t i = 0; i < group->count; i++) {
+        Tet *tet       = tet_of_group(m, group, i);
+        verifier->sure = (Sure){.anywhere = false};
+        if (tet->state == TET_FITS)
+            sure_find(&m->around, &m->tets, tet, proven_error(m), &verifier->sure);
+        tet->state = (uint8_t)verify_tet(verifier, tet);
+    }
+}
+
+/* ---- rounds ---- */
+
+static bool has_proof(const Tet *tet)
+{
+    return tet->state == TET_PROVEN || tet->state == TET_UNRESOLVED;
+}
+
+/* Proofs are stale where the mesh has changed since they were found. */
+static void find_stale(Mesher *m)
+{
+    for (size_t i = 0; i < m->tets.list.count; i++) {
+        Tet *tet   = &m->tets.list.items[i];
+        tet->stale = has_proof(tet) && (tet->stale || marks_touch(&m->marks, &tet->needs));
+    }
+    marks_clear(&m->marks);
+}
+
+/* False: no proof was stale. */
+static bool forget_stale(Mesher *m)
+{
+    bool any = false;
+    for (size_t i = 0; i < m->tets.list.count; i++) {
+        Tet *tet = &m->tets.list.items[i];
+        if (has_proof(tet) && tet->stale) {
+            tet->state = (uint8_t)state_by_bounds(m, tet);
+            any        = true;
+        }
+    }
+    return any;
+}
+
+static bool bisect_refuted(Mesher *m, size_t i)
+{
+    if (m->tets.list.items[i].state != TET_REFUTED || !tets_can_bisect(&m->tets, i))
+        return false;
+    tets_bisect(&m->tets, i);
+    return true;
+}
+
+/* All that is refuted is among those that were fresh, or among all. */
+static size_t bisect_all_refuted(Mesher *m, bool fresh)
+{
+    size_t count = fresh ? m->last.count : m->tets.list.count, refuted = 0;
+    for (size_t i = 0; i < count; i++)
+        refuted += bisect_refuted(m, fresh ? m->last.items[i] : i);
+    return refuted;
+}
+
+/* Parts that are refuted from the beginning, but not where there is clearly no surface. */
+static void bisect_hopeless(Mesher *m)
+{
+    bool any;
+    do {
+        any = false;
+        contour_distances(&m->contour);
+        for (size_t i = 0, count = m->tets.fresh.count; i < count; i++) {
+            size_t number = m->tets.fresh.items[i];
+            Tet   *tet    = &m->tets.list.items[number];
+            if (tet->hopeless && verify_is_far(&m->tets, tet))
+                tet->state = TET_EMPTY;
+            else if (tet->hopeless && bisect_refuted(m, number))
+                any = true;
+        }
+    } while (any);
+}
+
+/* Bisects what is refuted, and what then no longer meets its neighbours; false: there is nothing. */
+static bool refine(Mesher *m, bool fresh)
+{
+    m->last.count = 0;
+    for (size_t i = 0; i < m->tets.fresh.count; i++)
+        array_push_large(&m->arena, &m->last, m->tets.fresh.items[i]);
+    tets_forget_fresh(&m->tets);
+    if (bisect_all_refuted(m, fresh) == 0)
+        return false;
+    bisect_hopeless(m);
+    tets_close(&m->tets);
+    contour_distances(&m->contour);
+    return true;
+}
+
+/* First tetrahedra: about as large as they will be where the surface is as curved as a ball that fills the box,
+   and half of that where there are few. */
+static void bisect_evenly(Mesher *m)
+{
+    Verifier verifier = {.field = &m->fields[0], .tets = &m->tets, .error = m->error};
+    double   even     = sqrt(m->error * m->side);
+    double   length   = min2(2 * even, max2(even, m->side / 8));
+    length            = min2(max2(length, m->side / 32), m->side / 4);
+    bool any          = true;
+    while (any) {
+        any          = false;
+        size_t count = m->tets.list.count;
+        contour_distances(&m->contour);
+        for (size_t i = 0; i < count; i++) {
+            if (tets_longest_edge(&m->tets, &m->tets.list.items[i]) < length ||
+                verify_is_empty(&verifier, &m->tets.list.items[i]))
+                continue;
+            tets_bisect(&m->tets, i);
+            any = true;
+        }
+        tets_close(&m->tets);
+    }
+    contour_distances(&m->contour);
+}
+
+static void find_tree(Mesher *m)
+{
+    bvh_new(&m->bvh, (const double(*)[3])m->contour.vertices.items,
+            (const uint32_t(*)[3])m->contour.triangles.items, m->contour.triangles.count,
+            &m->arena);
+}
+
+/* Where the first tetrahedron that is unresolved is so: that is found again, since few are. */
+static void find_unresolved(Mesher *m)
+{
+    size_t i = 0;
+    while (i < m->tets.list.count && m->tets.list.items[i].state != TET_UNRESOLVED)
+        i++;
+    if (i == m->tets.list.count)
+        return;
+    Tet tet = m->tets.list.items[i];
+    verify_tet(&m->verifiers[0], &tet);
+    memcpy(m->unresolved_at, m->verifiers[0].place, sizeof m->unresolved_at);
+}
+
+static void count_unresolved(Mesher *m)
+{
+    m->unresolved = 0;
+    for (size_t i = 0; i < m->tets.list.count; i++)
+        m->unresolved += m->tets.list.items[i].state == TET_UNRESOLVED;
+}
+
+static void count_refuted(Mesher *m)
+{
+    size_t count = m->tets.fresh.count, refuted = 0;
+    for (size_t i = 0; i < count; i++)
+        refuted += m->tets.list.items[m->tets.fresh.items[i]].state == TET_REFUTED;
+    m->looked += (double)count;
+    m->fraction = max2(m->fraction, fraction_by_bounds(m->looked, (double)refuted));
+}
+
+/* Until nothing is refuted by bounds; only what is fresh is looked at.  False: it was stopped. */
+static bool refine_by_bounds(Mesher *m)
+{
+    do {
+        contour_look(&m->contour);
+        mark_fresh(m);
+        find_fresh_groups(m);
+        double count = (double)m->tets.fresh.count, few = count / 3;
+        if (!for_groups(m, m->options->draft ? draft_group : judge_group,
+                        fraction_by_bounds(m->looked + count, few)))
+            return false;
+        count_refuted(m);
+    } while (refine(m, true));
+    return true;
+}
+
+/* False: it was stopped. */
+static bool prove(Mesher *m)
+{
+    find_stale(m);
+    m->has_proofs = true;
+    judge_smooth(m);
+    find_tree(m);
+    find_groups(m, TET_FITS, TET_ROUGH);
+    double goal = fraction_by_cells(m);
+    if (!for_groups(m, verify_group, goal))
+        return false;
+    m->fraction = goal;
+    find_unresolved(m);
+    bvh_free(&m->bvh, m->contour.triangles.count, &m->arena);
+    count_unresolved(m);
+    return is_wanted(m);
+}
+
+bool find_proven_mesh(Mesher *m)
+{
+    double origin[3];
+    for (int k = 0; k < 3; k++)
+        origin[k] = 0.5 * (m->low[k] + m->high[k]) -
+                    (0.5 + 0.1 * (CUBE_CORNER[k] - 0.045)) * m->side;
+    tets_new(&m->tets, origin, m->side, &m->arena);
+    m->contour      = (Contour){.arena            = &m->arena,
+                                .tets             = &m->tets,
+                                .fields           = m->fields,
+                                .error            = m->error,
+                                .crossing_numbers = {.arena = &m->arena},
+                                .line_numbers     = {.arena = &m->arena}};
+    m->groups.arena = &m->arena;
+    bisect_evenly(m);
+    do {
+        if (!refine_by_bounds(m))
+            return false;
+        contour_find(&m->contour);
+        if (m->options->draft)
+            return true;
+        if (!prove(m))
+            return false;
+    } while (refine(m, false) || forget_stale(m));
+    return true;
+}

@@ -1,0 +1,84 @@
+/* settle.c: vertices of faces and tetrahedra go to the surface. */
+#include "mesh/settle.h"
+
+#include <string.h>
+
+#include "compiler/base/vec.h"
+#include "mesh/weights.h"
+
+static void settling_weights(const Settling *settling, const double point[3], double weights[4])
+{
+    if (settling->across)
+        face_weights(settling->corners, settling->across, point, weights);
+    else
+        tet_weights(settling->corners, point, weights);
+}
+
+static void keep_settling(const Settling *settling, double point[3])
+{
+    double weights[4], inner[4];
+    settling_weights(settling, point, weights);
+    settling_weights(settling, settling->middle, inner);
+    keep_inside(weights, inner, settling->count, point, settling->middle);
+}
+
+/* Goes along the gradient, as far as it is in the face, to where the value is 0; *value is that at `at`.
+   Where planes meet beyond a rounded edge this is a point of the edge. */
+static void settle(const MeshField *field, const Settling *settling, double at[3], double *value)
+{
+    enum { TRIES = 2 };
+    static const double NEAR_ENOUGH = 0.02; /* parts of the error */
+    const double        step        = 1e-3 * settling->error;
+    for (int i = 0; i < TRIES && fabs(*value) > NEAR_ENOUGH * settling->error; i++) {
+        double points[4][3], values[4], gradient[3], next[3];
+        for (int k = 0; k < 3; k++) {
+            memcpy(points[k], at, sizeof points[k]);
+            points[k][k] += step;
+        }
+        field_distances(field, (const double(*)[3])points, 3, values);
+        for (int k = 0; k < 3; k++)
+            gradient[k] = (values[k] - *value) / step;
+        if (settling->across)
+            add_scaled3(gradient, gradient, -dot3(gradient, settling->across), settling->across);
+        double square = dot3(gradient, gradient);
+        if (square < 1e-2)
+            return;
+        add_scaled3(next, at, -*value / square, gradient);
+        keep_settling(settling, next);
+        double there = field_distance(field, next);
+        if (!(fabs(there) < fabs(*value))) /* nor what is no number */
+            return;
+        memcpy(at, next, sizeof next);
+        *value = there;
+    }
+}
+
+bool settle_nearby(const MeshField *field, const Settling *settling, bool guess, double at[3],
+                   double *value)
+{
+    const double enough = 0.5 * fabs(settling->missed);
+    if (guess) {
+        keep_settling(settling, at);
+        *value = field_distance(field, at);
+        settle(field, settling, at, value);
+        if (fabs(*value) < enough)
+            return true;
+    }
+    memcpy(at, settling->middle, 3 * sizeof *at);
+    *value = settling->missed;
+    settle(field, settling, at, value);
+    return fabs(*value) < enough;
+}
+
+double most_off(const MeshField *field, const double at[3], const double *const *others,
+                size_t count)
+{
+    double middles[MOST_FIELD_POINTS][3], values[MOST_FIELD_POINTS], most = 0;
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            middles[i][k] = 0.5 * (at[k] + others[i][k]);
+    field_distances(field, (const double(*)[3])middles, count, values);
+    for (size_t i = 0; i < count; i++)
+        most = max2(most, fabs(values[i]));
+    return most;
+}
