@@ -59,15 +59,18 @@ static int solid_of_faces(Finding *f, const FieldFaces *faces, double factor, do
 
 /* ---- conditions ---- */
 
-/* Where the first number is below the second one. */
+/* Where the first number is below the second one.  How far lengths around it are off says nothing of where that is. */
 static int solid_of_less(Finding *f, uint32_t first, uint32_t second)
 {
     Form a = form_of_operand(f, first), b = form_of_operand(f, second),
-         difference = form_sum(a, -1, &b);
-    bool chooses    = f->chooses;
-    f->chooses      = true;
-    int solid       = flat_solid(f, &difference);
-    f->chooses      = chooses;
+         difference   = form_sum(a, -1, &b);
+    bool      chooses = f->chooses;
+    FlatSlack slack   = f->slack;
+    f->chooses        = true;
+    f->slack          = (FlatSlack){0, 0};
+    int solid         = flat_solid(f, &difference);
+    f->chooses        = chooses;
+    f->slack          = slack;
     return solid;
 }
 
