@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_AROUND_H
 #define KRS_MESH_AROUND_H
 
-#include "mesh/tets.h"
+#include "mesh/contour/tets.h"
 
 /* What a point of the tetrahedra knows of those that have it: smooth.h. */
 typedef struct Around {

@@ -14,7 +14,7 @@
 #include "compiler/base/parallel.h"
 #include "compiler/base/vec.h"
 #include "compiler/field/steps.h"
-#include "mesh/numbering.h"
+#include "mesh/common/numbering.h"
 
 enum { MOST_ROUNDS = 64, PROBES = 64, HALVINGS = 45 };
 /* In errors: how far points are apart, if that is enough, and from edges, where the mesh may belong to the neighbour; how near to a vertex an

@@ -10,7 +10,7 @@
 
 #include "compiler/base/vec.h"
 #include "mesh/bounds.h"
-#include "mesh/weights.h"
+#include "mesh/contour/weights.h"
 
 enum { PROBES = 5, STEPS = 3 };
 /* Parts of the error: a point that is so near to 0 is on the surface; triangles are off by more if they are farther from it;

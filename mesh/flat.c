@@ -9,7 +9,7 @@
 #include "mesh/flat.h"
 
 #include "compiler/base/vec.h"
-#include "mesh/crossing.h"
+#include "mesh/common/crossing.h"
 #include "mesh/flat_near.h"
 
 enum {

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "mesh/numbering.h"
+#include "mesh/common/numbering.h"
 
 /* Edges of triangles: edge 3 t + k is from corner k of triangle t to the next. */
 typedef struct Edges {

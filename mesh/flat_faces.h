@@ -13,8 +13,8 @@
 #ifndef KRS_MESH_FLAT_FACES_H
 #define KRS_MESH_FLAT_FACES_H
 
+#include "mesh/common/numbering.h"
 #include "mesh/flat_pieces.h"
-#include "mesh/numbering.h"
 #include "mesh/polygons.h"
 
 typedef struct FlatPlane {

@@ -9,7 +9,7 @@
 #define KRS_MESH_FLAT_ROUNDS_H
 
 #include "compiler/graph/lanes/lanes.h"
-#include "mesh/numbering.h"
+#include "mesh/common/numbering.h"
 
 typedef struct FlatRound {
     double   radius; /* of curves: how much of the scene a length of their plane is */

@@ -5,7 +5,7 @@
 
 #include "compiler/base/vec.h"
 #include "compiler/field/bvh.h"
-#include "mesh/numbering.h"
+#include "mesh/common/numbering.h"
 
 /* ---- vertices at one place ---- */
 

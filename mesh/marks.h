@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_MARKS_H
 #define KRS_MESH_MARKS_H
 
-#include "mesh/tets.h"
+#include "mesh/contour/tets.h"
 
 enum { MARKS = 512, MARKS_IN_WORD = 64 }; /* cells along a side */
 

@@ -5,10 +5,10 @@
 
 #include "compiler/scene/program.h"
 #include "mesh/borders.h"
+#include "mesh/contour/handles.h"
+#include "mesh/contour/voids.h"
 #include "mesh/flat.h"
-#include "mesh/handles.h"
 #include "mesh/mesh.h"
-#include "mesh/voids.h"
 
 static const double DEFAULT_ERROR = 1.0 / 200, LEAST_ERROR = 1.0 / 500000;
 static const double CUBE_SIDE = 1.0973; /* in longest sides of the box */

@@ -7,7 +7,7 @@
 #include <stdatomic.h>
 
 #include "compiler/base/parallel.h"
-#include "mesh/groups.h"
+#include "mesh/contour/groups.h"
 #include "mesh/marks.h"
 #include "mesh/verify.h"
 

@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_NEAR_H
 #define KRS_MESH_NEAR_H
 
-#include "mesh/crossing.h"
+#include "mesh/common/crossing.h"
 
 #define NO_TRIANGLE UINT32_MAX
 

@@ -13,8 +13,8 @@
 #include "compiler/base/vec.h"
 #include "krs/krs.h"
 #include "mesh/collapse.h"
+#include "mesh/common/numbering.h"
 #include "mesh/near.h"
-#include "mesh/numbering.h"
 #include "mesh/slivers.h"
 
 enum { MOST_TRIALS = 14 };

@@ -6,7 +6,7 @@
 
 #include "compiler/field/bvh.h"
 #include "mesh/around.h"
-#include "mesh/contour.h"
+#include "mesh/contour/contour.h"
 
 /* For one thread. */
 typedef struct Verifier {

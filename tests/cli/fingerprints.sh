@@ -43,7 +43,7 @@ decides compiler/library/std/trees.krs "checkpoint film"
 decides runtime/shaders/bsdf.glsl "checkpoint film"
 decides runtime/film/saved.c "checkpoint film"
 decides cli/picture/checkpoint.c "checkpoint"
-for file in cli/mesh.c mesh/contour.c compiler/base/diag.def live/viewer.c runtime/writer/png.c; do
+for file in cli/mesh.c mesh/contour/contour.c compiler/base/diag.def live/viewer.c runtime/writer/png.c; do
     [ ! -e "tree/$file" ] || [ -z "$(changed_by "$file")" ] || echo "$file"
 done >deciding
 [ ! -s deciding ]

@@ -11,7 +11,7 @@
 
 #include "compiler/base/vec.h"
 #include "mesh/collapse.h"
-#include "mesh/crossing.h"
+#include "mesh/common/crossing.h"
 #include "mesh/fans.h"
 #include "tests/support/random.h"
 

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "mesh/handles.h"
+#include "mesh/contour/handles.h"
 
 enum { AROUND = 60, ACROSS = 24 };
 

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "mesh/tets.h"
+#include "mesh/contour/tets.h"
 #include "tests/support/random.h"
 
 static Random chance = {71};

@@ -4,12 +4,12 @@
  * Of F triangles that hang together by I inner edges and C vertices that have all their triangles among them, it is F - I + C,
  * if a vertex that they touch from several sides counts once for each.  It is 1 of a disc, and less where there is a ring.
  */
-#include "mesh/handles.h"
+#include "mesh/contour/handles.h"
 
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "mesh/crossing.h"
+#include "mesh/common/crossing.h"
 
 typedef struct Handles {
     const Contour *contour;

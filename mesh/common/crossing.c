@@ -4,7 +4,7 @@
  * Two triangles are apart if some direction separates them: a normal, a product of an edge of each, or, where both
  * are in a plane, what is across an edge (the separating axis theorem).
  */
-#include "mesh/crossing.h"
+#include "mesh/common/crossing.h"
 
 #include <string.h>
 

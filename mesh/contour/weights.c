@@ -1,5 +1,5 @@
 /* weights.c: weights of the corners of a triangle or a tetrahedron in a point. */
-#include "mesh/weights.h"
+#include "mesh/contour/weights.h"
 
 #include "compiler/base/vec.h"
 

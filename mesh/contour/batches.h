@@ -7,7 +7,7 @@
 #define KRS_MESH_BATCHES_H
 
 #include "compiler/field/field.h"
-#include "mesh/groups.h"
+#include "mesh/contour/groups.h"
 
 /* What is done: `find` for up to MOST_FIELD_POINTS of them, which have a box around each that holds all points
    where it asks the field, but for `margin`; it asks `questions` times for each. */

@@ -1,7 +1,7 @@
 /* contour_mesh.c: the triangles of all patches. */
 #include <string.h>
 
-#include "mesh/contour.h"
+#include "mesh/contour/contour.h"
 
 /* Patches in the order of their tetrahedra, without those of tetrahedra that are no more. */
 static void arrange_patches(Contour *contour)

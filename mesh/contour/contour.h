@@ -12,8 +12,8 @@
 #define KRS_MESH_CONTOUR_H
 
 #include "compiler/field/field.h"
-#include "mesh/groups.h"
-#include "mesh/tets.h"
+#include "mesh/contour/groups.h"
+#include "mesh/contour/tets.h"
 
 /* A vertex on an edge of the tetrahedra. */
 typedef struct Crossing {

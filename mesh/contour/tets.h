@@ -10,7 +10,7 @@
 #ifndef KRS_MESH_TETS_H
 #define KRS_MESH_TETS_H
 
-#include "mesh/numbering.h"
+#include "mesh/common/numbering.h"
 
 /* The side of the cube in whole steps. */
 #define CUBE_STEPS ((uint32_t)1 << 20)

@@ -1,5 +1,5 @@
 /* groups.c: things are sorted by the cell that they are in. */
-#include "mesh/groups.h"
+#include "mesh/contour/groups.h"
 
 #include <math.h>
 #include <string.h>

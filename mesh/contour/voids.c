@@ -1,5 +1,5 @@
 /* voids.c: connected parts of the mesh, and those that are dropped. */
-#include "mesh/voids.h"
+#include "mesh/contour/voids.h"
 
 #include <string.h>
 

@@ -1,14 +1,14 @@
 /* contour.c: vertices on edges, in faces and inside, and the triangles between them. */
-#include "mesh/contour.h"
+#include "mesh/contour/contour.h"
 
 #include <string.h>
 
 #include "compiler/base/vec.h"
 #include "compiler/field/roots.h"
-#include "mesh/batches.h"
-#include "mesh/quadric.h"
-#include "mesh/settle.h"
-#include "mesh/weights.h"
+#include "mesh/contour/batches.h"
+#include "mesh/contour/quadric.h"
+#include "mesh/contour/settle.h"
+#include "mesh/contour/weights.h"
 
 /* Part of an edge at its ends where no vertex is, so that vertices of other edges are elsewhere. */
 static const double END_OF_EDGE = 1e-4;

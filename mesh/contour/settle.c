@@ -1,10 +1,10 @@
 /* settle.c: vertices of faces and tetrahedra go to the surface. */
-#include "mesh/settle.h"
+#include "mesh/contour/settle.h"
 
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "mesh/weights.h"
+#include "mesh/contour/weights.h"
 
 static void settling_weights(const Settling *settling, const double point[3], double weights[4])
 {

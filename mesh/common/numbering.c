@@ -1,5 +1,5 @@
 /* numbering.c: a hash table of numbers. */
-#include "mesh/numbering.h"
+#include "mesh/common/numbering.h"
 
 #include <string.h>
 

@@ -7,7 +7,7 @@
 #ifndef KRS_MESH_VOIDS_H
 #define KRS_MESH_VOIDS_H
 
-#include "mesh/contour.h"
+#include "mesh/contour/contour.h"
 
 /* Drops parts of the mesh that enclose what is outside, are thinner than the error and nowhere longer than twice
    of it.  Returns how many; `at` is a place of the first. */

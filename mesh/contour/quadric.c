@@ -1,5 +1,5 @@
 /* quadric.c: least squares in three unknowns, by the eigenvectors of the normal equations. */
-#include "mesh/quadric.h"
+#include "mesh/contour/quadric.h"
 
 #include <string.h>
 

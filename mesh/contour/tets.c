@@ -1,5 +1,5 @@
 /* tets.c: bisection of tetrahedra, and its closure. */
-#include "mesh/tets.h"
+#include "mesh/contour/tets.h"
 
 #include <string.h>
 

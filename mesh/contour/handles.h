@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_HANDLES_H
 #define KRS_MESH_HANDLES_H
 
-#include "mesh/contour.h"
+#include "mesh/contour/contour.h"
 
 /* Counts the places of a closed mesh where the connected part within the radius of a vertex is no disc, but goes around a rod or
    through a hole.  One that fits into half of the radius is not missed.  `at`: the first place; unchanged where there is none. */

@@ -1,5 +1,5 @@
 /* batches.c: things are computed by groups. */
-#include "mesh/batches.h"
+#include "mesh/contour/batches.h"
 
 #include "compiler/base/parallel.h"
 
