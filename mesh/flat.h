@@ -5,7 +5,7 @@
 #define KRS_MESH_FLAT_H
 
 #include "mesh/flat_faces.h"
-#include "mesh/mesher.h"
+#include "mesh/proof/mesher.h"
 
 /* False: something in it is not flat, or is too fine; nothing is known. */
 bool find_flat_mesh(Mesher *m, FlatVertices *vertices, Triangles *triangles);

@@ -5,7 +5,7 @@
 #define KRS_MESH_FLAT_NEAR_H
 
 #include "mesh/flat_proof.h"
-#include "mesh/mesher.h"
+#include "mesh/proof/mesher.h"
 
 /* In an array: boxes in which planes stand for what is round. */
 typedef struct FlatBoxes {

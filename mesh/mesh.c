@@ -9,6 +9,7 @@
 #include "mesh/contour/voids.h"
 #include "mesh/flat.h"
 #include "mesh/mesh.h"
+#include "mesh/rounds.h"
 
 static const double DEFAULT_ERROR = 1.0 / 200, LEAST_ERROR = 1.0 / 500000;
 static const double CUBE_SIDE = 1.0973; /* in longest sides of the box */

@@ -7,11 +7,13 @@
  * is bisected and proven first.  When nothing is refuted any more, proofs that have become stale are
  * found again.
  */
+#include "mesh/rounds.h"
+
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "mesh/bounds.h"
-#include "mesh/draft.h"
+#include "mesh/proof/bounds.h"
+#include "mesh/proof/draft.h"
 
 enum { PATIENCE = 16 }; /* groups between two questions */
 /* The cube's corner is nowhere in particular, so that planes of the scene seldom have points of the

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "compiler/base/vec.h"
-#include "mesh/around.h"
+#include "mesh/proof/around.h"
 #include "tests/support/random.h"
 
 static Random chance = {29};

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "mesh/smooth.h"
+#include "mesh/proof/smooth.h"
 
 enum { TIMES = 300, STEPS = 60 };
 

@@ -11,7 +11,7 @@
 
 #include "compiler/base/vec.h"
 #include "compiler/scene/program.h"
-#include "mesh/smooth.h"
+#include "mesh/proof/smooth.h"
 #include "tests/support/random.h"
 
 enum { BOXES = 400, POINTS = 32 };

@@ -10,7 +10,8 @@
 #include <cmocka.h>
 
 #include "compiler/scene/program.h"
-#include "mesh/bounds.h"
+#include "mesh/proof/bounds.h"
+#include "mesh/rounds.h"
 #include "tests/support/random.h"
 
 static Random chance = {11};

@@ -17,7 +17,7 @@
 
 #include "compiler/base/parallel.h"
 #include "compiler/base/vec.h"
-#include "mesh/pieces.h"
+#include "mesh/proof/pieces.h"
 #include "tests/unit/closed_forms.h"
 
 static Random chance = {2026};

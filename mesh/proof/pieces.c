@@ -1,5 +1,5 @@
 /* pieces.c: how far inside and outside of the mesh are from those of the surface, where it has edges. */
-#include "mesh/pieces.h"
+#include "mesh/proof/pieces.h"
 
 #include <string.h>
 

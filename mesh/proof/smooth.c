@@ -1,5 +1,5 @@
 /* smooth.c: how far inside and outside of the mesh are from those of the surface, in one tetrahedron. */
-#include "mesh/smooth.h"
+#include "mesh/proof/smooth.h"
 
 #include <string.h>
 

@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_VERIFY_H
 #define KRS_MESH_VERIFY_H
 
-#include "mesh/verifier.h"
+#include "mesh/proof/verifier.h"
 
 /* Whether, within a tetrahedron, each point of the surface is within the error of the mesh, and each
    point of its triangles within the error of the surface. */

@@ -1,11 +1,11 @@
 /* bounds.c: tetrahedra in cells of a grid, each of which is bounded once. */
-#include "mesh/bounds.h"
+#include "mesh/proof/bounds.h"
 
 #include <stdlib.h>
 
 #include "compiler/base/minmax.h"
-#include "mesh/pieces.h"
-#include "mesh/smooth.h"
+#include "mesh/proof/pieces.h"
+#include "mesh/proof/smooth.h"
 
 /* The rest of the error is for rounding: files may have single precision. */
 static const double PROVEN_ERROR = 0.999;

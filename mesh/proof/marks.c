@@ -1,5 +1,5 @@
 /* marks.c: a grid of bits, with words along z. */
-#include "mesh/marks.h"
+#include "mesh/proof/marks.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_BOUNDS_H
 #define KRS_MESH_BOUNDS_H
 
-#include "mesh/mesher.h"
+#include "mesh/proof/mesher.h"
 
 double proven_error(const Mesher *m);
 void   tet_box(const Mesher *m, const Tet *tet, double low[3], double high[3]);

@@ -8,8 +8,8 @@
 
 #include "compiler/base/parallel.h"
 #include "mesh/contour/groups.h"
-#include "mesh/marks.h"
-#include "mesh/verify.h"
+#include "mesh/proof/marks.h"
+#include "mesh/proof/verify.h"
 
 typedef struct Mesher {
     Memory                memory;
@@ -40,8 +40,5 @@ typedef struct Mesher {
     double        looked;      /* tetrahedra that were looked at by bounds */
     atomic_bool   stopped;
 } Mesher;
-
-/* Finds the mesh within the box of the mesher, whose fields are open; false: it was stopped. */
-bool find_proven_mesh(Mesher *m);
 
 #endif

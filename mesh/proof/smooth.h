@@ -12,7 +12,7 @@
 #define KRS_MESH_SMOOTH_H
 
 #include "compiler/field/gradient.h"
-#include "mesh/verifier.h"
+#include "mesh/proof/verifier.h"
 
 /* What is known of a box: d^T (second derivatives) d is at most d^T above d, and at least -d^T below d, for all d; and along
    some direction the value grows by `slope` at least.  After a closer look forms are those of the box without its margin, and

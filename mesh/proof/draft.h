@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_DRAFT_H
 #define KRS_MESH_DRAFT_H
 
-#include "mesh/mesher.h"
+#include "mesh/proof/mesher.h"
 
 /* Finds the states of a group that is new, by points alone: they are right where features are larger than some errors, and
    nothing proves it. */

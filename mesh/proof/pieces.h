@@ -9,7 +9,7 @@
 #ifndef KRS_MESH_PIECES_H
 #define KRS_MESH_PIECES_H
 
-#include "mesh/smooth.h"
+#include "mesh/proof/smooth.h"
 
 typedef struct PieceCell {
     bool        known;

@@ -8,14 +8,14 @@
  * surface is in a thin lens.  Derivatives tell that; where they have no bounds, a large ball outside and
  * one inside that nearly touch leave a lens between them.
  */
-#include "mesh/verify.h"
+#include "mesh/proof/verify.h"
 
 #include <string.h>
 
 #include "compiler/base/vec.h"
 #include "compiler/field/gradient.h"
-#include "mesh/lens.h"
-#include "mesh/marks.h"
+#include "mesh/proof/lens.h"
+#include "mesh/proof/marks.h"
 
 enum { MOST_UNRESOLVED = 16, MOST_HALVINGS = 80 };
 /* Parts of a cell's radius from where on a lens is worth another try: the last was too thick; or the surface had

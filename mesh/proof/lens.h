@@ -5,7 +5,7 @@
 #define KRS_MESH_LENS_H
 
 #include "compiler/field/gradient.h"
-#include "mesh/verifier.h"
+#include "mesh/proof/verifier.h"
 
 /* For what rounding may take from a proof. */
 #define ROUNDING (1 + 1e-9)

@@ -1,5 +1,5 @@
 /* lens.c: thin parts of space that have the surface in them. */
-#include "mesh/lens.h"
+#include "mesh/proof/lens.h"
 
 #include <string.h>
 

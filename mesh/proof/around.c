@@ -7,7 +7,7 @@
  * is 0 where none has one, and along a way it falls by no more than its length over the least width.  So where it is
  * more than that in the beginning, the way ends where there are bounds.
  */
-#include "mesh/around.h"
+#include "mesh/proof/around.h"
 
 #include <string.h>
 

@@ -4,13 +4,13 @@
  * From some points in a tetrahedron one goes along the gradient to the surface.  If the surface there is in the
  * tetrahedron, its triangles must be near; if it has none, something was missed.
  */
-#include "mesh/draft.h"
+#include "mesh/proof/draft.h"
 
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "mesh/bounds.h"
 #include "mesh/contour/weights.h"
+#include "mesh/proof/bounds.h"
 
 enum { PROBES = 5, STEPS = 3 };
 /* Parts of the error: a point that is so near to 0 is on the surface; triangles are off by more if they are farther from it;

@@ -5,8 +5,8 @@
 #define KRS_MESH_VERIFIER_H
 
 #include "compiler/field/bvh.h"
-#include "mesh/around.h"
 #include "mesh/contour/contour.h"
+#include "mesh/proof/around.h"
 
 /* For one thread. */
 typedef struct Verifier {
