@@ -7,7 +7,7 @@
 #include "mesh/borders.h"
 #include "mesh/contour/handles.h"
 #include "mesh/contour/voids.h"
-#include "mesh/flat.h"
+#include "mesh/flat/flat.h"
 #include "mesh/mesh.h"
 #include "mesh/rounds.h"
 

@@ -15,7 +15,7 @@
 #include <cmocka.h>
 
 #include "compiler/base/vec.h"
-#include "mesh/flat_proof.h"
+#include "mesh/flat/flat_proof.h"
 #include "tests/support/random.h"
 
 static const double ERROR = 1, HALF = 0.1;

@@ -1,13 +1,13 @@
 /* flat_faces.c: polygons of planes in boxes, and the edges between them. */
-#include "mesh/flat_faces.h"
+#include "mesh/flat/flat_faces.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "compiler/base/minmax.h"
 #include "compiler/base/vec.h"
-#include "mesh/flat_apart.h"
-#include "mesh/flat_touches.h"
+#include "mesh/flat/flat_apart.h"
+#include "mesh/flat/flat_touches.h"
 
 #define WALL UINT32_MAX
 

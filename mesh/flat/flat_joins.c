@@ -1,5 +1,5 @@
 /* flat_joins.c: half-spaces and how they are joined, without what makes no difference. */
-#include "mesh/flat_joins.h"
+#include "mesh/flat/flat_joins.h"
 
 #include "compiler/base/vec.h"
 

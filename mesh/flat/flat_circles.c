@@ -1,7 +1,7 @@
 /*
  * flat_circles.c: lengths of pairs and triples, as the sides of polygons.
  */
-#include "mesh/flat_circles.h"
+#include "mesh/flat/flat_circles.h"
 
 #include "compiler/base/vec.h"
 

@@ -1,7 +1,7 @@
 /*
  * flat_forms.c: linear steps of a lane tape, as sums of coordinates and kinks.
  */
-#include "mesh/flat_forms.h"
+#include "mesh/flat/flat_forms.h"
 
 #include "compiler/base/vec.h"
 

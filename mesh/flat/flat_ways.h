@@ -5,7 +5,7 @@
 #define KRS_MESH_FLAT_WAYS_H
 
 #include "compiler/field/field.h"
-#include "mesh/flat_planes.h"
+#include "mesh/flat/flat_planes.h"
 
 /* A half-space, or its complement, from the places of a box. */
 typedef struct FlatGrowth {

@@ -6,11 +6,11 @@
  * each triangle is looked at once: the surface must be in its middle, or within the error of it.  Solids
  * that are made of other things are given up as soon as some boxes have been looked at.
  */
-#include "mesh/flat.h"
+#include "mesh/flat/flat.h"
 
 #include "compiler/base/vec.h"
 #include "mesh/common/crossing.h"
-#include "mesh/flat_near.h"
+#include "mesh/flat/flat_near.h"
 
 enum {
     MOST_BOXES          = 400000,

@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_FLAT_APART_H
 #define KRS_MESH_FLAT_APART_H
 
-#include "mesh/polygons.h"
+#include "mesh/flat/polygons.h"
 
 /* Has each edge in two triangles, once in each direction: where it is in more, those belong together that have the
    solid between them.  There, and where only corners meet, vertices are double.  False: the triangles are not closed. */

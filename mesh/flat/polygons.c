@@ -3,7 +3,7 @@
  *
  * A hole is joined to what is around it by a line that is walked in both directions (Eberly, "Triangulation by ear clipping", 2002).
  */
-#include "mesh/polygons.h"
+#include "mesh/flat/polygons.h"
 
 #include <math.h>
 #include <string.h>

@@ -7,7 +7,7 @@
 #ifndef KRS_MESH_FLAT_TOUCHES_H
 #define KRS_MESH_FLAT_TOUCHES_H
 
-#include "mesh/polygons.h"
+#include "mesh/flat/polygons.h"
 
 /* A vertex on an edge. */
 typedef struct FlatTouch {

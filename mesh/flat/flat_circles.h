@@ -5,7 +5,7 @@
 #ifndef KRS_MESH_FLAT_CIRCLES_H
 #define KRS_MESH_FLAT_CIRCLES_H
 
-#include "mesh/flat_joins.h"
+#include "mesh/flat/flat_joins.h"
 
 /* Where rest + factor length is below 0. */
 int flat_solid_of_length(Finding *f, const Form *rest, double factor, const LaneStep *step);

@@ -9,8 +9,8 @@
 #define KRS_MESH_FLAT_PIECES_H
 
 #include "compiler/field/field.h"
-#include "mesh/flat_planes.h"
-#include "mesh/flat_rounds.h"
+#include "mesh/flat/flat_planes.h"
+#include "mesh/flat/flat_rounds.h"
 
 /* Room for what is found of steps; for one thread. */
 typedef struct FlatWork {

@@ -1,5 +1,5 @@
 /* flat_ways.c: the shortest way, by quadratic programming in three dimensions. */
-#include "mesh/flat_ways.h"
+#include "mesh/flat/flat_ways.h"
 
 #include <string.h>
 

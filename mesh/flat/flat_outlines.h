@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_FLAT_OUTLINES_H
 #define KRS_MESH_FLAT_OUTLINES_H
 
-#include "mesh/flat_joins.h"
+#include "mesh/flat/flat_joins.h"
 
 /* Where the distance to an outline, a step that is a call, is below 0. */
 int flat_solid_of_outline(Finding *f, uint32_t value);

@@ -1,5 +1,5 @@
 /* flat_near.c: boxes are halved until there is a proof in each. */
-#include "mesh/flat_near.h"
+#include "mesh/flat/flat_near.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* flat_apart.c: each edge finds the one that goes back along it, and each vertex the triangles around it. */
-#include "mesh/flat_apart.h"
+#include "mesh/flat/flat_apart.h"
 
 #include <string.h>
 

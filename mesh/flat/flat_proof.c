@@ -4,12 +4,12 @@
  * Let each be off by no more than its slack.  A solid is made of them by intersections and unions alone, so if each
  * that is entered at one end of a way, slack and all, is also entered at the other, so is the solid.
  */
-#include "mesh/flat_proof.h"
+#include "mesh/flat/flat_proof.h"
 
 #include <string.h>
 
 #include "compiler/base/minmax.h"
-#include "mesh/flat_ways.h"
+#include "mesh/flat/flat_ways.h"
 
 /* What is looked at: a box, ways that are so long at most, and a part of the slack, but where that is less than the least. */
 typedef struct Proof {

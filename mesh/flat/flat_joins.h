@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_FLAT_JOINS_H
 #define KRS_MESH_FLAT_JOINS_H
 
-#include "mesh/flat_forms.h"
+#include "mesh/flat/flat_forms.h"
 
 int flat_node(Finding *f, FlatNode node);
 /* Leave out what makes no difference: faces of parts within others, and where parts touch. */

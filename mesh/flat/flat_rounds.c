@@ -1,5 +1,5 @@
 /* flat_rounds.c: how many sides the polygons have that stand for circles. */
-#include "mesh/flat_rounds.h"
+#include "mesh/flat/flat_rounds.h"
 
 #include <math.h>
 

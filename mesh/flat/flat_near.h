@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_FLAT_NEAR_H
 #define KRS_MESH_FLAT_NEAR_H
 
-#include "mesh/flat_proof.h"
+#include "mesh/flat/flat_proof.h"
 #include "mesh/proof/mesher.h"
 
 /* In an array: boxes in which planes stand for what is round. */

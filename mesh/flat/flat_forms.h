@@ -8,8 +8,8 @@
 #define KRS_MESH_FLAT_FORMS_H
 
 #include "compiler/field/field.h"
-#include "mesh/flat_planes.h"
-#include "mesh/flat_rounds.h"
+#include "mesh/flat/flat_planes.h"
+#include "mesh/flat/flat_rounds.h"
 
 enum { MOST_KINKS = 6 };
 

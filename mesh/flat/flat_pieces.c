@@ -7,11 +7,11 @@
  * One thing is taken for granted and not proven: that a distance to a box is 0 or less where none of its faces is above 0.  So
  * who uses the half-spaces looks whether the surface is on the faces that come out (flat.c: is_on_surface).
  */
-#include "mesh/flat_pieces.h"
+#include "mesh/flat/flat_pieces.h"
 
 #include "compiler/base/vec.h"
-#include "mesh/flat_circles.h"
-#include "mesh/flat_outlines.h"
+#include "mesh/flat/flat_circles.h"
+#include "mesh/flat/flat_outlines.h"
 
 enum { UNKNOWN = -3 };
 

@@ -4,12 +4,12 @@
  * A chord is on the curve with both its ends.  The chords of a box make a chain, or a few of a thin part or of both sides of a gap,
  * or the box is halved.
  */
-#include "mesh/flat_outlines.h"
+#include "mesh/flat/flat_outlines.h"
 
 #include "compiler/base/vec.h"
 #include "compiler/graph/crowd.h"
 #include "compiler/graph/lanes/lane_outlines.h"
-#include "mesh/flat_circles.h"
+#include "mesh/flat/flat_circles.h"
 
 enum { MOST_CHORDS = 8 };
 

@@ -14,8 +14,8 @@
 #define KRS_MESH_FLAT_FACES_H
 
 #include "mesh/common/numbering.h"
-#include "mesh/flat_pieces.h"
-#include "mesh/polygons.h"
+#include "mesh/flat/flat_pieces.h"
+#include "mesh/flat/polygons.h"
 
 typedef struct FlatPlane {
     HalfSpace exact;

@@ -17,7 +17,7 @@
 #ifndef KRS_MESH_FLAT_PROOF_H
 #define KRS_MESH_FLAT_PROOF_H
 
-#include "mesh/flat_pieces.h"
+#include "mesh/flat/flat_pieces.h"
 
 typedef enum FlatNearness {
     FLAT_NEAR,   /* faces and surface are within the error of each other */

@@ -1,5 +1,5 @@
 /* flat_touches.c: vertices in a grid of cells, edges in a tree of boxes. */
-#include "mesh/flat_touches.h"
+#include "mesh/flat/flat_touches.h"
 
 #include <string.h>
 
