@@ -43,7 +43,7 @@ COMPILER := $(filter-out %_avx2.c %_avx512.c,$(COMPILER))
 LANES    := $(filter-out %_avx2.c %_avx512.c,$(LANES))
 endif
 # Clients of what is compiled: no part of the compiler.
-CLIENTS  := $(foreach room,mesh/common mesh/contour mesh/proof mesh/flat mesh,$(call sources,$(room)))
+CLIENTS  := $(foreach room,mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh,$(call sources,$(room)))
 TARGET   := $(call sources,compiler/target)
 BORDER   := compiler/target/glslang_border.cpp
 RUNTIME  := $(foreach room,device tracer integrators film display writer,$(call sources,runtime/$(room)))

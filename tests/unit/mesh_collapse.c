@@ -10,9 +10,9 @@
 #include <cmocka.h>
 
 #include "compiler/base/vec.h"
-#include "mesh/collapse.h"
 #include "mesh/common/crossing.h"
-#include "mesh/fans.h"
+#include "mesh/simplify/collapse.h"
+#include "mesh/simplify/fans.h"
 #include "tests/support/random.h"
 
 enum { AROUND = 24, COUNT = AROUND * AROUND, TRIANGLES = 2 * COUNT };

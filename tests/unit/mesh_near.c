@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "compiler/base/vec.h"
-#include "mesh/near.h"
+#include "mesh/simplify/near.h"
 #include "tests/support/random.h"
 
 enum { SIDE = 24, ROWS = SIDE + 1, BELOW = ROWS * ROWS };

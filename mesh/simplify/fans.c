@@ -5,7 +5,7 @@
  * these are apart is linear where a triangle of one and a triangle of the other are above each other.  So it is greatest at
  * corners of such parts: at the vertex, or where an inner edge of one goes over an inner edge of the other.
  */
-#include "mesh/fans.h"
+#include "mesh/simplify/fans.h"
 
 #include <stdbool.h>
 #include <string.h>

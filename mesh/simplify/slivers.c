@@ -1,5 +1,5 @@
 /* slivers.c: edges are flipped where a triangle has no area, as along straight edges that were simplified. */
-#include "mesh/slivers.h"
+#include "mesh/simplify/slivers.h"
 
 #include <string.h>
 

@@ -13,7 +13,7 @@
  * error of a mesh if its corners are within it of the same triangle of that mesh, since that is convex; if they
  * are not, it is cut into four.
  */
-#include "mesh/near.h"
+#include "mesh/simplify/near.h"
 
 #include <string.h>
 

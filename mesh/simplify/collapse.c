@@ -2,13 +2,13 @@
  * collapse.c: edges are collapsed in the order of what that costs, by the sum of squared distances to planes (Garland and
  * Heckbert 1997).
  */
-#include "mesh/collapse.h"
+#include "mesh/simplify/collapse.h"
 
 #include <string.h>
 
 #include "compiler/base/vec.h"
 #include "compiler/field/bvh.h"
-#include "mesh/fans.h"
+#include "mesh/simplify/fans.h"
 
 enum { MOST_STAR = 48, PATIENCE = 32 };
 #define NO_VERTEX UINT32_MAX

@@ -12,10 +12,10 @@
 #include "compiler/base/parallel.h"
 #include "compiler/base/vec.h"
 #include "krs/krs.h"
-#include "mesh/collapse.h"
 #include "mesh/common/numbering.h"
-#include "mesh/near.h"
-#include "mesh/slivers.h"
+#include "mesh/simplify/collapse.h"
+#include "mesh/simplify/near.h"
+#include "mesh/simplify/slivers.h"
 
 enum { MOST_TRIALS = 14 };
 /* Of meshoptimizer's proposals, those with more faults are given up: some, and a part of their triangles. */
