@@ -47,7 +47,7 @@ static bool has_slope(const LaneSlope *slope)
     return true;
 }
 
-/* A sum of operands times weights; what all weights are 0 for counts as no operand. */
+/* A sum of operands times weights.  Those whose weight is 0 are left out. */
 typedef struct Sum {
     uint32_t operands[PIECE_VALUES];
     double   weights[PIECE_VALUES];
