@@ -33,7 +33,7 @@ DEVICE  ?= $(KRS_DEVICE)
 JOBS    ?= $(shell nproc)
 
 # Sources by folder, in the order of the pipeline: reading down this list is reading the program.
-ROOMS    := base image outline graph graph/bounds graph/lanes graph/rewrite graph/symbolic graph/instances shape lower family front eval eval/declared eval/view eval/data eval/hulls eval/builtins print print/glsl target scene passes refute field slice grid measure
+ROOMS    := base image outline graph graph/bounds graph/lanes graph/rewrite graph/symbolic graph/instances shape lower family front eval eval/declared eval/view eval/data eval/hulls eval/builtins print print/glsl target scene passes refute field
 sources   = $(sort $(wildcard $(1)/*.c))
 COMPILER := $(foreach room,$(ROOMS),$(call sources,compiler/$(room)))
 # Points side by side, once for each instruction set.
@@ -42,8 +42,8 @@ ifneq ($(firstword $(subst -, ,$(shell $(CC) -dumpmachine))),x86_64)
 COMPILER := $(filter-out %_avx2.c %_avx512.c,$(COMPILER))
 LANES    := $(filter-out %_avx2.c %_avx512.c,$(LANES))
 endif
-# Clients of what is compiled: no part of the compiler.
-CLIENTS  := $(foreach room,mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh,$(call sources,$(room)))
+# Clients of the compiler: it knows nothing of them.
+CLIENTS  := $(foreach room,mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh slice grid measure,$(call sources,$(room)))
 TARGET   := $(call sources,compiler/target)
 BORDER   := compiler/target/glslang_border.cpp
 RUNTIME  := $(foreach room,device tracer integrators film display writer,$(call sources,runtime/$(room)))

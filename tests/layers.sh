@@ -8,8 +8,8 @@
 set -u
 cd "$(dirname "$0")/.." || exit 1
 layers="compiler/base compiler/image compiler/outline compiler/graph compiler/graph/bounds compiler/graph/lanes compiler/graph/rewrite compiler/graph/symbolic compiler/graph/instances compiler/shape compiler/lower compiler/family compiler/front
-        compiler/eval compiler/eval/declared compiler/eval/view compiler/eval/data compiler/eval/hulls compiler/eval/builtins compiler/print compiler/print/glsl compiler/target compiler/scene compiler/passes compiler/refute compiler/field compiler/slice compiler/grid compiler/measure
-        mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh
+        compiler/eval compiler/eval/declared compiler/eval/view compiler/eval/data compiler/eval/hulls compiler/eval/builtins compiler/print compiler/print/glsl compiler/target compiler/scene compiler/passes compiler/refute compiler/field
+        mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh slice grid measure
         runtime/device runtime/shared runtime/tracer runtime/integrators runtime/film runtime/display
         runtime/writer runtime api import/common import/csg import/surfer import/pov import live/text live/pictures live/window live cli/options cli/shell cli/picture cli/mesh cli/grid cli/slice cli"
 public="include/krs/krs.h include/krs/camera.h include/krs/mesh.h include/krs/slice.h include/krs/grid.h

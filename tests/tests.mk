@@ -163,7 +163,7 @@ clang-objects: $(patsubst %.c,$(B)/%.o,$(LANES) $(TARGET) $(RUNTIME) $(API) $(IM
 
 # The front end (lexer, parser, names) and the whole compiler but glslang under libFuzzer.
 HARNESSES   := front_fuzz scene_fuzz
-FUZZED      := $(filter-out $(TARGET), $(COMPILER)) $(CLIENTS)
+FUZZED      := $(filter-out $(TARGET), $(COMPILER))
 fuzz-programs: $(HARNESSES:%=$(B)/tests/fuzz/%)
 $(HARNESSES:%=$(B)/tests/fuzz/%): $(B)/tests/fuzz/%: $(B)/tests/fuzz/%.o \
                                     $(FUZZED:%.c=$(B)/%.o) $(B)/library_files.o \
@@ -185,7 +185,7 @@ layers:
 docs: $(B)/krs
 	@tests/docs.sh
 format:
-	@clang-format -i $$(find api bench cli compiler examples import include live mesh runtime tests -name '*.[ch]' -o -name '*.cpp')
+	@clang-format -i $$(find api bench cli compiler examples grid import include live measure mesh runtime slice tests -name '*.[ch]' -o -name '*.cpp')
 bless: $(B)/krs
 	@tests/errors.sh --bless
 

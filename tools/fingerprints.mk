@@ -11,7 +11,7 @@ KEEPS_cache      := $(call sources_of,compiler/target) runtime/device/kernel.c r
                     runtime/device/cache.c cli/specialize.c
 # The sums of a film's samples: the library, less what only meshes, judges or says something, or writes files.
 KEEPS_film       := $(filter-out compiler/front/format% compiler/front/synonyms% \
-                    compiler/base/diag% include/krs/mesh.h include/krs/slice.h include/krs/grid.h include/krs/measure.h, $(call sources_of,include/krs $(filter-out compiler/refute compiler/field compiler/slice% compiler/grid% compiler/measure% \
+                    compiler/base/diag% include/krs/mesh.h include/krs/slice.h include/krs/grid.h include/krs/measure.h, $(call sources_of,include/krs $(filter-out compiler/refute compiler/field \
                     compiler/base/embed runtime/writer runtime/display, $(call folders_of,compiler runtime))))
 # A picture that has begun: also the layout of the file, and what the command makes of its options.
 KEEPS_checkpoint := $(KEEPS_film) $(wildcard $(addprefix cli/, render.c parse_options.c options/options.* options/choices.[ch] options/values.[ch] \

@@ -119,7 +119,7 @@ try() { # names
 left=""
 for name in "$@"; do
     stated=$(sed -n '1s/^# product files: \([0-9][0-9]*\)$/\1/p' "$(patch_of "$name")")
-    files=$(touched_by "$name" | grep -cE '^(include/|compiler/|mesh/|runtime/|api/|import/|live/|cli/|Makefile$)')
+    files=$(touched_by "$name" | grep -cE '^(include/|compiler/|mesh/|slice/|grid/|measure/|runtime/|api/|import/|live/|cli/|Makefile$)')
     [ "$files" -le "${stated:--1}" ]
     result $? "$name touches $files files of the product, ${stated:-none} at most"
     touched_by "$name" | grep -q '^tests/'
@@ -162,7 +162,7 @@ done
 # ---- what makes it easy ----
 # What is known of operations stands in columns of ops.def.  Lane tapes have some of them once more,
 # to be fast; all others, and new ones, are evaluated by those columns.
-grep -rnE 'case OP_[A-Za-z0-9_]+:' compiler mesh runtime api import live cli --include='*.[ch]' |
+grep -rnE 'case OP_[A-Za-z0-9_]+:' compiler mesh slice grid measure runtime api import live cli --include='*.[ch]' |
     grep -vE '^compiler/graph/lanes/|case OP_(COUNT|COMPONENT):' >"$work/log"
 [ ! -s "$work/log" ]
 result $? "no switch lists operations" "$work/log"

@@ -1,5 +1,5 @@
 /* contours.c: the contours of a section, from chord to chord. */
-#include "compiler/slice/section.h"
+#include "slice/section.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* row.c: bricks that follow each other along x. */
-#include "compiler/grid/grid.h"
+#include "grid/grid.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* plane.c: the distance in a plane. */
-#include "compiler/slice/plane.h"
+#include "slice/plane.h"
 
 #include <string.h>
 

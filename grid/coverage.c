@@ -3,7 +3,7 @@
  * A cube is looked at in 64 parts, and in 26 places around it.  Where the distance is linear inside and outside, each part has that of a
  * flat face at the distance of its middle.  Else parts that the surface may meet are divided in the same way.
  */
-#include "compiler/grid/grid.h"
+#include "grid/grid.h"
 
 #include <string.h>
 

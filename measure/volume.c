@@ -11,8 +11,8 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/measure/cut.h"
-#include "compiler/measure/measure.h"
+#include "measure/cut.h"
+#include "measure/measure.h"
 
 enum {
     ROOT_SIDE  = 8,

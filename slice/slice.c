@@ -5,8 +5,8 @@
 
 #include "compiler/base/parallel.h"
 #include "compiler/base/vec.h"
-#include "compiler/slice/extent.h"
-#include "compiler/slice/section.h"
+#include "slice/extent.h"
+#include "slice/section.h"
 
 static const double DEFAULT_ERROR = 1.0 / 2000, LEAST_ERROR = 1e-7;
 /* Of coordinates: how far roots are known, and by how much solids are thicker, so that faces that touch, and faces in

@@ -1,5 +1,5 @@
 /* samples.c: the samples of a brick. */
-#include "compiler/grid/grid.h"
+#include "grid/grid.h"
 
 #include <string.h>
 

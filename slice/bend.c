@@ -1,5 +1,5 @@
 /* bend.c: chords bent to the outline. */
-#include "compiler/slice/section.h"
+#include "slice/section.h"
 
 #include <string.h>
 

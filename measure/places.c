@@ -7,7 +7,7 @@
 
 #include "compiler/base/vec.h"
 #include "compiler/field/roots.h"
-#include "compiler/measure/measure.h"
+#include "measure/measure.h"
 
 /* About as many places as there are if the mesh has fewer triangles. */
 static const double MOST_PLACES = 20000;

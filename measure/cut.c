@@ -1,5 +1,5 @@
 /* cut.c: a box is six tetrahedra, and each is taken apart by the planes one after the other. */
-#include "compiler/measure/cut.h"
+#include "measure/cut.h"
 
 #include <math.h>
 #include <string.h>

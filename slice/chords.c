@@ -1,5 +1,5 @@
 /* chords.c: where the outline crosses the edges of cells, and how cells join these places. */
-#include "compiler/slice/section.h"
+#include "slice/section.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* fit.c: fewer points of a contour, and arcs. */
-#include "compiler/slice/section.h"
+#include "slice/section.h"
 
 #include <string.h>
 

@@ -16,7 +16,7 @@
 
 #include <stdatomic.h>
 
-#include "compiler/slice/plane.h"
+#include "slice/plane.h"
 
 /* Places of corners of cells are whole numbers below that; the root is a square of that side. */
 enum { DEEPEST = 28, WHOLE_SIDE = 1 << DEEPEST };

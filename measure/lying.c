@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/measure/measure.h"
+#include "measure/measure.h"
 
 enum { MOST_RESTS = 64 };
 /* Faces are level within a degree, and of one height within that part of the size. */

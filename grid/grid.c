@@ -1,5 +1,5 @@
 /* grid.c: krs_grid_new and krs_grid_visit: what is asked for, and what is given back. */
-#include "compiler/grid/grid.h"
+#include "grid/grid.h"
 
 #include <setjmp.h>
 #include <stdatomic.h>
@@ -8,7 +8,7 @@
 
 #include "compiler/base/vec.h"
 #include "compiler/scene/points.h"
-#include "compiler/slice/extent.h"
+#include "slice/extent.h"
 
 /* Cells around what is solid where there is no band. */
 enum { MARGIN = 3 };

@@ -1,5 +1,5 @@
 /* extent.c: where a solid ends, by branch and bound. */
-#include "compiler/slice/extent.h"
+#include "slice/extent.h"
 
 #include <string.h>
 

@@ -1,12 +1,12 @@
 /* measure.c: krs_measure: what is asked for, and what is given back. */
-#include "compiler/measure/measure.h"
+#include "measure/measure.h"
 
 #include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/slice/extent.h"
+#include "slice/extent.h"
 
 enum { MOST_ORIENTATIONS = 72 };
 /* Parts of the work that are done behind the mesh, the volume and the places. */

@@ -1,5 +1,5 @@
 /* tree.c: the cells of a plane that the outline goes through. */
-#include "compiler/slice/section.h"
+#include "slice/section.h"
 
 #include <string.h>
 
