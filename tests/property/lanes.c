@@ -478,29 +478,52 @@ static Node form_node(Graph *g, Form form, Box box)
     }
 }
 
+/* How many graphs of one kind have second derivatives that hold, and of how many half of them would not. */
+typedef struct Held {
+    size_t bounded, halved;
+} Held;
+
+typedef Node MakeNode(Bench *b, const void *kind, Box box);
+
+static Held try_graphs(Bench *b, MakeNode *make, const void *kind, const char *name, int turns)
+{
+    Held held = {0, 0};
+    for (int turn = 0; turn < turns; turn++) {
+        Pair pair = {0};
+        Box  box  = random_box(b);
+        bool known;
+        b->graph = graph_new(&b->arena);
+        for (int i = 0; i < ROOTS; i++)
+            pair.roots[i] = make(b, kind, box);
+        pair_finish(b, &pair, NULL);
+        if (try_slopes(b, &pair, box, box, &known))
+            fail_msg("%s grows faster than its derivatives", name);
+        if (try_hessians(b, &pair, box, box, 1, &known))
+            fail_msg("%s bends more than its second derivatives", name);
+        held.bounded += known;
+        held.halved += try_hessians(b, &pair, box, box, 0.5, &known) > 0;
+    }
+    print_message("# %s: %zu of %d have bounds, %zu are wrong if halved\n", name, held.bounded,
+                  turns, held.halved);
+    return held;
+}
+
+static Node make_form(Bench *b, const void *form, Box box)
+{
+    return form_node(b->graph, *(const Form *)form, box);
+}
+
 static void hessians_of_forms_hold(void **state)
 {
-    Bench *b = *state;
-    for (int form = 0; form < FORMS; form++) {
-        size_t bounded = 0, halved = 0;
-        for (int turn = 0; turn < 40; turn++) {
-            Pair pair = {0};
-            Box  box  = random_box(b);
-            bool known;
-            b->graph = graph_new(&b->arena);
-            for (int i = 0; i < ROOTS; i++)
-                pair.roots[i] = form_node(b->graph, (Form)form, box);
-            pair_finish(b, &pair, NULL);
-            if (try_slopes(b, &pair, box, box, &known))
-                fail_msg("form %d grows faster than its derivatives", form);
-            if (try_hessians(b, &pair, box, box, 1, &known))
-                fail_msg("form %d bends more than its second derivatives", form);
-            bounded += known;
-            halved += try_hessians(b, &pair, box, box, 0.5, &known) > 0;
-        }
-        print_message("# form %d: %zu of 40 have bounds, %zu are wrong if halved\n", form, bounded,
-                      halved);
-        assert_true(bounded >= 20 && halved > 0);
+    static const char *const NAMES[FORMS] = {"a root",           "a length",
+                                             "a length of cuts", "a quadratic blend",
+                                             "a cubic blend",    "an exponential blend",
+                                             "a face",           "a length of one",
+                                             "a quotient",       "a power",
+                                             "a segment"};
+    for (Form form = ROOT; form < FORMS; form++) {
+        Held held = try_graphs(*state, make_form, &form, NAMES[form], 40);
+        assert_true(held.bounded >= 20 && held.halved > 0);
     }
 }
 
@@ -520,10 +543,12 @@ static const Row ROWS_OF_TABLE[] = {
 };
 
 /* Operands wave between 0.1 and 0.9, where all operations are defined; smoothstep goes from one number to another. */
-static Node row_node(Bench *b, const Row *row)
+static Node make_row(Bench *b, const void *kind, Box box)
 {
-    Graph *g = b->graph;
-    Node   operands[MAX_OPERANDS];
+    const Row *row = kind;
+    Graph     *g   = b->graph;
+    (void)box;
+    Node operands[MAX_OPERANDS];
     for (uint32_t k = 0; k < row->arity; k++) {
         Node way    = graph_vec3(g, random_between(&b->random, -2, 2),
                                  random_between(&b->random, -2, 2), random_between(&b->random, -2, 2));
@@ -539,45 +564,17 @@ static Node row_node(Bench *b, const Row *row)
 /* Of every row of ops.def: what it has is right, and where it does not jump it has some. */
 static void hessians_of_rows_hold(void **state)
 {
-    Bench *b = *state;
     for (size_t i = 0; i < sizeof ROWS_OF_TABLE / sizeof *ROWS_OF_TABLE; i++) {
-        const Row *row     = &ROWS_OF_TABLE[i];
-        size_t     bounded = 0, halved = 0;
-        for (int turn = 0; turn < 60; turn++) {
-            Pair pair = {0};
-            Box  box  = random_box(b);
-            bool known;
-            b->graph = graph_new(&b->arena);
-            for (int k = 0; k < ROOTS; k++)
-                pair.roots[k] = row_node(b, row);
-            pair_finish(b, &pair, NULL);
-            if (try_slopes(b, &pair, box, box, &known))
-                fail_msg("%s grows faster than its derivatives", row->name);
-            if (try_hessians(b, &pair, box, box, 1, &known))
-                fail_msg("%s bends more than its second derivatives", row->name);
-            bounded += known;
-            halved += try_hessians(b, &pair, box, box, 0.5, &known) > 0;
-        }
-        print_message("# %s: %zu of 60 have bounds, %zu are wrong if halved\n", row->name, bounded,
-                      halved);
-        assert_true(row->steps || (bounded >= 10 && halved > 0));
+        const Row *row  = &ROWS_OF_TABLE[i];
+        Held       held = try_graphs(*state, make_row, row, row->name, 60);
+        assert_true(row->steps || (held.bounded >= 10 && held.halved > 0));
     }
 }
 
 static void corners_have_no_second_derivatives(void **state)
 {
-    Bench *b = *state;
-    for (int turn = 0; turn < 40; turn++) {
-        Pair pair = {0};
-        Box  box  = random_box(b);
-        bool known;
-        b->graph = graph_new(&b->arena);
-        for (int i = 0; i < ROOTS; i++)
-            pair.roots[i] = form_node(b->graph, ASKEW_SEGMENT, box);
-        pair_finish(b, &pair, NULL);
-        if (try_hessians(b, &pair, box, box, 1, &known))
-            fail_msg("a corner has second derivatives");
-    }
+    static const Form askew = ASKEW_SEGMENT;
+    try_graphs(*state, make_form, &askew, "a segment askew", 40);
 }
 
 int main(void)
