@@ -18,13 +18,6 @@ typedef struct Finding {
     int              depth;
 } Finding;
 
-static const LaneStep *step_of(const Finding *f, uint32_t operand)
-{
-    return (operand & LANE_SCALAR) || operand < LANE_INPUTS
-               ? NULL
-               : &f->tape->steps[operand - LANE_INPUTS];
-}
-
 static Range range_of_operand(const Finding *f, uint32_t operand)
 {
     return operand & LANE_SCALAR ? range_of(f->tape->scalars[operand & ~LANE_SCALAR])
@@ -144,12 +137,6 @@ static bool is_zero_in(const LaneTape *tape, const LaneRanges *ranges, uint32_t 
                                                : ranges->ranges[operand]);
 }
 
-static const LaneStep *step_in(const LaneTape *tape, uint32_t operand)
-{
-    return (operand & LANE_SCALAR) || operand < LANE_INPUTS ? NULL
-                                                            : &tape->steps[operand - LANE_INPUTS];
-}
-
 bool field_has_face(const FieldFaces *faces, uint32_t operand)
 {
     for (size_t i = 0; i < faces->count; i++)
@@ -170,7 +157,7 @@ static bool add_face(FieldFaces *faces, uint32_t operand)
 
 static bool find_greatest(const LaneTape *tape, uint32_t operand, FieldFaces *faces)
 {
-    const LaneStep *step = step_in(tape, operand);
+    const LaneStep *step = lane_step_of(tape, operand);
     if (step && is_greater(step))
         return find_greatest(tape, step->operands[0], faces) &&
                find_greatest(tape, step->operands[1], faces);
@@ -181,7 +168,7 @@ static bool find_greatest(const LaneTape *tape, uint32_t operand, FieldFaces *fa
 static bool find_above_zero(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand,
                             FieldFaces *faces, bool *zero)
 {
-    const LaneStep *step = step_in(tape, operand);
+    const LaneStep *step = lane_step_of(tape, operand);
     if (is_zero_in(tape, ranges, operand))
         return *zero = true;
     if (step && is_greater(step))
@@ -193,7 +180,7 @@ static bool find_above_zero(const LaneTape *tape, const LaneRanges *ranges, uint
 bool field_outside(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand,
                    FieldFaces *faces)
 {
-    const LaneStep *step = step_in(tape, operand);
+    const LaneStep *step = lane_step_of(tape, operand);
     bool            zero = false;
     if (step && step->op == OP_length) {
         for (uint32_t k = 0; k < step->operand_count; k++)
@@ -211,7 +198,7 @@ bool field_outside(const LaneTape *tape, const LaneRanges *ranges, uint32_t oper
 bool field_inside(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand,
                   FieldFaces *faces, double *part)
 {
-    const LaneStep *step   = step_in(tape, operand);
+    const LaneStep *step   = lane_step_of(tape, operand);
     bool            scaled = step && (step->op == OP_mul || step->op == OP_div);
     for (int k = scaled && step->op == OP_div; scaled && k < 2; k++) {
         double number = step->operands[k] & LANE_SCALAR
@@ -343,7 +330,7 @@ static bool add_signed(Finding *f, const LaneStep *step, double sign)
 {
     for (int k = 0; k < (step->op == OP_div ? 1 : 2); k++) {
         uint32_t        other  = step->operands[1 - k];
-        const LaneStep *factor = step_of(f, step->operands[k]);
+        const LaneStep *factor = lane_step_of(f->tape, step->operands[k]);
         double          least  = range_of_operand(f, other).low;
         if (factor && factor->op == OP_sign && least >= 0)
             return find_pieces(f, factor->operands[0], sign, 0);
@@ -395,7 +382,7 @@ static bool add_outline(Finding *f, const LaneStep *step, double factor, double 
 static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset)
 {
     enum { MOST_DEPTH = 40 };
-    const LaneStep *step = step_of(f, operand);
+    const LaneStep *step = lane_step_of(f->tape, operand);
     FieldFaces      faces;
     bool            found = false;
     if (!step || f->field->hessians[operand].known || f->depth == MOST_DEPTH)
@@ -434,7 +421,7 @@ static bool is_whole(const LaneStep *step)
    that. */
 static bool count_pieces(Finding *f, uint32_t operand, double sign, double offset)
 {
-    const LaneStep *step = step_of(f, operand);
+    const LaneStep *step = lane_step_of(f->tape, operand);
     if (step && (is_greater(step) || is_lesser(step))) {
         Range a    = range_of_operand(f, step->operands[0]),
               b    = range_of_operand(f, step->operands[1]);

@@ -77,7 +77,7 @@ static bool has_round_within(const Finding *f, const Form *form, int depth)
 {
     enum { DEEPEST = 6 };
     for (int i = 0; i < form->kink_count; i++) {
-        const LaneStep *step = step_of_operand(f, form->kinks[i]);
+        const LaneStep *step = lane_step_of(f->tape, form->kinks[i]);
         if (!step || depth == DEEPEST || step->op == OP_length)
             return true;
         for (uint32_t k = 0; k < step->operand_count && step->op != LANE_CALL; k++) {
@@ -96,7 +96,7 @@ static double steepness_within(const Finding *f, const Form *form, int depth)
     enum { DEEPEST = 6 };
     double slope = length3(form->by);
     for (int i = 0; i < form->kink_count && depth < DEEPEST; i++) {
-        const LaneStep *step = step_of_operand(f, form->kinks[i]);
+        const LaneStep *step = lane_step_of(f->tape, form->kinks[i]);
         for (uint32_t k = 0; step && step->op != LANE_CALL && k < step->operand_count; k++) {
             Form operand = form_of_operand(f, step->operands[k]);
             slope = max2(slope, fabs(form->factors[i]) * steepness_within(f, &operand, depth + 1));

@@ -222,13 +222,6 @@ void find_forms(Finding *f)
         f->forms[LANE_INPUTS + i] = form_of_step(f, i);
 }
 
-const LaneStep *step_of_operand(const Finding *f, uint32_t operand)
-{
-    return (operand & LANE_SCALAR) || operand < LANE_INPUTS
-               ? NULL
-               : &f->tape->steps[operand - LANE_INPUTS];
-}
-
 /* Whether a form is a kink and what is added to it. */
 bool form_is_kink_alone(const Form *form)
 {

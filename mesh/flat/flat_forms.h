@@ -43,9 +43,7 @@ typedef struct Finding {
 #define FLAT_ROUNDING 1e-11
 
 void find_forms(Finding *f);
-/* NULL: it is an input, or a number. */
-const LaneStep *step_of_operand(const Finding *f, uint32_t operand);
-Form            form_of_operand(const Finding *f, uint32_t operand);
+Form form_of_operand(const Finding *f, uint32_t operand);
 
 Form form_constant(double number);
 bool form_is_constant(const Form *form);

@@ -77,7 +77,7 @@ static int solid_of_less(Finding *f, uint32_t first, uint32_t second)
 /* Where a condition is true. */
 static int solid_of_condition(Finding *f, uint32_t operand)
 {
-    const LaneStep *step  = step_of_operand(f, operand);
+    const LaneStep *step  = lane_step_of(f->tape, operand);
     Range           range = step ? f->field->ranges.ranges[operand]
                                  : range_of(f->tape->scalars[operand & ~LANE_SCALAR]);
     if (f->failed || range.low > 0 || range.high <= 0)
@@ -120,7 +120,7 @@ static int one_only(Finding *f, int a, int b)
 /* Where a product is below 0 whose factors have known signs, or choose between two numbers: sizes times signs. */
 static bool find_sign(Finding *f, uint32_t operand, int *solid)
 {
-    const LaneStep *step  = step_of_operand(f, operand);
+    const LaneStep *step  = lane_step_of(f->tape, operand);
     Range           range = step ? f->field->ranges.ranges[operand]
                                  : range_of(operand & LANE_SCALAR ? f->tape->scalars[operand & ~LANE_SCALAR]
                                                                   : NAN);

@@ -20,19 +20,11 @@ uint32_t lane_only_operand(const LaneTape *tape, const LaneRanges *ranges, const
     return only;
 }
 
-/* NULL: that is no result of a step. */
-static const LaneStep *step_of(const LaneTape *tape, uint32_t operand)
-{
-    return operand == NODE_NONE || (operand & LANE_SCALAR) || operand < LANE_INPUTS
-               ? NULL
-               : &tape->steps[operand - LANE_INPUTS];
-}
-
 /* What an operand cuts at 0: above, for a minimum, or below. */
 static uint32_t cut_at_zero(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand,
                             Op least, uint32_t lane)
 {
-    const LaneStep *step = step_of(tape, operand);
+    const LaneStep *step = lane_step_of(tape, operand);
     return step && (step->op == least || step->op == lane) ? lane_only_operand(tape, ranges, step)
                                                            : NODE_NONE;
 }
@@ -40,7 +32,7 @@ static uint32_t cut_at_zero(const LaneTape *tape, const LaneRanges *ranges, uint
 /* The part above 0 is its own length. */
 static uint32_t within_length(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand)
 {
-    const LaneStep *step = step_of(tape, operand);
+    const LaneStep *step = lane_step_of(tape, operand);
     return step && step->op == OP_length ? lane_only_operand(tape, ranges, step) : operand;
 }
 

@@ -128,18 +128,10 @@ static LaneHessian hessian_by_partials(const Run *run, const LanePartials *p)
 
 /* ---- length ---- */
 
-/* The step that an operand is the result of; NULL: none. */
-static const LaneStep *step_of(const Run *run, uint32_t operand)
-{
-    return operand == NODE_NONE || (operand & LANE_SCALAR) || operand < LANE_INPUTS
-               ? NULL
-               : &run->tape->steps[operand - LANE_INPUTS];
-}
-
 /* What is squared, so that corners at 0 do not count: of abs(a) and max(a, 0) it is a. */
 static uint32_t without_corner(const Run *run, uint32_t operand)
 {
-    const LaneStep *step = step_of(run, operand);
+    const LaneStep *step = lane_step_of(run->tape, operand);
     if (!step)
         return operand;
     bool greater = step->op == OP_max || step->op == LANE_GREATER;
@@ -153,14 +145,14 @@ static uint32_t without_corner(const Run *run, uint32_t operand)
 /* Whether a square of its derivatives is not that of what is squared: abs(a) grows as fast as a or -a. */
 static bool sign_counts(const Run *run, uint32_t operand)
 {
-    const LaneStep *step = step_of(run, operand);
+    const LaneStep *step = lane_step_of(run->tape, operand);
     return !step || step->op != OP_abs;
 }
 
 /* A component over the length; of abs(a) the sign is that of a, which is not known. */
 static Range unit_part(const Run *run, uint32_t operand, Range length)
 {
-    const LaneStep *step = step_of(run, operand);
+    const LaneStep *step = lane_step_of(run->tape, operand);
     Range unit   = range_intersect(range_div(range_at(run, operand), length), (Range){-1, 1});
     bool  corner = step && step->op == OP_abs && range_at(run, step->operands[0]).low < 0;
     return corner ? range_hull(unit, minus(unit)) : unit;
@@ -212,7 +204,7 @@ static LaneHessian hessian_of_square(const Run *run)
     const LaneSlope *slope = slope_at(run, operand);
     LaneHessian      sum   = NO_BEND;
     Range            value = range_at(run, operand);
-    if (inner != operand && step_of(run, operand)->op == OP_abs)
+    if (inner != operand && lane_step_of(run->tape, operand)->op == OP_abs)
         value = range_at(run, inner);
     add_hessian(&sum, scaled(2, value), hessian_at(run, inner));
     add_square(&sum, range_of(2), slope);
@@ -426,7 +418,7 @@ static uint32_t without_scalar(const LaneStep *step)
 bool lane_is_undecided(const LaneTape *tape, const LaneRanges *ranges)
 {
     Run run = {.tape = tape, .ranges = ranges};
-    for (uint32_t at = tape->outputs[0]; (run.step = step_of(&run, at));) {
+    for (uint32_t at = tape->outputs[0]; (run.step = lane_step_of(tape, at));) {
         Range a = range_in(&run, 0), b = run.step->operand_count > 1 ? range_in(&run, 1) : a;
         switch (run.step->op) {
         case OP_min:

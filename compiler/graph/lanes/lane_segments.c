@@ -11,12 +11,6 @@ typedef struct Segment {
     double          weights[3], at; /* t before it is clamped is weights . q + at */
 } Segment;
 
-static const LaneStep *step_of(const LaneTape *tape, uint32_t operand)
-{
-    return (operand & LANE_SCALAR) || operand < LANE_INPUTS ? NULL
-                                                            : &tape->steps[operand - LANE_INPUTS];
-}
-
 static double number_of(const LaneTape *tape, uint32_t operand)
 {
     return tape->scalars[operand & ~LANE_SCALAR];
@@ -24,7 +18,7 @@ static double number_of(const LaneTape *tape, uint32_t operand)
 
 static bool is_clamp(const LaneTape *tape, uint32_t operand)
 {
-    const LaneStep *step = step_of(tape, operand);
+    const LaneStep *step = lane_step_of(tape, operand);
     return step && step->op == OP_clamp && (step->operands[1] & LANE_SCALAR) &&
            (step->operands[2] & LANE_SCALAR);
 }
@@ -32,7 +26,7 @@ static bool is_clamp(const LaneTape *tape, uint32_t operand)
 /* Whether an operand is a clamped number times a scalar. */
 static bool split_product(const LaneTape *tape, uint32_t operand, uint32_t *clamped, double *factor)
 {
-    const LaneStep *step = step_of(tape, operand);
+    const LaneStep *step = lane_step_of(tape, operand);
     *clamped             = operand;
     *factor              = 1;
     for (int k = 0; step && step->op == OP_mul && k < 2; k++)
@@ -46,7 +40,7 @@ static bool split_product(const LaneTape *tape, uint32_t operand, uint32_t *clam
 /* What has no clamped number is a component of q where d is 0. */
 static bool add_component(Segment *s, uint32_t operand)
 {
-    const LaneStep *step = step_of(s->tape, operand);
+    const LaneStep *step = lane_step_of(s->tape, operand);
     uint32_t        clamped, k = s->size++;
     double          factor;
     s->from[k]      = operand;
@@ -65,7 +59,7 @@ static bool add_component(Segment *s, uint32_t operand)
 static bool add_weights(Segment *s, uint32_t operand, double factor, int depth)
 {
     enum { MOST_DEPTH = 12 };
-    const LaneStep *step = step_of(s->tape, operand);
+    const LaneStep *step = lane_step_of(s->tape, operand);
     for (uint32_t k = 0; k < s->size; k++)
         if (operand == s->from[k]) {
             s->weights[k] += factor;
@@ -117,7 +111,7 @@ bool lane_from_segment(const LaneTape *tape, const LaneStep *step, uint32_t from
     for (uint32_t k = 0; k < step->operand_count; k++)
         if (!add_component(&s, step->operands[k]))
             return false;
-    if (s.along == NODE_NONE || !add_weights(&s, step_of(tape, s.along)->operands[0], 1, 0) ||
+    if (s.along == NODE_NONE || !add_weights(&s, lane_step_of(tape, s.along)->operands[0], 1, 0) ||
         !is_projection(&s))
         return false;
     for (uint32_t k = 0; k < s.size; k++)

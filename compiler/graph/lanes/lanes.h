@@ -110,6 +110,13 @@ LaneTape lane_tape_new(const Tape *tape, const Node *roots, size_t root_count, b
 LaneTape lane_tape_new_steep(const Tape *tape, const Node *roots, size_t root_count, bool least,
                              size_t cuts, Arena *arena);
 
+/* The step that an operand is the result of; NULL: none. */
+static inline const LaneStep *lane_step_of(const LaneTape *tape, uint32_t operand)
+{
+    bool step = !(operand & LANE_SCALAR) && operand >= LANE_INPUTS;
+    return step ? &tape->steps[operand - LANE_INPUTS] : NULL;
+}
+
 /* The values of its scalars: `values` is as tape_run_frame fills it; `scalars` has room for
    scalar_count. */
 void lane_tape_scalars(const LaneTape *tape, const NodeValue *values, double *scalars);
