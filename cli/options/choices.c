@@ -53,9 +53,8 @@ const Choice plane_choices[] = {
 #undef KRS_PLANE
     LAST};
 const Choice tone_map_choices[] = {
-#define TONE_MAP(id, name, about) {name, about},
-#include "runtime/display/tone_maps.def"
-#undef TONE_MAP
+#define KRS_TONE_MAP(id, name, about) {#name, about},
+#include "krs/choices.def"
     LAST};
 const Choice stereo_choices[] = {
     {"side-by-side", "the left eye's to the left"}, {"over-under", "the left eye's above"}, LAST};

@@ -363,10 +363,9 @@ Node position_property(Elaboration *e, const Environment *env, const Syntax *blo
 /* A number that must be known when the scene is compiled, and lie in a range. */
 double constant_property(Elaboration *e, const Environment *env, const Syntax *block,
                          const char *name, double least, double most, double otherwise);
-/* One of a few words, the last `later` of which are known but not in this version; NULL when it
-   is not given, or not one that is there. */
+/* One of a few words, behind which is NULL; NULL when it is not given, or none of them. */
 const char *word_property(Elaboration *e, const Environment *env, const Syntax *block,
-                          const char *name, const char *const *words, size_t count, size_t later);
+                          const char *name, const char *const *words);
 
 /* ---- params.c ---- */
 Value define_param(Elaboration *e, const Environment *env, const Syntax *syntax);

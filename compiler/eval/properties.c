@@ -220,7 +220,7 @@ double constant_property(Elaboration *e, const Environment *env, const Syntax *b
 }
 
 const char *word_property(Elaboration *e, const Environment *env, const Syntax *block,
-                          const char *name, const char *const *words, size_t count, size_t later)
+                          const char *name, const char *const *words)
 {
     const Syntax *syntax = find_property(block, name);
     if (!syntax)
@@ -233,16 +233,10 @@ const char *word_property(Elaboration *e, const Environment *env, const Syntax *
         return NULL;
     }
     Text list = {.arena = e->diags->arena};
-    for (size_t i = 0; i < count; i++) {
-        bool same = strcmp(words[i], value.string) == 0;
-        if (same && i + later >= count) {
-            not_supported(e, syntax->span, diag_text(e->diags, "`%s: \"%s\"`", name, words[i]));
-            return NULL;
-        }
-        if (same)
+    for (size_t i = 0; words[i]; i++) {
+        if (strcmp(words[i], value.string) == 0)
             return words[i];
-        if (i + later < count)
-            text_format(&list, "%s\"%s\"", i ? ", " : "", words[i]);
+        text_format(&list, "%s\"%s\"", i ? ", " : "", words[i]);
     }
     Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "`%s` cannot be \"%s\"", name,
                            value.string);

@@ -14,12 +14,6 @@ static ColorMatrix multiply(ColorMatrix a, ColorMatrix b)
     return product;
 }
 
-static void apply(ColorMatrix matrix, const double v[3], double out[3])
-{
-    for (int i = 0; i < 3; i++)
-        out[i] = matrix.m[i][0] * v[0] + matrix.m[i][1] * v[1] + matrix.m[i][2] * v[2];
-}
-
 /* By the cofactors; the matrices here are far from singular. */
 static ColorMatrix invert(ColorMatrix of)
 {
@@ -76,9 +70,9 @@ ColorMatrix white_balance_matrix(WhiteBalance balance)
     if (!(balance.kelvins > 0))
         return adapt;
     white_of(balance, light);
-    apply(xyz_of_rgb, one, daylight);
-    apply(bradford, light, from);
-    apply(bradford, daylight, to);
+    color_multiply(xyz_of_rgb.m, one, daylight);
+    color_multiply(bradford.m, light, from);
+    color_multiply(bradford.m, daylight, to);
     for (int i = 0; i < 3; i++)
         adapt.m[i][i] = to[i] / from[i];
     ColorMatrix cones = multiply(bradford, xyz_of_rgb); /* of colours */

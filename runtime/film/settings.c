@@ -28,13 +28,13 @@ static uint32_t first_nonzero(uint32_t asked, uint32_t scene, uint32_t otherwise
     return asked ? asked : scene ? scene : otherwise;
 }
 
-/* As the scene says, or preview. */
-static KrsIntegrator find_integrator(const char *name)
+/* The number of a name that the compiler knows; NULL: the scene has none. */
+static int find_name(const char *const *names, const char *name, int otherwise)
 {
-    for (int i = 1; name && i < KRS_INTEGRATOR_COUNT; i++)
-        if (strcmp(name, krs_integrator_names[i]) == 0)
-            return (KrsIntegrator)i;
-    return KRS_INTEGRATOR_PREVIEW;
+    for (int i = 0; name && names[i]; i++)
+        if (strcmp(name, names[i]) == 0)
+            return i;
+    return otherwise;
 }
 
 /* Checks the choices of choices.def, and replaces defaults among them. */
@@ -61,16 +61,6 @@ static bool choose(KrsRendering *rendering, KrsRenderOptions *o, KrsSchedule *as
     return true;
 }
 
-/* The filter of the scene, whose names the compiler knows. */
-static KrsPixelFilter filter_of(const KrsImage *image)
-{
-    KrsPixelFilter filter = KRS_PIXEL_FILTER_BOX;
-    for (KrsPixelFilter i = filter; image->pixel_filter && i < KRS_PIXEL_FILTER_COUNT; i++)
-        if (strcmp(krs_pixel_filter_names[i], image->pixel_filter) == 0)
-            filter = i;
-    return filter;
-}
-
 /* When samples end by noise.  What is seen as black depends on the exposure. */
 static void put_noise(const KrsImage *image, KrsRenderOptions *o)
 {
@@ -94,10 +84,12 @@ static void put_defaults(const KrsImage *image, KrsRenderOptions *o)
                                      o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
     o->error = o->error != 0 ? o->error : image->error != 0 ? image->error : KRS_DEFAULT_ERROR;
     if (o->pixel_filter == KRS_PIXEL_FILTER_DEFAULT)
-        o->pixel_filter = filter_of(image);
+        o->pixel_filter = (KrsPixelFilter)find_name(krs_pixel_filter_names, image->pixel_filter,
+                                                    KRS_PIXEL_FILTER_BOX);
     o->slice_ms = o->slice_ms != 0 ? o->slice_ms : 50;
     if (o->integrator == KRS_INTEGRATOR_DEFAULT)
-        o->integrator = find_integrator(image->integrator);
+        o->integrator = (KrsIntegrator)find_name(krs_integrator_names, image->integrator,
+                                                 KRS_INTEGRATOR_PREVIEW);
     if (o->catcher == KRS_CATCHER_DEFAULT)
         o->catcher = o->depth && o->plate ? KRS_CATCHER_SHADOWS : KRS_CATCHER_NONE;
     if (o->catcher_reflectance == 0)

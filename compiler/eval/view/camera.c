@@ -106,7 +106,7 @@ static void add_lens(Elaboration *e, const Environment *env, const Syntax *synta
 
 void elaborate_camera(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    static const char *const projections[] = {"perspective", "orthographic", "panorama"};
+    static const char *const projections[] = {"perspective", "orthographic", "panorama", NULL};
     static const double      eye[3]        = {4, 3, 6};
     const Syntax            *stands        = find_property(syntax, "eye");
     SceneCamera              camera        = {
@@ -116,7 +116,7 @@ void elaborate_camera(Elaboration *e, const Environment *env, const Syntax *synt
     camera.up        = vector_property(e, env, syntax, "up", UP);
     camera.fov       = number_property(e, env, syntax, "fov", 40 * M_PI / 180);
     camera.height    = number_property(e, env, syntax, "height", 4);
-    const char *word = word_property(e, env, syntax, "projection", projections, 3, 0);
+    const char *word = word_property(e, env, syntax, "projection", projections);
     while (word && projections[camera.projection] != word)
         camera.projection++;
     const Syntax *fov  = find_property(syntax, "fov");

@@ -170,13 +170,24 @@ static void set_white_balance(Elaboration *e, const Syntax *white, Value value)
     }
 }
 
+/* The words of choices.def; nobody asks for the filter "default". */
+static const char *const integrators[] = {
+#define KRS_INTEGRATOR(id, name, about) #name,
+#include "krs/choices.def"
+    NULL};
+static const char *const tone_maps[] = {
+#define KRS_TONE_MAP(id, name, about) #name,
+#include "krs/choices.def"
+    NULL};
+static const char *const filters[] = {
+#define KRS_PIXEL_FILTER(id, name, reach, integral, about) name,
+#include "krs/choices.def"
+    NULL};
+
 static void set_image(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    static const char *const integrators[] = {"preview", "direct", "path"};
-    static const char *const tone_maps[]   = {"neutral", "aces", "agx", "none"};
-    static const char *const filters[]     = {"box", "gaussian", "blackman-harris"};
-    SceneImage              *image         = &e->scene->image;
-    const Syntax            *size          = find_property(syntax, "size");
+    SceneImage   *image = &e->scene->image;
+    const Syntax *size  = find_property(syntax, "size");
     if (size)
         set_size(e, size, evaluate(e, env, size));
     image->samples      = (uint32_t)constant_property(e, env, syntax, "samples", 1, 65536, 0);
@@ -184,9 +195,9 @@ static void set_image(Elaboration *e, const Environment *env, const Syntax *synt
     image->exposure     = constant_property(e, env, syntax, "exposure", -20, 20, 0);
     image->error        = constant_property(e, env, syntax, "error", 0.001, 1, 0);
     image->noise        = constant_property(e, env, syntax, "noise", 0.0001, 1, 0);
-    image->integrator   = word_property(e, env, syntax, "integrator", integrators, 3, 0);
-    image->tone_map     = word_property(e, env, syntax, "tone_map", tone_maps, 4, 0);
-    image->pixel_filter = word_property(e, env, syntax, "pixel_filter", filters, 3, 0);
+    image->integrator   = word_property(e, env, syntax, "integrator", integrators);
+    image->tone_map     = word_property(e, env, syntax, "tone_map", tone_maps);
+    image->pixel_filter = word_property(e, env, syntax, "pixel_filter", filters + 1);
     const Syntax *white = find_property(syntax, "white_balance");
     if (white)
         set_white_balance(e, white, evaluate(e, env, white));
