@@ -105,7 +105,7 @@ KrsRendererOptions renderer_options(const Options *options)
                                 .cache      = cache_folder(options),
                                 .early_outs = options->early_outs,
                                 .working    = go_on,
-                                .patience   = DEVICE_PATIENCE * options->deadline};
+                                .patience   = DEVICE_TIMEOUT * options->deadline};
 }
 
 static KrsStatus begin(const KrsRendererOptions *with, KrsRenderer **renderer)

@@ -16,7 +16,7 @@ ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c prod
 UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c queried.c \
                cache_folder.c compiled_files.c crossings.c crowd_scene.c closed_forms.c)
 PROPERTY_SHARED := $(addprefix tests/property/, crowd_parts.c garden.c op_trial.c reach_crowd.c)
-UNIT        := specks texts patience front synonyms arguments look diagnostics shape parts passes display devices tracer film plates saved noise pixel_filters lens rendering lights light_groups sky_table daylight methods schedules paths writer \
+UNIT        := specks texts watchdog front synonyms arguments look diagnostics shape parts passes display devices tracer film plates saved noise pixel_filters lens rendering lights light_groups sky_table daylight methods schedules paths writer \
                image_files image_reading memory validate search refute frame frame_floor framing query zones surroundings cache cache_limits \
                compiled pipelines per_component mixed_rays stencils glslang flatten loader watcher drivers grid crowd_grid crowds \
                crowd_kernels crowd_ends crowd_pictures few_parts tables device_tables table_files printing printers gathered_noises answers alike update coordinates reload live saved_texts camera_text resolution painter saver edits values mesh mesh_progress mesh_bounds mesh_tets mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_handles mesh_proofs mesh_flat_proofs assembly
@@ -37,7 +37,7 @@ PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers (drivers leak by design).  `make test-all` runs it only
 # there, but for BOTH, whose machine code depends on the compiler's options.
-SANITIZED   := $(addprefix tests/, unit/texts unit/patience unit/front unit/synonyms unit/diagnostics unit/shape unit/parts unit/passes unit/display \
+SANITIZED   := $(addprefix tests/, unit/texts unit/watchdog unit/front unit/synonyms unit/diagnostics unit/shape unit/parts unit/passes unit/display \
                unit/writer unit/image_files unit/image_reading unit/validate unit/loader unit/watcher unit/grid unit/crowd_grid unit/crowds unit/few_parts unit/tables unit/search \
                unit/refute unit/memory unit/cache unit/cache_limits unit/frame unit/frame_floor unit/framing unit/query \
                unit/zones unit/printers unit/gathered_noises unit/alike unit/update unit/coordinates unit/reload unit/saved_texts unit/camera_text unit/resolution unit/values unit/mesh unit/mesh_progress unit/mesh_tets unit/mesh_around unit/mesh_bounds unit/mesh_collapse unit/mesh_marks unit/mesh_near unit/mesh_handles unit/mesh_flat_proofs unit/assembly property/ops property/noise property/textures property/graph property/simplify \

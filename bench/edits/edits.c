@@ -22,7 +22,7 @@
 #include "bench/stage.h"
 #include "bench/view/number_edit.h"
 
-enum { NUMBERS = 3, TURNS = 3, MOST_EDITS = NUMBERS * TURNS, PATIENCE = 600 };
+enum { NUMBERS = 3, TURNS = 3, MOST_EDITS = NUMBERS * TURNS, TIMEOUT = 600 };
 static const char picture_name[] = "picture.png";
 
 extern char **environ;
@@ -78,7 +78,7 @@ static void await_picture(const Trial *trial)
 {
     struct pollfd                       events = {.fd = trial->inotify, .events = POLLIN};
     _Alignas(struct inotify_event) char buffer[4096];
-    while (poll(&events, 1, PATIENCE * 1000) > 0) {
+    while (poll(&events, 1, TIMEOUT * 1000) > 0) {
         const ssize_t length = read(trial->inotify, buffer, sizeof buffer);
         for (const char *at = buffer; at < buffer + length;) {
             const struct inotify_event *event = (const struct inotify_event *)(const void *)at;

@@ -19,7 +19,7 @@
 
 enum { WIDTH = 640, HEIGHT = 360, EDITS = 5 };
 static const double SECONDS = 2; /* that the camera, and a slider, move */
-static const double BUDGET = 40, PATIENCE = 120;
+static const double BUDGET = 40, TIMEOUT = 120;
 
 typedef struct Trial {
     const char *path;
@@ -49,7 +49,7 @@ static double used_ms(void)
 /* The next picture of the last view: its width. */
 static uint32_t await(Trial *trial, bool whole)
 {
-    for (const double begun = now(); now() - begun < PATIENCE; usleep(200)) {
+    for (const double begun = now(); now() - begun < TIMEOUT; usleep(200)) {
         Shot               shot;
         const PainterState state = painter_state(trial->painter);
         if (state.status != KRS_OK)

@@ -24,7 +24,7 @@
 
 #include "cli/shell/console.h"
 #include "cli/shell/crash_report.h"
-#include "compiler/base/patience.h"
+#include "compiler/base/watchdog.h"
 #include "compiler/base/unchecked.h"
 
 /* Files that are removed when the command is killed; more of them are removed by the next run. */
@@ -62,7 +62,7 @@ static const StageInfo stage_info[STAGE_COUNT] = {
     [STAGE_COMPILE]  = {"compile", "compiling the scene", 1, true, false, false},
     [STAGE_SHADERS]  = {"shaders", "compiling the shaders", 1, true, false, false},
     [STAGE_DEVICE]   = {"device", "starting the device", 1, false, false, false},
-    [STAGE_RENDER]   = {"render", "rendering", 2 * DEVICE_PATIENCE, false, true, false},
+    [STAGE_RENDER]   = {"render", "rendering", 2 * DEVICE_TIMEOUT, false, true, false},
     [STAGE_VALIDATE] = {"validate", "validating", 0, false, true, false},
     [STAGE_MESH]     = {"mesh", "making the mesh", 0, false, true, false},
     [STAGE_SLICE]    = {"slice", "making sections", 0, false, true, false},
@@ -266,7 +266,7 @@ typedef struct Watch {
     bool     interrupted, late, over; /* why we stopped the child; over: the limit of time */
     bool     exited;                  /* the child ended by itself */
     bool     warned;                  /* SIGUSR1 has come: the child is stopped at a checkpoint */
-    Patience patience;
+    Watchdog watchdog;
     double   interrupted_after; /* seconds of work */
 } Watch;
 
@@ -301,7 +301,7 @@ static bool is_out_of_time(const Watch *watch, int signal_number)
         return signal_number == SIGXCPU;
     /* The system counts in ticks; the last look knows of what a killed process may not have been charged. */
     const double seconds = fmax(seconds_of(used.ru_utime) + seconds_of(used.ru_stime),
-                                watch->patience.last.processor);
+                                watch->watchdog.last.processor);
     return seconds + 1 >= (double)limit.rlim_cur;
 }
 
@@ -368,13 +368,13 @@ static int judge_death(const Options *options, const Watch *watch, int signal_nu
 static const StageInfo *observe(Watch *watch)
 {
     /* The stage comes first: a new one with the steps of the old would be late. */
-    const StageInfo *stage = &stage_info[atomic_load(&shared->stage)];
-    Look             look  = {.idle     = stage->idle && !watch->interrupted,
-                              .progress = atomic_load(&shared->progress)};
-    patience_look(watch->child, &watch->patience.last, &look);
-    patience_add(&watch->patience, &look);
-    if (look.idle)
-        watch->patience.worked = 0; /* limits hold for what comes next */
+    const StageInfo *stage  = &stage_info[atomic_load(&shared->stage)];
+    ProcessSample    sample = {.idle     = stage->idle && !watch->interrupted,
+                               .progress = atomic_load(&shared->progress)};
+    watchdog_sample(watch->child, &watch->watchdog.last, &sample);
+    watchdog_add(&watch->watchdog, &sample);
+    if (sample.idle)
+        watch->watchdog.worked = 0; /* limits hold for what comes next */
     return stage;
 }
 
@@ -382,13 +382,13 @@ static const StageInfo *observe(Watch *watch)
 static void check_time(const Options *options, Watch *watch, const StageInfo *stage)
 {
     const double force = 10; /* seconds from an interrupt on: a slice and a file */
-    if (watch->interrupted && watch->patience.worked - watch->interrupted_after > force)
+    if (watch->interrupted && watch->watchdog.worked - watch->interrupted_after > force)
         kill(watch->child, SIGKILL);
     if (watch->interrupted || watch->late || watch->over)
         return;
-    watch->over = options->limits.time > 0 && watch->patience.worked > options->limits.time;
+    watch->over = options->limits.time > 0 && watch->watchdog.worked > options->limits.time;
     watch->late = !watch->over && stage->deadlines > 0 &&
-                  watch->patience.fruitless > stage->deadlines * options->deadline;
+                  watch->watchdog.fruitless > stage->deadlines * options->deadline;
     if (watch->over || watch->late)
         kill(watch->child, SIGKILL);
 }
@@ -396,7 +396,7 @@ static void check_time(const Options *options, Watch *watch, const StageInfo *st
 static void interrupt(Watch *watch, int number)
 {
     if (!watch->interrupted)
-        watch->interrupted_after = watch->patience.worked;
+        watch->interrupted_after = watch->watchdog.worked;
     watch->interrupted = true;
     kill(watch->child, number);
 }

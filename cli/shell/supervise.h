@@ -37,7 +37,7 @@ typedef KrsStatus Work(Options *options);
        goes on in another child, where the limit holds for each picture;
      - 71 when the system killed the child, which it does for want of memory;
      - 130 after SIGINT, SIGTERM or SIGHUP, which are passed on; 75 where a checkpoint is there.
-   Times are those of work (patience.h): a process that is stopped, or gets no processor, is not late, and one in
+   Times are those of work (watchdog.h): a process that is stopped, or gets no processor, is not late, and one in
    STAGE_WAIT has nothing to do.  SIGTSTP stops both processes.  SIGUSR1, by which batch systems announce the end, is
    SIGTERM as soon as there is a checkpoint; without --resume there is none, and it is ignored. */
 int supervise(Options *options, Work *work);

@@ -22,7 +22,7 @@
 #include <time.h>
 
 /* A coarse picture is interrupted after so many times its budget. */
-#define PATIENCE 6
+#define TIMEOUT 6
 /* Something moves if one view follows another so soon; then the next one is waited for. */
 #define MOVING_MS 250.0
 #define QUIET_MS  30.0
@@ -177,7 +177,7 @@ static bool go_on(void *user, double done)
     (void)done;
     if (painter->making == FILM_FULL)
         return !is_outdated(painter);
-    return !is_outdated(painter) || now_ms() - painter->begun < PATIENCE * painter->options.budget;
+    return !is_outdated(painter) || now_ms() - painter->begun < TIMEOUT * painter->options.budget;
 }
 
 /* Hands a picture of the scene to whoever shows it. */

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "compiler/base/minmax.h"
-#include "compiler/base/patience.h"
+#include "compiler/base/watchdog.h"
 #include "runtime/device/gpu.h"
 
 static const VkPipelineStageFlags WORK = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT |
@@ -102,15 +102,15 @@ static VkResult wait_for(Gpu *gpu, double seconds)
 
 /* Most steps take no longer than the first slice; what the process does during more of them decides how much of
    the time counts, since drivers for CPUs work in its threads. */
-static VkResult wait_patiently(Gpu *gpu)
+static VkResult wait_with_timeout(Gpu *gpu)
 {
-    const double slice    = min2(gpu->patience, PATIENCE_LONGEST_LOOK);
-    Patience     patience = {.fruitless = slice};
+    const double slice    = min2(gpu->timeout, WATCHDOG_LONGEST_GAP);
+    Watchdog     watchdog = {.fruitless = slice};
     VkResult     result   = wait_for(gpu, slice);
-    while (result == VK_TIMEOUT && patience.fruitless < gpu->patience) {
-        Look look = {0};
-        patience_look(getpid(), &patience.last, &look);
-        patience_add(&patience, &look);
+    while (result == VK_TIMEOUT && watchdog.fruitless < gpu->timeout) {
+        ProcessSample sample = {0};
+        watchdog_sample(getpid(), &watchdog.last, &sample);
+        watchdog_add(&watchdog, &sample);
         result = wait_for(gpu, slice);
     }
     return result;
@@ -120,11 +120,11 @@ static VkResult wait_patiently(Gpu *gpu)
 static bool wait_for_fence(Gpu *gpu)
 {
     const char *attempt = "wait for the device";
-    VkResult    result  = wait_patiently(gpu);
+    VkResult    result  = wait_with_timeout(gpu);
     if (result == VK_TIMEOUT) {
         gpu->stuck = true;
         gpu_refuse(gpu, KRS_INTERNAL, "the device has not finished a step within %g seconds",
-                   gpu->patience);
+                   gpu->timeout);
         return false;
     }
     TRY(gpu, attempt, result);

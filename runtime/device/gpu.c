@@ -137,7 +137,7 @@ static bool device_create(Gpu *gpu, unsigned pretence)
     return make_device(gpu) && make_commands(gpu);
 }
 
-static const double DEFAULT_PATIENCE = 300; /* seconds; a first submission also compiles */
+static const double DEFAULT_TIMEOUT = 300; /* seconds; a first submission also compiles */
 
 static bool check_threads(Gpu *gpu)
 {
@@ -167,7 +167,7 @@ bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
         .user           = options->user,
         .compiling      = options->compiling,
         .compiling_user = options->compiling_user,
-        .patience       = options->patience > 0 ? options->patience : DEFAULT_PATIENCE,
+        .timeout        = options->patience > 0 ? options->patience : DEFAULT_TIMEOUT,
     };
     cache_open(&gpu->cache, options->cache, options->allocator);
     if (instance_create(gpu, options->validation) && choose_device(gpu, options->device) &&
@@ -184,7 +184,7 @@ bool gpu_open_beside(Gpu *gpu, const Gpu *other)
     *gpu = (Gpu){.physical  = other->physical,
                  .family    = other->family,
                  .time_mask = other->time_mask,
-                 .patience  = other->patience};
+                 .timeout   = other->timeout};
     if (device_create(gpu, other->texels ? 0 : KRS_PRETEND_LEAST_LIMITS))
         return true;
     gpu_close(gpu);

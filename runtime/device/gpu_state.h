@@ -58,8 +58,8 @@ typedef struct Gpu {
     void                            *compiling_user;
     uint64_t                         complaints;
 
-    double patience; /* seconds that a submission may take */
-    bool   stuck;    /* one took longer */
+    double timeout; /* seconds that a submission may take */
+    bool   stuck;   /* one took longer */
 
     KrsStatus status; /* of the last call that failed */
     char      message[512];

@@ -18,7 +18,7 @@
 #include "tests/support/device.h"
 #include "tests/support/renderer.h"
 
-enum { WIDTH = 64, HEIGHT = 48, BYTES = 4 * WIDTH * HEIGHT, PATIENCE = 60 };
+enum { WIDTH = 64, HEIGHT = 48, BYTES = 4 * WIDTH * HEIGHT, TIMEOUT = 60 };
 
 static const char one_ball[]  = "param r = 1 in [0.5, 2]; show sphere(r);";
 static const char two_boxes[] = "param r = 1 in [0.5, 2]; show union([box([r, 2, 1]), box([3, 0.5, "
@@ -106,7 +106,7 @@ static void tear_down(Stage *stage)
 /* The next picture with all pixels, of one of these versions, of this view or a later one. */
 static Shot take_one_of(Stage *stage, unsigned first, unsigned last, unsigned view)
 {
-    for (const double begun = now(); now() - begun < PATIENCE; usleep(2000)) {
+    for (const double begun = now(); now() - begun < TIMEOUT; usleep(2000)) {
         Shot shot;
         if (painter_state(stage->painter).status != KRS_OK)
             fail_msg("%s", painter_state(stage->painter).message);
@@ -226,7 +226,7 @@ static void prepare_edits(Stage *stage)
     assert_non_null(later.version);
     for (const double begun = now(); !painter_prepare(stage->painter, &later); usleep(5000)) {
         assert_false(painter_state(stage->painter).compiling);
-        assert_true(now() - begun < PATIENCE);
+        assert_true(now() - begun < TIMEOUT);
     }
     version_release(later.version);
 }
@@ -246,7 +246,7 @@ static void the_first_edit_can_be_prepared(void **state)
         const unsigned view     = show(&stage, 1);
         bool           compiled = false;
         Shot           shot     = {0};
-        for (const double begun = now(); shot.version != 2 && now() - begun < PATIENCE;) {
+        for (const double begun = now(); shot.version != 2 && now() - begun < TIMEOUT;) {
             compiled = painter_state(stage.painter).compiling || compiled;
             free(shot.pixels);
             shot = (Shot){0};
@@ -288,7 +288,7 @@ static bool is_hot(const uint8_t *pixel) { return pixel[0] > 245 && pixel[1] > 2
 static void await_hot(Stage *stage, unsigned version, unsigned view, size_t pixel)
 {
     bool hot = false;
-    for (const double begun = now(); !hot && now() - begun < PATIENCE;) {
+    for (const double begun = now(); !hot && now() - begun < TIMEOUT;) {
         Shot shot = take_whole(stage, version, view);
         hot       = is_hot(shot.pixels + pixel);
         free(shot.pixels);

@@ -1,5 +1,5 @@
 /*
- * patience.c: what counts as the work of a process, by a clock that is set, and of processes that are stopped,
+ * watchdog.c: what counts as the work of a process, by a clock that is set, and of processes that are stopped,
  * asleep or busy.
  */
 #include <math.h>
@@ -15,13 +15,13 @@
 
 #include <cmocka.h>
 
-#include "compiler/base/patience.h"
+#include "compiler/base/watchdog.h"
 #include "tests/support/random.h"
 
 /* A process and its clock. */
 typedef struct Simulation {
-    Look     look;
-    Patience patience;
+    ProcessSample sample;
+    Watchdog      watchdog;
 } Simulation;
 
 enum { LOOKS_A_SECOND = 10 };
@@ -30,23 +30,23 @@ enum { LOOKS_A_SECOND = 10 };
 static void pass(Simulation *simulation, double seconds, double share)
 {
     for (int i = 0; i < (int)(seconds * LOOKS_A_SECOND + 0.5); i++) {
-        simulation->look.now += 1.0 / LOOKS_A_SECOND;
-        simulation->look.processor += share / LOOKS_A_SECOND;
-        patience_add(&simulation->patience, &simulation->look);
+        simulation->sample.now += 1.0 / LOOKS_A_SECOND;
+        simulation->sample.processor += share / LOOKS_A_SECOND;
+        watchdog_add(&simulation->watchdog, &simulation->sample);
     }
 }
 
 static Simulation begin(bool runnable)
 {
-    Simulation simulation = {.look = {.now = 1e6, .runnable = runnable}};
-    patience_add(&simulation.patience, &simulation.look);
+    Simulation simulation = {.sample = {.now = 1e6, .runnable = runnable}};
+    watchdog_add(&simulation.watchdog, &simulation.sample);
     return simulation;
 }
 
 static void assert_work(const Simulation *simulation, double worked, double fruitless)
 {
-    assert_true(fabs(simulation->patience.worked - worked) < 1e-6 * (1 + worked));
-    assert_true(fabs(simulation->patience.fruitless - fruitless) < 1e-6 * (1 + worked));
+    assert_true(fabs(simulation->watchdog.worked - worked) < 1e-6 * (1 + worked));
+    assert_true(fabs(simulation->watchdog.fruitless - fruitless) < 1e-6 * (1 + worked));
 }
 
 static void busy_processes_work(void **state)
@@ -76,37 +76,37 @@ static void stopped_processes_do_not_work(void **state)
     (void)state;
     Simulation stopped = begin(true);
     pass(&stopped, 10, 1);
-    stopped.look.runnable = false;
-    stopped.look.stopped  = true;
+    stopped.sample.runnable = false;
+    stopped.sample.stopped  = true;
     pass(&stopped, 5000, 0);
-    stopped.look.stopped  = false;
-    stopped.look.runnable = true;
+    stopped.sample.stopped  = false;
+    stopped.sample.runnable = true;
     pass(&stopped, 10, 1);
     assert_work(&stopped, 20, 20);
 }
 
-/* The clock leaps ahead while the machine sleeps, or who looks is stopped. */
+/* The clock leaps ahead while the machine sleeps, or who samples is stopped. */
 static void leaps_are_no_work(void **state)
 {
     (void)state;
     Simulation leaping = begin(false);
     for (int leap = 0; leap < 5; leap++) {
         pass(&leaping, 2, 0);
-        leaping.look.now += 86400;
-        patience_add(&leaping.patience, &leaping.look);
+        leaping.sample.now += 86400;
+        watchdog_add(&leaping.watchdog, &leaping.sample);
     }
-    assert_work(&leaping, 5 * (2 + PATIENCE_LONGEST_LOOK), 5 * (2 + PATIENCE_LONGEST_LOOK));
+    assert_work(&leaping, 5 * (2 + WATCHDOG_LONGEST_GAP), 5 * (2 + WATCHDOG_LONGEST_GAP));
 }
 
-/* A look that was taken before another but comes after it: times of two processes are never exact. */
+/* A sample that was taken before another but comes after it: times of two processes are never exact. */
 static void a_clock_that_goes_back_is_no_work(void **state)
 {
     (void)state;
     Simulation back = begin(false);
     pass(&back, 3, 0);
-    back.look.now -= 1;
-    back.look.processor -= 1;
-    patience_add(&back.patience, &back.look);
+    back.sample.now -= 1;
+    back.sample.processor -= 1;
+    watchdog_add(&back.watchdog, &back.sample);
     assert_work(&back, 3, 3);
 }
 
@@ -116,8 +116,8 @@ static void steps_begin_anew(void **state)
     Simulation walking = begin(true);
     for (int step = 1; step <= 50; step++) {
         pass(&walking, 5, 1);
-        walking.look.progress++;
-        patience_add(&walking.patience, &walking.look);
+        walking.sample.progress++;
+        watchdog_add(&walking.watchdog, &walking.sample);
         assert_work(&walking, 5 * step, 0);
     }
     pass(&walking, 5, 1);
@@ -129,15 +129,15 @@ static void waiting_for_something_to_do_is_no_work(void **state)
     (void)state;
     Simulation idle = begin(false);
     pass(&idle, 3, 0);
-    idle.look.idle = true;
+    idle.sample.idle = true;
     pass(&idle, 3600, 0);
-    idle.look.idle = false;
-    idle.look.progress++;
+    idle.sample.idle = false;
+    idle.sample.progress++;
     pass(&idle, 2, 0);
-    assert_true(fabs(idle.patience.worked - 5) < 0.21);
+    assert_true(fabs(idle.watchdog.worked - 5) < 0.21);
 }
 
-/* By any looks at a process with any share, the work is never more than time and processor time together say. */
+/* By any samples at a process with any share, the work is never more than time and processor time together say. */
 static void work_is_no_more_than_time(void **state)
 {
     (void)state;
@@ -148,13 +148,13 @@ static void work_is_no_more_than_time(void **state)
         for (int i = 0; i < 100; i++) {
             const double time  = random_between(&random, 0, 3),
                          share = random_between(&random, 0, 4);
-            any.look.now += time;
-            any.look.processor += time * share;
+            any.sample.now += time;
+            any.sample.processor += time * share;
             passed += time;
             used += time * share;
-            patience_add(&any.patience, &any.look);
+            watchdog_add(&any.watchdog, &any.sample);
         }
-        assert_true(any.patience.worked <= used + 1e-9 && any.patience.worked <= passed + 1e-9);
+        assert_true(any.watchdog.worked <= used + 1e-9 && any.watchdog.worked <= passed + 1e-9);
     }
 }
 
@@ -171,16 +171,16 @@ static pid_t start(bool busy)
 }
 
 /* Looks ten times a second. */
-static Patience watch(pid_t process, int looks)
+static Watchdog watch(pid_t process, int samples)
 {
-    Patience patience = {0};
-    for (int i = 0; i < looks; i++) {
-        Look look = {0};
-        patience_look(process, &patience.last, &look);
-        patience_add(&patience, &look);
+    Watchdog watchdog = {0};
+    for (int i = 0; i < samples; i++) {
+        ProcessSample sample = {0};
+        watchdog_sample(process, &watchdog.last, &sample);
+        watchdog_add(&watchdog, &sample);
         nanosleep(&(struct timespec){0, 100000000}, NULL);
     }
-    return patience;
+    return watchdog;
 }
 
 static void end(pid_t process)
@@ -194,7 +194,7 @@ static void what_processes_do_is_seen(void **state)
     (void)state;
     const pid_t asleep = start(false), busy = start(true), stopped = start(true);
     kill(stopped, SIGSTOP);
-    const Patience of_asleep = watch(asleep, 6), of_busy = watch(busy, 6),
+    const Watchdog of_asleep = watch(asleep, 6), of_busy = watch(busy, 6),
                    of_stopped = watch(stopped, 6);
     end(asleep);
     end(busy);

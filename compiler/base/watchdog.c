@@ -1,7 +1,7 @@
 /*
- * patience.c: how long a process has worked, and how long without progress.
+ * watchdog.c: how long a process has worked, and how long without progress.
  */
-#include "compiler/base/patience.h"
+#include "compiler/base/watchdog.h"
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -13,24 +13,24 @@
 
 #include "compiler/base/minmax.h"
 
-static double count_work(const Look *before, const Look *now)
+static double count_work(const ProcessSample *before, const ProcessSample *now)
 {
-    const double passed = min2(max2(now->now - before->now, 0), PATIENCE_LONGEST_LOOK);
+    const double passed = min2(max2(now->now - before->now, 0), WATCHDOG_LONGEST_GAP);
     const double used   = max2(now->processor - before->processor, 0);
     if (now->idle || before->idle || now->stopped)
         return 0;
     return now->runnable ? min2(used, passed) : passed;
 }
 
-void patience_add(Patience *patience, const Look *look)
+void watchdog_add(Watchdog *watchdog, const ProcessSample *sample)
 {
-    const double work = patience->begun ? count_work(&patience->last, look) : 0;
-    patience->worked += work;
-    patience->fruitless += work;
-    if (look->progress != patience->last.progress)
-        patience->fruitless = 0;
-    patience->last  = *look;
-    patience->begun = true;
+    const double work = watchdog->begun ? count_work(&watchdog->last, sample) : 0;
+    watchdog->worked += work;
+    watchdog->fruitless += work;
+    if (sample->progress != watchdog->last.progress)
+        watchdog->fruitless = 0;
+    watchdog->last  = *sample;
+    watchdog->begun = true;
 }
 
 static double seconds_of(clockid_t clock)
@@ -58,7 +58,7 @@ static char state_of_thread(int threads, const char *number)
 }
 
 /* Sees what the threads of a process do. */
-static void look_at_threads(pid_t process, Look *look)
+static void look_at_threads(pid_t process, ProcessSample *sample)
 {
     char path[64];
     snprintf(path, sizeof path, "/proc/%ld/task", (long)process);
@@ -70,19 +70,19 @@ static void look_at_threads(pid_t process, Look *look)
         if (found->d_name[0] == '.' || atol(found->d_name) == own)
             continue;
         const char state = state_of_thread(dirfd(listing), found->d_name);
-        look->runnable   = look->runnable || state == 'R';
-        look->stopped    = look->stopped || state == 'T' || state == 't';
+        sample->runnable = sample->runnable || state == 'R';
+        sample->stopped  = sample->stopped || state == 'T' || state == 't';
     }
     closedir(listing);
 }
 
-void patience_look(pid_t process, const Look *before, Look *look)
+void watchdog_sample(pid_t process, const ProcessSample *before, ProcessSample *sample)
 {
     clockid_t processor;
-    look->now       = seconds_of(CLOCK_MONOTONIC);
-    look->processor = clock_getcpuclockid(process, &processor) == 0 ? seconds_of(processor) : 0;
-    look->stopped   = false;
-    look->runnable  = look->processor - before->processor >= look->now - before->now;
-    if (!look->runnable)
-        look_at_threads(process, look);
+    sample->now       = seconds_of(CLOCK_MONOTONIC);
+    sample->processor = clock_getcpuclockid(process, &processor) == 0 ? seconds_of(processor) : 0;
+    sample->stopped   = false;
+    sample->runnable  = sample->processor - before->processor >= sample->now - before->now;
+    if (!sample->runnable)
+        look_at_threads(process, sample);
 }
