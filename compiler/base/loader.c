@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "compiler/base/beneath.h"
+#include "compiler/base/sandbox.h"
 #include "compiler/base/paths.h"
 #include "compiler/base/source.h"
 
@@ -78,7 +78,7 @@ static Loaded read_confined(const Loader *loader, char *path)
 {
     struct stat about;
     Loaded      loaded = {.reason = "it is outside of the root", .outside = true};
-    int         fd     = path && loader->root >= 0 ? open_beneath(loader->root, path) : -1;
+    int         fd     = path && loader->root >= 0 ? sandbox_open(loader->root, path) : -1;
     if (path && loader->root >= 0 && (fd >= 0 || errno != EXDEV))
         loaded = (Loaded){.reason = fd < 0 ? strerror(errno) : "it is not a regular file"};
     if (fd >= 0 && fstat(fd, &about) == 0 && S_ISREG(about.st_mode))

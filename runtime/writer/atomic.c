@@ -18,7 +18,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "compiler/base/beneath.h"
+#include "compiler/base/sandbox.h"
 #include "runtime/writer/real_path.h"
 #include "runtime/writer/temporary.h"
 

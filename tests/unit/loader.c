@@ -16,7 +16,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "compiler/base/beneath.h"
+#include "compiler/base/sandbox.h"
 #include "krs/krs.h"
 
 /* ---- a folder ---- */
@@ -79,7 +79,7 @@ static char first_of(Opener *opener, const char *path)
     return first;
 }
 
-static Opener *const openers[] = {open_beneath, open_beneath_by_steps};
+static Opener *const openers[] = {sandbox_open, sandbox_open_by_steps};
 
 static void nothing_outside_is_opened(void **state)
 {
@@ -116,8 +116,8 @@ static void what_is_inside_is_opened(void **state)
     for (size_t i = 0; i < sizeof files / sizeof *files; i++)
         for (int k = 0; k < 2; k++)
             assert_int_equal(first_of(openers[k], files[i].path), files[i].first);
-    assert_int_equal(first_of(open_beneath, "deep/in"), 'f');
-    assert_int_equal(first_of(open_beneath_by_steps, "deep/in"), 0); /* follows no links at all */
+    assert_int_equal(first_of(sandbox_open, "deep/in"), 'f');
+    assert_int_equal(first_of(sandbox_open_by_steps, "deep/in"), 0); /* follows no links at all */
     assert_int_equal(errno, EXDEV);
     for (int k = 0; k < 2; k++) {
         assert_int_equal(first_of(openers[k], "missing"), 0);

@@ -1,7 +1,7 @@
 /*
- * beneath.c: opens files below a folder, and none outside of it; folders through no links.
+ * sandbox.c: opens files below a folder, and none outside of it; folders through no links.
  */
-#include "compiler/base/beneath.h"
+#include "compiler/base/sandbox.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -56,7 +56,7 @@ static int open_step(int folder, const char *name, bool last)
     return fd;
 }
 
-int open_beneath_by_steps(int root, const char *path)
+int sandbox_open_by_steps(int root, const char *path)
 {
     char simple[PATH_MAX], *name = simple;
     int  folder = root;
@@ -80,7 +80,7 @@ int open_beneath_by_steps(int root, const char *path)
     }
 }
 
-int open_beneath(int root, const char *path)
+int sandbox_open(int root, const char *path)
 {
     struct open_how how = {.flags   = (unsigned)READ_FLAGS,
                            .resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS};
@@ -89,9 +89,9 @@ int open_beneath(int root, const char *path)
         if (fd >= 0 || errno != EAGAIN)
             return fd >= 0 || (errno != ENOSYS && errno != EPERM)
                        ? fd
-                       : open_beneath_by_steps(root, path);
+                       : sandbox_open_by_steps(root, path);
     }
-    return open_beneath_by_steps(root, path); /* EAGAIN: other processes keep renaming folders */
+    return sandbox_open_by_steps(root, path); /* EAGAIN: other processes keep renaming folders */
 }
 
 /* The rest of an absolute path that leads below the current folder; NULL: it does not. */
