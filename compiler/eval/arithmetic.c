@@ -129,7 +129,7 @@ Node value_node(Elaboration *e, Value value)
     Graph *g = e->graph;
     switch (value.type) {
     case VALUE_NUMBER:
-        return value.number_id ? graph_hoisted(g, TYPE_FLOAT, &value.number, value.number_id)
+        return value.number_id ? graph_parameterised(g, TYPE_FLOAT, &value.number, value.number_id)
                                : graph_number(g, value.number);
     case VALUE_BOOLEAN: return graph_bool(g, value.boolean);
     case VALUE_EXPRESSION: return value.node;
@@ -328,7 +328,7 @@ static bool compare_numbers(TokenKind op, double a, double b)
 static bool is_decided(Elaboration *e, Op op, Node left, Node right, bool *answer)
 {
     const Expr *items = e->graph->items;
-    if (!e->hoists || items[left].time == TIME_POINT || items[right].time == TIME_POINT)
+    if (!e->parameterises || items[left].time == TIME_POINT || items[right].time == TIME_POINT)
         return false;
     Range a = node_range(e->builder, left, 0), b = node_range(e->builder, right, 0);
     bool below = a.high<b.low, above = a.low> b.high;

@@ -108,8 +108,8 @@ struct Elaboration {
     bool     studio;   /* a scene without lights and sky gets those of the library, and a floor */
     bool     figures;  /* plane figures may be shown */
     bool     outlines; /* of polygons, also of those with few corners */
-    bool     hoists;   /* numbers of the scene's own text are not those of the shaders' text */
-    uint32_t number_count;                     /* of such numbers so far */
+    bool     parameterises; /* numbers of the scene's own text are not those of the shaders' text */
+    uint32_t number_count;  /* of such numbers so far */
     struct Derivations          *derivations;  /* which of them were computed from others: fold.c */
     uint64_t                     steps;        /* of evaluation, so far */
     uint32_t                     printed;      /* notes by `print`, so far */

@@ -19,7 +19,7 @@ bool value_is_authored(Value value)
 
 Value value_authored(Elaboration *e, Value value)
 {
-    if (e->hoists && value.type == VALUE_NUMBER)
+    if (e->parameterises && value.type == VALUE_NUMBER)
         value.number_id = ++e->number_count;
     return value;
 }
@@ -152,7 +152,7 @@ Value value_from(Elaboration *e, Value value, Op op, const Value *arguments, uin
     bool authored = false;
     for (uint32_t i = 0; i < count; i++)
         authored = authored || (arguments[i].type == VALUE_NUMBER && arguments[i].number_id);
-    if (!authored || !e->hoists || value.type != VALUE_NUMBER)
+    if (!authored || !e->parameterises || value.type != VALUE_NUMBER)
         return value;
     const DerivationKey key = key_of(op, arguments, count);
     value.number_id         = derive(e, &key, 1);

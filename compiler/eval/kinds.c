@@ -283,7 +283,7 @@ static bool range_end(Elaboration *e, Value value, bool high, double *end)
         *end = value.number;
         return true;
     }
-    if (!e->hoists || value_size(e, value) != 1 || value_time(e, value) == TIME_POINT)
+    if (!e->parameterises || value_size(e, value) != 1 || value_time(e, value) == TIME_POINT)
         return false;
     Range may = node_range(e->builder, value_node(e, value), 0);
     *end      = high ? may.low : may.high;

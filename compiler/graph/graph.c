@@ -202,9 +202,9 @@ Node graph_parameter(Graph *graph, uint32_t slot, GraphType type)
     return node_intern(graph, e);
 }
 
-Node graph_hoisted(Graph *graph, GraphType type, const double *numbers, uint32_t index)
+Node graph_parameterised(Graph *graph, GraphType type, const double *numbers, uint32_t index)
 {
-    Expr e = {.op = OP_HOISTED, .type = (uint8_t)type, .time = TIME_FRAME, .index = index};
+    Expr e = {.op = OP_PARAMETERISED, .type = (uint8_t)type, .time = TIME_FRAME, .index = index};
     memcpy(e.number, numbers, components(type) * sizeof *numbers);
     return node_intern(graph, e);
 }
@@ -225,15 +225,15 @@ Node graph_copy_leaf(Graph *graph, const Expr *e)
 {
     if (e->op == OP_CONSTANT)
         return graph_constant(graph, e->type, e->number);
-    if (e->op == OP_HOISTED)
-        return graph_hoisted(graph, e->type, e->number, e->index);
+    if (e->op == OP_PARAMETERISED)
+        return graph_parameterised(graph, e->type, e->number, e->index);
     return e->op == OP_PARAMETER ? graph_parameter(graph, e->index, e->type)
                                  : graph_indexed_leaf(graph, e->op, e->type, e->index);
 }
 
 bool graph_is_constant(const Graph *graph, Node node)
 {
-    return graph->items[node].op == OP_CONSTANT || graph->items[node].op == OP_HOISTED;
+    return graph->items[node].op == OP_CONSTANT || graph->items[node].op == OP_PARAMETERISED;
 }
 
 bool graph_known_component(const Graph *graph, Node node, uint32_t component, double *number)
@@ -408,11 +408,11 @@ static const char *node_mistake(const Graph *graph, Node node)
 {
     const Expr *e                   = &graph->items[node];
     GraphType   types[MAX_OPERANDS] = {0};
-    uint8_t     latest              = e->op == OP_CONSTANT    ? TIME_COMPILE
-                                      : e->op == OP_PARAMETER ? TIME_FRAME
-                                      : e->op == OP_HOISTED   ? TIME_FRAME
-                                      : e->operand_count == 0 ? TIME_POINT
-                                                              : earliest_time(e->op);
+    uint8_t     latest              = e->op == OP_CONSTANT        ? TIME_COMPILE
+                                      : e->op == OP_PARAMETER     ? TIME_FRAME
+                                      : e->op == OP_PARAMETERISED ? TIME_FRAME
+                                      : e->operand_count == 0     ? TIME_POINT
+                                                                  : earliest_time(e->op);
     if (e->op >= OP_COUNT || e->operand_count != op_arity(e->op))
         return "wrong number of operands";
     for (int i = 0; i < e->operand_count; i++) {

@@ -67,10 +67,10 @@ NodeValue op_evaluate(Op op, GraphType type, uint32_t index, const GraphType *ty
 typedef struct Expr {
     uint8_t  op, type, time;
     uint8_t  operand_count;
-    uint32_t index; /* OP_COMPONENT, OP_PARAMETER, OP_HOISTED, leaves of crowds */
+    uint32_t index; /* OP_COMPONENT, OP_PARAMETER, OP_PARAMETERISED, leaves of crowds */
     union {
         Node   operands[MAX_OPERANDS];
-        double number[4]; /* OP_CONSTANT, OP_HOISTED */
+        double number[4]; /* OP_CONSTANT, OP_PARAMETERISED */
     };
     Span span; /* where the author wrote it, for blame */
 } Expr;
@@ -137,7 +137,7 @@ Node graph_bool(Graph *graph, bool value);
 Node graph_uint(Graph *graph, uint32_t value);
 Node graph_parameter(Graph *graph, uint32_t slot, GraphType type);
 /* A number of the frame that is known now, and told apart from others by its index alone. */
-Node graph_hoisted(Graph *graph, GraphType type, const double *numbers, uint32_t index);
+Node graph_parameterised(Graph *graph, GraphType type, const double *numbers, uint32_t index);
 /* That of another graph, of which this is the expression. */
 Node graph_copy_leaf(Graph *graph, const Expr *leaf);
 Node graph_leaf(Graph *graph, Op op); /* one whose type is the same everywhere */
@@ -163,7 +163,7 @@ Node graph_power(Graph *graph, Node base, Node exponent);
 GraphType graph_op_type(Op op, const GraphType *operands, uint32_t count);
 
 const char *graph_op_name(Op op);
-/* Whether its value, `number`, is known now: OP_CONSTANT or OP_HOISTED. */
+/* Whether its value, `number`, is known now: OP_CONSTANT or OP_PARAMETERISED. */
 bool graph_is_constant(const Graph *graph, Node node);
 /* Whether a component is such a number, which may be one of those that a vector is built of. */
 bool graph_known_component(const Graph *graph, Node node, uint32_t component, double *number);

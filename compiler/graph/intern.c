@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-static bool has_number(const Expr *e) { return e->op == OP_CONSTANT || e->op == OP_HOISTED; }
+static bool has_number(const Expr *e) { return e->op == OP_CONSTANT || e->op == OP_PARAMETERISED; }
 
 /* What makes expressions equal: all but where they were written.  They have operands or numbers, or
    neither. */
@@ -42,7 +42,7 @@ static uint32_t expr_hash(const Expr *e)
 /* Beside which node it is looked for: its latest operand.  Leaves have none. */
 static uint32_t near_of(const Expr *e, uint32_t hash)
 {
-    uint32_t near = e->op == OP_HOISTED ? e->index : hash;
+    uint32_t near = e->op == OP_PARAMETERISED ? e->index : hash;
     for (int i = 0; i < e->operand_count; i++)
         near = i == 0 || e->operands[i] > near ? e->operands[i] : near;
     return near;

@@ -86,7 +86,7 @@ static inline bool component_is_plane(const Component *component)
 void validate_lowered(const Compilation *c);
 void validate_simplified(const Compilation *c);
 void validate_pruned(const Compilation *c);
-void validate_hoisted(const Compilation *c);
+void validate_parameterised(const Compilation *c);
 void validate_facts(const Compilation *c);
 
 /* passes.c: members of a crowd, and turns of a loop that is evaluated once. */

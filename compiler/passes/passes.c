@@ -5,7 +5,7 @@
 
 #include "compiler/passes/compilation.h"
 #include "compiler/graph/crowd.h"
-#include "compiler/graph/rewrite/hoist.h"
+#include "compiler/graph/rewrite/parameterise.h"
 #include "compiler/graph/rewrite/joints.h"
 #include "compiler/graph/rewrite/simplify.h"
 #include "compiler/lower/crowd.h"
@@ -86,7 +86,7 @@ KrsStatus pass_names(Compilation *c)
 
 void print_names(Compilation *c, Text *out) { files_print_names(&c->files, out); }
 
-static bool hoists(const Compilation *c)
+static bool parameterises(const Compilation *c)
 {
     return c->options->specialize == KRS_SPECIALIZE_STRUCTURE;
 }
@@ -110,23 +110,23 @@ static void elaborate_with(Compilation *c, TurnTrials *turns)
                             .parameters = &c->elaborated.parameters,
                             .slopes     = &c->elaborated.slopes,
                             .for_meshes = c->options->outlines};
-    Elaboration  e       = {.builder  = &builder,
-                            .arena    = &c->work,
-                            .values   = &c->values,
-                            .scratch  = &c->scratch,
-                            .diags    = &c->diags,
-                            .sources  = &c->sources,
-                            .files    = &c->files,
-                            .graph    = graph,
-                            .scene    = &c->elaborated,
-                            .loader   = c->loader,
-                            .turns    = turns,
-                            .studio   = c->options->studio,
-                            .figures  = c->options->figures,
-                            .beams    = c->options->beams,
-                            .outlines = c->options->outlines,
-                            .hoists   = hoists(c),
-                            .textures = {.arena = &c->scene->arena}};
+    Elaboration  e       = {.builder       = &builder,
+                            .arena         = &c->work,
+                            .values        = &c->values,
+                            .scratch       = &c->scratch,
+                            .diags         = &c->diags,
+                            .sources       = &c->sources,
+                            .files         = &c->files,
+                            .graph         = graph,
+                            .scene         = &c->elaborated,
+                            .loader        = c->loader,
+                            .turns         = turns,
+                            .studio        = c->options->studio,
+                            .figures       = c->options->figures,
+                            .beams         = c->options->beams,
+                            .outlines      = c->options->outlines,
+                            .parameterises = parameterises(c),
+                            .textures      = {.arena = &c->scene->arena}};
     elaborate(&e);
     graph_drop_older(graph);
 }
@@ -193,7 +193,7 @@ KrsStatus pass_prune(Compilation *c)
 {
     Roots *roots  = &c->scene->roots;
     bool   pruned = false;
-    for (size_t i = 0; !hoists(c) && i < c->elaborated.components.count; i++)
+    for (size_t i = 0; !parameterises(c) && i < c->elaborated.components.count; i++)
         pruned |= prune_component(c, i);
     if (pruned)
         c->scene->graph = graph_simplify(c->scene->graph, roots->all, roots->first[ROOT_KINDS],
@@ -206,29 +206,32 @@ void print_prune(Compilation *c, Text *out) { print_graph(c, c->scene->graph, ou
 void validate_pruned(const Compilation *c) { graph_validate(c->scene->graph, "prune"); }
 
 /* Only where numbers of the text are to be apart from the shaders. */
-KrsStatus pass_hoist(Compilation *c)
+KrsStatus pass_parameterise(Compilation *c)
 {
     Roots *roots = &c->scene->roots;
     Arena *arena = &c->scene->arena;
-    if (!hoists(c))
+    if (!parameterises(c))
         return KRS_OK;
     /* Apart from what is counted in the text, and then in the graph. */
     const uint32_t of_graph = 1u << 30, of_boxes = 1u << 31;
-    Graph *graph = graph_hoist(c->scene->graph, roots->all, roots->first[ROOT_KINDS], of_graph,
-                               arena);
-    const size_t count = c->elaborated.components.count;
-    Box         *boxes = arena_new_array(&c->scratch, Box, count + 1);
+    Graph         *graph = graph_parameterise(c->scene->graph, roots->all, roots->first[ROOT_KINDS],
+                                              of_graph, arena);
+    const size_t   count = c->elaborated.components.count;
+    Box           *boxes = arena_new_array(&c->scratch, Box, count + 1);
     for (size_t i = 0; i < count; i++)
         boxes[i] = c->elaborated.components.items[i].shape->box;
-    c->mirror_nodes = module_hoist_mirrors(graph, arena);
-    c->box_nodes    = module_hoist_boxes(graph, boxes, count, of_boxes, arena);
+    c->mirror_nodes = module_parameterise_mirrors(graph, arena);
+    c->box_nodes    = module_parameterise_boxes(graph, boxes, count, of_boxes, arena);
     c->scene->graph = graph;
     return KRS_OK;
 }
 
-void print_hoist(Compilation *c, Text *out) { print_graph(c, c->scene->graph, out); }
+void print_parameterise(Compilation *c, Text *out) { print_graph(c, c->scene->graph, out); }
 
-void validate_hoisted(const Compilation *c) { graph_validate(c->scene->graph, "hoist"); }
+void validate_parameterised(const Compilation *c)
+{
+    graph_validate(c->scene->graph, "parameterise");
+}
 
 void print_simplify(Compilation *c, Text *out) { print_graph(c, c->scene->graph, out); }
 

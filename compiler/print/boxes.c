@@ -48,13 +48,13 @@ void module_part_corners(Box box, double low[3], double high[3])
 }
 
 /* Numbers of the frame that are known now. */
-static Node hoist_vector(Graph *graph, const double v[3], uint32_t *number)
+static Node parameterise_vector(Graph *graph, const double v[3], uint32_t *number)
 {
-    return graph_hoisted(graph, TYPE_VEC3, v, (*number)++);
+    return graph_parameterised(graph, TYPE_VEC3, v, (*number)++);
 }
 
-BoxNodes module_hoist_boxes(Graph *graph, const Box *boxes, size_t components, uint32_t first,
-                            Arena *arena)
+BoxNodes module_parameterise_boxes(Graph *graph, const Box *boxes, size_t components,
+                                   uint32_t first, Arena *arena)
 {
     const size_t parts = module_scene_part_count(components);
     BoxNodes     nodes = {.around = arena_new_array(arena, Node, 2 * components + 1),
@@ -62,13 +62,13 @@ BoxNodes module_hoist_boxes(Graph *graph, const Box *boxes, size_t components, u
     double       a[3], b[3];
     for (size_t i = 0; i < components; i++) {
         module_box_vectors(box_is_finite(boxes[i]) ? boxes[i] : (Box){0}, a, b);
-        nodes.around[2 * i]     = hoist_vector(graph, a, &first);
-        nodes.around[2 * i + 1] = hoist_vector(graph, b, &first);
+        nodes.around[2 * i]     = parameterise_vector(graph, a, &first);
+        nodes.around[2 * i + 1] = parameterise_vector(graph, b, &first);
     }
     for (size_t i = 0; i < parts; i++) {
         module_part_corners(module_scene_part_box(boxes, components, i), a, b);
-        nodes.parts[2 * i]     = hoist_vector(graph, a, &first);
-        nodes.parts[2 * i + 1] = hoist_vector(graph, b, &first);
+        nodes.parts[2 * i]     = parameterise_vector(graph, a, &first);
+        nodes.parts[2 * i + 1] = parameterise_vector(graph, b, &first);
     }
     return nodes;
 }

@@ -65,7 +65,7 @@ static Fact find_fact(const Tape *tape, size_t at, const Fact *facts)
         types[k]    = (GraphType)tape->graph->items[e->operands[k]].type;
         operands[k] = facts[tape_index(tape, e->operands[k])];
     }
-    if (e->op == OP_HOISTED) { /* another text of the same structure has another */
+    if (e->op == OP_PARAMETERISED) { /* another text of the same structure has another */
         for (uint32_t k = 0; k < 4; k++)
             fact.value[k] = (Range){-HUGE_VAL, HUGE_VAL};
         return fact;

@@ -187,7 +187,7 @@ static bool may_be_in_row(const Graph *graph, Node node)
            !is_across_axis(&graph->items[e->operands[1]]);
 }
 
-static MirrorNodes hoist_mirror(Graph *graph, Node fold)
+static MirrorNodes parameterise_mirror(Graph *graph, Node fold)
 {
     MirrorNodes nodes  = no_nodes;
     const Node  normal = graph->items[fold].operands[1];
@@ -202,7 +202,7 @@ static MirrorNodes hoist_mirror(Graph *graph, Node fold)
     return nodes;
 }
 
-MirrorNodes *module_hoist_mirrors(Graph *graph, Arena *arena)
+MirrorNodes *module_parameterise_mirrors(Graph *graph, Arena *arena)
 {
     const size_t count   = graph->count;
     size_t       mirrors = 0;
@@ -212,6 +212,6 @@ MirrorNodes *module_hoist_mirrors(Graph *graph, Arena *arena)
         return NULL;
     MirrorNodes *nodes = arena_new_array(arena, MirrorNodes, count);
     for (Node n = 0; n < count; n++)
-        nodes[n] = may_be_in_row(graph, n) ? hoist_mirror(graph, n) : no_nodes;
+        nodes[n] = may_be_in_row(graph, n) ? parameterise_mirror(graph, n) : no_nodes;
     return nodes;
 }

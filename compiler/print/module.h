@@ -14,7 +14,7 @@ typedef struct FrameSlots {
     FrameValues plain, camera_relative;
 } FrameSlots;
 
-/* Boxes as numbers of the frame (OP_HOISTED), two nodes each; NULL where they are literals. */
+/* Boxes as numbers of the frame (OP_PARAMETERISED), two nodes each; NULL where they are literals. */
 typedef struct BoxNodes {
     Node *around; /* of each component: centre, and half the lengths of the sides */
     Node *parts;  /* of each scene part: the low and the high corner */
@@ -71,11 +71,11 @@ Box module_scene_part_box(const Box *boxes, size_t components, size_t part);
 void module_box_vectors(Box box, double centre[3], double half[3]);
 void module_part_corners(Box box, double low[3], double high[3]);
 /* All boxes as numbers of the frame, counted from `first` on. */
-BoxNodes module_hoist_boxes(Graph *graph, const Box *boxes, size_t components, uint32_t first,
-                            Arena *arena);
+BoxNodes module_parameterise_boxes(Graph *graph, const Box *boxes, size_t components,
+                                   uint32_t first, Arena *arena);
 
 /* Adds what rows of mirrors need of the frame. */
-MirrorNodes *module_hoist_mirrors(Graph *graph, Arena *arena);
+MirrorNodes *module_parameterise_mirrors(Graph *graph, Arena *arena);
 
 /* What a function is called; NULL: it is several, or none. */
 const char *module_function_name(KrsFunction function);

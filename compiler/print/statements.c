@@ -137,7 +137,7 @@ static const char *const leaf_names[OP_COUNT] = {[OP_POINT]           = "p",
 
 static const char *(*const special[OP_COUNT])(Emitter *e, const Expr *expr) = {
     [OP_CONSTANT]       = emit_constant,
-    [OP_HOISTED]        = emit_constant,
+    [OP_PARAMETERISED]  = emit_constant,
     [OP_PARAMETER]      = slot_text,
     [OP_COMPONENT]      = component_text,
     [OP_min]            = extremum_text,

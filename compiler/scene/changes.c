@@ -86,7 +86,7 @@ static Likeness compare_nodes(const Tape *a, const Tape *b, size_t at)
         if (tape_index(a, x->operands[k]) != tape_index(b, y->operands[k]))
             return DIFFERENT;
     bool same_number = x->operand_count > 0 || memcmp(x->number, y->number, sizeof x->number) == 0;
-    if (x->op == OP_HOISTED)
+    if (x->op == OP_PARAMETERISED)
         return same_number ? EQUAL : ALIKE_BUT_NUMBERS;
     return equal_if(x->index == y->index && same_number);
 }

@@ -103,8 +103,8 @@ static void numbers_of_the_text(void **state)
     Bench *b   = *state;
     Graph *g   = b->graph;
     double one = 1, two = 2;
-    Node   first  = graph_hoisted(g, TYPE_FLOAT, &one, 1);
-    Node   second = graph_hoisted(g, TYPE_FLOAT, &two, 2);
+    Node   first  = graph_parameterised(g, TYPE_FLOAT, &one, 1);
+    Node   second = graph_parameterised(g, TYPE_FLOAT, &two, 2);
     second        = graph_op1(g, OP_sin, second);
     Node of_first = graph_op2(g, OP_mul, b->x, first);
     assert_true(is_alike(b, of_first, graph_op2(g, OP_mul, b->x, second)));

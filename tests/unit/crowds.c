@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "compiler/graph/evaluate.h"
-#include "compiler/graph/rewrite/hoist.h"
+#include "compiler/graph/rewrite/parameterise.h"
 #include "compiler/graph/rewrite/simplify.h"
 #include "compiler/print/module.h"
 #include "compiler/target/spirv.h"
@@ -109,8 +109,8 @@ static void passes_keep_functions(void **state)
     arena_free(&b->arena); /* the rest stands by itself */
     graph_validate(many.graph, "simplify");
     compare_with_loops(b, &many);
-    many.graph = graph_hoist(many.graph, many.roots, KINDS, 0, &arena);
-    graph_validate(many.graph, "hoist");
+    many.graph = graph_parameterise(many.graph, many.roots, KINDS, 0, &arena);
+    graph_validate(many.graph, "parameterise");
     compare_with_loops(b, &many);
     arena_free(&arena);
 }

@@ -68,8 +68,8 @@ static bool is_of_turn(const Elaboration *e, Value seed)
 static Value seeded_of_turn(Elaboration *e, const Call *call, Op op, uint32_t numbers,
                             uint32_t stream)
 {
-    const uint32_t first = e->hoists ? e->number_count + 1 : 0;
-    e->number_count += e->hoists ? numbers : 0;
+    const uint32_t first = e->parameterises ? e->number_count + 1 : 0;
+    e->number_count += e->parameterises ? numbers : 0;
     e->graph->here        = call->syntax->span;
     const Node operands[] = {call->arguments[0].value.node, graph_uint(e->graph, stream),
                              graph_uint(e->graph, first)};

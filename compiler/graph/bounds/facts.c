@@ -46,7 +46,7 @@ static Fact leaf_fact(const Analysis *analysis, const Expr *e, Box box)
         fact = (Fact){.value = {box.axis[0], box.axis[1], box.axis[2]}, .slope = 1};
         for (int i = 0; i < 3; i++)
             fact.gradient[i][i] = range_of(1);
-    } else if (e->op == OP_HOISTED) {
+    } else if (e->op == OP_PARAMETERISED) {
         fact = (Fact){0};
         for (uint32_t i = 0; i < components(e->type); i++)
             fact.value[i] = range_of(e->number[i]);

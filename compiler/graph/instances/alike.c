@@ -149,7 +149,7 @@ static uint32_t note_value(Alike *alike, const Expr *e)
 
 static uint32_t find_value(Alike *alike, const Expr *e)
 {
-    if (e->op == OP_CONSTANT || e->op == OP_HOISTED)
+    if (e->op == OP_CONSTANT || e->op == OP_PARAMETERISED)
         return is_finite(e, e->number) ? IN_NODE : UNKNOWN;
     return e->operand_count == 0 || is_operation(e) ? UNKNOWN : note_value(alike, e);
 }

@@ -90,7 +90,7 @@ static Node settled(Graph *graph, Node node, NodeValue value)
     const uint32_t first = (uint32_t)graph->items[e.operands[2]].number[0];
     Node           parts[3];
     for (uint32_t k = 0; k < components((GraphType)e.type); k++)
-        parts[k] = graph_hoisted(graph, TYPE_FLOAT, &value.v[k], first + k);
+        parts[k] = graph_parameterised(graph, TYPE_FLOAT, &value.v[k], first + k);
     return e.type == TYPE_FLOAT ? parts[0] : graph_op(graph, OP_vec3, parts);
 }
 

@@ -60,7 +60,7 @@ static Parity leaf_parity(const Expr *e, uint32_t axis)
 {
     Parity parity = {{NEITHER, NEITHER, NEITHER, NEITHER}};
     for (uint32_t k = 0; k < size_of(e); k++) {
-        if (e->op == OP_CONSTANT || e->op == OP_HOISTED || e->op == OP_PARAMETER)
+        if (e->op == OP_CONSTANT || e->op == OP_PARAMETERISED || e->op == OP_PARAMETER)
             parity.of[k] = e->op == OP_CONSTANT && e->number[k] == 0 ? ZERO : EVEN;
         else if (e->op == OP_POINT)
             parity.of[k] = k == axis ? ODD : EVEN;

@@ -1,12 +1,12 @@
 /*
- * hoist.c: constants that change with the numbers of a scene leave the text of its shaders.
+ * parameterise.c: constants that change with the numbers of a scene leave the text of its shaders.
  *
- * Numbers that the author wrote are OP_HOISTED from the beginning, so that no rule looks at them.
+ * Numbers that the author wrote are OP_PARAMETERISED from the beginning, so that no rule looks at them.
  * What the compiler derives from them, such as the corners of boxes, is found here: it is a
  * constant like those of formulas.  The latter are mostly 0, 1, 2 and one half, which stay, since
  * literals cost nothing.
  */
-#include "compiler/graph/rewrite/hoist.h"
+#include "compiler/graph/rewrite/parameterise.h"
 
 #include <math.h>
 
@@ -27,37 +27,37 @@ static const uint8_t structure_of[OP_COUNT] = {
 };
 
 /* Constants of what is found at points. */
-static bool hoists(const Expr *user, const Expr *operand)
+static bool parameterises(const Expr *user, const Expr *operand)
 {
     return operand->op == OP_CONSTANT && operand->type <= TYPE_VEC4 && user->time == TIME_POINT &&
            !(operand->type == TYPE_FLOAT && is_of_formulas(operand->number[0]));
 }
 
-typedef struct Hoist {
+typedef struct Parameterise {
     const Graph *old;
     Graph       *graph;
     Node        *nodes; /* of the copy, by those of the original */
     uint32_t     next;
-} Hoist;
+} Parameterise;
 
-static Node copy_operation(Hoist *h, const Expr *e)
+static Node copy_operation(Parameterise *h, const Expr *e)
 {
     Node operands[MAX_OPERANDS];
     for (int i = 0; i < e->operand_count; i++) {
         const Expr *operand = &h->old->items[e->operands[i]];
-        operands[i]         = hoists(e, operand) && !(structure_of[e->op] >> i & 1)
-                                  ? graph_hoisted(h->graph, operand->type, operand->number, h->next++)
+        operands[i]         = parameterises(e, operand) && !(structure_of[e->op] >> i & 1)
+                                  ? graph_parameterised(h->graph, operand->type, operand->number, h->next++)
                                   : h->nodes[e->operands[i]];
     }
     return e->op == OP_COMPONENT ? graph_component(h->graph, operands[0], e->index)
                                  : graph_op(h->graph, e->op, operands);
 }
 
-static Graph *hoist_all(const Graph *old, Node *roots, size_t root_count, uint32_t first,
-                        Arena *arena)
+static Graph *parameterise_all(const Graph *old, Node *roots, size_t root_count, uint32_t first,
+                               Arena *arena)
 {
-    Tape  tape = tape_new(old, roots, root_count, arena);
-    Hoist h    = {old, graph_new(arena), arena_new_array(arena, Node, old->count + 1), first};
+    Tape         tape = tape_new(old, roots, root_count, arena);
+    Parameterise h = {old, graph_new(arena), arena_new_array(arena, Node, old->count + 1), first};
     for (size_t i = 0; i < tape.count; i++) {
         Node        node = tape.nodes[i];
         const Expr *e    = &old->items[node];
@@ -73,11 +73,12 @@ static Graph *hoist_all(const Graph *old, Node *roots, size_t root_count, uint32
     return h.graph;
 }
 
-Graph *graph_hoist(const Graph *old, Node *roots, size_t root_count, uint32_t first, Arena *arena)
+Graph *graph_parameterise(const Graph *old, Node *roots, size_t root_count, uint32_t first,
+                          Arena *arena)
 {
     size_t all_count;
     Node  *all   = roots_with_bodies(old, roots, root_count, &all_count, arena);
-    Graph *graph = hoist_all(old, all, all_count, first, arena);
+    Graph *graph = parameterise_all(old, all, all_count, first, arena);
     hand_on_crowds(graph, old, all, roots, root_count);
     return graph;
 }
