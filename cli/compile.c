@@ -129,14 +129,14 @@ static KrsStatus write_description(const Options *options, const KrsScene *scene
     return write_output_file(options, base, ".json", json.bytes, json.length);
 }
 
-/* The functions that are promised, and what they call. */
+/* The entry points, and what they call. */
 static KrsStatus write_glsl(const Options *options, const KrsScene *scene, const char *base)
 {
     KrsVariant  variant = compiled_variant(options);
-    KrsFunction promised[KRS_MOST_PROMISED];
+    KrsFunction entry_points[KRS_MAX_ENTRY_POINTS];
     variant.shares = true;
-    size_t count   = krs_promised_functions(scene, variant.many_threads, promised);
-    char  *glsl    = krs_scene_text(scene, &variant, promised, count, NULL);
+    size_t count   = krs_entry_points(scene, variant.many_threads, entry_points);
+    char  *glsl    = krs_scene_text(scene, &variant, entry_points, count, NULL);
     if (!glsl) {
         say("out of memory while printing `%s.glsl`", base);
         return KRS_OUT_OF_MEMORY;

@@ -256,7 +256,7 @@ static bool gather_node(Elaboration *e, const Dependence *d, Node node, Nodes *o
                         Nodes *unbounded)
 {
     const Expr *expr = &d->graph->items[node];
-    if (op_promises((Op)expr->op, OF_HOST) && !depends(d, node))
+    if (op_has_traits((Op)expr->op, OF_HOST) && !depends(d, node))
         return false; /* of a seed that kernels know */
     if (!depends(d, node))
         return true;

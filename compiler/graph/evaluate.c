@@ -284,7 +284,7 @@ static void run_points(const Tape *tape, const Inputs *in, NodeValue *values)
             values[node] = leaf_value(e, in);
         else if (e->op == OP_guard)
             i += run_guard(tape, i, values);
-        else if (op_promises((Op)e->op, READS_TABLES))
+        else if (op_has_traits((Op)e->op, READS_TABLES))
             run_reader(tape, node, in, values);
         else
             tape_run_node(tape->graph, node, values);

@@ -45,17 +45,17 @@ enum {
 };
 _Static_assert(ROW_COUNT == (int)OP_COUNT, "an operation has no row of rules");
 
-static const OpPromises promises[OP_COUNT] = {
-#define RULES(name, cost, promises, simplify, derive, local, series, parity, rebase, target) \
-    [OP_##name] = promises,
+static const OpTraits traits_of[OP_COUNT] = {
+#define RULES(name, cost, traits, simplify, derive, local, series, parity, rebase, target) \
+    [OP_##name] = traits,
 #include "compiler/graph/ops.def"
 };
 
-bool op_promises(Op op, OpPromises what) { return (promises[op] & what) == what; }
+bool op_has_traits(Op op, OpTraits traits) { return (traits_of[op] & traits) == traits; }
 
 bool op_has_setting(Op op, int operand)
 {
-    return op_promises(op, (OpPromises)(FIRST_SETTING << operand));
+    return op_has_traits(op, (OpTraits)(FIRST_SETTING << operand));
 }
 
 const char *graph_op_name(Op op) { return op_info[op].name; }
@@ -238,7 +238,7 @@ bool graph_is_constant(const Graph *graph, Node node)
 
 bool graph_known_component(const Graph *graph, Node node, uint32_t component, double *number)
 {
-    if (op_promises((Op)graph->items[node].op, BUILDS)) {
+    if (op_has_traits((Op)graph->items[node].op, BUILDS)) {
         const Expr *e = &graph->items[node];
         node          = e->operands[e->operand_count > 1 ? component : 0];
         component     = 0;
@@ -266,7 +266,7 @@ static Node fold_constant(Graph *graph, const Expr *e)
     for (int i = 0; i < e->operand_count; i++)
         if (graph->items[e->operands[i]].op != OP_CONSTANT)
             return NODE_NONE;
-    if (op_promises(e->op, READS_TABLES))
+    if (op_has_traits(e->op, READS_TABLES))
         return NODE_NONE;
     GraphType types[MAX_OPERANDS]    = {0};
     NodeValue operands[MAX_OPERANDS] = {0};
@@ -285,7 +285,7 @@ static Node fold_constant(Graph *graph, const Expr *e)
 /* The earliest that the value of an operation is known, but for constants. */
 static uint8_t earliest_time(Op op)
 {
-    return op_promises(op, READS_TABLES) ? TIME_POINT : TIME_FRAME;
+    return op_has_traits(op, READS_TABLES) ? TIME_POINT : TIME_FRAME;
 }
 
 /* The node of e, whose operands are in place; its binding time is the latest of theirs, or the

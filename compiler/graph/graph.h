@@ -41,17 +41,17 @@ typedef enum Op {
 enum { MAX_OPERANDS = 4 };
 
 /* What may be taken for granted of an operation, as bits: ops.def. */
-typedef enum OpPromises {
-    PROMISES_NOTHING = 0,
-    STAYS_FINITE     = 1,
-    COMMUTES         = 2,
-    BUILDS           = 4,
-    READS_TABLES     = 8,
-    FIRST_SETTING    = 16, /* and three more: operand k is a setting, FIRST_SETTING << k */
-    OF_HOST          = 256,
-    COMPONENTWISE    = 512,
-    STEADY           = 1024
-} OpPromises;
+typedef enum OpTraits {
+    NO_TRAITS     = 0,
+    STAYS_FINITE  = 1,
+    COMMUTES      = 2,
+    BUILDS        = 4,
+    READS_TABLES  = 8,
+    FIRST_SETTING = 16, /* and three more: operand k is a setting, FIRST_SETTING << k */
+    OF_HOST       = 256,
+    COMPONENTWISE = 512,
+    STEADY        = 1024
+} OpTraits;
 
 /* All operands from this one on are settings. */
 #define SETTINGS_FROM(operand) (((1 << MAX_OPERANDS) - (1 << (operand))) * FIRST_SETTING)
@@ -172,7 +172,7 @@ bool graph_known_finite(const Graph *graph, Node node);
 
 /* The row's GLSL, operands $a..$d; NULL for leaves and OP_COMPONENT. */
 const char *op_glsl(Op op);
-bool        op_promises(Op op, OpPromises what);
+bool        op_has_traits(Op op, OpTraits traits);
 /* Whether the operand says how it works, not where: an exponent or a count. */
 bool op_has_setting(Op op, int operand);
 /* What an operation costs, in multiply-adds of one component, as measured on lavapipe. */

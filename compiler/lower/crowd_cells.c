@@ -23,7 +23,7 @@ static bool is_of_columns(const Graph *g, const MemberDistance *distance)
     for (size_t i = 0; i < distance->tape.count; i++) {
         const Expr *e = &g->items[distance->tape.nodes[i]];
         if ((e->op == OP_PARAMETER && e->index < distance->first) ||
-            op_promises((Op)e->op, READS_TABLES))
+            op_has_traits((Op)e->op, READS_TABLES))
             return false;
     }
     return true;

@@ -141,7 +141,7 @@ static bool check_operations(Compilation *c)
    The latter would have been folded if its result were finite. */
 static bool is_beyond_numbers(const Graph *graph, const Expr *expr)
 {
-    bool constants = expr->operand_count > 0 && !op_promises((Op)expr->op, READS_TABLES);
+    bool constants = expr->operand_count > 0 && !op_has_traits((Op)expr->op, READS_TABLES);
     bool too_large = false;
     for (uint32_t i = 0; i < expr->operand_count; i++)
         constants = constants && graph->items[expr->operands[i]].op == OP_CONSTANT;

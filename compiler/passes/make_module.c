@@ -28,17 +28,17 @@ static Sources retain_lines(const Sources *from, const Graph *graph, Arena *aren
     return retained;
 }
 
-/* The text of the promised functions (krs_promised_functions) for graphics cards. */
-static Text print_promised(Compilation *c, bool shares)
+/* The text of the entry points (krs_entry_points) for graphics cards. */
+static Text print_entry_points(Compilation *c, bool shares)
 {
     KrsScene        *scene = c->scene;
     const KrsVariant cards = {.many_threads = true,
                               .shares       = shares,
                               .values       = c->options->specialize == KRS_SPECIALIZE_STRUCTURE};
-    KrsFunction      promised[KRS_MOST_PROMISED];
-    size_t           count = krs_promised_functions(scene, cards.many_threads, promised);
+    KrsFunction      entry_points[KRS_MAX_ENTRY_POINTS];
+    size_t           count = krs_entry_points(scene, cards.many_threads, entry_points);
     Text             glsl  = {.arena = &c->scratch};
-    module_print(&scene->module, &cards, promised, count, &glsl_printer, &glsl);
+    module_print(&scene->module, &cards, entry_points, count, &glsl_printer, &glsl);
     return glsl;
 }
 
@@ -79,8 +79,8 @@ KrsStatus pass_emit(Compilation *c)
     module_lay_out(&scene->module, KRS_MOST_ZONES, arena, &c->scratch);
     program->value_slots           = scene->module.slots.plain.slots;
     program->camera_relative_slots = scene->module.slots.camera_relative.slots;
-    program->glsl_length           = print_promised(c, false).length;
+    program->glsl_length           = print_entry_points(c, false).length;
     return KRS_OK;
 }
 
-void print_emit(Compilation *c, Text *out) { text_add(out, print_promised(c, true).bytes); }
+void print_emit(Compilation *c, Text *out) { text_add(out, print_entry_points(c, true).bytes); }

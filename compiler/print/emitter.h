@@ -159,9 +159,9 @@ void emit_helper_of(Emitter *e, const char *name, uint32_t component);
 
 /* ---- signatures.c ---- */
 
-/* Promises a function, with a comment; nothing where it has no name of its own. */
-void emit_promise(Emitter *e, KrsFunction function);
-void emit_prepare_promise(Emitter *e);
+/* Writes the prototype of an entry point, with a comment; nothing where it has no name of its own. */
+void emit_entry_point(Emitter *e, KrsFunction function);
+void emit_prepare_entry_point(Emitter *e);
 /* What a function begins with, up to its brace. */
 void emit_head(Emitter *e, KrsFunction function);
 void emit_prepare_head(Emitter *e);

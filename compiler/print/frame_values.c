@@ -25,7 +25,7 @@ bool frame_value_is_given(const Graph *graph, Node node)
 bool frame_value_is_arranged(const Graph *graph, Node node)
 {
     Op op = (Op)graph->items[node].op;
-    return op_promises(op, BUILDS) || op == OP_neg;
+    return op_has_traits(op, BUILDS) || op == OP_neg;
 }
 
 typedef struct FrameNodes {

@@ -318,16 +318,16 @@ static void emit_block(Emitter *e)
         emit_phrase(e, PHRASE_TEXTURES, (Operands){0});
 }
 
-/* Promised functions, which may then be called in any order. */
-static void emit_promises(Emitter *e)
+/* Prototypes of the entry points, which may then be called in any order. */
+static void emit_entry_points(Emitter *e)
 {
     if (e->wanted[KRS_FUNCTION_SURFACE])
         emit_struct(e);
     emit_media_globals(e);
-    emit_prepare_promise(e);
+    emit_prepare_entry_point(e);
     for (int f = 0; f < KRS_FUNCTION_COUNT; f++)
         if (e->wanted[f])
-            emit_promise(e, (KrsFunction)f);
+            emit_entry_point(e, (KrsFunction)f);
     if (e->wanted[KRS_FUNCTION_SCENE_PART_DISTANCE]) {
         uint32_t parts = module_scene_part_count(e->module->components);
         emit_phrase(e, PHRASE_CONSTANT_UINT, (Operands){"KRS_SCENE_PARTS", emit_count(e, parts)});
@@ -355,7 +355,7 @@ void module_print(const Module *module, const KrsVariant *variant, const KrsFunc
     emit_functions(&e);
     e.out = out;
     emit_block(&e);
-    emit_promises(&e);
+    emit_entry_points(&e);
     text_add_bytes(out, e.helper_text.bytes, e.helper_text.length);
     text_add_bytes(out, prepare.bytes, prepare.length);
     text_add_bytes(out, functions.bytes, functions.length);

@@ -1,5 +1,5 @@
 /*
- * signatures.c: the functions that texts have: their names, parameters, and what they promise.
+ * signatures.c: the functions that texts have: their names, parameters, and their comments.
  */
 #include "compiler/print/emitter.h"
 
@@ -16,7 +16,7 @@ typedef struct Signature {
     const char          *name;
     int                  type; /* of the result: a GraphType, NOTHING or SURFACE */
     const TextParameter *parameters[3];
-    const char          *promise; /* a comment */
+    const char          *comment;
 } Signature;
 
 static const TextParameter point     = {TYPE_VEC3, "p", false},
@@ -158,18 +158,18 @@ static const char *head_text(Emitter *e, const Signature *signature, const char 
     return phrase_text(e, PHRASE_FUNCTION, (Operands){type, name, parameters});
 }
 
-static void promise(Emitter *e, const Signature *signature)
+static void emit_prototype(Emitter *e, const Signature *signature)
 {
     const char *head = head_text(e, signature, signature->name);
-    emit_phrase(e, PHRASE_PROTOTYPE, (Operands){signature->promise, head});
+    emit_phrase(e, PHRASE_PROTOTYPE, (Operands){signature->comment, head});
 }
 
-void emit_prepare_promise(Emitter *e) { promise(e, &prepare); }
+void emit_prepare_entry_point(Emitter *e) { emit_prototype(e, &prepare); }
 
-void emit_promise(Emitter *e, KrsFunction function)
+void emit_entry_point(Emitter *e, KrsFunction function)
 {
     if (of_scene[function].name)
-        promise(e, &of_scene[function]);
+        emit_prototype(e, &of_scene[function]);
 }
 
 static void begin(Emitter *e, const Signature *signature, const char *name)

@@ -168,7 +168,7 @@ const char *emit_expression(Emitter *e, const Expr *expr)
    printed there is none. */
 static bool repeats_operand(const Emitter *e, const Expr *user, Node operand)
 {
-    if (user->op == OP_COMPONENT || op_promises((Op)user->op, READS_TABLES) || !e->printer)
+    if (user->op == OP_COMPONENT || op_has_traits((Op)user->op, READS_TABLES) || !e->printer)
         return false;
     if (picks_variable(e, user) ||
         (user->op == OP_fold && user->operands[0] == operand && mirror_repeats(e, user)))

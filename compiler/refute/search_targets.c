@@ -96,7 +96,7 @@ static void target_guard(const Prospect *p)
 }
 
 static void (*const targets[OP_COUNT])(const Prospect *p) = {
-#define RULES(name, cost, promises, simplify, derive, local, series, parity, rebase, target) \
+#define RULES(name, cost, traits, simplify, derive, local, series, parity, rebase, target) \
     [OP_##name] = target,
 #include "compiler/graph/ops.def"
 };

@@ -63,7 +63,7 @@ enum { KRS_MOST_MARCH_GROUPS = 8 };
 
 typedef struct KrsProgram {
     uint64_t      kernels; /* the same number: the same kernels (krs_scene_update found no other) */
-    size_t        glsl_length;     /* bytes of the promised functions (krs_promised_functions) */
+    size_t        glsl_length;     /* bytes of the entry points (krs_entry_points) */
     uint32_t      parameter_slots; /* slots (vec4) of the parameter block */
     uint32_t      value_slots;     /* further slots, if the host computes values of the frame */
     double        low[3], high[3]; /* box around all components; infinite where unbounded */
@@ -119,9 +119,9 @@ char *krs_scene_plain_text(const KrsScene *scene, const KrsAllocator *allocator)
 /* The functions that `krs compile` writes; returns how many.  They are krs_distance, krs_surface
    and, for devices with many threads, krs_distance_lod.  krs_gradient is added if the program has
    gradients, and krs_along if it has sheets. */
-enum { KRS_MOST_PROMISED = 5 };
-size_t krs_promised_functions(const KrsScene *scene, bool many_threads,
-                              KrsFunction promised[KRS_MOST_PROMISED]);
+enum { KRS_MAX_ENTRY_POINTS = 5 };
+size_t krs_entry_points(const KrsScene *scene, bool many_threads,
+                        KrsFunction entry_points[KRS_MAX_ENTRY_POINTS]);
 /* Whether a camera of the scene is a panorama. */
 bool krs_scene_is_panoramic(const KrsScene *scene);
 /* Whether a camera of the scene may have an aperture or a shift. */

@@ -6,18 +6,18 @@
 
 #include "compiler/scene/program.h"
 
-size_t krs_promised_functions(const KrsScene *scene, bool many_threads,
-                              KrsFunction promised[KRS_MOST_PROMISED])
+size_t krs_entry_points(const KrsScene *scene, bool many_threads,
+                        KrsFunction entry_points[KRS_MAX_ENTRY_POINTS])
 {
-    size_t count      = 0;
-    promised[count++] = KRS_FUNCTION_DISTANCE;
-    promised[count++] = KRS_FUNCTION_SURFACE;
+    size_t count          = 0;
+    entry_points[count++] = KRS_FUNCTION_DISTANCE;
+    entry_points[count++] = KRS_FUNCTION_SURFACE;
     if (many_threads)
-        promised[count++] = KRS_FUNCTION_DISTANCE_LOD;
+        entry_points[count++] = KRS_FUNCTION_DISTANCE_LOD;
     if (scene->program.gradients)
-        promised[count++] = KRS_FUNCTION_GRADIENT;
+        entry_points[count++] = KRS_FUNCTION_GRADIENT;
     if (scene->program.sheets)
-        promised[count++] = KRS_FUNCTION_ALONG;
+        entry_points[count++] = KRS_FUNCTION_ALONG;
     return count;
 }
 

@@ -73,7 +73,7 @@ static Node grow(Bench *b, const Garden *garden)
         GraphType types[MAX_OPERANDS];
         Node      operands[MAX_OPERANDS];
         GraphType usual = random_type(b);
-        if (op_promises(op, READS_TABLES) || op_promises(op, OF_HOST))
+        if (op_has_traits(op, READS_TABLES) || op_has_traits(op, OF_HOST))
             continue;
         for (uint32_t count = 1; count <= MAX_OPERANDS; count++) {
             for (uint32_t i = 0; i < count; i++)

@@ -241,7 +241,7 @@ static void every_row_can_be_emitted(void **state)
     Bench *b = *state;
     for (Op op = OP_COMPONENT + 1; op < OP_COUNT; op++) {
         const char *glsl = op_glsl(op);
-        if (op_promises(op, READS_TABLES) || op_promises(op, OF_HOST)) {
+        if (op_has_traits(op, READS_TABLES) || op_has_traits(op, OF_HOST)) {
             /* functions of the module: print/crowds.c; or none is needed */
             assert_null(glsl);
             continue;

@@ -259,7 +259,7 @@ int main(void)
     struct CMUnitTest tests[2 * OP_COUNT];
     size_t            count = 0;
     for (Op op = 0; op < OP_COUNT; op++)
-        if (op_rows[op].name && !op_promises(op, READS_TABLES) && !op_promises(op, OF_HOST)) {
+        if (op_rows[op].name && !op_has_traits(op, READS_TABLES) && !op_has_traits(op, OF_HOST)) {
             /* those: unit/crowds.c, property/turns.c */
             ops[op]        = op;
             tests[count++] = (struct CMUnitTest){graph_op_name(op), keeps_its_promises, NULL, NULL,

@@ -90,7 +90,7 @@ static const char *name_of(KrsFunction function)
     return name ? name : "";
 }
 
-static bool is_promised(const char *name, const KernelScene *of)
+static bool is_entry_point(const char *name, const KernelScene *of)
 {
     bool sines = false, arcs = false;
     for (size_t i = 0; i < of->wanted_count; i++) {
@@ -108,7 +108,7 @@ static void check_names(const char *text, const KernelScene *of, const char *pat
 {
     char name[LONGEST_NAME];
     for (const char *line = text; *line; line += strcspn(line, "\n"), line += *line == '\n') {
-        if (!read_name(line, name) || is_promised(name, of))
+        if (!read_name(line, name) || is_entry_point(name, of))
             continue;
         int uses = count_name(text, name) - count_declarations(text, name);
         if (uses < (strncmp(name, "krs_frame", 9) == 0 ? 2 : 1))
@@ -400,7 +400,7 @@ static void texts_are_short(void **state)
     (void)state;
     KrsScene   *scene = open_file("examples/02-gear.krs", false);
     KernelScene of    = {.scene = scene, .variant = {.many_threads = true, .shares = true}};
-    of.wanted_count   = krs_promised_functions(scene, true, of.wanted);
+    of.wanted_count   = krs_entry_points(scene, true, of.wanted);
     char *text        = print(&of);
     assert_in_range(strlen(text), 10000, 84000);
     assert_true(strlen(text) < 2 * krs_scene_program(scene)->glsl_length / 3);

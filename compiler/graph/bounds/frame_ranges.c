@@ -60,7 +60,7 @@ static bool common_range(Op op, uint32_t index, uint32_t size, Range *const *o,
     case OP_COMPONENT: result[0] = o[0][index]; return true;
     default: break;
     }
-    if (!op_promises(op, BUILDS))
+    if (!op_has_traits(op, BUILDS))
         return false;
     for (uint32_t i = 0; i < size; i++)
         result[i] = o[operand_count > 1 ? i : 0][0];

@@ -344,7 +344,7 @@ static bool same_node(const Alike *alike, Node a, Node b)
 static Node element_node(Graph *graph, Node node, uint32_t element)
 {
     const Expr *e = &graph->items[node];
-    if (op_promises((Op)e->op, BUILDS))
+    if (op_has_traits((Op)e->op, BUILDS))
         return e->operands[e->operand_count > 1 ? element : 0];
     return graph_component(graph, node, element);
 }

@@ -99,7 +99,7 @@ static Node settle_random(Graph *graph, Node root, Arena *scratch)
     const Tape tape  = tape_new(graph, &root, 1, scratch);
     NodeList   found = {0};
     for (size_t i = 0; i < tape.frame_count; i++)
-        if (op_promises((Op)graph->items[tape.nodes[i]].op, OF_HOST))
+        if (op_has_traits((Op)graph->items[tape.nodes[i]].op, OF_HOST))
             array_push(scratch, &found, tape.nodes[i]);
     if (found.count == 0)
         return root;

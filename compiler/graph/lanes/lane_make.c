@@ -156,14 +156,14 @@ static void emit_call(Builder *b, Node node, uint32_t *to)
         to[k] = emit1(b, LANE_PART, to[0]);
 }
 
-static void emit_by_promise(Builder *b, Node node, const Operands *o, uint32_t *to)
+static void emit_by_traits(Builder *b, Node node, const Operands *o, uint32_t *to)
 {
     const Expr *e = &b->graph->items[node];
-    if (op_promises((Op)e->op, BUILDS))
+    if (op_has_traits((Op)e->op, BUILDS))
         for (uint32_t k = 0; k < components(e->type); k++)
             to[k] = e->operand_count == 1 ? o->x[0]
                                           : (const uint32_t *[]){o->x, o->y, o->z, o->w}[k][0];
-    else if (op_promises((Op)e->op, COMPONENTWISE))
+    else if (op_has_traits((Op)e->op, COMPONENTWISE))
         emit_each(b, e, o, to);
     else
         emit_call(b, node, to);
@@ -195,7 +195,7 @@ static void emit_operation(Builder *b, Node node, const Operands *o, uint32_t *t
 #include "compiler/graph/ops.def"
         emit_each(b, e, o, to);
         return;
-    default: emit_by_promise(b, node, o, to);
+    default: emit_by_traits(b, node, o, to);
     }
 }
 

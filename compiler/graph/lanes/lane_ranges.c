@@ -237,7 +237,7 @@ static void run_call(const LaneTape *tape, const LaneRanges *ranges, size_t step
     const Expr     *e     = &graph->items[call->node];
     Fact            facts[MAX_OPERANDS];
     GraphType       types[MAX_OPERANDS];
-    bool            sure = op_promises((Op)e->op, STAYS_FINITE);
+    bool            sure = op_has_traits((Op)e->op, STAYS_FINITE);
     for (uint32_t k = 0; k < e->operand_count; k++) {
         types[k] = graph->items[e->operands[k]].type;
         facts[k] = is_scalar(call, k, types[k]) ? (Fact){0} : fact_unknown(type_size(types[k]));
@@ -331,7 +331,7 @@ static bool is_defined(const LaneStep *step, const Operand *o)
     case OP_guard:
     case LANE_LESSER:
     case LANE_GREATER: return true;
-    default: return finite && op_promises((Op)step->op, STAYS_FINITE);
+    default: return finite && op_has_traits((Op)step->op, STAYS_FINITE);
     }
 }
 

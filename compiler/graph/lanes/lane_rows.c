@@ -223,7 +223,7 @@ static void locate(LaneSteps *steps, Rows *rows, LaneCode *code)
 static bool any_reads_tables(const Graph *graph, const LaneSteps *steps)
 {
     for (size_t i = 0; i < steps->calls.count; i++)
-        if (op_promises((Op)graph->items[steps->calls.items[i].node].op, READS_TABLES))
+        if (op_has_traits((Op)graph->items[steps->calls.items[i].node].op, READS_TABLES))
             return true;
     return false;
 }

@@ -60,7 +60,7 @@ NodeValue lane_call(const Tape *tape, NodeValue *values, Node node, const NodeVa
 {
     const Expr *e = &tape->graph->items[node];
     GraphType   types[MAX_OPERANDS];
-    if (op_promises((Op)e->op, READS_TABLES))
+    if (op_has_traits((Op)e->op, READS_TABLES))
         return tape_run_reader(tape, node, operands, values);
     for (uint32_t k = 0; k < e->operand_count; k++)
         types[k] = tape->graph->items[e->operands[k]].type;

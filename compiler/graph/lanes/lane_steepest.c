@@ -18,7 +18,7 @@ static bool op_never_jumps(uint16_t op)
         return (norm) != NORM_NONE;                                             \
     }
 #include "compiler/graph/ops.def"
-    default: return op_promises((Op)op, BUILDS) || op_promises((Op)op, STEADY);
+    default: return op_has_traits((Op)op, BUILDS) || op_has_traits((Op)op, STEADY);
     }
 }
 

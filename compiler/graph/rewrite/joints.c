@@ -364,7 +364,7 @@ static bool depends_on_frame(const Graph *graph, const Tape *tape)
 {
     for (size_t i = 0; i < tape->count; i++)
         if (graph->items[tape->nodes[i]].time == TIME_FRAME ||
-            op_promises((Op)graph->items[tape->nodes[i]].op, READS_TABLES))
+            op_has_traits((Op)graph->items[tape->nodes[i]].op, READS_TABLES))
             return true;
     return false;
 }

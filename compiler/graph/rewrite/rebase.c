@@ -238,7 +238,7 @@ static SplitValue rebase_compare(Graph *g, const Expr *e, const SplitValue *p)
 }
 
 static SplitValue (*const rules[OP_COUNT])(Graph *g, const Expr *e, const SplitValue *p) = {
-#define RULES(name, cost, promises, simplify, derive, local, series, parity, rebase, target) \
+#define RULES(name, cost, traits, simplify, derive, local, series, parity, rebase, target) \
     [OP_##name] = rebase,
 #include "compiler/graph/ops.def"
 };

@@ -260,7 +260,7 @@ static Node simplify_scale(const Rewrite *s)
 static Node simplify_component(const Rewrite *s)
 {
     Node a = s->o[0];
-    if (!op_promises(expr(s, a)->op, BUILDS))
+    if (!op_has_traits(expr(s, a)->op, BUILDS))
         return NODE_NONE;
     return operand(s, a, expr(s, a)->operand_count > 1 ? (int)s->index : 0);
 }
@@ -344,13 +344,13 @@ static Node simplify_none(const Rewrite *s)
 }
 
 static Node (*const rules[OP_COUNT])(const Rewrite *s) = {
-#define RULES(name, cost, promises, simplify, ...) [OP_##name] = simplify,
+#define RULES(name, cost, traits, simplify, ...) [OP_##name] = simplify,
 #include "compiler/graph/ops.def"
 };
 
 static Node simplify_by_rule(Rewrite *s)
 {
-    if (op_promises(s->op, COMMUTES))
+    if (op_has_traits(s->op, COMMUTES))
         order_operands(s);
     return rules[s->op](s);
 }
@@ -359,7 +359,7 @@ static Node simplify_by_rule(Rewrite *s)
 
 static bool node_stays_finite(const Simplifier *simplifier, const Expr *e)
 {
-    bool finite = e->operand_count == 0 || op_promises(e->op, STAYS_FINITE);
+    bool finite = e->operand_count == 0 || op_has_traits(e->op, STAYS_FINITE);
     for (int i = 0; i < 4 && e->op == OP_CONSTANT; i++)
         finite = finite && isfinite(e->number[i]);
     for (int i = 0; i < e->operand_count; i++)

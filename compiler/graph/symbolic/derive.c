@@ -12,7 +12,7 @@
 #include "compiler/graph/symbolic/derive_rules.h"
 
 static DeriveRule *const rules[OP_COUNT] = {
-#define RULES(name, cost, promises, simplify, derive, ...) [OP_##name] = derive,
+#define RULES(name, cost, traits, simplify, derive, ...) [OP_##name] = derive,
 #include "compiler/graph/ops.def"
 };
 

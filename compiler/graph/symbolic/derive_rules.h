@@ -16,7 +16,7 @@ typedef struct Derivation {
 
 /* The derivative of a node from those of its operands, `inner`; NODE_NONE: there is none. */
 typedef Node DeriveRule(Derivation *d, const Expr *e, Node node, const Node *inner);
-#define RULES(name, cost, promises, simplify, derive, ...) DeriveRule derive;
+#define RULES(name, cost, traits, simplify, derive, ...) DeriveRule derive;
 #include "compiler/graph/ops.def"
 
 /* ---- what the rules share ---- */

@@ -300,7 +300,7 @@ static BallTerm local_vector(BallContext *x, const OpComponent *p)
 }
 
 static Rule *const rules[OP_COUNT] = {
-#define RULES(name, cost, promises, simplify, derive, local, ...) [OP_##name] = local,
+#define RULES(name, cost, traits, simplify, derive, local, ...) [OP_##name] = local,
 #include "compiler/graph/ops.def"
 };
 

@@ -48,7 +48,7 @@ static uint8_t sum_of_products(const Parity *a, const Parity *b, uint32_t size)
 }
 
 static const ParityRule rules[OP_COUNT] = {
-#define RULES(name, cost, promises, simplify, derive, local, series, parity, rebase, target) \
+#define RULES(name, cost, traits, simplify, derive, local, series, parity, rebase, target) \
     [OP_##name] = parity,
 #include "compiler/graph/ops.def"
 };

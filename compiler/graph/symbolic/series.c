@@ -363,7 +363,7 @@ static bool series_turn(Expansion *x, Node node, const SeriesElements *operands,
 }
 
 static Rule *const rules[OP_COUNT] = {
-#define RULES(name, cost, promises, simplify, derive, local, series, ...) [OP_##name] = series,
+#define RULES(name, cost, traits, simplify, derive, local, series, ...) [OP_##name] = series,
 #include "compiler/graph/ops.def"
 };
 
