@@ -45,7 +45,7 @@ for helpers in compiler/print/glsl/*.glsl; do
         case $helpers in
         */cells.glsl) cat compiler/print/glsl/arcs.glsl compiler/print/glsl/sines.glsl ;;
         */crowds.glsl | */textures.glsl) # what glsl.c declares where they are called
-            sed -n '/PHRASE_BUFFER_TABLES\]/,/PHRASE_TABLES\]/d;/PHRASE_TEXEL_TABLES\]/,/PHRASE_EACH_LISTED/{/PHRASE_/d;s/^[^"]*"//;s/\(\\n\)*",*$//;p;}' \
+            sed -n '/TEMPLATE_BUFFER_TABLES\]/,/TEMPLATE_TABLES\]/d;/TEMPLATE_TEXEL_TABLES\]/,/TEMPLATE_EACH_LISTED/{/TEMPLATE_/d;s/^[^"]*"//;s/\(\\n\)*",*$//;p;}' \
                 compiler/print/glsl/glsl.c ;;
         */differences.glsl) echo "float krs_distance_N(vec3 p) { return p.x; }" ;;
         esac

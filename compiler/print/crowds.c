@@ -83,7 +83,7 @@ void emit_table_globals(Emitter *e)
 {
     for (uint32_t i = 0; e->reads_table && i < e->graph->crowds->tables.count; i++)
         if (e->reads_table[i])
-            emit_phrase(e, PHRASE_GLOBAL, (Operands){"KrsTable", table_name(e, i)});
+            emit_template(e, TEMPLATE_GLOBAL, (Operands){"KrsTable", table_name(e, i)});
 }
 
 void emit_table_reads(Emitter *e)
@@ -170,7 +170,7 @@ static const char *parameters_text(Emitter *e, uint32_t count)
     for (uint32_t i = 0; i < count; i++) {
         Operands parameter = {e->printer->types[types[i]], names[i]};
         text_add(&text, i ? ", " : "");
-        text_add(&text, phrase_text(e, PHRASE_PARAMETER, parameter));
+        text_add(&text, template_text(e, TEMPLATE_PARAMETER, parameter));
     }
     return text.bytes;
 }
@@ -245,7 +245,7 @@ static void emit_sum_that_ends(Emitter *e, const CrowdFunction *function, const 
     emit_local(e, TYPE_FLOAT, "exact_from", text.bytes);
     emit_local(e, TYPE_FLOAT, "sum", "0.0");
     emit_local(e, TYPE_FLOAT, "whole", "0.0");
-    emit_phrase(e, PHRASE_EACH_LISTED, (Operands){table});
+    emit_template(e, TEMPLATE_EACH_LISTED, (Operands){table});
     const size_t body = e->out->length;
     emit_body(e, &bodies[3], 1);
     text.length = 0;
@@ -300,13 +300,13 @@ static void emit_function_of_crowd(Emitter *e, uint32_t id)
                                      parameters_text(e, e->called[id])};
     emit_call(e, "krs_near", TYPE_VEC3, 2);
     emit_call(e, "krs_listed", TYPE_UINT, 2);
-    text_format(e->out, "%s\n{\n", phrase_text(e, PHRASE_FUNCTION, head));
+    text_format(e->out, "%s\n{\n", template_text(e, TEMPLATE_FUNCTION, head));
     if (function->ends) {
         emit_sum_that_ends(e, function, bodies);
         return;
     }
     emit_first_states(e, function);
-    emit_phrase(e, PHRASE_EACH_LISTED, (Operands){table});
+    emit_template(e, TEMPLATE_EACH_LISTED, (Operands){table});
     const size_t body = e->out->length;
     emit_body(e, bodies, function->state_count);
     emit_next_states(e, function, bodies);

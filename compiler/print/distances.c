@@ -28,12 +28,12 @@ void emit_zones(Emitter *e)
         emit_line(e, "    return %s;\n}\n\n", e->text[zone]);
     }
     text_add(e->out, "// The distance where zones have been cut out.\n");
-    emit_phrase(e, PHRASE_CUT, (Operands){0});
+    emit_template(e, TEMPLATE_CUT, (Operands){0});
     if (zone != NODE_NONE)
         text_add(e->out, "    d = max(d, krs_zone_depth(p));\n");
     if (e->variant->zones > 0)
-        emit_phrase(e, e->variant->camera_relative ? PHRASE_CUT_NEAR_ZONES : PHRASE_CUT_ZONES,
-                    (Operands){emit_count(e, e->variant->zones)});
+        emit_template(e, e->variant->camera_relative ? TEMPLATE_CUT_NEAR_ZONES : TEMPLATE_CUT_ZONES,
+                      (Operands){emit_count(e, e->variant->zones)});
     text_add(e->out, "    return d;\n}\n\n");
 }
 
@@ -153,8 +153,8 @@ static const char *emit_kept_distance(Emitter *e, uint32_t component, const char
 {
     emit_local(e, TYPE_FLOAT, "tangent", distance);
     emit_local(e, TYPE_FLOAT, "outside", emit_box_distance(e, component));
-    emit_phrase(e, PHRASE_SET_IF,
-                (Operands){"outside > 0.0 && !(tangent > outside)", "tangent", "outside"});
+    emit_template(e, TEMPLATE_SET_IF,
+                  (Operands){"outside > 0.0 && !(tangent > outside)", "tangent", "outside"});
     return "tangent";
 }
 
@@ -183,12 +183,12 @@ static void emit_zone_gradients(Emitter *e, const Node *roots)
         emit_body(e, roots, 2);
         Text deeper = {.arena = e->scratch};
         text_format(&deeper, "%s > nearest.w", e->text[roots[1]]);
-        emit_phrase(e, PHRASE_SET_IF,
-                    (Operands){deeper.bytes, "nearest",
-                               with_distance(e, e->text[roots[0]], e->text[roots[1]])});
+        emit_template(e, TEMPLATE_SET_IF,
+                      (Operands){deeper.bytes, "nearest",
+                                 with_distance(e, e->text[roots[0]], e->text[roots[1]])});
     }
     if (e->variant->zones > 0)
-        emit_phrase(e, PHRASE_NEAREST_OF_ZONES, (Operands){emit_count(e, e->variant->zones)});
+        emit_template(e, TEMPLATE_NEAREST_OF_ZONES, (Operands){emit_count(e, e->variant->zones)});
 }
 
 /* Finds the `nearest` gradient, and the distance. */
@@ -196,13 +196,13 @@ static void emit_nearest(Emitter *e)
 {
     const Operands nearer = {"other.w < nearest.w", "other", "nearest"};
     uint32_t       count  = (uint32_t)e->module->components;
-    emit_phrase(e, PHRASE_NEAREST_GRADIENT, (Operands){0});
+    emit_template(e, TEMPLATE_NEAREST_GRADIENT, (Operands){0});
     for (uint32_t i = 0; i < count; i++) {
         if (!is_of_group(e, i))
             continue;
         text_format(e->out, "    other = %s;\n", emit_call_of(e, OF_GRADIENT, i));
         emit_media_gradient(e, i);
-        text_format(e->out, "    nearest = %s;\n", phrase_text(e, PHRASE_CHOICE, nearer));
+        text_format(e->out, "    nearest = %s;\n", template_text(e, TEMPLATE_CHOICE, nearer));
     }
     emit_zone_gradients(e, e->module->gradients + 2 * count);
 }

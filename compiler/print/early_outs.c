@@ -61,7 +61,7 @@ static void emit_return(Emitter *e, const Node *o)
         text_add(&found, e->text[o[0]]);
     else
         text_format(&found, "min(%s, %s)", e->text[o[0]], e->text[o[1]]);
-    emit_phrase(e, PHRASE_RETURN_IF, (Operands){guard_text(e, o), found.bytes});
+    emit_template(e, TEMPLATE_RETURN_IF, (Operands){guard_text(e, o), found.bytes});
 }
 
 /* Statements of a region; returns its result.  Where that is all that the function is about, a
@@ -151,7 +151,7 @@ static void emit_guarded_component(Emitter *e, uint32_t component, bool first)
         return;
     }
     text_format(&nearer, "%s < max(d, 1e-30)", emit_box_distance(e, component));
-    emit_phrase(e, PHRASE_SET_IF, (Operands){nearer.bytes, "d", least.bytes});
+    emit_template(e, TEMPLATE_SET_IF, (Operands){nearer.bytes, "d", least.bytes});
 }
 
 static FunctionKind kind_of_lod(const Emitter *e, uint32_t component)

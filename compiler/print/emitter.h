@@ -3,7 +3,7 @@
  *
  * statements.c and mirrors.c turn nodes into statements; distances.c, surfaces.c, crowds.c,
  * early_outs.c and march.c write the functions around them; module_print.c puts all together.  None of them knows
- * the language: what differs between languages is a phrase (phrases.def), a type, an operation or
+ * the language: what differs between languages is a template (templates.def), a type, an operation or
  * a helper of the printer.
  */
 #ifndef KRS_EMITTER_H
@@ -125,11 +125,11 @@ void emit_with_noises(Emitter *e);
 
 /* A line of code, in which alternatives of the printer are written out. */
 void emit_line(Emitter *e, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* What a phrase is about, as many as its row says. */
+/* What a template is about, as many as its row says. */
 typedef const char *Operands[3];
-/* The printer's words for a phrase; the second writes them as a line. */
-const char *phrase_text(Emitter *e, Phrase phrase, const Operands operands);
-void        emit_phrase(Emitter *e, Phrase phrase, const Operands operands);
+/* The printer's words for a template; the second writes them as a line. */
+const char *template_text(Emitter *e, TextTemplate template, const Operands operands);
+void        emit_template(Emitter *e, TextTemplate template, const Operands operands);
 /* A local variable. */
 void emit_local(Emitter *e, GraphType type, const char *name, const char *value);
 /* Says where the next statement comes from, unless it is the same line as before, or the same file

@@ -127,9 +127,9 @@ static void print_spread(Emitter *e, const char *name, size_t length, GraphType 
     for (uint32_t k = 0; k < operands; k++) {
         Operands parameter = {vector, text_of(e, &"abcd"[k], 1)};
         text_add(&text, k ? ", " : "");
-        text_add(&text, phrase_text(e, PHRASE_PARAMETER, parameter));
+        text_add(&text, template_text(e, TEMPLATE_PARAMETER, parameter));
     }
-    const char *head = phrase_text(e, PHRASE_FUNCTION, (Operands){vector, plain, text.bytes});
+    const char *head = template_text(e, TEMPLATE_FUNCTION, (Operands){vector, plain, text.bytes});
     if (out->length > 0 && strstr(out->bytes, head))
         return;
     text_format(out, "%s\n{\n    return %s(", head, vector);

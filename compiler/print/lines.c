@@ -96,12 +96,12 @@ void emit_line(Emitter *e, const char *format, ...)
     write_out(e, e->out, line, length);
 }
 
-/* ---- phrases ---- */
+/* ---- templates ---- */
 
-const char *phrase_text(Emitter *e, Phrase phrase, const Operands operands)
+const char *template_text(Emitter *e, TextTemplate template, const Operands operands)
 {
     Text text = {.arena = e->scratch};
-    for (const char *words = e->printer->phrases[phrase]; *words;) {
+    for (const char *words = e->printer->templates[template]; *words;) {
         size_t plain = strcspn(words, "$");
         text_add_bytes(&text, words, plain);
         words += plain;
@@ -113,14 +113,14 @@ const char *phrase_text(Emitter *e, Phrase phrase, const Operands operands)
     return text.length > 0 ? text.bytes : "";
 }
 
-void emit_phrase(Emitter *e, Phrase phrase, const Operands operands)
+void emit_template(Emitter *e, TextTemplate template, const Operands operands)
 {
-    emit_line(e, "%s", phrase_text(e, phrase, operands));
+    emit_line(e, "%s", template_text(e, template, operands));
 }
 
 void emit_local(Emitter *e, GraphType type, const char *name, const char *value)
 {
-    emit_phrase(e, PHRASE_LOCAL, (Operands){e->printer->types[type], name, value});
+    emit_template(e, TEMPLATE_LOCAL, (Operands){e->printer->types[type], name, value});
 }
 
 /* ---- literals ---- */

@@ -44,22 +44,22 @@ static void emit_part_case(Emitter *e, size_t part)
     FunctionKind kind     = goes_by_lod(e) ? OF_LOD : OF_DISTANCE;
     const char  *operands = goes_by_lod(e) ? "p, 0.0" : "p";
     size_t       count    = e->module->components;
-    emit_phrase(e, PHRASE_CASE, (Operands){emit_count(e, part)});
+    emit_template(e, TEMPLATE_CASE, (Operands){emit_count(e, part)});
     for (uint32_t i = module_scene_part_first(part, count);
          i < module_scene_part_first(part + 1, count); i++)
         if (!emit_leaves_out(e, i))
             text_format(e->out, "        d = min(d, %s);\n", emit_call_with(e, kind, i, operands));
-    emit_phrase(e, PHRASE_CASE_END, (Operands){0});
+    emit_template(e, TEMPLATE_CASE_END, (Operands){0});
 }
 
 void emit_scene_part_distance(Emitter *e)
 {
     size_t parts = module_scene_part_count(e->module->components);
     emit_local(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
-    emit_phrase(e, PHRASE_SWITCH, (Operands){"scene_part"});
+    emit_template(e, TEMPLATE_SWITCH, (Operands){"scene_part"});
     for (size_t part = 0; part < parts; part++)
         emit_part_case(e, part);
-    emit_phrase(e, PHRASE_SWITCH_END, (Operands){0});
+    emit_template(e, TEMPLATE_SWITCH_END, (Operands){0});
     text_format(e->out, "    return %s;\n", emit_cut(e, "d"));
 }
 
@@ -75,18 +75,18 @@ static void emit_box_case(Emitter *e, size_t part)
     if (box_is_empty(box))
         return;
     module_part_corners(box, corner[0], corner[1]);
-    emit_phrase(e, PHRASE_CASE, (Operands){emit_count(e, part)});
+    emit_template(e, TEMPLATE_CASE, (Operands){emit_count(e, part)});
     for (size_t end = 0; end < 2; end++)
         text_format(e->out, "        %s = %s;\n",
-                    phrase_text(e, PHRASE_CHANGED, (Operands){names[end]}),
+                    template_text(e, TEMPLATE_CHANGED, (Operands){names[end]}),
                     emit_box_vector(e, nodes, 2 * part + end, corner[end]));
-    emit_phrase(e, PHRASE_CASE_END, (Operands){0});
+    emit_template(e, TEMPLATE_CASE_END, (Operands){0});
 }
 
 void emit_scene_part_box(Emitter *e)
 {
     size_t count = e->module->components, parts = module_scene_part_count(count);
-    emit_phrase(e, PHRASE_SWITCH, (Operands){"scene_part"});
+    emit_template(e, TEMPLATE_SWITCH, (Operands){"scene_part"});
     for (size_t part = 0; part < parts; part++) {
         bool some = false;
         for (uint32_t i = module_scene_part_first(part, count);
@@ -95,7 +95,7 @@ void emit_scene_part_box(Emitter *e)
         if (some)
             emit_box_case(e, part);
     }
-    emit_phrase(e, PHRASE_SWITCH_END, (Operands){0});
+    emit_template(e, TEMPLATE_SWITCH_END, (Operands){0});
 }
 
 /* ---- along rays ---- */

@@ -22,7 +22,7 @@ bool emit_is_medium(const Emitter *e, uint32_t component)
 
 static void emit_global(Emitter *e, GraphType type, const char *name)
 {
-    emit_phrase(e, PHRASE_GLOBAL, (Operands){e->printer->types[type], name});
+    emit_template(e, TEMPLATE_GLOBAL, (Operands){e->printer->types[type], name});
 }
 
 /* Whether a function that is wanted knows the ray's medium. */
@@ -133,7 +133,7 @@ void emit_medium_at(Emitter *e)
         if (!e->module->is_medium || !e->module->is_medium[i])
             continue;
         text_format(&inside, "%s < 0.0", emit_cut(e, emit_call_of(e, OF_DISTANCE, i)));
-        emit_phrase(e, PHRASE_SET_IF, (Operands){inside.bytes, "medium", number_text(e, i)});
+        emit_template(e, TEMPLATE_SET_IF, (Operands){inside.bytes, "medium", number_text(e, i)});
     }
     text_add(e->out, "    return medium;\n");
 }
@@ -168,7 +168,7 @@ static void emit_cut_surface(Emitter *e, const char *normal)
     if (!e->cuts)
         return;
     text_format(e->out, "    cut = %s;\n", emit_cut(e, "other.distance"));
-    emit_phrase(e, PHRASE_SET_IF, (Operands){"cut > other.distance", "other.normal", normal});
+    emit_template(e, TEMPLATE_SET_IF, (Operands){"cut > other.distance", "other.normal", normal});
     text_add(e->out, "    other.distance = cut;\n");
 }
 
@@ -176,8 +176,8 @@ static void emit_solid_surface(Emitter *e, uint32_t component)
 {
     text_format(e->out, "    other = %s;\n", emit_call_of(e, OF_SURFACE, component));
     emit_cut_surface(e, "normal");
-    emit_phrase(e, PHRASE_SET_IF,
-                (Operands){"other.distance < nearest.distance", "nearest", "other"});
+    emit_template(e, TEMPLATE_SET_IF,
+                  (Operands){"other.distance < nearest.distance", "nearest", "other"});
 }
 
 /* The wall of the ray's own medium counts as a little farther: what touches it is seen. */
@@ -189,17 +189,18 @@ static void emit_medium_surface(Emitter *e, uint32_t component)
     Text        ior    = {.arena = e->scratch};
     text_format(&ior, "ior_%u", component + 1);
     text_format(e->out, "    turned = %s;\n",
-                phrase_text(e, PHRASE_CHOICE, (Operands){own, "-normal", "normal"}));
+                template_text(e, TEMPLATE_CHOICE, (Operands){own, "-normal", "normal"}));
     text_format(e->out, "    other = %s;\n",
                 emit_call_with(e, OF_SURFACE, component, "p, turned, footprint"));
     emit_cut_surface(e, normal);
     emit_local(e, TYPE_FLOAT, ior.bytes, "other.ior");
-    emit_phrase(e, PHRASE_SET_IF, (Operands){own, "krs_ior_here", ior.bytes});
-    emit_phrase(e, PHRASE_SET_IF, (Operands){own, "krs_absorption", "other.absorption"});
+    emit_template(e, TEMPLATE_SET_IF, (Operands){own, "krs_ior_here", ior.bytes});
+    emit_template(e, TEMPLATE_SET_IF, (Operands){own, "krs_absorption", "other.absorption"});
     text_format(e->out, "    other.distance = %s;\n", seen_text(e, component, "other.distance"));
-    emit_phrase(e, PHRASE_SET_IF, (Operands){own, "other.distance", "other.distance + krs_lift"});
-    emit_phrase(e, PHRASE_SET_IF, (Operands){nearer, "krs_struck", struck});
-    emit_phrase(e, PHRASE_SET_IF, (Operands){nearer, "nearest", "other"});
+    emit_template(e, TEMPLATE_SET_IF,
+                  (Operands){own, "other.distance", "other.distance + krs_lift"});
+    emit_template(e, TEMPLATE_SET_IF, (Operands){nearer, "krs_struck", struck});
+    emit_template(e, TEMPLATE_SET_IF, (Operands){nearer, "nearest", "other"});
 }
 
 /* The medium beyond.  Of the one whose boundary it is nobody need ask, however thin it is. */
@@ -209,24 +210,24 @@ static void emit_beyond(Emitter *e, uint32_t component)
     text_format(&distance, e->cuts ? "krs_cut(beyond, %s) < 0.0" : "%s < 0.0",
                 emit_call_with(e, OF_DISTANCE, component, "beyond"));
     text_format(&changes, "krs_medium != %s", number_text(e, component));
-    text_add(&inside, phrase_text(e, PHRASE_CHOICE,
-                                  (Operands){equals_text(e, "krs_struck", component), changes.bytes,
-                                             distance.bytes}));
+    text_add(&inside, template_text(e, TEMPLATE_CHOICE,
+                                    (Operands){equals_text(e, "krs_struck", component),
+                                               changes.bytes, distance.bytes}));
     text_format(&ior, "ior_%u", component + 1);
-    emit_phrase(e, PHRASE_SET_IF,
-                (Operands){inside.bytes, "krs_beyond", number_text(e, component)});
-    emit_phrase(e, PHRASE_SET_IF,
-                (Operands){equals_text(e, "krs_beyond", component), "krs_ior_beyond", ior.bytes});
+    emit_template(e, TEMPLATE_SET_IF,
+                  (Operands){inside.bytes, "krs_beyond", number_text(e, component)});
+    emit_template(e, TEMPLATE_SET_IF,
+                  (Operands){equals_text(e, "krs_beyond", component), "krs_ior_beyond", ior.bytes});
 }
 
 static void emit_defaults(Emitter *e)
 {
     Expr nothing = {.op = OP_CONSTANT, .type = TYPE_VEC3};
     emit_nothing(e);
-    emit_phrase(e, PHRASE_LOCAL_UNSET, (Operands){"KrsSurface", "other"});
-    emit_phrase(e, PHRASE_LOCAL_UNSET, (Operands){e->printer->types[TYPE_VEC3], "turned"});
+    emit_template(e, TEMPLATE_LOCAL_UNSET, (Operands){"KrsSurface", "other"});
+    emit_template(e, TEMPLATE_LOCAL_UNSET, (Operands){e->printer->types[TYPE_VEC3], "turned"});
     if (e->cuts)
-        emit_phrase(e, PHRASE_LOCAL_UNSET, (Operands){e->printer->types[TYPE_FLOAT], "cut"});
+        emit_template(e, TEMPLATE_LOCAL_UNSET, (Operands){e->printer->types[TYPE_FLOAT], "cut"});
     emit_local(e, TYPE_VEC3, "beyond", "p - krs_lift * normal");
     text_add(e->out, "    krs_struck = 0u;\n"
                      "    krs_beyond = 0u;\n"

@@ -305,17 +305,18 @@ static void emit_block(Emitter *e)
         emit_about_tables(e);
     if (emit_reads_textures(e))
         emit_about_textures(e);
-    emit_phrase(e, PHRASE_PARAMETER_BLOCK, (Operands){emit_count(e, slots)});
+    emit_template(e, TEMPLATE_PARAMETER_BLOCK, (Operands){emit_count(e, slots)});
     if (emit_reads_zones(e))
-        emit_phrase(e, PHRASE_ZONES, (Operands){emit_count(e, v->zones)});
+        emit_template(e, TEMPLATE_ZONES, (Operands){emit_count(e, v->zones)});
     if (emit_reads_tables(e))
-        emit_phrase(e, v->buffers ? PHRASE_BUFFER_TABLES : PHRASE_TEXEL_TABLES, (Operands){0});
+        emit_template(e, v->buffers ? TEMPLATE_BUFFER_TABLES : TEMPLATE_TEXEL_TABLES,
+                      (Operands){0});
     else if (emit_reads_textures(e))
-        emit_phrase(e, v->buffers ? PHRASE_BUFFER_CELLS : PHRASE_TEXEL_CELLS, (Operands){0});
+        emit_template(e, v->buffers ? TEMPLATE_BUFFER_CELLS : TEMPLATE_TEXEL_CELLS, (Operands){0});
     if (emit_reads_tables(e))
-        emit_phrase(e, PHRASE_TABLES, (Operands){0});
+        emit_template(e, TEMPLATE_TABLES, (Operands){0});
     if (emit_reads_textures(e))
-        emit_phrase(e, PHRASE_TEXTURES, (Operands){0});
+        emit_template(e, TEMPLATE_TEXTURES, (Operands){0});
 }
 
 /* Prototypes of the entry points, which may then be called in any order. */
@@ -330,7 +331,8 @@ static void emit_entry_points(Emitter *e)
             emit_entry_point(e, (KrsFunction)f);
     if (e->wanted[KRS_FUNCTION_SCENE_PART_DISTANCE]) {
         uint32_t parts = module_scene_part_count(e->module->components);
-        emit_phrase(e, PHRASE_CONSTANT_UINT, (Operands){"KRS_SCENE_PARTS", emit_count(e, parts)});
+        emit_template(e, TEMPLATE_CONSTANT_UINT,
+                      (Operands){"KRS_SCENE_PARTS", emit_count(e, parts)});
     }
 }
 

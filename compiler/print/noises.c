@@ -71,14 +71,14 @@ static void emit_loop(Emitter *e, const NodeList *noises)
                    emit_bare(e, e->text[noise->operands[0]]));
         emit_local(e, TYPE_FLOAT, values[i], "0.0");
     }
-    emit_phrase(e, PHRASE_TURNS, (Operands){turn});
+    emit_template(e, TEMPLATE_TURNS, (Operands){turn});
     const char *text = e->text[place];
     e->text[place]   = places[0];
     emit_local(e, TYPE_FLOAT, value, emit_bare(e, emit_expression(e, &first)));
     e->text[place] = text;
     emit_moves(e, places, noises->count, NULL);
     emit_moves(e, values, noises->count, value);
-    emit_phrase(e, PHRASE_TURNS_END, (Operands){turn, emit_count(e, noises->count)});
+    emit_template(e, TEMPLATE_TURNS_END, (Operands){turn, emit_count(e, noises->count)});
     for (size_t i = 0; i < noises->count; i++) {
         e->text[noises->items[i]]    = values[i];
         e->nesting[noises->items[i]] = 0;

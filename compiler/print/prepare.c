@@ -21,7 +21,8 @@ static size_t emit_globals(Emitter *e, const Node *roots, size_t count, Node *se
         Text name      = {.arena = e->scratch};
         text_format(&name, "krs_frame%u", e->globals++);
         e->frame[n] = name.bytes;
-        emit_phrase(e, PHRASE_GLOBAL, (Operands){e->printer->types[g->items[n].type], name.bytes});
+        emit_template(e, TEMPLATE_GLOBAL,
+                      (Operands){e->printer->types[g->items[n].type], name.bytes});
     }
     return globals;
 }
@@ -33,8 +34,9 @@ static const char *component_text(Emitter *e, uint32_t slot, uint32_t first, uin
     Text name = {.arena = e->scratch};
     text_format(&name, "krs_slot%u", slot);
     if (!e->slot_is_read[slot])
-        emit_phrase(e, PHRASE_LOCAL,
-                    (Operands){e->printer->types[TYPE_VEC4], name.bytes, emit_slot(e, slot, 0, 4)});
+        emit_template(
+            e, TEMPLATE_LOCAL,
+            (Operands){e->printer->types[TYPE_VEC4], name.bytes, emit_slot(e, slot, 0, 4)});
     e->slot_is_read[slot] = true;
     if (width < 4)
         text_format(&name, ".%.*s", (int)width, &"xyzw"[first]);
@@ -61,7 +63,7 @@ static const char *found_text(Emitter *e, const FrameValue *value)
     else if (type == TYPE_UINT && value->at[0] == NO_PLACE)
         text_format(&text, "%.0fu", value->constant[0]);
     else if (type == TYPE_UINT)
-        return phrase_text(e, PHRASE_BITS, (Operands){number_text(e, value, 0)});
+        return template_text(e, TEMPLATE_BITS, (Operands){number_text(e, value, 0)});
     else if (together && value->at[0] / 4 == value->at[last] / 4)
         return component_text(e, value->at[0] / 4, value->at[0] % 4, value->width);
     else if (type == TYPE_FLOAT)
@@ -135,8 +137,8 @@ static uint32_t zone_slot(const Emitter *e)
 static void emit_zone_reads(Emitter *e)
 {
     if (emit_reads_zones(e))
-        emit_phrase(e, PHRASE_READ_ZONES,
-                    (Operands){emit_count(e, e->variant->zones), emit_count(e, zone_slot(e))});
+        emit_template(e, TEMPLATE_READ_ZONES,
+                      (Operands){emit_count(e, e->variant->zones), emit_count(e, zone_slot(e))});
 }
 
 uint32_t emit_slot_count(const Emitter *e)

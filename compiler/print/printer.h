@@ -1,7 +1,7 @@
 /*
  * printer.h: what of a text depends on its language.
  *
- * A shading language is a Printer: its types, operations and phrases, and files with the functions
+ * A shading language is a Printer: its types, operations and templates, and files with the functions
  * that operations call.
  */
 #ifndef KRS_PRINTER_H
@@ -21,11 +21,11 @@ typedef struct Alternative {
     const char *threads, *few; /* for many threads, or for few; with $a and $b */
 } Alternative;
 
-typedef enum Phrase {
-#define PHRASE(NAME, operands, meaning) PHRASE_##NAME,
-#include "compiler/print/phrases.def"
-    PHRASE_COUNT
-} Phrase;
+typedef enum TextTemplate {
+#define TEMPLATE(NAME, operands, meaning) TEMPLATE_##NAME,
+#include "compiler/print/templates.def"
+    TEMPLATE_COUNT
+} TextTemplate;
 
 typedef struct Printer {
     const char        *name;
@@ -38,7 +38,7 @@ typedef struct Printer {
        the last is the gradient of component N by differences. */
     const EmbeddedFile *helpers;
     const Alternative  *alternatives; /* the last has no name */
-    const char *const  *phrases;      /* by Phrase */
+    const char *const  *templates;    /* by TextTemplate */
 } Printer;
 
 extern const Printer glsl_printer;

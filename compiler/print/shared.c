@@ -70,28 +70,29 @@ static const char *name_of(Emitter *e, const char *what, size_t number)
 static const char *type_text(Emitter *e, GraphType type) { return e->printer->types[type]; }
 
 /* A line, or a parameter, for each. */
-static const char *variable_text(Emitter *e, Phrase phrase, const NodeList *shared, size_t i)
+static const char *variable_text(Emitter *e, TextTemplate template, const NodeList *shared,
+                                 size_t i)
 {
     GraphType type = (GraphType)e->graph->items[shared->items[i]].type;
-    return phrase_text(e, phrase, (Operands){type_text(e, type), name_of(e, "s", i)});
+    return template_text(e, template, (Operands){type_text(e, type), name_of(e, "s", i)});
 }
 
 static void emit_variables(Emitter *e, const NodeList *shared)
 {
     for (size_t i = 0; i < shared->count; i++)
-        text_add(e->out, variable_text(e, PHRASE_LOCAL_UNSET, shared, i));
+        text_add(e->out, variable_text(e, TEMPLATE_LOCAL_UNSET, shared, i));
 }
 
 static void emit_shared_head(Emitter *e, const NodeList *shared, uint32_t number)
 {
     Text           parameters = {.arena = e->scratch};
     const Operands point      = {type_text(e, TYPE_VEC3), "p"};
-    text_add(&parameters, phrase_text(e, PHRASE_PARAMETER, point));
+    text_add(&parameters, template_text(e, TEMPLATE_PARAMETER, point));
     for (size_t i = 0; i < shared->count; i++)
-        text_format(&parameters, ", %s", variable_text(e, PHRASE_PARAMETER_OUT, shared, i));
+        text_format(&parameters, ", %s", variable_text(e, TEMPLATE_PARAMETER_OUT, shared, i));
     const Operands head = {type_text(e, TYPE_FLOAT), name_of(e, "krs_shared_", number),
                            parameters.bytes};
-    text_format(e->out, "%s\n{\n", phrase_text(e, PHRASE_FUNCTION, head));
+    text_format(e->out, "%s\n{\n", template_text(e, TEMPLATE_FUNCTION, head));
 }
 
 static const char *call_text(Emitter *e, const NodeList *shared, uint32_t component)
@@ -102,7 +103,7 @@ static const char *call_text(Emitter *e, const NodeList *shared, uint32_t compon
     text_format(&text, "krs_shared_%u(p", component + 1);
     for (size_t i = 0; i < shared->count; i++)
         text_format(&text, ", %s",
-                    phrase_text(e, PHRASE_ARGUMENT_OUT, (Operands){name_of(e, "s", i)}));
+                    template_text(e, TEMPLATE_ARGUMENT_OUT, (Operands){name_of(e, "s", i)}));
     text_add(&text, ")");
     return text.bytes;
 }
@@ -118,7 +119,7 @@ void emit_shared_distance(Emitter *e, const ModuleFunction *distance, const Node
     emit_body(e, roots.items, roots.count);
     for (size_t i = 0; i < shared->count; i++)
         emit_line(e, "    %s = %s;\n",
-                  phrase_text(e, PHRASE_CHANGED, (Operands){name_of(e, "s", i)}),
+                  template_text(e, TEMPLATE_CHANGED, (Operands){name_of(e, "s", i)}),
                   emit_bare(e, e->text[shared->items[i]]));
     emit_line(e, "    return %s;\n}\n\n", e->text[root]);
     emit_head_of(e, OF_DISTANCE, distance->component);

@@ -140,10 +140,11 @@ static const char *parameters_text(Emitter *e, const TextParameter *const parame
     Text text = {.arena = e->scratch};
     text_add(&text, "");
     for (int i = 0; i < 3 && parameters[i]; i++) {
-        Phrase      phrase = parameters[i]->changes ? PHRASE_PARAMETER_INOUT : PHRASE_PARAMETER;
-        const char *type   = e->printer->types[parameters[i]->type];
+        TextTemplate template = parameters[i]->changes ? TEMPLATE_PARAMETER_INOUT
+                                                       : TEMPLATE_PARAMETER;
+        const char *type      = e->printer->types[parameters[i]->type];
         text_add(&text, i ? ", " : "");
-        text_add(&text, phrase_text(e, phrase, (Operands){type, parameters[i]->name}));
+        text_add(&text, template_text(e, template, (Operands){type, parameters[i]->name}));
     }
     return text.bytes;
 }
@@ -152,16 +153,16 @@ static const char *head_text(Emitter *e, const Signature *signature, const char 
 {
     const char *parameters = parameters_text(e, signature->parameters);
     if (signature->type == NOTHING)
-        return phrase_text(e, PHRASE_PROCEDURE, (Operands){name, parameters});
+        return template_text(e, TEMPLATE_PROCEDURE, (Operands){name, parameters});
     const char *type = signature->type == SURFACE ? "KrsSurface"
                                                   : e->printer->types[signature->type];
-    return phrase_text(e, PHRASE_FUNCTION, (Operands){type, name, parameters});
+    return template_text(e, TEMPLATE_FUNCTION, (Operands){type, name, parameters});
 }
 
 static void emit_prototype(Emitter *e, const Signature *signature)
 {
     const char *head = head_text(e, signature, signature->name);
-    emit_phrase(e, PHRASE_PROTOTYPE, (Operands){signature->comment, head});
+    emit_template(e, TEMPLATE_PROTOTYPE, (Operands){signature->comment, head});
 }
 
 void emit_prepare_entry_point(Emitter *e) { emit_prototype(e, &prepare); }

@@ -116,8 +116,8 @@ static const char *fold_text(Emitter *e, const Expr *expr)
 static const char *front_text(Emitter *e, const Expr *expr)
 {
     Text        text  = {.arena = e->scratch};
-    const char *front = phrase_text(e, PHRASE_CHOICE,
-                                    (Operands){"dot(krs_view, normal) > 0.0", "0.0", "1.0"});
+    const char *front = template_text(e, TEMPLATE_CHOICE,
+                                      (Operands){"dot(krs_view, normal) > 0.0", "0.0", "1.0"});
     (void)expr;
     text_format(&text, "(%s)", front);
     return text.bytes;

@@ -14,8 +14,9 @@ static void emit_field(Emitter *e, GraphType type, const char *name)
     enum { LONGEST_TYPE = 5 };
     const char *words = e->printer->types[type], *blanks = "     ";
     size_t      length = strlen(words);
-    emit_phrase(e, PHRASE_MEMBER,
-                (Operands){words, name, blanks + (length < LONGEST_TYPE ? length : LONGEST_TYPE)});
+    emit_template(
+        e, TEMPLATE_MEMBER,
+        (Operands){words, name, blanks + (length < LONGEST_TYPE ? length : LONGEST_TYPE)});
 }
 
 void emit_struct(Emitter *e)
@@ -51,7 +52,7 @@ static const char *emit_distance_of_surface(Emitter *e, uint32_t component, cons
         return distance;
     emit_local(e, TYPE_FLOAT, "tangent", distance);
     emit_local(e, TYPE_FLOAT, "outside", emit_box_distance(e, component));
-    emit_phrase(e, PHRASE_SET_IF, (Operands){"outside > 0.0", "tangent", "outside"});
+    emit_template(e, TEMPLATE_SET_IF, (Operands){"outside > 0.0", "tangent", "outside"});
     return "tangent";
 }
 
@@ -87,7 +88,7 @@ void emit_nothing(Emitter *e)
         text_format(&nothing, ", %s", emit_constant(e, &value));
     }
     text_add(&nothing, ", normal)");
-    emit_phrase(e, PHRASE_LOCAL, (Operands){"KrsSurface", "nearest", nothing.bytes});
+    emit_template(e, TEMPLATE_LOCAL, (Operands){"KrsSurface", "nearest", nothing.bytes});
 }
 
 void emit_surface(Emitter *e)
@@ -98,21 +99,21 @@ void emit_surface(Emitter *e)
     }
     uint32_t count = (uint32_t)e->module->components;
     if (count > 0)
-        emit_phrase(e, PHRASE_LOCAL,
-                    (Operands){"KrsSurface", "nearest", emit_call_of(e, OF_SURFACE, 0)});
+        emit_template(e, TEMPLATE_LOCAL,
+                      (Operands){"KrsSurface", "nearest", emit_call_of(e, OF_SURFACE, 0)});
     else
         emit_nothing(e);
     if (count > 1)
-        emit_phrase(e, PHRASE_LOCAL_UNSET, (Operands){"KrsSurface", "other"});
+        emit_template(e, TEMPLATE_LOCAL_UNSET, (Operands){"KrsSurface", "other"});
     for (uint32_t i = 1; i < count; i++) {
         text_format(e->out, "    other = %s;\n", emit_call_of(e, OF_SURFACE, i));
-        emit_phrase(e, PHRASE_SET_IF,
-                    (Operands){"other.distance < nearest.distance", "nearest", "other"});
+        emit_template(e, TEMPLATE_SET_IF,
+                      (Operands){"other.distance < nearest.distance", "nearest", "other"});
     }
     if (count > 0 && e->cuts) {
         emit_local(e, TYPE_FLOAT, "cut", emit_cut(e, "nearest.distance"));
-        emit_phrase(e, PHRASE_SET_IF,
-                    (Operands){"cut > nearest.distance", "nearest.normal", "normal"});
+        emit_template(e, TEMPLATE_SET_IF,
+                      (Operands){"cut > nearest.distance", "nearest.normal", "normal"});
         text_add(e->out, "    nearest.distance = cut;\n");
     }
     text_add(e->out, "    return nearest;\n");

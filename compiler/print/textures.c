@@ -41,13 +41,13 @@ void emit_texture_globals(Emitter *e)
 {
     for (uint32_t i = 0; e->reads_texture && i < texture_count(e); i++)
         if (e->reads_texture[i])
-            emit_phrase(e, PHRASE_GLOBAL, (Operands){"KrsTexture", texture_name(e, i)});
+            emit_template(e, TEMPLATE_GLOBAL, (Operands){"KrsTexture", texture_name(e, i)});
     if (e->sees)
         text_add(e->out, "// The direction of the ray that sees a surface, if it is set behind "
                          "krs_prepare: pixels\n"
                          "// are as long on the surface as that tells.\n");
     if (e->sees)
-        emit_phrase(e, PHRASE_GLOBAL, (Operands){e->printer->types[TYPE_VEC3], "krs_view"});
+        emit_template(e, TEMPLATE_GLOBAL, (Operands){e->printer->types[TYPE_VEC3], "krs_view"});
 }
 
 /* Headers are behind those of tables. */

@@ -1,7 +1,7 @@
 /*
- * Printers: GLSL's has words for all phrases, and a text is in the language of its printer alone.
+ * Printers: GLSL's has words for all templates, and a text is in the language of its printer alone.
  *
- * A language that nobody has is printed: it has other words for types, operations and phrases.  What
+ * A language that nobody has is printed: it has other words for types, operations and templates.  What
  * the files of compiler/print wrote by themselves would be GLSL in the midst of it.
  */
 #include <setjmp.h>
@@ -20,9 +20,9 @@
 
 /* ---- the words of GLSL ---- */
 
-static const int phrase_operands[PHRASE_COUNT] = {
-#define PHRASE(NAME, operands, meaning) operands,
-#include "compiler/print/phrases.def"
+static const int template_operands[TEMPLATE_COUNT] = {
+#define TEMPLATE(NAME, operands, meaning) operands,
+#include "compiler/print/templates.def"
 };
 
 /* How many of $a, $b and $c there are, without gaps. */
@@ -36,12 +36,12 @@ static int count_operands(const char *words)
     return count;
 }
 
-static void glsl_has_words_for_all_phrases(void **state)
+static void glsl_has_words_for_all_templates(void **state)
 {
     (void)state;
-    for (int phrase = 0; phrase < PHRASE_COUNT; phrase++) {
-        assert_non_null(glsl_printer.phrases[phrase]);
-        assert_int_equal(count_operands(glsl_printer.phrases[phrase]), phrase_operands[phrase]);
+    for (int i = 0; i < TEMPLATE_COUNT; i++) {
+        assert_non_null(glsl_printer.templates[i]);
+        assert_int_equal(count_operands(glsl_printer.templates[i]), template_operands[i]);
     }
 }
 
@@ -90,45 +90,45 @@ static const Alternative alternatives[] = {
     {NULL, NULL, NULL},
 };
 
-static const char *const phrases[PHRASE_COUNT] = {
-    [PHRASE_FUNCTION]         = "fn $b($c) -> $a",
-    [PHRASE_PROCEDURE]        = "fn $a($b)",
-    [PHRASE_PARAMETER]        = "$b: $a",
-    [PHRASE_PARAMETER_OUT]    = "$b: ptr<$a>",
-    [PHRASE_PARAMETER_INOUT]  = "$b: ptr<$a>",
-    [PHRASE_CHANGED]          = "*$a",
-    [PHRASE_ARGUMENT_OUT]     = "&$a",
-    [PHRASE_PROTOTYPE]        = "",
-    [PHRASE_LOCAL]            = "    var $b: $a = $c;\n",
-    [PHRASE_LOCAL_UNSET]      = "    var $b: $a;\n",
-    [PHRASE_GLOBAL]           = "var<private> $b: $a;\n",
-    [PHRASE_CONSTANT_UINT]    = "let $a = $bu;\n",
-    [PHRASE_MEMBER]           = "    $b: $a,\n",
-    [PHRASE_RETURN_IF]        = "    if ($a) { return $b; }\n",
-    [PHRASE_SET_IF]           = "    if ($a) { $b = $c; }\n",
-    [PHRASE_CHOICE]           = "select($c, $b, $a)",
-    [PHRASE_SWITCH]           = "    match $a {\n",
-    [PHRASE_CASE]             = "    $au => {\n",
-    [PHRASE_CASE_END]         = "    }\n",
-    [PHRASE_SWITCH_END]       = "    default => {}\n    }\n",
-    [PHRASE_TURNS]            = "    repeat var $a: u32 {\n",
-    [PHRASE_TURNS_END]        = "    } until ($a == $b)\n",
-    [PHRASE_BITS]             = "bitcast<u32>($a)",
-    [PHRASE_PARAMETER_BLOCK]  = "var<block> krs_parameter: array<vec4f, $a>;\n",
-    [PHRASE_ZONES]            = "var<private> krs_zones: array<vec4f, $a>;\n",
-    [PHRASE_READ_ZONES]       = "    read_zones($a, $b);\n",
-    [PHRASE_CUT]              = "fn krs_cut(p: vec3f, uncut: f32) -> f32\n{\n    var d = uncut;\n",
-    [PHRASE_CUT_ZONES]        = "    d = zone_depth(p, d, $a);\n",
-    [PHRASE_CUT_NEAR_ZONES]   = "    d = near_zone_depth(p, d, $a);\n",
-    [PHRASE_TEXEL_CELLS]      = "texel cells;\n",
-    [PHRASE_BUFFER_CELLS]     = "buffer cells;\n",
-    [PHRASE_TEXTURES]         = "textures;\n",
-    [PHRASE_TEXEL_TABLES]     = "texel tables;\n",
-    [PHRASE_BUFFER_TABLES]    = "buffer tables;\n",
-    [PHRASE_TABLES]           = "tables;\n",
-    [PHRASE_EACH_LISTED]      = "    each_listed(p, $a) {\n",
-    [PHRASE_NEAREST_GRADIENT] = "    var nearest: vec4f; var other: vec4f;\n",
-    [PHRASE_NEAREST_OF_ZONES] = "    nearest = of_zones(nearest, $a);\n",
+static const char *const templates[TEMPLATE_COUNT] = {
+    [TEMPLATE_FUNCTION]        = "fn $b($c) -> $a",
+    [TEMPLATE_PROCEDURE]       = "fn $a($b)",
+    [TEMPLATE_PARAMETER]       = "$b: $a",
+    [TEMPLATE_PARAMETER_OUT]   = "$b: ptr<$a>",
+    [TEMPLATE_PARAMETER_INOUT] = "$b: ptr<$a>",
+    [TEMPLATE_CHANGED]         = "*$a",
+    [TEMPLATE_ARGUMENT_OUT]    = "&$a",
+    [TEMPLATE_PROTOTYPE]       = "",
+    [TEMPLATE_LOCAL]           = "    var $b: $a = $c;\n",
+    [TEMPLATE_LOCAL_UNSET]     = "    var $b: $a;\n",
+    [TEMPLATE_GLOBAL]          = "var<private> $b: $a;\n",
+    [TEMPLATE_CONSTANT_UINT]   = "let $a = $bu;\n",
+    [TEMPLATE_MEMBER]          = "    $b: $a,\n",
+    [TEMPLATE_RETURN_IF]       = "    if ($a) { return $b; }\n",
+    [TEMPLATE_SET_IF]          = "    if ($a) { $b = $c; }\n",
+    [TEMPLATE_CHOICE]          = "select($c, $b, $a)",
+    [TEMPLATE_SWITCH]          = "    match $a {\n",
+    [TEMPLATE_CASE]            = "    $au => {\n",
+    [TEMPLATE_CASE_END]        = "    }\n",
+    [TEMPLATE_SWITCH_END]      = "    default => {}\n    }\n",
+    [TEMPLATE_TURNS]           = "    repeat var $a: u32 {\n",
+    [TEMPLATE_TURNS_END]       = "    } until ($a == $b)\n",
+    [TEMPLATE_BITS]            = "bitcast<u32>($a)",
+    [TEMPLATE_PARAMETER_BLOCK] = "var<block> krs_parameter: array<vec4f, $a>;\n",
+    [TEMPLATE_ZONES]           = "var<private> krs_zones: array<vec4f, $a>;\n",
+    [TEMPLATE_READ_ZONES]      = "    read_zones($a, $b);\n",
+    [TEMPLATE_CUT]             = "fn krs_cut(p: vec3f, uncut: f32) -> f32\n{\n    var d = uncut;\n",
+    [TEMPLATE_CUT_ZONES]       = "    d = zone_depth(p, d, $a);\n",
+    [TEMPLATE_CUT_NEAR_ZONES]  = "    d = near_zone_depth(p, d, $a);\n",
+    [TEMPLATE_TEXEL_CELLS]     = "texel cells;\n",
+    [TEMPLATE_BUFFER_CELLS]    = "buffer cells;\n",
+    [TEMPLATE_TEXTURES]        = "textures;\n",
+    [TEMPLATE_TEXEL_TABLES]    = "texel tables;\n",
+    [TEMPLATE_BUFFER_TABLES]   = "buffer tables;\n",
+    [TEMPLATE_TABLES]          = "tables;\n",
+    [TEMPLATE_EACH_LISTED]     = "    each_listed(p, $a) {\n",
+    [TEMPLATE_NEAREST_GRADIENT] = "    var nearest: vec4f; var other: vec4f;\n",
+    [TEMPLATE_NEAREST_OF_ZONES] = "    nearest = of_zones(nearest, $a);\n",
 };
 
 static const Printer other_printer = {
@@ -137,7 +137,7 @@ static const Printer other_printer = {
     .operation    = operation,
     .helpers      = helpers,
     .alternatives = alternatives,
-    .phrases      = phrases,
+    .templates    = templates,
 };
 
 /* ---- its texts ---- */
@@ -259,7 +259,7 @@ static void words_of_glsl_are_found(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(glsl_has_words_for_all_phrases),
+        cmocka_unit_test(glsl_has_words_for_all_templates),
         cmocka_unit_test(texts_are_in_the_language_of_their_printer),
         cmocka_unit_test(words_of_glsl_are_found),
     };

@@ -29,67 +29,67 @@ static const char *operation(Op op, GraphType type)
     return op == OP_select && type <= TYPE_VEC4 ? choices[type] : op_glsl(op);
 }
 
-static const char *const phrases[PHRASE_COUNT] = {
-    [PHRASE_FUNCTION]        = "$a $b($c)",
-    [PHRASE_PROCEDURE]       = "void $a($b)",
-    [PHRASE_PARAMETER]       = "$a $b",
-    [PHRASE_PARAMETER_OUT]   = "out $a $b",
-    [PHRASE_PARAMETER_INOUT] = "inout $a $b",
-    [PHRASE_CHANGED]         = "$a",
-    [PHRASE_ARGUMENT_OUT]    = "$a",
-    [PHRASE_PROTOTYPE]       = "$a$b;\n\n",
+static const char *const templates[TEMPLATE_COUNT] = {
+    [TEMPLATE_FUNCTION]        = "$a $b($c)",
+    [TEMPLATE_PROCEDURE]       = "void $a($b)",
+    [TEMPLATE_PARAMETER]       = "$a $b",
+    [TEMPLATE_PARAMETER_OUT]   = "out $a $b",
+    [TEMPLATE_PARAMETER_INOUT] = "inout $a $b",
+    [TEMPLATE_CHANGED]         = "$a",
+    [TEMPLATE_ARGUMENT_OUT]    = "$a",
+    [TEMPLATE_PROTOTYPE]       = "$a$b;\n\n",
 
-    [PHRASE_LOCAL]         = "    $a $b = $c;\n",
-    [PHRASE_LOCAL_UNSET]   = "    $a $b;\n",
-    [PHRASE_GLOBAL]        = "$a $b;\n",
-    [PHRASE_CONSTANT_UINT] = "const uint $a = $bu;\n\n",
-    [PHRASE_MEMBER]        = "    $a$c $b;\n",
+    [TEMPLATE_LOCAL]         = "    $a $b = $c;\n",
+    [TEMPLATE_LOCAL_UNSET]   = "    $a $b;\n",
+    [TEMPLATE_GLOBAL]        = "$a $b;\n",
+    [TEMPLATE_CONSTANT_UINT] = "const uint $a = $bu;\n\n",
+    [TEMPLATE_MEMBER]        = "    $a$c $b;\n",
 
-    [PHRASE_RETURN_IF]  = "    if ($a)\n        return $b;\n",
-    [PHRASE_SET_IF]     = "    if ($a)\n        $b = $c;\n",
-    [PHRASE_CHOICE]     = "$a ? $b : $c",
-    [PHRASE_SWITCH]     = "    switch ($a) {\n",
-    [PHRASE_CASE]       = "    case $au:\n",
-    [PHRASE_CASE_END]   = "        break;\n",
-    [PHRASE_SWITCH_END] = "    }\n",
-    [PHRASE_TURNS]      = "    uint $a = 0u;\n    [[dont_unroll]] do {\n",
-    [PHRASE_TURNS_END]  = "    } while (++$a < $bu);\n",
+    [TEMPLATE_RETURN_IF]  = "    if ($a)\n        return $b;\n",
+    [TEMPLATE_SET_IF]     = "    if ($a)\n        $b = $c;\n",
+    [TEMPLATE_CHOICE]     = "$a ? $b : $c",
+    [TEMPLATE_SWITCH]     = "    switch ($a) {\n",
+    [TEMPLATE_CASE]       = "    case $au:\n",
+    [TEMPLATE_CASE_END]   = "        break;\n",
+    [TEMPLATE_SWITCH_END] = "    }\n",
+    [TEMPLATE_TURNS]      = "    uint $a = 0u;\n    [[dont_unroll]] do {\n",
+    [TEMPLATE_TURNS_END]  = "    } while (++$a < $bu);\n",
 
-    [PHRASE_BITS] = "floatBitsToUint($a)",
+    [TEMPLATE_BITS] = "floatBitsToUint($a)",
 
-    [PHRASE_PARAMETER_BLOCK] = "layout(std140, set = 0, binding = 0) uniform KrsParameters "
-                               "{ vec4 krs_parameter[$a]; };\n\n",
-    [PHRASE_ZONES]           = "vec4 krs_zones[$a];\n\n",
-    [PHRASE_READ_ZONES]      = "    for (int i = 0; i < $a; i++)\n"
-                               "        krs_zones[i] = krs_parameter[$b + i];\n",
-    [PHRASE_CUT]             = "float krs_cut(vec3 p, float d)\n{\n",
-    [PHRASE_CUT_ZONES]       = "    for (int i = 0; i < $a; i++)\n"
-                               "        d = max(d, krs_zones[i].w - length(p - krs_zones[i].xyz));\n",
+    [TEMPLATE_PARAMETER_BLOCK] = "layout(std140, set = 0, binding = 0) uniform KrsParameters "
+                                 "{ vec4 krs_parameter[$a]; };\n\n",
+    [TEMPLATE_ZONES]           = "vec4 krs_zones[$a];\n\n",
+    [TEMPLATE_READ_ZONES]      = "    for (int i = 0; i < $a; i++)\n"
+                                 "        krs_zones[i] = krs_parameter[$b + i];\n",
+    [TEMPLATE_CUT]             = "float krs_cut(vec3 p, float d)\n{\n",
+    [TEMPLATE_CUT_ZONES]       = "    for (int i = 0; i < $a; i++)\n"
+                                 "        d = max(d, krs_zones[i].w - length(p - krs_zones[i].xyz));\n",
     /* length(c) - length(c - p), without a difference of large numbers. */
-    [PHRASE_CUT_NEAR_ZONES] =
+    [TEMPLATE_CUT_NEAR_ZONES] =
         "    for (int i = 0; i < $a; i++) {\n"
         "        vec3 c = krs_zones[i].xyz;\n"
         "        float lengths = length(c) + length(c - p);\n"
         "        d = max(d, krs_zones[i].w + dot(c + (c - p), p) / max(lengths, 1e-30));\n"
         "    }\n",
 
-    [PHRASE_TEXEL_CELLS] =
+    [TEMPLATE_TEXEL_CELLS] =
         "layout(set = 0, binding = 2) uniform usamplerBuffer krs_cells;\n\n"
         "uvec2 krs_cell_texel(uint i) { return texelFetch(krs_cells, int(i)).xy; }\n\n",
-    [PHRASE_BUFFER_CELLS] =
+    [TEMPLATE_BUFFER_CELLS] =
         "layout(std430, set = 0, binding = 2) readonly buffer KrsCells { uvec2 krs_cells[]; };\n\n"
         "uvec2 krs_cell_texel(uint i) { return krs_cells[i]; }\n\n",
-    [PHRASE_TEXEL_TABLES] =
+    [TEMPLATE_TEXEL_TABLES] =
         "layout(set = 0, binding = 1) uniform samplerBuffer krs_rows;\n"
         "layout(set = 0, binding = 2) uniform usamplerBuffer krs_cells;\n\n"
         "vec4 krs_row_texel(uint i) { return texelFetch(krs_rows, int(i)); }\n"
         "uvec2 krs_cell_texel(uint i) { return texelFetch(krs_cells, int(i)).xy; }\n\n",
-    [PHRASE_BUFFER_TABLES] =
+    [TEMPLATE_BUFFER_TABLES] =
         "layout(std430, set = 0, binding = 1) readonly buffer KrsRows { vec4 krs_rows[]; };\n"
         "layout(std430, set = 0, binding = 2) readonly buffer KrsCells { uvec2 krs_cells[]; };\n\n"
         "vec4 krs_row_texel(uint i) { return krs_rows[i]; }\n"
         "uvec2 krs_cell_texel(uint i) { return krs_cells[i]; }\n\n",
-    [PHRASE_TABLES] =
+    [TEMPLATE_TABLES] =
         "// A table: its grid, the box of what it has, and texels where its cells, its rows and\n"
         "// their copies in the order of the lists begin.\n"
         "struct KrsTable {\n"
@@ -106,7 +106,7 @@ static const char *const phrases[PHRASE_COUNT] = {
         "    uint first, end;\n"
         "    float clearance;\n"
         "};\n\n",
-    [PHRASE_TEXTURES] =
+    [TEMPLATE_TEXTURES] =
         "// A texture: the texel where its list of levels begins, how many there are, what is\n"
         "// outside (0: the picture again, 1: its edge, 2: its mirror image), and whether it is\n"
         "// gray.\n"
@@ -114,13 +114,13 @@ static const char *const phrases[PHRASE_COUNT] = {
         "    uint list, levels, wrap;\n"
         "    bool gray;\n"
         "};\n\n",
-    [PHRASE_EACH_LISTED] = "    KrsNear nearby = krs_near(p, $a);\n"
-                           "    for (uint i = nearby.first; i < nearby.end; i++) {\n"
-                           "        uint member = krs_listed(i, $a);\n",
+    [TEMPLATE_EACH_LISTED] = "    KrsNear nearby = krs_near(p, $a);\n"
+                             "    for (uint i = nearby.first; i < nearby.end; i++) {\n"
+                             "        uint member = krs_listed(i, $a);\n",
 
-    [PHRASE_NEAREST_GRADIENT] = "    vec4 nearest = vec4(0.0, 0.0, 0.0, " NOWHERE_TEXT
-                                "), other;\n",
-    [PHRASE_NEAREST_OF_ZONES] =
+    [TEMPLATE_NEAREST_GRADIENT] = "    vec4 nearest = vec4(0.0, 0.0, 0.0, " NOWHERE_TEXT
+                                  "), other;\n",
+    [TEMPLATE_NEAREST_OF_ZONES] =
         "    for (int i = 0; i < $a; i++) {\n"
         "        vec3 toward = krs_zones[i].xyz - p;\n"
         "        float depth = krs_zones[i].w - length(toward);\n"
@@ -134,5 +134,5 @@ const Printer glsl_printer = {
     .operation    = operation,
     .helpers      = helper_files,
     .alternatives = alternatives,
-    .phrases      = phrases,
+    .templates    = templates,
 };
