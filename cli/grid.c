@@ -35,7 +35,7 @@ typedef struct Gridding {
     const Options  *options;
     const KrsScene *scene;
     KrsFrame       *frame;
-    Meshing         wishes;         /* what they share with meshes */
+    Meshing         meshing;        /* what they share with meshes */
     KrsGridOptions  how;            /* but for what a format has */
     GridGroup       groups[GROUPS]; /* all, near */
     KrsGrid        *grid;
@@ -145,29 +145,29 @@ static KrsStatus refuse_cell(const Gridding *gridding, const char *path, const c
                      most, round_up(larger));
 }
 
-/* The length of the longest side tells what the cell is without a wish. */
-static KrsStatus take_wishes(Gridding *gridding)
+/* The length of the longest side tells what the cell is without an option. */
+static KrsStatus take_options(Gridding *gridding)
 {
     const Options *options = gridding->options;
-    Meshing       *wishes  = &gridding->wishes;
+    Meshing       *meshing = &gridding->meshing;
     double         longest;
-    wishes->options  = options;
-    wishes->scene    = gridding->scene;
-    KrsStatus status = check_wishes(wishes);
+    meshing->options = options;
+    meshing->scene   = gridding->scene;
+    KrsStatus status = check_common_options(meshing);
     if (status != KRS_OK)
         return status;
     gridding->how = (KrsGridOptions){.fog          = options->grid_fog,
                                      .exact        = options->grid_exact,
                                      .error        = options->grid_error,
                                      .materials    = options->grid_color || options->grid_material,
-                                     .component    = wishes->how.component,
-                                     .within       = wishes->how.within,
+                                     .component    = meshing->how.component,
+                                     .within       = meshing->how.within,
                                      .memory_limit = options->limits.memory,
                                      .go_on        = go_on,
                                      .user         = gridding};
-    memcpy(gridding->how.low, wishes->how.low, sizeof gridding->how.low);
-    memcpy(gridding->how.high, wishes->how.high, sizeof gridding->how.high);
-    find_end(wishes, &longest);
+    memcpy(gridding->how.low, meshing->how.low, sizeof gridding->how.low);
+    memcpy(gridding->how.high, meshing->how.high, sizeof gridding->how.high);
+    find_end(meshing, &longest);
     gridding->how.cell = options->grid_cell > 0 ? options->grid_cell
                          : longest > 0          ? longest / USUAL_CELLS
                                                 : 1;
@@ -258,7 +258,7 @@ static KrsStatus check_group(Gridding *gridding, GridGroup *group)
                                .half     = options->grid_half,
                                .metres   = metres_of_units[unit]};
     if (group->sheet.shape.count[0] == 0)
-        return say_nothing(&gridding->wishes, "write", NULL, 0);
+        return say_nothing(&gridding->meshing, "write", NULL, 0);
     for (size_t i = 0; i < group->count && status == KRS_OK; i++)
         status = check_size(gridding, &group->sheet.shape, &group->outputs[i]);
     return status == KRS_OK && group->outputs[0].format->sparse ? check_memory(gridding, group)
@@ -449,7 +449,7 @@ KrsStatus command_grid(Options *options)
     if (status == KRS_OK)
         status = scene_frame(options, scene, &gridding.frame);
     if (status == KRS_OK)
-        status = take_wishes(&gridding);
+        status = take_options(&gridding);
     if (status == KRS_OK)
         status = make_grid(&gridding);
     if (status == KRS_OK)

@@ -250,21 +250,21 @@ static void warn(const Printing *printing)
             printing->unit, m->thin_area, printing->unit);
 }
 
-static KrsMeasureOptions measure_options(Printing *printing, const KrsMeshOptions *wishes,
+static KrsMeasureOptions measure_options(Printing *printing, const KrsMeshOptions *meshed,
                                          double longest)
 {
     const Options    *options = printing->options;
     KrsMeasureOptions how     = {.error        = options->print_error,
-                                 .component    = wishes->component,
-                                 .within       = wishes->within,
+                                 .component    = meshed->component,
+                                 .within       = meshed->within,
                                  .overhang     = options->overhang * M_PI / 180,
                                  .nozzle       = options->nozzle,
                                  .memory_limit = options->limits.memory,
                                  .go_on        = go_on,
                                  .user         = printing};
     how.up[options->axis]     = 1;
-    memcpy(how.low, wishes->low, sizeof how.low);
-    memcpy(how.high, wishes->high, sizeof how.high);
+    memcpy(how.low, meshed->low, sizeof how.low);
+    memcpy(how.high, meshed->high, sizeof how.high);
     /* What may be missing is then too thin for the nozzle. */
     if (how.error == 0 && options->nozzle > 0)
         how.error = fmin(longest / 200, options->nozzle);
@@ -277,7 +277,7 @@ static KrsStatus measure(Printing *printing, KrsFrame *frame)
     const char    *path    = options->files.items[0];
     Meshing        meshing = {.options = options, .scene = printing->scene};
     double         longest;
-    KrsStatus      status = check_wishes(&meshing);
+    KrsStatus      status = check_common_options(&meshing);
     if (status != KRS_OK)
         return status;
     find_end(&meshing, &longest);

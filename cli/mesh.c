@@ -442,10 +442,10 @@ KrsStatus write_meshes(Meshing *meshing)
     if (status == KRS_OK) {
         meshing->how = (KrsMeshOptions){
             .memory_limit = options->limits.memory, .go_on = go_on, .user = meshing};
-        status = check_wishes(meshing);
+        status = check_common_options(meshing);
     }
     if (status == KRS_OK)
-        status = check_mesh_wishes(meshing);
+        status = check_mesh_options(meshing);
     if (status == KRS_OK)
         status = find_meshes(meshing);
     if (status == KRS_OK)

@@ -26,7 +26,7 @@ typedef struct Slicing {
     KrsFrame       *frame;
     KrsSlicer      *slicer;
     SliceSheet      sheet;
-    Meshing         wishes;  /* what they share with meshes */
+    Meshing         meshing; /* what they share with meshes */
     KrsSliceOptions how;     /* of the slicer */
     bool            figures; /* what is shown is plane figures */
     KrsSectionPlane plane;   /* of a section, or of layer 0 */
@@ -266,7 +266,7 @@ static KrsStatus refuse_error(const Slicing *slicing)
                      slicing->options->files.items[0]);
 }
 
-/* Without a wish, once the box is known. */
+/* Without an option, once the box is known. */
 static KrsStatus find_error(Slicing *slicing, const double low[3], const double high[3])
 {
     const double usual = 1.0 / 2000, of_pixel = 1.0 / 16;
@@ -305,7 +305,7 @@ static KrsStatus say_no_section(const Slicing *slicing)
                         : slicing->sheet.stacked      ? " in the planes of its layers"
                                                       : NULL;
     if (!slicing->figures)
-        return say_nothing(&slicing->wishes, "write", where,
+        return say_nothing(&slicing->meshing, "write", where,
                            misses_box(slicing) ? 0 : slicing->how.error);
     say("there is nothing to write: `%s` is a figure without area",
         slicing->options->files.items[0]);
@@ -327,26 +327,26 @@ static KrsStatus open_slicer(Slicing *slicing)
 }
 
 /* Fills in how the scene is cut, but for where. */
-static KrsStatus take_wishes(Slicing *slicing)
+static KrsStatus take_options(Slicing *slicing)
 {
-    Meshing *wishes  = &slicing->wishes;
-    wishes->options  = slicing->options;
-    wishes->scene    = slicing->scene;
-    KrsStatus status = check_wishes(wishes);
+    Meshing *meshing = &slicing->meshing;
+    meshing->options = slicing->options;
+    meshing->scene   = slicing->scene;
+    KrsStatus status = check_common_options(meshing);
     slicing->how     = (KrsSliceOptions){.error        = slicing->options->slice_error,
-                                         .component    = wishes->how.component,
-                                         .within       = wishes->how.within,
+                                         .component    = meshing->how.component,
+                                         .within       = meshing->how.within,
                                          .memory_limit = slicing->options->limits.memory,
                                          .go_on        = go_on};
-    memcpy(slicing->how.low, wishes->how.low, sizeof slicing->how.low);
-    memcpy(slicing->how.high, wishes->how.high, sizeof slicing->how.high);
+    memcpy(slicing->how.low, meshing->how.low, sizeof slicing->how.low);
+    memcpy(slicing->how.high, meshing->how.high, sizeof slicing->how.high);
     return status == KRS_OK ? check_figures(slicing) : status;
 }
 
-static KrsStatus find_wishes(Slicing *slicing)
+static KrsStatus find_options(Slicing *slicing)
 {
     double    low[3], high[3];
-    KrsStatus status = take_wishes(slicing);
+    KrsStatus status = take_options(slicing);
     if (status == KRS_OK)
         status = open_slicer(slicing);
     if (status != KRS_OK)
@@ -527,7 +527,7 @@ KrsStatus command_slice(Options *options)
     if (status == KRS_OK)
         status = scene_frame(options, scene, &slicing.frame);
     if (status == KRS_OK)
-        status = find_wishes(&slicing);
+        status = find_options(&slicing);
     if (status == KRS_OK)
         status = write_sections(&slicing);
     krs_slicer_free(slicing.slicer);

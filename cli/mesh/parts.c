@@ -305,7 +305,7 @@ void flatten_parts(const Meshing *meshing, MeshParts *parts)
 /* In the order of unit_choices. */
 const double metres_of_units[] = {1e-3, 1e-6, 1e-2, 1, 0.0254, 0.3048};
 
-/* Without a wish, what the format is usually in. */
+/* Without an option, what the format is usually in. */
 void set_units(const Meshing *meshing, const MeshFormat *format, MeshParts *parts)
 {
     int unit = meshing->options->mesh_units;

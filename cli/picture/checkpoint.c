@@ -28,8 +28,8 @@
    variable KRS_TEST_CHECKPOINT says how many. */
 static double seconds_between(void)
 {
-    const char *wish = getenv("KRS_TEST_CHECKPOINT");
-    return wish && atof(wish) > 0 ? atof(wish) : 2;
+    const char *setting = getenv("KRS_TEST_CHECKPOINT");
+    return setting && atof(setting) > 0 ? atof(setting) : 2;
 }
 
 typedef struct Header {

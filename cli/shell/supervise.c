@@ -76,17 +76,17 @@ static const StageInfo stage_info[STAGE_COUNT] = {
 
 static void crash_for_test(RunStage stage)
 {
-    const char *wish   = getenv("KRS_TEST_CRASH");
-    size_t      length = strlen(stage_info[stage].name);
-    if (!wish || strncmp(wish, stage_info[stage].name, length) != 0)
+    const char *setting = getenv("KRS_TEST_CRASH");
+    size_t      length  = strlen(stage_info[stage].name);
+    if (!setting || strncmp(setting, stage_info[stage].name, length) != 0)
         return;
-    if (wish[length] == '\0')
+    if (setting[length] == '\0')
         raise(SIGSEGV);
-    if (strcmp(wish + length, ":hang") == 0)
+    if (strcmp(setting + length, ":hang") == 0)
         for (;;)
             pause();
-    if (wish[length] == ':')
-        raise(atoi(wish + length + 1));
+    if (setting[length] == ':')
+        raise(atoi(setting + length + 1));
 }
 
 void stage_goes_on(void) { atomic_fetch_add(&shared->progress, 1); }

@@ -1,4 +1,4 @@
-/* wishes.c: what `krs mesh` is asked for, and what of it is refused. */
+/* options.c: what `krs mesh` is asked for, and what of it is refused. */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -177,7 +177,7 @@ static bool can_have_lods(const Meshing *meshing)
     return false;
 }
 
-KrsStatus check_mesh_wishes(Meshing *meshing)
+KrsStatus check_mesh_options(Meshing *meshing)
 {
     const Options *options = meshing->options;
     KrsStatus      status  = check_motion(meshing);
@@ -198,7 +198,7 @@ KrsStatus check_mesh_wishes(Meshing *meshing)
     return KRS_OK;
 }
 
-KrsStatus check_wishes(Meshing *meshing)
+KrsStatus check_common_options(Meshing *meshing)
 {
     const Options *options = meshing->options;
     const char    *path    = options->files.items[0];
