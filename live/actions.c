@@ -223,7 +223,7 @@ static void act_write_camera(Viewing *viewing)
     const KrsScene *scene  = version_scene(viewing->view.version);
     KrsStatus       status = KRS_BAD_ARGUMENT;
     KrsCamera       before;
-    if (viewing->remarks.errors == 0 &&
+    if (viewing->diagnostics.errors == 0 &&
         krs_frame_camera(viewing->frame, viewing->camera, &before) == KRS_OK)
         status = camera_text_write(scene, viewing->camera, &before, &viewing->view.camera,
                                    viewing->options->path);
@@ -238,7 +238,7 @@ static void act_write_values(Viewing *viewing)
     size_t          written;
     const KrsScene *scene  = version_scene(viewing->view.version);
     KrsStatus       status = KRS_BAD_ARGUMENT;
-    if (viewing->remarks.errors == 0)
+    if (viewing->diagnostics.errors == 0)
         status = write_defaults(scene, (const double(*)[4])viewing->view.values, &written);
     if (is_written(viewing, status))
         viewing_notice(viewing, "%zu value%s written", written, written == 1 ? "" : "s");
@@ -249,9 +249,9 @@ static void act_edit(Viewing *viewing)
 {
     char        place[300];
     const Found found = viewing_find(viewing);
-    for (size_t i = 0; i < viewing->remarks.count; i++)
-        if (viewing->remarks.items[i].error) {
-            remark_place(&viewing->remarks.items[i], place);
+    for (size_t i = 0; i < viewing->diagnostics.count; i++)
+        if (viewing->diagnostics.items[i].error) {
+            diagnostic_location(&viewing->diagnostics.items[i], place);
             viewing_open_editor(viewing, place);
             return;
         }

@@ -234,7 +234,7 @@ static bool place_found(const Viewing *viewing, GuiPlace *place)
     if (left >= viewing->heights.found)
         return true;
     place->corner = GUI_BOTTOM_LEFT;
-    place->below  = viewing->heights.remarks;
+    place->below  = viewing->heights.diagnostics;
     place->most   = gui_window_width() - gui_panel_space(PANEL_WIDTH);
     return true;
 }
@@ -376,27 +376,27 @@ static void draw_found(Viewing *viewing)
     viewing->heights.found = gui_panel_end();
 }
 
-static void draw_remarks(Viewing *viewing)
+static void draw_diagnostics(Viewing *viewing)
 {
-    const Remarks *remarks   = &viewing->remarks;
-    viewing->heights.remarks = 0;
-    if (remarks->count == 0)
+    const Diagnostics *diagnostics = &viewing->diagnostics;
+    viewing->heights.diagnostics   = 0;
+    if (diagnostics->count == 0)
         return;
-    gui_panel("remarks", (GuiPlace){.corner = GUI_BOTTOM_LEFT}, false);
-    for (size_t i = 0; i < remarks->count; i++) {
-        const Remark *remark = &remarks->items[i];
+    gui_panel("diagnostics", (GuiPlace){.corner = GUI_BOTTOM_LEFT}, false);
+    for (size_t i = 0; i < diagnostics->count; i++) {
+        const KrsDiagnostic *diagnostic = &diagnostics->items[i];
         if (i > 0)
             gui_gap();
         char    label[32], place[300];
-        GuiTone tone = remark->error ? GUI_ERROR : remark->note ? GUI_FAINT : GUI_WARNING;
-        snprintf(label, sizeof label, "remark%zu", i);
-        remark_place(remark, place);
-        if (gui_line(label, remark->text, tone))
+        GuiTone tone = diagnostic->error ? GUI_ERROR : diagnostic->note ? GUI_FAINT : GUI_WARNING;
+        snprintf(label, sizeof label, "diagnostic%zu", i);
+        diagnostic_location(diagnostic, place);
+        if (gui_line(label, diagnostic->text, tone))
             viewing_open_editor(viewing, place);
     }
-    if (remarks->errors > 0 && viewing->shot.width > 0)
+    if (diagnostics->errors > 0 && viewing->shot.width > 0)
         gui_text(GUI_FAINT, "The picture is that of the last text without a mistake.");
-    viewing->heights.remarks = gui_panel_end();
+    viewing->heights.diagnostics = gui_panel_end();
 }
 
 /* Two columns, so that all of it is seen in a small window. */
@@ -446,6 +446,6 @@ void panels_draw(Viewing *viewing)
     } else if (viewing->reads_slowly) {
         draw_notice(viewing);
     }
-    if (viewing->panels || viewing->remarks.errors > 0)
-        draw_remarks(viewing);
+    if (viewing->panels || viewing->diagnostics.errors > 0)
+        draw_diagnostics(viewing);
 }

@@ -63,9 +63,9 @@ static void take_document(Viewing *viewing)
     if (readings == viewing->readings)
         return;
     viewing->readings = readings;
-    remarks_free(&viewing->remarks);
-    viewing->remarks = document_remarks(viewing->document);
-    Version *version = document_version(viewing->document);
+    diagnostics_free(&viewing->diagnostics);
+    viewing->diagnostics = document_diagnostics(viewing->document);
+    Version *version     = document_version(viewing->document);
     if (version && version != viewing->view.version)
         viewing_adopt(viewing, version);
     version_release(version);
@@ -237,9 +237,9 @@ static void draw_terminal(Viewing *viewing)
              look_names[viewing->view.look]);
     if (viewing->reads_slowly)
         snprintf(second, sizeof second, "%s", viewing->notice);
-    else if (viewing->remarks.errors > 0)
-        snprintf(second, sizeof second, "%s:%u: %s", viewing->remarks.items[0].source,
-                 viewing->remarks.items[0].line, viewing->remarks.items[0].text);
+    else if (viewing->diagnostics.errors > 0)
+        snprintf(second, sizeof second, "%s:%u: %s", viewing->diagnostics.items[0].source,
+                 viewing->diagnostics.items[0].line, viewing->diagnostics.items[0].text);
     else if (painting->compiling)
         snprintf(second, sizeof second, "compiling the shaders: %.0f %%", 100 * painting->compiled);
     else if (viewing_now() - viewing->noticed_at < 4)
@@ -376,7 +376,7 @@ KrsStatus viewer_run(const ViewerOptions *options, char message[256])
     view_free(&viewing.view);
     history_free(viewing.history);
     free(viewing.pixels);
-    remarks_free(&viewing.remarks);
+    diagnostics_free(&viewing.diagnostics);
     presets_free(&viewing.presets);
     document_free(viewing.document);
     return status;

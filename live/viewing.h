@@ -37,7 +37,7 @@ typedef struct Viewing {
     size_t       camera;         /* of the scene's */
     bool         moved;          /* the camera is not the scene's any more */
     bool         camera_written; /* but will be in the next version */
-    Remarks      remarks;
+    Diagnostics  diagnostics;
     unsigned     readings;
     bool         asked; /* the reader, to prepare edits */
     Shot         shot;  /* the last one; its pixels are in the window */
@@ -58,8 +58,8 @@ typedef struct Viewing {
     bool     panels, help, numbers;
     int      scrolled; /* lines of the help, since it was drawn */
     struct {
-        float status, controls, found, remarks; /* 0: it is not there */
-    } heights;                                  /* of panels in the last frame, with a margin */
+        float status, controls, found, diagnostics; /* 0: it is not there */
+    } heights;                                      /* of panels in the last frame, with a margin */
     Cut      cut;
     Presets  presets;
     char     preset[64]; /* the name of the next one */

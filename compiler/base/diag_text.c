@@ -240,8 +240,8 @@ static void draw_file(Excerpt *excerpt, const Mark *named, const char *arrow)
 
 /* Writes a note or help below the source lines, with quoted code behind it unless `code` is
    NULL. */
-static void draw_remark(const Excerpt *excerpt, const char *kind, const char *text,
-                        const char *separator, const char *code)
+static void draw_note(const Excerpt *excerpt, const char *kind, const char *text,
+                      const char *separator, const char *code)
 {
     draw_gutter(excerpt, "= ");
     paint(excerpt, "1");
@@ -260,13 +260,13 @@ static void draw_remark(const Excerpt *excerpt, const char *kind, const char *te
 static void draw_help(const Excerpt *excerpt, const Diag *diag)
 {
     if (diag->help && (!diag->replacement || strstr(diag->help, diag->replacement)))
-        draw_remark(excerpt, "help", diag->help, "", NULL);
+        draw_note(excerpt, "help", diag->help, "", NULL);
     else if (diag->help)
-        draw_remark(excerpt, "help", diag->help, ": ", diag->replacement);
+        draw_note(excerpt, "help", diag->help, ": ", diag->replacement);
     else if (diag->replacement && *diag->replacement)
-        draw_remark(excerpt, "help", "write", " ", diag->replacement);
+        draw_note(excerpt, "help", "write", " ", diag->replacement);
     else if (diag->replacement)
-        draw_remark(excerpt, "help", "leave this out", "", NULL);
+        draw_note(excerpt, "help", "leave this out", "", NULL);
 }
 
 static void draw_title(const Excerpt *excerpt, const Diag *diag)
@@ -298,7 +298,7 @@ void diag_print_one(const Diags *diags, const Diag *diag, bool color, Text *out)
         if (!excerpt.marks.items[i].drawn)
             draw_file(&excerpt, &excerpt.marks.items[i], i == 0 ? "-->" : ":::");
     for (size_t i = 0; i < diag->notes.count; i++)
-        draw_remark(&excerpt, "note", diag->notes.items[i], "", NULL);
+        draw_note(&excerpt, "note", diag->notes.items[i], "", NULL);
     draw_help(&excerpt, diag);
 }
 

@@ -336,9 +336,9 @@ bool may_vanish(const Shape *shape);
 /* Warns of a component, shown at `span`, that is known to be empty. */
 void warn_if_nothing_is_left(Elaboration *e, const Shape *shape, const char *name, Span span);
 
-/* ---- remarks.c: `print`, `assert`, strings ---- */
+/* ---- messages.c: `print`, `assert`, strings ---- */
 /* Prints, or reports a condition that does not hold: then false. */
-bool run_remark(Elaboration *e, const Environment *env, const Syntax *syntax);
+bool run_message(Elaboration *e, const Environment *env, const Syntax *syntax);
 /* A string like those that are written. */
 Value           value_string(Elaboration *e, const char *bytes, size_t length);
 BuiltinFunction builtin_str;

@@ -268,10 +268,10 @@ static Value evaluate_binary(Elaboration *e, const Environment *env, const Synta
     return value_binary(e, syntax, a, b);
 }
 
-static Value evaluate_remark_in(Elaboration *e, const Environment *env, const Syntax *syntax)
+static Value evaluate_message_in(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    return run_remark(e, env, syntax->children[0]) ? evaluate(e, env, syntax->children[1])
-                                                   : value_error();
+    return run_message(e, env, syntax->children[0]) ? evaluate(e, env, syntax->children[1])
+                                                    : value_error();
 }
 
 static Value evaluate_let(Elaboration *e, const Environment *env, const Syntax *syntax)
@@ -311,7 +311,7 @@ static Value evaluate_inner(Elaboration *e, const Environment *env, const Syntax
     case SYNTAX_BINARY: return evaluate_binary(e, env, syntax);
     case SYNTAX_IF: return evaluate_if(e, env, syntax);
     case SYNTAX_LET_IN: return evaluate_let(e, env, syntax);
-    case SYNTAX_REMARK_IN: return evaluate_remark_in(e, env, syntax);
+    case SYNTAX_MESSAGE_IN: return evaluate_message_in(e, env, syntax);
     case SYNTAX_CALL: return evaluate_call(e, env, syntax);
     case SYNTAX_METHOD: return call_method(e, env, syntax);
     case SYNTAX_INDEX: return evaluate_index(e, env, syntax);

@@ -300,8 +300,8 @@ static void run_statement(Elaboration *e, Environment *env, const Syntax *syntax
     case SYNTAX_SHAPE: *env = bind(e, env, syntax->name, function_value(e, env, syntax)); break;
     case SYNTAX_FOR: run_for(e, env, syntax, sequence); break;
     case SYNTAX_IF_STATEMENT: run_if(e, env, syntax, sequence); break;
-    case SYNTAX_REMARK:
-        if (!run_remark(e, env, syntax) && sequence)
+    case SYNTAX_MESSAGE:
+        if (!run_message(e, env, syntax) && sequence)
             sequence->wrong = true;
         break;
     case SYNTAX_SHOW: show_one(e, evaluate_shown(e, env, syntax), syntax->children[0]); break;
@@ -421,11 +421,11 @@ void run_file(Elaboration *e, Scope *scope)
 }
 
 /* What used files say of themselves; their other statements are for whoever shows them. */
-static void run_remarks(Elaboration *e, const Scope *scope)
+static void run_messages(Elaboration *e, const Scope *scope)
 {
     for (uint32_t i = 0; scope->file && i < scope->file->count; i++)
-        if (scope->file->children[i]->kind == SYNTAX_REMARK)
-            run_remark(e, &scope->environment, scope->file->children[i]);
+        if (scope->file->children[i]->kind == SYNTAX_MESSAGE)
+            run_message(e, &scope->environment, scope->file->children[i]);
 }
 
 /* Parameters get their slots in the order of the text, whoever needs them first. */
@@ -447,7 +447,7 @@ void elaborate(Elaboration *e)
     for (size_t i = 0; i < e->scopes.count; i++)
         run_params(e, e->scopes.items[i]);
     for (size_t i = 1; i < e->scopes.count; i++)
-        run_remarks(e, e->scopes.items[i]);
+        run_messages(e, e->scopes.items[i]);
     run_file(e, scope);
     plan_boxes(e);
     run_studio(e, e->files);

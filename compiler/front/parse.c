@@ -36,12 +36,12 @@ static Syntax *parse_use(Parser *p)
     return finish_named(p, SYNTAX_USE, start, first, path);
 }
 
-/* remark_statement = remark ";" ; */
-static Syntax *parse_remark_statement(Parser *p)
+/* message_statement = message ";" ; */
+static Syntax *parse_message_statement(Parser *p)
 {
-    Syntax *remark = parse_remark(p);
+    Syntax *message = parse_message(p);
     expect_semicolon(p, "a `print` or `assert`");
-    return remark;
+    return message;
 }
 
 /* Skips a `;` behind a closing brace, a habit from other languages, with a warning. */
@@ -154,11 +154,11 @@ static Syntax *no_block_statement(Parser *p)
     return error_node(p);
 }
 
-/* block_statement = let | def | shape | surroundings | show | remark_statement | for | if ; */
+/* block_statement = let | def | shape | surroundings | show | message_statement | for | if ; */
 static Syntax *parse_block_statement(Parser *p)
 {
-    if (at_remark(p))
-        return parse_remark_statement(p);
+    if (at_message(p))
+        return parse_message_statement(p);
     switch (kind_here(p)) {
     case TOKEN_LET: return parse_let(p);
     case TOKEN_DEF: return parse_def(p);
@@ -209,7 +209,7 @@ static Syntax *parse_reflect(Parser *p) { return parse_simple(p, SYNTAX_REFLECT,
 /* mobius = "mobius" expression ";" ; */
 static Syntax *parse_mobius(Parser *p) { return parse_simple(p, SYNTAX_MOBIUS, "a `mobius`"); }
 
-/* krs_statement = kernel | reflect | mobius | let | remark_statement | krs_for | krs_if ; */
+/* krs_statement = kernel | reflect | mobius | let | message_statement | krs_for | krs_if ; */
 static Syntax *parse_krs_statement(Parser *p)
 {
     if (is_word_here(p, "kernel"))
@@ -218,8 +218,8 @@ static Syntax *parse_krs_statement(Parser *p)
         return parse_reflect(p);
     if (is_word_here(p, "mobius"))
         return parse_mobius(p);
-    if (at_remark(p))
-        return parse_remark_statement(p);
+    if (at_message(p))
+        return parse_message_statement(p);
     switch (kind_here(p)) {
     case TOKEN_LET: return parse_let(p);
     case TOKEN_FOR: return parse_krs_for(p);
@@ -313,11 +313,11 @@ static Syntax *parse_definition(Parser *p)
     }
 }
 
-/* statement = definition | surroundings | show | use | remark_statement | for | if ; */
+/* statement = definition | surroundings | show | use | message_statement | for | if ; */
 static Syntax *parse_statement(Parser *p)
 {
-    if (at_remark(p))
-        return parse_remark_statement(p);
+    if (at_message(p))
+        return parse_message_statement(p);
     switch (kind_here(p)) {
     case TOKEN_LET:
     case TOKEN_DEF:

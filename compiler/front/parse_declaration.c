@@ -116,7 +116,7 @@ static void parse_parameters(Parser *p, const char *what, const char *example)
     const Token *name   = token_before(p);
     if (!expect(p, TOKEN_LEFT_PAREN, what, example))
         return;
-    if (name->kind == TOKEN_NAME && names_remark(name->name))
+    if (name->kind == TOKEN_NAME && names_message(name->name))
         report_at(p, DIAG_UNEXPECTED_TOKEN, name->span, "`print(` and `assert(` have a meaning")
             ->help = "choose another name for what is called";
     while (!p->failed && kind_here(p) != TOKEN_RIGHT_PAREN) {

@@ -26,18 +26,18 @@ static Syntax *parse_let_in(Parser *p)
     return finish_named(p, SYNTAX_LET_IN, start, first, name);
 }
 
-/* remark_in = remark "in" expression ; */
-static Syntax *parse_remark_in(Parser *p)
+/* message_in = message "in" expression ; */
+static Syntax *parse_message_in(Parser *p)
 {
     enter(p);
     Span   start = token_here(p)->span;
     size_t first = begin_children(p);
-    add_child(p, parse_remark(p));
+    add_child(p, parse_message(p));
     expect(p, TOKEN_IN, "`in` after a `print` or `assert` within an expression",
            "for example `assert(r > 0, \"a radius\") in sphere(r)`");
     add_child(p, parse_expression(p));
     leave(p);
-    return finish(p, SYNTAX_REMARK_IN, start, first, NULL);
+    return finish(p, SYNTAX_MESSAGE_IN, start, first, NULL);
 }
 
 /* if_then_else = "if" expression "then" expression "else" expression ; */
@@ -221,11 +221,11 @@ static Syntax *parse_or(Parser *p)
     return parse_left(p, parse_and, TOKEN_OR, TOKEN_OR, TOKEN_OR);
 }
 
-/* expression = let_in | remark_in | if_then_else | or ; */
+/* expression = let_in | message_in | if_then_else | or ; */
 Syntax *parse_expression(Parser *p)
 {
-    if (at_remark(p))
-        return parse_remark_in(p);
+    if (at_message(p))
+        return parse_message_in(p);
     switch (kind_here(p)) {
     case TOKEN_LET: return parse_let_in(p);
     case TOKEN_IF: return parse_if_then_else(p);
@@ -293,14 +293,14 @@ static void parse_arguments(Parser *p)
     leave(p);
 }
 
-/* remark = ( "print" | "assert" ) arguments ; */
-Syntax *parse_remark(Parser *p)
+/* message = ( "print" | "assert" ) arguments ; */
+Syntax *parse_message(Parser *p)
 {
     Span         start = token_here(p)->span;
     size_t       first = begin_children(p);
     const Token *word  = advance(p);
     parse_arguments(p);
-    return finish(p, SYNTAX_REMARK, start, first, word);
+    return finish(p, SYNTAX_MESSAGE, start, first, word);
 }
 
 /* call = arguments ; */

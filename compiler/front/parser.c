@@ -64,14 +64,14 @@ bool is_word_here(const Parser *p, const char *word)
     return kind_here(p) == TOKEN_NAME && strcmp(token_here(p)->name, word) == 0;
 }
 
-bool names_remark(const char *name)
+bool names_message(const char *name)
 {
     return strcmp(name, "print") == 0 || strcmp(name, "assert") == 0;
 }
 
-bool at_remark(const Parser *p)
+bool at_message(const Parser *p)
 {
-    return kind_here(p) == TOKEN_NAME && names_remark(token_here(p)->name) &&
+    return kind_here(p) == TOKEN_NAME && names_message(token_here(p)->name) &&
            kind_after(p) == TOKEN_LEFT_PAREN;
 }
 

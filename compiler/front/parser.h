@@ -58,8 +58,8 @@ bool         accept(Parser *p, TokenKind kind);
 bool is_label(const Parser *p);
 bool is_word_here(const Parser *p, const char *word);
 /* Whether `print(` or `assert(` is next; without a parenthesis these are names. */
-bool at_remark(const Parser *p);
-bool names_remark(const char *name);
+bool at_message(const Parser *p);
+bool names_message(const char *name);
 /* Whether the current token begins a statement that cannot be part of an expression. */
 bool begins_declaration(const Parser *p);
 
@@ -107,7 +107,7 @@ Syntax *error_node(Parser *p);
 /* ---- rules that other files use ---- */
 Syntax *parse_expression(Parser *p);
 Syntax *parse_krs(Parser *p);
-Syntax *parse_remark(Parser *p);
+Syntax *parse_message(Parser *p);
 Syntax *parse_let(Parser *p);
 Syntax *parse_def(Parser *p);
 Syntax *parse_param(Parser *p);

@@ -29,12 +29,12 @@ typedef enum SyntaxKind {
     SYNTAX_BINARY,        /* -      [0] left, [1] right; op; name_span is the operator's */
     SYNTAX_IF,            /* -      [0] condition, [1] then, [2] else */
     SYNTAX_LET_IN,        /* name   [0] value, [1] body */
-    SYNTAX_REMARK_IN,     /* -      [0] REMARK, [1] body */
+    SYNTAX_MESSAGE_IN,    /* -      [0] MESSAGE, [1] body */
     SYNTAX_CALL,          /* -      [0] callee, [1..] ARGUMENT */
     SYNTAX_METHOD,        /* name   [0] receiver, [1..] ARGUMENT; parentheses may be missing */
     SYNTAX_ARGUMENT,      /* name?  [0] value; name NULL when positional */
     SYNTAX_INDEX,         /* -      [0] list, [1] index */
-    SYNTAX_KRS,           /* -      statements: KERNEL REFLECT MOBIUS LET REMARK FOR IF_STATEMENT */
+    SYNTAX_KRS, /* -      statements: KERNEL REFLECT MOBIUS LET MESSAGE FOR IF_STATEMENT */
     /* statements */
     SYNTAX_BLOCK,     /* -      statements (of a `for` or `if`, and of the whole file) */
     SYNTAX_LET,       /* name   [0] value */
@@ -52,7 +52,7 @@ typedef enum SyntaxKind {
     SYNTAX_ZONE,         /* -      PROPERTY... */
     SYNTAX_PROPERTY,     /* name   [0] value */
     SYNTAX_SHOW,         /* -      [0] value */
-    SYNTAX_REMARK,       /* word   ARGUMENT...; the name is `print` or `assert` */
+    SYNTAX_MESSAGE,      /* word   ARGUMENT...; the name is `print` or `assert` */
     SYNTAX_USE,          /* path   none; the name is the path */
     SYNTAX_FOR,          /* name   [0] the list, [1] BLOCK */
     SYNTAX_IF_STATEMENT, /* -      [0] condition, [1] BLOCK, [2] BLOCK, IF_STATEMENT, or none */

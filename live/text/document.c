@@ -32,12 +32,12 @@ struct Document {
     Watcher        *watcher;
     bool            refused; /* the system does not let us watch a file */
     int             woken;   /* an eventfd */
-    Remarks         heard;   /* by the reading that is under way; told when it has ended */
+    Diagnostics     heard;   /* by the reading that is under way; told when it has ended */
     bool            quiet;   /* what is said now was said before */
     pthread_mutex_t lock;    /* of all below */
     Version        *version;
     Version        *spare; /* of the same text, for edits to be compared with */
-    Remarks         remarks;
+    Diagnostics     diagnostics;
     unsigned        readings;
 };
 
@@ -66,57 +66,57 @@ unsigned version_structure(const Version *version) { return version->structure; 
 
 KrsChanges version_changes(const Version *version) { return version->changes; }
 
-/* ---- remarks ---- */
+/* ---- diagnostics ---- */
 
-void remark_place(const Remark *remark, char place[300])
+void diagnostic_location(const KrsDiagnostic *diagnostic, char place[300])
 {
-    snprintf(place, 300, "%s:%u", remark->source, remark->line);
+    snprintf(place, 300, "%s:%u", diagnostic->source, diagnostic->line);
 }
 
-static void remark_free(Remark *remark)
+static void diagnostic_free(KrsDiagnostic *diagnostic)
 {
-    free((char *)remark->code);
-    free((char *)remark->message);
-    free((char *)remark->source);
-    free((char *)remark->text);
-    free((char *)remark->json);
+    free((char *)diagnostic->code);
+    free((char *)diagnostic->message);
+    free((char *)diagnostic->source);
+    free((char *)diagnostic->text);
+    free((char *)diagnostic->json);
 }
 
-void remarks_free(Remarks *remarks)
+void diagnostics_free(Diagnostics *diagnostics)
 {
-    for (size_t i = 0; i < remarks->count; i++)
-        remark_free(&remarks->items[i]);
-    free(remarks->items);
-    *remarks = (Remarks){0};
+    for (size_t i = 0; i < diagnostics->count; i++)
+        diagnostic_free(&diagnostics->items[i]);
+    free(diagnostics->items);
+    *diagnostics = (Diagnostics){0};
 }
 
 static char *copy(const char *words) { return strdup(words ? words : ""); }
 
-static void remarks_add(Remarks *remarks, const Remark *remark)
+static void diagnostics_add(Diagnostics *diagnostics, const KrsDiagnostic *diagnostic)
 {
-    Remark *items = realloc(remarks->items, (remarks->count + 1) * sizeof *items);
+    KrsDiagnostic *items = realloc(diagnostics->items, (diagnostics->count + 1) * sizeof *items);
     if (!items)
         return;
-    remarks->items = items;
-    Remark *added  = &items[remarks->count];
-    *added         = *remark;
-    added->code    = copy(remark->code);
-    added->message = copy(remark->message);
-    added->source  = copy(remark->source);
-    added->text    = copy(remark->text);
-    added->json    = copy(remark->json);
-    remarks->errors += remark->error;
+    diagnostics->items   = items;
+    KrsDiagnostic *added = &items[diagnostics->count];
+    *added               = *diagnostic;
+    added->code          = copy(diagnostic->code);
+    added->message       = copy(diagnostic->message);
+    added->source        = copy(diagnostic->source);
+    added->text          = copy(diagnostic->text);
+    added->json          = copy(diagnostic->json);
+    diagnostics->errors += diagnostic->error;
     if (added->code && added->message && added->source && added->text && added->json)
-        remarks->count++;
+        diagnostics->count++;
     else
-        remark_free(added);
+        diagnostic_free(added);
 }
 
 static void hear(void *user, const KrsDiagnostic *diagnostic)
 {
     Document *document = user;
     if (!document->quiet)
-        remarks_add(&document->heard, diagnostic);
+        diagnostics_add(&document->heard, diagnostic);
 }
 
 /* Hands on what was heard: now it counts. */
@@ -159,8 +159,8 @@ void document_free(Document *document)
         return;
     version_release(document->version);
     version_release(document->spare);
-    remarks_free(&document->remarks);
-    remarks_free(&document->heard);
+    diagnostics_free(&document->diagnostics);
+    diagnostics_free(&document->heard);
     watcher_free(document->watcher);
     if (document->woken >= 0)
         close(document->woken);
@@ -232,9 +232,9 @@ static void publish(Document *document, Version *version)
 {
     Version *before = NULL, *spare = NULL;
     pthread_mutex_lock(&document->lock);
-    Remarks old        = document->remarks;
-    document->remarks  = document->heard;
-    document->readings = document->readings + 1;
+    Diagnostics old       = document->diagnostics;
+    document->diagnostics = document->heard;
+    document->readings    = document->readings + 1;
     if (version) {
         before            = document->version;
         spare             = document->spare;
@@ -242,8 +242,8 @@ static void publish(Document *document, Version *version)
         document->spare   = NULL;
     }
     pthread_mutex_unlock(&document->lock);
-    document->heard = (Remarks){0};
-    remarks_free(&old);
+    document->heard = (Diagnostics){0};
+    diagnostics_free(&old);
     version_release(before);
     version_release(spare);
 }
@@ -258,7 +258,7 @@ static KrsStatus compile_settled(Document *document, KrsScene **scene, KrsChange
         if (status == KRS_OK || document->refused ||
             !watcher_wait(document->watcher, SETTLED_SECONDS))
             return status;
-        remarks_free(&document->heard);
+        diagnostics_free(&document->heard);
     }
 }
 
@@ -311,12 +311,12 @@ Version *document_version(Document *document) { return hold(document, &document-
 
 Version *document_spare(Document *document) { return hold(document, &document->spare); }
 
-Remarks document_remarks(Document *document)
+Diagnostics document_diagnostics(Document *document)
 {
-    Remarks copy = {0};
+    Diagnostics copy = {0};
     pthread_mutex_lock(&document->lock);
-    for (size_t i = 0; i < document->remarks.count; i++)
-        remarks_add(&copy, &document->remarks.items[i]);
+    for (size_t i = 0; i < document->diagnostics.count; i++)
+        diagnostics_add(&copy, &document->diagnostics.items[i]);
     pthread_mutex_unlock(&document->lock);
     return copy;
 }

@@ -19,16 +19,14 @@ unsigned version_structure(const Version *version);
 /* Against the version before; of the first, everything is new. */
 KrsChanges version_changes(const Version *version);
 
-/* What was said of a text that was read; its strings are its own. */
-typedef KrsDiagnostic Remark;
-
 /* "a.krs:3" */
-void remark_place(const Remark *remark, char place[300]);
+void diagnostic_location(const KrsDiagnostic *diagnostic, char place[300]);
 
-typedef struct Remarks {
-    Remark *items;
-    size_t  count, errors;
-} Remarks;
+/* What was said of a text that was read.  The strings are its own. */
+typedef struct Diagnostics {
+    KrsDiagnostic *items;
+    size_t         count, errors;
+} Diagnostics;
 
 typedef struct Document Document;
 
@@ -39,7 +37,7 @@ Document *document_new(const char *path, const KrsOptions *options);
 void      document_free(Document *document);
 
 /* Reads and compiles the file.  On KRS_OK there is a new version; otherwise the last good one stays,
-   and the remarks say why.  A mistake counts if nothing else is saved for SETTLED_SECONDS (watcher.h): an
+   and the diagnostics say why.  A mistake counts if nothing else is saved for SETTLED_SECONDS (watcher.h): an
    editor may not be done.  KRS_CANNOT_CREATE: the system does not let a file be watched. */
 KrsStatus document_read(Document *document);
 
@@ -54,8 +52,8 @@ Version *document_spare(Document *document);
 /* The last good version, which the caller releases; NULL: there is none.  For any thread. */
 Version *document_version(Document *document);
 /* A copy of what was said when the file was last read, which the caller frees; for any thread. */
-Remarks document_remarks(Document *document);
-void    remarks_free(Remarks *remarks);
+Diagnostics document_diagnostics(Document *document);
+void        diagnostics_free(Diagnostics *diagnostics);
 /* How often the file was read; for any thread. */
 unsigned document_readings(Document *document);
 

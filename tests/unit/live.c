@@ -241,19 +241,19 @@ static void mistakes_leave_the_version(void **state)
     Version *first = document_version(document);
     write_file(path, "\nshow spere(1);");
     assert_int_equal(document_read(document), KRS_BAD_SCENE);
-    Version *same    = document_version(document);
-    Remarks  remarks = document_remarks(document);
+    Version    *same        = document_version(document);
+    Diagnostics diagnostics = document_diagnostics(document);
     assert_ptr_equal(same, first);
-    assert_int_equal(remarks.errors, 1);
-    assert_int_equal(remarks.items[0].line, 2);
-    remarks_free(&remarks);
+    assert_int_equal(diagnostics.errors, 1);
+    assert_int_equal(diagnostics.items[0].line, 2);
+    diagnostics_free(&diagnostics);
     write_file(path, "show sphere(2);");
     assert_int_equal(document_read(document), KRS_OK);
     Version *second = document_version(document);
-    remarks         = document_remarks(document);
-    assert_int_equal(remarks.count, 0);
+    diagnostics     = document_diagnostics(document);
+    assert_int_equal(diagnostics.count, 0);
     assert_true(version_number(second) > version_number(first));
-    remarks_free(&remarks);
+    diagnostics_free(&diagnostics);
     document_free(document); /* versions that are held stay */
     assert_int_equal(krs_component_count(version_scene(first)), 1);
     version_release(first);

@@ -1,5 +1,5 @@
 /*
- * remarks.c: `print` and `assert`, and the texts of values.
+ * messages.c: `print` and `assert`, and the texts of values.
  */
 #include "compiler/eval/elaborate.h"
 
@@ -129,7 +129,7 @@ Value value_string(Elaboration *e, const char *bytes, size_t length)
     return (Value){.type = VALUE_STRING, .string = name_intern(e->files->names, bytes, length)};
 }
 
-/* ---- remarks ---- */
+/* ---- messages ---- */
 
 /* What is printed or said: the values with blanks between, cut where that is long. */
 static const char *line_of(Elaboration *e, const Call *call)
@@ -184,7 +184,7 @@ static bool run_assert(Elaboration *e, const Environment *env, const Call *call)
     return false;
 }
 
-bool run_remark(Elaboration *e, const Environment *env, const Syntax *syntax)
+bool run_message(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     bool        print      = strcmp(syntax->name, "print") == 0;
     const char *parameters = print ? "values..." : "condition message...";
