@@ -214,11 +214,11 @@ static void sum_up(Contest *contest, double pixels)
 }
 
 /* The first method first, while nothing is compiled yet. */
-static void warm_up(Bench *bench, Contest *contest, Subject *subject)
+static void prewarm(Bench *bench, Contest *contest, Subject *subject)
 {
     for (size_t i = 0; i < contest->methods; i++) {
         KrsRenderStats stats;
-        subject_warm_up(bench, subject, &contest->entries[i].options, &stats);
+        subject_prewarm(bench, subject, &contest->entries[i].options, &stats);
         if (i > 0)
             continue;
         contest->entries[0].spirv_ms    = stats.spirv_ms;
@@ -235,7 +235,7 @@ void contest_run(Bench *bench, const SceneRow *row, Contest *contest)
     subject_open(bench, &subject, row->path, row->levels);
     contest->flops_per_evaluation = subject.program->flops;
     add_methods(bench, contest);
-    warm_up(bench, contest, &subject);
+    prewarm(bench, contest, &subject);
     tell("%s: pictures to compare with", row->name);
     draw_reference(bench, contest, &subject, &reference);
     compare_geometry(bench, contest, &subject, &reference);

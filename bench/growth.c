@@ -32,7 +32,7 @@ static void plant(Bench *bench, Tree *tree, uint32_t levels, const KrsRenderOpti
     tree->pictures           = arena_new_array(bench->arena, Times, bench->repeats);
     tree->distances          = arena_new_array(bench->arena, double, bench->repeats);
     subject_open(bench, &tree->subject, "bench/scenes/tree28.krs", levels);
-    subject_warm_up(bench, &tree->subject, options, &tree->stats);
+    subject_prewarm(bench, &tree->subject, options, &tree->stats);
     Text sizes = {.arena = bench->arena};
     text_format(&sizes, "#define EVALUATIONS %d\n", EVALUATIONS);
     const KrsFunction wanted[] = {KRS_FUNCTION_DISTANCE};

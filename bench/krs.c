@@ -124,7 +124,7 @@ static void set_out(Bench *bench, Runner *runners, int stand, uint32_t levels)
     runner->options.no_occlusion = true; /* which is not told either */
     runner->subject              = find_subject(bench, runners, stand, levels);
     runner->runs                 = arena_new_array(bench->arena, Times, MOST_TURNS);
-    subject_warm_up(bench, runner->subject, &runner->options, &stats);
+    subject_prewarm(bench, runner->subject, &runner->options, &stats);
 }
 
 static void close_subjects(Runner *runners)

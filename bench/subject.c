@@ -95,7 +95,7 @@ Times subject_render(Bench *bench, Subject *subject, const KrsRenderOptions *opt
     return times;
 }
 
-void subject_warm_up(Bench *bench, Subject *subject, const KrsRenderOptions *options,
+void subject_prewarm(Bench *bench, Subject *subject, const KrsRenderOptions *options,
                      KrsRenderStats *stats)
 {
     KrsRenderOptions third = *options;

@@ -28,7 +28,7 @@ Times subject_render(Bench *bench, Subject *subject, const KrsRenderOptions *opt
                      KrsRenderStats *stats, Image *image);
 
 /* Renders a third of the picture, so that all is compiled and all memory is there. */
-void subject_warm_up(Bench *bench, Subject *subject, const KrsRenderOptions *options,
+void subject_prewarm(Bench *bench, Subject *subject, const KrsRenderOptions *options,
                      KrsRenderStats *stats);
 
 #endif

@@ -56,7 +56,7 @@ static void run_row(Bench *bench, Triangles *triangles, size_t at)
             continue;
         subject_open(bench, &subjects[i], growing_rows[i].path,
                      row->doublings - growing_rows[i].doublings);
-        subject_warm_up(bench, &subjects[i], &options, &stats);
+        subject_prewarm(bench, &subjects[i], &options, &stats);
     }
     for (size_t turn = 0; turn < bench->repeats; turn++)
         for (int i = 0; i < GROWING_COUNT; i++)

@@ -116,7 +116,7 @@ static KrsStatus begin(const KrsRendererOptions *with, KrsRenderer **renderer)
     return status;
 }
 
-KrsStatus open_renderer_ahead(const Options *options, KrsRenderer **renderer)
+KrsStatus open_renderer_early(const Options *options, KrsRenderer **renderer)
 {
     KrsRendererOptions with = renderer_options(options);
     with.pictures_ahead     = true;

@@ -373,7 +373,7 @@ KrsStatus render_compile(Render *render)
 static KrsStatus make_ready(Render *render)
 {
     const Options *options = render->options;
-    KrsStatus      opened  = open_renderer_ahead(options, &render->renderer);
+    KrsStatus      opened  = open_renderer_early(options, &render->renderer);
     KrsStatus      status  = scene_open(options, options->files.items[0], &render->scene);
     if (status == KRS_OK)
         status = render_choose(render);

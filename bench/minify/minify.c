@@ -217,10 +217,10 @@ static void time_once(const Stage *stage, bool plain, double *normals, double *a
 static void time_filter(KrsRenderer *renderer, const struct Flight *flight)
 {
     Stage  stage = stage_of(renderer, flight);
-    double normals[2][TURNS], all[2][TURNS], warm_up;
+    double normals[2][TURNS], all[2][TURNS], prewarm;
     krs_frame_set_time(stage.frame, 0);
     for (int plain = 0; plain < 2; plain++)
-        time_once(&stage, plain, &warm_up, &warm_up);
+        time_once(&stage, plain, &prewarm, &prewarm);
     for (int turn = 0; turn < TURNS; turn++)
         for (int plain = 0; plain < 2; plain++)
             time_once(&stage, plain, &normals[plain][turn], &all[plain][turn]);

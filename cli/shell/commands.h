@@ -67,7 +67,7 @@ KrsRendererOptions renderer_options(const Options *options);
 KrsStatus open_renderer(const Options *options, KrsRenderer **renderer);
 /* The same in two steps, for pictures: between them a scene is compiled, whose mistakes the user is to
    know first.  The second step gets the status of the first. */
-KrsStatus open_renderer_ahead(const Options *options, KrsRenderer **renderer);
+KrsStatus open_renderer_early(const Options *options, KrsRenderer **renderer);
 KrsStatus opened_renderer(KrsStatus status, KrsRenderer **renderer);
 
 /* info.c: the members that `krs info --json` and `krs compile` have in common. */

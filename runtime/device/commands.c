@@ -164,31 +164,31 @@ failed:
     return false;
 }
 
-/* Records one of the two timestamps of a warm-up, unless all are used. */
-static void time_warm_up(const Gpu *gpu, VkCommandBuffer commands, bool end)
+/* Records one of the two timestamps of prewarming, unless all are used. */
+static void time_prewarm(const Gpu *gpu, VkCommandBuffer commands, bool end)
 {
-    const uint32_t first = 2 * gpu->warm_ups;
-    if (!gpu->warm_up_times || gpu->warm_ups >= MOST_TIMED_WARM_UPS)
+    const uint32_t first = 2 * gpu->prewarms;
+    if (!gpu->prewarm_times || gpu->prewarms >= MAX_TIMED_PREWARMS)
         return;
     if (!end)
-        vkCmdResetQueryPool(commands, gpu->warm_up_times, first, 2);
+        vkCmdResetQueryPool(commands, gpu->prewarm_times, first, 2);
     vkCmdWriteTimestamp(
         commands, end ? VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT : VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
-        gpu->warm_up_times, first + end);
+        gpu->prewarm_times, first + end);
 }
 
-double gpu_warm_up_ms(const Gpu *gpu, uint32_t number)
+double gpu_prewarm_ms(const Gpu *gpu, uint32_t number)
 {
     uint64_t ticks[2];
-    if (!gpu->warm_up_times || number >= gpu->warm_ups || number >= MOST_TIMED_WARM_UPS ||
-        vkGetQueryPoolResults(gpu->device, gpu->warm_up_times, 2 * number, 2, sizeof ticks, ticks,
+    if (!gpu->prewarm_times || number >= gpu->prewarms || number >= MAX_TIMED_PREWARMS ||
+        vkGetQueryPoolResults(gpu->device, gpu->prewarm_times, 2 * number, 2, sizeof ticks, ticks,
                               sizeof *ticks, VK_QUERY_RESULT_64_BIT) != VK_SUCCESS)
         return 0;
     const uint64_t passed = (ticks[1] - ticks[0]) & gpu->time_mask;
     return (double)passed * (double)gpu->properties.limits.timestampPeriod / 1e6;
 }
 
-bool gpu_warm_up(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
+bool gpu_prewarm(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
                  const VkDescriptorSet sets[2], const void *constants, uint32_t bytes,
                  uint32_t *number)
 {
@@ -198,7 +198,7 @@ bool gpu_warm_up(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
         vkAllocateCommandBuffers(gpu->device,
                                  &(VkCommandBufferAllocateInfo){
                                      .sType       = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                     .commandPool = gpu->warm_up_pool,
+                                     .commandPool = gpu->prewarm_pool,
                                      .level       = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                      .commandBufferCount = 1,
                                  },
@@ -208,16 +208,16 @@ bool gpu_warm_up(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
                                            .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                            .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
                                        }));
-    barrier(commands); /* all kernels are warmed up with the same buffers */
-    time_warm_up(gpu, commands, false);
+    barrier(commands); /* all kernels are prewarmed with the same buffers */
+    time_prewarm(gpu, commands, false);
     uint32_t first = sets[0] == VK_NULL_HANDLE;
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, first, 2 - first,
                             sets + first, 0, NULL);
     vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, bytes, constants);
     vkCmdDispatch(commands, 1, 1, 1);
-    time_warm_up(gpu, commands, true);
-    *number = gpu->warm_ups++;
+    time_prewarm(gpu, commands, true);
+    *number = gpu->prewarms++;
     TRY(gpu, attempt, vkEndCommandBuffer(commands));
     TRY(gpu, attempt,
         vkQueueSubmit(gpu->queue, 1,

@@ -89,7 +89,7 @@ static bool make_commands(Gpu *gpu)
         .queueFamilyIndex = gpu->family,
     };
     TRY(gpu, OPENING, vkCreateCommandPool(gpu->device, &pool, NULL, &gpu->pool));
-    TRY(gpu, OPENING, vkCreateCommandPool(gpu->device, &pool, NULL, &gpu->warm_up_pool));
+    TRY(gpu, OPENING, vkCreateCommandPool(gpu->device, &pool, NULL, &gpu->prewarm_pool));
     TRY(gpu, OPENING,
         vkAllocateCommandBuffers(gpu->device,
                                  &(VkCommandBufferAllocateInfo){
@@ -120,9 +120,9 @@ static bool make_commands(Gpu *gpu)
                               &(VkQueryPoolCreateInfo){
                                   .sType      = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                   .queryType  = VK_QUERY_TYPE_TIMESTAMP,
-                                  .queryCount = 2 * MOST_TIMED_WARM_UPS,
+                                  .queryCount = 2 * MAX_TIMED_PREWARMS,
                               },
-                              NULL, &gpu->warm_up_times));
+                              NULL, &gpu->prewarm_times));
     gpu_name(gpu, VK_OBJECT_TYPE_COMMAND_BUFFER, (uint64_t)(uintptr_t)gpu->commands, "slice");
     return true;
 
@@ -200,10 +200,10 @@ void gpu_close(Gpu *gpu)
     shared_kernels_destroy(gpu);
     if (gpu->device) {
         pipelines_close(gpu);
-        vkDestroyQueryPool(gpu->device, gpu->warm_up_times, NULL);
+        vkDestroyQueryPool(gpu->device, gpu->prewarm_times, NULL);
         vkDestroyQueryPool(gpu->device, gpu->times, NULL);
         vkDestroyFence(gpu->device, gpu->fence, NULL);
-        vkDestroyCommandPool(gpu->device, gpu->warm_up_pool, NULL);
+        vkDestroyCommandPool(gpu->device, gpu->prewarm_pool, NULL);
         vkDestroyCommandPool(gpu->device, gpu->pool, NULL);
         vkDestroyDevice(gpu->device, NULL);
     }

@@ -35,15 +35,15 @@ bool gpu_finish(Gpu *gpu, double *ms);
 
 /* Has the device run one group of a kernel, and does not wait for it: a driver that compiles a
    kernel only when it first runs does so meanwhile.  The first set may be VK_NULL_HANDLE.  *number
-   is for gpu_warm_up_ms. */
-bool gpu_warm_up(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
+   is for gpu_prewarm_ms. */
+bool gpu_prewarm(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
                  const VkDescriptorSet sets[2], const void *constants, uint32_t bytes,
                  uint32_t *number);
-/* After gpu_wait: how long a warm-up took on the device; 0 without a clock, and behind the first
-   MOST_TIMED_WARM_UPS. */
-enum { MOST_TIMED_WARM_UPS = 256 };
-double gpu_warm_up_ms(const Gpu *gpu, uint32_t number);
-/* Until all that is warmed up has run. */
+/* After gpu_wait: how long prewarming took on the device; 0 without a clock, and behind the first
+   MAX_TIMED_PREWARMS. */
+enum { MAX_TIMED_PREWARMS = 256 };
+double gpu_prewarm_ms(const Gpu *gpu, uint32_t number);
+/* Until all that is prewarmed has run. */
 bool gpu_wait(Gpu *gpu);
 
 #endif

@@ -25,14 +25,14 @@ typedef struct Gpu {
     VkDevice         device;
     VkQueue          queue;
     uint32_t         family;
-    VkCommandPool    pool, warm_up_pool;
+    VkCommandPool    pool, prewarm_pool;
     VkCommandBuffer  commands; /* the one that is recorded, run and waited for */
     VkFence          fence;
     VkQueryPool      times; /* timestamps; none when the queue has no clock */
     uint32_t         marks; /* of them, since recording began */
     uint64_t         time_mask;
-    VkQueryPool      warm_up_times; /* timestamps before and after each warm-up; none likewise */
-    uint32_t         warm_ups;      /* that were timed */
+    VkQueryPool      prewarm_times; /* timestamps before and after each; none likewise */
+    uint32_t         prewarms;      /* that were timed */
 
     VkPhysicalDeviceProperties       properties;
     VkPhysicalDeviceMemoryProperties memory;

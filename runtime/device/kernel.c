@@ -264,7 +264,7 @@ failed:
 
 double kernel_driver_ms(const Gpu *gpu, const Kernel *kernel)
 {
-    return kernel->pipeline_ms + (kernel->warmed_up ? gpu_warm_up_ms(gpu, kernel->warm_up) : 0);
+    return kernel->pipeline_ms + (kernel->prewarmed ? gpu_prewarm_ms(gpu, kernel->prewarm) : 0);
 }
 
 /* ---- Side by side ---- */

@@ -14,8 +14,8 @@ typedef struct Kernel {
     size_t        glsl_bytes; /* 0: the program carries it as SPIR-V */
     bool          cached;     /* its SPIR-V was not compiled */
     double        spirv_ms, pipeline_ms;
-    bool          warmed_up;
-    uint32_t      warm_up; /* its number (gpu_warm_up_ms) */
+    bool          prewarmed;
+    uint32_t      prewarm; /* its number (gpu_prewarm_ms) */
     SharedKernel *shared;  /* whose pipeline it is, if others may use it as well */
 } Kernel;
 

@@ -43,12 +43,12 @@ typedef enum TexelKind {
     TEXEL_KINDS
 } TexelKind;
 
-/* Kernels that are made while the host does other work (ahead.c). */
-typedef struct KernelsAhead KernelsAhead;
+/* Kernels that are made while the host does other work (prewarm_thread.c). */
+typedef struct PrewarmThread PrewarmThread;
 
 struct KrsRenderer {
     Gpu                   gpu;
-    KernelsAhead         *ahead; /* NULL: none are made at the moment */
+    PrewarmThread        *prewarm; /* NULL: none are made at the moment */
     bool                  compiler_started;
     bool                  early_outs;   /* kernels skip far shapes by branches */
     VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters and tables */
@@ -64,7 +64,7 @@ struct KrsRenderer {
     Kernel next_dispatch;         /* on graphics cards only (dispatch.c), */
     Kernel clear_shared;          /* and likewise */
     double spirv_ms, pipeline_ms; /* the time to make these kernels */
-    /* For warm-up: sets in which a kernel finds no items, and the buffers of zeros that they
+    /* For prewarming: sets in which a kernel finds no items, and the buffers of zeros that they
        bind. */
     VkDescriptorPool idle_pool;
     VkDescriptorSet  idle_scene, idle_frame;

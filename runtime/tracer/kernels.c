@@ -13,7 +13,7 @@
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/variants.h"
-#include "runtime/tracer/warmup.h"
+#include "runtime/tracer/prewarm.h"
 
 struct KernelEntry {
     const char   *file;

@@ -11,9 +11,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "runtime/tracer/ahead.h"
+#include "runtime/tracer/prewarm_thread.h"
 #include "runtime/tracer/layouts.h"
-#include "runtime/tracer/warmup.h"
+#include "runtime/tracer/prewarm.h"
 #include "runtime/tracer/variants.h"
 
 KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
@@ -94,7 +94,7 @@ size_t renderer_request_escapes(KrsRenderer *renderer, RayKind kind, KernelReque
 }
 
 /* Begins to make the kernels of previews without a scene, for cameras of any scene. */
-static void start_ahead(KrsRenderer *renderer)
+static void start_prewarming(KrsRenderer *renderer)
 {
     KernelRequest requests[PIXEL_KERNELS];
     size_t        count = 0;
@@ -102,7 +102,7 @@ static void start_ahead(KrsRenderer *renderer)
         if (i != PIXELS_BACKGROUND_OF_MAP)
             requests[count++] = request_kernel(renderer, &renderer->pixels[RAYS_OF_CAMERAS][i],
                                                pixel_files[i], RAYS_OF_CAMERAS);
-    ahead_start(renderer, requests, count);
+    prewarm_start(renderer, requests, count);
 }
 
 static void *start_glslang(void *unused)
@@ -148,7 +148,7 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
                                                    &renderer->spirv_ms, &renderer->pipeline_ms))
         return renderer->gpu.status;
     if (options && options->pictures_ahead)
-        start_ahead(renderer);
+        start_prewarming(renderer);
     return KRS_OK;
 }
 
@@ -157,7 +157,7 @@ void krs_renderer_free(KrsRenderer *renderer)
     if (!renderer)
         return;
     Gpu *gpu = &renderer->gpu;
-    ahead_end(renderer);
+    prewarm_end(renderer);
     if (gpu->device) {
         gpu_wait(gpu);
         for (int kind = 0; kind < RAY_KINDS; kind++) {

@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "runtime/tracer/ahead.h"
+#include "runtime/tracer/prewarm_thread.h"
 #include "runtime/tracer/kernels.h"
 #include "runtime/tracer/layouts.h"
 #include "runtime/tracer/renderer.h"
@@ -174,7 +174,7 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
     if (!sets_create(rendering) || !buffers_create(rendering) ||
         !kernels_create(rendering, purpose)) {
         KrsStatus status = renderer->gpu.status;
-        ahead_end(renderer); /* it may still use the queue */
+        prewarm_end(renderer); /* it may still use the queue */
         krs_rendering_free(rendering);
         return status;
     }
@@ -215,7 +215,7 @@ KrsStatus krs_rendering_update(KrsRendering *rendering, const KrsScene *scene)
     KrsRendering before = *rendering;
     const bool   stay   = before.program->kernels == krs_scene_program(scene)->kernels;
     renderer_clear(rendering->renderer);
-    if (!gpu_wait(gpu)) /* kernels may still be warming up */
+    if (!gpu_wait(gpu)) /* kernels may still be prewarming */
         return gpu->status;
     if (stay)
         kernels_adopt(&rendering->kernels, scene);
@@ -266,7 +266,7 @@ void krs_rendering_free(KrsRendering *rendering)
                          &band->queue,
                          &band->taken,
                          &band->tiles};
-    gpu_wait(gpu); /* kernels may still be warming up, unless the device is lost */
+    gpu_wait(gpu); /* kernels may still be prewarming, unless the device is lost */
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         buffer_destroy(gpu, buffers[i]);
     kernels_destroy(gpu, &rendering->kernels);

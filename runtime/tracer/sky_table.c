@@ -301,7 +301,7 @@ static bool make_room(KrsRendering *rendering, VkDeviceSize bytes)
     }
     if (rendering->sky_table.size >= bytes)
         return true;
-    if (!gpu_wait(gpu)) /* kernels may still be warming up, with the table that is bound */
+    if (!gpu_wait(gpu)) /* kernels may still be prewarming, with the table that is bound */
         return false;
     buffer_destroy(gpu, &rendering->sky_table);
     if (!buffer_create(gpu, &rendering->sky_table, bytes, ON_DEVICE, TABLE) ||

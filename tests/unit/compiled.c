@@ -258,12 +258,12 @@ static void graphics_cards_do_not_rehearse(void **state)
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
     assert_int_equal(krs_renderer_new(&options, &renderer), KRS_OK);
     Gpu          *gpu          = &renderer->gpu;
-    VkCommandPool warm_up_pool = gpu->warm_up_pool;
+    VkCommandPool prewarm_pool = gpu->prewarm_pool;
     assert_true(gpu_wait(gpu));
     gpu->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
-    gpu->warm_up_pool          = VK_NULL_HANDLE;
+    gpu->prewarm_pool          = VK_NULL_HANDLE;
     assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
-    gpu->warm_up_pool = warm_up_pool;
+    gpu->prewarm_pool = prewarm_pool;
     krs_rendering_free(rendering);
     krs_renderer_free(renderer);
     krs_scene_free(scene);

@@ -1,8 +1,8 @@
 /*
- * warmup.h: makes kernels, and runs each once before it is needed.
+ * prewarm.h: makes kernels, and runs each once before it is needed.
  */
-#ifndef KRS_WARMUP_H
-#define KRS_WARMUP_H
+#ifndef KRS_PREWARM_H
+#define KRS_PREWARM_H
 
 #include "runtime/tracer/handles.h"
 

@@ -1,24 +1,24 @@
 /*
- * warmup.c: runs each kernel once before it is needed.
+ * prewarm.c: runs each kernel once before it is needed.
  *
  * lavapipe compiles a kernel when it first runs, one kernel at a time, and keeps the code on disk.
  * So each kernel runs once without any items, while the host does other work.  Where several
  * kernels are new, a second device takes some of them, and is closed when they are done.  The first
  * device then finds those on disk.  Graphics cards compile a kernel when its pipeline is made, so
- * only devices of type CPU are warmed up.
+ * only devices of type CPU are prewarmed.
  */
-#include "runtime/tracer/warmup.h"
+#include "runtime/tracer/prewarm.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "runtime/tracer/ahead.h"
+#include "runtime/tracer/prewarm_thread.h"
 #include "runtime/tracer/layouts.h"
 
-/* Kernels that two devices warm up.  Each takes the next one that the other has not taken. */
-typedef struct WarmUpQueue {
+/* Kernels that two devices prewarm.  Each takes the next one that the other has not taken. */
+typedef struct PrewarmQueue {
     const Gpu           *gpu; /* the first */
     const KernelRequest *requests;
     const KernelCode    *codes;
@@ -27,12 +27,12 @@ typedef struct WarmUpQueue {
     double               second_ms[KERNELS_AT_ONCE]; /* that the second device's driver took */
     pthread_t            thread;                     /* of the second device, */
     bool                 helped;                     /* which runs */
-} WarmUpQueue;
+} PrewarmQueue;
 
 /* Whether a second device is worth its cost.  There must be a core for it, and more than one kernel
    that the driver probably does not have yet.  The callback of the validation layers works for one
    thread only. */
-static bool worth_second_device(const WarmUpQueue *queue)
+static bool worth_second_device(const PrewarmQueue *queue)
 {
     const Gpu *gpu      = queue->gpu;
     size_t     compiled = 0;
@@ -43,18 +43,18 @@ static bool worth_second_device(const WarmUpQueue *queue)
 
 /* The second device's thread.  If anything fails, or nothing is kept on disk, the first device
    compiles what this one should have. */
-static void *warm_up_on_second_device(void *user)
+static void *prewarm_on_second_device(void *user)
 {
-    WarmUpQueue *queue  = user;
-    KrsRenderer  second = {0};
-    bool         ready  = gpu_open_beside(&second.gpu, queue->gpu) && layouts_create(&second);
+    PrewarmQueue *queue  = user;
+    KrsRenderer   second = {0};
+    bool          ready  = gpu_open_beside(&second.gpu, queue->gpu) && layouts_create(&second);
     for (size_t i; ready && (i = atomic_fetch_add(&queue->next, 1)) < queue->count;) {
         Kernel kernel;
         double ms = 0;
         if (queue->codes[i].shared)
             continue;
         ready = kernel_load(&second.gpu, &kernel, &queue->codes[i], second.layout, &ms) &&
-                kernel_warm_up(&second, second.idle_scene, &kernel) && gpu_wait(&second.gpu);
+                kernel_prewarm(&second, second.idle_scene, &kernel) && gpu_wait(&second.gpu);
         queue->second_ms[i] = kernel_driver_ms(&second.gpu, &kernel);
         kernel_destroy(&second.gpu, &kernel);
     }
@@ -63,33 +63,33 @@ static void *warm_up_on_second_device(void *user)
     return NULL;
 }
 
-static size_t taken_so_far(WarmUpQueue *queue)
+static size_t taken_so_far(PrewarmQueue *queue)
 {
     const size_t next = atomic_load(&queue->next);
     return next < queue->count ? next : queue->count;
 }
 
-static bool tell_warmed_up(KrsRenderer *renderer, size_t warmed_up, size_t count)
+static bool tell_prewarmed(KrsRenderer *renderer, size_t prewarmed, size_t count)
 {
-    const double part = count > 0 ? (double)warmed_up / (double)count : 1;
+    const double part = count > 0 ? (double)prewarmed / (double)count : 1;
     return gpu_tell_compiled(&renderer->gpu, COMPILED_PART + (1 - COMPILED_PART) * part);
 }
 
-static void start_second_device(WarmUpQueue *queue)
+static void start_second_device(PrewarmQueue *queue)
 {
     queue->helped = worth_second_device(queue) &&
-                    pthread_create(&queue->thread, NULL, warm_up_on_second_device, queue) == 0;
+                    pthread_create(&queue->thread, NULL, prewarm_on_second_device, queue) == 0;
 }
 
-static void end_second_device(WarmUpQueue *queue)
+static void end_second_device(PrewarmQueue *queue)
 {
     if (queue->helped)
         pthread_join(queue->thread, NULL);
 }
 
-/* Warms up the kernels that the second device does not take, and then, from the disk, those that it
+/* Prewarms the kernels that the second device does not take, and then, from the disk, those that it
    took. */
-static bool warm_up_all(KrsRenderer *renderer, VkDescriptorSet scene_set, WarmUpQueue *queue)
+static bool prewarm_all(KrsRenderer *renderer, VkDescriptorSet scene_set, PrewarmQueue *queue)
 {
     const KernelRequest *requests = queue->requests;
     const KernelCode    *codes    = queue->codes;
@@ -97,12 +97,12 @@ static bool warm_up_all(KrsRenderer *renderer, VkDescriptorSet scene_set, WarmUp
     bool                 ready = true, taken[KERNELS_AT_ONCE] = {false};
     while (queue->helped && ready) {
         /* It takes a kernel only when it can run it. */
-        ready    = gpu_wait(&renderer->gpu) && tell_warmed_up(renderer, taken_so_far(queue), count);
+        ready    = gpu_wait(&renderer->gpu) && tell_prewarmed(renderer, taken_so_far(queue), count);
         size_t i = atomic_fetch_add(&queue->next, 1);
         if (i >= count)
             break;
         taken[i] = ready = ready && (codes[i].shared ||
-                                     kernel_warm_up(renderer, scene_set, requests[i].kernel));
+                                     kernel_prewarm(renderer, scene_set, requests[i].kernel));
     }
     if (!ready)
         atomic_store(&queue->next, count);
@@ -110,7 +110,7 @@ static bool warm_up_all(KrsRenderer *renderer, VkDescriptorSet scene_set, WarmUp
     for (size_t i = 0; i < count && ready; i++) {
         requests[i].kernel->pipeline_ms += queue->second_ms[i];
         ready = taken[i] || codes[i].shared ||
-                kernel_warm_up(renderer, scene_set, requests[i].kernel);
+                kernel_prewarm(renderer, scene_set, requests[i].kernel);
     }
     return ready;
 }
@@ -138,7 +138,7 @@ static size_t drop_made(KrsRenderer *renderer, KernelRequest *requests, KernelCo
 {
     size_t left = 0;
     for (size_t i = 0; i < count; i++) {
-        if (requests[i].kernel->pipeline || ahead_begun(renderer, requests[i].kernel)) {
+        if (requests[i].kernel->pipeline || prewarm_begun(renderer, requests[i].kernel)) {
             kernel_code_release(&renderer->gpu, &codes[i]);
             continue;
         }
@@ -148,20 +148,20 @@ static size_t drop_made(KrsRenderer *renderer, KernelRequest *requests, KernelCo
     return left;
 }
 
-/* Loads kernels and warms them up.  The second device begins at once, while the first still has a
+/* Loads kernels and prewarms them.  The second device begins at once, while the first still has a
    kernel at hand that was begun ahead. */
-static bool load_and_warm_up(KrsRenderer *renderer, VkDescriptorSet scene_set,
+static bool load_and_prewarm(KrsRenderer *renderer, VkDescriptorSet scene_set,
                              const KernelRequest *requests, const KernelCode *codes, size_t count)
 {
-    Gpu        *gpu   = &renderer->gpu;
-    WarmUpQueue queue = {.gpu = gpu, .requests = requests, .codes = codes, .count = count};
+    Gpu         *gpu   = &renderer->gpu;
+    PrewarmQueue queue = {.gpu = gpu, .requests = requests, .codes = codes, .count = count};
     start_second_device(&queue);
     bool ready = kernel_load_all(gpu, requests, codes, count, renderer->layout);
-    ahead_end(renderer);
+    prewarm_end(renderer);
     if (!ready)
         atomic_store(&queue.next, count);
     if (ready && gpu_is_cpu(gpu))
-        return warm_up_all(renderer, scene_set, &queue);
+        return prewarm_all(renderer, scene_set, &queue);
     end_second_device(&queue);
     return ready;
 }
@@ -175,15 +175,15 @@ static bool make(KrsRenderer *renderer, VkDescriptorSet scene_set, const KernelR
     KernelCode    codes[KERNELS_AT_ONCE];
     memcpy(requests, asked, count * sizeof *requests);
     bool ready = kernel_compile_all(gpu, requests, count, codes, spirv_ms);
-    ahead_stop(renderer);
+    prewarm_stop(renderer);
     count = drop_made(renderer, requests, codes, count);
     sort_by_size(requests, codes, count);
     double start = clock_ms();
     for (size_t i = 0; i < count; i++)
         *requests[i].kernel = (Kernel){0};
-    ready = ready && load_and_warm_up(renderer, scene_set, requests, codes, count);
-    ahead_end(renderer);
-    ready = ready && tell_warmed_up(renderer, count, count);
+    ready = ready && load_and_prewarm(renderer, scene_set, requests, codes, count);
+    prewarm_end(renderer);
+    ready = ready && tell_prewarmed(renderer, count, count);
     for (size_t i = 0; i < count; i++)
         kernel_code_release(gpu, &codes[i]);
     *pipeline_ms += clock_ms() - start;
