@@ -11,7 +11,7 @@
 
 #include "runtime/tracer/band.h"
 #include "runtime/integrators/integrators.h"
-#include "runtime/film/held.h"
+#include "runtime/film/resident.h"
 #include "runtime/film/inputs.h"
 #include "runtime/film/lights.h"
 #include "runtime/film/mattes.h"
@@ -42,7 +42,7 @@ static bool make_sums(KrsFilm *film)
     if (!film->sums || (o->mattes && !mattes_new(gpu, film->sums)))
         return false;
     if (noise)
-        film->kept = gpu_alloc(gpu, held_kept(o), sizeof *film->kept, "make a film");
+        film->kept = gpu_alloc(gpu, resident_kept(o), sizeof *film->kept, "make a film");
     return (film->kept || !noise) && lights_make(film);
 }
 
@@ -72,8 +72,8 @@ KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options,
 /* Drops the band of a film that the buffers hold, if any. */
 static void release_band(KrsFilm *film)
 {
-    if (film->rendering->held.film == film)
-        film->rendering->held = (HeldBand){0};
+    if (film->rendering->resident.film == film)
+        film->rendering->resident = (ResidentBand){0};
 }
 
 void krs_film_free(KrsFilm *film)
@@ -161,15 +161,15 @@ static bool find_planes(Job *job, const Plan *plan, WorkBlock *work)
     if (!plan_run(job, plan, work, 0))
         return false;
     take_counters(job);
-    return held_clear(job->rendering, 1u << ROW_COLORS);
+    return resident_clear(job->rendering, 1u << ROW_COLORS);
 }
 
 /* The planes of the first ray are copied to the film before others write to their rows. */
 static bool keep_planes(KrsRendering *rendering)
 {
-    if (rendering->held.has_planes && !held_store(rendering))
+    if (rendering->resident.has_planes && !resident_store(rendering))
         return false;
-    rendering->held.has_colors = true;
+    rendering->resident.has_colors = true;
     return true;
 }
 
@@ -180,17 +180,17 @@ static bool add_ray(Job *job, const Plan *plan, WorkBlock *work, uint32_t index)
     const bool    mattes    = job->options.mattes;
     if (mattes && index > 0 && !keep_planes(rendering))
         return false;
-    if ((mattes && !held_clear(rendering, MATTE_ROWS)) || !plan_run(job, plan, work, index))
+    if ((mattes && !resident_clear(rendering, MATTE_ROWS)) || !plan_run(job, plan, work, index))
         return false;
     take_counters(job);
-    return !mattes || held_take_mattes(rendering);
+    return !mattes || resident_take_mattes(rendering);
 }
 
 /* Adds samples to the band that the buffers hold; `share` is its fraction of all progress. */
 static bool add_to_band(Job *job, const Plan *plan, const KrsFilm *film, uint32_t samples,
                         double share)
 {
-    const KrsWindow *traced  = &job->rendering->held.traced;
+    const KrsWindow *traced  = &job->rendering->resident.traced;
     const double     done    = job->progress_done;
     ControlBlock    *control = job->rendering->control.bytes;
     WorkBlock        work    = {
@@ -234,12 +234,12 @@ static bool add_to_bands(Job *job, const Plan *plan, KrsFilm *film, uint32_t sam
     const KrsWindow *cover = &job->cover;
     for (uint32_t from = 0; from < cover->height; from += film->rows) {
         const uint32_t left = cover->height - from, rows = left < film->rows ? left : film->rows;
-        const double   height = cover->height;
-        KrsWindow      band   = {cover->x, cover->y + from, cover->width, rows};
-        const HeldBand wanted = {
+        const double   height     = cover->height;
+        KrsWindow      band       = {cover->x, cover->y + from, cover->width, rows};
+        const ResidentBand wanted = {
             film, from, rows, with_halo(job, plan->halo, band), film->samples == 0, true};
         job->progress_done = job->part_begun + job->part * from / height;
-        if (!held_change(film, &wanted) ||
+        if (!resident_change(film, &wanted) ||
             !add_to_band(job, plan, film, samples, job->part * rows / height))
             return false;
     }
@@ -261,12 +261,12 @@ static bool wait_for_kernels(Job *job)
 static bool make_room(Job *job, const Plan *plan, KrsFilm *film)
 {
     KrsRendering *rendering = job->rendering;
-    if (rendering->held.film != film) {
-        if (!held_store(rendering))
+    if (rendering->resident.film != film) {
+        if (!resident_store(rendering))
             return false;
-        rendering->held = (HeldBand){0};
-        film->rows      = band_allocate(rendering, &job->cover, plan->halo, plan->has_paths,
-                                        film->kept != NULL, film->light_count);
+        rendering->resident = (ResidentBand){0};
+        film->rows          = band_allocate(rendering, &job->cover, plan->halo, plan->has_paths,
+                                            film->kept != NULL, film->light_count);
     }
     if (film->rows == 0 ||
         !rendering_set_lights(rendering, job->view.lights, job->view.light_count,
@@ -317,7 +317,7 @@ static KrsStatus add_moment(KrsFilm *film, const Addition *a)
                .asked_schedule = film->asked_schedule,
                .schedule       = film->options.schedule,
                .rays           = a->rays,
-               .cover          = held_cover(&film->options),
+               .cover          = resident_cover(&film->options),
                .part_begun     = a->part_begun,
                .part           = a->part,
                .stats          = &film->sums->stats};
@@ -406,7 +406,7 @@ static bool store_all(KrsFilm *film)
     KrsRendering  *rendering   = film->rendering;
     const double   start       = clock_ms();
     const uint64_t submissions = rendering->renderer->gpu.submissions;
-    const bool     good        = rendering->held.film != film || held_store(rendering);
+    const bool     good        = rendering->resident.film != film || resident_store(rendering);
     film->sums->stats.wall_ms += clock_ms() - start;
     film->sums->stats.submissions += rendering->renderer->gpu.submissions - submissions;
     return good;

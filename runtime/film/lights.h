@@ -4,7 +4,7 @@
 #ifndef KRS_LIGHTS_H
 #define KRS_LIGHTS_H
 
-#include "runtime/film/held.h"
+#include "runtime/film/resident.h"
 
 /* How many numbers of four members the light of all lights is. */
 size_t lights_numbers(const KrsFilm *film);

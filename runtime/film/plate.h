@@ -4,7 +4,7 @@
 #ifndef KRS_PLATE_H
 #define KRS_PLATE_H
 
-#include "runtime/film/held.h"
+#include "runtime/film/resident.h"
 #include "runtime/tracer/job.h"
 
 /* Whether the plate of a film catches shadows. */

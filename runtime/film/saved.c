@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "compiler/base/fingerprints.h"
-#include "runtime/film/held.h"
+#include "runtime/film/resident.h"
 #include "runtime/film/lights.h"
 #include "runtime/film/noise.h"
 #include "runtime/film/picture.h"
@@ -47,7 +47,7 @@ static Header describe(const KrsFilm *film)
 {
     const KrsPicture *sums   = film->sums;
     Header            header = {.magic  = "krsfilm",
-                                .kept   = film->kept ? held_kept(&film->options) : 0,
+                                .kept   = film->kept ? resident_kept(&film->options) : 0,
                                 .lights = lights_numbers(film),
                                 .window = sums->window,
                                 .width  = sums->width,
@@ -119,7 +119,8 @@ static bool pass_arrays(const KrsFilm *film, const Way *way)
             !pass(way, sums->mattes[kind], pixels * KRS_MATTE_RANKS * sizeof(KrsMatte)))
             return false;
     return pass(way, film->lights, lights_numbers(film) * sizeof *film->lights) &&
-           (!film->kept || pass(way, film->kept, held_kept(&film->options) * sizeof *film->kept));
+           (!film->kept ||
+            pass(way, film->kept, resident_kept(&film->options) * sizeof *film->kept));
 }
 
 KrsStatus krs_film_save(KrsFilm *film, KrsWriteCallback *write, void *user)
@@ -131,7 +132,7 @@ KrsStatus krs_film_save(KrsFilm *film, KrsWriteCallback *write, void *user)
         gpu_refuse(gpu, KRS_BAD_ARGUMENT, "the film has no samples yet");
         return gpu->status;
     }
-    if (film->rendering->held.film == film && !held_store(film->rendering))
+    if (film->rendering->resident.film == film && !resident_store(film->rendering))
         return gpu->status;
     Header header = header_of(film);
     if (!pass(&way, &header, sizeof header) || !pass_arrays(film, &way))

@@ -1,5 +1,5 @@
 /*
- * handles.h: the structs behind the handles of krs/vulkan.h, except KrsFilm (film/held.h).
+ * handles.h: the structs behind the handles of krs/vulkan.h, except KrsFilm (film/resident.h).
  * Functions for them are in renderer.h, rendering.h and kernels.h.
  */
 #ifndef KRS_HANDLES_H
@@ -97,13 +97,13 @@ typedef struct KernelMap {
 } KernelMap;
 
 /* The band of a film whose samples are in the buffers of a rendering. */
-typedef struct HeldBand {
+typedef struct ResidentBand {
     KrsFilm  *film;       /* NULL: none */
     uint32_t  from, rows; /* of pixels, from the first tile of the crop on */
     KrsWindow traced;     /* the band with its halo */
     bool      has_planes; /* the film still lacks the planes of its first sample */
     bool      has_colors; /* the film still lacks some colours */
-} HeldBand;
+} ResidentBand;
 
 struct KrsRendering {
     KrsRenderer      *renderer;
@@ -134,11 +134,11 @@ struct KrsRendering {
     Buffer   inputs;         /* lights, then the rays of a list */
     /* The control block that kernels use, copied from and to `control`; none where kernels use
        `control` itself. */
-    Buffer   device_control;
-    Band     band;
-    HeldBand held;                        /* what the buffers of `band` hold */
-    Buffer   points, answers;             /* for point_query.comp */
-    Buffer   query_rays, ray_hits, taken; /* for query.comp */
+    Buffer       device_control;
+    Band         band;
+    ResidentBand resident;                    /* what the buffers of `band` hold */
+    Buffer       points, answers;             /* for point_query.comp */
+    Buffer       query_rays, ray_hits, taken; /* for query.comp */
     /* The items of a slice, as learned, for each phase; [1]: for kernels with the scene. */
     double items_at_once[KRS_PHASE_COUNT][2];
 };

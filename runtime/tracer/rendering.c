@@ -229,7 +229,7 @@ KrsStatus krs_rendering_update(KrsRendering *rendering, const KrsScene *scene)
     else if (!ready)
         before.kernels = rendering->kernels; /* with those that were made in vain */
     if (ready) {
-        rendering->held = (HeldBand){0};
+        rendering->resident = (ResidentBand){0};
         rendering->updates++;
     } else {
         *rendering = before;

@@ -1,7 +1,7 @@
 /*
- * held.c: copies samples between the buffers of a band and the film that the band belongs to.
+ * resident.c: copies samples between the buffers of a band and the film that the band belongs to.
  */
-#include "runtime/film/held.h"
+#include "runtime/film/resident.h"
 
 #include <math.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 
 enum { KEPT_ROWS = 3 };
 
-KrsWindow held_cover(const KrsRenderOptions *options)
+KrsWindow resident_cover(const KrsRenderOptions *options)
 {
     const KrsWindow *crop   = &options->crop;
     KrsWindow        cover  = {crop->x / TILE * TILE, crop->y / TILE * TILE, 0, 0};
@@ -22,16 +22,16 @@ KrsWindow held_cover(const KrsRenderOptions *options)
     return cover;
 }
 
-size_t held_kept(const KrsRenderOptions *options)
+size_t resident_kept(const KrsRenderOptions *options)
 {
-    const KrsWindow cover = held_cover(options);
+    const KrsWindow cover = resident_cover(options);
     return (size_t)KEPT_ROWS * cover.width * cover.height;
 }
 
 /* The rows for the light of lights in the buffers.  They go along with the row of colours. */
-static uint32_t rows_of_lights(const HeldBand *held, uint32_t rows)
+static uint32_t rows_of_lights(const ResidentBand *resident, uint32_t rows)
 {
-    return rows & 1u << ROW_COLORS ? held->film->light_count : 0;
+    return rows & 1u << ROW_COLORS ? resident->film->light_count : 0;
 }
 
 /* Records copies of rows of results from one buffer to another: those whose bit ROW_... is set in
@@ -50,9 +50,9 @@ static void record_copies(Gpu *gpu, const Buffer *from, const Buffer *to, uint32
     vkCmdCopyBuffer(gpu->commands, from->buffer, to->buffer, count, copies);
 }
 
-static VkDeviceSize row_bytes_of(const HeldBand *held)
+static VkDeviceSize row_bytes_of(const ResidentBand *resident)
 {
-    return (VkDeviceSize)held->traced.height * held->traced.width * RESULT_BYTES;
+    return (VkDeviceSize)resident->traced.height * resident->traced.width * RESULT_BYTES;
 }
 
 /* Makes some rows of results readable by the host; NULL with the failure noted. */
@@ -65,8 +65,8 @@ static float *fetch(KrsRendering *rendering, uint32_t rows)
         return band->results.bytes;
     if (!gpu_begin(gpu))
         return NULL;
-    record_copies(gpu, &band->results, &band->fetched, rows, rows_of_lights(&rendering->held, rows),
-                  row_bytes_of(&rendering->held));
+    record_copies(gpu, &band->results, &band->fetched, rows,
+                  rows_of_lights(&rendering->resident, rows), row_bytes_of(&rendering->resident));
     return gpu_finish(gpu, &ms) ? band->fetched.bytes : NULL;
 }
 
@@ -83,24 +83,24 @@ static bool clear_results(KrsRendering *rendering, uint32_t rows, VkDeviceSize r
         if (rows >> row & 1)
             vkCmdFillBuffer(gpu->commands, rendering->band.results.buffer, row * row_bytes,
                             row_bytes, row == ROW_POSITIONS ? infinite : 0);
-    const uint32_t lights = rows_of_lights(&rendering->held, rows);
+    const uint32_t lights = rows_of_lights(&rendering->resident, rows);
     if (lights > 0)
         vkCmdFillBuffer(gpu->commands, rendering->band.results.buffer, ROW_OF_LIGHTS * row_bytes,
                         lights * row_bytes, 0);
     return gpu_finish(gpu, &ms);
 }
 
-bool held_clear(KrsRendering *rendering, uint32_t rows)
+bool resident_clear(KrsRendering *rendering, uint32_t rows)
 {
-    return clear_results(rendering, rows, row_bytes_of(&rendering->held));
+    return clear_results(rendering, rows, row_bytes_of(&rendering->resident));
 }
 
 /* Finds where row `y` of the picture begins, among the pixels of the band and of the film.  False
    where the row is outside of the crop. */
-static bool find_row(const KrsFilm *film, const HeldBand *held, uint32_t y, size_t *in_band,
+static bool find_row(const KrsFilm *film, const ResidentBand *resident, uint32_t y, size_t *in_band,
                      size_t *in_film)
 {
-    const KrsWindow *crop = &film->options.crop, *traced = &held->traced;
+    const KrsWindow *crop = &film->options.crop, *traced = &resident->traced;
     if (y < crop->y || y >= crop->y + crop->height)
         return false;
     *in_band = (size_t)(y - traced->y) * traced->width + (crop->x - traced->x);
@@ -108,11 +108,12 @@ static bool find_row(const KrsFilm *film, const HeldBand *held, uint32_t y, size
     return true;
 }
 
-/* The rows of pixels of a held band: [first, end). */
-static void rows_of_held(const KrsFilm *film, const HeldBand *held, uint32_t *first, uint32_t *end)
+/* The rows of pixels of the resident band: [first, end). */
+static void rows_of_resident(const KrsFilm *film, const ResidentBand *resident, uint32_t *first,
+                             uint32_t *end)
 {
-    *first = film->options.crop.y / TILE * TILE + held->from;
-    *end   = *first + held->rows;
+    *first = film->options.crop.y / TILE * TILE + resident->from;
+    *end   = *first + resident->rows;
 }
 
 /* Turns camera-relative positions into positions in the world, and those of pixels without a hit
@@ -135,14 +136,14 @@ static uint32_t rows_of_sums(const KrsFilm *film)
 }
 
 /* Copies the rows of sums of the whole tiles in the buffers to what the film keeps, or back. */
-static void copy_kept(const KrsFilm *film, const HeldBand *held, float *results, bool back)
+static void copy_kept(const KrsFilm *film, const ResidentBand *resident, float *results, bool back)
 {
     static const uint32_t kept_rows[KEPT_ROWS] = {ROW_COLORS, ROW_NOISE, ROW_EARLIER};
-    const KrsWindow       cover = held_cover(&film->options), *traced = &held->traced;
+    const KrsWindow       cover = resident_cover(&film->options), *traced = &resident->traced;
     const size_t          band  = (size_t)traced->height * traced->width;
     const size_t          whole = (size_t)cover.height * cover.width;
     for (size_t row = 0; row < KEPT_ROWS; row++)
-        for (size_t y = held->from; y < held->from + held->rows; y++) {
+        for (size_t y = resident->from; y < resident->from + resident->rows; y++) {
             const size_t in_band = (cover.y + y - traced->y) * traced->width + cover.x - traced->x;
             float       *numbers = results + (kept_rows[row] * band + in_band) * RESULT_NUMBERS;
             float       *kept    = film->kept[row * whole + y * cover.width];
@@ -162,48 +163,50 @@ static void copy_lights(const KrsFilm *film, float *results, size_t band, size_t
     }
 }
 
-bool held_store(KrsRendering *rendering)
+bool resident_store(KrsRendering *rendering)
 {
-    HeldBand *held = &rendering->held;
-    KrsFilm  *film = held->film;
-    if (!film || !(held->has_colors || held->has_planes))
+    ResidentBand *resident = &rendering->resident;
+    KrsFilm      *film     = resident->film;
+    if (!film || !(resident->has_colors || resident->has_planes))
         return true;
-    const uint32_t planes  = held->has_planes ? KRS_PLANE_ALL : KRS_PLANE_COLOR | KRS_PLANE_NOISE;
-    const uint32_t rows    = rows_of_sums(film) | (held->has_planes ? picture_rows(film->sums) : 0);
-    const size_t   band    = (size_t)held->traced.height * held->traced.width;
-    float         *results = fetch(rendering, rows);
-    uint32_t       y, end;
+    const uint32_t planes = resident->has_planes ? KRS_PLANE_ALL
+                                                 : KRS_PLANE_COLOR | KRS_PLANE_NOISE;
+    const uint32_t rows   = rows_of_sums(film) |
+                          (resident->has_planes ? picture_rows(film->sums) : 0);
+    const size_t band    = (size_t)resident->traced.height * resident->traced.width;
+    float       *results = fetch(rendering, rows);
+    uint32_t     y, end;
     if (!results)
         return false;
-    for (rows_of_held(film, held, &y, &end); y < end; y++) {
+    for (rows_of_resident(film, resident, &y, &end); y < end; y++) {
         size_t in_band, in_film;
-        if (!find_row(film, held, y, &in_band, &in_film))
+        if (!find_row(film, resident, y, &in_band, &in_film))
             continue;
         picture_take(film->sums, planes, results + in_band * RESULT_NUMBERS, band, in_film,
                      film->options.crop.width);
         copy_lights(film, results, band, in_band, in_film, false);
-        if (held->has_planes)
+        if (resident->has_planes)
             place_positions(film, results + (ROW_POSITIONS * band + in_band) * RESULT_NUMBERS,
                             in_film, film->options.crop.width);
     }
     if (film->kept)
-        copy_kept(film, held, results, false);
-    held->has_colors = held->has_planes = false;
+        copy_kept(film, resident, results, false);
+    resident->has_colors = resident->has_planes = false;
     return true;
 }
 
-bool held_take_mattes(KrsRendering *rendering)
+bool resident_take_mattes(KrsRendering *rendering)
 {
-    HeldBand    *held    = &rendering->held;
-    KrsFilm     *film    = held->film;
-    const float *results = fetch(rendering, MATTE_ROWS | (film->kept ? 1u << ROW_NOISE : 0));
-    const size_t band    = (size_t)held->traced.height * held->traced.width;
-    uint32_t     y, end;
+    ResidentBand *resident = &rendering->resident;
+    KrsFilm      *film     = resident->film;
+    const float  *results  = fetch(rendering, MATTE_ROWS | (film->kept ? 1u << ROW_NOISE : 0));
+    const size_t  band     = (size_t)resident->traced.height * resident->traced.width;
+    uint32_t      y, end;
     if (!results)
         return false;
-    for (rows_of_held(film, held, &y, &end); y < end; y++) {
+    for (rows_of_resident(film, resident, &y, &end); y < end; y++) {
         size_t in_band, in_film;
-        if (find_row(film, held, y, &in_band, &in_film))
+        if (find_row(film, resident, y, &in_band, &in_film))
             mattes_take(film->sums, results + in_band * RESULT_NUMBERS, band, in_film,
                         film->options.crop.width);
     }
@@ -216,49 +219,49 @@ static bool load_sums(const KrsFilm *film)
     KrsRendering *rendering = film->rendering;
     Gpu          *gpu       = &rendering->renderer->gpu;
     Band         *buffers   = &rendering->band;
-    HeldBand     *held      = &rendering->held;
+    ResidentBand *resident  = &rendering->resident;
     double        ms        = 0;
     uint32_t      y, end;
-    const size_t  band = (size_t)held->traced.height * held->traced.width;
+    const size_t  band = (size_t)resident->traced.height * resident->traced.width;
     float *results     = buffers->results.bytes ? buffers->results.bytes : buffers->fetched.bytes;
     for (size_t row = 0; row < RESULT_ROWS && !buffers->results.bytes; row++)
         if (rows_of_sums(film) >> row & 1)
-            memset(results + row * band * RESULT_NUMBERS, 0, row_bytes_of(held));
+            memset(results + row * band * RESULT_NUMBERS, 0, row_bytes_of(resident));
     if (!buffers->results.bytes)
         memset(results + ROW_OF_LIGHTS * band * RESULT_NUMBERS, 0,
-               film->light_count * row_bytes_of(held));
-    for (rows_of_held(film, held, &y, &end); y < end; y++) {
+               film->light_count * row_bytes_of(resident));
+    for (rows_of_resident(film, resident, &y, &end); y < end; y++) {
         size_t in_band, in_film;
-        if (!find_row(film, held, y, &in_band, &in_film))
+        if (!find_row(film, resident, y, &in_band, &in_film))
             continue;
         memcpy(results + in_band * RESULT_NUMBERS, film->sums->color + in_film * RESULT_NUMBERS,
                film->options.crop.width * RESULT_BYTES);
         copy_lights(film, results, band, in_band, in_film, true);
     }
     if (film->kept)
-        copy_kept(film, held, results, true);
+        copy_kept(film, resident, results, true);
     if (buffers->results.bytes)
         return true;
     if (!gpu_begin(gpu))
         return false;
     record_copies(gpu, &buffers->fetched, &buffers->results, rows_of_sums(film), film->light_count,
-                  row_bytes_of(held));
+                  row_bytes_of(resident));
     return gpu_finish(gpu, &ms);
 }
 
-bool held_change(KrsFilm *film, const HeldBand *wanted)
+bool resident_change(KrsFilm *film, const ResidentBand *wanted)
 {
     KrsRendering *rendering = film->rendering;
-    HeldBand     *held      = &rendering->held;
-    if (held->film == film && held->from == wanted->from && held->rows == wanted->rows &&
-        film->samples > 0) {
-        held->has_colors = true;
+    ResidentBand *resident  = &rendering->resident;
+    if (resident->film == film && resident->from == wanted->from &&
+        resident->rows == wanted->rows && film->samples > 0) {
+        resident->has_colors = true;
         return true;
     }
-    if (!held_store(rendering))
+    if (!resident_store(rendering))
         return false;
     uint32_t rows = film->samples == 0 ? picture_rows(film->sums) : rows_of_sums(film);
-    *held         = *wanted;
-    return clear_results(rendering, rows, row_bytes_of(held)) &&
+    *resident     = *wanted;
+    return clear_results(rendering, rows, row_bytes_of(resident)) &&
            (film->samples == 0 || load_sums(film));
 }

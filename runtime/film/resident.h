@@ -1,8 +1,8 @@
 /*
- * held.h: a film, and the band of it that is in the buffers of its rendering.
+ * resident.h: a film, and the band of it that is in the buffers of its rendering.
  */
-#ifndef KRS_HELD_H
-#define KRS_HELD_H
+#ifndef KRS_RESIDENT_H
+#define KRS_RESIDENT_H
 
 #include "runtime/tracer/handles.h"
 
@@ -13,7 +13,7 @@ struct KrsFilm {
     KrsSchedule      asked_schedule; /* before it was completed */
     uint32_t         updates;        /* of its rendering that it has followed */
     KrsPicture      *sums;           /* colours are sums over the samples */
-    float (*kept)[4];                /* see held_kept; NULL: no error is estimated */
+    float (*kept)[4];                /* see resident_kept; NULL: no error is estimated */
     /* Sums of the light of each light, where they are apart: all pixels of the crop for the first,
        then for the next.  The sums of `sums` are those of the rest. */
     float (*lights)[4];
@@ -25,19 +25,19 @@ struct KrsFilm {
 
 /* The crop of a film extended to whole tiles: the rays of a tile share a beam, and pixels of a tile go
    on together (noise.comp), which must not depend on the crop. */
-KrsWindow held_cover(const KrsRenderOptions *options);
+KrsWindow resident_cover(const KrsRenderOptions *options);
 /* How many numbers of four members `kept` has: of each pixel of these tiles in the rows of colours,
    noise and earlier sums. */
-size_t held_kept(const KrsRenderOptions *options);
+size_t resident_kept(const KrsRenderOptions *options);
 
 /* Copies the samples in the buffers to their film, unless it has them. */
-bool held_store(KrsRendering *rendering);
+bool resident_store(KrsRendering *rendering);
 /* Makes the buffers hold a band of the film, with the samples that it has so far. */
-bool held_change(KrsFilm *film, const HeldBand *wanted);
+bool resident_change(KrsFilm *film, const ResidentBand *wanted);
 
 /* Makes some rows of the results in the buffers as they are without a hit: bits ROW_... of each. */
-bool held_clear(KrsRendering *rendering, uint32_t rows);
+bool resident_clear(KrsRendering *rendering, uint32_t rows);
 /* Counts the rays in the buffers for the mattes of their film. */
-bool held_take_mattes(KrsRendering *rendering);
+bool resident_take_mattes(KrsRendering *rendering);
 
 #endif
