@@ -49,7 +49,7 @@ if [ "${1:-}" = --bless ]; then
     cp "$work/layouts_now" tests/api/layouts.txt
     exit
 fi
-echo "1..12"
+echo "1..13"
 [ "$(wc -l <"$work/layouts_now")" -gt 400 ]
 report $? "the headers have $(wc -l <"$work/layouts_now") sizes, members and choices"
 compare tests/api/layouts.txt "$work/layouts_now" >"$work/said"
@@ -66,6 +66,7 @@ broken() { # name, file, words for sed
 }
 broken "a member before others" krs.h 's/^    uint32_t    components; .*/    int early; &/'
 broken "a property before others" surface.def 's/^KRS_MATERIAL(coat, .*/KRS_MATERIAL(early, FLOAT, 0, 0, 0, 1, LIMITED, MIXED)\n&/'
+broken "a property of cameras before others" camera.def 's/^KRS_CAMERA(fov, .*/KRS_CAMERA(early, number, BODY, NULL, false, 0)\n&/'
 broken "a choice before others" choices.def 's/^KRS_TRACE(RELAXED, .*/KRS_TRACE(EARLY, "early", "")\n&/'
 broken "a member that is gone" mesh.h 's/^    bool   draft;//'
 broken "an option where bytes fill the struct up" krs.h 's/^    const char \*root;/    bool early;\n&/'
@@ -73,7 +74,7 @@ broken "an element that grows" slice.h 's/^    double area; .*/&\n    double lat
 
 # ---- programs ----
 
-all="KrsOptions KrsChanges KrsParameter KrsImage KrsTexture KrsFrameSlope KrsCamera KrsPlace KrsComponent KrsBound KrsMeshOptions
+all="KrsOptions KrsChanges KrsParameter KrsImage KrsTexture KrsFrameSlope KrsPlace KrsComponent KrsBound KrsMeshOptions
      KrsMotion KrsGridOptions KrsGridShape KrsSliceOptions KrsMeasureOptions KrsDevice KrsRendererOptions KrsRenderOptions
      KrsKernelStats KrsRays"
 headers() { # older or later
@@ -86,9 +87,11 @@ headers older
 awk '/^KRS_MATERIAL/ { last = NR } { line[NR] = $0 } END { for (i = 1; i <= NR; i++) if (i != last) print line[i] }' \
     include/krs/surface.def >"$work/older/krs/surface.def"
 sed '/^KRS_PLANE(NOISE/,$d' include/krs/planes.def >"$work/older/krs/planes.def"
+sed '/^KRS_CAMERA(eyes/d' include/krs/camera.def >"$work/older/krs/camera.def"
 headers later
 sed 's/^KRS_IDENTITY(component/KRS_MATERIAL(later, FLOAT, 0, 0, 0, 1, LIMITED, MIXED)\n&/' include/krs/surface.def \
     >"$work/later/krs/surface.def"
+sed 's/^KRS_CAMERA(eyes.*/&\nKRS_CAMERA(later, number, BODY, NULL, false, 0)/' include/krs/camera.def >"$work/later/krs/camera.def"
 layouts "$work/older" >"$work/layouts_older" 2>"$work/said"
 layouts "$work/later" >"$work/layouts_later" 2>>"$work/said"
 # Of each struct the size is another one, but for bytes that were there to fill it up.

@@ -17,20 +17,11 @@ static const struct BlockProperty {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     {SYNTAX_MATERIAL, #name, false},
 #include "krs/surface.def"
+#define KRS_CAMERA(name, kind, part, positive, counts, ...) {SYNTAX_CAMERA, #name, false},
+#define KRS_CAMERA_FIXED(name, type, part, counts)          {SYNTAX_CAMERA, #name, false},
+#include "krs/camera.def"
     /* clang-format off */
     {SYNTAX_MATERIAL, "bump", false},
-    {SYNTAX_CAMERA, "eye", false},
-    {SYNTAX_CAMERA, "target", false},
-    {SYNTAX_CAMERA, "up", false},
-    {SYNTAX_CAMERA, "fov", false},
-    {SYNTAX_CAMERA, "projection", false},
-    {SYNTAX_CAMERA, "height", false},
-    {SYNTAX_CAMERA, "aperture", false},
-    {SYNTAX_CAMERA, "focus", false},
-    {SYNTAX_CAMERA, "blades", false},
-    {SYNTAX_CAMERA, "shift", false},
-    {SYNTAX_CAMERA, "shutter", false},
-    {SYNTAX_CAMERA, "eyes", false},
     {SYNTAX_LIGHT, "direction", false},
     {SYNTAX_LIGHT, "position", false},
     {SYNTAX_LIGHT, "color", false},

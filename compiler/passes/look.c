@@ -89,9 +89,11 @@ static bool is_outside(const Pyramid *pyramid, Box box)
 
 static bool camera_moves(const Graph *graph, const SceneCamera *camera)
 {
-    return !graph_is_constant(graph, camera->eye) || !graph_is_constant(graph, camera->target) ||
-           !graph_is_constant(graph, camera->up) || !graph_is_constant(graph, camera->fov) ||
-           !graph_is_constant(graph, camera->height);
+    return
+#define KRS_CAMERA(name, kind, part, positive, counts, ...) \
+    !graph_is_constant(graph, camera->nodes.name) ||
+#include "krs/camera.def"
+        false;
 }
 
 /* The pictures of all cameras; 0: one of them moves, has a lens, or frames all there is. */

@@ -91,9 +91,9 @@ static void run_defaults(ViewPrecision *view)
     for (size_t i = 0; i < s->components.count; i++)
         roots[count++] = distance_root(view->roots, i);
     for (size_t i = 0; i < s->cameras.count; i++) {
-        roots[count++] = s->cameras.items[i].eye;
-        roots[count++] = s->cameras.items[i].fov;
-        roots[count++] = s->cameras.items[i].height;
+        roots[count++] = s->cameras.items[i].nodes.eye;
+        roots[count++] = s->cameras.items[i].nodes.fov;
+        roots[count++] = s->cameras.items[i].nodes.height;
     }
     size_t     slots      = view->graph->parameters.count;
     NodeValue *parameters = arena_new_array(view->scratch, NodeValue, slots + 1);
@@ -136,13 +136,13 @@ static double lines_of(const Scene *s)
 /* Whether a camera needs rebasing with the default values of the parameters. */
 static bool camera_needs_rebase(const ViewPrecision *view, const SceneCamera *camera)
 {
-    const double *eye     = view->values[camera->eye].v;
+    const double *eye     = view->values[camera->nodes.eye].v;
     double        nearest = nearest_to(view, eye), lines = lines_of(view->scene);
     double        pixel    = camera->projection == KRS_ORTHOGRAPHIC
-                                 ? view->values[camera->height].v[0] / lines
+                                 ? view->values[camera->nodes.height].v[0] / lines
                              : camera->projection == KRS_PANORAMA
                                  ? M_PI * nearest / lines
-                                 : 2 * tan(view->values[camera->fov].v[0] / 2) * nearest / lines;
+                                 : 2 * tan(view->values[camera->nodes.fov].v[0] / 2) * nearest / lines;
     const double  farthest = largest3(eye);
     return krs_needs_rebase(farthest, pixel) ||
            krs_may_blur_normals(farthest, nearest, pixel, lines);
@@ -181,7 +181,7 @@ bool may_need_rebase(const Scene *scene, Graph *graph, const Roots *roots, bool 
             needs = scene_needs_rebase(scene) || (moves && reach_of_boxes(scene) > FAR_OUT);
         else
             needs = camera_needs_rebase(&view, camera) ||
-                    (moves && reach_of_eye(&view, camera->eye) > FAR_OUT);
+                    (moves && reach_of_eye(&view, camera->nodes.eye) > FAR_OUT);
     }
     if (!pictures && size_of(scene) > 0) /* a device may be asked about what no camera sees */
         needs = needs || reach_of_boxes(scene) > MOST_REACH * 0.5 * size_of(scene);

@@ -26,7 +26,7 @@ static void allocate_roots(Compilation *c, RootRange assembly)
     const size_t counts[ROOT_KINDS] = {
         [ROOTS_SURFACE]         = components * ROOT_COUNT,
         [ROOTS_ZONE]            = s->zone_count > 0,
-        [ROOTS_CAMERA]          = s->cameras.count * NODES_OF(CameraRoots),
+        [ROOTS_CAMERA]          = s->cameras.count * NODES_OF(CameraNodes),
         [ROOTS_LIGHT]           = s->lights.count * NODES_OF(LightRoots),
         [ROOTS_SKY]             = NODES_OF(SkyRoots),
         [ROOTS_GUARDED]         = components,
@@ -70,12 +70,8 @@ static void gather_view(const Scene *s, const Roots *roots)
 {
     if (s->zone_count > 0)
         roots_of(roots, ROOTS_ZONE).items[0] = s->zone;
-    for (size_t i = 0; i < s->cameras.count; i++) {
-        const SceneCamera *camera = &s->cameras.items[i];
-        *camera_roots(roots, i)   = (CameraRoots){
-              camera->eye,      camera->target, camera->up,    camera->fov,     camera->height,
-              camera->aperture, camera->focus,  camera->shift, camera->shutter, camera->eyes};
-    }
+    for (size_t i = 0; i < s->cameras.count; i++)
+        *camera_roots(roots, i) = s->cameras.items[i].nodes;
     for (size_t i = 0; i < s->lights.count; i++) {
         const SceneLight *light = &s->lights.items[i];
         *light_roots(roots, i)  = (LightRoots){light->vector, light->color,    light->softness,

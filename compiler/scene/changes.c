@@ -346,8 +346,9 @@ static bool same_cameras(const KrsScene *a, const KrsScene *b)
     bool same = a->camera_count == b->camera_count && a->framed == b->framed;
     for (size_t i = 0; same && i < a->camera_count; i++)
         same = same_name(a->cameras[i].name, b->cameras[i].name) &&
-               a->cameras[i].projection == b->cameras[i].projection &&
-               a->cameras[i].blades == b->cameras[i].blades;
+#define KRS_CAMERA_FIXED(name, type, part, counts) a->cameras[i].name == b->cameras[i].name &&
+#include "krs/camera.def"
+               true;
     return same && memcmp(a->framed_eye, b->framed_eye, sizeof a->framed_eye) == 0 &&
            memcmp(a->framed_target, b->framed_target, sizeof a->framed_target) == 0;
 }

@@ -321,19 +321,12 @@ void vector_normalize(double v[3])
 static void view_camera(const KrsFrame *frame, size_t index, KrsCamera *camera)
 {
     const KrsScene    *scene = frame->scene;
-    const CameraRoots *roots = camera_roots(&scene->roots, index);
-    *camera                  = (KrsCamera){.projection = scene->cameras[index].projection,
-                                           .fov        = frame->values[roots->fov].v[0],
-                                           .height     = frame->values[roots->height].v[0]};
-    camera->aperture         = frame->values[roots->aperture].v[0];
-    camera->focus            = frame->values[roots->focus].v[0];
-    camera->blades           = scene->cameras[index].blades;
-    camera->eyes             = frame->values[roots->eyes].v[0];
-    memcpy(camera->shift, frame->values[roots->shift].v, sizeof camera->shift);
-    memcpy(camera->shutter, frame->values[roots->shutter].v, sizeof camera->shutter);
-    frame_copy(frame, roots->eye, camera->eye);
-    frame_copy(frame, roots->target, camera->target);
-    frame_copy(frame, roots->up, camera->up);
+    const CameraNodes *roots = camera_roots(&scene->roots, index);
+    *camera                  = (KrsCamera){0};
+#define KRS_CAMERA(name, kind, part, positive, counts, ...) \
+    memcpy(&camera->name, frame->values[roots->name].v, sizeof camera->name);
+#define KRS_CAMERA_FIXED(name, type, part, counts) camera->name = scene->cameras[index].name;
+#include "krs/camera.def"
     if (scene->framed && index == 0) {
         memcpy(camera->eye, frame->framed_eye, sizeof camera->eye);
         memcpy(camera->target, frame->framed_target, sizeof camera->target);

@@ -21,7 +21,7 @@
 typedef enum RootKind {
     ROOTS_SURFACE, /* for each component an array that is indexed by ComponentRoot */
     ROOTS_ZONE,    /* the depth in the zones; none if there are no zones */
-    ROOTS_CAMERA,  /* CameraRoots of each camera */
+    ROOTS_CAMERA,  /* CameraNodes of each camera */
     ROOTS_LIGHT,   /* LightRoots of each light */
     ROOTS_SKY,     /* SkyRoots, with fog */
     /* The kinds from here on are for the march, gradients and slopes only. */
@@ -37,9 +37,6 @@ typedef enum RootKind {
     ROOT_KINDS
 } RootKind;
 
-typedef struct CameraRoots {
-    Node eye, target, up, fov, height, aperture, focus, shift, shutter, eyes;
-} CameraRoots;
 typedef struct LightRoots {
     Node vector, color, softness, target, angle, edge, size, intensity;
 } LightRoots;
@@ -97,9 +94,9 @@ static inline Node *along_roots(const Roots *roots, AlongMethod method)
     return along.items + method * (along.count / ALONG_COUNT);
 }
 
-static inline CameraRoots *camera_roots(const Roots *roots, size_t camera)
+static inline CameraNodes *camera_roots(const Roots *roots, size_t camera)
 {
-    return (CameraRoots *)roots_of(roots, ROOTS_CAMERA).items + camera;
+    return (CameraNodes *)roots_of(roots, ROOTS_CAMERA).items + camera;
 }
 
 static inline LightRoots *light_roots(const Roots *roots, size_t light)

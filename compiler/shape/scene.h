@@ -31,18 +31,24 @@ typedef struct Component {
     size_t           beam_count;
 } Component;
 
-/* Numbers and vectors here are frame-time nodes. */
+/* Rows of camera.def that depend on the frame. */
+typedef struct CameraNodes {
+#define KRS_CAMERA(name, kind, part, positive, counts, ...) Node name;
+#include "krs/camera.def"
+} CameraNodes;
+
 typedef struct SceneCamera {
     const char *name; /* or NULL */
     Span        span; /* of its `eye`, or else of all of it */
     Span        block;
-    Node        eye, target, up, fov, height;
-    Node        aperture, focus, shift, shutter, eyes; /* as in KrsCamera */
-    uint32_t    projection, blades;
-    bool        lens;        /* it may have an aperture or a shift */
-    bool        standing_in; /* for a scene that has no camera: framing.c finds eye and target */
+    CameraNodes nodes;
+#define KRS_CAMERA_FIXED(name, type, part, counts) uint32_t name;
+#include "krs/camera.def"
+    bool lens;        /* it may have an aperture or a shift */
+    bool standing_in; /* for a scene that has no camera: framing.c finds eye and target */
 } SceneCamera;
 
+/* Nodes are of the frame. */
 typedef struct SceneLight {
     const char *name; /* or NULL */
     bool        positional, shadow;

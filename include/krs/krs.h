@@ -322,25 +322,23 @@ KRS_SIZED KrsStatus krs_frame_slope(const KrsScene *scene, size_t index, KrsFram
 KrsStatus krs_frame_set_zones(KrsFrame *frame, const double (*zones)[4], size_t count);
 
 typedef enum KrsProjection {
-    KRS_PERSPECTIVE,
-    KRS_ORTHOGRAPHIC,
-    KRS_PANORAMA /* all directions: longitude from left to right, latitude from top to bottom */
+#define KRS_PROJECTION(id, name) KRS_##id,
+#include "krs/camera.def"
 } KrsProjection;
 
-/* The position and projection of a camera, in world units. */
+/* How many numbers a member has, by its kind in camera.def. */
+#define KRS_CAMERA_place [3]
+#define KRS_CAMERA_axis  [3]
+#define KRS_CAMERA_pair  [2]
+#define KRS_CAMERA_angle
+#define KRS_CAMERA_number
+#define KRS_CAMERA_focus
+
+/* The position and projection of a camera, a member for each row of camera.def. */
 typedef struct KrsCamera {
-    KrsProjection projection;
-    double        eye[3], target[3], up[3]; /* `up` is upright in the picture; of any length */
-    double        fov;                      /* perspective: vertical angle, radians, below pi */
-    double        height;                   /* orthographic: of the picture */
-    double        aperture; /* radius of the lens in world units; 0: a point, all is sharp */
-    double        focus;    /* length along the view up to what is sharp; 0: up to the target */
-    uint32_t      blades;   /* corners of the aperture, from 3 on; 0: it is round */
-    double shift[2];   /* of the lens: the picture moves by these parts of its width and height, to
-                          the right and upwards */
-    double shutter[2]; /* when it opens and closes, in frames after the frame's time; equal: no
-                          blur (KrsRenderOptions.frame_seconds) */
-    double eyes;       /* distance of two eyes, for stereo; 0: a 30th of that of the focus */
+#define KRS_CAMERA(name, kind, part, positive, counts, ...) double name KRS_CAMERA_##kind;
+#define KRS_CAMERA_FIXED(name, type, part, counts)          type name;
+#include "krs/camera.def"
 } KrsCamera;
 
 /* The cameras that the scene declares or, if it has none, one that the compiler places.  The first

@@ -15,24 +15,17 @@
 /* ---- properties ---- */
 
 typedef enum Property {
-    EYE,
-    TARGET,
-    UP,
-    PROJECTION,
-    FOV,
-    HEIGHT,
-    APERTURE,
-    FOCUS,
-    BLADES,
-    SHIFT,
-    SHUTTER,
-    EYES,
+#define KRS_CAMERA(name, kind, part, positive, counts, ...) PROPERTY_##name,
+#define KRS_CAMERA_FIXED(name, type, part, counts)          PROPERTY_##name,
+#include "krs/camera.def"
     PROPERTIES
 } Property;
 
-static const char *const names[PROPERTIES] = {"eye",    "target", "up",       "projection",
-                                              "fov",    "height", "aperture", "focus",
-                                              "blades", "shift",  "shutter",  "eyes"};
+static const char *const names[PROPERTIES] = {
+#define KRS_CAMERA(name, kind, part, positive, counts, ...) #name,
+#define KRS_CAMERA_FIXED(name, type, part, counts)          #name,
+#include "krs/camera.def"
+};
 
 /* Zero has no sign. */
 static void print_numbers(FILE *out, const double *v, int count)
@@ -42,23 +35,35 @@ static void print_numbers(FILE *out, const double *v, int count)
     fprintf(out, "]");
 }
 
+/* Of each kind and type of camera.def. */
+static void print_place(FILE *out, const double *v) { print_numbers(out, v, 3); }
+static void print_axis(FILE *out, const double *v) { print_numbers(out, v, 3); }
+static void print_pair(FILE *out, const double *v) { print_numbers(out, v, 2); }
+static void print_angle(FILE *out, const double *v) { fprintf(out, "%.6gdeg", *v * 180 / M_PI); }
+static void print_number(FILE *out, const double *v) { fprintf(out, "%.6g", *v); }
+static void print_focus(FILE *out, const double *v) { print_number(out, v); }
+static void print_uint32_t(FILE *out, uint32_t v) { fprintf(out, "%u", v); }
+static void print_KrsProjection(FILE *out, KrsProjection v)
+{
+    static const char *const words[] = {
+#define KRS_PROJECTION(id, name) #name,
+#include "krs/camera.def"
+    };
+    fprintf(out, "\"%s\"", words[v]);
+}
+
 static void print_value(FILE *out, Property property, const KrsCamera *camera)
 {
-    static const char *const projections[] = {"\"perspective\"", "\"orthographic\"",
-                                              "\"panorama\""};
     switch (property) {
-    case EYE: print_numbers(out, camera->eye, 3); break;
-    case TARGET: print_numbers(out, camera->target, 3); break;
-    case UP: print_numbers(out, camera->up, 3); break;
-    case PROJECTION: fprintf(out, "%s", projections[camera->projection]); break;
-    case FOV: fprintf(out, "%.6gdeg", camera->fov * 180 / M_PI); break;
-    case HEIGHT: fprintf(out, "%.6g", camera->height); break;
-    case APERTURE: fprintf(out, "%.6g", camera->aperture); break;
-    case FOCUS: fprintf(out, "%.6g", camera->focus); break;
-    case BLADES: fprintf(out, "%u", camera->blades); break;
-    case SHIFT: print_numbers(out, camera->shift, 2); break;
-    case SHUTTER: print_numbers(out, camera->shutter, 2); break;
-    case EYES: fprintf(out, "%.6g", camera->eyes); break;
+#define KRS_CAMERA(name, kind, part, positive, counts, ...) \
+    case PROPERTY_##name:                                   \
+        print_##kind(out, (const double *)&camera->name);   \
+        break;
+#define KRS_CAMERA_FIXED(name, type, part, counts) \
+    case PROPERTY_##name:                          \
+        print_##type(out, camera->name);           \
+        break;
+#include "krs/camera.def"
     case PROPERTIES: break;
     }
 }
@@ -66,20 +71,12 @@ static void print_value(FILE *out, Property property, const KrsCamera *camera)
 /* Whether a block without it would be another camera. */
 static bool is_needed(Property property, const KrsCamera *camera)
 {
-    const double *up = camera->up;
-    switch (property) {
-    case UP: return up[0] != 0 || up[2] != 0 || up[1] <= 0;
-    case PROJECTION: return camera->projection != KRS_PERSPECTIVE;
-    case FOV: return camera->projection == KRS_PERSPECTIVE;
-    case HEIGHT: return camera->projection == KRS_ORTHOGRAPHIC;
-    case APERTURE: return camera->aperture > 0;
-    case FOCUS: return camera->aperture > 0 && camera->focus > 0;
-    case BLADES: return camera->aperture > 0 && camera->blades > 0;
-    case SHIFT: return camera->shift[0] != 0 || camera->shift[1] != 0;
-    case SHUTTER: return camera->shutter[0] != camera->shutter[1];
-    case EYES: return camera->eyes > 0;
-    default: return true;
-    }
+    const bool needed[PROPERTIES] = {
+#define KRS_CAMERA(name, kind, part, positive, counts, ...) counts,
+#define KRS_CAMERA_FIXED(name, type, part, counts)          counts,
+#include "krs/camera.def"
+    };
+    return needed[property];
 }
 
 /* The caller frees it; NULL: without memory. */
@@ -257,7 +254,8 @@ static char *edit_property(char *block, Property property, const KrsCamera *befo
     const bool is_there = differs && find_property(block, names[property], &place);
     if (differs && !is_there)
         block = is_needed(property, camera) ? add_property(block, names[property], value) : block;
-    else if (is_there && (is_needed(property, camera) || property == UP || property == PROJECTION))
+    else if (is_there && (is_needed(property, camera) || property == PROPERTY_up ||
+                          property == PROPERTY_projection))
         block = splice(block, place.value, place.end, "", value);
     else if (is_there)
         block = remove_property(block, &place);

@@ -5,21 +5,7 @@
 
 #include <math.h>
 
-static const double ORIGIN[3] = {0, 0, 0}, UP[3] = {0, 1, 0};
-
-/* ---- lens and shutter ---- */
-
-/* Two numbers; [0, 0] when they are not given. */
-static Node pair_property(Elaboration *e, const Environment *env, const Syntax *block,
-                          const char *name)
-{
-    static const double none[4] = {0};
-    const Syntax       *syntax  = find_property(block, name);
-    Node                node    = NODE_NONE;
-    if (syntax)
-        node = to_pair(e, evaluate(e, env, syntax), syntax, diag_text(e->diags, "`%s`", name));
-    return node == NODE_NONE ? graph_constant(e->graph, TYPE_VEC2, none) : node;
-}
+#include "krs/krs.h"
 
 static void report(Elaboration *e, const Syntax *at, const char *words, const char *help)
 {
@@ -27,30 +13,111 @@ static void report(Elaboration *e, const Syntax *at, const char *words, const ch
     diag->help = help;
 }
 
-/* The length along the view up to what is sharp; 0: up to the target. */
-static Node focus_of(Elaboration *e, const Environment *env, const Syntax *syntax,
-                     const SceneCamera *camera)
+/* ---- kinds of camera.def ---- */
+
+/* A property that is read: `otherwise` is its value if it is not given. */
+typedef struct Asked {
+    Elaboration       *e;
+    const Environment *env;
+    const Syntax      *block;
+    const CameraNodes *before; /* the properties of rows before it */
+} Asked;
+
+static Node read_number(const Asked *a, const char *name, const double otherwise[4])
 {
-    const Syntax *given = find_property(syntax, "focus");
-    Graph        *g     = e->graph;
-    if (!given)
-        return graph_number(g, 0);
-    Value value  = evaluate(e, env, given);
-    bool  length = value.type == VALUE_NUMBER ||
-                  (value.type == VALUE_EXPRESSION && g->items[value.node].type == TYPE_FLOAT);
-    if (length) {
-        Node node = to_number(e, value, given, "`focus`");
-        if (node != NODE_NONE)
-            check_positive(e, node, given, "the distance of the focus");
-        return node == NODE_NONE ? graph_number(g, 0) : node;
-    }
-    Node point = to_vector(e, value, given, "`focus`");
-    if (point == NODE_NONE)
-        return graph_number(g, 0);
+    return number_property(a->e, a->env, a->block, name, otherwise[0]);
+}
+
+static Node read_angle(const Asked *a, const char *name, const double otherwise[4])
+{
+    return read_number(a, name, otherwise);
+}
+
+static Node read_place(const Asked *a, const char *name, const double otherwise[4])
+{
+    return position_property(a->e, a->env, a->block, name, otherwise);
+}
+
+static Node read_axis(const Asked *a, const char *name, const double otherwise[4])
+{
+    return vector_property(a->e, a->env, a->block, name, otherwise);
+}
+
+static Node read_pair(const Asked *a, const char *name, const double otherwise[4])
+{
+    Elaboration  *e      = a->e;
+    const Syntax *syntax = find_property(a->block, name);
+    Node          node   = NODE_NONE;
+    if (syntax)
+        node = to_pair(e, evaluate(e, a->env, syntax), syntax, diag_text(e->diags, "`%s`", name));
+    return node == NODE_NONE ? graph_constant(e->graph, TYPE_VEC2, otherwise) : node;
+}
+
+/* The length along the view up to a point. */
+static Node length_up_to(Graph *g, Node point, const CameraNodes *camera)
+{
     Node offset = graph_op2(g, OP_sub, point, camera->eye);
     Node view   = graph_op2(g, OP_sub, camera->target, camera->eye);
     view        = graph_op1(g, OP_normalize, view);
     return graph_op2(g, OP_dot, offset, view);
+}
+
+static Node read_focus(const Asked *a, const char *name, const double otherwise[4])
+{
+    Elaboration  *e     = a->e;
+    const Syntax *given = find_property(a->block, name);
+    Graph        *g     = e->graph;
+    Node          found = NODE_NONE;
+    if (!given)
+        return graph_number(g, otherwise[0]);
+    Value value  = evaluate(e, a->env, given);
+    bool  length = value.type == VALUE_NUMBER ||
+                  (value.type == VALUE_EXPRESSION && g->items[value.node].type == TYPE_FLOAT);
+    if (length) {
+        found = to_number(e, value, given, "`focus`");
+        if (found != NODE_NONE)
+            check_positive(e, found, given, "the distance of the focus");
+    } else {
+        Node point = to_vector(e, value, given, "`focus`");
+        if (point != NODE_NONE)
+            found = length_up_to(g, point, a->before);
+    }
+    return found == NODE_NONE ? graph_number(g, otherwise[0]) : found;
+}
+
+static KrsProjection read_projection(const Asked *a)
+{
+    static const char *const words[] = {
+#define KRS_PROJECTION(id, name) #name,
+#include "krs/camera.def"
+        NULL};
+    const char *word = word_property(a->e, a->env, a->block, "projection", words);
+    uint32_t    i    = 0;
+    while (word && words[i] != word)
+        i++;
+    return (KrsProjection)i;
+}
+
+/* ---- what is refused ---- */
+
+static void check_fov(Elaboration *e, const Syntax *given, Node fov)
+{
+    Range span = node_range(e->builder, fov, 0);
+    if (span.low > 0 && span.high < 3.14159)
+        return;
+    Diag *diag        = diag_add(e->diags, DIAG_BAD_VALUE, given->span,
+                                 "`fov` must lie between 0 and 180 degrees");
+    diag->help        = "angles are radians unless they end in `deg`";
+    diag->replacement = degrees_instead(e, given);
+    if (!diag->replacement)
+        diag->help = "angles are radians unless they end in `deg`, as in `40deg`";
+}
+
+static void check_aperture(Elaboration *e, const Syntax *given, Node aperture)
+{
+    if (node_range(e->builder, aperture, 0).low < 0)
+        report(e, given, "the aperture must not be negative",
+               "it is the radius of the lens; 0 makes everything sharp");
 }
 
 static void check_shutter(Elaboration *e, const Syntax *given, Node shutter)
@@ -61,80 +128,79 @@ static void check_shutter(Elaboration *e, const Syntax *given, Node shutter)
                "for example `shutter: [0, 0.5]`: open for half of the time between frames");
 }
 
-/* A panorama has no lens: its rays part in all directions. */
-static void check_projection(Elaboration *e, const Syntax *syntax, const SceneCamera *camera)
+static void check_view(Elaboration *e, const Syntax *syntax, const CameraNodes *camera)
 {
-    static const char *const of_lens[] = {"aperture", "focus", "blades", "shift"};
-    for (size_t i = 0; camera->projection == 2 && i < sizeof of_lens / sizeof *of_lens; i++)
-        if (find_property(syntax, of_lens[i]))
-            report(e, find_property(syntax, of_lens[i]),
-                   diag_text(e->diags, "a panorama has no `%s`", of_lens[i]),
+    Node          same   = graph_op2(e->graph, OP_sub, camera->eye, camera->target);
+    const Syntax *target = find_property(syntax, "target");
+    check_direction(e, same, target ? target : syntax, "the view of a camera, from eye to target,");
+}
+
+static void check_positive_row(Elaboration *e, const Syntax *syntax, const char *name, Node node,
+                               const char *what)
+{
+    const Syntax *given = find_property(syntax, name);
+    if (what && given)
+        check_positive(e, node, given, what);
+}
+
+/* A panorama has no lens: its rays part in all directions. */
+static void check_panorama(Elaboration *e, const Syntax *syntax)
+{
+    enum { BODY, LENS };
+    static const struct {
+        const char *name;
+        bool        of_lens;
+    } rows[] = {
+#define KRS_CAMERA(name, kind, part, positive, counts, ...) {#name, part == LENS},
+#define KRS_CAMERA_FIXED(name, type, part, counts)          {#name, part == LENS},
+#include "krs/camera.def"
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (rows[i].of_lens && find_property(syntax, rows[i].name))
+            report(e, find_property(syntax, rows[i].name),
+                   diag_text(e->diags, "a panorama has no `%s`", rows[i].name),
                    "`projection: \"perspective\"` has");
 }
 
-void camera_without_lens(Elaboration *e, SceneCamera *camera)
+static void check_camera(Elaboration *e, const Syntax *syntax, const SceneCamera *camera)
 {
-    const double none[3] = {0};
-    camera->aperture = camera->focus = camera->eyes = graph_number(e->graph, 0);
-    camera->shift = camera->shutter = graph_constant(e->graph, TYPE_VEC2, none);
-}
-
-static void add_lens(Elaboration *e, const Environment *env, const Syntax *syntax,
-                     SceneCamera *camera)
-{
+    const CameraNodes *nodes = &camera->nodes;
+    const Syntax *fov = find_property(syntax, "fov"), *shutter = find_property(syntax, "shutter");
     const Syntax *aperture = find_property(syntax, "aperture");
-    const Syntax *shutter  = find_property(syntax, "shutter");
-    const Syntax *eyes     = find_property(syntax, "eyes");
-    camera->aperture       = number_property(e, env, syntax, "aperture", 0);
-    camera->focus          = focus_of(e, env, syntax, camera);
-    camera->blades         = (uint32_t)constant_property(e, env, syntax, "blades", 3, 64, 0);
-    camera->shift          = pair_property(e, env, syntax, "shift");
-    camera->shutter        = pair_property(e, env, syntax, "shutter");
-    camera->eyes           = number_property(e, env, syntax, "eyes", 0);
-    camera->lens           = aperture || find_property(syntax, "shift");
-    if (aperture && node_range(e->builder, camera->aperture, 0).low < 0)
-        report(e, aperture, "the aperture must not be negative",
-               "it is the radius of the lens; 0 makes everything sharp");
-    if (eyes)
-        check_positive(e, camera->eyes, eyes, "the distance of the eyes");
+    if (fov)
+        check_fov(e, fov, nodes->fov);
+    check_view(e, syntax, nodes);
+    if (aperture)
+        check_aperture(e, aperture, nodes->aperture);
     if (shutter)
-        check_shutter(e, shutter, camera->shutter);
-    check_projection(e, syntax, camera);
+        check_shutter(e, shutter, nodes->shutter);
+#define KRS_CAMERA(name, kind, part, positive, counts, ...) \
+    check_positive_row(e, syntax, #name, nodes->name, positive);
+#include "krs/camera.def"
+    if (camera->projection == KRS_PANORAMA)
+        check_panorama(e, syntax);
 }
 
 /* ---- cameras ---- */
 
+SceneCamera read_camera(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    const Syntax *stands = find_property(syntax, "eye");
+    SceneCamera   camera = {
+          .name = syntax->name, .span = stands ? stands->span : syntax->span, .block = syntax->span};
+    const Asked asked = {e, env, syntax, &camera.nodes};
+#define KRS_CAMERA(name, kind, part, positive, counts, ...) \
+    camera.nodes.name = read_##kind(&asked, #name, (const double[4]){__VA_ARGS__});
+#include "krs/camera.def"
+    camera.projection = read_projection(&asked);
+    camera.blades     = (uint32_t)constant_property(e, env, syntax, "blades", 3, 64, 0);
+    camera.lens       = find_property(syntax, "aperture") || find_property(syntax, "shift");
+    return camera;
+}
+
 void elaborate_camera(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    static const char *const projections[] = {"perspective", "orthographic", "panorama", NULL};
-    static const double      eye[3]        = {4, 3, 6};
-    const Syntax            *stands        = find_property(syntax, "eye");
-    SceneCamera              camera        = {
-                            .name = syntax->name, .span = stands ? stands->span : syntax->span, .block = syntax->span};
-    camera.eye       = position_property(e, env, syntax, "eye", eye);
-    camera.target    = position_property(e, env, syntax, "target", ORIGIN);
-    camera.up        = vector_property(e, env, syntax, "up", UP);
-    camera.fov       = number_property(e, env, syntax, "fov", 40 * M_PI / 180);
-    camera.height    = number_property(e, env, syntax, "height", 4);
-    const char *word = word_property(e, env, syntax, "projection", projections);
-    while (word && projections[camera.projection] != word)
-        camera.projection++;
-    const Syntax *fov  = find_property(syntax, "fov");
-    Range         span = node_range(e->builder, camera.fov, 0);
-    if (fov && (span.low <= 0 || span.high >= 3.14159)) {
-        Diag *diag        = diag_add(e->diags, DIAG_BAD_VALUE, fov->span,
-                                     "`fov` must lie between 0 and 180 degrees");
-        diag->help        = "angles are radians unless they end in `deg`";
-        diag->replacement = degrees_instead(e, fov);
-        if (!diag->replacement)
-            diag->help = "angles are radians unless they end in `deg`, as in `40deg`";
-    }
-    const Syntax *height = find_property(syntax, "height");
-    if (height)
-        check_positive(e, camera.height, height, "the height of the picture");
-    Node          same   = graph_op2(e->graph, OP_sub, camera.eye, camera.target);
-    const Syntax *target = find_property(syntax, "target");
-    check_direction(e, same, target ? target : syntax, "the view of a camera, from eye to target,");
-    add_lens(e, env, syntax, &camera);
+    SceneCamera camera = read_camera(e, env, syntax);
+    check_camera(e, syntax, &camera);
     array_push(e->arena, &e->scene->cameras, camera);
 }

@@ -52,7 +52,7 @@ static Box box_of_defaults(Elaboration *e)
 static bool cameras_are_above(Elaboration *e, double height)
 {
     for (size_t i = 0; i < e->scene->cameras.count; i++) {
-        Node up = graph_component(e->graph, e->scene->cameras.items[i].eye, 1);
+        Node up = graph_component(e->graph, e->scene->cameras.items[i].nodes.eye, 1);
         if (!(node_range(e->builder, up, 0).low > height))
             return false;
     }
@@ -67,7 +67,7 @@ static Node frame_floor(Elaboration *e, Box box)
     floor->slot                = (uint32_t)e->graph->parameters.count;
     floor->otherwise           = box.axis[1].low;
     for (size_t i = 0; i < e->scene->cameras.count; i++) {
-        const Node        eye    = e->scene->cameras.items[i].eye;
+        const Node        eye    = e->scene->cameras.items[i].nodes.eye;
         const FrameNumber number = frame_number_plan(e->builder, eye, &e->scene->boxes);
         array_push(e->arena, &floor->eyes, number);
     }

@@ -267,6 +267,8 @@ void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax
 
 /* ---- what a scene leaves out ---- */
 
+static const Syntax silent = {.kind = SYNTAX_SKY}; /* a block that says nothing */
+
 /* Frames the bounded components, from above and to the right. */
 static void default_camera(Elaboration *e)
 {
@@ -282,13 +284,12 @@ static void default_camera(Elaboration *e)
     }
     for (int i = 0; i < 3; i++)
         eye[i] = target[i] + towards[i] * radius / sin(0.5 * fov);
-    SceneCamera camera = {.standing_in = true,
-                          .eye         = graph_constant(e->graph, TYPE_VEC3, eye),
-                          .target      = graph_constant(e->graph, TYPE_VEC3, target),
-                          .up          = graph_constant(e->graph, TYPE_VEC3, UP),
-                          .fov         = graph_number(e->graph, fov),
-                          .height      = graph_number(e->graph, 2 * radius)};
-    camera_without_lens(e, &camera);
+    SceneCamera camera  = read_camera(e, NULL, &silent);
+    camera.standing_in  = true;
+    camera.nodes.eye    = graph_constant(e->graph, TYPE_VEC3, eye);
+    camera.nodes.target = graph_constant(e->graph, TYPE_VEC3, target);
+    camera.nodes.fov    = graph_number(e->graph, fov);
+    camera.nodes.height = graph_number(e->graph, 2 * radius);
     array_push(e->arena, &e->scene->cameras, camera);
 }
 
@@ -308,7 +309,6 @@ static void default_sun(Elaboration *e)
 
 void complete_view(Elaboration *e)
 {
-    static const Syntax silent = {.kind = SYNTAX_SKY};
     if (e->scene->cameras.count == 0)
         default_camera(e);
     const bool named = e->scene->sky.zenith != NODE_NONE || e->scene->sky.map;

@@ -9,8 +9,8 @@
 /* ---- camera.c ---- */
 /* Adds a camera to the scene. */
 void elaborate_camera(Elaboration *e, const Environment *env, const Syntax *syntax);
-/* Sets what is about lens and shutter: neither is there. */
-void camera_without_lens(Elaboration *e, SceneCamera *camera);
+/* A camera with the properties of a block, the others as camera.def says. */
+SceneCamera read_camera(Elaboration *e, const Environment *env, const Syntax *syntax);
 
 /* ---- sky.c ---- */
 void elaborate_sky(Elaboration *e, const Environment *env, const Syntax *syntax);
