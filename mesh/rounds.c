@@ -12,6 +12,8 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
+#include "mesh/contour/handles.h"
+#include "mesh/contour/sides.h"
 #include "mesh/proof/bounds.h"
 #include "mesh/proof/draft.h"
 
@@ -140,8 +142,11 @@ static void work_on_groups(void *task, size_t part, size_t parts)
     Verifier  *verifier = &m->verifiers[part];
     size_t     asked    = 0;
     (void)parts;
-    *verifier = (Verifier){
-        .field = &m->fields[part], .tets = &m->tets, .mesh = &m->bvh, .error = proven_error(m)};
+    *verifier = (Verifier){.field = &m->fields[part],
+                           .tets  = &m->tets,
+                           .mesh  = &m->bvh,
+                           .error = proven_error(m),
+                           .sharp = m->sharp};
     while (!atomic_load(&m->stopped)) {
         size_t next = atomic_fetch_add(&m->next_group, 1);
         if (next >= m->groups.list.count)
@@ -286,7 +291,7 @@ static void bisect_hopeless(Mesher *m)
         for (size_t i = 0, count = m->tets.fresh.count; i < count; i++) {
             size_t number = m->tets.fresh.items[i];
             Tet   *tet    = &m->tets.list.items[number];
-            if (tet->hopeless && verify_is_far(&m->tets, tet))
+            if (tet->hopeless && !tets_is_moved(&m->tets, tet) && verify_is_far(&m->tets, tet))
                 tet->state = TET_EMPTY;
             else if (tet->hopeless && bisect_refuted(m, number))
                 any = true;
@@ -404,6 +409,38 @@ static bool prove(Mesher *m)
     return is_wanted(m);
 }
 
+/* A knife edge is thinner than tetrahedra farther from its end than the error, unless they are smaller than that.  Where
+   solids touch none are small enough, and many places are not decided.  False: nothing becomes finer. */
+static bool sharpen(Mesher *m)
+{
+    enum { MOST_FIRST = 300, MOST_LATER = 1000 };
+    static const double FIRST = 0.5, LAST = 0.05;
+    double              sharp = m->sharp > 0 ? 0.5 * m->sharp : FIRST;
+    if (m->unresolved == 0 || m->unresolved > (size_t)(m->sharp > 0 ? MOST_LATER : MOST_FIRST) ||
+        sharp < LAST)
+        return false;
+    m->sharp = sharp;
+    for (size_t i = 0; i < m->tets.list.count; i++)
+        if (m->tets.list.items[i].state == TET_UNRESOLVED)
+            m->tets.list.items[i].state = TET_REFUTED;
+    return refine(m, false);
+}
+
+/* Handles and parts that the mesh has, and the solid has not, at edges.  False: there are none. */
+static bool tidy(Mesher *m)
+{
+    enum { MOST_TIMES = 4, MOST_PLACES = 256 };
+    static const double AROUND = 3, DEEP = 0.5; /* errors */
+    double              places[MOST_PLACES][3];
+    bool                any = false;
+    if (m->tidied++ >= MOST_TIMES)
+        return false;
+    size_t count = handles_places(&m->contour, AROUND * m->error, places, MOST_PLACES);
+    for (size_t i = 0; i < count; i++)
+        any = sides_tidy(&m->contour, places[i], AROUND * m->error, DEEP * m->error) || any;
+    return any;
+}
+
 bool find_proven_mesh(Mesher *m)
 {
     double origin[3];
@@ -427,6 +464,6 @@ bool find_proven_mesh(Mesher *m)
             return true;
         if (!prove(m))
             return false;
-    } while (refine(m, false) || forget_stale(m));
+    } while (refine(m, false) || forget_stale(m) || sharpen(m) || tidy(m));
     return true;
 }

@@ -12,6 +12,8 @@
 
 /* Part of an edge at its ends where no vertex is, so that vertices of other edges are elsewhere. */
 static const double END_OF_EDGE = 1e-4;
+/* Part of an edge between a point that was moved to the other side and the vertex. */
+static const double BESIDE_MOVED = 0.1;
 /* Part of the error by which a line or a triangle may miss the surface without a further vertex. */
 static const double STRAIGHT = 0.1;
 
@@ -71,16 +73,22 @@ void contour_distances(Contour *contour)
 
 /* ---- vertices on edges ---- */
 
+/* Where one end was moved to the other side the place is near to that one. */
 static RootSearch root_search(const Contour *contour, const Crossing *crossing)
 {
     const TetPoint *points = contour->tets->points.items;
-    RootSearch      search = {.high    = 1,
-                              .at_low  = points[crossing->from].distance,
-                              .at_high = points[crossing->to].distance};
-    tets_position(contour->tets, crossing->from, search.from);
-    tets_position(contour->tets, crossing->to, search.along);
+    bool            turned = points[crossing->from].distance > points[crossing->to].distance;
+    uint32_t        from   = turned ? crossing->to : crossing->from,
+             to            = turned ? crossing->from : crossing->to;
+    RootSearch search      = {
+             .high = 1, .at_low = points[from].distance, .at_high = points[to].distance};
+    tets_position(contour->tets, from, search.from);
+    tets_position(contour->tets, to, search.along);
     add_scaled3(search.along, search.along, -1, search.from);
     search.length = length3(search.along);
+    search.done   = (search.at_low < 0) == (search.at_high < 0);
+    if (search.done)
+        search.low = search.high = points[from].moved ? BESIDE_MOVED : 1 - BESIDE_MOVED;
     return search;
 }
 
@@ -193,8 +201,16 @@ static void find_lines(const void *user, const MeshField *field, const uint32_t 
     }
     field_distances(field, (const double(*)[3])middles, count, distances);
     for (size_t i = 0; i < count; i++)
+        contour->lines.items[numbers[i]].known = true;
+    for (size_t i = 0; i < count; i++)
         if (fabs(distances[i]) > STRAIGHT * contour->error)
             find_line(contour, field, distances[i], &contour->lines.items[numbers[i]]);
+}
+
+static bool line_is_known(const void *user, size_t number)
+{
+    const Contour *contour = user;
+    return contour->lines.items[number].known;
 }
 
 /* ---- vertices inside ---- */
@@ -282,17 +298,26 @@ static uint32_t take_crossing(Contour *contour, uint32_t inside, uint32_t outsid
     return number;
 }
 
-/* The line between two crossings on one face. */
+static bool has_crossings(const FaceLine *line, uint32_t first, uint32_t second)
+{
+    return (line->crossings[0] == first && line->crossings[1] == second) ||
+           (line->crossings[0] == second && line->crossings[1] == first);
+}
+
+/* The line between two crossings on one face.  It is another one if a point was moved to the other side. */
 static uint32_t take_line(Contour *contour, uint32_t first, uint32_t second)
 {
     const Crossing *a = &contour->crossings.items[first], *b = &contour->crossings.items[second];
-    uint32_t        third  = a->from == b->from ? b->to : b->from;
+    uint32_t        third  = b->from == a->from || b->from == a->to ? b->to : b->from;
     uint32_t        fresh  = (uint32_t)contour->lines.count;
     uint32_t        number = numbering_take(&contour->line_numbers, face_key(a->from, a->to, third),
                                             fresh);
-    if (number == fresh) {
-        FaceLine line = {.points = {a->from, a->to, third}, .crossings = {first, second}};
+    FaceLine        line   = {.points = {a->from, a->to, third}, .crossings = {first, second}};
+    if (number == fresh)
         array_push_large(contour->arena, &contour->lines, line);
+    else if (!has_crossings(&contour->lines.items[number], first, second)) {
+        contour->lines.items[number] = line;
+        contour->known_lines = contour->known_lines < number ? contour->known_lines : number;
     }
     return number;
 }
@@ -360,7 +385,7 @@ static uint8_t triangles_of(const Contour *contour, const Patch *patch)
 static void find_patches(Contour *contour, size_t first)
 {
     static const Batches crossings = {box_of_crossing, find_crossings, NULL, 12};
-    static const Batches lines     = {box_of_line, find_lines, NULL, 1};
+    static const Batches lines     = {box_of_line, find_lines, line_is_known, 1};
     static const Batches patches   = {box_of_patch, find_apexes, NULL, 1};
     find_all(contour, &crossings, contour->known_crossings, contour->crossings.count);
     contour->known_crossings = contour->crossings.count;

@@ -24,7 +24,7 @@ typedef struct Crossing {
 /* A face with two crossings. */
 typedef struct FaceLine {
     uint32_t points[3], crossings[2];
-    bool     bent; /* there is a vertex in the face */
+    bool     known, bent; /* there is a vertex in the face */
     double   at[3], value;
     double   off; /* of the middles of its parts from the surface, at most; 0: little */
 } FaceLine;
@@ -88,7 +88,7 @@ double patch_off(const Contour *contour, const Patch *patch);
 
 static inline bool point_is_inside(const Tets *tets, uint32_t point)
 {
-    return tets->points.items[point].distance < 0;
+    return (tets->points.items[point].distance < 0) != tets->points.items[point].moved;
 }
 
 #endif

@@ -18,11 +18,13 @@ typedef struct Handles {
     uint32_t      *place;   /* of vertices, the last place whose corners were counted, */
     uint32_t      *corners; /* and these */
     bool          *done;    /* of vertices that are near to a place */
+    uint32_t      *walked;  /* of edges of triangles, the last place on whose border they are */
     struct {
         uint32_t *items;
         size_t    count, capacity;
-    } patch;
-    double radius;
+    } patch, beyond;
+    uint32_t last_place;
+    double   radius;
 } Handles;
 
 static bool is_within(const Handles *h, uint32_t triangle, const double center[3])
@@ -63,21 +65,129 @@ static void find_patch(Handles *h, uint32_t vertex, uint32_t place)
         }
 }
 
-static long euler_number(Handles *h, uint32_t place)
+static long euler_number(Handles *h, const uint32_t *patch, size_t count, uint32_t place)
 {
     long inner = 0, closed = 0; /* inner edges count twice */
-    for (size_t i = 0; i < h->patch.count; i++)
+    for (size_t i = 0; i < count; i++)
         for (int c = 0; c < 3; c++) {
-            uint32_t vertex = h->contour->triangles.items[h->patch.items[i]][c];
+            uint32_t vertex = h->contour->triangles.items[patch[i]][c];
             if (h->place[vertex] != place) {
                 h->place[vertex]   = place;
                 h->corners[vertex] = 0;
             }
             h->corners[vertex]++;
             closed += h->corners[vertex] == h->edges.begins[vertex + 1] - h->edges.begins[vertex];
-            inner += h->taken[triangle_beyond(h, h->patch.items[i], c)] == place;
+            inner += h->taken[triangle_beyond(h, patch[i], c)] == place;
         }
-    return (long)h->patch.count - inner / 2 + closed;
+    return (long)count - inner / 2 + closed;
+}
+
+/* From an edge of the border to the next one: around the vertex where it ends. */
+static void go_along_border(const Handles *h, uint32_t place, uint32_t *triangle, int *edge)
+{
+    uint32_t vertex = h->contour->triangles.items[*triangle][(*edge + 1) % 3];
+    *edge           = (*edge + 1) % 3;
+    for (uint32_t beyond = triangle_beyond(h, *triangle, *edge); h->taken[beyond] == place;
+         beyond          = triangle_beyond(h, *triangle, *edge)) {
+        *triangle = beyond;
+        *edge     = 0;
+        while (h->contour->triangles.items[beyond][*edge] != vertex)
+            (*edge)++;
+    }
+}
+
+/* The first edge of a border that was not walked along: 3 times its triangle and the edge; the number of all if there is none. */
+static size_t next_border(const Handles *h, uint32_t place, size_t from)
+{
+    size_t count = 3 * h->patch.count;
+    while (from < count) {
+        uint32_t triangle = h->patch.items[from / 3];
+        if (h->taken[triangle_beyond(h, triangle, (int)(from % 3))] != place &&
+            h->walked[3 * triangle + from % 3] != place)
+            return from;
+        from++;
+    }
+    return count;
+}
+
+static void walk_border(Handles *h, uint32_t place, size_t from)
+{
+    uint32_t triangle = h->patch.items[from / 3];
+    int      edge     = (int)(from % 3);
+    while (h->walked[3 * triangle + (uint32_t)edge] != place) {
+        h->walked[3 * triangle + (uint32_t)edge] = place;
+        go_along_border(h, place, &triangle, &edge);
+    }
+}
+
+/* ---- what is beyond ---- */
+
+static double area_of(const Handles *h, uint32_t triangle)
+{
+    const uint32_t *corners = h->contour->triangles.items[triangle];
+    double          edges[2][3], cross[3];
+    for (int i = 0; i < 2; i++)
+        add_scaled3(edges[i], h->contour->vertices.items[corners[i + 1]], -1,
+                    h->contour->vertices.items[corners[0]]);
+    cross3(edges[0], edges[1], cross);
+    return 0.5 * length3(cross);
+}
+
+static void add_to_box(const Handles *h, uint32_t triangle, double low[3], double high[3])
+{
+    for (int c = 0; c < 3; c++)
+        for (int k = 0; k < 3; k++) {
+            double at = h->contour->vertices.items[h->contour->triangles.items[triangle][c]][k];
+            low[k]    = min2(low[k], at);
+            high[k]   = max2(high[k], at);
+        }
+}
+
+/* Whether what is beyond an edge of the border ends as a thin spike or flap, so that what goes around it can be drawn off. */
+static bool is_thin_end(Handles *h, uint32_t place, uint32_t start)
+{
+    static const double LARGEST = 60,
+                        WIDEST  = 2.4; /* areas by the radius, and by that of the box */
+    double   area               = 0, low[3], high[3];
+    uint32_t number             = ++h->last_place;
+    for (int k = 0; k < 3; k++) {
+        low[k]  = INFINITY;
+        high[k] = -INFINITY;
+    }
+    h->beyond.count = 0;
+    h->taken[start] = number;
+    array_push_large(h->contour->arena, &h->beyond, start);
+    for (size_t i = 0; i < h->beyond.count; i++) {
+        uint32_t triangle = h->beyond.items[i];
+        area += area_of(h, triangle);
+        add_to_box(h, triangle, low, high);
+        if (area > LARGEST * h->radius * h->radius)
+            return false;
+        for (int edge = 0; edge < 3; edge++) {
+            uint32_t next = triangle_beyond(h, triangle, edge);
+            if (h->taken[next] != number && h->taken[next] != place) {
+                h->taken[next] = number;
+                array_push_large(h->contour->arena, &h->beyond, next);
+            }
+        }
+    }
+    return area <= WIDEST * h->radius * distance3(low, high) &&
+           euler_number(h, h->beyond.items, h->beyond.count, number) == 1;
+}
+
+/* Whether the part around a vertex has a handle, or goes around a rod or through a hole that goes on at two borders or more. */
+static bool goes_around(Handles *h, uint32_t place)
+{
+    long   euler = euler_number(h, h->patch.items, h->patch.count, place), borders = 0, going = 0;
+    size_t count = 3 * h->patch.count;
+    if (euler == 1)
+        return false;
+    for (size_t at = next_border(h, place, 0); at < count; at = next_border(h, place, at)) {
+        borders++;
+        walk_border(h, place, at);
+        going += !is_thin_end(h, place, triangle_beyond(h, h->patch.items[at / 3], (int)(at % 3)));
+    }
+    return (borders > 0 && euler + borders < 2) || going > 1;
 }
 
 /* Vertices that are nearer than half of the radius need not be looked at. */
@@ -93,25 +203,60 @@ static void mark_done(Handles *h, uint32_t vertex)
         }
 }
 
+static Handles start(const Contour *contour, double radius)
+{
+    Arena  *arena    = contour->arena;
+    size_t  vertices = contour->vertices.count, triangles = contour->triangles.count;
+    Handles h    = {.contour = contour, .radius = radius};
+    h.edges      = sort_edges((const uint32_t(*)[3])contour->triangles.items, triangles, arena);
+    h.taken      = arena_new_array(arena, uint32_t, triangles + 1);
+    h.place      = arena_new_array(arena, uint32_t, vertices + 1);
+    h.corners    = arena_new_array(arena, uint32_t, vertices + 1);
+    h.done       = arena_new_array(arena, bool, vertices + 1);
+    h.walked     = arena_new_array(arena, uint32_t, 3 * triangles + 1);
+    h.last_place = (uint32_t)vertices;
+    return h;
+}
+
 size_t handles_count(const Contour *contour, double radius, double at[3])
 {
-    Arena    *arena    = contour->arena;
-    size_t    vertices = contour->vertices.count, triangles = contour->triangles.count, found = 0;
-    ArenaMark mark = arena_mark(arena);
-    Handles   h    = {.contour = contour, .radius = radius};
-    h.edges        = sort_edges((const uint32_t(*)[3])contour->triangles.items, triangles, arena);
-    h.taken        = arena_new_array(arena, uint32_t, triangles + 1);
-    h.place        = arena_new_array(arena, uint32_t, vertices + 1);
-    h.corners      = arena_new_array(arena, uint32_t, vertices + 1);
-    h.done         = arena_new_array(arena, bool, vertices + 1);
-    for (uint32_t i = 0; i < vertices && i < h.edges.vertex_count; i++) {
+    size_t    found = 0;
+    ArenaMark mark  = arena_mark(contour->arena);
+    Handles   h     = start(contour, radius);
+    for (uint32_t i = 0; i < contour->vertices.count && i < h.edges.vertex_count; i++) {
         if (h.done[i])
             continue;
         find_patch(&h, i, i + 1);
-        if (h.patch.count > 0 && euler_number(&h, i + 1) < 1 && found++ == 0)
+        if (h.patch.count > 0 && goes_around(&h, i + 1) && found++ == 0)
             memcpy(at, contour->vertices.items[i], 3 * sizeof *at);
         mark_done(&h, i);
     }
-    arena_rewind(arena, mark);
+    arena_rewind(contour->arena, mark);
+    return found;
+}
+
+/* It has 2 less its borders, and 2 less for each handle. */
+size_t handles_places(const Contour *contour, double radius, double (*places)[3], size_t most)
+{
+    size_t    found = 0;
+    ArenaMark mark  = arena_mark(contour->arena);
+    Handles   h     = start(contour, radius);
+    for (uint32_t i = 0; i < contour->vertices.count && i < h.edges.vertex_count; i++) {
+        if (h.done[i] || found == most)
+            continue;
+        find_patch(&h, i, i + 1);
+        if (h.patch.count > 0) {
+            long euler = euler_number(&h, h.patch.items, h.patch.count, i + 1), borders = 0;
+            for (size_t at = next_border(&h, i + 1, 0); at < 3 * h.patch.count;
+                 at        = next_border(&h, i + 1, at)) {
+                borders++;
+                walk_border(&h, i + 1, at);
+            }
+            if (borders == 0 || euler + borders < 2)
+                memcpy(places[found++], contour->vertices.items[i], sizeof *places);
+        }
+        mark_done(&h, i);
+    }
+    arena_rewind(contour->arena, mark);
     return found;
 }

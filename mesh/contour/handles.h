@@ -10,4 +10,8 @@
    through a hole.  One that fits into half of the radius is not missed.  `at`: the first place; unchanged where there is none. */
 size_t handles_count(const Contour *contour, double radius, double at[3]);
 
+/* The first places, up to so many, where the connected part within the radius of a vertex has a handle, or has no border.  Returns how
+   many. */
+size_t handles_places(const Contour *contour, double radius, double (*places)[3], size_t most);
+
 #endif

@@ -110,6 +110,28 @@ void tets_forget_fresh(Tets *tets)
     tets->fresh.count = 0;
 }
 
+void tets_renew(Tets *tets, uint32_t point)
+{
+    for (uint32_t at = tets->points.items[point].first; at; at = tets->links.items[at - 1].next) {
+        uint32_t number = tets->links.items[at - 1].tet;
+        Tet      tet    = tets->list.items[number];
+        tet.replaced    = tet.replaced || tet.triangle_count > 0;
+        tet.state       = TET_ROUGH;
+        tet.deviation   = INFINITY;
+        tet.stale       = false;
+
+        tet.triangle_count = 0;
+        replace_tet(tets, number, tet);
+    }
+}
+
+bool tets_is_moved(const Tets *tets, const Tet *tet)
+{
+    const TetPoint *points = tets->points.items;
+    return points[tet->points[0]].moved || points[tet->points[1]].moved ||
+           points[tet->points[2]].moved || points[tet->points[3]].moved;
+}
+
 /* The six paths from one corner of the cube to the opposite one. */
 void tets_new(Tets *tets, const double origin[3], double side, Arena *arena)
 {

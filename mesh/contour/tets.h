@@ -19,6 +19,7 @@ typedef struct TetPoint {
     uint32_t at[3]; /* in steps from the corner of the cube */
     uint32_t split; /* when an edge of it was last bisected: `closures` of the tetrahedra then */
     uint32_t first; /* 1 and the link of a tetrahedron that has it; 0: none */
+    bool     moved; /* to the other side than its distance tells (sides.h) */
     double   distance;
 } TetPoint;
 
@@ -92,6 +93,10 @@ void tets_new(Tets *tets, const double origin[3], double side, Arena *arena);
 void tets_bisect(Tets *tets, size_t index);
 /* Whether it is so large that it can be bisected. */
 bool tets_can_bisect(const Tets *tets, size_t index);
+/* Has all that have a point looked at again, as if they were new, but for the bounds of the distance. */
+void tets_renew(Tets *tets, uint32_t point);
+/* Whether one has a point that was moved to the other side. */
+bool tets_is_moved(const Tets *tets, const Tet *tet);
 /* From now on none is fresh. */
 void tets_forget_fresh(Tets *tets);
 /* Bisects until all neighbours meet in whole faces. */

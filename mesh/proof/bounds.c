@@ -215,7 +215,10 @@ void bound_group(Mesher *m, Verifier *verifier, const Group *group)
     size_t count = 0, end;
     for (uint32_t i = 0; i < group->count; i++) {
         Tet *tet = tet_of_group(m, group, i);
-        if (verify_is_far(&m->tets, tet))
+        if (tets_is_moved(&m->tets, tet)) {
+            tet->state     = TET_ROUGH;
+            tet->deviation = INFINITY;
+        } else if (verify_is_far(&m->tets, tet))
             tet->state = TET_EMPTY;
         else
             placed[count++] = (Placed){cell_of(&m->tets, tet),

@@ -33,6 +33,8 @@ typedef struct Mesher {
     Groups        groups; /* of tetrahedra to be looked at */
     atomic_size_t next_group;
     size_t        unresolved; /* tetrahedra */
+    double        sharp;      /* as of Verifier */
+    int           tidied;     /* how often sides of points were (sides.h) */
     size_t        handles;    /* places in a mesh that is thought to be right (handles.h) */
     double        unresolved_at[3];
     double        fraction;    /* of the work, as was last said, */

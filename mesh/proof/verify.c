@@ -134,6 +134,12 @@ static bool is_other_side_around(const Verifier *verifier, const double center[3
     return false;
 }
 
+static bool may_be_sharper(const Verifier *verifier, const Tet *tet)
+{
+    return verifier->sharp > 0 &&
+           tets_longest_edge(verifier->tets, tet) > verifier->sharp * verifier->error;
+}
+
 /* At a place that is farther from the mesh than permitted, and nearer to the surface: goes on through
    the surface.  False: there is another side, so the mesh is wrong. */
 static bool leave_unresolved(Verifier *verifier, const double center[3], double distance)
@@ -145,7 +151,8 @@ static bool leave_unresolved(Verifier *verifier, const double center[3], double 
         if ((field_distance(verifier->field, beyond) < 0) != (distance < 0))
             return false;
     }
-    if (is_other_side_around(verifier, center, distance, step, DEEP * verifier->error))
+    if (is_other_side_around(verifier, center, distance, step, DEEP * verifier->error) ||
+        may_be_sharper(verifier, verifier->tet))
         return false;
     note_need(verifier, center, verifier->error);
     verifier->unresolved++;
@@ -439,7 +446,8 @@ static TetState verify_parts(Verifier *verifier, const Tet *tet, const Cell *who
     verifier->budget     = proof_budget(verifier, tet);
     bool near            = (tet->state == TET_FITS || triangles_are_near_surface(verifier, tet)) &&
                 surface_is_near_mesh(verifier, whole, side);
-    if (!near && tets_longest_edge(verifier->tets, tet) > 0.5 * verifier->error)
+    if (!near && (tets_longest_edge(verifier->tets, tet) > 0.5 * verifier->error ||
+                  may_be_sharper(verifier, tet)))
         return TET_REFUTED;
     return !near || verifier->unresolved > 0 ? TET_UNRESOLVED : TET_PROVEN;
 }
@@ -449,12 +457,13 @@ TetState verify_tet(Verifier *verifier, Tet *tet)
 {
     int  side  = find_side(verifier->tets, tet);
     Cell whole = {.tag = tet->tag, .lens = INFINITY};
-    if (side == 0 && tets_longest_edge(verifier->tets, tet) <= verifier->error)
+    bool moved = tets_is_moved(verifier->tets, tet);
+    if (side == 0 && !moved && tets_longest_edge(verifier->tets, tet) <= verifier->error)
         return TET_PROVEN;
     tets_corners(verifier->tets, tet, whole.corners);
     Box box = corners_box((const double(*)[3])whole.corners, 4, verifier->error);
     if (!field_enter(verifier->field, box))
-        return TET_EMPTY;
+        return side == 0 && moved ? TET_UNRESOLVED : TET_EMPTY;
     tet->needs    = mark_box_none();
     verifier->tet = tet;
     corners_ball((const double(*)[3])whole.corners, verifier->center);
