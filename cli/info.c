@@ -139,7 +139,7 @@ static void print_tables(const KrsProgram *program)
     double bytes = (double)table_bytes(program);
     bool   large = bytes >= 999500;
     printf("tables: %zu %s, %zu rows, %.*f %s\n", program->table_count,
-           program->table_count == 1 ? "kind" : "kinds", program->table_members, large,
+           program->table_count == 1 ? "kind" : "kinds", program->table_instances, large,
            large ? bytes / 1e6 : ceil(bytes / 1e3), large ? "MB" : "kB");
 }
 
@@ -297,7 +297,7 @@ void info_add_json(Text *json, const KrsScene *scene)
     json_vector(json, program->high, 3);
     text_format(json, "}, \"zones\": %zu", krs_zone_count(scene));
     text_format(json, ", \"tables\": {\"kinds\": %zu, \"rows\": %zu, \"bytes\": %zu}",
-                program->table_count, program->table_members, table_bytes(program));
+                program->table_count, program->table_instances, table_bytes(program));
     text_format(json, ", \"operations\": %zu, \"flops_per_evaluation\": ", program->operations);
     json_number(json, program->flops);
     text_add(json, ", ");

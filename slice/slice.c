@@ -75,7 +75,7 @@ static KrsStatus open_fields(KrsSlicer *slicer, KrsFrame *frame)
         if (status == KRS_OK) {
             frame_refresh_points(field->frame);
             field_open(field, &slicer->arena);
-            /* Derivatives of crowds have no bounds; those of few members have. */
+            /* Derivatives of instance groups have no bounds; those of few instances have. */
             field->ranges.unroll = true;
         }
     }

@@ -44,7 +44,7 @@ for helpers in compiler/print/glsl/*.glsl; do
         printf '#version 440\nlayout(local_size_x = 1) in;\n'
         case $helpers in
         */cells.glsl) cat compiler/print/glsl/arcs.glsl compiler/print/glsl/sines.glsl ;;
-        */crowds.glsl | */textures.glsl) # what glsl.c declares where they are called
+        */instances.glsl | */textures.glsl) # what glsl.c declares where they are called
             sed -n '/TEMPLATE_BUFFER_TABLES\]/,/TEMPLATE_TABLES\]/d;/TEMPLATE_TEXEL_TABLES\]/,/TEMPLATE_EACH_LISTED/{/TEMPLATE_/d;s/^[^"]*"//;s/\(\\n\)*",*$//;p;}' \
                 compiler/print/glsl/glsl.c ;;
         */differences.glsl) echo "float krs_distance_N(vec3 p) { return p.x; }" ;;

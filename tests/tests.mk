@@ -6,7 +6,7 @@
 # and everything compiles under clang as well.
 
 # What tests of several kinds share; nothing of it knows what is tested.
-SUPPORT     := $(addprefix tests/support/, agreement.c bench.c crowd_texts.c device.c folder.c random.c \
+SUPPORT     := $(addprefix tests/support/, agreement.c bench.c instance_texts.c device.c folder.c random.c \
                renderer.c same_scene.c scarce.c)
 # What tests of one kind share.
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c \
@@ -14,14 +14,14 @@ ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c prod
                deformed.c methods.c primitive_solids.c primitive_figures.c random_scene.c \
                device_answers.c known_solid.c mesh_distance.c mesh_shape.c outline_truth.c path_stage.c rooms.c shadow_stage.c shadow_truth.c truetype.c twigs.c)
 UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c queried.c \
-               cache_folder.c compiled_files.c crossings.c crowd_scene.c closed_forms.c)
-PROPERTY_SHARED := $(addprefix tests/property/, crowd_parts.c garden.c op_trial.c reach_crowd.c)
+               cache_folder.c compiled_files.c crossings.c instance_scene.c closed_forms.c)
+PROPERTY_SHARED := $(addprefix tests/property/, instance_parts.c garden.c op_trial.c reach_instances.c)
 UNIT        := specks texts watchdog front synonyms arguments look diagnostics shape parts passes display devices tracer film plates saved noise pixel_filters lens rendering lights light_groups sky_table daylight methods schedules paths writer \
                image_files image_reading memory validate search refute frame frame_floor framing query zones surroundings cache cache_limits \
-               compiled pipelines per_component mixed_rays stencils glslang flatten loader watcher drivers grid crowd_grid crowds \
-               crowd_kernels crowd_ends crowd_pictures few_parts tables device_tables table_files printing printers gathered_noises answers alike update coordinates reload live saved_texts camera_text resolution painter saver edits values mesh mesh_progress mesh_bounds mesh_tets mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_handles mesh_sides mesh_proofs mesh_flat_proofs assembly
+               compiled pipelines per_component mixed_rays stencils glslang flatten loader watcher drivers grid instance_grid instances \
+               instance_kernels instance_ends instance_pictures few_parts tables device_tables table_files printing printers gathered_noises answers alike update coordinates reload live saved_texts camera_text resolution painter saver edits values mesh mesh_progress mesh_bounds mesh_tets mesh_around mesh_fields mesh_collapse mesh_marks mesh_near mesh_handles mesh_sides mesh_proofs mesh_flat_proofs assembly
 PROPERTY    := ops noise textures graph simplify facts derive series zeros local along rebase slope \
-               parity reach reach_trees turn_boxes crowds crowds_apart crowds_deformed crowd_sums blends_of_many fillets moving_crowds moving_scenes overlaps lanes lane_crowds lane_balls joints turns
+               parity reach reach_trees turn_boxes instances instances_apart instances_deformed instance_sums blends_of_many fillets moving_instances moving_scenes overlaps lanes lane_instances lane_balls joints turns
 ORACLES     := self distant patterns bumps primitives krs_expand folds trees maps moebius moebius_images operators cells \
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
@@ -38,12 +38,12 @@ PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%
 # Without a device: what runs under the sanitizers (drivers leak by design).  `make test-all` runs it only
 # there, but for BOTH, whose machine code depends on the compiler's options.
 SANITIZED   := $(addprefix tests/, unit/texts unit/watchdog unit/front unit/synonyms unit/diagnostics unit/shape unit/parts unit/passes unit/display \
-               unit/writer unit/image_files unit/image_reading unit/validate unit/loader unit/watcher unit/grid unit/crowd_grid unit/crowds unit/few_parts unit/tables unit/search \
+               unit/writer unit/image_files unit/image_reading unit/validate unit/loader unit/watcher unit/grid unit/instance_grid unit/instances unit/few_parts unit/tables unit/search \
                unit/refute unit/memory unit/cache unit/cache_limits unit/frame unit/frame_floor unit/framing unit/query \
                unit/zones unit/printers unit/gathered_noises unit/alike unit/update unit/coordinates unit/reload unit/saved_texts unit/camera_text unit/resolution unit/values unit/mesh unit/mesh_progress unit/mesh_tets unit/mesh_around unit/mesh_bounds unit/mesh_collapse unit/mesh_marks unit/mesh_near unit/mesh_handles unit/mesh_sides unit/mesh_flat_proofs unit/assembly property/ops property/noise property/textures property/graph property/simplify \
                property/facts property/derive property/series property/zeros property/local \
                property/along property/rebase property/slope property/parity property/reach \
-               property/reach_trees property/turn_boxes property/crowds property/crowds_apart property/crowds_deformed property/crowd_sums property/blends_of_many property/fillets property/moving_crowds property/moving_scenes property/overlaps property/lanes property/lane_crowds property/lane_balls property/joints property/turns oracle/primitives \
+               property/reach_trees property/turn_boxes property/instances property/instances_apart property/instances_deformed property/instance_sums property/blends_of_many property/fillets property/moving_instances property/moving_scenes property/overlaps property/lanes property/lane_instances property/lane_balls property/joints property/turns oracle/primitives \
                oracle/krs_expand oracle/folds oracle/bounds \
                oracle/cells oracle/maps oracle/operators oracle/moving \
                oracle/fractals oracle/metasurfaces oracle/normals oracle/tangents oracle/drawings oracle/imports \
@@ -63,9 +63,9 @@ BESIDE      := $(LONGEST) $(filter-out $(LONGEST) $(ALONE) tests/run.sh tests/se
 LONG        := $(addprefix tests/, examples.sh extend/extend.sh errors-sanitized.sh fuzz/fuzz.sh bench.sh \
                $(addprefix cli/, cache.sh compose.sh failures.sh fingerprints.sh format.sh install.sh mesh_csg.sh mesh_judges.sh outputs.sh \
                pictures.sh query.sh resume.sh scale.sh view.sh view_limits.sh view_random.sh watch.sh) \
-               $(addprefix unit/, arguments compiled crowd_grid drivers film light_groups memory mesh_proofs methods noise paths \
+               $(addprefix unit/, arguments compiled instance_grid drivers film light_groups memory mesh_proofs methods noise paths \
                per_component plates printing rendering saved schedules values) \
-               $(addprefix property/, blends_of_many crowds fillets turn_boxes turns) \
+               $(addprefix property/, blends_of_many instances fillets turn_boxes turns) \
                $(addprefix oracle/, agree albedo algebraic area_shadows chain_pictures chains closed_rooms combinations cornell coverage \
                direct_glass distant emissive furnace light measures media meshes mesh_examples mesh_forms moebius occlusion paths plate_light \
                ray_lists sheets sky soft_shadows specialize stencils upsampling))

@@ -109,7 +109,7 @@ static bool is_nowhere(Elaboration *e, const Shape *shape)
     bool     empty = all.distance == NODE_NONE || is_cancelled(g, all.distance);
     if (!l.overflow && !empty) {
         Node       distance   = divide_by_slope(g, all.distance, shape->slope);
-        Graph     *alone      = graph_extract_with_crowds(g, &distance, 1, e->scratch);
+        Graph     *alone      = graph_extract_with_instances(g, &distance, 1, e->scratch);
         Tape       tape       = tape_new(alone, &distance, 1, e->scratch);
         NodeValue *values     = arena_new_array(e->scratch, NodeValue, alone->count);
         NodeValue *parameters = arena_new_array(e->scratch, NodeValue, g->parameters.count);

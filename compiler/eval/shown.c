@@ -11,7 +11,7 @@
 #include "compiler/eval/elaborate.h"
 
 /* Fewer turns of a `show` in a loop stay apart, and fewer shapes of one form: each is then marched for
-   itself, and left out where it is far.  Forms become one only where a crowd may come of it. */
+   itself, and left out where it is far.  Forms become one only where an instance group may come of it. */
 enum { LEAST_TURNS = 32, LEAST_OF_A_FORM = 64 };
 /* Of a tree of shapes, as much as its form is told by. */
 enum { MOST_FORM_SHAPES = 64 };

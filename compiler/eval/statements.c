@@ -269,7 +269,7 @@ static bool run_turn(Elaboration *e, Value element, void *user)
     return !is_stopped(e) && !(loop->sequence && loop->sequence->wrong);
 }
 
-/* A loop in another is run turn by turn: all turns of both are to be one crowd. */
+/* A loop in another is run turn by turn: all turns of both are to be one instance group. */
 static void run_for(Elaboration *e, const Environment *env, const Syntax *syntax,
                     Sequence *sequence)
 {

@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/instances/turns.h"
 #include "compiler/shape/turn_boxes.h"
 
@@ -67,7 +67,8 @@ typedef struct Before {
 
 static size_t function_count(const Graph *graph)
 {
-    return graph->crowds ? graph->crowds->functions.count + graph->crowds->tables.count : 0;
+    return graph->instances ? graph->instances->functions.count + graph->instances->tables.count
+                            : 0;
 }
 
 static Before remember(Elaboration *e)
@@ -196,7 +197,7 @@ static bool evaluate_turned(Elaboration *e, Turned *t)
 
 /* ---- whether that is all ---- */
 
-/* Large joints in it would be crowds by themselves.  What a choice leaves is not the same in all
+/* Large joints in it would be instance groups by themselves.  What a choice leaves is not the same in all
    turns. */
 static bool may_be_shared(const Elaboration *e, const Shape *shape)
 {
@@ -356,7 +357,7 @@ static bool boxes_agree(const Box *box, const Box *witness)
     return true;
 }
 
-/* What a blend makes of a bound is cut to its box, part by part (crowd_turns.c).  Of what is shown each
+/* What a blend makes of a bound is cut to its box, part by part (group_turns.c).  Of what is shown each
    that is empty is reported. */
 static bool goes_with_joint(const TurnBody *body, const Shape *shape)
 {

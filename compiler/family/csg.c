@@ -127,13 +127,13 @@ static Lowered union_in_pairs(Lowering *l, const Shape *shape, const Shape *cons
 static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *children,
                         uint32_t count, double reach, LowerContext context)
 {
-    CrowdJoin join = {shape, children, count, false, reach};
-    bool      nowhere;
+    PartJoin join = {shape, children, count, false, reach};
+    bool     nowhere;
     if (shape->blend.width != NODE_NONE)
         return lower_blend(l, join, context, &nowhere);
-    Lowered crowds = lower_crowds(l, &join, context);
+    Lowered groups = lower_groups(l, &join, context);
     Lowered others = union_in_pairs(l, shape, join.parts, join.count, context);
-    return join_two(l, shape->blend, crowds, others);
+    return join_two(l, shape->blend, groups, others);
 }
 
 static Lowered union_by_parts(Lowering *l, const Shape *shape, LowerContext context)
@@ -157,13 +157,13 @@ static Lowered intersection_by_parts(Lowering *l, const Shape *shape, LowerConte
 {
     context = joint_context(shape, context);
     /* The complement of the union of the complements. */
-    CrowdJoin join = {shape, shape->children, shape->child_count, true, context.reach};
+    PartJoin join = {shape, shape->children, shape->child_count, true, context.reach};
     if (shape->blend.width != NODE_NONE) {
         bool    nowhere;
         Lowered blended = lower_blend(l, join, context, &nowhere);
         return nowhere ? lowered_nothing : complement(l, blended);
     }
-    Lowered all = complement(l, lower_crowds(l, &join, context));
+    Lowered all = complement(l, lower_groups(l, &join, context));
     for (uint32_t i = 0; i < join.count; i++) {
         Lowered next = lower_shape(l, join.parts[i], context);
         if (next.distance == NODE_NONE)

@@ -20,7 +20,7 @@
  * node, so it follows them from frame to frame, and no range of them is needed for the slope.
  *
  * A smaller d that is still positive makes a smaller bound.  So d must be right near the surface alone,
- * and a crowd in there may leave out all parts that are far from T(c).
+ * and an instance group in there may leave out all parts that are far from T(c).
  */
 #include "compiler/family/deform.h"
 

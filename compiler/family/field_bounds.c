@@ -303,7 +303,7 @@ static double count_steps(const TrialMarch *m, const Tape *tape, Node root, cons
 static double trial_march_cost(const TrialMarch *m, Node distance)
 {
     const double OVERHEAD = 20; /* of the tracer, a step */
-    const Graph *graph    = graph_extract_with_crowds(m->graph, &distance, 1, m->scratch);
+    const Graph *graph    = graph_extract_with_instances(m->graph, &distance, 1, m->scratch);
     Tape         tape     = tape_new(graph, &distance, 1, m->scratch);
     NodeValue   *values   = arena_new_array(m->scratch, NodeValue, graph->count);
     double       cost = OVERHEAD + tape_flops(&tape), steps = 0;

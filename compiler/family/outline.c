@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "compiler/lower/crowd.h"
+#include "compiler/lower/instance_groups.h"
 #include "compiler/lower/outline.h"
 
 /* ---- how it is made ---- */
@@ -54,7 +54,7 @@ static OutlineShape *new_outline(ShapeBuilder *builder, const Curves *curves, Fi
         report_fault(builder, fault, at, span);
         return NULL;
     }
-    shape->members = outline_members(&shape->outline, builder->arena, builder->arena);
+    shape->instances = outline_instances(&shape->outline, builder->arena, builder->arena);
     array_push(builder->arena, &builder->outlines, shape);
     return shape;
 }
@@ -68,7 +68,7 @@ const Shape *make_outline(ShapeBuilder *builder, const char *name, const Curves 
         found = new_outline(builder, curves, rule, span);
     if (!found)
         return NULL;
-    if (found->members.count == 0) {
+    if (found->instances.count == 0) {
         Shape *empty  = shape_new(builder, SHAPE_EMPTY, name, span, NULL, 0);
         empty->figure = true;
         return empty;
@@ -98,7 +98,7 @@ Node lower_outline_distance(Lowering *l, const Shape *shape, LowerContext contex
     bool is_new;
     Node distance = outline_distance(l->graph, shape->outline, context.reach, context.point,
                                      &is_new, l->scratch);
-    if (is_new && l->crowds)
-        lowered_crowds_made(l->crowds);
+    if (is_new && l->groups)
+        lowered_groups_made(l->groups);
     return distance;
 }

@@ -126,7 +126,7 @@ Lowered lower_primitive(Lowering *l, const Shape *shape, LowerContext context)
     Lowered      leaf = lowered_nothing;
     if (l->held_constant && shape->formula != NODE_NONE && !context.lipschitz)
         leaf.distance = tangent_by_formula(l, shape, context);
-    if (shape->outline && (l->crowds || l->far) && context.reach > 0)
+    if (shape->outline && (l->groups || l->far) && context.reach > 0)
         leaf.distance = lower_outline_distance(l, shape, context);
     if (leaf.distance == NODE_NONE)
         leaf.distance = graph_substitute(g, shape->distance, with, l->scratch);

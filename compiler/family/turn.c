@@ -3,7 +3,7 @@
  *
  * The loop was evaluated once, with a leaf of frame time in the place of its variable.  What is known of
  * the result for all values of the leaf holds in each turn.  Where many turns are joined they become
- * a crowd (lower/crowd_turns.c).  One alone is lowered as the others, and the leaf is replaced.
+ * an instance group (lower/group_turns.c).  One alone is lowered as the others, and the leaf is replaced.
  */
 #include "compiler/family/family.h"
 #include "compiler/family/vary.h"
@@ -42,15 +42,15 @@ static void copy_trace(Lowering *l, size_t first, const Shape *turn)
     }
 }
 
-/* Tables of crowds in it would be those of all turns. */
+/* Tables of instance groups in it would be those of all turns. */
 Lowered lower_turn(Lowering *l, const Shape *shape, LowerContext context)
 {
-    struct LoweredCrowds *crowds = l->crowds;
+    struct LoweredGroups *groups = l->groups;
     const size_t          held   = l->held_constant ? l->held_constant->count : 0;
     const size_t          traced = l->lowered_shapes ? l->lowered_shapes->count : 0;
-    l->crowds                    = NULL;
+    l->groups                    = NULL;
     Lowered result               = lower_shape(l, shape->turned, context);
-    l->crowds                    = crowds;
+    l->groups                    = groups;
     if (result.distance != NODE_NONE)
         copy_lowered(l, &result, held, in_turn, shape);
     copy_trace(l, traced, shape);

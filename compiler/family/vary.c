@@ -81,19 +81,19 @@ static Node in_cell_with(Lowering *l, Node node, const void *user)
     return graph_replace_leaf(l->graph, node, cell->leaf, cell->numbers, l->scratch);
 }
 
-/* Tables of crowds are for all cells alike, so varied content has none. */
+/* Tables of instance groups are for all cells alike, so varied content has none. */
 Lowered lower_in_cell(Lowering *l, const Shape *repeat, LowerContext context, Node numbers,
                       bool operand)
 {
-    struct LoweredCrowds *crowds  = l->crowds;
+    struct LoweredGroups *groups  = l->groups;
     const Shape          *content = repeat->children[0];
     Node                  leaf    = repeat->values[1];
     size_t                held    = l->held_constant ? l->held_constant->count : 0;
     if (leaf != NODE_NONE)
-        l->crowds = NULL;
+        l->groups = NULL;
     Lowered result = operand ? lower_operand(l, content, context)
                              : lower_shape(l, content, context);
-    l->crowds      = crowds;
+    l->groups      = groups;
     if (leaf == NODE_NONE || result.distance == NODE_NONE)
         return result;
     copy_lowered(l, &result, held, in_cell_with, &(CellNumbers){leaf, numbers});

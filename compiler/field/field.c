@@ -26,7 +26,7 @@ static size_t bytes_of_region(const LaneTape *tape)
     return 65536 +
            2 * (lane_most_steps(tape) + tape->scalar_count) *
                (sizeof(LaneStep) + sizeof(LaneCode) + 4 * sizeof(LaneScalar)) +
-           tape->call_count * (2 * sizeof(LaneCall) + LANE_BYTES_OF_MEMBERS);
+           tape->call_count * (2 * sizeof(LaneCall) + LANE_BYTES_OF_INSTANCES);
 }
 
 void field_open(MeshField *field, Arena *arena)

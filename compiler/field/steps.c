@@ -4,26 +4,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 
 typedef struct Stepping {
     const Graph *graph;
-    bool *steps; /* of each node; a state of a crowd counts as one until its body tells otherwise */
-    bool  changed;
+    bool *
+        steps; /* of each node; a state of an instance group counts as one until its body tells otherwise */
+    bool changed;
 } Stepping;
 
 static Node body_of(const Stepping *s, uint32_t function, uint32_t body)
 {
-    const Crowds *crowds = s->graph->crowds;
-    return crowds->bodies.items[crowds->functions.items[function].first_body + body];
+    const Instances *instances = s->graph->instances;
+    return instances->bodies.items[instances->functions.items[function].first_body + body];
 }
 
 /* Its result is a state, or what joins the states; sums change evenly. */
 static bool call_steps(const Stepping *s, const Expr *call)
 {
-    uint32_t             number   = (uint32_t)s->graph->items[call->operands[0]].number[0];
-    const CrowdFunction *function = &s->graph->crowds->functions.items[number];
-    uint32_t             last     = body_count(function) - 1;
+    uint32_t                number   = (uint32_t)s->graph->items[call->operands[0]].number[0];
+    const InstanceFunction *function = &s->graph->instances->functions.items[number];
+    uint32_t                last     = body_count(function) - 1;
     return !function->sums && s->steps[body_of(s, number, 0)] &&
            (!function->joins || s->steps[body_of(s, number, last)]);
 }
@@ -75,15 +76,15 @@ bool materials_step(const KrsScene *scene, const bool *wanted)
     return all;
 }
 
-/* Calls of crowds always have a normal, which their bodies know as a leaf. */
-static bool has_normal(const bool *has, bool crowds, const Expr *e)
+/* Calls of instance groups always have a normal, which their bodies know as a leaf. */
+static bool has_normal(const bool *has, bool instances, const Expr *e)
 {
-    static const Op LEAVES[] = {OP_NORMAL, OP_VIEW, OP_FRONT, OP_DIRECTION, OP_CROWD_NORMAL};
+    static const Op LEAVES[] = {OP_NORMAL, OP_VIEW, OP_FRONT, OP_DIRECTION, OP_INSTANCE_NORMAL};
     for (size_t i = 0; i < sizeof LEAVES / sizeof *LEAVES; i++)
         if (e->op == LEAVES[i])
             return true;
     if (is_call((Op)e->op))
-        return crowds;
+        return instances;
     for (int k = 0; k < e->operand_count; k++)
         if (has[e->operands[k]])
             return true;
@@ -92,13 +93,13 @@ static bool has_normal(const bool *has, bool crowds, const Expr *e)
 
 bool materials_have_normals(const KrsScene *scene)
 {
-    const Graph *graph  = scene->graph;
-    bool        *has    = malloc(graph->count + 1);
-    bool         crowds = false, any = !has;
+    const Graph *graph     = scene->graph;
+    bool        *has       = malloc(graph->count + 1);
+    bool         instances = false, any = !has;
     for (size_t i = 0; i < graph->count; i++)
-        crowds = crowds || graph->items[i].op == OP_CROWD_NORMAL;
+        instances = instances || graph->items[i].op == OP_INSTANCE_NORMAL;
     for (size_t i = 0; has && i < graph->count; i++)
-        has[i] = has_normal(has, crowds, &graph->items[i]);
+        has[i] = has_normal(has, instances, &graph->items[i]);
     for (size_t i = 0; has && i < scene->component_count; i++)
         for (size_t k = 0; k < ROOT_COUNT; k++)
             any = any || (root_info[k].material && has[surface_roots(&scene->roots, i)[k]]);

@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/graph/crowd_walk.h"
+#include "compiler/graph/instance_walk.h"
 #include "compiler/graph/op_values.h"
 #include "compiler/graph/texture.h"
 
@@ -22,9 +22,9 @@ typedef struct Inputs {
     double           footprint;
     bool             by_cells;
     uint64_t        *ran;
-    /* In bodies of crowd functions, whose call has these operands: */
+    /* In bodies of instance functions, whose call has these operands: */
     double           threshold;
-    uint32_t         member;
+    uint32_t         instance;
     const NodeValue *states;
 } Inputs;
 
@@ -133,9 +133,9 @@ bool node_value_is_finite(const Graph *graph, Node node, const NodeValue *values
 /* Of the frame's numbers that OP_row may read. */
 static Node column_infinite(const Graph *graph, const Expr *row, const NodeValue *values)
 {
-    uint32_t     id    = (uint32_t)graph->items[row->operands[0]].number[0];
-    const Crowd *table = &graph->crowds->tables.items[row_crowd(id)];
-    const Node  *nodes = column_nodes(graph->crowds, table, row_column(id));
+    uint32_t             id    = (uint32_t)graph->items[row->operands[0]].number[0];
+    const InstanceTable *table = &graph->instances->tables.items[row_table(id)];
+    const Node          *nodes = column_nodes(graph->instances, table, row_column(id));
     for (uint32_t i = 0; nodes && i < table->rows; i++)
         if (!node_value_is_finite(graph, nodes[i], values))
             return nodes[i];
@@ -172,13 +172,13 @@ static uint32_t whole(const NodeValue *value) { return (uint32_t)value->v[0]; }
 /* OP_row */
 static NodeValue read_table(const Graph *graph, const Expr *e, const NodeValue *values)
 {
-    uint32_t     column = whole(&values[e->operands[0]]), member = whole(&values[e->operands[1]]);
-    const Crowd *table = &graph->crowds->tables.items[row_crowd(column)];
-    const Node  *nodes = column_nodes(graph->crowds, table, row_column(column));
-    assert(member < table->rows);
+    uint32_t column = whole(&values[e->operands[0]]), instance = whole(&values[e->operands[1]]);
+    const InstanceTable *table = &graph->instances->tables.items[row_table(column)];
+    const Node          *nodes = column_nodes(graph->instances, table, row_column(column));
+    assert(instance < table->rows);
     if (nodes)
-        return values[nodes[member]];
-    return number(table->numbers[(size_t)member * table->columns + row_column(column)]);
+        return values[nodes[instance]];
+    return number(table->numbers[(size_t)instance * table->columns + row_column(column)]);
 }
 
 static NodeValue read_texture(const Graph *graph, const Expr *e, const NodeValue *values)
@@ -188,15 +188,15 @@ static NodeValue read_texture(const Graph *graph, const Expr *e, const NodeValue
 
 static void run_points(const Tape *tape, const Inputs *in, NodeValue *values);
 
-/* The loop of a crowd function, which has a tape for what it does at each member. */
+/* The loop of an instance function, which has a tape for what it does at each instance. */
 typedef struct Loop {
-    const CrowdFunction *function;
-    const Crowd         *table;
-    const Tape          *body;
-    const Node          *bodies;
-    NodeValue           *values;
-    NodeValue            states[MOST_CROWD_STATES];
-    Inputs               in;
+    const InstanceFunction *function;
+    const InstanceTable    *table;
+    const Tape             *body;
+    const Node             *bodies;
+    NodeValue              *values;
+    NodeValue               states[MOST_INSTANCE_STATES];
+    Inputs                  in;
 } Loop;
 
 static void begin_loop(Loop *loop)
@@ -206,9 +206,9 @@ static void begin_loop(Loop *loop)
     loop->in.states = loop->states;
 }
 
-static void loop_over(Loop *loop, uint32_t member)
+static void loop_over(Loop *loop, uint32_t instance)
 {
-    loop->in.member = member;
+    loop->in.instance = instance;
     run_points(loop->body, &loop->in, loop->values);
     for (uint32_t k = 0; k < loop->function->state_count; k++)
         loop->states[k] = loop->values[loop->bodies[k]];
@@ -216,36 +216,36 @@ static void loop_over(Loop *loop, uint32_t member)
 
 static NodeValue run_loop(Loop *loop)
 {
-    CrowdWalk     walk;
-    CrowdStep     step;
-    uint32_t      member, distance = loop->function->distance;
+    InstanceWalk  walk;
+    InstanceStep  step;
+    uint32_t      instance, distance = loop->function->distance;
     const double *found = loop->states[distance != NO_DISTANCE ? distance : 0].v;
-    crowd_walk_begin(&walk, loop->function, loop->table, loop->in.point, loop->in.by_cells);
+    instance_walk_begin(&walk, loop->function, loop->table, loop->in.point, loop->in.by_cells);
     begin_loop(loop);
-    while ((step = crowd_walk_next(&walk, *found, &member)) != CROWD_DONE)
-        if (step == CROWD_MEMBER)
-            loop_over(loop, member);
+    while ((step = instance_walk_next(&walk, *found, &instance)) != INSTANCE_DONE)
+        if (step == INSTANCE_NEXT)
+            loop_over(loop, instance);
         else
             begin_loop(loop);
-    return crowd_walk_result(&walk, loop->body->graph, loop->states);
+    return instance_walk_result(&walk, loop->body->graph, loop->states);
 }
 
 static NodeValue run_call(const Tape *tape, const Expr *e, const Inputs *outer, NodeValue *values)
 {
-    const Crowds *crowds = tape->graph->crowds;
-    uint32_t      id     = whole(&values[e->operands[0]]);
-    double        point[3], normal[3] = {0, 0, 0}, pixel[2] = {0, 0};
+    const Instances *instances = tape->graph->instances;
+    uint32_t         id        = whole(&values[e->operands[0]]);
+    double           point[3], normal[3] = {0, 0, 0}, pixel[2] = {0, 0};
     memcpy(point, values[e->operands[1]].v, sizeof point);
     if (e->operand_count > 2) {
         memcpy(normal, values[e->operands[2]].v, sizeof normal);
         memcpy(pixel, values[e->operands[3]].v, sizeof pixel);
     }
-    const CrowdFunction *function = &crowds->functions.items[id];
+    const InstanceFunction *function = &instances->functions.items[id];
 
     Loop loop = {.function = function,
-                 .table    = &crowds->tables.items[function->crowd],
+                 .table    = &instances->tables.items[function->table_number],
                  .body     = &tape->functions[id],
-                 .bodies   = crowds->bodies.items + function->first_body,
+                 .bodies   = instances->bodies.items + function->first_body,
                  .values   = values,
                  .in       = {.point     = point,
                               .normal    = normal,

@@ -17,13 +17,13 @@ typedef struct Tape {
     size_t          frame_count; /* the first frame_count of them are compile or frame time */
     const uint32_t *skips;       /* NULL, or how many to skip at each when it is a guard that leaves
                               something out */
-    /* Of crowd functions (crowd.h) that are called, by their number: what each does at a member.
+    /* Of instance functions (instance_table.h) that are called, by their number: what each does at an instance.
        What they need of the frame is on the tape that calls them.  Others are empty.  These tapes
        know each other as well, but count none as theirs. */
     const struct Tape *functions;
     uint32_t           function_count;
-    /* Crowd functions have the list of one cell, as in kernels, so a distance is at most the cell's
-       clearance.  Else all members count that may be nearest. */
+    /* Instance group functions have the list of one cell, as in kernels, so a distance is at most the cell's
+       clearance.  Else all instances count that may be nearest. */
     bool by_cells;
     /* NULL, or what counts the operations that are run at points, those of functions included. */
     uint64_t *ran;
@@ -42,10 +42,10 @@ size_t tape_operations(const Tape *tape);
 double tape_flops(const Tape *tape);
 /* The same of one of its nodes; of a call for a list of usual length. */
 double tape_node_flops(const Tape *tape, Node node);
-/* About that of a tape on which members of crowds are parts by themselves, and rows constants. */
+/* About that of a tape on which instances of groups are parts by themselves, and rows constants. */
 double tape_flops_apart(const Tape *tape);
 
-/* Iterations of the loops that its kernels have within operations and over members of crowds, at most. */
+/* Iterations of the loops that its kernels have within operations and over instances of groups, at most. */
 uint32_t tape_loops(const Tape *tape);
 
 /* Where on the tape a node is that the roots need. */

@@ -2,7 +2,7 @@
  * extract.c: a part of a graph as a graph of its own, so that arrays by node are as small as the
  * part.
  */
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/evaluate.h"
 
 static Node copy_node(Graph *part, const Tape *tape, const Node *copies, Node node)
@@ -61,11 +61,12 @@ Graph *graph_extract_along(const Graph *graph, const Node *roots, size_t root_co
     return part;
 }
 
-Graph *graph_extract_with_crowds(const Graph *graph, Node *roots, size_t root_count, Arena *arena)
+Graph *graph_extract_with_instances(const Graph *graph, Node *roots, size_t root_count,
+                                    Arena *arena)
 {
     size_t count;
     Node  *all  = roots_with_bodies(graph, roots, root_count, &count, arena);
     Graph *part = graph_extract(graph, all, count, arena);
-    hand_on_crowds(part, graph, all, roots, root_count);
+    hand_on_instances(part, graph, all, roots, root_count);
     return part;
 }

@@ -67,7 +67,7 @@ NodeValue op_evaluate(Op op, GraphType type, uint32_t index, const GraphType *ty
 typedef struct Expr {
     uint8_t  op, type, time;
     uint8_t  operand_count;
-    uint32_t index; /* OP_COMPONENT, OP_PARAMETER, OP_PARAMETERISED, leaves of crowds */
+    uint32_t index; /* OP_COMPONENT, OP_PARAMETER, OP_PARAMETERISED, leaves of instance groups */
     union {
         Node   operands[MAX_OPERANDS];
         double number[4]; /* OP_CONSTANT, OP_PARAMETERISED */
@@ -97,10 +97,10 @@ typedef struct Graph {
     struct {
         GraphParameter *items;
         size_t          count, capacity;
-    } parameters;              /* [0] is time */
-    struct Crowds   *crowds;   /* crowd.h; NULL: there are none */
-    struct Textures *textures; /* texture.h; likewise */
-    Span             here;     /* span given to nodes made now */
+    } parameters;                /* [0] is time */
+    struct Instances *instances; /* instance_table.h; NULL: there are none */
+    struct Textures  *textures;  /* texture.h; likewise */
+    Span              here;      /* span given to nodes made now */
     struct {
         Node  *items;
         size_t count, capacity;
@@ -192,8 +192,9 @@ Node graph_replace_leaf(Graph *graph, Node root, Node leaf, Node by, Arena *scra
 /* A copy of all that `roots` need, in a graph of its own with the same parameters; the roots are
    renumbered in place.  The work grows with what they need, not with the graph. */
 Graph *graph_extract(const Graph *graph, Node *roots, size_t root_count, Arena *arena);
-/* The same with all functions of crowds, so that it can be evaluated. */
-Graph *graph_extract_with_crowds(const Graph *graph, Node *roots, size_t root_count, Arena *arena);
+/* The same with all functions of instance groups, so that it can be evaluated. */
+Graph *graph_extract_with_instances(const Graph *graph, Node *roots, size_t root_count,
+                                    Arena *arena);
 
 /* The same of roots that do not depend on the point, with its x in the place of a leaf; the copies of
    the roots go to `copies`. */
@@ -203,7 +204,7 @@ Graph *graph_extract_along(const Graph *graph, const Node *roots, size_t root_co
 /* Asserts what every pass must keep: operands first, types right, arity right, times right. */
 void graph_validate(const Graph *graph, const char *pass);
 
-/* One needed node a line, "%12 vec3 point = sub %3 %11  ; file:line:column", then functions of crowds
+/* One needed node a line, "%12 vec3 point = sub %3 %11  ; file:line:column", then functions of instance groups
    with their bodies, then the roots, each as "root %12"; `sources` may be NULL. */
 void graph_print(const Graph *graph, const Sources *sources, const Node *roots, size_t root_count,
                  Text *out);

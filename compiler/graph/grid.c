@@ -1,5 +1,5 @@
 /*
- * grid.c: which members of a grid are near a point.
+ * grid.c: which instances of a grid are near a point.
  */
 #include <math.h>
 #include <string.h>
@@ -45,13 +45,13 @@ const uint32_t *grid_find(const Grid *grid, const double point[3], uint32_t *cou
         if (!(along >= 0 && along < grid->cells[k])) {
             *count     = 0;
             *clearance = distance_to_box(&grid->inner, point);
-            return grid->members;
+            return grid->instances;
         }
         cell = cell * grid->cells[k] + (size_t)along;
     }
     *count     = grid->first[cell + 1] - grid->first[cell];
     *clearance = grid->clearance[cell];
-    return grid->members + grid->first[cell];
+    return grid->instances + grid->first[cell];
 }
 
 /* ---- the lists of all cells that a ball meets ---- */
@@ -63,7 +63,7 @@ static double outside_cell(const Grid *grid, int axis, uint32_t cell, double coo
     return outside(low, low + grid->size, coordinate);
 }
 
-/* The first of the members from `first` on in an ascending list. */
+/* The first of the instances from `first` on in an ascending list. */
 static const uint32_t *list_from(const uint32_t *list, const uint32_t *end, uint32_t first)
 {
     while (list < end) {
@@ -76,10 +76,10 @@ static const uint32_t *list_from(const uint32_t *list, const uint32_t *end, uint
     return list;
 }
 
-static void add_list(const Grid *grid, size_t cell, NearMembers *near)
+static void add_list(const Grid *grid, size_t cell, NearInstances *near)
 {
-    const uint32_t *end  = grid->members + grid->first[cell + 1];
-    const uint32_t *list = list_from(grid->members + grid->first[cell], end, near->first);
+    const uint32_t *end  = grid->instances + grid->first[cell + 1];
+    const uint32_t *list = list_from(grid->instances + grid->first[cell], end, near->first);
     for (; list < end && *list - near->first < near->count; list++)
         near->bits[(*list - near->first) / 64] |= (uint64_t)1 << (*list - near->first) % 64;
 }
@@ -93,7 +93,7 @@ static double far_side(const Grid *grid, int axis, uint32_t cell, double coordin
 
 /* The cells of a row along x that are not farther than `away` along it, and not all within `clear`. */
 static void add_row(const Grid *grid, size_t row, double x, double away, double clear,
-                    NearMembers *near)
+                    NearInstances *near)
 {
     uint32_t last = grid_cell_along(grid, 0, x + away);
     for (uint32_t cell = grid_cell_along(grid, 0, x - away); cell <= last; cell++)
@@ -105,7 +105,7 @@ static double root_or_nothing(double square) { return square > 0 ? sqrt(square) 
 
 /* A part of a cell's side that rounding may miss is less than boxes are larger in the lists. */
 void grid_near(const Grid *grid, const double point[3], double radius, double clear,
-               NearMembers *near)
+               NearInstances *near)
 {
     uint32_t first[3], last[3];
     memset(near->bits, 0, (near->count + 63) / 64 * sizeof near->bits[0]);

@@ -1,7 +1,7 @@
 /*
  * grid.h: which of many boxes are near a point: a grid of cubic cells, with a list for each.
  *
- * The list of a cell has all members whose box is nearer to the cell than its margin and `reach`.
+ * The list of a cell has all instances whose box is nearer to the cell than its margin and `reach`.
  * So, wherever a point is in the cell, all that is not listed is farther than the clearance of the cell,
  * even when distances up to `reach` apart influence each other (blends).
  */
@@ -21,14 +21,14 @@ typedef struct Grid {
     uint32_t  cells[3];     /* along each axis; x runs fastest, then y */
     uint32_t *first;        /* of each cell, where its list begins; one more: where the last ends */
     float    *clearance;    /* of each cell, above 0; rounded down.  A sign may be given to it: see
-                               CrowdFunction.either */
-    uint32_t *members;      /* the lists, ascending where they have no tails */
+                               InstanceFunction.either */
+    uint32_t *instances;    /* the lists, ascending where they have no tails */
     uint32_t  most_listed;  /* the length of the longest list */
     float    *tails, *middles; /* of entries and cells: grid_tails.h; NULL: there are none */
 } Grid;
 
 /*
- * The list for a point, of *count members.  No other member is nearer than *clearance, after all that
+ * The list for a point, of *count instances.  No other instance is nearer than *clearance, after all that
  * `reach` allows for.  Outside of the grid the list is empty, and the clearance is the distance to
  * `inner`, which is there larger than some constant.
  */
@@ -40,20 +40,20 @@ size_t grid_cell_count(const Grid *grid);
 /* How far a point is from a box. */
 double distance_to_box(const Box *box, const double point[3]);
 
-/* Which of `count` members from number `first` on are near a point: bit i % 64 of bits[i / 64] is that
-   of member first + i. */
+/* Which of `count` instances from number `first` on are near a point: bit i % 64 of bits[i / 64] is that
+   of instance first + i. */
 enum { NEAR_AT_ONCE = 32768 };
-typedef struct NearMembers {
+typedef struct NearInstances {
     uint32_t first, count; /* at most NEAR_AT_ONCE */
     uint64_t bits[NEAR_AT_ONCE / 64];
-} NearMembers;
+} NearInstances;
 
 /* Sets the bits of all whose box is nearer than radius + `reach`, and some that are farther: the lists
    of all cells that meet the ball, but for those that are in a ball of the radius `clear`, which no
-   member meets.  `first` and `count` are set before. */
+   instance meets.  `first` and `count` are set before. */
 void grid_near(const Grid *grid, const double point[3], double radius, double clear,
-               NearMembers *near);
-/* Whether all cells are in the ball, so that no member is left out. */
+               NearInstances *near);
+/* Whether all cells are in the ball, so that no instance is left out. */
 bool grid_is_within(const Grid *grid, const double point[3], double radius);
 
 /* The cell along an axis with this coordinate, or the outermost one. */

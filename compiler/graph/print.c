@@ -1,7 +1,7 @@
 /*
  * print.c: the graph as text, one node a line, for `krs dump`.
  */
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/graph.h"
 
@@ -49,7 +49,7 @@ static void print_node(const Graph *graph, Node node, const Sources *sources, Te
         text_add(out, graph_op_name(e->op));
     for (int i = 0; i < e->operand_count; i++)
         text_format(out, " %%%u", (unsigned)e->operands[i]);
-    if (e->op == OP_COMPONENT || e->op == OP_PARAMETER || is_of_crowd(e->op))
+    if (e->op == OP_COMPONENT || e->op == OP_PARAMETER || is_of_instances(e->op))
         text_format(out, " %u", (unsigned)e->index);
     print_position(sources, e->span, out);
     text_add(out, "\n");
@@ -57,16 +57,17 @@ static void print_node(const Graph *graph, Node node, const Sources *sources, Te
 
 static void print_functions(const Tape *tape, Text *out)
 {
-    const Crowds *crowds = tape->graph->crowds;
+    const Instances *instances = tape->graph->instances;
     for (uint32_t id = 0; id < tape->function_count; id++) {
-        const CrowdFunction *function = &crowds->functions.items[id];
+        const InstanceFunction *function = &instances->functions.items[id];
         if (!tape->functions[id].graph)
             continue;
-        const Crowd *table = &crowds->tables.items[function->crowd];
+        const InstanceTable *table = &instances->tables.items[function->table_number];
         text_format(out, "function %u of table %u, %u rows of %u:", (unsigned)id,
-                    (unsigned)function->crowd, (unsigned)table->rows, (unsigned)table->columns);
+                    (unsigned)function->table_number, (unsigned)table->rows,
+                    (unsigned)table->columns);
         for (uint32_t i = 0; i < body_count(function); i++)
-            text_format(out, " %%%u", (unsigned)crowds->bodies.items[function->first_body + i]);
+            text_format(out, " %%%u", (unsigned)instances->bodies.items[function->first_body + i]);
         text_add(out, "\n");
     }
 }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/fractal.h"
 #include "compiler/graph/regions.h"
@@ -70,9 +70,9 @@ static void sort_nodes(Node *nodes, size_t count)
 /* The frame's numbers in the column that OP_row reads. */
 static void add_column(NodeSet *set, const Graph *graph, const Expr *row, Arena *arena)
 {
-    uint32_t     id    = (uint32_t)graph->items[row->operands[0]].number[0];
-    const Crowd *table = &graph->crowds->tables.items[row_crowd(id)];
-    const Node  *nodes = column_nodes(graph->crowds, table, row_column(id));
+    uint32_t             id    = (uint32_t)graph->items[row->operands[0]].number[0];
+    const InstanceTable *table = &graph->instances->tables.items[row_table(id)];
+    const Node          *nodes = column_nodes(graph->instances, table, row_column(id));
     for (uint32_t i = 0; nodes && i < table->rows; i++)
         set_add(set, nodes[i], arena);
 }
@@ -87,14 +87,14 @@ static NodeSet find_needed(const Graph *graph, const Node *roots, size_t root_co
         const Expr *e = &graph->items[set.nodes[i]];
         for (int k = 0; k < e->operand_count; k++)
             set_add(&set, e->operands[k], arena);
-        if (e->op == OP_row && graph->crowds)
+        if (e->op == OP_row && graph->instances)
             add_column(&set, graph, e, arena);
     }
     sort_nodes(set.nodes, set.count);
     return set;
 }
 
-/* ---- crowd functions ---- */
+/* ---- instance functions ---- */
 
 /* The number of the function that a call names. */
 static uint32_t called_function(const Graph *graph, const Expr *call)
@@ -115,16 +115,16 @@ static void note_calls(Tape *functions, size_t end, const Graph *graph, const No
         }
 }
 
-/* What a function does at each member; what that needs of the frame is added to `frame`. */
+/* What a function does at each instance; what that needs of the frame is added to `frame`. */
 static void fill_function(Tape *functions, uint32_t id, const Graph *graph, NodeSet *frame,
                           Arena *arena)
 {
-    const Crowds        *crowds   = graph->crowds;
-    const CrowdFunction *function = &crowds->functions.items[id];
-    NodeSet              set      = find_needed(graph, crowds->bodies.items + function->first_body,
-                                                function->state_count, arena);
-    Node                *nodes    = arena_new_array(arena, Node, set.count + 1);
-    size_t               count    = 0;
+    const Instances        *instances = graph->instances;
+    const InstanceFunction *function  = &instances->functions.items[id];
+    NodeSet                 set = find_needed(graph, instances->bodies.items + function->first_body,
+                                              function->state_count, arena);
+    Node                   *nodes = arena_new_array(arena, Node, set.count + 1);
+    size_t                  count = 0;
     for (size_t i = 0; i < set.count; i++)
         if (graph->items[set.nodes[i]].time == TIME_POINT)
             nodes[count++] = set.nodes[i];
@@ -138,7 +138,7 @@ static void fill_function(Tape *functions, uint32_t id, const Graph *graph, Node
    what they need of the frame joins the set. */
 static Tape *find_functions(const Graph *graph, NodeSet *set, Arena *arena)
 {
-    size_t count     = graph->crowds->functions.count;
+    size_t count     = graph->instances->functions.count;
     Tape  *functions = arena_new_array(arena, Tape, count);
     note_calls(functions, count, graph, set->nodes, set->count);
     for (size_t id = count; id-- > 0;)
@@ -150,7 +150,7 @@ static Tape *find_functions(const Graph *graph, NodeSet *set, Arena *arena)
 
 static bool any_calls(const Graph *graph, const NodeSet *set)
 {
-    for (size_t i = 0; graph->crowds && i < set->count; i++)
+    for (size_t i = 0; graph->instances && i < set->count; i++)
         if (is_call((Op)graph->items[set->nodes[i]].op))
             return true;
     return false;
@@ -167,7 +167,7 @@ Tape tape_new(const Graph *graph, const Node *roots, size_t root_count, Arena *a
     Tape    tape = {.graph = graph};
     if (any_calls(graph, &set)) {
         tape.functions      = find_functions(graph, &set, arena);
-        tape.function_count = (uint32_t)graph->crowds->functions.count;
+        tape.function_count = (uint32_t)graph->instances->functions.count;
     }
     Node *nodes = arena_new_array(arena, Node, set.count + 1);
     for (int frame = 1; frame >= 0; frame--)
@@ -229,21 +229,21 @@ size_t tape_operations(const Tape *tape)
     return count;
 }
 
-static const Crowd *table_of(const Tape *tape, uint32_t function)
+static const InstanceTable *table_of(const Tape *tape, uint32_t function)
 {
-    const Crowds *crowds = tape->graph->crowds;
-    return &crowds->tables.items[crowds->functions.items[function].crowd];
+    const Instances *instances = tape->graph->instances;
+    return &instances->tables.items[instances->functions.items[function].table_number];
 }
 
 static double flops_of(const Tape *tape, bool apart);
 
-/* For all members, or a typical list and one member more. */
+/* For all instances, or a typical list and one instance more. */
 static double call_flops(const Tape *tape, uint32_t function, bool apart)
 {
-    const Crowd *table = table_of(tape, function);
-    const Grid  *grid  = &table->cells;
-    size_t       cells = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
-    double       mean  = (double)grid->first[cells] / (double)cells;
+    const InstanceTable *table = table_of(tape, function);
+    const Grid          *grid  = &table->cells;
+    size_t               cells = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
+    double               mean  = (double)grid->first[cells] / (double)cells;
     return (apart ? table->rows : mean + 1) * flops_of(&tape->functions[function], apart);
 }
 

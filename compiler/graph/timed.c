@@ -3,7 +3,7 @@
  */
 #include "compiler/graph/timed.h"
 
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 
 enum { TIME_SLOT = 0 }; /* of the parameter block */
 
@@ -15,26 +15,29 @@ static bool any_timed(const bool *timed, const Node *nodes, size_t count)
     return false;
 }
 
-static bool is_timed_table(const Crowds *crowds, const Crowd *table, const bool *timed)
+static bool is_timed_table(const Instances *instances, const InstanceTable *table,
+                           const bool *timed)
 {
     for (uint32_t i = 0; i < table->columns; i++) {
-        const Node *column = column_nodes(crowds, table, i);
+        const Node *column = column_nodes(instances, table, i);
         if (column && any_timed(timed, column, table->rows))
             return true;
     }
     size_t places = 0;
     for (uint32_t i = 0; table->places && i < table->rows; i++)
         places += place_nodes(table->places[i].kind);
-    return places > 0 && any_timed(timed, crowds->frame_numbers.items + table->first_place, places);
+    return places > 0 &&
+           any_timed(timed, instances->frame_numbers.items + table->first_place, places);
 }
 
 static bool is_timed_call(const Graph *graph, const Expr *call, const bool *timed)
 {
-    const uint32_t       number   = (uint32_t)graph->items[call->operands[0]].number[0];
-    const CrowdFunction *function = &graph->crowds->functions.items[number];
-    return any_timed(timed, graph->crowds->bodies.items + function->first_body,
+    const uint32_t          number   = (uint32_t)graph->items[call->operands[0]].number[0];
+    const InstanceFunction *function = &graph->instances->functions.items[number];
+    return any_timed(timed, graph->instances->bodies.items + function->first_body,
                      body_count(function)) ||
-           is_timed_table(graph->crowds, &graph->crowds->tables.items[function->crowd], timed);
+           is_timed_table(graph->instances, &graph->instances->tables.items[function->table_number],
+                          timed);
 }
 
 static bool is_timed(const Graph *graph, const Expr *e, const bool *timed)

@@ -1,12 +1,12 @@
 /*
  * blend.c: blends of any number of parts.
  *
- * All parts are operands of one blend (blends.def), whether they are lowered one by one or as members of crowds: so
+ * All parts are operands of one blend (blends.def), whether they are lowered one by one or as instances of groups: so
  * neither their order nor their number shows.
  */
 #include "compiler/lower/blend.h"
 
-#include "compiler/lower/crowd_group.h"
+#include "compiler/lower/instance_group.h"
 #include "compiler/lower/join.h"
 #include "compiler/lower/surface.h"
 
@@ -18,10 +18,10 @@ typedef struct Blending {
     Lowered     *parts;
     Node        *distances; /* of these */
     uint32_t     part_count;
-    JoinedCrowds crowds;
+    JoinedGroups groups;
 } Blending;
 
-static bool lower_parts(Blending *b, const CrowdJoin *join)
+static bool lower_parts(Blending *b, const PartJoin *join)
 {
     Graph *g     = b->l->graph;
     b->parts     = arena_new_array(b->l->scratch, Lowered, join->count + 1);
@@ -46,9 +46,9 @@ static bool lower_parts(Blending *b, const CrowdJoin *join)
 static Nearest nearest_operands(const Blending *b, bool pairs)
 {
     Graph  *g       = b->l->graph;
-    Nearest nearest = group_nearest(&b->crowds.groups[0], &b->crowds.join, pairs, b->context);
-    for (uint32_t i = 1; i < b->crowds.count; i++) {
-        Nearest more = group_nearest(&b->crowds.groups[i], &b->crowds.join, pairs, b->context);
+    Nearest nearest = group_nearest(&b->groups.groups[0], &b->groups.join, pairs, b->context);
+    for (uint32_t i = 1; i < b->groups.count; i++) {
+        Nearest more = group_nearest(&b->groups.groups[i], &b->groups.join, pairs, b->context);
         nearest      = nearest_merge(g, nearest, more);
     }
     for (uint32_t i = 0; i < b->part_count; i++)
@@ -65,8 +65,8 @@ static Node join_operands(const Blending *b)
     Node all = NODE_NONE;
     if (b->part_count > 0)
         all = blend_distances(b->l->graph, b->blend, b->distances, b->part_count);
-    for (uint32_t i = b->crowds.count; i-- > 0;) {
-        Node group = group_distance(&b->crowds.groups[i], &b->crowds.join, b->context);
+    for (uint32_t i = b->groups.count; i-- > 0;) {
+        Node group = group_distance(&b->groups.groups[i], &b->groups.join, b->context);
         all        = all == NODE_NONE ? group : join_distances(b->l->graph, b->blend, group, all);
     }
     return all;
@@ -94,7 +94,7 @@ static Mean mean_of_two(Graph *g, Mean a, Mean b)
 
 static Node threshold_of_operands(const Blending *b)
 {
-    return b->crowds.count == 0
+    return b->groups.count == 0
                ? blend_threshold(b->l->graph, b->blend, b->distances, b->part_count)
                : nearest_threshold(b->l->graph, b->blend, nearest_operands(b, false));
 }
@@ -105,9 +105,9 @@ static Surface mix_operands(const Blending *b)
     Node   threshold = threshold_of_operands(b);
     Mean   all;
     bool   any = false;
-    for (uint32_t i = 0; i < b->crowds.count; i++) {
-        CrowdGroup      *group = &b->crowds.groups[i];
-        const GroupJoin *join  = &b->crowds.join;
+    for (uint32_t i = 0; i < b->groups.count; i++) {
+        InstanceGroup   *group = &b->groups.groups[i];
+        const GroupJoin *join  = &b->groups.join;
         Nearest          pairs = group_nearest(group, join, false, b->context);
         Mean             next  = {group_surface(group, join, threshold, b->context),
                                   group_share(group, join, threshold, b->context),
@@ -126,19 +126,19 @@ static Surface mix_operands(const Blending *b)
 
 /* ---- all ---- */
 
-Lowered lower_blend(Lowering *l, CrowdJoin join, LowerContext context, bool *nowhere)
+Lowered lower_blend(Lowering *l, PartJoin join, LowerContext context, bool *nowhere)
 {
     Blending b      = {.l = l, .blend = join.joint->blend, .context = context};
     Lowered  result = lowered_nothing;
-    b.crowds        = find_crowds(l, &join, context);
+    b.groups        = find_joined_groups(l, &join, context);
     *nowhere        = !lower_parts(&b, &join);
-    if (*nowhere || b.crowds.count + b.part_count == 0)
+    if (*nowhere || b.groups.count + b.part_count == 0)
         return result;
-    if (b.crowds.count == 1 && b.part_count == 0)
-        return group_lower(&b.crowds.groups[0], &b.crowds.join, l->surfaces, context);
-    if (b.crowds.count == 0 && b.part_count <= 2)
+    if (b.groups.count == 1 && b.part_count == 0)
+        return group_lower(&b.groups.groups[0], &b.groups.join, l->surfaces, context);
+    if (b.groups.count == 0 && b.part_count <= 2)
         return b.part_count == 1 ? b.parts[0] : join_two(l, b.blend, b.parts[0], b.parts[1]);
-    result.distance = b.crowds.count == 0
+    result.distance = b.groups.count == 0
                           ? blend_distances(l->graph, b.blend, b.distances, b.part_count)
                           : join_operands(&b);
     if (l->surfaces)

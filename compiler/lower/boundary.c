@@ -9,7 +9,7 @@
 
 #include "compiler/graph/build.h"
 #include "compiler/graph/instances/turns.h"
-#include "compiler/lower/crowd.h"
+#include "compiler/lower/instance_groups.h"
 #include "compiler/lower/outline.h"
 
 /* More lines go to a table, and more arcs are left. */
@@ -535,7 +535,7 @@ static void make_table(struct Boundary *boundary, Span span, Arena *scratch)
     all->count          = (uint32_t)boundary->lines.count;
     for (uint32_t i = 0; i < all->count; i++)
         all->pieces[i].curve = boundary->lines.items[i];
-    table->members        = outline_members(all, boundary->arena, scratch);
+    table->instances      = outline_instances(all, boundary->arena, scratch);
     boundary->table       = table;
     boundary->lines.count = 0;
 }
@@ -632,15 +632,15 @@ static Node distance_to_table(Lowering *l, struct Boundary *boundary, double rea
 {
     bool is_new;
     Node distance = outline_distance(l->graph, boundary->table, reach, point, &is_new, l->scratch);
-    if (is_new && l->crowds)
-        lowered_crowds_made(l->crowds);
+    if (is_new && l->groups)
+        lowered_groups_made(l->groups);
     return graph_op1(l->graph, OP_abs, distance);
 }
 
 static bool boundary_counts(Lowering *l, const Shape *joint, LowerContext context)
 {
     struct Boundary *boundary = joint->boundary;
-    if (!boundary || !(context.reach > 0) || !(l->crowds || l->far))
+    if (!boundary || !(context.reach > 0) || !(l->groups || l->far))
         return false;
     if (boundary->state == BOUNDARY_NEW)
         find_boundary(l, joint, boundary);

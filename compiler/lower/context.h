@@ -40,20 +40,20 @@ typedef struct Nodes {
 } Nodes;
 
 typedef struct Lowering {
-    Graph                *graph;
-    Arena                *scratch;
-    bool                  surfaces; /* lower the surface too, not the distance alone */
-    AlongMethod           method;   /* for ray_step.c and ray_images.c */
-    bool                  thin;     /* rays_pass for all shapes above: sheets have no thickness */
-    bool                  far;      /* without crowds: distances to outlines are right everywhere */
-    bool                  guarded;  /* skip levels of sequences that are far away (guards.c) */
-    Node                  unit;     /* guarded: length, outside of all shapes, of 1 in this space */
-    size_t                most;     /* nodes that the graph may have */
-    bool                  overflow; /* it would have more */
-    struct LoweredCrowds *crowds;   /* crowd.h; NULL: each part is lowered for itself */
-    Nodes         *held_constant;   /* for lower_gradient: nodes that count as constants; or NULL */
-    LoweredShapes *lowered_shapes;  /* gets all shapes, children first; or NULL */
-    bool           places;          /* find Surface.place */
+    Graph      *graph;
+    Arena      *scratch;
+    bool        surfaces; /* lower the surface too, not the distance alone */
+    AlongMethod method;   /* for ray_step.c and ray_images.c */
+    bool        thin;     /* rays_pass for all shapes above: sheets have no thickness */
+    bool        far;      /* without instance groups: distances to outlines are right everywhere */
+    bool        guarded;  /* skip levels of sequences that are far away (guards.c) */
+    Node        unit;     /* guarded: length, outside of all shapes, of 1 in this space */
+    size_t      most;     /* nodes that the graph may have */
+    bool        overflow; /* it would have more */
+    struct LoweredGroups *groups;  /* instance_groups.h; NULL: each part is lowered for itself */
+    Nodes         *held_constant;  /* for lower_gradient: nodes that count as constants; or NULL */
+    LoweredShapes *lowered_shapes; /* gets all shapes, children first; or NULL */
+    bool           places;         /* find Surface.place */
 } Lowering;
 
 /* Where a shape is lowered: the point in the space of the shape, and the sequence around it.

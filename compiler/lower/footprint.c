@@ -10,40 +10,40 @@
  * Two expressions together, with h and k, map the disc to an ellipse.  Its sides are 2 r times the roots
  * of the eigenvalues of the matrix of h.h, h.k and k.k.
  *
- * Where no ray is known, as of members of crowds, the surface is taken to be seen from its front.
+ * Where no ray is known, as of instances of groups, the surface is taken to be seen from its front.
  */
 #include "compiler/lower/footprint.h"
 
 #include "compiler/graph/build.h"
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/symbolic/derive.h"
 
 /* Nearer to grazing than this cosine, pixels are taken to be no longer. */
 static const double LEAST_COSINE_SQUARED = 1e-6;
 
-/* Bodies of crowds have leaves of their own. */
+/* Bodies of instance groups have leaves of their own. */
 Pixel pixel_of(Graph *g, Node expression, Arena *scratch)
 {
-    uint32_t crowd    = 0;
-    bool     in_crowd = false;
-    Tape     tape     = tape_new(g, &expression, 1, scratch);
+    uint32_t table_number = 0;
+    bool     in_instances = false;
+    Tape     tape         = tape_new(g, &expression, 1, scratch);
     for (size_t i = tape.frame_count; i < tape.count; i++)
-        if (g->items[tape.nodes[i]].op == OP_CROWD_POINT) {
-            crowd    = g->items[tape.nodes[i]].index;
-            in_crowd = true;
+        if (g->items[tape.nodes[i]].op == OP_INSTANCE_POINT) {
+            table_number = g->items[tape.nodes[i]].index;
+            in_instances = true;
         }
     Pixel pixel = {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE};
-    if (!in_crowd) {
+    if (!in_instances) {
         pixel.point  = graph_leaf(g, OP_POINT);
         pixel.normal = graph_leaf(g, OP_NORMAL);
         pixel.view   = graph_leaf(g, OP_VIEW);
         pixel.radius = graph_leaf(g, OP_FOOTPRINT);
         return pixel;
     }
-    pixel.point  = graph_crowd_leaf(g, OP_CROWD_POINT, crowd);
-    pixel.normal = pixel.view = graph_crowd_leaf(g, OP_CROWD_NORMAL, crowd);
-    pixel.radius              = graph_crowd_leaf(g, OP_CROWD_FOOTPRINT, crowd);
+    pixel.point  = graph_instance_leaf(g, OP_INSTANCE_POINT, table_number);
+    pixel.normal = pixel.view = graph_instance_leaf(g, OP_INSTANCE_NORMAL, table_number);
+    pixel.radius              = graph_instance_leaf(g, OP_INSTANCE_FOOTPRINT, table_number);
     return pixel;
 }
 

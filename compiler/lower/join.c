@@ -4,7 +4,7 @@
 #include "compiler/lower/join.h"
 
 #include "compiler/lower/box_distance.h"
-#include "compiler/lower/crowd_group.h"
+#include "compiler/lower/instance_group.h"
 #include "compiler/lower/surface.h"
 
 Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b)
@@ -41,7 +41,7 @@ static bool keeps_to_box(const Lowering *l, const Shape *shape)
     if (shape->exact)
         return true;
     if (!joins || shape->sheets ||
-        (l->crowds && shape->child_count >= least_of_joint(l->crowds, sharp)) ||
+        (l->groups && shape->child_count >= least_of_joint(l->groups, sharp)) ||
         (!sharp && blend_info[shape->blend.kind].slope > 1))
         return false;
     for (uint32_t i = 0; i < (difference ? 1 : shape->child_count); i++)

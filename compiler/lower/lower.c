@@ -6,7 +6,7 @@
 #include "compiler/base/far.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/symbolic/derive.h"
-#include "compiler/lower/crowd.h"
+#include "compiler/lower/instance_groups.h"
 #include "compiler/lower/normal.h"
 #include "compiler/shape/slope.h"
 
@@ -30,14 +30,14 @@ Node root_otherwise(Graph *graph, ComponentRoot root)
 static Node or_else(Node node, Node otherwise) { return node == NODE_NONE ? otherwise : node; }
 
 bool lower_component(Graph *graph, const Shape *shape, uint32_t number,
-                     struct LoweredCrowds *crowds, Arena *scratch, Node *roots, Node *place)
+                     struct LoweredGroups *groups, Arena *scratch, Node *roots, Node *place)
 {
     Lowering     l       = {.graph    = graph,
                             .scratch  = scratch,
                             .surfaces = true,
                             .thin     = true,
                             .most     = graph->count + MOST_LOWERED,
-                            .crowds   = crowds,
+                            .groups   = groups,
                             .places   = place != NULL};
     LowerContext context = context_new(graph_leaf(graph, OP_POINT), false);
     context.normal       = graph_leaf(graph, OP_NORMAL);
@@ -59,21 +59,21 @@ bool lower_component(Graph *graph, const Shape *shape, uint32_t number,
     return !l.overflow;
 }
 
-bool lower_solid(Graph *graph, const Shape *shape, struct LoweredCrowds *crowds, Arena *scratch,
+bool lower_solid(Graph *graph, const Shape *shape, struct LoweredGroups *groups, Arena *scratch,
                  Node *distance)
 {
     Lowering l   = {.graph   = graph,
                     .scratch = scratch,
                     .thin    = true,
                     .most    = graph->count + MOST_LOWERED,
-                    .crowds  = crowds};
+                    .groups  = groups};
     Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(graph, OP_POINT), false));
     *distance    = divide_by_slope(graph, or_else(all.distance, graph_number(graph, NOWHERE)),
                                    shape->slope);
     return !l.overflow;
 }
 
-Node lower_guarded(Graph *graph, const Shape *shape, Node plain, struct LoweredCrowds *crowds,
+Node lower_guarded(Graph *graph, const Shape *shape, Node plain, struct LoweredGroups *groups,
                    Arena *scratch)
 {
     Lowering l   = {.graph   = graph,
@@ -82,7 +82,7 @@ Node lower_guarded(Graph *graph, const Shape *shape, Node plain, struct LoweredC
                     .thin    = true,
                     .unit    = graph_number(graph, 1),
                     .most    = graph->count + MOST_LOWERED,
-                    .crowds  = crowds};
+                    .groups  = groups};
     Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(graph, OP_POINT), false));
     if (all.distance == NODE_NONE || l.overflow)
         return plain;
@@ -94,7 +94,7 @@ Node lower_guarded(Graph *graph, const Shape *shape, Node plain, struct LoweredC
 enum { MOST_DERIVED = 20000 };
 
 bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near,
-                    struct LoweredCrowds *crowds, Arena *scratch)
+                    struct LoweredGroups *groups, Arena *scratch)
 {
     Nodes    held_constant = {0};
     Lowering l             = {.graph         = graph,
@@ -102,7 +102,7 @@ bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near
                               .held_constant = &held_constant,
                               .thin          = true,
                               .most          = graph->count + MOST_DERIVED,
-                              .crowds        = crowds};
+                              .groups        = groups};
     Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(graph, OP_POINT), false));
     if (all.distance == NODE_NONE || l.overflow)
         return false;

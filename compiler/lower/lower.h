@@ -7,7 +7,7 @@
 #include "compiler/lower/along_method.h"
 #include "compiler/shape/shape.h"
 
-struct LoweredCrowds; /* crowd.h */
+struct LoweredGroups; /* instance_groups.h */
 
 /* The roots of a component's graph: what is computed at a point. */
 typedef enum ComponentRoot {
@@ -32,17 +32,17 @@ extern const RootInfo root_info[ROOT_COUNT];
 /* The value of a root where no material and no shape sets it. */
 Node root_otherwise(Graph *graph, ComponentRoot root);
 
-/* In all of these `crowds` are those of the scene (crowd.h), or NULL. */
+/* In all of these `instances` are those of the scene (instance_groups.h), or NULL. */
 
 /* Lowers a shape at the point OP_POINT and sets roots[ROOT_COUNT].  `number` is that of the component,
    from 1, where the shape's parts have none of their own (Shape.shown).  *place, unless NULL, is where its
    material reads a texture, a VEC2, or NODE_NONE.  False when that needs more than MOST_LOWERED nodes, for
    example for copies of copies. */
 bool lower_component(Graph *graph, const Shape *shape, uint32_t number,
-                     struct LoweredCrowds *crowds, Arena *scratch, Node *roots, Node *place);
+                     struct LoweredGroups *groups, Arena *scratch, Node *roots, Node *place);
 
 /* Its distance alone, and nothing else of it; as ROOT_DISTANCE. */
-bool lower_solid(Graph *graph, const Shape *shape, struct LoweredCrowds *crowds, Arena *scratch,
+bool lower_solid(Graph *graph, const Shape *shape, struct LoweredGroups *groups, Arena *scratch,
                  Node *distance);
 
 /*
@@ -51,7 +51,7 @@ bool lower_solid(Graph *graph, const Shape *shape, struct LoweredCrowds *crowds,
  * The result is a bound and positive in the same places as ROOT_DISTANCE, but often smaller, and it
  * jumps.  It is `plain`, which is ROOT_DISTANCE, when the graph would be too large.
  */
-Node lower_guarded(Graph *graph, const Shape *shape, Node plain, struct LoweredCrowds *crowds,
+Node lower_guarded(Graph *graph, const Shape *shape, Node plain, struct LoweredGroups *groups,
                    Arena *scratch);
 
 /*
@@ -61,7 +61,7 @@ Node lower_guarded(Graph *graph, const Shape *shape, Node plain, struct LoweredC
  * ROOT_DISTANCE, where the method does not apply.
  */
 Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod method,
-                 struct LoweredCrowds *crowds, Arena *scratch);
+                 struct LoweredGroups *groups, Arena *scratch);
 
 /*
  * The gradient of a function that is about ROOT_DISTANCE near the surface, and in `near` that
@@ -69,7 +69,7 @@ Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod metho
  * when the graph would be too large.
  */
 bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near,
-                    struct LoweredCrowds *crowds, Arena *scratch);
+                    struct LoweredGroups *groups, Arena *scratch);
 
 /* Whether a shape has sheets without thickness.  Their distance is 0, but nowhere near them is it
    negative, so only lower_along finds where a ray meets them. */

@@ -11,16 +11,16 @@
 
 /* ---- the body ---- */
 
-/* A member in the body of the function. */
+/* An instance in the body of the function. */
 typedef struct Row {
     Graph   *graph;
-    uint32_t crowd;
-    Node     member, point;
+    uint32_t table_number;
+    Node     instance, point;
 } Row;
 
 static Node number_of(const Row *row, uint32_t column)
 {
-    return graph_row(row->graph, row->crowd, column, row->member);
+    return graph_row(row->graph, row->table_number, column, row->instance);
 }
 
 static Node vector_of(const Row *row, uint32_t column)
@@ -123,31 +123,33 @@ static Node nearer(Graph *g, Node state, Node distance)
     return graph_op3(g, OP_select, less, distance, state);
 }
 
-static uint32_t add_function(Graph *g, const OutlineShape *shape, uint32_t crowd)
+static uint32_t add_function(Graph *g, const OutlineShape *shape, uint32_t table_number)
 {
-    uint32_t id    = (uint32_t)graph_crowds(g)->functions.count;
+    uint32_t id    = (uint32_t)graph_instances(g)->functions.count;
     Node     state = graph_state(g, TYPE_FLOAT, id, 0);
-    Node     point = graph_crowd_leaf(g, OP_CROWD_POINT, crowd);
+    Node     point = graph_instance_leaf(g, OP_INSTANCE_POINT, table_number);
     Node     x = graph_component(g, point, 0), y = graph_component(g, point, 1);
-    Row      row = {g, crowd, graph_crowd_leaf(g, OP_MEMBER, crowd), graph_op2(g, OP_vec2, x, y)};
-    Node body = shape->members.columns == LINE_COLUMNS ? line_distance(&row) : curve_distance(&row);
-    body      = nearer(g, state, body);
-    CrowdFunction function = {.crowd       = crowd,
-                              .type        = TYPE_FLOAT,
-                              .clear       = true,
-                              .either      = true,
-                              .slope       = 1,
-                              .states      = {{TYPE_FLOAT, {NOWHERE}}},
-                              .state_count = 1};
-    return graph_add_crowd_function(g, function, &body);
+    Row      row  = {g, table_number, graph_instance_leaf(g, OP_INSTANCE_ROW, table_number),
+                     graph_op2(g, OP_vec2, x, y)};
+    Node     body = shape->instances.columns == LINE_COLUMNS ? line_distance(&row)
+                                                             : curve_distance(&row);
+    body          = nearer(g, state, body);
+    InstanceFunction function = {.table_number = table_number,
+                                 .type         = TYPE_FLOAT,
+                                 .clear        = true,
+                                 .either       = true,
+                                 .slope        = 1,
+                                 .states       = {{TYPE_FLOAT, {NOWHERE}}},
+                                 .state_count  = 1};
+    return graph_add_instance_function(g, function, &body);
 }
 
 /* ---- the table ---- */
 
-static double distance_to_piece(const void *members, uint32_t member, const double point[2])
+static double distance_to_piece(const void *instances, uint32_t instance, const double point[2])
 {
-    const OutlineMembers *all = members;
-    return fabs(piece_distance(&all->pieces[member], point));
+    const OutlineInstances *all = instances;
+    return fabs(piece_distance(&all->pieces[instance], point));
 }
 
 /* Around the control points. */
@@ -161,9 +163,9 @@ static Box box_of(const Curve *curve)
     return box;
 }
 
-static CrowdArc arc_of(const Curve *curve)
+static InstanceArc arc_of(const Curve *curve)
 {
-    CrowdArc arc;
+    InstanceArc arc;
     for (int k = 0; k < 2; k++) {
         double from = curve->from[k], to = curve->to[k], via = curve->via[k];
         arc.start[k] = from;
@@ -173,7 +175,7 @@ static CrowdArc arc_of(const Curve *curve)
     return arc;
 }
 
-/* The sign of clearances in cells that no member is in. */
+/* The sign of clearances in cells that no instance is in. */
 static void mark_inside(Grid *grid, const Outline *outline, Arena *scratch)
 {
     const uint32_t *count  = grid->cells;
@@ -190,26 +192,26 @@ static void mark_inside(Grid *grid, const Outline *outline, Arena *scratch)
 
 static uint32_t add_table(Graph *g, const OutlineShape *shape, double margin, Arena *scratch)
 {
-    const OutlineMembers *members = &shape->members;
-    Crowds               *crowds  = graph_crowds(g);
-    Crowd                 table   = {.rows    = members->count,
-                                     .columns = members->columns,
-                                     .numbers = members->numbers,
-                                     .boxes   = arena_new_array(crowds->arena, Box, members->count),
-                                     .arcs = arena_new_array(crowds->arena, CrowdArc, members->count),
-                                     .stretch = 1,
-                                     .span    = shape->span};
-    for (uint32_t i = 0; i < members->count; i++) {
-        table.boxes[i] = box_of(&members->pieces[i].curve);
-        table.arcs[i]  = arc_of(&members->pieces[i].curve);
+    const OutlineInstances *instances = &shape->instances;
+    Instances              *groups    = graph_instances(g);
+    InstanceTable           table     = {.rows    = instances->count,
+                                         .columns = instances->columns,
+                                         .numbers = instances->numbers,
+                                         .boxes = arena_new_array(groups->arena, Box, instances->count),
+                                         .arcs = arena_new_array(groups->arena, InstanceArc, instances->count),
+                                         .stretch = 1,
+                                         .span    = shape->span};
+    for (uint32_t i = 0; i < instances->count; i++) {
+        table.boxes[i] = box_of(&instances->pieces[i].curve);
+        table.arcs[i]  = arc_of(&instances->pieces[i].curve);
     }
-    GridMembers near = {distance_to_piece, members};
+    GridInstances near = {distance_to_piece, instances};
     grid_build_flat(&table.grid, table.boxes, table.rows, margin, (uint32_t)row_texels(&table),
-                    near, crowds->arena, scratch);
+                    near, groups->arena, scratch);
     mark_inside(&table.grid, &shape->outline, scratch);
     table.cells = table.grid;
-    array_push(crowds->arena, &crowds->tables, table);
-    return (uint32_t)crowds->tables.count - 1;
+    array_push(groups->arena, &groups->tables, table);
+    return (uint32_t)groups->tables.count - 1;
 }
 
 Node outline_distance(Graph *graph, OutlineShape *shape, double margin, Node point, bool *is_new,
@@ -220,9 +222,10 @@ Node outline_distance(Graph *graph, OutlineShape *shape, double margin, Node poi
         i++;
     *is_new = i == shape->functions.count;
     if (*is_new) {
-        uint32_t        crowd    = add_table(graph, shape, margin, scratch);
-        OutlineFunction function = {margin, add_function(graph, shape, crowd)};
+        uint32_t        table_number = add_table(graph, shape, margin, scratch);
+        OutlineFunction function     = {margin, add_function(graph, shape, table_number)};
         array_push(graph->arena, &shape->functions, function);
     }
-    return graph_crowd(graph, OP_crowd_distance, shape->functions.items[i].function, point);
+    return graph_instance_call(graph, OP_instance_distance, shape->functions.items[i].function,
+                               point);
 }

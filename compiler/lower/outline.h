@@ -1,14 +1,14 @@
 /*
- * outline.h: the signed distance to an outline, as a function of a crowd (graph/crowd.h).
+ * outline.h: the signed distance to an outline, as a function of an instance group (graph/instance_table.h).
  *
- * Its members are curves, of which the nearest one decides, by its distance and its side.  The cells
+ * Its instances are curves, of which the nearest one decides, by its distance and its side.  The cells
  * of the grid that none of them is in say by the sign of their clearance whether they are inside.
  */
 #ifndef KRS_LOWER_OUTLINE_H
 #define KRS_LOWER_OUTLINE_H
 
-#include "compiler/graph/crowd.h"
-#include "compiler/outline/members.h"
+#include "compiler/graph/instance_table.h"
+#include "compiler/outline/outline_instances.h"
 
 typedef struct OutlineFunction {
     double   margin; /* within which distances are exact */
@@ -16,11 +16,11 @@ typedef struct OutlineFunction {
 } OutlineFunction;
 
 typedef struct OutlineShape {
-    Outline        outline;
-    OutlineMembers members;
-    Curves         drawn; /* what it was made of */
-    FillRule       rule;
-    Span           span;
+    Outline          outline;
+    OutlineInstances instances;
+    Curves           drawn; /* what it was made of */
+    FillRule         rule;
+    Span             span;
     struct {
         OutlineFunction *items;
         size_t           count, capacity;

@@ -380,7 +380,7 @@ static Node image_shape(Lowering *l, const Shape *shape, RayImage image)
 }
 
 Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod method,
-                 struct LoweredCrowds *crowds, Arena *scratch)
+                 struct LoweredGroups *groups, Arena *scratch)
 {
     if (!reaches_inversion(shape))
         return plain;
@@ -388,7 +388,7 @@ Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod metho
                        .scratch = scratch,
                        .most    = graph->count + MOST_LOWERED,
                        .method  = method,
-                       .crowds  = crowds,
+                       .groups  = groups,
                        .thin    = true};
     RayImage image  = {.bow            = NODE_NONE,
                        .tilt           = NODE_NONE,

@@ -7,10 +7,10 @@
 #include "compiler/lower/along_method.h"
 #include "compiler/shape/shape.h"
 
-struct LoweredCrowds; /* crowd.h */
+struct LoweredGroups; /* instance_groups.h */
 
 /* lower_along() by the method ALONG_DIRECTIONAL or ALONG_PROBE. */
 Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod method,
-                 struct LoweredCrowds *crowds, Arena *scratch);
+                 struct LoweredGroups *groups, Arena *scratch);
 
 #endif

@@ -481,17 +481,17 @@ static Node along(Lowering *l, const Shape *shape, Ray ray)
 }
 
 Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod method,
-                 struct LoweredCrowds *crowds, Arena *scratch)
+                 struct LoweredGroups *groups, Arena *scratch)
 {
     if (method >= ALONG_POLYNOMIALS)
-        return lower_image(graph, shape, plain, method, crowds, scratch);
+        return lower_image(graph, shape, plain, method, groups, scratch);
     if (!reaches_polynomial(shape))
         return plain;
     Lowering l = {.graph   = graph,
                   .scratch = scratch,
                   .most    = graph->count + MOST_LOWERED,
                   .method  = method,
-                  .crowds  = crowds,
+                  .groups  = groups,
                   .thin    = true};
     Ray ray = {graph_leaf(graph, OP_POINT), graph_leaf(graph, OP_DIRECTION), graph_number(graph, 1),
                graph_leaf(graph, OP_FOOTPRINT)};

@@ -28,15 +28,16 @@ typedef enum PassId {
 
 /* Results of a run other than the compiled scene. */
 typedef struct Request {
-    PassId   after;        /* the pass to dump; PASS_COUNT: none */
-    PassId   end;          /* the pass before which the run ends; PASS_COUNT: none */
-    char   **dump;         /* where the dump goes, unless NULL */
-    bool    *format;       /* unless NULL: the dump is the text in canonical layout, and *format is
+    PassId   after;   /* the pass to dump; PASS_COUNT: none */
+    PassId   end;     /* the pass before which the run ends; PASS_COUNT: none */
+    char   **dump;    /* where the dump goes, unless NULL */
+    bool    *format;  /* unless NULL: the dump is the text in canonical layout, and *format is
                              whether it was so before */
-    Inspect *inspect;      /* called with the elaborated scene, unless NULL */
-    void    *user;         /* passed to `inspect` */
-    uint32_t least_crowd;  /* members of a crowd (lower/crowd.h); 0: LEAST_CROWD */
-    bool     turn_by_turn; /* each turn of a loop is evaluated by itself (eval/turns.c) */
+    Inspect *inspect; /* called with the elaborated scene, unless NULL */
+    void    *user;    /* passed to `inspect` */
+    uint32_t
+        least_instances; /* instances of an instance group (lower/instance_groups.h); 0: LEAST_INSTANCES */
+    bool turn_by_turn; /* each turn of a loop is evaluated by itself (eval/turns.c) */
 } Request;
 
 /* Which optional roots are lowered, besides the surface and the march of each component.  `lower`
@@ -89,8 +90,8 @@ void validate_pruned(const Compilation *c);
 void validate_parameterised(const Compilation *c);
 void validate_facts(const Compilation *c);
 
-/* passes.c: members of a crowd, and turns of a loop that is evaluated once. */
-uint32_t least_crowd(const Compilation *c);
+/* passes.c: instances of an instance group, and turns of a loop that is evaluated once. */
+uint32_t least_instances(const Compilation *c);
 
 /* precision.c: whether a camera may be so far from the origin, and so near to a surface, that
    points must be camera-relative. */
@@ -102,7 +103,7 @@ bool may_need_rebase(const Scene *scene, Graph *graph, const Roots *roots, bool 
 void refuse_component(Compilation *c, size_t component, size_t operations);
 
 /* find_assembly.c: finds the assembly of the scene, if the options ask for it, and returns its roots. */
-RootRange find_assembly(Compilation *c, struct LoweredCrowds *crowds);
+RootRange find_assembly(Compilation *c, struct LoweredGroups *instances);
 /* find_motion.c: finds what the time does to components that are lowered, if the options ask for it. */
 void find_motions(Compilation *c);
 

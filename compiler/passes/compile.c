@@ -328,10 +328,10 @@ KrsStatus inspect_elaborated(const char *text, size_t length, const KrsOptions *
     return status;
 }
 
-KrsStatus compile_with_crowds(const char *text, size_t length, uint32_t least,
-                              const KrsOptions *options, KrsScene **scene)
+KrsStatus compile_with_instances(const char *text, size_t length, uint32_t least,
+                                 const KrsOptions *options, KrsScene **scene)
 {
-    Request request = {.after = PASS_COUNT, .end = PASS_COUNT, .least_crowd = least};
+    Request request = {.after = PASS_COUNT, .end = PASS_COUNT, .least_instances = least};
     return load_and_compile(text, length, "scene.krs", options, &request, scene);
 }
 
@@ -339,6 +339,6 @@ KrsStatus compile_turn_by_turn(const char *text, size_t length, uint32_t least,
                                const KrsOptions *options, KrsScene **scene)
 {
     Request request = {
-        .after = PASS_COUNT, .end = PASS_COUNT, .least_crowd = least, .turn_by_turn = true};
+        .after = PASS_COUNT, .end = PASS_COUNT, .least_instances = least, .turn_by_turn = true};
     return load_and_compile(text, length, "scene.krs", options, &request, scene);
 }

@@ -93,15 +93,15 @@ static void find_steps(Compilation *c)
 
 static void find_tables(Compilation *c)
 {
-    KrsProgram   *program = &c->scene->program;
-    const Crowds *crowds  = c->scene->graph->crowds;
-    TableSizes    sizes   = tables_measure(crowds, c->scene->graph->textures);
-    program->table_rows   = sizes.rows;
-    program->table_cells  = sizes.cells;
-    program->rows_vary    = crowds_vary(crowds);
-    program->table_count  = crowds ? crowds->tables.count : 0;
+    KrsProgram      *program   = &c->scene->program;
+    const Instances *instances = c->scene->graph->instances;
+    TableSizes       sizes     = tables_measure(instances, c->scene->graph->textures);
+    program->table_rows        = sizes.rows;
+    program->table_cells       = sizes.cells;
+    program->rows_vary         = instances_vary(instances);
+    program->table_count       = instances ? instances->tables.count : 0;
     for (size_t t = 0; t < program->table_count; t++)
-        program->table_members += crowds->tables.items[t].rows;
+        program->table_instances += instances->tables.items[t].rows;
 }
 
 static void find_textures(Compilation *c)

@@ -319,7 +319,7 @@ static const Shape *part_shape(Finder *f, const Known *part)
     return shape;
 }
 
-RootRange find_assembly(Compilation *c, struct LoweredCrowds *crowds)
+RootRange find_assembly(Compilation *c, struct LoweredGroups *groups)
 {
     Finder f = {.assembly = &c->scene->assembly,
                 .arena    = &c->scene->arena,
@@ -337,7 +337,7 @@ RootRange find_assembly(Compilation *c, struct LoweredCrowds *crowds)
     for (size_t i = 0; i < f.parts.count; i++) {
         const Known *part = &f.parts.items[i];
         uint32_t     root = f.assembly->items.items[part->item].root;
-        if (!lower_solid(f.graph, part_shape(&f, part), crowds, &c->scratch,
+        if (!lower_solid(f.graph, part_shape(&f, part), groups, &c->scratch,
                          &f.roots.items[root])) {
             *f.assembly = (Assembly){0}; /* too large: it is meshed as a whole */
             return (RootRange){0};

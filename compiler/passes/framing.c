@@ -9,7 +9,7 @@
  * into cells, down to small ones, and a cell is left out when the distance at its middle shows that it
  * is empty.  Further rays go to the cells that remain.
  *
- * The picture does not depend on whether parts are a crowd: rays and their number are as without.
+ * The picture does not depend on whether parts are an instance group: rays and their number are as without.
  */
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /*
  * inspect.h: access to the elaborated scene with its shapes, which a compiled scene has no longer, and
- * to scenes with fewer or more crowds.
+ * to scenes with fewer or more groups.
  */
 #ifndef KRS_INSPECT_H
 #define KRS_INSPECT_H
@@ -27,10 +27,10 @@ KrsStatus inspect_file(const char *path, const KrsOptions *options, Inspect *ins
 KrsStatus inspect_elaborated(const char *text, size_t length, const KrsOptions *options,
                              Inspect *inspect, void *user);
 
-/* Compiles a text as krs_compile_text does, but parts that are alike are a crowd from this number of
-   members on; UINT32_MAX: they stay apart.  So tests hold crowds against parts apart. */
-KrsStatus compile_with_crowds(const char *text, size_t length, uint32_t least,
-                              const KrsOptions *options, KrsScene **scene);
+/* Compiles a text as krs_compile_text does, but parts that are alike are an instance group from this number of
+   instances on; UINT32_MAX: they stay apart.  So tests hold instance groups against parts apart. */
+KrsStatus compile_with_instances(const char *text, size_t length, uint32_t least,
+                                 const KrsOptions *options, KrsScene **scene);
 
 /* The same, and loops are evaluated turn by turn, though these differ in numbers only. */
 KrsStatus compile_turn_by_turn(const char *text, size_t length, uint32_t least,

@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "compiler/passes/compilation.h"
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/bounds/facts.h"
 
 enum { MOST_OPERATIONS = 20000, MOST_GLSL_BYTES = 1500000 };
@@ -161,7 +161,7 @@ static void refuse_number(Compilation *c, const Component *shown, Span span)
         diag_secondary(&c->diags, diag, span, "in here");
 }
 
-/* Of those that a tape has at points and frames, functions of crowds included. */
+/* Of those that a tape has at points and frames, functions of instance groups included. */
 static Node first_beyond_numbers(const Tape *tape)
 {
     Node found = NODE_NONE;
@@ -194,11 +194,11 @@ static bool is_around(const Component *shown, Span span)
    them, or else to the first. */
 static bool check_tables(Compilation *c)
 {
-    const Crowds    *crowds     = c->scene->graph->crowds;
+    const Instances *instances  = c->scene->graph->instances;
     const Component *components = c->elaborated.components.items;
-    for (size_t t = 0; crowds && t < crowds->tables.count; t++) {
-        const Crowd *table = &crowds->tables.items[t];
-        size_t       i = 0, of = 0, count = (size_t)table->rows * table->columns;
+    for (size_t t = 0; instances && t < instances->tables.count; t++) {
+        const InstanceTable *table = &instances->tables.items[t];
+        size_t               i = 0, of = 0, count = (size_t)table->rows * table->columns;
         while (i < count && fabs(table->numbers[i]) <= FLT_MAX)
             i++;
         if (i == count)

@@ -4,11 +4,11 @@
 #include <stdlib.h>
 
 #include "compiler/passes/compilation.h"
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/rewrite/parameterise.h"
 #include "compiler/graph/rewrite/joints.h"
 #include "compiler/graph/rewrite/simplify.h"
-#include "compiler/lower/crowd.h"
+#include "compiler/lower/instance_groups.h"
 
 /* ---- the front end ---- */
 
@@ -91,9 +91,9 @@ static bool parameterises(const Compilation *c)
     return c->options->specialize == KRS_SPECIALIZE_STRUCTURE;
 }
 
-uint32_t least_crowd(const Compilation *c)
+uint32_t least_instances(const Compilation *c)
 {
-    return c->request->least_crowd ? c->request->least_crowd : LEAST_CROWD;
+    return c->request->least_instances ? c->request->least_instances : LEAST_INSTANCES;
 }
 
 static void elaborate_with(Compilation *c, TurnTrials *turns)
@@ -135,7 +135,7 @@ static void elaborate_with(Compilation *c, TurnTrials *turns)
 KrsStatus pass_elaborate(Compilation *c)
 {
     const Diags before = c->diags;
-    TurnTrials  turns  = {.least = least_crowd(c)};
+    TurnTrials  turns  = {.least = least_instances(c)};
     elaborate_with(c, c->request->turn_by_turn ? NULL : &turns);
     if (turns.refused) {
         c->diags.count    = before.count;
@@ -169,8 +169,8 @@ KrsStatus pass_simplify(Compilation *c)
     Graph *graph    = graph_simplify(c->elaborated.graph, roots->all, roots->first[ROOT_KINDS],
                                      &c->scene->arena);
     c->scene->graph = c->simplified = graph;
-    if (graph->crowds)
-        crowds_keep(graph->crowds, &c->scene->arena);
+    if (graph->instances)
+        instances_keep(graph->instances, &c->scene->arena);
     return KRS_OK;
 }
 

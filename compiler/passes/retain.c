@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "compiler/passes/compilation.h"
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 
 static const char *retain_text(Compilation *c, const char *text)
 {
@@ -203,10 +203,10 @@ static void retain_tapes(Compilation *c)
     scene->box_numbers = tape_of(scene, roots_of(roots, ROOTS_BOX), arena);
     scene->view        = tape_of(scene, roots_from(roots, ROOTS_CAMERA, ROOTS_SKY), arena);
 
-    const Crowds *crowds = scene->graph->crowds;
-    if (crowds)
-        scene->rows = tape_new(scene->graph, crowds->frame_numbers.items,
-                               crowds->frame_numbers.count, arena);
+    const Instances *instances = scene->graph->instances;
+    if (instances)
+        scene->rows = tape_new(scene->graph, instances->frame_numbers.items,
+                               instances->frame_numbers.count, arena);
 }
 
 /* Tapes have much of the frame in common, which is run once for all.  Operands have smaller numbers. */

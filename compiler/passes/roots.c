@@ -14,7 +14,7 @@
 #include "compiler/graph/bounds/facts.h"
 #include "compiler/graph/rewrite/rebase.h"
 #include "compiler/graph/symbolic/derive.h"
-#include "compiler/lower/crowd.h"
+#include "compiler/lower/instance_groups.h"
 
 /* Allocates all roots, ordered by kind.  Those for camera-relative points are last, so that they
    can be left out. */
@@ -47,14 +47,14 @@ static void allocate_roots(Compilation *c, RootRange assembly)
                assembly.count * sizeof(Node));
 }
 
-static bool lower_components(Compilation *c, Graph *g, LoweredCrowds *crowds)
+static bool lower_components(Compilation *c, Graph *g, LoweredGroups *groups)
 {
     const Scene *s      = &c->elaborated;
     RootRange    places = roots_of(&c->scene->roots, ROOTS_PLACE);
     for (size_t i = 0; i < s->components.count; i++) {
         Node *place = places.count > 0 ? &places.items[i] : NULL;
         if (!lower_component(g, s->components.items[i].shape,
-                             (uint32_t)s->components.items[i].first + 1, crowds, &c->scratch,
+                             (uint32_t)s->components.items[i].first + 1, groups, &c->scratch,
                              surface_roots(&c->scene->roots, i), place)) {
             refuse_component(c, i, 0);
             return false;
@@ -85,7 +85,7 @@ static void gather_view(const Scene *s, const Roots *roots)
                                      fog->fall,      fog->base};
 }
 
-static void lower_marches(Compilation *c, Graph *g, LoweredCrowds *crowds)
+static void lower_marches(Compilation *c, Graph *g, LoweredGroups *groups)
 {
     const Scene *s     = &c->elaborated;
     const Roots *roots = &c->scene->roots;
@@ -93,10 +93,10 @@ static void lower_marches(Compilation *c, Graph *g, LoweredCrowds *crowds)
     for (size_t i = 0; i < count; i++) {
         const Shape *shape                      = s->components.items[i].shape;
         Node         plain                      = distance_root(roots, i);
-        roots_of(roots, ROOTS_GUARDED).items[i] = lower_guarded(g, shape, plain, crowds,
+        roots_of(roots, ROOTS_GUARDED).items[i] = lower_guarded(g, shape, plain, groups,
                                                                 &c->scratch);
         for (AlongMethod method = 0; method < ALONG_COUNT; method++)
-            along_roots(roots, method)[i] = lower_along(g, shape, plain, method, crowds,
+            along_roots(roots, method)[i] = lower_along(g, shape, plain, method, groups,
                                                         &c->scratch);
     }
 }
@@ -185,7 +185,7 @@ static bool is_algebraic(const Scene *s, const Roots *roots)
 }
 
 /* Lowers the gradients of all components and of the zones, if the additions include gradients. */
-static void lower_gradients(Compilation *c, Graph *g, LoweredCrowds *crowds)
+static void lower_gradients(Compilation *c, Graph *g, LoweredGroups *groups)
 {
     const Scene *s     = &c->elaborated;
     const Roots *roots = &c->scene->roots;
@@ -196,7 +196,7 @@ static void lower_gradients(Compilation *c, Graph *g, LoweredCrowds *crowds)
         if (zones && wants)
             known = graph_gradient(g, near, &gradient, NULL, &c->scratch) != DERIVED_NOT;
         else if (wants)
-            known = lower_gradient(g, s->components.items[i].shape, &gradient, &near, crowds,
+            known = lower_gradient(g, s->components.items[i].shape, &gradient, &near, groups,
                                    &c->scratch);
         Node distance             = zones ? near : distance_root(roots, i);
         *gradient_roots(roots, i) = known ? (GradientRoots){gradient, near}
@@ -237,26 +237,26 @@ KrsStatus pass_lower(Compilation *c)
     const Scene   *s      = &c->elaborated;
     Roots         *roots  = &c->scene->roots;
     Additions     *more   = &c->additions;
-    LoweredCrowds *crowds = lowered_crowds_new(s->graph, &c->work, &c->scene->arena,
-                                               least_crowd(c));
-    if (c->options->pictures && !c->request->least_crowd)
-        lowered_crowds_take_few(crowds);
-    allocate_roots(c, find_assembly(c, crowds));
-    if (!lower_components(c, s->graph, crowds))
+    LoweredGroups *groups = lowered_groups_new(s->graph, &c->work, &c->scene->arena,
+                                               least_instances(c));
+    if (c->options->pictures && !c->request->least_instances)
+        lowered_groups_take_few(groups);
+    allocate_roots(c, find_assembly(c, groups));
+    if (!lower_components(c, s->graph, groups))
         return KRS_BAD_SCENE;
     find_motions(c);
     more->sheets          = any_thin_sheets(s);
     more->camera_relative = !more->sheets &&
                             may_need_rebase(s, s->graph, roots, c->options->pictures, &c->scratch);
     gather_view(s, roots);
-    lower_marches(c, s->graph, crowds);
+    lower_marches(c, s->graph, groups);
     find_media(c, s->graph);
     find_subsurface(c, s->graph);
     lower_planes(c, s->graph);
     arena_free(&c->scratch);
     more->algebraic = is_algebraic(s, roots);
     more->gradients = more->algebraic || more->sheets || c->options->gradients;
-    lower_gradients(c, s->graph, crowds);
+    lower_gradients(c, s->graph, groups);
     for (size_t i = 0; i < s->slopes.count; i++)
         roots_of(roots, ROOTS_SLOPE).items[i] = s->slopes.items[i].formula;
     for (size_t i = 0; i < s->boxes.nodes.count; i++)

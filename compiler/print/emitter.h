@@ -1,7 +1,7 @@
 /*
  * emitter.h: what the files that print a module share.
  *
- * statements.c and mirrors.c turn nodes into statements; distances.c, surfaces.c, crowds.c,
+ * statements.c and mirrors.c turn nodes into statements; distances.c, surfaces.c, instances.c,
  * early_outs.c and march.c write the functions around them; module_print.c puts all together.  None of them knows
  * the language: what differs between languages is a template (templates.def), a type, an operation or
  * a helper of the printer.
@@ -47,8 +47,8 @@ typedef struct NodeList {
 
 /* A texel of a table's row that has been loaded. */
 typedef struct RowTexel {
-    uint32_t    crowd, texel;
-    Node        member;
+    uint32_t    table_number, texel;
+    Node        instance;
     const char *name;
 } RowTexel;
 
@@ -80,8 +80,8 @@ typedef struct Emitter {
     uint32_t         *place;   /* of values that the host finds: their number + 1 */
     Regions           regions; /* of the function being written, where it has guards */
     Span              last;    /* the line that was commented last */
-    uint8_t          *called;  /* of each crowd function: how many operands calls have behind its
-                                  number; 0: there is no call.  NULL: there are no crowds */
+    uint8_t          *called;  /* of each instance function: how many operands calls have behind its
+                                  number; 0: there is no call.  NULL: there are no instance groups */
     bool             *reads_table;   /* of each table */
     bool             *reads_texture; /* of each texture */
     bool              sees;          /* something needs the ray that sees the surface */
@@ -233,17 +233,17 @@ void emit_surface(Emitter *e);
 /* `nearest`: what is anywhere in a scene without components. */
 void emit_nothing(Emitter *e);
 
-/* crowds.c: functions of crowds, and the tables that they read. */
+/* instances.c: functions of instance groups, and the tables that they read. */
 /* Finds what these functions call; bodies of that join their roots. */
 void emit_find_called(Emitter *e, NodeList *roots);
 bool emit_reads_tables(const Emitter *e);
 /* Globals for headers of tables, and in krs_prepare their values. */
 void emit_table_globals(Emitter *e);
 void emit_table_reads(Emitter *e);
-void emit_crowds(Emitter *e);
+void emit_instances(Emitter *e);
 /* Expressions of OP_row, calls and OP_STATE. */
 const char *emit_row(Emitter *e, const Expr *row);
-const char *emit_crowd_call(Emitter *e, const Expr *call);
+const char *emit_instance_call(Emitter *e, const Expr *call);
 const char *emit_state(Emitter *e, const Expr *state);
 
 /* textures.c: textures, and the ray that sees a surface. */

@@ -5,7 +5,7 @@
  */
 #include <string.h>
 
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/print/emitter.h"
 
 _Static_assert((int)KRS_STEP_DIRECTIONAL == (int)ALONG_DIRECTIONAL &&
@@ -240,7 +240,7 @@ static NodeList gather_roots(Emitter *e)
 static void emit_functions(Emitter *e)
 {
     static const char *const sines[] = {"krs_sin", "krs_cos", "krs_tan"};
-    emit_crowds(e);
+    emit_instances(e);
     emit_zones(e);
     for (FunctionKind kind = 0; kind < FUNCTION_KINDS; kind++)
         for (uint32_t i = 0; i < e->module->components; i++)
@@ -271,7 +271,7 @@ static void emit_about_textures(Emitter *e)
 
 static void emit_about_tables(Emitter *e)
 {
-    bool vary = crowds_vary(e->graph->crowds);
+    bool vary = instances_vary(e->graph->instances);
     text_add(e->out,
              "// Parts that are alike are rows of krs_rows, a texel buffer of format RGBA32F.\n"
              "// krs_cells, of format RG32UI, says which of them are near a point.  ");

@@ -4,7 +4,7 @@
  * krs_prepare reads the header of each texture into a global.  The ray is a global as well, which
  * whoever calls krs_surface may set.
  */
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/texture.h"
 #include "compiler/print/emitter.h"
 
@@ -53,7 +53,7 @@ void emit_texture_globals(Emitter *e)
 /* Headers are behind those of tables. */
 void emit_texture_reads(Emitter *e)
 {
-    const size_t tables = e->graph->crowds ? e->graph->crowds->tables.count : 0;
+    const size_t tables = e->graph->instances ? e->graph->instances->tables.count : 0;
     for (uint32_t i = 0; e->reads_texture && i < texture_count(e); i++)
         if (e->reads_texture[i]) {
             emit_call(e, "krs_read_texture", TYPE_UINT, 1);

@@ -8,7 +8,7 @@
 
 #include "compiler/base/splitmix.h"
 #include "compiler/base/vec.h"
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/rewrite/simplify.h"
 #include "compiler/refute/search_pairs.h"
 #include "compiler/refute/search_starts.h"
@@ -84,7 +84,7 @@ static void choose_around(Search *search)
     search->size = box_diagonal(search->around);
 }
 
-/* On the host a crowd function looks at more members than those of one cell: from afar, at about as many
+/* On the host an instance function looks at more instances than those of one cell: from afar, at about as many
    as a circle of that many dots has at its edge. */
 static double node_cost(const Tape *tape, Node node)
 {
@@ -92,9 +92,9 @@ static double node_cost(const Tape *tape, Node node)
     double      flops = tape_node_flops(tape, node);
     if (!is_call((Op)e->op))
         return flops;
-    const Crowds *crowds   = tape->graph->crowds;
-    uint32_t      function = (uint32_t)tape->graph->items[e->operands[0]].number[0];
-    uint32_t      rows     = crowds->tables.items[crowds->functions.items[function].crowd].rows;
+    const Instances *instances = tape->graph->instances;
+    uint32_t         function  = (uint32_t)tape->graph->items[e->operands[0]].number[0];
+    uint32_t rows = instances->tables.items[instances->functions.items[function].table_number].rows;
     return flops * (1 + 4 * sqrt(rows));
 }
 

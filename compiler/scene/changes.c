@@ -3,7 +3,7 @@
  *
  * Two scenes have the same kernels if these are made of the same nodes, apart from numbers of the
  * frame, and if all else that decides about their text is equal.  Some constants never get into the
- * text, and tables of crowds and textures do not, but what is derived from them may.  So scenes of
+ * text, and tables of instance groups and textures do not, but what is derived from them may.  So scenes of
  * which nodes, tables or textures differ are compared by their text as well.
  */
 #include "compiler/scene/changes.h"
@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/texture.h"
 
 /* What two parts of scenes have in common, the least first. */
@@ -35,14 +35,14 @@ typedef struct RootList {
     size_t count, capacity;
 } RootList;
 
-/* The nodes that functions of crowds and their tables have. */
-static void add_crowds(RootList *list, const KrsScene *scene, Arena *arena)
+/* The nodes that functions of instance groups and their tables have. */
+static void add_groups(RootList *list, const KrsScene *scene, Arena *arena)
 {
-    const Crowds *crowds = scene->graph->crowds;
-    for (size_t i = 0; crowds && i < crowds->bodies.count; i++)
-        array_push(arena, list, crowds->bodies.items[i]);
-    for (size_t i = 0; crowds && i < crowds->frame_numbers.count; i++)
-        array_push(arena, list, crowds->frame_numbers.items[i]);
+    const Instances *instances = scene->graph->instances;
+    for (size_t i = 0; instances && i < instances->bodies.count; i++)
+        array_push(arena, list, instances->bodies.items[i]);
+    for (size_t i = 0; instances && i < instances->frame_numbers.count; i++)
+        array_push(arena, list, instances->frame_numbers.items[i]);
 }
 
 /* The roots that kernels are made of, or those of the view. */
@@ -57,7 +57,7 @@ static RootList collect_roots(const KrsScene *scene, bool of_kernels, RootKind f
             array_push(arena, &list, range.items[i]);
     }
     if (of_kernels)
-        add_crowds(&list, scene, arena);
+        add_groups(&list, scene, arena);
     return list;
 }
 
@@ -73,7 +73,7 @@ static RootList collect_solid_roots(const KrsScene *scene, Arena *arena)
         for (size_t i = 0; i < range.count; i++)
             array_push(arena, &list, range.items[i]);
     }
-    add_crowds(&list, scene, arena);
+    add_groups(&list, scene, arena);
     return list;
 }
 
@@ -112,17 +112,24 @@ static Likeness compare_graphs(Comparison *c, bool of_kernels, RootKind first, R
                          collect_roots(c->b, of_kernels, first, last, &c->arena));
 }
 
-/* ---- crowds ---- */
+/* ---- instance groups ---- */
 
-static size_t table_count(const Crowds *crowds) { return crowds ? crowds->tables.count : 0; }
+static size_t table_count(const Instances *instances)
+{
+    return instances ? instances->tables.count : 0;
+}
 
-static size_t function_count(const Crowds *crowds) { return crowds ? crowds->functions.count : 0; }
+static size_t function_count(const Instances *instances)
+{
+    return instances ? instances->functions.count : 0;
+}
 
 static bool same_lists(const Grid *a, const Grid *b, size_t cells)
 {
     const size_t entries = a->first[cells]; /* none where all boxes are empty */
     return memcmp(a->first, b->first, (cells + 1) * sizeof *a->first) == 0 &&
-           (entries == 0 || memcmp(a->members, b->members, entries * sizeof *a->members) == 0);
+           (entries == 0 ||
+            memcmp(a->instances, b->instances, entries * sizeof *a->instances) == 0);
 }
 
 static bool same_tails(const Grid *a, const Grid *b, size_t cells)
@@ -145,14 +152,14 @@ static bool same_grid(const Grid *a, const Grid *b)
 }
 
 /* Their nodes are compared with the graph. */
-static bool same_frame_columns(const Crowd *a, const Crowd *b)
+static bool same_frame_columns(const InstanceTable *a, const InstanceTable *b)
 {
     if (!a->frame_columns || !b->frame_columns)
         return a->frame_columns == b->frame_columns;
     return memcmp(a->frame_columns, b->frame_columns, a->columns * sizeof *a->frame_columns) == 0;
 }
 
-static bool same_places(const Crowd *a, const Crowd *b)
+static bool same_places(const InstanceTable *a, const InstanceTable *b)
 {
     if (!a->places || !b->places)
         return a->places == b->places;
@@ -163,7 +170,7 @@ static bool same_places(const Crowd *a, const Crowd *b)
     return same;
 }
 
-static bool same_table(const Crowd *a, const Crowd *b)
+static bool same_table(const InstanceTable *a, const InstanceTable *b)
 {
     const size_t numbers = (size_t)a->rows * a->columns;
     return a->rows == b->rows && a->columns == b->columns && a->stretch == b->stretch &&
@@ -172,9 +179,9 @@ static bool same_table(const Crowd *a, const Crowd *b)
            same_grid(&a->grid, &b->grid) && same_grid(&a->cells, &b->cells);
 }
 
-static bool same_function(const CrowdFunction *a, const CrowdFunction *b)
+static bool same_function(const InstanceFunction *a, const InstanceFunction *b)
 {
-    bool same = a->crowd == b->crowd && a->type == b->type && a->clear == b->clear &&
+    bool same = a->table_number == b->table_number && a->type == b->type && a->clear == b->clear &&
                 a->either == b->either && a->sums == b->sums && a->ends == b->ends &&
                 a->joins == b->joins && a->listed == b->listed &&
                 a->state_count == b->state_count && a->distance == b->distance &&
@@ -186,7 +193,7 @@ static bool same_function(const CrowdFunction *a, const CrowdFunction *b)
 }
 
 /* Their bodies are compared with the graph. */
-static bool same_crowds(const Crowds *a, const Crowds *b)
+static bool same_instances(const Instances *a, const Instances *b)
 {
     bool same = table_count(a) == table_count(b) && function_count(a) == function_count(b);
     for (size_t i = 0; same && i < function_count(a); i++)
@@ -294,7 +301,7 @@ static Likeness compare_kernels(Comparison *c)
     if (!same_facts(c->a, c->b))
         return DIFFERENT;
     Likeness found = compare_graphs(c, true, ROOTS_SURFACE, ROOT_KINDS - 1);
-    found          = least(found, equal_if(same_crowds(c->a->graph->crowds, c->b->graph->crowds)));
+    found = least(found, equal_if(same_instances(c->a->graph->instances, c->b->graph->instances)));
     found = least(found, equal_if(same_textures(c->a->graph->textures, c->b->graph->textures)));
     return found != DIFFERENT || !same_texts(c) ? found : ALIKE_BUT_NUMBERS;
 }
@@ -440,7 +447,7 @@ static bool same_solids(Comparison *c)
     return same_shown(c->a, c->b) && same_parameters(c->a, c->b) && same_bounds(c->a, c->b) &&
            compare_roots(c, collect_solid_roots(c->a, &c->arena),
                          collect_solid_roots(c->b, &c->arena)) == EQUAL &&
-           same_crowds(c->a->graph->crowds, c->b->graph->crowds) &&
+           same_instances(c->a->graph->instances, c->b->graph->instances) &&
            same_textures(c->a->graph->textures, c->b->graph->textures);
 }
 

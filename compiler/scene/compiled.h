@@ -98,7 +98,7 @@ typedef struct KrsProgram {
     size_t        table_rows;        /* texels of the tables (krs_frame_tables); 0: none */
     size_t        table_cells;
     bool          rows_vary; /* tables depend on parameters or the time (krs_frame_table_inputs) */
-    size_t        table_count, table_members; /* tables, and the rows of all of them */
+    size_t        table_count, table_instances; /* tables, and the rows of all of them */
     size_t        texture_count, texture_texels;
     size_t        noises;  /* in krs_surface */
     bool          views;   /* krs_surface reads krs_view, the direction of the ray that sees it */

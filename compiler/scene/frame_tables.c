@@ -1,21 +1,21 @@
 /*
- * frame_tables.c: the tables of crowds in a frame.  Where members move, a frame has tables and a graph of
+ * frame_tables.c: the tables of instance groups in a frame.  Where instances move, a frame has tables and a graph of
  * its own, which its tapes read; nodes are those of the scene.
  */
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/graph/instances/crowd_frame.h"
+#include "compiler/graph/instances/instance_frame.h"
 #include "compiler/scene/program.h"
 #include "compiler/scene/tables.h"
 
 struct FrameTables {
-    Memory  memory;
-    Arena   arena;          /* of all but grids */
-    Arena   grids, scratch; /* freed for each frame */
-    Graph   graph;          /* that of the scene with tables of the frame */
-    Crowds *crowds;
-    bool    found; /* they are those of the values */
+    Memory     memory;
+    Arena      arena;          /* of all but grids */
+    Arena      grids, scratch; /* freed for each frame */
+    Graph      graph;          /* that of the scene with tables of the frame */
+    Instances *instances;
+    bool       found; /* they are those of the values */
 };
 
 /* ---- tapes ---- */
@@ -50,8 +50,8 @@ static void make_tables(KrsFrame *frame, struct FrameTables *tables)
     const Tape     *tapes[]  = {&scene->distance, &scene->guarded, &scene->ahead,
                                 &scene->turned,   &scene->surface, &scene->places};
     tables->graph            = *scene->graph;
-    tables->crowds           = crowds_for_frames(scene->graph->crowds, &tables->arena);
-    tables->graph.crowds     = tables->crowds;
+    tables->instances        = instances_for_frames(scene->graph->instances, &tables->arena);
+    tables->graph.instances  = tables->instances;
     for (size_t i = 0; i < sizeof tapes / sizeof *tapes; i++)
         *copies[i] = tape_of_frame(tapes[i], tables);
 }
@@ -75,7 +75,7 @@ bool frame_tables_new(KrsFrame *frame)
     frame->tapes          = (FrameTapes){scene->distance, scene->guarded, scene->ahead,
                                          scene->turned,   scene->surface, scene->places};
     frame_count_operations(frame);
-    if (!crowds_move(scene->graph->crowds))
+    if (!instances_move(scene->graph->instances))
         return true;
     struct FrameTables *tables = allocate(&scene->memory, sizeof *tables);
     if (!tables)
@@ -116,15 +116,16 @@ void frame_tables_change(KrsFrame *frame)
 }
 
 /* Where memory runs out the grids are those for all frames, which are right in each. */
-static void find_grids(struct FrameTables *tables, const Crowds *of_scene, const NodeValue *values)
+static void find_grids(struct FrameTables *tables, const Instances *of_scene,
+                       const NodeValue *values)
 {
     jmp_buf exhausted;
     arena_clear(&tables->grids);
     tables->memory.exhausted = &exhausted;
     if (setjmp(exhausted) == 0)
-        crowds_enter_frame(tables->crowds, values, &tables->grids, &tables->scratch);
+        instances_enter_frame(tables->instances, values, &tables->grids, &tables->scratch);
     else
-        memcpy(tables->crowds->tables.items, of_scene->tables.items,
+        memcpy(tables->instances->tables.items, of_scene->tables.items,
                of_scene->tables.count * sizeof *of_scene->tables.items);
     tables->memory.exhausted = NULL;
     arena_clear(&tables->scratch);
@@ -138,7 +139,7 @@ void frame_tables_refresh(const KrsFrame *frame)
         return;
     if (!frame->fresh)
         tape_run_frame(&scene->rows, frame->parameters, frame->values);
-    find_grids(tables, scene->graph->crowds, frame->values);
+    find_grids(tables, scene->graph->instances, frame->values);
     tables->found = true;
 }
 
@@ -153,15 +154,15 @@ static bool is_origin(const KrsScene *scene, uint32_t slot)
 void krs_frame_tables_in_use(const KrsFrame *frame, const double *rebase_origin, float (*rows)[4],
                              uint32_t (*cells)[2], size_t *row_count, size_t *cell_count)
 {
-    const KrsScene *scene  = frame->scene;
-    const Crowds   *crowds = frame->tables ? frame->tables->crowds : scene->graph->crowds;
+    const KrsScene  *scene     = frame->scene;
+    const Instances *instances = frame->tables ? frame->tables->instances : scene->graph->instances;
     if (rebase_origin)
         memcpy(frame->parameters[scene->program.parameter_slots - 1].v, rebase_origin,
                3 * sizeof *rebase_origin);
     if (!frame->fresh || rebase_origin)
         tape_run_frame(&scene->rows, frame->parameters, frame->values);
     frame_tables_refresh(frame);
-    TableSizes used = tables_pack(crowds, scene->graph->textures, frame->values,
+    TableSizes used = tables_pack(instances, scene->graph->textures, frame->values,
                                   rebase_origin != NULL, rows, cells);
     *row_count      = used.rows;
     *cell_count     = used.cells;

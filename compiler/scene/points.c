@@ -13,9 +13,9 @@
 
 /* Of one frame. */
 struct FrameLanes {
-    Memory   memory;
-    Arena    arena;
-    Tape     bound; /* the scene's tape of distances, where crowds have the list of one cell */
+    Memory memory;
+    Arena  arena;
+    Tape bound; /* the scene's tape of distances, where instance groups have the list of one cell */
     LaneTape distance, surface;
     size_t  *surface_outputs; /* the first one of each component */
     LaneWork distance_work, surface_work;

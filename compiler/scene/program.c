@@ -80,7 +80,7 @@ KrsStatus krs_texture(const KrsScene *scene, size_t index, KrsTexture *texture)
                                        .height = from->levels[0].height,
                                        .levels = from->level_count,
                                        .gray   = from->gray};
-    tables_place_texture(scene->graph->crowds, all, index, &texture->header, &texture->first);
+    tables_place_texture(scene->graph->instances, all, index, &texture->header, &texture->first);
     return KRS_OK;
 }
 

@@ -208,7 +208,7 @@ struct KrsFrame {
     FrameTapes          tapes;
     struct FrameTables *tables; /* NULL: they are those of the scene */
     struct FrameLanes  *lanes;  /* points.h; NULL: nobody has asked for many points */
-    bool                exact;  /* rays are marched with exact distances of crowds */
+    bool                exact;  /* rays are marched with exact distances of instance groups */
     uint64_t            ran; /* operations that marching rays has taken; one for many points at once
                                    counts as one */
     bool                fresh; /* the frame values in `values` belong to the parameters */
@@ -258,7 +258,7 @@ void frame_find_floor(KrsFrame *frame, uint32_t changed);
 #define ANY_SLOT UINT32_MAX
 bool tape_depends_on(const Tape *tape, uint32_t slot);
 
-/* frame_tables.c: tables where members of crowds move, and tapes over them.  False: memory has run out. */
+/* frame_tables.c: tables where instances of groups move, and tapes over them.  False: memory has run out. */
 bool frame_tables_new(KrsFrame *frame);
 /* Its tapes add what they run to its own count: after it was copied to another place. */
 void frame_count_operations(KrsFrame *frame);

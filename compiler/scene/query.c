@@ -492,7 +492,7 @@ static void end_march(RayMarch *march, RayLimits limits, KrsHit *hit)
 }
 
 /* Whether clearances of rays are distances, which lanes tell.  Sheets have other ones, and guards and
-   cells of crowds make them shorter. */
+   cells of instance groups make them shorter. */
 static bool march_by_lanes(const KrsFrame *frame)
 {
     const KrsScene *scene   = frame->scene;

@@ -1,5 +1,5 @@
 /*
- * tables.c: writes tables of crowds, and textures, for kernels.
+ * tables.c: writes tables of instance groups, and textures, for kernels.
  */
 #include "compiler/scene/tables.h"
 
@@ -22,7 +22,7 @@ static size_t cell_count(const Grid *grid)
 }
 
 /* Of a table that begins at these texels, with so many cells and entries; they move on to the next one. */
-static Place place_parts(const Crowd *table, size_t cells, size_t entries, TableSizes *next)
+static Place place_parts(const InstanceTable *table, size_t cells, size_t entries, TableSizes *next)
 {
     size_t texels = row_texels(table);
     Place  place  = {next->rows, next->rows + table->rows * texels, next->cells,
@@ -32,14 +32,14 @@ static Place place_parts(const Crowd *table, size_t cells, size_t entries, Table
     return place;
 }
 
-static Place place_table(const Crowd *table, TableSizes *next)
+static Place place_table(const InstanceTable *table, TableSizes *next)
 {
     size_t cells = cell_count(&table->cells);
     return place_parts(table, cells, table->cells.first[cells], next);
 }
 
 /* Leaves room for the grids of all frames. */
-static void leave_room(const Crowd *table, TableSizes *next)
+static void leave_room(const InstanceTable *table, TableSizes *next)
 {
     GridLimits most = grid_limits_of_frame(table->rows);
     if (table->places)
@@ -48,24 +48,27 @@ static void leave_room(const Crowd *table, TableSizes *next)
         place_table(table, next);
 }
 
-static size_t table_count(const Crowds *crowds) { return crowds ? crowds->tables.count : 0; }
+static size_t table_count(const Instances *instances)
+{
+    return instances ? instances->tables.count : 0;
+}
 
 static size_t texture_count(const Textures *textures)
 {
     return textures ? textures->list.count : 0;
 }
 
-static TableSizes after_headers(const Crowds *crowds, const Textures *textures)
+static TableSizes after_headers(const Instances *instances, const Textures *textures)
 {
-    return (TableSizes){0, GRID_HEADER * table_count(crowds) +
+    return (TableSizes){0, GRID_HEADER * table_count(instances) +
                                TEXTURE_HEADER * texture_count(textures)};
 }
 
-TableSizes tables_measure(const Crowds *crowds, const Textures *textures)
+TableSizes tables_measure(const Instances *instances, const Textures *textures)
 {
-    TableSizes sizes = after_headers(crowds, textures);
-    for (size_t t = 0; t < table_count(crowds); t++)
-        leave_room(&crowds->tables.items[t], &sizes);
+    TableSizes sizes = after_headers(instances, textures);
+    for (size_t t = 0; t < table_count(instances); t++)
+        leave_room(&instances->tables.items[t], &sizes);
     for (size_t t = 0; t < texture_count(textures); t++)
         sizes.cells += textures->list.items[t].texel_count;
     if (sizes.cells > 0 && sizes.rows == 0)
@@ -99,13 +102,13 @@ typedef struct Origin {
     double v[3];
 } Origin;
 
-static Origin origin_of(const Crowds *crowds, const Crowd *table, const NodeValue *values,
-                        bool relocated)
+static Origin origin_of(const Instances *instances, const InstanceTable *table,
+                        const NodeValue *values, bool relocated)
 {
     Origin origin = {{0}};
     for (int k = 0; k < 3 && relocated && table->origin > 0; k++)
         if (relocates_along(table, k))
-            origin.v[k] = values[crowds->frame_numbers.items[table->origin - 1]].v[k];
+            origin.v[k] = values[instances->frame_numbers.items[table->origin - 1]].v[k];
     return origin;
 }
 
@@ -133,7 +136,7 @@ static void put_header(const Grid *grid, Origin origin, Place place, Texel *head
 }
 
 /* What loops that end by tails need. */
-static void put_fading(const Crowd *table, Texel *header)
+static void put_fading(const InstanceTable *table, Texel *header)
 {
     const Grid *grid = &table->cells;
     memset(header[8], 0, 2 * sizeof *header);
@@ -155,7 +158,7 @@ static void put_grid(const Grid *grid, Texel *records, Texel *lists)
                                                 : 0);
     }
     for (uint32_t i = 0; i < entries; i++)
-        lists[i / 2][i % 2] = grid->members[i];
+        lists[i / 2][i % 2] = grid->instances[i];
     if (entries % 2)
         lists[entries / 2][1] = 0;
 }
@@ -167,13 +170,13 @@ static float to_single(double number)
     return (float)(number > FLT_MAX ? FLT_MAX : number < -FLT_MAX ? -FLT_MAX : number);
 }
 
-static void put_rows(const Crowds *crowds, const Crowd *table, const NodeValue *values,
-                     Origin origin, float (*rows)[4])
+static void put_rows(const Instances *instances, const InstanceTable *table,
+                     const NodeValue *values, Origin origin, float (*rows)[4])
 {
     size_t texels = row_texels(table);
     memset(rows, 0, table->rows * texels * sizeof *rows);
     for (uint32_t c = 0; c < table->columns; c++) {
-        const Node   *nodes   = column_nodes(crowds, table, c);
+        const Node   *nodes   = column_nodes(instances, table, c);
         const double *numbers = table->numbers + c;
         const double  taken   = table->axes[c] > 0 ? origin.v[table->axes[c] - 1] : 0;
         for (size_t r = 0; r < table->rows; r++)
@@ -182,26 +185,27 @@ static void put_rows(const Crowds *crowds, const Crowd *table, const NodeValue *
     }
 }
 
-/* The rows of all members of the lists, in the order of the lists. */
-static void put_copies(const Crowd *table, const float (*rows)[4], float (*copies)[4])
+/* The rows of all instances of the lists, in the order of the lists. */
+static void put_copies(const InstanceTable *table, const float (*rows)[4], float (*copies)[4])
 {
     const size_t texels  = row_texels(table),
                  entries = table->cells.first[cell_count(&table->cells)];
     for (size_t i = 0; i < entries; i++)
-        memcpy(copies + i * texels, rows + table->cells.members[i] * texels, texels * sizeof *rows);
+        memcpy(copies + i * texels, rows + table->cells.instances[i] * texels,
+               texels * sizeof *rows);
     for (size_t i = 0; i < entries && table->cells.tails; i++)
         copies[i * texels + table->columns / 4][table->columns % 4] = table->cells.tails[i];
 }
 
 /* Packs all rows; the sizes become those of all tables. */
-static TableSizes pack_rows(const Crowds *crowds, const Textures *textures, const NodeValue *values,
-                            bool relocated, float (*rows)[4])
+static TableSizes pack_rows(const Instances *instances, const Textures *textures,
+                            const NodeValue *values, bool relocated, float (*rows)[4])
 {
-    TableSizes next = after_headers(crowds, textures);
-    for (size_t t = 0; t < table_count(crowds); t++) {
-        const Crowd *table = &crowds->tables.items[t];
-        Place        place = place_table(table, &next);
-        put_rows(crowds, table, values, origin_of(crowds, table, values, relocated),
+    TableSizes next = after_headers(instances, textures);
+    for (size_t t = 0; t < table_count(instances); t++) {
+        const InstanceTable *table = &instances->tables.items[t];
+        Place                place = place_table(table, &next);
+        put_rows(instances, table, values, origin_of(instances, table, values, relocated),
                  rows + place.row);
         put_copies(table, (const float(*)[4])(rows + place.row), rows + place.copy);
     }
@@ -224,41 +228,42 @@ static void put_texture(const Texture *texture, size_t first, Texel *header, Tex
 }
 
 /* Textures are in the order of their numbers, and the last of all. */
-void tables_place_texture(const Crowds *crowds, const Textures *textures, size_t index,
+void tables_place_texture(const Instances *instances, const Textures *textures, size_t index,
                           size_t *header, size_t *first)
 {
-    *header = GRID_HEADER * table_count(crowds) + TEXTURE_HEADER * index;
-    *first  = tables_measure(crowds, textures).cells;
+    *header = GRID_HEADER * table_count(instances) + TEXTURE_HEADER * index;
+    *first  = tables_measure(instances, textures).cells;
     for (size_t t = index; t < textures->list.count; t++)
         *first -= textures->list.items[t].texel_count;
 }
 
-static void pack_textures(const Crowds *crowds, const Textures *textures, Texel *cells)
+static void pack_textures(const Instances *instances, const Textures *textures, Texel *cells)
 {
     for (size_t t = 0; t < texture_count(textures); t++) {
         size_t header, first;
-        tables_place_texture(crowds, textures, t, &header, &first);
+        tables_place_texture(instances, textures, t, &header, &first);
         put_texture(&textures->list.items[t], first, cells + header, cells + first);
     }
 }
 
-TableSizes tables_pack(const Crowds *crowds, const Textures *textures, const NodeValue *values,
-                       bool relocated, float (*rows)[4], uint32_t (*cells)[2])
+TableSizes tables_pack(const Instances *instances, const Textures *textures,
+                       const NodeValue *values, bool relocated, float (*rows)[4],
+                       uint32_t (*cells)[2])
 {
-    TableSizes next = after_headers(crowds, textures);
-    for (size_t t = 0; t < table_count(crowds); t++) {
-        const Crowd *table = &crowds->tables.items[t];
-        Place        place = place_table(table, &next);
-        put_header(&table->cells, origin_of(crowds, table, values, relocated), place,
+    TableSizes next = after_headers(instances, textures);
+    for (size_t t = 0; t < table_count(instances); t++) {
+        const InstanceTable *table = &instances->tables.items[t];
+        Place                place = place_table(table, &next);
+        put_header(&table->cells, origin_of(instances, table, values, relocated), place,
                    cells + GRID_HEADER * t);
         put_fading(table, cells + GRID_HEADER * t);
         put_grid(&table->cells, cells + place.cell, cells + place.list);
     }
-    pack_textures(crowds, textures, cells);
-    next = pack_rows(crowds, textures, values, relocated, rows);
+    pack_textures(instances, textures, cells);
+    next = pack_rows(instances, textures, values, relocated, rows);
     if (next.rows == 0)
         memset(rows[next.rows++], 0, sizeof *rows);
     if (texture_count(textures) > 0) /* they are the last of all */
-        next.cells = tables_measure(crowds, textures).cells;
+        next.cells = tables_measure(instances, textures).cells;
     return next;
 }

@@ -1,11 +1,11 @@
 /*
- * tables.h: the tables of crowds, as kernels read them: rows of numbers, and grids; and textures.
+ * tables.h: the tables of instance groups, as kernels read them: rows of numbers, and grids; and textures.
  *
  * Both are arrays of texels, of four floats or two words.  Those of all tables are in the same two.
  *
  * In `rows`, each row of a table begins at a texel: column c of row r is number c % 4 of texel
  * first + r * row_texels + c / 4.  Behind the rows are copies of them in the order of the lists, which
- * loops read one after another without looking for members.
+ * loops read one after another without looking for instances.
  *
  * In `cells`, header t of GRID_HEADER texels is that of table t; floats are there as their bits:
  *     low x, low y
@@ -18,9 +18,9 @@
  *     texel of row 0 in `rows`, texel of the first copy
  *     width, 1 / width      (and these two only of tables with tails, grid_tails.h)
  *     slope / width, distance up to which results are exact
- * Each cell is a texel: where its list begins, counted in members, and its clearance; with tails, where there is a list, the result in
+ * Each cell is a texel: where its list begins, counted in instances, and its clearance; with tails, where there is a list, the result in
  * its middle.  Copies of rows have the tail as one more column.  One more texel says
- * where the last list ends.  Behind them are the lists, two members a texel.  A grid of one infinite cell has 1 / size
+ * where the last list ends.  Behind them are the lists, two instances a texel.  A grid of one infinite cell has 1 / size
  * 0, so that all points are in cell 0.
  *
  * Behind the headers of tables are those of textures, of TEXTURE_HEADER texels:
@@ -31,7 +31,7 @@
 #ifndef KRS_TABLES_H
 #define KRS_TABLES_H
 
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/texture.h"
 
 /* How many texels there are. */
@@ -40,13 +40,14 @@ typedef struct TableSizes {
 } TableSizes;
 
 /* Room for those of all frames.  0 when there are neither tables nor textures; both may be NULL. */
-TableSizes tables_measure(const Crowds *crowds, const Textures *textures);
+TableSizes tables_measure(const Instances *instances, const Textures *textures);
 /* Which texels of the cells the header of a texture and its finest level begin at. */
-void tables_place_texture(const Crowds *crowds, const Textures *textures, size_t index,
+void tables_place_texture(const Instances *instances, const Textures *textures, size_t index,
                           size_t *header, size_t *first);
 /* Fills arrays of these sizes; `values` of nodes has the numbers of the frame, and may be NULL where
-   there are none.  `relocated`: tables with an origin are relative to it, for camera-relative points.  Returns how many texels at the beginning are in use: all, unless members move. */
-TableSizes tables_pack(const Crowds *crowds, const Textures *textures, const NodeValue *values,
-                       bool relocated, float (*rows)[4], uint32_t (*cells)[2]);
+   there are none.  `relocated`: tables with an origin are relative to it, for camera-relative points.  Returns how many texels at the beginning are in use: all, unless instances move. */
+TableSizes tables_pack(const Instances *instances, const Textures *textures,
+                       const NodeValue *values, bool relocated, float (*rows)[4],
+                       uint32_t (*cells)[2]);
 
 #endif

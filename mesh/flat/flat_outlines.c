@@ -7,7 +7,7 @@
 #include "mesh/flat/flat_outlines.h"
 
 #include "compiler/base/vec.h"
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/lanes/lane_outlines.h"
 #include "mesh/flat/flat_circles.h"
 
@@ -53,21 +53,21 @@ static Form line_of(const Place *place, const Chord *chord)
 
 /* ---- chords ---- */
 
-static double bend_of(const CrowdArc *arc) { return hypot(arc->bend[0], arc->bend[1]); }
+static double bend_of(const InstanceArc *arc) { return hypot(arc->bend[0], arc->bend[1]); }
 
 /* Chords of parts of even lengths of the parameter are bend / (4 count^2) off at most. */
-static double chords_needed(const CrowdArc *arc, double off)
+static double chords_needed(const InstanceArc *arc, double off)
 {
     return max2(ceil(sqrt(bend_of(arc) / (4 * off))), 1);
 }
 
-static void point_on(const CrowdArc *arc, double t, double point[2])
+static void point_on(const InstanceArc *arc, double t, double point[2])
 {
     for (int k = 0; k < 2; k++)
         point[k] = arc->start[k] + t * (2 * arc->way[k] + t * arc->bend[k]);
 }
 
-static Chord find_chord(const CrowdArc *arc, double i, double count)
+static Chord find_chord(const InstanceArc *arc, double i, double count)
 {
     Chord chord;
     point_on(arc, i / count, chord.from);
@@ -144,7 +144,7 @@ static void look_at_chord(Finding *f, Place *place, const Chord *chord)
 }
 
 /* `off`: how far chords may be from curves. */
-static void look_at_arc(Finding *f, Place *place, const CrowdArc *arc, double off)
+static void look_at_arc(Finding *f, Place *place, const InstanceArc *arc, double off)
 {
     double count = chords_needed(arc, off);
     for (double i = 0; i < count && !f->failed; i++) {
@@ -346,18 +346,19 @@ static void find_place(Finding *f, const LaneCall *call, Place *place)
 int flat_solid_of_outline(Finding *f, uint32_t value)
 {
     const LaneCall *call = &f->tape->calls[f->tape->steps[value - LANE_INPUTS].operands[0]];
-    uint32_t        members[MOST_LANE_MEMBERS], count;
+    uint32_t        instances[MOST_LANE_INSTANCES], count;
     Place           place;
-    if (!lane_outline_members(f->tape, &f->field->ranges, value - LANE_INPUTS, members, &count)) {
+    if (!lane_outline_instances(f->tape, &f->field->ranges, value - LANE_INPUTS, instances,
+                                &count)) {
         f->failed = true;
         return FLAT_NONE;
     }
-    const Crowd *table = &f->tape->tape->graph->crowds->tables.items[call->body->table];
-    double       off   = flat_rounds_chord(f->rounds, call->body->table);
+    const InstanceTable *table = &f->tape->tape->graph->instances->tables.items[call->body->table];
+    double               off   = flat_rounds_chord(f->rounds, call->body->table);
     find_place(f, call, &place);
     place.around = f->use == FLAT_PROVING && isfinite(off) ? off : 0;
     for (uint32_t i = 0; i < count && !f->failed; i++)
-        look_at_arc(f, &place, &table->arcs[members[i]], off);
+        look_at_arc(f, &place, &table->arcs[instances[i]], off);
     if (f->failed)
         return FLAT_NONE;
     if (place.count > 0)

@@ -60,7 +60,7 @@ double flat_rounds_radius(const FlatRounds *rounds, uint32_t kin);
 /* How far chords of an outline may be from its curves; infinite until all are noted. */
 double flat_rounds_chord(const FlatRounds *rounds, uint32_t table);
 
-/* Has ranges hold for polygons, too, with crowds unrolled; and for the scene alone again. */
+/* Has ranges hold for polygons, too, with instance groups unrolled; and for the scene alone again. */
 void flat_rounds_open(const FlatRounds *rounds, LaneRanges *ranges);
 void flat_rounds_close(LaneRanges *ranges);
 

@@ -55,7 +55,7 @@ static const Placed places[] = {
     {WAVY "show slab.rotate([0, 0, 1], 0.7);\n", rotated, 0.7},
     {WAVY "show krs { kernel slab.move([-1, 0, 0]); reflect plane([-1, 0, 0], 0); };\n", reflected,
      0},
-    /* the first of so many that they are a crowd */
+    /* the first of so many that they are an instance group */
     {WAVY "show union([slab.move([0, -50 * i, 0]) for i in 0..80]).rotate([0, 0, 1], 0.7);\n",
      rotated, 0.7},
     {WAVY "show union([slab, sphere(0.5).move([0, 30, 0])], blend: 0.1);\n", plain, 0},

@@ -51,8 +51,9 @@ static const struct Form {
     {"a Mandelbulb", "mandelbulb(power: 8, iterations: 2).scale(s).move(o)"},
     {"a bent twist", "box([0.7, 1.6, 0.5]).round(0.05).twist([0, 1, 0], 0.8).bend([1, 0, 0], "
                      "0.4).scale(s).move(o)"},
-    {"a crowd", "union([box([0.13, 0.1 + 0.001 * i, 0.2]).move([0.2 * (i % 10) - 0.9, 0.2 * "
-                "floor(i / 10) - 0.9, 0.2 * sin(i)]) for i in 0..100]).scale(s).move(o)"},
+    {"an instance group",
+     "union([box([0.13, 0.1 + 0.001 * i, 0.2]).move([0.2 * (i % 10) - 0.9, 0.2 * "
+     "floor(i / 10) - 0.9, 0.2 * sin(i)]) for i in 0..100]).scale(s).move(o)"},
     {"far members", "union([box([0.13, 0.1 + 0.001 * i, 0.2]).rotate([1, 0.3, 0], 0.1 * i).scale(s)"
                     ".move(o + s * [0.2 * (i % 10) - 0.9, 0.2 * floor(i / 10) - 0.9, 0.2 * sin(i)])"
                     " for i in 0..100])"},
@@ -61,7 +62,7 @@ static const struct Form {
     {"far members on a diagonal",
      "union([sphere(0.05).scale(s).move(o + s * [0.02 * i - 1, 0.02 * i - 1, 0.02 * i - 1])"
      " | sphere(0.06).scale(s).move(o + s * [0.02 * i - 1, 0.3, 0.2]) for i in 0..100])"},
-    {"far members of a blend",
+    {"far instances of a blend",
      "union([sphere(0.1 + 0.0003 * i).scale(s).move(o + s * [0.2 * (i % 10) - 0.9, 0.2 * floor(i / "
      "10) - 0.9, 0.2 * sin(i)]) for i in 0..100], blend: 0.15 * s)"},
     {"far members, turned about the origin",

@@ -125,7 +125,7 @@ static int close_both(void **state)
     return renderer_close(state);
 }
 
-/* CSG, sequences, noise, forests, fractals, inversions, crowds, polynomials, fields, outlines. */
+/* CSG, sequences, noise, forests, fractals, inversions, instance groups, polynomials, fields, outlines. */
 static const char *const kinds[] = {"examples/0[1-7]*.krs", "examples/1[2-5]*.krs",
                                     "examples/2[1238]*.krs", "examples/3[05]*.krs"};
 

@@ -205,7 +205,7 @@ static OutlineShape *make_figure(Bench *bench, const Figure *figure, Truth *trut
     OutlineShape *shape = arena_new(&bench->arena, OutlineShape);
     if (outline_make(&shape->outline, &path.curves, figure->rule, &bench->arena, &bench->arena, at))
         fail_msg("%s: no outline at [%g, %g]", figure->name, at[0], at[1]);
-    shape->members = outline_members(&shape->outline, &bench->arena, &bench->arena);
+    shape->instances = outline_instances(&shape->outline, &bench->arena, &bench->arena);
     return shape;
 }
 
@@ -309,10 +309,10 @@ static void broken_corners_are_found(void **state)
     bool          is_new;
     const Figure *figure = &figures[9];
     OutlineShape *shape  = make_figure(bench, figure, &truth);
-    for (uint32_t i = 0; i < shape->members.count; i++)
+    for (uint32_t i = 0; i < shape->instances.count; i++)
         for (int k = 0; k < 2; k++)
-            shape->members.numbers[i * shape->members.columns + COLUMN_FIRST_CORNER + (uint32_t)k] =
-                0;
+            shape->instances
+                .numbers[i * shape->instances.columns + COLUMN_FIRST_CORNER + (uint32_t)k] = 0;
     Node root = outline_distance(bench->graph, shape, 0, bench->point, &is_new, &bench->arena);
     assert_true(count_wrong(bench, figure, &truth, root) > 0);
 }
@@ -325,7 +325,7 @@ static void broken_clearances_are_found(void **state)
     const Figure *figure = &figures[10];
     OutlineShape *shape  = make_figure(bench, figure, &truth);
     Node  root = outline_distance(bench->graph, shape, 0, bench->point, &is_new, &bench->arena);
-    Grid *grid = &bench->graph->crowds->tables.items[0].grid;
+    Grid *grid = &bench->graph->instances->tables.items[0].grid;
     for (size_t i = 0; i < (size_t)grid->cells[0] * grid->cells[1]; i++)
         grid->clearance[i] = fabsf(grid->clearance[i]);
     assert_true(count_wrong(bench, figure, &truth, root) > 0);
@@ -355,7 +355,7 @@ static void sample_figure(Stage *stage, Bench *bench, OutlineShape *shape)
     Graph     *graph = (Graph *)(uintptr_t)stage->scene->graph;
     Node       root  = outline_distance(graph, shape, 0, graph_leaf(graph, OP_POINT), &is_new,
                                         &bench->arena);
-    TableSizes sizes = tables_measure(graph->crowds, NULL);
+    TableSizes sizes = tables_measure(graph->instances, NULL);
     stage->scene->program.table_rows                      = sizes.rows;
     stage->scene->program.table_cells                     = sizes.cells;
     surface_roots(&stage->scene->roots, 0)[ROOT_DISTANCE] = root;

@@ -1,6 +1,6 @@
 /*
  * blends_of_many.c: what blends make of more than two parts depends neither on their order, nor on how many there
- * are elsewhere, nor on whether they are lowered one by one or as members of crowds.  The oracles are the
+ * are elsewhere, nor on whether they are lowered one by one or as instances of groups.  The oracles are the
  * definitions (math.md, section 4), by search and by brute force.
  */
 #include <math.h>

@@ -499,7 +499,7 @@ static void pairs_stay_in_their_hull(void **state)
 
 /* ---- many ---- */
 
-static int random_crowd(Part *parts, int count, double room)
+static int random_instances(Part *parts, int count, double room)
 {
     for (int i = 0; i < count; i++) {
         parts[i] = random_part(i % 3 ? BOX : BALL, room);
@@ -525,7 +525,7 @@ static void order_and_what_is_far_do_not_show(void **state)
     static Part   parts[MOST];
     (void)state;
     for (int trial = 0; trial < 4; trial++) {
-        const int    count = random_crowd(parts, trial % 2 ? 3 : 12, 0.5);
+        const int    count = random_instances(parts, trial % 2 ? 3 : 12, 0.5);
         const double r     = between(0.05, 0.3);
         random_points(parts, count, points);
         probe_text(union_text(parts, count, r, "fillet", ""), NULL, 0, points, POINTS, before);
@@ -541,7 +541,7 @@ static void order_and_what_is_far_do_not_show(void **state)
     }
 }
 
-/* Of each two of many what they are alone; so also of 100 alike, which become a crowd. */
+/* Of each two of many what they are alone; so also of 100 alike, which become an instance group. */
 static double least_pair(const Part *parts, int count, double r, const double p[3], bool hulls)
 {
     double d[MOST], least = HUGE_VAL;
@@ -566,7 +566,7 @@ static void many_are_all_pairs(void **state)
     int           added = 0, cut = 0;
     (void)state;
     for (int trial = 0; trial < 4; trial++) {
-        const int count = trial < 3 ? random_crowd(parts, 3 + 4 * trial, 0.4) : 100;
+        const int count = trial < 3 ? random_instances(parts, 3 + 4 * trial, 0.4) : 100;
         for (int i = 0; i < count; i++)
             if (trial < 3)
                 parts[i].kind = BOX;

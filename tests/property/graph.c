@@ -242,7 +242,7 @@ static void every_row_can_be_emitted(void **state)
     for (Op op = OP_COMPONENT + 1; op < OP_COUNT; op++) {
         const char *glsl = op_glsl(op);
         if (op_has_traits(op, READS_TABLES) || op_has_traits(op, OF_HOST)) {
-            /* functions of the module: print/crowds.c; or none is needed */
+            /* functions of the module: print/instances.c; or none is needed */
             assert_null(glsl);
             continue;
         }

@@ -1,5 +1,5 @@
 /*
- * moving_scenes.c: crowds that parameters and the time move, turn and scale: in each frame they are those
+ * moving_scenes.c: instance groups that parameters and the time move, turn and scale: in each frame they are those
  * of a scene in which these numbers are known.
  */
 #include <math.h>

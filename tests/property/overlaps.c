@@ -13,7 +13,7 @@
 #include "compiler/base/vec.h"
 #include "compiler/shape/box.h"
 #include "compiler/shape/overlap.h"
-#include "tests/property/crowd_parts.h"
+#include "tests/property/instance_parts.h"
 
 enum { BOXES = 30, TRIALS = 40 };
 
@@ -147,12 +147,12 @@ static void slopes_of_blends(void **state)
         const BlendKind blend = trial % 2 ? BLEND_circular : BLEND_chamfer;
         ShapeKind       kind  = trial & 2 ? SHAPE_DIFFERENCE : SHAPE_UNION;
         const Shape    *shape = blended(kind, blend, trial & 4 ? 0.3 : 0.1);
-        Seen crowd = lower(shape, lowered_crowds_new(builder.graph, &arena, &arena, LEAST));
+        Seen group = lower(shape, lowered_groups_new(builder.graph, &arena, &arena, LEAST));
         Seen apart = lower(shape, NULL);
         assert_true(shape->slope > 1.4 && shape->slope < 0.7 * sqrt(PARTS));
-        prepare(&crowd);
+        prepare(&group);
         prepare(&apart);
-        double most = fmax(steepest(&crowd), steepest(&apart));
+        double most = fmax(steepest(&group), steepest(&apart));
         assert_true(most > 0.3 && most <= 1 + 1e-6);
         finish(state);
         start(state);

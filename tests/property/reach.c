@@ -14,7 +14,7 @@
 #include <stddef.h>
 #include <cmocka.h>
 
-#include "tests/property/reach_crowd.h"
+#include "tests/property/reach_instances.h"
 
 /* ---- searches broken on purpose ---- */
 
@@ -119,32 +119,32 @@ typedef struct Verdict {
 } Verdict;
 
 typedef struct Bench {
-    Crowd clipped, whole;
+    InstanceTable clipped, whole;
 } Bench;
 
-static bool crowd_is_inside(const Crowd *crowd, Box box, Ball ball)
+static bool instance_is_inside(const InstanceTable *group, Box box, Ball ball)
 {
-    for (size_t i = 0; i < crowd->count; i++)
+    for (size_t i = 0; i < group->count; i++)
         for (int k = 0; k < POINTS; k++) {
-            const double *p = crowd->items[i].points[k];
+            const double *p = group->items[i].points[k];
             if (!in_box(box, p) || !in_ball(ball, p))
                 return false;
         }
     return true;
 }
 
-static Box crowd_box(const Crowd *crowd)
+static Box instance_box(const InstanceTable *group)
 {
     Box box = box_empty;
-    for (size_t i = 0; i < crowd->count; i++)
+    for (size_t i = 0; i < group->count; i++)
         for (int k = 0; k < CORNERS; k++)
-            include(&box, crowd->items[i].points[k]);
+            include(&box, group->items[i].points[k]);
     return box;
 }
 
 static void compare(const Bench *bench, const ReachStage *stage, Verdict *verdict)
 {
-    Box    box = stage->box, exact = crowd_box(&bench->whole);
+    Box    box = stage->box, exact = instance_box(&bench->whole);
     double far = 0;
     for (int i = 0; i < 3 && !is_empty(box); i++) {
         far = fmax(far, (box.axis[i].high - exact.axis[i].high) / diagonal(exact));
@@ -152,7 +152,7 @@ static void compare(const Bench *bench, const ReachStage *stage, Verdict *verdic
     }
     bool wide = !is_empty(box) && stage->ball.radius > 0.5000001 * diagonal(box);
     verdict->calls++;
-    verdict->outside += !crowd_is_inside(&bench->clipped, box, stage->ball);
+    verdict->outside += !instance_is_inside(&bench->clipped, box, stage->ball);
     verdict->loose += !(far <= LOOSE) || wide;
     verdict->farthest = fmax(verdict->farthest, far);
 }
@@ -167,8 +167,8 @@ static void judge_sequence(Bench *bench, Random *random, Fault fault, Verdict *v
         ReachStage *stage = &stages[i], *before = i > 0 ? stage - 1 : NULL;
         *stage          = random_stage(random, before);
         Instance kernel = random_instance(random, stage->kernel);
-        grow_crowd(&bench->clipped, stage, &kernel);
-        grow_crowd(&bench->whole, stage, &kernel);
+        grow_group(&bench->clipped, stage, &kernel);
+        grow_group(&bench->whole, stage, &kernel);
         bound_loosely(stage, before, cut);
         loosen(random, stage);
         if (stage->kind != REACH_REFLECT)
@@ -244,9 +244,9 @@ static void make_boundless(Bench *bench, Random *random, double factor, ReachSta
         } else {
             random_mirror(random, stages[i - 1].box, stage);
         }
-        grow_crowd(&bench->clipped, stage, &kernel);
-        grow_crowd(&bench->whole, stage, &kernel);
-        stage->box  = crowd_box(&bench->whole);
+        grow_group(&bench->clipped, stage, &kernel);
+        grow_group(&bench->whole, stage, &kernel);
+        stage->box  = instance_box(&bench->whole);
         stage->ball = (Ball){.radius = HUGE_VAL};
     }
     for (int i = 0; i < MOST_STAGES; i++) {

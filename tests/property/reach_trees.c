@@ -11,7 +11,7 @@
 
 #include "krs/krs.h"
 
-#include "tests/property/reach_crowd.h"
+#include "tests/property/reach_instances.h"
 
 enum { MIRRORS = 28, TREE_STAGES = 2 * MIRRORS + 1 };
 

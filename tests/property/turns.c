@@ -151,7 +151,7 @@ static void open_loop(Asked *asked, const Loop *loop, int seed, KrsSpecialize sp
                                loop->text);
     assert_true(length < sizeof text);
     KrsStatus status = turns ? compile_turn_by_turn(text, length, LEAST, &options, &asked->scene)
-                             : compile_with_crowds(text, length, LEAST, &options, &asked->scene);
+                             : compile_with_instances(text, length, LEAST, &options, &asked->scene);
     if (status != KRS_OK)
         fail_msg("%s does not compile:\n%s", loop->name, text);
     assert_int_equal(krs_frame_new(asked->scene, &asked->frame), KRS_OK);
@@ -283,7 +283,7 @@ static void messages_are_those_of_turns(void **state)
         KrsScene  *scene = NULL;
         KrsOptions first = {.diagnostic = say, .user = &once};
         KrsOptions other = {.diagnostic = say, .user = &turns};
-        KrsStatus  a = compile_with_crowds(remarks[i], strlen(remarks[i]), LEAST, &first, &scene);
+        KrsStatus a = compile_with_instances(remarks[i], strlen(remarks[i]), LEAST, &first, &scene);
         krs_scene_free(scene);
         scene       = NULL;
         KrsStatus b = compile_turn_by_turn(remarks[i], strlen(remarks[i]), LEAST, &other, &scene);

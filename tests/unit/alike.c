@@ -47,8 +47,8 @@ static void numbers_come_out(void **state)
     assert_true(sum == 35 && sum_of_first == 11);
 }
 
-/* With its own numbers a copy is the member itself. */
-static void a_copy_is_the_member(void **state)
+/* With its own numbers a copy is the instance itself. */
+static void a_copy_is_the_instance(void **state)
 {
     Bench      *b        = *state;
     Alike      *alike    = alike_new(b->graph, &b->arena);
@@ -231,7 +231,7 @@ static void some_nodes_stay(void **state)
     graph_validate(g, "release");
 }
 
-/* A place that a dropped member gave to a node of the compiler goes with it. */
+/* A place that a dropped instance gave to a node of the compiler goes with it. */
 static void dropped_places_go(void **state)
 {
     Bench    *b    = *state;
@@ -251,7 +251,7 @@ static void dropped_places_go(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(numbers_come_out),        TEST(a_copy_is_the_member),
+        TEST(numbers_come_out),        TEST(a_copy_is_the_instance),
         TEST(structure_stays),         TEST(numbers_of_the_text),
         TEST(numbers_of_the_frame),    TEST(shared_nodes_stay_shared),
         TEST(some_nodes_stay),         TEST(dropped_nodes_leave_nothing),

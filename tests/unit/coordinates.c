@@ -28,15 +28,15 @@ static KrsScene *compile_after(const char *material, const char *rest)
     return compile(text);
 }
 
-#define CROWD(part)                                                            \
+#define GROUP(part)                                                            \
     "show union([" part ".move([i % 10, 0, floor(i / 10)]) for i in 0..100]);" \
     "camera { eye: [4, 3, 15] }"
 
-/* Whether they do, nothing else is another: the same crowd, from the first part on. */
+/* Whether they do, nothing else is another: the same instance group, from the first part on. */
 static void coordinates_that_none_asks_for_change_nothing(void **state)
 {
     (void)state;
-    const char *balls   = CROWD("sphere(0.1 + 0.001 * i)");
+    const char *balls   = GROUP("sphere(0.1 + 0.001 * i)");
     KrsScene   *without = compile_after("material unused { color: [0, 0, 0] }", balls);
     KrsScene   *with    = compile_after("material unused { color: [u, v, 0] }", balls);
     assert_true(krs_table_rows(with) > 0);
@@ -49,7 +49,7 @@ static void coordinates_that_none_asks_for_change_nothing(void **state)
 static void coordinates_that_none_asks_for_need_no_columns(void **state)
 {
     (void)state;
-    const char *rods    = CROWD("capsule([0, 0, 0], [0, 1, 0.01 * i], 0.2)");
+    const char *rods    = GROUP("capsule([0, 0, 0], [0, 1, 0.01 * i], 0.2)");
     KrsScene   *without = compile_after("material unused { color: [0, 0, 0] }", rods);
     KrsScene   *with    = compile_after("material unused { color: [u, v, 0] }", rods);
     assert_true(krs_table_rows(without) > 0);

@@ -37,7 +37,7 @@ typedef struct Stage {
     KrsRenderer *renderer;
     KrsScene    *scene;
     KrsFrame    *frame;
-    Crowds      *crowds;
+    Instances   *instances;
 } Stage;
 
 #define CAMERA "camera { eye: [20, 0, 3], target: [20, 0, 0] }"
@@ -50,12 +50,12 @@ static const char moving[] = "param height = 0.5 in [0, 2];\n"
 /* Two tables for a scene that reads none. */
 static void add_tables(Bench *bench, Stage *stage, uint32_t rows)
 {
-    stage->crowds        = arena_new(&bench->arena, Crowds);
-    stage->crowds->arena = &bench->arena;
+    stage->instances        = arena_new(&bench->arena, Instances);
+    stage->instances->arena = &bench->arena;
     for (uint32_t t = 0; t < 2; t++) {
-        Crowd table   = {.rows = rows, .columns = 5 + t};
-        Box  *boxes   = arena_new_array(&bench->arena, Box, rows);
-        table.numbers = arena_new_array(&bench->arena, double, (size_t)rows *table.columns);
+        InstanceTable table = {.rows = rows, .columns = 5 + t};
+        Box          *boxes = arena_new_array(&bench->arena, Box, rows);
+        table.numbers       = arena_new_array(&bench->arena, double, (size_t)rows *table.columns);
         for (uint32_t i = 0; i < rows * table.columns; i++)
             table.numbers[i] = random_between(&bench->random, -1, 1);
         for (uint32_t r = 0; r < rows; r++)
@@ -65,11 +65,11 @@ static void add_tables(Bench *bench, Stage *stage, uint32_t rows)
             }
         grid_build(&table.grid, boxes, rows, 0, 0, 1, &bench->arena, &bench->arena);
         table.cells = table.grid;
-        array_push(&bench->arena, &stage->crowds->tables, table);
+        array_push(&bench->arena, &stage->instances->tables, table);
     }
     Graph     *graph                  = (Graph *)(uintptr_t)stage->scene->graph;
-    TableSizes sizes                  = tables_measure(stage->crowds, NULL);
-    graph->crowds                     = stage->crowds;
+    TableSizes sizes                  = tables_measure(stage->instances, NULL);
+    graph->instances                  = stage->instances;
     stage->scene->program.table_rows  = sizes.rows;
     stage->scene->program.table_cells = sizes.cells;
 }
@@ -146,7 +146,7 @@ static void a_query_brings_tables(void **state)
         assert_true(device_has_tables(&stage, rendering));
     }
     /* Other numbers are found out. */
-    stage.crowds->tables.items[1].numbers[7] += 1;
+    stage.instances->tables.items[1].numbers[7] += 1;
     assert_false(device_has_tables(&stage, rendering));
     krs_rendering_free(rendering);
     close_stage(&stage);

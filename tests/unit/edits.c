@@ -32,12 +32,12 @@ static const char structure[] = "param r = 1; show union([sphere(r), torus(1, 0.
 static const char panorama[]  = "param r = 1; show sphere(r).move([0, 0, -3]);"
                                 "camera { eye: [0, 1, 0], projection: \"panorama\" }";
 
-/* 100 rings are a crowd; 12 are none. */
+/* 100 rings are an instance group; 12 are none. */
 #define RINGS(lift, count)                                                                   \
     "show union([torus(0.3, 0.1).move([0.7 * (i % 10) - 3, if i == 55 then " lift " else 0," \
     " 0.7 * floor(i / 10) - 4]) for i in 0.." count "]).paint(#ff8000);"                     \
     "show plane([0, 1, 0], -1);" VIEW
-static const char crowd[] = RINGS("0.1", "100"), moved[] = RINGS("0.5", "100"),
+static const char group[] = RINGS("0.1", "100"), moved[] = RINGS("0.5", "100"),
                   more[] = RINGS("0.1", "130"), few[] = RINGS("0.1", "12");
 
 static const KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = SAMPLES};
@@ -174,10 +174,10 @@ static void an_edit_of_numbers_compiles_nothing(void **state)
     close_viewer(&viewer);
 }
 
-static void edits_of_a_crowd_compile_nothing(void **state)
+static void edits_of_a_instance_compile_nothing(void **state)
 {
     (void)state;
-    Viewer         viewer = open_viewer(crowd);
+    Viewer         viewer = open_viewer(group);
     KrsPicture    *first  = render(&viewer);
     const uint64_t made   = kernels_made(&viewer);
     assert_int_equal(edit(&viewer, moved), KRS_CHANGE_VALUES);
@@ -186,8 +186,8 @@ static void edits_of_a_crowd_compile_nothing(void **state)
     assert_shows(&viewer, moved);
     assert_int_equal(edit(&viewer, more), KRS_CHANGE_VALUES);
     assert_shows(&viewer, more);
-    assert_int_equal(edit(&viewer, crowd), KRS_CHANGE_VALUES);
-    assert_shows(&viewer, crowd);
+    assert_int_equal(edit(&viewer, group), KRS_CHANGE_VALUES);
+    assert_shows(&viewer, group);
     assert_int_equal(kernels_made(&viewer), made);
     assert_int_equal(edit(&viewer, few), KRS_CHANGE_STRUCTURE);
     assert_shows(&viewer, few);
@@ -271,7 +271,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_edit_of_numbers_compiles_nothing),
-        cmocka_unit_test(edits_of_a_crowd_compile_nothing),
+        cmocka_unit_test(edits_of_a_instance_compile_nothing),
         cmocka_unit_test(other_structures_are_compiled_once),
         cmocka_unit_test(rays_and_zones_follow),
         cmocka_unit_test(films_lose_their_samples),

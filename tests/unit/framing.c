@@ -136,8 +136,8 @@ static void costly_screws_fill_their_picture(void **state)
     assert_true(most > 0.1 * MOST_OPERATIONS); /* some are costly */
 }
 
-/* Exact distances to members of a crowd that blend look at all of them. */
-static void crowds_take_no_more(void **state)
+/* Exact distances to members of an instance group that blend look at all of them. */
+static void groups_take_no_more(void **state)
 {
     const char *const texts[] = {
         "show union([sphere(1).move([7 * sin(i), i % 60, 0.1 * i]) for i in 0..1000], blend: 0.5);"
@@ -161,7 +161,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(costly_screws_fill_their_picture),
-        cmocka_unit_test(crowds_take_no_more),
+        cmocka_unit_test(groups_take_no_more),
     };
     return cmocka_run_group_tests_name("framing", tests, NULL, NULL);
 }

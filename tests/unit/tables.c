@@ -20,10 +20,11 @@
 static const uint32_t shapes[][2] = {{40, 3}, {1, 4}, {777, 9}, {25, 64}, {5, 0}, {17, 1}};
 enum { TABLES = sizeof shapes / sizeof *shapes };
 
-static void make_table(Bench *bench, Crowd *table, uint32_t rows, uint32_t columns, bool infinite)
+static void make_table(Bench *bench, InstanceTable *table, uint32_t rows, uint32_t columns,
+                       bool infinite)
 {
     Box *boxes = arena_new_array(&bench->arena, Box, rows);
-    *table     = (Crowd){.rows = rows, .columns = columns};
+    *table     = (InstanceTable){.rows = rows, .columns = columns};
     for (uint32_t r = 0; r < rows; r++)
         for (int k = 0; k < 3; k++) {
             double at        = random_between(&bench->random, -7, 9);
@@ -37,7 +38,7 @@ static void make_table(Bench *bench, Crowd *table, uint32_t rows, uint32_t colum
 }
 
 typedef struct Packed {
-    Crowds crowds;
+    Instances instances;
     float (*rows)[4];
     uint32_t (*cells)[2];
     TableSizes sizes;
@@ -48,19 +49,19 @@ typedef struct Packed {
 
 static Packed pack(Bench *bench)
 {
-    Packed packed = {.crowds = {.arena = &bench->arena}};
+    Packed packed = {.instances = {.arena = &bench->arena}};
     for (int t = 0; t < TABLES; t++) {
-        Crowd table;
+        InstanceTable table;
         make_table(bench, &table, shapes[t][0], shapes[t][1], t == TABLES - 1);
-        array_push(&bench->arena, &packed.crowds.tables, table);
+        array_push(&bench->arena, &packed.instances.tables, table);
     }
-    packed.sizes = tables_measure(&packed.crowds, NULL);
+    packed.sizes = tables_measure(&packed.instances, NULL);
     packed.rows  = arena_alloc(&bench->arena, packed.sizes.rows + 1, sizeof *packed.rows);
     packed.cells = arena_alloc(&bench->arena, packed.sizes.cells + 1, sizeof *packed.cells);
     memset(packed.rows, 0xff, (packed.sizes.rows + 1) * sizeof *packed.rows);
     for (size_t i = 0; i <= packed.sizes.cells; i++)
         packed.cells[i][0] = packed.cells[i][1] = UNTOUCHED;
-    tables_pack(&packed.crowds, NULL, NULL, false, packed.rows, packed.cells);
+    tables_pack(&packed.instances, NULL, NULL, false, packed.rows, packed.cells);
     return packed;
 }
 
@@ -76,8 +77,8 @@ static void numbers_are_read_back(void **state)
     Packed packed = pack(*state);
     size_t needed = 0;
     for (int t = 0; t < TABLES; t++) {
-        const Crowd *table = &packed.crowds.tables.items[t];
-        const Grid  *grid  = &table->grid;
+        const InstanceTable *table = &packed.instances.tables.items[t];
+        const Grid          *grid  = &table->grid;
         uint32_t row_0 = packed.cells[GRID_HEADER * t + 7][0], texels = (table->columns + 3) / 4;
         uint32_t copy_0 = packed.cells[GRID_HEADER * t + 7][1];
         uint32_t listed = grid->first[grid->cells[0] * grid->cells[1] * grid->cells[2]];
@@ -88,7 +89,7 @@ static void numbers_are_read_back(void **state)
         assert_int_equal(copy_0, row_0 + table->rows * texels);
         for (uint32_t i = 0; i < listed; i++)
             assert_memory_equal(packed.rows[copy_0 + i * texels],
-                                packed.rows[row_0 + grid->members[i] * texels],
+                                packed.rows[row_0 + grid->instances[i] * texels],
                                 texels * sizeof *packed.rows);
         needed += ((size_t)table->rows + listed) * texels;
     }
@@ -102,7 +103,7 @@ static void grids_are_read_back(void **state)
     Packed packed = pack(*state);
     size_t next   = (size_t)GRID_HEADER * TABLES;
     for (int t = 0; t < TABLES; t++) {
-        const Grid *grid       = &packed.crowds.tables.items[t].cells;
+        const Grid *grid       = &packed.instances.tables.items[t].cells;
         uint32_t(*header)[2]   = packed.cells + GRID_HEADER * t;
         const uint32_t cells[] = {header[2][0], header[2][1], header[3][0]};
         uint32_t       first   = header[3][1];
@@ -114,7 +115,7 @@ static void grids_are_read_back(void **state)
             assert_true(float_of(packed.cells[first + c][1]) == grid->clearance[c]);
             assert_int_equal(to - from, grid->first[c + 1] - grid->first[c]);
             for (uint32_t i = from; i < to; i++)
-                assert_int_equal(packed.cells[lists + i / 2][i % 2], grid->members[i]);
+                assert_int_equal(packed.cells[lists + i / 2][i % 2], grid->instances[i]);
         }
         next = lists + (grid->first[count] + 1) / 2;
     }
@@ -128,7 +129,7 @@ static void places_of_grids_are_read_back(void **state)
 {
     Packed packed = pack(*state);
     for (int t = 0; t < TABLES; t++) {
-        const Grid *grid     = &packed.crowds.tables.items[t].cells;
+        const Grid *grid     = &packed.instances.tables.items[t].cells;
         uint32_t(*header)[2] = packed.cells + GRID_HEADER * t;
         const float low[]    = {float_of(header[0][0]), float_of(header[0][1]),
                                 float_of(header[1][0])};
@@ -156,7 +157,7 @@ static void places_of_grids_are_read_back(void **state)
 static void no_tables(void **state)
 {
     (void)state;
-    Crowds     none  = {0};
+    Instances  none  = {0};
     TableSizes sizes = tables_measure(NULL, NULL), empty = tables_measure(&none, NULL);
     assert_true(sizes.rows == 0 && sizes.cells == 0 && empty.rows == 0 && empty.cells == 0);
 }

@@ -174,7 +174,7 @@ static void auto_takes_numbers_out_with_the_first_edit(void **state)
     krs_scene_free(literal);
 }
 
-/* Sixty parts of each of twelve kinds: too few for crowds, and thousands of numbers. */
+/* Sixty parts of each of twelve kinds: too few for instance groups, and thousands of numbers. */
 #define MANY                                                                                 \
     "def solids(t) = [sphere(0.3 + t), box([0.2, 0.3, 0.2 + t]), cylinder(0.2 + t, 0.3),"    \
     " torus(0.3, 0.1 + t), capped_cone(0.1 + t, 0.2, 0.3), ellipsoid([0.1, 0.2, 0.2 + t])];" \
@@ -203,21 +203,21 @@ static void auto_keeps_very_many_numbers(void **state)
     krs_scene_free(structure);
 }
 
-/* ---- crowds ---- */
+/* ---- instance groups ---- */
 
-/* A crowd of 100 balls, of which one is lifted; and a block that is far away. */
-#define CROWD                                                                               \
+/* An instance group of 100 balls, of which one is lifted; and a block that is far away. */
+#define GROUP                                                                               \
     "let lift = 0.2; let radius = 0.3;"                                                     \
     "show union([sphere(radius).move([i % 10, if i == 55 then lift else 0, floor(i / 10)])" \
     " for i in 0..100]).paint(#ff8000);"                                                    \
     "show box([1, 9, 1]).move([0, 0, -9]); camera { eye: [4, 3, 15] }"
 
-typedef struct CrowdEdit {
+typedef struct InstanceEdit {
     const char *what, *from, *to;
     KrsChange   with_literals, with_slots;
-} CrowdEdit;
+} InstanceEdit;
 
-static const CrowdEdit crowd_edits[] = {
+static const InstanceEdit instance_edits[] = {
     {"nothing", "", "", KRS_CHANGE_NOTHING, KRS_CHANGE_NOTHING},
     {"a comment", "show", "// balls\n show", KRS_CHANGE_NOTHING, KRS_CHANGE_NOTHING},
     {"one moves aside", "[i % 10,", "[if i == 55 then 5.1 else i % 10,", KRS_CHANGE_VALUES,
@@ -228,21 +228,22 @@ static const CrowdEdit crowd_edits[] = {
     {"all have another size", "0.3", "0.31", KRS_CHANGE_STRUCTURE, KRS_CHANGE_VALUES},
     {"each has its size", "sphere(radius)", "sphere(radius + 0.001 * i)", KRS_CHANGE_STRUCTURE,
      KRS_CHANGE_STRUCTURE},
-    {"too few for a crowd", "0..100", "50..60", KRS_CHANGE_STRUCTURE, KRS_CHANGE_STRUCTURE},
+    {"too few for an instance group", "0..100", "50..60", KRS_CHANGE_STRUCTURE,
+     KRS_CHANGE_STRUCTURE},
     {"other parts", "sphere(radius)", "box([radius, 0.1, 0.2])", KRS_CHANGE_STRUCTURE,
      KRS_CHANGE_STRUCTURE},
 };
 
-static void assert_crowd_edit(const CrowdEdit *edit, KrsSpecialize specialize)
+static void assert_instance_edit(const InstanceEdit *edit, KrsSpecialize specialize)
 {
     KrsChanges      changes, back;
     const bool      slots    = specialize == KRS_SPECIALIZE_STRUCTURE;
     const KrsChange expected = slots ? edit->with_slots : edit->with_literals;
-    const char     *text     = edited(CROWD, edit->from, edit->to);
-    KrsScene       *scene    = compile(CROWD, specialize);
+    const char     *text     = edited(GROUP, edit->from, edit->to);
+    KrsScene       *scene    = compile(GROUP, specialize);
     KrsScene       *updated  = update(scene, text, &changes);
     KrsScene       *alone    = compile(text, specialize);
-    KrsScene       *undone   = update(updated, CROWD, &back);
+    KrsScene       *undone   = update(updated, GROUP, &back);
     assert_true(krs_table_rows(scene) > 0);
     if (changes.kind != expected || back.kind != expected)
         fail_msg("%s: %d, and back %d", edit->what, changes.kind, back.kind);
@@ -258,13 +259,13 @@ static void assert_crowd_edit(const CrowdEdit *edit, KrsSpecialize specialize)
 static void tables_are_values(void **state)
 {
     (void)state;
-    for (size_t i = 0; i < sizeof crowd_edits / sizeof *crowd_edits; i++) {
-        assert_crowd_edit(&crowd_edits[i], KRS_SPECIALIZE_NUMBERS);
-        assert_crowd_edit(&crowd_edits[i], KRS_SPECIALIZE_STRUCTURE);
+    for (size_t i = 0; i < sizeof instance_edits / sizeof *instance_edits; i++) {
+        assert_instance_edit(&instance_edits[i], KRS_SPECIALIZE_NUMBERS);
+        assert_instance_edit(&instance_edits[i], KRS_SPECIALIZE_STRUCTURE);
     }
 }
 
-/* Members with the same numbers and the same boxes: only operations of the body tell them apart. */
+/* Instances with the same numbers and the same boxes: only operations of the body tell them apart. */
 static void bodies_are_compared(void **state)
 {
     (void)state;

@@ -50,7 +50,7 @@ KrsStatus krs_distance(KrsFrame *frame, const double (*points)[3], size_t count,
     return KRS_OK;
 }
 
-/* There is no crowd, so a distance of the device has no excuse. */
+/* There is no instance group, so a distance of the device has no excuse. */
 size_t krs_table_cells(const KrsScene *scene)
 {
     (void)scene;

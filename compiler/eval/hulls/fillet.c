@@ -14,7 +14,7 @@
 #include "compiler/eval/declared/declare.h"
 #include "compiler/eval/hulls/hull_region.h"
 #include "compiler/family/family.h"
-#include "compiler/lower/crowd.h"
+#include "compiler/lower/instance_groups.h"
 
 enum { MOST_PARTS = 20000, MOST_PAIRS = 20000 };
 
@@ -141,16 +141,16 @@ static const Shape *make_pair(Filleting *f, const FilletPair *pair)
     Elaboration     *e       = f->e;
     const Span       span    = f->call->syntax->span;
     const Shape     *parts[] = {pair->a->shape, pair->b->shape};
-    const bool       crowd   = f->pairs.count >= LEAST_CROWD;
+    const bool       many    = f->pairs.count >= LEAST_INSTANCES;
     const FilletZone zone    = fillet_zone(e, parts[0], parts[1], f->widest, pair->box,
-                                        crowd ? POINTS_OF_MANY : POINTS_OF_FEW);
+                                        many ? POINTS_OF_MANY : POINTS_OF_FEW);
     if (zone.known && zone.cells.count == 0)
         return NULL;
     const Extents extents = extents_of_both(e, &pair->a->extents, &pair->b->extents);
-    const Shape  *region  = hull_region(e, f->call, &extents, &zone, crowd);
+    const Shape  *region  = hull_region(e, f->call, &extents, &zone, many);
     const Shape  *joint   = make_joint(e->builder, SHAPE_UNION, parts, 2, f->blend, span);
     Node          corners[2];
-    bool          boxed = !crowd && extents_box(e, &extents, corners);
+    bool          boxed = !many && extents_box(e, &extents, corners);
     pair->a->paired = pair->b->paired = true;
     return make_clip(e->builder, joint, region, boxed ? corners : NULL, span);
 }

@@ -46,7 +46,7 @@ static bool find_distances(Elaboration *e, const Shape *const parts[2], Distance
         if (distances->roots[k] == NODE_NONE || l.overflow)
             return false;
     }
-    Graph *alone          = graph_extract_with_crowds(g, distances->roots, 2, e->scratch);
+    Graph *alone          = graph_extract_with_instances(g, distances->roots, 2, e->scratch);
     distances->tape       = tape_new(alone, distances->roots, 2, e->scratch);
     distances->values     = arena_new_array(e->scratch, NodeValue, alone->count);
     NodeValue *parameters = arena_new_array(e->scratch, NodeValue, g->parameters.count);

@@ -128,7 +128,7 @@ static void add_hull_faces(Elaboration *e, const HullParts *parts, const Samplin
 typedef struct Region {
     Elaboration      *e;
     const FilletZone *zone;
-    bool              crowd; /* of one of many pairs, which had best be alike */
+    bool              many; /* of one of many pairs, which had best be alike */
     struct {
         Node  *items;
         size_t count, capacity;
@@ -165,7 +165,7 @@ static Node height_along(const Region *region, Node along)
     Graph     *g     = region->e->graph;
     const Node point = graph_leaf(g, OP_POINT);
     double     u[3];
-    if (!region->crowd && known_numbers(g, along, 3, u))
+    if (!region->many && known_numbers(g, along, 3, u))
         for (uint32_t k = 0; k < 3; k++)
             if (fabs(u[k]) == 1 && u[(k + 1) % 3] == 0 && u[(k + 2) % 3] == 0) {
                 Node coordinate = graph_component(g, point, k);
@@ -228,9 +228,9 @@ static void add_ball_about(Region *region, const Extents *extents, Node centre)
 }
 
 static Region region_by_features(Elaboration *e, const Extents *extents, const FilletZone *zone,
-                                 bool crowd)
+                                 bool many)
 {
-    Region region = {.e = e, .zone = zone, .crowd = crowd};
+    Region region = {.e = e, .zone = zone, .many = many};
     for (int k = 0; k < (extents->figure ? 4 : 6);
          k++) { /* the box of the fillet relies on these */
         const double sign = k % 2 ? 1 : -1;
@@ -244,7 +244,7 @@ static Region region_by_features(Elaboration *e, const Extents *extents, const F
     }
     for (size_t i = 0; i < extents->half_spaces.count; i++)
         add_plane(&region, extents, extents->half_spaces.items[i].along);
-    if (crowd && region.distances.count > 0)
+    if (many && region.distances.count > 0)
         add_spare(&region);
     for (size_t i = 0; i < extents->axes.count && extents->half_spaces.count == 0; i++)
         add_cylinder(&region, extents, extents->axes.items[i]);
@@ -265,7 +265,7 @@ static const Shape *shape_of_region(Region *region, const Call *call, bool figur
 }
 
 const Shape *hull_region(Elaboration *e, const Call *call, const Extents *extents,
-                         const FilletZone *zone, bool crowd)
+                         const FilletZone *zone, bool many)
 {
     HullParts    parts  = {0};
     Region       region = {0};
@@ -281,7 +281,7 @@ const Shape *hull_region(Elaboration *e, const Call *call, const Extents *extent
         more.faces.capacity = more.faces.count; /* a copy of its own, when it grows */
         if (known && !extents->figure)
             add_hull_faces(e, &parts, &samplings[i], &more);
-        region = region_by_features(e, &more, zone, crowd);
+        region = region_by_features(e, &more, zone, many);
         if (region.distances.count <= samplings[i].most)
             break;
     }

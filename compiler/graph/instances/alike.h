@@ -1,7 +1,7 @@
 /*
  * alike.h: expressions that are alike but for numbers.
  *
- * A template is made of the expressions of one member.  A member is alike if its expressions have
+ * A template is made of the expressions of one instance.  An instance is alike if its expressions have
  * the same operations on the same leaves.  Numbers that are known now, or in each frame, may differ
  * where what depends on the point uses them.  Each such use, an operand of an operation, is a slot.
  * Slots belong to uses and not to nodes, since equal numbers are one node by chance.  Truth values
@@ -37,7 +37,7 @@ typedef struct TemplateNode {
     TemplateUse uses[MAX_OPERANDS];
 } TemplateNode;
 
-/* A number, a count or a truth value that is the same in all members. */
+/* A number, a count or a truth value that is the same in all instances. */
 typedef struct TemplateKnown {
     GraphType type;
     NodeValue value;
@@ -47,13 +47,13 @@ typedef struct Template {
     uint64_t      hash;
     TemplateNode *nodes; /* what depends on the point, but leaves; operands first */
     uint32_t      node_count;
-    Node        *slots; /* what the member of the template has there: FLOAT or a vector, and where a
+    Node      *slots; /* what the instance of the template has there: FLOAT or a vector, and where a
                             root is a number also UINT */
-    GraphType   *slot_types;
-    uint32_t     slot_count;
+    GraphType *slot_types;
+    uint32_t   slot_count;
     TemplateUse *roots;
     uint32_t     root_count;
-    Node        *images; /* of each node, that of the member; template_match's own */
+    Node        *images; /* of each node, that of the instance; template_match's own */
     struct {
         TemplateKnown *items;
         size_t         count, capacity;

@@ -19,24 +19,24 @@
 #include "compiler/base/parallel.h"
 #include "compiler/graph/instances/squares.h"
 
-/* Most cells and entries: few members may have more cells each, so that they may form a curve, and
+/* Most cells and entries: few instances may have more cells each, so that they may form a curve, and
    more entries, so that blends that reach far have short lists.  A loop over a list is most of a
    frame, so they are as short as memory allows. */
 enum {
-    CELLS_PER_MEMBER   = 4,
-    CELLS_OF_FEW       = 16, /* for each of few members */
-    MANY_CELLS         = 1 << 20,
-    SPARE_CELLS        = 8192,
-    MOST_OF_A_MEMBER   = 64, /* cells, even so */
-    ENTRIES_PER_MEMBER = 8,
-    SPARE_ENTRIES      = 4096,
-    MANY_TEXELS        = 1 << 23, /* of all entries of few members: 128 MB */
-    ENTRIES_OF_FEW     = 1024,    /* for each of few members */
-    MANY_REFINED       = 1 << 17, /* cells of a refined grid */
-    LEAST_REFINED      = 8,       /* of these for each member */
-    MANY_TO_REFINE     = 1 << 20, /* entries of a coarse one, whose members are evaluated */
-    OF_FRAME           = 8, /* cells and entries of each member, if a grid is built each frame */
-    SPARE_OF_FRAME     = 4096
+    CELLS_PER_INSTANCE   = 4,
+    CELLS_OF_FEW         = 16, /* for each of few instances */
+    MANY_CELLS           = 1 << 20,
+    SPARE_CELLS          = 8192,
+    MOST_OF_AN_INSTANCE  = 64, /* cells, even so */
+    ENTRIES_PER_INSTANCE = 8,
+    SPARE_ENTRIES        = 4096,
+    MANY_TEXELS          = 1 << 23, /* of all entries of few instances: 128 MB */
+    ENTRIES_OF_FEW       = 1024,    /* for each of few instances */
+    MANY_REFINED         = 1 << 17, /* cells of a refined grid */
+    LEAST_REFINED        = 8,       /* of these for each instance */
+    MANY_TO_REFINE       = 1 << 20, /* entries of a coarse one, whose instances are evaluated */
+    OF_FRAME       = 8, /* cells and entries of each instance, if a grid is built each frame */
+    SPARE_OF_FRAME = 4096
 };
 
 #define MARGIN_IN_CELLS 0.25  /* beyond what the caller gives */
@@ -55,23 +55,23 @@ static bool box_is_bounded(const Box *box)
 }
 
 typedef struct Builder {
-    Grid       *grid;
-    const Box  *boxes;
-    uint32_t    count, present; /* boxes; those that are not empty */
-    double      reach, margin;
-    double      given_margin;
-    uint32_t    texels;      /* of an entry */
-    bool        coarse, few; /* it will be refined; with half the cells, since lists are long */
-    GridLimits  most;        /* 0: as for all frames */
-    double      pad[3];
-    double      listed, seen; /* boxes up to this distance are in the list, or are measured */
-    float      *nearest;      /* of each cell: the square of the distance to the nearest box that is
+    Grid         *grid;
+    const Box    *boxes;
+    uint32_t      count, present; /* boxes; those that are not empty */
+    double        reach, margin;
+    double        given_margin;
+    uint32_t      texels;      /* of an entry */
+    bool          coarse, few; /* it will be refined; with half the cells, since lists are long */
+    GridLimits    most;        /* 0: as for all frames */
+    double        pad[3];
+    double        listed, seen; /* boxes up to this distance are in the list, or are measured */
+    float        *nearest; /* of each cell: the square of the distance to the nearest box that is
                                 seen and not listed */
-    GridMembers flat;         /* of a flat grid */
-    double      half;         /* and half the diagonal of its cells, */
-    float      *centers;   /* and of each cell the distance from its center to the nearest member */
-    bool        measuring; /* these distances */
-    Arena      *scratch;
+    GridInstances flat;    /* of a flat grid */
+    double        half;    /* and half the diagonal of its cells, */
+    float *centers;   /* and of each cell the distance from its center to the nearest instance */
+    bool   measuring; /* these distances */
+    Arena *scratch;
 } Builder;
 
 /* Cells from first to last along each axis. */
@@ -142,12 +142,12 @@ static void one_cell(Builder *b, Arena *arena)
                         .cells       = {1, 1, 1},
                         .first       = arena_new_array(arena, uint32_t, 2),
                         .clearance   = arena_new(arena, float),
-                        .members     = arena_new_array(arena, uint32_t, b->count),
+                        .instances   = arena_new_array(arena, uint32_t, b->count),
                         .most_listed = b->present};
 
     for (uint32_t i = 0; i < b->count; i++)
         if (!grid_box_is_empty(&b->boxes[i]))
-            grid->members[grid->first[1]++] = i;
+            grid->instances[grid->first[1]++] = i;
     grid->clearance[0] = (float)NOWHERE;
 }
 
@@ -211,12 +211,12 @@ static double most_cells(const Builder *b)
     if (b->most.cells > 0)
         return b->most.cells;
     if (b->coarse)
-        return fmin((double)MOST_OF_A_MEMBER * b->present,
+        return fmin((double)MOST_OF_AN_INSTANCE * b->present,
                     b->few ? MANY_REFINED / 2 : MANY_REFINED) /
                GRID_REFINED;
     double few = fmin((double)CELLS_OF_FEW * b->present, MANY_CELLS);
-    return fmin(fmax((double)CELLS_PER_MEMBER * b->present, few) + SPARE_CELLS,
-                (double)MOST_OF_A_MEMBER * b->present);
+    return fmin(fmax((double)CELLS_PER_INSTANCE * b->present, few) + SPARE_CELLS,
+                (double)MOST_OF_AN_INSTANCE * b->present);
 }
 
 static double most_entries(const Builder *b)
@@ -224,7 +224,7 @@ static double most_entries(const Builder *b)
     if (b->most.entries > 0)
         return b->most.entries;
     double few = fmin((double)ENTRIES_OF_FEW * b->present, (double)MANY_TEXELS / b->texels);
-    return fmax((double)ENTRIES_PER_MEMBER * b->present, few) + SPARE_ENTRIES;
+    return fmax((double)ENTRIES_PER_INSTANCE * b->present, few) + SPARE_ENTRIES;
 }
 
 /* The least side with few enough cells. */
@@ -284,11 +284,11 @@ static double gap_along(const Builder *b, const Box *box, int axis, uint32_t cel
     return gap > 0 ? gap : 0;
 }
 
-/* Adds a member to the list of a cell, or counts it. */
-static void put_in_list(Grid *grid, size_t cell, uint32_t member)
+/* Adds an instance to the list of a cell, or counts it. */
+static void put_in_list(Grid *grid, size_t cell, uint32_t instance)
 {
-    if (grid->members)
-        grid->members[grid->first[cell]++] = member;
+    if (grid->instances)
+        grid->instances[grid->first[cell]++] = instance;
     else
         grid->first[cell]++;
 }
@@ -306,7 +306,7 @@ void grid_begin_lists(Grid *grid, Arena *arena)
         grid->first[c] = entries;
         entries += length;
     }
-    grid->members = arena_new_array(arena, uint32_t, entries + 1);
+    grid->instances = arena_new_array(arena, uint32_t, entries + 1);
 }
 
 /* Each first[] is now where the next list begins. */
@@ -318,13 +318,13 @@ void grid_end_lists(Grid *grid)
 }
 
 /* Visits cells of a slab around a box.  First their lists are counted, in first[]; when there are
-   members, they are filled, and first[] moves on. */
-static void visit_cells(const Builder *b, uint32_t member, Slab slab)
+   instances, they are filled, and first[] moves on. */
+static void visit_cells(const Builder *b, uint32_t instance, Slab slab)
 {
     const Grid *grid   = b->grid;
-    const Box  *box    = &b->boxes[member];
+    const Box  *box    = &b->boxes[instance];
     double      listed = b->listed * b->listed;
-    Cover       cover  = cover_box(b, box, grid->members ? b->listed : b->seen);
+    Cover       cover  = cover_box(b, box, grid->instances ? b->listed : b->seen);
     cover              = cover_in_slab(cover, slab);
     for (uint32_t z = cover.first[2]; z <= cover.last[2]; z++) {
         double gap_z = gap_along(b, box, 2, z);
@@ -337,40 +337,40 @@ static void visit_cells(const Builder *b, uint32_t member, Slab slab)
                     if (apart < b->nearest[row + x])
                         b->nearest[row + x] = (float)apart;
                 } else
-                    put_in_list(b->grid, row + x, member);
+                    put_in_list(b->grid, row + x, instance);
             }
         }
     }
 }
 
 /* What is true of the center of a cell is true of all of it but for half of the diagonal. */
-static void visit_flat_cell(const Builder *b, uint32_t member, size_t cell, const double center[2],
-                            double gap)
+static void visit_flat_cell(const Builder *b, uint32_t instance, size_t cell,
+                            const double center[2], double gap)
 {
     float *nearest = &b->centers[cell];
-    double away    = b->flat.distance(b->flat.members, member, center);
+    double away    = b->flat.distance(b->flat.instances, instance, center);
     double least   = fmax(away - b->half, gap);
     if (b->measuring)
         *nearest = fminf(*nearest, (float)(away * (1 - FLOAT_MISSES)));
     else if (least <= b->listed ||
              (*nearest <= b->half &&
               away <= (double)*nearest * (1 + 4 * FLOAT_MISSES) + 2 * b->half))
-        put_in_list(b->grid, cell, member);
+        put_in_list(b->grid, cell, instance);
     else
         b->nearest[cell] = fminf(b->nearest[cell], (float)(least * least));
 }
 
-static void visit_flat_cells(const Builder *b, uint32_t member, Slab slab)
+static void visit_flat_cells(const Builder *b, uint32_t instance, Slab slab)
 {
     const Grid *grid  = b->grid;
-    const Box  *box   = &b->boxes[member];
+    const Box  *box   = &b->boxes[instance];
     Cover       cover = cover_in_slab(cover_box(b, box, b->seen), slab);
     for (uint32_t y = cover.first[1]; y <= cover.last[1]; y++) {
         double gap_y = gap_along(b, box, 1, y);
         for (uint32_t x = cover.first[0]; x <= cover.last[0]; x++) {
             double center[2] = {grid->low[0] + (x + 0.5) * grid->size,
                                 grid->low[1] + (y + 0.5) * grid->size};
-            visit_flat_cell(b, member, (size_t)y * grid->cells[0] + x, center,
+            visit_flat_cell(b, instance, (size_t)y * grid->cells[0] + x, center,
                             hypot(gap_along(b, box, 0, x), gap_y));
         }
     }
@@ -542,7 +542,7 @@ void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, doub
     build(&b, arena);
 }
 
-/* Around few and large cells each member is in 8 of them at most. */
+/* Around few and large cells each instance is in 8 of them at most. */
 GridLimits grid_limits_of_frame(uint32_t count)
 {
     const double most = (double)OF_FRAME * count + SPARE_OF_FRAME;
@@ -589,11 +589,11 @@ bool grid_build_coarse(Grid *grid, const Box *boxes, uint32_t count, double reac
 }
 
 void grid_build_flat(Grid *grid, const Box *boxes, uint32_t count, double margin, uint32_t texels,
-                     GridMembers members, Arena *arena, Arena *scratch)
+                     GridInstances instances, Arena *arena, Arena *scratch)
 {
     Builder b = builder_new(grid, boxes, count, 0, margin, scratch);
     assert(texels > 0);
     b.texels = texels;
-    b.flat   = members;
+    b.flat   = instances;
     build(&b, arena);
 }

@@ -8,9 +8,9 @@
 
 /*
  * Builds a grid of `count` boxes, at least one.  The clearance is more than `margin`, by a part of a cell,
- * wherever a list does not have all members, and NOWHERE where it does: taps for normals need more.  Where a box or
+ * wherever a list does not have all instances, and NOWHERE where it does: taps for normals need more.  Where a box or
  * the margin is infinite there is one cell for all of space, its size is infinite, and its list has all
- * members.  Empty boxes are in no list.  Kernels read `texels` of 16 bytes for each entry of a list, at
+ * instances.  Empty boxes are in no list.  Kernels read `texels` of 16 bytes for each entry of a list, at
  * least one: the more, the fewer entries there are.
  */
 void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
@@ -38,19 +38,19 @@ bool grid_build_coarse(Grid *grid, const Box *boxes, uint32_t count, double reac
 /* How many cells a cell becomes when a grid is refined, along each axis and in all. */
 enum { GRID_REFINED_ALONG = 4, GRID_REFINED = 64 };
 
-/* Members in the plane z = 0, of which the nearest one decides. */
-typedef struct GridMembers {
-    double (*distance)(const void *members, uint32_t member, const double point[2]);
-    const void *members;
-} GridMembers;
+/* Instances in the plane z = 0, of which the nearest one decides. */
+typedef struct GridInstances {
+    double (*distance)(const void *instances, uint32_t instance, const double point[2]);
+    const void *instances;
+} GridInstances;
 
 /*
- * The same for members in that plane, with one layer of cells.  Where something is so near to a cell
- * that it may be in it, the list has all members that are nearest anywhere in the cell; its clearance
- * is NOWHERE.  So no member is in a cell with another clearance.
+ * The same for instances in that plane, with one layer of cells.  Where something is so near to a cell
+ * that it may be in it, the list has all instances that are nearest anywhere in the cell; its clearance
+ * is NOWHERE.  So no instance is in a cell with another clearance.
  */
 void grid_build_flat(Grid *grid, const Box *boxes, uint32_t count, double margin, uint32_t texels,
-                     GridMembers members, Arena *arena, Arena *scratch);
+                     GridInstances instances, Arena *arena, Arena *scratch);
 
 bool grid_box_is_empty(const Box *box);
 

@@ -1,12 +1,12 @@
 /*
- * grid_halve.c: which members of a list change a blend in a part of its cell.
+ * grid_halve.c: which instances of a list change a blend in a part of its cell.
  *
- * Distances of the members are evaluated in the middle of each part.  Elsewhere in it they, and the result, differ
- * by no more than their slope permits.  So a member changes nothing in a part if it is nowhere less than
+ * Distances of the instances are evaluated in the middle of each part.  Elsewhere in it they, and the result, differ
+ * by no more than their slope permits.  So an instance changes nothing in a part if it is nowhere less than
  * - `acts` above the least of all; or
  * - the reach above the result, or above the clearance of the cell.
  * Of a blend that fades, those are left out that make the least of the sum.  Where results are large, no
- * member is needed: the least of them is the clearance.
+ * instance is needed: the least of them is the clearance.
  */
 #include "compiler/graph/instances/grid_halve.h"
 
@@ -47,17 +47,17 @@ double halving_emptied(const Halving *h, int part)
     return fmin(h->least[part] * ROUNDED_DOWN, h->clearance);
 }
 
-void halving_distances(const Halver *halver, const HalvingDesk *desk, size_t member,
+void halving_distances(const Halver *halver, const HalvingDesk *desk, size_t instance,
                        const double (*points)[3], size_t count, double *distances)
 {
     LaneTape tape = *halver->blend->tape;
     LaneWork work = lane_work_in(desk->rows, NULL);
-    tape.scalars  = halver->blend->scalars + member * tape.scalar_count;
+    tape.scalars  = halver->blend->scalars + instance * tape.scalar_count;
     lane_run(&tape, &work, LANE_DOUBLE, (LanePoints){.points = points, .count = count}, 0, 1,
              distances);
 }
 
-/* The nearest members in the middle of a part, in ascending order. */
+/* The nearest instances in the middle of a part, in ascending order. */
 typedef struct Nearest {
     double   distances[MOST_SHARERS];
     uint32_t count;
@@ -73,7 +73,7 @@ static void add_distance(Nearest *nearest, double distance)
         nearest->distances[at] = distance;
 }
 
-/* What the members make, of which these are the nearest. */
+/* What the instances make, of which these are the nearest. */
 static double join_nearest(const GridBlend *blend, const Nearest *nearest)
 {
     static const GraphType types[][MAX_OPERANDS] = {
@@ -113,7 +113,7 @@ static void sum_powers(const GridBlend *blend, const HalvingDesk *desk, uint32_t
             results[part] -= blend->width * log(sums[part]);
 }
 
-/* Joins all members.  Those that never act are not needed. */
+/* Joins all instances.  Those that never act are not needed. */
 static void join_all(const Halver *halver, const HalvingDesk *desk, uint8_t *needs,
                      const Halving *h, double away, double *results)
 {
@@ -130,8 +130,8 @@ static void join_all(const Halver *halver, const HalvingDesk *desk, uint8_t *nee
     LanePoints middles = {.points = (const double(*)[3])points, .count = GRID_PARTS};
     for (uint32_t i = 0; i < h->count; i++) {
         double *distances = desk->distances[i];
-        size_t  member    = h->members[h->places[i]];
-        tape.scalars      = blend->scalars + member * tape.scalar_count;
+        size_t  instance  = h->instances[h->places[i]];
+        tape.scalars      = blend->scalars + instance * tape.scalar_count;
         lane_run(&tape, &work, LANE_DOUBLE, middles, 0, 1, distances);
         for (int part = 0; part < GRID_PARTS; part++)
             add_distance(&nearest[part], distances[part]);
@@ -156,7 +156,7 @@ static void join_all(const Halver *halver, const HalvingDesk *desk, uint8_t *nee
 
 enum { PER_WIDTH = 4, STEPS = 32 * PER_WIDTH };
 
-/* How far a member is at least above all results that must be right, in parts of a width. */
+/* How far an instance is at least above all results that must be right, in parts of a width. */
 static double steps_above(const Halver *halver, const Halving *h, double distance, double result,
                           double away)
 {
@@ -164,7 +164,7 @@ static double steps_above(const Halver *halver, const Halving *h, double distanc
     return (distance - away - highest) * (PER_WIDTH / halver->blend->width);
 }
 
-/* Leaves out the farthest members of a part, as long as what they make of the sum is small enough. */
+/* Leaves out the farthest instances of a part, as long as what they make of the sum is small enough. */
 static void leave_out(const Halver *halver, const HalvingDesk *desk, uint8_t *needs,
                       const Halving *h, int part, double result, double away)
 {

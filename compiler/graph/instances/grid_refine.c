@@ -1,7 +1,7 @@
 /*
- * grid_refine.c: lists of those members that change a blend in small cells.
+ * grid_refine.c: lists of those instances that change a blend in small cells.
  *
- * A cell is halved along each axis, and each half again, with the members that the first has left.
+ * A cell is halved along each axis, and each half again, with the instances that the first has left.
  */
 #include "compiler/graph/instances/grid_refine.h"
 
@@ -22,7 +22,7 @@
 /* What the two halvings may leave out of what all may. */
 static const double shares[2] = {0.25, 0.5};
 
-/* What one processor works with: for each member of the list at hand */
+/* What one processor works with: for each instance of the list at hand */
 typedef struct Desk {
     HalvingDesk halving;
     uint8_t    *needs[2]; /* which parts need it, of a cell and of one of its parts */
@@ -60,7 +60,7 @@ static void refine_part(const Refiner *r, const Desk *desk, const uint32_t *cell
                         const Halving *whole, int part, uint64_t *masks)
 {
     Halving   h     = {.size      = 0.5 * whole->size,
-                       .members   = whole->members,
+                       .instances = whole->instances,
                        .places    = desk->places,
                        .share     = shares[1],
                        .clearance = whole->clearance};
@@ -83,7 +83,7 @@ static void refine_part(const Refiner *r, const Desk *desk, const uint32_t *cell
     }
 }
 
-/* The places of a cell's list are those of all its members. */
+/* The places of a cell's list are those of all its instances. */
 static void refine_cell(const Refiner *r, const Desk *desk, const uint32_t *cell,
                         const uint32_t *all)
 {
@@ -91,7 +91,7 @@ static void refine_cell(const Refiner *r, const Desk *desk, const uint32_t *cell
     size_t          number = coarse_cell(r, cell);
     const uint32_t *first  = &from->first[number];
     Halving         h      = {.size      = from->size,
-                              .members   = from->members + first[0],
+                              .instances = from->instances + first[0],
                               .places    = all,
                               .share     = shares[0],
                               .count     = first[1] - first[0],
@@ -138,13 +138,13 @@ static void fill_cell(const Refiner *r, const Desk *desk, const uint32_t *cell)
     const uint32_t *list  = &r->from->first[coarse_cell(r, cell)];
     uint32_t       *first = r->to->first + first_refined(r, cell);
     for (uint32_t i = list[0]; i < list[1]; i++) {
-        uint32_t member = r->from->members[i];
+        uint32_t instance = r->from->instances[i];
         if (r->to->tails && r->masks[i])
-            halving_distances(&r->halver, &desk->halving, member, (const double(*)[3])middles,
+            halving_distances(&r->halver, &desk->halving, instance, (const double(*)[3])middles,
                               GRID_REFINED, distances);
         for (uint64_t bits = r->masks[i]; bits; bits &= bits - 1) {
             uint32_t number = lowest_bit(bits), at = first[r->offsets[number]]++;
-            r->to->members[at] = member;
+            r->to->instances[at] = instance;
             if (r->to->tails)
                 r->to->tails[at] = (float)distances[number];
         }

@@ -1,5 +1,5 @@
 /*
- * grid_refine.h: the grid of a blend, with smaller cells, and lists of those members alone that change the
+ * grid_refine.h: the grid of a blend, with smaller cells, and lists of those instances alone that change the
  * blend in a cell.
  */
 #ifndef KRS_GRID_REFINE_H
@@ -8,8 +8,8 @@
 #include "compiler/graph/instances/grid_blend.h"
 
 /*
- * Each cell of a coarse grid becomes GRID_REFINED cells.  In each of them the members of its list make the
- * same of all points as all members of the coarse list do, where that is less than the clearance.  Elsewhere
+ * Each cell of a coarse grid becomes GRID_REFINED cells.  In each of them the instances of its list make the
+ * same of all points as all instances of the coarse list do, where that is less than the clearance.  Elsewhere
  * that is no less than the clearance.
  */
 void grid_refine(Grid *refined, const Grid *coarse, const GridBlend *blend, Arena *arena,

@@ -1,8 +1,8 @@
 /*
  * grid_sift.c: the lists of coarse cells for a blend, found from above.
  *
- * A cube around all cells is halved along each axis, with all members, and so are its parts with the members
- * that change something in them (grid_halve.h), down to the cells.  Upper cubes need nearly all members, but
+ * A cube around all cells is halved along each axis, with all instances, and so are its parts with the instances
+ * that change something in them (grid_halve.h), down to the cells.  Upper cubes need nearly all instances, but
  * there are few of them.
  */
 #include "compiler/graph/instances/grid_sift.h"
@@ -16,7 +16,7 @@
 #include "compiler/graph/instances/grid_halve.h"
 #include "compiler/graph/instances/grid_refine.h"
 
-/* Levels of cubes; the entries of lists, and the distances of members in eight points, of a processor. */
+/* Levels of cubes; the entries of lists, and the distances of instances in eight points, of a processor. */
 enum { MOST_LEVELS = 16, MOST_ENTRIES = 1 << 21, MOST_EVALUATED = 1 << 22 };
 
 /* Of the first levels all processors find all, so that they can share the cubes below. */
@@ -43,7 +43,7 @@ typedef struct Sifter {
     double           empty;
     int              levels, shared; /* cubes of this level are dealt out to the processors */
     const uint32_t  *all;            /* 0, 1, 2, .. */
-    const uint32_t  *members;        /* whose boxes are not empty */
+    const uint32_t  *instances;      /* whose boxes are not empty */
     uint32_t         present;
     const uint32_t **lists; /* of each cell */
     Sieve            sieves[MOST_PARTS];
@@ -136,7 +136,7 @@ static void sift_cube(Hand hand, Cube cube)
         return;
     }
     Halving h = {.size      = ldexp(s->grid->size, cube.level),
-                 .members   = sieve->lists[cube.level],
+                 .instances = sieve->lists[cube.level],
                  .places    = s->all,
                  .count     = cube.count,
                  .clearance = NOWHERE,
@@ -160,7 +160,7 @@ static void sift_part(void *task, size_t part, size_t parts)
     Sifter *s    = task;
     Hand    hand = {s, &s->sieves[part], part, parts};
     Cube    all  = {.level = s->levels, .count = s->present};
-    memcpy(hand.sieve->lists[s->levels], s->members, s->present * sizeof *s->members);
+    memcpy(hand.sieve->lists[s->levels], s->instances, s->present * sizeof *s->instances);
     sift_cube(hand, all);
 }
 
@@ -197,7 +197,7 @@ static void gather_lists(const Sifter *s, Arena *scratch)
     for (size_t c = 0; c < cells; c++) {
         uint32_t length = lengths[c];
         if (length > 0)
-            memcpy(grid->members + grid->first[c], s->lists[c], length * sizeof *grid->members);
+            memcpy(grid->instances + grid->first[c], s->lists[c], length * sizeof *grid->instances);
         grid->first[c] += length;
     }
     grid_end_lists(grid);
@@ -209,24 +209,24 @@ bool grid_sift(Grid *coarse, const Box *boxes, uint32_t count, const GridBlend *
     if (!grid_place_coarse(coarse, boxes, count, blend->swell, blend->margin, blend->fades,
                            scratch))
         return false;
-    size_t    cells   = grid_cell_count(coarse);
-    Sifter    s       = {.grid   = coarse,
-                         .halver = {blend, halving_pad(coarse)},
-                         .empty  = grid_empty_from(blend, coarse),
-                         .levels = levels_around(coarse),
-                         .lists  = arena_new_array(scratch, const uint32_t *, cells)};
-    uint32_t *all     = arena_new_array(scratch, uint32_t, count);
-    uint32_t *members = arena_new_array(scratch, uint32_t, count);
+    size_t    cells     = grid_cell_count(coarse);
+    Sifter    s         = {.grid   = coarse,
+                           .halver = {blend, halving_pad(coarse)},
+                           .empty  = grid_empty_from(blend, coarse),
+                           .levels = levels_around(coarse),
+                           .lists  = arena_new_array(scratch, const uint32_t *, cells)};
+    uint32_t *all       = arena_new_array(scratch, uint32_t, count);
+    uint32_t *instances = arena_new_array(scratch, uint32_t, count);
     if (s.levels >= MOST_LEVELS)
         return false;
     for (uint32_t i = 0; i < count; i++) {
         all[i] = i;
         if (!grid_box_is_empty(&boxes[i]))
-            members[s.present++] = i;
+            instances[s.present++] = i;
     }
-    s.shared  = s.levels > SHARED_LEVELS ? s.levels - SHARED_LEVELS : 0;
-    s.all     = all;
-    s.members = members;
+    s.shared    = s.levels > SHARED_LEVELS ? s.levels - SHARED_LEVELS : 0;
+    s.all       = all;
+    s.instances = instances;
     for (size_t i = 0; i < parallel_parts(); i++)
         s.sieves[i] = sieve_new(&s, count, scratch);
     coarse->first     = arena_new_array(scratch, uint32_t, cells + 1);

@@ -1,7 +1,7 @@
 /*
- * grid_tails.c: lists from the nearest members on, with sums of all that is behind each place.
+ * grid_tails.c: lists from the nearest instances on, with sums of all that is behind each place.
  *
- * The sums are right in any order, so members are sorted by steps of a part of a width, in linear time.
+ * The sums are right in any order, so instances are sorted by steps of a part of a width, in linear time.
  */
 #include "compiler/graph/instances/grid_tails.h"
 
@@ -25,7 +25,7 @@ bool grid_may_have_tails(const GridBlend *blend, double size)
 
 /* What one processor works with: the list of a cell. */
 typedef struct Sorting {
-    uint32_t *members;
+    uint32_t *instances;
     float    *distances;
 } Sorting;
 
@@ -41,7 +41,7 @@ static uint32_t step_of(const Tails *t, double distance, double least)
     return steps < STEPS ? (uint32_t)steps : STEPS - 1;
 }
 
-static void sort_list(const Tails *t, const Sorting *to, const uint32_t *members,
+static void sort_list(const Tails *t, const Sorting *to, const uint32_t *instances,
                       const float *distances, uint32_t count, double least)
 {
     uint32_t places[STEPS + 1] = {0};
@@ -51,7 +51,7 @@ static void sort_list(const Tails *t, const Sorting *to, const uint32_t *members
         places[s] += places[s - 1];
     for (uint32_t i = 0; i < count; i++) {
         uint32_t place       = places[step_of(t, (double)distances[i], least)]++;
-        to->members[place]   = members[i];
+        to->instances[place] = instances[i];
         to->distances[place] = distances[i];
     }
 }
@@ -63,8 +63,8 @@ static void find_tails(const Tails *t, const Sorting *sorting, size_t cell)
     double         least = HUGE_VAL, sum = 0;
     for (uint32_t i = 0; i < count; i++)
         least = fmin(least, (double)tails[i]);
-    sort_list(t, sorting, t->grid->members + first, tails, count, least);
-    memcpy(t->grid->members + first, sorting->members, count * sizeof *sorting->members);
+    sort_list(t, sorting, t->grid->instances + first, tails, count, least);
+    memcpy(t->grid->instances + first, sorting->instances, count * sizeof *sorting->instances);
     for (uint32_t i = count; i-- > 0;) {
         sum += exp((least - (double)sorting->distances[i]) / t->width);
         tails[i] = (float)sum;

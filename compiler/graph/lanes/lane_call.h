@@ -10,10 +10,10 @@
 NodeValue lane_call(const Tape *tape, NodeValue *values, Node node, const NodeValue *operands);
 
 /* A call that has a body, in as many points; `run` is the kernel that asks. */
-void lane_crowd_call(const LaneTape *tape, const LaneWork *work, const LaneCall *call,
-                     size_t points, LaneKernel *run);
-/* Steps that tell of the member of each lane, in blocks that are full. */
-void lane_member_step(const LaneWork *work, const LaneCode *code, size_t points);
+void lane_instance_call(const LaneTape *tape, const LaneWork *work, const LaneCall *call,
+                        size_t points, LaneKernel *run);
+/* Steps that tell of the instance of each lane, in blocks that are full. */
+void lane_instance_step(const LaneWork *work, const LaneCode *code, size_t points);
 
 /* The length of a vector that is very long or very short. */
 double lane_length(const double *vector, uint32_t size);

@@ -83,7 +83,7 @@ static void LOCAL(call)(const LaneTape *tape, const LaneWork *work, const LaneCa
     REAL       *rows = work->rows;
     const Expr *e    = &tape->tape->graph->items[call->node];
     if (call->body && sizeof(REAL) == sizeof(double)) {
-        lane_crowd_call(tape, work, call, points, LANE_KERNEL);
+        lane_instance_call(tape, work, call, points, LANE_KERNEL);
         return;
     }
     for (size_t i = 0; i < points; i++) {
@@ -249,8 +249,8 @@ void LANE_KERNEL(const LaneTape *tape, const LaneWork *work, size_t points)
     for (const LaneCode *code = tape->code, *end = code + tape->count; code < end; code++) {
         if (code->op == LANE_CALL)
             LOCAL(call)(tape, work, &tape->calls[code->from[0]], points);
-        else if (code->op >= LANE_MEMBER)
-            lane_member_step(work, code, points);
+        else if (code->op >= LANE_INSTANCE)
+            lane_instance_step(work, code, points);
         else if (code->op != LANE_PART &&
                  !(code->operand_count == 2 && (code->scalars == 1 || code->scalars == 2) &&
                    LOCAL(mixed_step)(tape, code, rows, blocks)))

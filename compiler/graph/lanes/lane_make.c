@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/lanes/lane_rows.h"
 #include "compiler/graph/op_values.h"
 
@@ -22,7 +22,7 @@ typedef struct Builder {
     Arena       *arena;
     LaneSteps   *to;
     Parts *parts; /* by place on the tape; a frame's node that nobody has asked for is all 0 */
-    const LaneBody **bodies; /* of crowd functions, by their numbers */
+    const LaneBody **bodies; /* of instance functions, by their numbers */
     bool             in_body;
     Parts            of_frame; /* in a body, whose tape has no nodes of the frame: the last one */
     const double    *steepest; /* by node, as of LaneStep; NULL: it is not asked for */
@@ -200,40 +200,40 @@ static void emit_operation(Builder *b, Node node, const Operands *o, uint32_t *t
 }
 
 /* A step of a body that has no operands, but a number. */
-static uint32_t emit_of_member(Builder *b, uint16_t op, uint32_t number)
+static uint32_t emit_of_instance(Builder *b, uint16_t op, uint32_t number)
 {
     return lane_steps_add(b->to, (LaneStep){.op = op, .operands = {number}});
 }
 
-/* In a body, a number of the member's own row. */
+/* In a body, a number of the instance's own row. */
 static bool emit_row(Builder *b, const Expr *e, uint32_t *to)
 {
-    if (e->op != OP_row || !b->in_body || b->graph->items[e->operands[1]].op != OP_MEMBER)
+    if (e->op != OP_row || !b->in_body || b->graph->items[e->operands[1]].op != OP_INSTANCE_ROW)
         return false;
     uint32_t id = (uint32_t)b->graph->items[e->operands[0]].number[0];
-    to[0]       = emit_of_member(b, LANE_ROW, row_column(id));
+    to[0]       = emit_of_instance(b, LANE_ROW, row_column(id));
     return true;
 }
 
 /* Leaves that are known at a point alone; the others have the same value everywhere (ops.def). */
 static void emit_leaf(Builder *b, const Expr *e, uint32_t *to)
 {
-    bool     point = e->op == OP_POINT || e->op == OP_CROWD_POINT;
+    bool     point = e->op == OP_POINT || e->op == OP_INSTANCE_POINT;
     uint32_t first = point ? LANE_POINT : LANE_NORMAL;
-    assert(b->in_body || !is_of_crowd((Op)e->op));
+    assert(b->in_body || !is_of_instances((Op)e->op));
     for (uint32_t k = 0; k < components(e->type); k++)
         switch ((Op)e->op) {
         case OP_POINT:
-        case OP_CROWD_POINT:
+        case OP_INSTANCE_POINT:
         case OP_NORMAL:
-        case OP_CROWD_NORMAL:
+        case OP_INSTANCE_NORMAL:
         case OP_VIEW:
         case OP_DIRECTION: to[k] = first + k; break;
         case OP_FOOTPRINT:
-        case OP_CROWD_FOOTPRINT: to[k] = LANE_FOOTPRINT; break;
-        case OP_CROWD_THRESHOLD: to[k] = LANE_THRESHOLD; break;
-        case OP_MEMBER: to[k] = emit_of_member(b, LANE_MEMBER, 0); break;
-        case OP_STATE: to[k] = emit_of_member(b, LANE_STATE, 4 * state_of(e->index) + k); break;
+        case OP_INSTANCE_FOOTPRINT: to[k] = LANE_FOOTPRINT; break;
+        case OP_INSTANCE_THRESHOLD: to[k] = LANE_THRESHOLD; break;
+        case OP_INSTANCE_ROW: to[k] = emit_of_instance(b, LANE_INSTANCE, 0); break;
+        case OP_STATE: to[k] = emit_of_instance(b, LANE_STATE, 4 * state_of(e->index) + k); break;
         default:
             to[k] = lane_steps_number(b->to, (e->op == OP_INSTANCE && k == 0) || e->op == OP_FRONT);
         }
@@ -292,25 +292,25 @@ static void emit_nodes(Builder *b)
 
 /* ---- bodies ---- */
 
-/* Of a crowd function; those that it calls have smaller numbers, and bodies already. */
+/* Of an instance function; those that it calls have smaller numbers, and bodies already. */
 static LaneBody *make_body(const Tape *tape, uint32_t id, const LaneBody **bodies, Arena *arena)
 {
-    const Crowds        *crowds   = tape->graph->crowds;
-    const CrowdFunction *function = &crowds->functions.items[id];
-    LaneBody            *body     = arena_new(arena, LaneBody);
-    LaneSteps            steps    = {.arena = arena};
-    Builder              b        = {.graph   = tape->graph,
-                                     .tape    = &tape->functions[id],
-                                     .arena   = arena,
-                                     .to      = &steps,
-                                     .bodies  = bodies,
-                                     .in_body = true};
+    const Instances        *instances = tape->graph->instances;
+    const InstanceFunction *function  = &instances->functions.items[id];
+    LaneBody               *body      = arena_new(arena, LaneBody);
+    LaneSteps               steps     = {.arena = arena};
+    Builder                 b         = {.graph   = tape->graph,
+                                         .tape    = &tape->functions[id],
+                                         .arena   = arena,
+                                         .to      = &steps,
+                                         .bodies  = bodies,
+                                         .in_body = true};
     emit_nodes(&b);
     for (uint32_t k = 0; k < function->state_count; k++)
-        add_outputs(&b, crowds->bodies.items[function->first_body + k]);
+        add_outputs(&b, instances->bodies.items[function->first_body + k]);
     body->tape     = lane_steps_finish(&steps, b.tape);
     body->function = id;
-    body->table    = function->crowd;
+    body->table    = function->table_number;
     return body;
 }
 

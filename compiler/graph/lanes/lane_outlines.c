@@ -10,7 +10,7 @@
 #include <math.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/lanes/lane_call.h"
 #include "compiler/graph/lanes/lane_partials.h"
 
@@ -19,10 +19,10 @@ static const double UNCERTAIN = 1e-9;
 
 /* The points of a call in a box of space, and how far the outline is from them. */
 typedef struct View {
-    const LaneCall *call;
-    const Crowd    *table;
-    double          middle[2], radius;
-    double          farthest; /* the nearest curve is not farther, anywhere */
+    const LaneCall      *call;
+    const InstanceTable *table;
+    double               middle[2], radius;
+    double               farthest; /* the nearest curve is not farther, anywhere */
 } View;
 
 static Range operand_range(const LaneTape *tape, const LaneRanges *ranges, uint32_t operand)
@@ -39,7 +39,7 @@ static bool look(const LaneTape *tape, const LaneRanges *ranges, size_t step, Vi
     view->call         = &tape->calls[tape->steps[step].operands[0]];
     if (!view->call->body || tape->tape->by_cells || !is_finite(value))
         return false;
-    view->table    = &graph->crowds->tables.items[view->call->body->table];
+    view->table    = &graph->instances->tables.items[view->call->body->table];
     view->radius   = 0;
     view->farthest = range_largest(value);
     double size    = view->farthest;
@@ -62,7 +62,7 @@ static double distance_to_point(const double a[2], const double b[2])
 }
 
 /* A curve is not farther from its chord than a quarter of its bend. */
-static double least_distance(const CrowdArc *arc, const double point[2])
+static double least_distance(const InstanceArc *arc, const double point[2])
 {
     double chord[2], from[2], square = 0, along = 0;
     for (int k = 0; k < 2; k++) {
@@ -76,45 +76,45 @@ static double least_distance(const CrowdArc *arc, const double point[2])
            0.25 * hypot(arc->bend[0], arc->bend[1]);
 }
 
-static bool may_be_nearest(const View *view, uint32_t member)
+static bool may_be_nearest(const View *view, uint32_t instance)
 {
-    return least_distance(&view->table->arcs[member], view->middle) <=
+    return least_distance(&view->table->arcs[instance], view->middle) <=
            view->farthest + view->radius;
 }
 
-static bool find_members(const View *view, uint32_t *members, uint32_t *count)
+static bool find_instances(const View *view, uint32_t *instances, uint32_t *count)
 {
-    const uint32_t *known = view->call->members;
-    uint32_t        all   = known ? view->call->member_count : view->table->rows;
+    const uint32_t *known = view->call->instances;
+    uint32_t        all   = known ? view->call->instance_count : view->table->rows;
     *count                = 0;
     for (uint32_t i = 0; i < all; i++) {
-        uint32_t member = known ? known[i] : i;
-        if (!may_be_nearest(view, member))
+        uint32_t instance = known ? known[i] : i;
+        if (!may_be_nearest(view, instance))
             continue;
-        if (*count == MOST_LANE_MEMBERS)
+        if (*count == MOST_LANE_INSTANCES)
             return false;
-        members[(*count)++] = member;
+        instances[(*count)++] = instance;
     }
     return *count > 0;
 }
 
-bool lane_outline_members(const LaneTape *tape, const LaneRanges *ranges, size_t step,
-                          uint32_t members[MOST_LANE_MEMBERS], uint32_t *count)
+bool lane_outline_instances(const LaneTape *tape, const LaneRanges *ranges, size_t step,
+                            uint32_t instances[MOST_LANE_INSTANCES], uint32_t *count)
 {
     View view;
-    return look(tape, ranges, step, &view) && find_members(&view, members, count);
+    return look(tape, ranges, step, &view) && find_instances(&view, instances, count);
 }
 
 /* ---- lines ---- */
 
-static void point_at(const CrowdArc *arc, double t, double point[2])
+static void point_at(const InstanceArc *arc, double t, double point[2])
 {
     for (int k = 0; k < 2; k++)
         point[k] = arc->start[k] + t * (2 * arc->way[k] + t * arc->bend[k]);
 }
 
 /* The distance to the line of a straight curve, below 0 on its left. */
-static bool find_line(const CrowdArc *arc, double line[3])
+static bool find_line(const InstanceArc *arc, double line[3])
 {
     double length = hypot(arc->way[0], arc->way[1]);
     line[0]       = arc->way[1] / length;
@@ -124,14 +124,14 @@ static bool find_line(const CrowdArc *arc, double line[3])
 }
 
 /* The one that begins where the first ends comes second; false: they do not meet at one point. */
-static bool put_in_order(const CrowdArc *arcs[2], double ends[2][2], double size)
+static bool put_in_order(const InstanceArc *arcs[2], double ends[2][2], double size)
 {
     bool forth = distance_to_point(ends[0], arcs[1]->start) <= UNCERTAIN * size;
     bool back  = distance_to_point(ends[1], arcs[0]->start) <= UNCERTAIN * size;
     if (back) {
-        const CrowdArc *first = arcs[1];
-        arcs[1]               = arcs[0];
-        arcs[0]               = first;
+        const InstanceArc *first = arcs[1];
+        arcs[1]                  = arcs[0];
+        arcs[0]                  = first;
     }
     return forth != back;
 }
@@ -141,15 +141,15 @@ static bool put_in_order(const CrowdArc *arcs[2], double ends[2][2], double size
 bool lane_outline_lines(const LaneTape *tape, const LaneRanges *ranges, size_t step, double level,
                         OutlineLines *lines)
 {
-    View            view;
-    const CrowdArc *arcs[2];
-    double          ends[2][2];
-    if (!look(tape, ranges, step, &view) || !view.call->members)
+    View               view;
+    const InstanceArc *arcs[2];
+    double             ends[2][2];
+    if (!look(tape, ranges, step, &view) || !view.call->instances)
         return false;
     double reach = view.radius + fabs(level) * (1 + UNCERTAIN);
     lines->count = 0;
-    for (uint32_t i = 0; i < view.call->member_count; i++) {
-        const CrowdArc *arc = &view.table->arcs[view.call->members[i]];
+    for (uint32_t i = 0; i < view.call->instance_count; i++) {
+        const InstanceArc *arc = &view.table->arcs[view.call->instances[i]];
         if (least_distance(arc, view.middle) > reach)
             continue;
         if (lines->count == 2)
@@ -173,7 +173,7 @@ bool lane_outline_lines(const LaneTape *tape, const LaneRanges *ranges, size_t s
 /* ---- one curve ---- */
 
 /* The unit tangent where the curve is nearest to the middle; false: that is not found. */
-static bool nearest_tangent(const View *view, const CrowdArc *arc, double tangent[2])
+static bool nearest_tangent(const View *view, const InstanceArc *arc, double tangent[2])
 {
     enum { STEPS = 12 };
     double t = 0.5, at[2], change = 1;
@@ -197,7 +197,7 @@ static bool nearest_tangent(const View *view, const CrowdArc *arc, double tangen
 }
 
 /* Whether the nearest point is never an end. */
-static bool is_within_ends(const View *view, const CrowdArc *arc)
+static bool is_within_ends(const View *view, const InstanceArc *arc)
 {
     double end[2];
     point_at(arc, 1, end);
@@ -207,7 +207,7 @@ static bool is_within_ends(const View *view, const CrowdArc *arc)
 }
 
 /* The most that it is curved: at an end, since it turns only one way and is not cut at an apex. */
-static double largest_curvature(const CrowdArc *arc)
+static double largest_curvature(const InstanceArc *arc)
 {
     double cross = arc->way[0] * arc->bend[1] - arc->way[1] * arc->bend[0];
     double speed = min2(hypot(arc->way[0], arc->way[1]),
@@ -223,14 +223,14 @@ static Range about(double middle, double radius)
 OutlinePartials lane_outline_partials(const LaneTape *tape, const LaneRanges *ranges, size_t step)
 {
     View            view;
-    uint32_t        members[MOST_LANE_MEMBERS], count;
+    uint32_t        instances[MOST_LANE_INSTANCES], count;
     double          tangent[2];
     OutlinePartials p = {.known = false};
-    if (!look(tape, ranges, step, &view) || !view.call->members ||
-        !find_members(&view, members, &count) || count != 1)
+    if (!look(tape, ranges, step, &view) || !view.call->instances ||
+        !find_instances(&view, instances, &count) || count != 1)
         return p;
-    const CrowdArc *arc       = &view.table->arcs[members[0]];
-    double          curvature = largest_curvature(arc);
+    const InstanceArc *arc       = &view.table->arcs[instances[0]];
+    double             curvature = largest_curvature(arc);
     if (!(2 * curvature * view.farthest < 1) || !is_within_ends(&view, arc) ||
         !nearest_tangent(&view, arc, tangent))
         return p;

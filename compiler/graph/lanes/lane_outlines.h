@@ -9,9 +9,9 @@
 
 /* After a run over a box: those that may be the nearest in it, of the call that is step `step`.  False: it is no
    outline, or there are more of them. */
-bool lane_outline_members(const LaneTape *tape, const LaneRanges *ranges, size_t step,
-                          uint32_t members[MOST_LANE_MEMBERS], uint32_t *count);
-/* The straight members that come near a box, if there is one, or two that meet.  A line is by x, by y and what is added; it
+bool lane_outline_instances(const LaneTape *tape, const LaneRanges *ranges, size_t step,
+                            uint32_t instances[MOST_LANE_INSTANCES], uint32_t *count);
+/* The straight instances that come near a box, if there is one, or two that meet.  A line is by x, by y and what is added; it
    is a distance, below 0 inside. */
 typedef struct OutlineLines {
     double   lines[2][3];

@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "compiler/graph/blend_shares.h"
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/lanes/lane_call.h"
 #include "compiler/graph/lanes/lane_outlines.h"
 #include "compiler/graph/lanes/lane_rows.h"
@@ -309,10 +309,10 @@ static bool prune_shares(Pruning *p, size_t i)
     return true;
 }
 
-/* ---- crowds ---- */
+/* ---- instance groups ---- */
 
-/* Whether a crowd function takes the least distance of all members, one after the other. */
-static bool takes_least(const CrowdFunction *function)
+/* Whether an instance function takes the least distance of all instances, one after the other. */
+static bool takes_least(const InstanceFunction *function)
 {
     return function->slope > 0 && function->state_count == 1 && !function->either &&
            !function->joins && !function->sums && function->type == TYPE_FLOAT;
@@ -329,9 +329,9 @@ static double distance_of_boxes(const Box *box, const Range at[3])
     return sqrt(square) * (1 - 1e-12);
 }
 
-/* Members that may be nearer than the nearest is at most, in the box; false: they are not known, or too many. */
-static bool find_least_members(const Pruning *p, const LaneCall *call, const Crowd *table,
-                               double farthest, uint32_t *members, uint32_t *count)
+/* Instances that may be nearer than the nearest is at most, in the box; false: they are not known, or too many. */
+static bool find_least_instances(const Pruning *p, const LaneCall *call, const InstanceTable *table,
+                                 double farthest, uint32_t *instances, uint32_t *count)
 {
     Range at[3];
     *count = 0;
@@ -344,24 +344,25 @@ static bool find_least_members(const Pruning *p, const LaneCall *call, const Cro
     for (uint32_t i = 0; i < table->rows; i++) {
         if (distance_of_boxes(&table->bounds[i], at) > farthest * table->stretch)
             continue;
-        if (*count == MOST_LANE_MEMBERS ||
-            (*count + 1) * call->body->tape.count > MOST_STEPS_OF_MEMBERS)
+        if (*count == MOST_LANE_INSTANCES ||
+            (*count + 1) * call->body->tape.count > MOST_STEPS_OF_INSTANCES)
             return false;
-        members[(*count)++] = i;
+        instances[(*count)++] = i;
     }
     return *count > 0;
 }
 
-/* What a step reads of the member, as a number. */
-static uint32_t member_number(Pruning *p, const Crowd *table, const LaneStep *step, uint32_t member)
+/* What a step reads of the instance, as a number. */
+static uint32_t instance_number(Pruning *p, const InstanceTable *table, const LaneStep *step,
+                                uint32_t instance)
 {
-    const Crowds *crowds = p->from->tape->graph->crowds;
-    if (step->op == LANE_MEMBER)
-        return lane_steps_number(&p->to, member);
-    const Node *nodes = column_nodes(crowds, table, step->operands[0]);
+    const Instances *groups = p->from->tape->graph->instances;
+    if (step->op == LANE_INSTANCE)
+        return lane_steps_number(&p->to, instance);
+    const Node *nodes = column_nodes(groups, table, step->operands[0]);
     return lane_steps_number(
-        &p->to, nodes ? p->ranges->values[nodes[member]].v[0]
-                      : table->numbers[(size_t)member * table->columns + step->operands[0]]);
+        &p->to, nodes ? p->ranges->values[nodes[instance]].v[0]
+                      : table->numbers[(size_t)instance * table->columns + step->operands[0]]);
 }
 
 static uint32_t body_scalar(Pruning *p, const LaneBody *body, uint32_t scalar)
@@ -373,15 +374,15 @@ static uint32_t body_scalar(Pruning *p, const LaneBody *body, uint32_t scalar)
 }
 
 /* Numbers of steps of bodies are above those of all tapes. */
-static uint32_t kin_of_member_step(uint32_t function, size_t step)
+static uint32_t kin_of_instance_step(uint32_t function, size_t step)
 {
     static const uint32_t BODIES = 1u << 31, STEPS = 1u << 16;
     return BODIES | (function * STEPS + (uint32_t)step % STEPS) % BODIES;
 }
 
-/* Adds the steps of a body for one member; returns the operand of its state. */
-static uint32_t add_member(Pruning *p, const LaneCall *call, const Crowd *table, uint32_t member,
-                           uint32_t state, uint32_t *values)
+/* Adds the steps of a body for one instance; returns the operand of its state. */
+static uint32_t add_instance(Pruning *p, const LaneCall *call, const InstanceTable *table,
+                             uint32_t instance, uint32_t state, uint32_t *values)
 {
     const LaneBody *body = call->body;
     for (int k = 0; k < 3; k++)
@@ -390,11 +391,11 @@ static uint32_t add_member(Pruning *p, const LaneCall *call, const Crowd *table,
         LaneStep step = body->tape.steps[i];
         if (step.op == LANE_STATE)
             values[LANE_INPUTS + i] = state;
-        else if (step.op == LANE_ROW || step.op == LANE_MEMBER)
-            values[LANE_INPUTS + i] = member_number(p, table, &step, member);
+        else if (step.op == LANE_ROW || step.op == LANE_INSTANCE)
+            values[LANE_INPUTS + i] = instance_number(p, table, &step, instance);
         else {
             step.origin = 0;
-            step.kin    = kin_of_member_step(body->function, i);
+            step.kin    = kin_of_instance_step(body->function, i);
             for (uint32_t k = 0; k < step.operand_count; k++)
                 step.operands[k] = step.operands[k] & LANE_SCALAR
                                        ? body_scalar(p, body, step.operands[k] & ~LANE_SCALAR)
@@ -406,43 +407,43 @@ static uint32_t add_member(Pruning *p, const LaneCall *call, const Crowd *table,
     return output & LANE_SCALAR ? body_scalar(p, body, output & ~LANE_SCALAR) : values[output];
 }
 
-/* Where few members are near, the steps of these; false: it stays a call. */
-static bool prune_crowd(Pruning *p, size_t i)
+/* Where few instances are near, the steps of these; false: it stays a call. */
+static bool prune_group(Pruning *p, size_t i)
 {
     const LaneStep *step  = &p->from->steps[i];
     Range           range = p->ranges->ranges[LANE_INPUTS + i];
     if (step->op != LANE_CALL || !p->ranges->unroll || !p->ranges->values ||
         p->from->tape->by_cells)
         return false;
-    const LaneCall *call   = &p->from->calls[step->operands[0]];
-    const Crowds   *crowds = p->from->tape->graph->crowds;
-    uint32_t        members[MOST_LANE_MEMBERS], count;
-    if (!call->body || p->from->tape->graph->items[call->node].op != OP_crowd_distance ||
+    const LaneCall  *call   = &p->from->calls[step->operands[0]];
+    const Instances *groups = p->from->tape->graph->instances;
+    uint32_t         instances[MOST_LANE_INSTANCES], count;
+    if (!call->body || p->from->tape->graph->items[call->node].op != OP_instance_distance ||
         call->body->tape.call_count > 0)
         return false;
-    const CrowdFunction *function = &crowds->functions.items[call->body->function];
-    const Crowd         *table    = &crowds->tables.items[call->body->table];
+    const InstanceFunction *function = &groups->functions.items[call->body->function];
+    const InstanceTable    *table    = &groups->tables.items[call->body->table];
     if (!takes_least(function) || !table->bounds || !isfinite(range.high) ||
-        !find_least_members(p, call, table, range.high, members, &count))
+        !find_least_instances(p, call, table, range.high, instances, &count))
         return false;
     uint32_t  state  = lane_steps_number(&p->to, function->states[0].first[0]);
     uint32_t *values = arena_new_array(p->to.arena, uint32_t, LANE_INPUTS + call->body->tape.count);
     for (uint32_t k = 0; k < count; k++)
-        state = add_member(p, call, table, members[k], state, values);
+        state = add_instance(p, call, table, instances[k], state, values);
     p->same[LANE_INPUTS + i] = state;
     return true;
 }
 
-/* Outlines keep the members that may be the nearest. */
-static void prune_members(Pruning *p, LaneCall *call, size_t step)
+/* Outlines keep the instances that may be the nearest. */
+static void prune_instances(Pruning *p, LaneCall *call, size_t step)
 {
-    uint32_t members[MOST_LANE_MEMBERS], count;
-    if (!lane_outline_members(p->from, p->ranges, step, members, &count))
+    uint32_t instances[MOST_LANE_INSTANCES], count;
+    if (!lane_outline_instances(p->from, p->ranges, step, instances, &count))
         return;
-    uint32_t *kept = arena_new_array(p->to.arena, uint32_t, MOST_LANE_MEMBERS);
-    memcpy(kept, members, count * sizeof *kept);
-    call->members      = kept;
-    call->member_count = count;
+    uint32_t *kept = arena_new_array(p->to.arena, uint32_t, MOST_LANE_INSTANCES);
+    memcpy(kept, instances, count * sizeof *kept);
+    call->instances      = kept;
+    call->instance_count = count;
 }
 
 static void prune_calls(Pruning *p)
@@ -451,7 +452,7 @@ static void prune_calls(Pruning *p)
         if (p->from->steps[step].op != LANE_CALL)
             continue;
         LaneCall call = p->from->calls[p->from->steps[step].operands[0]];
-        prune_members(p, &call, step);
+        prune_instances(p, &call, step);
         for (uint32_t k = 0; k < MAX_OPERANDS; k++)
             for (uint32_t c = 0; c < 4; c++)
                 call.operands[k][c] = stand_in(p, call.operands[k][c]);
@@ -482,7 +483,7 @@ LaneTape lane_prune(const LaneTape *tape, const LaneRanges *ranges, size_t outpu
     for (size_t i = 0; i < tape->count; i++)
         if (prune_turn(&p, i))
             i += 2;
-        else if (!prune_shares(&p, i) && !prune_crowd(&p, i))
+        else if (!prune_shares(&p, i) && !prune_group(&p, i))
             prune_step(&p, i);
     prune_calls(&p);
     for (size_t i = 0; i < outputs; i++)

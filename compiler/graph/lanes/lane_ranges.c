@@ -10,7 +10,7 @@
 
 #include "compiler/graph/bounds/facts.h"
 #include "compiler/graph/bounds/rules.h"
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/lanes/lane_call.h"
 #include "compiler/graph/op_values.h"
 #include "compiler/graph/texture.h"
@@ -181,34 +181,34 @@ static bool is_scalar(const LaneCall *call, uint32_t operand, GraphType type)
     return scalars == type_size(type);
 }
 
-/* How much farther a crowd may be if lengths are longer. */
-static double stretch_of_members(const LaneTape *tape, const LaneRanges *ranges,
-                                 const LaneCall *call, double value, double radius)
+/* How much farther an instance group may be if lengths are longer. */
+static double stretch_of_instances(const LaneTape *tape, const LaneRanges *ranges,
+                                   const LaneCall *call, double value, double radius)
 {
     if (ranges->stretch == 1)
         return 0;
     if (!call->body)
         return INFINITY;
-    const Crowd *table = &tape->tape->graph->crowds->tables.items[call->body->table];
+    const InstanceTable *table = &tape->tape->graph->instances->tables.items[call->body->table];
     return table->bounds ? (ranges->longest - 1) * (fabs(value) + radius + 0.5 * table->widest)
                          : INFINITY;
 }
 
-/* The distance to a crowd changes no faster than the point moves, times its slope.  The table of an outline has single
+/* The distance to an instance group changes no faster than the point moves, times its slope.  The table of an outline has single
    precision, and the nearest place on a curve is found by some steps only.  False: there is no bound, as where squares are
-   too large for that precision: no member is near then. */
-static bool range_of_crowd(const LaneTape *tape, const LaneRanges *ranges, const LaneCall *call,
-                           const Fact *facts, Range *range)
+   too large for that precision: no instance is near then. */
+static bool range_of_instances(const LaneTape *tape, const LaneRanges *ranges, const LaneCall *call,
+                               const Fact *facts, Range *range)
 {
     static const double UNCERTAIN_OUTLINE = 1e-5, UNCERTAIN = 1e-9, FARTHEST = 1e15;
     const Graph        *graph = tape->tape->graph;
     const Expr         *e     = &graph->items[call->node];
     NodeValue           operands[2];
     double              radius = 0, size = 0;
-    if (e->op != OP_crowd_distance || !ranges->values || tape->tape->by_cells)
+    if (e->op != OP_instance_distance || !ranges->values || tape->tape->by_cells)
         return false;
-    operands[0].v[0]              = graph->items[e->operands[0]].number[0];
-    const CrowdFunction *function = &graph->crowds->functions.items[(size_t)operands[0].v[0]];
+    operands[0].v[0]                 = graph->items[e->operands[0]].number[0];
+    const InstanceFunction *function = &graph->instances->functions.items[(size_t)operands[0].v[0]];
     if (!(function->slope > 0))
         return false;
     for (int k = 0; k < 3; k++) {
@@ -225,7 +225,7 @@ static bool range_of_crowd(const LaneTape *tape, const LaneRanges *ranges, const
     if (function->either)
         radius += ranges->chords;
     else
-        radius += stretch_of_members(tape, ranges, call, value, radius);
+        radius += stretch_of_instances(tape, ranges, call, value, radius);
     *range = (Range){value - radius, value + radius};
     return isfinite(value) && isfinite(radius);
 }
@@ -250,7 +250,7 @@ static void run_call(const LaneTape *tape, const LaneRanges *ranges, size_t step
     Fact fact = is_texture((Op)e->op)
                     ? texture_fact_of(graph, e, facts)
                     : op_fact((Op)e->op, (GraphType)e->type, e->index, types, facts, NULL);
-    if (range_of_crowd(tape, ranges, call, facts, &fact.value[0]))
+    if (range_of_instances(tape, ranges, call, facts, &fact.value[0]))
         sure = true;
     for (uint32_t c = 0; c < call->parts; c++) {
         ranges->ranges[LANE_INPUTS + step + c] = fact.value[c];

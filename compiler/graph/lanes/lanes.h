@@ -27,7 +27,7 @@ enum {
     LANE_PART,            /* a further component of the call right before */
     LANE_LESSER,          /* b where b < a, else a */
     LANE_GREATER,         /* b where b > a, else a */
-    LANE_MEMBER,          /* in bodies of crowd functions: the number of the member */
+    LANE_INSTANCE,        /* in bodies of instance functions: the number of the instance */
     LANE_ROW,             /* its number in the column operands[0] of the table */
     LANE_STATE            /* component operands[0] of the states, which have four each */
 };
@@ -48,7 +48,7 @@ typedef struct LaneStep {
     uint32_t
         origin; /* 1 and the step of the tape before all pruning that has the same value; 0: not known */
     uint32_t
-        kin; /* the same for steps that are one step of the tape, or of a body, at different members */
+        kin; /* the same for steps that are one step of the tape, or of a body, at different instances */
 } LaneStep;
 
 /* How a step is run: on rows and, where the bit of the operand is set, scalars. */
@@ -58,12 +58,12 @@ typedef struct LaneCode {
     uint32_t to, from[MAX_OPERANDS];
 } LaneCode;
 
-/* An operation that is evaluated point by point; a crowd function is not where it has a body. */
+/* An operation that is evaluated point by point; an instance function is not where it has a body. */
 typedef struct LaneCall {
     Node                   node;
     const struct LaneBody *body; /* in double precision; or NULL */
-    const uint32_t *members;     /* of a pruned tape: the only ones that may count; NULL: any may */
-    uint32_t        member_count;
+    const uint32_t *instances;   /* of a pruned tape: the only ones that may count; NULL: any may */
+    uint32_t        instance_count;
     uint32_t        parts; /* components of the result, each a step */
     uint32_t        operands[MAX_OPERANDS][4];
     uint32_t        from[MAX_OPERANDS][4], to[4]; /* rows */
@@ -94,7 +94,7 @@ typedef struct LaneTape {
     uint32_t    bodies_end; /* behind the rows of all bodies; 0: there are none */
 } LaneTape;
 
-/* What a crowd function does at a member: its outputs are the components of its states. */
+/* What an instance function does at an instance: its outputs are the components of its states. */
 typedef struct LaneBody {
     LaneTape tape;
     uint32_t function, table; /* their numbers */
@@ -134,20 +134,20 @@ typedef struct LaneWork {
     const struct LaneLoop *loop;  /* while a body is run */
 } LaneWork;
 
-/* A call may become that many steps when it is pruned, which work on as many rows; or one to a crowd function the
-   steps of its body for some members; or it keeps a list of members, which takes that many bytes. */
+/* A call may become that many steps when it is pruned, which work on as many rows; or one to an instance function the
+   steps of its body for some instances; or it keeps a list of instances, which takes that many bytes. */
 enum {
-    LANE_STEPS_OF_CALL    = 6,
-    MOST_LANE_MEMBERS     = 32,
-    MOST_STEPS_OF_MEMBERS = 640,
-    LANE_BYTES_OF_MEMBERS = 4 * MOST_LANE_MEMBERS + 16
+    LANE_STEPS_OF_CALL      = 6,
+    MOST_LANE_INSTANCES     = 32,
+    MOST_STEPS_OF_INSTANCES = 640,
+    LANE_BYTES_OF_INSTANCES = 4 * MOST_LANE_INSTANCES + 16
 };
 static inline size_t lane_steps_of_calls(const LaneTape *tape)
 {
     size_t steps = LANE_STEPS_OF_CALL * tape->call_count;
     for (size_t i = 0; i < tape->call_count; i++)
         if (tape->calls[i].body)
-            steps += MOST_STEPS_OF_MEMBERS;
+            steps += MOST_STEPS_OF_INSTANCES;
     return steps;
 }
 /* The most steps of a lane tape and of all that it is pruned to, and the most rows. */
@@ -196,11 +196,13 @@ void lane_gradients(const LaneTape *tape, const LaneWork *work, const double (*p
 
 /* The ranges of values over a box, by one thread.  `sure`: it is a number in every point of the box. */
 typedef struct LaneRanges {
-    Range     *ranges;
-    bool      *sure;
-    NodeValue *values; /* those of the frame, as of LaneWork: then crowds have ranges; NULL: not */
-    Range     *middle; /* those in the middle of the box: for lane_ranges_run_closer */
-    bool       unroll; /* pruning makes steps of calls of crowds of which few members are near */
+    Range *ranges;
+    bool  *sure;
+    NodeValue *
+        values; /* those of the frame, as of LaneWork: then instance groups have ranges; NULL: not */
+    Range *middle; /* those in the middle of the box: for lane_ranges_run_closer */
+    bool
+        unroll; /* pruning makes steps of calls of instance groups of which few instances are near */
     double
            stretch; /* 1, or above: ranges hold as well if the length of each pair is longer by up to this factor, */
     double longest; /* what is made of several lengths by up to this one */

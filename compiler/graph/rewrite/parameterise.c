@@ -11,7 +11,7 @@
 #include <math.h>
 
 #include "compiler/base/far.h"
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/evaluate.h"
 
 static bool is_of_formulas(double number)
@@ -79,6 +79,6 @@ Graph *graph_parameterise(const Graph *old, Node *roots, size_t root_count, uint
     size_t all_count;
     Node  *all   = roots_with_bodies(old, roots, root_count, &all_count, arena);
     Graph *graph = parameterise_all(old, all, all_count, first, arena);
-    hand_on_crowds(graph, old, all, roots, root_count);
+    hand_on_instances(graph, old, all, roots, root_count);
     return graph;
 }

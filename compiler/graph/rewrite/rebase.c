@@ -12,7 +12,7 @@
  */
 #include "compiler/graph/rewrite/rebase.h"
 
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/evaluate.h"
 
 /* base + relative; base NODE_NONE: the latter is all. */
@@ -248,7 +248,7 @@ static SplitValue rebase_node(Graph *g, const Expr *e, const SplitValue *p)
     return any_base(e, p) ? rules[e->op](g, e, p) : plain_value(g, e, p);
 }
 
-/* ---- crowds ---- */
+/* ---- instance groups ---- */
 
 /* What is relative in a table, and the points of its calls.  So rows and grids are small numbers near the
    camera, which the host finds. */
@@ -257,28 +257,28 @@ typedef struct Relocated {
     bool stays;
 } Relocated;
 
-static const Crowd *table_at(const Graph *g, uint32_t table)
+static const InstanceTable *table_at(const Graph *g, uint32_t table)
 {
-    return &g->crowds->tables.items[table];
+    return &g->instances->tables.items[table];
 }
 
 static uint32_t table_of_call(const Graph *g, const Expr *call)
 {
     const uint32_t function = (uint32_t)g->items[call->operands[0]].number[0];
-    return g->crowds->functions.items[function].crowd;
+    return g->instances->functions.items[function].table_number;
 }
 
-/* Which tables stay as they are: also those that members of others call. */
+/* Which tables stay as they are: also those that instances of others call. */
 static Relocated *new_relocated(const Graph *g, Arena *scratch)
 {
-    const Crowds *crowds = g->crowds;
-    Relocated    *tables = arena_new_array(scratch, Relocated,
-                                           (crowds ? crowds->tables.count : 0) + 1);
-    for (size_t t = 0; crowds && t < crowds->tables.count; t++)
-        tables[t] = (Relocated){NODE_NONE, !crowds->tables.items[t].relocates};
-    if (!crowds)
+    const Instances *instances = g->instances;
+    Relocated       *tables    = arena_new_array(scratch, Relocated,
+                                                 (instances ? instances->tables.count : 0) + 1);
+    for (size_t t = 0; instances && t < instances->tables.count; t++)
+        tables[t] = (Relocated){NODE_NONE, !instances->tables.items[t].relocates};
+    if (!instances)
         return tables;
-    const Tape bodies = tape_new(g, crowds->bodies.items, crowds->bodies.count, scratch);
+    const Tape bodies = tape_new(g, instances->bodies.items, instances->bodies.count, scratch);
     for (size_t i = 0; i < bodies.count; i++) {
         const Expr *e = &g->items[bodies.nodes[i]];
         if (is_call((Op)e->op))
@@ -299,19 +299,19 @@ static void note_call(const Graph *g, const Expr *call, Node base, Relocated *ta
 /* The frame has the bases of those that do not stay. */
 static void keep_bases(Graph *g, Relocated *tables)
 {
-    Crowds *crowds = g->crowds;
-    for (size_t t = 0; crowds && t < crowds->tables.count; t++) {
+    Instances *instances = g->instances;
+    for (size_t t = 0; instances && t < instances->tables.count; t++) {
         if (tables[t].stays)
             tables[t].base = NODE_NONE;
         if (tables[t].base == NODE_NONE)
             continue;
-        array_push(crowds->arena, &crowds->frame_numbers, tables[t].base);
-        crowds->tables.items[t].origin = (uint32_t)crowds->frame_numbers.count;
+        array_push(instances->arena, &instances->frame_numbers, tables[t].base);
+        instances->tables.items[t].origin = (uint32_t)instances->frame_numbers.count;
     }
 }
 
 /* What a call has in the place of its point: along axes without a column all of it. */
-static SplitValue point_of_call(Graph *g, const Crowd *table, SplitValue point)
+static SplitValue point_of_call(Graph *g, const InstanceTable *table, SplitValue point)
 {
     Node parts[MAX_OPERANDS], zero = graph_number(g, 0);
     bool all = true;
@@ -329,8 +329,8 @@ static SplitValue row_value(Graph *g, const Expr *row, const SplitValue *operand
                             const Relocated *tables)
 {
     const uint32_t id    = (uint32_t)g->items[row->operands[0]].number[0];
-    const Node     base  = tables[row_crowd(id)].base;
-    const uint8_t  axis  = table_at(g, row_crowd(id))->axes[row_column(id)];
+    const Node     base  = tables[row_table(id)].base;
+    const uint8_t  axis  = table_at(g, row_table(id))->axes[row_column(id)];
     SplitValue     value = plain_value(g, row, operands);
     if (base != NODE_NONE && axis > 0)
         value.base = graph_component(g, base, axis - 1u);
@@ -373,7 +373,7 @@ void graph_rebase(Graph *graph, Node *roots, size_t count, Node rebase_origin, A
     Tape        tape   = tape_new(graph, roots, count, scratch);
     SplitValue *values = arena_new_array(scratch, SplitValue, tape.count);
     Relocated  *tables = new_relocated(graph, scratch);
-    if (graph->crowds)
+    if (graph->instances)
         rebase_tape(graph, &tape, rebase_origin, tables, true, values);
     keep_bases(graph, tables);
     rebase_tape(graph, &tape, rebase_origin, tables, false, values);

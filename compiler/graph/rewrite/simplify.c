@@ -11,7 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "compiler/graph/crowd.h"
+#include "compiler/graph/instance_table.h"
 #include "compiler/graph/evaluate.h"
 
 typedef struct Simplifier {
@@ -438,6 +438,6 @@ Graph *graph_simplify(const Graph *graph, Node *roots, size_t root_count, Arena 
     size_t all_count;
     Node  *all    = roots_with_bodies(graph, roots, root_count, &all_count, arena);
     Graph *simple = simplify_all(graph, all, all_count, arena);
-    hand_on_crowds(simple, graph, all, roots, root_count);
+    hand_on_instances(simple, graph, all, roots, root_count);
     return simple;
 }

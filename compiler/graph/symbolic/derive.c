@@ -46,7 +46,7 @@ static Node derive_along(Derivation *d, const Tape *tape, int axis, Node *made, 
             made[i] = zero_of(g, TYPE_FLOAT); /* conditions: between them nothing changes */
         else if (d->held && node < d->held_end && d->held[node])
             made[i] = zero_of(g, e.type);
-        else if (e.op == OP_POINT || (d->partly && e.op == OP_CROWD_POINT))
+        else if (e.op == OP_POINT || (d->partly && e.op == OP_INSTANCE_POINT))
             made[i] = graph_vec3(g, axis == 0, axis == 1, axis == 2);
         else if (e.time != TIME_POINT)
             made[i] = zero_of(g, e.type);

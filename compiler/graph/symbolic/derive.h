@@ -25,7 +25,7 @@ Smoothness graph_gradient_of(Graph *graph, Node root, const Node *held, size_t h
                              Node *gradient, Node *blame, Arena *scratch);
 
 /* The gradient of a FLOAT as far as it is known: operations without a rule, such as noise, count as
-   constant.  In bodies of crowds it is that by OP_CROWD_POINT. */
+   constant.  In bodies of instance groups it is that by OP_INSTANCE_POINT. */
 Node graph_known_gradient(Graph *graph, Node root, Arena *scratch);
 
 #endif

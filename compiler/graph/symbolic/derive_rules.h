@@ -11,7 +11,7 @@ typedef struct Derivation {
     bool        breaks;   /* what was derived so far is true only between kinks and jumps */
     const bool *held;     /* nodes that are taken for constants, by number; or NULL */
     size_t      held_end; /* none from this number on */
-    bool        partly;   /* what has no rule counts as constant; crowds have points of their own */
+    bool partly; /* what has no rule counts as constant; instance groups have points of their own */
 } Derivation;
 
 /* The derivative of a node from those of its operands, `inner`; NODE_NONE: there is none. */

@@ -116,7 +116,7 @@ static const char *const templates[TEMPLATE_COUNT] = {
         "};\n\n",
     [TEMPLATE_EACH_LISTED] = "    KrsNear nearby = krs_near(p, $a);\n"
                              "    for (uint i = nearby.first; i < nearby.end; i++) {\n"
-                             "        uint member = krs_listed(i, $a);\n",
+                             "        uint row = krs_listed(i, $a);\n",
 
     [TEMPLATE_NEAREST_GRADIENT] = "    vec4 nearest = vec4(0.0, 0.0, 0.0, " NOWHERE_TEXT
                                   "), other;\n",

@@ -1,0 +1,37 @@
+/*
+ * instance_groups.h: parts of a joint that are alike, lowered as one body and a table (graph/instance_table.h).
+ */
+#ifndef KRS_INSTANCE_GROUPS_H
+#define KRS_INSTANCE_GROUPS_H
+
+#include "compiler/lower/context.h"
+
+/* Fewer parts that are alike stay apart: a loop over a list costs as much as some. */
+enum { LEAST_INSTANCES = 64 };
+/* But large parts cost more.  So few are an instance group if all but one have so many operations.  Blends need a
+   loop for each property that is mixed. */
+enum { LEAST_OF_FEW = 6, LEAST_SAVED = 350 };
+
+/* The instance groups of a scene, by the joints that they are parts of.  All lowerings of a joint use the
+   same.  What tables have is made in an arena of its own.  `least` is LEAST_INSTANCES, but in tests. */
+typedef struct LoweredGroups LoweredGroups;
+LoweredGroups *lowered_groups_new(Graph *graph, Arena *arena, Arena *tables, uint32_t least);
+/* Lets few large parts of sharp joints become groups, too. */
+void lowered_groups_take_few(LoweredGroups *groups);
+
+/* Says that the graph's nodes are needed for something else than the shape that is lowered. */
+void lowered_groups_made(LoweredGroups *groups);
+
+/* What a joint joins, which is sharp or a blend: its parts or their complements. */
+typedef struct PartJoin {
+    const Shape        *joint;
+    const Shape *const *parts;
+    uint32_t            count;
+    bool                complement;
+    double              reach; /* LowerContext.reach of all parts together */
+} PartJoin;
+
+/* Sharply joins those parts that are many and alike.  The others are left in *join. */
+Lowered lower_groups(Lowering *l, PartJoin *join, LowerContext context);
+
+#endif
