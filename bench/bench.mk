@@ -1,7 +1,7 @@
 # bench.mk: `make bench` measures, and writes bench/results/; `make bench-quick` tries out that it
 # can, on small pictures, and writes to the build folder.  bench/README.md says what is measured.
 
-BENCH    := $(sort $(filter-out bench/stage.c, $(wildcard bench/*.c)))
+BENCH    := $(sort $(filter-out bench/fixture.c, $(wildcard bench/*.c)))
 REVISION  = $(shell git describe --always --dirty 2>/dev/null || echo unknown)
 
 $(B)/bench/bench: $(BENCH:%.c=$(B)/%.o) $(INTERNAL)

@@ -12,8 +12,8 @@ SUPPORT     := $(addprefix tests/support/, agreement.c bench.c instance_texts.c 
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c \
                formulas.c montecarlo.c quaternions.c chain.c chain_random.c map_chain.c \
                deformed.c methods.c primitive_solids.c primitive_figures.c random_scene.c \
-               device_answers.c known_solid.c mesh_distance.c mesh_shape.c outline_truth.c path_stage.c rooms.c shadow_stage.c shadow_truth.c truetype.c twigs.c)
-UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c queried.c \
+               device_answers.c known_solid.c mesh_distance.c mesh_shape.c outline_truth.c path_fixture.c rooms.c shadow_fixture.c shadow_truth.c truetype.c twigs.c)
+UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_fixture.c queried.c \
                cache_folder.c compiled_files.c crossings.c instance_scene.c closed_forms.c)
 PROPERTY_SHARED := $(addprefix tests/property/, instance_parts.c garden.c op_trial.c reach_instances.c)
 UNIT        := specks texts watchdog front synonyms arguments look diagnostics shape parts passes display devices tracer film plates saved noise pixel_filters lens rendering lights light_groups sky_table daylight methods schedules paths writer \

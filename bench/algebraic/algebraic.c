@@ -119,34 +119,34 @@ typedef struct Method {
     Judgement judgement;
 } Method;
 
-typedef struct Stage {
+typedef struct Fixture {
     KrsRenderer  *renderer;
     KrsScene     *scene;
     KrsFrame     *frame;
     KrsRendering *rendering;
-} Stage;
+} Fixture;
 
-static Stage stage_open(KrsRenderer *renderer, const char *name, const char *text)
+static Fixture fixture_open(KrsRenderer *renderer, const char *name, const char *text)
 {
-    Stage      stage   = {.renderer = renderer};
+    Fixture    fixture = {.renderer = renderer};
     KrsOptions options = {.gradients = true};
-    if (krs_compile_text(text, strlen(text), name, &options, &stage.scene) != KRS_OK ||
-        krs_frame_new(stage.scene, &stage.frame) != KRS_OK)
+    if (krs_compile_text(text, strlen(text), name, &options, &fixture.scene) != KRS_OK ||
+        krs_frame_new(fixture.scene, &fixture.frame) != KRS_OK)
         give_up(name, "it does not compile");
-    if (krs_rendering_new(renderer, stage.scene, &stage.rendering) != KRS_OK)
+    if (krs_rendering_new(renderer, fixture.scene, &fixture.rendering) != KRS_OK)
         give_up(name, krs_renderer_message(renderer));
-    return stage;
+    return fixture;
 }
 
-static void stage_close(Stage *stage)
+static void fixture_close(Fixture *fixture)
 {
-    krs_rendering_free(stage->rendering);
-    krs_frame_free(stage->frame);
-    krs_scene_free(stage->scene);
+    krs_rendering_free(fixture->rendering);
+    krs_frame_free(fixture->frame);
+    krs_scene_free(fixture->scene);
 }
 
 /* Without occlusion, which the other programs do not have either. */
-static KrsPicture *shoot(const Stage *stage, const struct Variant *variant)
+static KrsPicture *shoot(const Fixture *fixture, const struct Variant *variant)
 {
     KrsPicture      *picture;
     KrsRenderOptions options = {.width        = WIDTH,
@@ -155,8 +155,8 @@ static KrsPicture *shoot(const Stage *stage, const struct Variant *variant)
                                 .normals      = variant->normals,
                                 .no_occlusion = true,
                                 .planes       = KRS_PLANE_COLOR};
-    if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
-        give_up(variant->name, krs_renderer_message(stage->renderer));
+    if (krs_render(fixture->rendering, fixture->frame, &options, &picture) != KRS_OK)
+        give_up(variant->name, krs_renderer_message(fixture->renderer));
     return picture;
 }
 
@@ -182,11 +182,11 @@ static Judgement judge_picture(const Subject *subject, const View *view, const K
 }
 
 /* One picture that is judged, and then all in turns. */
-static void run_methods(const Stage *stage, const Subject *subject, const View *view,
+static void run_methods(const Fixture *fixture, const Subject *subject, const View *view,
                         size_t repeats, Method methods[VARIANTS], double *coverage)
 {
     for (int m = 0; m < VARIANTS; m++) {
-        KrsPicture *picture    = shoot(stage, &variants[m]);
+        KrsPicture *picture    = shoot(fixture, &variants[m]);
         methods[m].judgement   = judge_picture(subject, view, picture, coverage);
         methods[m].evaluations = picture->stats.evaluations_per_ray;
         methods[m].unresolved  = picture->stats.unresolved;
@@ -195,7 +195,7 @@ static void run_methods(const Stage *stage, const Subject *subject, const View *
     for (size_t turn = 0; turn < repeats; turn++)
         for (int m = 0; m < VARIANTS; m++) {
             double      before     = cpu_ms();
-            KrsPicture *picture    = shoot(stage, &variants[m]);
+            KrsPicture *picture    = shoot(fixture, &variants[m]);
             methods[m].cpu[turn]   = cpu_ms() - before;
             methods[m].frame[turn] = picture->stats.total_ms;
             methods[m].rays[turn]  = picture->stats.phase_ms[KRS_PHASE_BEAMS] +
@@ -212,8 +212,8 @@ static Frame print_tracers(KrsRenderer *renderer, const Subject *subject, const 
     char          text[1024];
     Frame         frame = {0};
     write_scene(subject, view, text, sizeof text);
-    Stage stage = stage_open(renderer, subject->name, text);
-    run_methods(&stage, subject, view, repeats, methods, &frame.coverage);
+    Fixture fixture = fixture_open(renderer, subject->name, text);
+    run_methods(&fixture, subject, view, repeats, methods, &frame.coverage);
     for (int m = 0; m < VARIANTS; m++) {
         Method *method = &methods[m];
         double  cpu = middle(method->cpu, repeats), rays = middle(method->rays, repeats);
@@ -226,7 +226,7 @@ static Frame print_tracers(KrsRenderer *renderer, const Subject *subject, const 
     frame.cpu         = middle(methods[CHOSEN].cpu, repeats);
     frame.stencil_cpu = middle(methods[CHOSEN + 1].cpu, repeats);
     frame.judgement   = methods[CHOSEN].judgement;
-    stage_close(&stage);
+    fixture_close(&fixture);
     return frame;
 }
 

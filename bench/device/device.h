@@ -5,7 +5,7 @@
 #ifndef KRS_BENCH_DEVICE_H
 #define KRS_BENCH_DEVICE_H
 
-#include "bench/stage.h"
+#include "bench/fixture.h"
 #include "runtime/tracer/kernels.h"
 
 typedef struct Size {

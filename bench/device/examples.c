@@ -18,11 +18,11 @@ static Timed render_twice(KrsRenderer *renderer, const char *path, Size size)
 {
     KrsRenderOptions options = {.width = size.width, .height = size.height, .samples = 1};
     double           start   = clock_ms();
-    Stage            stage   = stage_open(renderer, path, NULL, false);
-    krs_picture_free(stage_render(&stage, &options));
+    Fixture          fixture = fixture_open(renderer, path, NULL, false);
+    krs_picture_free(fixture_render(&fixture, &options));
     double      ready   = clock_ms() - start;
-    KrsPicture *picture = stage_render(&stage, &options);
-    stage_close(&stage);
+    KrsPicture *picture = fixture_render(&fixture, &options);
+    fixture_close(&fixture);
     return (Timed){picture, ready, picture->stats.total_ms, picture->stats.wall_ms};
 }
 

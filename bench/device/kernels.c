@@ -22,18 +22,18 @@ static void print_kernel(KrsRendering *rendering, const char *scene, const char 
 
 void print_kernels(KrsRenderer *renderer, const char *path)
 {
-    const char *name  = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
-    Stage       stage = {.name = path, .renderer = renderer};
+    const char *name    = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+    Fixture     fixture = {.name = path, .renderer = renderer};
     double      start = clock_ms(), spirv = renderer->spirv_ms, pipeline = renderer->pipeline_ms;
     KrsTrace    trace    = KRS_TRACE_DEFAULT;
     KrsSchedule schedule = KRS_SCHEDULE_DEFAULT;
-    if (krs_compile_file(path, NULL, &stage.scene) != KRS_OK ||
-        krs_frame_new(stage.scene, &stage.frame) != KRS_OK)
+    if (krs_compile_file(path, NULL, &fixture.scene) != KRS_OK ||
+        krs_frame_new(fixture.scene, &fixture.frame) != KRS_OK)
         give_up(path, "it does not compile");
     printf("| %s | front end | %.0f | |\n", name, clock_ms() - start);
-    if (krs_rendering_new_for(renderer, stage.scene, KRS_FOR_QUESTIONS, &stage.rendering))
+    if (krs_rendering_new_for(renderer, fixture.scene, KRS_FOR_QUESTIONS, &fixture.rendering))
         give_up(path, krs_renderer_message(renderer));
-    KrsRendering *r = stage.rendering;
+    KrsRendering *r = fixture.rendering;
     rendering_choose(r, &trace, &schedule);
     print_kernel(r, name, "query, point query", rendering_point_query(r), &spirv, &pipeline);
     print_kernel(r, name, "trace", rendering_trace(r, trace, schedule, 0), &spirv, &pipeline);
@@ -42,5 +42,5 @@ void print_kernels(KrsRenderer *renderer, const char *path)
     print_kernel(r, name, "shadows, occlusion", rendering_secondary(r, schedule, false), &spirv,
                  &pipeline);
     print_kernel(r, name, "shade", rendering_shade(r), &spirv, &pipeline);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }

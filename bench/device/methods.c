@@ -38,11 +38,11 @@ static void limit_band(KrsRenderer *renderer, uint64_t pixels, uint32_t usual)
 }
 
 /* Of some pictures that which took least. */
-static KrsPicture *render_best(const Stage *stage, const KrsRenderOptions *options)
+static KrsPicture *render_best(const Fixture *fixture, const KrsRenderOptions *options)
 {
-    KrsPicture *best = stage_render(stage, options); /* compiles what is new */
+    KrsPicture *best = fixture_render(fixture, options); /* compiles what is new */
     for (int i = 0; i < REPEATS; i++) {
-        KrsPicture *picture = stage_render(stage, options);
+        KrsPicture *picture = fixture_render(fixture, options);
         bool        better  = i == 0 || picture->stats.total_ms < best->stats.total_ms;
         krs_picture_free(better ? best : picture);
         best = better ? picture : best;
@@ -68,17 +68,17 @@ void print_methods(KrsRenderer *renderer, const char *path, Size size, bool earl
     uint32_t    usual    = renderer->gpu.properties.limits.maxStorageBufferRange;
     KrsPicture *first    = NULL;
     renderer->early_outs = early_outs;
-    Stage stage          = stage_open(renderer, path, NULL, false);
+    Fixture fixture      = fixture_open(renderer, path, NULL, false);
     for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++) {
         KrsRenderOptions options = methods[i].options;
         options.width            = size.width;
         options.height           = size.height;
         options.samples          = 1;
-        krs_rendering_free(stage.rendering); /* and its band */
+        krs_rendering_free(fixture.rendering); /* and its band */
         limit_band(renderer, methods[i].band, usual);
-        if (krs_rendering_new_for(renderer, stage.scene, KRS_FOR_QUESTIONS, &stage.rendering))
+        if (krs_rendering_new_for(renderer, fixture.scene, KRS_FOR_QUESTIONS, &fixture.rendering))
             give_up(path, krs_renderer_message(renderer));
-        KrsPicture *picture = render_best(&stage, &options);
+        KrsPicture *picture = render_best(&fixture, &options);
         print_row(methods[i].name, early_outs, picture, first ? first : picture);
         if (first)
             krs_picture_free(picture);
@@ -86,5 +86,5 @@ void print_methods(KrsRenderer *renderer, const char *path, Size size, bool earl
             first = picture;
     }
     krs_picture_free(first);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }

@@ -19,7 +19,7 @@
 #include <unistd.h>
 
 #include "bench/sheet.h"
-#include "bench/stage.h"
+#include "bench/fixture.h"
 #include "bench/view/number_edit.h"
 
 enum { NUMBERS = 3, TURNS = 3, MOST_EDITS = NUMBERS * TURNS, TIMEOUT = 600 };

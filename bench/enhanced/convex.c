@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "bench/stage.h"
+#include "bench/fixture.h"
 #include "krs/krs.h"
 
 enum { RAYS = 1000, MOST_STEPS = 1000 };

@@ -15,7 +15,7 @@
 #include "bench/enhanced/convex.h"
 #include "bench/measure.h"
 #include "bench/sheet.h"
-#include "bench/stage.h"
+#include "bench/fixture.h"
 #include "compiler/passes/compile.h"
 #include "krs/vulkan.h"
 #include "runtime/writer/png.h"
@@ -31,14 +31,14 @@ static const char *const scenes[] = {"examples/27-city.krs", "examples/35-jewel.
 enum { SCENES = sizeof scenes / sizeof *scenes };
 
 /* The least time of some pictures that all threads computed, and what the last one is. */
-static KrsPicture *shoot(const Stage *stage, const KrsRenderOptions *options, double *least)
+static KrsPicture *shoot(const Fixture *fixture, const KrsRenderOptions *options, double *least)
 {
     KrsPicture *picture = NULL;
     *least              = INFINITY;
     for (int turn = 0; turn <= TURNS; turn++) { /* the first compiles */
         krs_picture_free(picture);
         double begun = cpu_ms();
-        picture      = stage_render(stage, options);
+        picture      = fixture_render(fixture, options);
         *least       = turn > 0 ? fmin(*least, cpu_ms() - begun) : *least;
     }
     return picture;
@@ -63,7 +63,7 @@ static KrsRenderOptions of_path(KrsTrace trace, KrsStarts starts)
                               .starts     = starts};
 }
 
-static void compare_steps(const Stage *stage)
+static void compare_steps(const Fixture *fixture)
 {
     static const KrsTrace methods[] = {KRS_TRACE_PLAIN, KRS_TRACE_RELAXED, KRS_TRACE_AUTO};
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
@@ -76,8 +76,8 @@ static void compare_steps(const Stage *stage)
                                     .schedule = KRS_SCHEDULE_PIXEL};
         KrsRenderOptions paths   = of_path(methods[i], KRS_STARTS_PRECISION);
         double           first, all;
-        KrsPicture      *seen = shoot(stage, &primary, &first), *lit = shoot(stage, &paths, &all);
-        sheet_print(&sheet, "| %s | %s | %.1f | %.0f | %.1f | %.0f | %llu |\n", stage->name + 9,
+        KrsPicture *seen = shoot(fixture, &primary, &first), *lit = shoot(fixture, &paths, &all);
+        sheet_print(&sheet, "| %s | %s | %.1f | %.0f | %.1f | %.0f | %llu |\n", fixture->name + 9,
                     krs_trace_names[methods[i]], seen->stats.evaluations_per_ray, first,
                     lit->stats.evaluations_per_ray, all,
                     (unsigned long long)(seen->stats.unresolved + lit->stats.unresolved));
@@ -86,24 +86,24 @@ static void compare_steps(const Stage *stage)
     }
 }
 
-static void compare_starts(const Stage *stage)
+static void compare_starts(const Fixture *fixture)
 {
     for (int starts = 0; starts < KRS_STARTS_COUNT; starts++) {
         KrsRenderOptions options = of_path(KRS_TRACE_DEFAULT, (KrsStarts)starts);
         double           all;
-        KrsPicture      *lit = shoot(stage, &options, &all);
-        sheet_print(&sheet, "| %s | %s | %.1f | %.0f | %.4f |\n", stage->name + 9,
+        KrsPicture      *lit = shoot(fixture, &options, &all);
+        sheet_print(&sheet, "| %s | %s | %.1f | %.0f | %.4f |\n", fixture->name + 9,
                     krs_starts_names[starts], lit->stats.evaluations_per_ray, all, mean_light(lit));
         krs_picture_free(lit);
     }
 }
 
-static void compare(KrsRenderer *renderer, void (*by)(const Stage *))
+static void compare(KrsRenderer *renderer, void (*by)(const Fixture *))
 {
     for (int i = 0; i < SCENES; i++) {
-        Stage stage = stage_open(renderer, scenes[i], NULL, false);
-        by(&stage);
-        stage_close(&stage);
+        Fixture fixture = fixture_open(renderer, scenes[i], NULL, false);
+        by(&fixture);
+        fixture_close(&fixture);
     }
 }
 
@@ -118,7 +118,7 @@ static const char corner[] =
     "0])).paint(plaster);\n";
 
 /* The mean light of the whole picture, this many pixels a side. */
-static double corner_light(const Stage *stage, uint32_t side, KrsStarts starts)
+static double corner_light(const Fixture *fixture, uint32_t side, KrsStarts starts)
 {
     KrsRenderOptions options = {.width      = side,
                                 .height     = side,
@@ -126,7 +126,7 @@ static double corner_light(const Stage *stage, uint32_t side, KrsStarts starts)
                                 .integrator = KRS_INTEGRATOR_PATH,
                                 .planes     = KRS_PLANE_COLOR,
                                 .starts     = starts};
-    KrsPicture      *picture = stage_render(stage, &options);
+    KrsPicture      *picture = fixture_render(fixture, &options);
     double           sum     = 0;
     for (size_t i = 0; i < side * side; i++)
         sum += picture->color[4 * i + 1];
@@ -137,15 +137,15 @@ static double corner_light(const Stage *stage, uint32_t side, KrsStarts starts)
 static void compare_corners(KrsRenderer *renderer)
 {
     static const uint32_t sides[] = {16, 32, 64};
-    Stage                 stage   = stage_open(renderer, "corner", corner, false);
-    const double          truth   = corner_light(&stage, 512, KRS_STARTS_DISTANCE);
+    Fixture               fixture = fixture_open(renderer, "corner", corner, false);
+    const double          truth   = corner_light(&fixture, 512, KRS_STARTS_DISTANCE);
     sheet_print(&sheet, "\n| a white corner, pixels a side | by pixels | by the distance |\n"
                         "| --- | --- | --- |\n");
     for (size_t i = 0; i < sizeof sides / sizeof *sides; i++)
         sheet_print(&sheet, "| %u | %+.2f %% | %+.2f %% |\n", sides[i],
-                    100 * (corner_light(&stage, sides[i], KRS_STARTS_PRECISION) / truth - 1),
-                    100 * (corner_light(&stage, sides[i], KRS_STARTS_DISTANCE) / truth - 1));
-    stage_close(&stage);
+                    100 * (corner_light(&fixture, sides[i], KRS_STARTS_PRECISION) / truth - 1),
+                    100 * (corner_light(&fixture, sides[i], KRS_STARTS_DISTANCE) / truth - 1));
+    fixture_close(&fixture);
 }
 
 /* ---- hits that are evened out ---- */
@@ -162,7 +162,7 @@ static const char   marbled[] = "use \"std/patterns.krs\";\n"
 static const double tangent   = 0.36397023426620236; /* of 20 degrees, half of the field of view */
 
 /* The distances of all hits, in pixels; 0 where nothing is hit. */
-static void find_distances(const Stage *stage, const KrsPicture *picture, double *distances)
+static void find_distances(const Fixture *fixture, const KrsPicture *picture, double *distances)
 {
     for (size_t i = 0; i < PIXELS; i++) {
         const float *at      = &picture->position[3 * i];
@@ -171,8 +171,8 @@ static void find_distances(const Stage *stage, const KrsPicture *picture, double
         distances[i] = 0;
         if (!isfinite(picture->depth[i]))
             continue;
-        if (krs_probe(stage->frame, p, 1, &hit) != KRS_OK)
-            give_up(stage->name, "a distance cannot be found");
+        if (krs_probe(fixture->frame, p, 1, &hit) != KRS_OK)
+            give_up(fixture->name, "a distance cannot be found");
         distances[i] = hit.distance / (2 * tangent * picture->depth[i] / HEIGHT);
     }
 }
@@ -223,11 +223,11 @@ static void put_distances(const double *distances, int place)
     }
 }
 
-static void put_picture(const Stage *stage, const KrsPicture *picture, int place)
+static void put_picture(const Fixture *fixture, const KrsPicture *picture, int place)
 {
     static uint8_t bytes[3 * PIXELS];
-    if (krs_picture_to_srgb8(picture, stage->scene, 0, 3, bytes) != KRS_OK)
-        give_up(stage->name, "the picture cannot be shown");
+    if (krs_picture_to_srgb8(picture, fixture->scene, 0, 3, bytes) != KRS_OK)
+        give_up(fixture->name, "the picture cannot be shown");
     for (int i = 0; i < PIXELS; i++)
         put(place, i % WIDTH, i / WIDTH, &bytes[3 * i]);
 }
@@ -250,7 +250,7 @@ static void compare_hits(KrsRenderer *renderer)
     static const double   errors[]     = {0.25, 4};
     static const uint32_t iterations[] = {0, 1, 3, 5};
     static double         distances[PIXELS];
-    Stage                 stage = stage_open(renderer, "marbled", marbled, false);
+    Fixture               fixture = fixture_open(renderer, "marbled", marbled, false);
     for (int m = 0; m < 3; m++)
         for (int e = 0; e < 2; e++)
             for (int i = 0; i < 4; i++) {
@@ -262,19 +262,19 @@ static void compare_hits(KrsRenderer *renderer)
                                             .trace        = methods[m],
                                             .even_hits    = iterations[i]};
                 double           all;
-                KrsPicture      *picture = shoot(&stage, &options, &all);
-                find_distances(&stage, picture, distances);
+                KrsPicture      *picture = shoot(&fixture, &options, &all);
+                find_distances(&fixture, picture, distances);
                 Evenness found = find_evenness(picture, distances);
                 sheet_print(&sheet, "| %s | %.2f | %u | %.5f | %.5f | %.4f | %.0f |\n",
                             krs_trace_names[methods[m]], errors[e], iterations[i], found.mean,
                             found.jump, found.largest, all);
                 if (m == 2 && e == 1 && (i == 0 || i == 2)) {
                     put_distances(distances, i == 2);
-                    put_picture(&stage, picture, SHOWN + (i == 2));
+                    put_picture(&fixture, picture, SHOWN + (i == 2));
                 }
                 krs_picture_free(picture);
             }
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 /* ---- rays with few steps ---- */
@@ -305,7 +305,7 @@ static void compare_few_steps(KrsRenderer *renderer)
 {
     enum { FEW = 80, FEWER = 64 };
     static const KrsTrace methods[] = {KRS_TRACE_PLAIN, KRS_TRACE_RELAXED, KRS_TRACE_AUTO};
-    Stage                 stage     = stage_open(renderer, scenes[0], NULL, false);
+    Fixture               fixture   = fixture_open(renderer, scenes[0], NULL, false);
     sheet_print(&sheet,
                 "\n| %s, steps | rays not ended after %d | after %d |\n| --- | --- | --- |\n",
                 scenes[0] + 9, FEW, FEWER);
@@ -317,9 +317,9 @@ static void compare_few_steps(KrsRenderer *renderer)
                                     .no_occlusion = true,
                                     .most_steps   = FEW,
                                     .trace        = methods[i]};
-        KrsPicture      *few     = stage_render(&stage, &options);
+        KrsPicture      *few     = fixture_render(&fixture, &options);
         options.most_steps       = FEWER;
-        KrsPicture *fewer        = stage_render(&stage, &options);
+        KrsPicture *fewer        = fixture_render(&fixture, &options);
         sheet_print(&sheet, "| %s | %llu | %llu |\n", krs_trace_names[methods[i]],
                     (unsigned long long)few->stats.unresolved,
                     (unsigned long long)fewer->stats.unresolved);
@@ -330,7 +330,7 @@ static void compare_few_steps(KrsRenderer *renderer)
         krs_picture_free(few);
         krs_picture_free(fewer);
     }
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 static const char *base_name(const char *file)

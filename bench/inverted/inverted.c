@@ -12,7 +12,7 @@
 
 #include "bench/measure.h"
 #include "bench/sheet.h"
-#include "bench/stage.h"
+#include "bench/fixture.h"
 #include "compiler/passes/compile.h"
 #include "krs/vulkan.h"
 
@@ -42,16 +42,16 @@ typedef struct Row {
 
 static Sheet sheet;
 
-static KrsPicture *shoot(const Stage *stage, KrsTrace trace, bool beams, double error)
+static KrsPicture *shoot(const Fixture *fixture, KrsTrace trace, bool beams, double error)
 {
-    return stage_render(stage, &(KrsRenderOptions){.width         = WIDTH,
-                                                   .height        = HEIGHT,
-                                                   .samples       = 1,
-                                                   .trace         = trace,
-                                                   .no_beams      = !beams,
-                                                   .error         = error,
-                                                   .no_upsampling = true,
-                                                   .planes = KRS_PLANE_DEPTH | KRS_PLANE_IDS});
+    return fixture_render(fixture, &(KrsRenderOptions){.width         = WIDTH,
+                                                       .height        = HEIGHT,
+                                                       .samples       = 1,
+                                                       .trace         = trace,
+                                                       .no_beams      = !beams,
+                                                       .error         = error,
+                                                       .no_upsampling = true,
+                                                       .planes = KRS_PLANE_DEPTH | KRS_PLANE_IDS});
 }
 
 /* Where only one of two pictures shows something, or its depth is off by a hundredth. */
@@ -74,10 +74,10 @@ static double hits_of(const KrsPicture *picture)
     return (double)count / PIXELS;
 }
 
-static void measure(const Stage *stage, const KrsPicture *fine, Row *row, size_t turn)
+static void measure(const Fixture *fixture, const KrsPicture *fine, Row *row, size_t turn)
 {
     double      used            = cpu_ms();
-    KrsPicture *picture         = shoot(stage, row->trace, row->beams, 0.25);
+    KrsPicture *picture         = shoot(fixture, row->trace, row->beams, 0.25);
     used                        = cpu_ms() - used;
     row->cpu_ms                 = turn == 0 ? used : fmin(row->cpu_ms, used);
     const KrsRenderStats *stats = &picture->stats;
@@ -102,19 +102,19 @@ static void print_row(const char *name, Row *row, size_t repeats)
 static void compare(KrsRenderer *renderer, const struct Subject *subject, size_t repeats)
 {
     Row         rows[2 * TRACES] = {0};
-    Stage       stage            = stage_open(renderer, subject->path, NULL, false);
-    KrsPicture *fine             = shoot(&stage, KRS_TRACE_PLAIN, false, 0.01);
+    Fixture     fixture          = fixture_open(renderer, subject->path, NULL, false);
+    KrsPicture *fine             = shoot(&fixture, KRS_TRACE_PLAIN, false, 0.01);
     /* Nothing is timed that has not run before. */
     for (size_t turn = 0; turn <= repeats; turn++)
         for (size_t i = 0; i < 2 * TRACES; i++) {
             rows[i].trace = traces[i % TRACES];
             rows[i].beams = i < TRACES;
-            measure(&stage, fine, &rows[i], turn ? turn - 1 : 0);
+            measure(&fixture, fine, &rows[i], turn ? turn - 1 : 0);
         }
     for (size_t i = 0; i < 2 * TRACES; i++)
         print_row(subject->name, &rows[i], repeats);
     krs_picture_free(fine);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 /* inverted [REPEATS [NAME]]: one scene. */

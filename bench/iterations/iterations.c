@@ -2,7 +2,7 @@
  * iterations.c: how many evaluations each pixel takes, as a picture: figure 13 of the KRS paper of
  * 2016, whose scale this is: white is 0, black is 70; what takes more is red.
  *
- * A palm leaf of Moebius stages, side by side by one way to trace after another: the paper's first.
+ * A palm leaf of Moebius fixtures, side by side by one way to trace after another: the paper's first.
  * All straightforward: a lane to a pixel and no beams.
  */
 #include <stdio.h>
@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "bench/sheet.h"
-#include "bench/stage.h"
+#include "bench/fixture.h"
 #include "compiler/passes/compile.h"
 #include "krs/vulkan.h"
 #include "runtime/writer/png.h"
@@ -71,7 +71,7 @@ static void tell(const KrsPicture *picture, KrsTrace method)
                 sum / (double)(count ? count : 1), most, 100.0 * (double)dark / PIXELS);
 }
 
-static void shoot(const Stage *stage, KrsTrace method, int place)
+static void shoot(const Fixture *fixture, KrsTrace method, int place)
 {
     KrsRenderOptions options = {.width    = WIDTH,
                                 .height   = HEIGHT,
@@ -80,7 +80,7 @@ static void shoot(const Stage *stage, KrsTrace method, int place)
                                 .planes   = KRS_PLANE_COLOR | KRS_PLANE_STEPS,
                                 .trace    = method,
                                 .schedule = KRS_SCHEDULE_PIXEL};
-    KrsPicture      *picture = stage_render(stage, &options);
+    KrsPicture      *picture = fixture_render(fixture, &options);
     put(picture, place);
     tell(picture, method);
     krs_picture_free(picture);
@@ -98,7 +98,7 @@ int main(int count, char **arguments)
     char name[256];
     spirv_start();
     KrsRenderer *renderer = device_open();
-    Stage        stage    = stage_open(renderer, path, NULL, false);
+    Fixture      fixture  = fixture_open(renderer, path, NULL, false);
     sheet = sheet_open("iterations", "Iterations of a palm leaf's pixels", "make iterations",
                        renderer, count > 1);
     if (count > 1)
@@ -110,10 +110,10 @@ int main(int count, char **arguments)
                 "| --- | --- | --- | --- |\n",
                 WIDTH, HEIGHT, BLACK);
     for (int i = 0; i < METHODS; i++)
-        shoot(&stage, methods[i], i);
+        shoot(&fixture, methods[i], i);
     sheet_print(&sheet, "\n![iterations](%s)\n", base_name(name));
     write_strip(name);
-    stage_close(&stage);
+    fixture_close(&fixture);
     sheet_close(&sheet);
     krs_renderer_free(renderer);
     spirv_stop();

@@ -15,7 +15,7 @@
 #include "bench/measure.h"
 #include "bench/minify/pixel_filter.h"
 #include "bench/sheet.h"
-#include "bench/stage.h"
+#include "bench/fixture.h"
 #include "compiler/passes/compile.h"
 #include "runtime/display/display.h"
 #include "krs/vulkan.h"
@@ -66,12 +66,12 @@ static char *text_of(const struct Flight *flight)
     return text;
 }
 
-static Stage stage_of(KrsRenderer *renderer, const struct Flight *flight)
+static Fixture fixture_of(KrsRenderer *renderer, const struct Flight *flight)
 {
-    return stage_open(renderer, flight->path, text_of(flight), false);
+    return fixture_open(renderer, flight->path, text_of(flight), false);
 }
 
-static void shoot(const Stage *stage, int frame, uint32_t samples, bool plain, Shot *shot)
+static void shoot(const Fixture *fixture, int frame, uint32_t samples, bool plain, Shot *shot)
 {
     KrsRenderOptions options = {.width     = WIDTH,
                                 .height    = HEIGHT,
@@ -79,8 +79,8 @@ static void shoot(const Stage *stage, int frame, uint32_t samples, bool plain, S
                                 .planes    = KRS_PLANE_COLOR,
                                 .no_filter = plain,
                                 .seed      = samples > 16 ? 7 : 0};
-    krs_frame_set_time(stage->frame, frame);
-    KrsPicture *picture = stage_render(stage, &options);
+    krs_frame_set_time(fixture->frame, frame);
+    KrsPicture *picture = fixture_render(fixture, &options);
     shot->ms            = 0;
     for (int i = KRS_PHASE_NORMALS; i <= KRS_PHASE_SHADING; i++)
         shot->ms += picture->stats.phase_ms[i];
@@ -165,15 +165,15 @@ static double mean_light(const Shot *shot)
 static void fly(KrsRenderer *renderer, const struct Flight *flight, uint32_t samples)
 {
     static Shot   truth[FRAMES], shots[SETTINGS][FRAMES], sky, covered;
-    Stage         stage   = stage_of(renderer, flight);
+    Fixture       fixture = fixture_of(renderer, flight);
     struct Flight nothing = *flight;
     nothing.path          = "bench/minify/nothing.krs";
-    Stage  empty          = stage_of(renderer, &nothing);
-    double true_change    = 0;
+    Fixture empty         = fixture_of(renderer, &nothing);
+    double  true_change   = 0;
     for (int f = 0; f < FRAMES; f++) {
-        shoot(&stage, f, samples, true, &truth[f]);
+        shoot(&fixture, f, samples, true, &truth[f]);
         for (int w = 0; w < SETTINGS; w++)
-            shoot(&stage, f, settings[w].samples, settings[w].plain, &shots[w][f]);
+            shoot(&fixture, f, settings[w].samples, settings[w].plain, &shots[w][f]);
     }
     for (int f = 1; f < FRAMES; f++)
         true_change += change_of(&truth[f], &truth[f - 1]) / (FRAMES - 1);
@@ -193,22 +193,22 @@ static void fly(KrsRenderer *renderer, const struct Flight *flight, uint32_t sam
                     100 * (mean_alpha(&shots[w][0]) / mean_alpha(&truth[0]) - 1),
                     100 * (mean_light(&shots[w][0]) / mean_light(&truth[0]) - 1), ms);
     }
-    stage_close(&empty);
-    stage_close(&stage);
+    fixture_close(&empty);
+    fixture_close(&fixture);
 }
 
 /* ---- What filtering costs: one sample of a large picture, with it and without, in turns ---- */
 
 enum { LARGE_WIDTH = 1280, LARGE_HEIGHT = 720, TURNS = 7 };
 
-static void time_once(const Stage *stage, bool plain, double *normals, double *all)
+static void time_once(const Fixture *fixture, bool plain, double *normals, double *all)
 {
     KrsRenderOptions options = {.width     = LARGE_WIDTH,
                                 .height    = LARGE_HEIGHT,
                                 .samples   = 1,
                                 .planes    = KRS_PLANE_COLOR,
                                 .no_filter = plain};
-    KrsPicture      *picture = stage_render(stage, &options);
+    KrsPicture      *picture = fixture_render(fixture, &options);
     *normals                 = picture->stats.phase_ms[KRS_PHASE_NORMALS];
     *all                     = picture->stats.total_ms;
     krs_picture_free(picture);
@@ -216,36 +216,36 @@ static void time_once(const Stage *stage, bool plain, double *normals, double *a
 
 static void time_filter(KrsRenderer *renderer, const struct Flight *flight)
 {
-    Stage  stage = stage_of(renderer, flight);
-    double normals[2][TURNS], all[2][TURNS], prewarm;
-    krs_frame_set_time(stage.frame, 0);
+    Fixture fixture = fixture_of(renderer, flight);
+    double  normals[2][TURNS], all[2][TURNS], prewarm;
+    krs_frame_set_time(fixture.frame, 0);
     for (int plain = 0; plain < 2; plain++)
-        time_once(&stage, plain, &prewarm, &prewarm);
+        time_once(&fixture, plain, &prewarm, &prewarm);
     for (int turn = 0; turn < TURNS; turn++)
         for (int plain = 0; plain < 2; plain++)
-            time_once(&stage, plain, &normals[plain][turn], &all[plain][turn]);
+            time_once(&fixture, plain, &normals[plain][turn], &all[plain][turn]);
     double filtered = median(all[0], TURNS), unfiltered = median(all[1], TURNS);
     sheet_print(&sheet, "| %s | %.1f | %.1f | %.0f | %.0f | %.2f |\n", flight->name,
                 median(normals[1], TURNS), median(normals[0], TURNS), unfiltered, filtered,
                 filtered / unfiltered);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 /* ---- What another filter of pixels would do ---- */
 
 static void widen(KrsRenderer *renderer, const struct Flight *flight)
 {
-    Stage            stage   = stage_of(renderer, flight);
+    Fixture          fixture = fixture_of(renderer, flight);
     KrsRenderOptions options = {.width     = FINE * WIDTH,
                                 .height    = FINE * HEIGHT,
                                 .samples   = 1,
                                 .planes    = KRS_PLANE_COLOR,
                                 .no_filter = true};
-    krs_frame_set_time(stage.frame, 0);
-    KrsPicture *fine = stage_render(&stage, &options);
+    krs_frame_set_time(fixture.frame, 0);
+    KrsPicture *fine = fixture_render(&fixture, &options);
     pixel_filter_rows(&sheet, flight->name, fine);
     krs_picture_free(fine);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 static bool is_wanted(const struct Flight *flight, int count, char **arguments)

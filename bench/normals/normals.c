@@ -13,7 +13,7 @@
 
 #include "bench/measure.h"
 #include "bench/sheet.h"
-#include "bench/stage.h"
+#include "bench/fixture.h"
 #include "krs/vulkan.h"
 #include "runtime/shaders/stencil.h"
 
@@ -24,13 +24,13 @@ enum { REACHES = sizeof reaches / sizeof *reaches };
 
 static Sheet sheet;
 
-static KrsPicture *shoot(const Stage *stage, KrsNormals normals, double error, bool plain)
+static KrsPicture *shoot(const Fixture *fixture, KrsNormals normals, double error, bool plain)
 {
-    return stage_render(stage, &(KrsRenderOptions){.width     = WIDTH,
-                                                   .height    = HEIGHT,
-                                                   .error     = error,
-                                                   .normals   = normals,
-                                                   .no_filter = plain});
+    return fixture_render(fixture, &(KrsRenderOptions){.width     = WIDTH,
+                                                       .height    = HEIGHT,
+                                                       .error     = error,
+                                                       .normals   = normals,
+                                                       .no_filter = plain});
 }
 
 /* Degrees. */
@@ -99,9 +99,9 @@ typedef struct Sight {
 } Sight;
 
 /* So many of the picture's hits, spread over all of it. */
-static size_t choose_sights(const Stage *stage, const struct Surface *surface, Sight *sights)
+static size_t choose_sights(const Fixture *fixture, const struct Surface *surface, Sight *sights)
 {
-    KrsPicture *picture = shoot(stage, KRS_NORMALS_ANALYTIC, 0.01, true);
+    KrsPicture *picture = shoot(fixture, KRS_NORMALS_ANALYTIC, 0.01, true);
     size_t      count   = 0;
     for (size_t k = 0; k < PIXELS && count < POINTS; k++) {
         size_t       i   = k * 100003 % PIXELS; /* a prime: every pixel once, far from the last */
@@ -120,8 +120,8 @@ static size_t choose_sights(const Stage *stage, const struct Surface *surface, S
 }
 
 /* As the kernel does it: all in single precision. */
-static void find_normals(const Stage *stage, KrsNormals normals, float reach, const Sight *sights,
-                         size_t count, double (*found)[3])
+static void find_normals(const Fixture *fixture, KrsNormals normals, float reach,
+                         const Sight *sights, size_t count, double (*found)[3])
 {
     Stencil stencil   = find_stencil(normals);
     float(*points)[3] = malloc(count * stencil.taps * sizeof *points);
@@ -133,9 +133,9 @@ static void find_normals(const Stage *stage, KrsNormals normals, float reach, co
         points[i][1]   = p[1] + reach * v.y;
         points[i][2]   = p[2] + reach * v.z;
     }
-    if (krs_sample(stage->rendering, stage->frame, (const float(*)[3])points, count * stencil.taps,
-                   distances, NULL) != KRS_OK)
-        give_up("cannot sample", krs_renderer_message(stage->renderer));
+    if (krs_sample(fixture->rendering, fixture->frame, (const float(*)[3])points,
+                   count * stencil.taps, distances, NULL) != KRS_OK)
+        give_up("cannot sample", krs_renderer_message(fixture->renderer));
     for (size_t i = 0; i < count; i++) {
         float sum[3] = {0};
         for (uint k = 0; k < stencil.taps; k++) {
@@ -173,14 +173,14 @@ static Error error_of(Truth *truth, const Sight *sights, double (*found)[3], siz
     return error;
 }
 
-static void print_stencil(const Stage *stage, const struct Surface *surface, KrsNormals normals,
+static void print_stencil(const Fixture *fixture, const struct Surface *surface, KrsNormals normals,
                           const Sight *sights, size_t count)
 {
     double(*found)[3] = malloc(count * sizeof *found);
     sheet_print(&sheet, "| %s | %u |", krs_normals_names[normals], find_stencil(normals).taps);
     double best = HUGE_VAL, at = 0;
     for (int i = 0; i < REACHES; i++) {
-        find_normals(stage, normals, (float)reaches[i], sights, count, found);
+        find_normals(fixture, normals, (float)reaches[i], sights, count, found);
         Error error = error_of(surface->truth, sights, found, count);
         sheet_print(&sheet, " %.2g / %.2g |", error.median, error.most);
         if (error.median < best) {
@@ -196,8 +196,8 @@ static void print_stencil(const Stage *stage, const struct Surface *surface, Krs
 static void print_angles(KrsRenderer *renderer, const struct Surface *surface)
 {
     static Sight sights[POINTS];
-    Stage        stage = stage_open(renderer, surface->name, surface->text, true);
-    size_t       count = choose_sights(&stage, surface, sights);
+    Fixture      fixture = fixture_open(renderer, surface->name, surface->text, true);
+    size_t       count   = choose_sights(&fixture, surface, sights);
     sheet_print(&sheet,
                 "\n%s, %zu points: median / largest angle in degrees, by the length of the"
                 " steps\n\n"
@@ -210,13 +210,13 @@ static void print_angles(KrsRenderer *renderer, const struct Surface *surface)
         sheet_print(&sheet, " --- |");
     sheet_print(&sheet, "\n");
     for (KrsNormals normals = KRS_NORMALS_FORWARD; normals < KRS_NORMALS_ANALYTIC; normals++)
-        print_stencil(&stage, surface, normals, sights, count);
+        print_stencil(&fixture, surface, normals, sights, count);
     Error error = error_of(surface->truth, sights, NULL, count);
     sheet_print(&sheet, "| analytic | 0 |");
     for (int i = 0; i < REACHES; i++)
         sheet_print(&sheet, " |");
     sheet_print(&sheet, " %.2g / %.2g |\n", error.median, error.most);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 /* ---- pictures ---- */
@@ -243,17 +243,17 @@ static void print_pictures(KrsRenderer *renderer, const char *name, const char *
                            const char *text)
 {
     static double ms[KRS_NORMALS_COUNT][TURNS], total[KRS_NORMALS_COUNT][TURNS];
-    Stage         stage = stage_open(renderer, path, text, true);
-    KrsPicture   *truth = shoot(&stage, KRS_NORMALS_ANALYTIC, 0, true);
+    Fixture       fixture = fixture_open(renderer, path, text, true);
+    KrsPicture   *truth   = shoot(&fixture, KRS_NORMALS_ANALYTIC, 0, true);
     double        apart[KRS_NORMALS_COUNT];
     for (KrsNormals normals = KRS_NORMALS_FORWARD; normals < KRS_NORMALS_COUNT; normals++) {
-        KrsPicture *picture = shoot(&stage, normals, 0, true);
+        KrsPicture *picture = shoot(&fixture, normals, 0, true);
         apart[normals]      = difference(truth, picture);
         krs_picture_free(picture);
     }
     for (int turn = 0; turn < TURNS; turn++)
         for (KrsNormals normals = KRS_NORMALS_FORWARD; normals < KRS_NORMALS_COUNT; normals++) {
-            KrsPicture *picture  = shoot(&stage, normals, 0, false);
+            KrsPicture *picture  = shoot(&fixture, normals, 0, false);
             ms[normals][turn]    = picture->stats.phase_ms[KRS_PHASE_NORMALS];
             total[normals][turn] = picture->stats.total_ms;
             krs_picture_free(picture);
@@ -263,7 +263,7 @@ static void print_pictures(KrsRenderer *renderer, const char *name, const char *
                     median(ms[normals], TURNS), median(total[normals], TURNS), apart[normals]);
     fflush(stdout);
     krs_picture_free(truth);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 int main(void)

@@ -13,7 +13,7 @@
 
 #include <vulkan/vulkan.h>
 
-#include "bench/stage.h"
+#include "bench/fixture.h"
 
 static const char card[] = "navi21";
 

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "bench/stage.h"
+#include "bench/fixture.h"
 #include "live/text/text_file.h"
 
 enum { MOST_TRIES = 60 };

@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "bench/sheet.h"
-#include "bench/stage.h"
+#include "bench/fixture.h"
 #include "bench/view/number_edit.h"
 #include "krs/camera.h"
 #include "live/pictures/painter.h"

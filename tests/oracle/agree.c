@@ -31,46 +31,46 @@
 #define MOST_EXCUSED 0.05
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT, ASKED = 400 };
 
-typedef struct Stage {
+typedef struct Fixture {
     const char   *name;
     KrsScene     *scene;
     KrsFrame     *frame;
     KrsRendering *rendering;
     KrsView       view;
     Lens          lens;
-} Stage;
+} Fixture;
 
 static Vec vec_of(const double v[3]) { return vec(v[0], v[1], v[2]); }
 
-static void stage_open(Stage *stage, KrsStatus status)
+static void fixture_open(Fixture *fixture, KrsStatus status)
 {
     if (status != KRS_OK)
-        fail_msg("%s does not compile", stage->name);
-    assert_int_equal(krs_frame_new(stage->scene, &stage->frame), KRS_OK);
-    if (krs_rendering_new(renderer, stage->scene, &stage->rendering) != KRS_OK)
+        fail_msg("%s does not compile", fixture->name);
+    assert_int_equal(krs_frame_new(fixture->scene, &fixture->frame), KRS_OK);
+    if (krs_rendering_new(renderer, fixture->scene, &fixture->rendering) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
-    assert_int_equal(krs_frame_view(stage->frame, 0, &stage->view), KRS_OK);
-    const KrsCamera *camera = &stage->view.camera;
+    assert_int_equal(krs_frame_view(fixture->frame, 0, &fixture->view), KRS_OK);
+    const KrsCamera *camera = &fixture->view.camera;
     assert_int_equal(camera->projection, KRS_PERSPECTIVE);
-    stage->lens = lens_make(vec_of(camera->eye), vec_of(camera->target), tan(camera->fov / 2),
-                            false, WIDTH, HEIGHT);
+    fixture->lens = lens_make(vec_of(camera->eye), vec_of(camera->target), tan(camera->fov / 2),
+                              false, WIDTH, HEIGHT);
 }
 
-static void stage_close(Stage *stage)
+static void fixture_close(Fixture *fixture)
 {
-    krs_rendering_free(stage->rendering);
-    krs_frame_free(stage->frame);
-    krs_scene_free(stage->scene);
+    krs_rendering_free(fixture->rendering);
+    krs_frame_free(fixture->frame);
+    krs_scene_free(fixture->scene);
 }
 
-static KrsPicture *stage_render(Stage *stage, KrsRenderOptions options)
+static KrsPicture *fixture_render(Fixture *fixture, KrsRenderOptions options)
 {
     KrsPicture *picture;
     options.width   = WIDTH;
     options.height  = HEIGHT;
     options.samples = 1;
-    if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
-        fail_msg("%s: %s", stage->name, krs_renderer_message(renderer));
+    if (krs_render(fixture->rendering, fixture->frame, &options, &picture) != KRS_OK)
+        fail_msg("%s: %s", fixture->name, krs_renderer_message(renderer));
     return picture;
 }
 
@@ -85,44 +85,44 @@ static Answer answer_of(const KrsHit *hit)
     return (Answer){hit->hit ? hit->t : HUGE_VAL, hit->component, hit->level, hit->instance};
 }
 
-static Answer seen_at(const Stage *stage, const KrsPicture *picture, int pixel, Line ray)
+static Answer seen_at(const Fixture *fixture, const KrsPicture *picture, int pixel, Line ray)
 {
-    double stretch = vec_dot(ray.direction, stage->lens.forward);
+    double stretch = vec_dot(ray.direction, fixture->lens.forward);
     return (Answer){picture->component[pixel] ? picture->depth[pixel] / stretch : HUGE_VAL,
                     picture->component[pixel], picture->level[pixel], picture->instance[pixel]};
 }
 
-static double distance_at(Stage *stage, Vec p)
+static double distance_at(Fixture *fixture, Vec p)
 {
     const double point[1][3] = {{p.x, p.y, p.z}};
     double       distance;
-    assert_int_equal(krs_distance(stage->frame, point, 1, &distance), KRS_OK);
+    assert_int_equal(krs_distance(fixture->frame, point, 1, &distance), KRS_OK);
     return distance;
 }
 
 /* The deepest, or where nothing is the nearest, that a ray comes to a solid within some pixels
    around a place, before the end. */
-static double least_around(Stage *stage, Line ray, double t, double end, double pixel)
+static double least_around(Fixture *fixture, Line ray, double t, double end, double pixel)
 {
     double least = HUGE_VAL;
     for (int i = -64; i <= 256 && t + i / 16.0 * pixel < end; i++)
-        least = fmin(least, distance_at(stage, line_at(ray, t + i / 16.0 * pixel)));
+        least = fmin(least, distance_at(fixture, line_at(ray, t + i / 16.0 * pixel)));
     return least;
 }
 
-static double pixel_at(const Stage *stage, double t) { return lens_pixel(&stage->lens, t); }
+static double pixel_at(const Fixture *fixture, double t) { return lens_pixel(&fixture->lens, t); }
 
 typedef enum Verdict { AGREED, GRAZED, MANY_MEET, WRONG_HIT, WRONG_IDS, VERDICTS } Verdict;
 
 /* Whether the ids are those of a point nearby. */
-static bool is_of_neighbour(Stage *stage, Line ray, const Answer *said, double pixel)
+static bool is_of_neighbour(Fixture *fixture, Line ray, const Answer *said, double pixel)
 {
     Vec at = line_at(ray, said->t);
     for (int i = 0; i < 27; i++) {
         Vec p = vec_add(at, vec((i % 3 - 1) * pixel, (i / 3 % 3 - 1) * pixel, (i / 9 - 1) * pixel));
         const double point[1][3] = {{p.x, p.y, p.z}};
         KrsHit       hit;
-        assert_int_equal(krs_probe(stage->frame, point, 1, &hit), KRS_OK);
+        assert_int_equal(krs_probe(fixture->frame, point, 1, &hit), KRS_OK);
         if (hit.component == said->component && hit.level == said->level &&
             hit.instance == said->instance)
             return true;
@@ -131,32 +131,32 @@ static bool is_of_neighbour(Stage *stage, Line ray, const Answer *said, double p
 }
 
 /* `rounding`: how much more the one who answers may be off. */
-static Verdict judge(Stage *stage, Line ray, const Answer *truth, const Answer *said,
+static Verdict judge(Fixture *fixture, Line ray, const Answer *truth, const Answer *said,
                      double rounding)
 {
     double first = fmin(truth->t, said->t);
     if (first == HUGE_VAL)
         return AGREED;
-    double pixel = pixel_at(stage, first), most = MOST_OFF * pixel + rounding;
+    double pixel = pixel_at(fixture, first), most = MOST_OFF * pixel + rounding;
     if (fabs(truth->t - said->t) > most) {
         /* The one that goes farther has gone through, or passed by, next to nothing. */
         bool   through = truth->t < said->t;
-        double least   = through ? least_around(stage, ray, first, said->t - pixel / 16, pixel)
-                                 : distance_at(stage, line_at(ray, first));
+        double least   = through ? least_around(fixture, ray, first, said->t - pixel / 16, pixel)
+                                 : distance_at(fixture, line_at(ray, first));
         double graze   = MOST_GRAZE * pixel + rounding;
         return (through ? least > -graze : least < graze) ? GRAZED : WRONG_HIT;
     }
     if (truth->component == said->component && truth->level == said->level &&
         truth->instance == said->instance)
         return AGREED;
-    return is_of_neighbour(stage, ray, said, pixel) ? MANY_MEET : WRONG_IDS;
+    return is_of_neighbour(fixture, ray, said, pixel) ? MANY_MEET : WRONG_IDS;
 }
 
-static void tell(const Stage *stage, const char *who, Verdict verdict, int pixel,
+static void tell(const Fixture *fixture, const char *who, Verdict verdict, int pixel,
                  const Answer *truth, const Answer *said)
 {
     print_message("# %s, %s, pixel %d %d: %s; host t %.9g, %u %u %u; said t %.9g, %u %u %u\n",
-                  stage->name, who, pixel % WIDTH, pixel / WIDTH,
+                  fixture->name, who, pixel % WIDTH, pixel / WIDTH,
                   verdict == WRONG_HIT ? "another hit" : "other ids", truth->t, truth->component,
                   truth->level, truth->instance, said->t, said->component, said->level,
                   said->instance);
@@ -167,16 +167,16 @@ typedef struct Tally {
     size_t      verdicts[VERDICTS], hits;
 } Tally;
 
-static void count(Tally *tally, const Stage *stage, Verdict verdict, int pixel, const Answer *truth,
-                  const Answer *said)
+static void count(Tally *tally, const Fixture *fixture, Verdict verdict, int pixel,
+                  const Answer *truth, const Answer *said)
 {
     tally->verdicts[verdict]++;
     tally->hits += said->t < HUGE_VAL;
     if (verdict >= WRONG_HIT && tally->verdicts[verdict] <= 3)
-        tell(stage, tally->who, verdict, pixel, truth, said);
+        tell(fixture, tally->who, verdict, pixel, truth, said);
 }
 
-static bool is_right(const Stage *stage, const Tally *tally, size_t asked)
+static bool is_right(const Fixture *fixture, const Tally *tally, size_t asked)
 {
     size_t wrong   = tally->verdicts[WRONG_HIT] + tally->verdicts[WRONG_IDS];
     size_t excused = tally->verdicts[GRAZED] + tally->verdicts[MANY_MEET];
@@ -185,7 +185,7 @@ static bool is_right(const Stage *stage, const Tally *tally, size_t asked)
     print_message(
         "# %s, %s: %zu rays, %zu hits, %zu graze, %zu where several meet, %zu hits and %zu ids "
         "wrong\n",
-        stage->name, tally->who, asked, tally->hits, tally->verdicts[GRAZED],
+        fixture->name, tally->who, asked, tally->hits, tally->verdicts[GRAZED],
         tally->verdicts[MANY_MEET], tally->verdicts[WRONG_HIT], tally->verdicts[WRONG_IDS]);
     return false;
 }
@@ -221,48 +221,49 @@ static int choose_pixel(Random *random, const KrsPicture *picture, bool at_borde
 }
 
 /* Rays through the middles of pixels, every second at a border. */
-static size_t wrong_rays(Stage *stage, const KrsPicture *picture)
+static size_t wrong_rays(Fixture *fixture, const KrsPicture *picture)
 {
     static double places[ASKED][3], directions[ASKED][3];
     const double(*origins)[3] = (const double(*)[3])places;
     const double(*rays)[3]    = (const double(*)[3])directions;
     static KrsHit host[ASKED], device[ASKED];
     static int    pixels[ASKED];
-    Random        random = {(uint64_t)strlen(stage->name) + 3};
+    Random        random = {(uint64_t)strlen(fixture->name) + 3};
     Tally         seen = {.who = "picture"}, asked = {.who = "query of the device"};
-    double        size = vec_length(stage->lens.eye);
+    double        size = vec_length(fixture->lens.eye);
     for (int i = 0; i < ASKED; i++) {
         pixels[i] = choose_pixel(&random, picture, i % 2 == 1);
-        Line ray  = lens_ray(&stage->lens, pixels[i] % WIDTH + 0.5, pixels[i] / WIDTH + 0.5);
+        Line ray  = lens_ray(&fixture->lens, pixels[i] % WIDTH + 0.5, pixels[i] / WIDTH + 0.5);
         put(places[i], ray.origin);
         put(directions[i], ray.direction);
     }
     assert_int_equal(
-        krs_raycast(stage->frame, origins, rays, ASKED, HUGE_VAL, 1e-7 * (1 + size), host), KRS_OK);
+        krs_raycast(fixture->frame, origins, rays, ASKED, HUGE_VAL, 1e-7 * (1 + size), host),
+        KRS_OK);
     double nearest = HUGE_VAL;
     for (int i = 0; i < ASKED; i++)
         if (host[i].hit)
             nearest = fmin(nearest, host[i].t);
-    double tolerance = nearest < HUGE_VAL ? 0.25 * pixel_at(stage, nearest) : 1e-3;
-    if (krs_device_raycast(stage->rendering, stage->frame, origins, rays, ASKED, HUGE_VAL,
+    double tolerance = nearest < HUGE_VAL ? 0.25 * pixel_at(fixture, nearest) : 1e-3;
+    if (krs_device_raycast(fixture->rendering, fixture->frame, origins, rays, ASKED, HUGE_VAL,
                            tolerance, device) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     for (int i = 0; i < ASKED; i++) {
         Line   ray      = {vec_of(origins[i]), vec_of(rays[i])};
         Answer truth    = answer_of(&host[i]);
-        Answer picked   = seen_at(stage, picture, pixels[i], ray);
+        Answer picked   = seen_at(fixture, picture, pixels[i], ray);
         Answer answered = answer_of(&device[i]);
         double far      = fmin(truth.t, picked.t) < HUGE_VAL ? fmin(truth.t, picked.t) : 0;
         double rounding = 2e-6 * (size + far); /* some units in the last place */
-        count(&seen, stage, judge(stage, ray, &truth, &picked, 2e-6 * far), pixels[i], &truth,
+        count(&seen, fixture, judge(fixture, ray, &truth, &picked, 2e-6 * far), pixels[i], &truth,
               &picked);
-        count(&asked, stage, judge(stage, ray, &truth, &answered, rounding), pixels[i], &truth,
+        count(&asked, fixture, judge(fixture, ray, &truth, &answered, rounding), pixels[i], &truth,
               &answered);
     }
     /* Queries of the device are not camera-relative: far out single precision is all they have. */
-    bool has_digits = nearest == HUGE_VAL || 2.4e-7 * size < pixel_at(stage, nearest) / 64;
-    bool right      = is_right(stage, &seen, ASKED);
-    return !right + (has_digits && !is_right(stage, &asked, ASKED));
+    bool has_digits = nearest == HUGE_VAL || 2.4e-7 * size < pixel_at(fixture, nearest) / 64;
+    bool right      = is_right(fixture, &seen, ASKED);
+    return !right + (has_digits && !is_right(fixture, &asked, ASKED));
 }
 
 static bool rows_are_equal(const void *whole, const void *crop, const KrsWindow *window,
@@ -275,7 +276,7 @@ static bool rows_are_equal(const void *whole, const void *crop, const KrsWindow 
     return true;
 }
 
-static size_t wrong_crops(Stage *stage, const KrsPicture *whole)
+static size_t wrong_crops(Fixture *fixture, const KrsPicture *whole)
 {
     Random random = {5};
     size_t wrong  = 0;
@@ -284,7 +285,7 @@ static size_t wrong_crops(Stage *stage, const KrsPicture *whole)
                              .y = (uint32_t)random_below(&random, HEIGHT - 30)};
         window.width      = 1 + (uint32_t)random_below(&random, 39);
         window.height     = 1 + (uint32_t)random_below(&random, 29);
-        KrsPicture *crop  = stage_render(stage, (KrsRenderOptions){.crop = window});
+        KrsPicture *crop  = fixture_render(fixture, (KrsRenderOptions){.crop = window});
         bool        equal = rows_are_equal(whole->depth, crop->depth, &window, sizeof(float)) &&
                      rows_are_equal(whole->position, crop->position, &window, 3 * sizeof(float)) &&
                      rows_are_equal(whole->normal, crop->normal, &window, 3 * sizeof(float)) &&
@@ -294,8 +295,8 @@ static size_t wrong_crops(Stage *stage, const KrsPicture *whole)
                      rows_are_equal(whole->level, crop->level, &window, 4) &&
                      rows_are_equal(whole->instance, crop->instance, &window, 4);
         if (!equal)
-            print_message("# %s: the crop %u %u %u %u is another picture\n", stage->name, window.x,
-                          window.y, window.width, window.height);
+            print_message("# %s: the crop %u %u %u %u is another picture\n", fixture->name,
+                          window.x, window.y, window.width, window.height);
         wrong += !equal;
         krs_picture_free(crop);
     }
@@ -303,33 +304,33 @@ static size_t wrong_crops(Stage *stage, const KrsPicture *whole)
 }
 
 /* A position is where the ray is at its depth. */
-static size_t wrong_positions(const Stage *stage, const KrsPicture *picture)
+static size_t wrong_positions(const Fixture *fixture, const KrsPicture *picture)
 {
     size_t wrong = 0;
     for (int k = 0; k < PIXELS; k++) {
         if (!picture->component[k])
             continue;
-        Line   ray  = lens_ray(&stage->lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
-        double t    = picture->depth[k] / vec_dot(ray.direction, stage->lens.forward);
+        Line   ray  = lens_ray(&fixture->lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
+        double t    = picture->depth[k] / vec_dot(ray.direction, fixture->lens.forward);
         Vec    at   = line_at(ray, t);
         Vec    said = vec(picture->position[3 * k], picture->position[3 * k + 1],
                           picture->position[3 * k + 2]);
         wrong += !(vec_distance(at, said) <= 1e-5 * (vec_length(at) + t + 1));
     }
     if (wrong)
-        print_message("# %s: %zu positions are not where rays end\n", stage->name, wrong);
+        print_message("# %s: %zu positions are not where rays end\n", fixture->name, wrong);
     return wrong;
 }
 
-static size_t wrong_scene(Stage *stage, KrsTrace trace)
+static size_t wrong_scene(Fixture *fixture, KrsTrace trace)
 {
-    KrsPicture *picture = stage_render(stage, (KrsRenderOptions){.trace = trace});
-    size_t      wrong   = wrong_rays(stage, picture) + wrong_positions(stage, picture);
+    KrsPicture *picture = fixture_render(fixture, (KrsRenderOptions){.trace = trace});
+    size_t      wrong   = wrong_rays(fixture, picture) + wrong_positions(fixture, picture);
     if (picture->stats.unresolved)
-        print_message("# %s: %llu rays are unresolved\n", stage->name,
+        print_message("# %s: %llu rays are unresolved\n", fixture->name,
                       (unsigned long long)picture->stats.unresolved);
     if (trace == KRS_TRACE_DEFAULT)
-        wrong += wrong_crops(stage, picture);
+        wrong += wrong_crops(fixture, picture);
     krs_picture_free(picture);
     return wrong;
 }
@@ -341,10 +342,10 @@ static void examples_agree(void **state)
                                         "examples/14-inversion.krs"};
     size_t                   wrong   = 0;
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
-        Stage stage = {.name = paths[i]};
-        stage_open(&stage, krs_compile_file(paths[i], NULL, &stage.scene));
-        wrong += wrong_scene(&stage, KRS_TRACE_DEFAULT);
-        stage_close(&stage);
+        Fixture fixture = {.name = paths[i]};
+        fixture_open(&fixture, krs_compile_file(paths[i], NULL, &fixture.scene));
+        wrong += wrong_scene(&fixture, KRS_TRACE_DEFAULT);
+        fixture_close(&fixture);
     }
     assert_int_equal(wrong, 0);
 }
@@ -358,21 +359,21 @@ static void other_pictures_are_found(void **state)
         "camera { eye: [0, 1, 5], target: [0, 0, 0], fov: 0.6 }\n"
         "show krs { kernel box([0.6, 0.5, 0.7]).move([-0.5 + aside, 0.1, 0]);\n"
         "           reflect plane([1, 0.2, 0], 0.3); };\n";
-    Stage stage = {.name = "two boxes"};
-    stage_open(&stage, krs_compile_text(text, strlen(text), "scene.krs", NULL, &stage.scene));
-    KrsPicture *picture = stage_render(&stage, (KrsRenderOptions){0});
-    assert_int_equal(wrong_rays(&stage, picture), 0);
+    Fixture fixture = {.name = "two boxes"};
+    fixture_open(&fixture, krs_compile_text(text, strlen(text), "scene.krs", NULL, &fixture.scene));
+    KrsPicture *picture = fixture_render(&fixture, (KrsRenderOptions){0});
+    assert_int_equal(wrong_rays(&fixture, picture), 0);
     for (int k = 0; k < PIXELS; k++)
         picture->instance[k] ^= 1;
-    assert_true(wrong_rays(&stage, picture) > 0);
+    assert_true(wrong_rays(&fixture, picture) > 0);
     krs_picture_free(picture);
-    const double lateral = 2 * pixel_at(&stage, 5), none = 0;
-    assert_int_equal(krs_frame_set(stage.frame, "aside", &lateral, 1), KRS_OK);
-    picture = stage_render(&stage, (KrsRenderOptions){0});
-    assert_int_equal(krs_frame_set(stage.frame, "aside", &none, 1), KRS_OK);
-    assert_true(wrong_rays(&stage, picture) > 0);
+    const double lateral = 2 * pixel_at(&fixture, 5), none = 0;
+    assert_int_equal(krs_frame_set(fixture.frame, "aside", &lateral, 1), KRS_OK);
+    picture = fixture_render(&fixture, (KrsRenderOptions){0});
+    assert_int_equal(krs_frame_set(fixture.frame, "aside", &none, 1), KRS_OK);
+    assert_true(wrong_rays(&fixture, picture) > 0);
     krs_picture_free(picture);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 /* ---- random scenes ---- */
@@ -390,13 +391,15 @@ static size_t wrong_random_scene(int number)
     char      name[40];
     snprintf(name, sizeof name, "random scene %d", number);
     write_random_scene(&text, &random, far ? any_vec(&random, 3000) : vec(0, 0, 0), size);
-    Stage  stage  = {.name = name};
-    size_t method = (size_t)number % (sizeof methods / sizeof *methods);
-    stage_open(&stage, krs_compile_text(text.bytes, text.length, "scene.krs", NULL, &stage.scene));
-    size_t wrong = wrong_scene(&stage, KRS_TRACE_DEFAULT) + wrong_scene(&stage, methods[method]);
+    Fixture fixture = {.name = name};
+    size_t  method  = (size_t)number % (sizeof methods / sizeof *methods);
+    fixture_open(&fixture,
+                 krs_compile_text(text.bytes, text.length, "scene.krs", NULL, &fixture.scene));
+    size_t wrong = wrong_scene(&fixture, KRS_TRACE_DEFAULT) +
+                   wrong_scene(&fixture, methods[method]);
     if (wrong)
         print_message("%s\n", text.bytes);
-    stage_close(&stage);
+    fixture_close(&fixture);
     return wrong;
 }
 

@@ -16,7 +16,7 @@
 
 #include "compiler/passes/compile.h"
 #include "runtime/shared/blocks.h"
-#include "tests/oracle/path_stage.h"
+#include "tests/oracle/path_fixture.h"
 #include "tests/support/renderer.h"
 
 #define DEGREE (M_PI / 180)
@@ -136,30 +136,31 @@ static const char plate[] =
     "             specular_roughness_anisotropy: brushed, tangent: [cos(turn), 0, sin(turn)] }\n"
     "show box([90, 1, 90]).paint(m).move([0, -0.5, 0]);\n";
 
-static PathStage stage;
+static PathFixture fixture;
 
 static int open_plate(void **state)
 {
     if (renderer_open(state) != 0)
         return 1;
-    stage = path_stage_open(plate);
+    fixture = path_fixture_open(plate);
     return 0;
 }
 
 static int close_plate(void **state)
 {
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     return renderer_close(state);
 }
 
 static double look_at_plate(KrsIntegrator integrator)
 {
-    KrsPicture  *picture = path_stage_render(&stage, &(KrsRenderOptions){.width        = 8,
-                                                                         .height       = 8,
-                                                                         .samples      = 1,
-                                                                         .no_occlusion = true,
-                                                                         .planes = KRS_PLANE_COLOR,
-                                                                         .integrator = integrator});
+    KrsPicture  *picture = path_fixture_render(&fixture,
+                                               &(KrsRenderOptions){.width        = 8,
+                                                                   .height       = 8,
+                                                                   .samples      = 1,
+                                                                   .no_occlusion = true,
+                                                                   .planes       = KRS_PLANE_COLOR,
+                                                                   .integrator   = integrator});
     const double mean    = mean_of_region(picture, everywhere, 1);
     krs_picture_free(picture);
     return mean;
@@ -173,7 +174,7 @@ static Vec aim(double tilt, double angle)
 
 static void set_direction(const char *name, Vec direction)
 {
-    path_stage_set_all(&stage, name, direction.x, direction.z, direction.y);
+    path_fixture_set_all(&fixture, name, direction.x, direction.z, direction.y);
 }
 
 /* The plate's radiance, of a metal that mirrors all: what bounces once, and in proportion to that what
@@ -209,9 +210,9 @@ static void lamps_are_mirrored_by_both_widths(void **state)
             const double  eye = s[0] * DEGREE, roughness = i % 2 ? 0.5 : 0.7;
             const Vec     to_eye = aim(eye, s[1] * DEGREE),
                       to_light   = aim(s[2] * DEGREE, s[3] * DEGREE);
-            path_stage_set(&stage, "rough", roughness);
-            path_stage_set(&stage, "brushed", brushed[k]);
-            path_stage_set(&stage, "turn", s[4] * DEGREE);
+            path_fixture_set(&fixture, "rough", roughness);
+            path_fixture_set(&fixture, "brushed", brushed[k]);
+            path_fixture_set(&fixture, "turn", s[4] * DEGREE);
             set_direction("eye", to_eye);
             set_direction("lamp", to_light);
             const double right = radiance_of(to_eye, to_light, s[4] * DEGREE,
@@ -237,9 +238,9 @@ static void a_highlight_is_as_long_as_its_widths_say(void **state)
     (void)state;
     const Widths w = widths_of(0.5, 0.75);
     double       found[2];
-    path_stage_set(&stage, "rough", 0.5);
-    path_stage_set(&stage, "brushed", 0.75);
-    path_stage_set(&stage, "turn", 0);
+    path_fixture_set(&fixture, "rough", 0.5);
+    path_fixture_set(&fixture, "brushed", 0.75);
+    path_fixture_set(&fixture, "turn", 0);
     set_direction("eye", vec(0, 0, 1));
     for (int k = 0; k < 2; k++) {
         const double tilt  = atan(k ? w.across : w.along);
@@ -282,43 +283,43 @@ static const Brushed materials[] = {
     {"a brushed metal, coated", 1, 0, 1, 0.7}, {"half a metal", 0.5, 0.5, 0, 0.9}};
 enum { MATERIALS = sizeof materials / sizeof *materials };
 
-static void paint(const PathStage *balls, Brushed material, double roughness)
+static void paint(const PathFixture *balls, Brushed material, double roughness)
 {
-    PathStage ball = *balls;
-    path_stage_set(&ball, "rough", roughness);
-    path_stage_set(&ball, "metal", material.metal);
-    path_stage_set(&ball, "glass", material.glass);
-    path_stage_set(&ball, "lacquer", material.lacquer);
-    path_stage_set(&ball, "brushed", material.brushed);
+    PathFixture ball = *balls;
+    path_fixture_set(&ball, "rough", roughness);
+    path_fixture_set(&ball, "metal", material.metal);
+    path_fixture_set(&ball, "glass", material.glass);
+    path_fixture_set(&ball, "lacquer", material.lacquer);
+    path_fixture_set(&ball, "brushed", material.brushed);
 }
 
-static Estimate look_at_ball(const PathStage *balls, bool glass)
+static Estimate look_at_ball(const PathFixture *balls, bool glass)
 {
-    return path_stage_estimate(balls,
-                               (KrsRenderOptions){.width      = 64,
-                                                  .height     = 64,
-                                                  .samples    = 1,
-                                                  .bounces    = glass ? 48 : 2,
-                                                  .planes     = KRS_PLANE_COLOR,
-                                                  .integrator = KRS_INTEGRATOR_PATH},
-                               everywhere, 6);
+    return path_fixture_estimate(balls,
+                                 (KrsRenderOptions){.width      = 64,
+                                                    .height     = 64,
+                                                    .samples    = 1,
+                                                    .bounces    = glass ? 48 : 2,
+                                                    .planes     = KRS_PLANE_COLOR,
+                                                    .integrator = KRS_INTEGRATOR_PATH},
+                                 everywhere, 6);
 }
 
 /* The preview guesses the sky's light, but all of it. */
-static Estimate preview_ball(const PathStage *balls)
+static Estimate preview_ball(const PathFixture *balls)
 {
     static const Region middle = {0.3, 0.3, 0.7, 0.7};
-    return path_stage_estimate(balls,
-                               (KrsRenderOptions){.width        = 64,
-                                                  .height       = 64,
-                                                  .samples      = 1,
-                                                  .no_occlusion = true,
-                                                  .planes       = KRS_PLANE_COLOR,
-                                                  .integrator   = KRS_INTEGRATOR_PREVIEW},
-                               middle, 1);
+    return path_fixture_estimate(balls,
+                                 (KrsRenderOptions){.width        = 64,
+                                                    .height       = 64,
+                                                    .samples      = 1,
+                                                    .no_occlusion = true,
+                                                    .planes       = KRS_PLANE_COLOR,
+                                                    .integrator   = KRS_INTEGRATOR_PREVIEW},
+                                 middle, 1);
 }
 
-static size_t compare_furnace(PathStage *balls)
+static size_t compare_furnace(PathFixture *balls)
 {
     size_t wrong = 0;
     for (int i = 0; i < MATERIALS; i++)
@@ -331,26 +332,26 @@ static size_t compare_furnace(PathStage *balls)
             wrong += !glass && !must_be_near(preview_ball(balls), 1, 0.01, name);
         }
     paint(balls, materials[0], 0.5);
-    path_stage_set_all(balls, "shade", 0.95, 0.95, 0.95);
+    path_fixture_set_all(balls, "shade", 0.95, 0.95, 0.95);
     assert_false(is_near(look_at_ball(balls, false), 1, 0.01));
-    path_stage_set_all(balls, "shade", 1, 1, 1);
+    path_fixture_set_all(balls, "shade", 1, 1, 1);
     return wrong;
 }
 
 /* By points that are chosen on it, and by rays that happen to meet it. */
-static size_t compare_suns(PathStage *balls)
+static size_t compare_suns(PathFixture *balls)
 {
     size_t wrong = 0;
-    path_stage_set(balls, "day", 0);
+    path_fixture_set(balls, "day", 0);
     for (int i = 0; i < MATERIALS; i++) {
         const bool glass = materials[i].glass > 0;
         paint(balls, materials[i], 0.5);
-        path_stage_set(balls, "bright", IRRADIANCE);
+        path_fixture_set(balls, "bright", IRRADIANCE);
         const Estimate chosen = look_at_ball(balls, glass);
-        path_stage_set(balls, "bright", 0);
-        path_stage_set(balls, "size", BALL);
+        path_fixture_set(balls, "bright", 0);
+        path_fixture_set(balls, "size", BALL);
         const Estimate met = look_at_ball(balls, glass);
-        path_stage_set(balls, "size", NO_BALL);
+        path_fixture_set(balls, "size", NO_BALL);
         const Estimate both = {.mean = chosen.mean, .error = hypot(chosen.error, met.error)};
         wrong += !must_be_near(both, met.mean, 0.01, materials[i].name);
     }
@@ -360,10 +361,10 @@ static size_t compare_suns(PathStage *balls)
 static void no_light_is_lost(void **state)
 {
     (void)state;
-    PathStage balls = path_stage_open(furnace);
-    size_t    wrong = compare_furnace(&balls);
+    PathFixture balls = path_fixture_open(furnace);
+    size_t      wrong = compare_furnace(&balls);
     wrong += compare_suns(&balls);
-    path_stage_close(&balls);
+    path_fixture_close(&balls);
     assert_int_equal(wrong, 0);
 }
 

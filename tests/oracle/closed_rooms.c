@@ -20,7 +20,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
-#include "tests/oracle/path_stage.h"
+#include "tests/oracle/path_fixture.h"
 #include "tests/support/renderer.h"
 
 /* Rooms about 3 wide are scaled and moved; the camera is near the middle. */
@@ -97,11 +97,11 @@ static const unsigned sides[] = {256, 8, 16, 40};
 /* Light that may be lost or appear, beside noise. */
 #define MOST_LOST 0.005
 
-static KrsRenderOptions options_of(PathStage *stage, const View *view, uint32_t bounces)
+static KrsRenderOptions options_of(PathFixture *fixture, const View *view, uint32_t bounces)
 {
     const unsigned side = view->side < MOST ? view->side : MOST, corner = (view->side - side) / 2;
-    path_stage_set(stage, "size", view->size);
-    path_stage_set_all(stage, "place", view->place, 2 * view->place, -3 * view->place);
+    path_fixture_set(fixture, "size", view->size);
+    path_fixture_set_all(fixture, "place", view->place, 2 * view->place, -3 * view->place);
     return (KrsRenderOptions){.width      = view->side,
                               .height     = view->side,
                               .crop       = {corner, corner, side, side},
@@ -111,13 +111,14 @@ static KrsRenderOptions options_of(PathStage *stage, const View *view, uint32_t 
                               .integrator = KRS_INTEGRATOR_PATH};
 }
 
-static bool is_right(PathStage *stage, const View *view, uint32_t bounces, double expected,
+static bool is_right(PathFixture *fixture, const View *view, uint32_t bounces, double expected,
                      const char *what, size_t number)
 {
     char name[100];
     snprintf(name, sizeof name, "%s %zu, %u pixels, size %g, at %g", what, number, view->side,
              view->size, view->place);
-    Estimate found = path_stage_estimate(stage, options_of(stage, view, bounces), everywhere, 3);
+    Estimate found = path_fixture_estimate(fixture, options_of(fixture, view, bounces), everywhere,
+                                           3);
     return must_be_near(found, expected, MOST_LOST, name);
 }
 
@@ -127,10 +128,10 @@ static void rooms_lose_no_light(void **state)
     enum { BOUNCES = 3 };
     size_t wrong = 0;
     for (size_t i = 0; i < COUNT(bare); i++) {
-        PathStage stage = path_stage_open(bare[i]);
+        PathFixture fixture = path_fixture_open(bare[i]);
         for (size_t k = 0; k < COUNT(views); k++)
-            wrong += !is_right(&stage, &views[k], BOUNCES, 1 + BOUNCES, "bare room", i);
-        path_stage_close(&stage);
+            wrong += !is_right(&fixture, &views[k], BOUNCES, 1 + BOUNCES, "bare room", i);
+        path_fixture_close(&fixture);
     }
     assert_int_equal(wrong, 0);
 }
@@ -143,16 +144,16 @@ static void curved_rooms_lose_no_light(void **state)
     enum { BOUNCES = 2, PATHS = 4096 };
     size_t wrong = 0;
     for (size_t i = 0; i < COUNT(curved); i++) {
-        PathStage stage = path_stage_open(curved[i]);
+        PathFixture fixture = path_fixture_open(curved[i]);
         for (size_t k = 0; k < COUNT(some); k++) {
-            KrsRenderOptions options = options_of(&stage, &some[k], BOUNCES);
+            KrsRenderOptions options = options_of(&fixture, &some[k], BOUNCES);
             char             name[60];
             snprintf(name, sizeof name, "curved room %zu, %u pixels", i, some[k].side);
             options.samples = PATHS / (options.crop.width * options.crop.height);
-            wrong += !must_be_near(path_stage_estimate(&stage, options, everywhere, 3), 1 + BOUNCES,
-                                   MOST_LOST, name);
+            wrong += !must_be_near(path_fixture_estimate(&fixture, options, everywhere, 3),
+                                   1 + BOUNCES, MOST_LOST, name);
         }
-        path_stage_close(&stage);
+        path_fixture_close(&fixture);
     }
     assert_int_equal(wrong, 0);
 }
@@ -161,29 +162,29 @@ static void curved_rooms_lose_no_light(void **state)
 static void thin_walls_lose_no_light(void **state)
 {
     (void)state;
-    PathStage stage = path_stage_open(ROOM SHOW("sphere(1.9).shell(0.01)", "wall"));
-    View      view  = {64, 1, 0};
-    assert_true(is_right(&stage, &view, 2, 3, "thin walls", 0));
+    PathFixture fixture = path_fixture_open(ROOM SHOW("sphere(1.9).shell(0.01)", "wall"));
+    View        view    = {64, 1, 0};
+    assert_true(is_right(&fixture, &view, 2, 3, "thin walls", 0));
     view.place = 7;
-    assert_true(is_right(&stage, &view, 2, 3, "thin walls", 1));
-    path_stage_close(&stage);
+    assert_true(is_right(&fixture, &view, 2, 3, "thin walls", 1));
+    path_fixture_close(&fixture);
 }
 
 /* Long rays are followed by short ones, below a thin ceiling above which all is open. */
 static void low_rooms_lose_no_light(void **state)
 {
     (void)state;
-    const View view  = {64, 1, 0};
-    PathStage  stage = path_stage_open(
-         ROOM "camera along { eye: [0.3, 0.1, 0.2], target: [1, 0.1, 0.3], fov: 4deg }\n" SHOW(
-             "box([5, 5, 5]) - box([3, 0.02, 3]).move([0, 0.1, 0])"
-              " - box([6, 5, 6]).move([0, 2.615, 0])",
-             "wall"));
-    KrsRenderOptions options = options_of(&stage, &view, 3);
+    const View  view    = {64, 1, 0};
+    PathFixture fixture = path_fixture_open(
+        ROOM "camera along { eye: [0.3, 0.1, 0.2], target: [1, 0.1, 0.3], fov: 4deg }\n" SHOW(
+            "box([5, 5, 5]) - box([3, 0.02, 3]).move([0, 0.1, 0])"
+            " - box([6, 5, 6]).move([0, 2.615, 0])",
+            "wall"));
+    KrsRenderOptions options = options_of(&fixture, &view, 3);
     options.camera           = 1;
-    assert_true(must_be_near(path_stage_estimate(&stage, options, everywhere, 3), 4, MOST_LOST,
+    assert_true(must_be_near(path_fixture_estimate(&fixture, options, everywhere, 3), 4, MOST_LOST,
                              "low room"));
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
 }
 
 static void white_furniture_is_not_seen(void **state)
@@ -191,11 +192,11 @@ static void white_furniture_is_not_seen(void **state)
     (void)state;
     size_t wrong = 0;
     for (size_t i = 0; i < COUNT(furnished); i++) {
-        PathStage stage = path_stage_open(furnished[i]);
-        path_stage_set(&stage, "part", 0.5);
+        PathFixture fixture = path_fixture_open(furnished[i]);
+        path_fixture_set(&fixture, "part", 0.5);
         for (size_t k = 0; k < COUNT(views); k += 2)
-            wrong += !is_right(&stage, &views[k], 24, 2, "furnished room", i);
-        path_stage_close(&stage);
+            wrong += !is_right(&fixture, &views[k], 24, 2, "furnished room", i);
+        path_fixture_close(&fixture);
     }
     assert_int_equal(wrong, 0);
 }
@@ -204,15 +205,15 @@ static void lamps_light_balls_evenly(void **state)
 {
     (void)state;
     const double part = 0.7, power = 4;
-    size_t       wrong = 0;
-    PathStage    stage = path_stage_open(BALL);
-    path_stage_set(&stage, "part", part);
-    path_stage_set(&stage, "glow", 0);
-    path_stage_set(&stage, "power", power);
+    size_t       wrong   = 0;
+    PathFixture  fixture = path_fixture_open(BALL);
+    path_fixture_set(&fixture, "part", part);
+    path_fixture_set(&fixture, "glow", 0);
+    path_fixture_set(&fixture, "power", power);
     for (size_t k = 0; k < COUNT(views); k += 2)
-        wrong += !is_right(&stage, &views[k], 30,
+        wrong += !is_right(&fixture, &views[k], 30,
                            part * power / (M_PI * RADIUS * RADIUS) / (1 - part), "ball", k);
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     assert_int_equal(wrong, 0);
 }
 
@@ -220,15 +221,15 @@ static void lamps_light_balls_evenly(void **state)
 static void rays_leave_surfaces_by_few_distances(void **state)
 {
     (void)state;
-    PathStage        stage   = path_stage_open(BALL);
+    PathFixture      fixture = path_fixture_open(BALL);
     const View       view    = {360, 1, 0};
-    KrsRenderOptions options = options_of(&stage, &view, 10);
-    path_stage_set(&stage, "part", 0.9);
-    KrsPicture *picture = path_stage_render(&stage, &options);
+    KrsRenderOptions options = options_of(&fixture, &view, 10);
+    path_fixture_set(&fixture, "part", 0.9);
+    KrsPicture *picture = path_fixture_render(&fixture, &options);
     print_message("# %.1f distances a path\n", picture->stats.evaluations_per_ray);
     assert_true(picture->stats.evaluations_per_ray < 100);
     krs_picture_free(picture);
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
 }
 
 /* A lamp sends as much to walls in previews of all sizes. */
@@ -237,19 +238,19 @@ static void previews_of_all_sizes_are_alike(void **state)
     (void)state;
     size_t wrong = 0;
     for (size_t i = 0; i < COUNT(bare); i++) {
-        PathStage stage = path_stage_open(bare[i]);
-        double    lit   = 0;
-        path_stage_set(&stage, "glow", 0);
-        path_stage_set(&stage, "power", 4);
+        PathFixture fixture = path_fixture_open(bare[i]);
+        double      lit     = 0;
+        path_fixture_set(&fixture, "glow", 0);
+        path_fixture_set(&fixture, "power", 4);
         for (size_t k = 0; k < COUNT(sides); k++) {
             KrsRenderOptions options = {
                 .width = sides[k], .height = sides[k], .planes = KRS_PLANE_COLOR};
-            Estimate light = path_stage_estimate(&stage, options, everywhere, 1);
+            Estimate light = path_fixture_estimate(&fixture, options, everywhere, 1);
             lit            = k ? lit : light.mean;
             print_message("# preview of bare room %zu, %u pixels: %.4f\n", i, sides[k], light.mean);
             wrong += !(fabs(light.mean / lit - 1) < 0.02);
         }
-        path_stage_close(&stage);
+        path_fixture_close(&fixture);
     }
     assert_int_equal(wrong, 0);
 }

@@ -17,7 +17,7 @@
 
 #include "compiler/passes/compile.h"
 #include "tests/oracle/exact.h"
-#include "tests/oracle/path_stage.h"
+#include "tests/oracle/path_fixture.h"
 #include "tests/support/random.h"
 #include "tests/support/renderer.h"
 
@@ -228,20 +228,20 @@ static void add_picture(const KrsPicture *picture, Blocks *blocks)
     add_part(blocks, means);
 }
 
-static void take_pictures(PathStage *stage, const Lit *lit, Blocks *blocks)
+static void take_pictures(PathFixture *fixture, const Lit *lit, Blocks *blocks)
 {
     *blocks = (Blocks){0};
-    path_stage_set(stage, "glow", lit->panel);
-    path_stage_set(stage, "power", lit->lamp * M_PI * lamp_radius * lamp_radius);
+    path_fixture_set(fixture, "glow", lit->panel);
+    path_fixture_set(fixture, "power", lit->lamp * M_PI * lamp_radius * lamp_radius);
     for (uint64_t seed = 1; seed <= PARTS; seed++) {
-        KrsPicture *picture = path_stage_render(
-            stage, &(KrsRenderOptions){.width      = WIDTH,
-                                       .height     = HEIGHT,
-                                       .samples    = SAMPLES,
-                                       .seed       = seed,
-                                       .bounces    = BOUNCES,
-                                       .planes     = KRS_PLANE_COLOR,
-                                       .integrator = KRS_INTEGRATOR_PATH});
+        KrsPicture *picture = path_fixture_render(
+            fixture, &(KrsRenderOptions){.width      = WIDTH,
+                                         .height     = HEIGHT,
+                                         .samples    = SAMPLES,
+                                         .seed       = seed,
+                                         .bounces    = BOUNCES,
+                                         .planes     = KRS_PLANE_COLOR,
+                                         .integrator = KRS_INTEGRATOR_PATH});
         add_picture(picture, blocks);
         krs_picture_free(picture);
     }
@@ -272,11 +272,11 @@ static size_t count_wrong(const Blocks *found, const Blocks *right)
 static void compare(const Lit *lit)
 {
     static Blocks found, right, darker;
-    PathStage     stage = path_stage_open(room_text);
-    Lit           gray  = *lit;
-    gray.white          = 0.95; /* a planted fault */
-    take_pictures(&stage, lit, &found);
-    path_stage_close(&stage);
+    PathFixture   fixture = path_fixture_open(room_text);
+    Lit           gray    = *lit;
+    gray.white            = 0.95; /* a planted fault */
+    take_pictures(&fixture, lit, &found);
+    path_fixture_close(&fixture);
     reference(lit, PATHS, &right);
     reference(&gray, PATHS, &darker);
     assert_int_equal(count_wrong(&found, &right), 0);
@@ -298,7 +298,7 @@ static void a_panel_lights_a_room(void **state)
 /* ---- The error falls with the samples ---- */
 
 /* The root of the mean square of what pictures of this many samples differ from their mean. */
-static double find_noise(PathStage *stage, uint32_t samples)
+static double find_noise(PathFixture *fixture, uint32_t samples)
 {
     enum { SMALL = 48 * 36 };
     KrsPicture      *pictures[2];
@@ -310,7 +310,7 @@ static double find_noise(PathStage *stage, uint32_t samples)
                                 .integrator = KRS_INTEGRATOR_PATH};
     for (int i = 0; i < 2; i++) {
         options.seed = (uint64_t)i + 1;
-        pictures[i]  = path_stage_render(stage, &options);
+        pictures[i]  = path_fixture_render(fixture, &options);
     }
     for (int k = 0; k < 4 * SMALL; k++) {
         double apart = (double)pictures[0]->color[k] - (double)pictures[1]->color[k];
@@ -326,18 +326,18 @@ static double find_noise(PathStage *stage, uint32_t samples)
 static void more_samples_have_less_noise(void **state)
 {
     (void)state;
-    PathStage stage = path_stage_open(room_text);
+    PathFixture fixture = path_fixture_open(room_text);
     for (int panel = 0; panel < 2; panel++) {
-        path_stage_set(&stage, "glow", panel ? 1 : 0);
-        path_stage_set(&stage, "power", panel ? 0 : 2);
-        double before = find_noise(&stage, 2);
+        path_fixture_set(&fixture, "glow", panel ? 1 : 0);
+        path_fixture_set(&fixture, "power", panel ? 0 : 2);
+        double before = find_noise(&fixture, 2);
         for (uint32_t samples = 8; samples <= 32; samples *= 4) {
-            double noise = find_noise(&stage, samples);
+            double noise = find_noise(&fixture, samples);
             assert_true(noise > 0 && noise < 0.5 * 1.1 * before);
             before = noise;
         }
     }
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
 }
 
 /* A varnished floor: rays choose between the varnish, what it mirrors below, and the body. */
@@ -353,10 +353,10 @@ static const char floor_text[] =
 static void rays_of_each_layer_are_even(void **state)
 {
     (void)state;
-    PathStage stage  = path_stage_open(floor_text);
-    double    before = find_noise(&stage, 16), after = find_noise(&stage, 256);
+    PathFixture fixture = path_fixture_open(floor_text);
+    double      before = find_noise(&fixture, 16), after = find_noise(&fixture, 256);
     assert_true(after > 0 && after < 0.6 * 0.25 * before);
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
 }
 
 int main(void)

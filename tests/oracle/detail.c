@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
-#include "tests/oracle/path_stage.h"
+#include "tests/oracle/path_fixture.h"
 #include "tests/support/renderer.h"
 
 enum { SIDE = 64, MANY = 256 };
@@ -35,7 +35,7 @@ static const char mirrored[] = STEEL
     "show sphere(0.1).paint(chrome);\n"
     "show union([post.rotate([0, 1, 0], 15deg * i + 8deg) for i in 0..24]).paint(steel);\n";
 
-static KrsPicture *take(const PathStage *stage, uint32_t samples, bool filters)
+static KrsPicture *take(const PathFixture *fixture, uint32_t samples, bool filters)
 {
     KrsRenderOptions options = {.width        = SIDE,
                                 .height       = SIDE,
@@ -43,7 +43,7 @@ static KrsPicture *take(const PathStage *stage, uint32_t samples, bool filters)
                                 .no_filter    = !filters,
                                 .no_occlusion = true,
                                 .planes       = KRS_PLANE_COLOR};
-    return path_stage_render(stage, &options);
+    return path_fixture_render(fixture, &options);
 }
 
 /* Highlights may be brighter than this. */
@@ -84,9 +84,9 @@ typedef struct Taken {
 
 static Taken take_all(const char *text)
 {
-    PathStage stage = path_stage_open(text);
-    Taken     taken = {take(&stage, 1, true), take(&stage, 1, false), take(&stage, MANY, true)};
-    path_stage_close(&stage);
+    PathFixture fixture = path_fixture_open(text);
+    Taken taken = {take(&fixture, 1, true), take(&fixture, 1, false), take(&fixture, MANY, true)};
+    path_fixture_close(&fixture);
     print_message(
         "# off by %.4f, not filtered by %.4f; %d glints, %d; %.2f of light, %.2f, right %.2f\n",
         off_by(taken.one, taken.many), off_by(taken.sharp, taken.many),

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
-#include "tests/oracle/path_stage.h"
+#include "tests/oracle/path_fixture.h"
 #include "tests/support/renderer.h"
 
 /* A slab from y = 1 to 1 + thick lies over a white dull floor, whose sky is black but for `day`.  One
@@ -41,19 +41,19 @@ static const KrsRenderOptions direct = {.width      = 24,
                                         .planes     = KRS_PLANE_COLOR,
                                         .integrator = KRS_INTEGRATOR_DIRECT};
 
-static PathStage stage;
+static PathFixture fixture;
 
 static int open_slab(void **state)
 {
     if (renderer_open(state) != 0)
         return 1;
-    stage = path_stage_open(scene);
+    fixture = path_fixture_open(scene);
     return 0;
 }
 
 static int close_slab(void **state)
 {
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     return renderer_close(state);
 }
 
@@ -66,10 +66,10 @@ enum { SLABS = sizeof slabs / sizeof *slabs };
 
 static void set_slab(const Slab *slab)
 {
-    path_stage_set(&stage, "index", slab->index);
-    path_stage_set(&stage, "loss", slab->loss);
-    path_stage_set(&stage, "tint", slab->tint);
-    path_stage_set(&stage, "thick", slab->thick);
+    path_fixture_set(&fixture, "index", slab->index);
+    path_fixture_set(&fixture, "loss", slab->loss);
+    path_fixture_set(&fixture, "tint", slab->tint);
+    path_fixture_set(&fixture, "thick", slab->thick);
 }
 
 /* What is left of light that goes straight through: each boundary mirrors some, and the colour counts
@@ -101,18 +101,18 @@ static void light_comes_through_glass(void **state)
     size_t wrong = 0;
     for (size_t i = 0; i < SLABS; i++) {
         set_slab(&slabs[i]);
-        path_stage_set(&stage, "sunny", 3);
-        wrong += !must_be_near(path_stage_estimate(&stage, direct, everywhere, 4),
+        path_fixture_set(&fixture, "sunny", 3);
+        wrong += !must_be_near(path_fixture_estimate(&fixture, direct, everywhere, 4),
                                sunlit(&slabs[i]), 0.002, "a sun");
-        path_stage_set(&stage, "sunny", 0);
-        path_stage_set(&stage, "lit", 50);
+        path_fixture_set(&fixture, "sunny", 0);
+        path_fixture_set(&fixture, "lit", 50);
         for (int k = 0; k < 2; k++) {
-            path_stage_set(&stage, "wide", 0.05 * k);
-            wrong += !must_be_near(path_stage_estimate(&stage, direct, everywhere, 4),
+            path_fixture_set(&fixture, "wide", 0.05 * k);
+            wrong += !must_be_near(path_fixture_estimate(&fixture, direct, everywhere, 4),
                                    50 / (16 * M_PI) * left_of(&slabs[i], 1), 0.004,
                                    k == 0 ? "a point" : "a lamp");
         }
-        path_stage_set(&stage, "lit", 0);
+        path_fixture_set(&fixture, "lit", 0);
     }
     assert_int_equal(wrong, 0);
 }
@@ -127,16 +127,16 @@ static void glass_shows_what_is_behind(void **state)
     from_above.samples          = 64;
     for (size_t i = 0; i < SLABS; i++) {
         set_slab(&slabs[i]);
-        path_stage_set(&stage, "glow", 1);
-        path_stage_set(&stage, "shade", 0);
-        wrong += !must_be_near(path_stage_estimate(&stage, from_above, everywhere, 4),
+        path_fixture_set(&fixture, "glow", 1);
+        path_fixture_set(&fixture, "shade", 0);
+        wrong += !must_be_near(path_fixture_estimate(&fixture, from_above, everywhere, 4),
                                seen_through(&slabs[i]), 0.002, "what shines");
-        path_stage_set(&stage, "glow", 0);
-        path_stage_set(&stage, "shade", 1);
-        path_stage_set(&stage, "sunny", 3);
-        wrong += !must_be_near(path_stage_estimate(&stage, from_above, everywhere, 4),
+        path_fixture_set(&fixture, "glow", 0);
+        path_fixture_set(&fixture, "shade", 1);
+        path_fixture_set(&fixture, "sunny", 3);
+        wrong += !must_be_near(path_fixture_estimate(&fixture, from_above, everywhere, 4),
                                sunlit(&slabs[i]) * seen_through(&slabs[i]), 0.002, "what is lit");
-        path_stage_set(&stage, "sunny", 0);
+        path_fixture_set(&fixture, "sunny", 0);
     }
     assert_int_equal(wrong, 0);
 }
@@ -164,10 +164,10 @@ static void the_sky_comes_through_glass(void **state)
     }
     sum *= 0.5 * M_PI / PARTS;
     set_slab(&slabs[0]);
-    path_stage_set(&stage, "day", 1);
+    path_fixture_set(&fixture, "day", 1);
     all.samples    = 64;
-    Estimate found = path_stage_estimate(&stage, all, everywhere, 6);
-    path_stage_set(&stage, "day", 0);
+    Estimate found = path_fixture_estimate(&fixture, all, everywhere, 6);
+    path_fixture_set(&fixture, "day", 0);
     assert_true(must_be_near(found, sum, 0.003, "an even sky"));
 }
 

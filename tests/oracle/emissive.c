@@ -16,7 +16,7 @@
 
 #include "compiler/passes/compile.h"
 #include "tests/oracle/exact.h"
-#include "tests/oracle/path_stage.h"
+#include "tests/oracle/path_fixture.h"
 #include "tests/support/renderer.h"
 
 /* The camera sees a small part of the floor around the origin, which may be far from that of
@@ -51,19 +51,19 @@ static const char floor_text[] =
     "show sphere(0.02).move([far - 1.5, 1, 0]).paint(e);\n"
     "show sphere(0.02).move([far, 1.5, time]).paint(f);\n";
 
-static PathStage stage;
+static PathFixture fixture;
 
 static int open_floor(void **state)
 {
     if (renderer_open(state) != 0)
         return 1;
-    stage = path_stage_open(floor_text);
+    fixture = path_fixture_open(floor_text);
     return 0;
 }
 
 static int close_floor(void **state)
 {
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     return renderer_close(state);
 }
 
@@ -75,7 +75,7 @@ static Estimate look(KrsIntegrator integrator)
                                       .bounces    = 5,
                                       .planes     = KRS_PLANE_COLOR,
                                       .integrator = integrator};
-    return path_stage_estimate(&stage, options, everywhere, 6);
+    return path_fixture_estimate(&fixture, options, everywhere, 6);
 }
 
 /* What a floor that faces y gets from a ball of radiance 1, over pi. */
@@ -100,9 +100,9 @@ static bool is_right(KrsIntegrator integrator, double expected, const char *what
 
 static bool is_lit_by(const char *parameter, double radiance, double expected, const char *what)
 {
-    path_stage_set(&stage, parameter, radiance);
+    path_fixture_set(&fixture, parameter, radiance);
     const bool right = is_right(KRS_INTEGRATOR_PATH, radiance * expected, what);
-    path_stage_set(&stage, parameter, 0);
+    path_fixture_set(&fixture, parameter, 0);
     return right;
 }
 
@@ -141,9 +141,9 @@ static void light_comes_through_glass(void **state)
 {
     (void)state;
     const double expected = 0.96 * sent_by_ball(1.5, 1, 0, 0.03);
-    path_stage_set(&stage, "bulb", 50);
+    path_fixture_set(&fixture, "bulb", 50);
     const Estimate found = look(KRS_INTEGRATOR_PATH);
-    path_stage_set(&stage, "bulb", 0);
+    path_fixture_set(&fixture, "bulb", 0);
     assert_true(must_be_near(found, 50 * expected, 0.01, "a ball in glass"));
     assert_true(found.error < 2 * MOST_NOISE * found.mean);
 }
@@ -155,12 +155,12 @@ static void a_ball_may_be_anywhere(void **state)
 {
     (void)state;
     size_t wrong = 0;
-    path_stage_set_all(&stage, "at", -1, 1.5, 2);
+    path_fixture_set_all(&fixture, "at", -1, 1.5, 2);
     wrong += !is_lit_by("tiny", 50, sent_by_ball(-1, 1.5, 2, 0.02), "a ball elsewhere");
-    path_stage_set_all(&stage, "at", 0.4, 2.2, 0.3);
-    assert_int_equal(krs_frame_set_time(stage.product.frame, 2.5), KRS_OK);
+    path_fixture_set_all(&fixture, "at", 0.4, 2.2, 0.3);
+    assert_int_equal(krs_frame_set_time(fixture.product.frame, 2.5), KRS_OK);
     wrong += !is_lit_by("late", 50, sent_by_ball(0, 1.5, 2.5, 0.02), "a ball at another time");
-    assert_int_equal(krs_frame_set_time(stage.product.frame, 0), KRS_OK);
+    assert_int_equal(krs_frame_set_time(fixture.product.frame, 0), KRS_OK);
     assert_int_equal(wrong, 0);
 }
 
@@ -169,9 +169,9 @@ static void balls_may_be_far_away(void **state)
 {
     (void)state;
     size_t wrong = 0;
-    path_stage_set(&stage, "far", 4e5);
+    path_fixture_set(&fixture, "far", 4e5);
     wrong += !is_lit_by("tiny", 50, sent_by_ball(0.4, 2.2, 0.3, 0.02), "a ball far away");
-    path_stage_set(&stage, "far", 0);
+    path_fixture_set(&fixture, "far", 0);
     assert_int_equal(wrong, 0);
 }
 
@@ -179,10 +179,10 @@ static void balls_may_be_far_away(void **state)
 static void paths_of_one_bounce_find_it(void **state)
 {
     (void)state;
-    path_stage_set(&stage, "tiny", 50);
+    path_fixture_set(&fixture, "tiny", 50);
     const bool right = is_right(KRS_INTEGRATOR_DIRECT, 50 * sent_by_ball(0.4, 2.2, 0.3, 0.02),
                                 "a ball by direct light");
-    path_stage_set(&stage, "tiny", 0);
+    path_fixture_set(&fixture, "tiny", 0);
     assert_true(right);
 }
 
@@ -190,12 +190,12 @@ static void paths_of_one_bounce_find_it(void **state)
 static void the_sky_stays_as_it_is(void **state)
 {
     (void)state;
-    path_stage_set(&stage, "day", 1);
-    path_stage_set(&stage, "tiny", 1);
+    path_fixture_set(&fixture, "day", 1);
+    path_fixture_set(&fixture, "tiny", 1);
     const Estimate dim = look(KRS_INTEGRATOR_DIRECT);
-    path_stage_set(&stage, "tiny", 0);
+    path_fixture_set(&fixture, "tiny", 0);
     const Estimate none = look(KRS_INTEGRATOR_DIRECT);
-    path_stage_set(&stage, "day", 0);
+    path_fixture_set(&fixture, "day", 0);
     assert_true(must_be_near(dim, none.mean, 0.002, "the sky beside a dim ball"));
     assert_true(dim.error < 1.2 * none.error + 1e-4);
 }

@@ -15,7 +15,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
-#include "tests/oracle/path_stage.h"
+#include "tests/oracle/path_fixture.h"
 #include "tests/support/renderer.h"
 
 /* ---- hits that are evened out ---- */
@@ -27,7 +27,7 @@ static const char bumpy[] = "camera { eye: [0, 2.6, 4], target: [0, 0.1, 0], fov
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
 
-static KrsPicture *find_hits(const PathStage *stage, uint32_t iterations)
+static KrsPicture *find_hits(const PathFixture *fixture, uint32_t iterations)
 {
     const KrsRenderOptions options = {.width     = WIDTH,
                                       .height    = HEIGHT,
@@ -35,13 +35,13 @@ static KrsPicture *find_hits(const PathStage *stage, uint32_t iterations)
                                       .error     = 4,
                                       .planes    = KRS_PLANE_POSITION | KRS_PLANE_DEPTH,
                                       .even_hits = iterations};
-    return path_stage_render(stage, &options);
+    return path_fixture_render(fixture, &options);
 }
 
-static double distance_of_hit(const PathStage *stage, const KrsPicture *picture, size_t pixel)
+static double distance_of_hit(const PathFixture *fixture, const KrsPicture *picture, size_t pixel)
 {
     const float *at = &picture->position[3 * pixel];
-    return fabs(product_distance(&stage->product, (Vec){at[0], at[1], at[2]}));
+    return fabs(product_distance(&fixture->product, (Vec){at[0], at[1], at[2]}));
 }
 
 /* Positions have rounding, and so have distances of the device. */
@@ -50,15 +50,16 @@ static double distance_of_hit(const PathStage *stage, const KrsPicture *picture,
 static void even_hits_are_nearer(void **state)
 {
     (void)state;
-    PathStage   stage = path_stage_open(bumpy);
-    KrsPicture *usual = find_hits(&stage, 0), *even = find_hits(&stage, 3);
+    PathFixture fixture = path_fixture_open(bumpy);
+    KrsPicture *usual = find_hits(&fixture, 0), *even = find_hits(&fixture, 3);
     double      sums[2] = {0};
     int         hits    = 0;
     for (size_t i = 0; i < PIXELS; i++) {
         assert_int_equal(isfinite(usual->depth[i]), isfinite(even->depth[i]));
         if (!isfinite(usual->depth[i]))
             continue;
-        double before = distance_of_hit(&stage, usual, i), after = distance_of_hit(&stage, even, i);
+        double before = distance_of_hit(&fixture, usual, i),
+               after  = distance_of_hit(&fixture, even, i);
         assert_true(after <= before + ROUNDED);
         sums[0] += before;
         sums[1] += after;
@@ -66,7 +67,7 @@ static void even_hits_are_nearer(void **state)
     }
     krs_picture_free(usual);
     krs_picture_free(even);
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     assert_in_range(hits, PIXELS / 10, PIXELS - 1);
     assert_true(sums[0] / hits > 2 * ROUNDED); /* else there is nothing to show */
     assert_true(sums[1] < 0.5 * sums[0]);
@@ -89,7 +90,7 @@ static void starts_bring_all_light(void **state)
     const double mirrored = 0.04, kept = exp(-0.7);
     const double expected = (1 - mirrored) * (1 - mirrored) * kept /
                             (1 - mirrored * mirrored * kept * kept);
-    PathStage        stage   = path_stage_open(slab);
+    PathFixture      fixture = path_fixture_open(slab);
     KrsRenderOptions options = {.width      = 64,
                                 .height     = 64,
                                 .samples    = 1,
@@ -97,8 +98,8 @@ static void starts_bring_all_light(void **state)
                                 .planes     = KRS_PLANE_COLOR,
                                 .integrator = KRS_INTEGRATOR_PATH,
                                 .starts     = KRS_STARTS_DISTANCE};
-    Estimate         found   = path_stage_estimate(&stage, options, everywhere, 6);
-    path_stage_close(&stage);
+    Estimate         found   = path_fixture_estimate(&fixture, options, everywhere, 6);
+    path_fixture_close(&fixture);
     assert_true(must_be_near(found, expected, 0.002, "the slab"));
     assert_false(is_near(found, 1.1 * expected, 0.002));
 }
@@ -107,7 +108,7 @@ static void starts_bring_all_light(void **state)
 static void glass_loses_nothing(void **state)
 {
     (void)state;
-    PathStage stage = path_stage_open(
+    PathFixture fixture = path_fixture_open(
         "camera { eye: [0, 0, 6], fov: 24deg }\n"
         "sky { zenith: [1, 1, 1], horizon: [1, 1, 1], ground: [1, 1, 1] }\n"
         "light none { direction: [0, 1, 0], color: black }\n"
@@ -120,8 +121,8 @@ static void glass_loses_nothing(void **state)
                                 .planes     = KRS_PLANE_COLOR,
                                 .integrator = KRS_INTEGRATOR_PATH,
                                 .starts     = KRS_STARTS_DISTANCE};
-    Estimate         found   = path_stage_estimate(&stage, options, everywhere, 4);
-    path_stage_close(&stage);
+    Estimate         found   = path_fixture_estimate(&fixture, options, everywhere, 4);
+    path_fixture_close(&fixture);
     assert_true(must_be_near(found, 1, 0.003, "white glass"));
 }
 

@@ -20,7 +20,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
-#include "tests/oracle/path_stage.h"
+#include "tests/oracle/path_fixture.h"
 #include "tests/support/renderer.h"
 
 /* The sun, and the radius at distance 1000 of a ball that looks as large.  The ball emits what the
@@ -98,19 +98,19 @@ static const char *const parameters[] = {"rough",         "metal", "glass",     
                                          "lacquer_rough", "fuzz",  "fuzz_rough", "index",
                                          "mirrors",       "film",  "thick"};
 
-static PathStage stage;
+static PathFixture fixture;
 
 static int open_furnace(void **state)
 {
     if (renderer_open(state) != 0)
         return 1;
-    stage = path_stage_open(furnace);
+    fixture = path_fixture_open(furnace);
     return 0;
 }
 
 static int close_furnace(void **state)
 {
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     return renderer_close(state);
 }
 
@@ -118,10 +118,10 @@ static void paint(const White *white, double roughness)
 {
     static const double usual[] = {0, 0, 0, 0, 0, 0, 0.5, 1.5, 1, 0, 0.4};
     for (size_t i = 0; i < sizeof usual / sizeof *usual; i++)
-        path_stage_set(&stage, parameters[i], usual[i]);
-    path_stage_set(&stage, "rough", roughness);
+        path_fixture_set(&fixture, parameters[i], usual[i]);
+    path_fixture_set(&fixture, "rough", roughness);
     for (size_t i = 0; i < MOST_NUMBERS && white->numbers[i].parameter; i++)
-        path_stage_set(&stage, white->numbers[i].parameter, white->numbers[i].number);
+        path_fixture_set(&fixture, white->numbers[i].parameter, white->numbers[i].number);
 }
 
 /* The part of the light that may be lost or appear, beside noise. */
@@ -139,14 +139,14 @@ static bool has_glass(const White *white)
 
 static Estimate look_at(const White *white, uint32_t samples)
 {
-    return path_stage_estimate(&stage,
-                               (KrsRenderOptions){.width      = 64,
-                                                  .height     = 64,
-                                                  .samples    = samples,
-                                                  .bounces    = has_glass(white) ? 64 : 2,
-                                                  .planes     = KRS_PLANE_COLOR,
-                                                  .integrator = KRS_INTEGRATOR_PATH},
-                               everywhere, 6);
+    return path_fixture_estimate(&fixture,
+                                 (KrsRenderOptions){.width      = 64,
+                                                    .height     = 64,
+                                                    .samples    = samples,
+                                                    .bounces    = has_glass(white) ? 64 : 2,
+                                                    .planes     = KRS_PLANE_COLOR,
+                                                    .integrator = KRS_INTEGRATOR_PATH},
+                                 everywhere, 6);
 }
 
 static Estimate look(const White *white) { return look_at(white, 1); }
@@ -190,10 +190,10 @@ static void gray_is_seen(void **state)
     (void)state;
     for (size_t i = 0; i < WHITES; i++) {
         paint(&whites[i], 0);
-        path_stage_set_all(&stage, "shade", 0.95, 0.95, 0.95);
+        path_fixture_set_all(&fixture, "shade", 0.95, 0.95, 0.95);
         if (is_near(look(&whites[i]), 1, MOST_LOST))
             fail_msg("%s is taken for white", whites[i].name);
-        path_stage_set_all(&stage, "shade", 1, 1, 1);
+        path_fixture_set_all(&fixture, "shade", 1, 1, 1);
     }
 }
 
@@ -202,9 +202,9 @@ static void gray_is_seen(void **state)
 /* What is seen by one of them: a parameter has a number instead of the usual one. */
 static Estimate look_by(const White *white, const char *parameter, double number, double usual)
 {
-    path_stage_set(&stage, parameter, number);
+    path_fixture_set(&fixture, parameter, number);
     Estimate found = look(white);
-    path_stage_set(&stage, parameter, usual);
+    path_fixture_set(&fixture, parameter, usual);
     return found;
 }
 
@@ -227,12 +227,12 @@ static void light_is_found_either_way(void **state)
 {
     (void)state;
     size_t wrong = 0;
-    path_stage_set(&stage, "day", 0);
+    path_fixture_set(&fixture, "day", 0);
     for (size_t i = 0; i < WHITES; i++) {
         paint(&whites[i], 0.5);
         wrong += !is_found_either_way(&whites[i]);
     }
-    path_stage_set(&stage, "day", 1);
+    path_fixture_set(&fixture, "day", 1);
     assert_int_equal(wrong, 0);
 }
 
@@ -242,14 +242,14 @@ static void light_is_found_either_way(void **state)
 static void nothing_bounces_from_a_ball(void **state)
 {
     (void)state;
-    path_stage_set(&stage, "bright", IRRADIANCE);
+    path_fixture_set(&fixture, "bright", IRRADIANCE);
     for (size_t i = 0; i < WHITES; i++) {
         KrsRenderOptions options = {.width = 40, .height = 40, .samples = 3};
         KrsPicture      *pictures[2];
         paint(&whites[i], 0.4);
         for (int k = 0; k < 2; k++) {
             options.integrator = k ? KRS_INTEGRATOR_PATH : KRS_INTEGRATOR_DIRECT;
-            pictures[k]        = path_stage_render(&stage, &options);
+            pictures[k]        = path_fixture_render(&fixture, &options);
         }
         bool same = memcmp(pictures[0]->color, pictures[1]->color, 40 * 40 * 4 * sizeof(float)) ==
                     0;
@@ -258,7 +258,7 @@ static void nothing_bounces_from_a_ball(void **state)
         krs_picture_free(pictures[0]);
         krs_picture_free(pictures[1]);
     }
-    path_stage_set(&stage, "bright", 0);
+    path_fixture_set(&fixture, "bright", 0);
 }
 
 /* ---- Previews ---- */
@@ -283,7 +283,7 @@ static void previews_lose_no_sky(void **state)
             char name[100];
             snprintf(name, sizeof name, "preview of %s, roughness %.2f", whites[i].name, k / 3.0);
             paint(&whites[i], k / 3.0);
-            Estimate white = path_stage_estimate(&stage, PREVIEW_OPTIONS, middle, 1);
+            Estimate white = path_fixture_estimate(&fixture, PREVIEW_OPTIONS, middle, 1);
             wrong += !must_be_near(white, 1, MOST_LOST, name);
         }
     assert_int_equal(wrong, 0);
@@ -293,10 +293,10 @@ static void previews_lose_no_sky(void **state)
 static size_t compare_lamp(const White *white)
 {
     KrsRenderOptions options = PREVIEW_OPTIONS;
-    KrsPicture      *preview = path_stage_render(&stage, &options);
+    KrsPicture      *preview = path_fixture_render(&fixture, &options);
     size_t           wrong   = 0;
     options.integrator       = KRS_INTEGRATOR_DIRECT;
-    KrsPicture *direct       = path_stage_render(&stage, &options);
+    KrsPicture *direct       = path_fixture_render(&fixture, &options);
     for (unsigned i = 0; i < 4 * 64 * 64; i++) {
         const unsigned x = i / 4 % 64, y = i / 256;
         const double   a = preview->color[i], b = direct->color[i];
@@ -315,19 +315,19 @@ static void previews_show_a_lamp_as_paths_do(void **state)
 {
     (void)state;
     size_t wrong = 0;
-    path_stage_set(&stage, "day", 0);
-    path_stage_set(&stage, "width", 0);
-    path_stage_set(&stage, "bright", IRRADIANCE);
+    path_fixture_set(&fixture, "day", 0);
+    path_fixture_set(&fixture, "width", 0);
+    path_fixture_set(&fixture, "bright", IRRADIANCE);
     for (size_t i = 0; i < WHITES; i++)
         for (int k = 1; k <= 2 && !has_glass(&whites[i]); k++) {
             paint(&whites[i], k / 3.0);
-            path_stage_set_all(&stage, "shade", 0.9, 0.5, 0.2);
+            path_fixture_set_all(&fixture, "shade", 0.9, 0.5, 0.2);
             wrong += compare_lamp(&whites[i]);
         }
-    path_stage_set_all(&stage, "shade", 1, 1, 1);
-    path_stage_set(&stage, "bright", 0);
-    path_stage_set(&stage, "width", 2.0943951);
-    path_stage_set(&stage, "day", 1);
+    path_fixture_set_all(&fixture, "shade", 1, 1, 1);
+    path_fixture_set(&fixture, "bright", 0);
+    path_fixture_set(&fixture, "width", 2.0943951);
+    path_fixture_set(&fixture, "day", 1);
     assert_int_equal(wrong, 0);
 }
 
@@ -345,13 +345,13 @@ static const char unlayered[] =
 
 /* The largest part of the light in a pixel by which preview and direct differ: the preview has a fit in
    place of the table. */
-static double most_different(const PathStage *plain)
+static double most_different(const PathFixture *plain)
 {
     KrsRenderOptions options = PREVIEW_OPTIONS;
     double           most    = 0;
-    KrsPicture      *preview = path_stage_render(plain, &options);
+    KrsPicture      *preview = path_fixture_render(plain, &options);
     options.integrator       = KRS_INTEGRATOR_DIRECT;
-    KrsPicture *direct       = path_stage_render(plain, &options);
+    KrsPicture *direct       = path_fixture_render(plain, &options);
     for (unsigned y = 4; y < 60; y++)
         for (unsigned x = 4; x < 60; x++) {
             const float *a = &preview->color[4 * (64 * y + x)],
@@ -368,29 +368,29 @@ static double most_different(const PathStage *plain)
 static void unlayered_previews_lose_nothing(void **state)
 {
     (void)state;
-    PathStage plain = path_stage_open(unlayered);
-    size_t    wrong = 0;
+    PathFixture plain = path_fixture_open(unlayered);
+    size_t      wrong = 0;
     for (int i = 0; i < 16; i++) {
         const double rough = i / 4 / 3.0, metal = i % 4 / 3.0;
         char         name[100];
         snprintf(name, sizeof name, "preview of metal %.2f, roughness %.2f", metal, rough);
-        path_stage_set(&plain, "rough", rough);
-        path_stage_set(&plain, "metal", metal);
-        Estimate white = path_stage_estimate(&plain, PREVIEW_OPTIONS, everywhere, 1);
+        path_fixture_set(&plain, "rough", rough);
+        path_fixture_set(&plain, "metal", metal);
+        Estimate white = path_fixture_estimate(&plain, PREVIEW_OPTIONS, everywhere, 1);
         wrong += !must_be_near(white, 1, 0.001, name);
         if (i < 4)
             continue; /* a lamp in a mirror is a point */
-        path_stage_set(&plain, "day", 0);
-        path_stage_set(&plain, "bright", IRRADIANCE);
-        path_stage_set_all(&plain, "shade", 0.9, 0.5, 0.2);
+        path_fixture_set(&plain, "day", 0);
+        path_fixture_set(&plain, "bright", IRRADIANCE);
+        path_fixture_set_all(&plain, "shade", 0.9, 0.5, 0.2);
         const double most = most_different(&plain);
         print_message("# %s: %.3f of a pixel's light\n", name, most);
         wrong += !(most < 0.08);
-        path_stage_set_all(&plain, "shade", 1, 1, 1);
-        path_stage_set(&plain, "bright", 0);
-        path_stage_set(&plain, "day", 1);
+        path_fixture_set_all(&plain, "shade", 1, 1, 1);
+        path_fixture_set(&plain, "bright", 0);
+        path_fixture_set(&plain, "day", 1);
     }
-    path_stage_close(&plain);
+    path_fixture_close(&plain);
     assert_int_equal(wrong, 0);
 }
 

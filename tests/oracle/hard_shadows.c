@@ -77,7 +77,7 @@ static bool hard_is_right(const char *name, const KrsPicture *picture, const Sho
 
 static const struct HardCase {
     const char *name;
-    StageKind   stage;
+    FixtureKind fixture;
     Vec         light;
     double      lift; /* below 45 degrees it matters */
 } hard_cases[] = {
@@ -93,7 +93,7 @@ enum { HARD_CASES = sizeof hard_cases / sizeof hard_cases[0] };
 
 static Shot hard_shot(const struct HardCase *hard, int camera)
 {
-    return (Shot){hard->stage,
+    return (Shot){hard->fixture,
                   hard->light,
                   0,
                   0.04,

@@ -81,17 +81,17 @@ static void find_truth(const Setting *setting)
 
 /* ---- Pictures ---- */
 
-typedef struct Stage {
+typedef struct Fixture {
     Product       product;
     KrsRendering *rendering;
-} Stage;
+} Fixture;
 
-static Stage open_stage(const Room *room)
+static Fixture open_fixture(const Room *room)
 {
     static SceneText text;
     const char      *where = room->lamp ? "position" : "direction";
     const char      *wide  = room->lamp ? "radius" : "softness";
-    Stage            stage;
+    Fixture          fixture;
     text.length = 0;
     for (int i = 0; i < ROOM_NUMBERS && room->numbers[i].high > room->numbers[i].low; i++)
         scene_write(&text, "param %c = %g in [%.17g, %.17g];\n", 'a' + i,
@@ -106,22 +106,22 @@ static Stage open_stage(const Room *room)
                 "camera { eye: [%g, %g, %g], target: [%g, %g, %g], fov: %gdeg }\n%s",
                 where, wide, where, wide, room->eye.x, room->eye.y, room->eye.z, room->target.x,
                 room->target.y, room->target.z, room->fov, room->text);
-    stage.product = product_compile(text.bytes);
-    if (krs_rendering_new(renderer, stage.product.scene, &stage.rendering) != KRS_OK)
+    fixture.product = product_compile(text.bytes);
+    if (krs_rendering_new(renderer, fixture.product.scene, &fixture.rendering) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
-    return stage;
+    return fixture;
 }
 
-static void close_stage(Stage *stage)
+static void close_fixture(Fixture *fixture)
 {
-    krs_rendering_free(stage->rendering);
-    product_free(&stage->product);
+    krs_rendering_free(fixture->rendering);
+    product_free(&fixture->product);
 }
 
-static void set_numbers(Stage *stage, const Setting *setting)
+static void set_numbers(Fixture *fixture, const Setting *setting)
 {
     const Room *room  = setting->room;
-    KrsFrame   *frame = stage->product.frame;
+    KrsFrame   *frame = fixture->product.frame;
     Vec         at    = setting->light;
     for (int i = 0; i < ROOM_NUMBERS && room->numbers[i].high > room->numbers[i].low; i++)
         assert_int_equal(
@@ -130,7 +130,7 @@ static void set_numbers(Stage *stage, const Setting *setting)
     assert_int_equal(krs_frame_set(frame, "wide", &setting->wide, 1), KRS_OK);
 }
 
-static KrsPicture *take_picture(Stage *stage, KrsShadows shadows, uint32_t samples)
+static KrsPicture *take_picture(Fixture *fixture, KrsShadows shadows, uint32_t samples)
 {
     KrsRenderOptions options = {.width        = WIDTH,
                                 .height       = HEIGHT,
@@ -138,7 +138,7 @@ static KrsPicture *take_picture(Stage *stage, KrsShadows shadows, uint32_t sampl
                                 .shadows      = shadows,
                                 .no_occlusion = true};
     KrsPicture      *picture;
-    if (krs_render(stage->rendering, stage->product.frame, &options, &picture) != KRS_OK)
+    if (krs_render(fixture->rendering, fixture->product.frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     assert_int_equal(picture->stats.unresolved, 0);
     return picture;
@@ -245,22 +245,22 @@ static bool light_is_right(const char *name, const KrsPicture *one, const KrsPic
 /* How many settings of a room come out wrong. */
 static size_t count_wrong(const Room *room, KrsShadows shadows)
 {
-    Random random = {(uint64_t)(room - rooms) + 1};
-    Stage  stage  = open_stage(room);
-    size_t wrong  = 0;
+    Random  random  = {(uint64_t)(room - rooms) + 1};
+    Fixture fixture = open_fixture(room);
+    size_t  wrong   = 0;
     for (int i = 0; i < SETTINGS; i++) {
         char    name[80];
         Setting setting = setting_choose(room, &random);
-        set_numbers(&stage, &setting);
+        set_numbers(&fixture, &setting);
         find_truth(&setting);
-        KrsPicture *one  = take_picture(&stage, shadows, 1);
-        KrsPicture *four = take_picture(&stage, shadows, PLACES);
+        KrsPicture *one  = take_picture(&fixture, shadows, 1);
+        KrsPicture *four = take_picture(&fixture, shadows, PLACES);
         snprintf(name, sizeof name, "%s, %d", room->name, i);
         wrong += !light_is_right(name, one, four);
         krs_picture_free(one);
         krs_picture_free(four);
     }
-    close_stage(&stage);
+    close_fixture(&fixture);
     return wrong;
 }
 
@@ -291,13 +291,13 @@ static void faults_are_found(void **state)
     static const char *const names[]  = {"PLANTED darkness", "PLANTED contours", "PLANTED hole"};
     const Room              *room     = &rooms[3];
     Random                   random   = {4};
-    Stage                    stage    = open_stage(room);
+    Fixture                  fixture  = open_fixture(room);
     Setting                  setting  = setting_choose(room, &random);
-    set_numbers(&stage, &setting);
+    set_numbers(&fixture, &setting);
     find_truth(&setting);
     for (int i = 0; i < 3; i++) {
-        KrsPicture *one  = take_picture(&stage, SHADOWS, 1);
-        KrsPicture *four = take_picture(&stage, SHADOWS, 4);
+        KrsPicture *one  = take_picture(&fixture, SHADOWS, 1);
+        KrsPicture *four = take_picture(&fixture, SHADOWS, 4);
         assert_true(light_is_right("right", one, four));
         for (int k = 0; k < PIXELS; k++) {
             one->color[4 * k] *= (float)faults[i](k % WIDTH, k / WIDTH);
@@ -307,7 +307,7 @@ static void faults_are_found(void **state)
         krs_picture_free(one);
         krs_picture_free(four);
     }
-    close_stage(&stage);
+    close_fixture(&fixture);
 }
 
 int main(void)

@@ -7,23 +7,23 @@
 #include "tests/oracle/judge.h"
 #include "tests/oracle/product.h"
 
-enum { MOST_STAGES = 3, POINTS = 400 };
+enum { MOST_FIXTURES = 3, POINTS = 400 };
 
 /* A rectangle with round corners at a level; the rectangle may be a point. */
-typedef struct Stage {
+typedef struct Fixture {
     double wide, high, radius, shift, level;
-} Stage;
+} Fixture;
 
 typedef struct Loft {
-    Stage  stages[MOST_STAGES];
-    int    count;
-    double height;
+    Fixture fixtures[MOST_FIXTURES];
+    int     count;
+    double  height;
 } Loft;
 
-static double stage_distance(const Stage *stage, Vec p)
+static double fixture_distance(const Fixture *fixture, Vec p)
 {
-    double x = fabs(p.x - stage->shift) - stage->wide, y = fabs(p.y) - stage->high;
-    return hypot(fmax(x, 0), fmax(y, 0)) + fmin(fmax(x, y), 0) - stage->radius;
+    double x = fabs(p.x - fixture->shift) - fixture->wide, y = fabs(p.y) - fixture->high;
+    return hypot(fmax(x, 0), fmax(y, 0)) + fmin(fmax(x, y), 0) - fixture->radius;
 }
 
 static bool in_loft(const void *user, Vec p)
@@ -33,11 +33,11 @@ static bool in_loft(const void *user, Vec p)
     if (!(at >= 0 && at <= 1))
         return false;
     int i = 0;
-    while (i + 2 < loft->count && at > loft->stages[i + 1].level)
+    while (i + 2 < loft->count && at > loft->fixtures[i + 1].level)
         i++;
-    const Stage *from = &loft->stages[i], *to = from + 1;
-    double       t = (at - from->level) / (to->level - from->level);
-    return (1 - t) * stage_distance(from, p) + t * stage_distance(to, p) <= 0;
+    const Fixture *from = &loft->fixtures[i], *to = from + 1;
+    double         t = (at - from->level) / (to->level - from->level);
+    return (1 - t) * fixture_distance(from, p) + t * fixture_distance(to, p) <= 0;
 }
 
 static Product loft_product(const Loft *loft)
@@ -45,7 +45,7 @@ static Product loft_product(const Loft *loft)
     SceneText text = {.length = 0};
     scene_write(&text, "show loft([");
     for (int i = 0; i < loft->count; i++) {
-        const Stage *s = &loft->stages[i];
+        const Fixture *s = &loft->fixtures[i];
         if (s->wide > 0)
             scene_write(&text, "%srectangle([%.17g, %.17g]).offset(%.17g)", i ? ", " : "",
                         2 * s->wide, 2 * s->high, s->radius);
@@ -55,7 +55,7 @@ static Product loft_product(const Loft *loft)
     }
     scene_write(&text, "], %.17g, levels: [", loft->height);
     for (int i = 0; i < loft->count; i++)
-        scene_write(&text, "%s%.17g", i ? ", " : "", loft->stages[i].level);
+        scene_write(&text, "%s%.17g", i ? ", " : "", loft->fixtures[i].level);
     scene_write(&text, "]);");
     return product_compile(text.bytes);
 }
@@ -90,7 +90,7 @@ typedef struct Ring {
 } Ring;
 
 typedef struct FlatLoft {
-    Ring   rings[MOST_STAGES];
+    Ring   rings[MOST_FIXTURES];
     int    count;
     double height;
 } FlatLoft;
@@ -151,7 +151,7 @@ static Product flat_loft_product(const FlatLoft *loft)
 /* Corners of an ellipse somewhere, either way around. */
 static FlatLoft random_flat_loft(Random *random)
 {
-    static const double levels[2][MOST_STAGES] = {{0, 1, 1}, {0, 0.4, 1}};
+    static const double levels[2][MOST_FIXTURES] = {{0, 1, 1}, {0, 0.4, 1}};
     FlatLoft            loft = {.count = random_between(random, 0, 1) < 0.5 ? 2 : 3};
     loft.height              = random_between(random, 0.4, 1.6);
     for (int i = 0; i < loft.count; i++) {

@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
-#include "tests/oracle/path_stage.h"
+#include "tests/oracle/path_fixture.h"
 #include "tests/support/renderer.h"
 
 #define DEGREE (M_PI / 180)
@@ -71,21 +71,21 @@ static void balls_are_seen_in_glass(void **state)
     static const struct {
         double radius, index, loss;
     } balls[] = {{0.4, 1.5, 0}, {0.4, 1.5, 1}, {0.25, 2.4, 0}, {0.6, 1.33, 0.5}, {0.8, 1.5, 0}};
-    PathStage stage = path_stage_open(ball_in_glass);
-    size_t    wrong = 0;
+    PathFixture fixture = path_fixture_open(ball_in_glass);
+    size_t      wrong   = 0;
     for (size_t i = 0; i < sizeof balls / sizeof *balls; i++) {
         const double radius = balls[i].radius, index = balls[i].index, loss = balls[i].loss;
         char         name[100];
         snprintf(name, sizeof name, "a ball of radius %g in glass of %g, %g", radius, index, loss);
-        path_stage_set(&stage, "radius", radius);
-        path_stage_set(&stage, "index", index);
-        path_stage_set(&stage, "loss", loss);
-        Estimate found = path_stage_estimate(&stage, paths, everywhere, 6);
+        path_fixture_set(&fixture, "radius", radius);
+        path_fixture_set(&fixture, "index", index);
+        path_fixture_set(&fixture, "loss", loss);
+        Estimate found = path_fixture_estimate(&fixture, paths, everywhere, 6);
         wrong += !must_be_near(found, seen_of_ball(radius, index, loss), 0.004, name);
         if (radius * index < 1) /* else the outer ball is full of it */
             assert_false(is_near(found, seen_of_ball(1.02 * radius, index, loss), 0.004));
     }
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     assert_int_equal(wrong, 0);
 }
 
@@ -150,17 +150,17 @@ static double let_through(const Layer layers[LAYERS], double angle)
 static bool is_stack(const char *text, double overlap, const Layer layers[LAYERS], const char *what)
 {
     static const double angles[] = {0, 40 * DEGREE, 65 * DEGREE};
-    PathStage           stage    = path_stage_open(text);
+    PathFixture         fixture  = path_fixture_open(text);
     size_t              wrong    = 0;
-    path_stage_set(&stage, "overlap", overlap);
+    path_fixture_set(&fixture, "overlap", overlap);
     for (size_t k = 0; k < sizeof angles / sizeof *angles; k++) {
         char name[120];
         snprintf(name, sizeof name, "%s at %.0f degrees", what, angles[k] / DEGREE);
-        path_stage_set(&stage, "angle", angles[k]);
-        Estimate found = path_stage_estimate(&stage, paths, everywhere, 6);
+        path_fixture_set(&fixture, "angle", angles[k]);
+        Estimate found = path_fixture_estimate(&fixture, paths, everywhere, 6);
         wrong += !must_be_near(found, let_through(layers, angles[k]), 0.004, name);
     }
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     return wrong == 0;
 }
 
@@ -214,7 +214,7 @@ static void hollows_are_empty(void **state)
 static void solids_touch_glass(void **state)
 {
     (void)state;
-    PathStage stage = path_stage_open(
+    PathFixture fixture = path_fixture_open(
         STACK "param depth = 0 in [0, 1];\n"
               "material ember { color: black, specular: 0, emission: [1, 1, 1] }\n"
               "show layer(0, 1).paint(glass); show layer(1 - depth, 2).paint(ember);\n");
@@ -223,14 +223,14 @@ static void solids_touch_glass(void **state)
         const double depth = 0.2 * i, angle = 0.3 * i, sine = sin(angle);
         char         name[100];
         snprintf(name, sizeof name, "a board %g deep in glass", depth);
-        path_stage_set(&stage, "angle", angle);
-        path_stage_set(&stage, "depth", depth);
-        Estimate found  = path_stage_estimate(&stage, paths, everywhere, 6);
+        path_fixture_set(&fixture, "angle", angle);
+        path_fixture_set(&fixture, "depth", depth);
+        Estimate found  = path_fixture_estimate(&fixture, paths, everywhere, 6);
         double   cosine = sqrt(1 - sine * sine / (1.6 * 1.6));
         double   right  = (1 - fresnel(sine, 1.6)) * exp(-0.5 * (1 - depth) / cosine);
         wrong += !must_be_near(found, right, 0.004, name);
     }
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     assert_int_equal(wrong, 0);
 }
 
@@ -241,7 +241,7 @@ static void solids_touch_glass(void **state)
 static void cameras_look_out_of_glass(void **state)
 {
     (void)state;
-    PathStage stage = path_stage_open(
+    PathFixture fixture = path_fixture_open(
         "param angle = 0 in [0, 1.5];\n"
         "camera { eye: [0, 0, 0], target: [sin(angle), cos(angle), 0], up: [0, 0, 1],\n"
         "         projection: \"orthographic\", height: 0.2 }\n"
@@ -256,12 +256,12 @@ static void cameras_look_out_of_glass(void **state)
         const double back = fresnel(sin(angle), 1 / 1.5);
         char         name[100];
         snprintf(name, sizeof name, "out of glass at %g", angle);
-        path_stage_set(&stage, "angle", angle);
-        Estimate found = path_stage_estimate(&stage, paths, everywhere, 6);
+        path_fixture_set(&fixture, "angle", angle);
+        Estimate found = path_fixture_estimate(&fixture, paths, everywhere, 6);
         double   right = (1 - back) * sqrt(kept) / (1 - back * back * kept * kept);
         wrong += !must_be_near(found, right, 0.004, name);
     }
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     assert_int_equal(wrong, 0);
 }
 
@@ -278,15 +278,15 @@ static const char below_a_pane[] =
     "show plane([0, 1, 0], 0);\n"
     "show box([60, 0.5, 60]).move([beside, 3, 0]).paint(glass);\n";
 
-static double look_below_pane(PathStage *stage, double beside)
+static double look_below_pane(PathFixture *fixture, double beside)
 {
     KrsRenderOptions preview = {.width      = 32,
                                 .height     = 32,
                                 .samples    = 1,
                                 .planes     = KRS_PLANE_COLOR,
                                 .integrator = KRS_INTEGRATOR_PREVIEW};
-    path_stage_set(stage, "beside", beside);
-    KrsPicture *picture = path_stage_render(stage, &preview);
+    path_fixture_set(fixture, "beside", beside);
+    KrsPicture *picture = path_fixture_render(fixture, &preview);
     double      mean    = mean_of_region(picture, everywhere, 1);
     krs_picture_free(picture);
     return mean;
@@ -295,20 +295,20 @@ static double look_below_pane(PathStage *stage, double beside)
 static void previews_light_through_glass(void **state)
 {
     (void)state;
-    PathStage stage = path_stage_open(below_a_pane);
-    size_t    wrong = 0;
+    PathFixture fixture = path_fixture_open(below_a_pane);
+    size_t      wrong   = 0;
     for (int i = 0; i < 3; i++) {
         const double angle = 0.4 * i, head_on = (1.5 - 1) / (1.5 + 1);
         const double kept = 0.8 * pow(1 - head_on * head_on, 2) * exp(-0.7 * 0.5 / cos(angle));
-        path_stage_set(&stage, "angle", angle);
-        double found = look_below_pane(&stage, 0) / look_below_pane(&stage, 100);
+        path_fixture_set(&fixture, "angle", angle);
+        double found = look_below_pane(&fixture, 0) / look_below_pane(&fixture, 100);
         if (fabs(found - kept) > 0.003 * kept) {
             print_message("# light at %g through glass: %.5f instead of %.5f\n", angle, found,
                           kept);
             wrong++;
         }
     }
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     assert_int_equal(wrong, 0);
 }
 

@@ -18,7 +18,7 @@
 #include "compiler/passes/compile.h"
 #include "tests/oracle/exact.h"
 #include "tests/oracle/montecarlo.h"
-#include "tests/oracle/path_stage.h"
+#include "tests/oracle/path_fixture.h"
 #include "tests/oracle/product.h"
 #include "tests/support/renderer.h"
 
@@ -501,19 +501,19 @@ static Wrong judge_form(const KrsPicture *picture, const Form *form, const doubl
 }
 
 /* A picture of a random member of a form; the grey of what occludes. */
-static bool form_is_right(PathStage *stage, const Form *form, uint32_t width, double back,
+static bool form_is_right(PathFixture *fixture, const Form *form, uint32_t width, double back,
                           Random *random)
 {
     static const char *const names[] = {"a", "b", "c"};
     double                   numbers[3], shade = back == 1 ? 1 : random_between(random, 0.1, 1);
     for (int k = 0; k < 3; k++) {
         numbers[k] = random_between(random, form->numbers[k].low, form->numbers[k].high);
-        path_stage_set(stage, names[k], numbers[k]);
+        path_fixture_set(fixture, names[k], numbers[k]);
     }
-    path_stage_set(stage, "shade", shade);
-    path_stage_set(stage, "back", back);
+    path_fixture_set(fixture, "shade", shade);
+    path_fixture_set(fixture, "back", back);
     KrsRenderOptions options = {.width = width, .height = width * 3 / 4, .no_filter = true};
-    KrsPicture      *picture = path_stage_render(stage, &options);
+    KrsPicture      *picture = path_fixture_render(fixture, &options);
     Wrong            wrong   = judge_form(picture, form, numbers, shade, back);
     krs_picture_free(picture);
     bool right = fabs(wrong.bias) < MOST_BIAS && wrong.spread < MOST_SPREAD;
@@ -533,10 +533,10 @@ static void light_is_that_of_closed_forms(void **state)
     Random random = {7};
     size_t wrong  = 0;
     for (int i = 0; i < FORMS; i++) {
-        PathStage stage = path_stage_open(forms[i].text);
+        PathFixture fixture = path_fixture_open(forms[i].text);
         for (size_t k = 0; k < sizeof views / sizeof *views; k++)
-            wrong += !form_is_right(&stage, &forms[i], views[k].width, views[k].back, &random);
-        path_stage_close(&stage);
+            wrong += !form_is_right(&fixture, &forms[i], views[k].width, views[k].back, &random);
+        path_fixture_close(&fixture);
     }
     assert_int_equal(wrong, 0);
 }

@@ -338,31 +338,31 @@ static void broken_clearances_are_found(void **state)
 
 enum { DEVICE_POINTS = 1024 };
 
-typedef struct Stage {
+typedef struct Fixture {
     KrsRenderer *renderer;
     KrsScene    *scene;
     float        points[DEVICE_POINTS][3], found[DEVICE_POINTS];
-} Stage;
+} Fixture;
 
-static void sample_figure(Stage *stage, Bench *bench, OutlineShape *shape)
+static void sample_figure(Fixture *fixture, Bench *bench, OutlineShape *shape)
 {
     static const char text[] = "show sphere(1);";
     KrsFrame         *frame;
     KrsRendering     *rendering;
     bool              is_new;
-    assert_int_equal(krs_compile_text(text, strlen(text), "outline.krs", NULL, &stage->scene),
+    assert_int_equal(krs_compile_text(text, strlen(text), "outline.krs", NULL, &fixture->scene),
                      KRS_OK);
-    Graph     *graph = (Graph *)(uintptr_t)stage->scene->graph;
+    Graph     *graph = (Graph *)(uintptr_t)fixture->scene->graph;
     Node       root  = outline_distance(graph, shape, 0, graph_leaf(graph, OP_POINT), &is_new,
                                         &bench->arena);
     TableSizes sizes = tables_measure(graph->instances, NULL);
-    stage->scene->program.table_rows                      = sizes.rows;
-    stage->scene->program.table_cells                     = sizes.cells;
-    surface_roots(&stage->scene->roots, 0)[ROOT_DISTANCE] = root;
-    assert_int_equal(krs_frame_new(stage->scene, &frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(stage->renderer, stage->scene, &rendering), KRS_OK);
-    assert_int_equal(krs_sample(rendering, frame, (const float(*)[3])stage->points, DEVICE_POINTS,
-                                stage->found, NULL),
+    fixture->scene->program.table_rows                      = sizes.rows;
+    fixture->scene->program.table_cells                     = sizes.cells;
+    surface_roots(&fixture->scene->roots, 0)[ROOT_DISTANCE] = root;
+    assert_int_equal(krs_frame_new(fixture->scene, &frame), KRS_OK);
+    assert_int_equal(krs_rendering_new(fixture->renderer, fixture->scene, &rendering), KRS_OK);
+    assert_int_equal(krs_sample(rendering, frame, (const float(*)[3])fixture->points, DEVICE_POINTS,
+                                fixture->found, NULL),
                      KRS_OK);
     krs_rendering_free(rendering);
     krs_frame_free(frame);
@@ -372,28 +372,28 @@ static void sample_figure(Stage *stage, Bench *bench, OutlineShape *shape)
 static void kernels(void **state)
 {
     static Truth       truth;
-    static Stage       stage;
+    static Fixture     fixture;
     static const int   shown[] = {2, 6, 9, 10, 11};
     Bench             *bench   = *state;
     KrsRendererOptions options = {.device = tested_device()};
-    assert_int_equal(krs_renderer_new(&options, &stage.renderer), KRS_OK);
+    assert_int_equal(krs_renderer_new(&options, &fixture.renderer), KRS_OK);
     for (int f = 0; f < 5; f++) {
         const Figure *figure = &figures[shown[f]];
         OutlineShape *shape  = make_figure(bench, figure, &truth);
         Judge         judge  = {0};
         for (int i = 0; i < DEVICE_POINTS; i++)
             for (int k = 0; k < 3; k++)
-                stage.points[i][k] = k < 2 ? (float)random_between(&bench->random, -1.3, 1.3) : 0;
-        sample_figure(&stage, bench, shape);
+                fixture.points[i][k] = k < 2 ? (float)random_between(&bench->random, -1.3, 1.3) : 0;
+        sample_figure(&fixture, bench, shape);
         for (int i = 0; i < DEVICE_POINTS; i++) {
-            double p[2]   = {stage.points[i][0], stage.points[i][1]};
+            double p[2]   = {fixture.points[i][0], fixture.points[i][1]};
             double wanted = true_distance(&truth, p);
-            judge_distance(&judge, stage.found[i], wanted, tolerance_of(figure) + 5e-6, false);
+            judge_distance(&judge, fixture.found[i], wanted, tolerance_of(figure) + 5e-6, false);
         }
         assert_right(&judge, figure->name);
-        krs_scene_free(stage.scene);
+        krs_scene_free(fixture.scene);
     }
-    krs_renderer_free(stage.renderer);
+    krs_renderer_free(fixture.renderer);
 }
 
 int main(void)

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
-#include "tests/oracle/path_stage.h"
+#include "tests/oracle/path_fixture.h"
 #include "tests/support/renderer.h"
 
 #define DEGREE (M_PI / 180)
@@ -59,12 +59,12 @@ static double let_through(double angle, double index, double loss)
     return (1 - mirrored) * (1 - mirrored) * kept / (1 - mirrored * mirrored * kept * kept);
 }
 
-static Estimate look_through(PathStage *stage, double angle, double index, double loss)
+static Estimate look_through(PathFixture *fixture, double angle, double index, double loss)
 {
-    path_stage_set(stage, "angle", angle);
-    path_stage_set(stage, "index", index);
-    path_stage_set(stage, "loss", loss);
-    return path_stage_estimate(stage, through, everywhere, 6);
+    path_fixture_set(fixture, "angle", angle);
+    path_fixture_set(fixture, "index", index);
+    path_fixture_set(fixture, "loss", loss);
+    return path_fixture_estimate(fixture, through, everywhere, 6);
 }
 
 /* What refracts less counts as this. */
@@ -78,14 +78,14 @@ static void slabs_let_light_through(void **state)
     (void)state;
     static const struct {
         double index, loss;
-    } slabs[]       = {{LEAST_INDEX, 0},   {1.5, 0},         {2.4, 0},
-                       {LEAST_INDEX, 0.7}, {LEAST_INDEX, 3}, {1.5, 1.5}};
-    PathStage stage = path_stage_open(slab);
-    size_t    wrong = 0;
+    } slabs[]           = {{LEAST_INDEX, 0},   {1.5, 0},         {2.4, 0},
+                           {LEAST_INDEX, 0.7}, {LEAST_INDEX, 3}, {1.5, 1.5}};
+    PathFixture fixture = path_fixture_open(slab);
+    size_t      wrong   = 0;
     for (size_t i = 0; i < sizeof slabs / sizeof *slabs; i++)
         for (size_t k = 0; k < ANGLES; k++) {
             char     name[100];
-            Estimate found = look_through(&stage, angles[k], slabs[i].index, slabs[i].loss);
+            Estimate found = look_through(&fixture, angles[k], slabs[i].index, slabs[i].loss);
             double   right = let_through(angles[k], slabs[i].index, slabs[i].loss);
             snprintf(name, sizeof name, "at %.0f degrees, index %g, absorption %g",
                      angles[k] / DEGREE, slabs[i].index, slabs[i].loss);
@@ -93,7 +93,7 @@ static void slabs_let_light_through(void **state)
             assert_false(is_near(
                 found, let_through(angles[k], slabs[i].index + 0.1, slabs[i].loss + 0.1), 0.002));
         }
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     assert_int_equal(wrong, 0);
 }
 
@@ -117,21 +117,21 @@ static double seen_of_board(double angle, double index, double edge)
 static void slabs_displace_what_is_behind(void **state)
 {
     (void)state;
-    PathStage stage = path_stage_open(slab);
-    size_t    wrong = 0;
-    path_stage_set(&stage, "day", 0);
+    PathFixture fixture = path_fixture_open(slab);
+    size_t      wrong   = 0;
+    path_fixture_set(&fixture, "day", 0);
     for (size_t k = 0; k < ANGLES; k++) {
         double edge = BOARD * tan(angles[k]) - 0.2;
         char   name[100];
-        path_stage_set(&stage, "edge", edge);
-        Estimate found = look_through(&stage, angles[k], 1.5, 0);
+        path_fixture_set(&fixture, "edge", edge);
+        Estimate found = look_through(&fixture, angles[k], 1.5, 0);
         double   right = seen_of_board(angles[k], 1.5, edge);
         snprintf(name, sizeof name, "an edge at %.0f degrees", angles[k] / DEGREE);
         wrong += !must_be_near(found, right, 0.004, name);
         if (k > 0) /* a ray that meets the slab head on is not bent */
             assert_false(is_near(found, seen_of_board(angles[k], 1.3, edge), 0.004));
     }
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     assert_int_equal(wrong, 0);
 }
 
@@ -152,17 +152,17 @@ static const char water[] =
 static void water_mirrors_the_sky(void **state)
 {
     (void)state;
-    PathStage stage = path_stage_open(water);
-    size_t    wrong = 0;
+    PathFixture fixture = path_fixture_open(water);
+    size_t      wrong   = 0;
     for (size_t k = 0; k < ANGLES; k++) {
         double beyond;
         char   name[100];
         snprintf(name, sizeof name, "water at %.0f degrees", angles[k] / DEGREE);
-        path_stage_set(&stage, "angle", angles[k]);
-        Estimate found = path_stage_estimate(&stage, through, everywhere, 6);
+        path_fixture_set(&fixture, "angle", angles[k]);
+        Estimate found = path_fixture_estimate(&fixture, through, everywhere, 6);
         wrong += !must_be_near(found, fresnel(angles[k], 1.33, &beyond), 0.002, name);
     }
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     assert_int_equal(wrong, 0);
 }
 
@@ -195,9 +195,9 @@ static const KrsRenderOptions onto_floor = {.width      = 32,
                                             .planes     = KRS_PLANE_COLOR,
                                             .integrator = KRS_INTEGRATOR_DIRECT};
 
-static Estimate look_at_floor(const PathStage *stage)
+static Estimate look_at_floor(const PathFixture *fixture)
 {
-    return path_stage_estimate(stage, onto_floor, everywhere, 6);
+    return path_fixture_estimate(fixture, onto_floor, everywhere, 6);
 }
 
 /* Whether that is what is expected, but for a part of it; a tenth more would not be. */
@@ -208,144 +208,144 @@ static bool is_right(Estimate found, double expected, double part, const char *w
     return must_be_near(found, expected, part, what);
 }
 
-static void set_direction(PathStage *stage, const char *name, double angle, double length)
+static void set_direction(PathFixture *fixture, const char *name, double angle, double length)
 {
-    path_stage_set_all(stage, name, -length * sin(angle), length * cos(angle), 0);
+    path_fixture_set_all(fixture, name, -length * sin(angle), length * cos(angle), 0);
 }
 
 /* A body that is diffuse alone reflects color / pi of the irradiance.  Without a size there is no
    noise. */
-static bool sun_without_a_size(PathStage *stage, double angle)
+static bool sun_without_a_size(PathFixture *fixture, double angle)
 {
     char name[100];
     snprintf(name, sizeof name, "a sun at %.0f degrees", angle / DEGREE);
-    set_direction(stage, "toward", angle, 1);
-    path_stage_set(stage, "bright", 3);
-    path_stage_set_all(stage, "shade", 0.7, 0.7, 0.7);
-    Estimate found = look_at_floor(stage);
-    path_stage_set(stage, "bright", 0);
-    path_stage_set_all(stage, "shade", 1, 1, 1);
+    set_direction(fixture, "toward", angle, 1);
+    path_fixture_set(fixture, "bright", 3);
+    path_fixture_set_all(fixture, "shade", 0.7, 0.7, 0.7);
+    Estimate found = look_at_floor(fixture);
+    path_fixture_set(fixture, "bright", 0);
+    path_fixture_set_all(fixture, "shade", 1, 1, 1);
     return is_right(found, 0.7 * 3 * cos(angle) / M_PI, 1e-5, name);
 }
 
 /* The irradiance below a ball does not depend on its size: that of the whole light in its middle. */
-static bool lamp_with_a_radius(PathStage *stage, double angle, double radius)
+static bool lamp_with_a_radius(PathFixture *fixture, double angle, double radius)
 {
     const double distance = 2, irradiance = 5 * cos(angle) / (distance * distance);
     char         name[100];
     snprintf(name, sizeof name, "a lamp at %.0f degrees, radius %g", angle / DEGREE, radius);
-    set_direction(stage, "at", angle, distance);
-    path_stage_set(stage, "radius", radius);
-    path_stage_set(stage, "power", 5);
-    Estimate found = look_at_floor(stage);
-    path_stage_set(stage, "power", 0);
+    set_direction(fixture, "at", angle, distance);
+    path_fixture_set(fixture, "radius", radius);
+    path_fixture_set(fixture, "power", 5);
+    Estimate found = look_at_floor(fixture);
+    path_fixture_set(fixture, "power", 0);
     return is_right(found, irradiance / M_PI, 0.003, name);
 }
 
 /* A ball of radiance L sends pi L (r / d)^2 cos. */
-static bool ball_that_emits(PathStage *stage, double angle, double radius)
+static bool ball_that_emits(PathFixture *fixture, double angle, double radius)
 {
     const double distance = 2, share = radius * radius / (distance * distance);
     char         name[100];
     snprintf(name, sizeof name, "a ball at %.0f degrees, radius %g", angle / DEGREE, radius);
-    set_direction(stage, "ball", angle, distance);
-    path_stage_set(stage, "size", radius);
-    Estimate found = look_at_floor(stage);
-    set_direction(stage, "ball", M_PI, 9);
+    set_direction(fixture, "ball", angle, distance);
+    path_fixture_set(fixture, "size", radius);
+    Estimate found = look_at_floor(fixture);
+    set_direction(fixture, "ball", M_PI, 9);
     return is_right(found, 2 * share * cos(angle), 0.003, name);
 }
 
 /* A smooth metal shows the disc of the sun, whose radiance is E / (pi sin^2). */
-static bool mirrored_sun(PathStage *stage, double angle, double wide)
+static bool mirrored_sun(PathFixture *fixture, double angle, double wide)
 {
     char         name[100];
     const double sine = sin(0.5 * wide);
     snprintf(name, sizeof name, "a mirrored sun at %.0f degrees, %.0f wide", angle / DEGREE,
              wide / DEGREE);
-    path_stage_set(stage, "angle", angle);
-    path_stage_set(stage, "metal", 1);
-    path_stage_set(stage, "rough", 0);
-    set_direction(stage, "toward", angle, 1);
-    path_stage_set(stage, "wide", wide);
-    path_stage_set(stage, "bright", 3);
-    Estimate found = look_at_floor(stage);
-    path_stage_set(stage, "bright", 0);
-    path_stage_set(stage, "metal", 0);
-    path_stage_set(stage, "angle", 1.05);
+    path_fixture_set(fixture, "angle", angle);
+    path_fixture_set(fixture, "metal", 1);
+    path_fixture_set(fixture, "rough", 0);
+    set_direction(fixture, "toward", angle, 1);
+    path_fixture_set(fixture, "wide", wide);
+    path_fixture_set(fixture, "bright", 3);
+    Estimate found = look_at_floor(fixture);
+    path_fixture_set(fixture, "bright", 0);
+    path_fixture_set(fixture, "metal", 0);
+    path_fixture_set(fixture, "angle", 1.05);
     return is_right(found, 3 / (M_PI * sine * sine), 0.003, name);
 }
 
 /* A rectangle's radiance is its light over its area, also in a mirror. */
-static bool mirrored_rectangle(PathStage *stage, double angle)
+static bool mirrored_rectangle(PathFixture *fixture, double angle)
 {
     char name[100];
     snprintf(name, sizeof name, "a mirrored rectangle at %.0f degrees", angle / DEGREE);
-    path_stage_set(stage, "angle", angle);
-    path_stage_set(stage, "metal", 1);
-    path_stage_set(stage, "rough", 0);
-    set_direction(stage, "at", angle, 2);
-    path_stage_set(stage, "panel", 5);
-    Estimate found = look_at_floor(stage);
-    path_stage_set(stage, "panel", 0);
-    path_stage_set(stage, "metal", 0);
-    path_stage_set(stage, "angle", 1.05);
+    path_fixture_set(fixture, "angle", angle);
+    path_fixture_set(fixture, "metal", 1);
+    path_fixture_set(fixture, "rough", 0);
+    set_direction(fixture, "at", angle, 2);
+    path_fixture_set(fixture, "panel", 5);
+    Estimate found = look_at_floor(fixture);
+    path_fixture_set(fixture, "panel", 0);
+    path_fixture_set(fixture, "metal", 0);
+    path_fixture_set(fixture, "angle", 1.05);
     return is_right(found, 5 / (1.2 * 0.8), 0.003, name);
 }
 
 /* Several lights together are their sum; also one that the floor is within, as a ball of light
    around the lamp's middle. */
-static bool lights_together(PathStage *stage)
+static bool lights_together(PathFixture *fixture)
 {
     const double sun = 3 * cos(0.5), around = 5 / 0.25 / M_PI;
-    set_direction(stage, "toward", 0.5, 1);
-    path_stage_set(stage, "wide", 0.3);
-    set_direction(stage, "at", 0, 0.5);
-    path_stage_set(stage, "radius", 0.8);
-    path_stage_set(stage, "power", 5);
-    Estimate lamp = look_at_floor(stage);
-    path_stage_set(stage, "bright", 3);
-    Estimate both = look_at_floor(stage);
-    path_stage_set(stage, "power", 0);
-    path_stage_set(stage, "bright", 0);
+    set_direction(fixture, "toward", 0.5, 1);
+    path_fixture_set(fixture, "wide", 0.3);
+    set_direction(fixture, "at", 0, 0.5);
+    path_fixture_set(fixture, "radius", 0.8);
+    path_fixture_set(fixture, "power", 5);
+    Estimate lamp = look_at_floor(fixture);
+    path_fixture_set(fixture, "bright", 3);
+    Estimate both = look_at_floor(fixture);
+    path_fixture_set(fixture, "power", 0);
+    path_fixture_set(fixture, "bright", 0);
     return is_right(lamp, around, 0.01, "a lamp around the floor") &&
            is_right(both, around + sun / M_PI, 0.01, "a sun, and a lamp around the floor");
 }
 
 /* Fog hides what is behind it from the eye, and does not dim lights; whichever way a light is
    found. */
-static bool lights_in_fog(PathStage *stage)
+static bool lights_in_fog(PathFixture *fixture)
 {
     const double density = 0.1;
-    path_stage_set(stage, "haze", density);
-    path_stage_set(stage, "power", 5);
-    path_stage_set(stage, "radius", 1.2);
-    set_direction(stage, "at", 0.4, 2);
-    Estimate found = look_at_floor(stage);
-    path_stage_set(stage, "power", 0);
-    path_stage_set(stage, "haze", 0);
+    path_fixture_set(fixture, "haze", density);
+    path_fixture_set(fixture, "power", 5);
+    path_fixture_set(fixture, "radius", 1.2);
+    set_direction(fixture, "at", 0.4, 2);
+    Estimate found = look_at_floor(fixture);
+    path_fixture_set(fixture, "power", 0);
+    path_fixture_set(fixture, "haze", 0);
     return is_right(found, exp(-5 * density) * 5 * cos(0.4) / 4 / M_PI, 0.003, "a lamp in fog");
 }
 
 static void lights_light_a_floor(void **state)
 {
     (void)state;
-    PathStage stage = path_stage_open(lit_floor);
-    size_t    wrong = 0;
+    PathFixture fixture = path_fixture_open(lit_floor);
+    size_t      wrong   = 0;
     for (size_t k = 0; k < ANGLES; k++)
-        wrong += !sun_without_a_size(&stage, angles[k]);
+        wrong += !sun_without_a_size(&fixture, angles[k]);
     for (size_t k = 0; k < 3; k++) {
-        wrong += !lamp_with_a_radius(&stage, angles[k], 0);
-        wrong += !lamp_with_a_radius(&stage, angles[k], 0.2);
-        wrong += !lamp_with_a_radius(&stage, angles[k], 1.2);
-        wrong += !ball_that_emits(&stage, angles[k], 0.7);
-        wrong += !ball_that_emits(&stage, angles[k], 1.2);
-        wrong += !mirrored_sun(&stage, angles[k], 10 * DEGREE);
-        wrong += !mirrored_sun(&stage, angles[k], 40 * DEGREE);
-        wrong += !mirrored_rectangle(&stage, angles[k]);
+        wrong += !lamp_with_a_radius(&fixture, angles[k], 0);
+        wrong += !lamp_with_a_radius(&fixture, angles[k], 0.2);
+        wrong += !lamp_with_a_radius(&fixture, angles[k], 1.2);
+        wrong += !ball_that_emits(&fixture, angles[k], 0.7);
+        wrong += !ball_that_emits(&fixture, angles[k], 1.2);
+        wrong += !mirrored_sun(&fixture, angles[k], 10 * DEGREE);
+        wrong += !mirrored_sun(&fixture, angles[k], 40 * DEGREE);
+        wrong += !mirrored_rectangle(&fixture, angles[k]);
     }
-    wrong += !lights_together(&stage);
-    wrong += !lights_in_fog(&stage);
-    path_stage_close(&stage);
+    wrong += !lights_together(&fixture);
+    wrong += !lights_in_fog(&fixture);
+    path_fixture_close(&fixture);
     assert_int_equal(wrong, 0);
 }
 
@@ -366,7 +366,7 @@ static const char lit_ball[] =
     "show sphere(0.6).move([0, 0.6, 0]).paint(m);\n"
     "show plane([0, 1, 0], 0);\n";
 
-static Estimate look_at_ball(const PathStage *stage)
+static Estimate look_at_ball(const PathFixture *fixture)
 {
     const KrsRenderOptions options = {.width      = 64,
                                       .height     = 48,
@@ -374,7 +374,7 @@ static Estimate look_at_ball(const PathStage *stage)
                                       .bounces    = 3,
                                       .planes     = KRS_PLANE_COLOR,
                                       .integrator = KRS_INTEGRATOR_PATH};
-    return path_stage_estimate(stage, options, everywhere, 6);
+    return path_fixture_estimate(fixture, options, everywhere, 6);
 }
 
 /* A path chooses one light at each surface.  Together they must be their sum, as each is found by
@@ -384,20 +384,20 @@ static void lights_add_up(void **state)
     (void)state;
     static const char *const lights[] = {"sun", "lamp", "panel", "beam", "point"};
     enum { LIGHTS = sizeof lights / sizeof *lights };
-    PathStage stage = path_stage_open(lit_ball);
-    Estimate  sum   = {0}, all;
+    PathFixture fixture = path_fixture_open(lit_ball);
+    Estimate    sum     = {0}, all;
     for (int i = 0; i < LIGHTS; i++) {
-        path_stage_set(&stage, lights[i], 1);
-        Estimate own = look_at_ball(&stage);
-        path_stage_set(&stage, lights[i], 0);
+        path_fixture_set(&fixture, lights[i], 1);
+        Estimate own = look_at_ball(&fixture);
+        path_fixture_set(&fixture, lights[i], 0);
         sum.mean += own.mean;
         sum.error = hypot(sum.error, own.error);
     }
     for (int i = 0; i < LIGHTS; i++)
-        path_stage_set(&stage, lights[i], 1);
-    all       = look_at_ball(&stage);
+        path_fixture_set(&fixture, lights[i], 1);
+    all       = look_at_ball(&fixture);
     all.error = hypot(all.error, sum.error);
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     assert_true(must_be_near(all, sum.mean, 0.003, "all lights"));
     assert_false(is_near(all, 1.05 * sum.mean, 0.003));
 }

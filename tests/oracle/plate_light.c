@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "tests/oracle/path_stage.h"
+#include "tests/oracle/path_fixture.h"
 #include "tests/support/renderer.h"
 
 /* Both cameras look along -z.  The plate shows a floor, y = 0, a wall, z = 0, that ends at x = -1.5,
@@ -164,45 +164,45 @@ static void make_plate(int camera, bool with_walls, double light)
     }
 }
 
-static PathStage stage;
+static PathFixture fixture;
 
 static int open_ball(void **state)
 {
     if (renderer_open(state) != 0)
         return 1;
-    stage = path_stage_open(ball_text);
+    fixture = path_fixture_open(ball_text);
     return 0;
 }
 
 static int close_ball(void **state)
 {
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     return renderer_close(state);
 }
 
 static void set_ball(double place, double metal, double glow, double day, double sunny)
 {
     middle[2] = place;
-    path_stage_set(&stage, "place", place);
-    path_stage_set(&stage, "metal", metal);
-    path_stage_set(&stage, "glow", glow);
-    path_stage_set(&stage, "day", day);
-    path_stage_set(&stage, "sunny", sunny);
-    path_stage_set(&stage, "shade", glow > 0 ? 0 : 1);
+    path_fixture_set(&fixture, "place", place);
+    path_fixture_set(&fixture, "metal", metal);
+    path_fixture_set(&fixture, "glow", glow);
+    path_fixture_set(&fixture, "day", day);
+    path_fixture_set(&fixture, "sunny", sunny);
+    path_fixture_set(&fixture, "shade", glow > 0 ? 0 : 1);
 }
 
 static KrsPicture *render(int camera, KrsIntegrator integrator, KrsCatcher catcher,
                           uint32_t samples)
 {
-    return path_stage_render(&stage, &(KrsRenderOptions){.width      = ACROSS,
-                                                         .height     = DOWN,
-                                                         .camera     = (size_t)camera,
-                                                         .samples    = samples,
-                                                         .integrator = integrator,
-                                                         .depth      = depth,
-                                                         .plate      = (const float(*)[4])plate,
-                                                         .catcher    = catcher,
-                                                         .catcher_reflectance = 0.25});
+    return path_fixture_render(&fixture, &(KrsRenderOptions){.width      = ACROSS,
+                                                             .height     = DOWN,
+                                                             .camera     = (size_t)camera,
+                                                             .samples    = samples,
+                                                             .integrator = integrator,
+                                                             .depth      = depth,
+                                                             .plate      = (const float(*)[4])plate,
+                                                             .catcher    = catcher,
+                                                             .catcher_reflectance = 0.25});
 }
 
 /* What the ball mirrors at places of a pixel, by four corners around it; false where they see different
@@ -378,9 +378,9 @@ enum { PICTURES = 8, WHOLE_SAMPLES = 16 };
 
 static KrsPicture *render_part(const char *text, const KrsRenderOptions *options)
 {
-    PathStage   part    = path_stage_open(text);
-    KrsPicture *picture = path_stage_render(&part, options);
-    path_stage_close(&part);
+    PathFixture part    = path_fixture_open(text);
+    KrsPicture *picture = path_fixture_render(&part, options);
+    path_fixture_close(&part);
     return picture;
 }
 

@@ -23,32 +23,33 @@
 enum { WIDTH = 72, HEIGHT = 44, PIXELS = WIDTH * HEIGHT };
 enum { ASKED = 400 }; /* rays that the host casts, too */
 
-typedef struct Stage {
+typedef struct Fixture {
     KrsScene     *scene;
     KrsFrame     *frame;
     KrsRendering *rendering;
-} Stage;
+} Fixture;
 
-static void stage_prepare(Stage *stage, KrsStatus status)
+static void fixture_prepare(Fixture *fixture, KrsStatus status)
 {
     assert_int_equal(status, KRS_OK);
-    assert_int_equal(krs_frame_new(stage->scene, &stage->frame), KRS_OK);
-    if (krs_rendering_new(renderer, stage->scene, &stage->rendering) != KRS_OK)
+    assert_int_equal(krs_frame_new(fixture->scene, &fixture->frame), KRS_OK);
+    if (krs_rendering_new(renderer, fixture->scene, &fixture->rendering) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
 }
 
-static Stage stage_of_text(const char *text)
+static Fixture fixture_of_text(const char *text)
 {
-    Stage stage;
-    stage_prepare(&stage, krs_compile_text(text, strlen(text), "rays.krs", NULL, &stage.scene));
-    return stage;
+    Fixture fixture;
+    fixture_prepare(&fixture,
+                    krs_compile_text(text, strlen(text), "rays.krs", NULL, &fixture.scene));
+    return fixture;
 }
 
-static void stage_close(Stage *stage)
+static void fixture_close(Fixture *fixture)
 {
-    krs_rendering_free(stage->rendering);
-    krs_frame_free(stage->frame);
-    krs_scene_free(stage->scene);
+    krs_rendering_free(fixture->rendering);
+    krs_frame_free(fixture->frame);
+    krs_scene_free(fixture->scene);
 }
 
 /* ---- Lists ---- */
@@ -63,15 +64,16 @@ static KrsRays rays_of(const List *list, double spread)
                      .width = 1e-4, .spread = spread};
 }
 
-static KrsPicture *picture_of_rays(Stage *stage, const KrsRays *rays, const KrsRenderOptions *asked)
+static KrsPicture *picture_of_rays(Fixture *fixture, const KrsRays *rays,
+                                   const KrsRenderOptions *asked)
 {
     KrsRenderOptions options = asked ? *asked : (KrsRenderOptions){0};
     KrsFilm         *film;
     KrsPicture      *picture;
     options.width  = WIDTH;
     options.height = HEIGHT;
-    if (krs_film_new(stage->rendering, &options, &film) != KRS_OK ||
-        krs_film_add_rays(film, stage->frame, rays) != KRS_OK ||
+    if (krs_film_new(fixture->rendering, &options, &film) != KRS_OK ||
+        krs_film_add_rays(film, fixture->frame, rays) != KRS_OK ||
         krs_film_read(film, 0, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     krs_film_free(film);
@@ -96,11 +98,12 @@ static void draw_rays(List *list, const double low[3], const double high[3], Ran
 
 /* The part of the rays of which a picture says something else than the host: a hit where the
    distance is not next to nothing, or none where the host's ray goes well into something. */
-static double disagreement(Stage *stage, const KrsPicture *picture, const List *list, double spread)
+static double disagreement(Fixture *fixture, const KrsPicture *picture, const List *list,
+                           double spread)
 {
     KrsHit hits[ASKED];
     int    wrong = 0;
-    assert_int_equal(krs_raycast(stage->frame, (const double(*)[3])list->origins,
+    assert_int_equal(krs_raycast(fixture->frame, (const double(*)[3])list->origins,
                                  (const double(*)[3])list->directions, ASKED, HUGE_VAL, 1e-6, hits),
                      KRS_OK);
     for (int k = 0; k < ASKED; k++) {
@@ -140,27 +143,27 @@ static void examples_are_met(void **state)
     const double             spread = 2e-3;
     (void)state;
     for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++) {
-        double low[3], high[3];
-        Stage  stage;
-        stage_prepare(&stage, krs_compile_file(paths[i], NULL, &stage.scene));
-        box_of(stage.scene, low, high);
+        double  low[3], high[3];
+        Fixture fixture;
+        fixture_prepare(&fixture, krs_compile_file(paths[i], NULL, &fixture.scene));
+        box_of(fixture.scene, low, high);
         draw_rays(&list, low, high, &random);
         const KrsRays rays    = rays_of(&list, spread);
-        KrsPicture   *picture = picture_of_rays(&stage, &rays, NULL);
-        const double  wrong   = disagreement(&stage, picture, &list, spread);
+        KrsPicture   *picture = picture_of_rays(&fixture, &rays, NULL);
+        const double  wrong   = disagreement(&fixture, picture, &list, spread);
         /* The same question with rays that are turned by a hundredth must not agree. */
         for (int k = 0; k < PIXELS; k++)
             for (int n = 0; n < 3; n++)
                 turned.directions[k][n] = list.directions[k][n] +
                                           0.01 * list.directions[k][(n + 1) % 3];
         memcpy(turned.origins, list.origins, sizeof turned.origins);
-        const double planted = disagreement(&stage, picture, &turned, spread);
+        const double planted = disagreement(&fixture, picture, &turned, spread);
         print_message("# %s: %.4f of the rays disagree, %.2f if turned\n", paths[i], wrong,
                       planted);
         assert_true(wrong <= 0.01);
         assert_true(planted >= 0.1);
         krs_picture_free(picture);
-        stage_close(&stage);
+        fixture_close(&fixture);
     }
 }
 
@@ -186,16 +189,16 @@ static void spheres_have_a_closed_form(void **state)
     static List  list;
     const double centre[3] = {40000, -20000, 30000}, low[3] = {39998, -20002, 29998},
                  high[3] = {40002, -19998, 30002};
-    Stage  stage         = stage_of_text("show sphere(1).move([40000, -20000, 30000]);");
-    Random random        = {9};
-    int    inside = 0, outside = 0;
+    Fixture fixture      = fixture_of_text("show sphere(1).move([40000, -20000, 30000]);");
+    Random  random       = {9};
+    int     inside = 0, outside = 0;
     (void)state;
     draw_rays(&list, low, high, &random);
     for (int k = 0; k < PIXELS / 2; k++)
         for (int i = 0; i < 3; i++)
             list.origins[k][i] = centre[i] + random_between(&random, -0.5, 0.5);
     const KrsRays rays    = rays_of(&list, 1e-4);
-    KrsPicture   *picture = picture_of_rays(&stage, &rays, NULL);
+    KrsPicture   *picture = picture_of_rays(&fixture, &rays, NULL);
     for (int k = 0; k < PIXELS; k++) {
         const double *d = list.directions[k], length = hypot(hypot(d[0], d[1]), d[2]);
         const double  unit[3] = {d[0] / length, d[1] / length, d[2] / length};
@@ -215,7 +218,7 @@ static void spheres_have_a_closed_form(void **state)
     assert_int_equal(inside, PIXELS / 2);
     assert_in_range(outside, PIXELS / 50, PIXELS / 2);
     krs_picture_free(picture);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 /* ---- A camera as a list ---- */
@@ -279,11 +282,11 @@ static void cameras_are_lists(void **state)
         "show sphere(1).move([0, 1, 0]); show box([0.9, 0.9, 0.9]).move([2, 0.5, 0.2]);"
         "show plane([0, 1, 0], 0);";
     static List list;
-    Stage       stage = stage_of_text(text);
+    Fixture     fixture = fixture_of_text(text);
     KrsCamera   camera;
     double      spread;
     (void)state;
-    assert_int_equal(krs_frame_camera(stage.frame, 0, &camera), KRS_OK);
+    assert_int_equal(krs_frame_camera(fixture.frame, 0, &camera), KRS_OK);
     list_camera(&camera, &list, &spread);
     KrsRays rays                     = rays_of(&list, spread);
     rays.width                       = 0;
@@ -292,8 +295,8 @@ static void cameras_are_lists(void **state)
         {.width = WIDTH, .height = HEIGHT, .crop = {11, 7, 40, 30}},
         {.width = WIDTH, .height = HEIGHT, .schedule = KRS_SCHEDULE_QUEUE, .steps_at_once = 3},
     };
-    KrsPicture *seen, *whole = picture_of_rays(&stage, &rays, &choices[0]);
-    assert_int_equal(krs_render(stage.rendering, stage.frame, &choices[0], &seen), KRS_OK);
+    KrsPicture *seen, *whole = picture_of_rays(&fixture, &rays, &choices[0]);
+    assert_int_equal(krs_render(fixture.rendering, fixture.frame, &choices[0], &seen), KRS_OK);
     int same = 0;
     for (int k = 0; k < PIXELS; k++) {
         const double *d = list.directions[k]; /* 1 along the view */
@@ -310,8 +313,8 @@ static void cameras_are_lists(void **state)
             assert_true(whole->world_to_camera[i][k] == (float)(i == k));
 
     /* Crops and schedules change no bit. */
-    KrsPicture *part = picture_of_rays(&stage, &rays, &choices[1]),
-               *fine = picture_of_rays(&stage, &rays, &choices[2]);
+    KrsPicture *part = picture_of_rays(&fixture, &rays, &choices[1]),
+               *fine = picture_of_rays(&fixture, &rays, &choices[2]);
     for (uint32_t y = 0; y < 30; y++)
         assert_memory_equal(part->color + (size_t)4 * 40 * y,
                             whole->color + 4 * ((size_t)(7 + y) * WIDTH + 11),
@@ -321,7 +324,7 @@ static void cameras_are_lists(void **state)
     krs_picture_free(whole);
     krs_picture_free(part);
     krs_picture_free(fine);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 /* ---- What else is promised ---- */
@@ -330,15 +333,15 @@ static void rays_end_where_they_are_told(void **state)
 {
     static List  list;
     const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
-    Stage        stage  = stage_of_text("show sphere(1);");
-    Random       random = {2};
-    int          nearer = 0;
+    Fixture      fixture = fixture_of_text("show sphere(1);");
+    Random       random  = {2};
+    int          nearer  = 0;
     (void)state;
     draw_rays(&list, low, high, &random);
     KrsRays     rays = rays_of(&list, 1e-3);
-    KrsPicture *far  = picture_of_rays(&stage, &rays, NULL);
+    KrsPicture *far  = picture_of_rays(&fixture, &rays, NULL);
     rays.farthest    = 1.5;
-    KrsPicture *near = picture_of_rays(&stage, &rays, NULL);
+    KrsPicture *near = picture_of_rays(&fixture, &rays, NULL);
     for (int k = 0; k < PIXELS; k++) {
         if (fabsf(far->depth[k] - 1.5f) < 1e-3f)
             continue;
@@ -348,7 +351,7 @@ static void rays_end_where_they_are_told(void **state)
     assert_in_range(nearer, PIXELS / 20, PIXELS);
     krs_picture_free(far);
     krs_picture_free(near);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 /* A camera and lists by turns: each has its own kernels, and samples add up. */
@@ -356,22 +359,22 @@ static void lists_and_cameras_take_turns(void **state)
 {
     static List            list;
     const KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 2};
-    Stage       stage = stage_of_text("camera { eye: [0, 0.5, 4], fov: 0.6 } show sphere(1);");
+    Fixture     fixture = fixture_of_text("camera { eye: [0, 0.5, 4], fov: 0.6 } show sphere(1);");
     KrsCamera   camera;
     double      spread;
     KrsFilm    *film;
     KrsPicture *picture, *before, *after;
     (void)state;
-    assert_int_equal(krs_frame_camera(stage.frame, 0, &camera), KRS_OK);
+    assert_int_equal(krs_frame_camera(fixture.frame, 0, &camera), KRS_OK);
     list_camera(&camera, &list, &spread);
     const KrsRays rays = rays_of(&list, spread);
-    assert_int_equal(krs_render(stage.rendering, stage.frame, &options, &before), KRS_OK);
-    assert_int_equal(krs_film_new(stage.rendering, &options, &film), KRS_OK);
-    assert_int_equal(krs_film_add_rays(film, stage.frame, &rays), KRS_OK);
-    assert_int_equal(krs_film_add(film, stage.frame, NULL, 1), KRS_OK);
-    assert_int_equal(krs_film_add_rays(film, stage.frame, &rays), KRS_OK);
+    assert_int_equal(krs_render(fixture.rendering, fixture.frame, &options, &before), KRS_OK);
+    assert_int_equal(krs_film_new(fixture.rendering, &options, &film), KRS_OK);
+    assert_int_equal(krs_film_add_rays(film, fixture.frame, &rays), KRS_OK);
+    assert_int_equal(krs_film_add(film, fixture.frame, NULL, 1), KRS_OK);
+    assert_int_equal(krs_film_add_rays(film, fixture.frame, &rays), KRS_OK);
     assert_int_equal(krs_film_read(film, 0, &picture), KRS_OK);
-    assert_int_equal(krs_render(stage.rendering, stage.frame, &options, &after), KRS_OK);
+    assert_int_equal(krs_render(fixture.rendering, fixture.frame, &options, &after), KRS_OK);
     assert_memory_equal(before->color, after->color, PIXELS * 4 * sizeof(float));
     for (int k = 0; k < PIXELS; k++)
         assert_true(fabsf(3 * picture->color[4 * k + 3] - roundf(3 * picture->color[4 * k + 3])) <
@@ -380,7 +383,7 @@ static void lists_and_cameras_take_turns(void **state)
     krs_picture_free(after);
     krs_picture_free(picture);
     krs_film_free(film);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 static void wrong_rays_are_refused(void **state)
@@ -388,33 +391,33 @@ static void wrong_rays_are_refused(void **state)
     static List            list;
     const double           low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
     const KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT};
-    Stage                  stage   = stage_of_text("show sphere(1);");
+    Fixture                fixture = fixture_of_text("show sphere(1);");
     Random                 random  = {3};
     KrsFilm               *film;
     (void)state;
     draw_rays(&list, low, high, &random);
-    assert_int_equal(krs_film_new(stage.rendering, &options, &film), KRS_OK);
+    assert_int_equal(krs_film_new(fixture.rendering, &options, &film), KRS_OK);
     const struct {
         double *number, value;
     } wrong[]    = {{&list.origins[PIXELS - 1][2], NAN}, {&list.directions[7][0], INFINITY}};
     KrsRays rays = rays_of(&list, 0);
     rays.width   = 0;
-    assert_int_equal(krs_film_add_rays(film, stage.frame, &rays), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_add_rays(film, fixture.frame, &rays), KRS_BAD_ARGUMENT);
     rays.width = -1;
-    assert_int_equal(krs_film_add_rays(film, stage.frame, &rays), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_add_rays(film, fixture.frame, &rays), KRS_BAD_ARGUMENT);
     rays.width = 1e-3;
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         const double right = *wrong[i].number;
         *wrong[i].number   = wrong[i].value;
-        assert_int_equal(krs_film_add_rays(film, stage.frame, &rays), KRS_BAD_ARGUMENT);
+        assert_int_equal(krs_film_add_rays(film, fixture.frame, &rays), KRS_BAD_ARGUMENT);
         *wrong[i].number = right;
     }
     memset(list.directions[5], 0, sizeof list.directions[5]);
-    assert_int_equal(krs_film_add_rays(film, stage.frame, &rays), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_add_rays(film, fixture.frame, &rays), KRS_BAD_ARGUMENT);
     list.directions[5][0] = 1;
-    assert_int_equal(krs_film_add_rays(film, stage.frame, &rays), KRS_OK);
+    assert_int_equal(krs_film_add_rays(film, fixture.frame, &rays), KRS_OK);
     krs_film_free(film);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 int main(void)

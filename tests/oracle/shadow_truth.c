@@ -14,7 +14,7 @@
 
 Disc disc_from(const Shot *shot, Vec point)
 {
-    if (!stages[shot->stage].lamp)
+    if (!fixtures[shot->fixture].lamp)
         return (Disc){vec_unit(shot->light), 1, tan(shot->wide / 2), true};
     Vec apart = vec_sub(shot->light, point);
     return (Disc){vec_unit(apart), vec_length(apart), shot->wide, false};
@@ -31,11 +31,11 @@ static Chord chord_of(Line line, const Solid *solid, double size)
 
 bool is_hidden(const Shot *shot, Vec point, Vec direction, bool endless)
 {
-    const Stage *stage = &stages[shot->stage];
-    Line         line  = {point, vec_unit(direction)};
-    double       end   = endless ? HUGE_VAL : vec_length(direction);
-    for (int i = 0; i < stage->count; i++) {
-        Chord chord = chord_of(line, &stage->solids[i], shot->size);
+    const Fixture *fixture = &fixtures[shot->fixture];
+    Line           line    = {point, vec_unit(direction)};
+    double         end     = endless ? HUGE_VAL : vec_length(direction);
+    for (int i = 0; i < fixture->count; i++) {
+        Chord chord = chord_of(line, &fixture->solids[i], shot->size);
         if (i + 1 != shot->without && !chord_is_empty(chord) && chord.leave > 0 &&
             chord.enter < end)
             return true;
@@ -82,14 +82,14 @@ static bool are_known(Truth *truth, const Shot *shot, double lift)
         double lift;
         Shot   shot;
     } last;
-    const Stage *stage = &stages[shot->stage], *before = &stages[last.shot.stage];
-    Shot         alike = *shot;
-    alike.stage        = last.shot.stage;
-    bool known         = last.truth == truth && !(last.lift < lift) && !(last.lift > lift) &&
-                 memcmp(&alike, &last.shot, sizeof alike) == 0 && stage->lamp == before->lamp &&
-                 stage->count == before->count &&
-                 memcmp(&stage->target, &before->target, sizeof stage->target) == 0 &&
-                 memcmp(stage->solids, before->solids, sizeof stage->solids) == 0;
+    const Fixture *fixture = &fixtures[shot->fixture], *before = &fixtures[last.shot.fixture];
+    Shot           alike = *shot;
+    alike.fixture        = last.shot.fixture;
+    bool known           = last.truth == truth && !(last.lift < lift) && !(last.lift > lift) &&
+                 memcmp(&alike, &last.shot, sizeof alike) == 0 && fixture->lamp == before->lamp &&
+                 fixture->count == before->count &&
+                 memcmp(&fixture->target, &before->target, sizeof fixture->target) == 0 &&
+                 memcmp(fixture->solids, before->solids, sizeof fixture->solids) == 0;
     last.truth = truth;
     last.lift  = lift;
     last.shot  = *shot;

@@ -7,7 +7,7 @@
 #ifndef ORACLE_SHADOW_TRUTH_H
 #define ORACLE_SHADOW_TRUTH_H
 
-#include "tests/oracle/shadow_stage.h"
+#include "tests/oracle/shadow_fixture.h"
 
 /* The most that rays may start above even ground, in pixels: one, and what the permitted error
    makes. */

@@ -17,7 +17,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
-#include "tests/oracle/path_stage.h"
+#include "tests/oracle/path_fixture.h"
 #include "tests/support/folder.h"
 #include "tests/support/renderer.h"
 
@@ -127,10 +127,10 @@ static double irradiance(Map map, const double normal[3], double rotation)
 
 /* ---- Scenes ---- */
 
-static PathStage open_lit(const char *text, Map map)
+static PathFixture open_lit(const char *text, Map map)
 {
     write_map("sky.exr", map);
-    return path_stage_open(text);
+    return path_fixture_open(text);
 }
 
 /* A plane through the origin, with any normal, seen along it. */
@@ -164,14 +164,14 @@ static KrsRenderOptions options_of(KrsIntegrator integrator, uint32_t side, uint
 
 enum { MATERIALS = 5 };
 
-static Estimate look_at_ball(PathStage *stage, int material, KrsIntegrator integrator)
+static Estimate look_at_ball(PathFixture *fixture, int material, KrsIntegrator integrator)
 {
     static const double numbers[MATERIALS][3] = {
         {0.5, 0, 0}, {0.1, 1, 0}, {0.6, 1, 0}, {1, 0, 0}, {0.3, 0, 1}};
     static const char *const names[3] = {"rough", "metal", "glass"};
     for (int i = 0; i < 3; i++)
-        path_stage_set(stage, names[i], numbers[material][i]);
-    return path_stage_estimate(stage, options_of(integrator, 48, 4), everywhere, 6);
+        path_fixture_set(fixture, names[i], numbers[material][i]);
+    return path_fixture_estimate(fixture, options_of(integrator, 48, 4), everywhere, 6);
 }
 
 static void an_even_map_is_a_furnace(void **state)
@@ -180,10 +180,10 @@ static void an_even_map_is_a_furnace(void **state)
     Map    map;
     size_t wrong = 0;
     fill(map, 1);
-    PathStage stage = open_lit(lit_ball, map);
+    PathFixture fixture = open_lit(lit_ball, map);
     for (int i = 0; i < MATERIALS; i++)
-        wrong += !must_be_near(look_at_ball(&stage, i, KRS_INTEGRATOR_PATH), 1, 0.01, "furnace");
-    path_stage_close(&stage);
+        wrong += !must_be_near(look_at_ball(&fixture, i, KRS_INTEGRATOR_PATH), 1, 0.01, "furnace");
+    path_fixture_close(&fixture);
     assert_int_equal(wrong, 0);
 }
 
@@ -205,27 +205,27 @@ static void a_map_and_its_rest_are_a_furnace(void **state)
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++)
             rest[y][x] = 1 - map[y][x];
-    PathStage stage = open_lit(lit_ball, map);
+    PathFixture fixture = open_lit(lit_ball, map);
     for (int i = 0; i < MATERIALS; i++)
-        sums[i] = look_at_ball(&stage, i, KRS_INTEGRATOR_PATH);
-    path_stage_close(&stage);
-    stage = open_lit(lit_ball, rest);
+        sums[i] = look_at_ball(&fixture, i, KRS_INTEGRATOR_PATH);
+    path_fixture_close(&fixture);
+    fixture = open_lit(lit_ball, rest);
     for (int i = 0; i < MATERIALS; i++) {
-        Estimate other = look_at_ball(&stage, i, KRS_INTEGRATOR_PATH);
+        Estimate other = look_at_ball(&fixture, i, KRS_INTEGRATOR_PATH);
         sums[i].mean += other.mean;
         sums[i].error = hypot(sums[i].error, other.error);
         wrong += !must_be_near(sums[i], 1, 0.01, "a map and its rest");
     }
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     assert_int_equal(wrong, 0);
 }
 
 static const double normals[][3] = {{0, 1, 0}, {0.8, 0.6, 0}, {0.36, 0.48, -0.8}};
 
-static void look_along(PathStage *stage, const double normal[3])
+static void look_along(PathFixture *fixture, const double normal[3])
 {
-    path_stage_set_all(stage, "normal", normal[0], normal[1], normal[2]);
-    path_stage_set_all(stage, "from", normal[0] + 0.1, normal[1], normal[2] - 0.2);
+    path_fixture_set_all(fixture, "normal", normal[0], normal[1], normal[2]);
+    path_fixture_set_all(fixture, "from", normal[0] + 0.1, normal[1], normal[2] - 0.2);
 }
 
 /* White scatters 1 / pi of the irradiance. */
@@ -235,28 +235,28 @@ static void a_bright_texel_lights_a_plane(void **state)
     Map    map;
     size_t wrong = 0;
     fill(map, 0);
-    map[8][40]      = 500;
-    PathStage stage = open_lit(lit_plane, map);
+    map[8][40]          = 500;
+    PathFixture fixture = open_lit(lit_plane, map);
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 2; k++) {
             const double rotation = k * 1.2, right = irradiance(map, normals[i], rotation) / M_PI;
-            look_along(&stage, normals[i]);
-            path_stage_set(&stage, "turn", rotation);
-            Estimate found = path_stage_estimate(&stage, options_of(KRS_INTEGRATOR_DIRECT, 32, 16),
-                                                 everywhere, 6);
-            Estimate preview = path_stage_estimate(&stage, options_of(KRS_INTEGRATOR_PREVIEW, 8, 1),
-                                                   everywhere, 1);
+            look_along(&fixture, normals[i]);
+            path_fixture_set(&fixture, "turn", rotation);
+            Estimate found = path_fixture_estimate(
+                &fixture, options_of(KRS_INTEGRATOR_DIRECT, 32, 16), everywhere, 6);
+            Estimate preview = path_fixture_estimate(
+                &fixture, options_of(KRS_INTEGRATOR_PREVIEW, 8, 1), everywhere, 1);
             print_message("# %.4f +- %.4f of %.4f, preview %.4f\n", found.mean, found.error, right,
                           preview.mean);
             wrong += !must_be_near(found, right, 0.004, "a bright texel");
             wrong += fabs(preview.mean - right) > 0.1 * right + 0.01;
             assert_false(is_near(found, 1.05 * right, 0.004));
         }
-    path_stage_set(&stage, "strength", 0.25);
+    path_fixture_set(&fixture, "strength", 0.25);
     wrong += !must_be_near(
-        path_stage_estimate(&stage, options_of(KRS_INTEGRATOR_DIRECT, 32, 16), everywhere, 6),
+        path_fixture_estimate(&fixture, options_of(KRS_INTEGRATOR_DIRECT, 32, 16), everywhere, 6),
         0.25 * irradiance(map, normals[2], 1.2) / M_PI, 0.004, "a quarter of it");
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     assert_int_equal(wrong, 0);
 }
 
@@ -268,9 +268,9 @@ static void mirrors_show_the_map(void **state)
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++)
             map[y][x] = (float)(0.2 + 0.1 * (x % 5) + 0.05 * (y % 3));
-    PathStage stage = open_lit(lit_plane, map);
-    path_stage_set(&stage, "metal", 1);
-    path_stage_set(&stage, "rough", 0);
+    PathFixture fixture = open_lit(lit_plane, map);
+    path_fixture_set(&fixture, "metal", 1);
+    path_fixture_set(&fixture, "rough", 0);
     for (int i = 0; i < 3; i++) {
         const double *n    = normals[i];
         double        d[3] = {n[0] + 0.1, n[1], n[2] - 0.2}, length = 0, along = 0;
@@ -280,21 +280,21 @@ static void mirrors_show_the_map(void **state)
             along += d[c] / sqrt(length) * n[c];
         for (int c = 0; c < 3; c++)
             d[c] = 2 * along * n[c] - d[c] / sqrt(length);
-        look_along(&stage, n);
+        look_along(&fixture, n);
         for (int k = 0; k < 2; k++) {
             const KrsIntegrator by = k ? KRS_INTEGRATOR_PATH : KRS_INTEGRATOR_PREVIEW;
-            Estimate found = path_stage_estimate(&stage, options_of(by, 8, 1), everywhere, 2);
+            Estimate found = path_fixture_estimate(&fixture, options_of(by, 8, 1), everywhere, 2);
             assert_true(must_be_near(found, radiance(map, d, 0), 0.02, "a mirror"));
         }
     }
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
 }
 
 /* The standard deviation of pixels that are all lit alike. */
-static double noise_of(const PathStage *stage, uint32_t samples)
+static double noise_of(const PathFixture *fixture, uint32_t samples)
 {
     KrsRenderOptions options = options_of(KRS_INTEGRATOR_DIRECT, 64, samples);
-    KrsPicture      *picture = path_stage_render(stage, &options);
+    KrsPicture      *picture = path_fixture_render(fixture, &options);
     Estimate         pixels  = {0};
     for (size_t i = 0; i < 64 * 64; i++)
         estimate_add(&pixels, (double)picture->color[4 * i]);
@@ -309,10 +309,10 @@ static void more_samples_err_less(void **state)
     (void)state;
     Map map;
     fill(map, 0);
-    map[8][40]      = 500;
-    PathStage stage = open_lit(lit_plane, map);
-    double    few = noise_of(&stage, 4), many = noise_of(&stage, 64);
-    path_stage_close(&stage);
+    map[8][40]          = 500;
+    PathFixture fixture = open_lit(lit_plane, map);
+    double      few = noise_of(&fixture, 4), many = noise_of(&fixture, 64);
+    path_fixture_close(&fixture);
     print_message("# error of a pixel: %.4f by 4 samples, %.4f by 64\n", few, many);
     assert_true(few < 0.05);
     assert_true(many < few / 3.5);
@@ -322,16 +322,18 @@ static void more_samples_err_less(void **state)
 static void a_named_sky_is_all_light(void **state)
 {
     (void)state;
-    PathStage stage = path_stage_open("camera { eye: [0, 0, 4] }\n"
-                                      "sky { zenith: white, horizon: white, ground: white }\n"
-                                      "material m { color: white, specular: 0, roughness: 1 }\n"
-                                      "show sphere(1).paint(m);\n");
+    PathFixture fixture = path_fixture_open(
+        "camera { eye: [0, 0, 4] }\n"
+        "sky { zenith: white, horizon: white, ground: white }\n"
+        "material m { color: white, specular: 0, roughness: 1 }\n"
+        "show sphere(1).paint(m);\n");
     for (int k = 0; k < 2; k++) {
         const KrsIntegrator by = k ? KRS_INTEGRATOR_PATH : KRS_INTEGRATOR_DIRECT;
-        assert_true(must_be_near(path_stage_estimate(&stage, options_of(by, 32, 4), everywhere, 2),
-                                 1, 0.005, "a ball"));
+        assert_true(
+            must_be_near(path_fixture_estimate(&fixture, options_of(by, 32, 4), everywhere, 2), 1,
+                         0.005, "a ball"));
     }
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
 }
 
 static int begin(void **state) { return enter_folder(state) || renderer_open(state); }

@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
-#include "tests/oracle/path_stage.h"
+#include "tests/oracle/path_fixture.h"
 #include "tests/support/renderer.h"
 
 #define SKY                                                                              \
@@ -49,24 +49,24 @@ static KrsRenderOptions options_of(KrsIntegrator integrator, uint32_t side, uint
 }
 
 /* Only one part of the sky is bright. */
-static void light_up(PathStage *stage, int part)
+static void light_up(PathFixture *fixture, int part)
 {
     for (int i = 0; i < PARTS; i++)
-        path_stage_set(stage, parts[i], i == part);
+        path_fixture_set(fixture, parts[i], i == part);
 }
 
 /* Rows of the sky from the zenith down. */
 static void find_sky(int part, double rows[ROWS])
 {
-    PathStage        stage   = path_stage_open(panorama);
+    PathFixture      fixture = path_fixture_open(panorama);
     KrsRenderOptions options = options_of(KRS_INTEGRATOR_PREVIEW, ROWS, 1);
     options.width            = 8;
-    light_up(&stage, part);
-    KrsPicture *picture = path_stage_render(&stage, &options);
+    light_up(&fixture, part);
+    KrsPicture *picture = path_fixture_render(&fixture, &options);
     for (size_t y = 0; y < ROWS; y++)
         rows[y] = (double)picture->color[4 * (8 * y) + 1];
     krs_picture_free(picture);
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
 }
 
 /* The cosine to a normal that rises by `up`, where it is positive, over all directions of a height:
@@ -91,36 +91,36 @@ static double mean_around(const double rows[ROWS], double up)
     return sum / M_PI;
 }
 
-static void turn(PathStage *stage, double up)
+static void turn(PathFixture *fixture, double up)
 {
     const double level = sqrt(1 - up * up);
-    path_stage_set_all(stage, "normal", level, up, 0);
-    path_stage_set_all(stage, "from", level, up, 0.01);
+    path_fixture_set_all(fixture, "normal", level, up, 0);
+    path_fixture_set_all(fixture, "from", level, up, 0.01);
 }
 
 static void dull_planes_see_the_mean(void **state)
 {
     (void)state;
-    double    rows[ROWS], worst = 0;
-    PathStage stage = path_stage_open(lit_plane);
-    size_t    wrong = 0;
+    double      rows[ROWS], worst = 0;
+    PathFixture fixture = path_fixture_open(lit_plane);
+    size_t      wrong   = 0;
     for (int part = 0; part < PARTS; part++) {
         find_sky(part, rows);
-        light_up(&stage, part);
+        light_up(&fixture, part);
         for (int i = 0; i < RISES; i++) {
             const double right = mean_around(rows, rises[i]);
-            turn(&stage, rises[i]);
-            Estimate found = path_stage_estimate(&stage, options_of(KRS_INTEGRATOR_PREVIEW, 8, 1),
-                                                 everywhere, 1);
-            worst          = fmax(worst, fabs(found.mean - right));
+            turn(&fixture, rises[i]);
+            Estimate found = path_fixture_estimate(
+                &fixture, options_of(KRS_INTEGRATOR_PREVIEW, 8, 1), everywhere, 1);
+            worst = fmax(worst, fabs(found.mean - right));
             if (i % 3 == 0)
                 wrong += !must_be_near(
-                    path_stage_estimate(&stage, options_of(KRS_INTEGRATOR_DIRECT, 32, 16),
-                                        everywhere, 6),
+                    path_fixture_estimate(&fixture, options_of(KRS_INTEGRATOR_DIRECT, 32, 16),
+                                          everywhere, 6),
                     right, 0.005, "a path");
         }
     }
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     print_message("# means of the sky are off by %.5f\n", worst);
     assert_true(worst < 0.003);
     assert_int_equal(wrong, 0);
@@ -131,27 +131,27 @@ static void rough_metal_mirrors_what_paths_find(void **state)
 {
     (void)state;
     static const double roughs[] = {0.15, 0.3, 0.6};
-    PathStage           stage    = path_stage_open(lit_plane);
-    path_stage_set(&stage, "metal", 1);
+    PathFixture         fixture  = path_fixture_open(lit_plane);
+    path_fixture_set(&fixture, "metal", 1);
     for (size_t k = 0; k < sizeof roughs / sizeof *roughs; k++)
         for (int part = 0; part < PARTS; part += 2) {
             double squares = 0;
             int    count   = 0;
-            light_up(&stage, part);
-            path_stage_set(&stage, "rough", roughs[k]);
+            light_up(&fixture, part);
+            path_fixture_set(&fixture, "rough", roughs[k]);
             for (double up = -0.9; up < 1; up += 0.3, count++) {
-                turn(&stage, up);
-                Estimate right = path_stage_estimate(
-                    &stage, options_of(KRS_INTEGRATOR_DIRECT, 16, 16), everywhere, 2);
-                Estimate found = path_stage_estimate(
-                    &stage, options_of(KRS_INTEGRATOR_PREVIEW, 8, 1), everywhere, 1);
+                turn(&fixture, up);
+                Estimate right = path_fixture_estimate(
+                    &fixture, options_of(KRS_INTEGRATOR_DIRECT, 16, 16), everywhere, 2);
+                Estimate found = path_fixture_estimate(
+                    &fixture, options_of(KRS_INTEGRATOR_PREVIEW, 8, 1), everywhere, 1);
                 squares += pow(found.mean - right.mean, 2);
             }
             print_message("# roughness %.2f, %s: off by %.4f\n", roughs[k], parts[part],
                           sqrt(squares / count));
             assert_true(sqrt(squares / count) < 0.03);
         }
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
 }
 
 int main(void)

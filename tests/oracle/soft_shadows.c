@@ -152,15 +152,15 @@ static void soft_shadows_of_bounds_are_the_same(void **state)
 {
     (void)state;
     size_t wrong = 0;
-    for (int i = 0; i < 2 * (STAGES - BOUNDS); i++) {
-        const Lighting *lighting   = &lightings[i / (STAGES - BOUNDS)];
+    for (int i = 0; i < 2 * (FIXTURES - BOUNDS); i++) {
+        const Lighting *lighting   = &lightings[i / (FIXTURES - BOUNDS)];
         Shot            ball       = ball_shot(lighting, KRS_SHADOWS_SOFT, 1);
-        ball.stage                 = (StageKind)(BOUNDS + i % (STAGES - BOUNDS));
+        ball.fixture               = (FixtureKind)(BOUNDS + i % (FIXTURES - BOUNDS));
         ball.options.no_upsampling = false;
-        KrsPicture  *picture       = shoot(&ball);
-        const Stage *stage         = &stages[ball.stage];
-        print_message("# %s, %s / %g\n", lighting->name, stage->ball ? stage->ball : "distance",
-                      fmax(stage->slope, 1));
+        KrsPicture    *picture     = shoot(&ball);
+        const Fixture *fixture     = &fixtures[ball.fixture];
+        print_message("# %s, %s / %g\n", lighting->name, fixture->ball ? fixture->ball : "distance",
+                      fmax(fixture->slope, 1));
         wrong += !shared_is_right("ball", picture, &ball, share_by_rays);
         krs_picture_free(picture);
     }

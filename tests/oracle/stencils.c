@@ -36,31 +36,31 @@ static int stop(void **state)
     return 0;
 }
 
-typedef struct Stage {
+typedef struct Fixture {
     KrsScene     *scene;
     KrsFrame     *frame;
     KrsRendering *rendering;
-} Stage;
+} Fixture;
 
-static Stage stage_open(const char *text)
+static Fixture fixture_open(const char *text)
 {
-    Stage      stage;
+    Fixture    fixture;
     KrsOptions options = {.gradients = true};
-    if (krs_compile_text(text, strlen(text), "scene.krs", &options, &stage.scene) != KRS_OK)
+    if (krs_compile_text(text, strlen(text), "scene.krs", &options, &fixture.scene) != KRS_OK)
         fail_msg("does not compile: %s", text);
-    assert_int_equal(krs_frame_new(stage.scene, &stage.frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(renderer, stage.scene, &stage.rendering), KRS_OK);
-    return stage;
+    assert_int_equal(krs_frame_new(fixture.scene, &fixture.frame), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, fixture.scene, &fixture.rendering), KRS_OK);
+    return fixture;
 }
 
-static void stage_close(Stage *stage)
+static void fixture_close(Fixture *fixture)
 {
-    krs_rendering_free(stage->rendering);
-    krs_frame_free(stage->frame);
-    krs_scene_free(stage->scene);
+    krs_rendering_free(fixture->rendering);
+    krs_frame_free(fixture->frame);
+    krs_scene_free(fixture->scene);
 }
 
-static KrsPicture *shoot(Stage *stage, KrsNormals normals)
+static KrsPicture *shoot(Fixture *fixture, KrsNormals normals)
 {
     KrsPicture      *picture;
     KrsRenderOptions options = {.width     = WIDTH,
@@ -70,7 +70,7 @@ static KrsPicture *shoot(Stage *stage, KrsNormals normals)
                                 .planes = KRS_PLANE_NORMAL | KRS_PLANE_POSITION | KRS_PLANE_DEPTH |
                                           KRS_PLANE_IDS,
                                 .normals = normals};
-    if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
+    if (krs_render(fixture->rendering, fixture->frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     return picture;
 }
@@ -113,8 +113,8 @@ static void normal_of_barth(const double p[3], double n[3])
 
 static void agrees_with(const char *text, Closed *closed, double largest, double radius)
 {
-    Stage       stage   = stage_open(text);
-    KrsPicture *picture = shoot(&stage, KRS_NORMALS_ANALYTIC);
+    Fixture     fixture = fixture_open(text);
+    KrsPicture *picture = shoot(&fixture, KRS_NORMALS_ANALYTIC);
     size_t      seen    = 0;
     double      worst   = 0;
     for (size_t i = 0; i < PIXELS; i++) {
@@ -128,7 +128,7 @@ static void agrees_with(const char *text, Closed *closed, double largest, double
         seen++;
     }
     krs_picture_free(picture);
-    stage_close(&stage);
+    fixture_close(&fixture);
     if (seen < PIXELS / 10 || worst > largest)
         fail_msg("%zu pixels, worst %g: %s", seen, worst, text);
 }
@@ -166,14 +166,14 @@ static bool differences(KrsFrame *frame, const float at[3], double n[3])
 
 static void agrees_with_differences(const char *text)
 {
-    Stage       stage   = stage_open(text);
-    KrsPicture *picture = shoot(&stage, KRS_NORMALS_ANALYTIC);
+    Fixture     fixture = fixture_open(text);
+    KrsPicture *picture = shoot(&fixture, KRS_NORMALS_ANALYTIC);
     size_t      seen = 0, hit = 0, wrong = 0;
     double      worst = 0;
     for (size_t i = 0; i < PIXELS; i++) {
         double n[3];
         hit += !isinf(picture->depth[i]);
-        if (isinf(picture->depth[i]) || !differences(stage.frame, &picture->position[3 * i], n))
+        if (isinf(picture->depth[i]) || !differences(fixture.frame, &picture->position[3 * i], n))
             continue;
         double off = angle(&picture->normal[3 * i], n);
         worst      = fmax(worst, off);
@@ -181,7 +181,7 @@ static void agrees_with_differences(const char *text)
         seen++;
     }
     krs_picture_free(picture);
-    stage_close(&stage);
+    fixture_close(&fixture);
     if (getenv("KRS_TELL"))
         fprintf(stderr, "%zu hit, %zu told, %zu wrong, worst %g: %.60s\n", hit, seen, wrong, worst,
                 text);
@@ -267,9 +267,9 @@ static void stencils_keep_their_order(void **state)
 {
     (void)state;
     static const double curvature = 1 / 0.4;
-    Stage stage = stage_open("camera { eye: [1, 3, 3], fov: 40deg } show torus(1, 0.4);");
+    Fixture fixture = fixture_open("camera { eye: [1, 3, 3], fov: 40deg } show torus(1, 0.4);");
     for (KrsNormals normals = KRS_NORMALS_DEFAULT; normals < KRS_NORMALS_ANALYTIC; normals++) {
-        KrsPicture *picture = shoot(&stage, normals);
+        KrsPicture *picture = shoot(&fixture, normals);
         bool        first   = normals == KRS_NORMALS_FORWARD || normals == KRS_NORMALS_TETRAHEDRON;
         double      worst = 0, most = 0;
         size_t      seen = 0;
@@ -300,17 +300,17 @@ static void stencils_keep_their_order(void **state)
         /* What is of first order shows it. */
         assert_true(most > (first ? 5e-3 : 0));
     }
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 /* A component without derivatives has the normals of the octahedron, another its own. */
 static void components_without_derivatives_have_differences(void **state)
 {
     (void)state;
-    Stage       stage    = stage_open("camera { eye: [3, 2, 4] } show julia([-0.2, 0.6, 0.2, 0.2]);"
-                                               "show torus(1, 0.2).move([0, 1.2, 0]);");
-    KrsPicture *analytic = shoot(&stage, KRS_NORMALS_ANALYTIC);
-    KrsPicture *corners  = shoot(&stage, KRS_NORMALS_OCTAHEDRON);
+    Fixture fixture = fixture_open("camera { eye: [3, 2, 4] } show julia([-0.2, 0.6, 0.2, 0.2]);"
+                                   "show torus(1, 0.2).move([0, 1.2, 0]);");
+    KrsPicture *analytic = shoot(&fixture, KRS_NORMALS_ANALYTIC);
+    KrsPicture *corners  = shoot(&fixture, KRS_NORMALS_OCTAHEDRON);
     size_t      seen[2] = {0}, other[2] = {0};
     for (size_t i = 0; i < PIXELS; i++) {
         double n[3];
@@ -324,7 +324,7 @@ static void components_without_derivatives_have_differences(void **state)
     }
     krs_picture_free(analytic);
     krs_picture_free(corners);
-    stage_close(&stage);
+    fixture_close(&fixture);
     assert_true(seen[0] > PIXELS / 40 && seen[1] > PIXELS / 40);
     assert_true(other[0] * 100 < seen[0] && other[1] * 2 > seen[1]);
 }
@@ -333,19 +333,19 @@ static void analytic_normals_are_asked_for_in_time(void **state)
 {
     (void)state;
     const char      *text = "show sphere(1);";
-    Stage            stage;
+    Fixture          fixture;
     KrsPicture      *picture;
     KrsRenderOptions options = {.width = 16, .height = 16, .normals = KRS_NORMALS_ANALYTIC};
-    assert_int_equal(krs_compile_text(text, strlen(text), "s.krs", NULL, &stage.scene), KRS_OK);
-    assert_int_equal(krs_frame_new(stage.scene, &stage.frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(renderer, stage.scene, &stage.rendering), KRS_OK);
-    assert_int_equal(krs_render(stage.rendering, stage.frame, &options, &picture),
+    assert_int_equal(krs_compile_text(text, strlen(text), "s.krs", NULL, &fixture.scene), KRS_OK);
+    assert_int_equal(krs_frame_new(fixture.scene, &fixture.frame), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, fixture.scene, &fixture.rendering), KRS_OK);
+    assert_int_equal(krs_render(fixture.rendering, fixture.frame, &options, &picture),
                      KRS_BAD_ARGUMENT);
     assert_non_null(strstr(krs_renderer_message(renderer), "gradients"));
     options.normals = KRS_NORMALS_COUNT;
-    assert_int_equal(krs_render(stage.rendering, stage.frame, &options, &picture),
+    assert_int_equal(krs_render(fixture.rendering, fixture.frame, &options, &picture),
                      KRS_BAD_ARGUMENT);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 /* Pixels of a turned box that stands on a floor, and is cut off aslant, whose normal is that of no
@@ -376,7 +376,7 @@ static void pixels_on_edges_show_one_side(void **state)
 {
     (void)state;
     enum { ACROSS = 480, DOWN = 270, MOST = 12 };
-    Stage stage = stage_open(
+    Fixture fixture = fixture_open(
         "camera { eye: [49, 6, 17], target: [40, 1, 0], fov: 15deg }\n"
         "show plane([0, 1, 0], 0);\n"
         "show (box([4, 3, 4]).move([0, 1.5, 0]) & half_space([0, 1, 1], 2.8))\n"
@@ -384,7 +384,7 @@ static void pixels_on_edges_show_one_side(void **state)
     KrsPicture *picture = NULL;
     assert_int_equal(
         krs_render(
-            stage.rendering, stage.frame,
+            fixture.rendering, fixture.frame,
             &(KrsRenderOptions){.width = ACROSS, .height = DOWN, .normals = KRS_NORMALS_OCTAHEDRON},
             &picture),
         KRS_OK);
@@ -392,7 +392,7 @@ static void pixels_on_edges_show_one_side(void **state)
     print_message("# %d pixels on edges have a normal between two sides\n", between);
     assert_true(between <= MOST);
     krs_picture_free(picture);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 int main(void)

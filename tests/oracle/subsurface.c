@@ -16,7 +16,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
-#include "tests/oracle/path_stage.h"
+#include "tests/oracle/path_fixture.h"
 #include "tests/support/renderer.h"
 
 static double square(double x) { return x * x; }
@@ -122,19 +122,19 @@ static const char slab[] =
     "show box([400, 1, 400]).move([200 + hidden, 20, 0]).paint(black_body);\n"
     "show box([900, thick, 900]).move([0, -thick / 2, 0]).paint(wax);\n";
 
-static PathStage stage;
+static PathFixture fixture;
 
 static int open_slab(void **state)
 {
     if (renderer_open(state) != 0)
         return 1;
-    stage = path_stage_open(slab);
+    fixture = path_fixture_open(slab);
     return 0;
 }
 
 static int close_slab(void **state)
 {
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     return renderer_close(state);
 }
 
@@ -147,13 +147,13 @@ static Seen look(int pictures)
 {
     Seen seen = {.colors = {{0}}};
     for (int i = 0; i < pictures; i++) {
-        KrsPicture *picture = path_stage_render(
-            &stage, &(KrsRenderOptions){.width      = 32,
-                                        .height     = 32,
-                                        .samples    = 4,
-                                        .seed       = (uint64_t)i + 1,
-                                        .planes     = KRS_PLANE_COLOR,
-                                        .integrator = KRS_INTEGRATOR_DIRECT});
+        KrsPicture *picture = path_fixture_render(
+            &fixture, &(KrsRenderOptions){.width      = 32,
+                                          .height     = 32,
+                                          .samples    = 4,
+                                          .seed       = (uint64_t)i + 1,
+                                          .planes     = KRS_PLANE_COLOR,
+                                          .integrator = KRS_INTEGRATOR_DIRECT});
         for (int k = 0; k < 3; k++)
             estimate_add(&seen.colors[k], mean_of_region(picture, everywhere, k));
         krs_picture_free(picture);
@@ -176,8 +176,8 @@ static const double albedos[3] = {0.95, 0.8, 0.4}, radii[3] = {2, 1, 0.5};
 
 static void set_wax(void)
 {
-    path_stage_set_all(&stage, "shade", albedos[0], albedos[1], albedos[2]);
-    path_stage_set_all(&stage, "radius", radii[0], radii[1], radii[2]);
+    path_fixture_set_all(&fixture, "shade", albedos[0], albedos[1], albedos[2]);
+    path_fixture_set_all(&fixture, "radius", radii[0], radii[1], radii[2]);
 }
 
 /* The shadow's edge is moved, and with it the place beside it that is seen. */
@@ -191,7 +191,7 @@ static void light_spreads_below_a_shadow(void **state)
         const Spread form  = spread_of_profile(albedos[color]);
         for (int k = 0; k < PLACES; k++) {
             char name[100];
-            path_stage_set(&stage, "hidden", places[k] * radii[color]);
+            path_fixture_set(&fixture, "hidden", places[k] * radii[color]);
             Estimate found = times(look(4).colors[color], M_PI);
             snprintf(name, sizeof name, "color %d at %g mean free paths", color, places[k]);
             const double noise = sqrt(walks.at[k] * (1 - walks.at[k]) / WALKS);
@@ -205,7 +205,7 @@ static void light_spreads_below_a_shadow(void **state)
             }
         }
     }
-    path_stage_set(&stage, "hidden", 0);
+    path_fixture_set(&fixture, "hidden", 0);
     assert_int_equal(wrong, 0);
 }
 
@@ -214,10 +214,10 @@ static void a_shadow_is_told_from_one_that_is_sharper(void **state)
     (void)state;
     const Spread walks = spread_of_walks(0.8);
     set_wax();
-    path_stage_set_all(&stage, "radius", 2, 0.8, 0.5);
-    path_stage_set(&stage, "hidden", -2);
+    path_fixture_set_all(&fixture, "radius", 2, 0.8, 0.5);
+    path_fixture_set(&fixture, "hidden", -2);
     assert_false(is_near(times(look(4).colors[1], M_PI), walks.at[1], MOST_WRONG));
-    path_stage_set(&stage, "hidden", 0);
+    path_fixture_set(&fixture, "hidden", 0);
 }
 
 /* Below a sky of one colour. */
@@ -226,15 +226,15 @@ static void half_spaces_have_their_color(void **state)
     (void)state;
     size_t wrong = 0;
     set_wax();
-    path_stage_set(&stage, "day", 1);
-    path_stage_set(&stage, "above", 0);
-    path_stage_set(&stage, "hidden", 400);
+    path_fixture_set(&fixture, "day", 1);
+    path_fixture_set(&fixture, "above", 0);
+    path_fixture_set(&fixture, "hidden", 400);
     const Seen seen = look(8);
     for (int color = 0; color < 3; color++)
         wrong += !must_be_near(seen.colors[color], albedos[color], MOST_WRONG, "the albedo");
-    path_stage_set(&stage, "day", 0);
-    path_stage_set(&stage, "above", 1);
-    path_stage_set(&stage, "hidden", 0);
+    path_fixture_set(&fixture, "day", 0);
+    path_fixture_set(&fixture, "above", 1);
+    path_fixture_set(&fixture, "hidden", 0);
     assert_int_equal(wrong, 0);
 }
 
@@ -254,13 +254,13 @@ static void thin_plates_let_light_through(void **state)
     (void)state;
     static const double thicknesses[] = {0.3, 2, 8, 40};
     size_t              wrong         = 0;
-    path_stage_set(&stage, "above", 0);
-    path_stage_set(&stage, "below", 1);
-    path_stage_set_all(&stage, "radius", 1, 1, 1);
-    path_stage_set_all(&stage, "shade", 0.99, 0.8, 0.4);
+    path_fixture_set(&fixture, "above", 0);
+    path_fixture_set(&fixture, "below", 1);
+    path_fixture_set_all(&fixture, "radius", 1, 1, 1);
+    path_fixture_set_all(&fixture, "shade", 0.99, 0.8, 0.4);
     for (int i = 0; i < 4; i++) {
         char name[100];
-        path_stage_set(&stage, "thick", thicknesses[i]);
+        path_fixture_set(&fixture, "thick", thicknesses[i]);
         const Seen   seen     = look(8);
         const double shades[] = {0.99, 0.8, 0.4};
         for (int color = 0; color < 3; color++) {
@@ -272,9 +272,9 @@ static void thin_plates_let_light_through(void **state)
             wrong += !must_be_near(found, right, 0.02, name);
         }
     }
-    path_stage_set(&stage, "thick", 500);
-    path_stage_set(&stage, "above", 1);
-    path_stage_set(&stage, "below", 0);
+    path_fixture_set(&fixture, "thick", 500);
+    path_fixture_set(&fixture, "above", 1);
+    path_fixture_set(&fixture, "below", 0);
     assert_int_equal(wrong, 0);
 }
 
@@ -299,16 +299,16 @@ static const char furnace[] =
     "             subsurface_weight: much, subsurface_color: shade, subsurface_radius: radius }\n"
     "show union(sphere(0.7), box([0.2, 2, 0.05]).move([0.7, 0, 0]), blend: 0.1).paint(m);\n";
 
-static Estimate look_at_wax(const PathStage *furnace_stage, int bounces)
+static Estimate look_at_wax(const PathFixture *furnace_fixture, int bounces)
 {
-    return path_stage_estimate(furnace_stage,
-                               (KrsRenderOptions){.width      = 64,
-                                                  .height     = 64,
-                                                  .samples    = 1,
-                                                  .bounces    = (uint32_t)bounces,
-                                                  .planes     = KRS_PLANE_COLOR,
-                                                  .integrator = KRS_INTEGRATOR_PATH},
-                               everywhere, 6);
+    return path_fixture_estimate(furnace_fixture,
+                                 (KrsRenderOptions){.width      = 64,
+                                                    .height     = 64,
+                                                    .samples    = 1,
+                                                    .bounces    = (uint32_t)bounces,
+                                                    .planes     = KRS_PLANE_COLOR,
+                                                    .integrator = KRS_INTEGRATOR_PATH},
+                                 everywhere, 6);
 }
 
 static const struct {
@@ -322,67 +322,68 @@ static const struct {
 };
 enum { WHITES = sizeof whites / sizeof *whites };
 
-static void paint(PathStage *s, int i)
+static void paint(PathFixture *s, int i)
 {
-    path_stage_set_all(s, "radius", whites[i].radius[0], whites[i].radius[1], whites[i].radius[2]);
-    path_stage_set(s, "much", whites[i].much);
-    path_stage_set(s, "metal", whites[i].metal);
-    path_stage_set(s, "lacquer", whites[i].lacquer);
-    path_stage_set(s, "mirrors", whites[i].mirrors);
-    path_stage_set(s, "rough", i % 4 / 3.0);
+    path_fixture_set_all(s, "radius", whites[i].radius[0], whites[i].radius[1],
+                         whites[i].radius[2]);
+    path_fixture_set(s, "much", whites[i].much);
+    path_fixture_set(s, "metal", whites[i].metal);
+    path_fixture_set(s, "lacquer", whites[i].lacquer);
+    path_fixture_set(s, "mirrors", whites[i].mirrors);
+    path_fixture_set(s, "rough", i % 4 / 3.0);
 }
 
-static size_t compare_suns(PathStage *s)
+static size_t compare_suns(PathFixture *s)
 {
     size_t wrong = 0;
-    path_stage_set(s, "day", 0);
+    path_fixture_set(s, "day", 0);
     for (int i = 0; i < WHITES; i += 2) {
         paint(s, i);
-        path_stage_set(s, "bright", IRRADIANCE);
+        path_fixture_set(s, "bright", IRRADIANCE);
         const Estimate chosen = look_at_wax(s, 4);
-        path_stage_set(s, "bright", 0);
-        path_stage_set(s, "size", BALL);
+        path_fixture_set(s, "bright", 0);
+        path_fixture_set(s, "size", BALL);
         const Estimate met = look_at_wax(s, 4);
-        path_stage_set(s, "size", NO_BALL);
+        path_fixture_set(s, "size", NO_BALL);
         const Estimate both = {.mean = chosen.mean, .error = hypot(chosen.error, met.error)};
         wrong += !must_be_near(both, met.mean, 0.01, whites[i].name);
     }
-    path_stage_set(s, "day", 1);
+    path_fixture_set(s, "day", 1);
     return wrong;
 }
 
 static void white_is_not_seen(void **state)
 {
     (void)state;
-    size_t    wrong = 0;
-    PathStage s     = path_stage_open(furnace);
+    size_t      wrong = 0;
+    PathFixture s     = path_fixture_open(furnace);
     for (int i = 0; i < WHITES; i++) {
         paint(&s, i);
         wrong += !must_be_near(look_at_wax(&s, 20), 1, 0.01, whites[i].name);
     }
-    path_stage_set_all(&s, "shade", 0.9, 0.9, 0.9);
+    path_fixture_set_all(&s, "shade", 0.9, 0.9, 0.9);
     assert_false(is_near(look_at_wax(&s, 20), 1, 0.01));
-    path_stage_set_all(&s, "shade", 1, 1, 1);
+    path_fixture_set_all(&s, "shade", 1, 1, 1);
     wrong += compare_suns(&s);
-    path_stage_close(&s);
+    path_fixture_close(&s);
     assert_int_equal(wrong, 0);
 }
 
 /* ---- Previews ---- */
 
 /* In previews light leaves where it has entered: wax that is white looks like a white body. */
-static KrsPicture *preview_wax(PathStage *s, double much)
+static KrsPicture *preview_wax(PathFixture *s, double much)
 {
-    path_stage_set(s, "much", much);
-    return path_stage_render(s, &(KrsRenderOptions){.width      = 32,
-                                                    .height     = 32,
-                                                    .samples    = 1,
-                                                    .planes     = KRS_PLANE_COLOR,
-                                                    .integrator = KRS_INTEGRATOR_PREVIEW});
+    path_fixture_set(s, "much", much);
+    return path_fixture_render(s, &(KrsRenderOptions){.width      = 32,
+                                                      .height     = 32,
+                                                      .samples    = 1,
+                                                      .planes     = KRS_PLANE_COLOR,
+                                                      .integrator = KRS_INTEGRATOR_PREVIEW});
 }
 
 /* How many numbers differ, of a lamp's light alone; `sum`: of this light. */
-static size_t compare_previews(PathStage *s, double *sum)
+static size_t compare_previews(PathFixture *s, double *sum)
 {
     KrsPicture *wax = preview_wax(s, 1), *body = preview_wax(s, 0);
     size_t      wrong = 0;
@@ -398,10 +399,10 @@ static size_t compare_previews(PathStage *s, double *sum)
 static void previews_light_wax_as_a_body(void **state)
 {
     (void)state;
-    size_t    wrong = 0;
-    PathStage s     = path_stage_open(furnace);
-    path_stage_set(&s, "day", 0);
-    path_stage_set(&s, "bright", IRRADIANCE);
+    size_t      wrong = 0;
+    PathFixture s     = path_fixture_open(furnace);
+    path_fixture_set(&s, "day", 0);
+    path_fixture_set(&s, "bright", IRRADIANCE);
     for (int i = 0; i < WHITES; i++) {
         double sum = 0;
         paint(&s, i);
@@ -411,7 +412,7 @@ static void previews_light_wax_as_a_body(void **state)
         wrong += differ;
         assert_true(sum > 100);
     }
-    path_stage_close(&s);
+    path_fixture_close(&s);
     assert_int_equal(wrong, 0);
 }
 

@@ -16,7 +16,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
-#include "tests/oracle/path_stage.h"
+#include "tests/oracle/path_fixture.h"
 #include "tests/support/renderer.h"
 
 #define DEGREE (M_PI / 180)
@@ -92,39 +92,40 @@ static const double thicknesses[] = {0, 0.08, 0.3, 0.55, 1.1, 3, 30}, indices[] 
 static const double metal[]  = {0.9, 0.5, 0.2};
 #define MOST_WRONG 0.004
 
-static PathStage stage;
+static PathFixture fixture;
 
 static int open_slab(void **state)
 {
     if (renderer_open(state) != 0)
         return 1;
-    stage = path_stage_open(slab);
+    fixture = path_fixture_open(slab);
     return 0;
 }
 
 static int close_slab(void **state)
 {
-    path_stage_close(&stage);
+    path_fixture_close(&fixture);
     return renderer_close(state);
 }
 
 static void cover(Film film, double angle)
 {
-    path_stage_set(&stage, "angle", angle);
-    path_stage_set(&stage, "thick", film.thickness);
-    path_stage_set(&stage, "film", film.index);
+    path_fixture_set(&fixture, "angle", angle);
+    path_fixture_set(&fixture, "thick", film.thickness);
+    path_fixture_set(&fixture, "film", film.index);
 }
 
 /* What a color of a picture shows, by one integrator. */
 static void look(KrsIntegrator integrator, uint32_t samples, double found[3])
 {
-    KrsPicture *picture = path_stage_render(&stage, &(KrsRenderOptions){.width        = 16,
-                                                                        .height       = 16,
-                                                                        .samples      = samples,
-                                                                        .bounces      = 16,
-                                                                        .no_occlusion = true,
-                                                                        .planes = KRS_PLANE_COLOR,
-                                                                        .integrator = integrator});
+    KrsPicture *picture = path_fixture_render(&fixture,
+                                              &(KrsRenderOptions){.width        = 16,
+                                                                  .height       = 16,
+                                                                  .samples      = samples,
+                                                                  .bounces      = 16,
+                                                                  .no_occlusion = true,
+                                                                  .planes       = KRS_PLANE_COLOR,
+                                                                  .integrator   = integrator});
     for (int i = 0; i < 3; i++)
         found[i] = mean_of_region(picture, everywhere, i);
     krs_picture_free(picture);
@@ -198,22 +199,22 @@ static void films_on_dielectrics(void **state)
 static void films_on_metals(void **state)
 {
     (void)state;
-    path_stage_set(&stage, "metal", 1);
-    path_stage_set_all(&stage, "shade", metal[0], metal[1], metal[2]);
+    path_fixture_set(&fixture, "metal", 1);
+    path_fixture_set_all(&fixture, "shade", metal[0], metal[1], metal[2]);
     const size_t wrong = compare_all(compare_metal);
-    path_stage_set(&stage, "metal", 0);
-    path_stage_set_all(&stage, "shade", 0, 0, 0);
+    path_fixture_set(&fixture, "metal", 0);
+    path_fixture_set_all(&fixture, "shade", 0, 0, 0);
     assert_int_equal(wrong, 0);
 }
 
 static void films_on_glass(void **state)
 {
     (void)state;
-    path_stage_set(&stage, "glass", 1);
-    path_stage_set_all(&stage, "shade", 1, 1, 1);
+    path_fixture_set(&fixture, "glass", 1);
+    path_fixture_set_all(&fixture, "shade", 1, 1, 1);
     const size_t wrong = compare_all(compare_glass);
-    path_stage_set(&stage, "glass", 0);
-    path_stage_set_all(&stage, "shade", 0, 0, 0);
+    path_fixture_set(&fixture, "glass", 0);
+    path_fixture_set_all(&fixture, "shade", 0, 0, 0);
     assert_int_equal(wrong, 0);
 }
 
@@ -227,11 +228,11 @@ static void paths_show_films_as_previews_do(void **state)
     look(KRS_INTEGRATOR_PREVIEW, 1, whole);
     look(KRS_INTEGRATOR_PATH, 64, found);
     assert_int_equal(compare(found, whole, 0.02, "by paths", film, 0.7), 0);
-    path_stage_set(&stage, "much", 0);
+    path_fixture_set(&fixture, "much", 0);
     look(KRS_INTEGRATOR_PREVIEW, 1, none);
-    path_stage_set(&stage, "much", 0.5);
+    path_fixture_set(&fixture, "much", 0.5);
     look(KRS_INTEGRATOR_PREVIEW, 1, half);
-    path_stage_set(&stage, "much", 1);
+    path_fixture_set(&fixture, "much", 1);
     for (int i = 0; i < 3; i++)
         none[i] = 0.5 * (none[i] + whole[i]);
     assert_int_equal(compare(half, none, 1e-4, "half a film", film, 0.7), 0);

@@ -15,7 +15,7 @@
 
 #include "compiler/passes/compile.h"
 #include "runtime/display/display.h"
-#include "tests/oracle/shadow_stage.h"
+#include "tests/oracle/shadow_fixture.h"
 
 #define MOST_OFF_SHARED 0.03 /* of means of 5x5 pixels of colours, root of the mean square */
 /* Shares of the subpixels that may be off by more than 1 and by more than 4 of 255. */
@@ -217,18 +217,18 @@ static void upsampling_keeps_thin_shadows(void **state)
     for (int i = 0; i < 3; i++) {
         char        name[40];
         KrsPicture *pictures[2];
-        Stage      *stage = use_stage(TWIGS);
+        Fixture    *fixture = use_fixture(TWIGS);
         size_t      dark, holes;
         Shot        shot = {TWIGS,
                             {-0.5, 1.4, -0.4},
                             0,
-                            0.5 * widths[i] * stage->high / HEIGHT,
+                            0.5 * widths[i] * fixture->high / HEIGHT,
                             {.width = WIDTH, .height = HEIGHT},
                             0};
         set_lighting(&shot);
-        take_both(stage->rendering, stage->product.frame, pictures);
+        take_both(fixture->rendering, fixture->product.frame, pictures);
         snprintf(name, sizeof name, "shadows %g pixels wide", widths[i]);
-        wrong += !upsampling_is_unseen(name, stage->product.frame, pictures);
+        wrong += !upsampling_is_unseen(name, fixture->product.frame, pictures);
         holes = count_holes(pictures, &dark);
         print_message("# upsampling: %zu pixels in shadow, %zu of them lit\n", dark, holes);
         assert_true(dark > 300);

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "compiler/scene/compiled.h"
-#include "tests/unit/tracer_stage.h"
+#include "tests/unit/tracer_fixture.h"
 
 /* ---- The rows ---- */
 
@@ -143,14 +143,15 @@ static void points_have_materials(void **state)
 {
     static KrsHit          hits[COUNT], device_hits[COUNT];
     static KrsSurfacePoint surfaces[COUNT];
-    const Stage           *stage   = *state;
+    const Fixture         *fixture = *state;
     const double(*places)[3]       = (const double(*)[3])points;
     const float(*single_places)[3] = (const float(*)[3])single_points;
-    assert_int_equal(krs_probe(stage->frame, places, COUNT, hits), KRS_OK);
-    assert_int_equal(krs_device_probe(stage->rendering, stage->frame, places, COUNT, device_hits),
-                     KRS_OK);
+    assert_int_equal(krs_probe(fixture->frame, places, COUNT, hits), KRS_OK);
     assert_int_equal(
-        krs_sample(stage->rendering, stage->frame, single_places, COUNT, NULL, surfaces), KRS_OK);
+        krs_device_probe(fixture->rendering, fixture->frame, places, COUNT, device_hits), KRS_OK);
+    assert_int_equal(
+        krs_sample(fixture->rendering, fixture->frame, single_places, COUNT, NULL, surfaces),
+        KRS_OK);
     for (int i = 0; i < COUNT; i++) {
         Material material;
         take_surface(&surfaces[i], material);
@@ -165,13 +166,13 @@ static void points_have_materials(void **state)
 
 static void rays_end_at_materials(void **state)
 {
-    static KrsHit hits[COUNT], device_hits[COUNT];
-    const Stage  *stage          = *state;
+    static KrsHit  hits[COUNT], device_hits[COUNT];
+    const Fixture *fixture       = *state;
     const double(*origins)[3]    = (const double(*)[3])points;
     const double(*directions)[3] = (const double(*)[3])inwards;
-    assert_int_equal(krs_raycast(stage->frame, origins, directions, COUNT, 10, 0, hits), KRS_OK);
-    assert_int_equal(krs_device_raycast(stage->rendering, stage->frame, origins, directions, COUNT,
-                                        10, 0, device_hits),
+    assert_int_equal(krs_raycast(fixture->frame, origins, directions, COUNT, 10, 0, hits), KRS_OK);
+    assert_int_equal(krs_device_raycast(fixture->rendering, fixture->frame, origins, directions,
+                                        COUNT, 10, 0, device_hits),
                      KRS_OK);
     for (int i = 0; i < COUNT; i++) {
         assert_hit(&hits[i]);
@@ -184,11 +185,12 @@ static void the_rest_is_as_the_table_says(void **state)
 {
     const double point[1][3] = {{0.25, 0.5, 0.75}};
     KrsHit       hits[2];
-    Stage        stage = {0};
+    Fixture      fixture = {0};
     (void)state;
-    stage_open(&stage, "show sphere(1);", NULL);
-    assert_int_equal(krs_probe(stage.frame, point, 1, &hits[0]), KRS_OK);
-    assert_int_equal(krs_device_probe(stage.rendering, stage.frame, point, 1, &hits[1]), KRS_OK);
+    fixture_open(&fixture, "show sphere(1);", NULL);
+    assert_int_equal(krs_probe(fixture.frame, point, 1, &hits[0]), KRS_OK);
+    assert_int_equal(krs_device_probe(fixture.rendering, fixture.frame, point, 1, &hits[1]),
+                     KRS_OK);
     for (int each = 0; each < 2; each++) {
         Material material;
         take_hit(&hits[each], material);
@@ -196,7 +198,7 @@ static void the_rest_is_as_the_table_says(void **state)
             for (int k = 0; k < properties[i].count; k++)
                 assert_near(material[i][k], otherwise_of[i], 1e-6);
     }
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 /* Each turn of a loop is a component, although many turns become one function of the shaders: balls
@@ -206,19 +208,21 @@ static void turns_of_a_loop_are_components(void **state)
     enum { TURNS = 100, ALL = TURNS + 2 };
     static double places[ALL][3];
     static KrsHit hits[2][ALL];
-    Stage         stage = {0};
+    Fixture       fixture = {0};
     (void)state;
-    stage_open(&stage,
-               "show sphere(1).move([-3, 0, 0]);"
-               "for i in 0..100 { show sphere(1).move([3 * i, 0, 0]).paint([i / 200, 0.5, 0.5]); }"
-               "let last = sphere(1).move([300, 0, 0]); show last;",
-               NULL);
+    fixture_open(
+        &fixture,
+        "show sphere(1).move([-3, 0, 0]);"
+        "for i in 0..100 { show sphere(1).move([3 * i, 0, 0]).paint([i / 200, 0.5, 0.5]); }"
+        "let last = sphere(1).move([300, 0, 0]); show last;",
+        NULL);
     for (int i = 0; i < ALL; i++)
         places[i][0] = 3 * (i - 1) + 0.5;
     const double(*centres)[3] = (const double(*)[3])places;
-    assert_int_equal(krs_component_count(stage.scene), ALL);
-    assert_int_equal(krs_probe(stage.frame, centres, ALL, hits[0]), KRS_OK);
-    assert_int_equal(krs_device_probe(stage.rendering, stage.frame, centres, ALL, hits[1]), KRS_OK);
+    assert_int_equal(krs_component_count(fixture.scene), ALL);
+    assert_int_equal(krs_probe(fixture.frame, centres, ALL, hits[0]), KRS_OK);
+    assert_int_equal(krs_device_probe(fixture.rendering, fixture.frame, centres, ALL, hits[1]),
+                     KRS_OK);
     for (int each = 0; each < 2; each++)
         for (uint32_t i = 0; i < ALL; i++) {
             assert_int_equal(hits[each][i].component, i + 1);
@@ -227,12 +231,12 @@ static void turns_of_a_loop_are_components(void **state)
                 assert_near(hits[each][i].color[0], (i - 1) / 200.0, 1e-6);
         }
     KrsComponent component;
-    assert_int_equal(krs_component(stage.scene, 41, &component), KRS_OK);
+    assert_int_equal(krs_component(fixture.scene, 41, &component), KRS_OK);
     assert_string_equal(component.name, "component 42");
     assert_near(component.low[0], 3 * 40 - 1, 1e-9);
-    assert_int_equal(krs_component(stage.scene, ALL - 1, &component), KRS_OK);
+    assert_int_equal(krs_component(fixture.scene, ALL - 1, &component), KRS_OK);
     assert_string_equal(component.name, "last");
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 /* Balls and boxes in turn, as a loop shows them and one by one, with another shape between them: each is a
@@ -259,14 +263,14 @@ static void alike_components_are_components(void **state)
                          6 * i, 6 * i + 3);
     }
     for (int each = 0; each < 2; each++) {
-        Stage stage = {0};
-        stage_open(&stage, texts[each], NULL);
+        Fixture fixture = {0};
+        fixture_open(&fixture, texts[each], NULL);
         uint32_t last             = each ? 2 * BEFORE : ALL - 1;
         const double(*centres)[3] = (const double(*)[3])places;
-        assert_int_equal(krs_component_count(stage.scene), ALL);
-        assert_int_equal(krs_scene_program(stage.scene)->table_count, 2);
-        assert_int_equal(krs_probe(stage.frame, centres, ALL, hits[0]), KRS_OK);
-        assert_int_equal(krs_device_probe(stage.rendering, stage.frame, centres, ALL, hits[1]),
+        assert_int_equal(krs_component_count(fixture.scene), ALL);
+        assert_int_equal(krs_scene_program(fixture.scene)->table_count, 2);
+        assert_int_equal(krs_probe(fixture.frame, centres, ALL, hits[0]), KRS_OK);
+        assert_int_equal(krs_device_probe(fixture.rendering, fixture.frame, centres, ALL, hits[1]),
                          KRS_OK);
         for (int on = 0; on < 2; on++)
             for (uint32_t i = 0; i < ALL; i++) {
@@ -275,28 +279,28 @@ static void alike_components_are_components(void **state)
                 assert_near(hits[on][i].distance, i == ALL - 1 ? -0.5 : -1, 1e-4);
             }
         KrsComponent component;
-        assert_int_equal(krs_component(stage.scene, last, &component), KRS_OK);
+        assert_int_equal(krs_component(fixture.scene, last, &component), KRS_OK);
         assert_string_equal(component.name, "last");
-        stage_close(&stage);
+        fixture_close(&fixture);
     }
 }
 
 static int set_up(void **state)
 {
-    static Stage stage;
-    char         text[2048];
+    static Fixture fixture;
+    char           text[2048];
     choose_points();
     write_scene(text, sizeof text);
-    stage_open(&stage, text, NULL);
-    *state = &stage;
+    fixture_open(&fixture, text, NULL);
+    *state = &fixture;
     return 0;
 }
 
 static int tear_down(void **state)
 {
-    Stage *stage = *state;
-    int    wrong = krs_renderer_complaints(stage->renderer) != 0;
-    stage_close(stage);
+    Fixture *fixture = *state;
+    int      wrong   = krs_renderer_complaints(fixture->renderer) != 0;
+    fixture_close(fixture);
     return wrong;
 }
 

@@ -33,12 +33,12 @@ static void note_complaint(void *user, const char *message)
     snprintf(complaint, sizeof complaint, "%s", message);
 }
 
-typedef struct Stage {
+typedef struct Fixture {
     KrsRenderer *renderer;
     KrsScene    *scene;
     KrsFrame    *frame;
     Instances   *instances;
-} Stage;
+} Fixture;
 
 #define CAMERA "camera { eye: [20, 0, 3], target: [20, 0, 0] }"
 
@@ -48,10 +48,10 @@ static const char moving[] = "param height = 0.5 in [0, 2];\n"
                              "for i in 0..80]);" CAMERA;
 
 /* Two tables for a scene that reads none. */
-static void add_tables(Bench *bench, Stage *stage, uint32_t rows)
+static void add_tables(Bench *bench, Fixture *fixture, uint32_t rows)
 {
-    stage->instances        = arena_new(&bench->arena, Instances);
-    stage->instances->arena = &bench->arena;
+    fixture->instances        = arena_new(&bench->arena, Instances);
+    fixture->instances->arena = &bench->arena;
     for (uint32_t t = 0; t < 2; t++) {
         InstanceTable table = {.rows = rows, .columns = 5 + t};
         Box          *boxes = arena_new_array(&bench->arena, Box, rows);
@@ -65,43 +65,44 @@ static void add_tables(Bench *bench, Stage *stage, uint32_t rows)
             }
         grid_build(&table.grid, boxes, rows, 0, 0, 1, &bench->arena, &bench->arena);
         table.cells = table.grid;
-        array_push(&bench->arena, &stage->instances->tables, table);
+        array_push(&bench->arena, &fixture->instances->tables, table);
     }
-    Graph     *graph                  = (Graph *)(uintptr_t)stage->scene->graph;
-    TableSizes sizes                  = tables_measure(stage->instances, NULL);
-    graph->instances                  = stage->instances;
-    stage->scene->program.table_rows  = sizes.rows;
-    stage->scene->program.table_cells = sizes.cells;
+    Graph     *graph                    = (Graph *)(uintptr_t)fixture->scene->graph;
+    TableSizes sizes                    = tables_measure(fixture->instances, NULL);
+    graph->instances                    = fixture->instances;
+    fixture->scene->program.table_rows  = sizes.rows;
+    fixture->scene->program.table_cells = sizes.cells;
 }
 
-static Stage open_scene(const char *text, unsigned pretence)
+static Fixture open_scene(const char *text, unsigned pretence)
 {
     KrsRendererOptions options = {.device     = tested_device(),
                                   .validation = true,
                                   .complaint  = note_complaint,
                                   .pretence   = pretence};
-    Stage              stage;
-    if (krs_renderer_new(&options, &stage.renderer) != KRS_OK)
-        fail_msg("%s", krs_renderer_message(stage.renderer));
-    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &stage.scene), KRS_OK);
-    assert_int_equal(krs_frame_new(stage.scene, &stage.frame), KRS_OK);
-    return stage;
+    Fixture            fixture;
+    if (krs_renderer_new(&options, &fixture.renderer) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(fixture.renderer));
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &fixture.scene),
+                     KRS_OK);
+    assert_int_equal(krs_frame_new(fixture.scene, &fixture.frame), KRS_OK);
+    return fixture;
 }
 
-static Stage open_stage(Bench *bench, uint32_t rows, unsigned pretence)
+static Fixture open_fixture(Bench *bench, uint32_t rows, unsigned pretence)
 {
-    Stage stage = open_scene("show sphere(1);", pretence);
-    add_tables(bench, &stage, rows);
-    return stage;
+    Fixture fixture = open_scene("show sphere(1);", pretence);
+    add_tables(bench, &fixture, rows);
+    return fixture;
 }
 
-static void close_stage(Stage *stage)
+static void close_fixture(Fixture *fixture)
 {
-    if (krs_renderer_complaints(stage->renderer) != 0)
+    if (krs_renderer_complaints(fixture->renderer) != 0)
         fail_msg("the validation layers complain: %s", complaint);
-    krs_frame_free(stage->frame);
-    krs_scene_free(stage->scene);
-    krs_renderer_free(stage->renderer);
+    krs_frame_free(fixture->frame);
+    krs_scene_free(fixture->scene);
+    krs_renderer_free(fixture->renderer);
 }
 
 /* Whether a buffer on the device begins with these bytes. */
@@ -119,13 +120,13 @@ static bool device_has(Gpu *gpu, const Buffer *buffer, const void *bytes, size_t
     return same;
 }
 
-static bool device_has_tables(const Stage *stage, const KrsRendering *rendering)
+static bool device_has_tables(const Fixture *fixture, const KrsRendering *rendering)
 {
-    Gpu   *gpu  = &stage->renderer->gpu;
-    size_t rows = krs_table_rows(stage->scene), cells = krs_table_cells(stage->scene);
+    Gpu   *gpu  = &fixture->renderer->gpu;
+    size_t rows = krs_table_rows(fixture->scene), cells = krs_table_cells(fixture->scene);
     float(*wanted_rows)[4]     = calloc(rows, sizeof *wanted_rows);
     uint32_t(*wanted_cells)[2] = calloc(cells, sizeof *wanted_cells);
-    krs_frame_tables_in_use(stage->frame, NULL, wanted_rows, wanted_cells, &rows, &cells);
+    krs_frame_tables_in_use(fixture->frame, NULL, wanted_rows, wanted_cells, &rows, &cells);
     bool same = device_has(gpu, &rendering->table_rows, wanted_rows, rows * sizeof *wanted_rows) &&
                 device_has(gpu, &rendering->table_cells, wanted_cells,
                            cells * sizeof *wanted_cells);
@@ -136,34 +137,34 @@ static bool device_has_tables(const Stage *stage, const KrsRendering *rendering)
 
 static void a_query_brings_tables(void **state)
 {
-    Stage         stage        = open_stage(*state, 2000, 0);
+    Fixture       fixture      = open_fixture(*state, 2000, 0);
     const float   points[1][3] = {{0, 0, 3}};
     float         distance;
     KrsRendering *rendering;
-    assert_int_equal(krs_rendering_new(stage.renderer, stage.scene, &rendering), KRS_OK);
+    assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &rendering), KRS_OK);
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(krs_sample(rendering, stage.frame, points, 1, &distance, NULL), KRS_OK);
-        assert_true(device_has_tables(&stage, rendering));
+        assert_int_equal(krs_sample(rendering, fixture.frame, points, 1, &distance, NULL), KRS_OK);
+        assert_true(device_has_tables(&fixture, rendering));
     }
     /* Other numbers are found out. */
-    stage.instances->tables.items[1].numbers[7] += 1;
-    assert_false(device_has_tables(&stage, rendering));
+    fixture.instances->tables.items[1].numbers[7] += 1;
+    assert_false(device_has_tables(&fixture, rendering));
     krs_rendering_free(rendering);
-    close_stage(&stage);
+    close_fixture(&fixture);
 }
 
 static void a_picture_brings_tables(void **state)
 {
-    Stage            stage   = open_stage(*state, 300, KRS_PRETEND_LEAST_LIMITS);
+    Fixture          fixture = open_fixture(*state, 300, KRS_PRETEND_LEAST_LIMITS);
     KrsRenderOptions options = {.width = 16, .height = 16};
     KrsPicture      *picture;
     KrsRendering    *rendering;
-    assert_int_equal(krs_rendering_new(stage.renderer, stage.scene, &rendering), KRS_OK);
-    assert_int_equal(krs_render(rendering, stage.frame, &options, &picture), KRS_OK);
-    assert_true(device_has_tables(&stage, rendering));
+    assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &rendering), KRS_OK);
+    assert_int_equal(krs_render(rendering, fixture.frame, &options, &picture), KRS_OK);
+    assert_true(device_has_tables(&fixture, rendering));
     krs_picture_free(picture);
     krs_rendering_free(rendering);
-    close_stage(&stage);
+    close_fixture(&fixture);
 }
 
 enum { MOVING_POINTS = 400 };
@@ -190,15 +191,15 @@ static void points_near(Bench *bench, double time, double height, float points[]
     }
 }
 
-static void assert_frame_is_seen(Bench *bench, const Stage *stage, KrsRendering *rendering,
+static void assert_frame_is_seen(Bench *bench, const Fixture *fixture, KrsRendering *rendering,
                                  double time, double height)
 {
     static float points[MOVING_POINTS][3], found[MOVING_POINTS];
     points_near(bench, time, height, points);
-    assert_int_equal(
-        krs_sample(rendering, stage->frame, (const float(*)[3])points, MOVING_POINTS, found, NULL),
-        KRS_OK);
-    assert_true(device_has_tables(stage, rendering));
+    assert_int_equal(krs_sample(rendering, fixture->frame, (const float(*)[3])points, MOVING_POINTS,
+                                found, NULL),
+                     KRS_OK);
+    assert_true(device_has_tables(fixture, rendering));
     for (int n = 0; n < MOVING_POINTS; n++) {
         double wanted = moving_distance(points[n], time, height);
         assert_true(wanted > 0.15 || fabs((double)found[n] - wanted) < 1e-5);
@@ -209,22 +210,22 @@ static void rows_are_those_of_the_frame(Bench *bench, unsigned pretence)
 {
     static const double frames[][2] = {{0, 0.5}, {0, 0.5},   {1.5, 0.5},
                                        {1.5, 2}, {-8, 1.25}, {0, 0.5}};
-    Stage               stage       = open_scene(moving, pretence);
+    Fixture             fixture     = open_scene(moving, pretence);
     KrsRendering       *rendering;
-    assert_true(stage.scene->program.rows_vary);
-    assert_int_equal(stage.renderer->gpu.texels, pretence == 0);
-    assert_int_equal(krs_rendering_new(stage.renderer, stage.scene, &rendering), KRS_OK);
+    assert_true(fixture.scene->program.rows_vary);
+    assert_int_equal(fixture.renderer->gpu.texels, pretence == 0);
+    assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &rendering), KRS_OK);
     for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
         bool same = i > 0 && frames[i][0] == frames[i - 1][0] && frames[i][1] == frames[i - 1][1];
-        assert_int_equal(krs_frame_set_time(stage.frame, frames[i][0]), KRS_OK);
-        assert_int_equal(krs_frame_set(stage.frame, "height", &frames[i][1], 1), KRS_OK);
-        assert_true(i == 0 || device_has_tables(&stage, rendering) == same);
-        assert_frame_is_seen(bench, &stage, rendering, frames[i][0], frames[i][1]);
+        assert_int_equal(krs_frame_set_time(fixture.frame, frames[i][0]), KRS_OK);
+        assert_int_equal(krs_frame_set(fixture.frame, "height", &frames[i][1], 1), KRS_OK);
+        assert_true(i == 0 || device_has_tables(&fixture, rendering) == same);
+        assert_frame_is_seen(bench, &fixture, rendering, frames[i][0], frames[i][1]);
     }
-    assert_int_equal(krs_rendering_update(rendering, stage.scene), KRS_OK);
-    assert_frame_is_seen(bench, &stage, rendering, 0, 0.5);
+    assert_int_equal(krs_rendering_update(rendering, fixture.scene), KRS_OK);
+    assert_frame_is_seen(bench, &fixture, rendering, 0, 0.5);
     krs_rendering_free(rendering);
-    close_stage(&stage);
+    close_fixture(&fixture);
 }
 
 static void rows_of_texels_are_those_of_the_frame(void **state)
@@ -244,19 +245,19 @@ static void pictures_are_those_of_the_frame(void **state)
     static const char *const still[] = {"-1", "2.5"};
     static const double      times[] = {-1, 2.5};
     KrsRenderOptions         options = {.width = 192, .height = 96, .planes = AGREEMENT_PLANES};
-    Stage                    stage   = open_scene(moving, 0);
+    Fixture                  fixture = open_scene(moving, 0);
     KrsRendering            *rendering;
-    assert_int_equal(krs_rendering_new(stage.renderer, stage.scene, &rendering), KRS_OK);
+    assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &rendering), KRS_OK);
     for (int i = 0; i < 2; i++) {
         char text[512];
         snprintf(text, sizeof text,
                  "show union([sphere(0.2).move([i, 0.5 * sin(%s + i), 0]) for i in 0..80]);" CAMERA,
                  still[i]);
-        Stage       other = open_scene(text, 0);
+        Fixture     other = open_scene(text, 0);
         KrsPicture *pictures[2];
         assert_false(other.scene->program.rows_vary);
-        assert_int_equal(krs_frame_set_time(stage.frame, times[i]), KRS_OK);
-        assert_int_equal(krs_render(rendering, stage.frame, &options, &pictures[0]), KRS_OK);
+        assert_int_equal(krs_frame_set_time(fixture.frame, times[i]), KRS_OK);
+        assert_int_equal(krs_render(rendering, fixture.frame, &options, &pictures[0]), KRS_OK);
         KrsRendering *of_other;
         assert_int_equal(krs_rendering_new(other.renderer, other.scene, &of_other), KRS_OK);
         assert_int_equal(krs_render(of_other, other.frame, &options, &pictures[1]), KRS_OK);
@@ -266,35 +267,36 @@ static void pictures_are_those_of_the_frame(void **state)
         krs_picture_free(pictures[0]);
         krs_picture_free(pictures[1]);
         krs_rendering_free(of_other);
-        close_stage(&other);
+        close_fixture(&other);
     }
     krs_rendering_free(rendering);
-    close_stage(&stage);
+    close_fixture(&fixture);
 }
 
 /* A device with room for as much as the tables have, or for less. */
 static void compare_with_room(Bench *bench, unsigned pretence, bool enough)
 {
-    Stage                   stage  = open_stage(bench, 2000, pretence);
-    VkPhysicalDeviceLimits *limits = &stage.renderer->gpu.properties.limits;
-    size_t                  rows   = krs_table_rows(stage.scene) * 16;
-    size_t                  cells  = krs_table_cells(stage.scene) * 8;
+    Fixture                 fixture = open_fixture(bench, 2000, pretence);
+    VkPhysicalDeviceLimits *limits  = &fixture.renderer->gpu.properties.limits;
+    size_t                  rows    = krs_table_rows(fixture.scene) * 16;
+    size_t                  cells   = krs_table_cells(fixture.scene) * 8;
     size_t                  page = 4096, most = (rows > cells ? rows : cells) + 2 * page;
     KrsRendering           *rendering;
     assert_true(rows > 64 * page && rows / 16 < cells / 8);
     limits->maxStorageBufferRange  = (uint32_t)(enough ? most : most - 4 * page);
     limits->maxTexelBufferElements = (uint32_t)(cells / 8 + 2 * page / 8 - (enough ? 0 : page / 2));
     if (enough) {
-        assert_int_equal(krs_rendering_new(stage.renderer, stage.scene, &rendering), KRS_OK);
+        assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &rendering), KRS_OK);
         krs_rendering_free(rendering);
     } else {
-        assert_int_equal(krs_rendering_new(stage.renderer, stage.scene, &rendering), KRS_NO_DEVICE);
+        assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &rendering),
+                         KRS_NO_DEVICE);
         assert_null(rendering);
-        const char *message = krs_renderer_message(stage.renderer);
+        const char *message = krs_renderer_message(fixture.renderer);
         if (!strstr(message, "no room for the tables of the scene"))
             fail_msg("%s", message);
     }
-    close_stage(&stage);
+    close_fixture(&fixture);
 }
 
 static void too_large_tables_are_refused(void **state)

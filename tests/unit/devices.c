@@ -15,7 +15,7 @@
 #include "compiler/passes/compile.h"
 #include "runtime/device/buffer.h"
 #include "tests/support/device.h"
-#include "tests/unit/tracer_stage.h"
+#include "tests/unit/tracer_fixture.h"
 
 /* ---- The layers speak when something is wrong ---- */
 
@@ -35,30 +35,30 @@ static void a_planted_hazard_is_reported(void **state)
 {
     (void)state;
     static Gpu gpu;
-    Stage      stage = {0};
+    Fixture    fixture = {0};
     Buffer     from, to;
     assert_true(gpu_open(&gpu, &(KrsRendererOptions){.device     = tested_device(),
                                                      .validation = true,
                                                      .complaint  = note_complaint,
-                                                     .user       = &stage}));
+                                                     .user       = &fixture}));
     assert_true(buffer_create(&gpu, &from, 1024, ON_DEVICE, "source"));
     assert_true(buffer_create(&gpu, &to, 1024, SHARED, "target"));
 
     copy_between(&gpu, &from, &to, true);
-    assert_int_equal(stage.complaints, 0);
+    assert_int_equal(fixture.complaints, 0);
     assert_int_equal(((uint32_t *)to.bytes)[255], 7);
 
     copy_between(&gpu, &from, &to, false); /* reads what may not be written yet */
-    assert_true(stage.complaints > 0);
-    assert_non_null(strstr(stage.complaint, "SYNC-HAZARD-READ-AFTER-WRITE"));
+    assert_true(fixture.complaints > 0);
+    assert_non_null(strstr(fixture.complaint, "SYNC-HAZARD-READ-AFTER-WRITE"));
 
-    unsigned before = stage.complaints;
+    unsigned before = fixture.complaints;
     assert_true(gpu_begin(&gpu)); /* a copy beyond the end of the buffer */
     vkCmdCopyBuffer(gpu.commands, from.buffer, to.buffer, 1,
                     &(VkBufferCopy){.srcOffset = 4096, .size = 4});
-    assert_true(stage.complaints > before);
-    assert_non_null(strstr(stage.complaint, "VUID-vkCmdCopyBuffer"));
-    assert_int_equal(gpu.complaints, stage.complaints);
+    assert_true(fixture.complaints > before);
+    assert_non_null(strstr(fixture.complaint, "VUID-vkCmdCopyBuffer"));
+    assert_int_equal(gpu.complaints, fixture.complaints);
 
     buffer_destroy(&gpu, &from);
     buffer_destroy(&gpu, &to);

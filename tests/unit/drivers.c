@@ -30,46 +30,47 @@ static void note_complaint(void *user, const char *message)
 
 /* ---- A scene on a device ---- */
 
-typedef struct Stage {
+typedef struct Fixture {
     KrsRenderer  *renderer;
     KrsScene     *scene;
     KrsFrame     *frame;
     KrsRendering *rendering;
-} Stage;
+} Fixture;
 
-static Stage open_stage(const char *text, unsigned pretence)
+static Fixture open_fixture(const char *text, unsigned pretence)
 {
     KrsRendererOptions options = {.device     = tested_device(),
                                   .validation = true,
                                   .complaint  = note_complaint,
                                   .early_outs = KRS_EARLY_OUTS_OFF,
                                   .pretence   = pretence};
-    Stage              stage;
-    KrsStatus          status = krs_renderer_new(&options, &stage.renderer);
+    Fixture            fixture;
+    KrsStatus          status = krs_renderer_new(&options, &fixture.renderer);
     if (status != KRS_OK)
-        fail_msg("%s", krs_renderer_message(stage.renderer));
-    if (krs_compile_text(text, strlen(text), "scene.krs", NULL, &stage.scene) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(fixture.renderer));
+    if (krs_compile_text(text, strlen(text), "scene.krs", NULL, &fixture.scene) != KRS_OK)
         fail_msg("does not compile: %s", text);
-    assert_int_equal(krs_frame_new(stage.scene, &stage.frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(stage.renderer, stage.scene, &stage.rendering), KRS_OK);
-    return stage;
+    assert_int_equal(krs_frame_new(fixture.scene, &fixture.frame), KRS_OK);
+    assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &fixture.rendering),
+                     KRS_OK);
+    return fixture;
 }
 
-static void close_stage(Stage *stage)
+static void close_fixture(Fixture *fixture)
 {
-    if (krs_renderer_complaints(stage->renderer) != 0)
+    if (krs_renderer_complaints(fixture->renderer) != 0)
         fail_msg("the validation layers complain: %s", complaint);
-    krs_rendering_free(stage->rendering);
-    krs_frame_free(stage->frame);
-    krs_scene_free(stage->scene);
-    krs_renderer_free(stage->renderer);
+    krs_rendering_free(fixture->rendering);
+    krs_frame_free(fixture->frame);
+    krs_scene_free(fixture->scene);
+    krs_renderer_free(fixture->renderer);
 }
 
-static KrsPicture *render(const Stage *stage, const KrsRenderOptions *options)
+static KrsPicture *render(const Fixture *fixture, const KrsRenderOptions *options)
 {
     KrsPicture *picture;
-    if (krs_render(stage->rendering, stage->frame, options, &picture) != KRS_OK)
-        fail_msg("%s", krs_renderer_message(stage->renderer));
+    if (krs_render(fixture->rendering, fixture->frame, options, &picture) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(fixture->renderer));
     return picture;
 }
 
@@ -232,7 +233,7 @@ static const Case cases[] = {
 /* Renders a case as the device is, and as it is taken for. */
 static size_t compare(const Case *test, unsigned pretence)
 {
-    Stage       plain = open_stage(test->text, 0), pretending = open_stage(test->text, pretence);
+    Fixture plain = open_fixture(test->text, 0), pretending = open_fixture(test->text, pretence);
     KrsPicture *a = render(&plain, &test->options), *b = render(&pretending, &test->options);
     size_t      differ = pretence & KRS_PRETEND_LEAST_LIMITS ? difference_of_kernels(a, b)
                                                              : difference(a, b);
@@ -240,8 +241,8 @@ static size_t compare(const Case *test, unsigned pretence)
         print_message("# %s: %zu bytes differ\n", test->name, differ);
     krs_picture_free(a);
     krs_picture_free(b);
-    close_stage(&plain);
-    close_stage(&pretending);
+    close_fixture(&plain);
+    close_fixture(&pretending);
     return differ;
 }
 
@@ -270,14 +271,14 @@ static void a_card_is_not_seen(void **state)
 static void a_flipped_bit_is_found(void **state)
 {
     (void)state;
-    Stage       stage = open_stage(cases[0].text, 0);
-    KrsPicture *a = render(&stage, &cases[0].options), *b = render(&stage, &cases[0].options);
+    Fixture     fixture = open_fixture(cases[0].text, 0);
+    KrsPicture *a = render(&fixture, &cases[0].options), *b = render(&fixture, &cases[0].options);
     assert_int_equal(difference(a, b), 0);
     b->steps[150 * 93 - 1] ^= 1;
     assert_int_equal(difference(a, b), 1);
     krs_picture_free(a);
     krs_picture_free(b);
-    close_stage(&stage);
+    close_fixture(&fixture);
 }
 
 /* ---- Submissions ---- */
@@ -288,15 +289,15 @@ enum { SUBMISSIONS_OF_CARD = 5 };
 static void a_card_is_seldom_waited_for(void **state)
 {
     (void)state;
-    Stage            stage   = open_stage(cases[0].text, KRS_PRETEND_CARD);
+    Fixture          fixture = open_fixture(cases[0].text, KRS_PRETEND_CARD);
     KrsRenderOptions options = cases[0].options;
     options.slice_ms         = 1e6; /* a slice is all of it */
     for (int frame = 0; frame < 2; frame++) {
-        KrsPicture *picture = render(&stage, &options);
+        KrsPicture *picture = render(&fixture, &options);
         assert_in_range(picture->stats.submissions, 1, SUBMISSIONS_OF_CARD);
         krs_picture_free(picture);
     }
-    close_stage(&stage);
+    close_fixture(&fixture);
 }
 
 /* Says stop at the call that `user` has counted down to. */
@@ -311,16 +312,16 @@ static bool count_down(void *user, double done)
 static void a_card_is_interrupted(void **state)
 {
     (void)state;
-    Stage            stage       = open_stage(cases[0].text, KRS_PRETEND_CARD);
+    Fixture          fixture     = open_fixture(cases[0].text, KRS_PRETEND_CARD);
     KrsRenderOptions options     = cases[0].options;
-    KrsPicture      *whole       = render(&stage, &options);
+    KrsPicture      *whole       = render(&fixture, &options);
     int              interrupted = 0, left;
     options.progress             = count_down;
     options.user                 = &left;
     for (int calls = 0; calls < 20; calls++) {
         KrsPicture *picture;
         left             = calls;
-        KrsStatus status = krs_render(stage.rendering, stage.frame, &options, &picture);
+        KrsStatus status = krs_render(fixture.rendering, fixture.frame, &options, &picture);
         if (status == KRS_OK)
             assert_int_equal(difference(whole, picture), 0);
         else
@@ -330,7 +331,7 @@ static void a_card_is_interrupted(void **state)
     }
     assert_in_range(interrupted, 1, 19);
     krs_picture_free(whole);
-    close_stage(&stage);
+    close_fixture(&fixture);
 }
 
 /* ---- Questions ---- */
@@ -340,7 +341,7 @@ enum { RAYS = 300 };
 static void ask(unsigned pretence, KrsHit hits[RAYS])
 {
     static double origins[RAYS][3], directions[RAYS][3];
-    Stage         stage = open_stage(cases[0].text, pretence);
+    Fixture       fixture = open_fixture(cases[0].text, pretence);
     for (int i = 0; i < RAYS; i++) {
         origins[i][0]    = 4;
         origins[i][1]    = 3;
@@ -348,10 +349,11 @@ static void ask(unsigned pretence, KrsHit hits[RAYS])
         directions[i][1] = 0.004 * (i % 20) - 0.6;
         directions[i][2] = 0.004 * (i / 20) - 0.03;
     }
-    assert_int_equal(krs_device_raycast(stage.rendering, stage.frame, (const double(*)[3])origins,
-                                        (const double(*)[3])directions, RAYS, 100, 1e-4, hits),
+    assert_int_equal(krs_device_raycast(fixture.rendering, fixture.frame,
+                                        (const double(*)[3])origins, (const double(*)[3])directions,
+                                        RAYS, 100, 1e-4, hits),
                      KRS_OK);
-    close_stage(&stage);
+    close_fixture(&fixture);
 }
 
 static void answers_are_the_same(void **state)

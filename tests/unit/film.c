@@ -14,7 +14,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
-#include "tests/unit/tracer_stage.h"
+#include "tests/unit/tracer_fixture.h"
 
 enum { SAMPLES = 4 };
 
@@ -31,28 +31,28 @@ static const char film_text[] =
     "show sphere(1).move([0, height, 0]); show box([0.9, 0.9, 0.9]).move([2, 0.5, 0.2]);\n"
     "show plane([0, 1, 0], 0);\n";
 
-static KrsFilm *new_film(Stage *stage, const KrsRenderOptions *options)
+static KrsFilm *new_film(Fixture *fixture, const KrsRenderOptions *options)
 {
     KrsFilm *film;
-    if (krs_film_new(stage->rendering, options, &film) != KRS_OK)
-        fail_msg("%s", krs_renderer_message(stage->renderer));
+    if (krs_film_new(fixture->rendering, options, &film) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(fixture->renderer));
     assert_int_equal(krs_film_samples(film), 0);
     return film;
 }
 
-static void add(Stage *stage, KrsFilm *film, const KrsCamera *camera, uint32_t samples)
+static void add(Fixture *fixture, KrsFilm *film, const KrsCamera *camera, uint32_t samples)
 {
     uint32_t before = krs_film_samples(film);
-    if (krs_film_add(film, stage->frame, camera, samples) != KRS_OK)
-        fail_msg("%s", krs_renderer_message(stage->renderer));
+    if (krs_film_add(film, fixture->frame, camera, samples) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(fixture->renderer));
     assert_int_equal(krs_film_samples(film), before + samples);
 }
 
-static KrsPicture *read_film(Stage *stage, KrsFilm *film)
+static KrsPicture *read_film(Fixture *fixture, KrsFilm *film)
 {
     KrsPicture *picture;
     if (krs_film_read(film, 0, &picture) != KRS_OK)
-        fail_msg("%s", krs_renderer_message(stage->renderer));
+        fail_msg("%s", krs_renderer_message(fixture->renderer));
     return picture;
 }
 
@@ -103,20 +103,20 @@ static void portions_are_the_whole(void **state)
     static const uint32_t portions[][SAMPLES] = {{4}, {1, 3}, {2, 1, 1}, {1, 1, 1, 1}};
     (void)state;
     for (size_t k = 0; k < PRETENCES; k++) {
-        Stage stage;
-        stage_open_as(&stage, film_text, pretences[k]);
+        Fixture fixture;
+        fixture_open_as(&fixture, film_text, pretences[k]);
         for (size_t i = 0; i < sizeof portions / sizeof portions[0]; i++)
             for (int reads = 0; reads < 2; reads++) { /* in between */
-                KrsFilm *film = new_film(&stage, &part);
+                KrsFilm *film = new_film(&fixture, &part);
                 for (int n = 0; n < SAMPLES && portions[i][n]; n++) {
-                    add(&stage, film, NULL, portions[i][n]);
+                    add(&fixture, film, NULL, portions[i][n]);
                     if (reads)
-                        krs_picture_free(read_film(&stage, film));
+                        krs_picture_free(read_film(&fixture, film));
                 }
-                assert_same(read_film(&stage, film), stage_render(&stage, part));
+                assert_same(read_film(&fixture, film), fixture_render(&fixture, part));
                 krs_film_free(film);
             }
-        stage_close_watched(&stage);
+        fixture_close_watched(&fixture);
     }
 }
 
@@ -126,14 +126,14 @@ static void bands_are_swapped(void **state)
     const KrsRenderOptions large = {.width = 300, .height = 200, .samples = 3, .mattes = true};
     (void)state;
     for (size_t k = 0; k < PRETENCES; k++) {
-        Stage stage;
-        stage_open_as(&stage, film_text, pretences[k]);
-        KrsFilm *film = new_film(&stage, &large);
+        Fixture fixture;
+        fixture_open_as(&fixture, film_text, pretences[k]);
+        KrsFilm *film = new_film(&fixture, &large);
         for (int n = 0; n < 3; n++)
-            add(&stage, film, NULL, 1);
-        assert_same(read_film(&stage, film), stage_render(&stage, large));
+            add(&fixture, film, NULL, 1);
+        assert_same(read_film(&fixture, film), fixture_render(&fixture, large));
         krs_film_free(film);
-        stage_close_watched(&stage);
+        fixture_close_watched(&fixture);
     }
 }
 
@@ -145,36 +145,37 @@ static void films_take_turns(void **state)
     for (size_t k = 0; k < PRETENCES; k++) {
         const double point[1][3] = {{0, 5, 0}};
         KrsHit       hit;
-        Stage        stage;
-        stage_open_as(&stage, film_text, pretences[k]);
-        KrsFilm *a = new_film(&stage, &part), *b = new_film(&stage, &other);
-        add(&stage, a, NULL, 1);
-        add(&stage, b, NULL, 1);
-        add(&stage, a, NULL, 2);
-        assert_int_equal(krs_device_probe(stage.rendering, stage.frame, point, 1, &hit), KRS_OK);
+        Fixture      fixture;
+        fixture_open_as(&fixture, film_text, pretences[k]);
+        KrsFilm *a = new_film(&fixture, &part), *b = new_film(&fixture, &other);
+        add(&fixture, a, NULL, 1);
+        add(&fixture, b, NULL, 1);
+        add(&fixture, a, NULL, 2);
+        assert_int_equal(krs_device_probe(fixture.rendering, fixture.frame, point, 1, &hit),
+                         KRS_OK);
         assert_near(hit.distance, 3, 1e-4);
-        add(&stage, a, NULL, 1);
-        krs_picture_free(stage_render(&stage, (KrsRenderOptions){.camera = 2}));
-        add(&stage, b, NULL, 1);
-        assert_same(read_film(&stage, a), stage_render(&stage, part));
-        assert_same(read_film(&stage, b), stage_render(&stage, other));
+        add(&fixture, a, NULL, 1);
+        krs_picture_free(fixture_render(&fixture, (KrsRenderOptions){.camera = 2}));
+        add(&fixture, b, NULL, 1);
+        assert_same(read_film(&fixture, a), fixture_render(&fixture, part));
+        assert_same(read_film(&fixture, b), fixture_render(&fixture, other));
         krs_film_free(a);
         krs_film_free(b);
-        stage_close_watched(&stage);
+        fixture_close_watched(&fixture);
     }
 }
 
 /* Fewer samples than were planned, and more, are means all the same. */
 static void samples_go_on(void **state)
 {
-    Stage           *stage   = *state;
+    Fixture         *fixture = *state;
     KrsRenderOptions options = {
         .width = WIDTH, .height = HEIGHT, .samples = 2, .no_occlusion = true};
-    KrsFilm *film = new_film(stage, &options);
-    add(stage, film, NULL, 2);
-    KrsPicture *two = read_film(stage, film);
-    add(stage, film, NULL, 6);
-    KrsPicture *eight = read_film(stage, film);
+    KrsFilm *film = new_film(fixture, &options);
+    add(fixture, film, NULL, 2);
+    KrsPicture *two = read_film(fixture, film);
+    add(fixture, film, NULL, 6);
+    KrsPicture *eight = read_film(fixture, film);
     assert_int_equal(eight->stats.rays, 8 * WIDTH * HEIGHT);
     assert_int_equal(two->stats.rays, 2 * WIDTH * HEIGHT);
     double shares[2] = {0};
@@ -195,20 +196,20 @@ static void samples_go_on(void **state)
 /* The mean of two frames blurs what moves. */
 static void frames_may_differ(void **state)
 {
-    Stage                 *stage      = *state;
+    Fixture               *fixture    = *state;
     const double           heights[2] = {1, 1.5};
     const KrsRenderOptions options    = {.width = WIDTH, .height = HEIGHT, .samples = 2};
-    KrsFilm               *film       = new_film(stage, &options), *alone[2];
+    KrsFilm               *film       = new_film(fixture, &options), *alone[2];
     KrsPicture            *seen[2];
     for (int n = 0; n < 2; n++) {
-        assert_int_equal(krs_frame_set(stage->frame, "height", &heights[n], 1), KRS_OK);
-        alone[n] = new_film(stage, &options);
-        add(stage, alone[n], NULL, 1);
-        seen[n] = read_film(stage, alone[n]);
-        add(stage, film, NULL, 1);
+        assert_int_equal(krs_frame_set(fixture->frame, "height", &heights[n], 1), KRS_OK);
+        alone[n] = new_film(fixture, &options);
+        add(fixture, alone[n], NULL, 1);
+        seen[n] = read_film(fixture, alone[n]);
+        add(fixture, film, NULL, 1);
     }
     /* The second sample of a film has another place in its pixel, so only what is flat compares. */
-    KrsPicture *blurred = read_film(stage, film);
+    KrsPicture *blurred = read_film(fixture, film);
     assert_memory_equal(blurred->depth, seen[0]->depth, WIDTH * HEIGHT * sizeof(float));
     size_t between = 0;
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
@@ -224,25 +225,25 @@ static void frames_may_differ(void **state)
     }
     krs_picture_free(blurred);
     krs_film_free(film);
-    assert_int_equal(krs_frame_set(stage->frame, "height", &heights[0], 1), KRS_OK);
+    assert_int_equal(krs_frame_set(fixture->frame, "height", &heights[0], 1), KRS_OK);
 }
 
 /* A camera that the caller gives is as good as one of the scene. */
 static void cameras_are_the_callers(void **state)
 {
-    Stage           *stage   = *state;
+    Fixture         *fixture = *state;
     KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT};
-    KrsFilm         *film    = new_film(stage, &options);
+    KrsFilm         *film    = new_film(fixture, &options);
     KrsCamera        camera;
-    for (size_t i = 0; i < krs_camera_count(stage->scene); i++) {
-        assert_int_equal(krs_frame_camera(stage->frame, i, &camera), KRS_OK);
+    for (size_t i = 0; i < krs_camera_count(fixture->scene); i++) {
+        assert_int_equal(krs_frame_camera(fixture->frame, i, &camera), KRS_OK);
         krs_film_clear(film);
-        add(stage, film, &camera, 1);
+        add(fixture, film, &camera, 1);
         options.camera = i;
-        assert_same(read_film(stage, film), stage_render(stage, options));
+        assert_same(read_film(fixture, film), fixture_render(fixture, options));
     }
-    assert_int_equal(krs_camera_count(stage->scene), 3);
-    assert_int_equal(krs_frame_camera(stage->frame, 3, &camera), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_camera_count(fixture->scene), 3);
+    assert_int_equal(krs_frame_camera(fixture->frame, 3, &camera), KRS_BAD_ARGUMENT);
 
     /* Another scene says what the caller says here; it is compiled without a panorama. */
     static const char text[]  = "camera { eye: [0.5, 0.75, 4], target: [0, 0.5, 0],"
@@ -251,33 +252,33 @@ static void cameras_are_the_callers(void **state)
                                 "light sun { direction: [-1, 2, 1], intensity: 3, softness: 1deg }";
     static const char plain[] = "show sphere(1).move([0, 1, 0]); show plane([0, 1, 0], 0);"
                                 "light sun { direction: [-1, 2, 1], intensity: 3, softness: 1deg }";
-    Stage             there, here;
-    stage_open_as(&there, text, 0);
-    stage_open_as(&here, plain, 0);
+    Fixture           there, here;
+    fixture_open_as(&there, text, 0);
+    fixture_open_as(&here, plain, 0);
     const KrsCamera round = {
         .projection = KRS_PANORAMA, .eye = {0.5, 0.75, 4}, .target = {0, 0.5, 0}, .up = {0, 1, 0}};
     options.camera      = 0;
     KrsFilm *all_around = new_film(&here, &options);
     add(&here, all_around, &round, 1);
-    assert_same(read_film(&here, all_around), stage_render(&there, options));
+    assert_same(read_film(&here, all_around), fixture_render(&there, options));
     krs_film_free(all_around);
     krs_film_free(film);
-    stage_close_watched(&there);
-    stage_close_watched(&here);
+    fixture_close_watched(&there);
+    fixture_close_watched(&here);
 }
 
 /* What exceeds the limit keeps its hue, and is counted; what does not is as it was, bit by bit. */
 static void bright_rays_are_clamped(void **state)
 {
-    Stage            stage;
+    Fixture          fixture;
     const double     most    = 0.4;
     KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT};
     size_t           count   = 0;
     (void)state;
-    stage_open_as(&stage, landscape_text, 0); /* all of its light comes in one pass */
-    KrsPicture *plain     = stage_render(&stage, options);
+    fixture_open_as(&fixture, landscape_text, 0); /* all of its light comes in one pass */
+    KrsPicture *plain     = fixture_render(&fixture, options);
     options.most_radiance = most;
-    KrsPicture *clamped   = stage_render(&stage, options);
+    KrsPicture *clamped   = fixture_render(&fixture, options);
     for (size_t k = 0; k < (size_t)WIDTH * HEIGHT; k++) {
         const float *from = &plain->color[4 * k], *to = &clamped->color[4 * k];
         const double bright = (double)fmaxf(fmaxf(from[0], from[1]), from[2]);
@@ -293,7 +294,7 @@ static void bright_rays_are_clamped(void **state)
     assert_int_equal(plain->stats.clamped, 0);
     krs_picture_free(plain);
     krs_picture_free(clamped);
-    stage_close_watched(&stage);
+    fixture_close_watched(&fixture);
 }
 
 static uint64_t sum_of_steps(const KrsPicture *picture)
@@ -306,14 +307,14 @@ static uint64_t sum_of_steps(const KrsPicture *picture)
 
 /* Depths that are nearer than everything leave the plate, those a little farther all.  Rays march no
    farther: to half of the way they need fewer steps. */
-static void check_limits(Stage *stage, size_t camera)
+static void check_limits(Fixture *fixture, size_t camera)
 {
     enum { ACROSS = 60, DOWN = 40, PIXELS = ACROSS * DOWN, SCALES = 3 };
     static float     depth[PIXELS], plate[PIXELS][4];
     const float      scales[SCALES] = {0.5f, 0.999f, 1.001f}, behind[4] = {1, 0.5f, 0.25f, 0.5f};
     uint64_t         steps[SCALES];
     KrsRenderOptions options = {.width = ACROSS, .height = DOWN, .camera = camera, .samples = 1};
-    KrsPicture      *plain   = stage_render(stage, options);
+    KrsPicture      *plain   = fixture_render(fixture, options);
     options.depth            = depth;
     options.plate            = (const float(*)[4])plate;
     options.catcher          = KRS_CATCHER_NONE; /* plates.c has shadows */
@@ -323,7 +324,7 @@ static void check_limits(Stage *stage, size_t camera)
             depth[i] = scales[scale] * plain->depth[i];
             memcpy(plate[i], behind, sizeof behind);
         }
-        KrsPicture *seen = stage_render(stage, options);
+        KrsPicture *seen = fixture_render(fixture, options);
         steps[scale]     = sum_of_steps(seen);
         for (int i = 0; i < 50 * 30; i++) {
             const int  from = (i / 50 + 5) * ACROSS + i % 50 + 3;
@@ -343,11 +344,11 @@ static void depths_end_rays(void **state)
 {
     (void)state;
     for (size_t k = 0; k < PRETENCES; k += PRETENCES - 1) {
-        Stage stage;
-        stage_open_as(&stage, film_text, pretences[k]);
+        Fixture fixture;
+        fixture_open_as(&fixture, film_text, pretences[k]);
         for (size_t camera = 0; camera < 3; camera++)
-            check_limits(&stage, camera);
-        stage_close_watched(&stage);
+            check_limits(&fixture, camera);
+        fixture_close_watched(&fixture);
     }
 }
 
@@ -361,43 +362,43 @@ static bool stop(void *user, double done)
 
 static void failures_leave_it_empty(void **state)
 {
-    Stage           *stage   = *state;
+    Fixture         *fixture = *state;
     int              left    = 1000000;
     KrsRenderOptions options = part;
     KrsPicture      *picture;
     options.progress = stop;
     options.user     = &left;
-    KrsFilm *film    = new_film(stage, &options);
-    add(stage, film, NULL, 2);
+    KrsFilm *film    = new_film(fixture, &options);
+    add(fixture, film, NULL, 2);
     left = 3;
-    assert_int_equal(krs_film_add(film, stage->frame, NULL, 1), KRS_INTERRUPTED);
+    assert_int_equal(krs_film_add(film, fixture->frame, NULL, 1), KRS_INTERRUPTED);
     assert_int_equal(krs_film_samples(film), 0);
     assert_int_equal(krs_film_read(film, 0, &picture), KRS_BAD_ARGUMENT);
     assert_null(picture);
     left = 1000000;
-    add(stage, film, NULL, SAMPLES); /* and it is as good as new */
-    assert_same(read_film(stage, film), stage_render(stage, part));
+    add(fixture, film, NULL, SAMPLES); /* and it is as good as new */
+    assert_same(read_film(fixture, film), fixture_render(fixture, part));
     krs_film_free(film);
 }
 
 static void wrong_use_is_refused(void **state)
 {
-    Stage                 *stage   = *state;
+    Fixture               *fixture = *state;
     const KrsRenderOptions depths  = {.width = 20, .height = 10, .planes = KRS_PLANE_DEPTH};
     const KrsRenderOptions wrong[] = {{.width = 16385}, {.integrator = KRS_INTEGRATOR_COUNT}};
     KrsFilm               *film;
     KrsPicture            *picture;
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        assert_int_equal(krs_film_new(stage->rendering, &wrong[i], &film), KRS_BAD_ARGUMENT);
+        assert_int_equal(krs_film_new(fixture->rendering, &wrong[i], &film), KRS_BAD_ARGUMENT);
         assert_null(film);
     }
-    film = new_film(stage, &depths);
-    assert_int_equal(krs_film_add(film, stage->frame, NULL, 0), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_film_add(film, stage->frame, NULL, KRS_MOST_SAMPLES + 1),
+    film = new_film(fixture, &depths);
+    assert_int_equal(krs_film_add(film, fixture->frame, NULL, 0), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_add(film, fixture->frame, NULL, KRS_MOST_SAMPLES + 1),
                      KRS_BAD_ARGUMENT);
-    add(stage, film, NULL, 1);
-    assert_int_equal(krs_film_add(film, stage->frame, NULL, KRS_MOST_SAMPLES), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_film_add(film, stage->frame, &(KrsCamera){.fov = 1}, 1),
+    add(fixture, film, NULL, 1);
+    assert_int_equal(krs_film_add(film, fixture->frame, NULL, KRS_MOST_SAMPLES), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_add(film, fixture->frame, &(KrsCamera){.fov = 1}, 1),
                      KRS_BAD_ARGUMENT); /* its eye is at its target */
     assert_int_equal(krs_film_samples(film), 1);
     assert_int_equal(krs_film_read(film, KRS_PLANE_NORMAL, &picture), KRS_BAD_ARGUMENT);
@@ -412,23 +413,23 @@ static void wrong_use_is_refused(void **state)
 /* Some planes of many. */
 static void planes_are_chosen_when_read(void **state)
 {
-    Stage      *stage = *state;
-    KrsFilm    *film  = new_film(stage, &part);
+    Fixture    *fixture = *state;
+    KrsFilm    *film    = new_film(fixture, &part);
     KrsPicture *some;
-    add(stage, film, NULL, SAMPLES);
+    add(fixture, film, NULL, SAMPLES);
     assert_int_equal(krs_film_read(film, KRS_PLANE_NORMAL | KRS_PLANE_COLOR, &some), KRS_OK);
     assert_non_null(some->normal);
     assert_non_null(some->color);
     assert_null(some->depth);
-    assert_same(some, stage_render(stage, part));
+    assert_same(some, fixture_render(fixture, part));
     krs_film_free(film);
 }
 
 static int set_up(void **state)
 {
-    static Stage stage;
-    stage_open_as(&stage, film_text, 0);
-    *state = &stage;
+    static Fixture fixture;
+    fixture_open_as(&fixture, film_text, 0);
+    *state = &fixture;
     return 0;
 }
 
@@ -438,14 +439,14 @@ int main(void)
         cmocka_unit_test(portions_are_the_whole),
         cmocka_unit_test(bands_are_swapped),
         cmocka_unit_test(films_take_turns),
-        cmocka_unit_test_setup_teardown(samples_go_on, set_up, stage_tear_down),
-        cmocka_unit_test_setup_teardown(frames_may_differ, set_up, stage_tear_down),
-        cmocka_unit_test_setup_teardown(cameras_are_the_callers, set_up, stage_tear_down),
+        cmocka_unit_test_setup_teardown(samples_go_on, set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(frames_may_differ, set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(cameras_are_the_callers, set_up, fixture_tear_down),
         cmocka_unit_test(bright_rays_are_clamped),
         cmocka_unit_test(depths_end_rays),
-        cmocka_unit_test_setup_teardown(failures_leave_it_empty, set_up, stage_tear_down),
-        cmocka_unit_test_setup_teardown(wrong_use_is_refused, set_up, stage_tear_down),
-        cmocka_unit_test_setup_teardown(planes_are_chosen_when_read, set_up, stage_tear_down),
+        cmocka_unit_test_setup_teardown(failures_leave_it_empty, set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(wrong_use_is_refused, set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(planes_are_chosen_when_read, set_up, fixture_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -109,7 +109,7 @@ static uint32_t *compile_by_glslang(const char *text, size_t *count)
 {
     const glslang_input_t input = {
         .language                = GLSLANG_SOURCE_GLSL,
-        .stage                   = GLSLANG_STAGE_COMPUTE,
+        .fixture                 = GLSLANG_STAGE_COMPUTE,
         .client                  = GLSLANG_CLIENT_VULKAN,
         .client_version          = GLSLANG_TARGET_VULKAN_1_1,
         .target_language         = GLSLANG_TARGET_SPV,
@@ -147,16 +147,16 @@ static size_t count_instructions(const uint32_t *words, size_t count, uint32_t o
 
 /* ---- a device ---- */
 
-typedef struct Stage {
+typedef struct Fixture {
     Gpu                   gpu;
     Buffer                buffer;
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout      layout;
     VkDescriptorPool      pool;
     VkDescriptorSet       set;
-} Stage;
+} Fixture;
 
-static void create_layout(Stage *stage)
+static void create_layout(Fixture *fixture)
 {
     const VkDescriptorSetLayoutBinding binding = {
         .descriptorType  = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
@@ -166,36 +166,36 @@ static void create_layout(Stage *stage)
         .sType        = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
         .bindingCount = 1,
         .pBindings    = &binding};
-    VkDevice device = stage->gpu.device;
-    assert_int_equal(vkCreateDescriptorSetLayout(device, &set, NULL, &stage->set_layout),
+    VkDevice device = fixture->gpu.device;
+    assert_int_equal(vkCreateDescriptorSetLayout(device, &set, NULL, &fixture->set_layout),
                      VK_SUCCESS);
     const VkPipelineLayoutCreateInfo layout = {
         .sType          = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
         .setLayoutCount = 1,
-        .pSetLayouts    = &stage->set_layout};
-    assert_int_equal(vkCreatePipelineLayout(device, &layout, NULL, &stage->layout), VK_SUCCESS);
+        .pSetLayouts    = &fixture->set_layout};
+    assert_int_equal(vkCreatePipelineLayout(device, &layout, NULL, &fixture->layout), VK_SUCCESS);
 }
 
-static void create_set(Stage *stage)
+static void create_set(Fixture *fixture)
 {
-    VkDevice                         device = stage->gpu.device;
+    VkDevice                         device = fixture->gpu.device;
     const VkDescriptorPoolSize       size   = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1};
     const VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                              .maxSets       = 1,
                                              .poolSizeCount = 1,
                                              .pPoolSizes    = &size};
-    assert_int_equal(vkCreateDescriptorPool(device, &pool, NULL, &stage->pool), VK_SUCCESS);
+    assert_int_equal(vkCreateDescriptorPool(device, &pool, NULL, &fixture->pool), VK_SUCCESS);
     const VkDescriptorSetAllocateInfo set = {
         .sType              = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-        .descriptorPool     = stage->pool,
+        .descriptorPool     = fixture->pool,
         .descriptorSetCount = 1,
-        .pSetLayouts        = &stage->set_layout};
-    assert_int_equal(vkAllocateDescriptorSets(device, &set, &stage->set), VK_SUCCESS);
-    const VkDescriptorBufferInfo buffer = {stage->buffer.buffer, 0, stage->buffer.size};
+        .pSetLayouts        = &fixture->set_layout};
+    assert_int_equal(vkAllocateDescriptorSets(device, &set, &fixture->set), VK_SUCCESS);
+    const VkDescriptorBufferInfo buffer = {fixture->buffer.buffer, 0, fixture->buffer.size};
     vkUpdateDescriptorSets(device, 1,
                            &(VkWriteDescriptorSet){
                                .sType           = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                               .dstSet          = stage->set,
+                               .dstSet          = fixture->set,
                                .descriptorCount = 1,
                                .descriptorType  = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                .pBufferInfo     = &buffer,
@@ -203,28 +203,28 @@ static void create_set(Stage *stage)
                            0, NULL);
 }
 
-static int open_stage(void **state)
+static int open_fixture(void **state)
 {
-    static Stage             stage;
+    static Fixture           fixture;
     const KrsRendererOptions options = {.device = tested_device()};
     spirv_start();
-    if (!gpu_open(&stage.gpu, &options) ||
-        !buffer_create(&stage.gpu, &stage.buffer, NUMBERS * sizeof(float), SHARED, "numbers"))
+    if (!gpu_open(&fixture.gpu, &options) ||
+        !buffer_create(&fixture.gpu, &fixture.buffer, NUMBERS * sizeof(float), SHARED, "numbers"))
         return -1;
-    create_layout(&stage);
-    create_set(&stage);
-    *state = &stage;
+    create_layout(&fixture);
+    create_set(&fixture);
+    *state = &fixture;
     return 0;
 }
 
-static int close_stage(void **state)
+static int close_fixture(void **state)
 {
-    Stage *stage = *state;
-    vkDestroyDescriptorPool(stage->gpu.device, stage->pool, NULL);
-    vkDestroyPipelineLayout(stage->gpu.device, stage->layout, NULL);
-    vkDestroyDescriptorSetLayout(stage->gpu.device, stage->set_layout, NULL);
-    buffer_destroy(&stage->gpu, &stage->buffer);
-    gpu_close(&stage->gpu);
+    Fixture *fixture = *state;
+    vkDestroyDescriptorPool(fixture->gpu.device, fixture->pool, NULL);
+    vkDestroyPipelineLayout(fixture->gpu.device, fixture->layout, NULL);
+    vkDestroyDescriptorSetLayout(fixture->gpu.device, fixture->set_layout, NULL);
+    buffer_destroy(&fixture->gpu, &fixture->buffer);
+    gpu_close(&fixture->gpu);
     spirv_stop();
     return 0;
 }
@@ -236,28 +236,28 @@ static void fill(float *numbers)
         numbers[i] = (float)(i * 2654435761u >> 8) / 8388608.0f - 1;
 }
 
-static void run(Stage *stage, uint32_t *words, size_t count, float results[NUMBERS])
+static void run(Fixture *fixture, uint32_t *words, size_t count, float results[NUMBERS])
 {
     const KernelCode code = {.file = "a module", .words = words, .bytes = count * sizeof *words};
-    Gpu             *gpu  = &stage->gpu;
+    Gpu             *gpu  = &fixture->gpu;
     Kernel           kernel;
     double           ms = 0;
-    fill(stage->buffer.bytes);
-    if (!kernel_load(gpu, &kernel, &code, stage->layout, &ms) || !gpu_begin(gpu))
+    fill(fixture->buffer.bytes);
+    if (!kernel_load(gpu, &kernel, &code, fixture->layout, &ms) || !gpu_begin(gpu))
         fail_msg("%s", gpu->message);
     vkCmdBindPipeline(gpu->commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
-    vkCmdBindDescriptorSets(gpu->commands, VK_PIPELINE_BIND_POINT_COMPUTE, stage->layout, 0, 1,
-                            &stage->set, 0, NULL);
+    vkCmdBindDescriptorSets(gpu->commands, VK_PIPELINE_BIND_POINT_COMPUTE, fixture->layout, 0, 1,
+                            &fixture->set, 0, NULL);
     vkCmdDispatch(gpu->commands, 1, 1, 1);
     if (!gpu_finish(gpu, &ms))
         fail_msg("%s", gpu->message);
     kernel_destroy(gpu, &kernel);
-    memcpy(results, stage->buffer.bytes, NUMBERS * sizeof *results);
+    memcpy(results, fixture->buffer.bytes, NUMBERS * sizeof *results);
 }
 
 /* ---- tests ---- */
 
-static void check(Stage *stage, size_t shader)
+static void check(Fixture *fixture, size_t shader)
 {
     enum { OP_FUNCTION = 54, OP_CALL = 57 };
     const char *name  = shaders[shader].name;
@@ -270,8 +270,8 @@ static void check(Stage *stage, size_t shader)
     words = compile_by_glslang(shaders[shader].text, &count); /* which runs by now */
     assert_int_equal(count_instructions(flat, flat_count, OP_CALL), 0);
     assert_int_equal(count_instructions(flat, flat_count, OP_FUNCTION), 1);
-    run(stage, words, count, expected);
-    run(stage, flat, flat_count, found);
+    run(fixture, words, count, expected);
+    run(fixture, flat, flat_count, found);
     fill(before);
     if (memcmp(expected, before, sizeof before) == 0)
         fail_msg("%s: changes nothing", name);
@@ -307,5 +307,5 @@ int main(void)
         cmocka_unit_test(results_are_the_same),
         cmocka_unit_test(others_are_refused),
     };
-    return cmocka_run_group_tests_name("flatten", tests, open_stage, close_stage);
+    return cmocka_run_group_tests_name("flatten", tests, open_fixture, close_fixture);
 }

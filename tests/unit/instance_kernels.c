@@ -23,54 +23,54 @@ enum { POINTS = 4096 };
 /* Single precision in coordinates up to this one. */
 static const double FARTHEST = 8, TOLERANCE = 1e-5;
 
-typedef struct Stage {
+typedef struct Fixture {
     KrsRenderer *renderer;
     KrsScene    *scene;
     Many         many;
     float        points[POINTS][3], found[POINTS];
-} Stage;
+} Fixture;
 
 /* A scene whose graph gets the functions. */
-static void open_stage(Stage *stage, Bench *bench)
+static void open_fixture(Fixture *fixture, Bench *bench)
 {
     static const char  text[]  = "show sphere(1);";
     KrsRendererOptions options = {.device = tested_device()};
-    if (krs_renderer_new(&options, &stage->renderer) != KRS_OK)
-        fail_msg("%s", krs_renderer_message(stage->renderer));
+    if (krs_renderer_new(&options, &fixture->renderer) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(fixture->renderer));
     assert_int_equal(
-        krs_compile_text(text, strlen(text), "instance group.krs", NULL, &stage->scene), KRS_OK);
-    Graph *graph                      = (Graph *)(uintptr_t)stage->scene->graph;
-    bench->graph                      = graph;
-    bench->point                      = graph_leaf(graph, OP_POINT);
-    stage->many                       = make_many(bench);
-    TableSizes sizes                  = tables_measure(graph->instances, NULL);
-    stage->scene->program.table_rows  = sizes.rows;
-    stage->scene->program.table_cells = sizes.cells;
+        krs_compile_text(text, strlen(text), "instance group.krs", NULL, &fixture->scene), KRS_OK);
+    Graph *graph                        = (Graph *)(uintptr_t)fixture->scene->graph;
+    bench->graph                        = graph;
+    bench->point                        = graph_leaf(graph, OP_POINT);
+    fixture->many                       = make_many(bench);
+    TableSizes sizes                    = tables_measure(graph->instances, NULL);
+    fixture->scene->program.table_rows  = sizes.rows;
+    fixture->scene->program.table_cells = sizes.cells;
     for (int i = 0; i < POINTS; i++)
         for (int k = 0; k < 3; k++)
-            stage->points[i][k] = (float)random_between(&bench->random, -FARTHEST, FARTHEST);
+            fixture->points[i][k] = (float)random_between(&bench->random, -FARTHEST, FARTHEST);
 }
 
 /* What kernels find where a root of the graph is the scene's distance. */
-static void sample_root(Stage *stage, Node root)
+static void sample_root(Fixture *fixture, Node root)
 {
     KrsFrame     *frame;
     KrsRendering *rendering;
-    surface_roots(&stage->scene->roots, 0)[ROOT_DISTANCE] = root;
-    assert_int_equal(krs_frame_new(stage->scene, &frame), KRS_OK);
+    surface_roots(&fixture->scene->roots, 0)[ROOT_DISTANCE] = root;
+    assert_int_equal(krs_frame_new(fixture->scene, &frame), KRS_OK);
     assert_int_equal(krs_frame_set_time(frame, TIME), KRS_OK);
-    assert_int_equal(krs_rendering_new(stage->renderer, stage->scene, &rendering), KRS_OK);
-    assert_int_equal(
-        krs_sample(rendering, frame, (const float(*)[3])stage->points, POINTS, stage->found, NULL),
-        KRS_OK);
+    assert_int_equal(krs_rendering_new(fixture->renderer, fixture->scene, &rendering), KRS_OK);
+    assert_int_equal(krs_sample(rendering, frame, (const float(*)[3])fixture->points, POINTS,
+                                fixture->found, NULL),
+                     KRS_OK);
     krs_rendering_free(rendering);
     krs_frame_free(frame);
 }
 
 /* At how many points the tape finds something else. */
-static int count_differences(const Stage *stage, Node root, Bench *bench)
+static int count_differences(const Fixture *fixture, Node root, Bench *bench)
 {
-    const Graph    *graph      = stage->scene->graph;
+    const Graph    *graph      = fixture->scene->graph;
     Tape            tape       = tape_new(graph, &root, 1, &bench->arena);
     NodeValue      *values     = arena_new_array(&bench->arena, NodeValue, graph->count);
     const NodeValue parameters = {{TIME}};
@@ -78,9 +78,9 @@ static int count_differences(const Stage *stage, Node root, Bench *bench)
     tape.by_cells              = true;
     tape_run_frame(&tape, &parameters, values);
     for (int i = 0; i < POINTS; i++) {
-        const float *point = stage->points[i];
+        const float *point = fixture->points[i];
         tape_run_point(&tape, (double[]){point[0], point[1], point[2]}, values);
-        count += !(fabs(values[root].v[0] - (double)stage->found[i]) <= TOLERANCE);
+        count += !(fabs(values[root].v[0] - (double)fixture->found[i]) <= TOLERANCE);
     }
     return count;
 }
@@ -89,18 +89,18 @@ static int count_differences(const Stage *stage, Node root, Bench *bench)
 static void kernels_give_what_tapes_give(void **state)
 {
     static const int roots[] = {SHARP, SMOOTH, NESTED, SHADED};
-    static Stage     stage;
+    static Fixture   fixture;
     Bench           *bench = *state;
-    open_stage(&stage, bench);
+    open_fixture(&fixture, bench);
     for (int i = 0; i < 4; i++) {
-        Node root = stage.many.roots[roots[i]];
-        sample_root(&stage, root);
-        assert_in_range(count_differences(&stage, root, bench), 0, 2);
-        Node other = stage.many.roots[roots[(i + 1) % 4]];
-        assert_in_range(count_differences(&stage, other, bench), POINTS / 2, POINTS);
+        Node root = fixture.many.roots[roots[i]];
+        sample_root(&fixture, root);
+        assert_in_range(count_differences(&fixture, root, bench), 0, 2);
+        Node other = fixture.many.roots[roots[(i + 1) % 4]];
+        assert_in_range(count_differences(&fixture, other, bench), POINTS / 2, POINTS);
     }
-    krs_scene_free(stage.scene);
-    krs_renderer_free(stage.renderer);
+    krs_scene_free(fixture.scene);
+    krs_renderer_free(fixture.renderer);
 }
 
 int main(void)

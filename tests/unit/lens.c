@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
-#include "tests/unit/tracer_stage.h"
+#include "tests/unit/tracer_fixture.h"
 
 enum { SIDE = 96 };
 #define FOV      (40 * M_PI / 180)
@@ -67,25 +67,25 @@ static Blot find_blot(const KrsPicture *picture)
     return blot;
 }
 
-static void set(Stage *stage, const char *name, double value)
+static void set(Fixture *fixture, const char *name, double value)
 {
-    assert_int_equal(krs_frame_set(stage->frame, name, &value, 1), KRS_OK);
+    assert_int_equal(krs_frame_set(fixture->frame, name, &value, 1), KRS_OK);
 }
 
-static KrsPicture *render(Stage *stage, size_t camera, uint32_t samples, KrsEye eye)
+static KrsPicture *render(Fixture *fixture, size_t camera, uint32_t samples, KrsEye eye)
 {
-    return stage_render(stage, (KrsRenderOptions){.width         = SIDE,
-                                                  .height        = SIDE,
-                                                  .samples       = samples,
-                                                  .camera        = camera,
-                                                  .eye           = eye,
-                                                  .frame_seconds = 0.5,
-                                                  .no_occlusion  = true});
+    return fixture_render(fixture, (KrsRenderOptions){.width         = SIDE,
+                                                      .height        = SIDE,
+                                                      .samples       = samples,
+                                                      .camera        = camera,
+                                                      .eye           = eye,
+                                                      .frame_seconds = 0.5,
+                                                      .no_occlusion  = true});
 }
 
-static Blot see(Stage *stage, size_t camera, uint32_t samples, KrsEye eye)
+static Blot see(Fixture *fixture, size_t camera, uint32_t samples, KrsEye eye)
 {
-    KrsPicture *picture = render(stage, camera, samples, eye);
+    KrsPicture *picture = render(fixture, camera, samples, eye);
     Blot        blot    = find_blot(picture);
     krs_picture_free(picture);
     return blot;
@@ -105,7 +105,7 @@ static double spread_of(size_t camera)
 static void balls_have_circles_of_confusion(void **state)
 {
     static const double depths[] = {2, 5, 30};
-    Stage              *stage    = *state;
+    Fixture            *fixture  = *state;
     for (size_t i = 0; i < sizeof depths / sizeof depths[0]; i++)
         for (size_t camera = LENS; camera <= ORTHOGRAPHIC; camera++) {
             const bool   flat = camera == ORTHOGRAPHIC;
@@ -113,9 +113,9 @@ static void balls_have_circles_of_confusion(void **state)
             const double ball = 1.5, size = ball * unit;
             /* Of a point, where all rays through the lens that see it meet the picture. */
             const double circle = APERTURE * fabs(1 - z / FOCUS) / unit;
-            set(stage, "away", z);
-            set(stage, "size", size);
-            const Blot   blot   = see(stage, camera, 64, KRS_EYE_OF_BOTH);
+            set(fixture, "away", z);
+            set(fixture, "size", size);
+            const Blot   blot   = see(fixture, camera, 64, KRS_EYE_OF_BOTH);
             const double spread = circle * circle * spread_of(camera) + ball * ball / 2 + 1.0 / 6;
             assert_near(blot.spread / spread, 1, 0.08);
             assert_true(blot.farthest < circle + ball + 1.2);
@@ -128,12 +128,12 @@ static void balls_have_circles_of_confusion(void **state)
 
 static void what_is_in_focus_is_sharp(void **state)
 {
-    Stage *stage = *state;
-    set(stage, "away", FOCUS);
-    set(stage, "size", 0.5);
+    Fixture *fixture = *state;
+    set(fixture, "away", FOCUS);
+    set(fixture, "size", 0.5);
     for (size_t camera = LENS; camera <= FIVE; camera++) {
-        Blot sharp = see(stage, PLAIN, 16, KRS_EYE_OF_BOTH);
-        Blot seen  = see(stage, camera, 16, KRS_EYE_OF_BOTH);
+        Blot sharp = see(fixture, PLAIN, 16, KRS_EYE_OF_BOTH);
+        Blot seen  = see(fixture, camera, 16, KRS_EYE_OF_BOTH);
         assert_near(seen.spread / sharp.spread, 1, 0.01);
         assert_near(seen.weight / sharp.weight, 1, 0.01);
     }
@@ -142,12 +142,12 @@ static void what_is_in_focus_is_sharp(void **state)
 /* Planes other than colour, and pictures of one sample, come from the ray through the middle. */
 static void planes_are_sharp(void **state)
 {
-    Stage *stage = *state;
-    set(stage, "away", 3);
-    set(stage, "size", 0.5);
-    KrsPicture *plain = render(stage, PLAIN, 1, KRS_EYE_OF_BOTH);
-    KrsPicture *lens  = render(stage, LENS, 8, KRS_EYE_OF_BOTH);
-    KrsPicture *one   = render(stage, LENS, 1, KRS_EYE_OF_BOTH);
+    Fixture *fixture = *state;
+    set(fixture, "away", 3);
+    set(fixture, "size", 0.5);
+    KrsPicture *plain = render(fixture, PLAIN, 1, KRS_EYE_OF_BOTH);
+    KrsPicture *lens  = render(fixture, LENS, 8, KRS_EYE_OF_BOTH);
+    KrsPicture *one   = render(fixture, LENS, 1, KRS_EYE_OF_BOTH);
     size_t      hits = 0, between = 0;
     for (size_t k = 0; k < (size_t)SIDE * SIDE; k++) {
         assert_int_equal(lens->component[k], plain->component[k]);
@@ -169,7 +169,7 @@ static void planes_are_sharp(void **state)
 static void portions_are_the_whole(void **state)
 {
     static const size_t cameras[] = {LENS, BLURS};
-    Stage              *stage     = *state;
+    Fixture            *fixture   = *state;
     for (size_t i = 0; i < 2; i++) {
         const KrsRenderOptions options = {.width         = SIDE,
                                           .height        = SIDE,
@@ -177,10 +177,10 @@ static void portions_are_the_whole(void **state)
                                           .camera        = cameras[i],
                                           .frame_seconds = 0.5};
         KrsFilm               *film;
-        KrsPicture            *whole = stage_render(stage, options), *parts;
-        assert_int_equal(krs_film_new(stage->rendering, &options, &film), KRS_OK);
-        assert_int_equal(krs_film_add(film, stage->frame, NULL, 2), KRS_OK);
-        assert_int_equal(krs_film_add(film, stage->frame, NULL, 3), KRS_OK);
+        KrsPicture            *whole = fixture_render(fixture, options), *parts;
+        assert_int_equal(krs_film_new(fixture->rendering, &options, &film), KRS_OK);
+        assert_int_equal(krs_film_add(film, fixture->frame, NULL, 2), KRS_OK);
+        assert_int_equal(krs_film_add(film, fixture->frame, NULL, 3), KRS_OK);
         assert_int_equal(krs_film_read(film, 0, &parts), KRS_OK);
         assert_memory_equal(whole->color, parts->color, 16 * SIDE * SIDE);
         assert_memory_equal(whole->depth, parts->depth, 4 * SIDE * SIDE);
@@ -194,11 +194,11 @@ static void portions_are_the_whole(void **state)
 
 static void shifts_move_the_picture(void **state)
 {
-    Stage *stage = *state;
-    set(stage, "away", 5);
-    set(stage, "size", 0.6);
-    KrsPicture *plain = render(stage, PLAIN, 1, KRS_EYE_OF_BOTH);
-    KrsPicture *moved = render(stage, MOVED, 1, KRS_EYE_OF_BOTH);
+    Fixture *fixture = *state;
+    set(fixture, "away", 5);
+    set(fixture, "size", 0.6);
+    KrsPicture *plain = render(fixture, PLAIN, 1, KRS_EYE_OF_BOTH);
+    KrsPicture *moved = render(fixture, MOVED, 1, KRS_EYE_OF_BOTH);
     size_t      hits  = 0;
     for (int row = 12; row < SIDE; row++) /* moved down by an eighth, and right by a quarter */
         for (int column = SIDE / 4; column < SIDE; column++) {
@@ -232,12 +232,12 @@ static void shifts_move_the_picture(void **state)
 static void matrices_rebuild_the_camera(void **state)
 {
     static const size_t cameras[] = {PLAIN, MOVED, ORTHOGRAPHIC};
-    Stage              *stage     = *state;
-    set(stage, "away", 5);
-    set(stage, "beside", 0.3);
-    set(stage, "size", 0.7);
+    Fixture            *fixture   = *state;
+    set(fixture, "away", 5);
+    set(fixture, "beside", 0.3);
+    set(fixture, "size", 0.7);
     for (size_t i = 0; i < 3; i++) {
-        KrsPicture *picture = render(stage, cameras[i], 1, KRS_EYE_OF_BOTH);
+        KrsPicture *picture = render(fixture, cameras[i], 1, KRS_EYE_OF_BOTH);
         const float(*c)[4]  = (const float(*)[4])picture->world_to_camera;
         const float(*n)[4]  = (const float(*)[4])picture->world_to_ndc;
         const bool flat     = cameras[i] == ORTHOGRAPHIC;
@@ -272,21 +272,21 @@ static void matrices_rebuild_the_camera(void **state)
         assert_true(hits > 100);
         krs_picture_free(picture);
     }
-    set(stage, "beside", 0);
+    set(fixture, "beside", 0);
 }
 
 static void beams_of_shifted_pictures_lose_nothing(void **state)
 {
-    Stage           *stage   = *state;
+    Fixture         *fixture = *state;
     KrsRenderOptions options = {
         .width = SIDE, .height = SIDE, .camera = MOVED, .no_occlusion = true};
-    set(stage, "away", 30);
+    set(fixture, "away", 30);
     for (double size = 0.01; size < 1; size *= 2) {
-        set(stage, "size", size);
+        set(fixture, "size", size);
         options.no_beams    = false;
-        KrsPicture *with    = stage_render(stage, options);
+        KrsPicture *with    = fixture_render(fixture, options);
         options.no_beams    = true;
-        KrsPicture *without = stage_render(stage, options);
+        KrsPicture *without = fixture_render(fixture, options);
         assert_memory_equal(with->component, without->component, 4 * SIDE * SIDE);
         krs_picture_free(with);
         krs_picture_free(without);
@@ -299,22 +299,22 @@ static void beams_of_shifted_pictures_lose_nothing(void **state)
    from a quarter of that to three quarters: while the ball is 0.125 to 0.375 to the right. */
 static void what_moves_is_drawn_out(void **state)
 {
-    Stage       *stage = *state;
+    Fixture     *fixture = *state;
     const double z = 4, unit = pixel() * z, size = 0.05 / unit, way = 0.25 / unit;
-    set(stage, "away", z);
-    set(stage, "size", 0.05);
-    const Blot still = see(stage, PLAIN, 64, KRS_EYE_OF_BOTH);
-    const Blot blot  = see(stage, BLURS, 64, KRS_EYE_OF_BOTH);
+    set(fixture, "away", z);
+    set(fixture, "size", 0.05);
+    const Blot still = see(fixture, PLAIN, 64, KRS_EYE_OF_BOTH);
+    const Blot blot  = see(fixture, BLURS, 64, KRS_EYE_OF_BOTH);
     assert_near(still.x, 0, 0.05);
     assert_near(blot.x, 0.25 / unit, 0.1);
     assert_near(blot.spread / (way * way / 12 + size * size / 2 + 1.0 / 6), 1, 0.03);
     assert_near(blot.weight / still.weight, 1, 0.02);
-    assert_near(krs_frame_time(stage->frame), 0, 0);
+    assert_near(krs_frame_time(fixture->frame), 0, 0);
     /* The planes are those of the middle. */
-    set(stage, "beside", 0.25);
-    KrsPicture *middle = render(stage, PLAIN, 1, KRS_EYE_OF_BOTH);
-    set(stage, "beside", 0);
-    KrsPicture *moving = render(stage, BLURS, 16, KRS_EYE_OF_BOTH);
+    set(fixture, "beside", 0.25);
+    KrsPicture *middle = render(fixture, PLAIN, 1, KRS_EYE_OF_BOTH);
+    set(fixture, "beside", 0);
+    KrsPicture *moving = render(fixture, BLURS, 16, KRS_EYE_OF_BOTH);
     assert_memory_equal(middle->component, moving->component, 4 * SIDE * SIDE);
     krs_picture_free(middle);
     krs_picture_free(moving);
@@ -325,31 +325,31 @@ static void what_moves_is_drawn_out(void **state)
 static void eyes_see_the_parallax(void **state)
 {
     static const double depths[] = {4, 8, 16};
-    Stage              *stage    = *state;
+    Fixture            *fixture  = *state;
     for (size_t i = 0; i < 3; i++) {
         const double z = depths[i];
-        set(stage, "size", 0.1);
-        set(stage, "away", z);
-        const Blot left  = see(stage, TURNS, 16, KRS_EYE_ON_LEFT);
-        const Blot right = see(stage, TURNS, 16, KRS_EYE_ON_RIGHT);
+        set(fixture, "size", 0.1);
+        set(fixture, "away", z);
+        const Blot left  = see(fixture, TURNS, 16, KRS_EYE_ON_LEFT);
+        const Blot right = see(fixture, TURNS, 16, KRS_EYE_ON_RIGHT);
         assert_near(left.x - right.x, 0.3 * (1 / z - 1 / 8.0) / pixel(), 0.1);
         assert_near(left.x + right.x, 0, 0.25);
         /* Of a panorama each eye is 0.2 from the middle, across the way that it looks. */
-        set(stage, "size", 0.7);
-        const Blot west = see(stage, ALL_AROUND, 64, KRS_EYE_ON_LEFT);
-        const Blot east = see(stage, ALL_AROUND, 64, KRS_EYE_ON_RIGHT);
+        set(fixture, "size", 0.7);
+        const Blot west = see(fixture, ALL_AROUND, 64, KRS_EYE_ON_LEFT);
+        const Blot east = see(fixture, ALL_AROUND, 64, KRS_EYE_ON_RIGHT);
         assert_near(west.x - east.x, 2 * asin(0.2 / z) / (2 * M_PI) * SIDE, 0.15);
     }
 }
 
 static void pictures_are_joined(void **state)
 {
-    Stage      *stage = *state;
+    Fixture    *fixture = *state;
     KrsPicture *eyes[2], *joined, *small;
-    set(stage, "away", 4);
-    set(stage, "size", 0.5);
-    eyes[0] = render(stage, TURNS, 2, KRS_EYE_ON_LEFT);
-    eyes[1] = render(stage, TURNS, 2, KRS_EYE_ON_RIGHT);
+    set(fixture, "away", 4);
+    set(fixture, "size", 0.5);
+    eyes[0] = render(fixture, TURNS, 2, KRS_EYE_ON_LEFT);
+    eyes[1] = render(fixture, TURNS, 2, KRS_EYE_ON_RIGHT);
     for (int below = 0; below < 2; below++) {
         assert_int_equal(krs_picture_join(eyes[0], eyes[1], below, &joined), KRS_OK);
         assert_int_equal(joined->width, below ? SIDE : 2 * SIDE);
@@ -365,7 +365,7 @@ static void pictures_are_joined(void **state)
         }
         krs_picture_free(joined);
     }
-    small = stage_render(stage, (KrsRenderOptions){.width = SIDE, .height = 8});
+    small = fixture_render(fixture, (KrsRenderOptions){.width = SIDE, .height = 8});
     assert_int_equal(krs_picture_join(eyes[0], small, false, &joined), KRS_BAD_ARGUMENT);
     assert_null(joined);
     krs_picture_free(small);
@@ -377,7 +377,7 @@ static void pictures_are_joined(void **state)
 
 static void wrong_lenses_are_refused(void **state)
 {
-    Stage           *stage   = *state;
+    Fixture         *fixture = *state;
     KrsCamera        good    = {.fov = 1, .target = {0, 0, -1}, .up = {0, 1, 0}};
     KrsCamera        wrong[] = {good, good, good};
     KrsRenderOptions options = {.width = 20, .height = 10};
@@ -385,22 +385,22 @@ static void wrong_lenses_are_refused(void **state)
     wrong[0].aperture = -1;
     wrong[1].focus    = -3;
     wrong[2].shift[1] = INFINITY;
-    assert_int_equal(krs_film_new(stage->rendering, &options, &film), KRS_OK);
+    assert_int_equal(krs_film_new(fixture->rendering, &options, &film), KRS_OK);
     for (int i = 0; i < 3; i++)
-        assert_int_equal(krs_film_add(film, stage->frame, &wrong[i], 1), KRS_BAD_ARGUMENT);
-    assert_int_equal(krs_film_add(film, stage->frame, &good, 1), KRS_OK);
+        assert_int_equal(krs_film_add(film, fixture->frame, &wrong[i], 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_add(film, fixture->frame, &good, 1), KRS_OK);
     krs_film_free(film);
     options.light = 2; /* there is one */
-    assert_int_equal(krs_film_new(stage->rendering, &options, &film), KRS_OK);
-    assert_int_equal(krs_film_add(film, stage->frame, &good, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_new(fixture->rendering, &options, &film), KRS_OK);
+    assert_int_equal(krs_film_add(film, fixture->frame, &good, 1), KRS_BAD_ARGUMENT);
     krs_film_free(film);
 }
 
 static int set_up(void **state)
 {
-    static Stage stage;
-    stage_open(&stage, lens_text, NULL);
-    *state = &stage;
+    static Fixture fixture;
+    fixture_open(&fixture, lens_text, NULL);
+    *state = &fixture;
     return 0;
 }
 
@@ -419,5 +419,5 @@ int main(void)
         cmocka_unit_test(pictures_are_joined),
         cmocka_unit_test(wrong_lenses_are_refused),
     };
-    return cmocka_run_group_tests(tests, set_up, stage_tear_down);
+    return cmocka_run_group_tests(tests, set_up, fixture_tear_down);
 }

@@ -54,30 +54,31 @@ static int close_renderer(void **state)
     return complaints > 0;
 }
 
-typedef struct Stage {
+typedef struct Fixture {
     KrsScene     *scene;
     KrsFrame     *frame;
     KrsRendering *rendering;
-} Stage;
+} Fixture;
 
-static Stage open_stage(const char *text, KrsPurpose purpose)
+static Fixture open_fixture(const char *text, KrsPurpose purpose)
 {
-    Stage stage;
-    assert_int_equal(krs_compile_text(text, strlen(text), "mixed", NULL, &stage.scene), KRS_OK);
-    assert_int_equal(krs_frame_new(stage.scene, &stage.frame), KRS_OK);
-    assert_int_equal(krs_rendering_new_for(renderer, stage.scene, purpose, &stage.rendering),
+    Fixture fixture;
+    assert_int_equal(krs_compile_text(text, strlen(text), "mixed", NULL, &fixture.scene), KRS_OK);
+    assert_int_equal(krs_frame_new(fixture.scene, &fixture.frame), KRS_OK);
+    assert_int_equal(krs_rendering_new_for(renderer, fixture.scene, purpose, &fixture.rendering),
                      KRS_OK);
-    return stage;
+    return fixture;
 }
 
-static void close_stage(Stage *stage)
+static void close_fixture(Fixture *fixture)
 {
-    krs_rendering_free(stage->rendering);
-    krs_frame_free(stage->frame);
-    krs_scene_free(stage->scene);
+    krs_rendering_free(fixture->rendering);
+    krs_frame_free(fixture->frame);
+    krs_scene_free(fixture->scene);
 }
 
-static KrsPicture *render(const Stage *stage, KrsIntegrator integrator, KrsComponents components)
+static KrsPicture *render(const Fixture *fixture, KrsIntegrator integrator,
+                          KrsComponents components)
 {
     const KrsRenderOptions options = {.width      = WIDTH,
                                       .height     = HEIGHT,
@@ -85,7 +86,7 @@ static KrsPicture *render(const Stage *stage, KrsIntegrator integrator, KrsCompo
                                       .integrator = integrator,
                                       .components = components};
     KrsPicture            *picture;
-    if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
+    if (krs_render(fixture->rendering, fixture->frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     return picture;
 }
@@ -105,20 +106,20 @@ static int count_different(const KrsPicture *a, const KrsPicture *b)
 
 enum { MOST_KERNELS = 64 };
 
-static int count_kernels(const Stage *stage, const char *name)
+static int count_kernels(const Fixture *fixture, const char *name)
 {
     KrsKernelStats kernels[MOST_KERNELS];
-    const size_t   count = krs_rendering_kernels(stage->rendering, kernels, MOST_KERNELS);
+    const size_t   count = krs_rendering_kernels(fixture->rendering, kernels, MOST_KERNELS);
     int            found = 0;
     for (size_t i = 0; i < count && i < MOST_KERNELS; i++)
         found += strncmp(kernels[i].name, name, strlen(name)) == 0;
     return found;
 }
 
-static size_t count_bytes(const Stage *stage, const char *name)
+static size_t count_bytes(const Fixture *fixture, const char *name)
 {
     KrsKernelStats kernels[MOST_KERNELS];
-    const size_t   count = krs_rendering_kernels(stage->rendering, kernels, MOST_KERNELS);
+    const size_t   count = krs_rendering_kernels(fixture->rendering, kernels, MOST_KERNELS);
     size_t         bytes = 0;
     for (size_t i = 0; i < count && i < MOST_KERNELS; i++)
         bytes += strcmp(kernels[i].name, name) == 0 ? kernels[i].glsl_bytes : 0;
@@ -128,7 +129,7 @@ static size_t count_bytes(const Stage *stage, const char *name)
 static void paths_are_as_by_kernels_of_their_own(void **state)
 {
     (void)state;
-    Stage       own = open_stage(dull, KRS_FOR_PICTURES), mixed = open_stage(dull, KRS_FOR_PATHS);
+    Fixture own = open_fixture(dull, KRS_FOR_PICTURES), mixed = open_fixture(dull, KRS_FOR_PATHS);
     KrsPicture *a = render(&own, KRS_INTEGRATOR_PATH, KRS_COMPONENTS_DEFAULT);
     KrsPicture *b = render(&mixed, KRS_INTEGRATOR_PATH, KRS_COMPONENTS_DEFAULT);
     assert_int_equal(count_kernels(&own, "trace.comp"), 2);
@@ -136,27 +137,27 @@ static void paths_are_as_by_kernels_of_their_own(void **state)
     assert_in_range(count_different(a, b), 0, PIXELS / 500);
     krs_picture_free(a);
     krs_picture_free(b);
-    close_stage(&own);
-    close_stage(&mixed);
+    close_fixture(&own);
+    close_fixture(&mixed);
 }
 
 /* Where march groups are asked for, the picture's rays have kernels of their own again. */
 static void mirrors_are_as_with_march_groups(void **state)
 {
     (void)state;
-    Stage stage = open_stage(bright, KRS_FOR_PICTURES);
-    assert_true(krs_scene_program(stage.scene)->mirrors);
-    assert_true(krs_scene_program(stage.scene)->march_group_count > 2);
-    assert_int_equal(count_kernels(&stage, "trace.comp"), 1);
-    assert_int_equal(count_kernels(&stage, "normals.comp"), 1);
-    KrsPicture *a = render(&stage, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_DEFAULT);
-    assert_int_equal(count_kernels(&stage, "trace.comp"), 1);
-    KrsPicture *b = render(&stage, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_APART);
-    assert_true(count_kernels(&stage, "trace.comp") > 2);
+    Fixture fixture = open_fixture(bright, KRS_FOR_PICTURES);
+    assert_true(krs_scene_program(fixture.scene)->mirrors);
+    assert_true(krs_scene_program(fixture.scene)->march_group_count > 2);
+    assert_int_equal(count_kernels(&fixture, "trace.comp"), 1);
+    assert_int_equal(count_kernels(&fixture, "normals.comp"), 1);
+    KrsPicture *a = render(&fixture, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_DEFAULT);
+    assert_int_equal(count_kernels(&fixture, "trace.comp"), 1);
+    KrsPicture *b = render(&fixture, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_APART);
+    assert_true(count_kernels(&fixture, "trace.comp") > 2);
     assert_in_range(count_different(a, b), 0, PIXELS / 100);
     krs_picture_free(a);
     krs_picture_free(b);
-    close_stage(&stage);
+    close_fixture(&fixture);
 }
 
 /* Trees of four march groups without mirrors, and rays that go from root to root. */
@@ -175,8 +176,8 @@ static const char roots[] = CAMERA
    of a rendering for large ones. */
 static void small_pictures_have_fewer_kernels(const char *text, const char *name)
 {
-    Stage       small = open_stage(text, KRS_FOR_SMALL_PICTURES);
-    Stage       large = open_stage(text, KRS_FOR_PICTURES);
+    Fixture     small = open_fixture(text, KRS_FOR_SMALL_PICTURES);
+    Fixture     large = open_fixture(text, KRS_FOR_PICTURES);
     const int   few = count_kernels(&small, name), all = count_kernels(&large, "");
     KrsPicture *a = render(&small, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_DEFAULT);
     KrsPicture *b = render(&large, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_TOGETHER);
@@ -186,8 +187,8 @@ static void small_pictures_have_fewer_kernels(const char *text, const char *name
     assert_in_range(count_different(a, b), 0, PIXELS / 100);
     krs_picture_free(a);
     krs_picture_free(b);
-    close_stage(&small);
-    close_stage(&large);
+    close_fixture(&small);
+    close_fixture(&large);
 }
 
 static void small_pictures_have_no_march_groups(void **state)
@@ -213,8 +214,8 @@ static const char noises[] = CAMERA
 static void small_pictures_have_the_same_noises(void **state)
 {
     (void)state;
-    Stage       small = open_stage(noises, KRS_FOR_SMALL_PICTURES);
-    Stage       large = open_stage(noises, KRS_FOR_PICTURES);
+    Fixture     small = open_fixture(noises, KRS_FOR_SMALL_PICTURES);
+    Fixture     large = open_fixture(noises, KRS_FOR_PICTURES);
     KrsPicture *a     = render(&small, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_TOGETHER);
     KrsPicture *b     = render(&large, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_TOGETHER);
     for (int i = 0; i < 4 * PIXELS; i++)
@@ -222,8 +223,8 @@ static void small_pictures_have_the_same_noises(void **state)
     assert_int_not_equal(count_bytes(&small, "shade.comp"), count_bytes(&large, "shade.comp"));
     krs_picture_free(a);
     krs_picture_free(b);
-    close_stage(&small);
-    close_stage(&large);
+    close_fixture(&small);
+    close_fixture(&large);
 }
 
 int main(void)

@@ -14,7 +14,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
-#include "tests/unit/tracer_stage.h"
+#include "tests/unit/tracer_fixture.h"
 
 enum { ACROSS = 24, DOWN = 12, SAMPLES = 128 };
 
@@ -58,25 +58,26 @@ static double part_below(KrsPixelFilter filter, double a, double b, double offse
     return below / all;
 }
 
-static KrsPicture *render(Stage *stage, KrsPixelFilter filter, size_t camera, uint32_t samples)
+static KrsPicture *render(Fixture *fixture, KrsPixelFilter filter, size_t camera, uint32_t samples)
 {
-    return stage_render(stage, (KrsRenderOptions){.width        = ACROSS,
-                                                  .height       = DOWN,
-                                                  .samples      = samples,
-                                                  .camera       = camera,
-                                                  .no_occlusion = true,
-                                                  .pixel_filter = filter,
-                                                  .planes = KRS_PLANE_COLOR | KRS_PLANE_POSITION});
+    return fixture_render(fixture,
+                          (KrsRenderOptions){.width        = ACROSS,
+                                             .height       = DOWN,
+                                             .samples      = samples,
+                                             .camera       = camera,
+                                             .no_occlusion = true,
+                                             .pixel_filter = filter,
+                                             .planes       = KRS_PLANE_COLOR | KRS_PLANE_POSITION});
 }
 
 static void edges_are_the_integral(void **state)
 {
     static const double normals[2][2] = {{1, 0}, {0.6, 0.8}}, offsets[2] = {0.3, 0.2};
-    Stage              *stage = *state;
+    Fixture            *fixture = *state;
     for (KrsPixelFilter filter = KRS_PIXEL_FILTER_BOX; filter < KRS_PIXEL_FILTER_COUNT; filter++)
         for (size_t camera = 0; camera < 2; camera++) {
             const double *n       = normals[camera];
-            KrsPicture   *picture = render(stage, filter, camera, SAMPLES);
+            KrsPicture   *picture = render(fixture, filter, camera, SAMPLES);
             size_t        soft    = 0;
             for (int row = 2; row < DOWN - 2; row++)
                 for (int column = 2; column < ACROSS - 2; column++) {
@@ -96,10 +97,10 @@ static void edges_are_the_integral(void **state)
 
 static void one_ray_is_in_the_middle(void **state)
 {
-    Stage      *stage = *state;
-    KrsPicture *box   = render(stage, KRS_PIXEL_FILTER_BOX, 1, 1);
+    Fixture    *fixture = *state;
+    KrsPicture *box     = render(fixture, KRS_PIXEL_FILTER_BOX, 1, 1);
     for (KrsPixelFilter filter = KRS_PIXEL_FILTER_BOX; filter < KRS_PIXEL_FILTER_COUNT; filter++) {
-        KrsPicture *one = render(stage, filter, 1, 1), *many = render(stage, filter, 1, 8);
+        KrsPicture *one = render(fixture, filter, 1, 1), *many = render(fixture, filter, 1, 8);
         assert_memory_equal(one->color, box->color, 16 * ACROSS * DOWN);
         assert_memory_equal(many->position, box->position, 12 * ACROSS * DOWN);
         krs_picture_free(one);
@@ -119,17 +120,17 @@ static void beams_see_beside_their_tiles(void **state)
         "show box([400, 0.2, 0.2]).rotate([0, 0, 1], -45deg).move([0, 1, 0])"
         " | union([torus(1 + 0.1 * i, 0.2 + 0.01 * i * i).rotate([1, i, 0], i).move([90, 9 * i, 0])"
         " for i in 0..9]);\n";
-    Stage stage = {0};
+    Fixture fixture = {0};
     (void)state;
-    stage_open(&stage, text, NULL);
+    fixture_open(&fixture, text, NULL);
     KrsRenderOptions options = {.width        = 128,
                                 .height       = 128,
                                 .samples      = 96,
                                 .no_occlusion = true,
                                 .pixel_filter = KRS_PIXEL_FILTER_GAUSSIAN};
-    KrsPicture      *with    = stage_render(&stage, options);
+    KrsPicture      *with    = fixture_render(&fixture, options);
     options.no_beams         = true;
-    KrsPicture *without      = stage_render(&stage, options);
+    KrsPicture *without      = fixture_render(&fixture, options);
     size_t      differ = 0, seen = 0;
     for (size_t i = 3; i < (size_t)4 * 128 * 128; i += 4) {
         differ += fabsf(with->color[i] - without->color[i]) > 1e-6f;
@@ -139,38 +140,38 @@ static void beams_see_beside_their_tiles(void **state)
     assert_in_range(seen, 300, 1500);
     krs_picture_free(with);
     krs_picture_free(without);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 /* The scene asks by its name, and the caller's choice is stronger. */
 static void scenes_choose(void **state)
 {
-    Stage *stage = *state, soft = {0};
-    char   text[sizeof edges_text + 80];
+    Fixture *fixture = *state, soft = {0};
+    char     text[sizeof edges_text + 80];
     for (KrsPixelFilter filter = KRS_PIXEL_FILTER_GAUSSIAN; filter < KRS_PIXEL_FILTER_COUNT;
          filter++) {
         snprintf(text, sizeof text, "image { pixel_filter: \"%s\" }\n%s",
                  krs_pixel_filter_names[filter], edges_text);
-        stage_open(&soft, text, NULL);
-        KrsPicture *mine  = render(stage, filter, 1, 5);
+        fixture_open(&soft, text, NULL);
+        KrsPicture *mine  = render(fixture, filter, 1, 5);
         KrsPicture *asked = render(&soft, KRS_PIXEL_FILTER_DEFAULT, 1, 5);
         assert_memory_equal(mine->color, asked->color, 16 * ACROSS * DOWN);
         krs_picture_free(asked);
         krs_picture_free(mine);
-        mine  = render(stage, KRS_PIXEL_FILTER_BOX, 1, 5);
+        mine  = render(fixture, KRS_PIXEL_FILTER_BOX, 1, 5);
         asked = render(&soft, KRS_PIXEL_FILTER_BOX, 1, 5);
         assert_memory_equal(mine->color, asked->color, 16 * ACROSS * DOWN);
         krs_picture_free(asked);
         krs_picture_free(mine);
-        stage_close(&soft);
+        fixture_close(&soft);
     }
 }
 
 static int set_up(void **state)
 {
-    static Stage stage;
-    stage_open(&stage, edges_text, NULL);
-    *state = &stage;
+    static Fixture fixture;
+    fixture_open(&fixture, edges_text, NULL);
+    *state = &fixture;
     return 0;
 }
 
@@ -182,5 +183,5 @@ int main(void)
         cmocka_unit_test(beams_see_beside_their_tiles),
         cmocka_unit_test(scenes_choose),
     };
-    return cmocka_run_group_tests(tests, set_up, stage_tear_down);
+    return cmocka_run_group_tests(tests, set_up, fixture_tear_down);
 }

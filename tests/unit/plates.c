@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "tests/unit/tracer_stage.h"
+#include "tests/unit/tracer_fixture.h"
 
 /* The ball alone is in the scene; the floor, y = 0, is known by the depths alone. */
 #define RADIUS 0.6
@@ -112,9 +112,9 @@ static KrsRenderOptions on_floor(int camera)
                               .no_occlusion = true};
 }
 
-static void set(Stage *stage, const char *name, double value)
+static void set(Fixture *fixture, const char *name, double value)
 {
-    assert_int_equal(krs_frame_set(stage->frame, name, &value, 1), KRS_OK);
+    assert_int_equal(krs_frame_set(fixture->frame, name, &value, 1), KRS_OK);
 }
 
 /* The direction from the floor to a light. */
@@ -150,17 +150,17 @@ static void points_cast_shadows(void **state)
 {
     static const KrsIntegrator integrators[]  = {KRS_INTEGRATOR_PREVIEW, KRS_INTEGRATOR_DIRECT};
     static const int           least[CAMERAS] = {40, 40, 10};
-    Stage                     *stage          = *state;
-    set(stage, "day", 0);
+    Fixture                   *fixture        = *state;
+    set(fixture, "day", 0);
     for (int camera = 0; camera < CAMERAS; camera++)
         for (int light = 0; light < 2; light++)
             for (int i = 0; i < 2; i++) {
                 KrsRenderOptions options = on_floor(camera);
                 options.integrator       = integrators[i];
                 make_floor(camera);
-                set(stage, "at_lamp", light == 0);
-                set(stage, "at_sun", light == 1);
-                KrsPicture *seen = stage_render(stage, options);
+                set(fixture, "at_lamp", light == 0);
+                set(fixture, "at_sun", light == 1);
+                KrsPicture *seen = fixture_render(fixture, options);
                 check_shadows(seen, light, least[camera]);
                 krs_picture_free(seen);
             }
@@ -169,7 +169,7 @@ static void points_cast_shadows(void **state)
 /* A ball that does not reach the horizon hides (r / d)^2 cos(a) of the light of an even sky. */
 static void skies_are_hidden(void **state)
 {
-    Stage           *stage   = *state;
+    Fixture         *fixture = *state;
     KrsRenderOptions options = on_floor(0);
     double           error = 0, square = 0, most = 0;
     int              count = 0;
@@ -177,10 +177,10 @@ static void skies_are_hidden(void **state)
     options.integrator = KRS_INTEGRATOR_DIRECT;
     options.samples    = 64;
     options.catcher    = KRS_CATCHER_SHADOWS;
-    set(stage, "day", 1);
-    set(stage, "at_lamp", 0);
-    set(stage, "at_sun", 0);
-    KrsPicture *seen = stage_render(stage, options);
+    set(fixture, "day", 1);
+    set(fixture, "at_lamp", 0);
+    set(fixture, "at_sun", 0);
+    KrsPicture *seen = fixture_render(fixture, options);
     for (int k = 0; k < PIXELS; k++) {
         double to[3];
         for (int i = 0; i < 3; i++)
@@ -204,13 +204,13 @@ static void skies_are_hidden(void **state)
    sky send, as far as each is seen. */
 static void lights_add_up(void **state)
 {
-    Stage           *stage   = *state;
+    Fixture         *fixture = *state;
     KrsRenderOptions options = on_floor(0);
     make_floor(0);
-    set(stage, "day", 0.5);
-    set(stage, "at_lamp", 1);
-    set(stage, "at_sun", 1);
-    KrsPicture *seen = stage_render(stage, options);
+    set(fixture, "day", 0.5);
+    set(fixture, "at_lamp", 1);
+    set(fixture, "at_sun", 1);
+    KrsPicture *seen = fixture_render(fixture, options);
     for (int k = 0; k < PIXELS; k++) {
         double found = 0.5, without = 0.5, to[3];
         bool   clear = ground.exists[k];
@@ -245,9 +245,9 @@ static void assert_same_caught(const KrsPicture *a, const KrsPicture *b)
 }
 
 /* Makes the ball a mirror, and the plate, where paths find what it mirrors. */
-static void make_shiny(Stage *stage, KrsRenderOptions *options)
+static void make_shiny(Fixture *fixture, KrsRenderOptions *options)
 {
-    set(stage, "shine", 1);
+    set(fixture, "shine", 1);
     if (options->integrator == KRS_INTEGRATOR_PREVIEW)
         return;
     options->catcher           = KRS_CATCHER_GLOSSY;
@@ -257,29 +257,29 @@ static void make_shiny(Stage *stage, KrsRenderOptions *options)
 /* Bands and crops find the same.  Rays of a list do, but for rounding. */
 static void slices_change_nothing(void **state)
 {
-    Stage           *stage   = *state;
+    Fixture         *fixture = *state;
     KrsRenderOptions options = on_floor(0), part = options;
     make_floor(0);
-    set(stage, "day", 0.5);
+    set(fixture, "day", 0.5);
     for (int i = 0; i < 2; i++) {
         options.integrator = i ? KRS_INTEGRATOR_PATH : KRS_INTEGRATOR_PREVIEW;
         options.samples    = 2;
-        make_shiny(stage, &options);
+        make_shiny(fixture, &options);
         part              = options;
         part.crop         = (KrsWindow){21, 13, 40, 30};
-        KrsPicture *whole = stage_render(stage, options), *cut = stage_render(stage, part);
+        KrsPicture *whole = fixture_render(fixture, options), *cut = fixture_render(fixture, part);
         assert_same_caught(whole, cut);
         krs_picture_free(whole);
         krs_picture_free(cut);
     }
-    set(stage, "shine", 0);
+    set(fixture, "shine", 0);
 }
 
 static void lists_of_rays_have_plates(void **state)
 {
     static double origins[PIXELS][3], directions[PIXELS][3];
     static float  along[PIXELS];
-    Stage        *stage = *state;
+    Fixture      *fixture = *state;
     KrsFilm      *film;
     KrsPicture   *seen;
     KrsRays       rays = {(const double(*)[3])origins, (const double(*)[3])directions, 0, 0.015, 0};
@@ -292,11 +292,11 @@ static void lists_of_rays_have_plates(void **state)
     }
     KrsRenderOptions options = on_floor(0);
     options.depth            = along;
-    set(stage, "day", 0);
-    set(stage, "at_lamp", 0);
-    set(stage, "at_sun", 1);
-    assert_int_equal(krs_film_new(stage->rendering, &options, &film), KRS_OK);
-    assert_int_equal(krs_film_add_rays(film, stage->frame, &rays), KRS_OK);
+    set(fixture, "day", 0);
+    set(fixture, "at_lamp", 0);
+    set(fixture, "at_sun", 1);
+    assert_int_equal(krs_film_new(fixture->rendering, &options, &film), KRS_OK);
+    assert_int_equal(krs_film_add_rays(film, fixture->frame, &rays), KRS_OK);
     assert_int_equal(krs_film_read(film, 0, &seen), KRS_OK);
     memcpy(ground.depth, along, sizeof along);
     check_shadows(seen, 1, 40);
@@ -307,31 +307,31 @@ static void lists_of_rays_have_plates(void **state)
 /* Without a plate the ratio is there if it is asked for, and not otherwise.  It needs depths. */
 static void catchers_are_chosen(void **state)
 {
-    Stage           *stage   = *state;
+    Fixture         *fixture = *state;
     KrsRenderOptions options = on_floor(0);
     KrsFilm         *film;
     make_floor(0);
     options.catcher   = KRS_CATCHER_NONE;
-    KrsPicture *plain = stage_render(stage, options);
+    KrsPicture *plain = fixture_render(fixture, options);
     assert_null(plain->caught);
     options.plate     = NULL;
     options.catcher   = KRS_CATCHER_DEFAULT;
-    KrsPicture *alone = stage_render(stage, options);
+    KrsPicture *alone = fixture_render(fixture, options);
     assert_null(alone->caught);
     options.catcher    = KRS_CATCHER_SHADOWS;
-    KrsPicture *caught = stage_render(stage, options);
+    KrsPicture *caught = fixture_render(fixture, options);
     assert_non_null(caught->caught);
     for (int k = 0; k < PIXELS; k++)
         if (!isfinite(ground.depth[k]))
             assert_true(caught->caught[k][0] == 1);
     options.depth = NULL;
-    assert_int_equal(krs_film_new(stage->rendering, &options, &film), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_new(fixture->rendering, &options, &film), KRS_BAD_ARGUMENT);
     options.depth   = ground.depth;
     options.catcher = KRS_CATCHER_GLOSSY; /* not with previews */
-    assert_int_equal(krs_film_new(stage->rendering, &options, &film), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_new(fixture->rendering, &options, &film), KRS_BAD_ARGUMENT);
     options.integrator          = KRS_INTEGRATOR_PATH;
     options.catcher_reflectance = 1;
-    assert_int_equal(krs_film_new(stage->rendering, &options, &film), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_new(fixture->rendering, &options, &film), KRS_BAD_ARGUMENT);
     krs_picture_free(plain);
     krs_picture_free(alone);
     krs_picture_free(caught);
@@ -340,23 +340,23 @@ static void catchers_are_chosen(void **state)
 /* Samples of plates end by noise as well, and the light of lights is apart from what is caught. */
 static void noise_and_groups_have_plates(void **state)
 {
-    Stage           *stage   = *state;
+    Fixture         *fixture = *state;
     KrsRenderOptions options = on_floor(0);
     make_floor(0);
-    set(stage, "day", 1);
-    set(stage, "at_lamp", 1);
-    set(stage, "at_sun", 0);
+    set(fixture, "day", 1);
+    set(fixture, "at_lamp", 1);
+    set(fixture, "at_sun", 0);
     options.integrator   = KRS_INTEGRATOR_DIRECT;
     options.samples      = 256;
-    KrsPicture *all      = stage_render(stage, options);
+    KrsPicture *all      = fixture_render(fixture, options);
     options.noise        = 0.02;
-    KrsPicture *some     = stage_render(stage, options);
+    KrsPicture *some     = fixture_render(fixture, options);
     options.noise        = 0;
     options.light_groups = true;
     options.samples      = 16;
-    KrsPicture *groups   = stage_render(stage, options);
+    KrsPicture *groups   = fixture_render(fixture, options);
     options.light_groups = false;
-    KrsPicture *together = stage_render(stage, options);
+    KrsPicture *together = fixture_render(fixture, options);
     double      square   = 0;
     for (int k = 0; k < PIXELS; k++) {
         const double off = (double)(all->caught[k][0] - some->caught[k][0]);
@@ -376,7 +376,7 @@ static void every_device_finds_the_same(void **state)
 {
     static const unsigned pretences[] = {KRS_PRETEND_CARD, KRS_PRETEND_LEAST_LIMITS,
                                          KRS_PRETEND_CARD | KRS_PRETEND_LEAST_LIMITS};
-    Stage                *plain       = *state;
+    Fixture              *plain       = *state;
     KrsRenderOptions      options     = on_floor(0);
     make_floor(0);
     options.no_occlusion = false;
@@ -387,19 +387,19 @@ static void every_device_finds_the_same(void **state)
     for (int i = 0; i < 2; i++) {
         options.integrator = i ? KRS_INTEGRATOR_PATH : KRS_INTEGRATOR_PREVIEW;
         make_shiny(plain, &options);
-        KrsPicture *expected = stage_render(plain, options);
+        KrsPicture *expected = fixture_render(plain, options);
         for (size_t k = 0; k < sizeof pretences / sizeof *pretences; k++) {
-            Stage stage;
-            stage_open_as(&stage, ball_text, pretences[k]);
-            set(&stage, "day", 1);
-            set(&stage, "at_lamp", 1);
-            set(&stage, "at_sun", 0);
-            set(&stage, "shine", 1);
-            KrsPicture *seen = stage_render(&stage, options);
+            Fixture fixture;
+            fixture_open_as(&fixture, ball_text, pretences[k]);
+            set(&fixture, "day", 1);
+            set(&fixture, "at_lamp", 1);
+            set(&fixture, "at_sun", 0);
+            set(&fixture, "shine", 1);
+            KrsPicture *seen = fixture_render(&fixture, options);
             assert_same_caught(expected, seen);
-            assert_int_equal(krs_renderer_complaints(stage.renderer), 0);
+            assert_int_equal(krs_renderer_complaints(fixture.renderer), 0);
             krs_picture_free(seen);
-            stage_close(&stage);
+            fixture_close(&fixture);
         }
         krs_picture_free(expected);
     }
@@ -408,15 +408,15 @@ static void every_device_finds_the_same(void **state)
 
 static int open_ball(void **state)
 {
-    static Stage stage;
-    stage_open(&stage, ball_text, NULL);
-    *state = &stage;
+    static Fixture fixture;
+    fixture_open(&fixture, ball_text, NULL);
+    *state = &fixture;
     return 0;
 }
 
 static int close_ball(void **state)
 {
-    stage_close(*state);
+    fixture_close(*state);
     return 0;
 }
 

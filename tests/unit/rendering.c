@@ -15,7 +15,7 @@
 #include "compiler/passes/compile.h"
 #include "tests/support/device.h"
 #include "tests/support/scarce.h"
-#include "tests/unit/tracer_stage.h"
+#include "tests/unit/tracer_fixture.h"
 
 /* ---- Progress ---- */
 
@@ -28,18 +28,18 @@ static bool stop_later(void *user, double done)
 
 static void interruption_is_heard(void **state)
 {
-    Stage      *stage = *state;
+    Fixture    *fixture = *state;
     KrsPicture *picture;
     for (int calls = 1; calls < 6; calls++) {
         int              left    = calls;
         KrsRenderOptions options = {
             .width = WIDTH, .height = HEIGHT, .progress = stop_later, .user = &left};
-        assert_int_equal(krs_render(stage->rendering, stage->frame, &options, &picture),
+        assert_int_equal(krs_render(fixture->rendering, fixture->frame, &options, &picture),
                          KRS_INTERRUPTED);
         assert_null(picture);
         assert_int_equal(left, 0);
     }
-    krs_picture_free(stage_render(stage, (KrsRenderOptions){0})); /* and nothing is broken */
+    krs_picture_free(fixture_render(fixture, (KrsRenderOptions){0})); /* and nothing is broken */
 }
 
 static bool never_back(void *user, double done)
@@ -53,14 +53,14 @@ static bool never_back(void *user, double done)
 static void progress_goes_forwards(void **state)
 {
     (void)state;
-    Stage  stage = {0};
-    double done  = 0;
-    stage_open(&stage, landscape_text, NULL);
-    krs_picture_free(stage_render(
-        &stage, (KrsRenderOptions){
-                    .steps_at_once = 10, .samples = 3, .progress = never_back, .user = &done}));
+    Fixture fixture = {0};
+    double  done    = 0;
+    fixture_open(&fixture, landscape_text, NULL);
+    krs_picture_free(fixture_render(
+        &fixture, (KrsRenderOptions){
+                      .steps_at_once = 10, .samples = 3, .progress = never_back, .user = &done}));
     assert_near(done, 1, 1e-9);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 typedef struct Compiling {
@@ -79,18 +79,18 @@ static bool hear_compiling(void *user, double done)
 /* Wherever compiling is interrupted, the renderer goes on as if nothing had been. */
 static void compiling_is_interrupted(void **state)
 {
-    Stage                   *stage     = *state;
+    Fixture                 *fixture   = *state;
     Compiling                compiling = {0};
     const KrsRendererOptions options   = {
           .device = tested_device(), .compiling = hear_compiling, .compiling_user = &compiling};
     const KrsRenderOptions small = {.width = WIDTH, .height = HEIGHT};
     KrsRenderer           *renderer;
     KrsRendering          *rendering;
-    KrsPicture            *picture, *meant = stage_render(stage, (KrsRenderOptions){0});
+    KrsPicture            *picture, *meant = fixture_render(fixture, (KrsRenderOptions){0});
     assert_int_equal(krs_renderer_new(&options, &renderer), KRS_OK);
     for (int most = 1;; most += 2) {
         compiling        = (Compiling){.most = most};
-        KrsStatus status = krs_rendering_new(renderer, stage->scene, &rendering);
+        KrsStatus status = krs_rendering_new(renderer, fixture->scene, &rendering);
         if (status == KRS_OK)
             break;
         assert_int_equal(status, KRS_INTERRUPTED);
@@ -98,7 +98,7 @@ static void compiling_is_interrupted(void **state)
         assert_null(rendering);
     }
     assert_true(compiling.calls > 2 && compiling.done == 1);
-    assert_int_equal(krs_render(rendering, stage->frame, &small, &picture), KRS_OK);
+    assert_int_equal(krs_render(rendering, fixture->frame, &small, &picture), KRS_OK);
     assert_memory_equal(picture->color, meant->color,
                         (size_t)WIDTH * HEIGHT * 4 * sizeof *picture->color);
     krs_picture_free(picture);
@@ -110,21 +110,21 @@ static void compiling_is_interrupted(void **state)
 /* A renderer that makes kernels ahead may be freed while it does so, and makes the same picture. */
 static void kernels_are_made_ahead(void **state)
 {
-    Stage                   *stage   = *state;
+    Fixture                 *fixture = *state;
     const KrsRendererOptions options = {.device = tested_device(), .pictures_ahead = true};
     const KrsRenderOptions   small   = {.width = WIDTH, .height = HEIGHT};
     KrsRenderer             *renderer;
     KrsRendering            *rendering;
-    KrsPicture              *picture, *meant = stage_render(stage, (KrsRenderOptions){0});
+    KrsPicture              *picture, *meant = fixture_render(fixture, (KrsRenderOptions){0});
     assert_int_equal(krs_renderer_new(&options, &renderer), KRS_OK);
     krs_renderer_free(renderer);
     for (int purpose = 0; purpose < 2; purpose++) {
         assert_int_equal(krs_renderer_new(&options, &renderer), KRS_OK);
-        assert_int_equal(krs_rendering_new_for(renderer, stage->scene,
+        assert_int_equal(krs_rendering_new_for(renderer, fixture->scene,
                                                purpose ? KRS_FOR_PICTURES : KRS_FOR_QUESTIONS,
                                                &rendering),
                          KRS_OK);
-        assert_int_equal(krs_render(rendering, stage->frame, &small, &picture), KRS_OK);
+        assert_int_equal(krs_render(rendering, fixture->frame, &small, &picture), KRS_OK);
         assert_memory_equal(picture->color, meant->color,
                             (size_t)WIDTH * HEIGHT * 4 * sizeof *picture->color);
         krs_picture_free(picture);
@@ -138,8 +138,8 @@ static void kernels_are_made_ahead(void **state)
 
 static void exhausted_rays_are_counted(void **state)
 {
-    Stage      *stage    = *state;
-    KrsPicture *picture  = stage_render(stage, (KrsRenderOptions){.most_steps = 3});
+    Fixture    *fixture  = *state;
+    KrsPicture *picture  = fixture_render(fixture, (KrsRenderOptions){.most_steps = 3});
     size_t      creeping = 0;
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
         assert_true(picture->steps[i] <= 3 + 3); /* a ray that is there may finish */
@@ -151,7 +151,7 @@ static void exhausted_rays_are_counted(void **state)
 
 static void wrong_use_is_refused(void **state)
 {
-    Stage                 *stage   = *state;
+    Fixture               *fixture = *state;
     const KrsRenderOptions wrong[] = {
         {.width = 16385, .height = 10},
         {.width = 10, .height = 10, .crop = {0, 0, 11, 10}},
@@ -173,18 +173,18 @@ static void wrong_use_is_refused(void **state)
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         KrsPicture *picture;
-        assert_int_equal(krs_render(stage->rendering, stage->frame, &wrong[i], &picture),
+        assert_int_equal(krs_render(fixture->rendering, fixture->frame, &wrong[i], &picture),
                          KRS_BAD_ARGUMENT);
         assert_null(picture);
-        assert_true(strlen(krs_renderer_message(stage->renderer)) > 10);
+        assert_true(strlen(krs_renderer_message(fixture->renderer)) > 10);
     }
 }
 
 static void only_wanted_planes_are_held(void **state)
 {
-    Stage           *stage   = *state;
+    Fixture         *fixture = *state;
     KrsRenderOptions options = {.planes = KRS_PLANE_DEPTH | KRS_PLANE_IDS};
-    KrsPicture      *picture = stage_render(stage, options);
+    KrsPicture      *picture = fixture_render(fixture, options);
     assert_non_null(picture->depth);
     assert_non_null(picture->instance);
     assert_null(picture->color);
@@ -196,15 +196,15 @@ static void only_wanted_planes_are_held(void **state)
 /* What is not asked for is not made, and what is comes out the same. */
 static void planes_do_not_hang_on_others(void **state)
 {
-    Stage           *stage   = *state;
+    Fixture         *fixture = *state;
     const size_t     pixels  = (size_t)WIDTH * HEIGHT;
     KrsRenderOptions options = {.samples = 3, .planes = KRS_PLANE_ALL};
-    KrsPicture      *whole   = stage_render(stage, options);
+    KrsPicture      *whole   = fixture_render(fixture, options);
     for (int bit = 0; KRS_PLANE_ALL >> bit; bit++) {
         /* What this leaves in memory is not to be taken for what has not been made. */
-        krs_picture_free(stage_render(stage, (KrsRenderOptions){.camera = ROUND}));
+        krs_picture_free(fixture_render(fixture, (KrsRenderOptions){.camera = ROUND}));
         options.planes   = 1u << bit;
-        KrsPicture *part = stage_render(stage, options);
+        KrsPicture *part = fixture_render(fixture, options);
         const struct {
             const void *part, *whole;
             size_t      numbers;
@@ -233,7 +233,7 @@ static void planes_do_not_hang_on_others(void **state)
 /* The steps of the first rays are among what the statistics count. */
 static void evaluations_are_counted(void **state)
 {
-    KrsPicture *picture = stage_render(*state, (KrsRenderOptions){.no_beams = true});
+    KrsPicture *picture = fixture_render(*state, (KrsRenderOptions){.no_beams = true});
     uint64_t    sum     = 0;
     uint32_t    most    = 0;
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
@@ -251,10 +251,10 @@ static void evaluations_are_counted(void **state)
 static void occlusion_can_be_left_out(void **state)
 {
     (void)state;
-    Stage stage = {0};
-    stage_open(&stage, landscape_text, NULL);
-    KrsPicture *with    = stage_render(&stage, (KrsRenderOptions){0});
-    KrsPicture *without = stage_render(&stage, (KrsRenderOptions){.no_occlusion = true});
+    Fixture fixture = {0};
+    fixture_open(&fixture, landscape_text, NULL);
+    KrsPicture *with    = fixture_render(&fixture, (KrsRenderOptions){0});
+    KrsPicture *without = fixture_render(&fixture, (KrsRenderOptions){.no_occlusion = true});
     size_t      lighter = 0;
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
         assert_true(without->color[4 * i] >= with->color[4 * i] - 1e-5f);
@@ -264,7 +264,7 @@ static void occlusion_can_be_left_out(void **state)
     assert_true(without->stats.phase_ms[KRS_PHASE_OCCLUSION] == 0);
     krs_picture_free(with);
     krs_picture_free(without);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 /* A light that casts no shadows is the same where the shadowing one is not in the way: on a ball
@@ -276,19 +276,19 @@ static void shadows_that_are_not_cast_are_not_missed(void **state)
                                "show sphere(1);\n";
     (void)state;
     KrsPicture *pictures[2];
-    Stage       stages[2] = {0};
+    Fixture     fixtures[2] = {0};
     for (int i = 0; i < 2; i++) {
         char text[256];
         snprintf(text, sizeof text, form, i ? "true" : "false");
-        stage_open(&stages[i], text, NULL);
-        pictures[i] = stage_render(&stages[i], (KrsRenderOptions){0});
+        fixture_open(&fixtures[i], text, NULL);
+        pictures[i] = fixture_render(&fixtures[i], (KrsRenderOptions){0});
     }
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT * 4; i++)
         assert_near(pictures[0]->color[i], pictures[1]->color[i], 0.01);
     assert_true(pictures[0]->stats.phase_ms[KRS_PHASE_SHADOWS] == 0);
     for (int i = 0; i < 2; i++) {
         krs_picture_free(pictures[i]);
-        stage_close(&stages[i]);
+        fixture_close(&fixtures[i]);
     }
 }
 
@@ -308,15 +308,16 @@ static void every_sun_is_in_the_sky(void **state)
     static const char *const names[] = {"one", "two", "three"};
     enum { NONE, ALL = 4, PICTURES };
     (void)state;
-    Stage       stage = {0};
+    Fixture     fixture = {0};
     KrsPicture *pictures[PICTURES];
-    stage_open(&stage, text, NULL);
+    fixture_open(&fixture, text, NULL);
     for (int i = 0; i < PICTURES; i++) {
         for (int sun = 0; sun < 3; sun++) {
             double intensity = i == ALL || i == sun + 1 ? 2 + sun : 0;
-            assert_int_equal(krs_frame_set(stage.frame, names[sun], &intensity, 1), KRS_OK);
+            assert_int_equal(krs_frame_set(fixture.frame, names[sun], &intensity, 1), KRS_OK);
         }
-        pictures[i] = stage_render(&stage, (KrsRenderOptions){.samples = 2, .no_occlusion = true});
+        pictures[i] = fixture_render(&fixture,
+                                     (KrsRenderOptions){.samples = 2, .no_occlusion = true});
     }
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT * 4; i++) {
         double sum = -2 * (double)pictures[NONE]->color[i];
@@ -333,12 +334,12 @@ static void every_sun_is_in_the_sky(void **state)
     }
     for (int i = 0; i < PICTURES; i++)
         krs_picture_free(pictures[i]);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 /* ---- Memory ---- */
 
-static KrsStatus render_with(Scarce *scarce, Stage *stage)
+static KrsStatus render_with(Scarce *scarce, Fixture *fixture)
 {
     KrsRenderer       *renderer;
     KrsRendering      *rendering = NULL;
@@ -347,9 +348,9 @@ static KrsStatus render_with(Scarce *scarce, Stage *stage)
     KrsRendererOptions options = {.device = tested_device(), .allocator = scarce_allocator(scarce)};
     KrsStatus          status  = krs_renderer_new(&options, &renderer);
     if (status == KRS_OK)
-        status = krs_rendering_new(renderer, stage->scene, &rendering);
+        status = krs_rendering_new(renderer, fixture->scene, &rendering);
     if (status == KRS_OK)
-        status = krs_render(rendering, stage->frame, &small, &picture);
+        status = krs_render(rendering, fixture->frame, &small, &picture);
     if (status != KRS_OK)
         assert_non_null(strstr(krs_renderer_message(renderer), "memory"));
     krs_picture_free(picture);
@@ -361,12 +362,12 @@ static KrsStatus render_with(Scarce *scarce, Stage *stage)
 
 static void memory_that_runs_out_is_reported(void **state)
 {
-    Stage    *stage       = *state;
+    Fixture  *fixture     = *state;
     int       allocations = 0;
     KrsStatus status;
     do {
         Scarce scarce = {.failing = ++allocations, .lasting = true};
-        status        = render_with(&scarce, stage);
+        status        = render_with(&scarce, fixture);
         assert_true(status == KRS_OK || status == KRS_OUT_OF_MEMORY);
     } while (status != KRS_OK && allocations < 100);
     assert_int_equal(status, KRS_OK);
@@ -387,12 +388,12 @@ static void materials_give_numbers(void **state)
     };
     (void)state;
     for (size_t m = 0; m < sizeof materials / sizeof *materials; m++) {
-        Stage stage = {0};
-        char  text[400];
+        Fixture fixture = {0};
+        char    text[400];
         snprintf(text, sizeof text, "param k = 0; material m { %s } show sphere(1).paint(m);",
                  materials[m]);
-        stage_open(&stage, text, NULL);
-        KrsPicture *picture = stage_render(&stage, (KrsRenderOptions){.samples = 5});
+        fixture_open(&fixture, text, NULL);
+        KrsPicture *picture = fixture_render(&fixture, (KrsRenderOptions){.samples = 5});
         size_t      wrong = 0, pixels = (size_t)WIDTH * HEIGHT;
         for (size_t i = 0; i < 4 * pixels; i++)
             wrong += !(picture->color[i] >= 0 && picture->color[i] < 1e38f);
@@ -405,33 +406,36 @@ static void materials_give_numbers(void **state)
         krs_picture_free(picture);
         double places[3][3] = {{1, 0, 0}, {-0.6, 0.8, 0}, {0, 0, 1}};
         KrsHit hits[3];
-        assert_int_equal(krs_probe(stage.frame, (const double(*)[3])places, 3, hits), KRS_OK);
+        assert_int_equal(krs_probe(fixture.frame, (const double(*)[3])places, 3, hits), KRS_OK);
         for (int i = 0; i < 9; i++)
             assert_true(hits[i / 3].color[i % 3] >= 0 && hits[i / 3].color[i % 3] <= 1 &&
                         hits[i / 3].roughness >= 0 && hits[i / 3].roughness <= 1);
-        stage_close(&stage);
+        fixture_close(&fixture);
     }
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(interruption_is_heard, stage_set_up, stage_tear_down),
+        cmocka_unit_test_setup_teardown(interruption_is_heard, fixture_set_up, fixture_tear_down),
         cmocka_unit_test(progress_goes_forwards),
-        cmocka_unit_test_setup_teardown(compiling_is_interrupted, stage_set_up, stage_tear_down),
-        cmocka_unit_test_setup_teardown(kernels_are_made_ahead, stage_set_up, stage_tear_down),
+        cmocka_unit_test_setup_teardown(compiling_is_interrupted, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(kernels_are_made_ahead, fixture_set_up, fixture_tear_down),
         cmocka_unit_test(materials_give_numbers),
-        cmocka_unit_test_setup_teardown(exhausted_rays_are_counted, stage_set_up, stage_tear_down),
-        cmocka_unit_test_setup_teardown(wrong_use_is_refused, stage_set_up, stage_tear_down),
-        cmocka_unit_test_setup_teardown(only_wanted_planes_are_held, stage_set_up, stage_tear_down),
-        cmocka_unit_test_setup_teardown(planes_do_not_hang_on_others, stage_set_up,
-                                        stage_tear_down),
-        cmocka_unit_test_setup_teardown(evaluations_are_counted, stage_set_up, stage_tear_down),
+        cmocka_unit_test_setup_teardown(exhausted_rays_are_counted, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(wrong_use_is_refused, fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(only_wanted_planes_are_held, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(planes_do_not_hang_on_others, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(evaluations_are_counted, fixture_set_up, fixture_tear_down),
         cmocka_unit_test(occlusion_can_be_left_out),
         cmocka_unit_test(shadows_that_are_not_cast_are_not_missed),
         cmocka_unit_test(every_sun_is_in_the_sky),
-        cmocka_unit_test_setup_teardown(memory_that_runs_out_is_reported, stage_set_up,
-                                        stage_tear_down),
+        cmocka_unit_test_setup_teardown(memory_that_runs_out_is_reported, fixture_set_up,
+                                        fixture_tear_down),
     };
     spirv_start(); /* held for all, so that no renderer starts the shader compiler anew */
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
-#include "tests/unit/tracer_stage.h"
+#include "tests/unit/tracer_fixture.h"
 
 enum { SAMPLES = 24 };
 
@@ -50,12 +50,12 @@ static bool give(void *user, void *bytes, size_t size)
     return true;
 }
 
-static KrsFilm *film_with(Stage *stage, const KrsRenderOptions *options, uint32_t samples)
+static KrsFilm *film_with(Fixture *fixture, const KrsRenderOptions *options, uint32_t samples)
 {
     KrsFilm *film;
-    assert_int_equal(krs_film_new(stage->rendering, options, &film), KRS_OK);
+    assert_int_equal(krs_film_new(fixture->rendering, options, &film), KRS_OK);
     if (samples > 0)
-        assert_int_equal(krs_film_add(film, stage->frame, NULL, samples), KRS_OK);
+        assert_int_equal(krs_film_add(film, fixture->frame, NULL, samples), KRS_OK);
     return film;
 }
 
@@ -105,16 +105,16 @@ static void a_saved_film_goes_on(void **state)
     (void)state;
     for (size_t k = 0; k < sizeof pretences / sizeof *pretences; k++)
         for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-            Stage one, other;
-            Bytes file = {room, sizeof room, 0};
-            stage_open_as(&one, saved_text, pretences[k]);
+            Fixture one, other;
+            Bytes   file = {room, sizeof room, 0};
+            fixture_open_as(&one, saved_text, pretences[k]);
             KrsFilm *film = film_with(&one, &kinds[i], first[(i + k) % 3]);
             assert_int_equal(krs_film_save(film, take, &file), KRS_OK);
             krs_film_free(film);
-            stage_close_watched(&one);
+            fixture_close_watched(&one);
 
             KrsPicture *picture;
-            stage_open_as(&other, saved_text, pretences[k]);
+            fixture_open_as(&other, saved_text, pretences[k]);
             film      = film_with(&other, &kinds[i], 2); /* what is replaced */
             file.size = file.at;
             file.at   = 0;
@@ -125,9 +125,9 @@ static void a_saved_film_goes_on(void **state)
             if (left > 0)
                 assert_int_equal(krs_film_add(film, other.frame, NULL, left), KRS_OK);
             assert_int_equal(krs_film_read(film, 0, &picture), KRS_OK);
-            assert_same(picture, stage_render(&other, kinds[i]));
+            assert_same(picture, fixture_render(&other, kinds[i]));
             krs_film_free(film);
-            stage_close_watched(&other);
+            fixture_close_watched(&other);
         }
 }
 
@@ -136,15 +136,15 @@ static void what_is_no_film_is_refused(void **state)
     static unsigned char room[1 << 22];
     Bytes                file  = {room, sizeof room, 0};
     KrsRenderOptions     wider = kinds[0], other = kinds[0];
-    Stage                stage;
+    Fixture              fixture;
     (void)state;
     wider.width += 8;
     other.planes = KRS_PLANE_DEPTH;
-    stage_open_as(&stage, saved_text, 0);
-    KrsFilm *film = film_with(&stage, &kinds[0], 0);
+    fixture_open_as(&fixture, saved_text, 0);
+    KrsFilm *film = film_with(&fixture, &kinds[0], 0);
     assert_int_equal(krs_film_save(film, take, &file), KRS_BAD_ARGUMENT); /* without samples */
     assert_int_equal(file.at, 0);
-    assert_int_equal(krs_film_add(film, stage.frame, NULL, 1), KRS_OK);
+    assert_int_equal(krs_film_add(film, fixture.frame, NULL, 1), KRS_OK);
     assert_int_equal(krs_film_save(film, take, &(Bytes){room, 1000, 0}), KRS_IO_ERROR);
     assert_int_equal(krs_film_samples(film), 1);
     assert_int_equal(krs_film_save(film, take, &file), KRS_OK);
@@ -154,7 +154,7 @@ static void what_is_no_film_is_refused(void **state)
     }
     const KrsRenderOptions *unlike[] = {&wider, &other, &kinds[1]};
     for (size_t i = 0; i < 3; i++) {
-        KrsFilm *wrong = film_with(&stage, unlike[i], 0);
+        KrsFilm *wrong = film_with(&fixture, unlike[i], 0);
         assert_int_equal(krs_film_load(wrong, give, &(Bytes){room, file.at, 0}), KRS_BAD_ARGUMENT);
         assert_int_equal(krs_film_samples(wrong), 0);
         krs_film_free(wrong);
@@ -164,7 +164,7 @@ static void what_is_no_film_is_refused(void **state)
     room[9] ^= 1;
     assert_int_equal(krs_film_load(film, give, &(Bytes){room, file.at, 0}), KRS_OK);
     krs_film_free(film);
-    stage_close_watched(&stage);
+    fixture_close_watched(&fixture);
 }
 
 int main(void)

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "tests/unit/tracer_stage.h"
+#include "tests/unit/tracer_fixture.h"
 
 /* A spring, whose turns mirror each other, between plates on a floor: no light, so the usual ones. */
 static const char spring_text[] =
@@ -52,14 +52,14 @@ static float second_around(const float (*color)[4], int x, int y)
 }
 
 /* How many pixels are `times` as bright as the second brightest around. */
-static int count_specks(Stage *stage, uint32_t x, uint32_t y, uint32_t samples, float times)
+static int count_specks(Fixture *fixture, uint32_t x, uint32_t y, uint32_t samples, float times)
 {
     KrsRenderOptions options = {.width   = 960,
                                 .height  = 540,
                                 .crop    = {x, y, ACROSS, DOWN},
                                 .samples = samples,
                                 .planes  = KRS_PLANE_COLOR};
-    KrsPicture      *picture = stage_render(stage, options);
+    KrsPicture      *picture = fixture_render(fixture, options);
     const float(*color)[4]   = (const float(*)[4])picture->color;
     int count                = 0;
     for (int row = 1; row < DOWN - 1; row++)
@@ -73,23 +73,23 @@ static int count_specks(Stage *stage, uint32_t x, uint32_t y, uint32_t samples, 
 
 static void highlights_in_mirrors_are_no_specks(void **state)
 {
-    Stage stage;
+    Fixture fixture;
     (void)state;
-    stage_open(&stage, spring_text, NULL);
-    assert_in_range(count_specks(&stage, 380, 80, 4, 1.1f), 1, 100000);
-    assert_int_equal(count_specks(&stage, 380, 80, 4, 2.5f),
+    fixture_open(&fixture, spring_text, NULL);
+    assert_in_range(count_specks(&fixture, 380, 80, 4, 1.1f), 1, 100000);
+    assert_int_equal(count_specks(&fixture, 380, 80, 4, 2.5f),
                      0); /* as if mirrors were smooth: up to 5.9 */
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 /* With means over as many neighbours as elsewhere there are 21. */
 static void edges_shade_what_is_behind_them(void **state)
 {
-    Stage stage;
+    Fixture fixture;
     (void)state;
-    stage_open(&stage, nut_text, NULL);
-    assert_in_range(count_specks(&stage, 600, 250, 1, 1.5f), 0, 14);
-    stage_close(&stage);
+    fixture_open(&fixture, nut_text, NULL);
+    assert_in_range(count_specks(&fixture, 600, 250, 1, 1.5f), 0, 14);
+    fixture_close(&fixture);
 }
 
 int main(void)

@@ -14,7 +14,7 @@
 #include <cmocka.h>
 
 #include "compiler/passes/compile.h"
-#include "tests/unit/tracer_stage.h"
+#include "tests/unit/tracer_fixture.h"
 
 /* The same on a ground that has to be marched. */
 static const char terrace_text[] = "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 40deg }\n"
@@ -134,12 +134,12 @@ static void check_pixel(const KrsPicture *picture, size_t index, const TestRay *
 
 static void sphere_is_where_it_should_be(void **state)
 {
-    Stage *stage = *state;
+    Fixture *fixture = *state;
     for (size_t camera = 0; camera < CAMERA_COUNT; camera++) {
         KrsView     view;
         size_t      hits    = 0;
-        KrsPicture *picture = stage_render(stage, (KrsRenderOptions){.camera = camera});
-        assert_int_equal(krs_frame_view(stage->frame, camera, &view), KRS_OK);
+        KrsPicture *picture = fixture_render(fixture, (KrsRenderOptions){.camera = camera});
+        assert_int_equal(krs_frame_view(fixture->frame, camera, &view), KRS_OK);
         for (unsigned j = 0; j < HEIGHT; j++)
             for (unsigned i = 0; i < WIDTH; i++) {
                 TestRay ray = pixel_ray(&view.camera, i, j);
@@ -155,12 +155,12 @@ static void sphere_is_where_it_should_be(void **state)
 
 static void parameters_need_no_compiling(void **state)
 {
-    Stage  *stage = *state;
-    double  size  = 0.5;
-    KrsView view;
-    assert_int_equal(krs_frame_set(stage->frame, "size", &size, 1), KRS_OK);
-    KrsPicture *picture = stage_render(stage, (KrsRenderOptions){.camera = FLAT});
-    assert_int_equal(krs_frame_view(stage->frame, FLAT, &view), KRS_OK);
+    Fixture *fixture = *state;
+    double   size    = 0.5;
+    KrsView  view;
+    assert_int_equal(krs_frame_set(fixture->frame, "size", &size, 1), KRS_OK);
+    KrsPicture *picture = fixture_render(fixture, (KrsRenderOptions){.camera = FLAT});
+    assert_int_equal(krs_frame_view(fixture->frame, FLAT, &view), KRS_OK);
     for (unsigned j = 0; j < HEIGHT; j++)
         for (unsigned i = 0; i < WIDTH; i++) {
             TestRay ray = pixel_ray(&view.camera, i, j);
@@ -181,9 +181,9 @@ static void project(const float p[3], float matrix[4][4], double out[3])
 
 static void matrices_lead_back_to_the_pixel(void **state)
 {
-    Stage *stage = *state;
+    Fixture *fixture = *state;
     for (size_t camera = FIRST; camera <= FLAT; camera++) {
-        KrsPicture *picture = stage_render(stage, (KrsRenderOptions){.camera = camera});
+        KrsPicture *picture = fixture_render(fixture, (KrsRenderOptions){.camera = camera});
         for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
             double place[3], ndc[3];
             if (!picture->component[i])
@@ -202,14 +202,14 @@ static void matrices_lead_back_to_the_pixel(void **state)
 
 static void samples_converge_on_the_area(void **state)
 {
-    Stage           *stage = *state;
+    Fixture         *fixture = *state;
     double           share = 0, pixel = 3.0 / HEIGHT;
     KrsRenderOptions options = {.camera = FLAT, .error = 0.01, .no_filter = true};
-    KrsPicture      *one     = stage_render(stage, options);
+    KrsPicture      *one     = fixture_render(fixture, options);
     options.samples          = 32;
-    KrsPicture *many         = stage_render(stage, options);
+    KrsPicture *many         = fixture_render(fixture, options);
     options.seed             = 5;
-    KrsPicture *other        = stage_render(stage, options);
+    KrsPicture *other        = fixture_render(fixture, options);
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
         float alpha = many->color[4 * i + 3];
         assert_true(alpha * 32 == floorf(alpha * 32) && alpha <= 1);
@@ -231,14 +231,14 @@ static void samples_converge_on_the_area(void **state)
 static void points_are_sampled(void **state)
 {
     enum { COUNT = 40000 };
-    Stage                 *stage = *state;
+    Fixture               *fixture = *state;
     static float           points[COUNT][3], distances[COUNT];
     static KrsSurfacePoint surfaces[COUNT];
     for (int i = 0; i < COUNT; i++)
         for (int k = 0; k < 3; k++)
             points[i][k] = (float)sin(i * (k + 1.7)) * 3;
-    KrsStatus status = krs_sample(stage->rendering, stage->frame, (const float(*)[3])points, COUNT,
-                                  distances, surfaces);
+    KrsStatus status = krs_sample(fixture->rendering, fixture->frame, (const float(*)[3])points,
+                                  COUNT, distances, surfaces);
     assert_int_equal(status, KRS_OK);
     for (int i = 0; i < COUNT; i++) {
         double offset[3];
@@ -248,8 +248,8 @@ static void points_are_sampled(void **state)
         assert_near(surfaces[i].distance, distances[i], 2e-6);
         assert_int_equal(surfaces[i].component, 1);
     }
-    assert_int_equal(krs_sample(stage->rendering, stage->frame, NULL, 0, NULL, NULL), KRS_OK);
-    assert_int_equal(krs_sample(stage->rendering, stage->frame, NULL, 1, distances, NULL),
+    assert_int_equal(krs_sample(fixture->rendering, fixture->frame, NULL, 0, NULL, NULL), KRS_OK);
+    assert_int_equal(krs_sample(fixture->rendering, fixture->frame, NULL, 1, distances, NULL),
                      KRS_BAD_ARGUMENT);
 }
 
@@ -269,12 +269,12 @@ static void assert_same_pictures(const KrsPicture *a, const KrsPicture *b, size_
 static void slices_are_not_seen(void **state)
 {
     (void)state;
-    Stage stage = {0};
-    stage_open(&stage, landscape_text, NULL);
-    KrsPicture *whole  = stage_render(&stage,
-                                      (KrsRenderOptions){.slice_ms = 1e6, .steps_at_once = 8192});
-    KrsPicture *sliced = stage_render(&stage,
-                                      (KrsRenderOptions){.slice_ms = 0.001, .steps_at_once = 3});
+    Fixture fixture = {0};
+    fixture_open(&fixture, landscape_text, NULL);
+    KrsPicture *whole  = fixture_render(&fixture,
+                                        (KrsRenderOptions){.slice_ms = 1e6, .steps_at_once = 8192});
+    KrsPicture *sliced = fixture_render(&fixture,
+                                        (KrsRenderOptions){.slice_ms = 0.001, .steps_at_once = 3});
     assert_true(whole->stats.most_evaluations_per_ray > 30);
     assert_same_pictures(whole, sliced, (size_t)WIDTH * HEIGHT);
     assert_int_equal(whole->stats.evaluations, sliced->stats.evaluations);
@@ -282,8 +282,8 @@ static void slices_are_not_seen(void **state)
         assert_true(isfinite(whole->color[i]) && whole->color[i] >= 0);
     krs_picture_free(whole);
     krs_picture_free(sliced);
-    assert_int_equal(krs_renderer_complaints(stage.renderer), 0);
-    stage_close(&stage);
+    assert_int_equal(krs_renderer_complaints(fixture.renderer), 0);
+    fixture_close(&fixture);
 }
 
 /* Beams begin rays later, and that is all: what the rays see stays to a small part of a pixel,
@@ -291,10 +291,11 @@ static void slices_are_not_seen(void **state)
 static void beams_are_not_seen(void **state)
 {
     (void)state;
-    Stage stage = {0};
-    stage_open(&stage, terrace_text, NULL);
-    KrsPicture *behind = stage_render(&stage, (KrsRenderOptions){.samples = 1});
-    KrsPicture *alone  = stage_render(&stage, (KrsRenderOptions){.samples = 1, .no_beams = true});
+    Fixture fixture = {0};
+    fixture_open(&fixture, terrace_text, NULL);
+    KrsPicture *behind = fixture_render(&fixture, (KrsRenderOptions){.samples = 1});
+    KrsPicture *alone  = fixture_render(&fixture,
+                                        (KrsRenderOptions){.samples = 1, .no_beams = true});
     unsigned    other = 0, apart = 0;
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
         other += behind->component[i] != alone->component[i];
@@ -313,7 +314,7 @@ static void beams_are_not_seen(void **state)
     assert_true(behind->stats.evaluations < 0.9 * (double)alone->stats.evaluations);
     krs_picture_free(behind);
     krs_picture_free(alone);
-    stage_close(&stage);
+    fixture_close(&fixture);
 }
 
 /* A zone far away changes nothing but that planes may have holes, and so are marched. */
@@ -321,21 +322,21 @@ static void marched_planes_look_the_same(void **state)
 {
     (void)state;
     static const double far_away[1][4] = {{0, -1e5, 0, 1}};
-    Stage               stage          = {0};
-    stage_open(&stage,
-               "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 40deg }\n"
-               "camera below { eye: [3, -2, 5], target: [0, 0.5, 0] }\n"
-               "show sphere(1).move([0, 0.4, 0]);\n"
-               "show plane([0.1, 1, 0], 0);\n"
-               "show plane([0.5, 0.2, 1], -3).rotate([0, 1, 0], 20deg).paint(#4050c0);\n",
-               NULL);
+    Fixture             fixture        = {0};
+    fixture_open(&fixture,
+                 "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 40deg }\n"
+                 "camera below { eye: [3, -2, 5], target: [0, 0.5, 0] }\n"
+                 "show sphere(1).move([0, 0.4, 0]);\n"
+                 "show plane([0.1, 1, 0], 0);\n"
+                 "show plane([0.5, 0.2, 1], -3).rotate([0, 1, 0], 20deg).paint(#4050c0);\n",
+                 NULL);
     for (uint32_t camera = 0; camera < 2; camera++) {
-        KrsPicture *known = stage_render(&stage,
-                                         (KrsRenderOptions){.samples = 1, .camera = camera});
-        assert_int_equal(krs_frame_set_zones(stage.frame, far_away, 1), KRS_OK);
-        KrsPicture *marched = stage_render(&stage,
+        KrsPicture *known = fixture_render(&fixture,
                                            (KrsRenderOptions){.samples = 1, .camera = camera});
-        assert_int_equal(krs_frame_set_zones(stage.frame, NULL, 0), KRS_OK);
+        assert_int_equal(krs_frame_set_zones(fixture.frame, far_away, 1), KRS_OK);
+        KrsPicture *marched = fixture_render(&fixture,
+                                             (KrsRenderOptions){.samples = 1, .camera = camera});
+        assert_int_equal(krs_frame_set_zones(fixture.frame, NULL, 0), KRS_OK);
         unsigned other = 0, planes = 0;
         for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
             other += known->component[i] != marched->component[i];
@@ -352,8 +353,8 @@ static void marched_planes_look_the_same(void **state)
         krs_picture_free(known);
         krs_picture_free(marched);
     }
-    assert_int_equal(krs_renderer_complaints(stage.renderer), 0);
-    stage_close(&stage);
+    assert_int_equal(krs_renderer_complaints(fixture.renderer), 0);
+    fixture_close(&fixture);
 }
 
 /* A row of cells that mirrors fill looks the same everywhere, also where single precision knows a
@@ -371,12 +372,12 @@ static void far_cells_look_like_near_ones(void **state)
         "    for i in 0..20 { reflect plane([1, 0, 0], 2^i); }\n"
         "};\n"
         "show plane([0, 1, 0], 0);\n";
-    Stage stage = {0};
-    stage_open(&stage, row, NULL);
-    KrsPicture *near = stage_render(&stage, (KrsRenderOptions){.samples = 1});
+    Fixture fixture = {0};
+    fixture_open(&fixture, row, NULL);
+    KrsPicture *near = fixture_render(&fixture, (KrsRenderOptions){.samples = 1});
     double      off  = 400000;
-    assert_int_equal(krs_frame_set(stage.frame, "off", &off, 1), KRS_OK);
-    KrsPicture *far   = stage_render(&stage, (KrsRenderOptions){.samples = 1});
+    assert_int_equal(krs_frame_set(fixture.frame, "off", &off, 1), KRS_OK);
+    KrsPicture *far   = fixture_render(&fixture, (KrsRenderOptions){.samples = 1});
     unsigned    other = 0, hits = 0;
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
         bool same = near->component[i] == far->component[i];
@@ -393,16 +394,16 @@ static void far_cells_look_like_near_ones(void **state)
     assert_true(other * 100 <= WIDTH * HEIGHT);
     krs_picture_free(near);
     krs_picture_free(far);
-    assert_int_equal(krs_renderer_complaints(stage.renderer), 0);
-    stage_close(&stage);
+    assert_int_equal(krs_renderer_complaints(fixture.renderer), 0);
+    fixture_close(&fixture);
 }
 
 static void crops_are_parts(void **state)
 {
-    Stage          *stage = *state;
-    const KrsWindow crop  = {33, 17, 41, 30};
-    KrsPicture     *whole = stage_render(stage, (KrsRenderOptions){.samples = 2});
-    KrsPicture     *part  = stage_render(stage, (KrsRenderOptions){.samples = 2, .crop = crop});
+    Fixture        *fixture = *state;
+    const KrsWindow crop    = {33, 17, 41, 30};
+    KrsPicture     *whole   = fixture_render(fixture, (KrsRenderOptions){.samples = 2});
+    KrsPicture     *part = fixture_render(fixture, (KrsRenderOptions){.samples = 2, .crop = crop});
     assert_int_equal(part->width, WIDTH);
     assert_memory_equal(&part->window, &crop, sizeof crop);
     for (uint32_t y = 0; y < crop.height; y++) {
@@ -424,11 +425,11 @@ static void crops_are_parts(void **state)
 static void bands_are_not_seen(void **state)
 {
     /* Wide enough for several bands; its middle row is also rendered alone. */
-    Stage           *stage   = *state;
+    Fixture         *fixture = *state;
     KrsRenderOptions options = {.width = 1000, .height = 600};
-    KrsPicture      *whole   = stage_render(stage, options);
+    KrsPicture      *whole   = fixture_render(fixture, options);
     options.crop             = (KrsWindow){0, 300, 1000, 1};
-    KrsPicture *part         = stage_render(stage, options);
+    KrsPicture *part         = fixture_render(fixture, options);
     assert_memory_equal(part->color, &whole->color[4 * 1000 * 300], 4 * 1000 * sizeof(float));
     assert_int_equal(whole->stats.rays, 600000);
     krs_picture_free(whole);
@@ -438,21 +439,21 @@ static void bands_are_not_seen(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(sphere_is_where_it_should_be, stage_set_up,
-                                        stage_tear_down),
-        cmocka_unit_test_setup_teardown(parameters_need_no_compiling, stage_set_up,
-                                        stage_tear_down),
-        cmocka_unit_test_setup_teardown(matrices_lead_back_to_the_pixel, stage_set_up,
-                                        stage_tear_down),
-        cmocka_unit_test_setup_teardown(samples_converge_on_the_area, stage_set_up,
-                                        stage_tear_down),
-        cmocka_unit_test_setup_teardown(points_are_sampled, stage_set_up, stage_tear_down),
+        cmocka_unit_test_setup_teardown(sphere_is_where_it_should_be, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(parameters_need_no_compiling, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(matrices_lead_back_to_the_pixel, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(samples_converge_on_the_area, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(points_are_sampled, fixture_set_up, fixture_tear_down),
         cmocka_unit_test(slices_are_not_seen),
         cmocka_unit_test(beams_are_not_seen),
         cmocka_unit_test(marched_planes_look_the_same),
         cmocka_unit_test(far_cells_look_like_near_ones),
-        cmocka_unit_test_setup_teardown(crops_are_parts, stage_set_up, stage_tear_down),
-        cmocka_unit_test_setup_teardown(bands_are_not_seen, stage_set_up, stage_tear_down),
+        cmocka_unit_test_setup_teardown(crops_are_parts, fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(bands_are_not_seen, fixture_set_up, fixture_tear_down),
     };
     spirv_start(); /* held for all, so that no renderer starts the shader compiler anew */
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,7 +1,7 @@
 /*
- * shadow_stage.c: scenes of solids over white ground, and pictures of their shadows.
+ * shadow_fixture.c: scenes of solids over white ground, and pictures of their shadows.
  */
-#include "tests/oracle/shadow_stage.h"
+#include "tests/oracle/shadow_fixture.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -20,7 +20,7 @@ const Solid a_ledge = {SLAB, {-20, 0, -20}, {0, 2, 20}, 0};
 
 static const Solid A_BALL = {BALL, {0, 1.6, 0}, {0, 0, 0}, 0.9};
 
-Stage stages[STAGES] = {
+Fixture fixtures[FIXTURES] = {
     [LEDGE]       = {.target = {1.5, 0, 0}, .high = 4},
     [LEDGE_LAMP]  = {.lamp = true, .target = {1.5, 0, 0}, .high = 4},
     [BALLS]       = {.target = {1.2, 0, 0}, .high = 5},
@@ -36,42 +36,42 @@ Stage stages[STAGES] = {
 };
 
 /* Twigs in all directions that lie above the ground. */
-static void scatter_twigs(Stage *stage)
+static void scatter_twigs(Fixture *fixture)
 {
-    Random random = {5};
-    stage->count  = 20;
-    for (int i = 0; i < stage->count; i++) {
+    Random random  = {5};
+    fixture->count = 20;
+    for (int i = 0; i < fixture->count; i++) {
         double turn = random_between(&random, 0, M_PI), length = random_between(&random, 0.5, 1.2);
-        Vec    middle    = vec(random_between(&random, -3, 3), random_between(&random, 0.6, 1),
-                               random_between(&random, -2, 2));
-        Vec    lateral   = vec(0.5 * length * cos(turn), random_between(&random, -0.2, 0.2),
-                               0.5 * length * sin(turn));
-        stage->solids[i] = (Solid){TWIG, vec_sub(middle, lateral), vec_add(middle, lateral), 1};
+        Vec    middle      = vec(random_between(&random, -3, 3), random_between(&random, 0.6, 1),
+                                 random_between(&random, -2, 2));
+        Vec    lateral     = vec(0.5 * length * cos(turn), random_between(&random, -0.2, 0.2),
+                                 0.5 * length * sin(turn));
+        fixture->solids[i] = (Solid){TWIG, vec_sub(middle, lateral), vec_add(middle, lateral), 1};
     }
 }
 
-static void place_solids(StageKind kind)
+static void place_solids(FixtureKind kind)
 {
-    Stage *stage = &stages[kind];
+    Fixture *fixture = &fixtures[kind];
     if (kind == TWIGS) {
-        scatter_twigs(stage);
+        scatter_twigs(fixture);
         return;
     }
-    bool ledge                    = kind == LEDGE || kind == LEDGE_LAMP;
-    stage->solids[stage->count++] = ledge ? a_ledge : A_BALL;
-    if (kind == BALLS || stage->slope > 0 || stage->ball) /* one that lies on the ground */
-        stage->solids[stage->count++] = (Solid){BALL, {-1.5, 0.4, 1.5}, {0, 0, 0}, 0.4};
+    bool ledge                        = kind == LEDGE || kind == LEDGE_LAMP;
+    fixture->solids[fixture->count++] = ledge ? a_ledge : A_BALL;
+    if (kind == BALLS || fixture->slope > 0 || fixture->ball) /* one that lies on the ground */
+        fixture->solids[fixture->count++] = (Solid){BALL, {-1.5, 0.4, 1.5}, {0, 0, 0}, 0.4};
 }
 
-static void write_solid(SceneText *text, const Stage *stage, const Solid *solid)
+static void write_solid(SceneText *text, const Fixture *fixture, const Solid *solid)
 {
     Vec a = solid->a, b = solid->b, middle = vec_mix(a, b, 0.5), sides = vec_sub(b, a);
     switch (solid->kind) {
     case BALL:
         scene_write(text, "show %s.scale(%.17g).move([%.17g, %.17g, %.17g]).paint(white);\n",
-                    stage->slope > 0 ? "ball()"
-                    : stage->ball    ? stage->ball
-                                     : "sphere(1)",
+                    fixture->slope > 0 ? "ball()"
+                    : fixture->ball    ? fixture->ball
+                                       : "sphere(1)",
                     solid->radius, a.x, a.y, a.z);
         break;
     case SLAB:
@@ -88,11 +88,11 @@ static void write_solid(SceneText *text, const Stage *stage, const Solid *solid)
     }
 }
 
-static void write_view(SceneText *text, const Stage *stage)
+static void write_view(SceneText *text, const Fixture *fixture)
 {
-    const char *where = stage->lamp ? "position" : "direction";
-    const char *wide  = stage->lamp ? "radius" : "softness";
-    Vec         t     = stage->target;
+    const char *where = fixture->lamp ? "position" : "direction";
+    const char *wide  = fixture->lamp ? "radius" : "softness";
+    Vec         t     = fixture->target;
     scene_write(text,
                 "param at = [-1, 2, 0.5];\nparam wide = 0 in [0, 1];\n"
                 "param size = 0.01 in [1e-6, 1];\n"
@@ -106,7 +106,7 @@ static void write_view(SceneText *text, const Stage *stage)
     scene_write(text,
                 "camera above { eye: [%g, 50, %g], target: [%g, %g, %g], "
                 "projection: \"orthographic\", height: %g }\n",
-                t.x, t.z + 50, t.x, t.y, t.z, stage->high);
+                t.x, t.z + 50, t.x, t.y, t.z, fixture->high);
     scene_write(text, "camera aside { eye: [%g, 5, %g], target: [%g, %g, %g], fov: 40deg }\n",
                 t.x + 4, t.z + 7, t.x, t.y, t.z);
 }
@@ -117,30 +117,31 @@ void open_rendering(const Product *product, KrsRendering **rendering)
         fail_msg("%s", krs_renderer_message(renderer));
 }
 
-Stage *use_stage(StageKind kind)
+Fixture *use_fixture(FixtureKind kind)
 {
-    Stage *stage = &stages[kind];
-    if (stage->rendering)
-        return stage;
+    Fixture *fixture = &fixtures[kind];
+    if (fixture->rendering)
+        return fixture;
     place_solids(kind);
-    write_view(&stage->text, stage);
-    if (stage->slope > 0)
-        scene_write(&stage->text,
+    write_view(&fixture->text, fixture);
+    if (fixture->slope > 0)
+        scene_write(&fixture->text,
                     "shape ball(radius = 1) { distance: length(p) - radius, "
                     "slope: %.17g, within: box(2 * radius * [1, 1, 1]) }\n",
-                    stage->slope);
-    for (int i = 0; i < stage->count; i++)
-        write_solid(&stage->text, stage, &stage->solids[i]);
-    stage->product = product_compile(stage->text.bytes);
-    open_rendering(&stage->product, &stage->rendering);
-    return stage;
+                    fixture->slope);
+    for (int i = 0; i < fixture->count; i++)
+        write_solid(&fixture->text, fixture, &fixture->solids[i]);
+    fixture->product = product_compile(fixture->text.bytes);
+    open_rendering(&fixture->product, &fixture->rendering);
+    return fixture;
 }
 
 /* ---- Pictures ---- */
 
-static void set_parameter(const Stage *stage, const char *name, const double *values, size_t count)
+static void set_parameter(const Fixture *fixture, const char *name, const double *values,
+                          size_t count)
 {
-    assert_int_equal(krs_frame_set(stage->product.frame, name, values, count), KRS_OK);
+    assert_int_equal(krs_frame_set(fixture->product.frame, name, values, count), KRS_OK);
 }
 
 KrsPicture *take_picture(KrsRendering *rendering, KrsFrame *frame, KrsRenderOptions options)
@@ -154,27 +155,27 @@ KrsPicture *take_picture(KrsRendering *rendering, KrsFrame *frame, KrsRenderOpti
 
 void set_lighting(const Shot *shot)
 {
-    const Stage *stage = use_stage(shot->stage);
-    set_parameter(stage, "at", (double[]){shot->light.x, shot->light.y, shot->light.z}, 3);
-    set_parameter(stage, "wide", &shot->wide, 1);
+    const Fixture *fixture = use_fixture(shot->fixture);
+    set_parameter(fixture, "at", (double[]){shot->light.x, shot->light.y, shot->light.z}, 3);
+    set_parameter(fixture, "wide", &shot->wide, 1);
     if (shot->size > 0)
-        set_parameter(stage, "size", &shot->size, 1);
+        set_parameter(fixture, "size", &shot->size, 1);
 }
 
 KrsPicture *shoot(const Shot *shot)
 {
-    const Stage *stage = use_stage(shot->stage);
+    const Fixture *fixture = use_fixture(shot->fixture);
     set_lighting(shot);
-    return take_picture(stage->rendering, stage->product.frame, shot->options);
+    return take_picture(fixture->rendering, fixture->product.frame, shot->options);
 }
 
 Lens shot_lens(const Shot *shot)
 {
-    const Stage *stage = use_stage(shot->stage);
-    Vec          t     = stage->target;
-    int          width = (int)shot->options.width, height = (int)shot->options.height;
+    const Fixture *fixture = use_fixture(shot->fixture);
+    Vec            t       = fixture->target;
+    int            width = (int)shot->options.width, height = (int)shot->options.height;
     if (shot->options.camera == FROM_ABOVE)
-        return lens_make(vec(t.x, 50, t.z + 50), t, stage->high / 2, true, width, height);
+        return lens_make(vec(t.x, 50, t.z + 50), t, fixture->high / 2, true, width, height);
     return lens_make(vec(t.x + 4, 5, t.z + 7), t, tan(20 * DEGREE), false, width, height);
 }
 
@@ -239,9 +240,9 @@ Shot ball_shot(const Lighting *lighting, KrsShadows shadows, uint32_t samples)
 
 static int close_all(void **state)
 {
-    for (int i = 0; i < STAGES; i++) {
-        krs_rendering_free(stages[i].rendering);
-        product_free(&stages[i].product);
+    for (int i = 0; i < FIXTURES; i++) {
+        krs_rendering_free(fixtures[i].rendering);
+        product_free(&fixtures[i].product);
     }
     return renderer_close(state);
 }

@@ -1,11 +1,11 @@
 /*
- * shadow_stage.h: scenes of solids over white ground, to see the shadows of a light in.
+ * shadow_fixture.h: scenes of solids over white ground, to see the shadows of a light in.
  *
  * Two lights of every scene are one but for colour: red light casts shadows, green light does not,
  * and the sky is black; so on white ground red over green is how much of the light is visible.
  */
-#ifndef ORACLE_SHADOW_STAGE_H
-#define ORACLE_SHADOW_STAGE_H
+#ifndef ORACLE_SHADOW_FIXTURE_H
+#define ORACLE_SHADOW_FIXTURE_H
 
 #include "krs/vulkan.h"
 #include "tests/oracle/exact.h"
@@ -25,7 +25,7 @@ typedef struct Solid {
     double    radius; /* of twigs: in units of the parameter `size` */
 } Solid;
 
-typedef enum StageKind {
+typedef enum FixtureKind {
     LEDGE,
     LEDGE_LAMP,
     BALLS,
@@ -36,14 +36,14 @@ typedef enum StageKind {
     POLYNOMIALS,
     FIELDS,
     TWISTS,
-    STAGES
-} StageKind;
+    FIXTURES
+} FixtureKind;
 
 enum { FROM_ABOVE, FROM_THE_SIDE }; /* cameras: orthographic and perspective */
 
 enum { MOST_SOLIDS = 24, MOST_PIXELS = 1 << 16 };
 
-typedef struct Stage {
+typedef struct Fixture {
     bool          lamp;  /* its light has a place, else it is a sun */
     double        slope; /* balls have a distance so many times too small; 0: the true one */
     const char   *ball;  /* what they are made of: a ball of radius 1; NULL: spheres */
@@ -54,22 +54,22 @@ typedef struct Stage {
     SceneText     text;
     Product       product;
     KrsRendering *rendering;
-} Stage;
+} Fixture;
 
-extern Stage stages[STAGES];
+extern Fixture fixtures[FIXTURES];
 /* A slab whose upper edge, along z, casts a straight shadow. */
 extern const Solid a_ledge;
 
 void open_rendering(const Product *product, KrsRendering **rendering);
 
 /* Compiles the scene when it is first asked for. */
-Stage *use_stage(StageKind kind);
+Fixture *use_fixture(FixtureKind kind);
 
 /* ---- Pictures ---- */
 
-/* A picture to be taken of a stage. */
+/* A picture to be taken of a fixture. */
 typedef struct Shot {
-    StageKind        stage;
+    FixtureKind      fixture;
     Vec              light; /* towards it, or its place */
     double           wide;  /* its angle, or its radius */
     double           size;  /* of twigs; 0: they do not matter */
@@ -77,7 +77,7 @@ typedef struct Shot {
     int              without; /* in truth this solid is not there, counted from 1; 0: all are */
 } Shot;
 
-/* Gives the frame of the shot's stage its light, and the size of twigs. */
+/* Gives the frame of the shot's fixture its light, and the size of twigs. */
 void        set_lighting(const Shot *shot);
 KrsPicture *take_picture(KrsRendering *rendering, KrsFrame *frame, KrsRenderOptions options);
 KrsPicture *shoot(const Shot *shot);
@@ -92,7 +92,7 @@ double pixel_at(const Lens *lens, Vec ground);
 
 typedef struct Lighting {
     const char *name;
-    StageKind   ledge, ball;
+    FixtureKind ledge, ball;
     Vec         edge_light, ball_light;
     double      wide;
 } Lighting;
@@ -104,7 +104,7 @@ extern const Lighting lightings[LIGHTINGS];
 Shot edge_shot(const Lighting *lighting, KrsShadows shadows, uint32_t samples);
 Shot ball_shot(const Lighting *lighting, KrsShadows shadows, uint32_t samples);
 
-/* With a renderer for all of them; closes the stages that they used. */
+/* With a renderer for all of them; closes the fixtures that they used. */
 int run_shadow_tests(const char *name, const struct CMUnitTest *tests, size_t count);
 
 #endif

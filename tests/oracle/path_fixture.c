@@ -1,7 +1,7 @@
 /*
- * path_stage.c: scenes lit by random paths, and the means of their pictures.
+ * path_fixture.c: scenes lit by random paths, and the means of their pictures.
  */
-#include "tests/oracle/path_stage.h"
+#include "tests/oracle/path_fixture.h"
 
 #include <math.h>
 
@@ -9,34 +9,34 @@
 
 const Region everywhere = {0, 0, 1, 1};
 
-PathStage path_stage_open(const char *text)
+PathFixture path_fixture_open(const char *text)
 {
-    PathStage stage = {.product = product_compile(text)};
-    if (krs_rendering_new(renderer, stage.product.scene, &stage.rendering) != KRS_OK)
+    PathFixture fixture = {.product = product_compile(text)};
+    if (krs_rendering_new(renderer, fixture.product.scene, &fixture.rendering) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
-    return stage;
+    return fixture;
 }
 
-void path_stage_close(PathStage *stage)
+void path_fixture_close(PathFixture *fixture)
 {
-    krs_rendering_free(stage->rendering);
-    product_free(&stage->product);
+    krs_rendering_free(fixture->rendering);
+    product_free(&fixture->product);
 }
 
-void path_stage_set(PathStage *stage, const char *name, double number)
+void path_fixture_set(PathFixture *fixture, const char *name, double number)
 {
-    assert_int_equal(krs_frame_set(stage->product.frame, name, &number, 1), KRS_OK);
+    assert_int_equal(krs_frame_set(fixture->product.frame, name, &number, 1), KRS_OK);
 }
 
-void path_stage_set_all(PathStage *stage, const char *name, double x, double y, double z)
+void path_fixture_set_all(PathFixture *fixture, const char *name, double x, double y, double z)
 {
-    assert_int_equal(krs_frame_set(stage->product.frame, name, (double[]){x, y, z}, 3), KRS_OK);
+    assert_int_equal(krs_frame_set(fixture->product.frame, name, (double[]){x, y, z}, 3), KRS_OK);
 }
 
-KrsPicture *path_stage_render(const PathStage *stage, const KrsRenderOptions *options)
+KrsPicture *path_fixture_render(const PathFixture *fixture, const KrsRenderOptions *options)
 {
     KrsPicture *picture;
-    if (krs_render(stage->rendering, stage->product.frame, options, &picture) != KRS_OK)
+    if (krs_render(fixture->rendering, fixture->product.frame, options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     assert_int_equal(picture->stats.unresolved, 0);
     return picture;
@@ -69,13 +69,13 @@ double mean_of_region(const KrsPicture *picture, Region region, int channel)
     return sum / count;
 }
 
-Estimate path_stage_estimate(const PathStage *stage, KrsRenderOptions options, Region region,
-                             int pictures)
+Estimate path_fixture_estimate(const PathFixture *fixture, KrsRenderOptions options, Region region,
+                               int pictures)
 {
     Estimate estimate = {0};
     for (int i = 0; i < pictures; i++) {
         options.seed        = (uint64_t)i + 1;
-        KrsPicture *picture = path_stage_render(stage, &options);
+        KrsPicture *picture = path_fixture_render(fixture, &options);
         estimate_add(&estimate, mean_of_region(picture, region, 1));
         krs_picture_free(picture);
     }

@@ -1,8 +1,8 @@
 /*
- * tracer_stage.h: a renderer that the validation layers watch, and a scene on it.
+ * tracer_fixture.h: a renderer that the validation layers watch, and a scene on it.
  */
-#ifndef UNIT_TRACER_STAGE_H
-#define UNIT_TRACER_STAGE_H
+#ifndef UNIT_TRACER_FIXTURE_H
+#define UNIT_TRACER_FIXTURE_H
 
 #include "krs/vulkan.h"
 
@@ -21,26 +21,26 @@ enum { WIDTH = 97, HEIGHT = 61 };
 extern const double CENTRE[3];
 
 /* What most tests need: a renderer with validation, and the sphere on it. */
-typedef struct Stage {
+typedef struct Fixture {
     KrsRenderer  *renderer;
     KrsScene     *scene;
     KrsFrame     *frame;
     KrsRendering *rendering;
     unsigned      complaints;
     char          complaint[2048]; /* the last */
-} Stage;
+} Fixture;
 
 void note_complaint(void *user, const char *message);
-void stage_open(Stage *stage, const char *text, const KrsAllocator *allocator);
+void fixture_open(Fixture *fixture, const char *text, const KrsAllocator *allocator);
 /* The same of another device, as far as that can be pretended: KRS_PRETEND_... */
-void stage_open_as(Stage *stage, const char *text, unsigned pretence);
-void stage_close(Stage *stage);
+void fixture_open_as(Fixture *fixture, const char *text, unsigned pretence);
+void fixture_close(Fixture *fixture);
 /* The same; the test fails if the layers have complained. */
-void        stage_close_watched(Stage *stage);
-KrsPicture *stage_render(Stage *stage, KrsRenderOptions options);
+void        fixture_close_watched(Fixture *fixture);
+KrsPicture *fixture_render(Fixture *fixture, KrsRenderOptions options);
 
-/* For cmocka: *state is a Stage with scene_text, until stage_tear_down, which hears the layers. */
-int stage_set_up(void **state);
-int stage_tear_down(void **state);
+/* For cmocka: *state is a Fixture with scene_text, until fixture_tear_down, which hears the layers. */
+int fixture_set_up(void **state);
+int fixture_tear_down(void **state);
 
 #endif

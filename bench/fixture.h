@@ -1,20 +1,20 @@
 /*
- * stage.h: a scene on the device, for the benches that are programs of their own.
+ * fixture.h: a scene on the device, for the benches that are programs of their own.
  */
-#ifndef KRS_BENCH_STAGE_H
-#define KRS_BENCH_STAGE_H
+#ifndef KRS_BENCH_FIXTURE_H
+#define KRS_BENCH_FIXTURE_H
 
 #include <stdbool.h>
 
 #include "krs/vulkan.h"
 
-typedef struct Stage {
+typedef struct Fixture {
     const char   *name;
     KrsRenderer  *renderer;
     KrsScene     *scene;
     KrsFrame     *frame;
     KrsRendering *rendering;
-} Stage;
+} Fixture;
 
 /* Prints what went wrong, and ends the process: so does all else here that fails. */
 _Noreturn void give_up(const char *what, const char *why);
@@ -23,11 +23,11 @@ _Noreturn void give_up(const char *what, const char *why);
 KrsRenderer *device_open(void);
 
 /* Compiles a text, or the file of this name where that is NULL.  `gradients`: normals by
-   derivatives are wanted.  `name` must live as long as the stage. */
-Stage stage_open(KrsRenderer *renderer, const char *name, const char *text, bool gradients);
-void  stage_close(Stage *stage);
+   derivatives are wanted.  `name` must live as long as the fixture. */
+Fixture fixture_open(KrsRenderer *renderer, const char *name, const char *text, bool gradients);
+void    fixture_close(Fixture *fixture);
 
 /* The picture is the caller's to free. */
-KrsPicture *stage_render(const Stage *stage, const KrsRenderOptions *options);
+KrsPicture *fixture_render(const Fixture *fixture, const KrsRenderOptions *options);
 
 #endif

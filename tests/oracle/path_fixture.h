@@ -1,26 +1,26 @@
 /*
- * path_stage.h: scenes lit by random paths, and the means of their pictures with the error that
+ * path_fixture.h: scenes lit by random paths, and the means of their pictures with the error that
  * chance leaves.
  */
-#ifndef ORACLE_PATH_STAGE_H
-#define ORACLE_PATH_STAGE_H
+#ifndef ORACLE_PATH_FIXTURE_H
+#define ORACLE_PATH_FIXTURE_H
 
 #include "krs/vulkan.h"
 #include "tests/oracle/product.h"
 
 /* A scene on the renderer of the tests. */
-typedef struct PathStage {
+typedef struct PathFixture {
     Product       product;
     KrsRendering *rendering;
-} PathStage;
+} PathFixture;
 
-PathStage path_stage_open(const char *text);
-void      path_stage_close(PathStage *stage);
-void      path_stage_set(PathStage *stage, const char *name, double number);
-void      path_stage_set_all(PathStage *stage, const char *name, double x, double y, double z);
+PathFixture path_fixture_open(const char *text);
+void        path_fixture_close(PathFixture *fixture);
+void        path_fixture_set(PathFixture *fixture, const char *name, double number);
+void path_fixture_set_all(PathFixture *fixture, const char *name, double x, double y, double z);
 
 /* A picture, which the caller frees. */
-KrsPicture *path_stage_render(const PathStage *stage, const KrsRenderOptions *options);
+KrsPicture *path_fixture_render(const PathFixture *fixture, const KrsRenderOptions *options);
 
 /* The mean of independent numbers, and its standard error. */
 typedef struct Estimate {
@@ -41,8 +41,8 @@ extern const Region everywhere;
 double mean_of_region(const KrsPicture *picture, Region region, int channel);
 
 /* The mean green of a region, by that many pictures of different seeds. */
-Estimate path_stage_estimate(const PathStage *stage, KrsRenderOptions options, Region region,
-                             int pictures);
+Estimate path_fixture_estimate(const PathFixture *fixture, KrsRenderOptions options, Region region,
+                               int pictures);
 
 /* Whether a mean is what is expected, but for SIGMAS of its errors and a part of it.  Errors that
    are found from few pictures are uncertain themselves, so there are more sigmas than usual. */

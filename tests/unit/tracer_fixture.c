@@ -1,0 +1,123 @@
+/*
+ * tracer_fixture.c: a renderer that the validation layers watch, and a scene on it.
+ */
+#include "tests/unit/tracer_fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "compiler/passes/compile.h"
+#include "tests/support/device.h"
+
+#define assert_near(value, expected, within) assert_true(fabs((value) - (expected)) <= (within))
+const char scene_text[] =
+    "param size = 1 in [0.1, 1.5];\n"
+    "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 40deg }\n"
+    "camera flat { eye: [-2, 3, 4], target: [0.3, 0.2, -0.1],\n"
+    "              projection: \"orthographic\", height: 3 }\n"
+    "camera round { eye: [2, 0.5, 1], target: [0, 0, 0], projection: \"panorama\" }\n"
+    "camera inner { eye: [0.2, 0.1, -0.3], target: [0, 1, 0], up: [0, 0, 1], fov: 60deg }\n"
+    "light sun { direction: [-1, 2, 1], intensity: 3, softness: 1deg }\n"
+    "show sphere(size).move([0.3, 0.2, -0.1]);\n";
+
+const char landscape_text[] = "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 40deg }\n"
+                              "light sun { direction: [-1, 2, 1], intensity: 3, softness: 1deg }\n"
+                              "show sphere(1).move([0, 1, 0]);\n"
+                              "show box([0.9, 0.9, 0.9]).move([2, 0.5, 0.2]);\n"
+                              "show plane([0, 1, 0], 0);\n";
+
+const double CENTRE[3] = {0.3, 0.2, -0.1};
+
+void note_complaint(void *user, const char *message)
+{
+    Fixture *fixture = user;
+    fixture->complaints++;
+    snprintf(fixture->complaint, sizeof fixture->complaint, "%s", message);
+}
+
+static void print_diagnostic(void *user, const KrsDiagnostic *diagnostic)
+{
+    (void)user;
+    fputs(diagnostic->text, stderr);
+}
+
+static void open_with(Fixture *fixture, const char *text, KrsRendererOptions options)
+{
+    KrsOptions compiling = {.diagnostic = print_diagnostic};
+    options.device       = tested_device();
+    options.validation   = true;
+    options.complaint    = note_complaint;
+    options.user         = fixture;
+    *fixture             = (Fixture){0};
+    KrsStatus status     = krs_renderer_new(&options, &fixture->renderer);
+    if (status != KRS_OK)
+        fail_msg("%s", krs_renderer_message(fixture->renderer));
+    assert_int_equal(krs_compile_text(text, strlen(text), "test.krs", &compiling, &fixture->scene),
+                     KRS_OK);
+    assert_int_equal(krs_frame_new(fixture->scene, &fixture->frame), KRS_OK);
+    if (krs_rendering_new(fixture->renderer, fixture->scene, &fixture->rendering) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(fixture->renderer));
+}
+
+void fixture_open(Fixture *fixture, const char *text, const KrsAllocator *allocator)
+{
+    KrsRendererOptions options = {0};
+    if (allocator)
+        options.allocator = *allocator;
+    open_with(fixture, text, options);
+}
+
+void fixture_open_as(Fixture *fixture, const char *text, unsigned pretence)
+{
+    open_with(fixture, text, (KrsRendererOptions){.pretence = pretence});
+}
+
+void fixture_close(Fixture *fixture)
+{
+    krs_rendering_free(fixture->rendering);
+    krs_frame_free(fixture->frame);
+    krs_scene_free(fixture->scene);
+    krs_renderer_free(fixture->renderer);
+}
+
+void fixture_close_watched(Fixture *fixture)
+{
+    assert_int_equal(krs_renderer_complaints(fixture->renderer), 0);
+    assert_int_equal(fixture->complaints, 0);
+    fixture_close(fixture);
+}
+
+KrsPicture *fixture_render(Fixture *fixture, KrsRenderOptions options)
+{
+    KrsPicture *picture;
+    if (options.width == 0) {
+        options.width  = WIDTH;
+        options.height = HEIGHT;
+    }
+    if (krs_render(fixture->rendering, fixture->frame, &options, &picture) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(fixture->renderer));
+    return picture;
+}
+
+int fixture_set_up(void **state)
+{
+    static Fixture fixture;
+    fixture_open(&fixture, scene_text, NULL);
+    *state = &fixture;
+    return 0;
+}
+
+int fixture_tear_down(void **state)
+{
+    Fixture *fixture    = *state;
+    uint64_t complaints = krs_renderer_complaints(fixture->renderer);
+    fixture_close(fixture);
+    if (complaints != 0 || fixture->complaints != 0)
+        fprintf(stderr, "the validation layers complain: %s\n", fixture->complaint);
+    return complaints != 0 || fixture->complaints != 0;
+}
