@@ -359,7 +359,7 @@ static OutlinePoint point_of_chord(const Section *s, const Chord *chord, size_t 
     return (OutlinePoint){{to->point[0], to->point[1]}, to->corner};
 }
 
-static void box_of_joint(const Section *s, size_t item, double low[2], double high[2])
+static void box_of_csg_node(const Section *s, size_t item, double low[2], double high[2])
 {
     uint32_t number = s->loose.items[item];
     uint32_t next   = s->crossings.items[s->chords.items[number].to].chord;
@@ -429,5 +429,5 @@ static void bend_some(Section *s, size_t first, size_t count)
 void bend_chords(Section *s)
 {
     in_groups(s, s->chords.count, box_of_chord, bend_some);
-    in_groups(s, s->loose.count, box_of_joint, look_at_loose);
+    in_groups(s, s->loose.count, box_of_csg_node, look_at_loose);
 }

@@ -208,7 +208,8 @@ static double distance_to_whole(const Piece2 *piece, const double at[2])
 }
 
 /* Where a line and a circle, or two circles, touch, near a place between them: both are smooth there. */
-static bool touching_point(const Piece2 *a, const Piece2 *b, const double near[2], double joint[2])
+static bool touching_point(const Piece2 *a, const Piece2 *b, const double near[2],
+                           double csg_node[2])
 {
     const Piece2 *round = a->radius > 0 ? a : b, *other = a->radius > 0 ? b : a;
     double        to[2];
@@ -224,14 +225,14 @@ static bool touching_point(const Piece2 *a, const Piece2 *b, const double near[2
     double length = hypot(to[0], to[1]);
     double side   = to[0] * (near[0] - round->centre[0]) + to[1] * (near[1] - round->centre[1]);
     for (int k = 0; k < 2 && length > 0; k++)
-        joint[k] = round->centre[k] + (side < 0 ? -1 : 1) * round->radius * to[k] / length;
+        csg_node[k] = round->centre[k] + (side < 0 ? -1 : 1) * round->radius * to[k] / length;
     return length > 0;
 }
 
-static void end_piece_at(Piece2 *piece, bool at_end, const double joint[2])
+static void end_piece_at(Piece2 *piece, bool at_end, const double csg_node[2])
 {
     double *end = at_end ? piece->to : piece->from;
-    memcpy(end, joint, 2 * sizeof *joint);
+    memcpy(end, csg_node, 2 * sizeof *csg_node);
     if (piece->radius == 0)
         return;
     double a[2] = {piece->from[0] - piece->centre[0], piece->from[1] - piece->centre[1]};
@@ -249,12 +250,12 @@ static void end_piece_at(Piece2 *piece, bool at_end, const double joint[2])
 static bool join_smoothly(Piece2 *before, Piece2 *behind, const double near[2], double reach,
                           double error)
 {
-    double joint[2];
-    if (!touching_point(before, behind, near, joint) || distance2(joint, near) > reach ||
-        distance_to_whole(before, joint) > error || distance_to_whole(behind, joint) > error)
+    double csg_node[2];
+    if (!touching_point(before, behind, near, csg_node) || distance2(csg_node, near) > reach ||
+        distance_to_whole(before, csg_node) > error || distance_to_whole(behind, csg_node) > error)
         return false;
-    end_piece_at(before, true, joint);
-    end_piece_at(behind, false, joint);
+    end_piece_at(before, true, csg_node);
+    end_piece_at(behind, false, csg_node);
     return true;
 }
 

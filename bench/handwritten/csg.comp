@@ -38,7 +38,7 @@ float rib(vec3 p, vec3 from, vec3 along, float radius)
     return length(q - along * clamp(dot(q, along / dot(along, along)), 0.0, 1.0)) - radius;
 }
 
-// Joints of the body are 0.15 wide, of what is cut out 0.04.
+// CSG nodes of the body are 0.15 wide, of what is cut out 0.04.
 float join(float a, float b)
 {
     float h = max(0.15 - abs(a - b), 0.0);

@@ -123,8 +123,8 @@ static const Shape *join_group(Elaboration *e, const Gathering *g, size_t first,
         shape->shown   = (uint32_t)i + 1;
         shapes[made++] = shape;
     }
-    return make_joint(e->builder, SHAPE_UNION, shapes, (uint32_t)count, blend_sharp,
-                      g->shown[first].span);
+    return make_csg_node(e->builder, SHAPE_UNION, shapes, (uint32_t)count, blend_sharp,
+                         g->shown[first].span);
 }
 
 void gather_shown(Elaboration *e)

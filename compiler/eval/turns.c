@@ -197,7 +197,7 @@ static bool evaluate_turned(Elaboration *e, Turned *t)
 
 /* ---- whether that is all ---- */
 
-/* Large joints in it would be instance groups by themselves.  What a choice leaves is not the same in all
+/* Large CSG nodes in it would be instance groups by themselves.  What a choice leaves is not the same in all
    turns. */
 static bool may_be_shared(const Elaboration *e, const Shape *shape)
 {
@@ -359,7 +359,7 @@ static bool boxes_agree(const Box *box, const Box *witness)
 
 /* What a blend makes of a bound is cut to its box, part by part (group_turns.c).  Of what is shown each
    that is empty is reported. */
-static bool goes_with_joint(const TurnBody *body, const Shape *shape)
+static bool goes_with_csg_node(const TurnBody *body, const Shape *shape)
 {
     return body->shown ? !may_vanish(shape) : shape->exact || !body->bounded;
 }
@@ -374,7 +374,7 @@ static bool any_is_missed(const TurnBody *body, const Box *boxes, size_t count)
 
 static bool part_is_shared(const Elaboration *e, const Turned *t, const TurnPart *part)
 {
-    return is_like(part->shape, part->witness) && goes_with_joint(t->body, part->shape) &&
+    return is_like(part->shape, part->witness) && goes_with_csg_node(t->body, part->shape) &&
            part->shape->tree_shapes <= MOST_SHARED_SHAPES && may_be_shared(e, part->shape);
 }
 

@@ -1,5 +1,5 @@
 /*
- * csg.c: joints of shapes: union, intersection, difference, xor, and morph; sharp or blended.
+ * csg.c: CSG nodes of shapes: union, intersection, difference, xor, and morph; sharp or blended.
  */
 #include "compiler/family/family.h"
 
@@ -16,48 +16,48 @@
 /* How many operands of a blend can act at one point.  One that is farther than the reach acts only as the
    least of all, alone; and no distance is less than that to the box (lower_operand).  Of pairs two act, and
    the solid that others are taken from. */
-static uint32_t acting_together(ShapeBuilder *builder, const Shape *joint)
+static uint32_t acting_together(ShapeBuilder *builder, const Shape *csg_node)
 {
-    const BlendKind kind    = joint->blend.kind;
-    const uint32_t  solid   = joint->kind == SHAPE_DIFFERENCE; /* acts in all of its inside */
-    double          far     = blend_reach(kind, joint->child_count) * joint->blend.widest;
-    uint32_t        count   = joint->child_count;
+    const BlendKind kind    = csg_node->blend.kind;
+    const uint32_t  solid   = csg_node->kind == SHAPE_DIFFERENCE; /* acts in all of its inside */
+    double          far     = blend_reach(kind, csg_node->child_count) * csg_node->blend.widest;
+    uint32_t        count   = csg_node->child_count;
     uint32_t        at_once = blend_many(kind).way == MANY_PAIRS ? solid + 2 : UINT32_MAX;
-    bool            joins   = joint->kind == SHAPE_UNION || solid;
+    bool            joins   = csg_node->kind == SHAPE_UNION || solid;
     if (!joins || !isfinite(far) || count < 3)
         return count < at_once ? count : at_once;
     ArenaMark mark  = arena_mark(builder->scratch);
     Box      *boxes = arena_new_array(builder->scratch, Box, count);
     for (uint32_t i = solid; i < count; i++)
-        boxes[i - solid] = joint->children[i]->box;
+        boxes[i - solid] = csg_node->children[i]->box;
     uint32_t most = most_overlap(boxes, count - solid, fmax(far, 0), builder->scratch);
     arena_rewind(builder->scratch, mark);
     return solid + most < at_once ? solid + most : at_once;
 }
 
-const Shape *make_joint(ShapeBuilder *builder, ShapeKind kind, const Shape *const *shapes,
-                        uint32_t count, Blend blend, Span span)
+const Shape *make_csg_node(ShapeBuilder *builder, ShapeKind kind, const Shape *const *shapes,
+                           uint32_t count, Blend blend, Span span)
 {
-    Shape *joint = shape_new(builder, kind, shape_info[kind].name, span, shapes, count);
-    joint->blend = blend;
+    Shape *csg_node = shape_new(builder, kind, shape_info[kind].name, span, shapes, count);
+    csg_node->blend = blend;
     if (blend.width != NODE_NONE) {
-        check_lipschitz(builder, joint, "a blend", span);
-        joint->blend.widest = node_range(builder, blend.width, 0).high;
+        check_lipschitz(builder, csg_node, "a blend", span);
+        csg_node->blend.widest = node_range(builder, blend.width, 0).high;
     }
-    /* Outside, the least of exact distances is exact; every other joint only bounds it. */
-    joint->exact = joint->exact && kind == SHAPE_UNION && blend.width == NODE_NONE;
-    joint->box   = builder_box(builder, joint);
-    if (blend.width == NODE_NONE && joint->figure)
-        joint->boundary = boundary_new(builder->arena);
+    /* Outside, the least of exact distances is exact; every other CSG node only bounds it. */
+    csg_node->exact = csg_node->exact && kind == SHAPE_UNION && blend.width == NODE_NONE;
+    csg_node->box   = builder_box(builder, csg_node);
+    if (blend.width == NODE_NONE && csg_node->figure)
+        csg_node->boundary = boundary_new(builder->arena);
     if (blend.width != NODE_NONE && count > 1) {
         const BlendInfo *info = &blend_info[blend.kind];
         /* Each further operand adds a partial derivative; their squares sum to 1, so the sum of
            n of them is at most sqrt(n): for two operands the factor of the table.  What pairs of tools are
            to a solid is less: (1 + sqrt 2) / sqrt 2. */
         if (info->slope > 1)
-            joint->slope *= pow(info->slope, log2(acting_together(builder, joint)));
+            csg_node->slope *= pow(info->slope, log2(acting_together(builder, csg_node)));
     }
-    return joint;
+    return csg_node;
 }
 
 const Shape *make_clip(ShapeBuilder *builder, const Shape *shape, const Shape *region,
@@ -93,7 +93,7 @@ static Lowered complement(Lowering *l, Lowered a)
     return a;
 }
 
-LowerContext joint_context(const Shape *shape, LowerContext context)
+LowerContext csg_node_context(const Shape *shape, LowerContext context)
 {
     const Blend *blend = &shape->blend;
     if (blend->width == NODE_NONE)
@@ -102,11 +102,11 @@ LowerContext joint_context(const Shape *shape, LowerContext context)
     return context_lipschitz_within(context, widths * blend->widest);
 }
 
-static Lowered lower_joined(Lowering *l, const Shape *joint, const Shape *child,
+static Lowered lower_joined(Lowering *l, const Shape *csg_node, const Shape *child,
                             LowerContext context)
 {
-    return joint->blend.width == NODE_NONE ? lower_shape(l, child, context)
-                                           : lower_operand(l, child, context);
+    return csg_node->blend.width == NODE_NONE ? lower_shape(l, child, context)
+                                              : lower_operand(l, child, context);
 }
 
 /* Sharply joined in pairs, so that the graph stays shallow. */
@@ -139,7 +139,7 @@ static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *chi
 static Lowered union_by_parts(Lowering *l, const Shape *shape, LowerContext context)
 {
     return union_of(l, shape, shape->children, shape->child_count, context.reach,
-                    joint_context(shape, context));
+                    csg_node_context(shape, context));
 }
 
 Lowered lower_union(Lowering *l, const Shape *shape, LowerContext context)
@@ -155,7 +155,7 @@ static Lowered intersection_of_two(Lowering *l, const Shape *shape, Lowered a, L
 
 static Lowered intersection_by_parts(Lowering *l, const Shape *shape, LowerContext context)
 {
-    context = joint_context(shape, context);
+    context = csg_node_context(shape, context);
     /* The complement of the union of the complements. */
     PartJoin join = {shape, shape->children, shape->child_count, true, context.reach};
     if (shape->blend.width != NODE_NONE) {
@@ -180,7 +180,7 @@ Lowered lower_intersection(Lowering *l, const Shape *shape, LowerContext context
 
 static Lowered difference_by_parts(Lowering *l, const Shape *shape, LowerContext context)
 {
-    context       = joint_context(shape, context);
+    context       = csg_node_context(shape, context);
     Lowered left  = lower_joined(l, shape, shape->children[0], context);
     Lowered right = union_of(l, shape, shape->children + 1, shape->child_count - 1, context.reach,
                              context);
@@ -198,7 +198,7 @@ Lowered lower_difference(Lowering *l, const Shape *shape, LowerContext context)
 /* What is in one of two: their union less what they share. */
 static Lowered xor_by_parts(Lowering *l, const Shape *shape, LowerContext context)
 {
-    context   = joint_context(shape, context);
+    context   = csg_node_context(shape, context);
     Lowered a = lower_joined(l, shape, shape->children[0], context);
     Lowered b = lower_joined(l, shape, shape->children[1], context);
     if (a.distance == NODE_NONE || b.distance == NODE_NONE)

@@ -35,8 +35,8 @@ Node lower_outline_distance(Lowering *l, const Shape *shape, LowerContext contex
 /* NULL: an inversion of something endless, which is reported. */
 const Shape *make_transform(ShapeBuilder *builder, const Shape *shape, const Map *map, Span span);
 const Shape *make_stretch(ShapeBuilder *builder, const Shape *shape, Node factors, Span span);
-const Shape *make_joint(ShapeBuilder *builder, ShapeKind kind, const Shape *const *shapes,
-                        uint32_t count, Blend blend, Span span);
+const Shape *make_csg_node(ShapeBuilder *builder, ShapeKind kind, const Shape *const *shapes,
+                           uint32_t count, Blend blend, Span span);
 /* What of a shape is in a region, which is not seen; NULL: all is.  It is known to be between these two
    corners; NULL: to be in the box of the shape. */
 const Shape *make_clip(ShapeBuilder *builder, const Shape *shape, const Shape *region,

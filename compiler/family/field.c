@@ -236,8 +236,9 @@ static const Shape *restrict_primitive(ShapeBuilder *builder, const Shape *shape
     return restricted;
 }
 
-/* The children over the same box, grown by what the joint may reach around. */
-static const Shape *restrict_joint(ShapeBuilder *builder, const Shape *shape, Box box, bool uniform)
+/* The children over the same box, grown by what the CSG node may reach around. */
+static const Shape *restrict_csg_node(ShapeBuilder *builder, const Shape *shape, Box box,
+                                      bool uniform)
 {
     const Shape **children = arena_new_array(builder->arena, const Shape *, shape->child_count + 1);
     double        reach    = shape->blend.width == NODE_NONE
@@ -245,8 +246,8 @@ static const Shape *restrict_joint(ShapeBuilder *builder, const Shape *shape, Bo
                                  : node_range(builder, shape->blend.width, 0).high;
     for (uint32_t i = 0; i < shape->child_count; i++)
         children[i] = restrict_shape(builder, shape->children[i], box_grow(box, reach), uniform);
-    return make_joint(builder, shape->kind, children, shape->child_count, shape->blend,
-                      shape->span);
+    return make_csg_node(builder, shape->kind, children, shape->child_count, shape->blend,
+                         shape->span);
 }
 
 static const Shape *restrict_clip(ShapeBuilder *builder, const Shape *shape, Box box, bool uniform)

@@ -128,7 +128,7 @@ static Surface mix_operands(const Blending *b)
 
 Lowered lower_blend(Lowering *l, PartJoin join, LowerContext context, bool *nowhere)
 {
-    Blending b      = {.l = l, .blend = join.joint->blend, .context = context};
+    Blending b      = {.l = l, .blend = join.csg_node->blend, .context = context};
     Lowered  result = lowered_nothing;
     b.groups        = find_joined_groups(l, &join, context);
     *nowhere        = !lower_parts(&b, &join);

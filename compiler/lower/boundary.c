@@ -1,5 +1,5 @@
 /*
- * boundary.c: finds the boundary of a joint of figures, and builds the distance to it.
+ * boundary.c: finds the boundary of a CSG node of figures, and builds the distance to it.
  */
 #include "compiler/lower/boundary.h"
 
@@ -42,7 +42,7 @@ struct Boundary *boundary_new(Arena *arena)
 
 /* ---- outlines of the parts ---- */
 
-/* The walk through a joint; all that it makes is scratch. */
+/* The walk through a CSG node; all that it makes is scratch. */
 typedef struct Gathering {
     Graph       *graph;
     Arena       *scratch;
@@ -213,7 +213,7 @@ static bool gather_union(Gathering *g, const Shape *shape, uint32_t first, Curve
 }
 
 /* Joins the outlines of parts one by one. */
-static bool gather_joint(Gathering *g, const Shape *shape, FillRule rule, Curves *curves)
+static bool gather_csg_node(Gathering *g, const Shape *shape, FillRule rule, Curves *curves)
 {
     g->changed = true;
     if (!gather(g, shape->children[0], curves))
@@ -456,8 +456,8 @@ static bool gather(Gathering *g, const Shape *shape, Curves *curves)
     case SHAPE_TRANSFORM: return gather_transform(g, shape, curves);
     case SHAPE_STRETCH: return gather_stretch(g, shape, curves);
     case SHAPE_UNION: return gather_union(g, shape, 0, curves);
-    case SHAPE_INTERSECTION: return gather_joint(g, shape, FILL_TWICE, curves);
-    case SHAPE_XOR: return gather_joint(g, shape, FILL_EVEN_ODD, curves);
+    case SHAPE_INTERSECTION: return gather_csg_node(g, shape, FILL_TWICE, curves);
+    case SHAPE_XOR: return gather_csg_node(g, shape, FILL_EVEN_ODD, curves);
     case SHAPE_DIFFERENCE: return gather_difference(g, shape, curves);
     case SHAPE_OFFSET: return gather_offset(g, shape, curves);
     case SHAPE_SHELL: return gather_shell(g, shape, curves);
@@ -540,13 +540,13 @@ static void make_table(struct Boundary *boundary, Span span, Arena *scratch)
     boundary->lines.count = 0;
 }
 
-static void find_boundary(Lowering *l, const Shape *joint, struct Boundary *boundary)
+static void find_boundary(Lowering *l, const Shape *csg_node, struct Boundary *boundary)
 {
     Gathering g      = {.graph = l->graph, .scratch = l->scratch};
     Curves    curves = {0};
     bool      curved = false;
     boundary->state  = BOUNDARY_UNKNOWN;
-    if (!gather(&g, joint, &curves) || curves.count == 0 || !g.changed)
+    if (!gather(&g, csg_node, &curves) || curves.count == 0 || !g.changed)
         return;
     for (size_t i = 0; i < curves.count; i++) {
         const Curve *curve = &curves.items[i];
@@ -560,7 +560,7 @@ static void find_boundary(Lowering *l, const Shape *joint, struct Boundary *boun
     if (boundary->arcs.count > MOST_ARCS)
         return;
     if (curved || boundary->lines.count > MOST_LINES)
-        make_table(boundary, joint->span, l->scratch);
+        make_table(boundary, csg_node->span, l->scratch);
     boundary->state = BOUNDARY_KNOWN;
 }
 
@@ -637,20 +637,20 @@ static Node distance_to_table(Lowering *l, struct Boundary *boundary, double rea
     return graph_op1(l->graph, OP_abs, distance);
 }
 
-static bool boundary_counts(Lowering *l, const Shape *joint, LowerContext context)
+static bool boundary_counts(Lowering *l, const Shape *csg_node, LowerContext context)
 {
-    struct Boundary *boundary = joint->boundary;
+    struct Boundary *boundary = csg_node->boundary;
     if (!boundary || !(context.reach > 0) || !(l->groups || l->far))
         return false;
     if (boundary->state == BOUNDARY_NEW)
-        find_boundary(l, joint, boundary);
+        find_boundary(l, csg_node, boundary);
     return boundary->state == BOUNDARY_KNOWN;
 }
 
-static Node boundary_distance(Lowering *l, const Shape *joint, LowerContext context, Node joined)
+static Node boundary_distance(Lowering *l, const Shape *csg_node, LowerContext context, Node joined)
 {
     Graph           *g        = l->graph;
-    struct Boundary *boundary = joint->boundary;
+    struct Boundary *boundary = csg_node->boundary;
     Node             near     = distance_to_pieces(l, boundary, context.point);
     if (boundary->table) {
         Node table = distance_to_table(l, boundary, context.reach, context.point);
@@ -660,15 +660,15 @@ static Node boundary_distance(Lowering *l, const Shape *joint, LowerContext cont
     return graph_op3(g, OP_select, inside, neg(g, near), near);
 }
 
-Lowered lower_within_boundary(Lowering *l, const Shape *joint, LowerContext context,
+Lowered lower_within_boundary(Lowering *l, const Shape *csg_node, LowerContext context,
                               LowerShape *by_parts)
 {
-    if (!boundary_counts(l, joint, context))
-        return by_parts(l, joint, context);
+    if (!boundary_counts(l, csg_node, context))
+        return by_parts(l, csg_node, context);
     LowerContext sides = context; /* what is asked of the parts is the side alone */
     sides.reach        = 0;
-    Lowered result     = by_parts(l, joint, sides);
+    Lowered result     = by_parts(l, csg_node, sides);
     if (result.distance != NODE_NONE)
-        result.distance = boundary_distance(l, joint, context, result.distance);
+        result.distance = boundary_distance(l, csg_node, context, result.distance);
     return result;
 }

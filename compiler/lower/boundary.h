@@ -3,7 +3,7 @@
  *
  * The least of the distances to parts that overlap or touch is not the distance inside of their union: it is
  * 0 along a seam.  Where the numbers of all parts are known, so are their outlines, and what is left of
- * these is the boundary.  The distance to that has the sign of the joint.
+ * these is the boundary.  The distance to that has the sign of the CSG node.
  */
 #ifndef KRS_BOUNDARY_H
 #define KRS_BOUNDARY_H
@@ -11,12 +11,12 @@
 #include "compiler/lower/context.h"
 #include "compiler/outline/path.h"
 
-/* Makes what is known of a joint's boundary, which is looked for when it is first needed. */
+/* Makes what is known of a CSG node's boundary, which is looked for when it is first needed. */
 struct Boundary *boundary_new(Arena *arena);
 
-/* Lowers a joint, or copies, by its parts.  Where distances are needed away from the outline, what the parts say is not
+/* Lowers a CSG node, or copies, by its parts.  Where distances are needed away from the outline, what the parts say is not
    the true one there, and the boundary is known, it gets the distance to that, with the sign of the parts. */
-Lowered lower_within_boundary(Lowering *l, const Shape *joint, LowerContext context,
+Lowered lower_within_boundary(Lowering *l, const Shape *csg_node, LowerContext context,
                               LowerShape *by_parts);
 
 /* The outline of a figure, with the inside on its left; false: it is not known. */

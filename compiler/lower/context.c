@@ -7,7 +7,7 @@
  *
  * A distance has the slope that the family of its shape derived.  The root is divided by that of
  * the whole shape, and is then 1-Lipschitz.  A primitive may have a larger `bound` as well, which
- * need not be Lipschitz but never exceeds the distance.  It is used where only sharp joints and
+ * need not be Lipschitz but never exceeds the distance.  It is used where only sharp CSG nodes and
  * maps of space are above the primitive.
  */
 #include "compiler/lower/context.h"

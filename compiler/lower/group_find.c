@@ -1,7 +1,7 @@
 /*
- * group_find.c: finds the parts of a joint that are alike.
+ * group_find.c: finds the parts of a CSG node that are alike.
  *
- * Parts are lowered where nothing of the joint's surroundings is, but for leaves.  All nodes are
+ * Parts are lowered where nothing of the CSG node's surroundings is, but for leaves.  All nodes are
  * dropped, and hashes of their expressions are kept.  Of hashes that are frequent enough, the first
  * part is a template of the others, and is lowered again.
  *

@@ -199,7 +199,7 @@ static uint32_t make_of_nearest(const InstanceGroup *group, const GroupJoin *joi
     return graph_add_instance_function(g, function, bodies);
 }
 
-/* One after the other: sharp joints, and blends for which the order means nothing. */
+/* One after the other: sharp CSG nodes, and blends for which the order means nothing. */
 static uint32_t make_row(const InstanceGroup *group, const GroupJoin *join)
 {
     Graph           *g        = join->graph;

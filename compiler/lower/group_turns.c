@@ -1,5 +1,5 @@
 /*
- * group_turns.c: parts of a joint that are turns of one loop (family/turn.c).
+ * group_turns.c: parts of a CSG node that are turns of one loop (family/turn.c).
  *
  * What they have in common is lowered once, and is the template of a group.  Slots that depend on the
  * turn are found for all instances at once.

@@ -1,5 +1,5 @@
 /*
- * instance_group.h: parts of a joint that are alike, and the functions of the instance group that they become.
+ * instance_group.h: parts of a CSG node that are alike, and the functions of the instance group that they become.
  */
 #ifndef KRS_INSTANCE_GROUP_H
 #define KRS_INSTANCE_GROUP_H
@@ -12,7 +12,7 @@
 /* The expressions of a part: its distance, and a node for each row of surface.def. */
 enum { PART_DISTANCE, PART_SURFACE, PART_ROOTS = 1 + sizeof(Surface) / sizeof(Node) };
 
-/* What the context of parts has in place of what is around the joint. */
+/* What the context of parts has in place of what is around the CSG node. */
 typedef struct PartLeaves {
     Node point, normal, footprint, level, instance, smoothing;
 } PartLeaves;
@@ -38,7 +38,7 @@ typedef struct SlotElement {
 typedef struct InstanceGroup {
     Template *template;
     struct {
-        uint32_t *items; /* of the instances, ascending: their places in the joint */
+        uint32_t *items; /* of the instances, ascending: their places in the CSG node */
         size_t    count, capacity;
     } instances;
     SlotElement *elements; /* of each slot 4 */
@@ -65,12 +65,12 @@ typedef struct GroupJoin {
     PartLeaves leaves;
     Blend      blend;
     bool       complement;
-    Span       span; /* of the joint */
+    Span       span; /* of the CSG node */
 } GroupJoin;
 
 /* group_find.c: what is searched for parts that are alike. */
 typedef struct PartFinder {
-    const Lowering     *outer; /* of the joint */
+    const Lowering     *outer; /* of the CSG node */
     const Shape *const *parts;
     uint32_t            count;
     LowerContext        context;  /* of the parts */
@@ -79,7 +79,7 @@ typedef struct PartFinder {
     Alike              *alike;
     uint32_t            least; /* instances of a group */
     uint32_t            many;  /* instances that make an instance group, however small they are */
-    const uint32_t     *made;  /* joints with groups, so far */
+    const uint32_t     *made;  /* CSG nodes with groups, so far */
 } PartFinder;
 
 typedef struct InstanceGroups {
@@ -92,8 +92,8 @@ InstanceGroups find_groups(const PartFinder *finder, Arena *arena);
 /* Lowers what a part is where parts are, with these groups.  False: it is empty, or too large. */
 bool lower_part(const PartFinder *finder, const Shape *shape, struct LoweredGroups *groups,
                 Node roots[PART_ROOTS]);
-/* instance_groups.c: how many parts a joint with instance groups has at least. */
-uint32_t least_of_joint(const struct LoweredGroups *groups, bool sharp);
+/* instance_groups.c: how many parts a CSG node with instance groups has at least. */
+uint32_t least_of_csg(const struct LoweredGroups *groups, bool sharp);
 /* group_turns.c: adds groups of turns of one loop, and marks their instances. */
 void find_turn_groups(const PartFinder *finder, InstanceGroups *groups, bool *taken, Arena *arena);
 
@@ -103,7 +103,7 @@ InstanceGroup group_new(Template *template, Arena *arena);
 void group_add(InstanceGroup *group, uint32_t part, const SlotContent *contents, Arena *scratch);
 /* Finds what varies and its columns; false: there would be too many. */
 bool group_find_columns(InstanceGroup *group, const GroupJoin *join);
-/* Makes the table, of which `stretch` and `span` are set.  `boxes` are of all parts of the joint. */
+/* Makes the table, of which `stretch` and `span` are set.  `boxes` are of all parts of the CSG node. */
 void group_make_table(InstanceGroup *group, const GroupJoin *join, const Box *boxes, double reach,
                       double margin, InstanceTable table);
 /* group_cells.c: gives a table with all its numbers a grid and its cells; `boxes` are of its rows. */
@@ -116,7 +116,7 @@ void group_slots(const InstanceGroup *group, Graph *graph, Node instance, Node *
 void group_slots_of_parameters(const InstanceGroup *group, Graph *graph, uint32_t first,
                                Node *slots);
 
-/* instance_groups.c: the groups of parts of a joint that are many and alike.  The other parts are left in *join. */
+/* instance_groups.c: the groups of parts of a CSG node that are many and alike.  The other parts are left in *join. */
 typedef struct JoinedGroups {
     InstanceGroup *groups;
     uint32_t       count;

@@ -1,5 +1,5 @@
 /*
- * instance_groups.c: the instance groups of a joint, which all its lowerings share.
+ * instance_groups.c: the instance groups of a CSG node, which all its lowerings share.
  */
 #include "compiler/lower/instance_groups.h"
 
@@ -11,28 +11,28 @@
 #include "compiler/lower/instance_group.h"
 #include "compiler/lower/join.h"
 
-/* The instance groups of a joint, in one kind of context. */
-typedef struct JointGroups {
-    struct JointGroups *next;
-    const Shape        *joint;
-    LowerContext        context; /* what matters of it */
-    InstanceGroup      *groups;
-    uint32_t            group_count;
-    const Shape       **rest;
-    uint32_t            rest_count;
-} JointGroups;
+/* The instance groups of a CSG node, in one kind of context. */
+typedef struct CsgGroups {
+    struct CsgGroups *next;
+    const Shape      *csg_node;
+    LowerContext      context; /* what matters of it */
+    InstanceGroup    *groups;
+    uint32_t          group_count;
+    const Shape     **rest;
+    uint32_t          rest_count;
+} CsgGroups;
 
 enum { BUCKETS = 256 };
 
 struct LoweredGroups {
-    Graph       *graph;
-    Arena       *arena, *tables;
-    Alike       *alike;
-    PartLeaves   leaves;
-    uint32_t     least; /* instances of an instance group */
-    uint32_t     few;   /* the same of sharp joints, if they are large */
-    uint32_t     made;  /* joints with groups, and functions of outlines */
-    JointGroups *joints[BUCKETS];
+    Graph     *graph;
+    Arena     *arena, *tables;
+    Alike     *alike;
+    PartLeaves leaves;
+    uint32_t   least; /* instances of an instance group */
+    uint32_t   few;   /* the same of sharp CSG nodes, if they are large */
+    uint32_t   made;  /* CSG nodes with groups, and functions of outlines */
+    CsgGroups *csg_nodes[BUCKETS];
 };
 
 LoweredGroups *lowered_groups_new(Graph *graph, Arena *arena, Arena *tables, uint32_t least)
@@ -47,7 +47,7 @@ LoweredGroups *lowered_groups_new(Graph *graph, Arena *arena, Arena *tables, uin
 
 void lowered_groups_take_few(LoweredGroups *groups) { groups->few = LEAST_OF_FEW; }
 
-uint32_t least_of_joint(const LoweredGroups *groups, bool sharp)
+uint32_t least_of_csg(const LoweredGroups *groups, bool sharp)
 {
     return sharp ? groups->few : groups->least;
 }
@@ -215,7 +215,7 @@ static Box *boxes_of(const PartFinder *finder, const GroupJoin *join)
     return boxes;
 }
 
-static void make_groups(const PartFinder *finder, const GroupJoin *join, JointGroups *made,
+static void make_groups(const PartFinder *finder, const GroupJoin *join, CsgGroups *made,
                         Arena *arena)
 {
     InstanceGroups groups       = find_groups(finder, arena);
@@ -238,17 +238,22 @@ static void make_groups(const PartFinder *finder, const GroupJoin *join, JointGr
             made->rest[made->rest_count++] = finder->parts[i];
 }
 
-/* ---- joints ---- */
+/* ---- CSG nodes ---- */
 
 static GroupJoin group_join(const Lowering *l, const PartJoin *join)
 {
-    return (GroupJoin){l->graph,           l->scratch,       l->groups->tables, l->groups->leaves,
-                       join->joint->blend, join->complement, join->joint->span};
+    return (GroupJoin){l->graph,
+                       l->scratch,
+                       l->groups->tables,
+                       l->groups->leaves,
+                       join->csg_node->blend,
+                       join->complement,
+                       join->csg_node->span};
 }
 
-/* Whether the instance groups of a joint in one context serve in another.  Surfaces need to know whether
+/* Whether the instance groups of a CSG node in one context serve in another.  Surfaces need to know whether
    there is a level, an instance and a smoothing. */
-static bool serves(const JointGroups *made, const Lowering *l, LowerContext parts)
+static bool serves(const CsgGroups *made, const Lowering *l, LowerContext parts)
 {
     const LowerContext *of      = &made->context;
     bool                outside = of->level == parts.level && of->instance == parts.instance &&
@@ -257,29 +262,29 @@ static bool serves(const JointGroups *made, const Lowering *l, LowerContext part
            (outside || !l->surfaces);
 }
 
-static JointGroups *find_joint(Lowering *l, const PartJoin *join, LowerContext context)
+static CsgGroups *find_csg_node(Lowering *l, const PartJoin *join, LowerContext context)
 {
     LoweredGroups *groups = l->groups;
     LowerContext   parts  = context_of_parts(&groups->leaves, context);
-    JointGroups  **bucket = &groups->joints[(uintptr_t)join->joint / sizeof(Shape) % BUCKETS];
-    for (JointGroups *made = *bucket; made; made = made->next)
-        if (made->joint == join->joint && serves(made, l, parts))
+    CsgGroups    **bucket = &groups->csg_nodes[(uintptr_t)join->csg_node / sizeof(Shape) % BUCKETS];
+    for (CsgGroups *made = *bucket; made; made = made->next)
+        if (made->csg_node == join->csg_node && serves(made, l, parts))
             return made;
-    bool         sharp     = join->joint->blend.width == NODE_NONE;
-    PartFinder   finder    = {.outer    = l,
-                              .parts    = join->parts,
-                              .count    = join->count,
-                              .context  = parts,
-                              .reach    = join->reach,
-                              .operands = !sharp || context.reach > 0,
-                              .alike    = groups->alike,
-                              .least    = least_of_joint(groups, sharp),
-                              .many     = groups->least,
-                              .made     = &groups->made};
-    GroupJoin    instances = group_join(l, join);
-    JointGroups *made      = arena_new(groups->arena, JointGroups);
-    made->joint            = join->joint;
-    made->context          = parts;
+    bool       sharp     = join->csg_node->blend.width == NODE_NONE;
+    PartFinder finder    = {.outer    = l,
+                            .parts    = join->parts,
+                            .count    = join->count,
+                            .context  = parts,
+                            .reach    = join->reach,
+                            .operands = !sharp || context.reach > 0,
+                            .alike    = groups->alike,
+                            .least    = least_of_csg(groups, sharp),
+                            .many     = groups->least,
+                            .made     = &groups->made};
+    GroupJoin  instances = group_join(l, join);
+    CsgGroups *made      = arena_new(groups->arena, CsgGroups);
+    made->csg_node       = join->csg_node;
+    made->context        = parts;
     make_groups(&finder, &instances, made, groups->arena);
     groups->made += made->group_count > 0;
     made->next = *bucket;
@@ -290,20 +295,20 @@ static JointGroups *find_joint(Lowering *l, const PartJoin *join, LowerContext c
 JoinedGroups find_joined_groups(Lowering *l, PartJoin *join, LowerContext context)
 {
     JoinedGroups found = {.count = 0};
-    const bool   sharp = join->joint->blend.width == NODE_NONE;
-    if (!l->groups || join->count < least_of_joint(l->groups, sharp) || join->joint->sheets ||
+    const bool   sharp = join->csg_node->blend.width == NODE_NONE;
+    if (!l->groups || join->count < least_of_csg(l->groups, sharp) || join->csg_node->sheets ||
         l->overflow)
         return found;
     if (!l->groups->alike) {
         l->groups->alike  = alike_new(l->graph, l->groups->arena);
         l->groups->leaves = part_leaves(l->graph);
     }
-    found.join        = group_join(l, join);
-    JointGroups *made = find_joint(l, join, context);
-    found.groups      = made->groups;
-    found.count       = made->group_count;
-    join->parts       = made->rest;
-    join->count       = made->rest_count;
+    found.join      = group_join(l, join);
+    CsgGroups *made = find_csg_node(l, join, context);
+    found.groups    = made->groups;
+    found.count     = made->group_count;
+    join->parts     = made->rest;
+    join->count     = made->rest_count;
     return found;
 }
 
@@ -313,7 +318,7 @@ Lowered lower_groups(Lowering *l, PartJoin *join, LowerContext context)
     JoinedGroups found = find_joined_groups(l, join, context);
     for (uint32_t i = 0; i < found.count; i++) {
         Lowered table_number = group_lower(&found.groups[i], &found.join, l->surfaces, context);
-        all                  = join_two(l, join->joint->blend, all, table_number);
+        all                  = join_two(l, join->csg_node->blend, all, table_number);
     }
     return all;
 }

@@ -1,5 +1,5 @@
 /*
- * instance_groups.h: parts of a joint that are alike, lowered as one body and a table (graph/instance_table.h).
+ * instance_groups.h: parts of a CSG node that are alike, lowered as one body and a table (graph/instance_table.h).
  */
 #ifndef KRS_INSTANCE_GROUPS_H
 #define KRS_INSTANCE_GROUPS_H
@@ -12,19 +12,19 @@ enum { LEAST_INSTANCES = 64 };
    loop for each property that is mixed. */
 enum { LEAST_OF_FEW = 6, LEAST_SAVED = 350 };
 
-/* The instance groups of a scene, by the joints that they are parts of.  All lowerings of a joint use the
+/* The instance groups of a scene, by the CSG nodes that they are parts of.  All lowerings of a CSG node use the
    same.  What tables have is made in an arena of its own.  `least` is LEAST_INSTANCES, but in tests. */
 typedef struct LoweredGroups LoweredGroups;
 LoweredGroups *lowered_groups_new(Graph *graph, Arena *arena, Arena *tables, uint32_t least);
-/* Lets few large parts of sharp joints become groups, too. */
+/* Lets few large parts of sharp CSG nodes become groups, too. */
 void lowered_groups_take_few(LoweredGroups *groups);
 
 /* Says that the graph's nodes are needed for something else than the shape that is lowered. */
 void lowered_groups_made(LoweredGroups *groups);
 
-/* What a joint joins, which is sharp or a blend: its parts or their complements. */
+/* What a CSG node joins, which is sharp or a blend: its parts or their complements. */
 typedef struct PartJoin {
-    const Shape        *joint;
+    const Shape        *csg_node;
     const Shape *const *parts;
     uint32_t            count;
     bool                complement;

@@ -31,7 +31,7 @@ Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b)
 /* Whether outside of its box a distance is that to the sides of the box or more, whatever it is a bound of.
    Operands of blends are made so (lower_operand), and blends that are no steeper are less than their
    operands by no more than their boxes grow.  A difference is no less than what it is taken from.  A
-   sharp joint may have a part that is nowhere, which is far from no place. */
+   sharp CSG node may have a part that is nowhere, which is far from no place. */
 static bool keeps_to_box(const Lowering *l, const Shape *shape)
 {
     const bool difference = shape->kind == SHAPE_DIFFERENCE;
@@ -41,7 +41,7 @@ static bool keeps_to_box(const Lowering *l, const Shape *shape)
     if (shape->exact)
         return true;
     if (!joins || shape->sheets ||
-        (l->groups && shape->child_count >= least_of_joint(l->groups, sharp)) ||
+        (l->groups && shape->child_count >= least_of_csg(l->groups, sharp)) ||
         (!sharp && blend_info[shape->blend.kind].slope > 1))
         return false;
     for (uint32_t i = 0; i < (difference ? 1 : shape->child_count); i++)

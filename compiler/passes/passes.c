@@ -6,7 +6,7 @@
 #include "compiler/passes/compilation.h"
 #include "compiler/graph/instance_table.h"
 #include "compiler/graph/rewrite/parameterise.h"
-#include "compiler/graph/rewrite/joints.h"
+#include "compiler/graph/rewrite/csg_nodes.h"
 #include "compiler/graph/rewrite/simplify.h"
 #include "compiler/lower/instance_groups.h"
 
@@ -180,7 +180,7 @@ static bool prune_component(Compilation *c, size_t component)
     Roots     *roots = &c->scene->roots;
     const Node old   = distance_root(roots, component);
     const Box  box   = c->elaborated.components.items[component].shape->box;
-    Node new         = joints_prune(c->simplified, old, box, &c->scratch);
+    Node new         = csg_nodes_prune(c->simplified, old, box, &c->scratch);
     arena_free(&c->scratch);
     for (size_t i = 0; new != old &&i < roots->first[ROOT_KINDS]; i++)
         if (roots->all[i] == old)

@@ -104,7 +104,7 @@ typedef enum FalloffKind {
 
 typedef struct Blend {
     BlendKind kind;
-    Node      width;  /* NODE_NONE: the joint is sharp */
+    Node      width;  /* NODE_NONE: the CSG node is sharp */
     double    widest; /* for all values of the parameters */
     Node      steps;  /* of kinds that have some */
 } Blend;
@@ -209,14 +209,14 @@ struct Shape {
     Node                values[2];  /* see ShapeKind; NODE_NONE where there are fewer */
     Map                 map;        /* without `first`; of kinds that have none its scale is
                                        NODE_NONE */
-    Blend               blend;      /* of joints */
+    Blend               blend;      /* of CSG nodes */
     FalloffKind         falloff;    /* META */
     uint32_t            cells[3];   /* REPEAT: copies per axis, 0 for endless */
     uint32_t            stage_count;
 
     struct OutlineShape *outline;    /* PRIMITIVE that contours fill (lower/outline.h), else NULL */
     Border              *border;     /* PRIMITIVE whose declaration knows its outline, else NULL */
-    struct Boundary     *boundary;   /* sharp joint of figures (lower/boundary.h), else NULL */
+    struct Boundary     *boundary;   /* sharp CSG node of figures (lower/boundary.h), else NULL */
     Node plane_normal, plane_offset; /* PRIMITIVE that is a half-space, else NODE_NONE */
     Node ball_radius;                /* PRIMITIVE that is a ball about the origin, else NODE_NONE */
     /* PRIMITIVE that a declaration of the language made: what the evaluator knows of it, and

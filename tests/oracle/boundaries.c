@@ -2,7 +2,7 @@
  * boundaries.c: distances to figures that are joined, against points of their true boundary.
  *
  * Each part is drawn here as points along its outline, and knows by a formula of its own what is inside.  A
- * point is on the boundary of a joint where the joint says something else on its two sides.
+ * point is on the boundary of a CSG node where the CSG node says something else on its two sides.
  */
 #include <stdio.h>
 #include <string.h>
@@ -104,7 +104,7 @@ static bool in_part(const Part *part, double x, double y)
     return in_shape(part, part->mirrored ? -p : p, q);
 }
 
-static bool in_joint(const Part *parts, int count, double x, double y)
+static bool in_csg_node(const Part *parts, int count, double x, double y)
 {
     bool inside = in_part(&parts[0], x, y);
     for (int i = 1; i < count; i++) {
@@ -141,8 +141,8 @@ static void draw_point(const Drawing *drawing, double x, double y, double across
     double      at[2]   = {c * p - s * y + part->x, s * p + c * y + part->y};
     double      way     = 1e-7 / hypot(across_x, across_y) / part->scale;
     double      side[2] = {way * (c * u - s * across_y), way * (s * u + c * across_y)};
-    if (in_joint(drawing->parts, drawing->count, at[0] + side[0], at[1] + side[1]) ==
-        in_joint(drawing->parts, drawing->count, at[0] - side[0], at[1] - side[1]))
+    if (in_csg_node(drawing->parts, drawing->count, at[0] + side[0], at[1] + side[1]) ==
+        in_csg_node(drawing->parts, drawing->count, at[0] - side[0], at[1] - side[1]))
         return;
     Boundary *boundary = drawing->boundary;
     assert_true(boundary->count < MOST_BOUNDARY);
@@ -230,7 +230,7 @@ static double true_distance(const Boundary *boundary, const Part *parts, int cou
     for (int i = 0; i < boundary->count; i++)
         least = fmin(least,
                      square(boundary->points[i][0] - x) + square(boundary->points[i][1] - y));
-    return in_joint(parts, count, x, y) ? -sqrt(least) : sqrt(least);
+    return in_csg_node(parts, count, x, y) ? -sqrt(least) : sqrt(least);
 }
 
 /* ---- in the language ---- */
@@ -259,7 +259,7 @@ static void write_part(SceneText *text, const Part *part)
                 part->x, part->y);
 }
 
-static void write_joint(SceneText *text, const Part *parts, int count)
+static void write_csg_node(SceneText *text, const Part *parts, int count)
 {
     static const struct {
         char        join;
@@ -336,7 +336,7 @@ static bool random_member(Random *random, bool even, Member *member)
     for (int k = 0; k < member->count; k++)
         member->parts[k] = random_part(random, even);
     find_boundary(member->parts, member->count, &member->boundary);
-    write_joint(&member->text, member->parts, member->count);
+    write_csg_node(&member->text, member->parts, member->count);
     return member->boundary.count > 100;
 }
 
@@ -358,7 +358,7 @@ static void check(const Member *member, const char *figure, Random *random)
     product_free(&product);
 }
 
-static void joints_have_true_distances(void **state)
+static void csg_nodes_have_true_distances(void **state)
 {
     static Member member;
     Random        random = {11};
@@ -477,8 +477,10 @@ static void parameters_leave_bounds(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(joints_have_true_distances), cmocka_unit_test(loops_have_true_distances),
-        cmocka_unit_test(copies_have_true_distances), cmocka_unit_test(lofts_go_by_true_distances),
+        cmocka_unit_test(csg_nodes_have_true_distances),
+        cmocka_unit_test(loops_have_true_distances),
+        cmocka_unit_test(copies_have_true_distances),
+        cmocka_unit_test(lofts_go_by_true_distances),
         cmocka_unit_test(parameters_leave_bounds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -278,8 +278,8 @@ static void write_method(const Chain *chain, const Link *link, SceneText *text)
 
 static void write_link(const Chain *chain, int at, SceneText *text)
 {
-    static const char *const joints[] = {"union", "intersection", "difference", "xor"};
-    const Link              *link     = &chain->links[at];
+    static const char *const csg_nodes[] = {"union", "intersection", "difference", "xor"};
+    const Link              *link        = &chain->links[at];
     char                     number[32];
     if (link->kind < LINK_PRIMITIVES) {
         write_primitive(chain, link, text);
@@ -292,7 +292,7 @@ static void write_link(const Chain *chain, int at, SceneText *text)
     }
     bool sequence = link->kind == LINK_SEQUENCE || link->kind == LINK_MOBIUS;
     scene_write(text, sequence ? "krs { kernel " : "%s(",
-                sequence ? "" : joints[link->kind - LINK_METHODS]);
+                sequence ? "" : csg_nodes[link->kind - LINK_METHODS]);
     write_link(chain, link->solids[0], text);
     if (sequence)
         scene_write(text, "; %s([%.17g, %.17g, %.17g], %s); kernel ",

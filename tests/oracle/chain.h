@@ -1,5 +1,5 @@
 /*
- * chain.h: random solids: a few primitives behind chains of methods, joints and sequences.
+ * chain.h: random solids: a few primitives behind chains of methods, CSG nodes and sequences.
  *
  * Each is written as a scene, and answers by itself whether a point is inside: it undoes one
  * method after the other on the point, in double precision, and asks the primitive.  Nothing of
@@ -70,10 +70,10 @@ typedef struct Chain {
 } Chain;
 
 typedef struct Recipe {
-    int      methods; /* on each primitive, at most */
-    int      joints;  /* at most */
-    bool     moving;  /* with parameters */
-    unsigned only;    /* bits of the methods to choose from; 0: all */
+    int      methods;   /* on each primitive, at most */
+    int      csg_nodes; /* at most */
+    bool     moving;    /* with parameters */
+    unsigned only;      /* bits of the methods to choose from; 0: all */
 } Recipe;
 
 /* How many steps the language refused, of how many. */

@@ -198,17 +198,17 @@ static int random_method(Chain *chain, int solid, Known *known, const Recipe *re
     return solid;
 }
 
-static int random_solid(Chain *chain, const Recipe *recipe, int joints, Random *random,
+static int random_solid(Chain *chain, const Recipe *recipe, int csg_nodes, Random *random,
                         Refusals *refusals)
 {
     int solid;
-    if (joints > 0 && chain->count < MOST_LINKS / 2) {
-        int  left      = random_below(random, joints);
+    if (csg_nodes > 0 && chain->count < MOST_LINKS / 2) {
+        int  left      = random_below(random, csg_nodes);
         Link link      = {.kind   = LINK_METHODS + random_below(random, LINK_KINDS - LINK_METHODS),
                           .v      = random_axis(random),
                           .number = random_between(random, -0.3, 0.6)};
         link.solids[0] = random_solid(chain, recipe, left, random, refusals);
-        link.solids[1] = random_solid(chain, recipe, joints - 1 - left, random, refusals);
+        link.solids[1] = random_solid(chain, recipe, csg_nodes - 1 - left, random, refusals);
         if (link.kind == LINK_MOBIUS) {
             link.v      = random_in_cube(random, 2);
             link.number = random_between(random, 0.7, 2.5);
@@ -238,9 +238,9 @@ static void note_kinds(Chain *chain, int at)
 
 void chain_random(Chain *chain, const Recipe *recipe, Random *random, Refusals *refusals)
 {
-    *chain      = (Chain){.count = 0};
-    int joints  = recipe->joints ? random_below(random, recipe->joints + 1) : 0;
-    int root    = random_solid(chain, recipe, joints, random, refusals);
-    chain->root = root;
+    *chain        = (Chain){.count = 0};
+    int csg_nodes = recipe->csg_nodes ? random_below(random, recipe->csg_nodes + 1) : 0;
+    int root      = random_solid(chain, recipe, csg_nodes, random, refusals);
+    chain->root   = root;
     note_kinds(chain, root);
 }

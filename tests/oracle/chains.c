@@ -1,5 +1,5 @@
 /*
- * Random chains of methods, joints and sequences against points that are undone by hand.
+ * Random chains of methods, CSG nodes and sequences against points that are undone by hand.
  *
  * chain.h writes a scene and knows what is inside of it.  Asked are: that the sign of the distance
  * says so; that no distance is above that to any point of the surface, which bisection between

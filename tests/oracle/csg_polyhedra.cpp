@@ -469,7 +469,7 @@ std::vector<Piece> pieces_of(const Part &part, double by, int sides)
 /* The farthest that a part is from its facets. */
 double sag_of(const Tree &tree, int sides)
 {
-    if (tree.joint)
+    if (tree.csg_node)
         return std::fmax(sag_of(*tree.left, sides), sag_of(*tree.right, sides));
     const Part &part = tree.part;
     double      sag  = 1 - std::cos(M_PI / sides);

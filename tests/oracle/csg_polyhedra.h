@@ -16,7 +16,7 @@ struct Polyhedron {
 
 /* A part is made of these, one after the other. */
 struct Piece {
-    char       joint; /* | - & */
+    char       csg_node; /* | - & */
     Polyhedron solid;
 };
 

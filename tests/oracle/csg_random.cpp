@@ -206,10 +206,10 @@ static std::unique_ptr<Tree> random_tree(Random &random, int parts, const Solid 
         tree->part = any_part(random, solid);
         return tree;
     }
-    int right   = random.below(3) ? 1 : 1 + random.below(parts - 1);
-    tree->joint = "||--&"[random.below(5)];
-    tree->left  = random_tree(random, parts - right, solid);
-    tree->right = random_tree(random, right, solid);
+    int right      = random.below(3) ? 1 : 1 + random.below(parts - 1);
+    tree->csg_node = "||--&"[random.below(5)];
+    tree->left     = random_tree(random, parts - right, solid);
+    tree->right    = random_tree(random, right, solid);
     return tree;
 }
 

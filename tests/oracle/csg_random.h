@@ -79,8 +79,8 @@ struct Part {
 };
 
 struct Tree {
-    Part                  part;      /* of a leaf */
-    char                  joint = 0; /* of others: | - & */
+    Part                  part;         /* of a leaf */
+    char                  csg_node = 0; /* of others: | - & */
     std::unique_ptr<Tree> left, right;
 };
 

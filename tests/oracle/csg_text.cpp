@@ -138,13 +138,13 @@ static void write_part(std::string &text, const Part &part)
 
 static void write_tree(std::string &text, const Tree &tree)
 {
-    if (!tree.joint) {
+    if (!tree.csg_node) {
         write_part(text, tree.part);
         return;
     }
     text += "(";
     write_tree(text, *tree.left);
-    text += std::string(" ") + tree.joint + " ";
+    text += std::string(" ") + tree.csg_node + " ";
     write_tree(text, *tree.right);
     text += ")";
 }

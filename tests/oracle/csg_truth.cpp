@@ -44,14 +44,14 @@ static Mesh grown_mesh_of(const Polyhedron &solid, double by)
     return mesh;
 }
 
-static Mesh joined(char joint, Mesh a, Mesh b)
+static Mesh joined(char csg_node, Mesh a, Mesh b)
 {
     if (a.is_empty() || b.is_empty())
-        return joint == '|' ? (a.is_empty() ? b : a) : joint == '-' ? a : Mesh();
+        return csg_node == '|' ? (a.is_empty() ? b : a) : csg_node == '-' ? a : Mesh();
     Mesh result;
-    bool done = joint == '|'   ? process::corefine_and_compute_union(a, b, result)
-                : joint == '-' ? process::corefine_and_compute_difference(a, b, result)
-                               : process::corefine_and_compute_intersection(a, b, result);
+    bool done = csg_node == '|'   ? process::corefine_and_compute_union(a, b, result)
+                : csg_node == '-' ? process::corefine_and_compute_difference(a, b, result)
+                                  : process::corefine_and_compute_intersection(a, b, result);
     if (!done)
         throw std::runtime_error("not a manifold");
     result.collect_garbage();
@@ -60,12 +60,12 @@ static Mesh joined(char joint, Mesh a, Mesh b)
 
 static Mesh joined(const Tree &tree, double by, int sides)
 {
-    if (tree.joint)
-        return joined(tree.joint, joined(*tree.left, by, sides),
-                      joined(*tree.right, tree.joint == '-' ? -by : by, sides));
+    if (tree.csg_node)
+        return joined(tree.csg_node, joined(*tree.left, by, sides),
+                      joined(*tree.right, tree.csg_node == '-' ? -by : by, sides));
     Mesh all;
     for (const Piece &piece : pieces_of(tree.part, by, sides))
-        all = joined(piece.joint, all, grown_mesh_of(piece.solid, by));
+        all = joined(piece.csg_node, all, grown_mesh_of(piece.solid, by));
     return all;
 }
 
@@ -79,11 +79,11 @@ static Nef nef_of(const Polyhedron &solid)
 
 static Nef joined_nef(const Tree &tree, double by, int sides)
 {
-    if (!tree.joint)
+    if (!tree.csg_node)
         return nef_of(pieces_of(tree.part, by, sides)[0].solid); /* level parts are one piece */
     Nef a      = joined_nef(*tree.left, by, sides),
-        b      = joined_nef(*tree.right, tree.joint == '-' ? -by : by, sides);
-    Nef result = tree.joint == '|' ? a + b : tree.joint == '-' ? a - b : a * b;
+        b      = joined_nef(*tree.right, tree.csg_node == '-' ? -by : by, sides);
+    Nef result = tree.csg_node == '|' ? a + b : tree.csg_node == '-' ? a - b : a * b;
     return result.regularization();
 }
 

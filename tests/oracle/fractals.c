@@ -418,7 +418,7 @@ static void palettes_mix(void **state)
     product_free(&product);
 }
 
-/* The trap is the least size of the iterates after the first, also under maps and in joints. */
+/* The trap is the least size of the iterates after the first, also under maps and in CSG nodes. */
 static void traps_are_traps(void **state)
 {
     (void)state;

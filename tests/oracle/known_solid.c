@@ -14,7 +14,7 @@ typedef enum Kind {
     KNOWN_PRIMITIVES,
     KNOWN_GYROID = KNOWN_PRIMITIVES, /* a[0]: factor of the coordinates; a[1]: of a ball around */
     KNOWN_QUARTIC,                   /* x^4 + y^4 + z^4 = number */
-    KNOWN_JOINT,                     /* of two; `choice` is one of joints, number the width */
+    KNOWN_CSG_NODE,                  /* of two; `choice` is one of CSG nodes, number the width */
     KNOWN_SHELL,                     /* number: thickness */
     KNOWN_ROUND,                     /* of a box; number: radius */
     KNOWN_MOVE,                      /* by a */
@@ -35,9 +35,9 @@ struct KnownSolid {
     Half        mirrors[MOST_MIRRORS];
 };
 
-typedef enum Joint { JOIN_UNION, JOIN_INTERSECTION, JOIN_DIFFERENCE, JOINTS } Joint;
-static const char *const joint_names[JOINTS] = {"union", "intersection", "difference"};
-static const char *const blend_names[]       = {"quadratic", "cubic", "circular", "chamfer"};
+typedef enum CsgNode { JOIN_UNION, JOIN_INTERSECTION, JOIN_DIFFERENCE, CSG_NODES } CsgNode;
+static const char *const csg_node_names[CSG_NODES] = {"union", "intersection", "difference"};
+static const char *const blend_names[]             = {"quadratic", "cubic", "circular", "chamfer"};
 enum { BLENDS = sizeof blend_names / sizeof *blend_names };
 
 /* ---- what is inside ---- */
@@ -66,7 +66,7 @@ static double gyroid(Vec p, double k)
     return sin(k * p.x) * cos(k * p.y) + sin(k * p.y) * cos(k * p.z) + sin(k * p.z) * cos(k * p.x);
 }
 
-/* The joint of two distances with a rounded edge k wide, as blends.def says in words. */
+/* The CSG node of two distances with a rounded edge k wide, as blends.def says in words. */
 static double blended_union(double a, double b, double k, int blend)
 {
     double h = fmax(1 - fabs(a - b) / k, 0);
@@ -80,12 +80,12 @@ static double blended_union(double a, double b, double k, int blend)
 
 static double joined(const KnownSolid *solid, double a, double b)
 {
-    Joint  joint = (Joint)(solid->choice % JOINTS);
-    int    blend = solid->choice / JOINTS % BLENDS;
-    double k     = solid->number;
-    if (joint == JOIN_UNION)
+    CsgNode csg_node = (CsgNode)(solid->choice % CSG_NODES);
+    int     blend    = solid->choice / CSG_NODES % BLENDS;
+    double  k        = solid->number;
+    if (csg_node == JOIN_UNION)
         return k > 0 ? blended_union(a, b, k, blend) : fmin(a, b);
-    b = joint == JOIN_DIFFERENCE ? -b : b;
+    b = csg_node == JOIN_DIFFERENCE ? -b : b;
     return k > 0 ? -blended_union(-a, -b, k, blend) : fmax(a, b);
 }
 
@@ -117,7 +117,7 @@ double known_solid_value(const void *user, Vec p)
         return fmax(p.x * p.x * p.x * p.x + p.y * p.y * p.y * p.y + p.z * p.z * p.z * p.z -
                         s->number,
                     distance_to_box(p, vec(2, 2, 2)));
-    case KNOWN_JOINT:
+    case KNOWN_CSG_NODE:
         return joined(s, known_solid_value(part, p), known_solid_value(s->parts[1], p));
     case KNOWN_SHELL: return fabs(known_solid_value(part, p)) - s->number / 2;
     case KNOWN_ROUND:
@@ -143,15 +143,15 @@ static void write_vec(SceneText *text, const char *before, Vec v, const char *af
     scene_write(text, "%s[%.17g, %.17g, %.17g]%s", before, v.x, v.y, v.z, after);
 }
 
-static void write_joint(const KnownSolid *s, SceneText *text)
+static void write_csg_node(const KnownSolid *s, SceneText *text)
 {
-    scene_write(text, "%s(", joint_names[s->choice % JOINTS]);
+    scene_write(text, "%s(", csg_node_names[s->choice % CSG_NODES]);
     known_solid_write(s->parts[0], text);
     scene_write(text, ",\n  ");
     known_solid_write(s->parts[1], text);
     if (s->number > 0)
         scene_write(text, ", blend: %.17g, kind: \"%s\"", s->number,
-                    blend_names[s->choice / JOINTS % BLENDS]);
+                    blend_names[s->choice / CSG_NODES % BLENDS]);
     scene_write(text, ")");
 }
 
@@ -196,8 +196,8 @@ void known_solid_write(const KnownSolid *s, SceneText *text)
 {
     if (!s->parts[0])
         write_leaf(s, text);
-    else if (s->kind == KNOWN_JOINT)
-        write_joint(s, text);
+    else if (s->kind == KNOWN_CSG_NODE)
+        write_csg_node(s, text);
     else if (s->kind == KNOWN_SEQUENCE)
         write_sequence(s, text);
     else
@@ -287,11 +287,11 @@ static KnownSolid *formula(Random *random)
     return s;
 }
 
-static KnownSolid *joint(Random *random, double width, KnownSolid *a, KnownSolid *b)
+static KnownSolid *csg_node(Random *random, double width, KnownSolid *a, KnownSolid *b)
 {
-    KnownSolid *s = make(KNOWN_JOINT, a);
+    KnownSolid *s = make(KNOWN_CSG_NODE, a);
     s->parts[1]   = b;
-    s->choice     = random_below(random, JOINTS * BLENDS);
+    s->choice     = random_below(random, CSG_NODES * BLENDS);
     s->number     = width;
     return s;
 }
@@ -313,8 +313,8 @@ static KnownSolid *simple(Random *random, double thick)
     case 1: known_solid_free(a); return placed(random, formula(random));
     case 2:
     case 3:
-        return joint(random, random_between(random, 0.05, 0.3), a,
-                     placed(random, primitive(random, thick)));
+        return csg_node(random, random_between(random, 0.05, 0.3), a,
+                        placed(random, primitive(random, thick)));
     default: return a;
     }
 }
@@ -330,7 +330,7 @@ KnownSolid *known_solid_random(Random *random, double thick)
         mirror->a      = random_unit(random);
         mirror->number = random_between(random, 0, 0.2);
         return mirror;
-    default: return joint(random, 0, s, moved(random, 0.4, simple(random, thick)));
+    default: return csg_node(random, 0, s, moved(random, 0.4, simple(random, thick)));
     }
 }
 

@@ -237,42 +237,46 @@ static const Blend blends[] = {
 enum { BLENDS = sizeof blends / sizeof *blends };
 
 /* Intersection and difference are unions of complements. */
-typedef struct Joint {
+typedef struct CsgNode {
     const char  *function;
     double       sign_a, sign_b, sign;
     const Blend *blend;
     double       width;
-} Joint;
+} CsgNode;
 
-static const Joint joints[] = {
+static const CsgNode csg_nodes[] = {
     {"union", 1, 1, 1, NULL, 0},
     {"intersection", -1, -1, -1, NULL, 0},
     {"difference", -1, 1, -1, NULL, 0},
 };
-enum { JOINTS = sizeof joints / sizeof *joints };
+enum { CSG_NODES = sizeof csg_nodes / sizeof *csg_nodes };
 
-static double joint_value(const Joint *joint, Vec p)
+static double csg_node_value(const CsgNode *csg_node, Vec p)
 {
-    double a = joint->sign_a * a_distance(p), b = joint->sign_b * b_distance(p);
-    return joint->sign * joint->blend->join(a, b, joint->width);
+    double a = csg_node->sign_a * a_distance(p), b = csg_node->sign_b * b_distance(p);
+    return csg_node->sign * csg_node->blend->join(a, b, csg_node->width);
 }
-static bool inside_joint(const void *joint, Vec p) { return joint_value(joint, p) <= 0; }
+static bool inside_csg_node(const void *csg_node, Vec p)
+{
+    return csg_node_value(csg_node, p) <= 0;
+}
 
-static void check_joint(const Joint *joint)
+static void check_csg_node(const CsgNode *csg_node)
 {
     char         name[80];
-    const Blend *blend = joint->blend;
-    snprintf(name, sizeof name, "%s(a, b, blend: %.17g, kind: \"%s\")", joint->function,
-             joint->width, blend->kind);
+    const Blend *blend = csg_node->blend;
+    snprintf(name, sizeof name, "%s(a, b, blend: %.17g, kind: \"%s\")", csg_node->function,
+             csg_node->width, blend->kind);
     Product product = product_format("%sshow %s;\n", prelude, name);
-    Trial   trial   = {product_field, &product, inside_joint, joint, vec(0, 0, 0), 1.5, POINTS, 31};
+    Trial   trial   = {product_field, &product, inside_csg_node, csg_node,
+                       vec(0, 0, 0),  1.5,      POINTS,          31};
     judge_acquits(&trial, name);
     judge_refutes_steeper(&trial, 1.15 * blend->slope, name);
 
     Random random = {32};
     for (int i = 0; i < POINTS; i++) {
         Vec    point = random_in_cube(&random, 1.5);
-        double value = product_distance(&product, point), truth = joint_value(joint, point);
+        double value = product_distance(&product, point), truth = csg_node_value(csg_node, point);
         bool   between_bounds = fabs(value) <= fabs(truth) + 1e-9 &&
                               fabs(value) >= fabs(truth) / blend->slope - 1e-9;
         if (!between_bounds)
@@ -285,12 +289,12 @@ static void check_joint(const Joint *joint)
 static void blend_follows_its_formula(void **state)
 {
     const double widths[] = {0.3, 0.05};
-    for (int j = 0; j < JOINTS; j++)
+    for (int j = 0; j < CSG_NODES; j++)
         for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
-            Joint joint = joints[j];
-            joint.blend = *state;
-            joint.width = widths[w];
-            check_joint(&joint);
+            CsgNode csg_node = csg_nodes[j];
+            csg_node.blend   = *state;
+            csg_node.width   = widths[w];
+            check_csg_node(&csg_node);
         }
 }
 

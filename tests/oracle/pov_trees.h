@@ -45,7 +45,7 @@ typedef struct PovTree {
 void pov_tree_begin(PovTree *tree, Random *random);
 /* Adds words to the text. */
 void pov_tree_add(PovTree *tree, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* Adds a primitive, or joints of so many levels; returns the node. */
+/* Adds a primitive, or CSG nodes of so many levels; returns the node. */
 int pov_tree_write(PovTree *tree, int depth);
 /* Whether a point is inside of a node. */
 bool pov_tree_has(const PovTree *tree, int index, const double outer[3]);

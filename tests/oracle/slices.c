@@ -330,11 +330,11 @@ static void write_part(SceneText *text, Random *random)
 
 static Product random_solid(Random *random)
 {
-    static const char *const joints[] = {"union", "difference", "union", "intersection"};
-    SceneText                text     = {.length = 0};
-    int                      parts    = 2 + random_below(random, 5);
+    static const char *const csg_nodes[] = {"union", "difference", "union", "intersection"};
+    SceneText                text        = {.length = 0};
+    int                      parts       = 2 + random_below(random, 5);
     for (int i = 1; i < parts; i++)
-        scene_write(&text, "%s(", i == 1 ? "show union" : joints[random_below(random, 4)]);
+        scene_write(&text, "%s(", i == 1 ? "show union" : csg_nodes[random_below(random, 4)]);
     write_part(&text, random);
     for (int i = 1; i < parts; i++) {
         scene_write(&text, ", ");

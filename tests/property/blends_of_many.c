@@ -68,16 +68,16 @@ static void write_part(char *to, const Part *part)
             part->centre[2]);
 }
 
-typedef struct Joint {
+typedef struct CsgNode {
     const char *function, *kind;
     double      width;
-} Joint;
+} CsgNode;
 
-static void probe(const Joint *joint, const Part *parts, int count, double (*points)[3],
+static void probe(const CsgNode *csg_node, const Part *parts, int count, double (*points)[3],
                   KrsHit *hits)
 {
     static char text[MOST * 400];
-    size_t      length  = (size_t)sprintf(text, "show %s([", joint->function);
+    size_t      length  = (size_t)sprintf(text, "show %s([", csg_node->function);
     KrsOptions  options = {0};
     KrsScene   *scene   = NULL;
     KrsFrame   *frame   = NULL;
@@ -85,8 +85,8 @@ static void probe(const Joint *joint, const Part *parts, int count, double (*poi
         write_part(text + length, &parts[i]);
         length += strlen(text + length);
     }
-    length += (size_t)sprintf(text + length, "], blend: %.17g, kind: \"%s\"%s);", joint->width,
-                              joint->kind, strcmp(joint->kind, "stairs") ? "" : ", steps: 3");
+    length += (size_t)sprintf(text + length, "], blend: %.17g, kind: \"%s\"%s);", csg_node->width,
+                              csg_node->kind, strcmp(csg_node->kind, "stairs") ? "" : ", steps: 3");
     assert_int_equal(krs_compile_text(text, length, "many.krs", &options, &scene), KRS_OK);
     assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
     assert_int_equal(krs_probe(frame, (const double(*)[3])points, POINTS, hits), KRS_OK);
@@ -151,26 +151,26 @@ static int compare(const void *a, const void *b)
     return (*(const double *)a > *(const double *)b) - (*(const double *)a < *(const double *)b);
 }
 
-static double blended(const Joint *joint, const Part *parts, int count, const double p[3])
+static double blended(const CsgNode *csg_node, const Part *parts, int count, const double p[3])
 {
     double d[MOST], sum = 0;
-    bool   inverse = joint->function[0] == 'i', circular = !strcmp(joint->kind, "circular");
+    bool   inverse = csg_node->function[0] == 'i', circular = !strcmp(csg_node->kind, "circular");
     for (int i = 0; i < count; i++)
         d[i] = (inverse ? -1 : 1) * distance_to(&parts[i], p);
     qsort(d, (size_t)count, sizeof *d, compare);
-    double k = joint->width, result;
+    double k = csg_node->width, result;
     for (int i = 0; i < count; i++)
         sum += circular ? pow(fmax(k - d[i], 0), 2) : exp((d[0] - d[i]) / k);
-    if (joint->kind[0] == 'e')
+    if (csg_node->kind[0] == 'e')
         result = d[0] - k * log(sum);
     else if (circular)
         result = fmax(k, d[0]) - sqrt(sum);
-    else if (joint->kind[0] == 'c' && joint->kind[1] == 'h')
-        result = least_pair(joint->kind, d, count, k);
-    else if (joint->kind[0] == 's')
-        result = least_pair(joint->kind, d, count, k);
+    else if (csg_node->kind[0] == 'c' && csg_node->kind[1] == 'h')
+        result = least_pair(csg_node->kind, d, count, k);
+    else if (csg_node->kind[0] == 's')
+        result = least_pair(csg_node->kind, d, count, k);
     else
-        result = shared(joint->kind, d, count < SHARERS ? count : SHARERS, k);
+        result = shared(csg_node->kind, d, count < SHARERS ? count : SHARERS, k);
     return inverse ? -result : result;
 }
 
@@ -187,18 +187,19 @@ static void shuffle(Part *parts, int count)
 }
 
 /* Points near the surface, by steps along the gradient: where they are far from it, distances may be other bounds. */
-static void random_points(const Joint *joint, const Part *parts, int count, double (*points)[3])
+static void random_points(const CsgNode *csg_node, const Part *parts, int count,
+                          double (*points)[3])
 {
     for (int i = 0; i < POINTS; i++) {
         const Part *near = &parts[random_below(&randomness, (uint32_t)count)];
         for (int k = 0; k < 3; k++)
             points[i][k] = near->centre[k] + between(-0.35, 0.35);
         for (int step = 0; step < 6; step++) {
-            double value = blended(joint, parts, count, points[i]), gradient[3], square = 0;
+            double value = blended(csg_node, parts, count, points[i]), gradient[3], square = 0;
             for (int k = 0; k < 3; k++) {
                 double there[3] = {points[i][0], points[i][1], points[i][2]};
                 there[k] += 1e-6;
-                gradient[k] = (blended(joint, parts, count, there) - value) / 1e-6;
+                gradient[k] = (blended(csg_node, parts, count, there) - value) / 1e-6;
                 square += gradient[k] * gradient[k];
             }
             for (int k = 0; k < 3 && square > 0.01; k++)
@@ -208,30 +209,30 @@ static void random_points(const Joint *joint, const Part *parts, int count, doub
     }
 }
 
-static bool is_steep(const Joint *joint)
+static bool is_steep(const CsgNode *csg_node)
 {
-    return !strcmp(joint->kind, "circular") || !strcmp(joint->kind, "chamfer");
+    return !strcmp(csg_node->kind, "circular") || !strcmp(csg_node->kind, "chamfer");
 }
 
 /* What is left out of sums of powers is less than that. */
-static double allowed(const Joint *joint)
+static double allowed(const CsgNode *csg_node)
 {
-    return joint->kind[0] == 'e' ? 1e-4 * joint->width : 1e-9;
+    return csg_node->kind[0] == 'e' ? 1e-4 * csg_node->width : 1e-9;
 }
 
 /* What is steep is divided by its slope, which may depend on what is far: then signs are compared. */
-static void assert_near(const Joint *joint, double is, double wanted, double most)
+static void assert_near(const CsgNode *csg_node, double is, double wanted, double most)
 {
-    if (!is_steep(joint))
+    if (!is_steep(csg_node))
         assert_true(fabs(is - wanted) <= most);
     else if (fabs(wanted) > 1e-9)
         assert_true((is < 0) == (wanted < 0));
 }
 
-static Joint random_joint(bool intersect)
+static CsgNode random_csg_node(bool intersect)
 {
-    return (Joint){intersect ? "intersection" : "union", kinds[random_below(&randomness, KINDS)],
-                   between(0.02, 0.4)};
+    return (CsgNode){intersect ? "intersection" : "union", kinds[random_below(&randomness, KINDS)],
+                     between(0.02, 0.4)};
 }
 
 static void follows_definition(void **state)
@@ -244,25 +245,25 @@ static void follows_definition(void **state)
     (void)state;
     for (size_t n = 0; n < sizeof counts / sizeof *counts; n++)
         for (int trial = 0; trial < KINDS; trial++) {
-            Joint joint = random_joint((trial + n) % 4 == 3 && counts[n] < 64);
-            int   count = counts[n], inside = 0, near = 0;
-            joint.kind = kinds[trial % KINDS];
+            CsgNode csg_node = random_csg_node((trial + n) % 4 == 3 && counts[n] < 64);
+            int     count = counts[n], inside = 0, near = 0;
+            csg_node.kind = kinds[trial % KINDS];
             for (int i = 0; i < count; i++)
-                parts[i] = random_part((trial + n) % 2, joint.function[0] == 'i' ? 0.04
-                                                        : count > 20             ? 0.8
-                                                                                 : 0.3);
-            random_points(&joint, parts, count, points);
-            probe(&joint, parts, count, points, hits);
+                parts[i] = random_part((trial + n) % 2, csg_node.function[0] == 'i' ? 0.04
+                                                        : count > 20                ? 0.8
+                                                                                    : 0.3);
+            random_points(&csg_node, parts, count, points);
+            probe(&csg_node, parts, count, points, hits);
             for (int i = 0; i < POINTS; i++) {
-                double wanted = blended(&joint, parts, count, points[i]);
+                double wanted = blended(&csg_node, parts, count, points[i]);
                 if (fabs(wanted) > 2e-3)
                     continue;
                 near++;
                 inside += wanted < 0;
-                assert_near(&joint, hits[i].distance, wanted, allowed(&joint));
+                assert_near(&csg_node, hits[i].distance, wanted, allowed(&csg_node));
             }
-            assert_true(joint.function[0] == 'i' || (inside > 0 && near > POINTS / 2));
-            intersected += joint.function[0] == 'i' && inside > 0;
+            assert_true(csg_node.function[0] == 'i' || (inside > 0 && near > POINTS / 2));
+            intersected += csg_node.function[0] == 'i' && inside > 0;
         }
     assert_true(intersected > 0); /* some have nothing in common */
 }
@@ -274,22 +275,22 @@ static void order_and_what_is_far_do_not_show(void **state)
     static Part   parts[MOST];
     (void)state;
     for (int trial = 0; trial < 30; trial++) {
-        Joint joint = random_joint(false);
-        int   count = 2 + (int)random_below(&randomness, trial % 3 ? 30 : 100), more;
-        more        = 1 + (int)random_below(&randomness, (uint32_t)(MOST - count));
-        joint.kind  = kinds[trial % KINDS];
+        CsgNode csg_node = random_csg_node(false);
+        int     count    = 2 + (int)random_below(&randomness, trial % 3 ? 30 : 100), more;
+        more             = 1 + (int)random_below(&randomness, (uint32_t)(MOST - count));
+        csg_node.kind    = kinds[trial % KINDS];
         for (int i = 0; i < count; i++)
             parts[i] = random_part(trial % 2, count > 30 ? 0.6 : 0.3);
-        random_points(&joint, parts, count, points);
-        probe(&joint, parts, count, points, before);
+        random_points(&csg_node, parts, count, points);
+        probe(&csg_node, parts, count, points, before);
         for (int i = 0; i < more; i++) {
             parts[count + i] = random_part(trial % 4 < 2, 8);
             parts[count + i].centre[0] += 60;
         }
         shuffle(parts, count + more);
-        probe(&joint, parts, count + more, points, after);
+        probe(&csg_node, parts, count + more, points, after);
         for (int i = 0; i < POINTS; i++)
-            assert_near(&joint, after[i].distance, before[i].distance, 2 * allowed(&joint));
+            assert_near(&csg_node, after[i].distance, before[i].distance, 2 * allowed(&csg_node));
     }
 }
 
@@ -301,21 +302,21 @@ static void slopes_hold(void **state)
     static Part   parts[MOST];
     (void)state;
     for (int trial = 0; trial < 12; trial++) {
-        Joint joint = random_joint(false);
-        int   count = 3 + (int)random_below(&randomness, trial % 2 ? 12 : 90);
-        joint.kind  = kinds[trial % KINDS];
+        CsgNode csg_node = random_csg_node(false);
+        int     count    = 3 + (int)random_below(&randomness, trial % 2 ? 12 : 90);
+        csg_node.kind    = kinds[trial % KINDS];
         for (int i = 0; i < count; i++)
             parts[i] = random_part(trial % 2, 0.4);
-        random_points(&joint, parts, count, points);
+        random_points(&csg_node, parts, count, points);
         for (int i = 0; i < POINTS; i += 2)
             for (int k = 0; k < 3; k++)
                 points[i + 1][k] = points[i][k] + between(-1e-3, 1e-3);
-        probe(&joint, parts, count, points, hits);
+        probe(&csg_node, parts, count, points, hits);
         for (int i = 0; i < POINTS; i += 2) {
             double square = 0, changed = fabs(hits[i].distance - hits[i + 1].distance);
             for (int k = 0; k < 3; k++)
                 square += pow(points[i][k] - points[i + 1][k], 2);
-            if (joint.kind[0] != 'e')
+            if (csg_node.kind[0] != 'e')
                 assert_true(changed <= sqrt(square) * (1 + 1e-9) + 1e-13);
         }
     }

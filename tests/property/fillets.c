@@ -300,7 +300,7 @@ static void a_wall_stays(void **state)
 
 /* ---- level tops ---- */
 
-/* Points above and below the top y = 0.5 of a box and a rod, and on the joint; `back` takes them to where a
+/* Points above and below the top y = 0.5 of a box and a rod, and on the CSG node; `back` takes them to where a
    scene has it. */
 typedef void Back(double p[3]);
 
@@ -339,8 +339,8 @@ static void assert_level(const char *text, const char *param, double top, Back *
 
 static void level_tops_stay(void **state)
 {
-    static const char *const joint = "union(box([2, 1, 2]), cylinder(0.5, 1).move([1, 0, 0]), "
-                                     "blend: 0.4, kind: \"fillet\")";
+    static const char *const csg_node = "union(box([2, 1, 2]), cylinder(0.5, 1).move([1, 0, 0]), "
+                                        "blend: 0.4, kind: \"fillet\")";
     static const struct {
         const char *before, *behind;
         Back       *back;
@@ -379,7 +379,7 @@ static void level_tops_stay(void **state)
     char text[400];
     (void)state;
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-        sprintf(text, "show %s%s%s;", places[i].before, joint, places[i].behind);
+        sprintf(text, "show %s%s%s;", places[i].before, csg_node, places[i].behind);
         assert_level(text, NULL, 1, places[i].back);
     }
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
@@ -403,7 +403,7 @@ static void level_tops_stay_in_frames(void **state)
     }
 }
 
-/* A joint reaches no farther than its parts. */
+/* A CSG node reaches no farther than its parts. */
 static void bounds_stay(void **state)
 {
     static const char text[] = "let s = union(box([2, 1, 2]), cylinder(0.5, 1).move([1, 0, 0]), "
@@ -624,7 +624,7 @@ static void slopes_hold(void **state)
 
 /* ---- colours ---- */
 
-/* Across the joint of level tops colours mix as those of circular blends do; the cut has none of its own. */
+/* Across the CSG node of level tops colours mix as those of circular blends do; the cut has none of its own. */
 static void colours_mix(void **state)
 {
     static const char text[] =

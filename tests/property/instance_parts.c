@@ -1,5 +1,5 @@
 /*
- * instance_parts.c: random parts of joints, and joints lowered in two ways.
+ * instance_parts.c: random parts of CSG nodes, and CSG nodes lowered in two ways.
  */
 #include <math.h>
 #include <setjmp.h>

@@ -1,5 +1,5 @@
 /*
- * instance_parts.h: random parts of joints, and joints of them lowered in two ways: as instance groups, and each part
+ * instance_parts.h: random parts of CSG nodes, and CSG nodes of them lowered in two ways: as instance groups, and each part
  * for itself.
  */
 #ifndef PROPERTY_INSTANCE_PARTS_H

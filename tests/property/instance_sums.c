@@ -33,8 +33,8 @@ static const Shape *balls_of_any_width(void)
         parts[i] = i % 4 > 0 ? placed(ball(0.2), between(-3, 3), between(-3, 3), 0, 0, 1)
                              : placed(ball(0.2), 1, 2, 0, 0, 1);
     Node width = graph_parameter(builder.graph, 1, TYPE_FLOAT);
-    return make_joint(&builder, SHAPE_UNION, parts, PARTS,
-                      (Blend){BLEND_exponential, width, 1, NODE_NONE}, no_place);
+    return make_csg_node(&builder, SHAPE_UNION, parts, PARTS,
+                         (Blend){BLEND_exponential, width, 1, NODE_NONE}, no_place);
 }
 
 /* In the frame that is now. */

@@ -1,5 +1,5 @@
 /*
- * instances.c: joints of many parts as instance groups: at random points they are what each part, lowered for
+ * instances.c: CSG nodes of many parts as instance groups: at random points they are what each part, lowered for
  * itself, and the rules of blends make of it.
  */
 #include <math.h>
@@ -15,13 +15,13 @@
 #include "compiler/graph/instances/grid_build.h"
 #include "tests/property/instance_parts.h"
 
-/* ---- sharp joints ---- */
+/* ---- sharp CSG nodes ---- */
 
 static void unions(void **state)
 {
     (void)state;
     const Shape **parts = random_parts(PARTS, true);
-    assert_same(make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place), 3.5);
+    assert_same(make_csg_node(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place), 3.5);
     assert_int_equal(builder.graph->instances->tables.count, 2); /* balls and rings */
 }
 
@@ -30,7 +30,8 @@ static void differences(void **state)
     (void)state;
     const Shape **parts = random_parts(PARTS, true);
     parts[0]            = painted(ball(2.5));
-    assert_same(make_joint(&builder, SHAPE_DIFFERENCE, parts, PARTS, blend_sharp, no_place), 3.5);
+    assert_same(make_csg_node(&builder, SHAPE_DIFFERENCE, parts, PARTS, blend_sharp, no_place),
+                3.5);
 }
 
 /* Balls so large that all contain the centre. */
@@ -42,14 +43,14 @@ static void intersections(void **state)
         double x = between(-1, 1), y = between(-1, 1), z = between(-1, 1);
         parts[i] = painted(placed(ball(between(2, 2.5)), x, y, z, 0.5, 1.5));
     }
-    assert_same(make_joint(&builder, SHAPE_INTERSECTION, parts, 96, blend_sharp, no_place), 3.5);
+    assert_same(make_csg_node(&builder, SHAPE_INTERSECTION, parts, 96, blend_sharp, no_place), 3.5);
 }
 
 static void below_maps(void **state)
 {
     (void)state;
     const Shape  **parts = random_parts(PARTS, true);
-    const Shape   *all   = make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
+    const Shape   *all = make_csg_node(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
     LoweredGroups *instances = lowered_groups_new(builder.graph, &arena, &arena, LEAST);
     const Shape   *moved     = placed(all, 1, 2, 3, 1, 2);
     Seen           apart = lower(moved, NULL), group = lower(moved, instances);
@@ -68,7 +69,7 @@ static void below_offsets(void **state)
 {
     (void)state;
     const Shape **parts = random_parts(PARTS, false);
-    const Shape  *all   = make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
+    const Shape  *all   = make_csg_node(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
     Node          more  = graph_number(builder.graph, 0.4);
     const Shape  *grown = make_offset(&builder, all, more, no_place);
     Seen          apart = lower(grown, NULL);
@@ -86,12 +87,12 @@ static void below_offsets(void **state)
     assert_true(inside > POINTS / 10);
 }
 
-/* The same joint, lowered again, has the same functions. */
+/* The same CSG node, lowered again, has the same functions. */
 static void lowered_again(void **state)
 {
     (void)state;
     const Shape  **parts = random_parts(PARTS, true);
-    const Shape   *all   = make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
+    const Shape   *all = make_csg_node(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
     LoweredGroups *instances = lowered_groups_new(builder.graph, &arena, &arena, LEAST);
     Seen           first     = lower(all, instances);
     size_t functions = builder.graph->instances->functions.count, count = builder.graph->count;
@@ -113,8 +114,8 @@ static double outside_of(Box box, const double p[3])
     return most;
 }
 
-/* A joint of joints of a few parts.  Parts of intersections overlap: what is nowhere has no box. */
-static const Shape *random_joint(int depth)
+/* A CSG node of CSG nodes of a few parts.  Parts of intersections overlap: what is nowhere has no box. */
+static const Shape *random_csg_node(int depth)
 {
     static const ShapeKind kinds[]  = {SHAPE_UNION, SHAPE_UNION, SHAPE_DIFFERENCE,
                                        SHAPE_INTERSECTION};
@@ -124,25 +125,25 @@ static const Shape *random_joint(int depth)
     const Blend            blend = {blends[random_below(&randomness, 3)],
                                     graph_number(builder.graph, between(0.1, 0.6)), 0, NODE_NONE};
     for (uint32_t i = 0; i < count; i++)
-        parts[i] = depth > 0 ? random_joint(depth - 1)
+        parts[i] = depth > 0 ? random_csg_node(depth - 1)
                              : placed(ball(between(1, 2)), between(-1, 1), between(-1, 1), 0, 1, 1);
-    return make_joint(&builder, kinds[random_below(&randomness, 4)], parts, count,
-                      random_below(&randomness, 3) ? blend : blend_sharp, no_place);
+    return make_csg_node(&builder, kinds[random_below(&randomness, 4)], parts, count,
+                         random_below(&randomness, 3) ? blend : blend_sharp, no_place);
 }
 
 /* What they join by blends may count on it that operands are so far away. */
-static void joints_keep_to_their_boxes(void **state)
+static void csg_nodes_keep_to_their_boxes(void **state)
 {
     (void)state;
     size_t outside = 0;
     for (int i = 0; i < 60; i++) {
-        const Shape *joint = random_joint(i % 3);
-        Seen         seen  = lower(joint, NULL);
+        const Shape *csg_node = random_csg_node(i % 3);
+        Seen         seen     = lower(csg_node, NULL);
         prepare(&seen);
         for (int k = 0; k < POINTS; k++) {
             double p[3];
             random_vector(&randomness, 5, p);
-            const double apart = outside_of(joint->box, p);
+            const double apart = outside_of(csg_node->box, p);
             if (!(apart > 0))
                 continue;
             assert_true(isfinite(apart));
@@ -159,9 +160,10 @@ static void many_parts_need_few_nodes(void **state)
     (void)state;
     size_t made[2];
     for (int more = 0; more < 2; more++) {
-        uint32_t      count = more ? 3000 : 300;
-        const Shape **parts = random_parts(count, true);
-        const Shape  *all = make_joint(&builder, SHAPE_UNION, parts, count, blend_sharp, no_place);
+        uint32_t      count  = more ? 3000 : 300;
+        const Shape **parts  = random_parts(count, true);
+        const Shape  *all    = make_csg_node(&builder, SHAPE_UNION, parts, count, blend_sharp,
+                                             no_place);
         size_t        before = builder.graph->count;
         lower(all, lowered_groups_new(builder.graph, &arena, &arena, LEAST));
         made[more] = builder.graph->count - before;
@@ -183,7 +185,7 @@ static const Shape *chain(BlendKind kind, double width, double step)
                                   between(-0.1, 0.1), between(-0.1, 0.1), 0.5, 1.25));
     Blend blend = {kind, graph_number(g, width), 0,
                    kind == BLEND_stairs ? graph_number(g, 3) : NODE_NONE};
-    return make_joint(&builder, SHAPE_UNION, parts, CHAIN, blend, no_place);
+    return make_csg_node(&builder, SHAPE_UNION, parts, CHAIN, blend, no_place);
 }
 
 static double joined(Blend blend, double a, double b)
@@ -395,7 +397,7 @@ static const Shape *cloud(BlendKind kind, double width, bool paint)
     }
     Blend blend = {kind, graph_number(g, width), width,
                    kind == BLEND_stairs ? graph_number(g, 3) : NODE_NONE};
-    return make_joint(&builder, SHAPE_UNION, parts, MANY, blend, no_place);
+    return make_csg_node(&builder, SHAPE_UNION, parts, MANY, blend, no_place);
 }
 
 static double mean_length(const Grid *grid)
@@ -460,7 +462,7 @@ static const Shape *balls_and_rings(BlendKind kind)
     }
     Blend blend = {kind, graph_number(g, 0.25), 0.25,
                    kind == BLEND_stairs ? graph_number(g, 3) : NODE_NONE};
-    return make_joint(&builder, SHAPE_UNION, parts, 2 * EACH, blend, no_place);
+    return make_csg_node(&builder, SHAPE_UNION, parts, 2 * EACH, blend, no_place);
 }
 
 /* At points near the surface they agree; returns how many there are. */
@@ -516,7 +518,7 @@ int main(void)
         TEST(below_offsets),
         TEST(lowered_again),
         TEST(many_parts_need_few_nodes),
-        TEST(joints_keep_to_their_boxes),
+        TEST(csg_nodes_keep_to_their_boxes),
         TEST(blends),
         TEST(reach_is_needed),
         TEST(reach_of_two),

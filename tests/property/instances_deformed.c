@@ -61,7 +61,7 @@ static const Shape *beside_a_ball(const Shape *shape)
 {
     Blend        blend   = {BLEND_quadratic, graph_number(builder.graph, 0.5), 0, NODE_NONE};
     const Shape *parts[] = {shape, ball(2)};
-    return make_joint(&builder, SHAPE_UNION, parts, 2, blend, no_place);
+    return make_csg_node(&builder, SHAPE_UNION, parts, 2, blend, no_place);
 }
 
 static const Shape *twisted_and_blended(const Shape *shape)
@@ -124,7 +124,8 @@ static void instances_are_as_apart(void **state)
 {
     for (size_t i = 0; i < sizeof deforms / sizeof *deforms; i++) {
         const Shape **parts = random_parts(PARTS, true);
-        const Shape  *all = make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
+        const Shape  *all   = make_csg_node(&builder, SHAPE_UNION, parts, PARTS, blend_sharp,
+                                            no_place);
         const Shape  *whole = deforms[i](all);
         assert_non_null(whole);
         LoweredGroups *instances = lowered_groups_new(builder.graph, &arena, &arena, LEAST);

@@ -59,7 +59,7 @@ static const Shape *moving_union(void)
     array_push(&arena, &builder.graph->parameters, range);
     for (int i = 0; i < PARTS; i++)
         parts[i] = moving_part(i % 2);
-    return make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
+    return make_csg_node(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
 }
 
 /* Those that the parameter raises have other operations, but not at points: all are one instance group. */
@@ -106,7 +106,7 @@ static const Shape *union_of_all_kinds(void)
     array_push(&arena, &builder.graph->parameters, range);
     for (int i = 0; i < PARTS; i++)
         parts[i] = i % 3 == 0 ? moving_part(i % 2) : shifted_part(i % 3 == 1);
-    return make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
+    return make_csg_node(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
 }
 
 static double mean_list(const Grid *grid)
@@ -220,7 +220,7 @@ static void infinite_numbers_are_found(void **state)
                       .pole  = NODE_NONE};
         parts[i]   = make_transform(&builder, ball(0.2), &map, no_place);
     }
-    const Shape *all   = make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
+    const Shape *all   = make_csg_node(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
     Seen         group = lower(all, lowered_groups_new(g, &arena, &arena, LEAST));
     assert_int_equal(g->instances->tables.count, 1);
     now = 0.5;

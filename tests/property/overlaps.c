@@ -94,7 +94,7 @@ static const Shape *blended(ShapeKind kind, BlendKind blend, double width)
     if (kind == SHAPE_DIFFERENCE)
         parts[0] = ball(1.7);
     Blend how = {blend, graph_number(builder.graph, width), 0, NODE_NONE};
-    return make_joint(&builder, kind, parts, PARTS, how, no_place);
+    return make_csg_node(&builder, kind, parts, PARTS, how, no_place);
 }
 
 /* The steepest line between two points near each other. */
@@ -124,7 +124,7 @@ static const Shape *fan(ShapeKind kind, BlendKind blend)
                             placed(ball(0.1), 2, 0, 0, 0, 1), placed(ball(0.1), 2, -0.25, 0, 0, 1)};
     uint32_t     first   = kind == SHAPE_UNION;
     Blend        how     = {blend, graph_number(builder.graph, 0.8), 0, NODE_NONE};
-    return make_joint(&builder, kind, parts + first, 4 - first, how, no_place);
+    return make_csg_node(&builder, kind, parts + first, 4 - first, how, no_place);
 }
 
 /* They would be too small without what a blend reaches, or without the inside of what tools cut. */

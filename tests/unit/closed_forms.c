@@ -50,12 +50,12 @@ static Body random_body(Random *random, Form form)
 
 Subject random_subject(Random *random, const Kind *kind)
 {
-    Subject subject = {.joint = kind->joints[random_below(random, kind->joint_count)],
-                       .width = random_between(random, 0.1, 0.5)};
+    Subject subject = {.csg_node = kind->csg_nodes[random_below(random, kind->csg_node_count)],
+                       .width    = random_between(random, 0.1, 0.5)};
     for (int i = 0; i < 2; i++)
         subject.bodies[i] = random_body(random,
                                         kind->forms[random_below(random, kind->form_count)]);
-    if (subject.joint != DIFFERENCE && random_below(random, 2) == 0) {
+    if (subject.csg_node != DIFFERENCE && random_below(random, 2) == 0) {
         subject.bodies[1] = subject.bodies[0];
         for (int k = 0; k < 3; k++)
             subject.bodies[1].move[k] += random_between(random, -0.05, 0.05);
@@ -82,19 +82,19 @@ static size_t print_body(const Body *b, char *text, size_t room)
 
 KrsFrame *frame_of_subject(const Subject *subject, KrsScene **scene)
 {
-    static const char *const joints[JOINTS] = {"union", "union", "intersection", "difference",
-                                               "union"};
+    static const char *const csg_nodes[CSG_NODES] = {"union", "union", "intersection", "difference",
+                                                     "union"};
     char                     text[2000], own[600], other[600];
     KrsFrame                *frame;
     print_body(&subject->bodies[0], own, sizeof own);
     print_body(&subject->bodies[1], other, sizeof other);
-    if (subject->joint == ALONE)
+    if (subject->csg_node == ALONE)
         snprintf(text, sizeof text, "show %s;", own);
-    else if (subject->joint == BLEND)
+    else if (subject->csg_node == BLEND)
         snprintf(text, sizeof text, "show union(%s, %s, blend: %.17g);", own, other,
                  subject->width);
     else
-        snprintf(text, sizeof text, "show %s(%s, %s);", joints[subject->joint], own, other);
+        snprintf(text, sizeof text, "show %s(%s, %s);", csg_nodes[subject->csg_node], own, other);
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, scene), KRS_OK);
     assert_int_equal(krs_frame_new(*scene, &frame), KRS_OK);
     return frame;
@@ -134,7 +134,7 @@ double subject_value(const Subject *subject, const double point[3])
 {
     double a = body_value(&subject->bodies[0], point), b = body_value(&subject->bodies[1], point);
     double h = fmax(subject->width - fabs(a - b), 0);
-    switch (subject->joint) {
+    switch (subject->csg_node) {
     case UNION: return fmin(a, b);
     case INTERSECTION: return fmax(a, b);
     case DIFFERENCE: return fmax(a, -b);

@@ -10,7 +10,7 @@
 #include "tests/support/random.h"
 
 typedef enum Form { BALL, RING, EQUATION, CAN, CONE, BLOCK, FORMS } Form;
-typedef enum Joint { ALONE, UNION, INTERSECTION, DIFFERENCE, BLEND, JOINTS } Joint;
+typedef enum CsgNode { ALONE, UNION, INTERSECTION, DIFFERENCE, BLEND, CSG_NODES } CsgNode;
 
 typedef struct Body {
     Form   form;
@@ -19,20 +19,20 @@ typedef struct Body {
 } Body;
 
 typedef struct Subject {
-    Joint  joint;
-    Body   bodies[2];
-    double width; /* of the blend */
+    CsgNode csg_node;
+    Body    bodies[2];
+    double  width; /* of the blend */
 } Subject;
 
 /* What random subjects are made of. */
 typedef struct Kind {
-    const Form  *forms;
-    int          form_count;
-    const Joint *joints;
-    int          joint_count;
+    const Form    *forms;
+    int            form_count;
+    const CsgNode *csg_nodes;
+    int            csg_node_count;
 } Kind;
 
-/* Half of the joints are of two that nearly have one surface, whose edges are blunt. */
+/* Half of the CSG nodes are of two that nearly have one surface, whose edges are blunt. */
 Subject random_subject(Random *random, const Kind *kind);
 /* The same as a scene. */
 KrsFrame *frame_of_subject(const Subject *subject, KrsScene **scene);

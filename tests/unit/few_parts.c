@@ -1,5 +1,5 @@
 /*
- * few_parts.c: for pictures few large parts of a sharp joint share code and have a table; everywhere else,
+ * few_parts.c: for pictures few large parts of a sharp CSG node share code and have a table; everywhere else,
  * in blends, and if they are small, they do not.  Answers are the same.
  */
 #include <math.h>

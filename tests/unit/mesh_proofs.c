@@ -264,7 +264,7 @@ static void check_slope_at(const Subject *subject, const double (*points)[3], in
     shares->slope = fmax(shares->slope, slope / most);
 }
 
-/* Deep inside, where no surface is, a joint may have left out a part: the number is another one there. */
+/* Deep inside, where no surface is, a CSG node may have left out a part: the number is another one there. */
 static bool is_closed_form(const Trial *t, const double p[3])
 {
     return fabs(subject_value(t->subject, p) - field_distance(&t->fields[0], p)) < 1e-9;
@@ -455,10 +455,10 @@ static void say(const char *name, const Shares *s)
 
 static void smooth_bounds_hold(void **context)
 {
-    static const Form  forms[]  = {BALL, RING, EQUATION};
-    static const Joint joints[] = {ALONE, BLEND};
-    const Kind         blends = {forms, 2, joints, 2}, equations = {&forms[2], 1, joints, 1};
-    Bounds             bounds = {0};
+    static const Form    forms[]     = {BALL, RING, EQUATION};
+    static const CsgNode csg_nodes[] = {ALONE, BLEND};
+    const Kind blends = {forms, 2, csg_nodes, 2}, equations = {&forms[2], 1, csg_nodes, 1};
+    Bounds     bounds = {0};
     (void)context;
     try_kind(&blends, 80, &bounds);
     try_kind(&equations, 80, &bounds);
@@ -473,10 +473,10 @@ static void smooth_bounds_hold(void **context)
 
 static void bounds_of_pieces_hold(void **context)
 {
-    static const Form  forms[]  = {BALL, RING, CAN, CONE, BLOCK};
-    static const Joint joints[] = {ALONE, UNION, INTERSECTION, DIFFERENCE};
-    const Kind         kind     = {forms, 5, joints, 4};
-    Bounds             bounds   = {0};
+    static const Form    forms[]     = {BALL, RING, CAN, CONE, BLOCK};
+    static const CsgNode csg_nodes[] = {ALONE, UNION, INTERSECTION, DIFFERENCE};
+    const Kind           kind        = {forms, 5, csg_nodes, 4};
+    Bounds               bounds      = {0};
     (void)context;
     try_kind(&kind, 200, &bounds);
     say("pieces", &bounds.pieces);

@@ -66,7 +66,7 @@ static void an_empty_scene_is_far_from_everything(void **context)
 }
 
 /* A bound is not far from zero between parts that nearly touch, although nothing is there.  A blend
-   with it must not swell: the box of the joint has no place for that. */
+   with it must not swell: the box of the CSG node has no place for that. */
 static void what_is_nowhere_adds_nothing(void **context)
 {
 #define NOWHERE "(sphere(1) & sphere(1).move([0, 2.02, 0]))"

@@ -222,7 +222,7 @@ static void a_union_that_is_smooth(void **state)
     (void)state;
     const Shape *parts[] = {make_sphere(1), moved(make_sphere(0.7), 1.2, 0, 0)};
     Blend        blend   = {BLEND_quadratic, graph_number(builder.graph, WIDTH), 0, NODE_NONE};
-    assert_distance(make_joint(&builder, SHAPE_UNION, parts, 2, blend, NOWHERE), blended);
+    assert_distance(make_csg_node(&builder, SHAPE_UNION, parts, 2, blend, NOWHERE), blended);
 }
 
 static double four_spheres(const double p[3])

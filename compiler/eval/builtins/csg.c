@@ -131,11 +131,11 @@ static Value join(Elaboration *e, const Call *call, ShapeKind kind, const Values
         return value_error();
     uint32_t count = (uint32_t)values->count;
     if (fillet && blend.width != NODE_NONE && count > 1) {
-        const Shape *joint = make_fillet(e, call, shapes, count, blend);
-        return joint ? value_shape(joint) : value_error();
+        const Shape *csg_node = make_fillet(e, call, shapes, count, blend);
+        return csg_node ? value_shape(csg_node) : value_error();
     }
-    return value_of_joint(e,
-                          make_joint(e->builder, kind, shapes, count, blend, call->syntax->span));
+    return value_of_csg_node(
+        e, make_csg_node(e->builder, kind, shapes, count, blend, call->syntax->span));
 }
 
 /* ---- two shapes ---- */
@@ -158,7 +158,8 @@ Value join_shapes(Elaboration *e, const Syntax *syntax, const Shape *a, const Sh
     if (!can_be_joined(e, a, b, syntax->name_span))
         return value_error();
     const Shape *shapes[] = {a, b};
-    return value_of_joint(e, make_joint(e->builder, kind, shapes, 2, blend_sharp, syntax->span));
+    return value_of_csg_node(e,
+                             make_csg_node(e->builder, kind, shapes, 2, blend_sharp, syntax->span));
 }
 
 Value choose_shape(Elaboration *e, const Syntax *syntax, Value condition, const Shape *yes,

@@ -110,7 +110,7 @@ static Value method_mirror(Elaboration *e, const Shape *shape, Call *call)
     Node normal, offset;
     if (!want_plane(e, call, &normal, &offset))
         return value_error();
-    return value_of_joint(e, make_mirror(e->builder, shape, normal, offset, call->syntax->span));
+    return value_of_csg_node(e, make_mirror(e->builder, shape, normal, offset, call->syntax->span));
 }
 
 static Value method_transform(Elaboration *e, const Shape *shape, Call *call)
@@ -129,7 +129,7 @@ static Value method_repeat(Elaboration *e, const Shape *shape, Call *call)
     Node     period;
     if (!want_lattice(e, call, &period, cells))
         return value_error();
-    return value_of_joint(
+    return value_of_csg_node(
         e, make_repeat(e->builder, shape, period, cells, NODE_NONE, call->syntax->span));
 }
 
@@ -309,8 +309,8 @@ static Value method_within(Elaboration *e, const Shape *shape, Call *call)
     if (open && !(shape = sheet_of(e, shape, region, thickness, call)))
         return value_error();
     const Shape *both[] = {shape, region};
-    return value_of_joint(
-        e, make_joint(e->builder, SHAPE_INTERSECTION, both, 2, blend_sharp, call->syntax->span));
+    return value_of_csg_node(
+        e, make_csg_node(e->builder, SHAPE_INTERSECTION, both, 2, blend_sharp, call->syntax->span));
 }
 
 static MakeDeformed *deformation(const char *name)

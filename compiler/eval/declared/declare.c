@@ -337,7 +337,7 @@ static void find_border(Elaboration *e, const Shape *shape)
     border->count = (uint32_t)value.list->count;
 }
 
-/* Joints below have been through this. */
+/* CSG nodes below have been through this. */
 void find_borders(Elaboration *e, const Shape *shape)
 {
     if (shape->border && !shape->border->found)
@@ -349,11 +349,11 @@ void find_borders(Elaboration *e, const Shape *shape)
             find_borders(e, shape->children[i]);
 }
 
-Value value_of_joint(Elaboration *e, const Shape *joint)
+Value value_of_csg_node(Elaboration *e, const Shape *csg_node)
 {
-    if (joint && joint->boundary)
-        find_borders(e, joint);
-    return value_shape(joint);
+    if (csg_node && csg_node->boundary)
+        find_borders(e, csg_node);
+    return value_shape(csg_node);
 }
 
 /* ---- properties ---- */

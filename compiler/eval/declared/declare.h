@@ -14,9 +14,9 @@ bool needs_check(Elaboration *e, const Syntax *syntax);
 const Shape *declared_core(Elaboration *e, const Shape *shape, Node rounding);
 /* The value of `hull`. */
 Value declared_hull(Elaboration *e, const Shape *shape);
-/* Finds the corners of all figures below a sharp joint. */
-void find_borders(Elaboration *e, const Shape *joint);
+/* Finds the corners of all figures below a sharp CSG node. */
+void find_borders(Elaboration *e, const Shape *csg_node);
 /* Shapes that are joined or copied, or NULL; of figures one knows then where the boundary is. */
-Value value_of_joint(Elaboration *e, const Shape *joint);
+Value value_of_csg_node(Elaboration *e, const Shape *csg_node);
 
 #endif

@@ -1,5 +1,5 @@
 /*
- * extents.c: from shapes to the balls, rims and half-spaces that they are within.  Maps and joints are
+ * extents.c: from shapes to the balls, rims and half-spaces that they are within.  Maps and CSG nodes are
  * followed from the outside inwards; where nothing more is known, the corners of a box stand for a
  * shape.
  */
@@ -395,7 +395,7 @@ static void add_shape(const Gathering *g, const Shape *shape, const Placing *pla
     case SHAPE_STRETCH: inner = placing_of_stretch(graph, shape->values[0]); break;
     case SHAPE_TURN: g->extents->wants_turns = true; return;
     case SHAPE_DIFFERENCE: add_children(g, shape, 1, placing, grown); return;
-    case SHAPE_CLIP: /* of a joint that does not leave the hull of its parts */
+    case SHAPE_CLIP: /* of a CSG node that does not leave the hull of its parts */
         add_children(g, shape->children[0], shape->children[0]->child_count, placing, grown);
         return;
     case SHAPE_UNION:

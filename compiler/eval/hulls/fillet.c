@@ -1,5 +1,5 @@
 /*
- * fillet.c: unions whose joints are rounded and never swell.
+ * fillet.c: unions whose CSG nodes are rounded and never swell.
  *
  * Of two parts that is their circular blend, cut by a region that holds both: their convex hull or, where
  * that cannot be said, what is left by the planes of their faces, and by cylinders and balls about what
@@ -21,7 +21,7 @@ enum { MOST_PARTS = 20000, MOST_PAIRS = 20000 };
 /* At how many points it is looked for what a fillet adds: of a pair of few, and of many. */
 enum { POINTS_OF_FEW = 2000, POINTS_OF_MANY = 200 };
 
-/* A part of a joint, and the number of the shape that it belongs to. */
+/* A part of a CSG node, and the number of the shape that it belongs to. */
 typedef struct FilletPart {
     const Shape *shape;
     uint32_t     owner;
@@ -146,13 +146,13 @@ static const Shape *make_pair(Filleting *f, const FilletPair *pair)
                                         many ? POINTS_OF_MANY : POINTS_OF_FEW);
     if (zone.known && zone.cells.count == 0)
         return NULL;
-    const Extents extents = extents_of_both(e, &pair->a->extents, &pair->b->extents);
-    const Shape  *region  = hull_region(e, f->call, &extents, &zone, many);
-    const Shape  *joint   = make_joint(e->builder, SHAPE_UNION, parts, 2, f->blend, span);
+    const Extents extents  = extents_of_both(e, &pair->a->extents, &pair->b->extents);
+    const Shape  *region   = hull_region(e, f->call, &extents, &zone, many);
+    const Shape  *csg_node = make_csg_node(e->builder, SHAPE_UNION, parts, 2, f->blend, span);
     Node          corners[2];
     bool          boxed = !many && extents_box(e, &extents, corners);
     pair->a->paired = pair->b->paired = true;
-    return make_clip(e->builder, joint, region, boxed ? corners : NULL, span);
+    return make_clip(e->builder, csg_node, region, boxed ? corners : NULL, span);
 }
 
 static bool refuse_endless(Filleting *f, const FilletPart *part)
@@ -223,7 +223,8 @@ const Shape *make_fillet(Elaboration *e, const Call *call, const Shape *const *s
             array_push(e->values, &joined, f.parts.items[i].shape);
     if (joined.count == 1)
         return joined.items[0];
-    return value_of_joint(e, make_joint(e->builder, SHAPE_UNION, joined.items,
-                                        (uint32_t)joined.count, blend_sharp, call->syntax->span))
+    return value_of_csg_node(e,
+                             make_csg_node(e->builder, SHAPE_UNION, joined.items,
+                                           (uint32_t)joined.count, blend_sharp, call->syntax->span))
         .shape;
 }

@@ -1,5 +1,5 @@
 /*
- * fillet.h: unions whose joints are rounded and never swell: `kind: "fillet"` (math.md, section 4).
+ * fillet.h: unions whose CSG nodes are rounded and never swell: `kind: "fillet"` (math.md, section 4).
  */
 #ifndef KRS_FILLET_H
 #define KRS_FILLET_H

@@ -1,5 +1,5 @@
 /*
- * hull_parts.c: from shapes and points to the balls and rims of which a hull is made.  Maps and joints are
+ * hull_parts.c: from shapes and points to the balls and rims of which a hull is made.  Maps and CSG nodes are
  * followed from the outside inwards.
  */
 #include "compiler/eval/hulls/hull_parts.h"
@@ -198,7 +198,7 @@ static bool add_extruded(const Gathering *g, const Shape *shape, const Place *pl
     return true;
 }
 
-/* Joints and maps keep the hull where they are one of hulls. */
+/* CSG nodes and maps keep the hull where they are one of hulls. */
 static bool add_shape(const Gathering *g, const Shape *shape, const Place *place, double grown)
 {
     Place  inner = IDENTITY;

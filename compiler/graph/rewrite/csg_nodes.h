@@ -1,5 +1,5 @@
 /*
- * joints.h: joints without what no surface needs.
+ * csg_nodes.h: CSG nodes without what no surface needs.
  *
  * A blend of two shapes is more than their minimum only where both distances are about the same.  If
  * that is nowhere near the surface of the whole, the minimum will do.  The tool that cuts a hole right
@@ -13,14 +13,14 @@
  * is another one: but intervals prove as well that it has the same sign everywhere, and a tree of this
  * kind is as steep as its steepest leaf.  Therefore it is a bound of the distance, too.
  */
-#ifndef KRS_JOINTS_H
-#define KRS_JOINTS_H
+#ifndef KRS_CSG_NODES_H
+#define KRS_CSG_NODES_H
 
 #include "compiler/graph/graph.h"
 #include "compiler/graph/range.h"
 
-/* The distance `root` of a solid in `box` without what its joints do not need; `root` itself where all
+/* The distance `root` of a solid in `box` without what its CSG nodes do not need; `root` itself where all
    is needed, or where it depends on the frame. */
-Node joints_prune(Graph *graph, Node root, Box box, Arena *scratch);
+Node csg_nodes_prune(Graph *graph, Node root, Box box, Arena *scratch);
 
 #endif

@@ -1,5 +1,5 @@
 /*
- * joints.c: distances without what their joints do not need, held against the same trees evaluated by
+ * csg_nodes.c: distances without what their CSG nodes do not need, held against the same trees evaluated by
  * themselves: they are equal at the surface and outside of it nearby, have the same sign everywhere, and
  * are no steeper.
  */
@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "compiler/graph/evaluate.h"
-#include "compiler/graph/rewrite/joints.h"
+#include "compiler/graph/rewrite/csg_nodes.h"
 #include "tests/support/bench.h"
 
 enum { TREES = 150, POINTS = 3000, MOST_PARTS = 24 };
@@ -282,7 +282,7 @@ static void same_surface(void **state)
     for (int i = 0; i < TREES; i++) {
         unsigned whole  = random_scene(bench, &scene);
         Node     root   = make_graph(bench, &scene, whole);
-        Node     pruned = joints_prune(bench->graph, root, box_around(), &bench->arena);
+        Node     pruned = csg_nodes_prune(bench->graph, root, box_around(), &bench->arena);
         Looked   old = prepare(bench, root), new = prepare(bench, pruned);
         blends += blends_of(&old), left += blends_of(&new);
         lengths += count_of(&old, OP_length), lengths_left += count_of(&new, OP_length);
@@ -298,7 +298,7 @@ static void same_surface(void **state)
 static Looked pruned(Bench *bench, const Scene *scene, unsigned whole, Box box)
 {
     Node   root   = make_graph(bench, scene, whole);
-    Looked looked = prepare(bench, joints_prune(bench->graph, root, box, &bench->arena));
+    Looked looked = prepare(bench, csg_nodes_prune(bench->graph, root, box, &bench->arena));
     check(bench, scene, whole, &looked);
     return looked;
 }
@@ -351,7 +351,7 @@ static void parameters_are_left_alone(void **state)
     unsigned whole = random_scene(bench, &scene);
     Node     root  = make_graph(bench, &scene, whole);
     Node     moved = graph_op2(g, OP_add, root, graph_parameter(g, 0, TYPE_FLOAT));
-    assert_int_equal(joints_prune(g, moved, box_around(), &bench->arena), moved);
+    assert_int_equal(csg_nodes_prune(g, moved, box_around(), &bench->arena), moved);
 }
 
 int main(void)

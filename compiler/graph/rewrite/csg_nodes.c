@@ -1,19 +1,19 @@
 /*
- * joints.c: the tree of joints of a distance, and what is left of it.
+ * csg_nodes.c: the tree of CSG nodes of a distance, and what is left of it.
  */
-#include "compiler/graph/rewrite/joints.h"
+#include "compiler/graph/rewrite/csg_nodes.h"
 
 #include "compiler/base/far.h"
 #include "compiler/graph/evaluate.h"
-#include "compiler/graph/rewrite/joint_needs.h"
+#include "compiler/graph/rewrite/csg_needs.h"
 
 /* A larger tree would take longer to look at than what is saved. */
 enum { MOST_NODES = 4000 };
 
 typedef struct Making {
-    JointTree *tree;
-    Tape       tape;
-    uint32_t  *part_of; /* by place on the tape: the part + 1, or 0 */
+    CsgTree  *tree;
+    Tape      tape;
+    uint32_t *part_of; /* by place on the tape: the part + 1, or 0 */
 } Making;
 
 static const Expr *expr_of(const Making *m, Node node) { return &m->tree->graph->items[node]; }
@@ -122,37 +122,36 @@ static bool is_narrow_blend(Op op)
     return false;
 }
 
-static bool has_two(JointKind kind)
+static bool has_two(CsgKind kind)
 {
-    return kind == JOINT_MIN || kind == JOINT_MAX || kind == JOINT_BLEND;
+    return kind == CSG_MIN || kind == CSG_MAX || kind == CSG_BLEND;
 }
 
 static uint32_t add_part(const Making *m, Node node);
 
-static uint32_t new_part(const Making *m, JointPart part)
+static uint32_t new_part(const Making *m, CsgPart part)
 {
     m->tree->parts[m->tree->count] = part;
     return m->tree->count++;
 }
 
-static JointPart part_of_number(const Making *m, JointKind kind, Node node, Node other,
-                                double number)
+static CsgPart part_of_number(const Making *m, CsgKind kind, Node node, Node other, double number)
 {
-    return (JointPart){.kind = kind, .node = node, .a = add_part(m, other), .number = number};
+    return (CsgPart){.kind = kind, .node = node, .a = add_part(m, other), .number = number};
 }
 
-static JointPart part_of_two(const Making *m, JointKind kind, Node node)
+static CsgPart part_of_two(const Making *m, CsgKind kind, Node node)
 {
     const Expr e = *expr_of(m, node);
     uint32_t   a = add_part(m, e.operands[0]), b = add_part(m, e.operands[1]);
-    return (JointPart){.kind = kind, .node = node, .a = a, .b = b};
+    return (CsgPart){.kind = kind, .node = node, .a = a, .b = b};
 }
 
-static JointPart part_of_corner(const Making *m, Node node, const Node *sides, uint32_t count)
+static CsgPart part_of_corner(const Making *m, Node node, const Node *sides, uint32_t count)
 {
-    JointPart part = {.kind = JOINT_CORNER, .node = node, .side_count = count};
+    CsgPart part = {.kind = CSG_CORNER, .node = node, .side_count = count};
     for (uint32_t k = 0; k < count; k++)
-        part.sides[k] = new_part(m, (JointPart){.kind = JOINT_LEAF, .node = sides[k]});
+        part.sides[k] = new_part(m, (CsgPart){.kind = CSG_LEAF, .node = sides[k]});
     return part;
 }
 
@@ -178,17 +177,17 @@ static uint32_t operands_of_shares(const Making *m, const Expr *e, Node operands
     return count;
 }
 
-static JointPart part_of_shares(const Making *m, Node node, const Node *operands, uint32_t count)
+static CsgPart part_of_shares(const Making *m, Node node, const Node *operands, uint32_t count)
 {
     const Expr e    = *expr_of(m, node);
-    JointPart  part = {.kind = JOINT_SHARES, .node = node, .sharer_count = count};
+    CsgPart    part = {.kind = CSG_SHARES, .node = node, .sharer_count = count};
     for (uint32_t k = 0; k < count; k++)
         part.sharers[k] = add_part(m, operands[k]);
     part.number = expr_of(m, e.operands[e.operand_count - 1])->number[0];
     return part;
 }
 
-static JointPart make_part(const Making *m, Node node)
+static CsgPart make_part(const Making *m, Node node)
 {
     const Expr e = *expr_of(m, node);
     Node       sides[MOST_SIDES];
@@ -199,25 +198,25 @@ static JointPart make_part(const Making *m, Node node)
     const bool   has_number = e.operand_count == 2 && is_number(m, second);
     const double number     = has_number ? expr_of(m, second)->number[0] : 0;
     if (e.op == OP_neg)
-        return part_of_number(m, JOINT_NEGATIVE, node, first, 0);
+        return part_of_number(m, CSG_NEGATIVE, node, first, 0);
     if (e.op == OP_add && has_number)
-        return part_of_number(m, JOINT_ADD, node, first, number);
+        return part_of_number(m, CSG_ADD, node, first, number);
     if (e.op == OP_sub && has_number)
-        return part_of_number(m, JOINT_ADD, node, first, -number);
+        return part_of_number(m, CSG_ADD, node, first, -number);
     if (e.op == OP_mul && has_number && number > 0)
-        return part_of_number(m, JOINT_SCALE, node, first, number);
+        return part_of_number(m, CSG_SCALE, node, first, number);
     if (e.op == OP_min || e.op == OP_max)
-        return part_of_two(m, e.op == OP_min ? JOINT_MIN : JOINT_MAX, node);
+        return part_of_two(m, e.op == OP_min ? CSG_MIN : CSG_MAX, node);
     if (is_narrow_blend((Op)e.op) && is_number(m, e.operands[2]) &&
         expr_of(m, e.operands[2])->number[0] > 0) {
-        JointPart part = part_of_two(m, JOINT_BLEND, node);
-        part.number    = expr_of(m, e.operands[2])->number[0];
+        CsgPart part = part_of_two(m, CSG_BLEND, node);
+        part.number  = expr_of(m, e.operands[2])->number[0];
         return part;
     }
     Node operands[MOST_SHARERS];
     count = operands_of_shares(m, &e, operands);
     return count ? part_of_shares(m, node, operands, count)
-                 : (JointPart){.kind = JOINT_LEAF, .node = node};
+                 : (CsgPart){.kind = CSG_LEAF, .node = node};
 }
 
 static uint32_t add_part(const Making *m, Node node)
@@ -229,18 +228,18 @@ static uint32_t add_part(const Making *m, Node node)
 }
 
 /* In which ways the whole depends on its parts. */
-static void find_signs(JointTree *tree)
+static void find_signs(CsgTree *tree)
 {
     tree->parts[tree->count - 1].upwards = true;
     for (uint32_t i = tree->count; i-- > 0;) {
-        const JointPart part   = tree->parts[i];
-        const bool      shares = part.kind == JOINT_SHARES;
-        const uint32_t  two[] = {part.a, part.b}, *of = shares ? part.sharers : two;
-        const bool      turns  = part.kind == JOINT_NEGATIVE;
-        const uint32_t  others = part.kind == JOINT_LEAF || part.kind == JOINT_CORNER ? 0
-                                 : shares             ? part.sharer_count
-                                 : has_two(part.kind) ? 2
-                                                      : 1;
+        const CsgPart  part   = tree->parts[i];
+        const bool     shares = part.kind == CSG_SHARES;
+        const uint32_t two[] = {part.a, part.b}, *of = shares ? part.sharers : two;
+        const bool     turns  = part.kind == CSG_NEGATIVE;
+        const uint32_t others = part.kind == CSG_LEAF || part.kind == CSG_CORNER ? 0
+                                : shares                                         ? part.sharer_count
+                                : has_two(part.kind)                             ? 2
+                                                                                 : 1;
         for (uint32_t k = 0; k < others; k++) {
             tree->parts[of[k]].upwards |= turns ? part.downwards : part.upwards;
             tree->parts[of[k]].downwards |= turns ? part.upwards : part.downwards;
@@ -269,7 +268,7 @@ static Node corner_of(Graph *g, const Node *sides)
     return graph_op2(g, OP_add, distance, depth);
 }
 
-static Node rest_of_corner(Graph *g, const JointPart *part, const Node *rests)
+static Node rest_of_corner(Graph *g, const CsgPart *part, const Node *rests)
 {
     Node     sides[MOST_SIDES] = {0};
     uint32_t count             = 0;
@@ -282,7 +281,7 @@ static Node rest_of_corner(Graph *g, const JointPart *part, const Node *rests)
 }
 
 /* Those that share with operand k, or with one that does, as bits. */
-static uint32_t who_share_with(const JointPart *part, uint32_t k)
+static uint32_t who_share_with(const CsgPart *part, uint32_t k)
 {
     uint32_t all = 1u << k, before = 0;
     while (all != before) {
@@ -310,7 +309,7 @@ static Node blend_of(Graph *g, Op op, Node width, const Node *operands, uint32_t
 }
 
 /* The least of what those make that share. */
-static Node rest_of_shares(Graph *g, const JointPart *part, const Node *rests)
+static Node rest_of_shares(Graph *g, const CsgPart *part, const Node *rests)
 {
     const Expr e     = g->items[part->node];
     Node       least = NODE_NONE;
@@ -330,18 +329,18 @@ static Node rest_of_shares(Graph *g, const JointPart *part, const Node *rests)
     return least;
 }
 
-static Node rest_of_part(Graph *g, const JointPart *part, const Node *rests)
+static Node rest_of_part(Graph *g, const CsgPart *part, const Node *rests)
 {
     const Expr e = g->items[part->node];
     g->here      = e.span;
     switch (part->kind) {
-    case JOINT_LEAF: return part->node;
-    case JOINT_CORNER: return rest_of_corner(g, part, rests);
-    case JOINT_SHARES: return rest_of_shares(g, part, rests);
-    case JOINT_NEGATIVE: return graph_op1(g, OP_neg, rests[part->a]);
-    case JOINT_ADD:
-    case JOINT_SCALE: return graph_op2(g, (Op)e.op, rests[part->a], e.operands[1]);
-    case JOINT_BLEND:
+    case CSG_LEAF: return part->node;
+    case CSG_CORNER: return rest_of_corner(g, part, rests);
+    case CSG_SHARES: return rest_of_shares(g, part, rests);
+    case CSG_NEGATIVE: return graph_op1(g, OP_neg, rests[part->a]);
+    case CSG_ADD:
+    case CSG_SCALE: return graph_op2(g, (Op)e.op, rests[part->a], e.operands[1]);
+    case CSG_BLEND:
         if (part->blends)
             return graph_op3(g, (Op)e.op, rests[part->a], rests[part->b], e.operands[2]);
         return graph_op2(g, OP_min, rests[part->a], rests[part->b]);
@@ -349,7 +348,7 @@ static Node rest_of_part(Graph *g, const JointPart *part, const Node *rests)
     }
 }
 
-static Node rest_of(const JointTree *tree, Arena *scratch)
+static Node rest_of(const CsgTree *tree, Arena *scratch)
 {
     Span  here  = tree->graph->here;
     Node *rests = arena_new_array(scratch, Node, tree->count);
@@ -370,25 +369,25 @@ static bool depends_on_frame(const Graph *graph, const Tape *tape)
 }
 
 /* Whether there is anything to be left out. */
-static bool has_candidates(const JointTree *tree)
+static bool has_candidates(const CsgTree *tree)
 {
     for (uint32_t i = 0; i < tree->count; i++)
-        if (joint_is_candidate(&tree->parts[i]))
+        if (csg_node_is_candidate(&tree->parts[i]))
             return true;
     return false;
 }
 
-Node joints_prune(Graph *graph, Node root, Box box, Arena *scratch)
+Node csg_nodes_prune(Graph *graph, Node root, Box box, Arena *scratch)
 {
-    JointTree tree = {.graph = graph};
-    Making    m    = {.tree = &tree, .tape = tape_new(graph, &root, 1, scratch)};
+    CsgTree tree = {.graph = graph};
+    Making  m    = {.tree = &tree, .tape = tape_new(graph, &root, 1, scratch)};
     if (m.tape.count > MOST_NODES || depends_on_frame(graph, &m.tape))
         return root;
     m.part_of  = arena_new_array(scratch, uint32_t, m.tape.count);
-    tree.parts = arena_new_array(scratch, JointPart, (1 + MOST_SIDES) * m.tape.count);
+    tree.parts = arena_new_array(scratch, CsgPart, (1 + MOST_SIDES) * m.tape.count);
     add_part(&m, root);
     find_signs(&tree);
-    if (!has_candidates(&tree) || !joints_find_needs(&tree, box, scratch))
+    if (!has_candidates(&tree) || !csg_nodes_find_needs(&tree, box, scratch))
         return root;
     return rest_of(&tree, scratch);
 }

@@ -1,5 +1,5 @@
 /*
- * joint_needs.c: which blends and sides of a tree of joints its surface needs.
+ * csg_needs.c: which blends and sides of a tree of CSG nodes its surface needs.
  *
  * Boxes are halved across their longest side.  In a box, ranges of the leaves give ranges of all parts;
  * then, from the whole downwards, operands that have no influence are left aside.  A box where nothing
@@ -9,7 +9,7 @@
  * the distance with or without each of what is not needed, in all combinations.  A box counts unless the
  * whole has one sign in all of them.  What turns out to have an influence is needed as well.
  */
-#include "compiler/graph/rewrite/joint_needs.h"
+#include "compiler/graph/rewrite/csg_needs.h"
 
 #include <assert.h>
 #include <math.h>
@@ -27,7 +27,7 @@ static const double LEAST_SIDE = 1.0 / 96, LEAST_AT_EDGES = 1.0 / 192, MARGIN = 
 enum { MOST_STEPS = 1000000 };
 
 typedef struct Search {
-    JointTree *tree;
+    CsgTree   *tree;
     LaneRanges ranges; /* of the lane tape at hand */
     Range     *range;  /* of each part */
 
@@ -49,7 +49,7 @@ typedef struct Cell {
 
 /* ---- ranges ---- */
 
-static double blend_at(const JointTree *tree, const JointPart *part, double a, double b)
+static double blend_at(const CsgTree *tree, const CsgPart *part, double a, double b)
 {
     static const GraphType types[MAX_OPERANDS]    = {TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT};
     const NodeValue        operands[MAX_OPERANDS] = {{{a}}, {{b}}, {{part->number}}};
@@ -76,7 +76,7 @@ static double corner_at(const double *sides, uint32_t count)
 }
 
 /* With fewer sides it is no larger.  Those remain that are needed. */
-static Range range_of_corner(const Search *s, const JointPart *part)
+static Range range_of_corner(const Search *s, const CsgPart *part)
 {
     double   low[MOST_SIDES], high[MOST_SIDES];
     uint32_t lows = 0, highs = 0;
@@ -91,7 +91,7 @@ static Range range_of_corner(const Search *s, const JointPart *part)
                    corner_at(high, highs)};
 }
 
-static Range range_of_blend(const Search *s, const JointPart *part)
+static Range range_of_blend(const Search *s, const CsgPart *part)
 {
     Range a = s->range[part->a], b = s->range[part->b];
     bool  may_be_sharp = s->in_all && !part->blends;
@@ -100,7 +100,7 @@ static Range range_of_blend(const Search *s, const JointPart *part)
 }
 
 /* Without what is not needed it is the least of what some of them make. */
-static Range range_of_shares(const Search *s, const Cell *cell, const JointPart *part)
+static Range range_of_shares(const Search *s, const Cell *cell, const CsgPart *part)
 {
     FindShares *find = sharing_op((Op)s->tree->graph->items[part->node].op).find;
     double      low[MOST_SHARERS], high[MOST_SHARERS], least = HUGE_VAL;
@@ -116,23 +116,22 @@ static Range range_of_shares(const Search *s, const Cell *cell, const JointPart 
     return isnan(all.low) || isnan(all.high) ? ANYTHING : all;
 }
 
-static Range range_of_part(const Search *s, const Cell *cell, const JointPart *part)
+static Range range_of_part(const Search *s, const Cell *cell, const CsgPart *part)
 {
     const Range *range = s->range;
-    if (part->kind == JOINT_SHARES)
+    if (part->kind == CSG_SHARES)
         return range_of_shares(s, cell, part);
     const bool a = cell->matters[part->a], b = cell->matters[part->b];
-    const bool two = part->kind == JOINT_MIN || part->kind == JOINT_MAX ||
-                     part->kind == JOINT_BLEND;
+    const bool two = part->kind == CSG_MIN || part->kind == CSG_MAX || part->kind == CSG_BLEND;
     if (two && !(a && b)) /* what does not matter has the range of another box */
         return range[a ? part->a : part->b];
     switch (part->kind) {
-    case JOINT_NEGATIVE: return range_neg(range[part->a]);
-    case JOINT_ADD: return range_add(range[part->a], range_of(part->number));
-    case JOINT_SCALE: return range_mul(range[part->a], range_of(part->number));
-    case JOINT_MIN: return range_min(range[part->a], range[part->b]);
-    case JOINT_MAX: return range_max(range[part->a], range[part->b]);
-    case JOINT_BLEND: return range_of_blend(s, part);
+    case CSG_NEGATIVE: return range_neg(range[part->a]);
+    case CSG_ADD: return range_add(range[part->a], range_of(part->number));
+    case CSG_SCALE: return range_mul(range[part->a], range_of(part->number));
+    case CSG_MIN: return range_min(range[part->a], range[part->b]);
+    case CSG_MAX: return range_max(range[part->a], range[part->b]);
+    case CSG_BLEND: return range_of_blend(s, part);
     default: return range_of_corner(s, part);
     }
 }
@@ -145,14 +144,14 @@ static bool output_is_sure(const LaneTape *tape, const LaneRanges *ranges, size_
 
 static Range find_ranges(const Search *s, const Cell *cell)
 {
-    const JointTree *tree = s->tree;
+    const CsgTree *tree = s->tree;
     lane_ranges_run(&cell->tape, &s->ranges, cell->box);
     for (uint32_t i = 0; i < cell->leaf_count; i++)
         s->range[cell->leaves[i]] = output_is_sure(&cell->tape, &s->ranges, i)
                                         ? lane_ranges_output(&cell->tape, &s->ranges, i)
                                         : ANYTHING;
     for (uint32_t i = 0; i < tree->count; i++)
-        if (cell->matters[i] && tree->parts[i].kind != JOINT_LEAF)
+        if (cell->matters[i] && tree->parts[i].kind != CSG_LEAF)
             s->range[i] = range_of_part(s, cell, &tree->parts[i]);
     return s->range[tree->count - 1];
 }
@@ -160,7 +159,7 @@ static Range find_ranges(const Search *s, const Cell *cell)
 /* ---- influence ---- */
 
 /* Sides below which another one always is, and which are not outside, count for nothing. */
-static uint32_t sides_that_count(const Search *s, const JointPart *part)
+static uint32_t sides_that_count(const Search *s, const CsgPart *part)
 {
     uint32_t count = 0;
     double   most  = -HUGE_VAL; /* some side is always so high */
@@ -174,23 +173,23 @@ static uint32_t sides_that_count(const Search *s, const JointPart *part)
 }
 
 /* Which operands of two may be the result, or change it. */
-static void find_operands(const Search *s, const JointPart *part, bool *a_counts, bool *b_counts)
+static void find_operands(const Search *s, const CsgPart *part, bool *a_counts, bool *b_counts)
 {
     Range  a = s->range[part->a], b = s->range[part->b];
-    double width = part->kind == JOINT_BLEND ? part->number : 0;
-    bool   max   = part->kind == JOINT_MAX;
+    double width = part->kind == CSG_BLEND ? part->number : 0;
+    bool   max   = part->kind == CSG_MAX;
     *a_counts    = max ? a.high >= b.low : a.low <= b.high + width;
     *b_counts    = max ? b.high >= a.low : b.low <= a.high + width;
 }
 
-static bool may_blend(const Search *s, const JointPart *part)
+static bool may_blend(const Search *s, const CsgPart *part)
 {
     Range a = s->range[part->a], b = s->range[part->b];
     return fmax(b.low - a.high, a.low - b.high) <= part->number;
 }
 
 /* Which operands that mattered may have a share, as bits. */
-static uint32_t find_sharers(const Search *s, const JointPart *part, const bool *mattered)
+static uint32_t find_sharers(const Search *s, const CsgPart *part, const bool *mattered)
 {
     uint32_t bits  = 0;
     double   least = HUGE_VAL;
@@ -204,7 +203,7 @@ static uint32_t find_sharers(const Search *s, const JointPart *part, const bool 
 }
 
 /* Whether two of those that matter may share where it was not needed yet; `mark`: now it is. */
-static bool finds_shares(const Search *s, JointPart *part, const bool *matters, bool mark)
+static bool finds_shares(const Search *s, CsgPart *part, const bool *matters, bool mark)
 {
     const uint32_t bits = find_sharers(s, part, matters);
     bool           more = false;
@@ -224,24 +223,23 @@ static bool finds_shares(const Search *s, JointPart *part, const bool *matters, 
 }
 
 /* Marks the operands that matter in a box, if the part does. */
-static void mark_operands(const Search *s, const JointPart *part, const bool *mattered,
-                          bool *matters)
+static void mark_operands(const Search *s, const CsgPart *part, const bool *mattered, bool *matters)
 {
     bool a = true, b = false;
-    if (part->kind == JOINT_CORNER) {
+    if (part->kind == CSG_CORNER) {
         for (uint32_t k = 0; k < part->side_count; k++)
             matters[part->sides[k]] = true;
         return;
     }
-    if (part->kind == JOINT_LEAF)
+    if (part->kind == CSG_LEAF)
         return;
-    if (part->kind == JOINT_SHARES) {
+    if (part->kind == CSG_SHARES) {
         const uint32_t bits = find_sharers(s, part, mattered);
         for (uint32_t k = 0; k < part->sharer_count; k++)
             matters[part->sharers[k]] |= bits >> k & 1;
         return;
     }
-    if (part->kind == JOINT_MIN || part->kind == JOINT_MAX || part->kind == JOINT_BLEND) {
+    if (part->kind == CSG_MIN || part->kind == CSG_MAX || part->kind == CSG_BLEND) {
         a = mattered[part->a], b = mattered[part->b];
         if (a && b)
             find_operands(s, part, &a, &b);
@@ -253,14 +251,13 @@ static void mark_operands(const Search *s, const JointPart *part, const bool *ma
 /* The most that the whole may be where a corner is not below 0. */
 static double most_beside(Search *s, const Cell *cell, uint32_t corner)
 {
-    const JointTree *tree = s->tree;
-    Range           *kept = s->range;
+    const CsgTree *tree = s->tree;
+    Range         *kept = s->range;
     memcpy(s->other, kept, tree->count * sizeof *kept);
     s->range             = s->other;
     s->range[corner].low = fmax(s->range[corner].low, 0);
     for (uint32_t i = corner + 1; i < tree->count; i++)
-        if (cell->matters[i] && tree->parts[i].kind < JOINT_CORNER &&
-            tree->parts[i].kind > JOINT_LEAF)
+        if (cell->matters[i] && tree->parts[i].kind < CSG_CORNER && tree->parts[i].kind > CSG_LEAF)
             s->range[i] = range_of_part(s, cell, &tree->parts[i]);
     s->range = kept;
     return s->other[tree->count - 1].high;
@@ -269,8 +266,8 @@ static double most_beside(Search *s, const Cell *cell, uint32_t corner)
 /* What is nearest to an edge of a corner is outside of two sides. */
 static bool may_be_round(Search *s, const Cell *cell, uint32_t corner)
 {
-    const JointPart *part    = &s->tree->parts[corner];
-    uint32_t         outside = 0;
+    const CsgPart *part    = &s->tree->parts[corner];
+    uint32_t       outside = 0;
     for (uint32_t k = 0; k < part->side_count; k++)
         outside += s->range[part->sides[k]].high > 0;
     return !part->is_round && outside > 1 && !(most_beside(s, cell, corner) <= 0);
@@ -284,17 +281,17 @@ typedef struct Size {
 /* Whether there is more to be found out about a part that matters. */
 static bool is_in_question(Search *s, const Cell *cell, uint32_t i, const bool *matters, Size size)
 {
-    JointPart *part = &s->tree->parts[i];
-    if (!joint_is_candidate(part))
+    CsgPart *part = &s->tree->parts[i];
+    if (!csg_node_is_candidate(part))
         return false;
-    if (part->kind == JOINT_CORNER) {
+    if (part->kind == CSG_CORNER) {
         const uint32_t more    = sides_that_count(s, part) & ~part->needed;
         const bool     rounder = may_be_round(s, cell, i);
         part->needed |= size.least ? more : 0;
         part->is_round |= size.least_at_edges && rounder;
         return (more && !size.least) || (rounder && !size.least_at_edges);
     }
-    if (part->kind == JOINT_SHARES)
+    if (part->kind == CSG_SHARES)
         return finds_shares(s, part, matters, size.least) && !size.least;
     const bool more = !part->blends && matters[part->a] && matters[part->b] && may_blend(s, part);
     part->blends |= size.least && more;
@@ -304,8 +301,8 @@ static bool is_in_question(Search *s, const Cell *cell, uint32_t i, const bool *
 /* From the whole downwards; returns whether anything is in question for smaller boxes. */
 static bool find_influences(Search *s, const Cell *cell, bool *matters, Size size)
 {
-    JointTree *tree          = s->tree;
-    bool       in_question   = false;
+    CsgTree *tree            = s->tree;
+    bool     in_question     = false;
     matters[tree->count - 1] = true;
     for (uint32_t i = tree->count; i-- > 0;)
         if (matters[i]) {
@@ -393,7 +390,7 @@ static bool is_outside(Search *s, Cell cell)
 }
 
 /* The leaves are the roots of a lane tape. */
-static Cell whole_cell(const JointTree *tree, Box box, Tape *tape, Arena *scratch)
+static Cell whole_cell(const CsgTree *tree, Box box, Tape *tape, Arena *scratch)
 {
     Cell  cell  = {.box     = box,
                    .leaves  = arena_new_array(scratch, uint32_t, tree->count),
@@ -401,7 +398,7 @@ static Cell whole_cell(const JointTree *tree, Box box, Tape *tape, Arena *scratc
     Node *roots = arena_new_array(scratch, Node, tree->count);
     for (uint32_t i = 0; i < tree->count; i++) {
         cell.matters[i] = true;
-        if (tree->parts[i].kind == JOINT_LEAF) {
+        if (tree->parts[i].kind == CSG_LEAF) {
             roots[cell.leaf_count]         = tree->parts[i].node;
             cell.leaves[cell.leaf_count++] = i;
         }
@@ -422,16 +419,16 @@ static void set_scalars(Cell *cell, const Tape *tape, Arena *scratch)
 }
 
 /* A corner that no surface needs stays as it is. */
-static void keep_others(JointTree *tree)
+static void keep_others(CsgTree *tree)
 {
     for (uint32_t i = 0; i < tree->count; i++)
-        if (tree->parts[i].kind == JOINT_CORNER && tree->parts[i].needed == 0) {
+        if (tree->parts[i].kind == CSG_CORNER && tree->parts[i].needed == 0) {
             tree->parts[i].needed   = (1u << tree->parts[i].side_count) - 1;
             tree->parts[i].is_round = true;
         }
 }
 
-bool joints_find_needs(JointTree *tree, Box box, Arena *scratch)
+bool csg_nodes_find_needs(CsgTree *tree, Box box, Arena *scratch)
 {
     Tape   tape;
     double longest = 0;
