@@ -111,7 +111,7 @@ static void drop_part(const Search *search, PartMark mark, uint32_t slots)
     size_t    count;
     Node     *nodes = frame_nodes(search, slots, &count);
     graph_release_but(search->graph, mark.graph, nodes, count, search->scratch);
-    alike_forget(search->finder->alike, mark.graph.count);
+    structures_forget(search->finder->structures, mark.graph.count);
     set_frame_nodes(search, slots, nodes);
     arena_rewind(search->scratch, scratch);
 }
@@ -120,7 +120,7 @@ static bool matches(Search *search, const Template *template, const Node *roots)
 {
     while (search->contents.count < template->slot_count)
         array_push(search->scratch, &search->contents, ((SlotContent){{0}, {0}}));
-    return template_match(search->finder->alike, template, roots, search->contents.items);
+    return template_match(search->finder->structures, template, roots, search->contents.items);
 }
 
 /* ---- candidates ---- */
@@ -145,7 +145,7 @@ static Candidate *find_candidate(Search *search, uint64_t hash)
 /* Of a hash that was not there before. */
 static void add_candidate(Search *search, uint64_t hash, const Node *roots, size_t first)
 {
-    Alike *alike = search->finder->alike;
+    Structures *structures = search->finder->structures;
     if (search->candidate_count == MOST_CANDIDATES)
         return;
     Candidate *candidate          = &search->candidates[search->candidate_count++];
@@ -153,8 +153,8 @@ static void add_candidate(Search *search, uint64_t hash, const Node *roots, size
     *candidate_slot(search, hash) = (uint16_t)search->candidate_count;
     if (search->graph->count - first > MOST_CANDIDATE_NODES)
         return;
-    Template *template = template_new(alike, roots, PART_ROOTS, search->scratch);
-    candidate->again   = !template_detach(alike, template, first, search->scratch);
+    Template *template = template_new(structures, roots, PART_ROOTS, search->scratch);
+    candidate->again   = !template_detach(structures, template, first, search->scratch);
     candidate->group   = group_new(template, search->scratch);
 }
 
@@ -188,7 +188,7 @@ static void hash_part(Search *search, uint32_t part)
     uint64_t hash  = 0;
     PartMark mark  = part_mark(search);
     if (lower_own(search->finder, part, roots)) {
-        hash  = alike_hash(search->finder->alike, roots, PART_ROOTS) | 1;
+        hash  = structure_hash(search->finder->structures, roots, PART_ROOTS) | 1;
         noted = note_numbers(search, hash, roots, mark.graph.count);
     }
     drop_part(search, mark, 0);
@@ -229,7 +229,7 @@ static bool is_frequent(const Search *search, uint64_t hash)
 
 static InstanceGroup *find_group(Search *search, const Node *roots)
 {
-    uint64_t hash = alike_hash(search->finder->alike, roots, PART_ROOTS);
+    uint64_t hash = structure_hash(search->finder->structures, roots, PART_ROOTS);
     for (size_t i = 0; i < search->groups.count; i++) {
         InstanceGroup *group = &search->groups.items[i];
         if (group->template->hash == hash && matches(search, group->template, roots))
@@ -240,9 +240,9 @@ static InstanceGroup *find_group(Search *search, const Node *roots)
 
 static InstanceGroup *new_group(Search *search, const Node *roots)
 {
-    Alike        *alike = search->finder->alike;
-    InstanceGroup group = group_new(template_new(alike, roots, PART_ROOTS, search->arena),
-                                    search->arena);
+    Structures   *structures = search->finder->structures;
+    InstanceGroup group      = group_new(template_new(structures, roots, PART_ROOTS, search->arena),
+                                         search->arena);
     matches(search, group.template, roots);
     array_push(search->arena, &search->groups, group);
     return &search->groups.items[search->groups.count - 1];

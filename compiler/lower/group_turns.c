@@ -154,10 +154,10 @@ static bool make_group(const PartFinder *finder, InstanceGroup *group, Arena *ar
     Node                roots[PART_ROOTS];
     if (!lower_shared(finder, t.turn, roots))
         return false;
-    *group                = group_new(template_new(finder->alike, roots, PART_ROOTS, arena), arena);
-    group->instances      = found.instances;
+    *group           = group_new(template_new(finder->structures, roots, PART_ROOTS, arena), arena);
+    group->instances = found.instances;
     SlotContent *contents = arena_new_array(scratch, SlotContent, group->template->slot_count + 1);
-    if (!template_match(finder->alike, group->template, roots, contents))
+    if (!template_match(finder->structures, group->template, roots, contents))
         return false;
     t.depends = arena_new_array(scratch, bool, graph->count - t.turn->turn);
     graph_mark_turned(graph, t.turn->turn, t.depends);

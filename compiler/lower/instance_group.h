@@ -5,7 +5,7 @@
 #define KRS_INSTANCE_GROUP_H
 
 #include "compiler/graph/instance_table.h"
-#include "compiler/graph/instances/alike.h"
+#include "compiler/graph/instances/structure.h"
 #include "compiler/lower/context.h"
 #include "compiler/lower/nearest.h"
 
@@ -76,7 +76,7 @@ typedef struct PartFinder {
     LowerContext        context;  /* of the parts */
     double              reach;    /* LowerContext.reach of all parts together */
     bool                operands; /* their distances are used away from the surface */
-    Alike              *alike;
+    Structures         *structures;
     uint32_t            least; /* instances of a group */
     uint32_t            many;  /* instances that make an instance group, however small they are */
     const uint32_t     *made;  /* CSG nodes with groups, so far */

@@ -25,14 +25,14 @@ typedef struct CsgGroups {
 enum { BUCKETS = 256 };
 
 struct LoweredGroups {
-    Graph     *graph;
-    Arena     *arena, *tables;
-    Alike     *alike;
-    PartLeaves leaves;
-    uint32_t   least; /* instances of an instance group */
-    uint32_t   few;   /* the same of sharp CSG nodes, if they are large */
-    uint32_t   made;  /* CSG nodes with groups, and functions of outlines */
-    CsgGroups *csg_nodes[BUCKETS];
+    Graph      *graph;
+    Arena      *arena, *tables;
+    Structures *structures;
+    PartLeaves  leaves;
+    uint32_t    least; /* instances of an instance group */
+    uint32_t    few;   /* the same of sharp CSG nodes, if they are large */
+    uint32_t    made;  /* CSG nodes with groups, and functions of outlines */
+    CsgGroups  *csg_nodes[BUCKETS];
 };
 
 LoweredGroups *lowered_groups_new(Graph *graph, Arena *arena, Arena *tables, uint32_t least)
@@ -271,16 +271,16 @@ static CsgGroups *find_csg_node(Lowering *l, const PartJoin *join, LowerContext 
         if (made->csg_node == join->csg_node && serves(made, l, parts))
             return made;
     bool       sharp     = join->csg_node->blend.width == NODE_NONE;
-    PartFinder finder    = {.outer    = l,
-                            .parts    = join->parts,
-                            .count    = join->count,
-                            .context  = parts,
-                            .reach    = join->reach,
-                            .operands = !sharp || context.reach > 0,
-                            .alike    = groups->alike,
-                            .least    = least_of_csg(groups, sharp),
-                            .many     = groups->least,
-                            .made     = &groups->made};
+    PartFinder finder    = {.outer      = l,
+                            .parts      = join->parts,
+                            .count      = join->count,
+                            .context    = parts,
+                            .reach      = join->reach,
+                            .operands   = !sharp || context.reach > 0,
+                            .structures = groups->structures,
+                            .least      = least_of_csg(groups, sharp),
+                            .many       = groups->least,
+                            .made       = &groups->made};
     GroupJoin  instances = group_join(l, join);
     CsgGroups *made      = arena_new(groups->arena, CsgGroups);
     made->csg_node       = join->csg_node;
@@ -299,9 +299,9 @@ JoinedGroups find_joined_groups(Lowering *l, PartJoin *join, LowerContext contex
     if (!l->groups || join->count < least_of_csg(l->groups, sharp) || join->csg_node->sheets ||
         l->overflow)
         return found;
-    if (!l->groups->alike) {
-        l->groups->alike  = alike_new(l->graph, l->groups->arena);
-        l->groups->leaves = part_leaves(l->graph);
+    if (!l->groups->structures) {
+        l->groups->structures = structures_new(l->graph, l->groups->arena);
+        l->groups->leaves     = part_leaves(l->graph);
     }
     found.join      = group_join(l, join);
     CsgGroups *made = find_csg_node(l, join, context);

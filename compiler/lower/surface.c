@@ -6,22 +6,22 @@
 
 /* Whether two values are the same costly operation, or vectors with such parts.  Then it is better to
    choose between operands: each branch of a tree would have an arc of its own, and all would be computed. */
-static bool are_alike(const Graph *g, Node a, Node b)
+static bool have_same_structure(const Graph *g, Node a, Node b)
 {
     const Expr *x = &g->items[a], *y = &g->items[b];
     if (x->op != y->op || x->type != y->type)
         return false;
     if (x->op != OP_vec2)
         return x->op == OP_atan2 || x->op == OP_join_id;
-    return are_alike(g, x->operands[0], y->operands[0]) ||
-           are_alike(g, x->operands[1], y->operands[1]);
+    return have_same_structure(g, x->operands[0], y->operands[0]) ||
+           have_same_structure(g, x->operands[1], y->operands[1]);
 }
 
 static Node choose(Graph *g, Node condition, Node a, Node b)
 {
     if (a == NODE_NONE || b == NODE_NONE || a == b)
         return a == NODE_NONE ? b : a;
-    if (!are_alike(g, a, b))
+    if (!have_same_structure(g, a, b))
         return graph_op3(g, OP_select, condition, a, b);
     const Expr x = g->items[a], y = g->items[b];
     Node       first  = choose(g, condition, x.operands[0], y.operands[0]);

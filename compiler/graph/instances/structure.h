@@ -1,5 +1,5 @@
 /*
- * alike.h: expressions that are alike but for numbers.
+ * structure.h: expressions of one structure, which differ in numbers only.
  *
  * A template is made of the expressions of one instance.  An instance is alike if its expressions have
  * the same operations on the same leaves.  Numbers that are known now, or in each frame, may differ
@@ -7,17 +7,17 @@
  * Slots belong to uses and not to nodes, since equal numbers are one node by chance.  Truth values
  * and integers are the same in both.  Numbers that decide how long a loop runs are equal.
  */
-#ifndef KRS_ALIKE_H
-#define KRS_ALIKE_H
+#ifndef KRS_STRUCTURE_H
+#define KRS_STRUCTURE_H
 
 #include "compiler/graph/graph.h"
 
 /* What is known of the nodes of a graph. */
-typedef struct Alike Alike;
+typedef struct Structures Structures;
 
-Alike *alike_new(Graph *graph, Arena *arena);
+Structures *structures_new(Graph *graph, Arena *arena);
 /* Nodes from this one on were dropped (graph_release): others may take their places. */
-void alike_forget(Alike *alike, size_t first);
+void structures_forget(Structures *structures, size_t first);
 
 /* What an operand of a node of a template is, or one of its roots. */
 typedef struct TemplateUse {
@@ -67,14 +67,14 @@ typedef struct SlotContent {
 } SlotContent;
 
 /* Alike expressions have equal hashes.  Roots may be NODE_NONE. */
-uint64_t  alike_hash(Alike *alike, const Node *roots, uint32_t count);
-Template *template_new(Alike *alike, const Node *roots, uint32_t count, Arena *arena);
+uint64_t  structure_hash(Structures *structures, const Node *roots, uint32_t count);
+Template *template_new(Structures *structures, const Node *roots, uint32_t count, Arena *arena);
 /* Makes a template independent of nodes from this one on, which may be dropped then: it serves
    template_match alone.  False: it cannot be. */
-bool template_detach(Alike *alike, Template *template, size_t first, Arena *arena);
+bool template_detach(Structures *structures, Template *template, size_t first, Arena *arena);
 /* Whether as many roots are alike.  What is in their slots goes to `contents`, slot_count of them;
    for its elements nodes may be made. */
-bool template_match(Alike *alike, const Template *template, const Node *roots,
+bool template_match(Structures *structures, const Template *template, const Node *roots,
                     SlotContent *contents);
 
 /* Leaves that are replaced in a copy. */

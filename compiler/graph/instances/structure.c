@@ -1,10 +1,10 @@
 /*
- * alike.c: expressions that are alike but for numbers.
+ * structure.c: expressions of one structure, which differ in numbers only.
  *
  * A hash that leaves numbers out finds the template.  Then both are walked together, users before
  * operands: each node of the template gets an image, and one that would get two has none.
  */
-#include "compiler/graph/instances/alike.h"
+#include "compiler/graph/instances/structure.h"
 
 #include <math.h>
 #include <string.h>
@@ -18,7 +18,7 @@ typedef struct NodeNote {
 
 enum { UNKNOWN, IN_NODE, FIRST_VALUE };
 
-struct Alike {
+struct Structures {
     Graph *graph;
     Arena *arena;
     struct {
@@ -31,34 +31,34 @@ struct Alike {
     } values;
 };
 
-Alike *alike_new(Graph *graph, Arena *arena)
+Structures *structures_new(Graph *graph, Arena *arena)
 {
-    Alike *alike = arena_new(arena, Alike);
-    *alike       = (Alike){.graph = graph, .arena = arena};
-    return alike;
+    Structures *structures = arena_new(arena, Structures);
+    *structures            = (Structures){.graph = graph, .arena = arena};
+    return structures;
 }
 
-void alike_forget(Alike *alike, size_t first)
+void structures_forget(Structures *structures, size_t first)
 {
-    while (alike->notes.count > first) {
-        uint32_t value = alike->notes.items[--alike->notes.count].value;
+    while (structures->notes.count > first) {
+        uint32_t value = structures->notes.items[--structures->notes.count].value;
         if (value >= FIRST_VALUE)
-            alike->values.count = value - FIRST_VALUE;
+            structures->values.count = value - FIRST_VALUE;
     }
 }
 
-static bool is_known(const Alike *alike, Node node)
+static bool is_known(const Structures *structures, Node node)
 {
-    return alike->notes.items[node].value != UNKNOWN;
+    return structures->notes.items[node].value != UNKNOWN;
 }
 
-static NodeValue known_value(const Alike *alike, Node node)
+static NodeValue known_value(const Structures *structures, Node node)
 {
-    uint32_t  value = alike->notes.items[node].value;
+    uint32_t  value = structures->notes.items[node].value;
     NodeValue number;
     if (value >= FIRST_VALUE)
-        return alike->values.items[value - FIRST_VALUE];
-    memcpy(number.v, alike->graph->items[node].number, sizeof number.v);
+        return structures->values.items[value - FIRST_VALUE];
+    memcpy(number.v, structures->graph->items[node].number, sizeof number.v);
     return number;
 }
 
@@ -69,14 +69,14 @@ static bool is_number(GraphType type) { return type <= TYPE_VEC4; }
 static bool is_operation(const Expr *e) { return e->time == TIME_POINT && e->operand_count > 0; }
 
 /* What a node is where `user` has it as an operand; user NULL: it is a root. */
-static int use_kind(const Alike *alike, const Expr *user, int operand, Node node)
+static int use_kind(const Structures *structures, const Expr *user, int operand, Node node)
 {
     if (node == NODE_NONE)
         return USE_SAME;
-    const Expr *e = &alike->graph->items[node];
+    const Expr *e = &structures->graph->items[node];
     if (is_operation(e))
         return USE_NODE;
-    bool known  = is_known(alike, node);
+    bool known  = is_known(structures, node);
     bool number = (is_number((GraphType)e->type) && (known || e->time == TIME_FRAME)) ||
                   (!user && e->type == TYPE_UINT && known);
     return number && !(user && op_has_setting((Op)user->op, operand)) ? USE_SLOT : USE_SAME;
@@ -102,22 +102,22 @@ static uint64_t hash_value(NodeValue value)
 
 /* Without numbers where a slot would be.  Nodes are not told apart by where they stand: others may
    have stood there before (graph_release). */
-static uint64_t hash_use(const Alike *alike, const Expr *user, int operand, Node node)
+static uint64_t hash_use(const Structures *structures, const Expr *user, int operand, Node node)
 {
     if (node == NODE_NONE)
         return NODE_NONE;
     bool slot = !user || is_operation(user);
-    if (slot && use_kind(alike, user, operand, node) == USE_SLOT)
-        return alike->graph->items[node].type;
-    return is_known(alike, node) ? hash_value(known_value(alike, node))
-                                 : alike->notes.items[node].hash;
+    if (slot && use_kind(structures, user, operand, node) == USE_SLOT)
+        return structures->graph->items[node].type;
+    return is_known(structures, node) ? hash_value(known_value(structures, node))
+                                      : structures->notes.items[node].hash;
 }
 
-static uint64_t hash_expression(const Alike *alike, const Expr *e)
+static uint64_t hash_expression(const Structures *structures, const Expr *e)
 {
     uint64_t hash = hash_word(hash_word(e->op, e->type), e->index);
     for (int i = 0; i < e->operand_count; i++)
-        hash = hash_word(hash, hash_use(alike, e, i, e->operands[i]));
+        hash = hash_word(hash, hash_use(structures, e, i, e->operands[i]));
     return hash;
 }
 
@@ -130,55 +130,55 @@ static bool is_finite(const Expr *e, const double *value)
 }
 
 /* The value of an operation on what is known; UNKNOWN: it is not. */
-static uint32_t note_value(Alike *alike, const Expr *e)
+static uint32_t note_value(Structures *structures, const Expr *e)
 {
     GraphType types[MAX_OPERANDS]    = {0};
     NodeValue operands[MAX_OPERANDS] = {0};
     for (int i = 0; i < e->operand_count; i++) {
-        if (!is_known(alike, e->operands[i]))
+        if (!is_known(structures, e->operands[i]))
             return UNKNOWN;
-        types[i]    = alike->graph->items[e->operands[i]].type;
-        operands[i] = known_value(alike, e->operands[i]);
+        types[i]    = structures->graph->items[e->operands[i]].type;
+        operands[i] = known_value(structures, e->operands[i]);
     }
     NodeValue value = op_evaluate((Op)e->op, (GraphType)e->type, e->index, types, operands);
     if (!is_finite(e, value.v))
         return UNKNOWN;
-    array_push_large(alike->arena, &alike->values, value);
-    return FIRST_VALUE + (uint32_t)alike->values.count - 1;
+    array_push_large(structures->arena, &structures->values, value);
+    return FIRST_VALUE + (uint32_t)structures->values.count - 1;
 }
 
-static uint32_t find_value(Alike *alike, const Expr *e)
+static uint32_t find_value(Structures *structures, const Expr *e)
 {
     if (e->op == OP_CONSTANT || e->op == OP_PARAMETERISED)
         return is_finite(e, e->number) ? IN_NODE : UNKNOWN;
-    return e->operand_count == 0 || is_operation(e) ? UNKNOWN : note_value(alike, e);
+    return e->operand_count == 0 || is_operation(e) ? UNKNOWN : note_value(structures, e);
 }
 
-static void note_all(Alike *alike)
+static void note_all(Structures *structures)
 {
-    for (size_t n = alike->notes.count; n < alike->graph->count; n++) {
-        const Expr *e    = &alike->graph->items[n];
-        NodeNote    note = {.value = find_value(alike, e)};
+    for (size_t n = structures->notes.count; n < structures->graph->count; n++) {
+        const Expr *e    = &structures->graph->items[n];
+        NodeNote    note = {.value = find_value(structures, e)};
         if (note.value == UNKNOWN)
-            note.hash = hash_expression(alike, e);
-        array_push_large(alike->arena, &alike->notes, note);
+            note.hash = hash_expression(structures, e);
+        array_push_large(structures->arena, &structures->notes, note);
     }
 }
 
-uint64_t alike_hash(Alike *alike, const Node *roots, uint32_t count)
+uint64_t structure_hash(Structures *structures, const Node *roots, uint32_t count)
 {
     uint64_t hash = count;
-    note_all(alike);
+    note_all(structures);
     for (uint32_t i = 0; i < count; i++)
-        hash = hash_word(hash, hash_use(alike, NULL, 0, roots[i]));
+        hash = hash_word(hash, hash_use(structures, NULL, 0, roots[i]));
     return hash;
 }
 
 /* ---- templates ---- */
 
 typedef struct TemplateMaker {
-    const Alike *alike;
-    Arena       *arena;
+    const Structures *structures;
+    Arena            *arena;
     Template *template;
     struct {
         TemplateNode *items;
@@ -221,12 +221,12 @@ static void grow_places(TemplateMaker *maker)
 
 static TemplateUse make_use(TemplateMaker *maker, const Expr *user, int operand, Node node)
 {
-    switch (use_kind(maker->alike, user, operand, node)) {
+    switch (use_kind(maker->structures, user, operand, node)) {
     case USE_NODE: return (TemplateUse){USE_NODE, maker->places[place_of(maker, node)] - 1};
     case USE_SLOT:
         array_push(maker->arena, &maker->slots, node);
         array_push(maker->arena, &maker->slot_types,
-                   (GraphType)maker->alike->graph->items[node].type);
+                   (GraphType)maker->structures->graph->items[node].type);
         return (TemplateUse){USE_SLOT, (uint32_t)maker->slots.count - 1};
     default: return (TemplateUse){USE_SAME, node};
     }
@@ -235,11 +235,11 @@ static TemplateUse make_use(TemplateMaker *maker, const Expr *user, int operand,
 /* Opens the operands of a node that are not made yet; false: there are none. */
 static bool open_operands(TemplateMaker *maker, Node node)
 {
-    const Expr *e      = &maker->alike->graph->items[node];
+    const Expr *e      = &maker->structures->graph->items[node];
     size_t      before = maker->open.count;
     for (int i = e->operand_count; i-- > 0;) {
         Node operand = e->operands[i];
-        if (use_kind(maker->alike, e, i, operand) == USE_NODE &&
+        if (use_kind(maker->structures, e, i, operand) == USE_NODE &&
             !maker->places[place_of(maker, operand)])
             array_push(maker->arena, &maker->open, operand);
     }
@@ -252,7 +252,7 @@ static void make_node(TemplateMaker *maker, Node node)
     size_t place = place_of(maker, node);
     if (maker->places[place])
         return;
-    const Expr  *e    = &maker->alike->graph->items[node];
+    const Expr  *e    = &maker->structures->graph->items[node];
     TemplateNode made = {.node = node, .op = e->op, .type = e->type, .index = e->index};
     for (int i = 0; i < MAX_OPERANDS; i++)
         made.uses[i] = i < e->operand_count ? make_use(maker, e, i, e->operands[i])
@@ -275,16 +275,16 @@ static void make_nodes(TemplateMaker *maker, Node root)
     }
 }
 
-Template *template_new(Alike *alike, const Node *roots, uint32_t count, Arena *arena)
+Template *template_new(Structures *structures, const Node *roots, uint32_t count, Arena *arena)
 {
-    TemplateMaker maker  = {.alike = alike, .arena = arena};
+    TemplateMaker maker  = {.structures = structures, .arena = arena};
     Template *template   = arena_new(arena, Template);
-    template->hash       = alike_hash(alike, roots, count);
+    template->hash       = structure_hash(structures, roots, count);
     template->roots      = arena_new_array(arena, TemplateUse, count);
     template->root_count = count;
     grow_places(&maker);
     for (uint32_t i = 0; i < count; i++) {
-        if (use_kind(alike, NULL, 0, roots[i]) == USE_NODE)
+        if (use_kind(structures, NULL, 0, roots[i]) == USE_NODE)
             make_nodes(&maker, roots[i]);
         template->roots[i] = make_use(&maker, NULL, 0, roots[i]);
     }
@@ -297,47 +297,49 @@ Template *template_new(Alike *alike, const Node *roots, uint32_t count, Arena *a
     return template;
 }
 
-static bool detach_use(Alike *alike, Template *template, TemplateUse *use, size_t first,
+static bool detach_use(Structures *structures, Template *template, TemplateUse *use, size_t first,
                        Arena *arena)
 {
     if (use->kind != USE_SAME || use->index < first || use->index == NODE_NONE)
         return true;
-    if (!is_known(alike, use->index))
+    if (!is_known(structures, use->index))
         return false;
-    TemplateKnown known = {(GraphType)alike->graph->items[use->index].type,
-                           known_value(alike, use->index)};
+    TemplateKnown known = {(GraphType)structures->graph->items[use->index].type,
+                           known_value(structures, use->index)};
     array_push(arena, &template->known, known);
     *use = (TemplateUse){USE_KNOWN, (uint32_t) template->known.count - 1};
     return true;
 }
 
-bool template_detach(Alike *alike, Template *template, size_t first, Arena *arena)
+bool template_detach(Structures *structures, Template *template, size_t first, Arena *arena)
 {
     bool good = true;
     for (uint32_t i = 0; good && i < template->root_count; i++)
-        good = detach_use(alike, template, &template->roots[i], first, arena);
+        good = detach_use(structures, template, &template->roots[i], first, arena);
     for (uint32_t i = 0; i < template->node_count; i++)
         for (int k = 0; good && k < MAX_OPERANDS; k++)
-            good = detach_use(alike, template, &template->nodes[i].uses[k], first, arena);
+            good = detach_use(structures, template, &template->nodes[i].uses[k], first, arena);
     return good;
 }
 
 /* ---- matching ---- */
 
-static bool has_value(const Alike *alike, Node node, GraphType type, NodeValue value)
+static bool has_value(const Structures *structures, Node node, GraphType type, NodeValue value)
 {
-    if (node == NODE_NONE || !is_known(alike, node) || alike->graph->items[node].type != type)
+    if (node == NODE_NONE || !is_known(structures, node) ||
+        structures->graph->items[node].type != type)
         return false;
-    NodeValue own = known_value(alike, node);
+    NodeValue own = known_value(structures, node);
     return !memcmp(&own, &value, sizeof own);
 }
 
-static bool same_node(const Alike *alike, Node a, Node b)
+static bool same_node(const Structures *structures, Node a, Node b)
 {
     if (a == b || a == NODE_NONE || b == NODE_NONE)
         return a == b;
-    return is_known(alike, a) &&
-           has_value(alike, b, (GraphType)alike->graph->items[a].type, known_value(alike, a));
+    return is_known(structures, a) &&
+           has_value(structures, b, (GraphType)structures->graph->items[a].type,
+                     known_value(structures, a));
 }
 
 /* The number, or node of the frame, that is an element of a node. */
@@ -349,41 +351,41 @@ static Node element_node(Graph *graph, Node node, uint32_t element)
     return graph_component(graph, node, element);
 }
 
-static SlotContent content_of(const Alike *alike, Node node)
+static SlotContent content_of(const Structures *structures, Node node)
 {
-    const uint32_t elements = alike->graph->items[node].type;
+    const uint32_t elements = structures->graph->items[node].type;
     SlotContent    content  = {.nodes = {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE}};
-    if (is_known(alike, node)) {
-        NodeValue value = known_value(alike, node);
+    if (is_known(structures, node)) {
+        NodeValue value = known_value(structures, node);
         memcpy(content.numbers, value.v, sizeof content.numbers);
         return content;
     }
     for (uint32_t k = 0; k < elements; k++) {
-        Node element = element_node(alike->graph, node, k);
-        if (element < alike->notes.count && is_known(alike, element))
-            content.numbers[k] = known_value(alike, element).v[0];
+        Node element = element_node(structures->graph, node, k);
+        if (element < structures->notes.count && is_known(structures, element))
+            content.numbers[k] = known_value(structures, element).v[0];
         else
             content.nodes[k] = element;
     }
     return content;
 }
 
-static bool match_use(const Alike *alike, const Template *template, TemplateUse use,
+static bool match_use(const Structures *structures, const Template *template, TemplateUse use,
                       const Expr *user, int operand, Node node, SlotContent *contents)
 {
-    int kind = use_kind(alike, user, operand, node);
+    int kind = use_kind(structures, user, operand, node);
     if (use.kind == USE_KNOWN) {
         const TemplateKnown *known = &template->known.items[use.index];
-        return kind == USE_SAME && has_value(alike, node, known->type, known->value);
+        return kind == USE_SAME && has_value(structures, node, known->type, known->value);
     }
     if (kind != (int)use.kind)
         return false;
     if (use.kind == USE_SAME)
-        return same_node(alike, use.index, node);
+        return same_node(structures, use.index, node);
     if (use.kind == USE_SLOT) {
-        if (alike->graph->items[node].type != template->slot_types[use.index])
+        if (structures->graph->items[node].type != template->slot_types[use.index])
             return false;
-        contents[use.index] = content_of(alike, node);
+        contents[use.index] = content_of(structures, node);
         return true;
     }
     Node *image = &template->images[use.index];
@@ -392,30 +394,30 @@ static bool match_use(const Alike *alike, const Template *template, TemplateUse 
     return *image == node;
 }
 
-static bool match_node(const Alike *alike, const Template *template, uint32_t index,
+static bool match_node(const Structures *structures, const Template *template, uint32_t index,
                        SlotContent *contents)
 {
     const TemplateNode *made = &template->nodes[index];
-    const Expr         *e    = &alike->graph->items[template->images[index]];
+    const Expr         *e    = &structures->graph->items[template->images[index]];
     if (e->op != made->op || e->type != made->type || e->index != made->index)
         return false;
     for (int i = 0; i < e->operand_count; i++)
-        if (!match_use(alike, template, made->uses[i], e, i, e->operands[i], contents))
+        if (!match_use(structures, template, made->uses[i], e, i, e->operands[i], contents))
             return false;
     return true;
 }
 
-bool template_match(Alike *alike, const Template *template, const Node *roots,
+bool template_match(Structures *structures, const Template *template, const Node *roots,
                     SlotContent *contents)
 {
-    note_all(alike);
+    note_all(structures);
     for (uint32_t i = 0; i < template->node_count; i++)
         template->images[i] = NODE_NONE;
     for (uint32_t i = 0; i < template->root_count; i++)
-        if (!match_use(alike, template, template->roots[i], NULL, 0, roots[i], contents))
+        if (!match_use(structures, template, template->roots[i], NULL, 0, roots[i], contents))
             return false;
     for (uint32_t i = template->node_count; i-- > 0;)
-        if (!match_node(alike, template, i, contents))
+        if (!match_node(structures, template, i, contents))
             return false;
     return true;
 }
