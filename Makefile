@@ -45,15 +45,15 @@ endif
 # Clients of the compiler: it knows nothing of them.
 CLIENTS  := $(foreach room,mesh/common mesh/contour mesh/proof mesh/flat mesh/simplify mesh slice grid measure,$(call sources,$(room)))
 TARGET   := $(call sources,compiler/target)
-BORDER   := compiler/target/glslang_border.cpp
+BRIDGE   := compiler/target/glslang_bridge.cpp
 RUNTIME  := $(foreach room,device tracer integrators film display writer,$(call sources,runtime/$(room)))
 # What programs link with of other versions, too (api/README.md).
 API      := $(call sources,api)
 IMPORT   := $(foreach room,import/common import/csg import/surfer import/pov import,$(call sources,$(room)))
 LIVE     := $(foreach room,live/text live/pictures live/window live,$(call sources,$(room)))
-LIVE_BORDER := live/window/gui.cpp
+LIVE_BRIDGE := live/window/gui.cpp
 CLI      := $(foreach room,cli/options cli/shell cli/picture cli/mesh cli/grid cli/slice cli,$(call sources,$(room)))
-CLI_BORDER := cli/mesh/glb_materials.cpp cli/mesh/glb.cpp cli/shell/terminate.cpp
+CLI_BRIDGE := cli/mesh/glb_materials.cpp cli/mesh/glb.cpp cli/shell/terminate.cpp
 # OpenVDB is loaded when a .vdb is written: it takes longer to load than most commands to run.
 VDB       = $(if $(VDB_LIBS),$(B)/krs-vdb.so)
 
@@ -99,7 +99,7 @@ SONAME   := libkrs.so.$(basename $(VERSION))
 SHARED   := libkrs.so.$(VERSION)
 
 all: $(B)/krs $(B)/libkrs.a $(B)/libkrs.so $(VDB)
-$(B)/krs: $(CLI:%.c=$(B)/%.o) $(B)/commit.o $(CLI_BORDER:%.cpp=$(B)/%.o) $(B)/live.a $(B)/import.a $(INTERNAL)
+$(B)/krs: $(CLI:%.c=$(B)/%.o) $(B)/commit.o $(CLI_BRIDGE:%.cpp=$(B)/%.o) $(B)/live.a $(B)/import.a $(INTERNAL)
 	@echo "link   $@"
 	@$(CC_LINK) $(HARDENED) -o $@ $^ $(WINDOW_LIBS) $(MESH_LIBS) $(LIBS)
 # Its headers take a minute to compile, and twice that with names for a debugger.
@@ -109,7 +109,7 @@ $(B)/krs-vdb.so: $(B)/cli/grid/openvdb.o
 	@$(CXX) $(CXXFLAGS) $(LDFLAGS) -shared -o $@ $< $(VDB_LIBS)
 # What the command has for scenes that are open, and for files of other programs: clients of the library, and no
 # part of it.
-$(B)/live.a: $(LIVE:%.c=$(B)/%.o) $(LIVE_BORDER:%.cpp=$(B)/%.o)
+$(B)/live.a: $(LIVE:%.c=$(B)/%.o) $(LIVE_BRIDGE:%.cpp=$(B)/%.o)
 $(B)/import.a: $(IMPORT:%.c=$(B)/%.o)
 $(B)/live.a $(B)/import.a: $(B)/members
 	@rm -f $@
@@ -134,7 +134,7 @@ $(B)/libkrs.so: $(B)/$(SHARED)
 	@ln -sf $(SHARED) $(B)/$(SONAME)
 	@ln -sf $(SONAME) $@
 # What archives hold: one whose list has changed is packed again, although a new member may be older.
-MEMBERS  := $(OBJECTS) $(IMPORT:%.c=$(B)/%.o) $(LIVE:%.c=$(B)/%.o) $(LIVE_BORDER:%.cpp=$(B)/%.o)
+MEMBERS  := $(OBJECTS) $(IMPORT:%.c=$(B)/%.o) $(LIVE:%.c=$(B)/%.o) $(LIVE_BRIDGE:%.cpp=$(B)/%.o)
 ifneq ($(file <$(B)/members),$(MEMBERS))
 .PHONY: $(B)/members
 endif

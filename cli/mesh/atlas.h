@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_ATLAS_H
 #define KRS_MESH_ATLAS_H
 
-#include "cli/mesh/border.h"
+#include "cli/mesh/bridge.h"
 #include "compiler/base/arena.h"
 
 /* Places count in pixels from the left upper corner, to the right and down; pixel 0 is from 0 to 1. */

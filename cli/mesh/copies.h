@@ -4,7 +4,7 @@
 #ifndef KRS_MESH_COPIES_H
 #define KRS_MESH_COPIES_H
 
-#include "cli/mesh/border.h"
+#include "cli/mesh/bridge.h"
 
 /* A part, placed. */
 typedef struct MeshCopy {

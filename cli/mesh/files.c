@@ -1,4 +1,4 @@
-/* files.c: binary STL, binary PLY with colours, and OBJ; GLB and 3MF by border.h. */
+/* files.c: binary STL, binary PLY with colours, and OBJ; GLB and 3MF by bridge.h. */
 #include "cli/mesh/files.h"
 
 #include <endian.h>
@@ -306,8 +306,8 @@ static bool take_bytes(void *user, const void *bytes, size_t count)
     return output_append(file->file, bytes, count);
 }
 
-static bool write_glb(MeshFile *file) { return mesh_border_glb(file->parts, take_bytes, file); }
-static bool write_3mf(MeshFile *file) { return mesh_border_3mf(file->parts, take_bytes, file); }
+static bool write_glb(MeshFile *file) { return mesh_bridge_glb(file->parts, take_bytes, file); }
+static bool write_3mf(MeshFile *file) { return mesh_bridge_3mf(file->parts, take_bytes, file); }
 
 /* Numbers of 24 bits, and of nine digits. */
 static const double SINGLE = 5.9604645e-8, NINE_DIGITS = 5e-9;

@@ -511,7 +511,7 @@ class SinkStream : public std::streambuf
 
 } // namespace
 
-bool mesh_border_glb(const MeshParts *parts, MeshSink *sink, void *user)
+bool mesh_bridge_glb(const MeshParts *parts, MeshSink *sink, void *user)
 {
     try {
         File             file  = {};

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/mesh/border.h"
+#include "cli/mesh/bridge.h"
 
 #define TINYGLTF_NO_STB_IMAGE_WRITE
 #define TINYGLTF_NO_STB_IMAGE

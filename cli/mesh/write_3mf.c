@@ -9,7 +9,7 @@
 #include <string.h>
 #include <zip.h>
 
-#include "cli/mesh/border.h"
+#include "cli/mesh/bridge.h"
 #include "compiler/base/vec.h"
 
 #define XML "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
@@ -505,7 +505,7 @@ static bool write_archive(const char *model, size_t length, MeshSink *sink, void
     return good;
 }
 
-bool mesh_border_3mf(const MeshParts *parts, MeshSink *sink, void *user)
+bool mesh_bridge_3mf(const MeshParts *parts, MeshSink *sink, void *user)
 {
     size_t length;
     char  *model = model_text(parts, &length);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/target/glslang_border.h"
+#include "compiler/target/glslang_bridge.h"
 #include "compiler/target/spirv.h"
 
 /* The process has one glslang.  A thread that compiles holds the read lock.  A thread that starts
@@ -25,7 +25,7 @@ static struct {
 static void stop(void)
 {
     if (glslang.runs)
-        border_stop();
+        bridge_stop();
     glslang.runs = false;
     atomic_store(&glslang.spoiled, false);
 }
@@ -45,37 +45,37 @@ void spirv_stop(void)
     pthread_rwlock_unlock(&glslang.lock);
 }
 
-/* Locks for reading, with glslang started; the lock is held only if the result is BORDER_OK. */
-static BorderResult begin_use(void)
+/* Locks for reading, with glslang started; the lock is held only if the result is BRIDGE_OK. */
+static BridgeResult begin_use(void)
 {
-    BorderResult result = BORDER_OK;
-    while (result == BORDER_OK) {
+    BridgeResult result = BRIDGE_OK;
+    while (result == BRIDGE_OK) {
         pthread_rwlock_rdlock(&glslang.lock);
         if (glslang.runs && !atomic_load(&glslang.spoiled))
-            return BORDER_OK;
+            return BRIDGE_OK;
         pthread_rwlock_unlock(&glslang.lock);
         pthread_rwlock_wrlock(&glslang.lock);
         if (atomic_load(&glslang.spoiled))
             stop();
         if (!glslang.runs)
-            result = border_start();
-        glslang.runs = result == BORDER_OK;
+            result = bridge_start();
+        glslang.runs = result == BRIDGE_OK;
         pthread_rwlock_unlock(&glslang.lock);
     }
     return result;
 }
 
-static void end_use(BorderResult result)
+static void end_use(BridgeResult result)
 {
-    if (result == BORDER_NO_MEMORY)
+    if (result == BRIDGE_NO_MEMORY)
         atomic_store(&glslang.spoiled, true);
     pthread_rwlock_unlock(&glslang.lock);
 }
 
 void spirv_prepare(void)
 {
-    if (begin_use() == BORDER_OK)
-        end_use(BORDER_OK);
+    if (begin_use() == BRIDGE_OK)
+        end_use(BRIDGE_OK);
 }
 
 #define WORD(number)  #number
@@ -88,7 +88,7 @@ const char *spirv_glslang_version(void)
         GLSLANG_VERSION_PATCH);
 }
 
-const char *spirv_tools_version(void) { return border_tools_version(); }
+const char *spirv_tools_version(void) { return bridge_tools_version(); }
 
 /* A log of the names of the shader and of the tool, and the tool's message, which is freed. */
 static char *name_log(const char *entry, const char *tool, char *message)
@@ -101,16 +101,16 @@ static char *name_log(const char *entry, const char *tool, char *message)
     return log;
 }
 
-/* Converts a BorderResult to a status.  `message` is freed or becomes part of the log. */
-static KrsStatus status_of(BorderResult result, const char *entry, const char *tool, char *message,
+/* Converts a BridgeResult to a status.  `message` is freed or becomes part of the log. */
+static KrsStatus status_of(BridgeResult result, const char *entry, const char *tool, char *message,
                            char **log)
 {
-    bool refused = result == BORDER_REFUSED && message;
+    bool refused = result == BRIDGE_REFUSED && message;
     *log         = refused ? name_log(entry, tool, message) : NULL;
     if (!refused)
         free(message);
-    return result == BORDER_OK        ? KRS_OK
-           : result == BORDER_REFUSED ? KRS_INTERNAL
+    return result == BRIDGE_OK        ? KRS_OK
+           : result == BRIDGE_REFUSED ? KRS_INTERNAL
                                       : KRS_OUT_OF_MEMORY;
 }
 
@@ -118,16 +118,16 @@ KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, s
                         char **log)
 {
     char        *refusal = NULL;
-    BorderResult result  = begin_use();
+    BridgeResult result  = begin_use();
     *words               = NULL;
-    if (result == BORDER_OK) {
-        result = border_compile(glsl, words, word_count, &refusal);
+    if (result == BRIDGE_OK) {
+        result = bridge_compile(glsl, words, word_count, &refusal);
         end_use(result);
     }
     KrsStatus status = status_of(result, entry, "glslang", refusal, log);
     if (status != KRS_OK)
         return status;
-    result = border_validate(*words, *word_count, &refusal);
+    result = bridge_validate(*words, *word_count, &refusal);
     status = status_of(result, entry, "the SPIR-V validator", refusal, log);
     if (status != KRS_OK) {
         free(*words);
@@ -138,5 +138,5 @@ KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, s
 
 char *spirv_disassemble(const uint32_t *words, size_t word_count)
 {
-    return border_disassemble(words, word_count);
+    return bridge_disassemble(words, word_count);
 }

@@ -18,7 +18,7 @@ static const char *const property_names[] = {"distance", "bound", "exact",  "slo
 enum { PROPERTY_COUNT = sizeof property_names / sizeof *property_names };
 
 /* Figures of the library say what their outlines are: what `outline` is of polygons, where there are arcs. */
-static const char border_name[] = "border";
+static const char bridge_name[] = "border";
 
 static bool is_declared_in_library(const Elaboration *e, const Syntax *declaration)
 {
@@ -31,7 +31,7 @@ static bool check_properties(Elaboration *e, const Syntax *declaration)
     for (uint32_t i = 0; i < declaration->count; i++) {
         const Syntax *property = declaration->children[i];
         bool          known    = property->kind != SYNTAX_PROPERTY ||
-                     (strcmp(property->name, border_name) == 0 &&
+                     (strcmp(property->name, bridge_name) == 0 &&
                       is_declared_in_library(e, declaration));
         for (size_t k = 0; !known && k < PROPERTY_COUNT; k++)
             known = strcmp(property->name, property_names[k]) == 0;
@@ -262,7 +262,7 @@ static const Syntax *outline_syntax(const Elaboration *e, const Syntax *declarat
 {
     const Syntax *outline = find_property(declaration, "outline");
     bool          wanted  = !outline && e->outlines && is_declared_in_library(e, declaration);
-    return wanted && !find_property(declaration, "core") ? find_property(declaration, border_name)
+    return wanted && !find_property(declaration, "core") ? find_property(declaration, bridge_name)
                                                          : outline;
 }
 
@@ -293,7 +293,7 @@ static const Syntax *border_property(const Elaboration *e, const Syntax *declara
 {
     if (!is_declared_in_library(e, declaration))
         return NULL;
-    const Syntax *border = find_property(declaration, border_name);
+    const Syntax *border = find_property(declaration, bridge_name);
     return border ? border : find_property(declaration, "outline");
 }
 

@@ -1,8 +1,8 @@
 /*
- * border.h: glTF and 3MF, by the libraries tinygltf and libzip.
+ * bridge.h: glTF and 3MF, by the libraries tinygltf and libzip.
  */
-#ifndef KRS_MESH_BORDER_H
-#define KRS_MESH_BORDER_H
+#ifndef KRS_MESH_BRIDGE_H
+#define KRS_MESH_BRIDGE_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -124,8 +124,8 @@ double glb_roughness(double roughness, double anisotropy);
 typedef bool MeshSink(void *user, const void *bytes, size_t count);
 
 /* False: the sink failed, or memory has run out. */
-bool mesh_border_glb(const MeshParts *parts, MeshSink *sink, void *user);
-bool mesh_border_3mf(const MeshParts *parts, MeshSink *sink, void *user);
+bool mesh_bridge_glb(const MeshParts *parts, MeshSink *sink, void *user);
+bool mesh_bridge_3mf(const MeshParts *parts, MeshSink *sink, void *user);
 
 #ifdef __cplusplus
 }

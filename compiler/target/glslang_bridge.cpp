@@ -1,8 +1,8 @@
 /*
- * glslang_border.cpp: calls the C interface of glslang and SPIRV-Tools, and catches their
+ * glslang_bridge.cpp: calls the C interface of glslang and SPIRV-Tools, and catches their
  * exceptions.  It is the only file in C++.
  */
-#include "compiler/target/glslang_border.h"
+#include "compiler/target/glslang_bridge.h"
 #include "compiler/target/flatten.h"
 
 #include <cstdlib>
@@ -23,7 +23,7 @@ namespace glslang
 __attribute__((weak)) void ReleaseGlobalLock();
 }
 
-/* Whether the lock is lost: whoever calls glslang would wait for ever.  The caller of border_start has a lock
+/* Whether the lock is lost: whoever calls glslang would wait for ever.  The caller of bridge_start has a lock
    of its own. */
 static bool lock_is_lost;
 
@@ -33,10 +33,10 @@ static void release_lock()
         glslang::ReleaseGlobalLock();
 }
 
-static BorderResult refuse(const char *text, char **log)
+static BridgeResult refuse(const char *text, char **log)
 {
     *log = strdup(text && *text ? text : "no reason given");
-    return *log ? BORDER_REFUSED : BORDER_NO_MEMORY;
+    return *log ? BRIDGE_REFUSED : BRIDGE_NO_MEMORY;
 }
 
 /* Frees the shader and the program, also when an exception is thrown. */
@@ -66,22 +66,22 @@ static bool merge_returns(std::vector<uint32_t> &words)
 /* Makes one function of a module, or leaves it as it is.  Otherwise drivers do so at every start.
    They copy a body once for each call above it, and compare each access to a global with all before
    it.  Results are the same but for the last digit, which a driver may round differently. */
-static BorderResult flatten(std::vector<uint32_t> &words, uint32_t **made, size_t *count)
+static BridgeResult flatten(std::vector<uint32_t> &words, uint32_t **made, size_t *count)
 {
     Flattening result = flatten_module(words.data(), words.size(), made, count);
     if (result == FLATTEN_REFUSED && merge_returns(words))
         result = flatten_module(words.data(), words.size(), made, count);
     if (result != FLATTEN_REFUSED)
-        return result == FLATTEN_OK ? BORDER_OK : BORDER_NO_MEMORY;
+        return result == FLATTEN_OK ? BRIDGE_OK : BRIDGE_NO_MEMORY;
     *made = static_cast<uint32_t *>(malloc(words.size() * sizeof **made));
     if (!*made)
-        return BORDER_NO_MEMORY;
+        return BRIDGE_NO_MEMORY;
     memcpy(*made, words.data(), words.size() * sizeof **made);
     *count = words.size();
-    return BORDER_OK;
+    return BRIDGE_OK;
 }
 
-static BorderResult compile(const char *glsl, uint32_t **words, size_t *word_count, char **log)
+static BridgeResult compile(const char *glsl, uint32_t **words, size_t *word_count, char **log)
 {
     glslang_input_t input         = {};
     input.language                = GLSLANG_SOURCE_GLSL;
@@ -99,13 +99,13 @@ static BorderResult compile(const char *glsl, uint32_t **words, size_t *word_cou
     Work work;
     work.shader = glslang_shader_create(&input);
     if (!work.shader)
-        return BORDER_NO_MEMORY;
+        return BRIDGE_NO_MEMORY;
     if (!glslang_shader_preprocess(work.shader, &input) ||
         !glslang_shader_parse(work.shader, &input))
         return refuse(glslang_shader_get_info_log(work.shader), log);
     work.program = glslang_program_create();
     if (!work.program)
-        return BORDER_NO_MEMORY;
+        return BRIDGE_NO_MEMORY;
     glslang_program_add_shader(work.program, work.shader);
     if (!glslang_program_link(work.program,
                               GLSLANG_MSG_SPV_RULES_BIT | GLSLANG_MSG_VULKAN_RULES_BIT))
@@ -119,24 +119,24 @@ static BorderResult compile(const char *glsl, uint32_t **words, size_t *word_cou
     return flatten(made, words, word_count);
 }
 
-/* Calls `work` and returns its result; an exception becomes BORDER_NO_MEMORY or BORDER_REFUSED. */
-template <typename Work> static BorderResult guarded(Work work, char **log)
+/* Calls `work` and returns its result; an exception becomes BRIDGE_NO_MEMORY or BRIDGE_REFUSED. */
+template <typename Work> static BridgeResult guarded(Work work, char **log)
 {
     *log = nullptr;
     try {
         return work();
     } catch (const std::bad_alloc &) {
-        return BORDER_NO_MEMORY;
+        return BRIDGE_NO_MEMORY;
     } catch (...) {
         return refuse("an exception", log);
     }
 }
 
-BorderResult border_compile(const char *glsl, uint32_t **words, size_t *word_count, char **log)
+BridgeResult bridge_compile(const char *glsl, uint32_t **words, size_t *word_count, char **log)
 {
     *words              = nullptr;
-    BorderResult result = guarded([=] { return compile(glsl, words, word_count, log); }, log);
-    if (result != BORDER_OK)
+    BridgeResult result = guarded([=] { return compile(glsl, words, word_count, log); }, log);
+    if (result != BRIDGE_OK)
         release_lock();
     return result;
 }
@@ -144,42 +144,42 @@ BorderResult border_compile(const char *glsl, uint32_t **words, size_t *word_cou
 /* glslang makes its tables of built-in names, under its lock, when it compiles the first shader of
    a version of GLSL.  An exception then leaves them incomplete.  So an empty shader of the kernels'
    version is compiled first. */
-static BorderResult start(bool *started, char **log)
+static BridgeResult start(bool *started, char **log)
 {
     static const char first[] = "#version 440\nlayout(local_size_x = 1) in;\nvoid main() {}\n";
     uint32_t         *words   = nullptr;
     size_t            count;
     *started            = true; /* in case of an exception: then glslang has to be stopped */
     *started            = glslang_initialize_process() != 0;
-    BorderResult result = *started ? compile(first, &words, &count, log) : BORDER_NO_MEMORY;
+    BridgeResult result = *started ? compile(first, &words, &count, log) : BRIDGE_NO_MEMORY;
     free(words);
     return result;
 }
 
-BorderResult border_start(void)
+BridgeResult bridge_start(void)
 {
     char *log;
     bool  started = false;
     if (lock_is_lost)
-        return BORDER_NO_MEMORY;
-    BorderResult result = guarded([&] { return start(&started, &log); }, &log);
+        return BRIDGE_NO_MEMORY;
+    BridgeResult result = guarded([&] { return start(&started, &log); }, &log);
     free(log);
-    if (result == BORDER_OK || !started)
+    if (result == BRIDGE_OK || !started)
         return result;
     release_lock();
     lock_is_lost = !glslang::ReleaseGlobalLock;
     if (!lock_is_lost)
-        border_stop();
+        bridge_stop();
     return result;
 }
 
-void border_stop(void)
+void bridge_stop(void)
 {
     char *log;
     guarded(
         [] {
             glslang_finalize_process();
-            return BORDER_OK;
+            return BRIDGE_OK;
         },
         &log);
     free(log);
@@ -208,43 +208,43 @@ static spv_result_t run_validator(const uint32_t *words, size_t word_count, bool
     return spvValidateWithOptions(context, options.get(), &binary, diagnostic);
 }
 
-static BorderResult validate(const uint32_t *words, size_t word_count, char **log)
+static BridgeResult validate(const uint32_t *words, size_t word_count, char **log)
 {
     Owned<spv_context_t> context(spvContextCreate(SPV_ENV_VULKAN_1_1));
     spv_diagnostic       diagnostic = nullptr;
     if (!context)
-        return BORDER_NO_MEMORY;
+        return BRIDGE_NO_MEMORY;
     if (run_validator(words, word_count, false, context.get(), nullptr) == SPV_SUCCESS)
-        return BORDER_OK;
+        return BRIDGE_OK;
     spv_result_t result = run_validator(words, word_count, true, context.get(), &diagnostic);
     Owned<spv_diagnostic_t> owned(diagnostic);
     if (result == SPV_ERROR_OUT_OF_MEMORY)
-        return BORDER_NO_MEMORY;
+        return BRIDGE_NO_MEMORY;
     return refuse(diagnostic ? diagnostic->error : nullptr, log);
 }
 
-BorderResult border_validate(const uint32_t *words, size_t word_count, char **log)
+BridgeResult bridge_validate(const uint32_t *words, size_t word_count, char **log)
 {
     return guarded([=] { return validate(words, word_count, log); }, log);
 }
 
-const char *border_tools_version(void) { return spvSoftwareVersionString(); }
+const char *bridge_tools_version(void) { return spvSoftwareVersionString(); }
 
-static BorderResult disassemble(const uint32_t *words, size_t word_count, char **assembly)
+static BridgeResult disassemble(const uint32_t *words, size_t word_count, char **assembly)
 {
     Owned<spv_context_t> context(spvContextCreate(SPV_ENV_VULKAN_1_1));
     spv_text             text = nullptr;
     uint32_t style = SPV_BINARY_TO_TEXT_OPTION_FRIENDLY_NAMES | SPV_BINARY_TO_TEXT_OPTION_INDENT;
     if (!context)
-        return BORDER_NO_MEMORY;
+        return BRIDGE_NO_MEMORY;
     spv_result_t result = spvBinaryToText(context.get(), words, word_count, style, &text, nullptr);
     Owned<spv_text_t> owned(text);
     if (result == SPV_SUCCESS)
         *assembly = strdup(text->str);
-    return *assembly ? BORDER_OK : BORDER_REFUSED;
+    return *assembly ? BRIDGE_OK : BRIDGE_REFUSED;
 }
 
-char *border_disassemble(const uint32_t *words, size_t word_count)
+char *bridge_disassemble(const uint32_t *words, size_t word_count)
 {
     char *log, *assembly = nullptr;
     guarded([&] { return disassemble(words, word_count, &assembly); }, &log);
