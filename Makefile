@@ -10,13 +10,13 @@
 # make bench-normals    how normals are found
 # make bench-algebraic  algebraic surfaces beside other programs
 # make check-device DEVICE=...  what to know of a Vulkan device first, in ten minutes
-# make bench-registers  registers, waves and spills of each kernel on a graphics card
+# make bench-registers  registers, waves and spills of each shader on a graphics card
 # make bench-view       how fast the viewer follows edits, sliders and the camera
 # make bench-edits      how long a saved number takes to its picture, by krs watch and by krs render
 # make minify     how well one sample shows what is finer than a pixel
 # make fuzz       the front end under libFuzzer for FUZZ_SECONDS (20)
 # make golden     pictures under every option, bit for bit as they were: after changes that nobody should see
-# make lint       kernels by themselves, shell scripts, style of C
+# make lint       shaders by themselves, shell scripts, style of C
 # make format     brings that style about
 # make bless      writes the expected text of tests/errors/; read the difference
 # make deps       installs what building and rendering need (Debian packages); test-deps: also what tests need
@@ -57,12 +57,12 @@ CLI_BRIDGE := cli/mesh/glb_materials.cpp cli/mesh/glb.cpp cli/shell/terminate.cp
 # OpenVDB is loaded when a .vdb is written: it takes longer to load than most commands to run.
 VDB       = $(if $(VDB_LIBS),$(B)/krs-vdb.so)
 
-# Text files that the program carries: the standard library, what scenes and kernels share, kernels.
+# Text files that the program carries: the standard library, what scenes and shaders share, shaders.
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))
 HELPERS  := $(sort $(wildcard compiler/print/glsl/*.glsl))
 SHADERS  := $(sort $(wildcard runtime/shaders/*.comp runtime/shaders/*.glsl runtime/shared/*.h)) \
             include/krs/surface.def
-# Kernels without a scene are compiled here and now, not on every machine again; what is optimized
+# Shaders without a scene are compiled here and now, not on every machine again; what is optimized
 # here, drivers need not.
 MODULES  := $(shell grep -L 'include "scene.glsl"' runtime/shaders/*.comp)
 MODULES  := $(MODULES:runtime/shaders/%=$(B)/modules/%.spv) \
@@ -176,7 +176,7 @@ $(B)/shader_files.c: $(B)/embed $(SHADERS)
 	@$(B)/embed shader_files runtime/shaders/ include/ -- $(SHADERS) >$@
 $(B)/module_files.c: $(B)/embed $(MODULES)
 	@$(B)/embed module_files $(B)/modules/ -- $(MODULES) >$@
-# A module of a kernel: FILE.spv, or FILE-NAME-NAME.spv with these names defined.
+# A module of a shader: FILE.spv, or FILE-NAME-NAME.spv with these names defined.
 define MAKE_MODULE
 	@mkdir -p $(@D)
 	@echo "shader $<$(addprefix -D,$(1))"

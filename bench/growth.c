@@ -19,7 +19,7 @@ enum { GROUPS = 1024, LANES = 64, EVALUATIONS = 128 };
 
 typedef struct Tree {
     Subject        subject;
-    Shader         distance;
+    BenchShader    distance;
     KrsRenderStats stats; /* of the last picture */
     Times         *pictures;
     double        *distances; /* milliseconds */
@@ -39,10 +39,10 @@ static void plant(Bench *bench, Tree *tree, uint32_t levels, const KrsRenderOpti
     char *scene = krs_scene_text(tree->subject.scene, &(KrsVariant){0}, wanted, 1, NULL);
     if (!scene)
         fail("out of memory");
-    char *text = shader_text(bench, path,
-                             (StandIn[]){{"scene.glsl", scene}, {"sizes.glsl", sizes.bytes}, {0}});
+    char *text = bench_shader_text(
+        bench, path, (StandIn[]){{"scene.glsl", scene}, {"sizes.glsl", sizes.bytes}, {0}});
     free(scene);
-    shader_create(bench, &tree->distance, text, path, ends);
+    bench_shader_create(bench, &tree->distance, text, path, ends);
 }
 
 static void take_figures(Bench *bench, Growth *growth, size_t i, Tree *tree)
@@ -62,7 +62,7 @@ static void run_in_turns(Bench *bench, Tree *trees, size_t count, const KrsRende
             Tree *tree            = &trees[i];
             tree->pictures[turn]  = subject_render(bench, &tree->subject, options, &tree->stats,
                                                    NULL);
-            tree->distances[turn] = shader_run(bench, &tree->distance, GROUPS);
+            tree->distances[turn] = bench_shader_run(bench, &tree->distance, GROUPS);
         }
 }
 
@@ -85,7 +85,7 @@ void growth_run(Bench *bench, Growth *growth)
     run_in_turns(bench, trees, growth->count, &options);
     for (size_t i = 0; i < growth->count; i++) {
         take_figures(bench, growth, i, &trees[i]);
-        shader_destroy(bench, &trees[i].distance);
+        bench_shader_destroy(bench, &trees[i].distance);
         subject_close(&trees[i].subject);
     }
     buffer_destroy(&bench->gpu, &ends);

@@ -36,11 +36,11 @@ static char *view_text(Bench *bench, const KrsView *view, double error, bool cou
     return text.bytes;
 }
 
-static void compile(Bench *bench, Shader *shader, const char *path, const char *view,
+static void compile(Bench *bench, BenchShader *shader, const char *path, const char *view,
                     const Buffer *picture)
 {
-    char *text = shader_text(bench, path, (StandIn[]){{"view.glsl", view}, {0}});
-    shader_create(bench, shader, text, path, picture);
+    char *text = bench_shader_text(bench, path, (StandIn[]){{"view.glsl", view}, {0}});
+    bench_shader_create(bench, shader, text, path, picture);
 }
 
 static VkDeviceSize picture_bytes(const Bench *bench)
@@ -61,7 +61,7 @@ void handwritten_create(Bench *bench, Handwritten *written, const char *path, co
 
 void handwritten_destroy(Bench *bench, Handwritten *written)
 {
-    shader_destroy(bench, &written->shader);
+    bench_shader_destroy(bench, &written->shader);
     buffer_destroy(&bench->gpu, &written->picture);
     buffer_destroy(&bench->gpu, &written->fetched);
 }
@@ -100,7 +100,7 @@ static void take_image(const Bench *bench, const float (*pixels)[4], Image *imag
 Times handwritten_run(Bench *bench, const Handwritten *written, Image *image)
 {
     double start = clock_ms(), used = cpu_ms();
-    Times  times            = {.total = shader_run(bench, &written->shader, group_count(bench))};
+    Times  times = {.total = bench_shader_run(bench, &written->shader, group_count(bench))};
     const float(*pixels)[4] = fetch(bench, written);
     times.wall              = clock_ms() - start;
     times.cpu               = cpu_ms() - used;
@@ -111,10 +111,10 @@ Times handwritten_run(Bench *bench, const Handwritten *written, Image *image)
 
 void handwritten_count(Bench *bench, Handwritten *written, const char *path, const KrsView *view)
 {
-    Shader shader;
+    BenchShader shader;
     compile(bench, &shader, path, view_text(bench, view, written->error, true), &written->picture);
-    shader_run(bench, &shader, group_count(bench));
-    shader_destroy(bench, &shader);
+    bench_shader_run(bench, &shader, group_count(bench));
+    bench_shader_destroy(bench, &shader);
 
     const float(*pixels)[4] = fetch(bench, written);
     size_t count            = (size_t)bench->width * bench->height;

@@ -10,11 +10,11 @@
 #include "compiler/passes/compile.h"
 
 typedef struct Handwritten {
-    Shader shader;
-    Buffer picture, fetched; /* on the device, and for the host */
-    double error;            /* permitted, in pixels */
-    double evaluations_per_ray;
-    double unresolved; /* rays that ran out of steps */
+    BenchShader shader;
+    Buffer      picture, fetched; /* on the device, and for the host */
+    double      error;            /* permitted, in pixels */
+    double      evaluations_per_ray;
+    double      unresolved; /* rays that ran out of steps */
 } Handwritten;
 
 /* Compiles a shader of bench/handwritten for a view and a permitted error. */

@@ -11,7 +11,7 @@ typedef struct Times {
     double phase[KRS_PHASE_COUNT]; /* on the device, by its own clock where it has one */
     double total;                  /* their sum */
     double wall;                   /* from the call to the picture in memory of the host */
-    double cpu;                    /* of all threads of the process, in and out of the kernel */
+    double cpu;                    /* of all threads of the process, in and out of the shader */
 } Times;
 
 /* Less what hand-written shaders do not do either: shadows and occlusion. */

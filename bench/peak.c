@@ -17,17 +17,18 @@ static void compile(Bench *bench, Peak *peak, uint32_t chains)
     Text              sizes  = {.arena = bench->arena};
     text_format(&sizes, "#define CHAINS %u\n#define TURNS %d\n", chains, TURNS);
     peak->chains = chains;
-    shader_create(bench, &peak->shader,
-                  shader_text(bench, path, (StandIn[]){{"sizes.glsl", sizes.bytes}, {0}}), path,
-                  &peak->sums);
+    bench_shader_create(
+        bench, &peak->shader,
+        bench_shader_text(bench, path, (StandIn[]){{"sizes.glsl", sizes.bytes}, {0}}), path,
+        &peak->sums);
 }
 
 static double run(Bench *bench, Peak *peak)
 {
-    double ms = shader_run(bench, &peak->shader, peak->groups);
+    double ms = bench_shader_run(bench, &peak->shader, peak->groups);
     while (ms < LEAST_MS && peak->groups < 1u << 15) {
         peak->groups *= 2;
-        ms = shader_run(bench, &peak->shader, peak->groups);
+        ms = bench_shader_run(bench, &peak->shader, peak->groups);
     }
     return 2.0 * VECTOR * peak->chains * STEPS_A_TURN * TURNS * LANES * peak->groups / ms / 1e6;
 }
@@ -46,14 +47,14 @@ void peak_open(Bench *bench, Peak *peak)
             peak->gflops = gflops;
             best         = chains[i];
         }
-        shader_destroy(bench, &peak->shader);
+        bench_shader_destroy(bench, &peak->shader);
     }
     compile(bench, peak, best);
 }
 
 void peak_close(Bench *bench, Peak *peak)
 {
-    shader_destroy(bench, &peak->shader);
+    bench_shader_destroy(bench, &peak->shader);
     buffer_destroy(&bench->gpu, &peak->sums);
 }
 

@@ -10,10 +10,10 @@
 #include "bench/shader.h"
 
 typedef struct Peak {
-    Shader   shader; /* with the best number of chains */
-    Buffer   sums;
-    uint32_t chains, groups;
-    double   gflops; /* billions of single-precision operations a second, two a multiply-add */
+    BenchShader shader; /* with the best number of chains */
+    Buffer      sums;
+    uint32_t    chains, groups;
+    double      gflops; /* billions of single-precision operations a second, two a multiply-add */
 } Peak;
 
 /* Finds out which number of chains suits the device. */

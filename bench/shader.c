@@ -68,7 +68,7 @@ static void add_lines(Bench *bench, Text *out, const char *path, const char *tex
     }
 }
 
-char *shader_text(Bench *bench, const char *path, const StandIn *stand_ins)
+char *bench_shader_text(Bench *bench, const char *path, const StandIn *stand_ins)
 {
     Text text = {.arena = bench->arena};
     add_lines(bench, &text, path, read_file(bench->arena, path), stand_ins);
@@ -77,7 +77,7 @@ char *shader_text(Bench *bench, const char *path, const StandIn *stand_ins)
 
 /* ---- Pipeline ---- */
 
-static bool layout_create(Gpu *gpu, Shader *shader)
+static bool layout_create(Gpu *gpu, BenchShader *shader)
 {
     VkDescriptorSetLayoutBinding binding = {
         .binding         = BUFFER_BINDING,
@@ -112,7 +112,7 @@ failed:
     return false;
 }
 
-static bool set_create(Gpu *gpu, Shader *shader, const Buffer *buffer)
+static bool set_create(Gpu *gpu, BenchShader *shader, const Buffer *buffer)
 {
     TRY(gpu, "prepare a shader",
         vkCreateDescriptorPool(
@@ -150,7 +150,7 @@ failed:
     return false;
 }
 
-static bool pipeline_create(Gpu *gpu, Shader *shader, const uint32_t *words, size_t count)
+static bool pipeline_create(Gpu *gpu, BenchShader *shader, const uint32_t *words, size_t count)
 {
     bool           ready  = false;
     VkShaderModule module = VK_NULL_HANDLE;
@@ -184,14 +184,14 @@ failed:
     return ready;
 }
 
-void shader_create(Bench *bench, Shader *shader, const char *text, const char *name,
-                   const Buffer *buffer)
+void bench_shader_create(Bench *bench, BenchShader *shader, const char *text, const char *name,
+                         const Buffer *buffer)
 {
     Gpu      *gpu   = &bench->gpu;
     uint32_t *words = NULL;
     size_t    count = 0;
     char     *log   = NULL;
-    *shader         = (Shader){0};
+    *shader         = (BenchShader){0};
 
     double start = clock_ms();
     if (spirv_compile(text, name, &words, &count, &log) != KRS_OK)
@@ -202,22 +202,22 @@ void shader_create(Bench *bench, Shader *shader, const char *text, const char *n
         fail("%s: %s", name, gpu->message);
     free(words);
     free(log);
-    shader_run(bench, shader, 1);
+    bench_shader_run(bench, shader, 1);
     shader->spirv_ms    = compiled - start;
     shader->pipeline_ms = clock_ms() - compiled;
 }
 
-void shader_destroy(Bench *bench, Shader *shader)
+void bench_shader_destroy(Bench *bench, BenchShader *shader)
 {
     VkDevice device = bench->gpu.device;
     vkDestroyPipeline(device, shader->pipeline, NULL);
     vkDestroyDescriptorPool(device, shader->pool, NULL);
     vkDestroyPipelineLayout(device, shader->layout, NULL);
     vkDestroyDescriptorSetLayout(device, shader->set_layout, NULL);
-    *shader = (Shader){0};
+    *shader = (BenchShader){0};
 }
 
-double shader_run(Bench *bench, const Shader *shader, uint32_t groups)
+double bench_shader_run(Bench *bench, const BenchShader *shader, uint32_t groups)
 {
     Gpu          *gpu  = &bench->gpu;
     const int32_t zero = 0;

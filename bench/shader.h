@@ -7,14 +7,14 @@
 #include "bench/bench.h"
 #include "runtime/device/buffer.h"
 
-typedef struct Shader {
+typedef struct BenchShader {
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout      layout;
     VkDescriptorPool      pool;
     VkDescriptorSet       set;
     VkPipeline            pipeline;
     double                spirv_ms, pipeline_ms; /* glslang's and the driver's time */
-} Shader;
+} BenchShader;
 
 /* An included file, and the text that takes its place. */
 typedef struct StandIn {
@@ -23,16 +23,16 @@ typedef struct StandIn {
 
 /* The text of a shader file with its includes: stand-ins (a last one without a name ends them),
    files of runtime/shaders, or files beside this one. */
-char *shader_text(Bench *bench, const char *path, const StandIn *stand_ins);
+char *bench_shader_text(Bench *bench, const char *path, const StandIn *stand_ins);
 
 /* Compiles a text; `name` is used in messages.  The buffer is binding 1 (0 would be parameters of
    a scene, of which those of the bench have none) and must outlive the shader.  Runs one group
    once, so that drivers compile now what they put off. */
-void shader_create(Bench *bench, Shader *shader, const char *text, const char *name,
-                   const Buffer *buffer);
-void shader_destroy(Bench *bench, Shader *shader);
+void bench_shader_create(Bench *bench, BenchShader *shader, const char *text, const char *name,
+                         const Buffer *buffer);
+void bench_shader_destroy(Bench *bench, BenchShader *shader);
 
 /* Runs so many workgroups and waits; returns the milliseconds on the device. */
-double shader_run(Bench *bench, const Shader *shader, uint32_t groups);
+double bench_shader_run(Bench *bench, const BenchShader *shader, uint32_t groups);
 
 #endif

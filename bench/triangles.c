@@ -19,13 +19,13 @@ enum { ROWS = sizeof triangle_rows / sizeof *triangle_rows };
 
 static const struct GrowingRow {
     const char *path;
-    uint32_t    doublings; /* of one kernel, or one facet */
+    uint32_t    doublings; /* of one shader, or one facet */
 } growing_rows[GROWING_COUNT] = {
     {"bench/scenes/tree28.krs", BRANCH_DOUBLINGS},
     {"bench/scenes/terrain.krs", FACET_DOUBLINGS},
 };
 
-/* What the paper has no figure for, and what is less than one kernel, is left out. */
+/* What the paper has no figure for, and what is less than one shader, is left out. */
 static bool is_there(const TriangleRow *row, int scene)
 {
     return !isnan(row->paper_us[scene]) && row->doublings > growing_rows[scene].doublings;

@@ -20,7 +20,7 @@ extern const char *const growing_names[GROWING_COUNT];
 
 typedef struct TriangleRow {
     uint32_t doublings;               /* 2 to the power of this many triangles */
-    double   paper_us[GROWING_COUNT]; /* a ray, complex and simple kernels; NAN: none */
+    double   paper_us[GROWING_COUNT]; /* a ray, complex and simple shaders; NAN: none */
 } TriangleRow;
 extern const TriangleRow triangle_rows[];
 

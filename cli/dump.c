@@ -10,7 +10,7 @@
 #include "cli/modules.h"
 #include "cli/shell/supervise.h"
 
-/* SPIR-V comes behind the passes that the library knows, one module for each kernel. */
+/* SPIR-V comes behind the passes that the library knows, one module for each shader. */
 static KrsStatus dump_spirv(const Options *options, const char *path)
 {
     KrsScene *scene;

@@ -1,5 +1,5 @@
 /*
- * modules.c: compiles the kernels of the runtime for a scene, and reads in the result where
+ * modules.c: compiles the shaders of the runtime for a scene, and reads in the result where
  * its buffers are bound.
  */
 #include "cli/modules.h"
@@ -26,7 +26,7 @@ enum {
     DECORATION_SET     = 34
 };
 
-static bool is_kernel(const char *file)
+static bool is_shader(const char *file)
 {
     size_t length = strlen(file);
     return length > 5 && strcmp(file + length - 5, ".comp") == 0;
@@ -38,14 +38,14 @@ KrsVariant compiled_variant(const Options *options)
                         .values       = !options->no_frame_values};
 }
 
-static KrsStatus compile_kernel(const Options *options, const KrsScene *scene, const char *file,
+static KrsStatus compile_shader(const Options *options, const KrsScene *scene, const char *file,
                                 Modules *modules)
 {
     Gpu           gpu     = {0}; /* stays closed: it only carries the reason of a failure */
     KrsVariant    chosen  = compiled_variant(options);
-    KernelVariant variant = variant_for_any(scene, file, &chosen);
-    KernelSource  source  = variant_source(file, &variant);
-    char         *text    = kernel_text(&gpu, &source);
+    ShaderVariant variant = variant_for_any(scene, file, &chosen);
+    ShaderSource  source  = variant_source(file, &variant);
+    char         *text    = shader_text(&gpu, &source);
     char         *log     = NULL;
     if (!text) {
         say("%s", gpu.message);
@@ -59,7 +59,7 @@ static KrsStatus compile_kernel(const Options *options, const KrsScene *scene, c
     else if (status == KRS_OUT_OF_MEMORY)
         say("out of memory while compiling `%s`", file);
     else {
-        say("a bug of krs: the kernel `%s` does not compile for this scene", file);
+        say("a bug of krs: the shader `%s` does not compile for this scene", file);
         fprintf(stderr, "%s\n", log ? log : "");
     }
     free(log);
@@ -74,8 +74,8 @@ KrsStatus modules_compile(const Options *options, const KrsScene *scene, Modules
     stage_enter(STAGE_SHADERS);
     spirv_start();
     for (const EmbeddedFile *file = shader_files; file->name && status == KRS_OK; file++)
-        if (is_kernel(file->name))
-            status = compile_kernel(options, scene, file->name, modules);
+        if (is_shader(file->name))
+            status = compile_shader(options, scene, file->name, modules);
     spirv_stop();
     stage_enter(STAGE_START);
     return status;

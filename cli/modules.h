@@ -1,5 +1,5 @@
 /*
- * modules.h: the SPIR-V of a scene without a device: every kernel that includes the scene.
+ * modules.h: the SPIR-V of a scene without a device: every shader that includes the scene.
  */
 #ifndef KRS_MODULES_H
 #define KRS_MODULES_H
@@ -21,7 +21,7 @@ typedef struct Modules {
 /* What suits graphics cards, unless the options differ. */
 KrsVariant compiled_variant(const Options *options);
 
-/* Compiles and validates every kernel for the scene; when one is refused, a bug of ours, its
+/* Compiles and validates every shader for the scene; when one is refused, a bug of ours, its
    log is said.  modules_free in either case. */
 KrsStatus modules_compile(const Options *options, const KrsScene *scene, Modules *modules);
 void      modules_free(Modules *modules);

@@ -333,13 +333,13 @@ static KrsStatus specialize(Render *render)
     return scene_frame(options, edited, &render->frame);
 }
 
-/* With more samples, kernels that take longer to compile are better even if they are new.  What compilation takes
+/* With more samples, shaders that take longer to compile are better even if they are new.  What compilation takes
    less, frames take more after ten pictures of 640x360 of examples/05-rock.krs and 06-temple.krs, after one and a half
    of 08-reef.krs and 29-logo.krs, and at once of 07-grove.krs (bench/measurements.md). */
 #define SAMPLES_OF_SMALL_PICTURES (1.0 * 640 * 360)
 
-/* A crop has the kernels of the picture that it is a part of, so its pixels are the same.  `krs watch` will
-   render more pictures by the same kernels. */
+/* A crop has the shaders of the picture that it is a part of, so its pixels are the same.  `krs watch` will
+   render more pictures by the same shaders. */
 static KrsPurpose purpose_of(const Render *render)
 {
     const KrsRenderOptions *how   = &render->how;

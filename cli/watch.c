@@ -82,7 +82,7 @@ static KrsStatus compile_scene(Watch *watch)
 
 /* ---- a picture ---- */
 
-static KrsStatus make_kernels(Watch *watch)
+static KrsStatus make_shaders(Watch *watch)
 {
     Render   *render = &watch->render;
     KrsStatus status = KRS_OK;
@@ -101,7 +101,7 @@ static KrsStatus make_picture(Watch *watch, double start)
     if (status == KRS_OK)
         status = render_choose(&watch->render);
     if (status == KRS_OK)
-        status = make_kernels(watch);
+        status = make_shaders(watch);
     if (status == KRS_OK)
         status = render_frames(&watch->render);
     progress_end(&watch->render.progress);

@@ -1,5 +1,5 @@
 #!/bin/sh
-# lint.sh: every kernel is GLSL by itself, every script passes shellcheck, and all C has the style of
+# lint.sh: every shader is GLSL by itself, every script passes shellcheck, and all C has the style of
 # .clang-format (`make format` brings it about).
 # Names files of more than 700 lines, which is no failure; none is larger than a megabyte.
 cd "$(dirname "$0")/.." || exit 1

@@ -1,5 +1,5 @@
 #!/bin/sh
-# bench-registers.sh: registers, waves and spills of the kernels of scenes, as Mesa's compiler for a
+# bench-registers.sh: registers, waves and spills of the shaders of scenes, as Mesa's compiler for a
 # graphics card has them that need not be there; `make bench-registers` runs it.  Prints the table,
 # and writes bench/results/DATE-registers-navi21.md; with scenes as arguments it only prints.
 #

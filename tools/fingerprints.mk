@@ -6,8 +6,8 @@
 sources_of = $(sort $(foreach end,c h cpp def krs glsl comp,$(wildcard $(addsuffix /*.$(end),$(1)))))
 folders_of = $(shell find $(1) -type d)
 
-# Compiled kernels are found by their text: what makes SPIR-V of a text, and the layout of entries.
-KEEPS_cache      := $(call sources_of,compiler/target) runtime/device/kernel.c runtime/device/cache.h \
+# Compiled shaders are found by their text: what makes SPIR-V of a text, and the layout of entries.
+KEEPS_cache      := $(call sources_of,compiler/target) runtime/device/shader.c runtime/device/cache.h \
                     runtime/device/cache.c cli/specialize.c
 # The sums of a film's samples: the library, less what only meshes, judges or says something, or writes files.
 KEEPS_film       := $(filter-out compiler/front/format% compiler/front/synonyms% \

@@ -2,7 +2,7 @@
  * accuracy.c: how far results of the device are from those in double precision of the same floats.
  *
  * Vulkan lets divisions be off by 2.5 units in the last place, square roots by as much as an
- * inverse root and a product, and sines by 2^-11 of 1; what kernels call is told beside what is
+ * inverse root and a product, and sines by 2^-11 of 1; what shaders call is told beside what is
  * built in.
  */
 #include <math.h>
@@ -228,7 +228,7 @@ static void write_helpers(const Operation *operation, FILE *out)
     arena_free(&arena);
 }
 
-static void write_kernel(const Operation *operation, FILE *out)
+static void write_shader(const Operation *operation, FILE *out)
 {
     fprintf(out,
             "#version 440\nlayout(local_size_x = %d) in;\n"
@@ -246,25 +246,25 @@ static void run(Gpu *gpu, const Operation *operation)
     char      *text = NULL, *log = NULL;
     size_t     length = 0, words = 0;
     FILE      *out  = open_memstream(&text, &length);
-    KernelCode code = {.file = operation->glsl};
-    Kernel     kernel;
+    ShaderCode code = {.file = operation->glsl};
+    Shader     shader;
     double     ms = 0;
     if (!out)
         give_up(operation->glsl, "no memory");
-    write_kernel(operation, out);
+    write_shader(operation, out);
     fclose(out);
     if (spirv_compile(text, operation->glsl, &code.words, &words, &log) != KRS_OK)
         give_up(operation->glsl, log ? log : "no memory");
     code.bytes = 4 * words;
-    if (!kernel_load(gpu, &kernel, &code, layout, &ms) || !gpu_begin(gpu))
+    if (!shader_load(gpu, &shader, &code, layout, &ms) || !gpu_begin(gpu))
         give_up(operation->glsl, gpu->message);
-    vkCmdBindPipeline(gpu->commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
+    vkCmdBindPipeline(gpu->commands, VK_PIPELINE_BIND_POINT_COMPUTE, shader.pipeline);
     vkCmdBindDescriptorSets(gpu->commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set, 0,
                             NULL);
     vkCmdDispatch(gpu->commands, GROUPS, 1, 1);
     if (!gpu_finish(gpu, &ms))
         give_up(operation->glsl, gpu->message);
-    kernel_destroy(gpu, &kernel);
+    shader_destroy(gpu, &shader);
     free(code.words);
     free(text);
 }

@@ -41,7 +41,7 @@ static bool run(KrsRenderer *renderer, int count, char **words)
     } else if (count == 5 && strcmp(section, "methods") == 0) {
         print_methods(renderer, words[3], read_size(words[2]), strcmp(words[4], "on") == 0);
     } else if (count == 3 && strcmp(section, "kernels") == 0) {
-        print_kernels(renderer, words[2]);
+        print_shaders(renderer, words[2]);
     } else {
         return false;
     }

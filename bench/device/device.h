@@ -6,7 +6,7 @@
 #define KRS_BENCH_DEVICE_H
 
 #include "bench/fixture.h"
-#include "runtime/tracer/kernels.h"
+#include "runtime/tracer/shaders.h"
 
 typedef struct Size {
     uint32_t width, height;
@@ -21,7 +21,7 @@ void print_example(KrsRenderer *renderer, const char *path, Size size);
 /* methods.c: a scene by schedule, beams, components and size of the bands; the rows of one choice
    of early outs. */
 void print_methods(KrsRenderer *renderer, const char *path, Size size, bool early_outs);
-/* kernels.c: what the compilers take for each kernel of a scene. */
-void print_kernels(KrsRenderer *renderer, const char *path);
+/* shaders.c: what the compilers take for each shader of a scene. */
+void print_shaders(KrsRenderer *renderer, const char *path);
 
 #endif

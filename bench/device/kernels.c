@@ -1,5 +1,5 @@
 /*
- * kernels.c: what glslang and the driver take for each kernel of a scene.
+ * shaders.c: what glslang and the driver take for each shader of a scene.
  */
 #include <stdio.h>
 #include <string.h>
@@ -7,20 +7,20 @@
 #include "bench/device/device.h"
 #include "runtime/tracer/methods.h"
 
-static void print_kernel(KrsRendering *rendering, const char *scene, const char *kernel,
-                         Kernel *made, double *spirv_ms, double *pipeline_ms)
+static void print_shader(KrsRendering *rendering, const char *scene, const char *shader,
+                         Shader *made, double *spirv_ms, double *pipeline_ms)
 {
     double start = clock_ms();
-    if (!made || !gpu_wait(&rendering->renderer->gpu)) /* some compile when a kernel first runs */
+    if (!made || !gpu_wait(&rendering->renderer->gpu)) /* some compile when a shader first runs */
         give_up(scene, krs_renderer_message(rendering->renderer));
-    printf("| %s | %s | %.0f | %.0f |\n", scene, kernel, rendering->spirv_ms - *spirv_ms,
+    printf("| %s | %s | %.0f | %.0f |\n", scene, shader, rendering->spirv_ms - *spirv_ms,
            rendering->pipeline_ms - *pipeline_ms + clock_ms() - start);
     fflush(stdout);
     *spirv_ms    = rendering->spirv_ms;
     *pipeline_ms = rendering->pipeline_ms;
 }
 
-void print_kernels(KrsRenderer *renderer, const char *path)
+void print_shaders(KrsRenderer *renderer, const char *path)
 {
     const char *name    = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
     Fixture     fixture = {.name = path, .renderer = renderer};
@@ -35,12 +35,12 @@ void print_kernels(KrsRenderer *renderer, const char *path)
         give_up(path, krs_renderer_message(renderer));
     KrsRendering *r = fixture.rendering;
     rendering_choose(r, &trace, &schedule);
-    print_kernel(r, name, "query, point query", rendering_point_query(r), &spirv, &pipeline);
-    print_kernel(r, name, "trace", rendering_trace(r, trace, schedule, 0), &spirv, &pipeline);
-    print_kernel(r, name, "normals", rendering_normals_kernel(r, KRS_NORMALS_DEFAULT, 0), &spirv,
+    print_shader(r, name, "query, point query", rendering_point_query(r), &spirv, &pipeline);
+    print_shader(r, name, "trace", rendering_trace(r, trace, schedule, 0), &spirv, &pipeline);
+    print_shader(r, name, "normals", rendering_normals_shader(r, KRS_NORMALS_DEFAULT, 0), &spirv,
                  &pipeline);
-    print_kernel(r, name, "shadows, occlusion", rendering_secondary(r, schedule, false), &spirv,
+    print_shader(r, name, "shadows, occlusion", rendering_secondary(r, schedule, false), &spirv,
                  &pipeline);
-    print_kernel(r, name, "shade", rendering_shade(r), &spirv, &pipeline);
+    print_shader(r, name, "shade", rendering_shade(r), &spirv, &pipeline);
     fixture_close(&fixture);
 }

@@ -1,5 +1,5 @@
 /*
- * registers.c: what a driver's compiler says of kernels: registers, spills, waves.
+ * registers.c: what a driver's compiler says of shaders: registers, spills, waves.
  *
  * Mesa's driver for AMD compiles for cards that are not there (RADV_FORCE_FAMILY), so no hardware
  * is needed; KRS_DEVICE names another device, by a part of its name.  Each argument is a module as
@@ -263,13 +263,13 @@ static void print_statistics(VkDevice device, VkPipeline pipeline)
             fprintf(stderr, "%s: %llu\n", statistics[i].name, value_of(&statistics[i]));
 }
 
-/* "out/04-school.trace.spv" is kernel trace of scene 04-school. */
+/* "out/04-school.trace.spv" is shader trace of scene 04-school. */
 static void print_names(const char *path)
 {
     const char *scene  = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
     int         length = (int)strcspn(scene, ".");
-    const char *kernel = scene + length + (scene[length] == '.');
-    printf("| %.*s | %.*s |", length, scene, (int)strcspn(kernel, "."), kernel);
+    const char *shader = scene + length + (scene[length] == '.');
+    printf("| %.*s | %.*s |", length, scene, (int)strcspn(shader, "."), shader);
 }
 
 static void print_row(VkDevice device, const char *path)
@@ -328,7 +328,7 @@ int main(int argc, char **argv)
           "start Vulkan");
     VkPhysicalDevice physical = find_device(instance, name);
     VkDevice         device   = open_device(physical);
-    printf("%s\n\n| scene | kernel |", name);
+    printf("%s\n\n| scene | shader |", name);
     for (int i = 0; i < COLUMNS; i++)
         printf(" %s |", columns[i].column);
     puts("");

@@ -1,4 +1,4 @@
-// openvdb.cpp: the border to OpenVDB, which is loaded where a .vdb is asked for.
+// openvdb.cpp: the bridge to OpenVDB, which is loaded where a .vdb is asked for.
 #include "cli/grid/vdb.h"
 
 // What this module and the library both have of templates must be one: their static members are.

@@ -1,5 +1,5 @@
 /*
- * vdb.h: the border to OpenVDB: a module of its own, since to load that library takes longer than most commands.
+ * vdb.h: the bridge to OpenVDB: a module of its own, since to load that library takes longer than most commands.
  */
 #ifndef KRS_GRID_VDB_H
 #define KRS_GRID_VDB_H

@@ -1,4 +1,4 @@
-// glb.cpp: the border to tinygltf.
+// glb.cpp: the bridge to tinygltf.
 #include "cli/mesh/glb_materials.h"
 
 #include <cmath>

@@ -31,42 +31,42 @@ static void add_stats_json(Text *json, const KrsRenderStats *stats, const KrsPro
                 (unsigned long long)stats->peak_memory_bytes);
 }
 
-/* The most kernels that statistics list: those of a picture are fewer. */
-enum { MOST_KERNELS = 64 };
+/* The most shaders that statistics list: those of a picture are fewer. */
+enum { MOST_SHADERS = 64 };
 
-static size_t read_kernels(const KrsRendering *rendering, KrsKernelStats kernels[MOST_KERNELS])
+static size_t read_shaders(const KrsRendering *rendering, KrsKernelStats shaders[MOST_SHADERS])
 {
-    const size_t count = krs_rendering_kernels(rendering, kernels, MOST_KERNELS);
-    return count < MOST_KERNELS ? count : MOST_KERNELS;
+    const size_t count = krs_rendering_kernels(rendering, shaders, MOST_SHADERS);
+    return count < MOST_SHADERS ? count : MOST_SHADERS;
 }
 
-static void add_kernels_json(Text *json, const KrsRendering *rendering)
+static void add_shaders_json(Text *json, const KrsRendering *rendering)
 {
-    KrsKernelStats kernels[MOST_KERNELS];
-    const size_t   count = read_kernels(rendering, kernels);
+    KrsKernelStats shaders[MOST_SHADERS];
+    const size_t   count = read_shaders(rendering, shaders);
     text_add(json, ", \"kernels\": [");
     for (size_t i = 0; i < count; i++)
         text_format(json,
                     "%s{\"name\": \"%s\", \"glsl_bytes\": %llu, \"spirv_ms\": %.3f, "
                     "\"driver_ms\": %.3f, \"cached\": %s}",
-                    i ? ", " : "", kernels[i].name, (unsigned long long)kernels[i].glsl_bytes,
-                    kernels[i].spirv_ms, kernels[i].driver_ms,
-                    kernels[i].cached ? "true" : "false");
+                    i ? ", " : "", shaders[i].name, (unsigned long long)shaders[i].glsl_bytes,
+                    shaders[i].spirv_ms, shaders[i].driver_ms,
+                    shaders[i].cached ? "true" : "false");
     text_add(json, "]");
 }
 
-static void print_kernels(const KrsRendering *rendering)
+static void print_shaders(const KrsRendering *rendering)
 {
-    KrsKernelStats kernels[MOST_KERNELS];
-    const size_t   count    = read_kernels(rendering, kernels);
+    KrsKernelStats shaders[MOST_SHADERS];
+    const size_t   count    = read_shaders(rendering, shaders);
     size_t         compiled = 0;
     double         spirv_ms = 0, driver_ms = 0;
     for (size_t i = 0; i < count; i++) {
-        compiled += !kernels[i].cached;
-        spirv_ms += kernels[i].spirv_ms;
-        driver_ms += kernels[i].driver_ms;
+        compiled += !shaders[i].cached;
+        spirv_ms += shaders[i].spirv_ms;
+        driver_ms += shaders[i].driver_ms;
     }
-    printf("kernels        %zu, %zu compiled; one after the other SPIR-V %.1f ms, driver %.1f ms\n",
+    printf("shaders        %zu, %zu compiled; one after the other SPIR-V %.1f ms, driver %.1f ms\n",
            count, compiled, spirv_ms, driver_ms);
 }
 
@@ -96,7 +96,7 @@ void render_stats_show(const Options *options, const KrsRendering *rendering,
     if (options->stats == STATS_TEXT)
         print_stats(stats, program);
     if (options->stats == STATS_TEXT)
-        print_kernels(rendering);
+        print_shaders(rendering);
     if (options->stats != STATS_JSON)
         return;
     Text json = {.arena = options->arena};
@@ -104,7 +104,7 @@ void render_stats_show(const Options *options, const KrsRendering *rendering,
     if (options->animated)
         text_format(&json, "\"frame\": %u, ", frame);
     add_stats_json(&json, stats, program);
-    add_kernels_json(&json, rendering);
+    add_shaders_json(&json, rendering);
     text_add(&json, "}");
     puts(json.bytes);
 }

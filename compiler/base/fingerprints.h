@@ -8,7 +8,7 @@
 #ifndef KRS_FINGERPRINTS_H
 #define KRS_FINGERPRINTS_H
 
-extern const char fingerprint_cache[17]; /* compiled kernels, and what else the cache has */
+extern const char fingerprint_cache[17]; /* compiled shaders, and what else the cache has */
 extern const char fingerprint_film[17];  /* the sums of a film's samples */
 extern const char
     fingerprint_checkpoint[17]; /* a picture that `krs render --resume` goes on with */

@@ -323,7 +323,7 @@ static bool compare_numbers(TokenKind op, double a, double b)
     }
 }
 
-/* A comparison of numbers that kernels read: it is structure, and so decided now, where all that the
+/* A comparison of numbers that shaders read: it is structure, and so decided now, where all that the
    numbers may be has the same answer. */
 static bool is_decided(Elaboration *e, Op op, Node left, Node right, bool *answer)
 {

@@ -2,7 +2,7 @@
  * fold.c: operations on numbers that are known when the scene is compiled, which make no node.
  *
  * A number that the author may change without another program has an identity.  So has what is
- * computed from it: it is one number for the kernels, however long the formula.
+ * computed from it: it is one number for the shaders, however long the formula.
  */
 #include "compiler/eval/elaborate.h"
 

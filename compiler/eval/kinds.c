@@ -276,7 +276,7 @@ bool fits_type(Elaboration *e, const Environment *env, const Function *function,
 }
 
 /* The range of a parameter, two numbers; false: reported. */
-/* An end of a range is a number now; where kernels read numbers, the end of what they all allow. */
+/* An end of a range is a number now; where shaders read numbers, the end of what they all allow. */
 static bool range_end(Elaboration *e, Value value, bool high, double *end)
 {
     if (value.type == VALUE_NUMBER) {

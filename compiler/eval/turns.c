@@ -258,7 +258,7 @@ static bool gather_node(Elaboration *e, const Dependence *d, Node node, Nodes *o
 {
     const Expr *expr = &d->graph->items[node];
     if (op_has_traits((Op)expr->op, OF_HOST) && !depends(d, node))
-        return false; /* of a seed that kernels know */
+        return false; /* of a seed that shaders know */
     if (!depends(d, node))
         return true;
     for (int k = 0; k < expr->operand_count; k++) {

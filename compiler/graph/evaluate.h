@@ -22,7 +22,7 @@ typedef struct Tape {
        know each other as well, but count none as theirs. */
     const struct Tape *functions;
     uint32_t           function_count;
-    /* Instance group functions have the list of one cell, as in kernels, so a distance is at most the cell's
+    /* Instance group functions have the list of one cell, as in shaders, so a distance is at most the cell's
        clearance.  Else all instances count that may be nearest. */
     bool by_cells;
     /* NULL, or what counts the operations that are run at points, those of functions included. */
@@ -45,7 +45,7 @@ double tape_node_flops(const Tape *tape, Node node);
 /* About that of a tape on which instances of groups are parts by themselves, and rows constants. */
 double tape_flops_apart(const Tape *tape);
 
-/* Iterations of the loops that its kernels have within operations and over instances of groups, at most. */
+/* Iterations of the loops that its shaders have within operations and over instances of groups, at most. */
 uint32_t tape_loops(const Tape *tape);
 
 /* Where on the tape a node is that the roots need. */

@@ -24,7 +24,7 @@ NodeValue evaluate_julia_trap(const NodeValue *o, uint32_t size);
 NodeValue evaluate_mandelbulb(const NodeValue *o, uint32_t size);
 NodeValue evaluate_mandelbulb_trap(const NodeValue *o, uint32_t size);
 
-/* Iterations of loops in a kernel's bound (print/glsl) with so many iterations of the orbit at
+/* Iterations of loops in a shader's bound (print/glsl) with so many iterations of the orbit at
    most: there and back again in a Julia set, unless both ways are unrolled. */
 enum { UNROLLED_JULIA = 32 };
 uint32_t fractal_loops(Op op, double iterations);

@@ -8,7 +8,7 @@
  * constants.  For each instance every state becomes what its body says; all change at once.  The result is
  * the last value of the first state, or what `sums` or `joins` make of all.
  *
- * Kernels loop over the list of one cell, of which a distance is at most the clearance.  On the host the
+ * Shaders loop over the list of one cell, of which a distance is at most the clearance.  On the host the
  * loop is over all instances that may count, as far as the state `distance` tells (evaluate.h).
  *
  * Bodies are nodes of the graph.  Their leaves are of the instance group (ops.def): OP_INSTANCE_POINT,
@@ -59,7 +59,7 @@ typedef struct InstanceTable {
     uint32_t *frame_columns; /* of each column: KNOWN_COLUMN, or where its nodes begin in
                                 Instances.frame_numbers, one for each row; NULL: all are known */
     Grid      grid;          /* its instances are the rows */
-    Grid      cells; /* the same, or refined (grid_refine.h): what kernels read; right as far as
+    Grid      cells; /* the same, or refined (grid_refine.h): what shaders read; right as far as
                                 the clearance is */
     InstancePlace *places;      /* NULL: no instance is known to move.  Else the grid is one for all
                                  frames, and instance_frame.h builds those of a frame */
@@ -73,8 +73,8 @@ typedef struct InstanceTable {
     double stretch; /* the distance of an instance, times this, is at least that to its box */
     /* Functions use nothing of the point of a call but its difference from numbers of the row.  Columns of these
        have 1 + the number of the axis in `axes`, others have 0; along axes without a column the numbers are near 0.
-       So point and rows may be relative to another origin.  In camera-relative kernels that is the VEC3 of which
-       `origin` is 1 + the place in Instances.frame_numbers; 0: it is that of the table in all kernels. */
+       So point and rows may be relative to another origin.  In camera-relative shaders that is the VEC3 of which
+       `origin` is 1 + the place in Instances.frame_numbers; 0: it is that of the table in all shaders. */
     bool     relocates;
     uint8_t  axes[MOST_TABLE_COLUMNS];
     uint32_t origin;
@@ -87,9 +87,9 @@ static inline uint32_t place_nodes(PlaceKind kind)
     return kind == PLACE_TURNED ? 5 : kind == PLACE_SHIFT;
 }
 
-/* How many texels of krs_cells the header of a table has for kernels. */
+/* How many texels of krs_cells the header of a table has for shaders. */
 enum { GRID_HEADER = 10 };
-/* How many texels, of four numbers each, a row has for kernels.  Tails are one more column. */
+/* How many texels, of four numbers each, a row has for shaders.  Tails are one more column. */
 static inline size_t row_texels(const InstanceTable *table)
 {
     return (table->columns + (table->cells.tails ? 1 : 0) + 3) / 4;
@@ -114,7 +114,7 @@ typedef struct InstanceFunction {
                    but for a first number of state 0: the clearance */
     bool sums; /* the result is the first state less the third times the logarithm of the second */
     bool
-        ends; /* and kernels add up the fourth state along lists with tails, as far as that counts */
+        ends; /* and shaders add up the fourth state along lists with tails, as far as that counts */
     InstanceState states[MOST_INSTANCE_STATES];
     uint32_t      state_count;
     uint32_t      listed;   /* of `joins`; NOT_LISTED: the operation is the result */

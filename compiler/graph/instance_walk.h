@@ -30,7 +30,7 @@ typedef enum InstanceStep {
     INSTANCE_DONE
 } InstanceStep;
 
-/* With `by_cells` only the list counts, as in kernels. */
+/* With `by_cells` only the list counts, as in shaders. */
 void instance_walk_begin(InstanceWalk *walk, const InstanceFunction *function,
                          const InstanceTable *table, const double point[3], bool by_cells);
 /* Only these instances count. */

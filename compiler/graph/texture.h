@@ -7,7 +7,7 @@
  * the two levels whose texels are about as wide are mixed.  A pixel that is longer than wide is a mean
  * of several places along its long side, the taps, each as wide as the pixel is across.
  *
- * Texels are stored as kernels read them, in 64 bits.  Those of gray textures are two floats, the
+ * Texels are stored as shaders read them, in 64 bits.  Those of gray textures are two floats, the
  * gray and the alpha, since heights need all digits.  Those of colours are four halves: red, green,
  * blue and alpha.  Colours are linear, and multiplied by alpha, so that means and mixtures are right.
  *
@@ -33,7 +33,7 @@ enum { MOST_TEXTURE_LEVELS = 16, MOST_TEXTURE_SIDE = 1 << 15, MOST_TEXELS = 1 <<
 enum { TEXTURE_LONG_U, TEXTURE_LONG_V, TEXTURE_TAPS, TEXTURE_WIDTH };
 enum { MOST_TEXTURE_TAPS = 3 };
 
-/* How many texels of krs_cells the header of a texture has for kernels. */
+/* How many texels of krs_cells the header of a texture has for shaders. */
 enum { TEXTURE_HEADER = 1 + MOST_TEXTURE_LEVELS };
 
 typedef struct TextureLevel {

@@ -71,7 +71,7 @@ static bool may_refine(const InstanceGroup *group, const GroupJoin *join, const 
            blend->width > 0 && isfinite(group->slope) && !join->complement && !table->frame_columns;
 }
 
-/* Entries of lists that kernels do not read are few: as if each had so many texels. */
+/* Entries of lists that shaders do not read are few: as if each had so many texels. */
 enum { TEXELS_OF_HOST = 64 };
 
 /* Most texels of all entries of refined lists, and by how much those are more than the coarse ones. */

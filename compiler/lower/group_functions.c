@@ -132,7 +132,7 @@ static double slope_of(const InstanceGroup *group, const GroupJoin *join)
 }
 
 /* A blend that fades, -k log of the sum of e^(-d / k).  States are the least distance m, the sum of
-   e^((m - d) / k), k, and d for kernels: one power for each instance, and one logarithm for all. */
+   e^((m - d) / k), k, and d for shaders: one power for each instance, and one logarithm for all. */
 static uint32_t make_sum(const InstanceGroup *group, const GroupJoin *join)
 {
     Graph         *g          = join->graph;

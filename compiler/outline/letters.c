@@ -1,5 +1,5 @@
 /*
- * letters.c: the border to FreeType, HarfBuzz and fontconfig.
+ * letters.c: the bridge to FreeType, HarfBuzz and fontconfig.
  */
 #include "compiler/outline/letters.h"
 

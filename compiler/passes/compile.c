@@ -150,7 +150,7 @@ static KrsStatus run_guarded(Compilation *c)
     return status;
 }
 
-/* So that each scene has kernels of its own, until it is found to have those of another. */
+/* So that each scene has shaders of its own, until it is found to have those of another. */
 static atomic_uint_fast64_t scenes_made;
 
 /* An empty scene in memory of the options' allocator; NULL if there is no memory. */
@@ -169,7 +169,7 @@ static KrsScene *scene_new(const KrsOptions *options)
                              options->memory_limit ? options->memory_limit : KRS_USUAL_MEMORY,
                                       NULL};
     scene->arena           = (Arena){.memory = &scene->memory};
-    scene->program.kernels = atomic_fetch_add(&scenes_made, 1);
+    scene->program.shaders = atomic_fetch_add(&scenes_made, 1);
     return scene;
 }
 

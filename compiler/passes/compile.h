@@ -48,7 +48,7 @@ typedef struct KrsRefutation {
 KrsStatus krs_refute(const char *path, const KrsOptions *options, const KrsRefuteOptions *how,
                      KrsRefutation *result);
 
-/* As krs_distance, but as kernels find it: where the clearance of a grid's cell is less than the
+/* As krs_distance, but as shaders find it: where the clearance of a grid's cell is less than the
    distance to the parts that its list has, it is that clearance (graph/grid.h). */
 KrsStatus krs_distance_bound(KrsFrame *frame, const double (*points)[3], size_t count,
                              double *distances);

@@ -8,7 +8,7 @@
 /* Least flops of a component that counts as expensive, and of a scene where such are marched by
    themselves.  Scenes whose boxes overlap need more, since they gain less.  Measured by bench/krs.c. */
 static const double EXPENSIVE_FLOPS = 100, SCATTERED_FLOPS = 1000, MIXED_FLOPS = 2000;
-/* A group has kernels of its own, which take longer to compile than they save in a small picture.  So
+/* A group has shaders of its own, which take longer to compile than they save in a small picture.  So
    where groups are marched by themselves, components below APART_FLOPS share one, as long as that
    stays below SHARED_FLOPS. */
 static const double APART_FLOPS = 300, SHARED_FLOPS = 1000;

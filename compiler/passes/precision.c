@@ -20,7 +20,7 @@
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/bounds/facts.h"
 
-/* The relative error of a coordinate that kernels assume (ROUNDING in frame.glsl). */
+/* The relative error of a coordinate that shaders assume (ROUNDING in frame.glsl). */
 static const double ROUNDING = 2.4e-7;
 /* The largest permitted error in pixels: the tolerance of a march (MOST_TOLERANCE in
    trace.comp). */

@@ -39,7 +39,7 @@ static KrsStatus update(const KrsScene *scene, const char *text, size_t length, 
     if (status == KRS_OK)
         status = scene_changes(scene, *updated, &found);
     if (status == KRS_OK && found.kind != KRS_CHANGE_STRUCTURE)
-        (*updated)->program.kernels = scene->program.kernels;
+        (*updated)->program.shaders = scene->program.shaders;
     if (status != KRS_OK) {
         krs_scene_free(*updated);
         *updated = NULL;

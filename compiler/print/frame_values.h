@@ -1,7 +1,7 @@
 /*
  * frame_values.h: where the host puts what depends on the frame alone.
  *
- * Kernels that computed it would do so in every lane.  The host finds it once, in double precision,
+ * Shaders that computed it would do so in every lane.  The host finds it once, in double precision,
  * and packs it into slots of the parameter block.
  */
 #ifndef KRS_FRAME_VALUES_H
@@ -10,7 +10,7 @@
 #include "compiler/graph/evaluate.h"
 
 /* A value and the places of its components: numbers of the block, four to a slot.  Truth values are 0
-   or 1, a UINT has its bits there.  What is the same in all frames has no place: kernels save
+   or 1, a UINT has its bits there.  What is the same in all frames has no place: shaders save
    operations where they know a constant. */
 typedef struct FrameValue {
     Node     node;
@@ -27,9 +27,9 @@ typedef struct FrameValues {
     Tape        tape;              /* of all of them */
 } FrameValues;
 
-/* Whether kernels read it where it is already: a parameter, or a component of one. */
+/* Whether shaders read it where it is already: a parameter, or a component of one. */
 bool frame_value_is_given(const Graph *graph, Node node);
-/* Whether it only arranges its operands: kernels do that. */
+/* Whether it only arranges its operands: shaders do that. */
 bool frame_value_is_arranged(const Graph *graph, Node node);
 /* Places for `wanted`, or for what those arrange. */
 void frame_values_assign(FrameValues *values, const Graph *graph, const Node *wanted, size_t count,

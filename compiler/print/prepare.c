@@ -76,7 +76,7 @@ static const char *found_text(Emitter *e, const FrameValue *value)
     return text.bytes;
 }
 
-/* A value of the frame as kernels get it from the host. */
+/* A value of the frame as shaders get it from the host. */
 static const char *read_text(Emitter *e, const FrameValues *values, Node n)
 {
     const Expr *expr = &e->graph->items[n];

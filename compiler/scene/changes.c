@@ -1,7 +1,7 @@
 /*
  * changes.c: finds what is different in a scene that was edited.
  *
- * Two scenes have the same kernels if these are made of the same nodes, apart from numbers of the
+ * Two scenes have the same shaders if these are made of the same nodes, apart from numbers of the
  * frame, and if all else that decides about their text is equal.  Some constants never get into the
  * text, and tables of instance groups and textures do not, but what is derived from them may.  So scenes of
  * which nodes, tables or textures differ are compared by their text as well.
@@ -45,18 +45,18 @@ static void add_groups(RootList *list, const KrsScene *scene, Arena *arena)
         array_push(arena, list, instances->frame_numbers.items[i]);
 }
 
-/* The roots that kernels are made of, or those of the view. */
-static RootList collect_roots(const KrsScene *scene, bool of_kernels, RootKind first, RootKind last,
+/* The roots that shaders are made of, or those of the view. */
+static RootList collect_roots(const KrsScene *scene, bool of_shaders, RootKind first, RootKind last,
                               Arena *arena)
 {
     RootList list = {0};
     for (RootKind kind = first; kind <= last; kind++) {
         RootRange range = roots_of(&scene->roots, kind);
         bool      view  = kind >= ROOTS_CAMERA && kind <= ROOTS_SKY;
-        for (size_t i = 0; i < range.count && view != of_kernels; i++)
+        for (size_t i = 0; i < range.count && view != of_shaders; i++)
             array_push(arena, &list, range.items[i]);
     }
-    if (of_kernels)
+    if (of_shaders)
         add_groups(&list, scene, arena);
     return list;
 }
@@ -106,10 +106,10 @@ static Likeness compare_roots(Comparison *c, RootList a, RootList b)
 }
 
 /* The roots of these kinds. */
-static Likeness compare_graphs(Comparison *c, bool of_kernels, RootKind first, RootKind last)
+static Likeness compare_graphs(Comparison *c, bool of_shaders, RootKind first, RootKind last)
 {
-    return compare_roots(c, collect_roots(c->a, of_kernels, first, last, &c->arena),
-                         collect_roots(c->b, of_kernels, first, last, &c->arena));
+    return compare_roots(c, collect_roots(c->a, of_shaders, first, last, &c->arena),
+                         collect_roots(c->b, of_shaders, first, last, &c->arena));
 }
 
 /* ---- instance groups ---- */
@@ -223,7 +223,7 @@ static bool same_textures(const Textures *a, const Textures *b)
     return same;
 }
 
-/* ---- what decides about kernels beside the graph ---- */
+/* ---- what decides about shaders beside the graph ---- */
 
 static bool same_slots(const KrsProgram *a, const KrsProgram *b)
 {
@@ -287,7 +287,7 @@ static bool same_text(Comparison *c, const KrsVariant *variant)
                   scene_plain_text(c->b, variant, &c->arena)) == 0;
 }
 
-/* Whether kernels of the same facts have the same text. */
+/* Whether shaders of the same facts have the same text. */
 static bool same_texts(Comparison *c)
 {
     return same_text(c, &(KrsVariant){.values = true}) &&
@@ -296,7 +296,7 @@ static bool same_texts(Comparison *c)
             same_text(c, &(KrsVariant){.values = true, .camera_relative = true}));
 }
 
-static Likeness compare_kernels(Comparison *c)
+static Likeness compare_shaders(Comparison *c)
 {
     if (!same_facts(c->a, c->b))
         return DIFFERENT;
@@ -470,7 +470,7 @@ static bool same_names(const KrsScene *a, const KrsScene *b)
 static void compare(Comparison *c)
 {
     KrsChanges *changes = &c->changes;
-    Likeness    kernels = compare_kernels(c);
+    Likeness    shaders = compare_shaders(c);
     changes->parameters = !same_parameters(c->a, c->b);
     changes->components = !same_components(c->a, c->b);
     changes->cameras    = !same_cameras(c->a, c->b) ||
@@ -478,13 +478,13 @@ static void compare(Comparison *c)
     changes->lights = !same_lights(c->a, c->b) || !same_sky(c->a, c->b) ||
                       compare_graphs(c, false, ROOTS_LIGHT, ROOTS_SKY) != EQUAL;
     changes->image = !same_image(&c->a->image, &c->b->image);
-    bool values = kernels != EQUAL || changes->parameters || changes->cameras || changes->lights ||
+    bool values = shaders != EQUAL || changes->parameters || changes->cameras || changes->lights ||
                   changes->image || !same_bounds(c->a, c->b);
-    changes->kind     = kernels == DIFFERENT ? KRS_CHANGE_STRUCTURE
+    changes->kind     = shaders == DIFFERENT ? KRS_CHANGE_STRUCTURE
                         : values             ? KRS_CHANGE_VALUES
                                              : KRS_CHANGE_NOTHING;
     changes->solids   = !same_solids(c);
-    changes->surfaces = changes->solids || kernels != EQUAL || !same_names(c->a, c->b);
+    changes->surfaces = changes->solids || shaders != EQUAL || !same_names(c->a, c->b);
 }
 
 /* Where memory runs out, longjmp returns here. */

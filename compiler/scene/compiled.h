@@ -62,7 +62,7 @@ typedef struct KrsMarchGroup {
 enum { KRS_MOST_MARCH_GROUPS = 8 };
 
 typedef struct KrsProgram {
-    uint64_t      kernels; /* the same number: the same kernels (krs_scene_update found no other) */
+    uint64_t      shaders; /* the same number: the same shaders (krs_scene_update found no other) */
     size_t        glsl_length;     /* bytes of the entry points (krs_entry_points) */
     uint32_t      parameter_slots; /* slots (vec4) of the parameter block */
     uint32_t      value_slots;     /* further slots, if the host computes values of the frame */
@@ -158,7 +158,7 @@ bool krs_may_blur_normals(double coordinate, double distance, double pixel, doub
 /* Slots of the values that depend on the origin of camera-relative points, computed in double
    precision: camera_relative_slots vec4s. */
 void krs_frame_rebase(KrsFrame *frame, const double rebase_origin[3], float (*block)[4]);
-/* krs_frame_tables, where kernels read only so many texels at the beginning of both; others may be left
+/* krs_frame_tables, where shaders read only so many texels at the beginning of both; others may be left
    as they are.  With an origin (NULL: none) they are those of camera-relative points. */
 void krs_frame_tables_in_use(const KrsFrame *frame, const double *rebase_origin, float (*rows)[4],
                              uint32_t (*cells)[2], size_t *row_count, size_t *cell_count);

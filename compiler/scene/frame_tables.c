@@ -143,7 +143,7 @@ void frame_tables_refresh(const KrsFrame *frame)
     tables->found = true;
 }
 
-/* ---- as kernels read them ---- */
+/* ---- as shaders read them ---- */
 
 /* The origin is the last slot of the parameter block. */
 static bool is_origin(const KrsScene *scene, uint32_t slot)

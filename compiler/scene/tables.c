@@ -1,5 +1,5 @@
 /*
- * tables.c: writes tables of instance groups, and textures, for kernels.
+ * tables.c: writes tables of instance groups, and textures, for shaders.
  */
 #include "compiler/scene/tables.h"
 

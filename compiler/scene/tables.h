@@ -1,5 +1,5 @@
 /*
- * tables.h: the tables of instance groups, as kernels read them: rows of numbers, and grids; and textures.
+ * tables.h: the tables of instance groups, as shaders read them: rows of numbers, and grids; and textures.
  *
  * Both are arrays of texels, of four floats or two words.  Those of all tables are in the same two.
  *

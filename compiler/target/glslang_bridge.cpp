@@ -142,7 +142,7 @@ BridgeResult bridge_compile(const char *glsl, uint32_t **words, size_t *word_cou
 }
 
 /* glslang makes its tables of built-in names, under its lock, when it compiles the first shader of
-   a version of GLSL.  An exception then leaves them incomplete.  So an empty shader of the kernels'
+   a version of GLSL.  An exception then leaves them incomplete.  So an empty shader of the shaders'
    version is compiled first. */
 static BridgeResult start(bool *started, char **log)
 {

@@ -16,7 +16,7 @@ KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, s
 char *spirv_disassemble(const uint32_t *words, size_t word_count);
 /* Must be called before and after every spirv_compile.  Pairs may nest, and may be called in
    different threads.  Between them glslang keeps the tables that the first spirv_compile makes,
-   which takes longer than to compile a kernel.  spirv_start itself takes no time. */
+   which takes longer than to compile a shader.  spirv_start itself takes no time. */
 void spirv_start(void);
 void spirv_stop(void);
 /* Makes these tables now.  It may fail silently: the first spirv_compile tries again. */

@@ -115,7 +115,7 @@ typedef struct KrsOptions {
                                             and as krs_gradient in the GLSL */
     bool studio;   /* a bounded scene without lights and sky gets some, and a floor, whose component
                     is the last and named `floor`; for pictures */
-    bool pictures; /* six large parts that are alike share code, too: shorter kernels and faster
+    bool pictures; /* six large parts that are alike share code, too: shorter shaders and faster
                       frames, but meshes take longer; for pictures */
     bool assembly; /* keep what krs_assemble and krs_texture_places need, which takes some time */
     bool motion;   /* with `assembly`: what the time moves is taken apart, too */
@@ -168,8 +168,8 @@ KRS_SIZED KrsStatus krs_format(const char *path, const KrsOptions *options, char
 /* What is different in an edited scene. */
 typedef enum KrsChange {
     KRS_CHANGE_NOTHING,  /* but names, comments and blanks: pictures and distances are the same */
-    KRS_CHANGE_VALUES,   /* numbers, colours, parameters, cameras, lights, image: kernels stay */
-    KRS_CHANGE_STRUCTURE /* kernels must be compiled */
+    KRS_CHANGE_VALUES,   /* numbers, colours, parameters, cameras, lights, image: shaders stay */
+    KRS_CHANGE_STRUCTURE /* shaders must be compiled */
 } KrsChange;
 
 typedef struct KrsChanges {

@@ -130,7 +130,7 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
                                 KrsRendering **rendering);
 void      krs_rendering_free(KrsRendering *rendering);
 
-/* A kernel: a compute shader that a picture or a query is made by. */
+/* A compute shader that a picture or a query is made by. */
 typedef struct KrsKernelStats {
     char     name[48];   /* "trace.comp"; "trace.comp 2" of march group 2 alone */
     uint64_t glsl_bytes; /* of its text; 0: the library carries it as SPIR-V */
@@ -139,7 +139,7 @@ typedef struct KrsKernelStats {
     bool     cached;     /* its SPIR-V was found in the cache, or in the library */
 } KrsKernelStats;
 
-/* The kernels made so far, those without a scene first.  Writes up to `capacity` of them, and
+/* The shaders made so far, those without a scene first.  Writes up to `capacity` of them, and
    returns how many there are. */
 KRS_SIZED size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelStats *kernels,
                                        size_t capacity);
@@ -151,7 +151,7 @@ KRS_SIZED size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelS
  * frames of that one.  On any other status than KRS_OK rendering and films are as they were:
  * KRS_OUT_OF_MEMORY, KRS_INTERRUPTED, KRS_INTERNAL.
  *
- * Kernels whose text is the same stay.  A renderer has each of them once, whatever scene they are
+ * Shaders whose text is the same stay.  A renderer has each of them once, whatever scene they are
  * of, and keeps some that are no longer used.  So after an edit of numbers nothing is compiled, nor
  * after an edit that is undone.  krs_rendering_new finds them as well.
  */

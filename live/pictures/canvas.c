@@ -103,7 +103,7 @@ static unsigned lens_of(const KrsCamera *camera)
     return camera->aperture > 0 ? 2 : camera->projection == KRS_PANORAMA ? 1 : 0;
 }
 
-/* As many as kernels have room for (krs/vulkan.h). */
+/* As many as shaders have room for (krs/vulkan.h). */
 static unsigned room_for(size_t zones)
 {
     unsigned room = zones > 0;

@@ -1,4 +1,4 @@
-// gui.cpp: the border to Dear ImGui.  Nothing is decided here but how things look.
+// gui.cpp: the bridge to Dear ImGui.  Nothing is decided here but how things look.
 #include "live/window/gui.h"
 
 #include <GLFW/glfw3.h>

@@ -1,5 +1,5 @@
 /*
- * gui.h: the border to Dear ImGui, which is C++.  Labels may end in `##` and what tells them apart.
+ * gui.h: the bridge to Dear ImGui, which is C++.  Labels may end in `##` and what tells them apart.
  */
 #ifndef KRS_GUI_H
 #define KRS_GUI_H

@@ -18,13 +18,13 @@ typedef struct Buffer {
     VkDeviceSize   size;
     VkDeviceSize   held;   /* what the device set aside for it */
     void          *bytes;  /* but ON_DEVICE */
-    VkBufferView   texels; /* what is in it, for kernels that read it so (buffer_view) */
+    VkBufferView   texels; /* what is in it, for shaders that read it so (buffer_view) */
 } Buffer;
 
-/* A buffer of `size` bytes (at least 1) for every use a kernel has.  `name` stands in messages:
+/* A buffer of `size` bytes (at least 1) for every use a shader has.  `name` stands in messages:
    "cannot make room for the <name>". */
 bool buffer_create(Gpu *gpu, Buffer *buffer, VkDeviceSize size, Where where, const char *name);
-/* At least so many bytes, for a buffer that is read as texels: llvmpipe compiles a kernel anew when
+/* At least so many bytes, for a buffer that is read as texels: llvmpipe compiles a shader anew when
    the size of one becomes a power of two, or 256 times it a multiple of that; this is neither. */
 VkDeviceSize buffer_texel_bytes(VkDeviceSize bytes);
 /* Makes it readable as texels of so many bytes and that format, where it is not so far. */

@@ -192,7 +192,7 @@ bool gpu_prewarm(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
                  const VkDescriptorSet sets[2], const void *constants, uint32_t bytes,
                  uint32_t *number)
 {
-    const char     *attempt = "try a kernel out";
+    const char     *attempt = "try a shader out";
     VkCommandBuffer commands; /* the pool's, until it is destroyed */
     TRY(gpu, attempt,
         vkAllocateCommandBuffers(gpu->device,
@@ -208,7 +208,7 @@ bool gpu_prewarm(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
                                            .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                            .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
                                        }));
-    barrier(commands); /* all kernels are prewarmed with the same buffers */
+    barrier(commands); /* all shaders are prewarmed with the same buffers */
     time_prewarm(gpu, commands, false);
     uint32_t first = sets[0] == VK_NULL_HANDLE;
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);

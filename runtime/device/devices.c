@@ -25,7 +25,7 @@ static uint32_t needed_buffers(const VkPhysicalDeviceLimits *limits)
     return STORAGE_BUFFERS + (devices_read_texels(limits) ? 0 : STORAGE_BUFFERS_FOR_TEXELS);
 }
 
-/* Whether the device has what all kernels need. */
+/* Whether the device has what all shaders need. */
 static bool is_capable(const VkPhysicalDeviceProperties *properties)
 {
     const VkPhysicalDeviceLimits *limits = &properties->limits;
@@ -165,7 +165,7 @@ static void refuse_devices(Gpu *gpu, const VkPhysicalDevice *devices, uint32_t c
         if (!wanted(&device, i, words) || buffers >= needed)
             continue;
         gpu_refuse(gpu, KRS_NO_DEVICE,
-                   "the device `%s` gives a kernel %u storage buffers, and krs needs %u",
+                   "the device `%s` gives a shader %u storage buffers, and krs needs %u",
                    device.name, buffers, needed);
         return;
     }

@@ -7,7 +7,7 @@
 #include "runtime/device/instance.h"
 #include "runtime/device/pipelines.h"
 #include "runtime/device/resources.h"
-#include "runtime/device/shared_kernels.h"
+#include "runtime/device/shared_shaders.h"
 
 /* What every device must have at least (Vulkan, table 53). */
 #define LEAST_TEXEL_LIMIT (1u << 16)
@@ -197,7 +197,7 @@ void gpu_close(Gpu *gpu)
         cache_close(&gpu->cache);
         return;
     }
-    shared_kernels_destroy(gpu);
+    shared_shaders_destroy(gpu);
     if (gpu->device) {
         pipelines_close(gpu);
         vkDestroyQueryPool(gpu->device, gpu->prewarm_times, NULL);

@@ -33,8 +33,8 @@ void gpu_barrier(Gpu *gpu);
    it has one. */
 bool gpu_finish(Gpu *gpu, double *ms);
 
-/* Has the device run one group of a kernel, and does not wait for it: a driver that compiles a
-   kernel only when it first runs does so meanwhile.  The first set may be VK_NULL_HANDLE.  *number
+/* Has the device run one group of a shader, and does not wait for it: a driver that compiles a
+   shader only when it first runs does so meanwhile.  The first set may be VK_NULL_HANDLE.  *number
    is for gpu_prewarm_ms. */
 bool gpu_prewarm(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
                  const VkDescriptorSet sets[2], const void *constants, uint32_t bytes,

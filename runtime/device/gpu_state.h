@@ -12,11 +12,11 @@
 #include "runtime/device/cache.h"
 #include "krs/vulkan.h"
 
-/* What a stage of a kernel binds of storage buffers (layouts.h), and how many more in place of
+/* What a stage of a shader binds of storage buffers (layouts.h), and how many more in place of
    texels; devices may have four and no more, but those of desktops have 16 and more. */
 enum { STORAGE_BUFFERS = 8, STORAGE_BUFFERS_FOR_TEXELS = 3 };
 
-typedef struct SharedKernel SharedKernel; /* shared_kernels.h */
+typedef struct SharedShader SharedShader; /* shared_shaders.h */
 
 typedef struct Gpu {
     KrsAllocator     allocator;
@@ -37,7 +37,7 @@ typedef struct Gpu {
     VkPhysicalDeviceProperties       properties;
     VkPhysicalDeviceMemoryProperties memory;
     bool     pretends_card; /* a device of type CPU is treated as a graphics card */
-    bool     texels;        /* kernels read what they only read as texels, not as buffers */
+    bool     texels;        /* shaders read what they only read as texels, not as buffers */
     bool     sums_lanes;    /* lanes of a subgroup can add up before they count */
     uint32_t refill_lanes;  /* of a group whose lanes exchange numbers: 8, or 4; 0: they cannot */
     uint64_t memory_used, memory_peak; /* bytes of device memory */
@@ -45,8 +45,8 @@ typedef struct Gpu {
 
     Cache           cache;            /* of shaders; zero when none was asked for */
     VkPipelineCache pipelines;        /* the driver's, or none */
-    SharedKernel   *shared_kernels;   /* kernels with a scene */
-    uint64_t        kernels_made;     /* pipelines, so far */
+    SharedShader   *shared_shaders;   /* shaders with a scene */
+    uint64_t        shaders_made;     /* pipelines, so far */
     size_t          pipelines_loaded; /* bytes that it began with */
 
     VkDebugUtilsMessengerEXT         messenger;
@@ -82,7 +82,7 @@ void gpu_refuse(Gpu *gpu, KrsStatus status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 void gpu_fail(Gpu *gpu, VkResult result, const char *attempt);
 
-/* Tells how much of the kernels that are made is ready.  False, and noted: that is to end. */
+/* Tells how much of the shaders that are made is ready.  False, and noted: that is to end. */
 bool gpu_tell_compiled(Gpu *gpu, double done);
 
 /* Gives an object a name in the messages of the validation layers. */

@@ -10,7 +10,7 @@
 unsigned threads_available(unsigned wanted);
 
 /* How many a driver that computes on the processor makes: for each core one for triangles and one
-   for kernels, of up to 32 cores, and one for the queue. */
+   for shaders, of up to 32 cores, and one for the queue. */
 unsigned threads_of_software_device(void);
 
 /* Whether there is as much memory as drivers take to start at all. */

@@ -131,7 +131,7 @@ static KrsWindow with_halo(const Job *job, uint32_t halo, KrsWindow window)
     return window;
 }
 
-/* Adds the counters of the kernels to the statistics, and resets them. */
+/* Adds the counters of the shaders to the statistics, and resets them. */
 static void take_counters(Job *job)
 {
     ControlBlock   *control = job->rendering->control.bytes;
@@ -246,9 +246,9 @@ static bool add_to_bands(Job *job, const Plan *plan, KrsFilm *film, uint32_t sam
     return true;
 }
 
-/* Waits until the driver has compiled the kernels, so that this time does not count for the
+/* Waits until the driver has compiled the shaders, so that this time does not count for the
    picture. */
-static bool wait_for_kernels(Job *job)
+static bool wait_for_shaders(Job *job)
 {
     double start = clock_ms();
     bool   ready = gpu_wait(job->gpu);
@@ -288,7 +288,7 @@ static void begin_film(const Job *job, KrsFilm *film)
 /* Adds samples by a finished plan. */
 static bool run(Job *job, const Plan *plan, KrsFilm *film, uint32_t samples)
 {
-    if (!make_room(job, plan, film) || !wait_for_kernels(job))
+    if (!make_room(job, plan, film) || !wait_for_shaders(job))
         return false;
     if (film->samples == 0)
         begin_film(job, film);
@@ -433,7 +433,7 @@ static bool finish(const KrsFilm *film, KrsPicture *picture)
     const double marching = stats->phase_ms[KRS_PHASE_PRIMARY] + stats->phase_ms[KRS_PHASE_BOUNCES];
     stats->spirv_ms       = rendering->spirv_ms;
     stats->pipeline_ms    = rendering->pipeline_ms;
-    stats->kernels        = gpu->kernels_made;
+    stats->kernels        = gpu->shaders_made;
     stats->device_time    = gpu->times != VK_NULL_HANDLE;
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         stats->total_ms += stats->phase_ms[phase];

@@ -16,20 +16,20 @@ bool noise_is_wanted(const KrsRenderOptions *options)
     return options->noise > 0 || options->planes & KRS_PLANE_NOISE;
 }
 
-/* Runs a phase of the kernel over all quarters of tiles of the band. */
+/* Runs a phase of the shader over all quarters of tiles of the band. */
 static bool run_phase(Job *job, const WorkBlock *work, uint32_t phase, uint32_t samples)
 {
     KrsRendering *r       = job->rendering;
     ControlBlock *control = r->control.bytes;
-    const Kernel *kernel  = renderer_noise(r->renderer, &r->spirv_ms, &r->pipeline_ms);
-    if (!kernel || !gpu_wait(job->gpu))
+    const Shader *shader  = renderer_noise(r->renderer, &r->spirv_ms, &r->pipeline_ms);
+    if (!shader || !gpu_wait(job->gpu))
         return false;
     const uint32_t sampled_at = control->sampled_at;
     job->progress_share       = 0;
     control->phase            = phase;
     control->value            = samples;
     control->sampled_at       = r->band.sampled_at;
-    const Dispatch dispatch   = dispatch_of(job, KRS_PHASE_RESOLVE, kernel, work,
+    const Dispatch dispatch   = dispatch_of(job, KRS_PHASE_RESOLVE, shader, work,
                                             ITEMS_KNOWN(tiles_of_band(work) * QUARTERS_OF_TILE),
                                             pixel_budget(job));
     const bool     good       = dispatch_run(job, &dispatch) && dispatch_finish(job);

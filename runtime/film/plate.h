@@ -11,7 +11,7 @@
 bool plate_catches(const KrsFilm *film);
 /* So many rows of results are of the plate: 0, 2 or 4. */
 uint32_t plate_rows(const KrsFilm *film);
-/* Tells the kernels what falls on the plate, and where its rows are. */
+/* Tells the shaders what falls on the plate, and where its rows are. */
 void plate_tell(const KrsFilm *film, ControlBlock *control);
 /* Writes the planes of the plate in the pixels of a band, four numbers each: the unit normal, and its
    product with the points of the plane. */

@@ -7,7 +7,7 @@
  * paths take a step together: each pass is over those that are left.
  */
 #include "runtime/integrators/integrators.h"
-#include "runtime/tracer/kernels.h"
+#include "runtime/tracer/shaders.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/primary.h"
 #include "runtime/tracer/renderer.h"
@@ -19,20 +19,20 @@
 typedef struct Paths {
     Job          *job;
     Plan         *plan;
-    PathKernels   kernels;
-    const Kernel *plate;  /* NULL: no plate catches shadows */
-    const Kernel *escape; /* of rays that surfaces have scattered */
+    PathShaders   shaders;
+    const Shader *plate;  /* NULL: no plate catches shadows */
+    const Shader *escape; /* of rays that surfaces have scattered */
     uint32_t      bounces;
     float         weight; /* of the passes of a bounce */
 } Paths;
 
-static void add_items(const Paths *paths, KrsPhase phase, const Kernel *kernel, ListId in,
+static void add_items(const Paths *paths, KrsPhase phase, const Shader *shader, ListId in,
                       ListId out, PassConstants constants)
 {
     plan_add(paths->plan, (Pass){.kind      = PASS_ITEMS,
                                  .phase     = phase,
                                  .weight    = 0.1f * paths->weight,
-                                 .kernel    = kernel,
+                                 .shader    = shader,
                                  .in        = in,
                                  .out       = out,
                                  .constants = constants});
@@ -48,16 +48,16 @@ static void add_surface(const Paths *paths, uint32_t number)
     add_items(paths, KRS_PHASE_RESOLVE, number == 0 ? &renderer->escapes[rays] : paths->escape,
               number == 0 ? LIST_OF_BAND : LIST_OF_PATHS, LIST_ALL,
               (PassConstants){.value = number});
-    add_items(paths, KRS_PHASE_NORMALS, paths->kernels.normals, LIST_ALL, NO_LIST,
+    add_items(paths, KRS_PHASE_NORMALS, paths->shaders.normals, LIST_ALL, NO_LIST,
               (PassConstants){0});
     if (number == 0 && paths->plate)
         add_items(paths, KRS_PHASE_NORMALS, paths->plate, LIST_ALL, NO_LIST, (PassConstants){0});
-    add_items(paths, KRS_PHASE_SHADING, paths->kernels.scatter, LIST_ALL, LIST_OF_PATHS, constants);
+    add_items(paths, KRS_PHASE_SHADING, paths->shaders.scatter, LIST_ALL, LIST_OF_PATHS, constants);
     if (!ends && (paths->job->view.light_count > 0 || paths->job->view.sky.map))
         plan_add(paths->plan, (Pass){.kind      = PASS_RAYS,
                                      .phase     = KRS_PHASE_SHADOWS,
                                      .weight    = 0.3f * paths->weight,
-                                     .kernel    = paths->kernels.shadows,
+                                     .shader    = paths->shaders.shadows,
                                      .in        = LIST_ALL,
                                      .out       = NO_LIST,
                                      .constants = {.phase = RAYS_AS_CHOSEN}});
@@ -72,11 +72,11 @@ static bool add_paths(Job *job, Plan *plan, uint32_t bounces)
     plan->has_paths               = true;
     if (!primary_add_marches(job, plan, WEIGHT_PRIMARY, NULL) ||
         !renderer_create_escapes(r->renderer, r->rays, &r->spirv_ms, &r->pipeline_ms) ||
-        !rendering_paths(r, o, KRS_FOR_PATHS, &paths.kernels) ||
+        !rendering_paths(r, o, KRS_FOR_PATHS, &paths.shaders) ||
         !primary_find_plate(job, &paths.plate))
         return false;
     paths.escape      = renderer_escape_of_paths(r);
-    const March march = primary_march_of_paths(job, paths.kernels.march);
+    const March march = primary_march_of_paths(job, paths.shaders.march);
     for (uint32_t number = 0; number <= bounces; number++) {
         add_surface(&paths, number);
         if (number == 0 && bounces > 0)

@@ -9,7 +9,7 @@
  * goes on from each (mirrors.glsl).  There light is the same, less what is occluded.
  */
 #include "runtime/integrators/integrators.h"
-#include "runtime/tracer/kernels.h"
+#include "runtime/tracer/shaders.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/primary.h"
 #include "runtime/tracer/renderer.h"
@@ -27,32 +27,32 @@
 typedef struct Preview {
     Job    *job;
     Plan   *plan;
-    Kernel *secondary;       /* NULL: there is neither occlusion nor a light with shadows */
-    Kernel *occluders;       /* NULL: there is no occlusion */
+    Shader *secondary;       /* NULL: there is neither occlusion nor a light with shadows */
+    Shader *occluders;       /* NULL: there is no occlusion */
     bool    by_roots;        /* secondary rays go from root to root */
     bool    filters_shadows; /* neighbouring pixels share what rays to lights find */
 } Preview;
 
 /* ---- passes ---- */
 
-/* Adds a pass of a kernel over a list; `out`: the list that it writes. */
-static void add_items(Preview *p, KrsPhase phase, const Kernel *kernel, ListId in, ListId out,
+/* Adds a pass of a shader over a list; `out`: the list that it writes. */
+static void add_items(Preview *p, KrsPhase phase, const Shader *shader, ListId in, ListId out,
                       PassConstants constants, float weight)
 {
     plan_add(p->plan, (Pass){.kind      = PASS_ITEMS,
                              .phase     = phase,
                              .weight    = weight,
-                             .kernel    = kernel,
+                             .shader    = shader,
                              .in        = in,
                              .out       = out,
                              .constants = constants});
 }
 
-/* The same by a kernel without a scene. */
-static void add_pixels(Preview *p, KrsPhase phase, PixelKernel kernel, ListId in, ListId out,
+/* The same by a shader without a scene. */
+static void add_pixels(Preview *p, KrsPhase phase, PixelShader shader, ListId in, ListId out,
                        PassConstants constants, float weight)
 {
-    add_items(p, phase, job_pixel_kernel(p->job, kernel), in, out, constants, weight);
+    add_items(p, phase, job_pixel_shader(p->job, shader), in, out, constants, weight);
 }
 
 /* Adds a pass of rays from the hits of a list, which may write a list; `clears_shared`: no word of
@@ -63,7 +63,7 @@ static void add_rays(Preview *p, KrsPhase phase, ListId in, ListId out, bool cle
     plan_add(p->plan, (Pass){.kind          = PASS_RAYS,
                              .phase         = phase,
                              .weight        = weight,
-                             .kernel        = p->secondary,
+                             .shader        = p->secondary,
                              .in            = in,
                              .out           = out,
                              .clears_shared = clears_shared,
@@ -93,11 +93,11 @@ static void add_background(Preview *p)
     const uint32_t    count  = (uint32_t)view->light_count;
     uint32_t          sun    = find_sun(view, 0);
     const bool        apart  = p->job->options.light_groups;
-    const PixelKernel kernel = renderer_background(p->job->rendering);
-    add_pixels(p, KRS_PHASE_RESOLVE, kernel, LIST_OF_BAND, NO_LIST,
+    const PixelShader shader = renderer_background(p->job->rendering);
+    add_pixels(p, KRS_PHASE_RESOLVE, shader, LIST_OF_BAND, NO_LIST,
                (PassConstants){BACKGROUND_FIRST, .light = apart ? count : sun}, WEIGHT_BACKGROUND);
     for (sun = apart ? sun : find_sun(view, sun + 1); sun < count; sun = find_sun(view, sun + 1))
-        add_pixels(p, KRS_PHASE_RESOLVE, kernel, LIST_OF_BAND, NO_LIST,
+        add_pixels(p, KRS_PHASE_RESOLVE, shader, LIST_OF_BAND, NO_LIST,
                    (PassConstants){BACKGROUND_SUN, .light = sun, .color_row = row_of_light(p, sun)},
                    0);
 }
@@ -210,7 +210,7 @@ static PassConstants constants_of(const Preview *p, const LightPass *lights, uin
 
 /* Adds the passes for lights.  The first shading pass also adds all other light, so there is one even
    without lights. */
-static void add_lights(Preview *p, const Kernel *shade)
+static void add_lights(Preview *p, const Shader *shade)
 {
     const KrsView *view   = &p->job->view;
     const uint32_t count  = (uint32_t)view->light_count;
@@ -223,7 +223,7 @@ static void add_lights(Preview *p, const Kernel *shade)
         plan_add(p->plan, (Pass){.kind        = PASS_ITEMS,
                                  .phase       = KRS_PHASE_SHADING,
                                  .weight      = 0.2f * each,
-                                 .kernel      = shade,
+                                 .shader      = shade,
                                  .in          = LIST_ALL,
                                  .out         = p->plan->has_paths ? LIST_OF_PATHS : NO_LIST,
                                  .short_items = !p->plan->has_paths,
@@ -234,7 +234,7 @@ static void add_lights(Preview *p, const Kernel *shade)
 /* ---- mirrors and glass ---- */
 
 /* Adds the light of the surfaces that rays have been followed to.  `ends`: no ray goes on. */
-static void add_mirrored_lights(Preview *p, const PathKernels *kernels, bool ends, float weight)
+static void add_mirrored_lights(Preview *p, const PathShaders *shaders, bool ends, float weight)
 {
     const KrsView *view   = &p->job->view;
     LightPass      lights = first_lights(p);
@@ -246,14 +246,14 @@ static void add_mirrored_lights(Preview *p, const PathKernels *kernels, bool end
                 plan_add(p->plan, (Pass){.kind      = PASS_RAYS,
                                          .phase     = KRS_PHASE_BOUNCES,
                                          .weight    = weight,
-                                         .kernel    = kernels->shadows,
+                                         .shader    = shaders->shadows,
                                          .in        = LIST_ALL,
                                          .out       = NO_LIST,
                                          .constants = {.phase    = RAYS_TO_LIGHT,
                                                        .light    = lights.first + i,
                                                        .value    = VALUE_VISIBLE + i,
                                                        .of_paths = 1}});
-        add_items(p, KRS_PHASE_BOUNCES, kernels->scatter, LIST_ALL, LIST_OF_PATHS, constants,
+        add_items(p, KRS_PHASE_BOUNCES, shaders->scatter, LIST_ALL, LIST_OF_PATHS, constants,
                   weight);
     } while (next_lights(p, &lights));
 }
@@ -266,12 +266,12 @@ static bool add_mirrors(Preview *p)
     const KrsRenderOptions *o      = &job->options;
     const float             each   = WEIGHT_MIRRORS / MIRRORED_SURFACES;
     const float             weight = 0.2f * each;
-    PathKernels             kernels;
+    PathShaders             shaders;
     if (!renderer_create_escapes(r->renderer, RAYS_OF_PATHS, &r->spirv_ms, &r->pipeline_ms) ||
-        !rendering_paths(r, o, KRS_FOR_PICTURES, &kernels))
+        !rendering_paths(r, o, KRS_FOR_PICTURES, &shaders))
         return false;
-    const March   march  = primary_march_of_paths(job, kernels.march);
-    const Kernel *escape = renderer_escape_of_paths(r);
+    const March   march  = primary_march_of_paths(job, shaders.march);
+    const Shader *escape = renderer_escape_of_paths(r);
     for (int i = 0; i < MIRRORED_SURFACES; i++) {
         if (i == 0)
             plan_add_march(p->plan, &march, 0.4f * each);
@@ -279,9 +279,9 @@ static bool add_mirrors(Preview *p)
             plan_add_march_again(p->plan, 0.4f * each);
         add_items(p, KRS_PHASE_BOUNCES, escape, LIST_OF_PATHS, LIST_ALL,
                   (PassConstants){.phase = ESCAPE_TO_SKY}, weight);
-        add_items(p, KRS_PHASE_BOUNCES, kernels.normals, LIST_ALL, NO_LIST,
+        add_items(p, KRS_PHASE_BOUNCES, shaders.normals, LIST_ALL, NO_LIST,
                   (PassConstants){.of_paths = 1}, weight);
-        add_mirrored_lights(p, &kernels, i + 1 == MIRRORED_SURFACES, weight);
+        add_mirrored_lights(p, &shaders, i + 1 == MIRRORED_SURFACES, weight);
     }
     return escape != NULL;
 }
@@ -297,7 +297,7 @@ static bool needs_secondary(const Job *job)
     return needed;
 }
 
-/* Finds the kernel of secondary rays, if there are any; false with the failure noted. */
+/* Finds the shader of secondary rays, if there are any; false with the failure noted. */
 static bool find_secondary(Preview *p)
 {
     const KrsRenderOptions *options = &p->job->options;
@@ -323,7 +323,7 @@ bool preview_plan(Job *job, Plan *plan)
     if (!renderer_create_pixels(r) || !primary_add_marches(job, plan, WEIGHT_MARCH, &primary) ||
         !find_secondary(&p))
         return false;
-    const Kernel *shade = rendering_shade(job->rendering), *plate;
+    const Shader *shade = rendering_shade(job->rendering), *plate;
     add_background(&p);
     primary_add_normals(plan, WEIGHT_NORMALS, &primary);
     if (!primary_find_plate(job, &plate))

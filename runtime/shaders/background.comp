@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : enable
 /*
  * background.comp: adds the light of the sky to the pixels whose rays hit nothing, and lists the
- * pixels of all others.  A sun, a light with a disc in the sky, is added with the sky.  The kernel
+ * pixels of all others.  A sun, a light with a disc in the sky, is added with the sky.  The shader
  * runs once more for each further sun.
  *
  * An item is a quarter of a tile of 8x8 pixels.

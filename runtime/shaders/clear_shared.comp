@@ -1,7 +1,7 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
- * clear_shared.comp: clears the words that neighbours share (shared.glsl).  In a chain a kernel does
+ * clear_shared.comp: clears the words that neighbours share (shared.glsl).  In a chain a shader does
  * this, since a chain that stops must not clear what the host goes on with.
  *
  * An item is a quarter of a tile of 8x8 pixels.

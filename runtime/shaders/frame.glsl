@@ -1,5 +1,5 @@
 /*
- * frame.glsl: what the kernels of a picture share: the frame, the work of a dispatch, the state of
+ * frame.glsl: what the shaders of a picture share: the frame, the work of a dispatch, the state of
  * pixels between dispatches, and their rays.
  *
  * A picture is rendered in bands of rows; the buffers hold one band.  Declarations that the host
@@ -83,7 +83,7 @@ Control control;
 
 #ifdef FRAME_TEXELS
 // lavapipe compiles each number of a block to a branch, which tests whether it is in the buffer.
-// A texel is four numbers and no branch, and such kernels compile in nine tenths of the time.
+// A texel is four numbers and no branch, and such shaders compile in nine tenths of the time.
 layout(set = 1, binding = FRAME_TEXELS_BINDING) uniform usamplerBuffer frame_texels;
 layout(set = 1, binding = CONTROL_TEXELS_BINDING) uniform usamplerBuffer control_texels;
 
@@ -345,7 +345,7 @@ void find_ray_of_picture(vec2 image_point, out vec3 origin, out vec3 direction, 
 }
 #endif
 
-// Whether the rays are those of paths.  Kernels with MIXED_RAYS are for both.
+// Whether the rays are those of paths.  Shaders with MIXED_RAYS are for both.
 bool are_of_paths()
 {
 #ifdef MIXED_RAYS

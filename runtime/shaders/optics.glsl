@@ -1,5 +1,5 @@
 /*
- * optics.glsl: what kernels share that know of light.
+ * optics.glsl: what shaders share that know of light.
  */
 #ifndef OPTICS // another file may have it already
 #define OPTICS

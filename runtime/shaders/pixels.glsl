@@ -1,7 +1,7 @@
 /*
- * pixels.glsl: main() of a kernel whose items all cost the same.
+ * pixels.glsl: main() of a shader whose items all cost the same.
  *
- * The kernel that includes this defines:
+ * The shader that includes this defines:
  *     void begin_group()              called first
  *     void do_item(uint number)       called for each item
  * A lane takes several items, for which the frame is loaded once.

@@ -2,7 +2,7 @@
  * scene.glsl: a stand-in for a compiled scene.
  *
  * At run time the text that the compiler prints takes the place of this file, and declares the same
- * names.  So kernels can be checked by themselves:
+ * names.  So shaders can be checked by themselves:
  *     glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl \
  *         runtime/shaders/trace.comp
  */

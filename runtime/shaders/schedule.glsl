@@ -1,8 +1,8 @@
 /*
- * schedule.glsl: main() of a kernel whose items take different numbers of steps.  Each step
+ * schedule.glsl: main() of a shader whose items take different numbers of steps.  Each step
  * evaluates the distance once.
  *
- * The kernel that includes this defines:
+ * The shader that includes this defines:
  *     void begin_group(uint first)         called first: `first` is the workgroup's first item
  *     void exchange_item(uint number)      gets from other lanes what they know of an item; lanes
  *                                          that have an item call it as well, and keep theirs

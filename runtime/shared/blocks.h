@@ -1,5 +1,5 @@
 /*
- * blocks.h: the blocks that host and kernels exchange, and the constants that both need.
+ * blocks.h: the blocks that host and shaders exchange, and the constants that both need.
  *
  * C and GLSL read this one file.  Each struct is followed by its name in C and a check of its size.
  * GLSL's rules of alignment decide that size, so some members only fill gaps.
@@ -75,7 +75,7 @@ CONSTANT(SKY_ITSELF, 512 + 4 * 2048 + 8192 + 32768);
    a vec3 and a float, THREE a vec2 and two floats; and there are rows of FLOATS and of UINTS. */
 #define FRAME_ROWS(ONE, TWO, THREE, FLOATS, UINTS)                                                     \
     /* Of a sky that is a picture: its columns and rows, or 0; its rotation in radians; a factor. */   \
-    /* It comes first: lavapipe compiles kernels anew for each value of a block's first number. */     \
+    /* It comes first: lavapipe compiles shaders anew for each value of a block's first number. */     \
     ONE(0, sky_map)                                                                                    \
     TWO(1, eye, farthest) /* no ray goes farther */                                                    \
     ONE(2, right)         /* to the edges of the picture; at distance 1 in perspective */              \
@@ -163,12 +163,12 @@ static_assert(sizeof(PointWorkBlock) == 12, "std430");
 
 /* ---- The control block ---- */
 
-/* What the host tells a kernel, in rows of four numbers as above.  Values that decide branches are
+/* What the host tells a shader, in rows of four numbers as above.  Values that decide branches are
    here, not among the constants of a dispatch.  For each set of constants that decides a branch
-   lavapipe would compile the kernel again, and keep it. */
+   lavapipe would compile the shader again, and keep it. */
 #define CONTROL_ROWS(FLOATS, UINTS)                                                        \
     /* projection: PERSPECTIVE and so on */                                                \
-    /* phase: of the kernel, see below */                                                  \
+    /* phase: of the shader, see below */                                                  \
     /* first_ray: 1: this is the first ray of each pixel */                                \
     /* light: number of the light that a dispatch is about */                              \
     UINTS(0, projection, phase, first_ray, light)                                          \
@@ -214,7 +214,7 @@ static_assert(sizeof(PointWorkBlock) == 12, "std430");
     FLOATS(8, most_radiance, noise, noise_floor, plate_roughness)                          \
     FLOATS(9, plate_reflectance, gap_a, gap_b, gap_c)
 
-/* What the kernels count, and what next_dispatch.comp says of the next dispatch. */
+/* What the shaders count, and what next_dispatch.comp says of the next dispatch. */
 #define COUNTER_MEMBERS                                                                            \
     uint queued;                      /* rays that go on in another dispatch */                    \
     uint untaken;                     /* items that no lane has begun */                           \

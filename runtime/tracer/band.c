@@ -110,7 +110,7 @@ static uint32_t rows_within(uint32_t width, uint64_t pixels)
 #define BAND_BYTES(hit, rows) (END_BYTES + (hit) + 2 * (rows)*RESULT_BYTES + 2 * MARCH_BYTES + 4)
 
 /* The most pixels that a band may have on this device.  All of its buffers must fit into the
-   device's memory, and none may be longer than kernels can read. */
+   device's memory, and none may be longer than shaders can read. */
 static uint64_t most_pixels(const Gpu *gpu, bool paths, uint32_t lights)
 {
     const uint64_t                rows     = RESULT_ROWS + lights;

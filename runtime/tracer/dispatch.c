@@ -57,24 +57,24 @@ static bool report(Job *job, double within_phase)
     return true;
 }
 
-static bool has_scene(const Job *job, const Kernel *kernel)
+static bool has_scene(const Job *job, const Shader *shader)
 {
-    bool is_pixels = kernel == &job->rendering->renderer->clear_shared;
-    for (int i = 0; i < PIXEL_KERNELS; i++)
-        is_pixels = is_pixels || kernel == job_pixel_kernel(job, (PixelKernel)i);
+    bool is_pixels = shader == &job->rendering->renderer->clear_shared;
+    for (int i = 0; i < PIXEL_SHADERS; i++)
+        is_pixels = is_pixels || shader == job_pixel_shader(job, (PixelShader)i);
     return !is_pixels;
 }
 
-/* How many items of this kernel make a slice, as learned so far.  Kernels without the scene cost next
+/* How many items of this shader make a slice, as learned so far.  Shaders without the scene cost next
    to nothing, so they are counted apart from the others of a phase. */
-static double *items_at_once(Job *job, KrsPhase phase, const Kernel *kernel)
+static double *items_at_once(Job *job, KrsPhase phase, const Shader *shader)
 {
-    return &job->rendering->items_at_once[phase][has_scene(job, kernel)];
+    return &job->rendering->items_at_once[phase][has_scene(job, shader)];
 }
 
 static bool run_groups(Job *job, const Dispatch *dispatch, WorkBlock *work, uint32_t groups)
 {
-    double *at_once = items_at_once(job, dispatch->phase, dispatch->kernel);
+    double *at_once = items_at_once(job, dispatch->phase, dispatch->shader);
     for (uint32_t first = 0; first < groups;) {
         const uint32_t most  = groups_of_slice(*at_once, dispatch->in_group);
         const uint32_t count = most < groups - first ? most : groups - first;
@@ -84,7 +84,7 @@ static bool run_groups(Job *job, const Dispatch *dispatch, WorkBlock *work, uint
         work->stride         = rendering_spread(job->rendering, count);
         if (!rendering_begin(job->rendering))
             return false;
-        rendering_dispatch(job->rendering, dispatch->kernel, job->rendering->band_set, work,
+        rendering_dispatch(job->rendering, dispatch->shader, job->rendering->band_set, work,
                            sizeof *work, count);
         if (!rendering_finish(job->rendering, &ms))
             return false;
@@ -116,11 +116,11 @@ static uint32_t groups_of(const Dispatch *dispatch, uint32_t items)
     return (items + dispatch->in_group - 1) / dispatch->in_group;
 }
 
-Dispatch dispatch_of(const Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
+Dispatch dispatch_of(const Job *job, KrsPhase phase, const Shader *shader, const WorkBlock *work,
                      Items items, LaneBudget budget)
 {
     Dispatch dispatch               = {.phase    = phase,
-                                       .kernel   = kernel,
+                                       .shader   = shader,
                                        .work     = *work,
                                        .items    = items,
                                        .in_group = budget.lanes * budget.items_per_lane};
@@ -183,7 +183,7 @@ static double weight_of(const Job *job, const Dispatch *dispatch)
 
 static uint32_t most_groups(Job *job, const Dispatch *dispatch)
 {
-    const double at_once = *items_at_once(job, dispatch->phase, dispatch->kernel);
+    const double at_once = *items_at_once(job, dispatch->phase, dispatch->shader);
     return groups_of_slice(at_once, weight_of(job, dispatch));
 }
 
@@ -209,7 +209,7 @@ static void record(Job *job, uint32_t i)
     gpu_barrier(job->gpu);
     rendering_dispatch(r, &r->renderer->next_dispatch, r->band_set, &next, sizeof next, 1);
     gpu_barrier(job->gpu);
-    rendering_dispatch_counted(r, dispatch->kernel, r->band_set, &work, sizeof work);
+    rendering_dispatch_counted(r, dispatch->shader, r->band_set, &work, sizeof work);
     gpu_barrier(job->gpu);
 }
 
@@ -220,12 +220,12 @@ static void learn(Job *job, uint32_t first, uint32_t end, double ms)
     const Dispatch     *list = job->chain.list, *measured = &list[first];
     double              items = 0, target_ms = job->options.slice_ms;
     for (uint32_t i = first; i < end; i++)
-        if (has_scene(job, list[i].kernel))
+        if (has_scene(job, list[i].shader))
             measured = &list[i];
     for (uint32_t i = first; i < end; i++)
-        if (has_scene(job, list[i].kernel) == has_scene(job, measured->kernel))
+        if (has_scene(job, list[i].shader) == has_scene(job, measured->shader))
             items += control->ran[i] * weight_of(job, &list[i]);
-    double      *at_once = items_at_once(job, measured->phase, measured->kernel);
+    double      *at_once = items_at_once(job, measured->phase, measured->shader);
     const double next    = next_slice(items, ms, target_ms);
     if (items > 0 && (ms > target_ms || next > *at_once))
         *at_once = next;
@@ -293,7 +293,7 @@ static Dispatch clearing_before(const Job *job, const Dispatch *dispatch)
 {
     Dispatch         clearing = *dispatch;
     const LaneBudget budget   = pixel_budget(job);
-    clearing.kernel           = &job->rendering->renderer->clear_shared;
+    clearing.shader           = &job->rendering->renderer->clear_shared;
     clearing.items            = ITEMS_KNOWN(tiles_of_band(&dispatch->work) * QUARTERS_OF_TILE);
     clearing.in_group         = budget.lanes * budget.items_per_lane;
     clearing.control.items_per_lane = budget.items_per_lane;
@@ -318,7 +318,7 @@ bool dispatch_run(Job *job, const Dispatch *dispatch)
 bool dispatch_together(Job *job, const Dispatch *dispatches, size_t count)
 {
     KrsPhase phase   = dispatches[0].phase;
-    double  *at_once = items_at_once(job, phase, dispatches[0].kernel), items = 0, ms = 0;
+    double  *at_once = items_at_once(job, phase, dispatches[0].shader), items = 0, ms = 0;
     bool     good = true;
     for (size_t i = 0; i < count; i++)
         items += items_now(job, dispatches[i].items);
@@ -341,7 +341,7 @@ bool dispatch_together(Job *job, const Dispatch *dispatches, size_t count)
         vkCmdUpdateBuffer(job->gpu->commands, rendering_control(job->rendering)->buffer, 0,
                           offsetof(ControlBlock, queued), &dispatch.control);
         gpu_barrier(job->gpu);
-        rendering_dispatch(job->rendering, dispatch.kernel, job->rendering->band_set,
+        rendering_dispatch(job->rendering, dispatch.shader, job->rendering->band_set,
                            &dispatch.work, sizeof dispatch.work, own);
         gpu_barrier(job->gpu);
     }

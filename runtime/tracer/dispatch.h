@@ -16,7 +16,7 @@ bool dispatch_chains(const Job *job);
 
 /* Makes a dispatch from the control block as it is now.  The number of items is found out when it
    runs. */
-Dispatch dispatch_of(const Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
+Dispatch dispatch_of(const Job *job, KrsPhase phase, const Shader *shader, const WorkBlock *work,
                      Items items, LaneBudget budget);
 /* Runs a dispatch, or adds it to the chain. */
 bool dispatch_run(Job *job, const Dispatch *dispatch);
@@ -26,10 +26,10 @@ bool dispatch_together(Job *job, const Dispatch *dispatches, size_t count);
 /* Runs all dispatches in the chain. */
 bool dispatch_finish(Job *job);
 
-/* The budget of a kernel whose items take different numbers of steps (schedule.glsl).  It follows
+/* The budget of a shader whose items take different numbers of steps (schedule.glsl).  It follows
    from the current schedule and the option `steps_at_once`. */
 LaneBudget lane_budget(const Job *job);
-/* The budget of a kernel whose items all cost the same (pixels.glsl). */
+/* The budget of a shader whose items all cost the same (pixels.glsl). */
 LaneBudget pixel_budget(const Job *job);
 /* The number of items, where the host knows the counters. */
 uint32_t items_now(const Job *job, Items items);

@@ -1,28 +1,28 @@
 /*
  * handles.h: the structs behind the handles of krs/vulkan.h, except KrsFilm (film/resident.h).
- * Functions for them are in renderer.h, rendering.h and kernels.h.
+ * Functions for them are in renderer.h, rendering.h and shaders.h.
  */
 #ifndef KRS_HANDLES_H
 #define KRS_HANDLES_H
 
 #include "compiler/passes/compile.h"
 #include "runtime/device/buffer.h"
-#include "runtime/device/kernel.h"
+#include "runtime/device/shader.h"
 #include "runtime/shared/blocks.h"
 
-/* The kernels without a scene, each with one task for every item of a list: a pixel, or a quarter
-   of a tile.  Each task has its own kernel because lavapipe executes all branches of a kernel. */
-typedef enum PixelKernel {
+/* The shaders without a scene, each with one task for every item of a list: a pixel, or a quarter
+   of a tile.  Each task has its own shader because lavapipe executes all branches of a shader. */
+typedef enum PixelShader {
     PIXELS_BACKGROUND,
     PIXELS_BACKGROUND_OF_MAP, /* where the sky is a picture */
     PIXELS_UNPROVEN,
     PIXELS_PENUMBRAE,
     PIXELS_SHADOW,
     PIXELS_OCCLUSION,
-    PIXEL_KERNELS
-} PixelKernel;
+    PIXEL_SHADERS
+} PixelShader;
 
-/* Where the rays of pixels come from.  Each kind has its own kernels.  Those of a kind of camera
+/* Where the rays of pixels come from.  Each kind has its own shaders.  Those of a kind of camera
    serve the kinds of cameras before it as well. */
 typedef enum RayKind {
     RAYS_OF_CAMERAS,   /* perspective or orthographic */
@@ -43,28 +43,28 @@ typedef enum TexelKind {
     TEXEL_KINDS
 } TexelKind;
 
-/* Kernels that are made while the host does other work (prewarm_thread.c). */
+/* Shaders that are made while the host does other work (prewarm_thread.c). */
 typedef struct PrewarmThread PrewarmThread;
 
 struct KrsRenderer {
     Gpu                   gpu;
     PrewarmThread        *prewarm; /* NULL: none are made at the moment */
     bool                  compiler_started;
-    bool                  early_outs;   /* kernels skip far shapes by branches */
+    bool                  early_outs;   /* shaders skip far shapes by branches */
     VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters and tables */
     VkDescriptorSetLayout frame_layout; /* set 1: what frame.glsl declares */
-    VkPipelineLayout      layout;       /* shared by all kernels */
-    /* Each is made when it is needed, with the kernels of the first scene that needs it. */
-    Kernel pixels[RAY_KINDS][PIXEL_KERNELS];
-    Kernel limits[RAY_KINDS];     /* limit.comp, made when it is needed */
-    Kernel escapes[RAY_KINDS];    /* escape.comp, made when paths are traced */
-    Kernel escapes_to_plate;      /* the same for paths that may meet a plate */
-    Kernel noise;                 /* noise.comp, likewise */
-    Kernel plate;                 /* plate.comp, likewise */
-    Kernel next_dispatch;         /* on graphics cards only (dispatch.c), */
-    Kernel clear_shared;          /* and likewise */
-    double spirv_ms, pipeline_ms; /* the time to make these kernels */
-    /* For prewarming: sets in which a kernel finds no items, and the buffers of zeros that they
+    VkPipelineLayout      layout;       /* shared by all shaders */
+    /* Each is made when it is needed, with the shaders of the first scene that needs it. */
+    Shader pixels[RAY_KINDS][PIXEL_SHADERS];
+    Shader limits[RAY_KINDS];     /* limit.comp, made when it is needed */
+    Shader escapes[RAY_KINDS];    /* escape.comp, made when paths are traced */
+    Shader escapes_to_plate;      /* the same for paths that may meet a plate */
+    Shader noise;                 /* noise.comp, likewise */
+    Shader plate;                 /* plate.comp, likewise */
+    Shader next_dispatch;         /* on graphics cards only (dispatch.c), */
+    Shader clear_shared;          /* and likewise */
+    double spirv_ms, pipeline_ms; /* the time to make these shaders */
+    /* For prewarming: sets in which a shader finds no items, and the buffers of zeros that they
        bind. */
     VkDescriptorPool idle_pool;
     VkDescriptorSet  idle_scene, idle_frame;
@@ -89,12 +89,12 @@ enum { MARCH_WITHOUT_PLANES = 1 + KRS_MOST_MARCH_GROUPS };
 /* Likewise: all components, which each ray marches scene part by scene part (packed.glsl). */
 enum { MARCH_PACKED = 1 + MARCH_WITHOUT_PLANES, MARCH_KINDS };
 
-/* The kernels that contain functions of the scene, each made when it is first needed
-   (kernels.c). */
-typedef struct KernelEntry KernelEntry;
-typedef struct KernelMap {
-    KernelEntry *first;
-} KernelMap;
+/* The shaders that contain functions of the scene, each made when it is first needed
+   (shaders.c). */
+typedef struct ShaderEntry ShaderEntry;
+typedef struct ShaderMap {
+    ShaderEntry *first;
+} ShaderMap;
 
 /* The band of a film whose samples are in the buffers of a rendering. */
 typedef struct ResidentBand {
@@ -110,10 +110,10 @@ struct KrsRendering {
     const KrsScene   *scene;
     const KrsProgram *program;
     uint32_t          updates; /* how often it was taken over to another scene */
-    KernelMap         kernels;
-    /* The number of the caller's zones that kernels of this frame have room for. */
+    ShaderMap         shaders;
+    /* The number of the caller's zones that shaders of this frame have room for. */
     uint32_t zone_slots;
-    /* The largest number that any kernels have room for. */
+    /* The largest number that any shaders have room for. */
     uint32_t   most_zone_slots;
     bool       camera_relative; /* this frame's points are relative to the camera */
     KrsPurpose purpose;
@@ -132,14 +132,14 @@ struct KrsRendering {
     uint64_t sky_version;    /* of the map in it */
     double   sky_irradiance; /* by half of it, on the average */
     Buffer   inputs;         /* lights, then the rays of a list */
-    /* The control block that kernels use, copied from and to `control`; none where kernels use
+    /* The control block that shaders use, copied from and to `control`; none where shaders use
        `control` itself. */
     Buffer       device_control;
     Band         band;
     ResidentBand resident;                    /* what the buffers of `band` hold */
     Buffer       points, answers;             /* for point_query.comp */
     Buffer       query_rays, ray_hits, taken; /* for query.comp */
-    /* The items of a slice, as learned, for each phase; [1]: for kernels with the scene. */
+    /* The items of a slice, as learned, for each phase; [1]: for shaders with the scene. */
     double items_at_once[KRS_PHASE_COUNT][2];
 };
 

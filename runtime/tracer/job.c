@@ -24,9 +24,9 @@ double job_pixel(const Job *job, double distance)
     return view_width(&job->view.camera, job->rays, job->options.height, distance);
 }
 
-const Kernel *job_pixel_kernel(const Job *job, PixelKernel kernel)
+const Shader *job_pixel_shader(const Job *job, PixelShader shader)
 {
-    return &job->rendering->renderer->pixels[job->rendering->rays][kernel];
+    return &job->rendering->renderer->pixels[job->rendering->rays][shader];
 }
 
 bool job_has_beams(const Job *job)
@@ -82,7 +82,7 @@ static bool begins_outside(const Job *job, KrsFrame *frame)
     return true;
 }
 
-/* Fills in the block of the frame for the kernels, with points relative to the rebase origin. */
+/* Fills in the block of the frame for the shaders, with points relative to the rebase origin. */
 static bool prepare_frame_block(Job *job)
 {
     const KrsProgram *program = job->rendering->program;

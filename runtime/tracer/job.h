@@ -29,7 +29,7 @@ typedef struct LaneBudget {
 
 typedef struct Dispatch {
     KrsPhase      phase;
-    const Kernel *kernel;
+    const Shader *shader;
     ControlBlock  control; /* the host's part of it; the counters are not used */
     WorkBlock     work;
     Items         items;
@@ -49,7 +49,7 @@ typedef struct Job {
     Gpu             *gpu;
     KrsRenderOptions options;        /* complete: none asks for a default */
     KrsSchedule      asked_schedule; /* as the caller asked for it */
-    KrsSchedule      schedule;       /* of the current kernel */
+    KrsSchedule      schedule;       /* of the current shader */
     KrsView          view;
     const KrsRays   *rays; /* a list of rays; NULL: they are those of the view's camera */
     uint32_t         first_rows, later_rows; /* of results that rays store: the first, others */
@@ -73,8 +73,8 @@ bool job_refuse(Job *job, const char *words);
 bool job_read_frame(Job *job, KrsFrame *frame, const KrsCamera *camera);
 /* The width at a distance: of a pixel in the middle of the picture, or of a ray of the list. */
 double job_pixel(const Job *job, double distance);
-/* The kernel without a scene for the rays of this frame. */
-const Kernel *job_pixel_kernel(const Job *job, PixelKernel kernel);
+/* The shader without a scene for the rays of this frame. */
+const Shader *job_pixel_shader(const Job *job, PixelShader shader);
 /* Whether beams march the empty space that the rays of a tile share. */
 bool job_has_beams(const Job *job);
 

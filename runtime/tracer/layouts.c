@@ -30,7 +30,7 @@ static const TexelKind texels_of[FRAME_BINDINGS] = {
 };
 
 static_assert((int)BUFFER_BINDINGS <= (int)STORAGE_BUFFERS, "devices are asked for so many");
-static_assert((int)SKY_TABLE_BINDING == (int)SKY_BINDING, "as kernels have it");
+static_assert((int)SKY_TABLE_BINDING == (int)SKY_BINDING, "as shaders have it");
 static_assert((int)TABLE_BINDINGS <= (int)STORAGE_BUFFERS_FOR_TEXELS, "and for so many more");
 
 static VkDescriptorType type_of(uint32_t binding)
@@ -169,7 +169,7 @@ static VkDeviceSize idle_bytes(const Gpu *gpu)
     return limit < most ? limit : most;
 }
 
-/* Makes descriptor sets whose buffers hold zeros, so that no kernel finds any item in them. */
+/* Makes descriptor sets whose buffers hold zeros, so that no shader finds any item in them. */
 static bool idle_create(KrsRenderer *renderer)
 {
     Gpu            *gpu     = &renderer->gpu;

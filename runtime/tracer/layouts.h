@@ -1,6 +1,6 @@
 /*
- * layouts.h: what all kernels of a renderer share, whatever the scene.  These are the layouts of
- * descriptor sets and of the pipeline, and descriptor sets of zeros, in which a kernel finds no
+ * layouts.h: what all shaders of a renderer share, whatever the scene.  These are the layouts of
+ * descriptor sets and of the pipeline, and descriptor sets of zeros, in which a shader finds no
  * items.
  */
 #ifndef KRS_LAYOUTS_H
@@ -28,7 +28,7 @@ enum {
 
 /* The renderer's device must be open.  On failure layouts_destroy frees what was made. */
 bool layouts_create(KrsRenderer *renderer);
-/* Call it after the kernels are destroyed.  It does nothing for a renderer without a device. */
+/* Call it after the shaders are destroyed.  It does nothing for a renderer without a device. */
 void layouts_destroy(KrsRenderer *renderer);
 
 /* Makes a buffer readable at a binding of texels, on devices that read texels.  `name` is that of

@@ -8,7 +8,7 @@
 
 /* A march of primary rays and their beams: through all components, or one march group. */
 typedef struct March {
-    Kernel     *rays, *beams; /* beams: NULL without beams */
+    Shader     *rays, *beams; /* beams: NULL without beams */
     KrsSchedule schedule;
     KrsPhase    phase; /* to which the time of its rays is added */
     double      flops; /* operations for one distance */

@@ -7,7 +7,7 @@
 #define FLOPS_WORTH_REFILL 150
 /* For a march group the threshold is higher, as few rays of its tiles meet it. */
 #define FLOPS_WORTH_REFILL_OF_GROUP 350
-/* From so many on, kernels of march groups take longer to compile than they save in a hundred small
+/* From so many on, shaders of march groups take longer to compile than they save in a hundred small
    pictures with mirrors. */
 #define FLOPS_WORTH_MIXED_RAYS 1200
 /* So many march groups take longer to compile than they save in a single small picture. */
@@ -39,7 +39,7 @@ uint32_t rendering_steps_within(const KrsRendering *rendering, uint32_t wanted)
     return wanted < most ? wanted : most > 0 ? most : 1;
 }
 
-/* Where lanes take new items anyway, saving makes kernels larger and saves nothing. */
+/* Where lanes take new items anyway, saving makes shaders larger and saves nothing. */
 bool rendering_saves_rays(const KrsRendering *rendering, KrsSchedule schedule)
 {
     return schedule != KRS_SCHEDULE_REFILL || rendering->program->loops > 0;
@@ -63,8 +63,8 @@ bool rendering_knows_planes(const KrsRendering *rendering)
     return rendering->program->planes && rendering->zone_slots == 0;
 }
 
-/* The rays of mirrors need kernels for the whole scene.  If those are for the picture, too, the first
-   picture is earlier; march groups make up for their own kernels where flops are few. */
+/* The rays of mirrors need shaders for the whole scene.  If those are for the picture, too, the first
+   picture is earlier; march groups make up for their own shaders where flops are few. */
 static bool prefers_mixed_rays(const KrsRendering *rendering)
 {
     return rendering->program->mirrors && (rendering->purpose == KRS_FOR_SMALL_PICTURES ||
@@ -72,14 +72,14 @@ static bool prefers_mixed_rays(const KrsRendering *rendering)
                                             rendering->program->flops >= FLOPS_WORTH_MIXED_RAYS));
 }
 
-static bool prefers_few_kernels(const KrsRendering *rendering)
+static bool prefers_few_shaders(const KrsRendering *rendering)
 {
     return rendering->purpose == KRS_FOR_SMALL_PICTURES &&
            rendering->program->march_group_count >= GROUPS_FOR_LARGE_PICTURES;
 }
 
 /* Drivers of devices of type CPU copy functions to where they are called.  Where nothing would be
-   gathered, pictures of all sizes have the same kernels. */
+   gathered, pictures of all sizes have the same shaders. */
 bool rendering_gathers_noises(const KrsRendering *rendering)
 {
     return rendering->purpose == KRS_FOR_SMALL_PICTURES && gpu_is_cpu(&rendering->renderer->gpu) &&
@@ -91,7 +91,7 @@ bool rendering_marches_per_component(const KrsRendering *rendering, KrsComponent
 {
     bool by_default = rendering->program->per_component && gpu_is_cpu(&rendering->renderer->gpu) &&
                       !rendering->renderer->early_outs && !prefers_mixed_rays(rendering) &&
-                      !prefers_few_kernels(rendering);
+                      !prefers_few_shaders(rendering);
     bool holes = rendering->program->planes && !rendering_knows_planes(rendering);
     return rendering->program->march_group_count > 0 && !rendering->program->along && !holes &&
            !rendering->camera_relative &&
@@ -104,7 +104,7 @@ bool rendering_mixes_rays(const KrsRendering *rendering)
            !rendering_marches_per_component(rendering, KRS_COMPONENTS_DEFAULT);
 }
 
-/* Beams step by distances.  Where rays go from root to root that takes a kernel of its own. */
+/* Beams step by distances.  Where rays go from root to root that takes a shader of its own. */
 bool rendering_has_beams(const KrsRendering *rendering, KrsTrace trace)
 {
     return trace < KRS_TRACE_EXACT || rendering->purpose != KRS_FOR_SMALL_PICTURES;

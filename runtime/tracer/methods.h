@@ -16,7 +16,7 @@ bool rendering_saves_rays(const KrsRendering *rendering, KrsSchedule schedule);
 /* The schedule for the rays of a march group that is marched by itself. */
 KrsSchedule rendering_schedule_of_march_group(const KrsRendering *rendering, KrsSchedule asked,
                                               uint32_t march_group);
-/* Whether rays intersect planes without a march, by kernels for MARCH_WITHOUT_PLANES. */
+/* Whether rays intersect planes without a march, by shaders for MARCH_WITHOUT_PLANES. */
 bool rendering_knows_planes(const KrsRendering *rendering);
 /* Whether march groups are marched one after the other; false where they cannot be. */
 bool rendering_marches_per_component(const KrsRendering *rendering, KrsComponents components);
@@ -27,7 +27,7 @@ bool rendering_marches_packed(const KrsRendering *rendering, KrsComponents compo
 bool rendering_has_beams(const KrsRendering *rendering, KrsTrace trace);
 /* Whether rays step by what lies ahead in their direction (krs_along), not by the distance. */
 bool rendering_goes_along(const KrsRendering *rendering, KrsTrace trace);
-/* Whether kernels for all march groups are for the rays of the picture and for those of its paths. */
+/* Whether shaders for all march groups are for the rays of the picture and for those of its paths. */
 bool rendering_mixes_rays(const KrsRendering *rendering);
 /* Whether many noises of a surface are one loop: less for the driver to translate, but turns cost. */
 bool rendering_gathers_noises(const KrsRendering *rendering);

@@ -139,7 +139,7 @@ static Dispatch dispatch_of_pass(const Job *job, const Pass *pass, const WorkBlo
     uint32_t   count      = items_now(job, items);
     LaneBudget budget     = pass->kind == PASS_RAYS ? budget_of_rays(job, count)
                                                     : budget_of_items(job, pass, count);
-    Dispatch   dispatch   = dispatch_of(job, pass->phase, pass->kernel, work, items, budget);
+    Dispatch   dispatch   = dispatch_of(job, pass->phase, pass->shader, work, items, budget);
     dispatch.clears       = counter_of(pass->out);
     return dispatch;
 }

@@ -26,7 +26,7 @@ typedef struct PassConstants {
 typedef enum PassKind {
     PASS_CLEAR, /* sets all rays to misses */
     PASS_MARCH, /* beams, then primary rays until all have ended */
-    PASS_ITEMS, /* a kernel over items that all cost the same */
+    PASS_ITEMS, /* a shader over items that all cost the same */
     PASS_RAYS   /* rays from the items of a list, each to its end */
 } PassKind;
 
@@ -35,7 +35,7 @@ typedef struct Pass {
     KrsPhase      phase;  /* to which its time is added */
     float         weight; /* its part of the progress, relative to other passes */
     const March  *march;  /* PASS_MARCH alone; the members below are for the others */
-    const Kernel *kernel;
+    const Shader *shader;
     ListId        in, out; /* the list that is read, and the one that is emptied and written */
     bool          with_previous; /* may share a submission with the previous pass */
     bool          clears_shared; /* the words of shared.glsl are cleared before */

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "runtime/shared/answers.h"
-#include "runtime/tracer/kernels.h"
+#include "runtime/tracer/shaders.h"
 #include "runtime/tracer/layouts.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
@@ -59,11 +59,11 @@ bool point_query_run(KrsRendering *rendering, uint32_t count, double step)
     const PointWorkBlock work = {
         .count = count, .taps = step > 0 ? 7 : 1, .least_step = (float)step};
     Gpu    *gpu    = &rendering->renderer->gpu;
-    Kernel *kernel = rendering_point_query(rendering);
+    Shader *shader = rendering_point_query(rendering);
     double  ms     = 0;
-    if (!kernel || !gpu_begin(gpu))
+    if (!shader || !gpu_begin(gpu))
         return false;
-    rendering_dispatch(rendering, kernel, rendering->points_set, &work, sizeof work,
+    rendering_dispatch(rendering, shader, rendering->points_set, &work, sizeof work,
                        (count + WORKGROUP_SIZE - 1) / WORKGROUP_SIZE);
     return gpu_finish(gpu, &ms);
 }

@@ -3,7 +3,7 @@
  *
  * The distance of a union costs as much as those of all components together, at every step of every
  * ray.  So scenes of several expensive components are split into march groups (KrsMarchGroup).
- * These are marched one after the other, the nearest first, each by a kernel with the distance of
+ * These are marched one after the other, the nearest first, each by a shader with the distance of
  * that group alone.  A ray meets the boxes of few groups, and ends at the latest where it has hit
  * another one.
  */
@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "runtime/tracer/kernels.h"
+#include "runtime/tracer/shaders.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/renderer.h"
 
@@ -53,9 +53,9 @@ static bool march_of_group(Job *job, uint32_t group, bool first, March *march)
     KrsRendering        *r   = job->rendering;
     const KrsMarchGroup *own = &r->program->march_groups[group - 1];
     KrsSchedule schedule     = rendering_schedule_of_march_group(r, job->asked_schedule, group);
-    Kernel     *kernel       = rendering_trace(r, job->options.trace, schedule, group);
-    *march                   = (March){.rays     = kernel,
-                                       .beams    = job_has_beams(job) ? kernel : NULL,
+    Shader     *shader       = rendering_trace(r, job->options.trace, schedule, group);
+    *march                   = (March){.rays     = shader,
+                                       .beams    = job_has_beams(job) ? shader : NULL,
                                        .schedule = schedule,
                                        .phase    = KRS_PHASE_PRIMARY,
                                        .flops    = own->flops,
@@ -63,15 +63,15 @@ static bool march_of_group(Job *job, uint32_t group, bool first, March *march)
                                        .windowed = !first || !rendering_knows_planes(r)};
     memcpy(march->low, own->low, sizeof march->low);
     memcpy(march->high, own->high, sizeof march->high);
-    return kernel != NULL;
+    return shader != NULL;
 }
 
-/* Finds the kernel of normals for all components, if they are wanted. */
+/* Finds the shader of normals for all components, if they are wanted. */
 static bool find_normals(Job *job, Primary *primary)
 {
     if (!primary)
         return true;
-    primary->normals = rendering_normals_kernel(job->rendering, job->options.normals, 0);
+    primary->normals = rendering_normals_shader(job->rendering, job->options.normals, 0);
     return primary->normals != NULL;
 }
 
@@ -81,17 +81,17 @@ static bool add_planes(Job *job, Primary *primary)
     OwnGroup *group = &primary->groups[primary->group_count];
     if (!rendering_knows_planes(job->rendering))
         return true;
-    *group = (OwnGroup){0, rendering_normals_kernel(job->rendering, job->options.normals,
+    *group = (OwnGroup){0, rendering_normals_shader(job->rendering, job->options.normals,
                                                     KRS_MARCH_GROUP_OF_PLANES)};
     primary->group_count++;
     return group->normals != NULL;
 }
 
-/* Finds the kernel of normals for a march group. */
+/* Finds the shader of normals for a march group. */
 static bool find_own_normals(Job *job, uint32_t march_group, OwnGroup *group)
 {
     *group = (OwnGroup){
-        march_group, rendering_normals_kernel(job->rendering, job->options.normals, march_group)};
+        march_group, rendering_normals_shader(job->rendering, job->options.normals, march_group)};
     return group->normals != NULL;
 }
 
@@ -143,9 +143,9 @@ static bool add_whole(Job *job, Plan *plan, float weight)
     return march.rays && (march.beams || !job_has_beams(job));
 }
 
-March primary_march_of_paths(const Job *job, Kernel *kernel)
+March primary_march_of_paths(const Job *job, Shader *shader)
 {
-    March march = {.rays     = kernel,
+    March march = {.rays     = shader,
                    .schedule = job->options.schedule,
                    .phase    = KRS_PHASE_BOUNCES,
                    .of_paths = true,
@@ -162,14 +162,14 @@ static bool add_even_hits(Job *job, Plan *plan)
     KrsRendering *r = job->rendering;
     if (job->options.even_hits == 0 || r->program->sheets)
         return true;
-    const Kernel *kernel = rendering_even_hits(r);
+    const Shader *shader = rendering_even_hits(r);
     plan_add(plan, (Pass){.kind      = PASS_ITEMS,
                           .phase     = KRS_PHASE_PRIMARY,
-                          .kernel    = kernel,
+                          .shader    = shader,
                           .in        = LIST_OF_BAND,
                           .out       = NO_LIST,
                           .constants = {.value = job->options.even_hits}});
-    return kernel != NULL;
+    return shader != NULL;
 }
 
 /* Where the caller has depths, hits behind them are none. */
@@ -178,23 +178,23 @@ static bool add_limit(Job *job, Plan *plan)
     KrsRendering *r = job->rendering;
     if (!job->options.depth)
         return true;
-    const Kernel *kernel = renderer_limit(r->renderer, r->rays, &r->spirv_ms, &r->pipeline_ms);
+    const Shader *shader = renderer_limit(r->renderer, r->rays, &r->spirv_ms, &r->pipeline_ms);
     plan_add(plan, (Pass){.kind   = PASS_ITEMS,
                           .phase  = KRS_PHASE_RESOLVE,
-                          .kernel = kernel,
+                          .shader = shader,
                           .in     = LIST_OF_BAND,
                           .out    = NO_LIST});
-    return kernel != NULL;
+    return shader != NULL;
 }
 
-bool primary_find_plate(Job *job, const Kernel **kernel)
+bool primary_find_plate(Job *job, const Shader **shader)
 {
     KrsRendering *r = job->rendering;
-    *kernel         = NULL;
+    *shader         = NULL;
     if (!r->catches)
         return true;
-    *kernel = renderer_plate(r->renderer, &r->spirv_ms, &r->pipeline_ms);
-    return *kernel != NULL;
+    *shader = renderer_plate(r->renderer, &r->spirv_ms, &r->pipeline_ms);
+    return *shader != NULL;
 }
 
 bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary)
@@ -219,17 +219,17 @@ void primary_add_normals(Plan *plan, float weight, const Primary *primary)
     Pass pass = {.kind        = PASS_ITEMS,
                  .phase       = KRS_PHASE_NORMALS,
                  .weight      = weight,
-                 .kernel      = primary->normals,
+                 .shader      = primary->normals,
                  .in          = LIST_ALL,
                  .out         = NO_LIST,
                  .short_items = true};
     /* At the surface of one group the distances of the others do not matter, so each group's own
-       kernel finds the normals there. */
+       shader finds the normals there. */
     plan->by_march_group = primary->group_count > 0;
     if (primary->group_count == 0)
         plan_add(plan, pass);
     for (size_t i = 0; i < primary->group_count; i++) {
-        pass.kernel        = primary->groups[i].normals;
+        pass.shader        = primary->groups[i].normals;
         pass.in            = LIST_OF_MARCH_GROUP + primary->groups[i].march_group;
         pass.weight        = weight / (float)primary->group_count;
         pass.with_previous = i > 0;

@@ -6,27 +6,27 @@
 
 #include "runtime/tracer/plan.h"
 
-/* A march group, and the kernel that finds its normals. */
+/* A march group, and the shader that finds its normals. */
 typedef struct OwnGroup {
     uint32_t march_group; /* from 1; 0: what is in no group, which is planes */
-    Kernel  *normals;
+    Shader  *normals;
 } OwnGroup;
 
-/* The kernels that find normals in this frame. */
+/* The shaders that find normals in this frame. */
 typedef struct Primary {
     OwnGroup groups[1 + KRS_MOST_MARCH_GROUPS];
     size_t   group_count; /* 0: `normals` finds those of all hits */
-    Kernel  *normals;     /* for all components */
+    Shader  *normals;     /* for all components */
 } Primary;
 
 /* Adds the passes that march, and fills in *primary unless it is NULL: then no normals are wanted.
    False with the failure noted. */
 bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary);
-/* The march of rays that surfaces have sent on, which may begin anywhere, by this kernel. */
-March primary_march_of_paths(const Job *job, Kernel *kernel);
-/* The kernel that stores normals of a plate, or NULL in *kernel where none catches shadows.  False
+/* The march of rays that surfaces have sent on, which may begin anywhere, by this shader. */
+March primary_march_of_paths(const Job *job, Shader *shader);
+/* The shader that stores normals of a plate, or NULL in *shader where none catches shadows.  False
    with the failure noted. */
-bool primary_find_plate(Job *job, const Kernel **kernel);
+bool primary_find_plate(Job *job, const Shader **shader);
 /* Adds the passes that find normals.  The pass that lists the hits must be added before. */
 void primary_add_normals(Plan *plan, float weight, const Primary *primary);
 

@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "runtime/shared/answers.h"
-#include "runtime/tracer/kernels.h"
+#include "runtime/tracer/shaders.h"
 #include "runtime/tracer/layouts.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/renderer.h"
@@ -210,7 +210,7 @@ static bool march_rays(KrsRendering *rendering, uint32_t count)
     rendering_choose(rendering, &trace, &schedule);
     bool          refill = schedule == KRS_SCHEDULE_REFILL;
     uint32_t      lanes = refill ? gpu->refill_lanes : 64, items_per_lane = refill ? 128 : 1;
-    const Kernel *kernel = rendering_query(rendering, schedule);
+    const Shader *shader = rendering_query(rendering, schedule);
     while (lanes * items_per_lane > 64 && count / (lanes * items_per_lane) < 64)
         items_per_lane /= 2; /* groups enough for every core of the device */
     uint32_t  groups = (count + lanes * items_per_lane - 1) / (lanes * items_per_lane);
@@ -221,17 +221,17 @@ static bool march_rays(KrsRendering *rendering, uint32_t count)
     ControlBlock *control = rendering->control.bytes;
     *control              = (ControlBlock){
                      .source = ITEMS_FRESH, .items = count, .items_per_lane = items_per_lane};
-    for (bool more = kernel != NULL; more; control->source = ITEMS_UNTAKEN) {
+    for (bool more = shader != NULL; more; control->source = ITEMS_UNTAKEN) {
         double ms        = 0;
         control->untaken = 0;
         if (!rendering_begin(rendering))
             return false;
-        rendering_dispatch(rendering, kernel, rendering->points_set, &work, sizeof work, groups);
+        rendering_dispatch(rendering, shader, rendering->points_set, &work, sizeof work, groups);
         if (!rendering_finish(rendering, &ms))
             return false;
         more = control->untaken > 0;
     }
-    return kernel != NULL;
+    return shader != NULL;
 }
 
 bool ray_hits_are_valid(const RayHitBlock *ray_hits, uint32_t count, uint32_t ends)

@@ -22,18 +22,18 @@ KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
     return gpu_list(&gpu, devices, capacity, count) ? KRS_OK : gpu.status;
 }
 
-/* Defines of kernels without a scene, by how they read. */
+/* Defines of shaders without a scene, by how they read. */
 #define ALL_READS(own)                          \
     {                                           \
         own NO_TEXELS, own "", own FRAME_TEXELS \
     }
-static const char *const ray_defines[RAY_KINDS][KERNEL_READS] = {
+static const char *const ray_defines[RAY_KINDS][SHADER_READS] = {
     [RAYS_OF_CAMERAS] = ALL_READS(),        [RAYS_OF_PANORAMAS] = ALL_READS(PANORAMIC),
     [RAYS_OF_LENSES] = ALL_READS(LENS),     [RAYS_OF_LISTS] = ALL_READS(LISTED_RAYS),
     [RAYS_OF_PATHS] = ALL_READS(PATH_RAYS),
 };
 /* The same where the sky is a picture. */
-static const char *const map_defines[RAYS_OF_PATHS][KERNEL_READS] = {
+static const char *const map_defines[RAYS_OF_PATHS][SHADER_READS] = {
     [RAYS_OF_CAMERAS]   = ALL_READS(SKY_MAP),
     [RAYS_OF_PANORAMAS] = ALL_READS(SKY_MAP PANORAMIC),
     [RAYS_OF_LENSES]    = ALL_READS(SKY_MAP LENS),
@@ -41,39 +41,39 @@ static const char *const map_defines[RAYS_OF_PATHS][KERNEL_READS] = {
 };
 
 /* The same for paths that may meet the plate of another renderer. */
-static const char *const plate_defines[KERNEL_READS] = ALL_READS(PATH_RAYS CATCHES);
+static const char *const plate_defines[SHADER_READS] = ALL_READS(PATH_RAYS CATCHES);
 
-/* A kernel without a scene, for rays of a kind. */
-static KernelRequest request_kernel(KrsRenderer *renderer, Kernel *kernel, const char *file,
+/* A shader without a scene, for rays of a kind. */
+static ShaderRequest request_shader(KrsRenderer *renderer, Shader *shader, const char *file,
                                     RayKind kind)
 {
-    const KernelReads reads = variants_reads(&renderer->gpu);
-    return (KernelRequest){kernel, {.file = file, .defines = ray_defines[kind][reads]}};
+    const ShaderReads reads = variants_reads(&renderer->gpu);
+    return (ShaderRequest){shader, {.file = file, .defines = ray_defines[kind][reads]}};
 }
 
-PixelKernel renderer_background(const KrsRendering *rendering)
+PixelShader renderer_background(const KrsRendering *rendering)
 {
     return rendering->program->sky_map ? PIXELS_BACKGROUND_OF_MAP : PIXELS_BACKGROUND;
 }
 
-static const char *const pixel_files[PIXEL_KERNELS] = {
+static const char *const pixel_files[PIXEL_SHADERS] = {
     [PIXELS_BACKGROUND] = "background.comp", [PIXELS_BACKGROUND_OF_MAP] = "background.comp",
     [PIXELS_UNPROVEN] = "unproven.comp",     [PIXELS_PENUMBRAE] = "penumbrae.comp",
     [PIXELS_SHADOW] = "shadow.comp",         [PIXELS_OCCLUSION] = "occlusion.comp",
 };
 
-size_t renderer_request_pixels(const KrsRendering *rendering, KernelRequest *requests)
+size_t renderer_request_pixels(const KrsRendering *rendering, ShaderRequest *requests)
 {
-    static const PixelKernel backgrounds[] = {
+    static const PixelShader backgrounds[] = {
         [false] = PIXELS_BACKGROUND_OF_MAP, [true] = PIXELS_BACKGROUND};
     KrsRenderer      *renderer = rendering->renderer;
     const RayKind     kind     = rendering->rays;
-    const PixelKernel other    = backgrounds[rendering->program->sky_map];
+    const PixelShader other    = backgrounds[rendering->program->sky_map];
     size_t            count    = 0;
-    for (int i = 0; i < PIXEL_KERNELS; i++) {
+    for (int i = 0; i < PIXEL_SHADERS; i++) {
         if (renderer->pixels[kind][i].pipeline || i == (int)other)
             continue;
-        requests[count] = request_kernel(renderer, &renderer->pixels[kind][i], pixel_files[i],
+        requests[count] = request_shader(renderer, &renderer->pixels[kind][i], pixel_files[i],
                                          kind);
         if (i == PIXELS_BACKGROUND_OF_MAP)
             requests[count].source.defines = map_defines[kind][variants_reads(&renderer->gpu)];
@@ -82,25 +82,25 @@ size_t renderer_request_pixels(const KrsRendering *rendering, KernelRequest *req
     return count;
 }
 
-size_t renderer_request_escapes(KrsRenderer *renderer, RayKind kind, KernelRequest *requests)
+size_t renderer_request_escapes(KrsRenderer *renderer, RayKind kind, ShaderRequest *requests)
 {
     const RayKind kinds[2] = {kind, RAYS_OF_PATHS};
     size_t        count    = 0;
     for (int i = kind == RAYS_OF_PATHS; i < 2; i++)
         if (!renderer->escapes[kinds[i]].pipeline)
-            requests[count++] = request_kernel(renderer, &renderer->escapes[kinds[i]],
+            requests[count++] = request_shader(renderer, &renderer->escapes[kinds[i]],
                                                "escape.comp", kinds[i]);
     return count;
 }
 
-/* Begins to make the kernels of previews without a scene, for cameras of any scene. */
+/* Begins to make the shaders of previews without a scene, for cameras of any scene. */
 static void start_prewarming(KrsRenderer *renderer)
 {
-    KernelRequest requests[PIXEL_KERNELS];
+    ShaderRequest requests[PIXEL_SHADERS];
     size_t        count = 0;
-    for (int i = 0; i < PIXEL_KERNELS; i++)
+    for (int i = 0; i < PIXEL_SHADERS; i++)
         if (i != PIXELS_BACKGROUND_OF_MAP)
-            requests[count++] = request_kernel(renderer, &renderer->pixels[RAYS_OF_CAMERAS][i],
+            requests[count++] = request_shader(renderer, &renderer->pixels[RAYS_OF_CAMERAS][i],
                                                pixel_files[i], RAYS_OF_CAMERAS);
     prewarm_start(renderer, requests, count);
 }
@@ -111,7 +111,7 @@ static void *start_glslang(void *unused)
     return unused;
 }
 
-/* Opens the device.  Where pictures come next and no kernel is kept, glslang starts meanwhile: both take
+/* Opens the device.  Where pictures come next and no shader is kept, glslang starts meanwhile: both take
    as long, and use one processor each. */
 static bool open_device(KrsRenderer *renderer, const KrsRendererOptions *options)
 {
@@ -140,11 +140,11 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
     KrsEarlyOuts early_outs = options ? options->early_outs : KRS_EARLY_OUTS_DEFAULT;
     renderer->early_outs    = early_outs == KRS_EARLY_OUTS_DEFAULT ? !gpu_is_cpu(&renderer->gpu)
                                                                    : early_outs == KRS_EARLY_OUTS_ON;
-    const KernelRequest kernels[] = {
+    const ShaderRequest shaders[] = {
         {&renderer->next_dispatch, {.file = "next_dispatch.comp"}},
-        request_kernel(renderer, &renderer->clear_shared, "clear_shared.comp", RAYS_OF_CAMERAS)};
-    const size_t count = gpu_is_cpu(&renderer->gpu) ? 0 : sizeof kernels / sizeof *kernels;
-    if (!layouts_create(renderer) || !kernels_make(renderer, VK_NULL_HANDLE, kernels, count,
+        request_shader(renderer, &renderer->clear_shared, "clear_shared.comp", RAYS_OF_CAMERAS)};
+    const size_t count = gpu_is_cpu(&renderer->gpu) ? 0 : sizeof shaders / sizeof *shaders;
+    if (!layouts_create(renderer) || !shaders_make(renderer, VK_NULL_HANDLE, shaders, count,
                                                    &renderer->spirv_ms, &renderer->pipeline_ms))
         return renderer->gpu.status;
     if (options && options->pictures_ahead)
@@ -161,16 +161,16 @@ void krs_renderer_free(KrsRenderer *renderer)
     if (gpu->device) {
         gpu_wait(gpu);
         for (int kind = 0; kind < RAY_KINDS; kind++) {
-            for (int i = 0; i < PIXEL_KERNELS; i++)
-                kernel_destroy(gpu, &renderer->pixels[kind][i]);
-            kernel_destroy(gpu, &renderer->limits[kind]);
-            kernel_destroy(gpu, &renderer->escapes[kind]);
+            for (int i = 0; i < PIXEL_SHADERS; i++)
+                shader_destroy(gpu, &renderer->pixels[kind][i]);
+            shader_destroy(gpu, &renderer->limits[kind]);
+            shader_destroy(gpu, &renderer->escapes[kind]);
         }
-        kernel_destroy(gpu, &renderer->escapes_to_plate);
-        kernel_destroy(gpu, &renderer->noise);
-        kernel_destroy(gpu, &renderer->plate);
-        kernel_destroy(gpu, &renderer->next_dispatch);
-        kernel_destroy(gpu, &renderer->clear_shared);
+        shader_destroy(gpu, &renderer->escapes_to_plate);
+        shader_destroy(gpu, &renderer->noise);
+        shader_destroy(gpu, &renderer->plate);
+        shader_destroy(gpu, &renderer->next_dispatch);
+        shader_destroy(gpu, &renderer->clear_shared);
         layouts_destroy(renderer);
     }
     gpu_close(gpu);
@@ -200,57 +200,57 @@ uint64_t krs_renderer_complaints(const KrsRenderer *renderer) { return renderer-
 
 bool renderer_create_pixels(KrsRendering *rendering)
 {
-    KernelRequest requests[PIXEL_KERNELS];
+    ShaderRequest requests[PIXEL_SHADERS];
     const size_t  count = renderer_request_pixels(rendering, requests);
-    return kernels_make(rendering->renderer, VK_NULL_HANDLE, requests, count, &rendering->spirv_ms,
+    return shaders_make(rendering->renderer, VK_NULL_HANDLE, requests, count, &rendering->spirv_ms,
                         &rendering->pipeline_ms);
 }
 
 bool renderer_create_escapes(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
                              double *pipeline_ms)
 {
-    KernelRequest requests[2];
+    ShaderRequest requests[2];
     const size_t  count = renderer_request_escapes(renderer, kind, requests);
-    return kernels_make(renderer, VK_NULL_HANDLE, requests, count, spirv_ms, pipeline_ms);
+    return shaders_make(renderer, VK_NULL_HANDLE, requests, count, spirv_ms, pipeline_ms);
 }
 
-/* Makes a kernel without a scene, unless it exists; NULL with the failure noted. */
-static const Kernel *make_ready(KrsRenderer *renderer, Kernel *kernel, const char *file,
+/* Makes a shader without a scene, unless it exists; NULL with the failure noted. */
+static const Shader *make_ready(KrsRenderer *renderer, Shader *shader, const char *file,
                                 RayKind kind, double *spirv_ms, double *pipeline_ms)
 {
-    KernelRequest request = request_kernel(renderer, kernel, file, kind);
-    bool          made    = kernel->pipeline ||
-                kernels_make(renderer, VK_NULL_HANDLE, &request, 1, spirv_ms, pipeline_ms);
-    return made ? kernel : NULL;
+    ShaderRequest request = request_shader(renderer, shader, file, kind);
+    bool          made    = shader->pipeline ||
+                shaders_make(renderer, VK_NULL_HANDLE, &request, 1, spirv_ms, pipeline_ms);
+    return made ? shader : NULL;
 }
 
-const Kernel *renderer_limit(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
+const Shader *renderer_limit(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
                              double *pipeline_ms)
 {
     return make_ready(renderer, &renderer->limits[kind], "limit.comp", kind, spirv_ms, pipeline_ms);
 }
 
-const Kernel *renderer_noise(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms)
+const Shader *renderer_noise(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms)
 {
     return make_ready(renderer, &renderer->noise, "noise.comp", RAYS_OF_CAMERAS, spirv_ms,
                       pipeline_ms);
 }
 
-const Kernel *renderer_plate(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms)
+const Shader *renderer_plate(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms)
 {
     return make_ready(renderer, &renderer->plate, "plate.comp", RAYS_OF_CAMERAS, spirv_ms,
                       pipeline_ms);
 }
 
-const Kernel *renderer_escape_of_paths(KrsRendering *rendering)
+const Shader *renderer_escape_of_paths(KrsRendering *rendering)
 {
     KrsRenderer  *renderer = rendering->renderer;
-    Kernel       *kernel   = &renderer->escapes_to_plate;
-    KernelRequest request  = {
-         kernel, {.file = "escape.comp", .defines = plate_defines[variants_reads(&renderer->gpu)]}};
+    Shader       *shader   = &renderer->escapes_to_plate;
+    ShaderRequest request  = {
+         shader, {.file = "escape.comp", .defines = plate_defines[variants_reads(&renderer->gpu)]}};
     if (!rendering->catches)
         return &renderer->escapes[RAYS_OF_PATHS];
-    bool made = kernel->pipeline || kernels_make(renderer, VK_NULL_HANDLE, &request, 1,
+    bool made = shader->pipeline || shaders_make(renderer, VK_NULL_HANDLE, &request, 1,
                                                  &rendering->spirv_ms, &rendering->pipeline_ms);
-    return made ? kernel : NULL;
+    return made ? shader : NULL;
 }

@@ -1,6 +1,6 @@
 /*
  * rendering.c: a scene on a device: its buffers and parameters, and the commands that run its
- * kernels.
+ * shaders.
  */
 #include "runtime/tracer/rendering.h"
 
@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "runtime/tracer/prewarm_thread.h"
-#include "runtime/tracer/kernels.h"
+#include "runtime/tracer/shaders.h"
 #include "runtime/tracer/layouts.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/scene_tables.h"
@@ -115,8 +115,8 @@ static bool buffers_create(KrsRendering *rendering)
     return true;
 }
 
-/* The work on an item before a kernel may be interrupted, in evaluations of the distance, about.
-   For kernels without the scene it is as much as some operations. */
+/* The work on an item before a shader may be interrupted, in evaluations of the distance, about.
+   For shaders without the scene it is as much as some operations. */
 static const double distances_of_item[KRS_PHASE_COUNT] = {
     [KRS_PHASE_BEAMS] = 64,   [KRS_PHASE_PRIMARY] = 16,  [KRS_PHASE_NORMALS] = 7,
     [KRS_PHASE_SHADOWS] = 64, [KRS_PHASE_OCCLUSION] = 5, [KRS_PHASE_SHADING] = 4,
@@ -172,7 +172,7 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
         for (int has_scene = 0; has_scene < 2; has_scene++)
             rendering->items_at_once[phase][has_scene] = guess_slice(rendering, phase, has_scene);
     if (!sets_create(rendering) || !buffers_create(rendering) ||
-        !kernels_create(rendering, purpose)) {
+        !shaders_create(rendering, purpose)) {
         KrsStatus status = renderer->gpu.status;
         prewarm_end(renderer); /* it may still use the queue */
         krs_rendering_free(rendering);
@@ -182,7 +182,7 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
     return KRS_OK;
 }
 
-/* Frees what is of one scene, but for its kernels. */
+/* Frees what is of one scene, but for its shaders. */
 static void drop_scene(Gpu *gpu, KrsRendering *dropped)
 {
     buffer_destroy(gpu, &dropped->parameters);
@@ -199,41 +199,41 @@ static bool change_scene(KrsRendering *rendering, const KrsScene *scene)
     rendering->zone_slots = rendering->most_zone_slots = 0;
     rendering->camera_relative                         = false;
     set_scene(rendering, scene);
-    return scene_buffers_create(rendering) && kernels_create(rendering, rendering->purpose);
+    return scene_buffers_create(rendering) && shaders_create(rendering, rendering->purpose);
 }
 
-/* Frees the kernels of one of two scenes that do not share them. */
-static void drop_kernels(Gpu *gpu, KrsRendering *dropped)
+/* Frees the shaders of one of two scenes that do not share them. */
+static void drop_shaders(Gpu *gpu, KrsRendering *dropped)
 {
     gpu_wait(gpu);
-    kernels_destroy(gpu, &dropped->kernels);
+    shaders_destroy(gpu, &dropped->shaders);
 }
 
 KrsStatus krs_rendering_update(KrsRendering *rendering, const KrsScene *scene)
 {
     Gpu         *gpu    = &rendering->renderer->gpu;
     KrsRendering before = *rendering;
-    const bool   stay   = before.program->kernels == krs_scene_program(scene)->kernels;
+    const bool   stay   = before.program->shaders == krs_scene_program(scene)->shaders;
     renderer_clear(rendering->renderer);
-    if (!gpu_wait(gpu)) /* kernels may still be prewarming */
+    if (!gpu_wait(gpu)) /* shaders may still be prewarming */
         return gpu->status;
     if (stay)
-        kernels_adopt(&rendering->kernels, scene);
+        shaders_adopt(&rendering->shaders, scene);
     else
-        rendering->kernels = (KernelMap){0};
+        rendering->shaders = (ShaderMap){0};
     const bool      ready   = change_scene(rendering, scene);
     const KrsStatus status  = gpu->status;
     KrsRendering    dropped = ready ? before : *rendering;
     if (!stay)
-        drop_kernels(gpu, &dropped);
+        drop_shaders(gpu, &dropped);
     else if (!ready)
-        before.kernels = rendering->kernels; /* with those that were made in vain */
+        before.shaders = rendering->shaders; /* with those that were made in vain */
     if (ready) {
         rendering->resident = (ResidentBand){0};
         rendering->updates++;
     } else {
         *rendering = before;
-        kernels_adopt(&rendering->kernels, before.scene);
+        shaders_adopt(&rendering->shaders, before.scene);
         bind_scene(rendering);
     }
     drop_scene(gpu, &dropped);
@@ -266,17 +266,17 @@ void krs_rendering_free(KrsRendering *rendering)
                          &band->queue,
                          &band->taken,
                          &band->tiles};
-    gpu_wait(gpu); /* kernels may still be prewarming, unless the device is lost */
+    gpu_wait(gpu); /* shaders may still be prewarming, unless the device is lost */
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         buffer_destroy(gpu, buffers[i]);
-    kernels_destroy(gpu, &rendering->kernels);
+    shaders_destroy(gpu, &rendering->shaders);
     if (!gpu->stuck)
         vkDestroyDescriptorPool(gpu->device, rendering->pool, NULL);
     gpu_release(gpu, rendering->table_inputs);
     gpu_release(gpu, rendering);
 }
 
-/* Chooses kernels with room for `count` zones: 1, 2, 4, 8 or 16.  Kernels that exist and have more
+/* Chooses shaders with room for `count` zones: 1, 2, 4, 8 or 16.  Shaders that exist and have more
    room serve as well. */
 static bool choose_zones(KrsRendering *rendering, size_t count)
 {
@@ -288,7 +288,7 @@ static bool choose_zones(KrsRendering *rendering, size_t count)
     for (most = 1; most < count;)
         most *= 2;
     rendering->zone_slots = rendering->most_zone_slots = most;
-    return kernels_create(rendering, rendering->purpose);
+    return shaders_create(rendering, rendering->purpose);
 }
 
 bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame,
@@ -339,7 +339,7 @@ bool rendering_set_rays(KrsRendering *rendering, RayKind kind)
     if (kind <= rendering->rays)
         return true;
     rendering->rays = kind;
-    return kernels_create(rendering, rendering->purpose);
+    return shaders_create(rendering, rendering->purpose);
 }
 
 uint32_t rendering_spread(const KrsRendering *rendering, uint32_t count)
@@ -388,28 +388,28 @@ bool rendering_finish(KrsRendering *rendering, double *ms)
     return gpu_finish(gpu, ms);
 }
 
-static void bind_kernel(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,
+static void bind_shader(KrsRendering *rendering, const Shader *shader, VkDescriptorSet set,
                         const void *work, uint32_t work_bytes)
 {
     VkCommandBuffer  commands = rendering->renderer->gpu.commands;
     VkPipelineLayout layout   = rendering->renderer->layout;
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel->pipeline);
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, shader->pipeline);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 2,
                             (VkDescriptorSet[]){rendering->scene_set, set}, 0, NULL);
     vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, work_bytes, work);
 }
 
-void rendering_dispatch(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,
+void rendering_dispatch(KrsRendering *rendering, const Shader *shader, VkDescriptorSet set,
                         const void *work, uint32_t work_bytes, uint32_t groups)
 {
-    bind_kernel(rendering, kernel, set, work, work_bytes);
+    bind_shader(rendering, shader, set, work, work_bytes);
     vkCmdDispatch(rendering->renderer->gpu.commands, groups, 1, 1);
 }
 
-void rendering_dispatch_counted(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,
+void rendering_dispatch_counted(KrsRendering *rendering, const Shader *shader, VkDescriptorSet set,
                                 const void *work, uint32_t work_bytes)
 {
-    bind_kernel(rendering, kernel, set, work, work_bytes);
+    bind_shader(rendering, shader, set, work, work_bytes);
     vkCmdDispatchIndirect(rendering->renderer->gpu.commands, rendering_control(rendering)->buffer,
                           offsetof(ControlBlock, groups));
 }

@@ -1,19 +1,19 @@
 /*
- * rendering.h: what a scene on a device needs for a frame, and the commands that run its kernels.
+ * rendering.h: what a scene on a device needs for a frame, and the commands that run its shaders.
  */
 #ifndef KRS_RENDERING_H
 #define KRS_RENDERING_H
 
 #include "runtime/tracer/handles.h"
 
-/* Copies the frame's parameters and zones to the device.  Chooses the kernels for these zones, and
+/* Copies the frame's parameters and zones to the device.  Chooses the shaders for these zones, and
    for the scene's own cameras. */
 bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame,
                               const double *rebase_origin);
-/* Chooses the kernels for rays of another kind; call it after rendering_set_parameters.  Kernels of
+/* Chooses the shaders for rays of another kind; call it after rendering_set_parameters.  Shaders of
    a scene with a panorama or a lens serve all of its cameras. */
 bool rendering_set_rays(KrsRendering *rendering, RayKind kind);
-/* Makes points relative to this origin, and chooses the kernels for that; call it after
+/* Makes points relative to this origin, and chooses the shaders for that; call it after
    rendering_set_parameters. */
 bool rendering_rebase(KrsRendering *rendering, KrsFrame *frame, const double rebase_origin[3]);
 /* Copies the lights of a frame to the device, relative to an origin, and makes room for `rays`
@@ -33,17 +33,17 @@ void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t bindi
                     const Buffer *buffer);
 /* Points the bindings of the frame and of the control block at those of the rendering. */
 void rendering_bind_frame(KrsRendering *rendering, VkDescriptorSet set);
-/* As gpu_begin and gpu_finish.  They also copy the control block to the kernels, and the counters
+/* As gpu_begin and gpu_finish.  They also copy the control block to the shaders, and the counters
    back. */
 bool rendering_begin(KrsRendering *rendering);
 bool rendering_finish(KrsRendering *rendering, double *ms);
-/* The control block that kernels use. */
+/* The control block that shaders use. */
 const Buffer *rendering_control(const KrsRendering *rendering);
-/* Records that a kernel runs with these push constants on `groups` workgroups. */
-void rendering_dispatch(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,
+/* Records that a shader runs with these push constants on `groups` workgroups. */
+void rendering_dispatch(KrsRendering *rendering, const Shader *shader, VkDescriptorSet set,
                         const void *work, uint32_t work_bytes, uint32_t groups);
 /* The same, on as many workgroups as the control block has in `groups` by then. */
-void rendering_dispatch_counted(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,
+void rendering_dispatch_counted(KrsRendering *rendering, const Shader *shader, VkDescriptorSet set,
                                 const void *work, uint32_t work_bytes);
 /* The most workgroups of a dispatch on any device. */
 enum { MOST_GROUPS = 65535 };

@@ -46,7 +46,7 @@ static void set_albedos(const KrsRendering *rendering)
     }
 }
 
-/* Makes room for lights, and for listed rays behind them.  Kernels load several lights at a time,
+/* Makes room for lights, and for listed rays behind them.  Shaders load several lights at a time,
    also beyond the last one. */
 static bool make_room(KrsRendering *rendering, size_t lights, size_t rays)
 {

@@ -1,5 +1,5 @@
 /*
- * scene_tables.c: tables are in memory of the device, since kernels read them at every point, and are
+ * scene_tables.c: tables are in memory of the device, since shaders read them at every point, and are
  * copied there from memory of the host.
  */
 #include "runtime/tracer/scene_tables.h"

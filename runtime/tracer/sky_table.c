@@ -1,5 +1,5 @@
 /*
- * sky_table.c: what kernels read of a sky that is a picture (blocks.h).
+ * sky_table.c: what shaders read of a sky that is a picture (blocks.h).
  *
  * Between the middles of texels radiance is bilinear.  So directions are chosen by cells whose corners
  * these middles are: in each the mean luminance is that of its corners.
@@ -301,7 +301,7 @@ static bool make_room(KrsRendering *rendering, VkDeviceSize bytes)
     }
     if (rendering->sky_table.size >= bytes)
         return true;
-    if (!gpu_wait(gpu)) /* kernels may still be prewarming, with the table that is bound */
+    if (!gpu_wait(gpu)) /* shaders may still be prewarming, with the table that is bound */
         return false;
     buffer_destroy(gpu, &rendering->sky_table);
     if (!buffer_create(gpu, &rendering->sky_table, bytes, ON_DEVICE, TABLE) ||

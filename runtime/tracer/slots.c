@@ -3,7 +3,7 @@
  */
 #include "runtime/tracer/slots.h"
 
-/* All slots but those of values that the host computes and kernels can compute by themselves. */
+/* All slots but those of values that the host computes and shaders can compute by themselves. */
 static uint32_t slots_without_values(const KrsProgram *program)
 {
     return program->parameter_slots + KRS_MOST_ZONES + 1;

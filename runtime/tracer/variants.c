@@ -1,8 +1,8 @@
 /*
- * variants.c: for each kernel, the functions of the scene that it calls, and the `#define`s for its
+ * variants.c: for each shader, the functions of the scene that it calls, and the `#define`s for its
  * own text.
  *
- * Choices are made once, for the scene's text.  define_choices alone passes them on to the kernel's
+ * Choices are made once, for the scene's text.  define_choices alone passes them on to the shader's
  * own text.
  */
 #include "runtime/tracer/variants.h"
@@ -14,10 +14,10 @@
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/slots.h"
 
-static void define(KernelVariant *to, const char *format, ...)
+static void define(ShaderVariant *to, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-static void define(KernelVariant *to, const char *format, ...)
+static void define(ShaderVariant *to, const char *format, ...)
 {
     size_t  length = strlen(to->defines);
     va_list arguments;
@@ -26,12 +26,12 @@ static void define(KernelVariant *to, const char *format, ...)
     va_end(arguments);
 }
 
-static void want(KernelVariant *to, KrsFunction function)
+static void want(ShaderVariant *to, KrsFunction function)
 {
     to->scene.wanted[to->scene.wanted_count++] = function;
 }
 
-static bool wants(const KernelVariant *of, KrsFunction function)
+static bool wants(const ShaderVariant *of, KrsFunction function)
 {
     bool found = false;
     for (size_t i = 0; i < of->scene.wanted_count; i++)
@@ -41,7 +41,7 @@ static bool wants(const KernelVariant *of, KrsFunction function)
 
 /* Chooses that distances and surfaces are those that a ray sees from inside of glass, or from
    outside. */
-static void want_media(KernelVariant *to, const KrsRendering *rendering)
+static void want_media(ShaderVariant *to, const KrsRendering *rendering)
 {
     if (!rendering->program->media)
         return;
@@ -50,8 +50,8 @@ static void want_media(KernelVariant *to, const KrsRendering *rendering)
         want(to, KRS_FUNCTION_MEDIUM_AT);
 }
 
-/* Defines for the kernel's own text what was chosen for the scene's.  It must be called last. */
-static void define_choices(KernelVariant *to)
+/* Defines for the shader's own text what was chosen for the scene's.  It must be called last. */
+static void define_choices(ShaderVariant *to)
 {
     static const struct {
         KrsFunction function;
@@ -80,21 +80,21 @@ static void define_choices(KernelVariant *to)
 
 /* Chooses the distance to march by.  Where branches save work, it is the one that skips far shapes.
    Within a march group there is nothing far to skip. */
-static void want_distance_to_march(KernelVariant *to)
+static void want_distance_to_march(ShaderVariant *to)
 {
     bool lod = to->scene.variant.many_threads && to->scene.variant.march_group == 0;
     want(to, lod ? KRS_FUNCTION_DISTANCE_LOD : KRS_FUNCTION_DISTANCE);
 }
 
-/* The rays of panoramas and lenses need sines, in all kernels that include frame.glsl. */
-static void want_rays(KernelVariant *to, const KrsRendering *rendering)
+/* The rays of panoramas and lenses need sines, in all shaders that include frame.glsl. */
+static void want_rays(ShaderVariant *to, const KrsRendering *rendering)
 {
     if (rendering->rays == RAYS_OF_PANORAMAS || rendering->rays == RAYS_OF_LENSES)
         want(to, KRS_FUNCTION_SINES);
 }
 
 /* A sky that is a picture is read by longitude and latitude. */
-static void want_sky(KernelVariant *to, const KrsRendering *rendering)
+static void want_sky(ShaderVariant *to, const KrsRendering *rendering)
 {
     if (!rendering->program->sky_map)
         return;
@@ -105,7 +105,7 @@ static void want_sky(KernelVariant *to, const KrsRendering *rendering)
 }
 
 /* Where the plate of another renderer catches shadows, discs of lights need a tangent. */
-static void want_plate(KernelVariant *to, const KrsRendering *rendering)
+static void want_plate(ShaderVariant *to, const KrsRendering *rendering)
 {
     if (!rendering->catches)
         return;
@@ -115,7 +115,7 @@ static void want_plate(KernelVariant *to, const KrsRendering *rendering)
 }
 
 /* What is known of materials before one is looked at.  Phases of waves need cosines. */
-static void want_materials(KernelVariant *to, const KrsRendering *rendering)
+static void want_materials(ShaderVariant *to, const KrsRendering *rendering)
 {
     if (rendering->program->anisotropic)
         define(to, "#define ANISOTROPIC\n");
@@ -131,7 +131,7 @@ static void want_materials(KernelVariant *to, const KrsRendering *rendering)
 /* ---- variants for a rendering ---- */
 
 /* A graphics card has registers for what all lanes read from a block. */
-KernelReads variants_reads(const Gpu *gpu)
+ShaderReads variants_reads(const Gpu *gpu)
 {
     return !gpu->texels ? READ_BUFFERS : gpu_is_cpu(gpu) ? READ_FRAME_TEXELS : READ_TEXELS;
 }
@@ -139,19 +139,19 @@ KernelReads variants_reads(const Gpu *gpu)
 /* Not on lavapipe, which compiles a sum over the lanes to a loop. */
 static bool sums_lanes(const Gpu *gpu) { return !gpu_is_cpu(gpu) && gpu->sums_lanes; }
 
-static KernelVariant begin_variant(const KrsRendering *rendering, KrsTrace trace,
+static ShaderVariant begin_variant(const KrsRendering *rendering, KrsTrace trace,
                                    KrsSchedule schedule)
 {
     static const char *const ray_defines[RAY_KINDS] = {
         [RAYS_OF_CAMERAS] = "",        [RAYS_OF_PANORAMAS] = PANORAMIC, [RAYS_OF_LENSES] = LENS,
         [RAYS_OF_LISTS] = LISTED_RAYS, [RAYS_OF_PATHS] = PATH_RAYS,
     };
-    static const char *const read_defines[KERNEL_READS] = {
+    static const char *const read_defines[SHADER_READS] = {
         [READ_BUFFERS] = NO_TEXELS, [READ_TEXELS] = "", [READ_FRAME_TEXELS] = FRAME_TEXELS};
     const Gpu    *gpu             = &rendering->renderer->gpu;
     bool          camera_relative = rendering->camera_relative;
     bool          by_ray          = trace >= KRS_TRACE_EXACT;
-    KernelVariant to              = {.scene = {.scene = rendering->scene}};
+    ShaderVariant to              = {.scene = {.scene = rendering->scene}};
     to.scene.variant              = (KrsVariant){
                      .zones           = rendering->zone_slots,
                      .camera_relative = camera_relative,
@@ -168,7 +168,7 @@ static KernelVariant begin_variant(const KrsRendering *rendering, KrsTrace trace
 }
 
 /* Chooses how rays step by krs_along, or by krs_steps; false where they step by distances. */
-static bool want_steps(KernelVariant *to, const KrsRendering *rendering, KrsTrace trace,
+static bool want_steps(ShaderVariant *to, const KrsRendering *rendering, KrsTrace trace,
                        KrsFunction function)
 {
     static const KrsRayStep steps[KRS_TRACE_COUNT] = {
@@ -184,13 +184,13 @@ static bool want_steps(KernelVariant *to, const KrsRendering *rendering, KrsTrac
     return true;
 }
 
-static bool want_along(KernelVariant *to, const KrsRendering *rendering, KrsTrace trace)
+static bool want_along(ShaderVariant *to, const KrsRendering *rendering, KrsTrace trace)
 {
     return want_steps(to, rendering, trace, KRS_FUNCTION_ALONG);
 }
 
 /* Chooses krs_probe for methods that test whether balls are empty; false for others. */
-static bool want_probe(KernelVariant *to, const KrsRendering *rendering, KrsTrace trace)
+static bool want_probe(ShaderVariant *to, const KrsRendering *rendering, KrsTrace trace)
 {
     if ((trace != KRS_TRACE_BINARY && trace != KRS_TRACE_PREDICTED) ||
         !rendering_goes_along(rendering, trace))
@@ -200,9 +200,9 @@ static bool want_probe(KernelVariant *to, const KrsRendering *rendering, KrsTrac
     return true;
 }
 
-/* Rays of paths may be within glass.  Kernels for all march groups are for these, too, where the
+/* Rays of paths may be within glass.  Shaders for all march groups are for these, too, where the
    picture has any. */
-static void want_paths(KernelVariant *to, const KrsRendering *rendering, bool whole)
+static void want_paths(ShaderVariant *to, const KrsRendering *rendering, bool whole)
 {
     const bool mixed = whole && rendering->rays != RAYS_OF_PATHS && rendering_mixes_rays(rendering);
     if (mixed)
@@ -211,10 +211,10 @@ static void want_paths(KernelVariant *to, const KrsRendering *rendering, bool wh
         want_media(to, rendering);
 }
 
-KernelVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+ShaderVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
                                uint32_t group)
 {
-    KernelVariant to    = begin_variant(rendering, trace, schedule);
+    ShaderVariant to    = begin_variant(rendering, trace, schedule);
     const bool    saves = group != MARCH_PACKED && rendering_saves_rays(rendering, schedule);
     define(&to, "#define SAVES %d\n", saves);
     want_rays(&to, rendering);
@@ -238,10 +238,10 @@ KernelVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, Kr
 }
 
 /* The octahedron has no define: normals.comp uses it by default. */
-KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals normals, uint32_t group)
+ShaderVariant variant_of_normals(const KrsRendering *rendering, KrsNormals normals, uint32_t group)
 {
     const KrsProgram *program    = rendering->program;
-    KernelVariant     to         = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    ShaderVariant     to         = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     to.scene.variant.march_group = group;
     want_rays(&to, rendering);
     want_paths(&to, rendering, group == 0);
@@ -261,10 +261,10 @@ KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals norma
 }
 
 /* The random directions of rays need sines.  Rays of previews and of direct light pass through glass. */
-KernelVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace,
+ShaderVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace,
                                    KrsSchedule schedule, KrsIntegrator integrator)
 {
-    KernelVariant to = begin_variant(rendering, trace, schedule);
+    ShaderVariant to = begin_variant(rendering, trace, schedule);
     if (rendering->program->media)
         to.scene.variant.glass = integrator == KRS_INTEGRATOR_PATH ? KRS_GLASS_NESTED
                                                                    : KRS_GLASS_LEFT_OUT;
@@ -285,9 +285,9 @@ static bool knows_tangents(const KrsRendering *rendering)
            !rendering->camera_relative && !rendering->program->media;
 }
 
-KernelVariant variant_of_shade(const KrsRendering *rendering)
+ShaderVariant variant_of_shade(const KrsRendering *rendering)
 {
-    KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    ShaderVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     want_rays(&to, rendering);
     want(&to, KRS_FUNCTION_SURFACE);
     want_media(&to, rendering);
@@ -307,9 +307,9 @@ KernelVariant variant_of_shade(const KrsRendering *rendering)
 }
 
 /* The random directions of rays need sines.  What they pass through occludes nothing. */
-KernelVariant variant_of_occluders(const KrsRendering *rendering)
+ShaderVariant variant_of_occluders(const KrsRendering *rendering)
 {
-    KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    ShaderVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     if (rendering->program->media)
         to.scene.variant.glass = KRS_GLASS_LEFT_OUT;
     want(&to, KRS_FUNCTION_SINES);
@@ -320,10 +320,10 @@ KernelVariant variant_of_occluders(const KrsRendering *rendering)
 }
 
 /* The random directions of paths need sines. */
-KernelVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts,
+ShaderVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts,
                                  KrsIntegrator integrator)
 {
-    KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    ShaderVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     want(&to, KRS_FUNCTION_SURFACE);
     want(&to, KRS_FUNCTION_SINES);
     if (rendering->program->emits)
@@ -344,18 +344,18 @@ KernelVariant variant_of_scatter(const KrsRendering *rendering, KrsStarts starts
     return to;
 }
 
-KernelVariant variant_of_even_hits(const KrsRendering *rendering)
+ShaderVariant variant_of_even_hits(const KrsRendering *rendering)
 {
-    KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    ShaderVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     want_rays(&to, rendering);
     want(&to, KRS_FUNCTION_DISTANCE);
     define_choices(&to);
     return to;
 }
 
-KernelVariant variant_of_query(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule)
+ShaderVariant variant_of_query(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule)
 {
-    KernelVariant to = begin_variant(rendering, trace, schedule);
+    ShaderVariant to = begin_variant(rendering, trace, schedule);
     want_rays(&to, rendering);
     if (!want_along(&to, rendering, trace))
         want_distance_to_march(&to);
@@ -364,9 +364,9 @@ KernelVariant variant_of_query(const KrsRendering *rendering, KrsTrace trace, Kr
 }
 
 /* Differences of a distance see both sides of a sheet, so sheets need the gradient. */
-KernelVariant variant_of_point_query(const KrsRendering *rendering)
+ShaderVariant variant_of_point_query(const KrsRendering *rendering)
 {
-    KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    ShaderVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     want(&to, KRS_FUNCTION_DISTANCE);
     want(&to, KRS_FUNCTION_SURFACE);
     if (rendering->program->sheets)
@@ -375,21 +375,21 @@ KernelVariant variant_of_point_query(const KrsRendering *rendering)
     return to;
 }
 
-KernelSource variant_source(const char *file, const KernelVariant *variant)
+ShaderSource variant_source(const char *file, const ShaderVariant *variant)
 {
-    return (KernelSource){file, variant->scene.scene ? &variant->scene : NULL, variant->defines};
+    return (ShaderSource){file, variant->scene.scene ? &variant->scene : NULL, variant->defines};
 }
 
 /* ---- variants for any device ---- */
 
-KernelVariant variant_for_any(const KrsScene *scene, const char *file, const KrsVariant *variant)
+ShaderVariant variant_for_any(const KrsScene *scene, const char *file, const KrsVariant *variant)
 {
     static const struct {
         const char *file;
         bool        marches;
         KrsFunction wanted[2];
         size_t      count;
-    } kernels[] = {
+    } shaders[] = {
         {"trace.comp", true, {0}, 0},
         {"query.comp", true, {0}, 0},
         {"normals.comp", false, {KRS_FUNCTION_DISTANCE}, 1},
@@ -400,15 +400,15 @@ KernelVariant variant_for_any(const KrsScene *scene, const char *file, const Krs
         {"scatter.comp", false, {KRS_FUNCTION_SURFACE, KRS_FUNCTION_SINES}, 2},
         {"point_query.comp", false, {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_SURFACE}, 2},
     };
-    KernelVariant to = {.scene = {.variant = *variant}};
-    for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++) {
-        if (strcmp(kernels[i].file, file) != 0)
+    ShaderVariant to = {.scene = {.variant = *variant}};
+    for (size_t i = 0; i < sizeof shaders / sizeof *shaders; i++) {
+        if (strcmp(shaders[i].file, file) != 0)
             continue;
         to.scene.scene = scene;
-        if (kernels[i].marches)
+        if (shaders[i].marches)
             want_distance_to_march(&to);
-        for (size_t k = 0; k < kernels[i].count; k++)
-            want(&to, kernels[i].wanted[k]);
+        for (size_t k = 0; k < shaders[i].count; k++)
+            want(&to, shaders[i].wanted[k]);
     }
     define_choices(&to);
     return to;

@@ -264,7 +264,7 @@ void view_choose_eye(KrsCamera *camera, KrsEye eye, uint32_t width, uint32_t hei
                         (extent[0] * (camera->projection == KRS_PERSPECTIVE ? focus : 1));
 }
 
-/* Sets what kernels with a lens need. */
+/* Sets what shaders with a lens need. */
 static void place_lens(const KrsCamera *camera, const Basis *basis, const double extent[2],
                        FrameBlock *block)
 {

@@ -1,5 +1,5 @@
 /*
- * view.h: from the camera and the sky of a scene to what the kernels need.
+ * view.h: from the camera and the sky of a scene to what the shaders need.
  */
 #ifndef KRS_VIEW_H
 #define KRS_VIEW_H

@@ -422,7 +422,7 @@ static double compare_frames(KrsRendering *rendering, KrsFrame *frame, bool late
     return worst;
 }
 
-/* Slopes that the host finds for each frame reach kernels that are compiled once. */
+/* Slopes that the host finds for each frame reach shaders that are compiled once. */
 static void frames_agree(void **context)
 {
     static const char text[] =

@@ -104,7 +104,7 @@ static void zones_come_and_go(void **context)
             random_vector(&chance, 0.8, zones[i]);
             zones[i][3] = uniform(0.1, 0.4);
         }
-        const KernelEntry *newest = s.rendering->kernels.first;
+        const ShaderEntry *newest = s.rendering->kernels.first;
         const size_t       room   = s.rendering->most_zone_slots;
         assert_int_equal(krs_frame_set_zones(s.frame, (const double(*)[4])zones, count), KRS_OK);
         points_agree(s, 2000, 1.5, 16);

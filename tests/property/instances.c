@@ -406,7 +406,7 @@ static double mean_length(const Grid *grid)
     return (double)grid->first[cells] / (double)cells;
 }
 
-/* As kernels have it: a bound everywhere, and right where it is less than the clearance. */
+/* As shaders have it: a bound everywhere, and right where it is less than the clearance. */
 static void compare_cells(const Shape *shape, const Seen *parts, const Seen *group, double most)
 {
     int right = 0;
@@ -486,7 +486,7 @@ static int compare_instances(const Shape *shape, const Seen *parts, const Seen *
     return near;
 }
 
-/* As kernels have them: each must be right farther away than its surface. */
+/* As shaders have them: each must be right farther away than its surface. */
 static void blends_of_instances(void **state)
 {
     static Seen parts[2 * EACH];

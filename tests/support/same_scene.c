@@ -15,8 +15,8 @@
 #include "compiler/passes/compile.h"
 #include "tests/support/random.h"
 
-/* The text of the functions that kernels call, without comments. */
-static void print_kernels(const KrsScene *scene, bool card, char *to, size_t capacity)
+/* The text of the functions that shaders call, without comments. */
+static void print_shaders(const KrsScene *scene, bool card, char *to, size_t capacity)
 {
     const KrsVariant  variant  = {.values = true, .many_threads = card};
     const KrsFunction wanted[] = {card ? KRS_FUNCTION_DISTANCE_LOD : KRS_FUNCTION_DISTANCE,
@@ -34,13 +34,13 @@ static void print_kernels(const KrsScene *scene, bool card, char *to, size_t cap
     free(text);
 }
 
-bool same_kernels(const KrsScene *a, const KrsScene *b)
+bool same_shaders(const KrsScene *a, const KrsScene *b)
 {
     static char x[1 << 16], y[1 << 16];
     bool        same = true;
     for (int card = 0; card < 2; card++) {
-        print_kernels(a, card, x, sizeof x);
-        print_kernels(b, card, y, sizeof y);
+        print_shaders(a, card, x, sizeof x);
+        print_shaders(b, card, y, sizeof y);
         same = same && strcmp(x, y) == 0;
     }
     return same;
@@ -85,7 +85,7 @@ void assert_same_scene(const KrsScene *a, const KrsScene *b)
     KrsFrame *first, *second;
     KrsCamera x, y;
     assert_same_distances(a, b);
-    assert_true(same_kernels(a, b));
+    assert_true(same_shaders(a, b));
     assert_int_equal(krs_table_rows(a), krs_table_rows(b));
     assert_int_equal(krs_table_cells(a), krs_table_cells(b));
     assert_int_equal(krs_value_slots(a), krs_value_slots(b));

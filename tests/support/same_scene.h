@@ -8,8 +8,8 @@
 
 #include "krs/krs.h"
 
-/* The texts of what kernels call, without comments. */
-bool same_kernels(const KrsScene *a, const KrsScene *b);
+/* The texts of what shaders call, without comments. */
+bool same_shaders(const KrsScene *a, const KrsScene *b);
 /* Distances at many points. */
 void assert_same_distances(const KrsScene *a, const KrsScene *b);
 /* Texts, tables, distances at many points, and the first camera. */

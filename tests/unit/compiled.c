@@ -1,5 +1,5 @@
 /*
- * compiled.c: what is compiled once is not compiled again: kernels come from the cache, also under
+ * compiled.c: what is compiled once is not compiled again: shaders come from the cache, also under
  * scarce memory; and glslang may be wanted by several threads at once.
  */
 #include <setjmp.h>
@@ -18,14 +18,14 @@
 
 #include "compiler/base/embedded.h"
 #include "compiler/passes/compile.h"
-#include "runtime/device/kernel.h"
+#include "runtime/device/shader.h"
 #include "runtime/tracer/handles.h"
 #include "tests/support/device.h"
 #include "tests/support/folder.h"
 #include "tests/support/scarce.h"
 #include "tests/unit/compiled_files.h"
 
-/* Makes a scene ready, whose kernels the program cannot carry. */
+/* Makes a scene ready, whose shaders the program cannot carry. */
 static KrsStatus prepare_scene(const KrsRendererOptions *options)
 {
     static const char text[] = "show sphere(1);\n";
@@ -42,22 +42,22 @@ static KrsStatus prepare_scene(const KrsRendererOptions *options)
     return status;
 }
 
-static void a_kernel_is_compiled_once(void **state)
+static void a_shader_is_compiled_once(void **state)
 {
     (void)state;
     char               name[NAME_MAX + 1];
     KrsRendererOptions options = {.device = tested_device(), .cache = folder};
     assert_int_equal(prepare_scene(&options), KRS_OK);
-    int kernels = count_files_that_end(".spirv", name);
-    assert_true(kernels > 0);
+    int shaders = count_files_that_end(".spirv", name);
+    assert_true(shaders > 0);
     ino_t number = number_of(name);
     assert_int_equal(prepare_scene(&options), KRS_OK);
-    assert_int_equal(count_files_that_end(".spirv", name), kernels);
+    assert_int_equal(count_files_that_end(".spirv", name), shaders);
     assert_int_equal(number_of(name), number);
 
     assert_int_equal(truncate(name, 100), 0);
     assert_int_equal(prepare_scene(&options), KRS_OK);
-    assert_int_equal(count_files_that_end(".spirv", name), kernels);
+    assert_int_equal(count_files_that_end(".spirv", name), shaders);
     number = number_of(name);
     struct stat repaired;
     assert_int_equal(stat(name, &repaired), 0);
@@ -77,7 +77,7 @@ static void nothing_is_written_unasked(void **state)
     assert_int_equal(access("krs", F_OK), -1);
 }
 
-/* As the scene's text (set 0) and frame.glsl (set 1) have them: texels where kernels only read. */
+/* As the scene's text (set 0) and frame.glsl (set 1) have them: texels where shaders only read. */
 static VkDescriptorType type_of_binding(int set, uint32_t binding)
 {
     const bool read[] = {binding >= 1 && binding <= 3,
@@ -87,7 +87,7 @@ static VkDescriptorType type_of_binding(int set, uint32_t binding)
     return read[set] ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
-/* A layout that has room for the bindings of any kernel. */
+/* A layout that has room for the bindings of any shader. */
 static VkPipelineLayout make_layout(Gpu *gpu)
 {
     enum { SETS = 2, BINDINGS = 16 };
@@ -126,19 +126,19 @@ static VkPipelineLayout make_layout(Gpu *gpu)
     return layout;
 }
 
-/* A kernel that needs no scene. */
-static const char *find_kernel(void)
+/* A shader that needs no scene. */
+static const char *find_shader(void)
 {
     for (const EmbeddedFile *file = shader_files; file->name; file++)
         if (strstr(file->name, ".comp") && !strstr(file->text, "#include \"scene.glsl\""))
             return file->name;
-    fail_msg("every kernel includes the scene");
+    fail_msg("every shader includes the scene");
     return NULL;
 }
 
-/* A kernel without a scene comes with the program: nothing is compiled for it.  A sphere's own are
+/* A shader without a scene comes with the program: nothing is compiled for it.  A sphere's own are
    those of its rays, normals, secondary rays, albedos of occluders and shading. */
-static void some_kernels_come_along(void **state)
+static void some_shaders_come_along(void **state)
 {
     (void)state;
     char               name[NAME_MAX + 1];
@@ -172,46 +172,46 @@ static void comments_are_not_compiled(void **state)
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         char text[64];
         snprintf(text, sizeof text, "%s", texts[i].given);
-        kernel_strip(text);
+        shader_strip(text);
         assert_string_equal(text, texts[i].left);
     }
 }
 
-/* Several variants of a kernel: all are made, or the reason is told. */
-static void kernels_are_compiled_together(void **state)
+/* Several variants of a shader: all are made, or the reason is told. */
+static void shaders_are_compiled_together(void **state)
 {
-    enum { KERNELS = 4 };
+    enum { SHADERS = 4 };
     (void)state;
     Gpu                      gpu;
-    const char              *file = find_kernel();
-    Kernel                   kernels[KERNELS];
-    KernelRequest            requests[KERNELS];
+    const char              *file = find_shader();
+    Shader                   shaders[SHADERS];
+    ShaderRequest            requests[SHADERS];
     double                   spirv_ms = 0, pipeline_ms = 0;
     char                     name[NAME_MAX + 1];
-    static const char *const defines[KERNELS] = {"#define VARIANT 0\n", "#define VARIANT 1\n",
+    static const char *const defines[SHADERS] = {"#define VARIANT 0\n", "#define VARIANT 1\n",
                                                  "#define VARIANT 2\n", "#error refused\n"};
     assert_true(gpu_open(&gpu, &(KrsRendererOptions){.device = tested_device(), .cache = folder}));
     VkPipelineLayout layout = make_layout(&gpu);
-    for (int i = 0; i < KERNELS; i++)
-        requests[i] = (KernelRequest){&kernels[i], {file, NULL, defines[i]}};
+    for (int i = 0; i < SHADERS; i++)
+        requests[i] = (ShaderRequest){&shaders[i], {file, NULL, defines[i]}};
 
     spirv_start();
     for (int kept = 0; kept < 2; kept++) { /* compiled, then from the cache */
         assert_true(
-            kernel_create_all(&gpu, requests, KERNELS - 1, layout, &spirv_ms, &pipeline_ms));
-        for (int i = 0; i < KERNELS - 1; i++) {
-            assert_true(kernels[i].pipeline != VK_NULL_HANDLE);
-            kernel_destroy(&gpu, &kernels[i]);
+            shader_create_all(&gpu, requests, SHADERS - 1, layout, &spirv_ms, &pipeline_ms));
+        for (int i = 0; i < SHADERS - 1; i++) {
+            assert_true(shaders[i].pipeline != VK_NULL_HANDLE);
+            shader_destroy(&gpu, &shaders[i]);
         }
-        assert_int_equal(count_files_that_end(".spirv", name), KERNELS - 1);
+        assert_int_equal(count_files_that_end(".spirv", name), SHADERS - 1);
     }
-    assert_false(kernel_create_all(&gpu, requests, KERNELS, layout, &spirv_ms, &pipeline_ms));
+    assert_false(shader_create_all(&gpu, requests, SHADERS, layout, &spirv_ms, &pipeline_ms));
     assert_int_equal(gpu.status, KRS_INTERNAL);
     assert_non_null(strstr(gpu.message, file));
-    for (int i = 0; i < KERNELS; i++)
-        kernel_destroy(&gpu, &kernels[i]);
+    for (int i = 0; i < SHADERS; i++)
+        shader_destroy(&gpu, &shaders[i]);
     requests[1].source.file = "missing.comp";
-    assert_false(kernel_create_all(&gpu, requests, 2, layout, &spirv_ms, &pipeline_ms));
+    assert_false(shader_create_all(&gpu, requests, 2, layout, &spirv_ms, &pipeline_ms));
     assert_non_null(strstr(gpu.message, "missing.comp"));
     spirv_stop();
     vkDestroyPipelineLayout(gpu.device, layout, NULL);
@@ -245,7 +245,7 @@ static void memory_that_runs_out_is_reported(void **state)
 
 /* ---- Rehearsals ---- */
 
-/* Kernels are run before they are needed on devices of type CPU alone; a pretended card has nothing
+/* Shaders are run before they are needed on devices of type CPU alone; a pretended card has nothing
    to run them with, so that it would crash. */
 static void graphics_cards_do_not_rehearse(void **state)
 {
@@ -307,10 +307,10 @@ static void threads_may_compile_at_once(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        in_folder(a_kernel_is_compiled_once),
+        in_folder(a_shader_is_compiled_once),
         in_folder(nothing_is_written_unasked),
-        in_folder(some_kernels_come_along),
-        in_folder(kernels_are_compiled_together),
+        in_folder(some_shaders_come_along),
+        in_folder(shaders_are_compiled_together),
         in_folder(memory_that_runs_out_is_reported),
         cmocka_unit_test(graphics_cards_do_not_rehearse),
         cmocka_unit_test(comments_are_not_compiled),

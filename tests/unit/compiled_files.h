@@ -15,7 +15,7 @@ KrsStatus open_and_close(const KrsRendererOptions *options);
 /* A file that is written again is another one, because writing is renaming. */
 ino_t number_of(const char *name);
 
-/* A kernel that needs nothing. */
+/* A shader that needs nothing. */
 extern const char small_text[];
 
 #endif

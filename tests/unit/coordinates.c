@@ -73,7 +73,7 @@ static void coordinates_that_some_ask_for_are_there(void **state)
         for (int k = 0; k < 2; k++)
             scenes[k] = compile_after(asks[i][k],
                                       "show sphere(1).paint(m); camera { eye: [4, 3, 15] }");
-        assert_false(same_kernels(scenes[0], scenes[1]));
+        assert_false(same_shaders(scenes[0], scenes[1]));
         krs_scene_free(scenes[0]);
         krs_scene_free(scenes[1]);
     }

@@ -3,7 +3,7 @@
  *
  * The device is taken for a graphics card, and for one whose buffers are no longer than any
  * device's may be: pictures and answers must be those of the device as it is, bit by bit, under the
- * validation layers.  Kernels that read buffers are other programs than those that read texels, and
+ * validation layers.  Shaders that read buffers are other programs than those that read texels, and
  * a compiler orders sums as it likes: there light may differ in the last places, and nothing else.
  */
 #include <math.h>
@@ -121,7 +121,7 @@ static size_t difference(const KrsPicture *a, const KrsPicture *b)
            differing_bytes(a->color, b->color, pixels * 4 * sizeof(float));
 }
 
-static size_t difference_of_kernels(const KrsPicture *a, const KrsPicture *b)
+static size_t difference_of_shaders(const KrsPicture *a, const KrsPicture *b)
 {
     size_t pixels = (size_t)a->window.width * a->window.height;
     return difference_but_color(a, b) + differing_numbers(a->color, b->color, 4 * pixels);
@@ -235,7 +235,7 @@ static size_t compare(const Case *test, unsigned pretence)
 {
     Fixture plain = open_fixture(test->text, 0), pretending = open_fixture(test->text, pretence);
     KrsPicture *a = render(&plain, &test->options), *b = render(&pretending, &test->options);
-    size_t      differ = pretence & KRS_PRETEND_LEAST_LIMITS ? difference_of_kernels(a, b)
+    size_t      differ = pretence & KRS_PRETEND_LEAST_LIMITS ? difference_of_shaders(a, b)
                                                              : difference(a, b);
     if (differ > 0)
         print_message("# %s: %zu bytes differ\n", test->name, differ);

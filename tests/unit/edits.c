@@ -129,8 +129,8 @@ static void assert_shows(Viewer *viewer, const char *text)
     close_viewer(&alone);
 }
 
-/* Kernels that the renderer has made so far. */
-static uint64_t kernels_made(Viewer *viewer)
+/* Shaders that the renderer has made so far. */
+static uint64_t shaders_made(Viewer *viewer)
 {
     KrsPicture    *picture = render(viewer);
     const uint64_t made    = picture->stats.kernels;
@@ -138,16 +138,16 @@ static uint64_t kernels_made(Viewer *viewer)
     return made;
 }
 
-/* No text of a kernel was printed for the last edit: that would have taken time. */
-static void assert_kernels_stay(const Viewer *viewer)
+/* No text of a shader was printed for the last edit: that would have taken time. */
+static void assert_shaders_stay(const Viewer *viewer)
 {
-    KrsKernelStats kernels[32];
+    KrsKernelStats shaders[32];
     size_t         with_scene = 0;
-    const size_t   count      = krs_rendering_kernels(viewer->rendering, kernels, 32);
+    const size_t   count      = krs_rendering_kernels(viewer->rendering, shaders, 32);
     assert_in_range(count, 1, 32);
     for (size_t i = 0; i < count; i++) {
-        with_scene += kernels[i].glsl_bytes > 0;
-        assert_true(kernels[i].glsl_bytes == 0 || (kernels[i].cached && kernels[i].spirv_ms == 0));
+        with_scene += shaders[i].glsl_bytes > 0;
+        assert_true(shaders[i].glsl_bytes == 0 || (shaders[i].cached && shaders[i].spirv_ms == 0));
     }
     assert_true(with_scene > 0);
 }
@@ -158,17 +158,17 @@ static void an_edit_of_numbers_compiles_nothing(void **state)
     Viewer      viewer = open_viewer(before);
     KrsPicture *first  = film(&viewer);
     krs_film_clear(viewer.film);
-    const uint64_t made = kernels_made(&viewer);
+    const uint64_t made = shaders_made(&viewer);
     assert_int_equal(edit(&viewer, numbers), KRS_CHANGE_VALUES);
-    assert_int_equal(kernels_made(&viewer), made);
-    assert_kernels_stay(&viewer);
+    assert_int_equal(shaders_made(&viewer), made);
+    assert_shaders_stay(&viewer);
     KrsPicture *second = render(&viewer);
     assert_false(are_equal(first, second));
     assert_shows(&viewer, numbers);
     assert_int_equal(edit(&viewer, before), KRS_CHANGE_VALUES);
     assert_shows(&viewer, before);
-    /* A rendering of its own finds the kernels, too. */
-    assert_int_equal(kernels_made(&viewer), made);
+    /* A rendering of its own finds the shaders, too. */
+    assert_int_equal(shaders_made(&viewer), made);
     krs_picture_free(first);
     krs_picture_free(second);
     close_viewer(&viewer);
@@ -179,7 +179,7 @@ static void edits_of_a_instance_compile_nothing(void **state)
     (void)state;
     Viewer         viewer = open_viewer(group);
     KrsPicture    *first  = render(&viewer);
-    const uint64_t made   = kernels_made(&viewer);
+    const uint64_t made   = shaders_made(&viewer);
     assert_int_equal(edit(&viewer, moved), KRS_CHANGE_VALUES);
     KrsPicture *second = render(&viewer);
     assert_false(are_equal(first, second));
@@ -188,10 +188,10 @@ static void edits_of_a_instance_compile_nothing(void **state)
     assert_shows(&viewer, more);
     assert_int_equal(edit(&viewer, group), KRS_CHANGE_VALUES);
     assert_shows(&viewer, group);
-    assert_int_equal(kernels_made(&viewer), made);
+    assert_int_equal(shaders_made(&viewer), made);
     assert_int_equal(edit(&viewer, few), KRS_CHANGE_STRUCTURE);
     assert_shows(&viewer, few);
-    assert_true(kernels_made(&viewer) > made);
+    assert_true(shaders_made(&viewer) > made);
     assert_int_equal(edit(&viewer, more), KRS_CHANGE_STRUCTURE);
     assert_shows(&viewer, more);
     krs_picture_free(first);
@@ -203,15 +203,15 @@ static void other_structures_are_compiled_once(void **state)
 {
     (void)state;
     Viewer         viewer = open_viewer(before);
-    const uint64_t made   = kernels_made(&viewer);
+    const uint64_t made   = shaders_made(&viewer);
     assert_int_equal(edit(&viewer, structure), KRS_CHANGE_STRUCTURE);
-    const uint64_t then = kernels_made(&viewer);
+    const uint64_t then = shaders_made(&viewer);
     assert_true(then > made);
     assert_shows(&viewer, structure);
     assert_int_equal(edit(&viewer, before), KRS_CHANGE_STRUCTURE);
     assert_shows(&viewer, before);
     assert_int_equal(edit(&viewer, structure), KRS_CHANGE_STRUCTURE);
-    assert_int_equal(kernels_made(&viewer), then);
+    assert_int_equal(shaders_made(&viewer), then);
     close_viewer(&viewer);
 }
 
@@ -224,7 +224,7 @@ static void rays_and_zones_follow(void **state)
     krs_picture_free(picture);
     assert_int_equal(edit(&viewer, numbers), KRS_CHANGE_VALUES);
     picture = render(&viewer);
-    assert_kernels_stay(&viewer);
+    assert_shaders_stay(&viewer);
     check(krs_frame_set_zones(viewer.frame, NULL, 0));
     KrsPicture *whole = render(&viewer);
     assert_false(are_equal(picture, whole));

@@ -18,7 +18,7 @@
 #include "compiler/target/spirv.h"
 #include "runtime/device/buffer.h"
 #include "runtime/device/gpu.h"
-#include "runtime/device/kernel.h"
+#include "runtime/device/shader.h"
 #include "tests/support/device.h"
 
 /* ---- modules ---- */
@@ -238,20 +238,20 @@ static void fill(float *numbers)
 
 static void run(Fixture *fixture, uint32_t *words, size_t count, float results[NUMBERS])
 {
-    const KernelCode code = {.file = "a module", .words = words, .bytes = count * sizeof *words};
+    const ShaderCode code = {.file = "a module", .words = words, .bytes = count * sizeof *words};
     Gpu             *gpu  = &fixture->gpu;
-    Kernel           kernel;
+    Shader           shader;
     double           ms = 0;
     fill(fixture->buffer.bytes);
-    if (!kernel_load(gpu, &kernel, &code, fixture->layout, &ms) || !gpu_begin(gpu))
+    if (!shader_load(gpu, &shader, &code, fixture->layout, &ms) || !gpu_begin(gpu))
         fail_msg("%s", gpu->message);
-    vkCmdBindPipeline(gpu->commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
+    vkCmdBindPipeline(gpu->commands, VK_PIPELINE_BIND_POINT_COMPUTE, shader.pipeline);
     vkCmdBindDescriptorSets(gpu->commands, VK_PIPELINE_BIND_POINT_COMPUTE, fixture->layout, 0, 1,
                             &fixture->set, 0, NULL);
     vkCmdDispatch(gpu->commands, 1, 1, 1);
     if (!gpu_finish(gpu, &ms))
         fail_msg("%s", gpu->message);
-    kernel_destroy(gpu, &kernel);
+    shader_destroy(gpu, &shader);
     memcpy(results, fixture->buffer.bytes, NUMBERS * sizeof *results);
 }
 

@@ -1,5 +1,5 @@
 /*
- * instance_ends.c: kernels leave the lists of exponential blends early.  The oracle is the definition, in double
+ * instance_ends.c: shaders leave the lists of exponential blends early.  The oracle is the definition, in double
  * precision over all parts.
  */
 #include <setjmp.h>
@@ -66,7 +66,7 @@ static bool some_function_ends(const Instances *instances)
     return false;
 }
 
-/* In kernels of a scene of that width. */
+/* In shaders of a scene of that width. */
 static void sample(double width)
 {
     static char        text[LONGEST];
@@ -119,5 +119,5 @@ static void sums_end_where_nothing_counts(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(sums_end_where_nothing_counts)};
-    return cmocka_run_group_tests_name("sums of instance groups in kernels", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("sums of instance groups in shaders", tests, NULL, NULL);
 }

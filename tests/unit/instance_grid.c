@@ -255,7 +255,7 @@ static void all_kinds(void **state)
             }
 }
 
-/* As kernels find cells: all in single precision. */
+/* As shaders find cells: all in single precision. */
 static bool single_precision_is_right(const Grid *grid, const Case *of, const float point[3])
 {
     size_t cell = 0;
@@ -275,7 +275,7 @@ static bool single_precision_is_right(const Grid *grid, const Case *of, const fl
     return next == grid->first[cell + 1];
 }
 
-static void kernels_find_cells(void **state)
+static void shaders_find_cells(void **state)
 {
     Bench     *bench   = *state;
     const Kind kinds[] = {CUBE, TOWN, LINE, AXIS, FAR_AWAY, TINY, HUGE_ONES};
@@ -486,7 +486,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(all_kinds, bench_start, bench_stop),
-        cmocka_unit_test_setup_teardown(kernels_find_cells, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(shaders_find_cells, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(outside_is_the_distance_to_inner, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(empty_space_is_crossed_in_long_steps, bench_start,
                                         bench_stop),

@@ -30,7 +30,7 @@ enum {
     TOGETHER = 3
 };
 
-/* Without colours, there are no kernels for light. */
+/* Without colours, there are no shaders for light. */
 enum { SHOWN = KRS_PLANE_DEPTH | KRS_PLANE_NORMAL | KRS_PLANE_ALBEDO | KRS_PLANE_IDS };
 
 typedef struct Seen {

@@ -1,6 +1,6 @@
 /*
- * mixed_rays.c: kernels that are for the rays of a picture and for those of its paths make the same
- * pictures as kernels for one of both, and there are fewer of them.  So do kernels for small pictures.
+ * mixed_rays.c: shaders that are for the rays of a picture and for those of its paths make the same
+ * pictures as shaders for one of both, and there are fewer of them.  So do shaders for small pictures.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -19,7 +19,7 @@
 enum { WIDTH = 96, HEIGHT = 64, PIXELS = WIDTH * HEIGHT };
 
 #define CAMERA "camera { eye: [0, 1.5, 7], target: [0, 0.5, 0], fov: 0.7 }\n"
-/* No mirrors, so paths are followed by kernels of their own, unless pictures are of paths. */
+/* No mirrors, so paths are followed by shaders of their own, unless pictures are of paths. */
 static const char dull[] = CAMERA
     "show plane([0, 1, 0], 0); show sphere(0.7).move([-1, 0.7, 0]).paint(#cc8844);\n"
     "show box([0.5, 1, 0.5]).move([0.8, 0.5, 0.4]);\n";
@@ -104,36 +104,36 @@ static int count_different(const KrsPicture *a, const KrsPicture *b)
     return count;
 }
 
-enum { MOST_KERNELS = 64 };
+enum { MOST_SHADERS = 64 };
 
-static int count_kernels(const Fixture *fixture, const char *name)
+static int count_shaders(const Fixture *fixture, const char *name)
 {
-    KrsKernelStats kernels[MOST_KERNELS];
-    const size_t   count = krs_rendering_kernels(fixture->rendering, kernels, MOST_KERNELS);
+    KrsKernelStats shaders[MOST_SHADERS];
+    const size_t   count = krs_rendering_kernels(fixture->rendering, shaders, MOST_SHADERS);
     int            found = 0;
-    for (size_t i = 0; i < count && i < MOST_KERNELS; i++)
-        found += strncmp(kernels[i].name, name, strlen(name)) == 0;
+    for (size_t i = 0; i < count && i < MOST_SHADERS; i++)
+        found += strncmp(shaders[i].name, name, strlen(name)) == 0;
     return found;
 }
 
 static size_t count_bytes(const Fixture *fixture, const char *name)
 {
-    KrsKernelStats kernels[MOST_KERNELS];
-    const size_t   count = krs_rendering_kernels(fixture->rendering, kernels, MOST_KERNELS);
+    KrsKernelStats shaders[MOST_SHADERS];
+    const size_t   count = krs_rendering_kernels(fixture->rendering, shaders, MOST_SHADERS);
     size_t         bytes = 0;
-    for (size_t i = 0; i < count && i < MOST_KERNELS; i++)
-        bytes += strcmp(kernels[i].name, name) == 0 ? kernels[i].glsl_bytes : 0;
+    for (size_t i = 0; i < count && i < MOST_SHADERS; i++)
+        bytes += strcmp(shaders[i].name, name) == 0 ? shaders[i].glsl_bytes : 0;
     return bytes;
 }
 
-static void paths_are_as_by_kernels_of_their_own(void **state)
+static void paths_are_as_by_shaders_of_their_own(void **state)
 {
     (void)state;
     Fixture own = open_fixture(dull, KRS_FOR_PICTURES), mixed = open_fixture(dull, KRS_FOR_PATHS);
     KrsPicture *a = render(&own, KRS_INTEGRATOR_PATH, KRS_COMPONENTS_DEFAULT);
     KrsPicture *b = render(&mixed, KRS_INTEGRATOR_PATH, KRS_COMPONENTS_DEFAULT);
-    assert_int_equal(count_kernels(&own, "trace.comp"), 2);
-    assert_int_equal(count_kernels(&mixed, "trace.comp"), 1);
+    assert_int_equal(count_shaders(&own, "trace.comp"), 2);
+    assert_int_equal(count_shaders(&mixed, "trace.comp"), 1);
     assert_in_range(count_different(a, b), 0, PIXELS / 500);
     krs_picture_free(a);
     krs_picture_free(b);
@@ -141,19 +141,19 @@ static void paths_are_as_by_kernels_of_their_own(void **state)
     close_fixture(&mixed);
 }
 
-/* Where march groups are asked for, the picture's rays have kernels of their own again. */
+/* Where march groups are asked for, the picture's rays have shaders of their own again. */
 static void mirrors_are_as_with_march_groups(void **state)
 {
     (void)state;
     Fixture fixture = open_fixture(bright, KRS_FOR_PICTURES);
     assert_true(krs_scene_program(fixture.scene)->mirrors);
     assert_true(krs_scene_program(fixture.scene)->march_group_count > 2);
-    assert_int_equal(count_kernels(&fixture, "trace.comp"), 1);
-    assert_int_equal(count_kernels(&fixture, "normals.comp"), 1);
+    assert_int_equal(count_shaders(&fixture, "trace.comp"), 1);
+    assert_int_equal(count_shaders(&fixture, "normals.comp"), 1);
     KrsPicture *a = render(&fixture, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_DEFAULT);
-    assert_int_equal(count_kernels(&fixture, "trace.comp"), 1);
+    assert_int_equal(count_shaders(&fixture, "trace.comp"), 1);
     KrsPicture *b = render(&fixture, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_APART);
-    assert_true(count_kernels(&fixture, "trace.comp") > 2);
+    assert_true(count_shaders(&fixture, "trace.comp") > 2);
     assert_in_range(count_different(a, b), 0, PIXELS / 100);
     krs_picture_free(a);
     krs_picture_free(b);
@@ -172,18 +172,18 @@ static const char trees[] =
 static const char roots[] = CAMERA
     "show algebraic(x^4 + y^4 + z^4 == 1).paint(#cc8844); show plane([0, 1, 0], -1);\n";
 
-/* Kernels for small pictures are fewer, none is missing, and what they show is what is asked for by name
+/* Shaders for small pictures are fewer, none is missing, and what they show is what is asked for by name
    of a rendering for large ones. */
-static void small_pictures_have_fewer_kernels(const char *text, const char *name)
+static void small_pictures_have_fewer_shaders(const char *text, const char *name)
 {
     Fixture     small = open_fixture(text, KRS_FOR_SMALL_PICTURES);
     Fixture     large = open_fixture(text, KRS_FOR_PICTURES);
-    const int   few = count_kernels(&small, name), all = count_kernels(&large, "");
+    const int   few = count_shaders(&small, name), all = count_shaders(&large, "");
     KrsPicture *a = render(&small, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_DEFAULT);
     KrsPicture *b = render(&large, KRS_INTEGRATOR_PREVIEW, KRS_COMPONENTS_TOGETHER);
     assert_int_equal(few, 1);
-    assert_int_equal(count_kernels(&small, name), few);
-    assert_true(count_kernels(&small, "") < all);
+    assert_int_equal(count_shaders(&small, name), few);
+    assert_true(count_shaders(&small, "") < all);
     assert_in_range(count_different(a, b), 0, PIXELS / 100);
     krs_picture_free(a);
     krs_picture_free(b);
@@ -194,14 +194,14 @@ static void small_pictures_have_fewer_kernels(const char *text, const char *name
 static void small_pictures_have_no_march_groups(void **state)
 {
     (void)state;
-    small_pictures_have_fewer_kernels(trees, "normals.comp");
-    small_pictures_have_fewer_kernels(trees, "trace.comp");
+    small_pictures_have_fewer_shaders(trees, "normals.comp");
+    small_pictures_have_fewer_shaders(trees, "trace.comp");
 }
 
 static void small_pictures_have_no_beams_before_roots(void **state)
 {
     (void)state;
-    small_pictures_have_fewer_kernels(roots, "trace.comp");
+    small_pictures_have_fewer_shaders(roots, "trace.comp");
 }
 
 /* Noises side by side, one in the other, of the plane and of space, in a shape and in colours. */
@@ -230,7 +230,7 @@ static void small_pictures_have_the_same_noises(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(paths_are_as_by_kernels_of_their_own),
+        cmocka_unit_test(paths_are_as_by_shaders_of_their_own),
         cmocka_unit_test(mirrors_are_as_with_march_groups),
         cmocka_unit_test(small_pictures_have_no_march_groups),
         cmocka_unit_test(small_pictures_have_no_beams_before_roots),

@@ -152,7 +152,7 @@ static uint8_t *render(const Fixture *fixture, const char *text, double r)
     return pixels;
 }
 
-/* Returns how many kernels the device has made that shows it. */
+/* Returns how many shaders the device has made that shows it. */
 static uint64_t assert_shows(Fixture *fixture, unsigned version, unsigned view, const char *text,
                              double r)
 {
@@ -201,13 +201,13 @@ static void nothing_is_compiled_twice(void **state)
     (void)state;
     Fixture fixture;
     set_up(&fixture, one_ball);
-    const uint64_t kernels = assert_shows(&fixture, 1, 1, one_ball, 1);
+    const uint64_t shaders = assert_shows(&fixture, 1, 1, one_ball, 1);
     edit(&fixture, two_boxes);
     unsigned view = show(&fixture, 1);
     assert_shows(&fixture, 2, view, two_boxes, 1);
     edit(&fixture, one_ball);
     view = show(&fixture, 1);
-    assert_int_equal(assert_shows(&fixture, 3, view, one_ball, 1), kernels);
+    assert_int_equal(assert_shows(&fixture, 3, view, one_ball, 1), shaders);
     edit(&fixture, "param r = 1.5 in [0.5, 2]; show sphere(r);");
     fixture.view.values[0][0] = 1.5;
     view                      = show(&fixture, 1);

@@ -1,5 +1,5 @@
 /*
- * per_component.c: heavy components marched one by one, in kernels of their own or packed in one,
+ * per_component.c: heavy components marched one by one, in shaders of their own or packed in one,
  * and levels that are left out for being far away, are not seen.
  *
  * Pictures of compounds marched apart or packed must be those of the union: no more than one pixel
@@ -364,7 +364,7 @@ static void packed_in_every_way(void **state)
     krs_picture_free(whole);
 }
 
-/* What is cheap is not worth kernels of its own. */
+/* What is cheap is not worth shaders of its own. */
 static void only_what_is_heavy_is_apart(void **state)
 {
     (void)state;

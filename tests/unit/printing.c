@@ -1,6 +1,6 @@
 /*
  * Texts of scenes: every variant compiles, has no directives, and holds what is wanted, what that
- * calls, and nothing else.  What a stranger pastes gives what kernels of the runtime give.
+ * calls, and nothing else.  What a stranger pastes gives what shaders of the runtime give.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,7 +19,7 @@
 #include <xxhash.h>
 
 #include "compiler/print/module.h"
-#include "runtime/tracer/kernels.h"
+#include "runtime/tracer/shaders.h"
 #include "runtime/tracer/variants.h"
 #include "tests/support/renderer.h"
 
@@ -90,7 +90,7 @@ static const char *name_of(KrsFunction function)
     return name ? name : "";
 }
 
-static bool is_entry_point(const char *name, const KernelScene *of)
+static bool is_entry_point(const char *name, const ShaderScene *of)
 {
     bool sines = false, arcs = false;
     for (size_t i = 0; i < of->wanted_count; i++) {
@@ -104,7 +104,7 @@ static bool is_entry_point(const char *name, const KernelScene *of)
 }
 
 /* A global is declared, set and read; a function that is not wanted is called. */
-static void check_names(const char *text, const KernelScene *of, const char *path)
+static void check_names(const char *text, const ShaderScene *of, const char *path)
 {
     char name[LONGEST_NAME];
     for (const char *line = text; *line; line += strcspn(line, "\n"), line += *line == '\n') {
@@ -123,7 +123,7 @@ static void check_names(const char *text, const KernelScene *of, const char *pat
         assert_int_equal(strncmp(at, "KRS_SCENE_PARTS", 9), 0);
 }
 
-static char *print(const KernelScene *of)
+static char *print(const ShaderScene *of)
 {
     char *text = krs_scene_text(of->scene, &of->variant, of->wanted, of->wanted_count, NULL);
     assert_non_null(text);
@@ -152,28 +152,28 @@ static const char *const calls[KRS_FUNCTION_COUNT] = {
     [KRS_FUNCTION_ARCS]                = "krs_atan2(p.x, p.y)",
 };
 
-enum { MOST_KERNELS = 8192 };
-static uint64_t compiled_kernels[MOST_KERNELS];
+enum { MOST_SHADERS = 8192 };
+static uint64_t compiled_shaders[MOST_SHADERS];
 static size_t   compiled_count;
 
-/* Whether this very kernel was compiled before: most functions say the same in many variants. */
-static bool was_compiled(const char *kernel, size_t length)
+/* Whether this very shader was compiled before: most functions say the same in many variants. */
+static bool was_compiled(const char *shader, size_t length)
 {
-    uint64_t hash = XXH3_64bits(kernel, length);
+    uint64_t hash = XXH3_64bits(shader, length);
     for (size_t i = 0; i < compiled_count; i++)
-        if (compiled_kernels[i] == hash)
+        if (compiled_shaders[i] == hash)
             return true;
-    assert_true(compiled_count < MOST_KERNELS);
-    compiled_kernels[compiled_count++] = hash;
+    assert_true(compiled_count < MOST_SHADERS);
+    compiled_shaders[compiled_count++] = hash;
     return false;
 }
 
-/* A kernel around it, as a stranger would write one. */
-static void compile_text(const char *text, const KernelScene *of, const char *path)
+/* A shader around it, as a stranger would write one. */
+static void compile_text(const char *text, const ShaderScene *of, const char *path)
 {
-    char  *kernel = NULL, *log = NULL;
+    char  *shader = NULL, *log = NULL;
     size_t length, count;
-    FILE  *out = open_memstream(&kernel, &length);
+    FILE  *out = open_memstream(&shader, &length);
     assert_non_null(out);
     fprintf(out,
             "#version 440\n#extension GL_EXT_control_flow_attributes : enable\n%s"
@@ -185,17 +185,17 @@ static void compile_text(const char *text, const KernelScene *of, const char *pa
     fputs("}\n", out);
     fclose(out);
     uint32_t *words = NULL;
-    if (!was_compiled(kernel, length) &&
-        spirv_compile(kernel, path, &words, &count, &log) != KRS_OK)
-        fail_msg("%s: %s\n%s", path, log ? log : "no memory", kernel);
+    if (!was_compiled(shader, length) &&
+        spirv_compile(shader, path, &words, &count, &log) != KRS_OK)
+        fail_msg("%s: %s\n%s", path, log ? log : "no memory", shader);
     free(words);
     free(log);
-    free(kernel);
+    free(shader);
 }
 
 static int texts_seen, kinds_seen[KRS_FUNCTION_COUNT], groups_seen, relative_seen, planes_seen;
 
-static void look_at_text(const KernelScene *of, const char *path, bool compiled)
+static void look_at_text(const ShaderScene *of, const char *path, bool compiled)
 {
     char *text = print(of);
     check_names(text, of, path);
@@ -211,7 +211,7 @@ static void look_at_text(const KernelScene *of, const char *path, bool compiled)
 }
 
 /* Whether a function can be had in a variant (module.h). */
-static bool can_want(const KernelScene *of, KrsFunction function)
+static bool can_want(const ShaderScene *of, KrsFunction function)
 {
     const KrsProgram *program = krs_scene_program(of->scene);
     const KrsVariant *v       = &of->variant;
@@ -235,9 +235,9 @@ static bool can_want(const KernelScene *of, KrsFunction function)
 }
 
 /* Each function by itself, and all of them. */
-static void look_at_variant(KernelScene of, const char *path, bool compiled)
+static void look_at_variant(ShaderScene of, const char *path, bool compiled)
 {
-    KernelScene all = of;
+    ShaderScene all = of;
     for (KrsFunction function = 0; function < KRS_FUNCTION_COUNT; function++) {
         if (!can_want(&of, function))
             continue;
@@ -286,10 +286,10 @@ static void look_at_variants(KrsScene *scene, const char *path, bool compiled)
     };
     for (size_t i = 0; i < sizeof chosen / sizeof *chosen; i++)
         if (!is_repeated(chosen, i))
-            look_at_variant((KernelScene){.scene = scene, .variant = chosen[i]}, path, compiled);
+            look_at_variant((ShaderScene){.scene = scene, .variant = chosen[i]}, path, compiled);
     for (uint32_t group = 1; group <= program->march_group_count; group++)
         for (int many = 0; many < 2; many++)
-            look_at_variant((KernelScene){.scene   = scene,
+            look_at_variant((ShaderScene){.scene   = scene,
                                           .variant = {.march_group = group, .many_threads = many}},
                             path, compiled);
     krs_scene_free(scene);
@@ -339,7 +339,7 @@ static void look_at_moved_boxes(void)
                                 "show barth_sextic(within: 1.5).move([0, 3, 0]);"
                                 "show heart().move([3, 0, 0]); show box([1, 1, 1]);";
     const KrsOptions  options = {.specialize = KRS_SPECIALIZE_STRUCTURE};
-    KernelScene       of      = {
+    ShaderScene       of      = {
                    .variant = {.tangents = true}, .wanted = {KRS_FUNCTION_SURFACE}, .wanted_count = 1};
     KrsScene *scene;
     assert_int_equal(krs_compile_text(text, strlen(text), "boxes.krs", &options, &scene), KRS_OK);
@@ -399,7 +399,7 @@ static void texts_are_short(void **state)
 {
     (void)state;
     KrsScene   *scene = open_file("examples/02-gear.krs", false);
-    KernelScene of    = {.scene = scene, .variant = {.many_threads = true, .shares = true}};
+    ShaderScene of    = {.scene = scene, .variant = {.many_threads = true, .shares = true}};
     of.wanted_count   = krs_entry_points(scene, true, of.wanted);
     char *text        = print(&of);
     assert_in_range(strlen(text), 10000, 84000);
@@ -412,24 +412,24 @@ static void texts_are_short(void **state)
 
 enum { POINTS = 4096 };
 
-/* What is at the points, by the kernel of questions in another variant. */
+/* What is at the points, by the shader of questions in another variant. */
 static void probe_by(KrsRendering *rendering, KrsFrame *frame, const KrsVariant *variant,
                      const double (*points)[3], KrsHit *hits)
 {
-    KernelVariant other = variant_of_point_query(rendering);
-    Kernel       *used = rendering_point_query(rendering), before = *used, kernel;
+    ShaderVariant other = variant_of_point_query(rendering);
+    Shader       *used = rendering_point_query(rendering), before = *used, shader;
     double        spirv_ms = 0, pipeline_ms = 0;
     other.scene.variant.shares       = variant->shares;
     other.scene.variant.values       = variant->values;
     other.scene.variant.many_threads = variant->many_threads;
-    KernelSource source              = variant_source("point_query.comp", &other);
+    ShaderSource source              = variant_source("point_query.comp", &other);
     assert_true(
-        kernel_create(&renderer->gpu, &kernel, &source, renderer->layout, &spirv_ms, &pipeline_ms));
-    *used            = kernel;
+        shader_create(&renderer->gpu, &shader, &source, renderer->layout, &spirv_ms, &pipeline_ms));
+    *used            = shader;
     KrsStatus status = krs_device_probe(rendering, frame, points, POINTS, hits);
     *used            = before;
     assert_true(gpu_wait(&renderer->gpu));
-    kernel_destroy(&renderer->gpu, &kernel);
+    shader_destroy(&renderer->gpu, &shader);
     assert_int_equal(status, KRS_OK);
 }
 

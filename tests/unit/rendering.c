@@ -107,8 +107,8 @@ static void compiling_is_interrupted(void **state)
     krs_renderer_free(renderer);
 }
 
-/* A renderer that makes kernels ahead may be freed while it does so, and makes the same picture. */
-static void kernels_are_made_ahead(void **state)
+/* A renderer that makes shaders ahead may be freed while it does so, and makes the same picture. */
+static void shaders_are_made_ahead(void **state)
 {
     Fixture                 *fixture = *state;
     const KrsRendererOptions options = {.device = tested_device(), .pictures_ahead = true};
@@ -421,7 +421,7 @@ int main(void)
         cmocka_unit_test(progress_goes_forwards),
         cmocka_unit_test_setup_teardown(compiling_is_interrupted, fixture_set_up,
                                         fixture_tear_down),
-        cmocka_unit_test_setup_teardown(kernels_are_made_ahead, fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(shaders_are_made_ahead, fixture_set_up, fixture_tear_down),
         cmocka_unit_test(materials_give_numbers),
         cmocka_unit_test_setup_teardown(exhausted_rays_are_counted, fixture_set_up,
                                         fixture_tear_down),

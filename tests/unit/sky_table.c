@@ -1,5 +1,5 @@
 /*
- * sky_table.c: what kernels read of a sky that is a picture: directions are chosen by
+ * sky_table.c: what shaders read of a sky that is a picture: directions are chosen by
  * their brightness, and means are means.
  */
 #include <math.h>

@@ -1,6 +1,6 @@
 /*
- * tables.c: what kernels read of tables (compiler/scene/tables.h) is what the compiler has: rows, cells, lists
- * and headers are read back in the way of kernels.
+ * tables.c: what shaders read of tables (compiler/scene/tables.h) is what the compiler has: rows, cells, lists
+ * and headers are read back in the way of shaders.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -170,5 +170,5 @@ int main(void)
         cmocka_unit_test_setup_teardown(places_of_grids_are_read_back, bench_start, bench_stop),
         cmocka_unit_test(no_tables),
     };
-    return cmocka_run_group_tests_name("tables for kernels", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("tables for shaders", tests, NULL, NULL);
 }

@@ -133,7 +133,7 @@ static void changes_are_told(void **state)
         KrsScene   *undone  = update(updated, BEFORE, &back);
         assert_changes(&edits[i], &changes);
         assert_int_equal(back.kind, changes.kind);
-        assert_int_equal(same_kernels(scene, updated), changes.kind != KRS_CHANGE_STRUCTURE);
+        assert_int_equal(same_shaders(scene, updated), changes.kind != KRS_CHANGE_STRUCTURE);
         assert_same_scene(updated, alone);
         assert_same_scene(undone, scene);
         krs_scene_free(undone);
@@ -151,7 +151,7 @@ static void literals_are_structure(void **state)
     KrsScene   *scene   = compile(BEFORE, KRS_SPECIALIZE_NUMBERS);
     KrsScene   *updated = update(scene, text, &changes);
     assert_int_equal(changes.kind, KRS_CHANGE_STRUCTURE);
-    assert_false(same_kernels(scene, updated));
+    assert_false(same_shaders(scene, updated));
     krs_scene_free(updated);
     krs_scene_free(scene);
 }
@@ -162,12 +162,12 @@ static void auto_takes_numbers_out_with_the_first_edit(void **state)
     KrsChanges changes;
     KrsScene  *literal = compile(BEFORE, KRS_SPECIALIZE_NUMBERS);
     KrsScene  *scene   = compile(BEFORE, KRS_SPECIALIZE_AUTO);
-    assert_true(same_kernels(scene, literal));
+    assert_true(same_shaders(scene, literal));
     KrsScene *first = update(scene, edited(BEFORE, "0.25, 0, 0", "0.5, 0, 0"), &changes);
     assert_int_equal(changes.kind, KRS_CHANGE_STRUCTURE);
     KrsScene *second = update(first, edited(BEFORE, "0.25, 0, 0", "0.75, 0, 0"), &changes);
     assert_int_equal(changes.kind, KRS_CHANGE_VALUES);
-    assert_true(same_kernels(first, second));
+    assert_true(same_shaders(first, second));
     krs_scene_free(second);
     krs_scene_free(first);
     krs_scene_free(scene);
@@ -194,8 +194,8 @@ static void auto_keeps_very_many_numbers(void **state)
     KrsScene   *literal   = compile(text, KRS_SPECIALIZE_NUMBERS);
     KrsScene   *second    = update(first, MANY, &changes);
     assert_false(krs_structure_is_affordable(structure));
-    assert_true(same_kernels(first, literal));
-    assert_true(same_kernels(second, scene));
+    assert_true(same_shaders(first, literal));
+    assert_true(same_shaders(second, scene));
     krs_scene_free(second);
     krs_scene_free(literal);
     krs_scene_free(first);
@@ -247,7 +247,7 @@ static void assert_instance_edit(const InstanceEdit *edit, KrsSpecialize special
     assert_true(krs_table_rows(scene) > 0);
     if (changes.kind != expected || back.kind != expected)
         fail_msg("%s: %d, and back %d", edit->what, changes.kind, back.kind);
-    assert_int_equal(same_kernels(scene, updated), expected != KRS_CHANGE_STRUCTURE);
+    assert_int_equal(same_shaders(scene, updated), expected != KRS_CHANGE_STRUCTURE);
     assert_same_scene(updated, alone);
     assert_same_scene(undone, scene);
     krs_scene_free(undone);
@@ -279,7 +279,7 @@ static void bodies_are_compared(void **state)
     assert_true(krs_table_rows(scene) > 0 && krs_table_rows(updated) > 0);
     assert_int_equal(changes.kind, KRS_CHANGE_STRUCTURE);
     assert_true(changes.solids && changes.surfaces);
-    assert_false(same_kernels(scene, updated));
+    assert_false(same_shaders(scene, updated));
     krs_scene_free(updated);
     krs_scene_free(scene);
 }
@@ -314,7 +314,7 @@ static void numbers_of_loops_are_values(void **state)
         KrsScene   *alone   = compile(text, KRS_SPECIALIZE_STRUCTURE);
         if (changes.kind != KRS_CHANGE_VALUES)
             fail_msg("%s: %d", street_edits[i][0], changes.kind);
-        assert_true(same_kernels(scene, updated));
+        assert_true(same_shaders(scene, updated));
         assert_same_scene(updated, alone);
         krs_scene_free(alone);
         krs_scene_free(updated);

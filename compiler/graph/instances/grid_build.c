@@ -6,7 +6,7 @@
  * a cell to the nearest box that it does not list is measured for boxes around the corner.  Farther
  * ones are bounded by a distance transform of the cells that have boxes.
  *
- * Kernels find the cell of a point in single precision, and may find a neighbour of it.  So boxes are
+ * Shaders find the cell of a point in single precision, and may find a neighbour of it.  So boxes are
  * taken to be larger by what single precision can miss: the pad.
  */
 #include "compiler/graph/instances/grid_build.h"
@@ -181,7 +181,7 @@ static void place_flat(Builder *b)
 }
 
 /* Cells of this side around `inner` and a margin.  Corners are single precision numbers, and so is
-   1 / side, as kernels have them. */
+   1 / side, as shaders have them. */
 static void place_cells(Builder *b, double side)
 {
     Grid *grid = b->grid;

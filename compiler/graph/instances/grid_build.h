@@ -10,7 +10,7 @@
  * Builds a grid of `count` boxes, at least one.  The clearance is more than `margin`, by a part of a cell,
  * wherever a list does not have all instances, and NOWHERE where it does: taps for normals need more.  Where a box or
  * the margin is infinite there is one cell for all of space, its size is infinite, and its list has all
- * instances.  Empty boxes are in no list.  Kernels read `texels` of 16 bytes for each entry of a list, at
+ * instances.  Empty boxes are in no list.  Shaders read `texels` of 16 bytes for each entry of a list, at
  * least one: the more, the fewer entries there are.
  */
 void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,

@@ -15,7 +15,7 @@ enum { STEPS_OF_WIDTH = 8, STEPS = 256 };
 /* Widths from the middle of a cell to a corner; e^60 is a number of single precision. */
 #define MOST_WIDTHS 20.0
 
-/* Sums of single precision, each with some hundred roundings, and kernels' powers. */
+/* Sums of single precision, each with some hundred roundings, and shaders' powers. */
 #define ROUNDED_UP (1 + 1e-4)
 
 bool grid_may_have_tails(const GridBlend *blend, double size)

@@ -2,7 +2,7 @@
  * turns.h: numbers of the frame that depend on the turn of a loop.
  *
  * A loop whose turns differ in numbers only is evaluated once (eval/turns.c).  Its variable is then a
- * leaf of frame time, a parameter that nobody sets.  What depends on it never gets into kernels: tables
+ * leaf of frame time, a parameter that nobody sets.  What depends on it never gets into shaders: tables
  * have the numbers of all turns.
  */
 #ifndef KRS_TURNS_H

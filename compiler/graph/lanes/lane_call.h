@@ -1,5 +1,5 @@
 /*
- * lane_call.h: what the kernels of lane tapes share.
+ * lane_call.h: what the loops over lanes share.
  */
 #ifndef KRS_LANE_CALL_H
 #define KRS_LANE_CALL_H
@@ -9,9 +9,9 @@
 /* An operation at one point; `values`, which only those that read tables need, are of the frame. */
 NodeValue lane_call(const Tape *tape, NodeValue *values, Node node, const NodeValue *operands);
 
-/* A call that has a body, in as many points; `run` is the kernel that asks. */
+/* A call that has a body, in as many points; `run` is the loop that asks. */
 void lane_instance_call(const LaneTape *tape, const LaneWork *work, const LaneCall *call,
-                        size_t points, LaneKernel *run);
+                        size_t points, LaneRun *run);
 /* Steps that tell of the instance of each lane, in blocks that are full. */
 void lane_instance_step(const LaneWork *work, const LaneCode *code, size_t points);
 
@@ -22,8 +22,8 @@ double lane_length(const double *vector, uint32_t size);
 typedef enum LaneTruth { LANE_NEVER, LANE_SOMETIMES, LANE_ALWAYS } LaneTruth;
 LaneTruth lane_guard_decides(Range bound, Range least, Range far);
 
-LaneKernel lane_double_plain, lane_single_plain;
-LaneKernel lane_double_avx2, lane_single_avx2;
-LaneKernel lane_double_avx512, lane_single_avx512;
+LaneRun lane_double_plain, lane_single_plain;
+LaneRun lane_double_avx2, lane_single_avx2;
+LaneRun lane_double_avx512, lane_single_avx512;
 
 #endif

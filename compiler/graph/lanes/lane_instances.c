@@ -162,7 +162,7 @@ static void next_instances(LaneLoop *loop, const LaneCall *call, double *outer, 
 }
 
 static void run_lanes(LaneLoop *loop, const LaneCall *call, double *outer, const LaneTape *instance,
-                      const LaneWork *work, LaneKernel *run)
+                      const LaneWork *work, LaneRun *run)
 {
     double *inputs = work->rows;
     for (size_t i = 0; i < fill_up(loop->active); i++)
@@ -224,7 +224,7 @@ static void fill_pairs(Pairs *pairs, const LaneCall *call, double *outer)
 }
 
 /* Each lane begins with the first state: the result is that or the distance to the instance. */
-static void run_pairs(Pairs *pairs, const LaneTape *instance, const LaneWork *work, LaneKernel *run)
+static void run_pairs(Pairs *pairs, const LaneTape *instance, const LaneWork *work, LaneRun *run)
 {
     LaneLoop *loop = pairs->loop;
     double   *rows = work->rows;
@@ -248,7 +248,7 @@ static void run_pairs(Pairs *pairs, const LaneTape *instance, const LaneWork *wo
 }
 
 static void run_outline(LaneLoop *loop, const LaneCall *call, double *outer,
-                        const LaneTape *instance, const LaneWork *work, LaneKernel *run)
+                        const LaneTape *instance, const LaneWork *work, LaneRun *run)
 {
     const double *inputs = work->rows;
     Pairs         pairs  = {.loop = loop};
@@ -275,7 +275,7 @@ static void pass_operands(const LaneTape *tape, const double *outer, const LaneC
 }
 
 void lane_instance_call(const LaneTape *tape, const LaneWork *work, const LaneCall *call,
-                        size_t points, LaneKernel *run)
+                        size_t points, LaneRun *run)
 {
     InstanceWalk    walks[LANES];
     LaneLoop        loop;

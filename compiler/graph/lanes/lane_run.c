@@ -134,7 +134,7 @@ static double output_at(const LaneTape *tape, const LaneWork *work, LanePrecisio
 void lane_run(const LaneTape *tape, const LaneWork *work, LanePrecision precision,
               LanePoints points, size_t first, size_t outputs, double *results)
 {
-    LaneKernel *run = current_set()->run[precision];
+    LaneRun *run = current_set()->run[precision];
     assert(first + outputs <= tape->output_count);
     for (size_t begin = 0; begin < points.count; begin += LANES) {
         size_t count = points.count - begin < LANES ? points.count - begin : LANES;

@@ -176,10 +176,10 @@ void lane_run(const LaneTape *tape, const LaneWork *work, LanePrecision precisio
               LanePoints points, size_t first, size_t outputs, double *results);
 
 /* How an instruction set runs a block of rows whose inputs are filled. */
-typedef void LaneKernel(const LaneTape *tape, const LaneWork *work, size_t points);
+typedef void LaneRun(const LaneTape *tape, const LaneWork *work, size_t points);
 typedef struct LaneSet {
     const char *name;
-    LaneKernel *run[LANE_PRECISIONS];
+    LaneRun    *run[LANE_PRECISIONS];
 } LaneSet;
 
 /* The sets that this processor has, best first; the last is plain C. */

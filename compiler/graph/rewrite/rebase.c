@@ -8,7 +8,7 @@
  *     r - 2 (max(dot(u, r), w') - k) u,   w' = w - dot(u, base),  k = 0 or w'
  * (0 if it mirrors the base), where nothing large is added and taken away again.  Rounding and
  * limits keep both, too, so that repetition does.  Everything else gets the sum: near a surface
- * of a kernel it is no larger than the kernel.
+ * of a shader it is no larger than the shader.
  */
 #include "compiler/graph/rewrite/rebase.h"
 

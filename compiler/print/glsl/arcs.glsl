@@ -5,7 +5,7 @@
  * place.  Beyond 1/2 the half-angle formula brings the argument of an arc sine back to where the
  * polynomial is good.  Arguments of the arc tangent above tan(pi / 8) are turned back by pi / 4.
  *
- * Operations of ops.def call these, and kernels without a scene include this file.
+ * Operations of ops.def call these, and shaders without a scene include this file.
  */
 #ifndef KRS_ARCS
 #define KRS_ARCS

@@ -47,7 +47,7 @@ vec4 krs_row(uint row, uint texels, uint texel, KrsTable table)
     return krs_row_texel(table.rows + row * texels + texel);
 }
 
-// The same of the instance at a place of the lists: kernels read these copies one after another.
+// The same of the instance at a place of the lists: shaders read these copies one after another.
 vec4 krs_listed_row(uint i, uint texels, uint texel, KrsTable table)
 {
     return krs_row_texel(table.copies + i * texels + texel);

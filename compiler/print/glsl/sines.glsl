@@ -7,7 +7,7 @@
  * An argument is reduced by the nearest multiple of pi (Cody and Waite 1980): n times the first two
  * parts of pi is exact, so the differences must stay as they are written.  sin(a) is then sin(r),
  * with its sign changed where n is odd; cos(a) = sin(a + pi / 2).  Operations of
- * ops.def call these, and kernels without a scene include this file.
+ * ops.def call these, and shaders without a scene include this file.
  */
 #ifndef KRS_SINES
 #define KRS_SINES

@@ -1,8 +1,8 @@
 /*
- * kernel_text.c: the text of a kernel: its file with all that it includes, and the scene's text in
+ * shader_text.c: the text of a shader: its file with all that it includes, and the scene's text in
  * the place of scene.glsl.
  */
-#include "runtime/device/kernel.h"
+#include "runtime/device/shader.h"
 
 #include <string.h>
 
@@ -23,9 +23,9 @@ static const char *find_file(const char *name, size_t length)
     return text ? text : find_in(helper_files, name, length);
 }
 
-/* A kernel's text as it grows. */
+/* A shader's text as it grows. */
 typedef struct IncludeExpansion {
-    const KernelSource *source;
+    const ShaderSource *source;
     const char         *scene; /* its text */
     char               *out;   /* NULL: it is only counted */
     size_t              length;
@@ -72,7 +72,7 @@ static const char *comment_end(const char *text)
 
 /* Takes out comments, blanks at the ends of lines, and lines with nothing else: what no compiler
    looks at.  A comment within a line leaves the blank that it stands for. */
-void kernel_strip(char *text)
+void shader_strip(char *text)
 {
     char *to = text, *line = text; /* where the line begins in what has been written */
     for (const char *from = text; *from;) {
@@ -92,34 +92,34 @@ void kernel_strip(char *text)
     *to = '\0';
 }
 
-/* The text of a kernel around that of its scene, or NULL. */
-static char *expand(Gpu *gpu, const KernelSource *source, const char *scene)
+/* The text of a shader around that of its scene, or NULL. */
+static char *expand(Gpu *gpu, const ShaderSource *source, const char *scene)
 {
     IncludeExpansion expansion = {source, scene, NULL, 0};
     if (!append_file(&expansion, source->file, strlen(source->file))) {
-        gpu_refuse(gpu, KRS_INTERNAL, "the kernel `%s`, or a file that it includes, is missing",
+        gpu_refuse(gpu, KRS_INTERNAL, "the shader `%s`, or a file that it includes, is missing",
                    source->file);
         return NULL;
     }
-    expansion.out    = gpu_alloc(gpu, expansion.length + 1, 1, "put a kernel together");
+    expansion.out    = gpu_alloc(gpu, expansion.length + 1, 1, "put a shader together");
     expansion.length = 0;
     if (expansion.out) { /* zeroed memory: the text ends */
         append_file(&expansion, source->file, strlen(source->file));
-        kernel_strip(expansion.out);
+        shader_strip(expansion.out);
     }
     return expansion.out;
 }
 
-char *kernel_text(Gpu *gpu, const KernelSource *source)
+char *shader_text(Gpu *gpu, const ShaderSource *source)
 {
-    const KernelScene *s = source->scene;
+    const ShaderScene *s = source->scene;
     if (!s)
         return expand(gpu, source, NULL);
     char *scene = krs_scene_text(s->scene, &s->variant, s->wanted, s->wanted_count,
                                  &gpu->allocator);
     if (!scene) {
         gpu_refuse(gpu, KRS_OUT_OF_MEMORY,
-                   "cannot print the scene for the kernel `%s`: out of memory", source->file);
+                   "cannot print the scene for the shader `%s`: out of memory", source->file);
         return NULL;
     }
     char *text = expand(gpu, source, scene);

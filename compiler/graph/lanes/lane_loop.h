@@ -1,13 +1,13 @@
 /*
- * lane_kernel.h: the loop over the steps of a lane tape, for one precision and one instruction set.
+ * lane_loop.h: the loop over the steps of a lane tape, for one precision and one instruction set.
  *
- * It is included once for each: REAL is the type of a number, LANE_KERNEL the name of the function.  The
+ * It is included once for each: REAL is the type of a number, LANE_LOOP the name of the function.  The
  * rows of ops.def and blends.def are loops over lanes, which the compiler turns into vector
  * instructions; those that call the C library for each number stay as they are.  Products and sums
  * are never contracted (Makefile), so that all instruction sets give the same.
  */
-#ifndef KRS_LANE_KERNEL_H
-#define KRS_LANE_KERNEL_H
+#ifndef KRS_LANE_LOOP_H
+#define KRS_LANE_LOOP_H
 
 #include <assert.h>
 #include <math.h>
@@ -34,8 +34,8 @@ LESSER(float, float)
 #define LANES_APART _Pragma("GCC ivdep")
 #endif
 
-#define LANE_NAME_(kernel, name) kernel##_##name
-#define LANE_NAME(kernel, name)  LANE_NAME_(kernel, name)
+#define LANE_NAME_(loop, name) loop##_##name
+#define LANE_NAME(loop, name)  LANE_NAME_(loop, name)
 
 /* For each lane i of the blocks; rows are the same or apart. */
 #define EACH_LANE(blocks)                             \
@@ -44,7 +44,7 @@ LESSER(float, float)
 
 #endif
 
-#define LOCAL(name) LANE_NAME(LANE_KERNEL, name)
+#define LOCAL(name) LANE_NAME(LANE_LOOP, name)
 
 /* Where the sum of squares overflows or loses what is small, the scalar operation goes on.  All are often 0: within a box. */
 static void LOCAL(length)(REAL *to, const REAL *const *x, uint32_t size, size_t blocks)
@@ -83,7 +83,7 @@ static void LOCAL(call)(const LaneTape *tape, const LaneWork *work, const LaneCa
     REAL       *rows = work->rows;
     const Expr *e    = &tape->tape->graph->items[call->node];
     if (call->body && sizeof(REAL) == sizeof(double)) {
-        lane_instance_call(tape, work, call, points, LANE_KERNEL);
+        lane_instance_call(tape, work, call, points, LANE_LOOP);
         return;
     }
     for (size_t i = 0; i < points; i++) {
@@ -242,7 +242,7 @@ static void LOCAL(general_step)(const LaneTape *tape, const LaneCode *code, REAL
     LOCAL(step)(code->op, rows + (size_t)code->to * LANES, x, code->operand_count, blocks);
 }
 
-void LANE_KERNEL(const LaneTape *tape, const LaneWork *work, size_t points)
+void LANE_LOOP(const LaneTape *tape, const LaneWork *work, size_t points)
 {
     REAL  *rows   = work->rows;
     size_t blocks = (points + LANE_BLOCK - 1) / LANE_BLOCK;
@@ -258,7 +258,7 @@ void LANE_KERNEL(const LaneTape *tape, const LaneWork *work, size_t points)
     }
 }
 
-#undef LANE_KERNEL
+#undef LANE_LOOP
 #undef REAL
 #undef LOCAL
 #undef ROW

@@ -1,11 +1,11 @@
 /*
- * kernels.c: a map of the kernels that contain functions of the scene.
+ * shaders.c: a map of the shaders that contain functions of the scene.
  *
- * The key of a kernel is what it is made from: its file, the scene's variant, the functions that it
- * calls and its defines (variants.c).  So an option that changes none of these needs no new kernel.
+ * The key of a shader is what it is made from: its file, the scene's variant, the functions that it
+ * calls and its defines (variants.c).  So an option that changes none of these needs no new shader.
  * An option that changes some of them needs no change here.
  */
-#include "runtime/tracer/kernels.h"
+#include "runtime/tracer/shaders.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -15,128 +15,128 @@
 #include "runtime/tracer/variants.h"
 #include "runtime/tracer/prewarm.h"
 
-struct KernelEntry {
+struct ShaderEntry {
     const char   *file;
-    KernelVariant variant;
-    Kernel        kernel; /* zero until it is made */
-    KernelEntry  *next;
+    ShaderVariant variant;
+    Shader        shader; /* zero until it is made */
+    ShaderEntry  *next;
 };
 
-static bool is_of(const KernelEntry *entry, const char *file, const KernelVariant *variant)
+static bool is_of(const ShaderEntry *entry, const char *file, const ShaderVariant *variant)
 {
-    const KernelScene *a = &entry->variant.scene, *b = &variant->scene;
+    const ShaderScene *a = &entry->variant.scene, *b = &variant->scene;
     return strcmp(entry->file, file) == 0 &&
            krs_variant_hash(&a->variant, a->wanted, a->wanted_count) ==
                krs_variant_hash(&b->variant, b->wanted, b->wanted_count) &&
            strcmp(entry->variant.defines, variant->defines) == 0;
 }
 
-/* Finds the entry of a kernel, or adds one; NULL with the failure noted. */
-static KernelEntry *find_entry(KrsRendering *rendering, const char *file, KernelVariant variant)
+/* Finds the entry of a shader, or adds one; NULL with the failure noted. */
+static ShaderEntry *find_entry(KrsRendering *rendering, const char *file, ShaderVariant variant)
 {
-    KernelEntry *entry = rendering->kernels.first;
+    ShaderEntry *entry = rendering->shaders.first;
     while (entry && !is_of(entry, file, &variant))
         entry = entry->next;
     if (entry)
         return entry;
     entry = gpu_alloc(&rendering->renderer->gpu, 1, sizeof *entry, "prepare the scene");
     if (entry) {
-        *entry                   = (KernelEntry){file, variant, {0}, rendering->kernels.first};
-        rendering->kernels.first = entry;
+        *entry                   = (ShaderEntry){file, variant, {0}, rendering->shaders.first};
+        rendering->shaders.first = entry;
     }
     return entry;
 }
 
-static KernelRequest request_of(KernelEntry *entry)
+static ShaderRequest request_of(ShaderEntry *entry)
 {
-    return (KernelRequest){&entry->kernel, variant_source(entry->file, &entry->variant)};
+    return (ShaderRequest){&entry->shader, variant_source(entry->file, &entry->variant)};
 }
 
-static Kernel *find_kernel(KrsRendering *rendering, const char *file, KernelVariant variant)
+static Shader *find_shader(KrsRendering *rendering, const char *file, ShaderVariant variant)
 {
-    KernelEntry *entry = find_entry(rendering, file, variant);
-    if (!entry || entry->kernel.pipeline)
-        return entry ? &entry->kernel : NULL;
-    KernelRequest request = request_of(entry);
-    if (!kernels_make(rendering->renderer, rendering->scene_set, &request, 1, &rendering->spirv_ms,
+    ShaderEntry *entry = find_entry(rendering, file, variant);
+    if (!entry || entry->shader.pipeline)
+        return entry ? &entry->shader : NULL;
+    ShaderRequest request = request_of(entry);
+    if (!shaders_make(rendering->renderer, rendering->scene_set, &request, 1, &rendering->spirv_ms,
                       &rendering->pipeline_ms))
         return NULL;
-    return &entry->kernel;
+    return &entry->shader;
 }
 
-/* ---- each kernel ---- */
+/* ---- each shader ---- */
 
-/* The schedule `queue` uses the kernel of `pixel`, with fewer steps in a dispatch. */
-static KrsSchedule schedule_of_kernel(KrsSchedule schedule)
+/* The schedule `queue` uses the shader of `pixel`, with fewer steps in a dispatch. */
+static KrsSchedule schedule_of_shader(KrsSchedule schedule)
 {
     return schedule == KRS_SCHEDULE_QUEUE ? KRS_SCHEDULE_PIXEL : schedule;
 }
 
-Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+Shader *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
                         uint32_t march_group)
 {
-    schedule = schedule_of_kernel(schedule);
-    return find_kernel(rendering, "trace.comp",
+    schedule = schedule_of_shader(schedule);
+    return find_shader(rendering, "trace.comp",
                        variant_of_trace(rendering, trace, schedule, march_group));
 }
 
-Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+Shader *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
                         uint32_t march_group)
 {
     return rendering_trace(rendering, trace >= KRS_TRACE_EXACT ? KRS_TRACE_PLAIN : trace, schedule,
                            march_group);
 }
 
-static KernelVariant variant_of_rays(const KrsRendering *rendering, KrsSchedule schedule,
+static ShaderVariant variant_of_rays(const KrsRendering *rendering, KrsSchedule schedule,
                                      bool by_roots, KrsIntegrator integrator)
 {
     return variant_of_secondary(rendering, by_roots ? KRS_TRACE_EXACT : KRS_TRACE_PLAIN,
-                                schedule_of_kernel(schedule), integrator);
+                                schedule_of_shader(schedule), integrator);
 }
 
-Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots)
+Shader *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots)
 {
-    return find_kernel(rendering, "secondary.comp",
+    return find_shader(rendering, "secondary.comp",
                        variant_of_rays(rendering, schedule, by_roots, KRS_INTEGRATOR_PREVIEW));
 }
 
-Kernel *rendering_occluders(KrsRendering *rendering)
+Shader *rendering_occluders(KrsRendering *rendering)
 {
-    return find_kernel(rendering, "occluders.comp", variant_of_occluders(rendering));
+    return find_shader(rendering, "occluders.comp", variant_of_occluders(rendering));
 }
 
-Kernel *rendering_normals_kernel(KrsRendering *rendering, KrsNormals normals, uint32_t march_group)
+Shader *rendering_normals_shader(KrsRendering *rendering, KrsNormals normals, uint32_t march_group)
 {
-    return find_kernel(
+    return find_shader(
         rendering, "normals.comp",
         variant_of_normals(rendering, rendering_normals(rendering, normals), march_group));
 }
 
-static KernelVariant variant_of_questions(const KrsRendering *rendering, KrsSchedule schedule)
+static ShaderVariant variant_of_questions(const KrsRendering *rendering, KrsSchedule schedule)
 {
     return variant_of_query(rendering,
                             rendering->program->sheets ? KRS_TRACE_EXACT : KRS_TRACE_AUTO,
-                            schedule_of_kernel(schedule));
+                            schedule_of_shader(schedule));
 }
 
-Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule)
+Shader *rendering_query(KrsRendering *rendering, KrsSchedule schedule)
 {
-    return find_kernel(rendering, "query.comp", variant_of_questions(rendering, schedule));
+    return find_shader(rendering, "query.comp", variant_of_questions(rendering, schedule));
 }
 
-Kernel *rendering_even_hits(KrsRendering *rendering)
+Shader *rendering_even_hits(KrsRendering *rendering)
 {
-    return find_kernel(rendering, "even_hits.comp", variant_of_even_hits(rendering));
+    return find_shader(rendering, "even_hits.comp", variant_of_even_hits(rendering));
 }
 
-Kernel *rendering_shade(KrsRendering *rendering)
+Shader *rendering_shade(KrsRendering *rendering)
 {
-    return find_kernel(rendering, "shade.comp", variant_of_shade(rendering));
+    return find_shader(rendering, "shade.comp", variant_of_shade(rendering));
 }
 
-Kernel *rendering_point_query(KrsRendering *rendering)
+Shader *rendering_point_query(KrsRendering *rendering)
 {
-    return find_kernel(rendering, "point_query.comp", variant_of_point_query(rendering));
+    return find_shader(rendering, "point_query.comp", variant_of_point_query(rendering));
 }
 
 /* ---- paths ---- */
@@ -153,50 +153,50 @@ static uint32_t group_of_paths(const KrsRendering *rendering)
 }
 
 bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, KrsPurpose purpose,
-                     PathKernels *kernels)
+                     PathShaders *shaders)
 {
     const RayKind rays  = rendering->rays;
     const bool    roots = rendering_has_roots(rendering, options->trace);
     const bool    paths = purpose == KRS_FOR_PATHS;
     rendering->rays     = rendering_mixes_rays(rendering) ? rays : RAYS_OF_PATHS;
-    kernels->march   = rendering_trace(rendering, trace_of_paths(options->trace), options->schedule,
+    shaders->march   = rendering_trace(rendering, trace_of_paths(options->trace), options->schedule,
                                        group_of_paths(rendering));
     rendering->rays  = paths ? RAYS_OF_PATHS : rendering->rays;
-    kernels->normals = rendering_normals_kernel(rendering, options->normals, 0);
+    shaders->normals = rendering_normals_shader(rendering, options->normals, 0);
     rendering->rays  = paths ? RAYS_OF_PATHS : rays; /* those of pictures are for paths, too */
-    kernels->scatter = paths ? find_kernel(rendering, "scatter.comp",
+    shaders->scatter = paths ? find_shader(rendering, "scatter.comp",
                                            variant_of_scatter(rendering, options->starts,
                                                               options->integrator))
                              : rendering_shade(rendering);
-    kernels->shadows = find_kernel(
+    shaders->shadows = find_shader(
         rendering, "secondary.comp",
         variant_of_rays(rendering, options->schedule, roots, options->integrator));
     rendering->rays = rays;
-    return kernels->march && kernels->normals && kernels->scatter && kernels->shadows;
+    return shaders->march && shaders->normals && shaders->scatter && shaders->shadows;
 }
 
-/* ---- kernels that are made at the same time ---- */
+/* ---- shaders that are made at the same time ---- */
 
 typedef struct Requests {
     KrsRendering *rendering;
-    KernelRequest items[KERNELS_AT_ONCE];
+    ShaderRequest items[SHADERS_AT_ONCE];
     size_t        count;
     bool          failed; /* the failure is noted */
 } Requests;
 
-static bool is_requested(const Requests *requests, const Kernel *kernel)
+static bool is_requested(const Requests *requests, const Shader *shader)
 {
     bool found = false;
     for (size_t i = 0; i < requests->count; i++)
-        found = found || requests->items[i].kernel == kernel;
+        found = found || requests->items[i].shader == shader;
     return found;
 }
 
-static void request(Requests *requests, const char *file, KernelVariant variant)
+static void request(Requests *requests, const char *file, ShaderVariant variant)
 {
-    KernelEntry *entry = find_entry(requests->rendering, file, variant);
+    ShaderEntry *entry = find_entry(requests->rendering, file, variant);
     requests->failed   = requests->failed || !entry;
-    if (entry && !entry->kernel.pipeline && !is_requested(requests, &entry->kernel))
+    if (entry && !entry->shader.pipeline && !is_requested(requests, &entry->shader))
         requests->items[requests->count++] = request_of(entry);
 }
 
@@ -205,8 +205,8 @@ static bool is_for_pictures(KrsPurpose purpose)
     return purpose == KRS_FOR_PICTURES || purpose == KRS_FOR_SMALL_PICTURES;
 }
 
-/* Requests the kernels that march.  Where march groups are marched one after the other, each has
-   its own kernel for rays and its own for normals. */
+/* Requests the shaders that march.  Where march groups are marched one after the other, each has
+   its own shader for rays and its own for normals. */
 static void request_marches(Requests *requests, KrsTrace trace, KrsSchedule schedule)
 {
     KrsRendering *rendering = requests->rendering;
@@ -223,7 +223,7 @@ static void request_marches(Requests *requests, KrsTrace trace, KrsSchedule sche
     if (!per_component)
         request(requests, "trace.comp", variant_of_trace(rendering, trace, schedule, whole));
     for (uint32_t march_group = 1; march_group <= groups; march_group++) {
-        KrsSchedule own = schedule_of_kernel(
+        KrsSchedule own = schedule_of_shader(
             rendering_schedule_of_march_group(rendering, KRS_SCHEDULE_DEFAULT, march_group));
         request(requests, "trace.comp", variant_of_trace(rendering, trace, own, march_group));
         if (is_for_pictures(rendering->purpose))
@@ -231,7 +231,7 @@ static void request_marches(Requests *requests, KrsTrace trace, KrsSchedule sche
     }
 }
 
-/* Requests the kernels of the rays of paths. */
+/* Requests the shaders of the rays of paths. */
 static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedule)
 {
     KrsRendering *rendering = requests->rendering;
@@ -254,7 +254,7 @@ static void request_paths(Requests *requests, KrsTrace trace, KrsSchedule schedu
     rendering->rays = rays;
 }
 
-/* Requests the kernels without a scene. */
+/* Requests the shaders without a scene. */
 static void request_sceneless(Requests *requests, KrsPurpose purpose)
 {
     KrsRendering *rendering = requests->rendering;
@@ -286,7 +286,7 @@ static void request_pictures(Requests *requests, KrsTrace trace, KrsSchedule sch
         request_paths(requests, trace, schedule);
 }
 
-bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
+bool shaders_create(KrsRendering *rendering, KrsPurpose purpose)
 {
     KrsTrace    trace    = KRS_TRACE_DEFAULT;
     KrsSchedule schedule = KRS_SCHEDULE_DEFAULT;
@@ -294,94 +294,94 @@ bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
     rendering_choose(rendering, &trace, &schedule);
     request_sceneless(&requests, purpose);
     if (is_for_pictures(purpose)) {
-        request_pictures(&requests, trace, schedule_of_kernel(schedule));
+        request_pictures(&requests, trace, schedule_of_shader(schedule));
     } else if (purpose == KRS_FOR_PATHS) {
-        request_marches(&requests, trace, schedule_of_kernel(schedule));
-        request_paths(&requests, trace, schedule_of_kernel(schedule));
+        request_marches(&requests, trace, schedule_of_shader(schedule));
+        request_paths(&requests, trace, schedule_of_shader(schedule));
     } else {
         request(&requests, "query.comp", variant_of_questions(rendering, schedule));
         request(&requests, "point_query.comp", variant_of_point_query(rendering));
     }
     return !requests.failed &&
-           kernels_make(rendering->renderer, rendering->scene_set, requests.items, requests.count,
+           shaders_make(rendering->renderer, rendering->scene_set, requests.items, requests.count,
                         &rendering->spirv_ms, &rendering->pipeline_ms);
 }
 
 /* ---- statistics ---- */
 
-typedef struct KernelListing {
+typedef struct ShaderListing {
     const Gpu      *gpu;
     KrsKernelStats *items;
     size_t          capacity, count;
-} KernelListing;
+} ShaderListing;
 
-static void describe(const Gpu *gpu, const Kernel *kernel, KrsKernelStats *stats)
+static void describe(const Gpu *gpu, const Shader *shader, KrsKernelStats *stats)
 {
     char group[16] = "";
-    if (kernel->march_group == KRS_MARCH_GROUP_OF_PLANES)
+    if (shader->march_group == KRS_MARCH_GROUP_OF_PLANES)
         snprintf(group, sizeof group, " planes");
-    else if (kernel->march_group > 0)
-        snprintf(group, sizeof group, " %u", kernel->march_group);
-    *stats = (KrsKernelStats){.glsl_bytes = kernel->glsl_bytes,
-                              .spirv_ms   = kernel->spirv_ms,
-                              .driver_ms  = kernel_driver_ms(gpu, kernel),
-                              .cached     = kernel->cached};
-    snprintf(stats->name, sizeof stats->name, "%s%s", kernel->file, group);
+    else if (shader->march_group > 0)
+        snprintf(group, sizeof group, " %u", shader->march_group);
+    *stats = (KrsKernelStats){.glsl_bytes = shader->glsl_bytes,
+                              .spirv_ms   = shader->spirv_ms,
+                              .driver_ms  = shader_driver_ms(gpu, shader),
+                              .cached     = shader->cached};
+    snprintf(stats->name, sizeof stats->name, "%s%s", shader->file, group);
 }
 
-static void list_kernel(KernelListing *listing, const Kernel *kernel)
+static void list_shader(ShaderListing *listing, const Shader *shader)
 {
-    if (!kernel->pipeline)
+    if (!shader->pipeline)
         return;
     if (listing->count < listing->capacity)
-        describe(listing->gpu, kernel, &listing->items[listing->count]);
+        describe(listing->gpu, shader, &listing->items[listing->count]);
     listing->count++;
 }
 
-size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelStats *kernels,
+size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelStats *shaders,
                              size_t capacity)
 {
     const KrsRenderer *renderer = rendering->renderer;
-    KernelListing      listing  = {&renderer->gpu, kernels, capacity, 0};
+    ShaderListing      listing  = {&renderer->gpu, shaders, capacity, 0};
     for (int kind = 0; kind < RAY_KINDS; kind++) {
-        for (int i = 0; i < PIXEL_KERNELS; i++)
-            list_kernel(&listing, &renderer->pixels[kind][i]);
-        list_kernel(&listing, &renderer->escapes[kind]);
+        for (int i = 0; i < PIXEL_SHADERS; i++)
+            list_shader(&listing, &renderer->pixels[kind][i]);
+        list_shader(&listing, &renderer->escapes[kind]);
     }
-    list_kernel(&listing, &renderer->escapes_to_plate);
-    list_kernel(&listing, &renderer->noise);
-    list_kernel(&listing, &renderer->plate);
-    list_kernel(&listing, &renderer->next_dispatch);
-    list_kernel(&listing, &renderer->clear_shared);
-    for (const KernelEntry *entry = rendering->kernels.first; entry; entry = entry->next)
-        list_kernel(&listing, &entry->kernel);
+    list_shader(&listing, &renderer->escapes_to_plate);
+    list_shader(&listing, &renderer->noise);
+    list_shader(&listing, &renderer->plate);
+    list_shader(&listing, &renderer->next_dispatch);
+    list_shader(&listing, &renderer->clear_shared);
+    for (const ShaderEntry *entry = rendering->shaders.first; entry; entry = entry->next)
+        list_shader(&listing, &entry->shader);
     return listing.count;
 }
 
-/* A kernel that the scene before had already, as if it had been found. */
-static Kernel found_kernel(const Kernel *kernel)
+/* A shader that the scene before had already, as if it had been found. */
+static Shader found_shader(const Shader *shader)
 {
-    return (Kernel){.pipeline    = kernel->pipeline,
-                    .file        = kernel->file,
-                    .march_group = kernel->march_group,
-                    .glsl_bytes  = kernel->glsl_bytes,
+    return (Shader){.pipeline    = shader->pipeline,
+                    .file        = shader->file,
+                    .march_group = shader->march_group,
+                    .glsl_bytes  = shader->glsl_bytes,
                     .cached      = true,
-                    .shared      = kernel->shared};
+                    .shared      = shader->shared};
 }
 
-void kernels_adopt(KernelMap *map, const KrsScene *scene)
+void shaders_adopt(ShaderMap *map, const KrsScene *scene)
 {
-    for (KernelEntry *entry = map->first; entry; entry = entry->next) {
+    for (ShaderEntry *entry = map->first; entry; entry = entry->next) {
         entry->variant.scene.scene = scene;
-        entry->kernel              = found_kernel(&entry->kernel);
+        entry->shader              = found_shader(&entry->shader);
     }
 }
 
-void kernels_destroy(Gpu *gpu, KernelMap *map)
+void shaders_destroy(Gpu *gpu, ShaderMap *map)
 {
-    for (KernelEntry *entry = map->first, *next; entry; entry = next) {
+    for (ShaderEntry *entry = map->first, *next; entry; entry = next) {
         next = entry->next;
-        kernel_destroy(gpu, &entry->kernel);
+        shader_destroy(gpu, &entry->shader);
         gpu_release(gpu, entry);
     }
     map->first = NULL;

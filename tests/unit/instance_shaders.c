@@ -1,5 +1,5 @@
 /*
- * instance_kernels.c: kernels give what tapes give, for functions of instance groups in the place of a scene's
+ * instance_shaders.c: shaders give what tapes give, for functions of instance groups in the place of a scene's
  * distance.
  */
 #include <setjmp.h>
@@ -51,7 +51,7 @@ static void open_fixture(Fixture *fixture, Bench *bench)
             fixture->points[i][k] = (float)random_between(&bench->random, -FARTHEST, FARTHEST);
 }
 
-/* What kernels find where a root of the graph is the scene's distance. */
+/* What shaders find where a root of the graph is the scene's distance. */
 static void sample_root(Fixture *fixture, Node root)
 {
     KrsFrame     *frame;
@@ -85,8 +85,8 @@ static int count_differences(const Fixture *fixture, Node root, Bench *bench)
     return count;
 }
 
-/* Kernels may choose another cell, or nearest instance, at very few points on the border between. */
-static void kernels_give_what_tapes_give(void **state)
+/* Shaders may choose another cell, or nearest instance, at very few points on the border between. */
+static void shaders_give_what_tapes_give(void **state)
 {
     static const int roots[] = {SHARP, SMOOTH, NESTED, SHADED};
     static Fixture   fixture;
@@ -106,7 +106,7 @@ static void kernels_give_what_tapes_give(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(kernels_give_what_tapes_give, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(shaders_give_what_tapes_give, bench_start, bench_stop),
     };
-    return cmocka_run_group_tests_name("kernels of instance groups", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("shaders of instance groups", tests, NULL, NULL);
 }

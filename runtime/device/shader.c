@@ -1,8 +1,8 @@
 /*
- * kernel.c: a kernel's text becomes SPIR-V and then a pipeline; both are kept in the cache, the
+ * shader.c: a shader's text becomes SPIR-V and then a pipeline; both are kept in the cache, the
  * pipeline by the driver's own.
  */
-#include "runtime/device/kernel.h"
+#include "runtime/device/shader.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -15,11 +15,11 @@
 #include <unistd.h>
 
 #include "compiler/base/embedded.h"
-#include "runtime/device/shared_kernels.h"
+#include "runtime/device/shared_shaders.h"
 #include "compiler/passes/compile.h"
 
-/* A kernel on its way to SPIR-V, in a thread of its own when it must be compiled. */
-typedef struct KernelBuild {
+/* A shader on its way to SPIR-V, in a thread of its own when it must be compiled. */
+typedef struct ShaderBuild {
     const char   *file;
     char         *text;
     CacheKey      key;
@@ -33,8 +33,8 @@ typedef struct KernelBuild {
     pthread_t     thread;
     bool          started; /* the thread */
     bool          to_share;
-    SharedKernel *shared; /* the device has it already: nothing is found or made */
-} KernelBuild;
+    SharedShader *shared; /* the device has it already: nothing is found or made */
+} ShaderBuild;
 
 static double ms_of(clockid_t clock)
 {
@@ -45,7 +45,7 @@ static double ms_of(clockid_t clock)
 
 static void *compile(void *user)
 {
-    KernelBuild *build = user;
+    ShaderBuild *build = user;
     size_t       count = 0;
     const double start = ms_of(CLOCK_THREAD_CPUTIME_ID);
     build->status      = spirv_compile(build->text, build->file, &build->made, &count, &build->log);
@@ -54,9 +54,9 @@ static void *compile(void *user)
     return NULL;
 }
 
-/* The SPIR-V that the program carries of a kernel without a scene: FILE.spv, or FILE-NAME-NAME.spv of
-   a kernel for which these names are defined, and nothing else is. */
-static const EmbeddedFile *find_module(const KernelSource *source)
+/* The SPIR-V that the program carries of a shader without a scene: FILE.spv, or FILE-NAME-NAME.spv of
+   a shader for which these names are defined, and nothing else is. */
+static const EmbeddedFile *find_module(const ShaderSource *source)
 {
     char        wanted[128], defined[32];
     const char *defines = source->defines ? source->defines : "";
@@ -77,9 +77,9 @@ static const EmbeddedFile *find_module(const KernelSource *source)
 }
 
 /* The cache's key: all that the text depends on but cannot show, and the text. */
-static CacheKey make_key(const KernelSource *source, const char *text)
+static CacheKey make_key(const ShaderSource *source, const char *text)
 {
-    const KernelScene *s       = source->scene;
+    const ShaderScene *s       = source->scene;
     uint64_t           variant = s ? krs_variant_hash(&s->variant, s->wanted, s->wanted_count) : 0;
     char               maker[192];
     snprintf(maker, sizeof maker, "%s: glslang %s, SPIRV-Tools %s, flat, variant %016" PRIx64,
@@ -87,42 +87,42 @@ static CacheKey make_key(const KernelSource *source, const char *text)
     return cache_key(maker, text, strlen(text));
 }
 
-/* Takes the kernel from the program itself, or puts its text together and looks into the cache. */
-static bool begin(Gpu *gpu, KernelBuild *build, const KernelSource *source)
+/* Takes the shader from the program itself, or puts its text together and looks into the cache. */
+static bool begin(Gpu *gpu, ShaderBuild *build, const ShaderSource *source)
 {
     const EmbeddedFile *module = find_module(source);
     const double        start  = ms_of(CLOCK_THREAD_CPUTIME_ID);
-    *build                     = (KernelBuild){.file = source->file};
+    *build                     = (ShaderBuild){.file = source->file};
     if (module) {
         build->bytes = module->length;
-        build->found = gpu_alloc(gpu, module->length, 1, "load a kernel");
+        build->found = gpu_alloc(gpu, module->length, 1, "load a shader");
         if (build->found)
             memcpy(build->found, module->text, module->length);
         return build->found != NULL;
     }
-    build->text = kernel_text(gpu, source);
+    build->text = shader_text(gpu, source);
     if (!build->text)
         return false;
     build->glsl_bytes  = strlen(build->text);
     build->march_group = source->scene ? source->scene->variant.march_group : 0;
     build->key         = make_key(source, build->text);
     build->to_share    = source->scene != NULL;
-    build->shared      = build->to_share ? shared_kernel_find(gpu, build->key) : NULL;
+    build->shared      = build->to_share ? shared_shader_find(gpu, build->key) : NULL;
     if (!build->shared)
         build->found = cache_load(&gpu->cache, CACHE_SPIRV, build->key, &build->bytes);
     build->ms = ms_of(CLOCK_THREAD_CPUTIME_ID) - start;
     return true;
 }
 
-/* Begins to compile what was not found.  Meanwhile the texts of other kernels are printed. */
-static void start_build(KernelBuild *build)
+/* Begins to compile what was not found.  Meanwhile the texts of other shaders are printed. */
+static void start_build(ShaderBuild *build)
 {
     build->started = !build->found && !build->shared &&
                      pthread_create(&build->thread, NULL, compile, build) == 0;
 }
 
 /* Waits for what was started, and compiles what found no thread. */
-static void end_build(KernelBuild *build)
+static void end_build(ShaderBuild *build)
 {
     if (build->started)
         pthread_join(build->thread, NULL);
@@ -131,7 +131,7 @@ static void end_build(KernelBuild *build)
 }
 
 /* Keeps what was compiled, or says why it was not. */
-static bool finish(Gpu *gpu, const KernelBuild *build)
+static bool finish(Gpu *gpu, const ShaderBuild *build)
 {
     const char *log = build->log ? build->log : "";
     if (build->found || build->shared)
@@ -139,28 +139,28 @@ static bool finish(Gpu *gpu, const KernelBuild *build)
     if (build->status == KRS_OK)
         cache_store(&gpu->cache, CACHE_SPIRV, build->key, build->made, build->bytes);
     else if (build->status == KRS_OUT_OF_MEMORY)
-        gpu_refuse(gpu, build->status, "cannot compile the kernel `%s`: out of memory",
+        gpu_refuse(gpu, build->status, "cannot compile the shader `%s`: out of memory",
                    build->file);
     else
-        gpu_refuse(gpu, KRS_INTERNAL, "the kernel `%s` does not compile: %.*s", build->file,
+        gpu_refuse(gpu, KRS_INTERNAL, "the shader `%s` does not compile: %.*s", build->file,
                    (int)strcspn(log, "\n"), log);
     return build->status == KRS_OK;
 }
 
-static void release(Gpu *gpu, KernelBuild *build)
+static void release(Gpu *gpu, ShaderBuild *build)
 {
     gpu_release(gpu, build->text);
     gpu_release(gpu, build->found);
     if (build->shared)
-        shared_kernel_leave(gpu, build->shared);
+        shared_shader_leave(gpu, build->shared);
     free(build->made);
     free(build->log);
 }
 
 /* Takes the words over, for good or bad. */
-static KernelCode take_code(KernelBuild *build)
+static ShaderCode take_code(ShaderBuild *build)
 {
-    KernelCode code = {.file        = build->file,
+    ShaderCode code = {.file        = build->file,
                        .words       = build->found ? build->found : build->made,
                        .bytes       = build->bytes,
                        .compiled    = build->made != NULL,
@@ -175,11 +175,11 @@ static KernelCode take_code(KernelBuild *build)
     return code;
 }
 
-bool kernel_compile_all(Gpu *gpu, const KernelRequest *requests, size_t count, KernelCode *codes,
+bool shader_compile_all(Gpu *gpu, const ShaderRequest *requests, size_t count, ShaderCode *codes,
                         double *spirv_ms)
 {
     double       start  = clock_ms();
-    KernelBuild *builds = gpu_alloc(gpu, count, sizeof *builds, "compile the kernels");
+    ShaderBuild *builds = gpu_alloc(gpu, count, sizeof *builds, "compile the shaders");
     bool         ready  = builds != NULL;
     for (size_t i = 0; i < count && ready; i++) {
         ready = begin(gpu, &builds[i], &requests[i].source);
@@ -193,7 +193,7 @@ bool kernel_compile_all(Gpu *gpu, const KernelRequest *requests, size_t count, K
     for (size_t i = 0; i < count && ready; i++)
         ready = finish(gpu, &builds[i]);
     for (size_t i = 0; i < count; i++)
-        codes[i] = ready ? take_code(&builds[i]) : (KernelCode){0};
+        codes[i] = ready ? take_code(&builds[i]) : (ShaderCode){0};
     for (size_t i = 0; i < count && builds; i++)
         release(gpu, &builds[i]);
     gpu_release(gpu, builds);
@@ -201,35 +201,35 @@ bool kernel_compile_all(Gpu *gpu, const KernelRequest *requests, size_t count, K
     return ready;
 }
 
-void kernel_code_release(Gpu *gpu, KernelCode *code)
+void shader_code_release(Gpu *gpu, ShaderCode *code)
 {
     if (code->compiled)
         free(code->words);
     else
         gpu_release(gpu, code->words);
     if (code->shared)
-        shared_kernel_leave(gpu, code->shared);
-    *code = (KernelCode){0};
+        shared_shader_leave(gpu, code->shared);
+    *code = (ShaderCode){0};
 }
 
-/* What is known of a kernel before the device has it. */
-static Kernel describe(const KernelCode *code)
+/* What is known of a shader before the device has it. */
+static Shader describe(const ShaderCode *code)
 {
-    return (Kernel){.file        = code->file,
+    return (Shader){.file        = code->file,
                     .march_group = code->march_group,
                     .glsl_bytes  = code->glsl_bytes,
                     .cached      = !code->compiled,
                     .spirv_ms    = code->ms};
 }
 
-bool kernel_load(Gpu *gpu, Kernel *kernel, const KernelCode *code, VkPipelineLayout layout,
+bool shader_load(Gpu *gpu, Shader *shader, const ShaderCode *code, VkPipelineLayout layout,
                  double *pipeline_ms)
 {
     double         start  = clock_ms();
     VkShaderModule module = VK_NULL_HANDLE;
     bool           ready  = false;
-    *kernel               = describe(code);
-    TRY(gpu, "load a kernel",
+    *shader               = describe(code);
+    TRY(gpu, "load a shader",
         vkCreateShaderModule(gpu->device,
                              &(VkShaderModuleCreateInfo){
                                  .sType    = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
@@ -237,7 +237,7 @@ bool kernel_load(Gpu *gpu, Kernel *kernel, const KernelCode *code, VkPipelineLay
                                  .pCode    = code->words,
                              },
                              NULL, &module));
-    TRY(gpu, "prepare a kernel",
+    TRY(gpu, "prepare a shader",
         vkCreateComputePipelines(
             gpu->device, gpu->pipelines, 1,
             &(VkComputePipelineCreateInfo){
@@ -251,28 +251,28 @@ bool kernel_load(Gpu *gpu, Kernel *kernel, const KernelCode *code, VkPipelineLay
                     },
                 .layout = layout,
             },
-            NULL, &kernel->pipeline));
-    gpu_name(gpu, VK_OBJECT_TYPE_PIPELINE, (uint64_t)(uintptr_t)kernel->pipeline, code->file);
+            NULL, &shader->pipeline));
+    gpu_name(gpu, VK_OBJECT_TYPE_PIPELINE, (uint64_t)(uintptr_t)shader->pipeline, code->file);
     ready = true;
 
 failed:
     vkDestroyShaderModule(gpu->device, module, NULL);
-    kernel->pipeline_ms = clock_ms() - start;
-    *pipeline_ms += kernel->pipeline_ms;
+    shader->pipeline_ms = clock_ms() - start;
+    *pipeline_ms += shader->pipeline_ms;
     return ready;
 }
 
-double kernel_driver_ms(const Gpu *gpu, const Kernel *kernel)
+double shader_driver_ms(const Gpu *gpu, const Shader *shader)
 {
-    return kernel->pipeline_ms + (kernel->prewarmed ? gpu_prewarm_ms(gpu, kernel->prewarm) : 0);
+    return shader->pipeline_ms + (shader->prewarmed ? gpu_prewarm_ms(gpu, shader->prewarm) : 0);
 }
 
 /* ---- Side by side ---- */
 
-/* Kernels that several threads make: each takes the next that nobody has. */
+/* Shaders that several threads make: each takes the next that nobody has. */
 typedef struct Loading {
-    const KernelRequest *requests;
-    const KernelCode    *codes;
+    const ShaderRequest *requests;
+    const ShaderCode    *codes;
     size_t               count;
     VkPipelineLayout     layout;
     atomic_size_t        next;
@@ -293,7 +293,7 @@ static void *load_some(void *user)
     double          ms      = 0;
     for (size_t i; loader->ready && (i = atomic_fetch_add(&loading->next, 1)) < loading->count;)
         loader->ready = loading->codes[i].shared ||
-                        kernel_load(&loader->gpu, loading->requests[i].kernel, &loading->codes[i],
+                        shader_load(&loader->gpu, loading->requests[i].shader, &loading->codes[i],
                                     loading->layout, &ms);
     return NULL;
 }
@@ -313,37 +313,37 @@ static void await(const Gpu *gpu, pthread_t thread)
 }
 
 /* The validation layers' callback is for one thread. */
-static size_t count_loaders(const Gpu *gpu, size_t kernels)
+static size_t count_loaders(const Gpu *gpu, size_t shaders)
 {
     long   cores = sysconf(_SC_NPROCESSORS_ONLN);
     size_t most  = cores < 1 ? 1 : cores < MOST_LOADERS ? (size_t)cores : MOST_LOADERS;
-    return gpu->messenger ? 0 : kernels < most ? kernels : most;
+    return gpu->messenger ? 0 : shaders < most ? shaders : most;
 }
 
 /* Takes what the device has already, and shares what is new. */
-static bool share(Gpu *gpu, Kernel *kernel, const KernelCode *code)
+static bool share(Gpu *gpu, Shader *shader, const ShaderCode *code)
 {
     if (code->shared) {
-        *kernel          = describe(code);
-        kernel->shared   = shared_kernel_find(gpu, code->key);
-        kernel->pipeline = kernel->shared->pipeline;
+        *shader          = describe(code);
+        shader->shared   = shared_shader_find(gpu, code->key);
+        shader->pipeline = shader->shared->pipeline;
         return true;
     }
-    gpu->kernels_made++;
+    gpu->shaders_made++;
     if (code->to_share)
-        kernel->shared = shared_kernel_add(gpu, code->key, kernel->pipeline);
-    return kernel->shared || !code->to_share;
+        shader->shared = shared_shader_add(gpu, code->key, shader->pipeline);
+    return shader->shared || !code->to_share;
 }
 
-bool kernel_load_all(Gpu *gpu, const KernelRequest *requests, const KernelCode *codes, size_t count,
+bool shader_load_all(Gpu *gpu, const ShaderRequest *requests, const ShaderCode *codes, size_t count,
                      VkPipelineLayout layout)
 {
     Loading         loading = {requests, codes, count, layout, 0};
     size_t          loaders = count_loaders(gpu, count);
-    PipelineLoader *all     = gpu_alloc(gpu, 1 + loaders, sizeof *all, "prepare the kernels");
+    PipelineLoader *all     = gpu_alloc(gpu, 1 + loaders, sizeof *all, "prepare the shaders");
     bool            ready   = all != NULL;
     for (size_t i = 0; i < count; i++)
-        *requests[i].kernel = (Kernel){0};
+        *requests[i].shader = (Shader){0};
     for (size_t i = 0; ready && i < loaders; i++) {
         all[i]         = (PipelineLoader){.loading = &loading, .gpu = *gpu, .ready = true};
         all[i].started = pthread_create(&all[i].thread, NULL, load_some, &all[i]) == 0;
@@ -362,38 +362,38 @@ bool kernel_load_all(Gpu *gpu, const KernelRequest *requests, const KernelCode *
         }
     gpu_release(gpu, all);
     for (size_t i = 0; i < count && ready; i++)
-        ready = share(gpu, requests[i].kernel, &codes[i]);
+        ready = share(gpu, requests[i].shader, &codes[i]);
     return ready;
 }
 
-bool kernel_create_all(Gpu *gpu, const KernelRequest *requests, size_t count,
+bool shader_create_all(Gpu *gpu, const ShaderRequest *requests, size_t count,
                        VkPipelineLayout layout, double *spirv_ms, double *pipeline_ms)
 {
-    KernelCode *codes = gpu_alloc(gpu, count, sizeof *codes, "compile the kernels");
-    bool        ready = codes && kernel_compile_all(gpu, requests, count, codes, spirv_ms);
+    ShaderCode *codes = gpu_alloc(gpu, count, sizeof *codes, "compile the shaders");
+    bool        ready = codes && shader_compile_all(gpu, requests, count, codes, spirv_ms);
     double      start = clock_ms();
     for (size_t i = 0; i < count; i++)
-        *requests[i].kernel = (Kernel){0};
-    ready = ready && kernel_load_all(gpu, requests, codes, count, layout);
+        *requests[i].shader = (Shader){0};
+    ready = ready && shader_load_all(gpu, requests, codes, count, layout);
     *pipeline_ms += clock_ms() - start;
     for (size_t i = 0; i < count && codes; i++)
-        kernel_code_release(gpu, &codes[i]);
+        shader_code_release(gpu, &codes[i]);
     gpu_release(gpu, codes);
     return ready;
 }
 
-bool kernel_create(Gpu *gpu, Kernel *kernel, const KernelSource *source, VkPipelineLayout layout,
+bool shader_create(Gpu *gpu, Shader *shader, const ShaderSource *source, VkPipelineLayout layout,
                    double *spirv_ms, double *pipeline_ms)
 {
-    return kernel_create_all(gpu, &(KernelRequest){kernel, *source}, 1, layout, spirv_ms,
+    return shader_create_all(gpu, &(ShaderRequest){shader, *source}, 1, layout, spirv_ms,
                              pipeline_ms);
 }
 
-void kernel_destroy(Gpu *gpu, Kernel *kernel)
+void shader_destroy(Gpu *gpu, Shader *shader)
 {
-    if (kernel->shared)
-        shared_kernel_leave(gpu, kernel->shared);
+    if (shader->shared)
+        shared_shader_leave(gpu, shader->shared);
     else if (gpu->device && !gpu->stuck)
-        vkDestroyPipeline(gpu->device, kernel->pipeline, NULL);
-    *kernel = (Kernel){0};
+        vkDestroyPipeline(gpu->device, shader->pipeline, NULL);
+    *shader = (Shader){0};
 }

@@ -1,0 +1,46 @@
+/*
+ * shaders.h: the shaders that contain functions of the scene, in a map (shaders.c).
+ *
+ * A shader is compiled when it is first asked for.  The functions that return one return NULL, with
+ * the failure noted, where that fails.
+ */
+#ifndef KRS_SHADERS_H
+#define KRS_SHADERS_H
+
+#include "runtime/tracer/handles.h"
+
+/* The shader of primary rays.  Method and schedule are chosen, not the defaults.  `march_group` is
+   the number of a group from 1, 0 for all components, or MARCH_WITHOUT_PLANES or MARCH_PACKED. */
+Shader *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+                        uint32_t march_group);
+/* The shader of beams.  They are wider than a ray, so they need distances that hold in all
+   directions, whatever the method of the rays. */
+Shader *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+                        uint32_t march_group);
+/* The shader of normals, for a march group or for all components (0). */
+Shader *rendering_normals_shader(KrsRendering *rendering, KrsNormals normals, uint32_t march_group);
+/* The shader of rays to lights and for occlusion; `by_roots`: they go from root to root. */
+Shader *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots);
+/* The shader of the albedo of what rays for occlusion have met. */
+Shader *rendering_occluders(KrsRendering *rendering);
+/* The shader that evens hits out. */
+Shader *rendering_even_hits(KrsRendering *rendering);
+Shader *rendering_shade(KrsRendering *rendering);
+Shader *rendering_query(KrsRendering *rendering, KrsSchedule schedule);
+Shader *rendering_point_query(KrsRendering *rendering);
+
+/* The shaders of the rays of paths, whatever the rays of the frame are. */
+typedef struct PathShaders {
+    Shader *march, *normals, *shadows;
+    Shader *scatter; /* scatter.comp, or for previews shade.comp */
+} PathShaders;
+bool rendering_paths(KrsRendering *rendering, const KrsRenderOptions *options, KrsPurpose purpose,
+                     PathShaders *shaders);
+
+/* Makes the shaders for a purpose, pictures with default options or queries, unless they exist. */
+bool shaders_create(KrsRendering *rendering, KrsPurpose purpose);
+/* Makes a map that of an edited scene with the same shaders. */
+void shaders_adopt(ShaderMap *map, const KrsScene *scene);
+void shaders_destroy(Gpu *gpu, ShaderMap *map);
+
+#endif
