@@ -88,7 +88,7 @@ CC_LINK  = $(CC) $(CFLAGS) $(LDFLAGS) -Wl,--exclude-libs,ALL
 HARDENED := -pie -Wl,-z,relro -Wl,-z,now
 include tools/libraries.mk
 
-OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(CLIENTS:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
+OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(CLIENTS:%.c=$(B)/%.o) $(BRIDGE:%.cpp=$(B)/%.o) $(B)/library_files.o \
             $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(API:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o $(B)/fingerprints.o
 
 # Programs of this project are linked with the library's parts; others with the library, which shows its API alone.

@@ -6,8 +6,8 @@
 # BEFORE and AFTER are commands (build/krs).  They render by turns, each time with new caches, so
 # that a machine that becomes slower for a while is slower for both.  Printed in Markdown:
 #   kernels  the kernels that are compiled for the scene,
-#   CPU      processor seconds of the whole process, the least of all turns,
-#   wall     its seconds, the least of all turns,
+#   CPU      processor seconds of the whole process, the least of all iterations,
+#   wall     its seconds, the least of all iterations,
 # before and after, and the ratio of processor seconds.
 set -u
 [ $# -ge 2 ] || { sed -n '4p' "$0" | sed 's/^# //' >&2; exit 2; }

@@ -3,7 +3,7 @@
 #
 # usage: bench/starts.sh [KRS] [TURNS] [SIZE]
 #
-# One sample of 640x360 pixels, by a process of its own.  Printed in Markdown, medians of all turns:
+# One sample of 640x360 pixels, by a process of its own.  Printed in Markdown, medians of all iterations:
 #   kernels  those that are compiled for the scene,
 #   cold     seconds to the end with empty caches: on the wall, and of processors,
 #   warm     the same once more with the caches that the cold run has filled,

@@ -37,7 +37,7 @@ static void print_place(const double point[3])
 }
 
 /* The turn that makes a direction of the scene the one away from the plate. */
-static void find_turn(const double from[3], const double to[3], double axis[3], double *degrees)
+static void find_rotation(const double from[3], const double to[3], double axis[3], double *degrees)
 {
     double cosine = 0, length;
     for (int k = 0; k < 3; k++) {
@@ -67,10 +67,10 @@ static void print_lying(const Printing *printing, const char *name,
            orientation->overhang, unit);
 }
 
-static void print_turn(const KrsOrientation *from, const KrsOrientation *to)
+static void print_rotation(const KrsOrientation *from, const KrsOrientation *to)
 {
     double axis[3], degrees;
-    find_turn(to->up, from->up, axis, &degrees);
+    find_rotation(to->up, from->up, axis, &degrees);
     if (degrees < 0.01) {
         puts("             which is as it lies");
         return;
@@ -134,7 +134,7 @@ static void print_text(const Printing *printing)
         return;
     }
     print_lying(printing, "best", &measures->orientations[0]);
-    print_turn(&measures->as_is, &measures->orientations[0]);
+    print_rotation(&measures->as_is, &measures->orientations[0]);
 }
 
 /* ---- JSON ---- */

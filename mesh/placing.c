@@ -127,7 +127,7 @@ static Box place_box(const double matrix[3][4], Box box)
         for (int k = 0; k < 3; k++)
             rows[i][k] = (Range){matrix[i][k], matrix[i][k]};
     }
-    return box_move(box_turn(box, rows), shift);
+    return box_move(box_rotate(box, rows), shift);
 }
 
 static Ball place_ball(const double matrix[3][4], Ball ball)

@@ -16,7 +16,7 @@
 
 /* Pixels around a triangle that are its own: a bilinear look at a point of it reaches as far. */
 enum { MARGIN = 2 };
-enum { TURNS = 16, MOST_TRIES = 400 };
+enum { ROTATIONS = 16, MOST_TRIES = 400 };
 /* The cosine of the angle between a triangle of a chart and its first one. */
 static const double LEAST_COSINE = 0.7;
 /* In pixels: heights that differ by more are of two sheets, one above the other. */
@@ -357,7 +357,7 @@ static bool grow_chart(Layout *l, uint32_t seed)
 
 /* ---- rectangles ---- */
 
-static void turn(const Chart *chart, const double point[2], double turned[2])
+static void rotate(const Chart *chart, const double point[2], double turned[2])
 {
     turned[0] = chart->cosine * point[0] - chart->sine * point[1];
     turned[1] = chart->sine * point[0] + chart->cosine * point[1];
@@ -370,7 +370,7 @@ static void find_size(const Layout *l, const Chart *chart, double low[2], double
     for (size_t i = chart->first; i < chart->first + chart->count; i++)
         for (int k = 0; k < 3; k++) {
             double at[2];
-            turn(chart, l->corners[l->list[i]][k], at);
+            rotate(chart, l->corners[l->list[i]][k], at);
             for (int n = 0; n < 2; n++) {
                 low[n]  = fmin(low[n], at[n]);
                 high[n] = fmax(high[n], at[n]);
@@ -381,7 +381,7 @@ static void find_size(const Layout *l, const Chart *chart, double low[2], double
 }
 
 /* Takes another turn if that makes the rectangle smaller; rectangles lie. */
-static void try_turn(const Layout *l, Chart *best, double *least, double x, double y)
+static void try_rotation(const Layout *l, Chart *best, double *least, double x, double y)
 {
     Chart  chart  = *best;
     double length = hypot(x, y), low[2], size[2];
@@ -407,14 +407,14 @@ static void try_turn(const Layout *l, Chart *best, double *least, double x, doub
 }
 
 /* The first triangle is the largest; on flat faces one of its edges is often a side. */
-static void turn_chart(const Layout *l, Chart *chart)
+static void rotate_chart(const Layout *l, Chart *chart)
 {
     const double(*c)[2] = (const double(*)[2])l->corners[l->list[chart->first]];
     double least        = HUGE_VAL;
     for (int k = 0; k < 3; k++)
-        try_turn(l, chart, &least, c[(k + 1) % 3][0] - c[k][0], c[(k + 1) % 3][1] - c[k][1]);
-    for (int i = 0; i < TURNS; i++)
-        try_turn(l, chart, &least, cos(M_PI_2 * i / TURNS), sin(M_PI_2 * i / TURNS));
+        try_rotation(l, chart, &least, c[(k + 1) % 3][0] - c[k][0], c[(k + 1) % 3][1] - c[k][1]);
+    for (int i = 0; i < ROTATIONS; i++)
+        try_rotation(l, chart, &least, cos(M_PI_2 * i / ROTATIONS), sin(M_PI_2 * i / ROTATIONS));
 }
 
 static int compare_charts(const void *a, const void *b)
@@ -457,7 +457,7 @@ static bool lay_out(Layout *l)
         if (!l->placed[l->order[i]] && !grow_chart(l, l->order[i]))
             return false;
     for (size_t i = 0; i < l->charts.count; i++)
-        turn_chart(l, &l->charts.items[i]);
+        rotate_chart(l, &l->charts.items[i]);
     return shelve(l);
 }
 
@@ -470,7 +470,7 @@ static void place_charts(Layout *l)
         for (size_t i = chart->first; i < chart->first + chart->count; i++)
             for (int k = 0; k < 3; k++) {
                 double *corner = l->corners[l->list[i]][k], turned[2];
-                turn(chart, corner, turned);
+                rotate(chart, corner, turned);
                 for (int m = 0; m < 2; m++)
                     corner[m] = turned[m] - chart->low[m] + chart->at[m] + MARGIN;
             }

@@ -67,7 +67,7 @@ void mesh_copy_places(const MeshParts *parts, const MeshCopy *copy, size_t numbe
 }
 
 /* A similarity turns directions, and makes them longer by its scale. */
-static void turn(const double (*matrix)[4], float direction[3])
+static void rotate(const double (*matrix)[4], float direction[3])
 {
     const double from[3] = {direction[0], direction[1], direction[2]};
     const double scale   = length3(matrix[0]);
@@ -81,8 +81,8 @@ void mesh_copy_frames(const MeshParts *parts, const MeshCopy *copy, size_t numbe
     for (int k = 0; k < 3; k++) {
         frames[k] = parts->corner_frames[copy->part->first_triangle + number][corner_of(copy, k)];
         if (copy->matrix) {
-            turn(copy->matrix, frames[k].normal);
-            turn(copy->matrix, frames[k].tangent);
+            rotate(copy->matrix, frames[k].normal);
+            rotate(copy->matrix, frames[k].tangent);
         }
     }
 }

@@ -115,14 +115,15 @@ struct Elaboration {
     uint32_t                     printed;      /* notes by `print`, so far */
     uint32_t                     depth, calls; /* how deep expressions and calls are nested now */
     const struct CalledFunction *called;       /* the innermost of these calls, or NULL */
-    Node               rounding;    /* what the name `rounding` means in `core:`, or NODE_NONE */
-    const Syntax      *block;       /* the last one whose properties were looked at, or NULL */
-    bool               in_material; /* level, instance, u, v, normal and front have a meaning */
-    bool               uses_uv;     /* a material may need the coordinates on surfaces */
-    struct TurnTrials *turns;       /* loops whose turns are made at once: turns.c; NULL: none is */
-    Node               turn;        /* what stands for the variable of such a loop, or NODE_NONE */
-    bool               beams;       /* someone asks for capsules that are shown */
-    const Syntax      *joining;     /* a call that joins shapes, or a `show`, of which
+    Node          rounding;    /* what the name `rounding` means in `core:`, or NODE_NONE */
+    const Syntax *block;       /* the last one whose properties were looked at, or NULL */
+    bool          in_material; /* level, instance, u, v, normal and front have a meaning */
+    bool          uses_uv;     /* a material may need the coordinates on surfaces */
+    struct IterationTrials
+        *iterations; /* loops whose iterations are made at once: iterations.c; NULL: none is */
+    Node iteration;  /* what stands for the variable of such a loop, or NODE_NONE */
+    bool beams;      /* someone asks for capsules that are shown */
+    const Syntax *joining; /* a call that joins shapes, or a `show`, of which
                                     the arguments are evaluated; or NULL */
 };
 
@@ -176,7 +177,7 @@ bool check_shape_count(Elaboration *e, const List *list, Span span);
 /* The value of a top-level definition, evaluated when it is first needed, at `use`. */
 Value run_definition(Elaboration *e, Definition *definition, Span use);
 
-/* ---- forget.c: what is needed while one element or one turn of a loop is evaluated ---- */
+/* ---- forget.c: what is needed while one element or one iteration of a loop is evaluated ---- */
 typedef struct EvaluationMark {
     ArenaMark values;
     uint64_t  kept;
@@ -190,18 +191,18 @@ Environment keep_names(Elaboration *e, const Environment *inner, const Environme
 
 /* What the clauses of a comprehension hand on: the next clause, or the element itself. */
 typedef struct Comprehension {
-    const Environment *env;
-    const Syntax      *syntax;
-    uint32_t           clause;
-    Values            *result;
-    EvaluationMark     mark; /* before the innermost name was bound */
-    struct TurnLoop   *loop; /* its turns may be made at once; or NULL */
+    const Environment    *env;
+    const Syntax         *syntax;
+    uint32_t              clause;
+    Values               *result;
+    EvaluationMark        mark; /* before the innermost name was bound */
+    struct IterationLoop *loop; /* its iterations may be made at once; or NULL */
 } Comprehension;
 
-/* ---- turns.c: loops whose turns differ in numbers only are evaluated once ---- */
-typedef struct TurnTrials {
-    uint32_t least;   /* turns of such a loop */
-    bool     refused; /* something needs turns by themselves */
+/* ---- iterations.c: loops whose iterations differ in numbers only are evaluated once ---- */
+typedef struct IterationTrials {
+    uint32_t least;   /* iterations of such a loop */
+    bool     refused; /* something needs iterations by themselves */
     uint32_t loops,
         depth; /* made so far; being tried now, one within a definition that another needs */
     uint32_t statements; /* loops of statements around what runs now */
@@ -212,29 +213,29 @@ typedef struct TurnTrials {
     struct {
         Node  *items;
         size_t count, capacity;
-    } required; /* what must hold in each turn */
-} TurnTrials;
-typedef struct TurnLoop {
-    bool tried, made; /* all turns at once: tried; and done */
-} TurnLoop;
+    } required; /* what must hold in each iteration */
+} IterationTrials;
+typedef struct IterationLoop {
+    bool tried, made; /* all iterations at once: tried; and done */
+} IterationLoop;
 /* What a statement shows. */
 Value evaluate_shown(Elaboration *e, const Environment *env, const Syntax *show);
 /* Whether that may be tried: the shapes of this comprehension are joined. */
-bool turns_possible(const Elaboration *e, const Syntax *comprehension);
+bool iterations_possible(const Elaboration *e, const Syntax *comprehension);
 /* Behind the first element tries to make all of them; true: they are made. */
-bool turns_made(Elaboration *e, const Comprehension *c);
-/* While a loop is tried, that a condition must hold in each turn; false: none is tried. */
-bool turns_require(Elaboration *e, Node condition);
-/* A definition that is evaluated now, and is no part of a loop that is tried.  Returns e->turn, to be set
+bool iterations_made(Elaboration *e, const Comprehension *c);
+/* While a loop is tried, that a condition must hold in each iteration; false: none is tried. */
+bool iterations_require(Elaboration *e, Node condition);
+/* A definition that is evaluated now, and is no part of a loop that is tried.  Returns e->iteration, to be set
    again behind it. */
-Node turns_begin_definition(Elaboration *e, Definition *definition);
+Node iterations_begin_definition(Elaboration *e, Definition *definition);
 
-/* ---- turn_statements.c: a `for` that shows shapes, evaluated once ---- */
-/* Behind the first turn that shows something tries to show what all turns do, in their order; true: it is
+/* ---- iteration_statements.c: a `for` that shows shapes, evaluated once ---- */
+/* Behind the first iteration that shows something tries to show what all iterations do, in their order; true: it is
    shown.  `shown`: how many components were there before the loop. */
 typedef bool ShowShape(Elaboration *e, Value value, const Syntax *syntax);
-bool statement_turns_made(Elaboration *e, const Environment *env, const Syntax *loop, size_t shown,
-                          ShowShape *show);
+bool         statement_iterations_made(Elaboration *e, const Environment *env, const Syntax *loop,
+                                       size_t shown, ShowShape *show);
 
 /* ---- fold.c ---- */
 /* A number that the author of the scene may change without another program: it gets an identity, by
@@ -286,7 +287,7 @@ void add_number(Text *text, double number, bool degrees);
 /* "90deg" for the literal 90 of a scene; NULL: it is none, or in degrees already. */
 const char *degrees_instead(Elaboration *e, const Syntax *syntax);
 /* Warns of an angle that is written as a number above one turn. */
-void warn_of_turns(Elaboration *e, const Syntax *syntax, Value value);
+void warn_of_revolutions(Elaboration *e, const Syntax *syntax, Value value);
 /* The same of what turns something: also where names, or numbers times a name, seem to be degrees. */
 void warn_of_angle(Elaboration *e, const Syntax *syntax, Value value);
 /* Warns of a constant colour above 1; `help` says what else could be meant. */
@@ -379,7 +380,7 @@ void run_file(Elaboration *e, Scope *scope);
 Value elaborate_krs(Elaboration *e, const Environment *env, const Syntax *syntax);
 
 /* ---- shown.c ---- */
-/* Gathers the components that turns of a loop have shown; fills Scene.shown with all of them. */
+/* Gathers the components that iterations of a loop have shown; fills Scene.shown with all of them. */
 void gather_shown(Elaboration *e);
 
 /* ---- what evaluation asks of the rooms of this folder ---- */

@@ -142,7 +142,7 @@ static bool comprehend_each(Elaboration *e, Value element, void *user)
 {
     const Comprehension *outer  = user;
     const Syntax        *clause = outer->syntax->children[outer->clause];
-    if (outer->loop && turns_made(e, outer))
+    if (outer->loop && iterations_made(e, outer))
         return true;
     Comprehension inner = *outer;
     inner.mark          = evaluation_mark(e);
@@ -189,13 +189,13 @@ static bool run_clause(Elaboration *e, const Comprehension *c)
 static Value evaluate_comprehension(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     Values        result = {0};
-    TurnLoop      loop   = {0};
+    IterationLoop loop   = {0};
     Comprehension c      = {.env    = env,
                             .syntax = syntax,
                             .clause = 1,
                             .result = &result,
                             .mark   = evaluation_mark(e),
-                            .loop   = turns_possible(e, syntax) ? &loop : NULL};
+                            .loop   = iterations_possible(e, syntax) ? &loop : NULL};
     if (!run_clause(e, &c))
         return value_error();
     return value_list(e, result.items, result.count);

@@ -1,7 +1,7 @@
 /*
  * forget.c: frees values that nothing refers to any more.
  *
- * An element of a list, or a turn of a loop, is evaluated by many lists and bindings.  What comes of
+ * An element of a list, or an iteration of a loop, is evaluated by many lists and bindings.  What comes of
  * it is mostly a shape, which knows none of them.
  */
 #include "compiler/eval/elaborate.h"

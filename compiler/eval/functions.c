@@ -180,7 +180,7 @@ typedef struct CalledFunction {
 } CalledFunction;
 
 /* The innermost call of a function that is called within itself: others may be met in the last of its
-   turns alone. */
+   iterations alone. */
 static const CalledFunction *call_within_itself(const CalledFunction *innermost)
 {
     for (const CalledFunction *call = innermost; call; call = call->outer)
@@ -271,7 +271,7 @@ static Value call_builtin(Elaboration *e, const Environment *env, const Syntax *
     for (; call.arguments[arity].syntax; arity++) {
         values[arity] = call.arguments[arity].value;
         if (angle)
-            warn_of_turns(e, call.arguments[arity].syntax, values[arity]);
+            warn_of_revolutions(e, call.arguments[arity].syntax, values[arity]);
         Node node    = value_node(e, values[arity]);
         types[arity] = node == NODE_NONE ? TYPE_UINT : e->graph->items[node].type;
         if (types[arity] > TYPE_VEC4) {

@@ -171,7 +171,7 @@ static bool is_part_of(Elaboration *e, Node index, size_t count)
     return false;
 }
 
-/* Of an index that depends on the turn of a loop: turns in which it is none are made by themselves. */
+/* Of an index that depends on the iteration of a loop: iterations in which it is none are made by themselves. */
 static bool is_required(Elaboration *e, Node index, size_t count)
 {
     Graph     *g       = e->graph;
@@ -179,7 +179,7 @@ static bool is_required(Elaboration *e, Node index, size_t count)
     const Node from    = graph_op2(g, OP_less_equal, graph_number(g, 0), index);
     const Node to      = graph_op2(g, OP_less, index, graph_number(g, (double)count));
     const Node between = graph_op2(g, OP_and, from, to);
-    return turns_require(e, graph_op2(g, OP_and, whole, between));
+    return iterations_require(e, graph_op2(g, OP_and, whole, between));
 }
 
 /* Whether the index, rounded down, is one of the list in all frames; false: reported. */

@@ -112,7 +112,7 @@ Value define_param(Elaboration *e, const Environment *env, const Syntax *syntax)
     if (value.type == VALUE_ERROR)
         return value;
     if (strcmp(syntax->name, "angle") == 0)
-        warn_of_turns(e, syntax->children[0], value);
+        warn_of_revolutions(e, syntax->children[0], value);
     parameter.components = constants_of(e, value, syntax->children[0], parameter.value);
     if (!parameter.components || !param_range(e, env, syntax, &parameter))
         return value_error();

@@ -10,9 +10,9 @@
 
 #include "compiler/eval/elaborate.h"
 
-/* Fewer turns of a `show` in a loop stay apart, and fewer shapes of one form: each is then marched for
+/* Fewer iterations of a `show` in a loop stay apart, and fewer shapes of one form: each is then marched for
    itself, and left out where it is far.  Forms become one only where an instance group may come of it. */
-enum { LEAST_TURNS = 32, LEAST_OF_A_FORM = 64 };
+enum { LEAST_ITERATIONS = 32, LEAST_OF_A_FORM = 64 };
 /* Of a tree of shapes, as much as its form is told by. */
 enum { MOST_FORM_SHAPES = 64 };
 
@@ -34,7 +34,7 @@ static uint64_t hash_with(uint64_t hash, uint64_t word)
     return hash * 0xD6E8FEB86659FD93u;
 }
 
-/* Turns of one `show` have the same. */
+/* Iterations of one `show` have the same. */
 static uint64_t hash_of_place(const Component *component)
 {
     uint64_t hash = hash_with(component->span.source, component->span.start);
@@ -102,7 +102,7 @@ static void find_groups(Gathering *g)
         if (can_be_gathered(&g->shown[i]))
             g->keys[keys++] = (Key){hash_of_place(&g->shown[i]), i};
     }
-    group(g, keys, LEAST_TURNS);
+    group(g, keys, LEAST_ITERATIONS);
     keys = 0;
     for (size_t i = 0; i < g->count; i++) {
         int left = MOST_FORM_SHAPES;

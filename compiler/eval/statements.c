@@ -44,10 +44,10 @@ Value run_definition(Elaboration *e, Definition *definition, Span use)
     }
     definition->state = DEFINITION_RUNNING;
     e->kept++;
-    const Syntax *syntax = definition->syntax;
-    Environment  *env    = &definition->scope->environment;
-    Span          caller = e->graph->here;
-    Node          turn   = turns_begin_definition(e, definition);
+    const Syntax *syntax    = definition->syntax;
+    Environment  *env       = &definition->scope->environment;
+    Span          caller    = e->graph->here;
+    Node          iteration = iterations_begin_definition(e, definition);
     switch (syntax->kind) {
     case SYNTAX_LET:
         definition->value = evaluate(e, env, syntax->children[0]);
@@ -65,7 +65,7 @@ Value run_definition(Elaboration *e, Definition *definition, Span use)
     default: definition->value = value_number(0); break; /* cameras, lights: names */
     }
     e->graph->here    = caller;
-    e->turn           = turn;
+    e->iteration      = iteration;
     definition->state = DEFINITION_DONE;
     return definition->value;
 }
@@ -245,20 +245,20 @@ static void add_map(Elaboration *e, const Environment *env, const Syntax *syntax
 typedef struct Loop {
     const Environment *env;
     const Syntax      *syntax;
-    Sequence          *sequence;    /* NULL at the top level */
-    size_t             shown;       /* components before it */
-    bool               tries, made; /* to show all turns at once: is still possible; it is done */
+    Sequence          *sequence; /* NULL at the top level */
+    size_t             shown;    /* components before it */
+    bool tries, made;            /* to show all iterations at once: is still possible; it is done */
 } Loop;
 
 static void run_block(Elaboration *e, const Environment *env, const Syntax *block,
                       Sequence *sequence);
 
-static bool run_turn(Elaboration *e, Value element, void *user)
+static bool run_iteration(Elaboration *e, Value element, void *user)
 {
     Loop *loop = user;
     if (loop->tries && e->scene->components.count > loop->shown) {
         loop->tries = false;
-        loop->made  = statement_turns_made(e, loop->env, loop->syntax, loop->shown, show_one);
+        loop->made  = statement_iterations_made(e, loop->env, loop->syntax, loop->shown, show_one);
     }
     if (loop->made)
         return !is_stopped(e);
@@ -269,7 +269,7 @@ static bool run_turn(Elaboration *e, Value element, void *user)
     return !is_stopped(e) && !(loop->sequence && loop->sequence->wrong);
 }
 
-/* A loop in another is run turn by turn: all turns of both are to be one instance group. */
+/* A loop in another is run iteration by iteration: all iterations of both are to be one instance group. */
 static void run_for(Elaboration *e, const Environment *env, const Syntax *syntax,
                     Sequence *sequence)
 {
@@ -277,13 +277,13 @@ static void run_for(Elaboration *e, const Environment *env, const Syntax *syntax
                  .syntax   = syntax,
                  .sequence = sequence,
                  .shown    = e->scene->components.count,
-                 .tries    = !sequence && e->turns && e->turns->statements == 0};
-    if (e->turns)
-        e->turns->statements++;
-    if (!evaluate_each(e, env, syntax->children[0], run_turn, &loop) && sequence)
+                 .tries    = !sequence && e->iterations && e->iterations->statements == 0};
+    if (e->iterations)
+        e->iterations->statements++;
+    if (!evaluate_each(e, env, syntax->children[0], run_iteration, &loop) && sequence)
         sequence->wrong = true;
-    if (e->turns)
-        e->turns->statements--;
+    if (e->iterations)
+        e->iterations->statements--;
 }
 
 static void run_if(Elaboration *e, const Environment *env, const Syntax *syntax,
@@ -440,8 +440,8 @@ static void run_params(Elaboration *e, Scope *scope)
 
 void elaborate(Elaboration *e)
 {
-    e->rounding = e->turn = NODE_NONE;
-    e->uses_uv            = files_mention_uv(e->files);
+    e->rounding = e->iteration = NODE_NONE;
+    e->uses_uv                 = files_mention_uv(e->files);
     scopes_make(e);
     Scope *scope = e->scopes.items[0];
     for (size_t i = 0; i < e->scopes.count; i++)

@@ -48,14 +48,14 @@ const char *degrees_instead(Elaboration *e, const Syntax *syntax)
     return diag_text(e->diags, "%.*sdeg", length, source->text + syntax->span.start);
 }
 
-void warn_of_turns(Elaboration *e, const Syntax *syntax, Value value)
+void warn_of_revolutions(Elaboration *e, const Syntax *syntax, Value value)
 {
     if (value.type != VALUE_NUMBER || fabs(value.number) <= 2 * M_PI + 1e-9)
         return;
     const char *instead = degrees_instead(e, syntax);
     if (!instead)
         return;
-    Diag *diag        = diag_add(e->diags, DIAG_MANY_TURNS, syntax->span,
+    Diag *diag        = diag_add(e->diags, DIAG_MANY_REVOLUTIONS, syntax->span,
                                  "an angle of %g radians, which are %.3g turns", value.number,
                                  fabs(value.number) / (2 * M_PI));
     diag->label       = "angles are radians";
@@ -101,9 +101,10 @@ void warn_of_angle(Elaboration *e, const Syntax *syntax, Value value)
     enum { DEEPEST_CHAIN = 4 };
     bool          more = false, large = value.type == VALUE_NUMBER && fabs(value.number) >= 10;
     const Syntax *literal = NULL;
-    warn_of_turns(e, syntax, value);
+    warn_of_revolutions(e, syntax, value);
     if (value.type == VALUE_EXPRESSION && degrees_in(e, syntax, DEEPEST_CHAIN, &more) && !more)
-        turns_require(e, graph_bool(e->graph, false)); /* turns with large numbers earn it */
+        iterations_require(e,
+                           graph_bool(e->graph, false)); /* iterations with large numbers earn it */
     if (!large || is_literal(syntax) || e->sources->items[syntax->span.source].library)
         return;
     /* What has pi or degrees in it is no multiple of a half. */
@@ -111,7 +112,7 @@ void warn_of_angle(Elaboration *e, const Syntax *syntax, Value value)
         literal = degrees_in(e, syntax, DEEPEST_CHAIN, &more);
     if (!literal || more)
         return;
-    Diag *diag  = diag_add(e->diags, DIAG_MANY_TURNS, syntax->span,
+    Diag *diag  = diag_add(e->diags, DIAG_MANY_REVOLUTIONS, syntax->span,
                            "an angle of %g radians, which are %.3g turns", value.number,
                            fabs(value.number) / (2 * M_PI));
     diag->label = "angles are radians";
@@ -135,17 +136,17 @@ static const char *bytes_instead(Elaboration *e, const double color[3])
 /* The largest part of a colour is at least this if it counts bytes; lights may be a little above 1. */
 enum { LEAST_BYTE = 16 };
 
-/* Turns with colours that earn the warning are made by themselves. */
+/* Iterations with colours that earn the warning are made by themselves. */
 static void require_colour(Elaboration *e, Value value)
 {
     const Node color = value_node(e, value);
-    if (e->turn == NODE_NONE || color == NODE_NONE || e->graph->items[color].time != TIME_FRAME ||
-        e->graph->items[color].type != TYPE_VEC3)
+    if (e->iteration == NODE_NONE || color == NODE_NONE ||
+        e->graph->items[color].time != TIME_FRAME || e->graph->items[color].type != TYPE_VEC3)
         return;
     const Node one = graph_number(e->graph, 1);
     for (uint32_t i = 0; i < 3; i++)
-        turns_require(e,
-                      graph_op2(e->graph, OP_less_equal, graph_component(e->graph, color, i), one));
+        iterations_require(
+            e, graph_op2(e->graph, OP_less_equal, graph_component(e->graph, color, i), one));
 }
 
 void warn_of_bright_colour(Elaboration *e, const Syntax *syntax, Value value, const char *help)

@@ -112,7 +112,7 @@ static const Shape *bend_upright(ShapeBuilder *builder, const Shape *shape,
 
 /* The turn that brings the axis to x, and to y what stands upright: y, or x where that is the
    axis. */
-static const Map *bend_turn(ShapeBuilder *builder, Node axis)
+static const Map *bend_rotation(ShapeBuilder *builder, Node axis)
 {
     Graph *g = builder->graph;
     Node   x = graph_vec3(g, 1, 0, 0), y = graph_vec3(g, 0, 1, 0);
@@ -139,7 +139,7 @@ const Shape *make_bend(ShapeBuilder *builder, const Shape *shape, const DeformAr
         return NULL;
     if (asked->numbers[0] == graph_number(builder->graph, 0))
         return shape;
-    return deform_turned(builder, shape, bend_turn(builder, asked->axis), bend_upright, asked);
+    return deform_rotated(builder, shape, bend_rotation(builder, asked->axis), bend_upright, asked);
 }
 
 /* ---- how it is lowered ---- */
@@ -282,7 +282,7 @@ Lowered lower_bend(Lowering *l, const Shape *shape, LowerContext context)
         BendSegment segment = bend_segment(l->graph, shape, i);
         NormalPath  path    = normal_path(l, context, 1);
         Node        point   = before_map(l->graph, &segment.map, context.point);
-        normal_turn(l, &path, segment.map.rows, segment.map.scale);
+        normal_rotate(l, &path, segment.map.rows, segment.map.scale);
         LowerContext inner  = context_behind(&path, context, point);
         Lowered      bent   = lower_segment(l, shape, inner, &segment);
         bent.surface.normal = bent.surface.normal == inner.normal

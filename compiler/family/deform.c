@@ -106,8 +106,8 @@ double box_radius(Box box)
     return hypot_upward(range_largest(box.axis[0]), range_largest(box.axis[2]));
 }
 
-const Shape *deform_turned(ShapeBuilder *builder, const Shape *shape, const Map *turn,
-                           MakeDeformed *deform, const DeformArguments *asked)
+const Shape *deform_rotated(ShapeBuilder *builder, const Shape *shape, const Map *turn,
+                            MakeDeformed *deform, const DeformArguments *asked)
 {
     if (box_is_empty(shape->box))
         return shape;

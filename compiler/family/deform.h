@@ -37,8 +37,8 @@ Range range_cell(Range range, int i);
 /* The largest distance from the y axis in a box. */
 double box_radius(Box box);
 /* Deformed in the position to which a turn brings it, and turned back; NULL: reported. */
-const Shape *deform_turned(ShapeBuilder *builder, const Shape *shape, const Map *turn,
-                           MakeDeformed *deform, const DeformArguments *asked);
+const Shape *deform_rotated(ShapeBuilder *builder, const Shape *shape, const Map *turn,
+                            MakeDeformed *deform, const DeformArguments *asked);
 
 /* ---- how they are lowered ---- */
 

@@ -85,10 +85,10 @@ bool shape_ball(ShapeBuilder *builder, const Shape *shape, Node *centre, Node *r
 const Shape *make_meta(ShapeBuilder *builder, const Shape *const *shapes, uint32_t count,
                        Node level, Node reach, FalloffKind falloff, Span span);
 
-/* ---- turn.c: shapes that a loop makes, which differ in numbers only ---- */
-/* In these turns the leaf is the number; the boxes are theirs. */
-void make_turns(ShapeBuilder *builder, const Shape *shared, Node leaf, const double *numbers,
-                const Box *boxes, size_t count, const Shape **turns);
+/* ---- iteration.c: shapes that a loop makes, which differ in numbers only ---- */
+/* In these iterations the leaf is the number; the boxes are theirs. */
+void make_iterations(ShapeBuilder *builder, const Shape *shared, Node leaf, const double *numbers,
+                     const Box *boxes, size_t count, const Shape **iterations);
 
 /* ---- fractal.c: iterations are a whole number of frame time, `most` the most there can be ---- */
 /* Of q -> q^power + c; c is a VEC4. */

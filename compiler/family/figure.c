@@ -67,6 +67,6 @@ Lowered lower_revolve(Lowering *l, const Shape *shape, LowerContext context)
     Node       zero = graph_number(g, 0);
     Node       flat = graph_op3(g, OP_vec3, offset, y, zero);
     NormalPath path = normal_path(l, context, 1);
-    normal_turn_about_y(l, &path, context.point, graph_vec3(g, 1, 0, 0));
+    normal_rotate_about_y(l, &path, context.point, graph_vec3(g, 1, 0, 0));
     return lower_behind(l, shape->children[0], context, &path, flat);
 }

@@ -114,7 +114,7 @@ bool shape_plane(ShapeBuilder *builder, const Shape *shape, Node *normal, Node *
     if (shape->kind != SHAPE_TRANSFORM || !shape_plane(builder, shape->children[0], normal, offset))
         return false;
     /* n.x <= w becomes (R n).y <= s w + (R n).t for y = s R x + t. */
-    *normal      = map_turn(builder, &shape->map, *normal);
+    *normal      = map_rotate(builder, &shape->map, *normal);
     Node scaled  = graph_op2(g, OP_mul, *offset, shape->map.scale);
     Node shifted = graph_op2(g, OP_dot, *normal, shape->map.shift);
     *offset      = graph_op2(g, OP_add, scaled, shifted);
@@ -144,7 +144,7 @@ Lowered lower_transform(Lowering *l, const Shape *shape, LowerContext context)
 {
     NormalPath path  = normal_path(l, context, 1);
     Node       point = before_map(l->graph, &shape->map, context.point);
-    normal_turn(l, &path, shape->map.rows, shape->map.scale);
+    normal_rotate(l, &path, shape->map.rows, shape->map.scale);
     context.reach  = reach_behind(l->graph, context.reach, shape->map.scale);
     Node    unit   = enter_scale(l, shape->map.scale);
     Lowered result = lower_behind(l, shape->children[0], context, &path, point);

@@ -348,11 +348,11 @@ static bool ends_across(Box box)
 }
 
 /* Rotation about y that brings an angle to the x axis. */
-static Node turn_about_y(Graph *g, Node point, double angle)
+static Node rotate_about_y(Graph *g, Node point, double angle)
 {
     double c = cos(angle), s = sin(angle);
     Node   r0 = graph_vec3(g, c, 0, s), r1 = graph_vec3(g, 0, 1, 0), r2 = graph_vec3(g, -s, 0, c);
-    return angle == 0 ? point : graph_op4(g, OP_turn, point, r0, r1, r2);
+    return angle == 0 ? point : graph_op4(g, OP_rotate, point, r0, r1, r2);
 }
 
 /* How far the content, turned by -angle, stays from the walls of the sector around +x.  What has no
@@ -375,7 +375,7 @@ static double sector_margin(Box content, double angle, double half_sector)
 static Lowered lower_turned(Lowering *l, const Shape *content, LowerContext context, Node point)
 {
     NormalPath path = normal_path(l, context, 1);
-    normal_turn_about_y(l, &path, context.point, point);
+    normal_rotate_about_y(l, &path, context.point, point);
     return lower_behind(l, content, context, &path, point);
 }
 
@@ -383,7 +383,7 @@ static Lowered all_around(Lowering *l, const Shape *shape, LowerContext context,
                           uint32_t count)
 {
     if (count == 1) {
-        Node point = turn_about_y(l->graph, context.point, 2 * M_PI * first / shape->cells[0]);
+        Node point = rotate_about_y(l->graph, context.point, 2 * M_PI * first / shape->cells[0]);
         return lower_turned(l, shape->children[0], context, point);
     }
     Lowered a = all_around(l, shape, context, first, count / 2);
@@ -397,8 +397,8 @@ static Node in_next_sector(Graph *g, const Shape *shape, Node local)
     double sector = 2 * (M_PI / shape->cells[0]);
     Node   z = graph_component(g, local, 2), zero = graph_number(g, 0);
     Node   right = graph_op2(g, OP_less, zero, z);
-    Node   plus  = turn_about_y(g, local, sector);
-    Node   minus = turn_about_y(g, local, -sector);
+    Node   plus  = rotate_about_y(g, local, sector);
+    Node   minus = rotate_about_y(g, local, -sector);
     return graph_op3(g, OP_select, right, plus, minus);
 }
 
@@ -433,7 +433,7 @@ static Lowered lower_in_sector(Lowering *l, const Shape *shape, LowerContext con
                                const Sector *sector, Node local)
 {
     Graph  *g      = l->graph;
-    Node    point  = turn_about_y(g, local, -sector->angle);
+    Node    point  = rotate_about_y(g, local, -sector->angle);
     Lowered result = lower_turned(l, shape->children[0], context, point);
     if (result.distance == NODE_NONE || !needs_limit(shape->children[0], context))
         return result;
@@ -457,11 +457,11 @@ Lowered lower_repeat_polar(Lowering *l, const Shape *shape, LowerContext context
     if (shape->cells[0] < 3 || sector.margin < 0)
         return all_around(l, shape, context, 0, shape->cells[0]);
 
-    Node     facing = turn_about_y(g, context.point, sector.angle);
+    Node     facing = rotate_about_y(g, context.point, sector.angle);
     Node     count  = graph_number(g, shape->cells[0]);
     Node     local  = graph_op2(g, OP_cell_polar, facing, count);
     Lowered  result = lower_in_sector(l, shape, context, &sector, local);
-    Node     mapped = turn_about_y(g, graph_leaf(g, OP_POINT), -sector.angle);
+    Node     mapped = rotate_about_y(g, graph_leaf(g, OP_POINT), -sector.angle);
     double   width  = hypot(centre[0], centre[2]) * sin(sector.half);
     CellRule rule   = choose_cell_rule(l, content, mapped, 2, sector.margin, width, false, context);
     if (rule == SYMMETRIC || result.distance == NODE_NONE)

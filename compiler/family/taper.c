@@ -34,7 +34,7 @@ const Shape *make_taper(ShapeBuilder *builder, const Shape *shape, const DeformA
             return NULL;
     if (!check_deformable(builder, shape, asked))
         return NULL;
-    return deform_turned(builder, shape, raise_axis(builder, asked->axis), taper_upright, asked);
+    return deform_rotated(builder, shape, raise_axis(builder, asked->axis), taper_upright, asked);
 }
 
 /* ---- how it is lowered ---- */

@@ -19,7 +19,7 @@ static Box twist_box(Box box, Range rate)
         Range angle = range_mul(rate, range_cell(box.axis[1], i));
         Range c = range_cos(angle), s = range_sin(angle), one = range_of(1), zero = range_of(0);
         Range rows[3][3] = {{c, zero, s}, {zero, one, zero}, {range_neg(s), zero, c}};
-        hull             = box_hull(hull, box_turn(box, rows));
+        hull             = box_hull(hull, box_rotate(box, rows));
     }
     return box_common(whole, hull);
 }
@@ -43,7 +43,7 @@ const Shape *make_twist(ShapeBuilder *builder, const Shape *shape, const DeformA
         return NULL;
     if (asked->numbers[0] == graph_number(builder->graph, 0))
         return shape;
-    return deform_turned(builder, shape, raise_axis(builder, asked->axis), twist_upright, asked);
+    return deform_rotated(builder, shape, raise_axis(builder, asked->axis), twist_upright, asked);
 }
 
 /* ---- how it is lowered ---- */
@@ -57,7 +57,7 @@ static void undo_twist(Lowering *l, Node point, Node rate, InverseDeformation *i
     Node   c = graph_op1(g, OP_cos, angle), s = graph_op1(g, OP_sin, angle);
     Node   zero = graph_number(g, 0), one = graph_number(g, 1), minus = neg(g, s);
     Node   rows[3]  = {row(g, c, zero, minus), graph_vec3(g, 0, 1, 0), row(g, s, zero, c)};
-    inverse->point  = graph_op4(g, OP_turn, point, rows[0], rows[1], rows[2]);
+    inverse->point  = graph_op4(g, OP_rotate, point, rows[0], rows[1], rows[2]);
     inverse->shrink = NODE_NONE;
     if (!l->surfaces)
         return;
@@ -69,7 +69,7 @@ static void undo_twist(Lowering *l, Node point, Node rate, InverseDeformation *i
     inverse->out[1] = row(g, x, one, z);
     inverse->out[2] = row(g, minus, zero, c);
     transpose_rows(g, rows, turned);
-    Node level     = graph_op4(g, OP_turn, back, turned[0], turned[1], turned[2]);
+    Node level     = graph_op4(g, OP_rotate, back, turned[0], turned[1], turned[2]);
     inverse->in[0] = rows[0];
     inverse->in[1] = sub(g, rows[1], level);
     inverse->in[2] = rows[2];

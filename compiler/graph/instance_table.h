@@ -36,9 +36,9 @@ enum { NOT_LISTED = MOST_INSTANCE_STATES };
 
 /* Where an instance is in a frame: a box, moved by nodes of the frame. */
 typedef enum PlaceKind {
-    PLACE_FIXED,  /* not at all: it is around the instance in all frames */
-    PLACE_SHIFT,  /* by a shift */
-    PLACE_TURNED, /* by a similarity: its scale, three rows and shift (shape.h: Map) */
+    PLACE_FIXED,   /* not at all: it is around the instance in all frames */
+    PLACE_SHIFT,   /* by a shift */
+    PLACE_ROTATED, /* by a similarity: its scale, three rows and shift (shape.h: Map) */
 } PlaceKind;
 typedef struct InstancePlace {
     Box       box;
@@ -84,7 +84,7 @@ typedef struct InstanceTable {
 /* How many nodes a place has. */
 static inline uint32_t place_nodes(PlaceKind kind)
 {
-    return kind == PLACE_TURNED ? 5 : kind == PLACE_SHIFT;
+    return kind == PLACE_ROTATED ? 5 : kind == PLACE_SHIFT;
 }
 
 /* How many texels of krs_cells the header of a table has for shaders. */

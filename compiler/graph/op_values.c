@@ -114,7 +114,7 @@ static NodeValue evaluate_guard(const NodeValue *o, uint32_t size)
     return guard_decides(bound, least, o[3].v[0]) ? number(fmin(bound, least)) : o[2];
 }
 
-static NodeValue evaluate_turn(const NodeValue *o, uint32_t size)
+static NodeValue evaluate_rotate(const NodeValue *o, uint32_t size)
 {
     (void)size;
     return vector3(dot(&o[1], &o[0], 3), dot(&o[2], &o[0], 3), dot(&o[3], &o[0], 3));

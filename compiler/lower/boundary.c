@@ -8,12 +8,12 @@
 #include <string.h>
 
 #include "compiler/graph/build.h"
-#include "compiler/graph/instances/turns.h"
+#include "compiler/graph/instances/iterations.h"
 #include "compiler/lower/instance_groups.h"
 #include "compiler/lower/outline.h"
 
 /* More lines go to a table, and more arcs are left. */
-enum { MOST_LINES = 48, MOST_ARCS = 192, MOST_TURNS = 8 };
+enum { MOST_LINES = 48, MOST_ARCS = 192, MOST_ITERATIONS = 8 };
 
 /* Of a circle, to both sides of a direction; half of the angle. */
 typedef struct Arc {
@@ -46,8 +46,8 @@ struct Boundary *boundary_new(Arena *arena)
 typedef struct Gathering {
     Graph       *graph;
     Arena       *scratch;
-    const Shape *turns[MOST_TURNS]; /* around the shape at hand */
-    uint32_t     turn_count;
+    const Shape *iterations[MOST_ITERATIONS]; /* around the shape at hand */
+    uint32_t     iteration_count;
     bool         changed; /* some part of an outline is gone, or its distance is only a bound */
 } Gathering;
 
@@ -56,9 +56,9 @@ static bool gather(Gathering *g, const Shape *shape, Curves *curves);
 /* A number that is known now; false: it is not. */
 static bool known(Gathering *g, Node node, uint32_t component, double *number)
 {
-    for (uint32_t i = g->turn_count; i > 0; i--)
-        node = graph_in_turn(g->graph, node, g->turns[i - 1]->turn, g->turns[i - 1]->number,
-                             g->scratch);
+    for (uint32_t i = g->iteration_count; i > 0; i--)
+        node = graph_in_iteration(g->graph, node, g->iterations[i - 1]->iteration,
+                                  g->iterations[i - 1]->number, g->scratch);
     return graph_known_component(g->graph, node, component, number) && isfinite(*number);
 }
 
@@ -435,13 +435,13 @@ static bool gather_repeat(Gathering *g, const Shape *shape, Curves *curves)
 
 /* ---- any part ---- */
 
-static bool gather_turn(Gathering *g, const Shape *shape, Curves *curves)
+static bool gather_iteration(Gathering *g, const Shape *shape, Curves *curves)
 {
-    if (g->turn_count == MOST_TURNS)
+    if (g->iteration_count == MOST_ITERATIONS)
         return false;
-    g->turns[g->turn_count++] = shape;
-    bool good                 = gather(g, shape->turned, curves);
-    g->turn_count--;
+    g->iterations[g->iteration_count++] = shape;
+    bool good                           = gather(g, shape->iterated, curves);
+    g->iteration_count--;
     return good;
 }
 
@@ -463,7 +463,7 @@ static bool gather(Gathering *g, const Shape *shape, Curves *curves)
     case SHAPE_SHELL: return gather_shell(g, shape, curves);
     case SHAPE_MIRROR: return gather_mirror(g, shape, curves);
     case SHAPE_REPEAT: return gather_repeat(g, shape, curves);
-    case SHAPE_TURN: return gather_turn(g, shape, curves);
+    case SHAPE_ITERATION: return gather_iteration(g, shape, curves);
     case SHAPE_PAINT:
     case SHAPE_SMOOTH: return gather(g, shape->children[0], curves);
     default: return false;

@@ -291,7 +291,7 @@ InstanceGroups find_groups(const PartFinder *finder, Arena *arena)
                                 .sorted     = arena_new_array(scratch, uint64_t, count),
                                 .candidates = arena_new_array(scratch, Candidate, MOST_CANDIDATES)};
     bool *taken      = arena_new_array(scratch, bool, count + 1);
-    find_turn_groups(finder, &search->groups, taken, arena);
+    find_iteration_groups(finder, &search->groups, taken, arena);
     for (uint32_t i = 0; i < count; i++)
         if (!taken[i])
             hash_part(search, i);

@@ -94,8 +94,9 @@ bool lower_part(const PartFinder *finder, const Shape *shape, struct LoweredGrou
                 Node roots[PART_ROOTS]);
 /* instance_groups.c: how many parts a CSG node with instance groups has at least. */
 uint32_t least_of_csg(const struct LoweredGroups *groups, bool sharp);
-/* group_turns.c: adds groups of turns of one loop, and marks their instances. */
-void find_turn_groups(const PartFinder *finder, InstanceGroups *groups, bool *taken, Arena *arena);
+/* group_iterations.c: adds groups of iterations of one loop, and marks their instances. */
+void find_iteration_groups(const PartFinder *finder, InstanceGroups *groups, bool *taken,
+                           Arena *arena);
 
 /* group_table.c: an empty group of what is like the template. */
 InstanceGroup group_new(Template *template, Arena *arena);

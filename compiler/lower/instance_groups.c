@@ -147,7 +147,7 @@ static const Shape *moved_by(const Graph *g, const Shape *part)
 }
 
 /* A box that is turned and scaled by known numbers. */
-static Box turn_box(const Graph *g, const Map *map, Box box)
+static Box rotate_box(const Graph *g, const Map *map, Box box)
 {
     const Node       nodes[]   = {map->scale, map->rows[0], map->rows[1], map->rows[2]};
     NodeValue        values[5] = {{{0}}};
@@ -170,8 +170,8 @@ static InstancePlace place_of(Graph *g, const Shape *part)
     const Node all[] = {map->scale, map->rows[0], map->rows[1], map->rows[2], map->shift};
     for (int i = is_turned(g, map) ? 0 : 4; i < 5; i++)
         array_push(groups->arena, &groups->frame_numbers, all[i]);
-    return is_turned(g, map) ? (InstancePlace){box, PLACE_TURNED}
-                             : (InstancePlace){turn_box(g, map, box), PLACE_SHIFT};
+    return is_turned(g, map) ? (InstancePlace){box, PLACE_ROTATED}
+                             : (InstancePlace){rotate_box(g, map, box), PLACE_SHIFT};
 }
 
 /* Where the instances of a group are in each frame; nothing if none is known to move. */

@@ -31,7 +31,7 @@ Node before_map(Graph *g, const Map *map, Node point)
     Node turned = moved;
     Node e0 = graph_vec3(g, 1, 0, 0), e1 = graph_vec3(g, 0, 1, 0), e2 = graph_vec3(g, 0, 0, 1);
     if (rows[0] != e0 || rows[1] != e1 || rows[2] != e2)
-        turned = graph_op4(g, OP_turn, moved, rows[0], rows[1], rows[2]);
+        turned = graph_op4(g, OP_rotate, moved, rows[0], rows[1], rows[2]);
     Node one = graph_number(g, 1);
     if (map->scale == one)
         return turned;
@@ -44,20 +44,20 @@ MapChain map_chain_new(Graph *g, Node point)
     return (MapChain){point, graph_number(g, 1), NODE_NONE, NODE_NONE};
 }
 
-Node turn_behind(Graph *g, const Map *map, Node direction)
+Node rotate_behind(Graph *g, const Map *map, Node direction)
 {
     Node rows[3];
     transpose_rows(g, map->rows, rows);
     Node e0 = graph_vec3(g, 1, 0, 0), e1 = graph_vec3(g, 0, 1, 0), e2 = graph_vec3(g, 0, 0, 1);
     if (rows[0] == e0 && rows[1] == e1 && rows[2] == e2)
         return direction;
-    return graph_op4(g, OP_turn, direction, rows[0], rows[1], rows[2]);
+    return graph_op4(g, OP_rotate, direction, rows[0], rows[1], rows[2]);
 }
 
 /* R^T offset * factor + pole. */
 static Node behind_inversion(Graph *g, const Map *map, Node offset, Node factor)
 {
-    offset = graph_op2(g, OP_scale, turn_behind(g, map, offset), factor);
+    offset = graph_op2(g, OP_scale, rotate_behind(g, map, offset), factor);
     return graph_op2(g, OP_add, offset, map->pole);
 }
 
@@ -94,7 +94,7 @@ static void map_chain_invert(Lowering *l, MapChain *chain, const Map *map, Norma
         Node one   = graph_number(g, 1);
         Node grown = graph_op2(g, OP_div, one, at.sigma);
         normal_flip(l, path, at.axis);
-        normal_turn(l, path, map->rows, grown);
+        normal_rotate(l, path, map->rows, grown);
     }
 }
 
@@ -106,7 +106,7 @@ void map_chain_append(Lowering *l, MapChain *chain, const Map *map, NormalPath *
         return;
     }
     chain->point = before_map(g, map, chain->point);
-    normal_turn(l, path, map->rows, map->scale);
+    normal_rotate(l, path, map->rows, map->scale);
     if (chain->shrink == NODE_NONE)
         chain->scale = graph_op2(g, OP_mul, chain->scale, map->scale);
     else
@@ -166,7 +166,7 @@ Node map_chain_hull(Lowering *l, const MapChain *chain, const Map *map, Ball *ba
     Node rest           = graph_number(g, radius * radius);
     rest                = graph_op2(g, OP_sub, square, rest);
     Node factor         = graph_op2(g, OP_div, map->scale, rest);
-    Node centre         = graph_op4(g, OP_turn, offset, map->rows[0], map->rows[1], map->rows[2]);
+    Node centre         = graph_op4(g, OP_rotate, offset, map->rows[0], map->rows[1], map->rows[2]);
     centre              = graph_op2(g, OP_scale, centre, factor);
     centre              = graph_op2(g, OP_add, centre, map->shift);
     Node size           = graph_number(g, radius);

@@ -27,7 +27,7 @@ typedef struct Inversion {
 
 Inversion inversion_at(Graph *g, const Map *map, Node point);
 /* Turns a direction as the inverse of a map does; the reflection of an inversion is left out. */
-Node turn_behind(Graph *g, const Map *map, Node direction);
+Node rotate_behind(Graph *g, const Map *map, Node direction);
 
 MapChain map_chain_new(Graph *g, Node point);
 /* Appends a map without `first`, and its at most two steps to the path of the normal. */

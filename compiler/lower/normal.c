@@ -28,7 +28,7 @@ static Node mirrored(Graph *g, Node normal, Node axis, Node amount)
 
 static Node turned(Graph *g, Node vector, const Node rows[3])
 {
-    return graph_op4(g, OP_turn, vector, rows[0], rows[1], rows[2]);
+    return graph_op4(g, OP_rotate, vector, rows[0], rows[1], rows[2]);
 }
 
 Node unit_normal(Graph *g, Node normal, Node otherwise)
@@ -84,7 +84,7 @@ static NormalStep *add_step(NormalPath *path, NormalStep step)
     return &path->steps[path->count++];
 }
 
-void normal_turn(Lowering *l, NormalPath *path, const Node rows[3], Node stretch)
+void normal_rotate(Lowering *l, NormalPath *path, const Node rows[3], Node stretch)
 {
     Graph *g = l->graph;
     if (!l->surfaces)
@@ -93,7 +93,7 @@ void normal_turn(Lowering *l, NormalPath *path, const Node rows[3], Node stretch
     transpose_rows(g, rows, back);
     path->innermost        = place_stretched(g, path->innermost, stretch);
     path->innermost.normal = turned(g, path->innermost.normal, back);
-    NormalStep *step       = add_step(path, (NormalStep){.kind = NORMAL_TURN});
+    NormalStep *step       = add_step(path, (NormalStep){.kind = NORMAL_ROTATE});
     for (int i = 0; i < 3; i++)
         step->rows[i] = rows[i];
 }
@@ -123,13 +123,13 @@ static void rows_about_y(Graph *g, Node from, Node to, Node rows[3])
     rows[2]     = graph_op3(g, OP_vec3, sine, zero, cosine);
 }
 
-void normal_turn_about_y(Lowering *l, NormalPath *path, Node outer, Node inner)
+void normal_rotate_about_y(Lowering *l, NormalPath *path, Node outer, Node inner)
 {
     Node rows[3];
     if (!l->surfaces)
         return;
     rows_about_y(l->graph, inner, outer, rows);
-    normal_turn(l, path, rows, graph_number(l->graph, 1));
+    normal_rotate(l, path, rows, graph_number(l->graph, 1));
 }
 
 void normal_stretch(Lowering *l, NormalPath *path, Node factors, Node least)
@@ -212,7 +212,7 @@ Node normal_out(Lowering *l, const NormalPath *path, Node inner)
         const NormalStep *step = &path->steps[i];
         if (step->kind == NORMAL_MIRROR)
             normal = mirrored(g, normal, step->axis, step->amount);
-        else if (step->kind == NORMAL_TURN)
+        else if (step->kind == NORMAL_ROTATE)
             normal = turned(g, normal, step->rows);
         else if (step->kind == NORMAL_STRETCH) {
             normal = graph_op2(g, OP_div, normal, step->rows[0]);

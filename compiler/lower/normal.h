@@ -8,7 +8,7 @@
 
 /* A step on the way inwards: a map of space, or a kernel that is joined there. */
 typedef struct NormalStep {
-    enum { NORMAL_MIRROR, NORMAL_TURN, NORMAL_STRETCH, NORMAL_KERNEL } kind;
+    enum { NORMAL_MIRROR, NORMAL_ROTATE, NORMAL_STRETCH, NORMAL_KERNEL } kind;
     Node axis, amount;   /* MIRROR: unit vector; by how much it reflects on the way out */
     Node rows[3];        /* TURN: the matrix; STRETCH: [0] has the factors */
     Node normal, nearer; /* KERNEL: its normal; whether it is nearer than those further out */
@@ -24,9 +24,9 @@ typedef struct NormalPath {
 /* A path without steps; at most `most` will be added. */
 NormalPath normal_path(Lowering *l, LowerContext context, uint32_t most);
 /* Adds the inverse of x -> stretch * rows * x + shift. */
-void normal_turn(Lowering *l, NormalPath *path, const Node rows[3], Node stretch);
+void normal_rotate(Lowering *l, NormalPath *path, const Node rows[3], Node stretch);
 /* Adds the rotation about y that turns the direction of `outer` into that of `inner`. */
-void normal_turn_about_y(Lowering *l, NormalPath *path, Node outer, Node inner);
+void normal_rotate_about_y(Lowering *l, NormalPath *path, Node outer, Node inner);
 /* Adds the inverse of x -> factors * x, element by element.  `least` is the smallest factor. */
 void normal_stretch(Lowering *l, NormalPath *path, Node factors, Node least);
 /* Adds a reflection along a unit vector, which may depend on the point. */

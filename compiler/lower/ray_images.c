@@ -129,8 +129,8 @@ static void bend_ray(Lowering *l, RayImage *image, const Map *map, const Inversi
         bow        = subtract_along(l, image->bow, inversion->axis, along);
     }
     Node direction        = reflected(l, image->direction, inversion->axis);
-    image->direction      = turn_behind(g, map, direction);
-    image->bow            = turn_behind(g, map, bow);
+    image->direction      = rotate_behind(g, map, direction);
+    image->bow            = rotate_behind(g, map, bow);
     image->tilt           = graph_op2(g, OP_dot, direction, bow);
     image->square         = graph_op2(g, OP_dot, bow, bow);
     image->outer_crossing = larger(l, image->outer_crossing, image->crossing);
@@ -150,7 +150,7 @@ static Node invert_ball(Lowering *l, RayImage *image, const Map *map)
     Node reach         = graph_op1(g, OP_length, offset);
     reach              = mul(g, reach, graph_number(g, 1 - NEAR_POLE));
     Node to_pole       = length_outside(l, image, reach);
-    Node centre        = graph_op2(g, OP_scale, turn_behind(g, map, offset), factor);
+    Node centre        = graph_op2(g, OP_scale, rotate_behind(g, map, offset), factor);
     image->chain.point = add(g, centre, map->pole);
     image->radius      = mul(g, image->radius, factor);
     return to_pole;
@@ -169,9 +169,9 @@ static Node image_map(Lowering *l, RayImage *image, const Map *map)
         Inversion inversion = inversion_at(g, map, image->chain.point);
         bend_ray(l, image, map, &inversion);
     } else {
-        image->direction = turn_behind(g, map, image->direction);
+        image->direction = rotate_behind(g, map, image->direction);
         if (image->bow != NODE_NONE)
-            image->bow = turn_behind(g, map, image->bow);
+            image->bow = rotate_behind(g, map, image->bow);
     }
     map_chain_append(l, &image->chain, map, &none);
     return NODE_NONE;

@@ -37,7 +37,8 @@ typedef struct Request {
     void    *user;    /* passed to `inspect` */
     uint32_t
         least_instances; /* instances of an instance group (lower/instance_groups.h); 0: LEAST_INSTANCES */
-    bool turn_by_turn; /* each turn of a loop is evaluated by itself (eval/turns.c) */
+    bool
+        single_iterations; /* each iteration of a loop is evaluated by itself (eval/iterations.c) */
 } Request;
 
 /* Which optional roots are lowered, besides the surface and the march of each component.  `lower`
@@ -90,7 +91,7 @@ void validate_pruned(const Compilation *c);
 void validate_parameterised(const Compilation *c);
 void validate_facts(const Compilation *c);
 
-/* passes.c: instances of an instance group, and turns of a loop that is evaluated once. */
+/* passes.c: instances of an instance group, and iterations of a loop that is evaluated once. */
 uint32_t least_instances(const Compilation *c);
 
 /* precision.c: whether a camera may be so far from the origin, and so near to a surface, that

@@ -335,10 +335,12 @@ KrsStatus compile_with_instances(const char *text, size_t length, uint32_t least
     return load_and_compile(text, length, "scene.krs", options, &request, scene);
 }
 
-KrsStatus compile_turn_by_turn(const char *text, size_t length, uint32_t least,
-                               const KrsOptions *options, KrsScene **scene)
+KrsStatus compile_iteration_by_iteration(const char *text, size_t length, uint32_t least,
+                                         const KrsOptions *options, KrsScene **scene)
 {
-    Request request = {
-        .after = PASS_COUNT, .end = PASS_COUNT, .least_instances = least, .turn_by_turn = true};
+    Request request = {.after             = PASS_COUNT,
+                       .end               = PASS_COUNT,
+                       .least_instances   = least,
+                       .single_iterations = true};
     return load_and_compile(text, length, "scene.krs", options, &request, scene);
 }

@@ -11,13 +11,13 @@
 
 #include "compiler/passes/compilation.h"
 #include "compiler/graph/timed.h"
-#include "compiler/graph/instances/turns.h"
+#include "compiler/graph/instances/iterations.h"
 
 enum { MOST_ITEMS = 4096 };
 
-/* A shape and its item, in a turn of a loop and below the paint that counts. */
+/* A shape and its item, in an iteration of a loop and below the paint that counts. */
 typedef struct Known {
-    const Shape *shape, *turn, *paint; /* NULL: in none */
+    const Shape *shape, *iteration, *paint; /* NULL: in none */
     uint32_t     item;
 } Known;
 
@@ -26,10 +26,10 @@ typedef struct Finder {
     Arena       *arena; /* of the assembly */
     Arena       *work, *scratch;
     Graph       *graph;
-    bool        *timed; /* nodes of shapes that depend on the time; NULL: nobody asks */
-    const Shape *turn;  /* around the shape that is looked at; NULL: none, */
-    const Shape *paint; /* and above it, where the time moves something */
-    const char  *name;  /* of the nearest shape at it or above that has one, or of the component */
+    bool        *timed;     /* nodes of shapes that depend on the time; NULL: nobody asks */
+    const Shape *iteration; /* around the shape that is looked at; NULL: none, */
+    const Shape *paint;     /* and above it, where the time moves something */
+    const char  *name; /* of the nearest shape at it or above that has one, or of the component */
     struct {
         Node  *items;
         size_t count, capacity;
@@ -70,22 +70,23 @@ static uint32_t add_part(Finder *f, const Shape *shape)
                                .name     = arena_copy_text(f->arena, f->name, strlen(f->name))};
     array_push(f->arena, &f->assembly->items, item);
     uint32_t number = (uint32_t)f->assembly->items.count - 1;
-    array_push(f->work, &f->parts, ((Known){shape, f->turn, f->paint, number}));
+    array_push(f->work, &f->parts, ((Known){shape, f->iteration, f->paint, number}));
     return number;
 }
 
-static Node in_turn(const Finder *f, Node node)
+static Node in_iteration(const Finder *f, Node node)
 {
-    return f->turn ? graph_in_turn(f->graph, node, f->turn->turn, f->turn->number, f->scratch)
-                   : node;
+    return f->iteration ? graph_in_iteration(f->graph, node, f->iteration->iteration,
+                                             f->iteration->number, f->scratch)
+                        : node;
 }
 
 static AssemblyPlacing mapped(Finder *f, uint32_t item, const Map *map)
 {
-    const MapRoots roots = {
-        in_turn(f, map->scale),
-        {in_turn(f, map->rows[0]), in_turn(f, map->rows[1]), in_turn(f, map->rows[2])},
-        in_turn(f, map->shift)};
+    const MapRoots roots = {in_iteration(f, map->scale),
+                            {in_iteration(f, map->rows[0]), in_iteration(f, map->rows[1]),
+                             in_iteration(f, map->rows[2])},
+                            in_iteration(f, map->shift)};
     return (AssemblyPlacing){item, PLACED_MAPPED,
                              add_roots(f, (const Node *)&roots, NODES_OF(MapRoots))};
 }
@@ -134,7 +135,7 @@ static bool moves(const Finder *f, const Shape *shape)
     case SHAPE_TRANSFORM:
         return f->timed[map->shift] || f->timed[map->rows[0]] || f->timed[map->rows[1]] ||
                f->timed[map->rows[2]] || moves(f, shape->children[0]);
-    case SHAPE_TURN: return moves(f, shape->turned);
+    case SHAPE_ITERATION: return moves(f, shape->iterated);
     case SHAPE_UNION:
         for (uint32_t i = 0; shape->blend.width == NODE_NONE && i < shape->child_count; i++)
             if (moves(f, shape->children[i]))
@@ -204,11 +205,11 @@ static uint32_t take_paint(Finder *f, const Shape *shape)
     return item;
 }
 
-static uint32_t take_turn(Finder *f, const Shape *shape)
+static uint32_t take_iteration(Finder *f, const Shape *shape)
 {
-    f->turn       = shape;
-    uint32_t item = find_item(f, shape->turned);
-    f->turn       = NULL;
+    f->iteration  = shape;
+    uint32_t item = find_item(f, shape->iterated);
+    f->iteration  = NULL;
     return item;
 }
 
@@ -238,7 +239,8 @@ static uint32_t take_apart(Finder *f, const Shape *shape)
     case SHAPE_TRANSFORM: return take_transform(f, shape);
     case SHAPE_UNION: return sharp ? take_union(f, shape) : add_part(f, shape);
     case SHAPE_KRS: return is_rigid(shape) ? take_sequence(f, shape) : add_part(f, shape);
-    case SHAPE_TURN: return f->timed && !f->turn ? take_turn(f, shape) : add_part(f, shape);
+    case SHAPE_ITERATION:
+        return f->timed && !f->iteration ? take_iteration(f, shape) : add_part(f, shape);
     default: return add_part(f, shape);
     }
 }
@@ -260,7 +262,7 @@ static const Known *find_known(const Finder *f, const Shape *shape)
         return NULL;
     for (size_t i = 0; i < f->known.count; i++) {
         const Known *known = &f->known.items[i];
-        if (known->shape == shape && known->turn == f->turn && known->paint == f->paint)
+        if (known->shape == shape && known->iteration == f->iteration && known->paint == f->paint)
             return known;
     }
     return NULL;
@@ -275,7 +277,7 @@ static uint32_t find_item(Finder *f, const Shape *shape)
     f->name           = shape->given ? shape->given : above;
     uint32_t item     = take_apart(f, shape);
     f->name           = above;
-    array_push(f->work, &f->known, ((Known){shape, f->turn, f->paint, item}));
+    array_push(f->work, &f->known, ((Known){shape, f->iteration, f->paint, item}));
     return item;
 }
 
@@ -309,13 +311,13 @@ static void keep_beams(Finder *f, const Compilation *c)
 /* The part in its turn. */
 static const Shape *part_shape(Finder *f, const Known *part)
 {
-    if (!part->turn)
+    if (!part->iteration)
         return part->shape;
     Shape *shape = arena_new(f->work, Shape);
-    *shape       = *part->turn;
+    *shape       = *part->iteration;
     shape_takes_over(shape, part->shape);
-    shape->turned = part->shape;
-    shape->box    = part->shape->box;
+    shape->iterated = part->shape;
+    shape->box      = part->shape->box;
     return shape;
 }
 

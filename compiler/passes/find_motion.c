@@ -56,8 +56,8 @@ static bool is_timed_material(const MotionFinder *f, const Material *material)
 
 static bool recolors(const MotionFinder *f, const Shape *shape)
 {
-    if (shape->kind == SHAPE_TURN)
-        return recolors(f, shape->turned);
+    if (shape->kind == SHAPE_ITERATION)
+        return recolors(f, shape->iterated);
     if (shape->material && is_timed_material(f, shape->material))
         return true;
     for (uint32_t i = 0; i < shape->child_count; i++)

@@ -96,7 +96,7 @@ uint32_t least_instances(const Compilation *c)
     return c->request->least_instances ? c->request->least_instances : LEAST_INSTANCES;
 }
 
-static void elaborate_with(Compilation *c, TurnTrials *turns)
+static void elaborate_with(Compilation *c, IterationTrials *iterations)
 {
     Graph *graph         = graph_new(&c->work);
     c->elaborated        = (Scene){.graph = graph,
@@ -120,7 +120,7 @@ static void elaborate_with(Compilation *c, TurnTrials *turns)
                             .graph         = graph,
                             .scene         = &c->elaborated,
                             .loader        = c->loader,
-                            .turns         = turns,
+                            .iterations    = iterations,
                             .studio        = c->options->studio,
                             .figures       = c->options->figures,
                             .beams         = c->options->beams,
@@ -131,13 +131,13 @@ static void elaborate_with(Compilation *c, TurnTrials *turns)
     graph_drop_older(graph);
 }
 
-/* Where something asks for the numbers of single turns, all begins again, turn by turn. */
+/* Where something asks for the numbers of single iterations, all begins again, iteration by iteration. */
 KrsStatus pass_elaborate(Compilation *c)
 {
-    const Diags before = c->diags;
-    TurnTrials  turns  = {.least = least_instances(c)};
-    elaborate_with(c, c->request->turn_by_turn ? NULL : &turns);
-    if (turns.refused) {
+    const Diags     before     = c->diags;
+    IterationTrials iterations = {.least = least_instances(c)};
+    elaborate_with(c, c->request->single_iterations ? NULL : &iterations);
+    if (iterations.refused) {
         c->diags.count    = before.count;
         c->diags.errors   = before.errors;
         c->diags.warnings = before.warnings;

@@ -69,7 +69,7 @@ typedef struct Emitter {
     const char      **given;   /* names of nodes that the function need not compute */
     uint8_t          *mark;    /* for walks, zero between them */
     uint32_t         *rank;    /* how many noises a value needs, one in the other (noises.c) */
-    uint32_t          turns;   /* of loops over noises, so far */
+    uint32_t          iterations;     /* of loops over noises, so far */
     bool              gathers_noises; /* in the function being written */
     const char      **frame;          /* names of the globals that krs_prepare sets */
     bool             *slot_is_read;   /* in krs_prepare: whether a local has the slot's numbers */

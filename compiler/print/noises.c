@@ -1,16 +1,16 @@
 /*
- * noises.c: noises that do not need one another's values are found in the turns of one loop.
+ * noises.c: noises that do not need one another's values are found in the iterations of one loop.
  *
  * A noise is some hundreds of instructions where a driver copies the function to each place.  Of
- * materials with patterns these are most of what it has to translate.  In a turn all places, and all
+ * materials with patterns these are most of what it has to translate.  In an iteration all places, and all
  * values found so far, move on by one: a driver copies variables that have fixed names without
  * instructions, but not elements of an array.
  */
 #include "compiler/print/emitter.h"
 
-/* Drivers end all loops of a lane after some turns, without a word: lavapipe after 65535.  A lane may
-   find 64 surfaces in a dispatch, with these turns for each. */
-enum { MOST_TURNS = 256 };
+/* Drivers end all loops of a lane after some iterations, without a word: lavapipe after 65535.  A lane may
+   find 64 surfaces in a dispatch, with these iterations for each. */
+enum { MOST_ITERATIONS = 256 };
 
 static bool is_noise(const Expr *expr) { return expr->op == OP_noise2 || expr->op == OP_noise3; }
 
@@ -57,9 +57,9 @@ static void emit_moves(Emitter *e, const char **names, size_t count, const char 
 
 static void emit_loop(Emitter *e, const NodeList *noises)
 {
-    const char **places = arena_new_array(e->scratch, const char *, noises->count);
-    const char **values = arena_new_array(e->scratch, const char *, noises->count);
-    const char  *turn = new_name(e, 'n'), *value = new_name(e, 't');
+    const char **places    = arena_new_array(e->scratch, const char *, noises->count);
+    const char **values    = arena_new_array(e->scratch, const char *, noises->count);
+    const char  *iteration = new_name(e, 'n'), *value = new_name(e, 't');
     const Expr   first = e->graph->items[noises->items[0]];
     const Node   place = first.operands[0];
     for (size_t i = 0; i < noises->count; i++) {
@@ -71,14 +71,14 @@ static void emit_loop(Emitter *e, const NodeList *noises)
                    emit_bare(e, e->text[noise->operands[0]]));
         emit_local(e, TYPE_FLOAT, values[i], "0.0");
     }
-    emit_template(e, TEMPLATE_TURNS, (Operands){turn});
+    emit_template(e, TEMPLATE_ITERATIONS, (Operands){iteration});
     const char *text = e->text[place];
     e->text[place]   = places[0];
     emit_local(e, TYPE_FLOAT, value, emit_bare(e, emit_expression(e, &first)));
     e->text[place] = text;
     emit_moves(e, places, noises->count, NULL);
     emit_moves(e, values, noises->count, value);
-    emit_template(e, TEMPLATE_TURNS_END, (Operands){turn, emit_count(e, noises->count)});
+    emit_template(e, TEMPLATE_ITERATIONS_END, (Operands){iteration, emit_count(e, noises->count)});
     for (size_t i = 0; i < noises->count; i++) {
         e->text[noises->items[i]]    = values[i];
         e->nesting[noises->items[i]] = 0;
@@ -93,8 +93,9 @@ static void emit_noises(Emitter *e, uint32_t rank, Op op)
         if (is_computed(e, n) && e->rank[n] == rank && e->graph->items[n].op == op)
             array_push(e->scratch, &noises, n);
     }
-    if (noises.count >= KRS_LEAST_NOISES_TOGETHER && noises.count <= MOST_TURNS - e->turns) {
-        e->turns += (uint32_t)noises.count;
+    if (noises.count >= KRS_LEAST_NOISES_TOGETHER &&
+        noises.count <= MOST_ITERATIONS - e->iterations) {
+        e->iterations += (uint32_t)noises.count;
         emit_loop(e, &noises);
         return;
     }

@@ -83,8 +83,8 @@ static const char *rule_of(Listing *l, const Shape *shape)
 /* Whether two shapes were made in the same place of the text, all through. */
 static bool are_alike(const Shape *a, const Shape *b)
 {
-    a = shape_in_turns(a);
-    b = shape_in_turns(b);
+    a = shape_in_iterations(a);
+    b = shape_in_iterations(b);
     if (a == b)
         return true;
     if (a->kind != b->kind || a->child_count != b->child_count ||
@@ -170,7 +170,7 @@ static void list_shape(Listing *l, const Shape *shape, uint32_t depth, uint32_t 
         return;
     }
     const Box box    = shape->box;
-    shape            = shape_in_turns(shape);
+    shape            = shape_in_iterations(shape);
     size_t     same  = entry_of(l, shape);
     BoundEntry entry = entry_for(l, shape, box, depth, alike, same);
     array_push(l->scratch, &l->entries, entry);

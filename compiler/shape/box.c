@@ -63,7 +63,7 @@ Box box_move(Box box, const Range by[3])
     return box;
 }
 
-Box box_turn(Box box, Range rows[3][3])
+Box box_rotate(Box box, Range rows[3][3])
 {
     if (box_is_empty(box))
         return box;
@@ -207,5 +207,5 @@ Box box_fold(Box box, const Range u[3], Range w)
         }
         shift[i] = range_mul(range_of(2), range_mul(w, u[i]));
     }
-    return box_hull(retained, box_move(box_turn(retained, rows), shift));
+    return box_hull(retained, box_move(box_rotate(retained, rows), shift));
 }

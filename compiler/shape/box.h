@@ -16,7 +16,7 @@ Box  box_common(Box a, Box b);
 Box box_grow(Box box, double by);
 Box box_move(Box box, const Range by[3]);
 /* The box around a box after a linear map with these rows, each entry a range. */
-Box    box_turn(Box box, Range rows[3][3]);
+Box    box_rotate(Box box, Range rows[3][3]);
 double box_diagonal(Box box);
 /* Of a finite box. */
 void box_centre(Box box, double centre[3]);

@@ -79,7 +79,7 @@ Box map_box_of(const MapRange *range, Box box)
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             rows[i][j] = range_mul(range->scale, range->rows[i][j]);
-    return box_move(box_turn(box, rows), range->shift);
+    return box_move(box_rotate(box, rows), range->shift);
 }
 
 /* ---- rules ---- */

@@ -128,7 +128,7 @@ Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span s
     shape->distance = shape->bound = shape->uv = shape->trap = NODE_NONE;
     shape->formula = shape->declared = shape->corners[0] = shape->corners[1] = NODE_NONE;
     shape->plane_normal = shape->plane_offset = shape->ball_radius = NODE_NONE;
-    shape->values[0] = shape->values[1] = shape->map.scale = shape->turn = NODE_NONE;
+    shape->values[0] = shape->values[1] = shape->map.scale = shape->iteration = NODE_NONE;
     for (uint32_t i = 0; i < count; i++) {
         shape->children[i] = children[i];
         take_over(shape, children[i]);

@@ -152,7 +152,7 @@ const Map *map_alignment(ShapeBuilder *builder, Node from, Node to)
     Node       zero    = graph_number(g, 0);
     const Map *first   = map_reflection(builder, bisector, zero);
     /* The first takes a to -b; when they are opposite it leaves a, which is -b, where it is. */
-    Node turned          = map_turn(builder, first, a);
+    Node turned          = map_rotate(builder, first, a);
     Node difference      = graph_op2(g, OP_sub, turned, b);
     Node difference_size = graph_op1(g, OP_length, difference);
     Node coincide        = graph_op2(g, OP_less, difference_size, tiny);
@@ -162,9 +162,9 @@ const Map *map_alignment(ShapeBuilder *builder, Node from, Node to)
     return map_product(builder, second, first);
 }
 
-Node map_turn(ShapeBuilder *builder, const Map *f, Node vector)
+Node map_rotate(ShapeBuilder *builder, const Map *f, Node vector)
 {
-    return graph_op4(builder->graph, OP_turn, vector, f->rows[0], f->rows[1], f->rows[2]);
+    return graph_op4(builder->graph, OP_rotate, vector, f->rows[0], f->rows[1], f->rows[2]);
 }
 
 Node map_apply(ShapeBuilder *builder, const Map *f, Node point)
@@ -176,7 +176,7 @@ Node map_apply(ShapeBuilder *builder, const Map *f, Node point)
         Node square = graph_op2(g, OP_dot, point, point);
         scale       = graph_op2(g, OP_div, scale, square);
     }
-    Node turned = map_turn(builder, f, point);
+    Node turned = map_rotate(builder, f, point);
     turned      = graph_op2(g, OP_scale, turned, scale);
     return graph_op2(g, OP_add, turned, f->shift);
 }
@@ -195,7 +195,7 @@ static Node product_row(Graph *g, Node row, const Node rows[3])
     return sum;
 }
 
-void turn_product(ShapeBuilder *builder, const Node a[3], const Node b[3], Node product[3])
+void rotate_product(ShapeBuilder *builder, const Node a[3], const Node b[3], Node product[3])
 {
     for (int i = 0; i < 3; i++)
         product[i] = product_row(builder->graph, a[i], b);
@@ -205,7 +205,7 @@ static const Map *similarity_product(ShapeBuilder *builder, const Map *f, const 
 {
     Map *map   = map_new(builder);
     map->scale = graph_op2(builder->graph, OP_mul, f->scale, g->scale);
-    turn_product(builder, f->rows, g->rows, map->rows);
+    rotate_product(builder, f->rows, g->rows, map->rows);
     map->shift = map_apply(builder, f, g->shift);
     return map;
 }
@@ -274,7 +274,7 @@ static const Map *similarity_inverse(ShapeBuilder *builder, const Map *f)
     Node   one = graph_number(g, 1);
     map->scale = graph_op2(g, OP_div, one, f->scale);
     transpose_rows(g, f->rows, map->rows);
-    Node back   = map_turn(builder, map, f->shift);
+    Node back   = map_rotate(builder, map, f->shift);
     Node factor = graph_op1(g, OP_neg, map->scale);
     map->shift  = graph_op2(g, OP_scale, back, factor);
     return map;

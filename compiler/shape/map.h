@@ -20,9 +20,9 @@ const Map *map_reflection(ShapeBuilder *builder, Node normal, Node offset);
 /* f(g(x)). */
 const Map *map_product(ShapeBuilder *builder, const Map *f, const Map *g);
 const Map *map_inverse(ShapeBuilder *builder, const Map *f);
-Node       map_turn(ShapeBuilder *builder, const Map *f, Node vector); /* rows times vector */
-Node       map_apply(ShapeBuilder *builder, const Map *f, Node point); /* without `first` */
-void       turn_product(ShapeBuilder *builder, const Node a[3], const Node b[3], Node product[3]);
+Node       map_rotate(ShapeBuilder *builder, const Map *f, Node vector); /* rows times vector */
+Node       map_apply(ShapeBuilder *builder, const Map *f, Node point);   /* without `first` */
+void       rotate_product(ShapeBuilder *builder, const Node a[3], const Node b[3], Node product[3]);
 /* For all values of the parameters, without `first`; the box around the image of a box under a
    similarity. */
 MapRange map_range(ShapeBuilder *builder, const Map *f);

@@ -44,7 +44,7 @@ static const Map *inversion_after_similarity(ShapeBuilder *builder, const Map *f
 {
     Map *map   = map_new(builder);
     map->scale = graph_op2(builder->graph, OP_div, f->scale, g->scale);
-    turn_product(builder, f->rows, g->rows, map->rows);
+    rotate_product(builder, f->rows, g->rows, map->rows);
     map->pole  = map_apply(builder, map_inverse(builder, g), f->pole);
     map->shift = f->shift;
     return map;
@@ -54,7 +54,7 @@ static const Map *similarity_after_inversion(ShapeBuilder *builder, const Map *f
 {
     Map *map   = map_new(builder);
     map->scale = graph_op2(builder->graph, OP_mul, f->scale, g->scale);
-    turn_product(builder, f->rows, g->rows, map->rows);
+    rotate_product(builder, f->rows, g->rows, map->rows);
     map->pole  = g->pole;
     map->shift = map_apply(builder, f, g->shift);
     return map;
@@ -67,7 +67,7 @@ static const Map *concentric_inversions(ShapeBuilder *builder, const Map *f, con
     Graph *graph = builder->graph;
     Map   *map   = map_new(builder);
     map->scale   = graph_op2(graph, OP_div, f->scale, g->scale);
-    turn_product(builder, f->rows, g->rows, map->rows);
+    rotate_product(builder, f->rows, g->rows, map->rows);
     Node moved = map_apply(builder, map, g->pole); /* while its shift is still 0 */
     map->shift = graph_op2(graph, OP_sub, f->shift, moved);
     return map;
@@ -87,8 +87,8 @@ static const Map *eccentric_inversions(ShapeBuilder *builder, const Map *f, cons
     Node       normal = graph_op1(graph, OP_normalize, offset);
     const Map *mirror = map_reflection(builder, normal, zero);
     Node       rows[3];
-    turn_product(builder, mirror->rows, g->rows, rows);
-    turn_product(builder, f->rows, rows, map->rows);
+    rotate_product(builder, mirror->rows, g->rows, rows);
+    rotate_product(builder, f->rows, rows, map->rows);
     map->scale = graph_op2(graph, OP_mul, f->scale, g->scale);
     map->scale = graph_op2(graph, OP_div, map->scale, square);
     map->pole  = map_apply(builder, inversion_inverse(builder, g), f->pole);

@@ -223,20 +223,20 @@ struct Shape {
        shapes do not; else NULL. */
     const struct Declaration *declaration;
     const struct Shape
-          *turned; /* TURN: what all turns of a loop have in common; else NULL.  It is no
-                                   child: numbers in it depend on the leaf `turn` */
-    Node   turn;   /* TURN: the leaf that is `number` in this one; else NODE_NONE */
-    double number;
+        *iterated;  /* ITERATION: what all iterations of a loop have in common; else NULL.  It is no
+                                   child: numbers in it depend on the leaf `iteration` */
+    Node iteration; /* ITERATION: the leaf that is `number` in this one; else NODE_NONE */
+    double               number;
     const struct Shape  *rounded; /* OFFSET that .round made of a core: what is rounded; or NULL */
     const Material      *material;
     const SequenceStage *stages;
     const LevelBound    *bounds; /* of the stages, for all values of the parameters */
 };
 
-/* A turn as what it is a turn of; any other shape as it is: for what does not ask for numbers. */
-static inline const Shape *shape_in_turns(const Shape *shape)
+/* An iteration as what it is an iteration of; any other shape as it is: for what does not ask for numbers. */
+static inline const Shape *shape_in_iterations(const Shape *shape)
 {
-    return shape->turned ? shape->turned : shape;
+    return shape->iterated ? shape->iterated : shape;
 }
 
 /* Whether it is curved nearly everywhere, or finer than a pixel as a rule, so that where its normal

@@ -28,7 +28,7 @@ Place place_scale(const double by[3])
     return (Place){{{by[0], 0, 0}, {0, by[1], 0}, {0, 0, by[2]}}, {0, 0, 0}};
 }
 
-Place place_turn(int axis, double angle)
+Place place_rotate(int axis, double angle)
 {
     Place  place = place_identity();
     int    a = (axis + 1) % 3, b = (axis + 2) % 3;
@@ -161,7 +161,7 @@ static void write_mirror(Text *text, Place *place)
 }
 
 /* A rotation: rows are of length 1, square to each other, and right-handed. */
-static void write_turn(Text *text, double rows[3][3])
+static void write_rotation(Text *text, double rows[3][3])
 {
     double axis[3] = {rows[2][1] - rows[1][2], rows[0][2] - rows[2][0], rows[1][0] - rows[0][1]};
     double sine    = sqrt(dot3(axis, axis)) / 2;
@@ -192,7 +192,7 @@ static void write_turn(Text *text, double rows[3][3])
 }
 
 /* Turns g and v so that g[a][b] is 0 (Jacobi). */
-static void jacobi_turn(double g[3][3], double v[3][3], int a, int b)
+static void jacobi_rotate(double g[3][3], double v[3][3], int a, int b)
 {
     if (fabs(g[a][b]) <= 1e-13 * sqrt(fabs(g[a][a] * g[b][b])))
         return;
@@ -220,7 +220,7 @@ static bool write_stretch(Text *text, const Place *place)
     gram(place, g);
     for (int sweep = 0; sweep < 12; sweep++)
         for (int pair = 0; pair < 3; pair++)
-            jacobi_turn(g, v, pair == 2 ? 1 : 0, pair == 0 ? 1 : 2);
+            jacobi_rotate(g, v, pair == 2 ? 1 : 0, pair == 0 ? 1 : 2);
     for (int i = 0; i < 3; i++)
         by[i] = sqrt(fmax(g[i][i], 0));
     double most = fmax(by[0], fmax(by[1], by[2]));
@@ -234,9 +234,9 @@ static bool write_stretch(Text *text, const Place *place)
             for (int j = 0; j < 3; j++)
                 after[i][k] += place->rows[i][j] * v[j][k] / by[k];
         }
-    write_turn(text, before);
+    write_rotation(text, before);
     add_vector(text, ".scale(", by, ")");
-    write_turn(text, after);
+    write_rotation(text, after);
     return true;
 }
 
@@ -258,7 +258,7 @@ bool place_write(Text *text, const Place *place)
         for (int i = 0; i < 3; i++)
             for (int k = 0; k < 3; k++)
                 plain.rows[i][k] /= factor;
-        write_turn(text, plain.rows);
+        write_rotation(text, plain.rows);
     } else if (!write_stretch(text, &plain)) {
         return false;
     }

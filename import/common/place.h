@@ -16,7 +16,7 @@ Place place_identity(void);
 Place place_move(const double by[3]);
 Place place_scale(const double by[3]);
 /* About x (0), y (1) or z (2), by radians, from each axis to the next one. */
-Place place_turn(int axis, double angle);
+Place place_rotate(int axis, double angle);
 /* First `first`, then `then`. */
 Place place_chain(const Place *first, const Place *then);
 /* The same map seen in a mirror that changes the sign of z. */

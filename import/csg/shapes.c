@@ -95,9 +95,9 @@ static void move_corner(Part *part, const double size[3])
     part_move(part, &place);
 }
 
-static void turn_upright(Part *part)
+static void rotate_upright(Part *part)
 {
-    Place place = place_turn(0, 90 * DEGREE);
+    Place place = place_rotate(0, 90 * DEGREE);
     part_move(part, &place);
 }
 
@@ -442,13 +442,13 @@ bool csg_rotate_extrude(const CsgNode *node, Part **part)
     *part            = part_around(node->import, node->line, "revolved", figure);
     (*part)->methods = ".revolve(0)";
     (*part)->figure  = false;
-    turn_upright(*part);
+    rotate_upright(*part);
     if (fabs(angle) >= 360 || angle == 0)
         return true;
     Part *wedge  = part_shape(node->import, node->line, "wedge", "wedge(%sdeg)",
                               import_number_text(node->import, fabs(angle)));
-    Place middle = place_turn(2, (start + angle / 2 + 90) * DEGREE);
-    turn_upright(wedge); /* its middle is then at -y */
+    Place middle = place_rotate(2, (start + angle / 2 + 90) * DEGREE);
+    rotate_upright(wedge); /* its middle is then at -y */
     part_move(wedge, &middle);
     Part *cut = part_new(node->import, node->line, "sector");
     cut->join = PART_INTERSECTION;

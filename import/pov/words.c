@@ -70,7 +70,7 @@ static Place turns(const double angles[3])
 {
     Place place = place_identity();
     for (int axis = 0; axis < 3; axis++) {
-        Place turn = place_turn(axis, angles[axis] * DEGREE);
+        Place turn = place_rotate(axis, angles[axis] * DEGREE);
         place      = place_chain(&place, &turn);
     }
     return place;

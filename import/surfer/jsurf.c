@@ -78,7 +78,7 @@ static bool refuse_space(const JsurfSurface *surface, const char *key, const cha
 }
 
 /* A turn, without its inverse's need of division. */
-static bool read_turn(const JsurfSurface *surface, const char *key, Space *space)
+static bool read_rotation(const JsurfSurface *surface, const char *key, Space *space)
 {
     if (!read_space(surface, key, space))
         return false;
@@ -86,7 +86,7 @@ static bool read_turn(const JsurfSurface *surface, const char *key, Space *space
            refuse_space(surface, key, "does more than turn and move");
 }
 
-static Space inverse_turn(const Space *space)
+static Space inverse_rotation(const Space *space)
 {
     Space inverse;
     for (int i = 0; i < 3; i++) {
@@ -104,13 +104,13 @@ static bool read_spaces(JsurfSurface *surface, Space *camera)
 {
     Space  whole, turn, own, surfaces;
     double zoom = 0;
-    if (!read_turn(surface, "transform_matrix", &whole) ||
-        !read_turn(surface, "rotation_matrix", &turn) ||
-        !read_turn(surface, "camera_transform", &own) ||
+    if (!read_rotation(surface, "transform_matrix", &whole) ||
+        !read_rotation(surface, "rotation_matrix", &turn) ||
+        !read_rotation(surface, "camera_transform", &own) ||
         !read_space(surface, "surface_transform_matrix", &surfaces) ||
         !jsurf_numbers(surface, "scale_factor", &zoom, 1))
         return false;
-    own           = inverse_turn(&own);
+    own           = inverse_rotation(&own);
     turn          = space_after(&turn, &own);
     *camera       = space_after(&whole, &turn);
     double factor = space_factor(&surfaces), off = 0;

@@ -17,7 +17,7 @@ Vec vec_across(Vec a)
     return vec_unit(vec_cross(a, other));
 }
 
-Vec vec_turn(Vec p, Vec axis, double angle)
+Vec vec_rotate(Vec p, Vec axis, double angle)
 {
     Vec up    = vec_unit(axis);
     Vec along = vec_scale(vec_dot(p, up), up);

@@ -38,7 +38,7 @@ static inline Vec vec_cross(Vec a, Vec b)
 /* Any unit vector at right angles to `a`. */
 Vec vec_across(Vec a);
 /* `p` turned about an axis through the origin, counter-clockwise seen from the axis' tip. */
-Vec vec_turn(Vec p, Vec axis, double angle);
+Vec vec_rotate(Vec p, Vec axis, double angle);
 
 /* {x : normal.x <= offset}, the normal of unit length. */
 typedef struct Half {

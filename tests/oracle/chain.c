@@ -107,12 +107,12 @@ static Vec undone(const Link *link, Vec p)
     Vec v = link->v;
     switch (link->kind) {
     case LINK_MOVE: return vec_sub(p, vec(link->number, v.y, v.z));
-    case LINK_TURN: return vec_turn(p, v, -link->number);
+    case LINK_TURN: return vec_rotate(p, v, -link->number);
     case LINK_SCALE: return vec_scale(1 / link->number, p);
     case LINK_STRETCH: return vec(p.x / link->number, p.y / v.y, p.z / v.z);
     case LINK_MIRROR:
     case LINK_SEQUENCE: return folded(link, p);
-    case LINK_TWIST: return vec_turn(p, v, -link->number * vec_dot(p, vec_unit(v)));
+    case LINK_TWIST: return vec_rotate(p, v, -link->number * vec_dot(p, vec_unit(v)));
     case LINK_TAPER: return untapered(link, p);
     case LINK_ELONGATE: return vec(pulled(p.x, v.x), pulled(p.y, v.y), pulled(p.z, v.z));
     default: {
@@ -143,7 +143,7 @@ static bool around(const Chain *chain, const Link *link, Vec p)
 {
     int count = (int)link->w.x;
     for (int i = 0; i < count; i++)
-        if (contains(chain, link->solids[0], vec_turn(p, link->v, 2 * PI * i / count)))
+        if (contains(chain, link->solids[0], vec_rotate(p, link->v, 2 * PI * i / count)))
             return true;
     return false;
 }

@@ -71,8 +71,8 @@ static Legs random_legs(Random *random, int count, double most)
     for (int i = 1; i < count; i++) {
         legs.points[i] = vec_add(legs.points[i - 1],
                                  vec_scale(random_between(random, 0.8, 1.2), along));
-        Vec axis       = vec_turn(vec_across(along), along, random_between(random, 0, 2 * PI));
-        along          = vec_turn(along, axis, random_between(random, 0.2, most));
+        Vec axis       = vec_rotate(vec_across(along), along, random_between(random, 0, 2 * PI));
+        along          = vec_rotate(along, axis, random_between(random, 0.2, most));
     }
     legs_frame(&legs, vec(0, 1, 0));
     return legs;
@@ -135,7 +135,7 @@ static void sharp_curves_are_swept(void **state)
             Vec    at    = vec_mix(vec_mix(part[0], part[1], t), vec_mix(part[1], part[2], t), t);
             Vec    along = vec_unit(
                    vec_sub(vec_mix(part[1], part[2], t), vec_mix(part[0], part[1], t)));
-            Vec out = vec_turn(vec_across(along), along, i);
+            Vec out = vec_rotate(vec_across(along), along, i);
             assert_true(product_distance(&product, vec_add(at, vec_scale(0.0195, out))) < 0);
             assert_true(product_distance(&product, vec_add(at, vec_scale(0.0205, out))) > 0);
         }

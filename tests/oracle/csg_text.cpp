@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-static void write_turn(std::string &text, const Turn &turn)
+static void write_rotation(std::string &text, const Turn &turn)
 {
     char      words[256];
     const int quarter = int(std::lround(turn.angle / (M_PI / 2)));
@@ -130,7 +130,7 @@ static void write_part(std::string &text, const Part &part)
     default: words[0] = 0; break;
     }
     text += words[0] ? words : text_of_rich(part);
-    write_turn(text, part.turn);
+    write_rotation(text, part.turn);
     std::snprintf(words, sizeof words, ".move([%.17g, %.17g, %.17g])", part.shift[0], part.shift[1],
                   part.shift[2]);
     text += words;
@@ -153,6 +153,6 @@ std::string text_of(const Solid &solid)
 {
     std::string text = "show ";
     write_tree(text, *solid.tree);
-    write_turn(text, solid.turn);
+    write_rotation(text, solid.turn);
     return text + ";\n";
 }

@@ -56,7 +56,7 @@ Vec deed_forward(const Deed *deed, Vec p)
 {
     double height = vec_dot(p, deed->axis);
     if (deed->kind == DEED_TWIST)
-        return vec_turn(p, deed->axis, deed->rate * height);
+        return vec_rotate(p, deed->axis, deed->rate * height);
     if (deed->kind == DEED_TAPER) {
         Vec on_axis = vec_scale(height, deed->axis);
         return vec_add(on_axis, vec_scale(taper_factor(deed, height), vec_sub(p, on_axis)));
@@ -74,7 +74,7 @@ Vec deed_backward(const Deed *deed, Vec p, int turn)
 {
     double height = vec_dot(p, deed->axis);
     if (deed->kind == DEED_TWIST)
-        return vec_turn(p, deed->axis, -deed->rate * height);
+        return vec_rotate(p, deed->axis, -deed->rate * height);
     if (deed->kind == DEED_TAPER) {
         Vec on_axis = vec_scale(height, deed->axis);
         return vec_add(on_axis, vec_scale(1 / taper_factor(deed, height), vec_sub(p, on_axis)));

@@ -45,10 +45,10 @@ static Half half_behind_mirror(Half half, Half mirror)
 static Vec body_project(const Body *body, double shrink, Vec p)
 {
     if (body->box) {
-        Vec q = vec_turn(vec_sub(p, body->from), body->axis, -body->angle);
+        Vec q = vec_rotate(vec_sub(p, body->from), body->axis, -body->angle);
         Vec s = vec_sub(body->sides, vec(shrink, shrink, shrink));
         q = vec(fmax(-s.x, fmin(q.x, s.x)), fmax(-s.y, fmin(q.y, s.y)), fmax(-s.z, fmin(q.z, s.z)));
-        return vec_add(body->from, vec_turn(q, body->axis, body->angle));
+        return vec_add(body->from, vec_rotate(q, body->axis, body->angle));
     }
     Vec    along  = vec_sub(body->to, body->from);
     double square = vec_dot(along, along), t = 0;
@@ -303,8 +303,8 @@ static void clip_body(const Body *body, Vec origin, Vec direction, double *enter
 {
     Vec o = vec_sub(origin, body->from);
     if (body->box) {
-        Vec    a = vec_turn(o, body->axis, -body->angle);
-        Vec    d = vec_turn(direction, body->axis, -body->angle), s = body->sides;
+        Vec    a = vec_rotate(o, body->axis, -body->angle);
+        Vec    d = vec_rotate(direction, body->axis, -body->angle), s = body->sides;
         double from[3] = {a.x, a.y, a.z}, slope[3] = {d.x, d.y, d.z}, side[3] = {s.x, s.y, s.z};
         for (int i = 0; i < 3; i++) {
             clip_below(from[i], slope[i], side[i], enter, leave);

@@ -40,9 +40,9 @@ typedef struct Items {
 
 static void item_turn(Item *item)
 {
-    item->x = vec_turn(vec(1, 0, 0), item->axis, item->angle);
-    item->y = vec_turn(vec(0, 1, 0), item->axis, item->angle);
-    item->z = vec_turn(vec(0, 0, 1), item->axis, item->angle);
+    item->x = vec_rotate(vec(1, 0, 0), item->axis, item->angle);
+    item->y = vec_rotate(vec(0, 1, 0), item->axis, item->angle);
+    item->z = vec_rotate(vec(0, 0, 1), item->axis, item->angle);
 }
 
 static double item_support(const Item *item, Vec u)
@@ -255,7 +255,7 @@ static void round_solids_have_their_hull(void **state)
     Random random = {6};
     for (int trial = 0; trial < 6; trial++) {
         Items all  = {.count = 3, .grown = trial % 2 ? 0.1 : 0};
-        Vec   turn = random_unit(&random), up = vec_turn(vec(0, 1, 0), turn, 1),
+        Vec   turn = random_unit(&random), up = vec_rotate(vec(0, 1, 0), turn, 1),
             side = vec_across(up);
         for (int i = 0; i < 3; i++) {
             Item item  = random_item(&random, i == 2 && trial < 3   ? BALL

@@ -125,7 +125,7 @@ double known_solid_value(const void *user, Vec p)
                                vec_sub(part->a, vec(2 * s->number, 2 * s->number, 2 * s->number))) -
                s->number;
     case KNOWN_MOVE: return known_solid_value(part, vec_sub(p, s->a));
-    case KNOWN_ROTATE: return known_solid_value(part, vec_turn(p, s->a, -s->number));
+    case KNOWN_ROTATE: return known_solid_value(part, vec_rotate(p, s->a, -s->number));
     case KNOWN_SCALE: return s->number * known_solid_value(part, vec_scale(1 / s->number, p));
     case KNOWN_MIRROR: {
         Half mirror = {s->a, s->number};

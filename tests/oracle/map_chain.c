@@ -19,7 +19,7 @@ Vec elementary_apply(const Elementary *l, Vec p, bool undo)
     Vec z = vec_sub(p, l->vector);
     switch (l->kind) {
     case TRANSLATE: return undo ? z : vec_add(p, l->vector);
-    case ROTATE: return vec_turn(p, l->vector, undo ? -l->number : l->number);
+    case ROTATE: return vec_rotate(p, l->vector, undo ? -l->number : l->number);
     case SCALE: return vec_scale(undo ? 1 / l->number : l->number, p);
     case REFLECT: return vec_sub(p, vec_scale(2 * (vec_dot(l->vector, p) - l->number), l->vector));
     case INVERT: return vec_add(l->vector, vec_scale(l->number * l->number / vec_dot(z, z), z));
@@ -81,7 +81,7 @@ static Vec chain_undo_mirror(Half mirror, Vec p)
 /* The distance to a kernel in its own space, exact; negative inside. */
 static double solid_distance(const Kernel *k, Vec p)
 {
-    Vec q = vec_turn(vec_sub(p, k->from), k->axis, -k->angle);
+    Vec q = vec_rotate(vec_sub(p, k->from), k->axis, -k->angle);
     if (k->box) {
         Vec d = vec(fabs(q.x) - k->sides.x, fabs(q.y) - k->sides.y, fabs(q.z) - k->sides.z);
         Vec o = vec(fmax(d.x, 0), fmax(d.y, 0), fmax(d.z, 0));
@@ -148,7 +148,7 @@ static Vec random_on_solid(const Kernel *k, Random *random)
         Vec    q = random_in_cube(random, 1);
         double m = fmax(fabs(q.x), fmax(fabs(q.y), fabs(q.z)));
         q        = vec(q.x / m * k->sides.x, q.y / m * k->sides.y, q.z / m * k->sides.z);
-        return vec_add(k->from, vec_turn(q, k->axis, k->angle));
+        return vec_add(k->from, vec_rotate(q, k->axis, k->angle));
     }
     Vec offset = vec_sub(k->to, k->from), u = random_unit(random);
     Vec end = vec_dot(u, offset) > 0 ? k->to : k->from;

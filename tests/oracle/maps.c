@@ -111,7 +111,7 @@ static Vec letter_apply(const Elementary *l, Vec p)
     Vec z = vec_sub(p, l->vector);
     switch (l->letter) {
     case TRANSLATE: return vec_add(p, l->vector);
-    case ROTATE: return vec_turn(p, l->vector, l->number);
+    case ROTATE: return vec_rotate(p, l->vector, l->number);
     case SCALE: return vec_scale(l->number, p);
     case REFLECT: return vec_sub(p, vec_scale(2 * (vec_dot(l->vector, p) - l->number), l->vector));
     default: return vec_add(l->vector, vec_scale(l->number * l->number / vec_dot(z, z), z));

@@ -99,7 +99,7 @@ static bool undo_move(const Case *c, int k, Vec p)
 
 static bool undo_rotate(const Case *c, int k, Vec p)
 {
-    return inside(c, k, vec_turn(p, vec(1, 2, -0.5), -0.8));
+    return inside(c, k, vec_rotate(p, vec(1, 2, -0.5), -0.8));
 }
 
 static bool undo_scale(const Case *c, int k, Vec p) { return inside(c, k, vec_scale(1 / 0.6, p)); }
@@ -112,7 +112,7 @@ static bool undo_stretch(const Case *c, int k, Vec p)
 static bool undo_align(const Case *c, int k, Vec p)
 {
     Vec from = vec_unit(vec(0, 0.3, 1)), to = vec_unit(vec(1, -0.6, 0.2));
-    return inside(c, k, vec_turn(p, vec_cross(from, to), -acos(vec_dot(from, to))));
+    return inside(c, k, vec_rotate(p, vec_cross(from, to), -acos(vec_dot(from, to))));
 }
 
 static Vec folded(Vec p, Vec normal, double offset)
@@ -156,7 +156,7 @@ static bool undo_repeat_for_ever(const Case *c, int k, Vec p)
 static bool around(const Case *c, int k, Vec p, Vec axis, int count)
 {
     for (int i = 0; i < count; i++)
-        if (inside(c, k, vec_turn(p, axis, 2 * PI * i / count)))
+        if (inside(c, k, vec_rotate(p, axis, 2 * PI * i / count)))
             return true;
     return false;
 }
@@ -166,7 +166,7 @@ static bool undo_polar(const Case *c, int k, Vec p) { return around(c, k, p, vec
 static bool undo_polar_far(const Case *c, int k, Vec p)
 {
     for (int i = 0; i < 6; i++)
-        if (inside(c, k, vec_sub(vec_turn(p, vec(0, 1, 0), PI * i / 3), vec(0, 0, 3))))
+        if (inside(c, k, vec_sub(vec_rotate(p, vec(0, 1, 0), PI * i / 3), vec(0, 0, 3))))
             return true;
     return false;
 }
@@ -185,7 +185,7 @@ static bool undo_elongate(const Case *c, int k, Vec p)
 
 static bool undo_twist(const Case *c, int k, Vec p)
 {
-    return inside(c, k, vec_turn(p, vec(0, 1, 0), -0.7 * p.y));
+    return inside(c, k, vec_rotate(p, vec(0, 1, 0), -0.7 * p.y));
 }
 
 static bool undo_bend(const Case *c, int k, Vec p)
@@ -215,7 +215,7 @@ static bool undo_sequence(const Case *c, int k, Vec p)
 static bool undo_mobius(const Case *c, int k, Vec p)
 {
     Vec q = inverted(folded(p, vec(1, 0, 0), 0.1), vec(-0.3, -2.4, 0.2), 1.6);
-    return inside(c, k, vec_turn(q, vec(0, 1, 0), -0.5));
+    return inside(c, k, vec_rotate(q, vec(0, 1, 0), -0.5));
 }
 
 #define ENDS     "E0408 "

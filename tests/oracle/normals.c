@@ -91,14 +91,14 @@ static Expected expect(const Chain *chain, Vec point, double width)
                 Vec    about  = vec_unit(AXIS);
                 result.hard   = reflect(result.hard, axis, excess[i] > 0);
                 result.smooth = reflect(result.smooth, axis, share);
-                result.hard   = vec_turn(result.hard, about, chain->angle);
-                result.smooth = vec_turn(result.smooth, about, chain->angle);
+                result.hard   = vec_rotate(result.hard, about, chain->angle);
+                result.smooth = vec_rotate(result.smooth, about, chain->angle);
             }
         }
         if (level == 0)
             break;
         stretch *= chain->scale;
-        point = vec_turn(vec_scale(1 / chain->scale, point), vec_unit(AXIS), -chain->angle);
+        point = vec_rotate(vec_scale(1 / chain->scale, point), vec_unit(AXIS), -chain->angle);
         excess[level - 1]   = half_excess(chain->mirror[level - 1], point);
         to_world[level - 1] = stretch;
         result.margin       = fmin(result.margin, fabs(excess[level - 1]));
@@ -224,17 +224,17 @@ typedef struct Move {
 
 static Vec stay(Vec at) { return at; }
 static Vec shift(Vec at) { return vec_add(at, vec(0.3, -2, 0.7)); }
-static Vec turn(Vec at) { return vec_turn(at, vec_unit(vec(1, -2, 0.5)), 0.8); }
+static Vec turn(Vec at) { return vec_rotate(at, vec_unit(vec(1, -2, 0.5)), 0.8); }
 static Vec shrink(Vec at) { return vec_scale(0.4, at); }
 static Vec stretch(Vec at) { return vec(2 * at.x, 0.5 * at.y, 1.3 * at.z); }
 static Vec turn_and_stretch(Vec at)
 {
-    return stretch(vec_turn(at, vec_unit(vec(1, -2, 0.5)), 0.8));
+    return stretch(vec_rotate(at, vec_unit(vec(1, -2, 0.5)), 0.8));
 }
 static Vec flip(Vec at) { return vec(-at.x + 3.4, at.y, at.z); }
 static Vec third_of_five(Vec at)
 {
-    return vec_turn(vec_add(at, vec(4, 0.5, 0.3)), vec(0, 1, 0), 2 * 2 * acos(-1) / 5);
+    return vec_rotate(vec_add(at, vec(4, 0.5, 0.3)), vec(0, 1, 0), 2 * 2 * acos(-1) / 5);
 }
 static Vec in_a_cell(Vec at) { return vec_add(at, vec(6, 0, -3)); }
 static Vec twice_reflected(Vec at)
@@ -248,7 +248,7 @@ static Vec invert(Vec at)
     Vec centre = vec(0.5, 3, 0), offset = vec_sub(at, centre);
     return vec_add(centre, vec_scale(4 / vec_dot(offset, offset), offset));
 }
-static Vec twist(Vec at) { return vec_turn(at, vec(0, 1, 0), 0.5 * at.y); }
+static Vec twist(Vec at) { return vec_rotate(at, vec(0, 1, 0), 0.5 * at.y); }
 
 static const Move moves[] = {
     {"", stay},

@@ -56,20 +56,20 @@ static bool a_less_others(Vec p) { return in_a(p) && !in_b(p) && !in_c(p); }
 static bool precedence(Vec p) { return in_a(p) || (in_b(p) && !in_c(p)); }
 
 static bool moved(Vec p) { return a_less_b(vec_sub(p, vec(0.3, -0.4, 0.5))); }
-static bool turned(Vec p) { return a_less_b(vec_turn(p, vec(1, 2, -0.5), -0.8)); }
+static bool turned(Vec p) { return a_less_b(vec_rotate(p, vec(1, 2, -0.5), -0.8)); }
 static bool enlarged(Vec p) { return a_less_b(vec_scale(1 / 1.7, p)); }
 static bool reduced(Vec p) { return a_less_b(vec_scale(1 / 0.4, p)); }
 static bool stretched(Vec p) { return either(vec(p.x / 1.5, p.y / 0.5, p.z)); }
 static bool placed(Vec p)
 {
-    Vec q = vec_turn(vec_sub(p, vec(0.2, 0.1, -0.3)), vec(0, 1, 1), -0.5);
+    Vec q = vec_rotate(vec_sub(p, vec(0.2, 0.1, -0.3)), vec(0, 1, 1), -0.5);
     return a_less_b(vec_sub(vec_scale(1 / 0.7, q), vec(0.4, 0, 0)));
 }
 /* The shortest turn from one direction to the other. */
 static bool aligned(Vec p)
 {
     Vec from = vec_unit(vec(0, 0.3, 1)), to = vec_unit(vec(1, -0.6, 0.2));
-    return a_less_b(vec_turn(p, vec_cross(from, to), -acos(vec_dot(from, to))));
+    return a_less_b(vec_rotate(p, vec_cross(from, to), -acos(vec_dot(from, to))));
 }
 static bool turned_over(Vec p) { return fabs(p.y) <= 0.5 && hypot(p.x, p.z) <= 0.7 * (0.5 + p.y); }
 static bool mirrored(Vec p)
@@ -97,7 +97,7 @@ static bool repeated_for_ever(Vec p)
 static bool around(Vec p, Vec axis, int n)
 {
     for (int i = 0; i < n; i++)
-        if (in_c(vec_turn(p, axis, 2 * PI * i / n)))
+        if (in_c(vec_rotate(p, axis, 2 * PI * i / n)))
             return true;
     return false;
 }
@@ -106,7 +106,7 @@ static bool four_about_z(Vec p) { return around(p, vec(0, 0, 1), 4); }
 /* The rod, which lies at the angle 0, turned by half of a copy's share: on the seam. */
 static bool six_on_the_seam(Vec p)
 {
-    return around(vec_turn(p, vec(0, 1, 0), -PI / 6), vec(0, 1, 0), 6);
+    return around(vec_rotate(p, vec(0, 1, 0), -PI / 6), vec(0, 1, 0), 6);
 }
 
 static double pull(double x, double half) { return x - fmax(-half, fmin(x, half)); }
@@ -123,7 +123,8 @@ static bool cut_to_b(Vec p) { return both(p); }
 static bool nested(Vec p)
 {
     Vec q = vec(fabs(p.x), p.y, p.z); /* mirrored where x <= 0 is kept */
-    return a_less_b(vec_turn(vec(-q.x, q.y, q.z), vec(0, 0, 1), -0.4)) || in_c(vec(-q.x, q.y, q.z));
+    return a_less_b(vec_rotate(vec(-q.x, q.y, q.z), vec(0, 0, 1), -0.4)) ||
+           in_c(vec(-q.x, q.y, q.z));
 }
 
 typedef struct Operation {

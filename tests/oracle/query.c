@@ -104,7 +104,7 @@ static void zones_come_and_go(void **context)
             random_vector(&chance, 0.8, zones[i]);
             zones[i][3] = uniform(0.1, 0.4);
         }
-        const ShaderEntry *newest = s.rendering->kernels.first;
+        const ShaderEntry *newest = s.rendering->shaders.first;
         const size_t       room   = s.rendering->most_zone_slots;
         assert_int_equal(krs_frame_set_zones(s.frame, (const double(*)[4])zones, count), KRS_OK);
         points_agree(s, 2000, 1.5, 16);
@@ -113,7 +113,7 @@ static void zones_come_and_go(void **context)
                              ball_less_zones(points[i], (const double(*)[4])zones, count)) < 1e-6);
         rays_agree(s, 500, 1.5, 0, 16);
         assert_true(s.rendering->zone_slots >= count && s.rendering->most_zone_slots >= count);
-        assert_true((s.rendering->kernels.first == newest) == (count <= room));
+        assert_true((s.rendering->shaders.first == newest) == (count <= room));
     }
     scene_close(s);
 }

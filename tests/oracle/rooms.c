@@ -51,7 +51,7 @@ static double torus_bound(Vec p, double major, double minor)
 }
 
 /* About y, turned back. */
-static Vec turned(Vec p, double angle) { return vec_turn(p, vec(0, 1, 0), -angle); }
+static Vec turned(Vec p, double angle) { return vec_rotate(p, vec(0, 1, 0), -angle); }
 static Vec lowered(Vec p, double by) { return vec(p.x, p.y - by, p.z); }
 
 /* ---- Rooms ---- */
@@ -158,8 +158,8 @@ static double tree(Vec p, const double n[])
         double twig = capsule_bound(p, vec(0, 0, 0), vec(0, 0.5, 0), n[1]);
         nearest     = least(nearest, size * twig);
         p.x         = -fabs(p.x);
-        p           = vec_turn(lowered(p, 0.5), vec(0, 1, 0), 70 * DEGREE);
-        p           = vec_scale(1 / 0.85, vec_turn(p, vec(1, 0, 0), -n[0]));
+        p           = vec_rotate(lowered(p, 0.5), vec(0, 1, 0), 70 * DEGREE);
+        p           = vec_scale(1 / 0.85, vec_rotate(p, vec(1, 0, 0), -n[0]));
         size *= 0.85;
     }
     return nearest;
@@ -186,7 +186,7 @@ static double contacts(Vec p, const double n[])
 
 static double stand(Vec p, const double n[])
 {
-    Vec    q    = vec_turn(lowered(p, 1.2), vec(1, 0, 0), -n[0]);
+    Vec    q    = vec_rotate(lowered(p, 1.2), vec(1, 0, 0), -n[0]);
     double cone = cone_bound(vec(p.x + 0.9, p.y - 0.6, p.z), 0.4, 1.2);
     return least(least(torus_bound(q, 0.6, n[1]), ball_bound(p, vec(0.9, 0.5, 0.5), 0.3)),
                  least(cone, p.y));

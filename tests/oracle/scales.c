@@ -103,8 +103,8 @@ static bool is_met(const Shot *shot, Line ray, double more)
         Chord chord = chord_of_ball(ray, vec(0, 0, 0), shot->size + more);
         return !chord_is_empty(chord) && chord.leave > 0;
     }
-    Line turned = {vec_turn(ray.origin, shot->axis, -shot->angle),
-                   vec_turn(ray.direction, shot->axis, -shot->angle)};
+    Line turned = {vec_rotate(ray.origin, shot->axis, -shot->angle),
+                   vec_rotate(ray.direction, shot->axis, -shot->angle)};
     /* Of what is thinner than a pixel a tenth may be missing. */
     double half[3] = {shot->sides.x / 2, shot->sides.y / 2, shot->sides.z / 2};
     for (int i = 0; i < 3; i++)
@@ -200,7 +200,7 @@ static void place_block(Shot *shot, Random *random, double far, double size, int
     if (number % 2 == 0)
         return;
     double lean    = number == 1 ? 0 : random_between(random, 1.2, M_PI / 2);
-    Vec    heading = vec_turn(vec(0, sin(lean), cos(lean)), shot->axis, shot->angle);
+    Vec    heading = vec_rotate(vec(0, sin(lean), cos(lean)), shot->axis, shot->angle);
     shot->eye      = vec_add(shot->at, vec_scale(3 * size, heading));
 }
 

@@ -215,7 +215,7 @@ static Sequence sample_sequence(Random *random, int mirrors)
 static bool body_contains(const Body *body, Vec p)
 {
     if (body->box) {
-        Vec q = vec_turn(vec_sub(p, body->from), body->axis, -body->angle);
+        Vec q = vec_rotate(vec_sub(p, body->from), body->axis, -body->angle);
         return fabs(q.x) <= body->sides.x && fabs(q.y) <= body->sides.y &&
                fabs(q.z) <= body->sides.z;
     }

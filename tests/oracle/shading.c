@@ -131,7 +131,7 @@ static void materials_on_the_device(void **state)
         for (int i = 0; i < PIXELS; i++) {
             if (!is_clear(picture, i))
                 continue;
-            Vec p        = vec_turn(read(picture->position, i), vec(0, 0, 1), -0.6);
+            Vec p        = vec_rotate(read(picture->position, i), vec(0, 0, 1), -0.6);
             Vec at       = vec_unit(vec(p.x / 1.3, p.y, p.z / 0.8));
             Vec expected = k == 0 ? vec_scale(0.5, vec_add(vec(1, 1, 1), at))
                                   : vec(0.5 + 0.1 * atan2(at.z, at.x), 0.5 + 0.1 * asin(at.y), 0);

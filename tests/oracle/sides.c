@@ -95,13 +95,13 @@ static double find_off(const Scene *scene, Vec point, Vec normal, double near)
     for (int i = 0; i < scene->count; i++) {
         const Solid *solid = &scene->solids[i];
         Side         sides[MOST_SIDES];
-        Vec          p       = vec_turn(vec_sub(point, solid->centre), solid->axis, -solid->angle);
-        int          count   = sides_of(solid, p, sides);
+        Vec          p     = vec_rotate(vec_sub(point, solid->centre), solid->axis, -solid->angle);
+        int          count = sides_of(solid, p, sides);
         double       outside = -HUGE_VAL;
         for (int k = 0; k < count; k++)
             outside = fmax(outside, sides[k].distance);
         for (int k = 0; k < count && outside < near; k++) {
-            Vec    facing = vec_turn(sides[k].normal, solid->axis, solid->angle);
+            Vec    facing = vec_rotate(sides[k].normal, solid->axis, solid->angle);
             double angle  = atan2(vec_length(vec_cross(facing, normal)), vec_dot(facing, normal));
             if (sides[k].distance > -near)
                 least = fmin(least, angle * 180 / M_PI);

@@ -102,7 +102,7 @@ static void path_axes(const Path *path, double t, Vec *x, Vec *y)
     double angle = path->twist * path_way(path, t);
     Vec    frame = path->frames[(int)round(t * STEPS)];
     frame        = vec_unit(vec_sub(frame, vec_scale(vec_dot(frame, along), along)));
-    *y           = vec_turn(frame, along, angle);
+    *y           = vec_rotate(frame, along, angle);
     *x           = vec_cross(*y, along);
 }
 
@@ -258,7 +258,7 @@ static void closed_sweeps_fit(void **state)
         along      = vec_unit(along);
         Vec across = vec_across(along);
         for (int i = 0; i < 72; i++) {
-            Vec    out = vec_turn(across, along, i * PI / 36), back = vec_scale(0.01, along);
+            Vec    out = vec_rotate(across, along, i * PI / 36), back = vec_scale(0.01, along);
             double before = reach_of(&product, vec_sub(at, back), out);
             double after  = reach_of(&product, vec_add(at, back), out);
             if (fabs(before - after) > 0.02)

@@ -19,20 +19,20 @@ static Vec stay(Vec q) { return q; }
 static Vec place(Vec q)
 {
     q = vec(2 * q.x, 0.5 * q.y, q.z);
-    return vec_add(vec_turn(q, vec(1, 2, 3), 50 * DEGREE), vec(1, -2, 3));
+    return vec_add(vec_rotate(q, vec(1, 2, 3), 50 * DEGREE), vec(1, -2, 3));
 }
 
 static Vec mirror(Vec q)
 {
     const Vec normal = vec_unit(vec(1, 1, 0));
-    q                = vec_add(vec_turn(q, vec(0, 1, 0), 1), vec(-2, 0, 0));
+    q                = vec_add(vec_rotate(q, vec(0, 1, 0), 1), vec(-2, 0, 0));
     return vec_sub(q, vec_scale(2 * vec_dot(q, normal), normal));
 }
 
 static Vec twist(Vec q)
 {
     q = vec_add(q, vec(0.7, 0.3, 0));
-    return vec_turn(q, vec(0, 1, 0), 0.6 * q.y);
+    return vec_rotate(q, vec(0, 1, 0), 0.6 * q.y);
 }
 
 static Vec invert(Vec q)
@@ -46,7 +46,7 @@ static Vec reflect_twice(Vec q)
 {
     q = vec_add(q, vec(-1, 0, 0));
     q = vec(-q.x, q.y, q.z);
-    q = vec_add(vec_turn(q, vec(0, 0, 1), 30 * DEGREE), vec(0, -1.5, 0));
+    q = vec_add(vec_rotate(q, vec(0, 0, 1), 30 * DEGREE), vec(0, -1.5, 0));
     return vec(q.x, -q.y, q.z);
 }
 
@@ -58,7 +58,7 @@ static Vec reflect_twice(Vec q)
 /* One of so many that they are an instance group (compiler/lower/instance_groups.h). */
 static Vec turn_of_loop(Vec q)
 {
-    return vec_add(vec_turn(q, vec(0, 0, 1), 7 * 0.4), vec(3 * 7, 0, 0));
+    return vec_add(vec_rotate(q, vec(0, 0, 1), 7 * 0.4), vec(3 * 7, 0, 0));
 }
 
 #define LOOP "[sphere(0.5).paint(m).rotate([0, 0, 1], i * 0.4).move([3 * i, 0, 0]) for i in 0..80]"

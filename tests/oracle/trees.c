@@ -114,7 +114,7 @@ static Vec arc_point(Vec a, Vec b, Vec c, double t)
     double angle = atan2(vec_dot(to, lateral), vec_dot(to, from));
     if (angle < 0)
         angle += 2 * acos(-1);
-    return vec_add(centre, vec_turn(from, axis, t * angle));
+    return vec_add(centre, vec_rotate(from, axis, t * angle));
 }
 
 /* The mirror through fork i, the next fork on the side that stays. */

@@ -78,7 +78,7 @@ static bool is_defined(const Graph *graph, Node node, const NodeValue *values, c
     bool        integer = e->type == TYPE_UINT;
     if (!(value_magnitude(e->type, &values[node]) <= (integer ? UINT32_MAX : 1e6)))
         return false;
-    if (e->op == OP_turn || e->op == OP_fold || e->op == OP_cell || e->op == OP_cell_polar)
+    if (e->op == OP_rotate || e->op == OP_fold || e->op == OP_cell || e->op == OP_cell_polar)
         return false; /* need orthonormal rows or a unit vector, or hold piece by piece: ops.c */
     for (int i = 0; i < e->operand_count; i++)
         if (!defined[e->operands[i]])

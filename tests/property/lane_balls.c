@@ -127,7 +127,7 @@ static Node tree_node(Graph *g)
                         vector(g, -s2 * s, c, c2 * s), vector(g, -s2 * c, -s, c2 * c)};
         Node ball    = graph_op2(g, OP_sub, graph_op1(g, OP_length, q), graph_number(g, 0.1));
         least        = graph_op2(g, OP_min, least, ball);
-        q            = graph_op(g, OP_turn, turn);
+        q            = graph_op(g, OP_rotate, turn);
         q            = graph_op3(g, OP_fold, q, vector(g, 1, 0, 0), graph_number(g, 0));
     }
     return least;

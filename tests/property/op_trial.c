@@ -25,7 +25,7 @@ static const struct {
     Op          op;
     const char *kinds;
 } special_operands[] = {
-    {OP_turn, "mrrr"},
+    {OP_rotate, "mrrr"},
     {OP_fold, "muc"},
     {OP_front, "muc"},
     {OP_cell, "mplh"},

@@ -260,7 +260,7 @@ int main(void)
     size_t            count = 0;
     for (Op op = 0; op < OP_COUNT; op++)
         if (op_rows[op].name && !op_has_traits(op, READS_TABLES) && !op_has_traits(op, OF_HOST)) {
-            /* those: unit/instances.c, property/turns.c */
+            /* those: unit/instances.c, property/iterations.c */
             ops[op]        = op;
             tests[count++] = (struct CMUnitTest){graph_op_name(op), keeps_its_promises, NULL, NULL,
                                                  &ops[op]};

@@ -110,7 +110,7 @@ static void what_libraries_write_is_seen(void **context)
 
     /* A quarter turn about y swaps x and z: still even in both. */
     Node r0 = graph_vec3(g, 0, 0, 1), r1 = graph_vec3(g, 0, 1, 0), r2 = graph_vec3(g, -1, 0, 0);
-    Node turned      = graph_op4(g, OP_turn, point, r0, r1, r2);
+    Node turned      = graph_op4(g, OP_rotate, point, r0, r1, r2);
     Node long_size   = graph_op1(g, OP_abs, turned);
     Node long_excess = graph_op2(g, OP_sub, long_size, half);
     Node long_box    = graph_op1(g, OP_length, long_excess);

@@ -95,7 +95,7 @@ static Node chain(Bench *b, double reach)
         Node rows[] = {graph_vec3(g, 0, 0, 1), graph_vec3(g, 1, 0, 0), graph_vec3(g, 0, 1, 0)};
         switch ((int)(3.5 + 3.5 * uniform(b))) {
         case 0: p = graph_op2(g, OP_sub, p, vector(b, reach)); break;
-        case 1: p = graph_op4(g, OP_turn, p, rows[0], rows[1], rows[2]); break;
+        case 1: p = graph_op4(g, OP_rotate, p, rows[0], rows[1], rows[2]); break;
         case 2: p = graph_op2(g, OP_scale, p, graph_number(g, 0.5)); break;
         case 3:
         case 4: p = graph_op3(g, OP_fold, p, normal, graph_number(g, reach * uniform(b))); break;

@@ -55,7 +55,7 @@ static Node polynomial(Bench *b, int depth)
         Node v      = graph_op3(g, OP_vec3, p, q, graph_number(g, 0.4));
         Node cross  = graph_op2(g, OP_cross, v, b->point);
         Node rows[] = {graph_vec3(g, 0, 1, 0), graph_vec3(g, 0, 0, 1), graph_vec3(g, 1, 0, 0)};
-        Node turned = graph_op4(g, OP_turn, cross, rows[0], rows[1], rows[2]);
+        Node turned = graph_op4(g, OP_rotate, cross, rows[0], rows[1], rows[2]);
         Node time   = graph_parameter(g, 0, TYPE_FLOAT);
         return graph_component(g, graph_op2(g, OP_scale, turned, time), 1);
     }

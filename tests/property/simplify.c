@@ -143,8 +143,8 @@ static void rules_leave_what_they_do_not_mean(void **state)
     Node   point = graph_leaf(g, OP_POINT), x = graph_component(g, point, 0);
     Node   y = graph_component(g, point, 1), z = graph_component(g, point, 2);
     Node   ex = graph_vec3(g, 1, 0, 0), ey = graph_vec3(g, 0, 1, 0), ez = graph_vec3(g, 0, 0, 1);
-    Node   still  = graph_op4(g, OP_turn, point, ex, ey, ez);
-    Node   turned = graph_op4(g, OP_turn, point, ey, ez, ex);
+    Node   still  = graph_op4(g, OP_rotate, point, ex, ey, ez);
+    Node   turned = graph_op4(g, OP_rotate, point, ey, ez, ex);
     assert_string_equal(simplified(b, still), "%0 vec3 point = point\nroot %0\n");
     assert_non_null(strstr(simplified(b, turned), "turn"));
 

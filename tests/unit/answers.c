@@ -201,7 +201,7 @@ static void the_rest_is_as_the_table_says(void **state)
     fixture_close(&fixture);
 }
 
-/* Each turn of a loop is a component, although many turns become one function of the shaders: balls
+/* Each iteration of a loop is a component, although many turns become one function of the shaders: balls
    at x = 0, 3, 6, ..., behind another ball and before a last one. */
 static void turns_of_a_loop_are_components(void **state)
 {

@@ -109,7 +109,7 @@ static uint32_t *compile_by_glslang(const char *text, size_t *count)
 {
     const glslang_input_t input = {
         .language                = GLSLANG_SOURCE_GLSL,
-        .fixture                 = GLSLANG_STAGE_COMPUTE,
+        .stage                   = GLSLANG_STAGE_COMPUTE,
         .client                  = GLSLANG_CLIENT_VULKAN,
         .client_version          = GLSLANG_TARGET_VULKAN_1_1,
         .target_language         = GLSLANG_TARGET_SPV,

@@ -1,5 +1,5 @@
 /*
- * gathered_noises.c: which noises become turns of a loop, and how many turns there are.
+ * gathered_noises.c: which noises become iterations of a loop, and how many turns there are.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -29,7 +29,7 @@ static char *print(const char *scene_text, KrsFunction wanted, bool gathers)
     return text;
 }
 
-/* The turns of a loop in the text, and the text behind it; 0: there is no further one. */
+/* The iterations of a loop in the text, and the text behind it; 0: there is no further one. */
 static unsigned next_loop(const char **text)
 {
     const char *end   = strstr(*text, "} while (++");

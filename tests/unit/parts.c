@@ -91,7 +91,7 @@ static void a_list_of_spheres(void **state)
                        0, &use),
         KRS_OK);
     assert_int_equal(use.components, 1);
-    assert_int_equal(use.shapes, 100001); /* the turns of the loop, and the union */
+    assert_int_equal(use.shapes, 100001); /* the iterations of the loop, and the union */
     print_message("# %zu MB\n", use.most / MEGABYTE);
     assert_true(use.most < 200 * MEGABYTE);
 }

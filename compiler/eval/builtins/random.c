@@ -57,16 +57,16 @@ static Value direction_of_cell(Elaboration *e, const Call *call, uint32_t stream
 
 /* ---- seeds that are numbers ---- */
 
-/* What depends on the turn of a loop that is made at once (turns.c) is a number in each turn. */
-static bool is_of_turn(const Elaboration *e, Value seed)
+/* What depends on the iteration of a loop that is made at once (iterations.c) is a number in each iteration. */
+static bool is_of_iteration(const Elaboration *e, Value seed)
 {
-    return e->turn != NODE_NONE && seed.type == VALUE_EXPRESSION &&
+    return e->iteration != NODE_NONE && seed.type == VALUE_EXPRESSION &&
            e->graph->items[seed.node].type == TYPE_FLOAT &&
            e->graph->items[seed.node].time == TIME_FRAME;
 }
 
-static Value seeded_of_turn(Elaboration *e, const Call *call, Op op, uint32_t numbers,
-                            uint32_t stream)
+static Value seeded_of_iteration(Elaboration *e, const Call *call, Op op, uint32_t numbers,
+                                 uint32_t stream)
 {
     const uint32_t first = e->parameterises ? e->number_count + 1 : 0;
     e->number_count += e->parameterises ? numbers : 0;
@@ -103,8 +103,8 @@ static Value seeded(Elaboration *e, const Call *call, Op op, GraphType type,
     uint32_t  stream;
     if (!want_count(e, call, 1, 0, 1000000, 0, &stream))
         return value_error();
-    if (is_of_turn(e, call->arguments[0].value))
-        return seeded_of_turn(e, call, op, type, stream);
+    if (is_of_iteration(e, call->arguments[0].value))
+        return seeded_of_iteration(e, call, op, type, stream);
     if (is_cell(e, call->arguments[0].value))
         return of_cell(e, call, stream);
     if (!seeded_of_number(e, call, op, type, stream, &result))

@@ -168,10 +168,10 @@ static void require_order(Elaboration *e, Node low, Node high)
 {
     const Node ordered = graph_op2(e->graph, OP_less, low, high);
     if (!graph_is_constant(e->graph, ordered))
-        turns_require(e, ordered);
+        iterations_require(e, ordered);
 }
 
-/* Where turns of a loop are evaluated at once, none may be empty: that one earns a warning. */
+/* Where iterations of a loop are evaluated at once, none may be empty: that one earns a warning. */
 static void require_sizes(Elaboration *e, const Shape *shape)
 {
     if (shape->ball_box)
@@ -195,7 +195,7 @@ static void warn_if_empty(Elaboration *e, const Shape *shape, Span call)
         flat = flat || !(shape->box.axis[i].low < shape->box.axis[i].high);
     if (e->sources->items[call.source].library)
         return;
-    if (e->turn != NODE_NONE)
+    if (e->iteration != NODE_NONE)
         require_sizes(e, shape);
     if (!flat)
         return;
@@ -342,8 +342,8 @@ void find_borders(Elaboration *e, const Shape *shape)
 {
     if (shape->border && !shape->border->found)
         find_border(e, shape);
-    if (shape->turned)
-        find_borders(e, shape->turned);
+    if (shape->iterated)
+        find_borders(e, shape->iterated);
     for (uint32_t i = 0; i < shape->child_count; i++)
         if (!shape->children[i]->boundary)
             find_borders(e, shape->children[i]);

@@ -58,9 +58,9 @@ static bool add_beams(Beams *b, const Shape *shape)
     switch (shape->kind) {
     case SHAPE_PRIMITIVE: return add_beam(b, shape);
     case SHAPE_TRANSFORM: return add_moved(b, shape);
-    case SHAPE_TURN: /* its numbers are known turn by turn only */
-        if (b->e->turns)
-            b->e->turns->refused = true;
+    case SHAPE_ITERATION: /* its numbers are known iteration by iteration only */
+        if (b->e->iterations)
+            b->e->iterations->refused = true;
         return false;
     case SHAPE_UNION:
         if (shape->blend.width != NODE_NONE)

@@ -124,8 +124,8 @@ static bool add_shape_parts(Filleting *f, const Shape *shape, uint32_t owner)
         if (f->parts.count == MOST_PARTS)
             return refuse_many(f, "fillets between more than 20,000 parts");
         extents_add(e, part.shape, &part.extents);
-        if (part.extents.wants_turns) {
-            e->turns->refused = true;
+        if (part.extents.wants_iterations) {
+            e->iterations->refused = true;
             return false;
         }
         array_push(e->values, &f->parts, part);
@@ -204,8 +204,8 @@ const Shape *make_fillet(Elaboration *e, const Call *call, const Shape *const *s
                          uint32_t count, Blend blend)
 {
     Filleting f = {.e = e, .call = call, .blend = blend};
-    if (e->turn != NODE_NONE)
-        return NULL; /* which parts are near is known turn by turn */
+    if (e->iteration != NODE_NONE)
+        return NULL; /* which parts are near is known iteration by iteration */
     f.widest = fmax(node_range(e->builder, blend.width, 0).high, 0);
     for (uint32_t i = 0; i < count; i++)
         if (!add_shape_parts(&f, shapes[i], i))

@@ -50,7 +50,7 @@ static bool refuse_unknown(const Gathering *g)
 
 /* ---- places ---- */
 
-static void place_turn(const Place *place, const double v[3], double turned[3])
+static void place_rotate(const Place *place, const double v[3], double turned[3])
 {
     for (int i = 0; i < 3; i++)
         turned[i] = dot3(place->matrix[i], v);
@@ -64,7 +64,7 @@ static Place place_product(const Place *place, const Place *inner)
         for (int k = 0; k < 3; k++)
             for (int m = 0; m < 3; m++)
                 product.matrix[i][k] += place->matrix[i][m] * inner->matrix[m][k];
-    place_turn(place, inner->shift, product.shift);
+    place_rotate(place, inner->shift, product.shift);
     add_scaled3(product.shift, product.shift, 1, place->shift);
     return product;
 }
@@ -115,9 +115,9 @@ static bool add_part(const Gathering *g, const Shape *shape, const Place *place,
     HullPart placed = {.ball.radius = part.ball.radius * place->scale + grown};
     if (place->scale == 0 && (part.ball.radius > 0 || length3(part.rim) > 0))
         return refuse_shape(g, shape);
-    place_turn(place, part.ball.centre, middle);
+    place_rotate(place, part.ball.centre, middle);
     add_scaled3(placed.ball.centre, middle, 1, place->shift);
-    place_turn(place, part.rim, placed.rim);
+    place_rotate(place, part.rim, placed.rim);
     array_push(g->e->values, g->parts, placed);
     return true;
 }
@@ -226,7 +226,7 @@ static bool add_shape(const Gathering *g, const Shape *shape, const Place *place
             return refuse_shape(g, shape);
         break;
     case SHAPE_PAINT: warn_of_paint(g, shape); break;
-    case SHAPE_TURN: g->e->turns->refused = true; return false;
+    case SHAPE_ITERATION: g->e->iterations->refused = true; return false;
     case SHAPE_EMPTY:
     case SHAPE_SMOOTH: break;
     default: return refuse_shape(g, shape);

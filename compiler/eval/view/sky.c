@@ -165,7 +165,7 @@ void elaborate_sky(Elaboration *e, const Environment *env, const Syntax *syntax)
     sky->map                       = sky_image(e, env, syntax);
     refuse_idle(e, syntax);
     if (turned)
-        warn_of_turns(e, turned, evaluate(e, env, turned));
+        warn_of_revolutions(e, turned, evaluate(e, env, turned));
     if (hazy)
         check_turbidity(e, hazy, sky->turbidity);
     /* `sun:` names the light that is the sun; every light is in the sky anyway. */

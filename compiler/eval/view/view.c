@@ -17,7 +17,7 @@ static void warn_of_light(Elaboration *e, const Environment *env, const Syntax *
         warn_of_bright_colour(e, color, evaluate(e, env, color),
                               "how bright a light is, is its `intensity`");
     if (angle)
-        warn_of_turns(e, angle, evaluate(e, env, angle));
+        warn_of_revolutions(e, angle, evaluate(e, env, angle));
 }
 
 /* The sides of a light that is a rectangle. */
@@ -55,7 +55,7 @@ static void aim_light(Elaboration *e, const Environment *env, const Syntax *synt
     light->edge                    = number_property(e, env, syntax, "edge", 0.2);
     light->size                    = light_size(e, env, syntax);
     if (angle)
-        warn_of_turns(e, angle, evaluate(e, env, angle));
+        warn_of_revolutions(e, angle, evaluate(e, env, angle));
     for (size_t i = 0; !light->positional && i < sizeof own / sizeof *own; i++) {
         const Syntax *given = find_property(syntax, own[i]);
         if (!given)

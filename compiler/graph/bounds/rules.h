@@ -85,7 +85,7 @@ RangeRule range_scale, range_cross, range_normalize;
 #define LN2       ((Range){0.69314718055994528, 0.6931471805599454})
 
 /* rules_space.c */
-Rule fact_turn, fact_fold, fact_front, fact_cell, fact_cell_polar, fact_noise2, fact_noise3,
+Rule fact_rotate, fact_fold, fact_front, fact_cell, fact_cell_polar, fact_noise2, fact_noise3,
     fact_identity, fact_to_uint, fact_id_unit, fact_seeded, fact_seeded_direction, fact_julia,
     fact_mandelbulb, fact_trap, fact_of_table, fact_footprint;
 /* rules_blends.c */

@@ -10,7 +10,7 @@
 /* ---- maps of space ---- */
 
 /* The rows are orthonormal by construction, so lengths and slopes stay as they are. */
-Fact fact_turn(const RuleInput *input)
+Fact fact_rotate(const RuleInput *input)
 {
     const Fact *p    = &input->operands[0];
     double      size = length_range(p->value, 3).high, rows = 0;

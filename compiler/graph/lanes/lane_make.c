@@ -112,7 +112,7 @@ static void emit_cross(Builder *b, const Operands *o, uint32_t *to)
     to[2] = emit_minor(b, o->x, o->y, 0, 1);
 }
 
-static void emit_turn(Builder *b, const Operands *o, uint32_t *to)
+static void emit_rotate(Builder *b, const Operands *o, uint32_t *to)
 {
     to[0] = emit_dot(b, o->y, o->x, 3);
     to[1] = emit_dot(b, o->z, o->x, 3);
@@ -176,7 +176,7 @@ static void emit_operation(Builder *b, Node node, const Operands *o, uint32_t *t
     case OP_COMPONENT: to[0] = o->x[e->index]; return;
     case OP_dot: to[0] = emit_dot(b, o->x, o->y, o->size); return;
     case OP_cross: emit_cross(b, o, to); return;
-    case OP_turn: emit_turn(b, o, to); return;
+    case OP_rotate: emit_rotate(b, o, to); return;
     case OP_fold: emit_fold(b, o, to); return;
     case OP_front: to[0] = emit2(b, OP_less, o->z[0], emit_dot(b, o->y, o->x, 3)); return;
     case OP_length: to[0] = emit(b, OP_length, o->size, o->x); return;

@@ -216,7 +216,7 @@ static void prune_step(Pruning *p, size_t i)
 /* ---- turns ---- */
 
 /* Within one sector cell_polar is a turn by an angle that is known. */
-static bool is_turn(const Pruning *p, const LaneCall *call, double *cosine, double *sine)
+static bool is_rotation(const Pruning *p, const LaneCall *call, double *cosine, double *sine)
 {
     const Expr *e = &p->from->tape->graph->items[call->node];
     if (e->op != OP_cell_polar || !(call->operands[1][0] & LANE_SCALAR))
@@ -246,11 +246,12 @@ static uint32_t add_turned(Pruning *p, uint16_t op, uint32_t a, uint32_t c, uint
 }
 
 /* The steps of its three components; false: it stays a call. */
-static bool prune_turn(Pruning *p, size_t i)
+static bool prune_rotation(Pruning *p, size_t i)
 {
     const LaneStep *step = &p->from->steps[i];
     double          cosine, sine;
-    if (step->op != LANE_CALL || !is_turn(p, &p->from->calls[step->operands[0]], &cosine, &sine))
+    if (step->op != LANE_CALL ||
+        !is_rotation(p, &p->from->calls[step->operands[0]], &cosine, &sine))
         return false;
     const LaneCall *call = &p->from->calls[step->operands[0]];
     uint32_t        x = stand_in(p, call->operands[0][0]), z = stand_in(p, call->operands[0][2]);
@@ -481,7 +482,7 @@ LaneTape lane_prune(const LaneTape *tape, const LaneRanges *ranges, size_t outpu
     for (size_t i = 0; i < tape->scalar_count; i++)
         lane_steps_number(&p.to, tape->scalars[i]);
     for (size_t i = 0; i < tape->count; i++)
-        if (prune_turn(&p, i))
+        if (prune_rotation(&p, i))
             i += 2;
         else if (!prune_shares(&p, i) && !prune_group(&p, i))
             prune_step(&p, i);

@@ -306,7 +306,7 @@ static Node simplify_select(const Rewrite *s)
     return NODE_NONE;
 }
 
-static Node simplify_turn(const Rewrite *s)
+static Node simplify_rotate(const Rewrite *s)
 {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {

@@ -266,13 +266,13 @@ bool others_are_constant(const Graph *g, const Node *inner, int from, int count)
 }
 
 /* rows a' + rows' a */
-Node derive_turn(Derivation *d, const Expr *e, Node node, const Node *inner)
+Node derive_rotate(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
     (void)node;
     Graph *g   = d->graph;
     Node   sum = zero_of(g, TYPE_VEC3), components[3];
     if (!is_zero(g, inner[0]))
-        sum = graph_op4(g, OP_turn, inner[0], e->operands[1], e->operands[2], e->operands[3]);
+        sum = graph_op4(g, OP_rotate, inner[0], e->operands[1], e->operands[2], e->operands[3]);
     if (others_are_constant(g, inner, 1, 4))
         return sum;
     for (int i = 0; i < 3; i++)

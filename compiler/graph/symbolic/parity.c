@@ -90,7 +90,7 @@ static uint8_t component_parity(const Expr *e, const Parity *const *o, uint32_t 
     case PARITY_VECTOR: return o[e->operand_count > 1 ? k : 0]->of[0];
     case PARITY_DOT: return sum_of_products(o[0], o[1], first);
     case PARITY_LENGTH: return length_parity(o[0], first);
-    case PARITY_TURN: return sum_of_products(o[k + 1], o[0], 3);
+    case PARITY_ROTATE: return sum_of_products(o[k + 1], o[0], 3);
     }
     return NEITHER;
 }

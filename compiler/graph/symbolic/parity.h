@@ -18,7 +18,7 @@ typedef enum ParityRule {
     PARITY_VECTOR, /* of what BUILDS */
     PARITY_DOT,
     PARITY_LENGTH,
-    PARITY_TURN
+    PARITY_ROTATE
 } ParityRule;
 
 ParityRule op_parity(Op op);

@@ -353,8 +353,8 @@ static bool series_cross(Expansion *x, Node node, const SeriesElements *operands
     return cross_elements(x, node, &operands[0], &operands[1], result);
 }
 
-static bool series_turn(Expansion *x, Node node, const SeriesElements *operands,
-                        SeriesElements *result)
+static bool series_rotate(Expansion *x, Node node, const SeriesElements *operands,
+                          SeriesElements *result)
 {
     for (uint32_t i = 0; i < 3; i++)
         if (!dot_elements(x, node, &operands[0], &operands[i + 1], &result->items[i]))

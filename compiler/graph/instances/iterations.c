@@ -1,16 +1,16 @@
 /*
- * turns.c: numbers of the frame that depend on the turn of a loop, for all turns.
+ * iterations.c: numbers of the frame that depend on the iteration of a loop, for all iterations.
  *
- * Lanes run the same expressions at many points, so the turn stands in the place of a coordinate.
+ * Lanes run the same expressions at many points, so the iteration stands in the place of a coordinate.
  */
-#include "compiler/graph/instances/turns.h"
+#include "compiler/graph/instances/iterations.h"
 
 #include <string.h>
 
 #include "compiler/graph/lanes/lanes.h"
 #include "compiler/graph/op_values.h"
 
-void graph_mark_turned(const Graph *graph, Node leaf, bool *depends)
+void graph_mark_iterated(const Graph *graph, Node leaf, bool *depends)
 {
     depends[0] = true;
     for (Node node = leaf + 1; node < graph->count; node++) {
@@ -30,7 +30,7 @@ size_t graph_numbers_of(const Graph *graph, const Node *roots, size_t root_count
     return count;
 }
 
-static void run(const LaneTape *tape, const double *turns, size_t count, double *results,
+static void run(const LaneTape *tape, const double *iterations, size_t count, double *results,
                 Arena *scratch)
 {
     enum { AT_ONCE = 8 * LANES };
@@ -39,17 +39,18 @@ static void run(const LaneTape *tape, const double *turns, size_t count, double 
     for (size_t first = 0; first < count; first += AT_ONCE) {
         const size_t some = count - first < AT_ONCE ? count - first : AT_ONCE;
         for (size_t i = 0; i < some; i++)
-            points[i][0] = turns[first + i];
+            points[i][0] = iterations[first + i];
         lane_run(tape, &work, LANE_DOUBLE,
                  (LanePoints){.points = (const double(*)[3])points, .count = some}, 0,
                  tape->output_count, results + first * tape->output_count);
     }
 }
 
-void graph_at_turns(const Graph *graph, const Node *roots, size_t root_count, Node leaf,
-                    const double *turns, size_t turn_count, double *results, Arena *scratch)
+void graph_at_iterations(const Graph *graph, const Node *roots, size_t root_count, Node leaf,
+                         const double *iterations, size_t iteration_count, double *results,
+                         Arena *scratch)
 {
-    if (root_count == 0 || turn_count == 0)
+    if (root_count == 0 || iteration_count == 0)
         return;
     const ArenaMark mark   = arena_mark(scratch);
     Node           *copies = arena_new_array(scratch, Node, root_count);
@@ -60,7 +61,7 @@ void graph_at_turns(const Graph *graph, const Node *roots, size_t root_count, No
     LaneTape lanes = lane_tape_new(&tape, copies, root_count, false, 0, scratch);
     lanes.scalars  = arena_new_array(scratch, double, lanes.scalar_count + 1);
     lane_tape_scalars(&lanes, values, lanes.scalars);
-    run(&lanes, turns, turn_count, results, scratch);
+    run(&lanes, iterations, iteration_count, results, scratch);
     arena_rewind(scratch, mark);
 }
 
@@ -76,7 +77,7 @@ bool graph_needs_parameters(const Graph *graph, const Node *roots, size_t root_c
     return found;
 }
 
-/* ---- one turn ---- */
+/* ---- one iteration ---- */
 
 typedef struct NodeList {
     Node  *items;
@@ -116,10 +117,10 @@ static Node settle_random(Graph *graph, Node root, Arena *scratch)
     return graph_replace_nodes(graph, root, &tape, by, scratch);
 }
 
-Node graph_in_turn(Graph *graph, Node root, Node leaf, double turn, Arena *scratch)
+Node graph_in_iteration(Graph *graph, Node root, Node leaf, double iteration, Arena *scratch)
 {
     const ArenaMark mark = arena_mark(scratch);
-    Node result = graph_replace_leaf(graph, root, leaf, graph_number(graph, turn), scratch);
+    Node result = graph_replace_leaf(graph, root, leaf, graph_number(graph, iteration), scratch);
     result      = settle_random(graph, result, scratch);
     arena_rewind(scratch, mark);
     return result;

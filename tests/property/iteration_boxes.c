@@ -1,5 +1,5 @@
 /*
- * Boxes of turns: of random shapes whose numbers depend on `i`, they are the boxes of the same text
+ * Boxes of iterations: of random shapes whose numbers depend on `i`, they are the boxes of the same text
  * with a constant in the place of `i`: never smaller, and larger by roundings only.
  */
 #include <math.h>
@@ -13,10 +13,10 @@
 #include <cmocka.h>
 
 #include "compiler/passes/inspect.h"
-#include "compiler/shape/turn_boxes.h"
+#include "compiler/shape/iteration_boxes.h"
 #include "tests/support/random.h"
 
-enum { SHAPES = 200, TURNS = 3, LONGEST = 4000 };
+enum { SHAPES = 200, ITERATIONS = 3, LONGEST = 4000 };
 
 /* ---- texts ---- */
 
@@ -146,8 +146,8 @@ static void write_shape(Written *w, int depth)
 /* ---- boxes ---- */
 
 typedef struct Asked {
-    const double *turns; /* NULL: the box as it is */
-    Box           boxes[TURNS];
+    const double *iterations; /* NULL: the box as it is */
+    Box           boxes[ITERATIONS];
     bool          known;
 } Asked;
 
@@ -155,7 +155,7 @@ static KrsStatus ask(void *user, const Inspected *what)
 {
     Asked       *asked = user;
     const Shape *shape = what->scene->components.items[0].shape;
-    if (!asked->turns) {
+    if (!asked->iterations) {
         asked->boxes[0] = shape->box;
         return KRS_OK;
     }
@@ -164,7 +164,8 @@ static KrsStatus ask(void *user, const Inspected *what)
                             .diags   = what->diags,
                             .graph   = what->scene->graph};
     const Node   leaf    = graph_parameter(what->scene->graph, TYPE_FLOAT, 1);
-    asked->known         = turn_boxes(&builder, shape, leaf, asked->turns, TURNS, asked->boxes);
+    asked->known         = iteration_boxes(&builder, shape, leaf, asked->iterations, ITERATIONS,
+                                           asked->boxes);
     return KRS_OK;
 }
 
@@ -200,25 +201,26 @@ static double excess(const Box *box, const Box *least)
     return inside < 0 ? inside : largest > 0 ? most / largest : most;
 }
 
-/* Whether its boxes in these turns are those of constants; their texts say `i` is more by `error`. */
+/* Whether its boxes in these iterations are those of constants; their texts say `i` is more by `error`. */
 typedef struct Verdict {
     int same, different, unknown;
 } Verdict;
 
-static void compare(const Written *w, const double *turns, double error, Verdict *verdict)
+static void compare(const Written *w, const double *iterations, double error, Verdict *verdict)
 {
-    Asked turned = {.turns = turns}, fixed = {0};
-    if (!find(w, "param i = 0 in [0, 10]", &turned))
+    Asked iterated = {.iterations = iterations}, fixed = {0};
+    if (!find(w, "param i = 0 in [0, 10]", &iterated))
         return; /* it is wrong for some number */
-    verdict->unknown += !turned.known;
-    for (int t = 0; t < TURNS && turned.known; t++) {
+    verdict->unknown += !iterated.known;
+    for (int t = 0; t < ITERATIONS && iterated.known; t++) {
         char constant[60];
-        snprintf(constant, sizeof constant, "let i = %.17g", turns[t] + error);
+        snprintf(constant, sizeof constant, "let i = %.17g", iterations[t] + error);
         assert_true(find(w, constant, &fixed));
-        const double more = excess(&turned.boxes[t], &fixed.boxes[0]);
+        const double more = excess(&iterated.boxes[t], &fixed.boxes[0]);
         const bool   same = more >= 0 && more < 1e-12;
         if (!same && error == 0)
-            print_message("# %s: in turn %g its box is larger by %g\n", w->text, turns[t], more);
+            print_message("# %s: in turn %g its box is larger by %g\n", w->text, iterations[t],
+                          more);
         *(same ? &verdict->same : &verdict->different) += 1;
     }
 }
@@ -228,17 +230,17 @@ static Verdict compare_all(double error, int count)
     Random  random  = {7};
     Verdict verdict = {0};
     for (int n = 0; n < count; n++) {
-        Written      w            = {.random = {random_bits(&random)}, .mixed = n % 3 == 0};
-        const double turns[TURNS] = {n % 10, 2, 7.25};
+        Written      w = {.random = {random_bits(&random)}, .mixed = n % 3 == 0};
+        const double iterations[ITERATIONS] = {n % 10, 2, 7.25};
         write_shape(&w, 1 + n % 4);
-        compare(&w, turns, error, &verdict);
+        compare(&w, iterations, error, &verdict);
     }
     print_message("# %d boxes are the same, %d are not; %d shapes are not known\n", verdict.same,
                   verdict.different, verdict.unknown);
     return verdict;
 }
 
-static void boxes_of_turns_are_those_of_constants(void **state)
+static void boxes_of_iterations_are_those_of_constants(void **state)
 {
     (void)state;
     const Verdict verdict = compare_all(0, SHAPES);
@@ -258,7 +260,7 @@ static void other_boxes_are_found_out(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(boxes_of_turns_are_those_of_constants),
+        cmocka_unit_test(boxes_of_iterations_are_those_of_constants),
         cmocka_unit_test(other_boxes_are_found_out),
     };
     return cmocka_run_group_tests_name("boxes of turns", tests, NULL, NULL);

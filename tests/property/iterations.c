@@ -1,6 +1,6 @@
 /*
- * turns.c: loops that are evaluated once are what their turns are, evaluated one by one: distances,
- * surfaces, tables and text; and those that must be evaluated turn by turn are.
+ * iterations.c: loops that are evaluated once are what their iterations are, evaluated one by one: distances,
+ * surfaces, tables and text; and those that must be evaluated iteration by iteration are.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -97,7 +97,7 @@ static const Loop at_once[] = {
     {"noise", "union([sphere(0.3).move(spot(i) + [noise(i + 0.3), 0, 0]) for i in 0..40])"},
 };
 
-static const Loop by_turns[] = {
+static const Loop by_iterations[] = {
     {"few", "union([ball(i) for i in 0..15])"},
     {"few are left", "union([ball(i) for i in 0..40 if i % 4 == 1])"},
     {"two variables", "union([ball(i + 9 * k) for i in 0..20 for k in 0..2])"},
@@ -141,7 +141,7 @@ typedef struct Asked {
 } Asked;
 
 static void open_loop(Asked *asked, const Loop *loop, int seed, KrsSpecialize specialize,
-                      bool turns)
+                      bool iterations)
 {
     char       text[4096];
     KrsOptions options = {.specialize = specialize};
@@ -150,8 +150,10 @@ static void open_loop(Asked *asked, const Loop *loop, int seed, KrsSpecialize sp
                                strncmp(loop->text, "for ", 4) == 0 ? "%s\n" : "show %s;\n",
                                loop->text);
     assert_true(length < sizeof text);
-    KrsStatus status = turns ? compile_turn_by_turn(text, length, LEAST, &options, &asked->scene)
-                             : compile_with_instances(text, length, LEAST, &options, &asked->scene);
+    KrsStatus status = iterations
+                           ? compile_iteration_by_iteration(text, length, LEAST, &options,
+                                                            &asked->scene)
+                           : compile_with_instances(text, length, LEAST, &options, &asked->scene);
     if (status != KRS_OK)
         fail_msg("%s does not compile:\n%s", loop->name, text);
     assert_int_equal(krs_frame_new(asked->scene, &asked->frame), KRS_OK);
@@ -171,7 +173,7 @@ static void ask(Asked *asked, const double points[POINTS][3])
 
 static bool is_near(double a, double b) { return a == b || fabs(a - b) < 1e-9; }
 
-/* Users see each turn of what is shown. */
+/* Users see each iteration of what is shown. */
 static void compare_components(const Loop *loop, const KrsScene *a, const KrsScene *b)
 {
     assert_int_equal(krs_component_count(a), krs_component_count(b));
@@ -208,40 +210,41 @@ static void compare(const Loop *loop, const Asked *a, const Asked *b)
 }
 
 /* A loop that is evaluated once has a leaf, which takes a slot of the parameter block. */
-static void hold_against_turns(const Loop *loop, int seed, KrsSpecialize specialize, uint32_t more)
+static void hold_against_iterations(const Loop *loop, int seed, KrsSpecialize specialize,
+                                    uint32_t more)
 {
-    static Asked once, turns;
+    static Asked once, iterations;
     double       points[POINTS][3];
     Random       random = {(uint64_t)seed};
     for (int i = 0; i < POINTS; i++)
         random_vector(&random, i % 8 ? 3.5 : 12, points[i]);
     open_loop(&once, loop, seed, specialize, false);
-    open_loop(&turns, loop, seed, specialize, true);
-    if (once.scene->program.parameter_slots != turns.scene->program.parameter_slots + more)
+    open_loop(&iterations, loop, seed, specialize, true);
+    if (once.scene->program.parameter_slots != iterations.scene->program.parameter_slots + more)
         fail_msg("%s: %s", loop->name, more ? "evaluated turn by turn" : "evaluated at once");
     ask(&once, (const double(*)[3])points);
-    ask(&turns, (const double(*)[3])points);
-    compare(loop, &once, &turns);
-    compare_components(loop, once.scene, turns.scene);
+    ask(&iterations, (const double(*)[3])points);
+    compare(loop, &once, &iterations);
+    compare_components(loop, once.scene, iterations.scene);
     close_loop(&once);
-    close_loop(&turns);
+    close_loop(&iterations);
 }
 
-static void loops_are_as_their_turns(void **state)
+static void loops_are_as_their_iterations(void **state)
 {
     (void)state;
     for (size_t i = 0; i < sizeof at_once / sizeof *at_once; i++)
         for (int seed = 1; seed <= SEEDS; seed++) {
-            hold_against_turns(&at_once[i], seed, KRS_SPECIALIZE_NUMBERS, 1);
-            hold_against_turns(&at_once[i], seed, KRS_SPECIALIZE_STRUCTURE, 1);
+            hold_against_iterations(&at_once[i], seed, KRS_SPECIALIZE_NUMBERS, 1);
+            hold_against_iterations(&at_once[i], seed, KRS_SPECIALIZE_STRUCTURE, 1);
         }
 }
 
-static void others_are_evaluated_by_turns(void **state)
+static void others_are_evaluated_by_iterations(void **state)
 {
     (void)state;
-    for (size_t i = 0; i < sizeof by_turns / sizeof *by_turns; i++)
-        hold_against_turns(&by_turns[i], 1, KRS_SPECIALIZE_NUMBERS, 0);
+    for (size_t i = 0; i < sizeof by_iterations / sizeof *by_iterations; i++)
+        hold_against_iterations(&by_iterations[i], 1, KRS_SPECIALIZE_NUMBERS, 0);
 }
 
 /* ---- mistakes ---- */
@@ -259,7 +262,7 @@ static void say(void *user, const KrsDiagnostic *diagnostic)
     assert_true(said->length < sizeof said->text);
 }
 
-/* Mistakes in one turn, also where that turn shows nothing, and what is told of some. */
+/* Mistakes in one iteration, also where that iteration shows nothing, and what is told of some. */
 static const char *const remarks[] = {
     "let q = [1, 2, 3, -4];\n"
     "for i in 0..60 { let n = q[floor(i / 10)]; if n > 0 { show sphere(0.1).move([i, 0, 0]); } }",
@@ -273,30 +276,31 @@ static const char *const remarks[] = {
     "show union([sphere(1).move([9 * i, 0, 0]).paint((i / 20) * [1, 1, 1]) for i in 0..40]);",
 };
 
-static void messages_are_those_of_turns(void **state)
+static void messages_are_those_of_iterations(void **state)
 {
     (void)state;
     for (size_t i = 0; i < sizeof remarks / sizeof *remarks; i++) {
-        static Said once, turns;
+        static Said once, iterations;
         memset(&once, 0, sizeof once);
-        memset(&turns, 0, sizeof turns);
+        memset(&iterations, 0, sizeof iterations);
         KrsScene  *scene = NULL;
         KrsOptions first = {.diagnostic = say, .user = &once};
-        KrsOptions other = {.diagnostic = say, .user = &turns};
+        KrsOptions other = {.diagnostic = say, .user = &iterations};
         KrsStatus a = compile_with_instances(remarks[i], strlen(remarks[i]), LEAST, &first, &scene);
         krs_scene_free(scene);
         scene       = NULL;
-        KrsStatus b = compile_turn_by_turn(remarks[i], strlen(remarks[i]), LEAST, &other, &scene);
+        KrsStatus b = compile_iteration_by_iteration(remarks[i], strlen(remarks[i]), LEAST, &other,
+                                                     &scene);
         krs_scene_free(scene);
-        if (a != b || once.length == 0 || strcmp(once.text, turns.text) != 0)
-            fail_msg("%s\n%s\n%s", remarks[i], once.text, turns.text);
+        if (a != b || once.length == 0 || strcmp(once.text, iterations.text) != 0)
+            fail_msg("%s\n%s\n%s", remarks[i], once.text, iterations.text);
     }
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(loops_are_as_their_turns),
-                                       cmocka_unit_test(others_are_evaluated_by_turns),
-                                       cmocka_unit_test(messages_are_those_of_turns)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(loops_are_as_their_iterations),
+                                       cmocka_unit_test(others_are_evaluated_by_iterations),
+                                       cmocka_unit_test(messages_are_those_of_iterations)};
     return cmocka_run_group_tests_name("loops that are evaluated once", tests, NULL, NULL);
 }

@@ -1,19 +1,19 @@
 /*
- * turns.c: loops whose turns differ in numbers only are evaluated once.
+ * iterations.c: loops whose iterations differ in numbers only are evaluated once.
  *
- * The first turn of a loop of shapes that are joined is evaluated as any other, and is the witness.  Then
+ * The first iteration of a loop of shapes that are joined is evaluated as any other, and is the witness.  Then
  * the body is evaluated with a leaf of frame time in the place of the variable, a parameter with the
  * range of its values.  If that reports nothing, and gives a shape like the witness, it is what all
- * turns have in common.  Their numbers, what the conditions of the loop leave, and their boxes are found
- * by lanes.  Else all is as if nothing had been tried, and each turn is evaluated by itself.
+ * iterations have in common.  Their numbers, what the conditions of the loop leave, and their boxes are found
+ * by lanes.  Else all is as if nothing had been tried, and each iteration is evaluated by itself.
  */
-#include "compiler/eval/turns.h"
+#include "compiler/eval/iterations.h"
 
 #include <math.h>
 
 #include "compiler/graph/instance_table.h"
-#include "compiler/graph/instances/turns.h"
-#include "compiler/shape/turn_boxes.h"
+#include "compiler/graph/instances/iterations.h"
+#include "compiler/shape/iteration_boxes.h"
 
 /* Of loops made at once: each takes a slot of the parameter block. */
 enum { MOST_LOOPS = 256, MOST_CONDITIONS = 8, MOST_SHARED_SHAPES = 4096 };
@@ -35,16 +35,17 @@ static bool is_joined(const Elaboration *e, const Syntax *comprehension)
     return false;
 }
 
-bool turns_are_tried(const Elaboration *e)
+bool iterations_are_tried(const Elaboration *e)
 {
-    return e->turns && e->turns->loops < MOST_LOOPS && e->turn == NODE_NONE;
+    return e->iterations && e->iterations->loops < MOST_LOOPS && e->iteration == NODE_NONE;
 }
 
-bool turns_possible(const Elaboration *e, const Syntax *comprehension)
+bool iterations_possible(const Elaboration *e, const Syntax *comprehension)
 {
     const Syntax *first = comprehension->children[1];
-    if (!turns_are_tried(e) || !is_joined(e, comprehension) || first->kind != SYNTAX_FOR_CLAUSE ||
-        first->children[0]->kind != SYNTAX_RANGE || comprehension->count > 2 + MOST_CONDITIONS)
+    if (!iterations_are_tried(e) || !is_joined(e, comprehension) ||
+        first->kind != SYNTAX_FOR_CLAUSE || first->children[0]->kind != SYNTAX_RANGE ||
+        comprehension->count > 2 + MOST_CONDITIONS)
         return false;
     for (uint32_t i = 2; i < comprehension->count; i++)
         if (comprehension->children[i]->kind == SYNTAX_FOR_CLAUSE)
@@ -73,7 +74,7 @@ static size_t function_count(const Graph *graph)
 
 static Before remember(Elaboration *e)
 {
-    e->turns->depth++;
+    e->iterations->depth++;
     return (Before){.values       = evaluation_mark(e),
                     .graph        = graph_mark(e->graph),
                     .said         = e->diags->count,
@@ -86,15 +87,15 @@ static Before remember(Elaboration *e)
                     .half_spaces  = e->scene->half_spaces.count,
                     .checked      = e->checked.count,
                     .functions    = function_count(e->graph),
-                    .defined      = e->turns->defined.count,
-                    .required     = e->turns->required.count,
+                    .defined      = e->iterations->defined.count,
+                    .required     = e->iterations->required.count,
                     .steps        = e->steps,
                     .printed      = e->printed,
                     .nodes_before = e->builder->nodes_before,
                     .here         = e->graph->here};
 }
 
-/* Nothing was reported, and nothing made that a turn by itself would not make. */
+/* Nothing was reported, and nothing made that an iteration by itself would not make. */
 static bool is_silent(const Elaboration *e, const Before *before)
 {
     return !is_stopped(e) && e->diags->count == before->said &&
@@ -119,8 +120,8 @@ static void put_back(Elaboration *e, const Before *before)
     e->builder->nodes_before    = before->nodes_before;
     e->builder->stopped         = false;
     e->graph->here              = before->here;
-    for (size_t i = before->defined; i < e->turns->defined.count; i++)
-        e->turns->defined.items[i]->state = DEFINITION_NEW;
+    for (size_t i = before->defined; i < e->iterations->defined.count; i++)
+        e->iterations->defined.items[i]->state = DEFINITION_NEW;
     if (function_count(e->graph) != before->functions) {
         graph_keep(e->graph); /* they have nodes */
         return;
@@ -129,35 +130,35 @@ static void put_back(Elaboration *e, const Before *before)
     graph_release(e->graph, before->graph);
 }
 
-bool turns_require(Elaboration *e, Node condition)
+bool iterations_require(Elaboration *e, Node condition)
 {
-    if (e->turn != NODE_NONE)
-        array_push(e->arena, &e->turns->required, condition);
-    return e->turn != NODE_NONE;
+    if (e->iteration != NODE_NONE)
+        array_push(e->arena, &e->iterations->required, condition);
+    return e->iteration != NODE_NONE;
 }
 
-Node turns_begin_definition(Elaboration *e, Definition *definition)
+Node iterations_begin_definition(Elaboration *e, Definition *definition)
 {
-    const Node turn = e->turn;
-    if (e->turns && e->turns->depth > 0)
-        array_push(e->arena, &e->turns->defined, definition);
-    e->turn = NODE_NONE;
-    return turn;
+    const Node iteration = e->iteration;
+    if (e->iterations && e->iterations->depth > 0)
+        array_push(e->arena, &e->iterations->defined, definition);
+    e->iteration = NODE_NONE;
+    return iteration;
 }
 
-/* ---- what all turns have in common ---- */
+/* ---- what all iterations have in common ---- */
 
-static Node turn_leaf(Elaboration *e, const Turned *t)
+static Node iteration_leaf(Elaboration *e, const Iterated *t)
 {
-    const GraphParameter range = {{t->turns[0]}, {t->turns[t->count - 1]}};
+    const GraphParameter range = {{t->iterations[0]}, {t->iterations[t->count - 1]}};
     const uint32_t       slot  = (uint32_t)e->graph->parameters.count;
     array_push(e->arena, &e->graph->parameters, range);
     return graph_parameter(e->graph, slot, TYPE_FLOAT);
 }
 
-bool turn_condition(Elaboration *e, Turned *t, Value condition)
+bool iteration_condition(Elaboration *e, Iterated *t, Value condition)
 {
-    t->early_required = e->turns->required.count - t->first_required;
+    t->early_required = e->iterations->required.count - t->first_required;
     t->early_end      = (Node)e->graph->count;
     if (condition.type == VALUE_BOOLEAN)
         return condition.boolean;
@@ -170,7 +171,7 @@ bool turn_condition(Elaboration *e, Turned *t, Value condition)
     return true;
 }
 
-bool turn_shape(Turned *t, Value value)
+bool iteration_shape(Iterated *t, Value value)
 {
     if (value.type != VALUE_SHAPE || t->found == t->part_count)
         return false;
@@ -178,31 +179,31 @@ bool turn_shape(Turned *t, Value value)
     return true;
 }
 
-static bool evaluate_turned(Elaboration *e, Turned *t)
+static bool evaluate_iterated(Elaboration *e, Iterated *t)
 {
-    const TurnBody *body = t->body;
-    t->leaf = t->early_end = turn_leaf(e, t);
-    e->turn                = t->leaf;
-    t->first_required      = e->turns->required.count;
+    const IterationBody *body = t->body;
+    t->leaf = t->early_end = iteration_leaf(e, t);
+    e->iteration           = t->leaf;
+    t->first_required      = e->iterations->required.count;
     const Value variable   = {.type = VALUE_EXPRESSION, .node = t->leaf};
     Environment env        = bind(e, body->env, body->variable, variable);
     const bool  good       = body->evaluate(e, &env, t) && t->found == t->part_count;
-    e->turn                = NODE_NONE;
+    e->iteration           = NODE_NONE;
     t->conditions          = t->roots.count;
-    for (size_t i = t->first_required; i < e->turns->required.count; i++)
-        array_push(e->values, &t->roots, e->turns->required.items[i]);
-    t->required = e->turns->required.count - t->first_required;
+    for (size_t i = t->first_required; i < e->iterations->required.count; i++)
+        array_push(e->values, &t->roots, e->iterations->required.items[i]);
+    t->required = e->iterations->required.count - t->first_required;
     return good;
 }
 
 /* ---- whether that is all ---- */
 
 /* Large CSG nodes in it would be instance groups by themselves.  What a choice leaves is not the same in all
-   turns. */
+   iterations. */
 static bool may_be_shared(const Elaboration *e, const Shape *shape)
 {
-    if (shape->kind == SHAPE_CHOICE || shape->kind == SHAPE_TURN ||
-        shape->child_count >= e->turns->least)
+    if (shape->kind == SHAPE_CHOICE || shape->kind == SHAPE_ITERATION ||
+        shape->child_count >= e->iterations->least)
         return false;
     for (uint32_t i = 0; i < shape->child_count; i++)
         if (!may_be_shared(e, shape->children[i]))
@@ -210,7 +211,7 @@ static bool may_be_shared(const Elaboration *e, const Shape *shape)
     return true;
 }
 
-/* What ranges over all turns make worse than the numbers of one is made turn by turn. */
+/* What ranges over all iterations make worse than the numbers of one is made iteration by iteration. */
 static bool is_like(const Shape *shape, const Shape *witness)
 {
     return shape->kind == witness->kind && shape->figure == witness->figure &&
@@ -251,7 +252,7 @@ static bool is_finite(Elaboration *e, Node node)
     return good;
 }
 
-/* Gathers what numbers of turns are found with, and what must be finite; false: tables cannot have
+/* Gathers what numbers of iterations are found with, and what must be finite; false: tables cannot have
    it. */
 static bool gather_node(Elaboration *e, const Dependence *d, Node node, Nodes *others,
                         Nodes *unbounded)
@@ -274,14 +275,14 @@ static bool gather_node(Elaboration *e, const Dependence *d, Node node, Nodes *o
     return true;
 }
 
-static bool gather_nodes(Elaboration *e, Turned *t)
+static bool gather_nodes(Elaboration *e, Iterated *t)
 {
     const size_t count  = e->graph->count;
     Dependence   d      = {e->graph, t->leaf, arena_new_array(e->values, bool, count - t->leaf)};
     Nodes        others = {0};
     bool         good   = true;
     const size_t truths = t->roots.count;
-    graph_mark_turned(e->graph, t->leaf, d.depends);
+    graph_mark_iterated(e->graph, t->leaf, d.depends);
     for (Node node = t->leaf; good && node < count; node++) {
         good = gather_node(e, &d, node, &others, &t->roots);
         if (node < t->early_end)
@@ -296,13 +297,13 @@ static bool gather_nodes(Elaboration *e, Turned *t)
     return good;
 }
 
-/* ---- turns ---- */
+/* ---- iterations ---- */
 
-static void set_turns(Elaboration *e, Turned *t, double from, double to)
+static void set_iterations(Elaboration *e, Iterated *t, double from, double to)
 {
-    t->turns = arena_new_array(e->values, double, (size_t)ceil(to - from) + 1);
+    t->iterations = arena_new_array(e->values, double, (size_t)ceil(to - from) + 1);
     for (uint32_t i = 0; from + i < to; i++)
-        t->turns[t->count++] = from + i;
+        t->iterations[t->count++] = from + i;
 }
 
 static bool all_hold(const double *truths, size_t count)
@@ -322,13 +323,13 @@ static bool all_finite(const double *numbers, size_t count)
 }
 
 /* Leaves those for which the conditions hold.  False: one of them must be made by itself. */
-static bool choose_turns(Elaboration *e, Turned *t)
+static bool choose_iterations(Elaboration *e, Iterated *t)
 {
     const size_t width   = graph_numbers_of(e->graph, t->roots.items, t->roots.count);
     double      *numbers = arena_new_array(e->values, double, t->count *width + 1);
     size_t       left    = 0;
-    graph_at_turns(e->graph, t->roots.items, t->roots.count, t->leaf, t->turns, t->count, numbers,
-                   e->scratch);
+    graph_at_iterations(e->graph, t->roots.items, t->roots.count, t->leaf, t->iterations, t->count,
+                        numbers, e->scratch);
     for (size_t i = 0; i < t->count; i++) {
         const double *of     = numbers + i * width;
         const size_t  truths = t->conditions + t->required;
@@ -339,13 +340,13 @@ static bool choose_turns(Elaboration *e, Turned *t)
             continue;
         if (!all_hold(of + t->conditions, t->required) || !all_finite(of + truths, width - truths))
             return false;
-        t->turns[left++] = t->turns[i];
+        t->iterations[left++] = t->iterations[i];
     }
     t->count = left;
     return true;
 }
 
-/* The box that is found for the first turn is that of the witness. */
+/* The box that is found for the first iteration is that of the witness. */
 static bool boxes_agree(const Box *box, const Box *witness)
 {
     for (int k = 0; k < 3; k++) {
@@ -357,14 +358,14 @@ static bool boxes_agree(const Box *box, const Box *witness)
     return true;
 }
 
-/* What a blend makes of a bound is cut to its box, part by part (group_turns.c).  Of what is shown each
+/* What a blend makes of a bound is cut to its box, part by part (group_iterations.c).  Of what is shown each
    that is empty is reported. */
-static bool goes_with_csg_node(const TurnBody *body, const Shape *shape)
+static bool goes_with_csg_node(const IterationBody *body, const Shape *shape)
 {
     return body->shown ? !may_vanish(shape) : shape->exact || !body->bounded;
 }
 
-static bool any_is_missed(const TurnBody *body, const Box *boxes, size_t count)
+static bool any_is_missed(const IterationBody *body, const Box *boxes, size_t count)
 {
     bool found = false;
     for (size_t i = 0; body->shown && i < count; i++)
@@ -372,93 +373,96 @@ static bool any_is_missed(const TurnBody *body, const Box *boxes, size_t count)
     return found;
 }
 
-static bool part_is_shared(const Elaboration *e, const Turned *t, const TurnPart *part)
+static bool part_is_shared(const Elaboration *e, const Iterated *t, const IterationPart *part)
 {
     return is_like(part->shape, part->witness) && goes_with_csg_node(t->body, part->shape) &&
            part->shape->tree_shapes <= MOST_SHARED_SHAPES && may_be_shared(e, part->shape);
 }
 
-static bool find_boxes(Elaboration *e, const Turned *t, TurnPart *part)
+static bool find_boxes(Elaboration *e, const Iterated *t, IterationPart *part)
 {
     part->boxes = arena_new_array(e->values, Box, t->count);
-    return turn_boxes(e->builder, part->shape, t->leaf, t->turns, t->count, part->boxes) &&
+    return iteration_boxes(e->builder, part->shape, t->leaf, t->iterations, t->count,
+                           part->boxes) &&
            boxes_agree(&part->boxes[0], &part->witness->box) &&
            !any_is_missed(t->body, part->boxes, t->count);
 }
 
-static bool find_turns(Elaboration *e, Turned *t, const Before *before)
+static bool find_iterations(Elaboration *e, Iterated *t, const Before *before)
 {
-    bool good = evaluate_turned(e, t) && is_silent(e, before);
+    bool good = evaluate_iterated(e, t) && is_silent(e, before);
     for (size_t k = 0; good && k < t->part_count; k++)
         good = part_is_shared(e, t, &t->parts[k]);
-    good = good && gather_nodes(e, t) && choose_turns(e, t) && t->count >= e->turns->least;
+    good = good && gather_nodes(e, t) && choose_iterations(e, t) &&
+           t->count >= e->iterations->least;
     for (size_t k = 0; good && k < t->part_count; k++)
         good = find_boxes(e, t, &t->parts[k]);
     return good;
 }
 
-static void make_parts(Elaboration *e, Turned *t)
+static void make_parts(Elaboration *e, Iterated *t)
 {
     graph_keep(e->graph);
     for (size_t k = 0; k < t->part_count; k++) {
-        TurnPart *part = &t->parts[k];
-        part->turns    = arena_new_array(e->arena, const Shape *, t->count);
-        make_turns(e->builder, part->shape, t->leaf, t->turns, part->boxes, t->count, part->turns);
+        IterationPart *part = &t->parts[k];
+        part->iterations    = arena_new_array(e->arena, const Shape *, t->count);
+        make_iterations(e->builder, part->shape, t->leaf, t->iterations, part->boxes, t->count,
+                        part->iterations);
     }
-    e->turns->loops++;
+    e->iterations->loops++;
 }
 
-bool turns_try(Elaboration *e, Turned *t)
+bool iterations_try(Elaboration *e, Iterated *t)
 {
     const Syntax *range = t->body->range;
     const Value   from  = evaluate(e, t->body->env, range->children[0]);
     const Value   to    = evaluate(e, t->body->env, range->children[1]);
     if (from.type != VALUE_NUMBER || to.type != VALUE_NUMBER ||
-        !(to.number - from.number >= e->turns->least))
+        !(to.number - from.number >= e->iterations->least))
         return false;
     const Before before = remember(e);
-    set_turns(e, t, from.number, to.number);
-    const bool found = find_turns(e, t, &before);
+    set_iterations(e, t, from.number, to.number);
+    const bool found = find_iterations(e, t, &before);
     if (found)
         make_parts(e, t);
     else
         put_back(e, &before);
-    e->turns->required.count = before.required;
-    e->turns->depth--;
-    if (e->turns->depth == 0)
-        e->turns->defined.count = 0;
+    e->iterations->required.count = before.required;
+    e->iterations->depth--;
+    if (e->iterations->depth == 0)
+        e->iterations->defined.count = 0;
     evaluation_forget(e, before.values, NULL);
     return found;
 }
 
 /* ---- lists ---- */
 
-static bool evaluate_element(Elaboration *e, const Environment *env, Turned *t)
+static bool evaluate_element(Elaboration *e, const Environment *env, Iterated *t)
 {
     const Syntax *syntax = t->body->syntax;
     for (uint32_t i = 2; i < syntax->count; i++)
-        if (!turn_condition(e, t, evaluate(e, env, syntax->children[i]->children[0])))
+        if (!iteration_condition(e, t, evaluate(e, env, syntax->children[i]->children[0])))
             return false;
-    return turn_shape(t, evaluate(e, env, syntax->children[0]));
+    return iteration_shape(t, evaluate(e, env, syntax->children[0]));
 }
 
 static bool try_list(Elaboration *e, const Comprehension *c)
 {
-    const Syntax  *clause = c->syntax->children[1];
-    const TurnBody body   = {.env      = c->env,
-                             .range    = clause->children[0],
-                             .syntax   = c->syntax,
-                             .variable = clause->name,
-                             .shown    = is_shown(e),
-                             .bounded  = e->joining->count > 2,
-                             .evaluate = evaluate_element};
-    Turned         t      = {.body = &body, .part_count = 1};
-    t.parts[0].witness    = c->result->items[0].shape;
-    if (c->result->items[0].type != VALUE_SHAPE || !turns_try(e, &t))
+    const Syntax       *clause = c->syntax->children[1];
+    const IterationBody body   = {.env      = c->env,
+                                  .range    = clause->children[0],
+                                  .syntax   = c->syntax,
+                                  .variable = clause->name,
+                                  .shown    = is_shown(e),
+                                  .bounded  = e->joining->count > 2,
+                                  .evaluate = evaluate_element};
+    Iterated            t      = {.body = &body, .part_count = 1};
+    t.parts[0].witness         = c->result->items[0].shape;
+    if (c->result->items[0].type != VALUE_SHAPE || !iterations_try(e, &t))
         return false;
-    c->result->items[0] = value_shape(t.parts[0].turns[0]);
+    c->result->items[0] = value_shape(t.parts[0].iterations[0]);
     for (size_t i = 1; i < t.count; i++)
-        array_push_large(e->values, c->result, value_shape(t.parts[0].turns[i]));
+        array_push_large(e->values, c->result, value_shape(t.parts[0].iterations[i]));
     return true;
 }
 
@@ -471,9 +475,9 @@ Value evaluate_shown(Elaboration *e, const Environment *env, const Syntax *show)
     return value;
 }
 
-bool turns_made(Elaboration *e, const Comprehension *c)
+bool iterations_made(Elaboration *e, const Comprehension *c)
 {
-    TurnLoop *loop = c->loop;
+    IterationLoop *loop = c->loop;
     if (c->result->count == 0 || loop->tried)
         return loop->made;
     loop->tried = true;
