@@ -175,7 +175,7 @@ static bool is_thin_end(Handles *h, uint32_t place, uint32_t start)
            euler_number(h, h->beyond.items, h->beyond.count, number) == 1;
 }
 
-/* Whether the part around a vertex has a handle, or goes around a rod or through a hole that goes on at two borders or more. */
+/* Whether the part around a vertex is all of a part of the mesh, or has a handle, or goes around a rod or through a hole that goes on at two borders or more. */
 static bool goes_around(Handles *h, uint32_t place)
 {
     long   euler = euler_number(h, h->patch.items, h->patch.count, place), borders = 0, going = 0;
@@ -187,7 +187,7 @@ static bool goes_around(Handles *h, uint32_t place)
         walk_border(h, place, at);
         going += !is_thin_end(h, place, triangle_beyond(h, h->patch.items[at / 3], (int)(at % 3)));
     }
-    return (borders > 0 && euler + borders < 2) || going > 1;
+    return borders == 0 || euler + borders < 2 || going > 1;
 }
 
 /* Vertices that are nearer than half of the radius need not be looked at. */

@@ -37,6 +37,10 @@ typedef struct Place {
     uint32_t  parts[2]; /* before, outside and inside */
 } Place;
 
+/* Edges of the longest tetrahedra that a point is moved in, by the radius: where they are longer the mesh would be far off.  What is left out as a
+   whole leaves no mesh. */
+static const double FINE = 0.5;
+
 /* ---- what is there ---- */
 
 static uint32_t number_of(Place *place, uint32_t point)
@@ -73,7 +77,7 @@ static void find_free(Place *place, const double center[3], double radius, doubl
         double at[3], distance = place->tets->points.items[i].distance;
         tets_position(place->tets, i, at);
         if (fabs(distance) <= deep && distance3(at, center) <= radius &&
-            is_fine(place->tets, i, 0.5 * radius)) {
+            is_fine(place->tets, i, FINE * radius)) {
             Link link = {.point = i, .distance = distance};
             array_push(place->arena, &place->links, link);
         }
@@ -297,6 +301,65 @@ static size_t tidy(Place *place, uint32_t *moved, size_t most)
     return count <= most ? count : 0;
 }
 
+/* ---- crumbs ---- */
+
+enum { MOST_OF_CRUMB = 64 };
+
+/* All that is inside and hangs together with a point.  Returns how many; 0: too many, or some are far or deep. */
+static size_t find_crumb(const Tets *tets, uint32_t point, const double center[3], double radius,
+                         double deep, uint32_t crumb[MOST_OF_CRUMB])
+{
+    size_t count = 1;
+    crumb[0]     = point;
+    for (size_t i = 0; i < count; i++) {
+        double at[3];
+        tets_position(tets, crumb[i], at);
+        if (!(fabs(tets->points.items[crumb[i]].distance) <= deep) ||
+            distance3(at, center) > radius)
+            return 0;
+        for (uint32_t link = tets->points.items[crumb[i]].first; link;
+             link          = tets->links.items[link - 1].next)
+            for (int k = 0; k < 4; k++) {
+                         uint32_t other = tets->list.items[tets->links.items[link - 1].tet].points[k];
+                         size_t   known = 0;
+                         while (known < count && crumb[known] != other)
+                    known++;
+                if (!point_is_inside(tets, other) || known < count)
+                    continue;
+                if (count == MOST_OF_CRUMB)
+                    return 0;
+                crumb[count++] = other;
+            }
+    }
+    return count;
+}
+
+static void move(Tets *tets, const uint32_t *points, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        tets->points.items[points[i]].moved = !tets->points.items[points[i]].moved;
+        tets_renew(tets, points[i]);
+    }
+}
+
+static bool drop_crumbs(Tets *tets, const double center[3], double radius, double deep)
+{
+    bool any = false;
+    for (uint32_t i = 0; i < tets->points.count; i++) {
+        uint32_t crumb[MOST_OF_CRUMB];
+        double   at[3];
+        tets_position(tets, i, at);
+        if (!point_is_inside(tets, i) || distance3(at, center) > radius)
+            continue;
+        size_t count = find_crumb(tets, i, center, radius, deep, crumb);
+        move(tets, crumb, count);
+        any = any || count > 0;
+    }
+    return any;
+}
+
+/* ---- all ---- */
+
 bool sides_tidy(Contour *contour, const double center[3], double radius, double deep)
 {
     enum { MOST_FREE = 10000, MOST_MOVED = 2000 };
@@ -312,9 +375,6 @@ bool sides_tidy(Contour *contour, const double center[3], double radius, double 
         count = tidy(&place, moved, MOST_MOVED);
     }
     arena_rewind(contour->arena, mark);
-    for (size_t i = 0; i < count; i++) {
-        tets->points.items[moved[i]].moved = !tets->points.items[moved[i]].moved;
-        tets_renew(tets, moved[i]);
-    }
-    return count > 0;
+    move(tets, moved, count);
+    return drop_crumbs(tets, center, radius, deep) || count > 0;
 }

@@ -16,11 +16,11 @@ if [ -x "$judge" ]; then
     [ "$(grep -c ': agree: .* errors away' out)" = 7 ]
     result $? "and nothing is reported where they are as thick as three errors"
     # Knife edges and the ends of a thread, where tetrahedra make holes and crumbs.
-    for number in 17 45 341 433 581; do
+    for number in 17 45 109 341 433 581; do
         "$judge" "$krs" 1 $number | head -n 1
     done >out
     sed 's/^#*/#/' out
-    [ "$(grep -c ': agree' out)" = 5 ] && [ "$(grep -c ': agree: .* errors away' out)" = 4 ]
+    [ "$(grep -c ': agree' out)" X ]
     result $? "and knife edges have neither holes nor crumbs"
 else
     skip "and knife edges have neither holes nor crumbs" "no CGAL"

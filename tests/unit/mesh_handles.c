@@ -176,6 +176,7 @@ static void places_have_a_handle_or_are_all(void **state)
     make_spindle(&spindle, two_balls);
     assert_int_equal(handles_places(&spindle.contour, 2, places, 4), 0);
     assert_true(handles_places(&spindle.contour, 5, places, 4) > 0);
+    assert_true(handles_count(&spindle.contour, 5, places[0]) > 0);
     arena_free(&spindle.arena);
 }
 

@@ -185,7 +185,7 @@ static void check_moved(const Tets *tets, const double center[3], double radius,
             assert_true(tets->list.items[i].fresh && tets->list.items[i].state == TET_ROUGH);
 }
 
-/* What is shallow at an edge loses its hole, and a crumb goes.  Holes in what is as thin on all sides, what is deep and what
+/* What is shallow at an edge loses its hole where tetrahedra are small, and a crumb goes.  Holes in what is as thin on all sides, what is deep and what
    would join parts stay. */
 static void handles_at_edges_go(void **state)
 {
@@ -193,17 +193,19 @@ static void handles_at_edges_go(void **state)
     static const struct {
         const char *name;
         Solid      *solid;
-        double      center[3], deep;
+        double      center[3], radius, deep;
         long        parts, euler; /* afterwards, of what was 1 and 0, or 2 and 2 */
         bool        goes;
     } cases[] = {
-        {"a hole at a rim", hole_at_rim, {0.65, 0.5, 0.5}, 0.06, 1, 1, true},
-        {"one whose rim is deep", hole_off_rim, {0.58, 0.5, 0.5}, 0.01, 1, 0, false},
-        {"a hole in a plate", hole_in_plate, {0.4, 0.5, 0.5}, 0.06, 1, 0, false},
-        {"a wide hole", wide_hole, {0.5, 0.5, 0.5}, 0.06, 1, 0, false},
-        {"a crumb", crumb, {0.77, 0.5, 0.5}, 0.06, 1, 1, true},
-        {"a large one", large_crumb, {0.8, 0.5, 0.5}, 0.06, 2, 2, false},
-        {"two balls", two_balls, {0.5, 0.5, 0.5}, 0.06, 2, 2, false},
+        {"a hole at a rim", hole_at_rim, {0.65, 0.5, 0.5}, 0.18, 0.06, 1, 1, true},
+        {"one whose rim is deep", hole_off_rim, {0.58, 0.5, 0.5}, 0.18, 0.01, 1, 0, false},
+        {"a hole in a plate", hole_in_plate, {0.4, 0.5, 0.5}, 0.18, 0.06, 1, 0, false},
+        {"a wide hole", wide_hole, {0.5, 0.5, 0.5}, 0.18, 0.06, 1, 0, false},
+        {"a crumb", crumb, {0.77, 0.5, 0.5}, 0.18, 0.06, 1, 1, true},
+        {"a crumb in large tetrahedra", crumb, {0.78, 0.5, 0.49}, 0.1, 0.06, 1, 1, true},
+        {"a hole in such", hole_at_rim, {0.65, 0.5, 0.5}, 0.1, 0.06, 1, 0, false},
+        {"a large one", large_crumb, {0.8, 0.5, 0.5}, 0.18, 0.06, 2, 2, false},
+        {"two balls", two_balls, {0.5, 0.5, 0.5}, 0.18, 0.06, 2, 2, false},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Memory  memory  = {0};
@@ -214,8 +216,8 @@ static void handles_at_edges_go(void **state)
         long parts = count_parts(&tets, true), euler = euler_number(&tets);
         if (count_parts(&tets, false) != 1 || (parts == 1 && euler != 0) || parts > 2)
             fail_msg("%s: %ld parts, Euler number %ld to begin with", cases[i].name, parts, euler);
-        bool goes = sides_tidy(&contour, cases[i].center, 0.18, cases[i].deep);
-        check_moved(&tets, cases[i].center, 0.18, cases[i].deep);
+        bool goes = sides_tidy(&contour, cases[i].center, cases[i].radius, cases[i].deep);
+        check_moved(&tets, cases[i].center, cases[i].radius, cases[i].deep);
         parts = count_parts(&tets, true);
         euler = euler_number(&tets);
         if (goes != cases[i].goes || parts != cases[i].parts || euler != cases[i].euler ||
