@@ -189,8 +189,8 @@ static void warn_of_dim_light(Compilation *c, KrsFrame *frame, const KrsView *vi
     const SceneLight *light = &c->elaborated.lights.items[index];
     const Graph      *graph = c->elaborated.graph;
     double            distance;
-    if (!light->positional || !graph_is_constant(graph, light->vector) ||
-        !graph_is_constant(graph, light->color) ||
+    if (!light->positional || !graph_is_constant(graph, light->nodes.vector) ||
+        !graph_is_constant(graph, light->nodes.color) ||
         krs_distance(frame, &view->lights[index].vector, 1, &distance) != KRS_OK ||
         !(distance > 0) || !isfinite(distance))
         return;
@@ -241,8 +241,9 @@ static void warn_of_hidden_light(Compilation *c, KrsFrame *frame, const KrsView 
     const SceneLight *light = &c->elaborated.lights.items[index];
     const KrsLight   *now   = &view->lights[index];
     const Graph      *graph = c->elaborated.graph;
-    if (!light->shadow || !graph_is_constant(graph, light->vector) ||
-        !graph_is_constant(graph, light->softness) || !graph_is_constant(graph, light->size))
+    if (!light->shadow || !graph_is_constant(graph, light->nodes.vector) ||
+        !graph_is_constant(graph, light->nodes.softness) ||
+        !graph_is_constant(graph, light->nodes.size))
         return;
     const Component *before = light->positional ? solid_around(c, frame, now)
                                                 : plane_before(c, now->vector);

@@ -368,8 +368,7 @@ static bool same_lights(const KrsScene *a, const KrsScene *b)
                a->lights[i].positional == b->lights[i].positional &&
                a->lights[i].colored == b->lights[i].colored &&
                a->lights[i].shadow == b->lights[i].shadow &&
-               a->lights[i].rectangle == b->lights[i].rectangle &&
-               a->lights[i].spot == b->lights[i].spot;
+               a->lights[i].type == b->lights[i].type && a->lights[i].spot == b->lights[i].spot;
     return same;
 }
 
