@@ -78,7 +78,7 @@ bool field_is_cut(const MeshField *field, Box box);
 /* Keeps values of the tape that was entered last, to be found at points. */
 bool field_keep(MeshField *field, uint32_t *outputs, size_t count);
 
-enum { MOST_PIECES = 8, MOST_PIECE_STEPS = 32, PIECE_VALUES = 2 };
+enum { MOST_PIECES = 8, MOST_PIECE_STEPS = 32, PIECE_VALUES = 4 };
 
 /* In a box, a number of the same sign as the distance, and as often 0: made of pieces whose derivatives do not jump by
    minima and maxima.  It is told in the order of a stack: a number of a piece, or one of these. */

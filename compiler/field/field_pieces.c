@@ -9,6 +9,7 @@
 
 #include "compiler/field/field.h"
 #include "compiler/graph/lanes/lane_outlines.h"
+#include "compiler/graph/lanes/lane_waves.h"
 
 typedef struct Finding {
     const MeshField *field;
@@ -40,19 +41,57 @@ static bool has_slope(const LaneSlope *slope)
     return true;
 }
 
-/* A sum of operands times weights.  Those whose weight is 0 are left out. */
+/* A sum of operands times weights, and what is added.  Those whose weight is 0 are left out. */
 typedef struct Sum {
     uint32_t operands[PIECE_VALUES];
     double   weights[PIECE_VALUES];
     uint32_t count;
+    double   offset;
 } Sum;
 
-static bool sums_are_equal(const Sum *sum, const uint32_t *operands, const double *weights,
-                           uint32_t count)
+static Sum sum_of(uint32_t operand, double weight, double offset)
 {
-    bool equal = sum->count == count;
-    for (uint32_t k = 0; equal && k < count; k++)
-        equal = sum->operands[k] == operands[k] && sum->weights[k] == weights[k];
+    return (Sum){{operand}, {weight}, 1, offset};
+}
+
+static void remove_term(Sum *sum, uint32_t k)
+{
+    sum->count--;
+    for (; k < sum->count; k++) {
+        sum->operands[k] = sum->operands[k + 1];
+        sum->weights[k]  = sum->weights[k + 1];
+    }
+}
+
+/* False: there is no room, or it is no number. */
+static bool add_term(const LaneTape *tape, Sum *sum, uint32_t operand, double weight)
+{
+    if (operand & LANE_SCALAR) {
+        sum->offset += weight * tape->scalars[operand & ~LANE_SCALAR];
+        return isfinite(sum->offset);
+    }
+    for (uint32_t k = 0; k < sum->count; k++)
+        if (sum->operands[k] == operand) {
+            sum->weights[k] += weight;
+            if (sum->weights[k] == 0)
+                remove_term(sum, k);
+            return true;
+        }
+    if (sum->count == PIECE_VALUES)
+        return false;
+    sum->operands[sum->count]  = operand;
+    sum->weights[sum->count++] = weight;
+    return true;
+}
+
+static bool piece_is(const Finding *f, size_t i, const Sum *sum, double sign)
+{
+    const FieldPieces *pieces = f->pieces;
+    bool               equal  = pieces->values[i] == sum->count && pieces->signs[i] == sign &&
+                 pieces->offsets[i] == sum->offset;
+    for (uint32_t k = 0; equal && k < sum->count; k++)
+        equal = f->operands[i][k] == sum->operands[k] &&
+                sign * pieces->weights[i][k] == sum->weights[k];
     return equal;
 }
 
@@ -88,36 +127,37 @@ static bool has_derivatives(const Finding *f, uint32_t operand)
            has_slope(&f->field->slopes[operand]);
 }
 
-static bool add_sum(Finding *f, const Sum *sum, double sign, double offset)
+static void set_piece(Finding *f, size_t i, const Sum *sum, double sign)
 {
     FieldPieces *pieces = f->pieces;
-    size_t       i      = 0;
+    Sum          own    = *sum;
+    for (uint32_t k = 0; k < sum->count; k++)
+        own.weights[k] *= sign;
+    memcpy(f->operands[i], own.operands, sizeof f->operands[i]);
+    memcpy(pieces->weights[i], own.weights, sizeof pieces->weights[i]);
+    pieces->values[i]   = own.count;
+    pieces->signs[i]    = sign;
+    pieces->offsets[i]  = own.offset;
+    pieces->slopes[i]   = slope_of_sum(f->field->slopes, &own);
+    pieces->hessians[i] = hessian_of_sum(f->field->hessians, &own);
+}
+
+static bool add_piece(Finding *f, const Sum *sum)
+{
+    double sign = copysign(1, sum->weights[0]);
+    size_t i    = 0;
     for (uint32_t k = 0; k < sum->count; k++)
         if (!has_derivatives(f, sum->operands[k]))
             return false;
-    while (i < pieces->count &&
-           !(pieces->signs[i] == sign && pieces->offsets[i] == offset &&
-             sums_are_equal(sum, f->operands[i], pieces->weights[i], pieces->values[i])))
+    while (i < f->pieces->count && !piece_is(f, i, sum, sign))
         i++;
     if (i == MOST_PIECES || sum->count == 0)
         return false;
-    if (i == pieces->count) {
-        memcpy(f->operands[i], sum->operands, sizeof f->operands[i]);
-        memcpy(pieces->weights[i], sum->weights, sizeof pieces->weights[i]);
-        pieces->values[i]   = sum->count;
-        pieces->signs[i]    = sign;
-        pieces->offsets[i]  = offset;
-        pieces->slopes[i]   = slope_of_sum(f->field->slopes, sum);
-        pieces->hessians[i] = hessian_of_sum(f->field->hessians, sum);
-        pieces->count++;
+    if (i == f->pieces->count) {
+        set_piece(f, i, sum, sign);
+        f->pieces->count++;
     }
     return add_step(f, (int)i);
-}
-
-static bool add_piece(Finding *f, uint32_t operand, double factor, double offset)
-{
-    const Sum sum = {{operand}, {fabs(factor)}, 1};
-    return !(operand & LANE_SCALAR) && add_sum(f, &sum, copysign(1, factor), offset);
 }
 
 static bool is_greater(const LaneStep *step)
@@ -243,43 +283,89 @@ static bool find_faces(const Finding *f, const LaneStep *step, double offset, Fi
 
 /* ---- all ---- */
 
-/* A factor times an operand, and the offset. */
-static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset);
+static bool find_pieces(Finding *f, const Sum *sum);
+
+static bool find_signs(Finding *f, uint32_t operand, double sign)
+{
+    Sum sum = sum_of(operand, sign, 0);
+    return !(operand & LANE_SCALAR) && find_pieces(f, &sum);
+}
 
 /* A number below 0 decides no sign of a maximum, and one above 0 none of a minimum. */
-static bool decides_nothing(const Finding *f, uint32_t operand, double sign, double offset,
-                            int choice)
+static bool decides_nothing(const Finding *f, const Sum *sum, int choice)
 {
-    Range range = range_of_operand(f, operand);
-    Range value = range_add(range_mul(range_of(sign), range), range_of(offset));
-    bool  sure  = (operand & LANE_SCALAR) ? !isnan(range.low) : f->field->ranges.sure[operand];
+    Range value = range_of(sum->offset);
+    bool  sure  = !isnan(sum->offset);
+    for (uint32_t k = 0; k < sum->count; k++) {
+        uint32_t operand = sum->operands[k];
+        Range    range   = range_of_operand(f, operand);
+        value            = range_add(value, range_mul(range_of(sum->weights[k]), range));
+        sure             = sure &&
+               ((operand & LANE_SCALAR) ? !isnan(range.low) : f->field->ranges.sure[operand]);
+    }
     return sure && (choice == PIECE_MAX ? value.high < 0 : value.low > 0);
 }
 
 /* A minimum or maximum of two, of which one may be left out. */
-static bool add_pair(Finding *f, const uint32_t operands[2], const double signs[2], double offset,
-                     int choice)
+static bool add_pair(Finding *f, const Sum sums[2], int choice)
 {
     for (int k = 0; k < 2; k++)
-        if (decides_nothing(f, operands[k], signs[k], offset, choice))
-            return find_pieces(f, operands[1 - k], signs[1 - k], offset);
-    return find_pieces(f, operands[0], signs[0], offset) &&
-           find_pieces(f, operands[1], signs[1], offset) && add_step(f, choice);
+        if (decides_nothing(f, &sums[k], choice))
+            return find_pieces(f, &sums[1 - k]);
+    return find_pieces(f, &sums[0]) && find_pieces(f, &sums[1]) && add_step(f, choice);
 }
 
-static bool add_choice(Finding *f, const LaneStep *step, double sign, double offset, bool greater)
+/* The sum with another term in the place of one; false: there is no room. */
+static bool replace_term(const Finding *f, const Sum *sum, uint32_t k, uint32_t operand,
+                         double factor, Sum *replaced)
 {
-    const double signs[2] = {sign, sign};
-    return add_pair(f, step->operands, signs, offset,
-                    greater == (sign > 0) ? PIECE_MAX : PIECE_MIN);
+    double weight = factor * sum->weights[k];
+    *replaced     = *sum;
+    remove_term(replaced, k);
+    return add_term(f->tape, replaced, operand, weight);
 }
 
-/* The greater of a number and its complement. */
-static bool add_size(Finding *f, const LaneStep *step, double sign, double offset)
+/* The lesser or greater of two sums, where a term is that of two numbers times factors. */
+static bool add_choice(Finding *f, const Sum *sum, uint32_t k, const uint32_t operands[2],
+                       const double factors[2], bool greater)
 {
-    const uint32_t operands[2] = {step->operands[0], step->operands[0]};
-    const double   signs[2]    = {sign, -sign};
-    return add_pair(f, operands, signs, offset, sign > 0 ? PIECE_MAX : PIECE_MIN);
+    Sum sums[2];
+    return replace_term(f, sum, k, operands[0], factors[0], &sums[0]) &&
+           replace_term(f, sum, k, operands[1], factors[1], &sums[1]) &&
+           add_pair(f, sums, greater == (sum->weights[k] > 0) ? PIECE_MAX : PIECE_MIN);
+}
+
+/* A term that is how far a number is from another one, at least or at most. */
+static bool add_distance(Finding *f, const Sum *sum, uint32_t k, uint32_t number, double from)
+{
+    Range range = range_of_operand(f, number);
+    Sum   sums[2];
+    for (int i = 0; i < 2; i++) {
+        if (!replace_term(f, sum, k, number, i == 0 ? 1 : -1, &sums[i]))
+            return false;
+        sums[i].offset -= (i == 0 ? 1 : -1) * from * sum->weights[k];
+    }
+    if (range.low >= from || range.high <= from)
+        return find_pieces(f, &sums[range.low >= from ? 0 : 1]);
+    return add_pair(f, sums, sum->weights[k] > 0 ? PIECE_MAX : PIECE_MIN);
+}
+
+/* How far a number is from the nearer one of two multiples of a period. */
+static bool add_wave(Finding *f, const Sum *sum, uint32_t k, const LaneStep *step)
+{
+    LaneWave wave = lane_wave(f->tape, &f->field->ranges, step);
+    return wave.last - wave.first == 1 &&
+           add_distance(f, sum, k, wave.number, wave.first * wave.period) &&
+           add_distance(f, sum, k, wave.number, wave.last * wave.period) &&
+           add_step(f, sum->weights[k] > 0 ? PIECE_MIN : PIECE_MAX);
+}
+
+static bool add_size(Finding *f, const Sum *sum, uint32_t k, const LaneStep *step)
+{
+    LaneWave wave = lane_wave(f->tape, &f->field->ranges, step);
+    return wave.number != NODE_NONE && wave.last > wave.first
+               ? add_wave(f, sum, k, step)
+               : add_distance(f, sum, k, step->operands[0], 0);
 }
 
 static bool add_box(Finding *f, const FieldFaces *faces, double sign, double offset)
@@ -288,40 +374,46 @@ static bool add_box(Finding *f, const FieldFaces *faces, double sign, double off
     size_t added  = 0;
     for (size_t i = 0; i < faces->count; i++) {
         bool last = added == 0 && i + 1 == faces->count;
-        if (!last && decides_nothing(f, faces->operands[i], sign, offset, choice))
+        Sum  face = sum_of(faces->operands[i], sign, offset);
+        if (!last && decides_nothing(f, &face, choice))
             continue;
-        if (!find_pieces(f, faces->operands[i], sign, offset) ||
-            (added++ > 0 && !add_step(f, choice)))
+        if (!find_pieces(f, &face) || (added++ > 0 && !add_step(f, choice)))
             return false;
     }
     return added > 0;
 }
 
-/* An operand that is the same everywhere is added to, or taken off, the other one. */
-static bool add_shifted(Finding *f, const LaneStep *step, double sign, double offset)
-{
-    double way = step->op == OP_sub ? -1 : 1;
-    if (step->operands[1] & LANE_SCALAR) {
-        double shift = way * f->tape->scalars[step->operands[1] & ~LANE_SCALAR];
-        return find_pieces(f, step->operands[0], sign, offset + sign * shift);
-    }
-    if (!(step->operands[0] & LANE_SCALAR))
-        return false;
-    double shift = f->tape->scalars[step->operands[0] & ~LANE_SCALAR];
-    return find_pieces(f, step->operands[1], sign * way, offset + sign * shift);
-}
-
-static bool add_scaled(Finding *f, const LaneStep *step, double sign, double offset)
+/* The operand that a product or quotient has beside a scalar, which is multiplied to the factor; NODE_NONE: there is none. */
+static uint32_t scaled_operand(const Finding *f, const LaneStep *step, double *factor)
 {
     for (int k = step->op == OP_div; k < 2; k++) {
         if (!(step->operands[k] & LANE_SCALAR))
             continue;
         double scalar = f->tape->scalars[step->operands[k] & ~LANE_SCALAR];
-        double factor = sign * (step->op == OP_mul ? scalar : 1 / scalar);
-        if (factor != 0 && isfinite(factor))
-            return find_pieces(f, step->operands[1 - k], factor, offset);
+        double scaled = *factor * (step->op == OP_mul ? scalar : 1 / scalar);
+        if (scaled == 0 || !isfinite(scaled))
+            continue;
+        *factor = scaled;
+        return step->operands[1 - k];
     }
-    return false;
+    return NODE_NONE;
+}
+
+/* A term that is a sum, or a number times a scalar. */
+static bool add_linear(Finding *f, const Sum *sum, uint32_t k, const LaneStep *step)
+{
+    double   weight = sum->weights[k];
+    uint32_t scaled;
+    Sum      parts;
+    if (step->op == OP_add || step->op == OP_sub)
+        return replace_term(f, sum, k, step->operands[0], 1, &parts) &&
+               add_term(f->tape, &parts, step->operands[1],
+                        step->op == OP_sub ? -weight : weight) &&
+               find_pieces(f, &parts);
+    double factor = step->op == OP_neg ? -1 : 1;
+    scaled        = step->op == OP_neg ? step->operands[0] : scaled_operand(f, step, &factor);
+    return scaled != NODE_NONE && replace_term(f, sum, k, scaled, factor, &parts) &&
+           find_pieces(f, &parts);
 }
 
 /* A product or quotient with what is above 0, or a sign times what is nowhere below: a maximum of 0 and anything is a
@@ -333,9 +425,9 @@ static bool add_signed(Finding *f, const LaneStep *step, double sign)
         const LaneStep *factor = lane_step_of(f->tape, step->operands[k]);
         double          least  = range_of_operand(f, other).low;
         if (factor && factor->op == OP_sign && least >= 0)
-            return find_pieces(f, factor->operands[0], sign, 0);
+            return find_signs(f, factor->operands[0], sign);
         if (least > 0 && ((other & LANE_SCALAR) || f->field->ranges.sure[other]))
-            return find_pieces(f, step->operands[k], sign, 0);
+            return find_signs(f, step->operands[k], sign);
     }
     return false;
 }
@@ -344,8 +436,60 @@ static bool add_signed(Finding *f, const LaneStep *step, double sign)
 static bool add_clamped(Finding *f, const LaneStep *step, double sign)
 {
     return range_of_operand(f, step->operands[1]).high < 0 &&
-           range_of_operand(f, step->operands[2]).low > 0 &&
-           find_pieces(f, step->operands[0], sign, 0);
+           range_of_operand(f, step->operands[2]).low > 0 && find_signs(f, step->operands[0], sign);
+}
+
+/* 1 if a choice is nowhere above 0 where its condition holds and nowhere below 0 elsewhere, -1 if it is the other way round;
+   0: the condition does not tell its sign. */
+static double sign_of_choice(const Finding *f, const LaneStep *step)
+{
+    Range chosen = range_of_operand(f, step->operands[1]),
+          other  = range_of_operand(f, step->operands[2]);
+    for (int k = 1; k < 3; k++)
+        if (!(step->operands[k] & LANE_SCALAR) && !f->field->ranges.sure[step->operands[k]])
+            return 0;
+    if (chosen.high <= 0 && other.low >= 0)
+        return 1;
+    return chosen.low >= 0 && other.high <= 0 ? -1 : 0;
+}
+
+/* One of two that holds all over the box, or nowhere in it, is left out where the other one decides. */
+static bool add_condition(Finding *f, uint32_t operand, double sign);
+static bool add_conditions(Finding *f, const LaneStep *step, double sign)
+{
+    bool both = step->op == OP_and;
+    for (int k = 0; k < 2; k++) {
+        Range range = range_of_operand(f, step->operands[k]);
+        if (both ? range.low > 0 : range.high <= 0)
+            return add_condition(f, step->operands[1 - k], sign);
+    }
+    return add_condition(f, step->operands[0], sign) && add_condition(f, step->operands[1], sign) &&
+           add_step(f, both == (sign > 0) ? PIECE_MAX : PIECE_MIN);
+}
+
+/* A number that is below 0 where a condition holds and above 0 where it does not. */
+static bool add_condition(Finding *f, uint32_t operand, double sign)
+{
+    const LaneStep *step  = lane_step_of(f->tape, operand);
+    Sum             apart = {.count = 0};
+    switch (step ? step->op : OP_COUNT) {
+    case OP_less:
+    case OP_less_equal:
+        return add_term(f->tape, &apart, step->operands[0], sign) &&
+               add_term(f->tape, &apart, step->operands[1], -sign) && apart.count > 0 &&
+               find_pieces(f, &apart);
+    case OP_not: return add_condition(f, step->operands[0], -sign);
+    case OP_and:
+    case OP_or: return add_conditions(f, step, sign);
+    default: return false;
+    }
+}
+
+/* Of a choice whose condition tells the sign. */
+static bool add_chosen(Finding *f, const LaneStep *step, double sign)
+{
+    double way = sign_of_choice(f, step);
+    return way != 0 && add_condition(f, step->operands[0], sign * way);
 }
 
 /* A line of an outline is a weighted sum of the two coordinates. */
@@ -353,17 +497,11 @@ static bool add_line(Finding *f, const LaneStep *step, const double line[3], dou
                      double offset)
 {
     const uint32_t *point = f->tape->calls[step->operands[0]].operands[1];
-    Sum             sum   = {.count = 0};
-    double          at    = line[2];
-    for (int k = 0; k < 2; k++) {
-        if (point[k] & LANE_SCALAR)
-            at += line[k] * f->tape->scalars[point[k] & ~LANE_SCALAR];
-        else if (line[k] != 0) {
-            sum.operands[sum.count]  = point[k];
-            sum.weights[sum.count++] = fabs(factor) * line[k];
-        }
-    }
-    return add_sum(f, &sum, copysign(1, factor), offset + factor * at);
+    Sum             sum   = {.offset = offset + factor * line[2]};
+    for (int k = 0; k < 2; k++)
+        if (line[k] != 0 && !add_term(f->tape, &sum, point[k], factor * line[k]))
+            return false;
+    return sum.count > 0 && find_pieces(f, &sum);
 }
 
 /* The distance to an outline, by one or two of its lines. */
@@ -379,31 +517,61 @@ static bool add_outline(Finding *f, const LaneStep *step, double factor, double 
              add_step(f, lines.convex == (factor > 0) ? PIECE_MAX : PIECE_MIN)));
 }
 
-static bool find_pieces(Finding *f, uint32_t operand, double sign, double offset)
+/* What is a number times a factor alone: its sign, where nothing is added, may be that of simpler ones. */
+static bool add_alone(Finding *f, const LaneStep *step, double factor, double offset)
+{
+    FieldFaces faces;
+    if (step->op == LANE_CALL)
+        return add_outline(f, step, factor, offset);
+    if (step->op == OP_add && find_faces(f, step, factor * offset, &faces))
+        return add_box(f, &faces, factor, offset);
+    if (offset != 0)
+        return false;
+    switch (step->op) {
+    case OP_mul:
+    case OP_div: return add_signed(f, step, factor);
+    case OP_clamp: return add_clamped(f, step, factor);
+    case OP_select: return add_chosen(f, step, factor);
+    default: return false;
+    }
+}
+
+/* A sum whose term has no second derivatives. */
+static bool add_apart(Finding *f, const Sum *sum, uint32_t k, const LaneStep *step)
+{
+    static const double both[2] = {1, 1};
+    switch (step->op) {
+    case OP_min:
+    case OP_max:
+    case LANE_LESSER:
+    case LANE_GREATER: return add_choice(f, sum, k, step->operands, both, is_greater(step));
+    case OP_abs: return add_size(f, sum, k, step);
+    case OP_neg:
+    case OP_add:
+    case OP_sub:
+    case OP_mul:
+    case OP_div: return add_linear(f, sum, k, step);
+    default: return false;
+    }
+}
+
+static bool find_pieces(Finding *f, const Sum *sum)
 {
     enum { MOST_DEPTH = 40 };
-    const LaneStep *step = lane_step_of(f->tape, operand);
-    FieldFaces      faces;
-    bool            found = false;
-    if (!step || f->field->hessians[operand].known || f->depth == MOST_DEPTH)
-        return add_piece(f, operand, sign, offset);
-    if (step->op == LANE_CALL)
-        return add_outline(f, step, sign, offset);
+    uint32_t k = 0;
+    while (k < sum->count && f->field->hessians[sum->operands[k]].known)
+        k++;
+    const LaneStep *step = k < sum->count ? lane_step_of(f->tape, sum->operands[k]) : NULL;
+    if (!step || f->depth == MOST_DEPTH)
+        return add_piece(f, sum);
     f->depth++;
-    if (step->op == OP_neg)
-        found = find_pieces(f, step->operands[0], -sign, offset);
-    else if (step->op == OP_abs)
-        found = add_size(f, step, sign, offset);
-    else if (is_greater(step) || is_lesser(step))
-        found = add_choice(f, step, sign, offset, is_greater(step));
-    else if (step->op == OP_add && find_faces(f, step, sign * offset, &faces))
-        found = add_box(f, &faces, sign, offset);
-    else if (step->op == OP_add || step->op == OP_sub)
-        found = add_shifted(f, step, sign, offset);
-    else if (step->op == OP_mul || step->op == OP_div)
-        found = add_scaled(f, step, sign, offset) || (offset == 0 && add_signed(f, step, sign));
-    else if (step->op == OP_clamp && offset == 0)
-        found = add_clamped(f, step, sign);
+    size_t steps = f->pieces->step_count, count = f->pieces->count;
+    bool   found = sum->count == 1 && add_alone(f, step, sum->weights[0], sum->offset);
+    if (!found) {
+        f->pieces->step_count = steps;
+        f->pieces->count      = count;
+        found                 = add_apart(f, sum, k, step);
+    }
     f->depth--;
     return found;
 }
@@ -427,15 +595,24 @@ static bool count_pieces(Finding *f, uint32_t operand, double sign, double offse
               b    = range_of_operand(f, step->operands[1]);
         int choice = is_greater(step) == (sign > 0) ? PIECE_MAX : PIECE_MIN;
         if (a.low < b.high && b.low < a.high) {
-            for (int k = 0; k < 2; k++)
-                if (decides_nothing(f, step->operands[k], sign, offset, choice))
+            for (int k = 0; k < 2; k++) {
+                Sum sum = sum_of(step->operands[k], sign, offset);
+                if (decides_nothing(f, &sum, choice))
                     return count_pieces(f, step->operands[1 - k], sign, offset);
+            }
             return count_pieces(f, step->operands[0], sign, offset) &&
                    count_pieces(f, step->operands[1], sign, offset);
         }
     }
     if (step && step->op == OP_neg)
         return count_pieces(f, step->operands[0], -sign, offset);
+    if (step && step->op == OP_select && offset == 0 && sign_of_choice(f, step) != 0)
+        return true;
+    uint32_t scaled = step && (step->op == OP_mul || step->op == OP_div)
+                          ? scaled_operand(f, step, &sign)
+                          : NODE_NONE;
+    if (scaled != NODE_NONE)
+        return count_pieces(f, scaled, sign, offset);
     size_t i = 0;
     while (i < f->pieces->count && f->operands[i][0] != operand)
         i++;
@@ -489,7 +666,8 @@ bool field_pieces(MeshField *field, Box box, FieldPieces *pieces)
     lane_slopes_run(f.tape, &field->ranges, field->slopes, &slope);
     lane_hessians_run(f.tape, &field->ranges, field->slopes, field->hessians, &hessian);
     pieces->count = pieces->step_count = 0;
-    if (!find_pieces(&f, f.tape->outputs[0], 1, 0))
+    Sum whole                          = sum_of(f.tape->outputs[0], 1, 0);
+    if ((whole.operands[0] & LANE_SCALAR) || !find_pieces(&f, &whole))
         return false;
     bool one = pieces->count == 1 && pieces->values[0] == 1 &&
                pieces->signs[0] * pieces->weights[0][0] == 1 && pieces->offsets[0] == 0;

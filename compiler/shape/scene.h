@@ -48,20 +48,16 @@ typedef struct SceneCamera {
     bool standing_in; /* for a scene that has no camera: framing.c finds eye and target */
 } SceneCamera;
 
-/* Rows of lights.def. */
-typedef struct LightNodes {
-#define LIGHT(member, kind, of_direction, of_position, ...) Node member;
-#include "compiler/shape/lights.def"
-} LightNodes;
-
+/* Nodes are of the frame. */
 typedef struct SceneLight {
     const char *name; /* or NULL */
     bool        positional, shadow;
-    bool        spot;    /* its angle is given */
+    bool        rectangle, spot;
     bool        colored; /* its color is given */
-    uint32_t    type;    /* a number of light_types.def; 0: none of them */
-    LightNodes  nodes;   /* the color is times the intensity */
-    Span        span;    /* of its `intensity`, if that is given, or of where it is */
+    Node        vector, color, softness, intensity;
+    Node        target, angle, edge; /* of a spot: the whole angle, and the part of it that fades */
+    Node        size;                /* of a rectangle */
+    Span        span;                /* of its `intensity`, if that is given, or of where it is */
 } SceneLight;
 
 typedef struct SceneImage {

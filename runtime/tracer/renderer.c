@@ -196,10 +196,7 @@ KrsDevice krs_renderer_device(const KrsRenderer *renderer)
     return gpu_describe(renderer->gpu.physical);
 }
 
-uint64_t krs_renderer_complaints(const KrsRenderer *renderer)
-{
-    return renderer->gpu.validation_messages;
-}
+uint64_t krs_renderer_complaints(const KrsRenderer *renderer) { return renderer->gpu.complaints; }
 
 bool renderer_create_pixels(KrsRendering *rendering)
 {

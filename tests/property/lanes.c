@@ -304,6 +304,46 @@ static void copies_around_an_axis_have_ranges(void **state)
     assert_true(tally.calls > 0);
 }
 
+/* abs(x - c round(x / c)), as a product with the reciprocal, or with another factor, when it is none. */
+static Node distance_to_multiples(Graph *graph, double period, double factor)
+{
+    Node x     = graph_component(graph, graph_leaf(graph, OP_POINT), 0);
+    Node count = graph_op1(graph, OP_round,
+                           graph_op2(graph, OP_mul, x, graph_number(graph, factor)));
+    return graph_op1(
+        graph, OP_abs,
+        graph_op2(graph, OP_sub, x, graph_op2(graph, OP_mul, count, graph_number(graph, period))));
+}
+
+/* Ranges of distances to multiples hold; they are as narrow as the values, where steps alone know nothing. */
+static void ranges_of_waves_hold(void **state)
+{
+    static const double PERIOD = 0.3, FACTORS[2] = {1 / 0.3, 3};
+    Bench              *b = *state;
+    for (int turn = 0; turn < 2 * GRAPHS; turn++) {
+        Pair   pair  = {0};
+        Tally  tally = {0};
+        double at = random_between(&b->random, -3, 3), half = random_between(&b->random, 0, 0.2);
+        Box    box  = {{{at - half, at + half}, {0, 0}, {0, 0}}};
+        Range  seen = {INFINITY, 0};
+        b->graph    = graph_new(&b->arena);
+        for (int i = 0; i < ROOTS; i++)
+            pair.roots[i] = distance_to_multiples(b->graph, PERIOD, FACTORS[turn % 2]);
+        pair_finish(b, &pair, NULL);
+        LaneRanges ranges = lane_ranges_new(&pair.lanes, &b->arena);
+        lane_ranges_run(&pair.lanes, &ranges, box);
+        try_box(b, &pair, box, box, &tally);
+        assert_true(tally.outside + tally.different + tally.unsure == 0);
+        for (int i = 0; i <= 1000; i++) {
+            double x = at + half * (0.002 * i - 1), off = fabs(x - PERIOD * round(x / PERIOD));
+            seen = (Range){fmin(seen.low, off), fmax(seen.high, off)};
+        }
+        Range range = lane_ranges_output(&pair.lanes, &ranges, 0);
+        if (turn % 2 == 0)
+            assert_true(range.low >= seen.low - 0.001 && range.high <= seen.high + 0.001);
+    }
+}
+
 static void what_is_pruned_for_less_is_seen(void **state)
 {
     Bench *b     = *state;
@@ -584,6 +624,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(ranges_hold_and_pruning_changes_nothing, bench_start,
                                         bench_stop),
         cmocka_unit_test_setup_teardown(copies_around_an_axis_have_ranges, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(ranges_of_waves_hold, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(what_is_pruned_for_less_is_seen, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(slopes_hold, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(hessians_hold, bench_start, bench_stop),

@@ -166,6 +166,22 @@ static void pieces_have_the_sign_of_the_distance(void **context)
     assert_true(try_pieces("show box([2, 1, 0.5]).bend([1, 0, 0], 0.5);") > 20);
 }
 
+/* In a cube, so that it has an end. */
+#define IN_CUBE(distance)                                                                     \
+    "shape part() { distance: max(" distance ", max(abs(x), abs(y), abs(z)) - 1), slope: 1, " \
+    "within: [-[1, 1, 1], [1, 1, 1]] } show part();"
+
+/* Sums of minima, distances to multiples of a number, and choices that tell the sign. */
+static void sums_and_choices_have_pieces(void **context)
+{
+    (void)context;
+    assert_true(try_pieces("show field(2 * abs(x) + abs(abs(y) - 0.3) - 0.5 * z - 0.2);") > 20);
+    assert_true(try_pieces("show thread(diameter: 1.6, pitch: 0.5, length: 1.6);") > 20);
+    assert_true(try_pieces(IN_CUBE("(y + abs(x - 0.4 * round(x / 0.4))) / 2")) > 20);
+    assert_true(try_pieces(IN_CUBE("if x <= 0 and not (y > 0) then -sqrt(min(x * x, y * y)) "
+                                   "else length([max(x, 0), max(y, 0)])")) > 20);
+}
+
 /* A box that is not entered has no surface, and in one that is distances are as before. */
 static void boxes_that_are_left_out_are_empty(void **context)
 {
@@ -363,6 +379,7 @@ int main(void)
         cmocka_unit_test(little_is_gained_in_boxes_of_the_same_size),
         cmocka_unit_test(slopes_of_ways_hold),
         cmocka_unit_test(boxes_that_are_left_out_are_empty),
+        cmocka_unit_test(sums_and_choices_have_pieces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -381,6 +381,24 @@ static void try_smooth(const Trial *t, SmoothCell *cell, Box own, Tet *tet, Boun
     }
 }
 
+/* No piece changes faster than is said, between points of the box. */
+static void check_steep(const Trial *t, const PieceCell *cell, Box wide, Shares *shares)
+{
+    enum { POINTS = 12 };
+    double points[POINTS][3], values[POINTS * MOST_PIECES];
+    size_t count = cell->pieces.count;
+    for (int i = 0; i < POINTS; i++)
+        random_point(wide, points[i]);
+    field_piece_values(&t->fields[0], &cell->pieces, (const double(*)[3])points, POINTS, values);
+    for (size_t i = count; i < POINTS * count; i++) {
+        double length = distance3(points[i / count], points[i / count - 1]);
+        double change = fabs(values[i] - values[i - count]);
+        assert_true(change <= cell->steep * length + 1e-12);
+        if (length > 1e-4)
+            shares->steep = fmax(shares->steep, change / (cell->steep * length));
+    }
+}
+
 /* A deviation that fits is not looked at closely, so less and less is asked for. */
 static void try_pieces(Trial *t, Box wide, Tet *tet, Bounds *bounds)
 {
@@ -394,8 +412,8 @@ static void try_pieces(Trial *t, Box wide, Tet *tet, Bounds *bounds)
         error = 0.98 * tet->deviation / tet->slope;
     }
     if (cell.known) {
-        assert_true(cell.steep >= 1 - 1e-9 && tet->steep >= 1 - 1e-6F);
-        bounds->pieces.steep = fmax(bounds->pieces.steep, 1 / cell.steep);
+        assert_true(cell.slope <= cell.steep && tet->steep >= cell.steep);
+        check_steep(t, &cell, wide, &bounds->pieces);
     }
 }
 

@@ -12,6 +12,7 @@
 #include "compiler/graph/bounds/rules.h"
 #include "compiler/graph/instance_table.h"
 #include "compiler/graph/lanes/lane_call.h"
+#include "compiler/graph/lanes/lane_waves.h"
 #include "compiler/graph/op_values.h"
 #include "compiler/graph/texture.h"
 
@@ -365,6 +366,8 @@ static void run_step(const LaneTape *tape, const LaneRanges *ranges, const Ball 
     Range range  = square ? range_square(o[0].range) : range_of_step(ranges, step, o);
     if (!(range.low <= range.high))
         range = ANYTHING; /* it is a number nowhere, or a rule gave up */
+    if (step->op == OP_abs)
+        range = range_intersect(range, lane_wave_range(tape, ranges, step));
     sure = sure && is_defined(step, o);
     if (ball && sure && step->steepest > 0)
         range = range_intersect(range, range_around(ranges->middle[LANE_INPUTS + i], step->steepest,

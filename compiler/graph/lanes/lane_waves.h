@@ -1,0 +1,23 @@
+/*
+ * lane_waves.h: how far a number is from the nearest multiple of a period, abs(a - c round(a / c)).
+ *
+ * Ranges of its steps alone know nothing of it in a box where the nearest multiple changes.
+ */
+#ifndef KRS_LANE_WAVES_H
+#define KRS_LANE_WAVES_H
+
+#include "compiler/graph/lanes/lanes.h"
+
+typedef struct LaneWave {
+    uint32_t
+        number; /* the operand `a`; NODE_NONE: it is no such distance, or ranges do not bound `a` */
+    double period, first,
+        last; /* the nearest multiples are from `first` to `last` times the period */
+} LaneWave;
+
+/* What a step is in the box of a run of ranges. */
+LaneWave lane_wave(const LaneTape *tape, const LaneRanges *ranges, const LaneStep *step);
+/* Its range, once those of the steps before are known; ANYTHING: it is no such distance. */
+Range lane_wave_range(const LaneTape *tape, const LaneRanges *ranges, const LaneStep *step);
+
+#endif
