@@ -118,16 +118,23 @@ static Candidate pop(Collapse *c)
 
 /* ---- what is around a vertex ---- */
 
-/* Its triangles; more than MOST_STAR: there are too many. */
-static size_t star_of(const Collapse *c, uint32_t vertex, uint32_t star[MOST_STAR])
+/* Its triangles; more than MOST_STAR: there are too many.  Those that are dead leave its list, which would grow with each
+   collapse. */
+static size_t star_of(Collapse *c, uint32_t vertex, uint32_t star[MOST_STAR])
 {
-    size_t count = 0;
-    for (uint32_t corner = c->first[vertex]; corner; corner = c->next[corner - 1])
-        if (!c->dead[(corner - 1) / 3]) {
-            if (count == MOST_STAR)
-                return MOST_STAR + 1;
-            star[count++] = (corner - 1) / 3;
+    size_t    count = 0;
+    uint32_t *link  = &c->first[vertex];
+    while (*link) {
+        uint32_t corner = *link;
+        if (c->dead[(corner - 1) / 3]) {
+            *link = c->next[corner - 1];
+            continue;
         }
+        if (count == MOST_STAR)
+            return MOST_STAR + 1;
+        star[count++] = (corner - 1) / 3;
+        link          = &c->next[corner - 1];
+    }
     return count;
 }
 
