@@ -54,67 +54,27 @@ KrsStatus krs_scene_reload_sized(const KrsScene *scene, KrsScene **updated, KrsC
     return status;
 }
 
-KrsStatus krs_parameter_sized(const KrsScene *scene, size_t index, KrsParameter *parameter,
-                              size_t size)
-{
-    KrsParameter    own;
-    const KrsStatus status = krs_parameter(scene, index, &own);
-    if (status == KRS_OK)
-        sized_give(parameter, size, &own, sizeof own);
-    return status;
-}
+/* A function that tells the struct of an index. */
+#define ASKED_BY_INDEX(function, Owner, Struct)                                         \
+    KrsStatus function##_sized(Owner *owner, size_t index, Struct *answer, size_t size) \
+    {                                                                                   \
+        Struct          own;                                                            \
+        const KrsStatus status = function(owner, index, &own);                          \
+        if (status == KRS_OK)                                                           \
+            sized_give(answer, size, &own, sizeof own);                                 \
+        return status;                                                                  \
+    }
+ASKED_BY_INDEX(krs_parameter, const KrsScene, KrsParameter)
+ASKED_BY_INDEX(krs_texture, const KrsScene, KrsTexture)
+ASKED_BY_INDEX(krs_frame_slope, const KrsScene, KrsFrameSlope)
+ASKED_BY_INDEX(krs_camera_place, const KrsScene, KrsPlace)
+ASKED_BY_INDEX(krs_frame_camera, KrsFrame, KrsCamera)
+ASKED_BY_INDEX(krs_component, const KrsScene, KrsComponent)
 
 void krs_scene_image_sized(const KrsScene *scene, KrsImage *image, size_t size)
 {
     const KrsImage own = krs_scene_image(scene);
     sized_give(image, size, &own, sizeof own);
-}
-
-KrsStatus krs_texture_sized(const KrsScene *scene, size_t index, KrsTexture *texture, size_t size)
-{
-    KrsTexture      own;
-    const KrsStatus status = krs_texture(scene, index, &own);
-    if (status == KRS_OK)
-        sized_give(texture, size, &own, sizeof own);
-    return status;
-}
-
-KrsStatus krs_frame_slope_sized(const KrsScene *scene, size_t index, KrsFrameSlope *slope,
-                                size_t size)
-{
-    KrsFrameSlope   own;
-    const KrsStatus status = krs_frame_slope(scene, index, &own);
-    if (status == KRS_OK)
-        sized_give(slope, size, &own, sizeof own);
-    return status;
-}
-
-KrsStatus krs_camera_place_sized(const KrsScene *scene, size_t index, KrsPlace *place, size_t size)
-{
-    KrsPlace        own;
-    const KrsStatus status = krs_camera_place(scene, index, &own);
-    if (status == KRS_OK)
-        sized_give(place, size, &own, sizeof own);
-    return status;
-}
-
-KrsStatus krs_frame_camera_sized(KrsFrame *frame, size_t index, KrsCamera *camera, size_t size)
-{
-    KrsCamera       own;
-    const KrsStatus status = krs_frame_camera(frame, index, &own);
-    if (status == KRS_OK)
-        sized_give(camera, size, &own, sizeof own);
-    return status;
-}
-
-KrsStatus krs_component_sized(const KrsScene *scene, size_t index, KrsComponent *component,
-                              size_t size)
-{
-    KrsComponent    own;
-    const KrsStatus status = krs_component(scene, index, &own);
-    if (status == KRS_OK)
-        sized_give(component, size, &own, sizeof own);
-    return status;
 }
 
 KrsStatus krs_bound_sized(const KrsScene *scene, size_t component, size_t index, KrsBound *bound,
