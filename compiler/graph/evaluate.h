@@ -51,6 +51,10 @@ uint32_t tape_loops(const Tape *tape);
 /* Where on the tape a node is that the roots need. */
 size_t tape_index(const Tape *tape, Node node);
 
+/* Whether a tape needs the value of a slot of the parameter block; ANY_SLOT: of any. */
+#define ANY_SLOT UINT32_MAX
+bool tape_depends_on(const Tape *tape, uint32_t slot);
+
 /* Runs the part of a tape that does not depend on the point.  `values` has graph->count
    elements, indexed by node; parameters[slot] is the parameter block (slot 0: time). */
 void tape_run_frame(const Tape *tape, const NodeValue *parameters, NodeValue *values);

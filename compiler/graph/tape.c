@@ -310,3 +310,13 @@ size_t tape_index(const Tape *tape, Node node)
     assert(low < tape->count && tape->nodes[low] == node);
     return low;
 }
+
+bool tape_depends_on(const Tape *tape, uint32_t slot)
+{
+    for (size_t i = 0; i < tape->frame_count; i++) {
+        const Expr *e = &tape->graph->items[tape->nodes[i]];
+        if (e->op == OP_PARAMETER && (e->index == slot || slot == ANY_SLOT))
+            return true;
+    }
+    return false;
+}

@@ -40,16 +40,6 @@ static size_t slope_workspace(const KrsScene *scene)
     return most;
 }
 
-bool tape_depends_on(const Tape *tape, uint32_t slot)
-{
-    for (size_t i = 0; i < tape->frame_count; i++) {
-        const Expr *e = &tape->graph->items[tape->nodes[i]];
-        if (e->op == OP_PARAMETER && (e->index == slot || slot == ANY_SLOT))
-            return true;
-    }
-    return false;
-}
-
 /* Computes the slopes and the floor that depend on a slot.  False, and `unbounded` is set, if one has no
    bound. */
 static bool find_slopes(KrsFrame *frame, uint32_t changed)

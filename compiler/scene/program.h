@@ -254,9 +254,6 @@ Box frame_box(const KrsFrame *frame, const Box *boxes, size_t component);
 Box frame_outer_box(const KrsFrame *frame, const Box *boxes);
 /* Puts the height of the floor into its slot, if it depends on another one. */
 void frame_find_floor(KrsFrame *frame, uint32_t changed);
-/* Whether a tape needs the value of a slot; ANY_SLOT: of any. */
-#define ANY_SLOT UINT32_MAX
-bool tape_depends_on(const Tape *tape, uint32_t slot);
 
 /* frame_tables.c: tables where instances of groups move, and tapes over them.  False: memory has run out. */
 bool frame_tables_new(KrsFrame *frame);
