@@ -263,10 +263,10 @@ static void act_save(Viewing *viewing) { saving_keep_shot(viewing); }
 
 static void act_save_file(Viewing *viewing) { saving_start_or_stop(viewing); }
 
-static void act_look(Viewing *viewing)
+static void act_shading(Viewing *viewing)
 {
-    viewing->view.look = (Look)((viewing->view.look + 1) % LOOK_COUNT);
-    viewing_notice(viewing, "%s", look_names[viewing->view.look]);
+    viewing->view.shading = (ShadingMode)((viewing->view.shading + 1) % SHADING_COUNT);
+    viewing_notice(viewing, "%s", shading_mode_names[viewing->view.shading]);
     viewing_show(viewing);
 }
 

@@ -251,9 +251,9 @@ static void draw_controls(Viewing *viewing)
     }
     gui_heading("CAMERA");
     draw_camera(viewing);
-    int look = (int)viewing->view.look;
-    if (gui_choice("shows", &look, look_names, LOOK_COUNT)) {
-        viewing->view.look = (Look)look;
+    int shading = (int)viewing->view.shading;
+    if (gui_choice("shows", &shading, shading_mode_names, SHADING_COUNT)) {
+        viewing->view.shading = (ShadingMode)shading;
         viewing_show(viewing);
     }
     draw_cut(viewing);

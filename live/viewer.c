@@ -234,7 +234,7 @@ static void draw_terminal(Viewing *viewing)
     }
     snprintf(first, sizeof first, "%s   %ux%u   %u/%u   %s   ? help", viewing->options->path,
              shot->width, shot->height, shot->samples, viewing->view.samples,
-             look_names[viewing->view.look]);
+             shading_mode_names[viewing->view.shading]);
     if (viewing->reads_slowly)
         snprintf(second, sizeof second, "%s", viewing->notice);
     else if (viewing->diagnostics.errors > 0)

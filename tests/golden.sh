@@ -1,7 +1,7 @@
 #!/bin/sh
 # golden.sh: what passes of the compiler make of the scenes in tests/golden/ is as blessed in the
 # files beside them, by extension: NAME.scene (shapes and what surrounds them), NAME.graph (as it was
-# built), NAME.simplify (as it is printed), NAME.facts (what the renderer has to know) and NAME.glsl.
+# built), NAME.simplify (as it is printed), NAME.info (what the renderer has to know) and NAME.glsl.
 # `golden.sh --bless` writes them.  They say that nothing has changed, not that it is right: that is
 # for the oracles.
 cd "$(dirname "$0")/.." || exit 1
@@ -10,7 +10,7 @@ got=$(mktemp) && trap 'rm -f "$got"' EXIT
 failed=0
 
 for scene in tests/golden/*.krs; do
-    for pass in scene graph simplify facts glsl; do
+    for pass in scene graph simplify info glsl; do
         wanted=${scene%.krs}.$pass
         status=0
         "$krs" dump --color never --after="$pass" "$scene" >"$got" 2>&1 || status=$?

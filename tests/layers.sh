@@ -14,7 +14,7 @@ layers="compiler/base compiler/image compiler/outline compiler/graph compiler/gr
         runtime/writer runtime api import/common import/csg import/surfer import/pov import live/text live/pictures live/window live cli/options cli/shell cli/picture cli/mesh cli/grid cli/slice cli"
 public="include/krs/krs.h include/krs/camera.h include/krs/mesh.h include/krs/slice.h include/krs/grid.h
         include/krs/measure.h include/krs/surface.def include/krs/choices.def include/krs/camera.def"
-api="include/krs/ compiler/base/ compiler/passes/compile.h compiler/passes/passes.def compiler/print/variant.h compiler/target/spirv.h"
+api="include/krs/ compiler/base/ compiler/passes/compile.h compiler/passes/passes.def compiler/shape/light_types.def compiler/print/variant.h compiler/target/spirv.h"
 
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 

@@ -20,19 +20,13 @@ static const struct BlockProperty {
 #define KRS_CAMERA(name, kind, part, positive, counts, ...) {SYNTAX_CAMERA, #name, false},
 #define KRS_CAMERA_FIXED(name, type, part, counts)          {SYNTAX_CAMERA, #name, false},
 #include "krs/camera.def"
+    {SYNTAX_LIGHT, "direction", false},
+#define LIGHT(member, kind, of_direction, of_position, ...) {SYNTAX_LIGHT, of_position, false},
+#include "compiler/shape/lights.def"
     /* clang-format off */
     {SYNTAX_MATERIAL, "bump", false},
-    {SYNTAX_LIGHT, "direction", false},
-    {SYNTAX_LIGHT, "position", false},
-    {SYNTAX_LIGHT, "color", false},
-    {SYNTAX_LIGHT, "intensity", false},
     {SYNTAX_LIGHT, "softness", false},
-    {SYNTAX_LIGHT, "radius", false},
     {SYNTAX_LIGHT, "shadow", false},
-    {SYNTAX_LIGHT, "size", false},
-    {SYNTAX_LIGHT, "target", false},
-    {SYNTAX_LIGHT, "angle", false},
-    {SYNTAX_LIGHT, "edge", false},
     {SYNTAX_SKY, "zenith", false},
     {SYNTAX_SKY, "horizon", false},
     {SYNTAX_SKY, "ground", false},

@@ -89,7 +89,7 @@ void validate_lowered(const Compilation *c);
 void validate_simplified(const Compilation *c);
 void validate_pruned(const Compilation *c);
 void validate_parameterised(const Compilation *c);
-void validate_facts(const Compilation *c);
+void validate_info(const Compilation *c);
 
 /* passes.c: instances of an instance group, and iterations of a loop that is evaluated once. */
 uint32_t least_instances(const Compilation *c);

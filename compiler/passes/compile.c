@@ -308,21 +308,21 @@ KrsStatus krs_format(const char *path, const KrsOptions *options, char **formatt
     return status;
 }
 
-KrsStatus inspect_file(const char *path, const KrsOptions *options, Inspect *look, void *user)
+KrsStatus inspect_file(const char *path, const KrsOptions *options, Inspect *visit, void *user)
 {
     KrsScene *scene;
-    Request   request = {.after = PASS_COUNT, .end = PASS_COUNT, .inspect = look, .user = user};
+    Request   request = {.after = PASS_COUNT, .end = PASS_COUNT, .inspect = visit, .user = user};
     KrsStatus status  = compile_path(path, options, &request, &scene);
     scene_free(scene);
     return status;
 }
 
 KrsStatus inspect_elaborated(const char *text, size_t length, const KrsOptions *options,
-                             Inspect *look, void *user)
+                             Inspect *visit, void *user)
 {
     KrsScene *scene;
     Request   request = {
-          .after = PASS_COUNT, .end = PASS_elaborate + 1, .inspect = look, .user = user};
+          .after = PASS_COUNT, .end = PASS_elaborate + 1, .inspect = visit, .user = user};
     KrsStatus status = load_and_compile(text, length, "scene.krs", options, &request, &scene);
     scene_free(scene);
     return status;

@@ -27,7 +27,7 @@ static void allocate_roots(Compilation *c, RootRange assembly)
         [ROOTS_SURFACE]         = components * ROOT_COUNT,
         [ROOTS_ZONE]            = s->zone_count > 0,
         [ROOTS_CAMERA]          = s->cameras.count * NODES_OF(CameraNodes),
-        [ROOTS_LIGHT]           = s->lights.count * NODES_OF(LightRoots),
+        [ROOTS_LIGHT]           = s->lights.count * NODES_OF(LightNodes),
         [ROOTS_SKY]             = NODES_OF(SkyRoots),
         [ROOTS_GUARDED]         = components,
         [ROOTS_ALONG]           = components * ALONG_COUNT,
@@ -72,12 +72,8 @@ static void gather_view(const Scene *s, const Roots *roots)
         roots_of(roots, ROOTS_ZONE).items[0] = s->zone;
     for (size_t i = 0; i < s->cameras.count; i++)
         *camera_roots(roots, i) = s->cameras.items[i].nodes;
-    for (size_t i = 0; i < s->lights.count; i++) {
-        const SceneLight *light = &s->lights.items[i];
-        *light_roots(roots, i)  = (LightRoots){light->vector, light->color,    light->softness,
-                                               light->target, light->angle,    light->edge,
-                                               light->size,   light->intensity};
-    }
+    for (size_t i = 0; i < s->lights.count; i++)
+        *light_roots(roots, i) = s->lights.items[i].nodes;
     const SceneFog *fog = &s->fog;
     const SceneSky *sky = &s->sky;
     *sky_roots(roots)   = (SkyRoots){sky->zenith,    sky->horizon,   sky->ground, sky->rotation,

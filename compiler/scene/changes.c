@@ -265,7 +265,7 @@ static bool same_groups(const Module *a, const Module *b)
             memcmp(a->is_subsurface, b->is_subsurface, count * sizeof *a->is_subsurface) == 0);
 }
 
-static bool same_facts(const KrsScene *a, const KrsScene *b)
+static bool same_info(const KrsScene *a, const KrsScene *b)
 {
     return a->component_count == b->component_count && a->zone_count == b->zone_count &&
            krs_scene_is_panoramic(a) == krs_scene_is_panoramic(b) &&
@@ -287,7 +287,7 @@ static bool same_text(Comparison *c, const KrsVariant *variant)
                   scene_plain_text(c->b, variant, &c->arena)) == 0;
 }
 
-/* Whether shaders of the same facts have the same text. */
+/* Whether shaders of the same info have the same text. */
 static bool same_texts(Comparison *c)
 {
     return same_text(c, &(KrsVariant){.values = true}) &&
@@ -298,7 +298,7 @@ static bool same_texts(Comparison *c)
 
 static Likeness compare_shaders(Comparison *c)
 {
-    if (!same_facts(c->a, c->b))
+    if (!same_info(c->a, c->b))
         return DIFFERENT;
     Likeness found = compare_graphs(c, true, ROOTS_SURFACE, ROOT_KINDS - 1);
     found = least(found, equal_if(same_instances(c->a->graph->instances, c->b->graph->instances)));
@@ -368,8 +368,7 @@ static bool same_lights(const KrsScene *a, const KrsScene *b)
                a->lights[i].positional == b->lights[i].positional &&
                a->lights[i].colored == b->lights[i].colored &&
                a->lights[i].shadow == b->lights[i].shadow &&
-               a->lights[i].rectangle == b->lights[i].rectangle &&
-               a->lights[i].spot == b->lights[i].spot;
+               a->lights[i].type == b->lights[i].type && a->lights[i].spot == b->lights[i].spot;
     return same;
 }
 

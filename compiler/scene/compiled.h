@@ -8,19 +8,24 @@
 #include "compiler/print/variant.h"
 #include "compiler/shape/sky_map.h"
 
+/* How many numbers a member has, by its kind in lights.def. */
+#define LIGHT_NUMBERS_way   [3]
+#define LIGHT_NUMBERS_color [3]
+#define LIGHT_NUMBERS_axis  [3]
+#define LIGHT_NUMBERS_sides [2]
+#define LIGHT_NUMBERS_number
+
 typedef struct KrsLight {
-    bool   positional; /* else directional */
-    double vector[3];  /* position, or unit direction towards the light */
-    double color[3];   /* linear, already times intensity */
-    double softness;   /* directional: angular diameter, radians; positional: radius */
-    bool   shadow;
-    /* Of a rectangle or a spot, else 0: unit vectors in which it shines, to its right, and up. */
-    double axis[3], right[3], up[3];
-    bool   rectangle; /* it shines from a rectangle, to one side */
-    double size[2];   /* whose sides are these */
-    bool   spot;      /* it shines within a cone alone */
-    double angle;     /* of the cone, radians from side to side */
-    double edge;      /* the part of it over which the light fades, 0 to 1 */
+    bool     positional; /* else directional */
+    bool     shadow;
+    bool     spot; /* it shines within a cone alone, of this `angle` from side to side */
+    uint32_t type; /* a number of light_types.def; 0: a ball, or a disc in the sky */
+    /* A member for each row of lights.def.  vector: position, or unit direction towards the light;
+       color[3]: linear, already times the intensity; softness: angular diameter, or radius; angle: up
+       to 2 pi; edge: the part of the cone over which the light fades, 0 to 1. */
+#define LIGHT(member, kind, of_direction, of_position, ...) double member LIGHT_NUMBERS_##kind;
+#include "compiler/shape/lights.def"
+    double axis[3], right[3], up[3]; /* unit vectors where it shines, to its right, and up; or 0 */
 } KrsLight;
 
 typedef struct KrsSky {

@@ -324,40 +324,35 @@ static void view_camera(const KrsFrame *frame, size_t index, KrsCamera *camera)
 }
 
 /* Where a light shines, and what is right of it and above it, with y up. */
-static void aim_light(const KrsFrame *frame, const LightRoots *roots, KrsLight *light)
+static void aim_light(KrsLight *light)
 {
     const double upright[3] = {0, 1, 0}, ahead[3] = {0, 0, -1}, down[3] = {0, -1, 0};
-    double       target[3], size[3];
-    frame_copy(frame, roots->target, target);
-    frame_copy(frame, roots->size, size);
     for (int i = 0; i < 3; i++)
-        light->axis[i] = target[i] - light->vector[i];
+        light->axis[i] = light->target[i] - light->vector[i];
     if (!normalize3(light->axis))
         memcpy(light->axis, down, sizeof light->axis);
     cross3(fabs(light->axis[1]) < 0.999 ? upright : ahead, light->axis, light->right);
     normalize3(light->right);
     cross3(light->axis, light->right, light->up);
-    light->size[0] = size[0];
-    light->size[1] = size[1];
-    light->angle   = fmin(fmax(frame->values[roots->angle].v[0], 0), 2 * M_PI);
-    light->edge    = fmin(fmax(frame->values[roots->edge].v[0], 0), 1);
 }
 
 static void view_light(const KrsFrame *frame, size_t index, KrsLight *light)
 {
     const SceneLight *from  = &frame->scene->lights[index];
-    const LightRoots *roots = light_roots(&frame->scene->roots, index);
+    const LightNodes *roots = light_roots(&frame->scene->roots, index);
     *light                  = (KrsLight){.positional = from->positional,
                                          .shadow     = from->shadow,
-                                         .rectangle  = from->rectangle,
                                          .spot       = from->spot,
-                                         .softness   = frame->values[roots->softness].v[0]};
-    frame_copy(frame, roots->vector, light->vector);
-    frame_copy(frame, roots->color, light->color);
+                                         .type       = from->type};
+#define LIGHT(member, kind, of_direction, of_position, ...) \
+    memcpy(&light->member, frame->values[roots->member].v, sizeof light->member);
+#include "compiler/shape/lights.def"
+    light->angle = fmin(fmax(light->angle, 0), 2 * M_PI);
+    light->edge  = fmin(fmax(light->edge, 0), 1);
     if (!light->positional)
         vector_normalize(light->vector);
-    else if (light->rectangle || light->spot)
-        aim_light(frame, roots, light);
+    else if (light->type != 0 || light->spot)
+        aim_light(light);
 }
 
 /* ---- daylight ---- */
@@ -409,7 +404,7 @@ static KrsStatus view_daylight(KrsFrame *frame, KrsView *view)
         return KRS_OUT_OF_MEMORY;
     view->sky.map      = &frame->sky_map;
     view->sky.rotation = -atan2(day->vector[0], -day->vector[2]);
-    view->sky.intensity *= frame->values[light_roots(&frame->scene->roots, sun)->intensity].v[0];
+    view->sky.intensity *= day->intensity;
     return KRS_OK;
 }
 

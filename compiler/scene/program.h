@@ -22,7 +22,7 @@ typedef enum RootKind {
     ROOTS_SURFACE, /* for each component an array that is indexed by ComponentRoot */
     ROOTS_ZONE,    /* the depth in the zones; none if there are no zones */
     ROOTS_CAMERA,  /* CameraNodes of each camera */
-    ROOTS_LIGHT,   /* LightRoots of each light */
+    ROOTS_LIGHT,   /* LightNodes of each light */
     ROOTS_SKY,     /* SkyRoots, with fog */
     /* The kinds from here on are for the march, gradients and slopes only. */
     ROOTS_GUARDED,         /* for each component: lower_guarded */
@@ -37,9 +37,6 @@ typedef enum RootKind {
     ROOT_KINDS
 } RootKind;
 
-typedef struct LightRoots {
-    Node vector, color, softness, target, angle, edge, size, intensity;
-} LightRoots;
 typedef struct SkyRoots {
     Node zenith, horizon, ground, rotation, intensity, turbidity;
     Node fog_color, fog_density, fog_fall, fog_base;
@@ -99,9 +96,9 @@ static inline CameraNodes *camera_roots(const Roots *roots, size_t camera)
     return (CameraNodes *)roots_of(roots, ROOTS_CAMERA).items + camera;
 }
 
-static inline LightRoots *light_roots(const Roots *roots, size_t light)
+static inline LightNodes *light_roots(const Roots *roots, size_t light)
 {
-    return (LightRoots *)roots_of(roots, ROOTS_LIGHT).items + light;
+    return (LightNodes *)roots_of(roots, ROOTS_LIGHT).items + light;
 }
 
 static inline SkyRoots *sky_roots(const Roots *roots)

@@ -48,16 +48,20 @@ typedef struct SceneCamera {
     bool standing_in; /* for a scene that has no camera: framing.c finds eye and target */
 } SceneCamera;
 
-/* Nodes are of the frame. */
+/* Rows of lights.def. */
+typedef struct LightNodes {
+#define LIGHT(member, kind, of_direction, of_position, ...) Node member;
+#include "compiler/shape/lights.def"
+} LightNodes;
+
 typedef struct SceneLight {
     const char *name; /* or NULL */
     bool        positional, shadow;
-    bool        rectangle, spot;
+    bool        spot;    /* its angle is given */
     bool        colored; /* its color is given */
-    Node        vector, color, softness, intensity;
-    Node        target, angle, edge; /* of a spot: the whole angle, and the part of it that fades */
-    Node        size;                /* of a rectangle */
-    Span        span;                /* of its `intensity`, if that is given, or of where it is */
+    uint32_t    type;    /* a number of light_types.def; 0: none of them */
+    LightNodes  nodes;   /* the color is times the intensity */
+    Span        span;    /* of its `intensity`, if that is given, or of where it is */
 } SceneLight;
 
 typedef struct SceneImage {

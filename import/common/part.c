@@ -13,10 +13,10 @@ enum { PAINTED = 1, UNPAINTED = 2, MOST_WRITTEN = 200000, MOST_DEPTH = 1000, WID
 
 Part *part_new(Import *import, unsigned line, const char *stem)
 {
-    Part *part  = arena_new(import->arena, Part);
-    part->stem  = stem;
-    part->line  = line;
-    part->place = place_identity();
+    Part *part      = arena_new(import->arena, Part);
+    part->stem      = stem;
+    part->line      = line;
+    part->transform = transform_identity();
     return part;
 }
 
@@ -46,7 +46,10 @@ Part *part_around(Import *import, unsigned line, const char *stem, Part *what)
     return part;
 }
 
-void part_move(Part *part, const Place *place) { part->place = place_chain(&part->place, place); }
+void part_move(Part *part, const Transform *transform)
+{
+    part->transform = transform_chain(&part->transform, transform);
+}
 
 /* `n` as of PART_ROUND: the radius changes from one end to the other. */
 static bool is_in_round(const double n[6], const double p[3])
@@ -72,12 +75,12 @@ static bool is_in(const PartInside *inside, const double p[3])
 
 bool part_holds(const Part *part, const double point[3])
 {
-    Place  back = part->place;
-    double p[3];
-    size_t held = 0, count = part->parts.count;
-    if (!place_invert(&back) || part->depth > MOST_DEPTH)
+    Transform back = part->transform;
+    double    p[3];
+    size_t    held = 0, count = part->parts.count;
+    if (!transform_invert(&back) || part->depth > MOST_DEPTH)
         return false;
-    place_apply(&back, point, p);
+    transform_apply(&back, point, p);
     bool first = false, in = is_in(&part->inside, p);
     for (size_t i = 0; i < count && !part->methods; i++) {
         bool item = part_holds(part->parts.items[i], p);
@@ -192,8 +195,8 @@ static const char *write_let(PartWriter *writer, Part *part, const char *const *
     else
         write_join(text, part, names);
     text_add(text, part->methods ? part->methods : "");
-    if (!place_write(text, &part->place)) {
-        import_refuse(import, part->line, "its place flattens this to nothing");
+    if (!transform_write(text, &part->transform)) {
+        import_refuse(import, part->line, "its transform flattens this to nothing");
         return NULL;
     }
     if (part->outside)

@@ -5,7 +5,7 @@
 #ifndef KRS_IMPORT_PART_H
 #define KRS_IMPORT_PART_H
 
-#include "import/common/place.h"
+#include "import/common/transform.h"
 
 /* The deepest nesting that is read: those who read and write parts call
  * themselves. */
@@ -53,7 +53,7 @@ typedef struct PartCone {
     double bottom, top, height;
 } PartCone;
 
-/* Its shape, or its items joined; then methods; then its place; then its look.
+/* Its shape, or its items joined; then methods; then its transform; then its look.
  */
 typedef struct Part {
     const char *stem;  /* what its name begins with in the scene, and a number behind it */
@@ -64,7 +64,7 @@ typedef struct Part {
         size_t        count, capacity;
     } parts;
     const char *methods; /* such as ".offset(1)", in the part's own space; NULL: none */
-    Place       place;
+    Transform   transform;
     const char *look;    /* argument of `.paint`; NULL: none */
     bool        figure;  /* plane, in x and y */
     bool        outside; /* it is what is outside of this */
@@ -102,7 +102,7 @@ void part_add(Import *import, Part *part, Part *item);
 /* `what`, to which methods are added that see it as it is placed. */
 Part *part_around(Import *import, unsigned line, const char *stem, Part *what);
 /* Places it anew, behind where it is. */
-void part_move(Part *part, const Place *place);
+void part_move(Part *part, const Transform *transform);
 /* Whether a point is inside, as far as that is told; if not, it counts as outside. */
 bool part_holds(const Part *part, const double point[3]);
 /* Whether all that it is made of has looks; nothing may be added to it after that. */

@@ -75,9 +75,9 @@ static bool build_difference(const CsgNode *node, Part **part)
 
 static bool build_placed(const CsgNode *node, Part **part)
 {
-    const CsgValue *matrix = csg_argument(node, "");
-    Place           place  = place_identity();
-    bool            good   = matrix && matrix->kind == CSG_LIST && matrix->list.count == 4;
+    const CsgValue *matrix    = csg_argument(node, "");
+    Transform       transform = transform_identity();
+    bool            good      = matrix && matrix->kind == CSG_LIST && matrix->list.count == 4;
     for (size_t i = 0; good && i < 16; i++) {
         const CsgValue *row = &matrix->list.items[i / 4];
         good                = row->kind == CSG_LIST && row->list.count == 4 &&
@@ -88,20 +88,20 @@ static bool build_placed(const CsgNode *node, Part **part)
         if (i >= 12)
             good = number == (i == 15);
         else if (i % 4 == 3)
-            place.shift[i / 4] = number;
+            transform.shift[i / 4] = number;
         else
-            place.rows[i / 4][i % 4] = number;
+            transform.rows[i / 4][i % 4] = number;
     }
     if (!good)
         return import_refuse(node->import, node->line,
                              "`multmatrix` needs four rows of four numbers, the last 0, 0, 0, 1");
     if (!join_nodes(node, PART_UNION, part))
         return false;
-    if (*part && (*part)->figure && !place_flatten(&place))
+    if (*part && (*part)->figure && !transform_flatten(&transform))
         return import_refuse(node->import, node->line,
                              "this turns a plane figure out of its plane");
     if (*part)
-        part_move(*part, &place);
+        part_move(*part, &transform);
     return true;
 }
 

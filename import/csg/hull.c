@@ -98,7 +98,7 @@ static bool face_is_outside(double (*const points)[3], size_t count, const doubl
     return !(above && below);
 }
 
-static bool collect(Import *import, const Part *part, const Place *outer, PartBalls *all);
+static bool collect(Import *import, const Part *part, const Transform *outer, PartBalls *all);
 
 static Part *hull_part(const CsgNode *node, const PartBalls *balls)
 {
@@ -162,18 +162,18 @@ static void make_room(Import *import, PartBalls *all, size_t more)
 }
 
 /* What stands on a figure, as points: its ends. */
-static bool collect_column(Import *import, const PartColumn *column, const Place *place,
+static bool collect_column(Import *import, const PartColumn *column, const Transform *transform,
                            PartBalls *all)
 {
     PartBalls ends = {0};
-    Place     here = place_identity();
+    Transform here = transform_identity();
     if (!collect(import, column->figure, &here, &ends) || ends.radius > 0)
         return false;
     make_room(import, all, 2 * ends.count);
     for (size_t i = 0; i < 2 * ends.count; i++) {
         double at[3] = {ends.points[i / 2][0], ends.points[i / 2][1],
                         (i % 2 ? 0.5 : -0.5) * column->height};
-        place_apply(place, at, all->points[all->count]);
+        transform_apply(transform, at, all->points[all->count]);
         all->radii[all->count++] = 0;
     }
     return all->count <= MOST_POINTS;
@@ -181,17 +181,17 @@ static bool collect_column(Import *import, const PartColumn *column, const Place
 
 /* Adds the balls of which a part is the hull; false where it is something else.  `radius` is that of the
    largest. */
-static bool collect(Import *import, const Part *part, const Place *outer, PartBalls *all)
+static bool collect(Import *import, const Part *part, const Transform *outer, PartBalls *all)
 {
-    Place  place  = place_chain(&part->place, outer);
-    double factor = place_factor(&place), radius = part->balls.radius * factor;
+    Transform transform = transform_chain(&part->transform, outer);
+    double    factor = transform_factor(&transform), radius = part->balls.radius * factor;
     if (part->methods && part->column.figure)
-        return collect_column(import, &part->column, &place, all);
+        return collect_column(import, &part->column, &transform, all);
     if (part->methods || (part->join != PART_UNION && part->join != PART_HULL) ||
         (part->shape && !part->balls.points))
         return false;
     for (size_t i = 0; i < part->parts.count; i++)
-        if (!collect(import, part->parts.items[i], &place, all))
+        if (!collect(import, part->parts.items[i], &transform, all))
             return false;
     if (!part->shape)
         return true;
@@ -200,7 +200,7 @@ static bool collect(Import *import, const Part *part, const Place *outer, PartBa
     make_room(import, all, part->balls.count);
     for (size_t i = 0; i < part->balls.count; i++) {
         double own = part->balls.radii ? part->balls.radii[i] * factor : radius;
-        place_apply(&place, part->balls.points[i], all->points[all->count]);
+        transform_apply(&transform, part->balls.points[i], all->points[all->count]);
         all->radii[all->count++] = own;
         all->radius              = fmax(all->radius, own);
     }
@@ -269,8 +269,8 @@ static bool hull_of_figures(const CsgNode *node, PartBalls *balls, Part **part)
     else
         *part = csg_polygon_part(node, balls->points, corners);
     if (corners == 1) {
-        Place place = place_move(balls->points[0]);
-        part_move(*part, &place);
+        Transform transform = transform_move(balls->points[0]);
+        part_move(*part, &transform);
     }
     (*part)->figure = true;
     (*part)->balls  = *balls;
@@ -315,7 +315,7 @@ bool csg_hull(const CsgNode *node, Part **part)
 {
     Part     *joined = NULL;
     PartBalls balls  = {0};
-    Place     here   = place_identity();
+    Transform here   = transform_identity();
     if (!node->parts)
         return true;
     if (!csg_joined(node, node->parts->figure, &joined))
@@ -342,7 +342,7 @@ bool csg_hull(const CsgNode *node, Part **part)
     if (balls.count == 1) {
         *part = part_shape(node->import, node->line, "hull", "sphere(%s)",
                            import_number_text(node->import, balls.radius));
-        here  = place_move(balls.points[0]);
+        here  = transform_move(balls.points[0]);
         part_move(*part, &here);
         (*part)->balls = (PartBalls){arena_alloc(node->import->arena, 1, sizeof *balls.points), 1,
                                      1, balls.radius, NULL};
@@ -366,7 +366,7 @@ Part *csg_grown(const CsgNode *node, Part *part, double radius)
 /* An upright column, where it is only moved and turned about z: its figure as it is seen from above. */
 static bool upright_column(Import *import, const Part *part, PartColumn *column, double shift[3])
 {
-    const Place *place = &part->place;
+    const Transform *transform = &part->transform;
     if (part->methods && !part->column.figure)
         return false;
     if (!part->column.figure) {
@@ -379,14 +379,15 @@ static bool upright_column(Import *import, const Part *part, PartColumn *column,
         *column  = part->column;
         shift[2] = 0;
     }
-    bool upright = place->rows[0][2] == 0 && place->rows[1][2] == 0 && place->rows[2][0] == 0 &&
-                   place->rows[2][1] == 0 && place->rows[2][2] > 0;
-    Place flat      = *place;
+    bool upright = transform->rows[0][2] == 0 && transform->rows[1][2] == 0 &&
+                   transform->rows[2][0] == 0 && transform->rows[2][1] == 0 &&
+                   transform->rows[2][2] > 0;
+    Transform flat  = *transform;
     flat.rows[2][2] = 1;
     flat.shift[2]   = 0;
-    shift[2]        = shift[2] * place->rows[2][2] + place->shift[2];
+    shift[2]        = shift[2] * transform->rows[2][2] + transform->shift[2];
     column->figure  = part_around(import, part->line, "footprint", column->figure);
-    column->height *= place->rows[2][2];
+    column->height *= transform->rows[2][2];
     part_move(column->figure, &flat);
     return upright;
 }
@@ -395,7 +396,7 @@ static bool upright_column(Import *import, const Part *part, PartColumn *column,
 static double circle_of(Import *import, const Part *figure, double center[3])
 {
     PartBalls balls = {0};
-    Place     here  = place_identity();
+    Transform here  = transform_identity();
     if (!collect(import, figure, &here, &balls) || balls.count != 1)
         return 0;
     memcpy(center, balls.points[0], 3 * sizeof *center);
@@ -420,14 +421,14 @@ static Part *sum_of_columns(const CsgNode *node, const Part *a, const Part *b)
     Part *figure = csg_grown(node, columns[1 - round].figure, radius);
     Text  text   = {.arena = node->import->arena};
     text_format(&text, ".extrude(%s)", import_number_text(node->import, height));
-    Part *sum    = part_around(node->import, node->line, "sum", figure);
-    sum->methods = text.bytes;
-    sum->figure  = false;
-    sum->column  = (PartColumn){figure, height};
-    at[0]        = center[0];
-    at[1]        = center[1];
-    at[2]        = shifts[0][2] + shifts[1][2];
-    Place moved  = place_move(at);
+    Part *sum       = part_around(node->import, node->line, "sum", figure);
+    sum->methods    = text.bytes;
+    sum->figure     = false;
+    sum->column     = (PartColumn){figure, height};
+    at[0]           = center[0];
+    at[1]           = center[1];
+    at[2]           = shifts[0][2] + shifts[1][2];
+    Transform moved = transform_move(at);
     part_move(sum, &moved);
     return sum;
 }
@@ -445,7 +446,7 @@ static bool is_convex(const Part *part)
 static Part *sum_of_hulls(const CsgNode *node, const Part *a, const Part *b)
 {
     PartBalls one = {0}, other = {0}, sums = {0};
-    Place     here = place_identity();
+    Transform here = transform_identity();
     if (a->figure || !is_convex(a) || !is_convex(b) || !collect(node->import, a, &here, &one) ||
         !collect(node->import, b, &here, &other) || !are_of_one_size(&one) ||
         !are_of_one_size(&other) || one.count * other.count > MOST_POINTS)
@@ -463,14 +464,14 @@ static Part *sum_of_hulls(const CsgNode *node, const Part *a, const Part *b)
 static Part *sum_of(const CsgNode *node, Part *a, Part *b)
 {
     Part *const parts[2] = {a, b};
-    Place       here     = place_identity();
+    Transform   here     = transform_identity();
     for (int i = 1; i >= 0; i--) {
         PartBalls balls = {0};
         if (!collect(node->import, parts[i], &here, &balls) || balls.count != 1)
             continue;
-        Place moved = place_move(balls.points[0]);
-        Part *sum   = balls.radius > 0 ? csg_grown(node, parts[1 - i], balls.radius)
-                                       : part_around(node->import, node->line, "moved", parts[1 - i]);
+        Transform moved = transform_move(balls.points[0]);
+        Part     *sum   = balls.radius > 0 ? csg_grown(node, parts[1 - i], balls.radius)
+                                           : part_around(node->import, node->line, "moved", parts[1 - i]);
         part_move(sum, &moved);
         return sum;
     }

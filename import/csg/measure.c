@@ -32,31 +32,31 @@ static void add_point(Reach *reach, const double point[3])
 
 /* Of a ball, or of a circle in x and y (`dimensions` 2), as they are placed: q = center + radius * M u
    for unit vectors u goes farthest along an axis where u is that row of M. */
-static void add_round(Reach *reach, const Place *place, const double center[3], double radius,
-                      int dimensions)
+static void add_round(Reach *reach, const Transform *transform, const double center[3],
+                      double radius, int dimensions)
 {
     for (int axis = 0; axis < 3; axis++) {
-        const double *row  = place->rows[axis];
+        const double *row  = transform->rows[axis];
         double        size = hypot(hypot(row[0], row[1]), dimensions == 3 ? row[2] : 0);
         for (int side = -1; side <= 1; side += 2) {
             double at[3], own[3];
             for (int i = 0; i < 3; i++)
                 own[i] = center[i] +
                          (size > 0 && i < dimensions ? side * radius * row[i] / size : 0);
-            place_apply(place, own, at);
+            transform_apply(transform, own, at);
             add_point(reach, at);
         }
     }
 }
 
-static bool add_reach(Reach *reach, const Part *part, const Place *outer);
+static bool add_reach(Reach *reach, const Part *part, const Transform *outer);
 
 /* What stands on a figure reaches as far as its ends do. */
-static bool add_column(Reach *reach, const PartColumn *column, const Place *place)
+static bool add_column(Reach *reach, const PartColumn *column, const Transform *transform)
 {
     for (int side = -1; side <= 1; side += 2) {
-        Place end = place_move((double[]){0, 0, side * column->height / 2});
-        end       = place_chain(&end, place);
+        Transform end = transform_move((double[]){0, 0, side * column->height / 2});
+        end           = transform_chain(&end, transform);
         if (!add_reach(reach, column->figure, &end))
             return false;
     }
@@ -77,16 +77,16 @@ static bool bounds_of(const Reach *reach, double low[3], double high[3])
 }
 
 /* What is cut away may have held what reaches farthest: then nothing is known. */
-static bool add_difference(Reach *reach, const Part *part, const Place *place)
+static bool add_difference(Reach *reach, const Part *part, const Transform *transform)
 {
     Reach  first = {.import = reach->import};
     double low[3], high[3], still_low[3], still_high[3];
-    if (!add_reach(&first, part->parts.items[0], place) || !bounds_of(&first, low, high))
+    if (!add_reach(&first, part->parts.items[0], transform) || !bounds_of(&first, low, high))
         return false;
     for (size_t i = 1; i < part->parts.count; i++) {
         Reach  tool = {.import = reach->import}, rest = {.import = reach->import};
         double from[3], to[3];
-        if (!add_reach(&tool, part->parts.items[i], place) || !bounds_of(&tool, from, to))
+        if (!add_reach(&tool, part->parts.items[i], transform) || !bounds_of(&tool, from, to))
             return false;
         for (size_t k = 0; k < first.count; k++) {
             bool held = true;
@@ -109,24 +109,24 @@ static bool add_difference(Reach *reach, const Part *part, const Place *place)
     return true;
 }
 
-static bool add_shape(Reach *reach, const Part *part, const Place *place)
+static bool add_shape(Reach *reach, const Part *part, const Transform *transform)
 {
     const PartBalls *balls = &part->balls;
     const PartCone  *cone  = &part->cone;
     if (part->figure_radius > 0) {
-        add_round(reach, place, (double[]){0, 0, 0}, part->figure_radius, 2);
+        add_round(reach, transform, (double[]){0, 0, 0}, part->figure_radius, 2);
         return true;
     }
     if (cone->height > 0) {
-        add_round(reach, place, (double[]){0, 0, -cone->height / 2}, cone->bottom, 2);
-        add_round(reach, place, (double[]){0, 0, cone->height / 2}, cone->top, 2);
+        add_round(reach, transform, (double[]){0, 0, -cone->height / 2}, cone->bottom, 2);
+        add_round(reach, transform, (double[]){0, 0, cone->height / 2}, cone->top, 2);
         return true;
     }
     for (size_t i = 0; i < balls->count && balls->points; i++) {
         double radius = balls->radii ? balls->radii[i] : balls->radius, at[3];
-        place_apply(place, balls->points[i], at);
+        transform_apply(transform, balls->points[i], at);
         if (radius > 0)
-            add_round(reach, place, balls->points[i], radius, part->figure ? 2 : 3);
+            add_round(reach, transform, balls->points[i], radius, part->figure ? 2 : 3);
         else
             add_point(reach, at);
     }
@@ -134,20 +134,20 @@ static bool add_shape(Reach *reach, const Part *part, const Place *place)
 }
 
 /* False where it is not known. */
-static bool add_reach(Reach *reach, const Part *part, const Place *outer)
+static bool add_reach(Reach *reach, const Part *part, const Transform *outer)
 {
-    Place place = place_chain(&part->place, outer);
+    Transform transform = transform_chain(&part->transform, outer);
     if (part->column.figure)
-        return add_column(reach, &part->column, &place);
+        return add_column(reach, &part->column, &transform);
     if (part->methods)
         return false;
     if (part->shape)
-        return add_shape(reach, part, &place);
+        return add_shape(reach, part, &transform);
     if (part->join == PART_DIFFERENCE)
-        return add_difference(reach, part, &place);
+        return add_difference(reach, part, &transform);
     bool known = part->join != PART_INTERSECTION;
     for (size_t i = 0; i < part->parts.count && known; i++)
-        known = add_reach(reach, part->parts.items[i], &place);
+        known = add_reach(reach, part->parts.items[i], &transform);
     return known;
 }
 
@@ -156,9 +156,9 @@ static bool add_reach(Reach *reach, const Part *part, const Place *outer)
 /* Where a length is 0 it stays, or with `auto` grows as the longest that is given does. */
 bool csg_resize(const CsgNode *node, Part **part)
 {
-    double size[3] = {0, 0, 0}, follows[3] = {0, 0, 0}, low[3], high[3], factors[3] = {1, 1, 1};
-    Reach  reach = {.import = node->import};
-    Place  here  = place_identity();
+    double    size[3] = {0, 0, 0}, follows[3] = {0, 0, 0}, low[3], high[3], factors[3] = {1, 1, 1};
+    Reach     reach = {.import = node->import};
+    Transform here  = transform_identity();
     if (!csg_vector(node, "newsize", size, 3) || !csg_vector(node, "auto", follows, 3) ||
         !csg_joined(node, node->parts && node->parts->figure, part) || !*part)
         return node->import->refusal.length == 0;
@@ -175,9 +175,9 @@ bool csg_resize(const CsgNode *node, Part **part)
     for (int i = 0; i < count; i++)
         if (follows[i] != 0 && !(size[i] > 0))
             factors[i] = factors[longest];
-    Place stretched = place_scale(factors);
+    Transform stretched = transform_scale(factors);
     if ((*part)->figure)
-        place_flatten(&stretched);
+        transform_flatten(&stretched);
     *part = part_around(node->import, node->line, "resized", *part);
     part_move(*part, &stretched);
     return true;
@@ -212,7 +212,7 @@ typedef struct Projection {
     bool           cut; /* where z is 0; else of all that is above and below */
 } Projection;
 
-static bool project(const Projection *projection, const Part *part, const Place *outer,
+static bool project(const Projection *projection, const Part *part, const Transform *outer,
                     Part **figure);
 
 static bool refuse_projection(const Projection *projection, const Part *part)
@@ -226,32 +226,32 @@ static bool refuse_projection(const Projection *projection, const Part *part)
 }
 
 /* Whether z stays z. */
-static bool is_upright(const Place *place)
+static bool is_upright(const Transform *transform)
 {
-    double across = fabs(place->rows[0][2]) + fabs(place->rows[1][2]) + fabs(place->rows[2][0]) +
-                    fabs(place->rows[2][1]);
-    return across <= SLACK * fabs(place->rows[2][2]);
+    double across = fabs(transform->rows[0][2]) + fabs(transform->rows[1][2]) +
+                    fabs(transform->rows[2][0]) + fabs(transform->rows[2][1]);
+    return across <= SLACK * fabs(transform->rows[2][2]);
 }
 
-static Part *footprint(const Projection *projection, const Part *part, const Place *place)
+static Part *footprint(const Projection *projection, const Part *part, const Transform *transform)
 {
     const PartColumn *column = &part->column;
-    double            reach  = fabs(place->rows[2][2]) * column->height / 2;
-    if (projection->cut && !(fabs(place->shift[2]) < reach))
+    double            reach  = fabs(transform->rows[2][2]) * column->height / 2;
+    if (projection->cut && !(fabs(transform->shift[2]) < reach))
         return NULL;
-    Part *figure = part_around(projection->node->import, part->line, "footprint", column->figure);
-    Place flat   = *place;
+    Part *figure   = part_around(projection->node->import, part->line, "footprint", column->figure);
+    Transform flat = *transform;
     flat.rows[0][2] = flat.rows[1][2] = flat.rows[2][0] = flat.rows[2][1] = 0;
-    place_flatten(&flat);
+    transform_flatten(&flat);
     figure->figure = true;
     part_move(figure, &flat);
     return figure;
 }
 
-static Part *disc(const Projection *projection, const Part *part, const Place *place)
+static Part *disc(const Projection *projection, const Part *part, const Transform *transform)
 {
-    double center[3], radius = part->balls.radius * place_factor(place);
-    place_apply(place, part->balls.points[0], center);
+    double center[3], radius = part->balls.radius * transform_factor(transform);
+    transform_apply(transform, part->balls.points[0], center);
     if (projection->cut)
         radius = sqrt(fmax(radius * radius - center[2] * center[2], 0));
     if (!(radius > 0))
@@ -261,20 +261,20 @@ static Part *disc(const Projection *projection, const Part *part, const Place *p
     figure->figure        = true;
     figure->figure_radius = radius;
     center[2]             = 0;
-    Place moved           = place_move(center);
+    Transform moved       = transform_move(center);
     part_move(figure, &moved);
     return figure;
 }
 
 /* Of the hull of points: its edges join some of them, so that all pairs tell where z is 0. */
-static Part *outline(const Projection *projection, const Part *part, const Place *place)
+static Part *outline(const Projection *projection, const Part *part, const Transform *transform)
 {
     const CsgNode *node  = projection->node;
     size_t         count = part->balls.count;
     Reach          flat  = {.import = node->import};
     double(*at)[3]       = arena_alloc(node->import->arena, count, sizeof *at);
     for (size_t i = 0; i < count; i++) {
-        place_apply(place, part->balls.points[i], at[i]);
+        transform_apply(transform, part->balls.points[i], at[i]);
         if (!projection->cut)
             add_point(&flat, at[i]);
     }
@@ -295,7 +295,7 @@ static Part *outline(const Projection *projection, const Part *part, const Place
                : NULL;
 }
 
-static bool project_join(const Projection *projection, const Part *part, const Place *place,
+static bool project_join(const Projection *projection, const Part *part, const Transform *transform,
                          Part **figure)
 {
     Part *joined = part_new(projection->node->import, part->line, part->stem);
@@ -304,7 +304,7 @@ static bool project_join(const Projection *projection, const Part *part, const P
         return refuse_projection(projection, part);
     for (size_t i = 0; i < part->parts.count; i++) {
         Part *item = NULL;
-        if (!project(projection, part->parts.items[i], place, &item))
+        if (!project(projection, part->parts.items[i], transform, &item))
             return false;
         if (item)
             part_add(projection->node->import, joined, item);
@@ -317,23 +317,23 @@ static bool project_join(const Projection *projection, const Part *part, const P
 }
 
 /* *figure stays NULL where there is nothing. */
-static bool project(const Projection *projection, const Part *part, const Place *outer,
+static bool project(const Projection *projection, const Part *part, const Transform *outer,
                     Part **figure)
 {
-    Place            place = place_chain(&part->place, outer);
-    const PartBalls *balls = &part->balls;
-    if (part->column.figure && is_upright(&place)) {
-        *figure = footprint(projection, part, &place);
+    Transform        transform = transform_chain(&part->transform, outer);
+    const PartBalls *balls     = &part->balls;
+    if (part->column.figure && is_upright(&transform)) {
+        *figure = footprint(projection, part, &transform);
         return true;
     }
     if (!part->shape && !part->methods)
-        return project_join(projection, part, &place, figure);
+        return project_join(projection, part, &transform, figure);
     if (part->methods || !balls->points || balls->radii)
         return refuse_projection(projection, part);
     if (balls->radius == 0)
-        *figure = outline(projection, part, &place);
-    else if (balls->count == 1 && place_factor(&place) > 0)
-        *figure = disc(projection, part, &place);
+        *figure = outline(projection, part, &transform);
+    else if (balls->count == 1 && transform_factor(&transform) > 0)
+        *figure = disc(projection, part, &transform);
     else
         return refuse_projection(projection, part);
     return true;
@@ -344,7 +344,7 @@ bool csg_projection(const CsgNode *node, Part **part)
     Projection projection = {.node = node};
     double     cut;
     Part      *solid = NULL;
-    Place      here  = place_identity();
+    Transform  here  = transform_identity();
     if (!csg_number(node, "cut", 0, &cut) || !csg_joined(node, false, &solid) || !solid)
         return node->import->refusal.length == 0;
     projection.cut = cut != 0;

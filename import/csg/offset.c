@@ -78,9 +78,9 @@ static Part *widened(const CsgNode *node, const Part *figure, double by)
             is_simple((const double(*)[3])to, figure->corner_count))
             part = csg_polygon_part(node, to, figure->corner_count);
     }
-    if (!part || fabs(place_factor(&figure->place) - 1) > 1e-9)
+    if (!part || fabs(transform_factor(&figure->transform) - 1) > 1e-9)
         return NULL; /* a stretched figure has other distances */
-    part_move(part, &figure->place);
+    part_move(part, &figure->transform);
     return part;
 }
 

@@ -91,14 +91,14 @@ static bool is_nothing(const CsgNode *node)
 /* Not centred, it begins at the origin. */
 static void move_corner(Part *part, const double size[3])
 {
-    Place place = place_move((double[]){size[0] / 2, size[1] / 2, size[2] / 2});
-    part_move(part, &place);
+    Transform transform = transform_move((double[]){size[0] / 2, size[1] / 2, size[2] / 2});
+    part_move(part, &transform);
 }
 
 static void rotate_upright(Part *part)
 {
-    Place place = place_rotate(0, 90 * DEGREE);
-    part_move(part, &place);
+    Transform transform = transform_rotate(0, 90 * DEGREE);
+    part_move(part, &transform);
 }
 
 static PartBalls new_balls(const CsgNode *node, size_t count, double radius)
@@ -406,25 +406,25 @@ bool csg_linear_extrude(const CsgNode *node, Part **part)
 }
 
 /* How far a part reaches from low to high in x; what is cut away counts. */
-static void reach_in_x(const Part *part, const Place *outer, double reach[2])
+static void reach_in_x(const Part *part, const Transform *outer, double reach[2])
 {
-    Place place = place_chain(&part->place, outer);
+    Transform transform = transform_chain(&part->transform, outer);
     for (size_t i = 0; i < part->balls.count && part->shape; i++) {
-        double at[3], size = hypot(place.rows[0][0], place.rows[0][1]);
-        place_apply(&place, part->balls.points[i], at);
+        double at[3], size = hypot(transform.rows[0][0], transform.rows[0][1]);
+        transform_apply(&transform, part->balls.points[i], at);
         reach[0] = fmin(reach[0], at[0] - size * part->balls.radius);
         reach[1] = fmax(reach[1], at[0] + size * part->balls.radius);
     }
     size_t count = part->join == PART_DIFFERENCE ? 1 : part->parts.count;
     for (size_t i = 0; i < count && i < part->parts.count; i++)
-        reach_in_x(part->parts.items[i], &place, reach);
+        reach_in_x(part->parts.items[i], &transform, reach);
 }
 
 bool csg_rotate_extrude(const CsgNode *node, Part **part)
 {
-    double angle, start, reach[2] = {INFINITY, -INFINITY};
-    Part  *figure = NULL;
-    Place  here   = place_identity();
+    double    angle, start, reach[2] = {INFINITY, -INFINITY};
+    Part     *figure = NULL;
+    Transform here   = transform_identity();
     if (!csg_number(node, "angle", 360, &angle) || !csg_number(node, "start", 0, &start) ||
         !csg_joined(node, true, &figure) || !figure)
         return node->import->refusal.length == 0;
@@ -434,8 +434,8 @@ bool csg_rotate_extrude(const CsgNode *node, Part **part)
         return import_refuse(node->import, node->line,
                              "the figure is on both sides of the axis, as far as is known");
     if (reach[1] <= slack) { /* the other side shows the same, half a turn later */
-        Place mirror = place_scale((double[]){-1, 1, 1});
-        figure       = part_around(node->import, node->line, "mirrored", figure);
+        Transform mirror = transform_scale((double[]){-1, 1, 1});
+        figure           = part_around(node->import, node->line, "mirrored", figure);
         part_move(figure, &mirror);
         start += 180;
     }
@@ -445,9 +445,9 @@ bool csg_rotate_extrude(const CsgNode *node, Part **part)
     rotate_upright(*part);
     if (fabs(angle) >= 360 || angle == 0)
         return true;
-    Part *wedge  = part_shape(node->import, node->line, "wedge", "wedge(%sdeg)",
-                              import_number_text(node->import, fabs(angle)));
-    Place middle = place_rotate(2, (start + angle / 2 + 90) * DEGREE);
+    Part     *wedge  = part_shape(node->import, node->line, "wedge", "wedge(%sdeg)",
+                                  import_number_text(node->import, fabs(angle)));
+    Transform middle = transform_rotate(2, (start + angle / 2 + 90) * DEGREE);
     rotate_upright(wedge); /* its middle is then at -y */
     part_move(wedge, &middle);
     Part *cut = part_new(node->import, node->line, "sector");

@@ -173,8 +173,8 @@ static bool read_function(PovReader *reader, PovCell *cell)
 static bool read_transform(PovReader *reader, PovCell *cell)
 {
     bool taken = false;
-    *cell      = (PovCell){.kind = POV_PLACE, .place = place_identity()};
-    return pov_place(reader, &cell->place, &taken);
+    *cell      = (PovCell){.kind = POV_PLACE, .transform = transform_identity()};
+    return pov_transform(reader, &cell->transform, &taken);
 }
 
 static bool read_other(PovReader *reader, PovCell *cell)

@@ -258,7 +258,7 @@ static void name_pattern(const PovReader *reader, PovLook *look)
 
 static bool pigment(PovReader *reader, PovLook *look)
 {
-    Place ignored = place_identity();
+    Transform ignored = transform_identity();
     while (!word_is(&reader->words, "}") && !word_is(&reader->words, "]")) {
         bool   taken = false;
         double color[5];
@@ -266,7 +266,8 @@ static bool pigment(PovReader *reader, PovLook *look)
             return false;
         if (take_declared(reader, look))
             continue;
-        if (!pov_place(reader, &ignored, &taken) || (!taken && !read_pattern(reader, look, &taken)))
+        if (!pov_transform(reader, &ignored, &taken) ||
+            (!taken && !read_pattern(reader, look, &taken)))
             return false;
         if (taken)
             continue;
@@ -449,14 +450,14 @@ static bool block(PovReader *reader, PovLook *look,
 
 static bool texture(PovReader *reader, PovLook *look)
 {
-    Place ignored = place_identity();
+    Transform ignored = transform_identity();
     while (!word_is(&reader->words, "}")) {
         if (!pov_release(reader))
             return false;
         bool taken = take_declared(reader, look);
-        if (!taken &&
-            (!pov_look(reader, look, &taken) || (!taken && !pov_place(reader, &ignored, &taken)) ||
-             (!taken && !read_pattern(reader, look, &taken))))
+        if (!taken && (!pov_look(reader, look, &taken) ||
+                       (!taken && !pov_transform(reader, &ignored, &taken)) ||
+                       (!taken && !read_pattern(reader, look, &taken))))
             return false;
         if (!taken && !pov_leave_out(reader, NULL))
             return false;

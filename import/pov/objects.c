@@ -187,14 +187,14 @@ static void stretch_box(Import *import, Part *part)
 {
     double *half = part->inside.numbers, size[3];
     for (int i = 0; i < 9; i++)
-        if (i / 3 != i % 3 && part->place.rows[i / 3][i % 3] != 0)
+        if (i / 3 != i % 3 && part->transform.rows[i / 3][i % 3] != 0)
             return;
-    if (part->inside.kind != PART_BOX || place_factor(&part->place) > 0)
+    if (part->inside.kind != PART_BOX || transform_factor(&part->transform) > 0)
         return;
     for (int i = 0; i < 3; i++) {
-        half[i] *= fabs(part->place.rows[i][i]);
-        size[i]                = 2 * half[i];
-        part->place.rows[i][i] = 1;
+        half[i] *= fabs(part->transform.rows[i][i]);
+        size[i]                    = 2 * half[i];
+        part->transform.rows[i][i] = 1;
     }
     Text text = {.arena = import->arena};
     text_format(&text, "box(%s)", import_vector_text(import, size, 3));
@@ -202,7 +202,7 @@ static void stretch_box(Import *import, Part *part)
 }
 
 /* `{ objects }`: what is within all of them is left of the part, as it is placed so far. */
-static bool read_clip(PovReader *reader, const Place *place, Part **part)
+static bool read_clip(PovReader *reader, const Transform *transform, Part **part)
 {
     unsigned line = reader->words.word.line;
     Part    *region;
@@ -217,16 +217,16 @@ static bool read_clip(PovReader *reader, const Place *place, Part **part)
         region = region->parts.items[0];
     reader->depth--;
     return word_expect(&reader->words, "}") &&
-           (!*part || pov_clip(reader, place, part, line, region));
+           (!*part || pov_clip(reader, transform, part, line, region));
 }
 
 /* The modifiers of an object, up to its `}`; what they cut is another part. */
 static bool read_modifiers(PovReader *reader, const char *name, Part **part)
 {
-    WordReader *words    = &reader->words;
-    PovLook     look     = reader->usual;
-    Place       place    = place_identity();
-    bool        inverted = false;
+    WordReader *words     = &reader->words;
+    PovLook     look      = reader->usual;
+    Transform   transform = transform_identity();
+    bool        inverted  = false;
     while (!word_is(words, "}")) {
         bool   taken = false;
         double color[5];
@@ -239,7 +239,7 @@ static bool read_modifiers(PovReader *reader, const char *name, Part **part)
             continue;
         }
         if (word_is(words, "clipped_by")) {
-            if (!read_clip(reader, &place, part))
+            if (!read_clip(reader, &transform, part))
                 return false;
             continue;
         }
@@ -249,7 +249,8 @@ static bool read_modifiers(PovReader *reader, const char *name, Part **part)
             words_advance(words);
             continue;
         }
-        if (!pov_place(reader, &place, &taken) || (!taken && !pov_look(reader, &look, &taken)))
+        if (!pov_transform(reader, &transform, &taken) ||
+            (!taken && !pov_look(reader, &look, &taken)))
             return false;
         if (taken)
             continue;
@@ -270,8 +271,8 @@ static bool read_modifiers(PovReader *reader, const char *name, Part **part)
     }
     if (!*part)
         return true;
-    place = place_mirrored(&place);
-    part_move(*part, &place);
+    transform = transform_mirrored(&transform);
+    part_move(*part, &transform);
     stretch_box(reader->import, *part);
     (*part)->look    = pov_look_text(reader, &look);
     (*part)->outside = (*part)->outside != (inverted && !pov_is_sheet(*part));

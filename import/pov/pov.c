@@ -111,29 +111,29 @@ static bool statement_or_less(PovReader *reader)
     return word_is(&reader->words, "{") ? pov_skip_block(reader) : true;
 }
 
-static void add_placed(PovReader *reader, Part *part, const Place *place, const char *look,
+static void add_placed(PovReader *reader, Part *part, const Transform *transform, const char *look,
                        bool outside)
 {
-    Part *placed    = part_around(reader->import, part->line, part->stem, part);
-    placed->place   = *place;
-    placed->look    = look;
-    placed->outside = outside;
+    Part *placed      = part_around(reader->import, part->line, part->stem, part);
+    placed->transform = *transform;
+    placed->look      = look;
+    placed->outside   = outside;
     part_add(reader->import, reader->shown, placed);
 }
 
 /* POV-Ray's rays begin inside of solids, too, and see their surface from there.  Here they would end
    where they begin, so that such a solid becomes what is outside of it, which has the same surface.
    Parts of a union come apart: what is inside of one of them is seen. */
-static void add_seen(PovReader *reader, Part *part, const Place *place, const char *look)
+static void add_seen(PovReader *reader, Part *part, const Transform *transform, const char *look)
 {
-    Place  back = *place, all = place_chain(&part->place, place);
-    double eye[3];
+    Transform back = *transform, all = transform_chain(&part->transform, transform);
+    double    eye[3];
     pov_point(reader->view.location, eye);
-    bool inside = place_invert(&back);
-    place_apply(&back, eye, eye);
+    bool inside = transform_invert(&back);
+    transform_apply(&back, eye, eye);
     inside = inside && part_holds(part, eye);
     if (!inside || part->shape || part->join != PART_UNION || part->methods || part->outside) {
-        add_placed(reader, part, place, look, inside);
+        add_placed(reader, part, transform, look, inside);
         return;
     }
     for (size_t i = 0; i < part->parts.count; i++)
@@ -141,27 +141,27 @@ static void add_seen(PovReader *reader, Part *part, const Place *place, const ch
 }
 
 /* How far the planes of a part are from a point at most. */
-static double farthest_plane(const Part *part, const Place *around, const double point[3])
+static double farthest_plane(const Part *part, const Transform *around, const double point[3])
 {
-    Place  place = place_chain(&part->place, around), back = place;
-    double most = 0, p[3], foot[3];
-    if (part->inside.kind == PART_HALF_SPACE && place_invert(&back)) {
+    Transform transform = transform_chain(&part->transform, around), back = transform;
+    double    most = 0, p[3], foot[3];
+    if (part->inside.kind == PART_HALF_SPACE && transform_invert(&back)) {
         const double *n = part->inside.numbers;
-        place_apply(&back, point, p);
+        transform_apply(&back, point, p);
         add_scaled3(foot, p, n[3] - dot3(n, p), n);
-        place_apply(&place, foot, foot);
+        transform_apply(&transform, foot, foot);
         most = distance3(foot, point);
     }
     for (size_t i = 0; i < part->parts.count; i++)
-        most = fmax(most, farthest_plane(part->parts.items[i], &place, point));
+        most = fmax(most, farthest_plane(part->parts.items[i], &transform, point));
     return most;
 }
 
 static void look_around(PovReader *reader)
 {
-    Part  *all  = reader->shown, *part;
-    Place  here = place_identity();
-    double eye[3];
+    Part     *all  = reader->shown, *part;
+    Transform here = transform_identity();
+    double    eye[3];
     pov_point(reader->view.location, eye);
     reader->shown        = part_new(reader->import, all->line, all->stem);
     reader->view.horizon = farthest_plane(all, &here, eye);
@@ -177,9 +177,9 @@ static void look_around(PovReader *reader)
 /* Where the camera mirrors its picture, space is mirrored once more instead. */
 static void mirror(PovReader *reader)
 {
-    Part *all     = reader->shown;
-    Place back    = place_scale((double[]){1, 1, -1});
-    reader->shown = part_new(reader->import, all->line, all->stem);
+    Part     *all  = reader->shown;
+    Transform back = transform_scale((double[]){1, 1, -1});
+    reader->shown  = part_new(reader->import, all->line, all->stem);
     for (size_t i = 0; i < all->parts.count; i++)
         add_placed(reader, all->parts.items[i], &back, NULL, false);
 }

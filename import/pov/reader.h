@@ -4,7 +4,7 @@
  * POV-Ray's space is left-handed: its z points away from the eye, that of
  * scenes towards it.  What is read is in POV-Ray's space.  It changes the sign
  * of z when it becomes a part, or is written: points by pov_point, maps by
- * place_mirrored.
+ * transform_mirrored.
  */
 #ifndef KRS_IMPORT_POV_READER_H
 #define KRS_IMPORT_POV_READER_H
@@ -88,7 +88,7 @@ typedef struct PovCell {
     const char      *string;
     Part            *part;
     PovLook          look;
-    Place            place;
+    Transform        transform;
     const PovView   *view;
     const PovLight  *light;
     const PovMacro  *macro;
@@ -246,9 +246,9 @@ bool pov_skip_block(PovReader *reader);
 /* A word that is left out with a note (`what` NULL: without one), and the
  * values or the block behind it. */
 bool pov_leave_out(PovReader *reader, const char *what);
-/* `translate`, `rotate`, `scale`, `matrix`: adds to a place in POV-Ray's space.
+/* `translate`, `rotate`, `scale`, `matrix`: adds to a transform in POV-Ray's space.
    *taken: it was one of them. */
-bool pov_place(PovReader *reader, Place *place, bool *taken);
+bool pov_transform(PovReader *reader, Transform *transform, bool *taken);
 /* In the space of scenes. */
 void pov_point(const double q[3], double p[3]);
 
@@ -295,7 +295,8 @@ Part *pov_figure(PovReader *reader, unsigned line, double (*points)[3], size_t c
 bool pov_is_sheet(const Part *part);
 /* Cuts the surface of an object that has been placed so far in POV-Ray's space; the region is where
    scenes have it. */
-bool pov_clip(PovReader *reader, const Place *place, Part **part, unsigned line, Part *region);
+bool pov_clip(PovReader *reader, const Transform *transform, Part **part, unsigned line,
+              Part *region);
 /* Leaves the side of a column. */
 bool pov_open(PovReader *reader, unsigned line, Part **part);
 

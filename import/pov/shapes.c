@@ -17,8 +17,8 @@ static void move_to(Part *part, const double q[3])
 {
     double p[3];
     pov_point(q, p);
-    Place place = place_move(p);
-    part_move(part, &place);
+    Transform transform = transform_move(p);
+    part_move(part, &transform);
 }
 
 static bool positive(PovReader *reader, unsigned line, double number)

@@ -61,19 +61,19 @@ static Part *both(Import *import, PartJoin join, Part *a, Part *b)
 }
 
 /* `equation` as the language has it, within `own`, a region of the same space, if there is one. */
-static void add_sheet(Cut *cut, const Part *like, const Place *place, const char *look,
+static void add_sheet(Cut *cut, const Part *like, const Transform *transform, const char *look,
                       Part *region, const char *equation, const char *own)
 {
     Part *surface = part_shape(cut->import, like->line, "surface", "%s", equation);
     Part *part = part_new(cut->import, like->line, "sheet"), *extent = NULL;
     if (own) {
-        extent        = part_shape(cut->import, like->line, "extent", "%s", own);
-        extent->place = *place;
+        extent            = part_shape(cut->import, like->line, "extent", "%s", own);
+        extent->transform = *transform;
     }
-    surface->place    = *place;
-    surface->equation = surface->shape;
-    part->join        = PART_CLIP;
-    part->look        = look;
+    surface->transform = *transform;
+    surface->equation  = surface->shape;
+    part->join         = PART_CLIP;
+    part->look         = look;
     part_add(cut->import, part, surface);
     part_add(cut->import, part, both(cut->import, PART_INTERSECTION, extent, region));
     part_add(cut->import, cut->sheets, part);
@@ -106,7 +106,7 @@ static const char *formatted(Import *import, const char *format, ...)
 }
 
 /* Its side, and the discs that end it. */
-static void cut_column(Cut *cut, const Part *part, const Place *place, const char *look,
+static void cut_column(Cut *cut, const Part *part, const Transform *transform, const char *look,
                        Part *region)
 {
     Import       *import = cut->import;
@@ -118,7 +118,7 @@ static void cut_column(Cut *cut, const Part *part, const Place *place, const cha
                                    import_number_text(import, 1.01 * hypot(half, wide)),
                                    import_vector_text(import, n, 3), height,
                                    import_vector_text(import, back, 3), height);
-    add_sheet(cut, part, place, look, region,
+    add_sheet(cut, part, transform, look, region,
               formatted(import, "algebraic(x^2 + y^2 + z^2 - (%s)^2 == (%s + %s * (%s))^2)", axis,
                         import_number_text(import, (radii[0] + radii[1]) / 2),
                         import_number_text(import, (radii[1] - radii[0]) / (2 * half)), axis),
@@ -126,25 +126,26 @@ static void cut_column(Cut *cut, const Part *part, const Place *place, const cha
     for (int i = 0; i < 2 && !cut->open; i++)
         if (radii[i] > 0)
             add_sheet(
-                cut, part, place, look, region,
+                cut, part, transform, look, region,
                 formatted(import, "algebraic(%s == %s)", axis, at[i]),
                 formatted(import, "sphere(%s)", import_number_text(import, hypot(half, radii[i]))));
 }
 
-static void cut_box(Cut *cut, const Part *part, const Place *place, const char *look, Part *region)
+static void cut_box(Cut *cut, const Part *part, const Transform *transform, const char *look,
+                    Part *region)
 {
     for (int i = 0; i < 3; i++) {
         double size[3];
         for (int k = 0; k < 3; k++)
             size[k] = (k == i ? 2.1 : 2) * part->inside.numbers[k];
-        add_sheet(cut, part, place, look, region,
+        add_sheet(cut, part, transform, look, region,
                   formatted(cut->import, "algebraic(%c^2 == %s^2)", "xyz"[i],
                             import_number_text(cut->import, part->inside.numbers[i])),
                   formatted(cut->import, "box(%s)", import_vector_text(cut->import, size, 3)));
     }
 }
 
-static bool cut_shape(Cut *cut, const Part *part, const Place *place, const char *look,
+static bool cut_shape(Cut *cut, const Part *part, const Transform *transform, const char *look,
                       Part *region)
 {
     Import       *import = cut->import;
@@ -153,27 +154,27 @@ static bool cut_shape(Cut *cut, const Part *part, const Place *place, const char
     const char   *r      = import_number_text(import, n[0]);
     const char   *around = ends ? NULL : formatted(import, "sphere(%g)", FAR_AWAY);
     if (part->inside.kind == PART_BALL) {
-        add_sheet(cut, part, place, look, region,
+        add_sheet(cut, part, transform, look, region,
                   formatted(import, "algebraic(x^2 + y^2 + z^2 == %s^2)", r),
                   ends ? NULL
                        : formatted(import, "sphere(%s)", import_number_text(import, 1.01 * n[0])));
     } else if (part->inside.kind == PART_RING) {
         double outer = 1.01 * (n[0] + n[1]);
-        add_sheet(cut, part, place, look, region,
+        add_sheet(cut, part, transform, look, region,
                   formatted(import, "algebraic((x^2 + y^2 + z^2 + %s)^2 == 4 * %s^2 * (x^2 + z^2))",
                             import_number_text(import, n[0] * n[0] - n[1] * n[1]), r),
                   ends ? NULL : formatted(import, "sphere(%s)", import_number_text(import, outer)));
     } else if (part->inside.kind == PART_ROUND) {
-        cut_column(cut, part, place, look, region);
+        cut_column(cut, part, transform, look, region);
     } else if (part->inside.kind == PART_BOX) {
-        cut_box(cut, part, place, look, region);
+        cut_box(cut, part, transform, look, region);
     } else if (part->inside.kind == PART_HALF_SPACE) {
-        add_sheet(cut, part, place, look, region,
+        add_sheet(cut, part, transform, look, region,
                   formatted(import, "algebraic(%s == %s)", along(import, n),
                             import_number_text(import, n[3])),
                   around);
     } else if (part->equation) {
-        add_sheet(cut, part, place, look, region, part->equation,
+        add_sheet(cut, part, transform, look, region, part->equation,
                   part->extent ? part->extent : around);
     } else {
         return import_refuse(import, cut->line, "`%s` of a %s is not translated", cut->name,
@@ -184,27 +185,28 @@ static bool cut_shape(Cut *cut, const Part *part, const Place *place, const char
     return true;
 }
 
-static Part *placed(Import *import, Part *part, const Place *place)
+static Part *placed(Import *import, Part *part, const Transform *transform)
 {
-    static const Place here = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}};
-    part->shared            = true;
-    if (memcmp(place, &here, sizeof here) == 0)
+    static const Transform here = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}};
+    part->shared                = true;
+    if (memcmp(transform, &here, sizeof here) == 0)
         return part;
-    Part *moved  = part_around(import, part->line, part->stem, part);
-    moved->place = *place;
+    Part *moved      = part_around(import, part->line, part->stem, part);
+    moved->transform = *transform;
     return moved;
 }
 
 /* The region within which the surface of item i of a join is seen. */
-static Part *region_of(Cut *cut, const Part *join, size_t i, const Place *place, Part *region)
+static Part *region_of(Cut *cut, const Part *join, size_t i, const Transform *transform,
+                       Part *region)
 {
     for (size_t k = 0; k < join->parts.count && join->join != PART_UNION; k++)
         if (k != i && (k == 0 || join->join == PART_INTERSECTION))
             region = both(cut->import, PART_INTERSECTION, region,
-                          placed(cut->import, join->parts.items[k], place));
+                          placed(cut->import, join->parts.items[k], transform));
     for (size_t k = 1; k < join->parts.count && join->join == PART_DIFFERENCE; k++)
         if (k != i) {
-            Part *without = placed(cut->import, join->parts.items[k], place);
+            Part *without = placed(cut->import, join->parts.items[k], transform);
             if (region) {
                 region = both(cut->import, PART_DIFFERENCE, region, without);
             } else {
@@ -216,17 +218,17 @@ static Part *region_of(Cut *cut, const Part *join, size_t i, const Place *place,
 }
 
 /* Adds the surfaces of a part, which is placed within what is at `outer`. */
-static bool cut_part(Cut *cut, Part *part, const Place *outer, const char *look, Part *region)
+static bool cut_part(Cut *cut, Part *part, const Transform *outer, const char *look, Part *region)
 {
-    Place place = place_chain(&part->place, outer);
-    bool  many  = part->parts.count > 1;
-    look        = part->look ? part->look : look;
+    Transform transform = transform_chain(&part->transform, outer);
+    bool      many      = part->parts.count > 1;
+    look                = part->look ? part->look : look;
     if (part->join == PART_CLIP)
-        return cut_part(cut, part->parts.items[0], &place, look,
+        return cut_part(cut, part->parts.items[0], &transform, look,
                         both(cut->import, PART_INTERSECTION, region,
-                             placed(cut->import, part->parts.items[1], &place)));
+                             placed(cut->import, part->parts.items[1], &transform)));
     if (part->shape)
-        return cut_shape(cut, part, &place, look, region);
+        return cut_shape(cut, part, &transform, look, region);
     if (part->methods || part->join > PART_DIFFERENCE || (many && part->outside) ||
         (many && strcmp(part->stem, "merge") == 0))
         return import_refuse(cut->import, cut->line, "`%s` of %s is not translated", cut->name,
@@ -234,8 +236,8 @@ static bool cut_part(Cut *cut, Part *part, const Place *outer, const char *look,
                              : part->join == PART_UNION ? part->stem
                                                         : "such a part");
     for (size_t i = 0; i < part->parts.count; i++)
-        if (!cut_part(cut, part->parts.items[i], &place, look,
-                      region_of(cut, part, i, &place, region)))
+        if (!cut_part(cut, part->parts.items[i], &transform, look,
+                      region_of(cut, part, i, &transform, region)))
             return false;
     return true;
 }
@@ -243,23 +245,24 @@ static bool cut_part(Cut *cut, Part *part, const Place *outer, const char *look,
 static Part *cut_whole(Import *import, Part *part, const char *name, unsigned line, bool open,
                        Part *region)
 {
-    Cut   cut  = {.import = import,
-                  .sheets = part_new(import, part->line, part->stem),
-                  .name   = name,
-                  .line   = line,
-                  .open   = open};
-    Place here = place_identity();
+    Cut       cut  = {.import = import,
+                      .sheets = part_new(import, part->line, part->stem),
+                      .name   = name,
+                      .line   = line,
+                      .open   = open};
+    Transform here = transform_identity();
     return cut_part(&cut, part, &here, NULL, region) ? cut.sheets : NULL;
 }
 
-bool pov_clip(PovReader *reader, const Place *place, Part **part, unsigned line, Part *region)
+bool pov_clip(PovReader *reader, const Transform *transform, Part **part, unsigned line,
+              Part *region)
 {
-    Place back = place_mirrored(place);
+    Transform back = transform_mirrored(transform);
     if (pov_is_sheet(region))
         return import_refuse(reader->import, line,
                              "`clipped_by` what is clipped is not translated");
-    if (!place_invert(&back))
-        return import_refuse(reader->import, line, "its place flattens this to nothing");
+    if (!transform_invert(&back))
+        return import_refuse(reader->import, line, "its transform flattens this to nothing");
     region->shared = true;
     *part          = cut_whole(reader->import, *part, "clipped_by", line, false,
                                placed(reader->import, region, &back));
@@ -278,7 +281,7 @@ bool pov_open(PovReader *reader, unsigned line, Part **part)
 /* ---- flat figures ---- */
 
 /* The axes of the plane of points, and its normal; false: they are on a line. */
-static bool frame_of(double (*points)[3], size_t count, Place *frame)
+static bool frame_of(double (*points)[3], size_t count, Transform *frame)
 {
     double x[3], y[3] = {0}, z[3] = {0}, most = 0;
     for (size_t i = 1; i < count; i++) { /* the widest triangle from the first point, twice */
@@ -307,8 +310,8 @@ static bool frame_of(double (*points)[3], size_t count, Place *frame)
 /* The plane within what stands on a figure; points are POV-Ray's, and become those of the figure. */
 static bool flat(PovReader *reader, unsigned line, double (*points)[3], size_t count, Part **part)
 {
-    Place  frame = place_identity(), back;
-    double wide  = 0;
+    Transform frame = transform_identity(), back;
+    double    wide  = 0;
     if (++reader->flat_figures >
         MOST_FIGURES) /* no scene has room for them, as it takes long to find */
         return import_refuse(reader->import, line,
@@ -319,9 +322,9 @@ static bool flat(PovReader *reader, unsigned line, double (*points)[3], size_t c
     if (!frame_of(points, count, &frame))
         return true; /* nothing is seen of it */
     back = frame;
-    place_invert(&back);
+    transform_invert(&back);
     for (size_t i = 0; i < count; i++) {
-        place_apply(&back, points[i], points[i]);
+        transform_apply(&back, points[i], points[i]);
         wide = fmax(wide, hypot(points[i][0], points[i][1]));
         if (fabs(points[i][2]) > 1e-4 * wide)
             return import_refuse(reader->import, line, "the points are not in a plane");

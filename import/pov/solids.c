@@ -175,11 +175,11 @@ Part *pov_figure(PovReader *reader, unsigned line, double (*points)[3], size_t c
 bool pov_prism(PovReader *reader, unsigned line, Part **part)
 {
     /* A figure in x and y stands along z; here it lies in x and z. */
-    static const Place upright = {{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}, {0, 0, 0}};
-    Points             points  = {0};
-    double             low, high;
-    Spline             spline = LINEAR;
-    Text               text   = {.arena = reader->import->arena};
+    static const Transform upright = {{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}, {0, 0, 0}};
+    Points                 points  = {0};
+    double                 low, high;
+    Spline                 spline = LINEAR;
+    Text                   text   = {.arena = reader->import->arena};
     for (int i = 0; i < 2; i++) {
         Spline found = read_spline(reader);
         spline       = found != LINEAR ? found : spline;
@@ -200,7 +200,7 @@ bool pov_prism(PovReader *reader, unsigned line, Part **part)
     if (!figure || low == high)
         return import_refuse(reader->import, line, "this prism has no volume");
     text_format(&text, ".extrude(%s)", import_number_text(reader->import, fabs(high - low)));
-    Place moved      = place_move((double[]){0, (low + high) / 2, 0});
+    Transform moved  = transform_move((double[]){0, (low + high) / 2, 0});
     *part            = part_around(reader->import, line, "prism", figure);
     (*part)->figure  = false;
     (*part)->methods = text.bytes;
@@ -272,8 +272,8 @@ bool pov_text(PovReader *reader, unsigned line, Part **part)
         import_note(reader->import, line, "the font `%.60s` is not found: another one is taken",
                     font);
     text_format(&text, ").extrude(%s)", import_number_text(reader->import, thickness));
-    *part       = part_shape(reader->import, line, "text", "%s", text.bytes);
-    Place moved = place_move((double[]){0, 0, -thickness / 2});
+    *part           = part_shape(reader->import, line, "text", "%s", text.bytes);
+    Transform moved = transform_move((double[]){0, 0, -thickness / 2});
     part_move(*part, &moved);
     return true;
 }
@@ -312,7 +312,7 @@ bool pov_disc(PovReader *reader, unsigned line, Part **part)
     *part = part_shape(reader->import, line, "disc", "%s", text.bytes);
     pov_point(center, p);
     add_scaled3(p, p, -0.5e-3 * radius, normal); /* its upper side is where the disc is */
-    Place moved = place_move(p);
+    Transform moved = transform_move(p);
     part_move(*part, &moved);
     return true;
 }
@@ -352,22 +352,23 @@ static bool read_component(BlobReader *blob, bool round)
     word_accept(&reader->words, "strength");
     if (pov_value_follows(reader) && !pov_number(reader, &strength))
         return false;
-    bool  moved = false;
-    Place place = place_identity();
+    bool      moved     = false;
+    Transform transform = transform_identity();
     while (!word_is(&reader->words, "}")) {
         PovLook ignored = pov_usual_look();
         bool    taken = false, looks = false;
-        if (!pov_place(reader, &place, &taken) || (!taken && !pov_look(reader, &ignored, &looks)))
+        if (!pov_transform(reader, &transform, &taken) ||
+            (!taken && !pov_look(reader, &ignored, &looks)))
             return false;
         if (!taken && !looks && !pov_leave_out(reader, "of a blob is"))
             return false;
         moved = moved || taken;
     }
-    double factor = moved ? place_factor(&place) : 1;
+    double factor = moved ? transform_factor(&transform) : 1;
     if (!(radius > 0) || factor == 0)
         return import_refuse(import, reader->words.word.line,
                              "this component of a blob is not translated");
-    place_apply(&place, a, a);
+    transform_apply(&transform, a, a);
     pov_point(a, p);
     radius *= factor;
     grow_box(blob, p, radius);
@@ -377,7 +378,7 @@ static bool read_component(BlobReader *blob, bool round)
                     blob->terms.length > 0 ? "\n    + " : "", import_number_text(import, strength),
                     from, from, import_number_text(import, radius * radius));
     } else {
-        place_apply(&place, b, b);
+        transform_apply(&transform, b, b);
         pov_point(b, q);
         grow_box(blob, q, radius);
         double way[3];
@@ -495,7 +496,7 @@ bool pov_julia(PovReader *reader, unsigned line, Part **part)
     *part = part_shape(reader->import, line, "julia", "julia(c: %s, power: %d, iterations: %d)",
                        import_vector_text(reader->import, c.v, 4), power,
                        (int)fmin(fmax(iterations, 1), 64));
-    Place mirror = place_scale((double[]){1, 1, -1});
+    Transform mirror = transform_scale((double[]){1, 1, -1});
     part_move(*part, &mirror);
     return true;
 }

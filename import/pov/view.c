@@ -44,17 +44,17 @@ static void widen(PovView *view)
 }
 
 /* A camera is moved as it is at this word: what stands behind it is where it says. */
-static void move_camera(PovReader *reader, PovView *view, const Place *place)
+static void move_camera(PovReader *reader, PovView *view, const Transform *transform)
 {
-    Place turn = *place;
+    Transform turn = *transform;
     memset(turn.shift, 0, sizeof turn.shift);
-    place_apply(place, view->location, view->location);
-    place_apply(place, view->look_at, view->look_at);
-    place_apply(&turn, view->direction, view->direction);
-    place_apply(&turn, view->right, view->right);
-    place_apply(&turn, view->up, view->up);
+    transform_apply(transform, view->location, view->location);
+    transform_apply(transform, view->look_at, view->look_at);
+    transform_apply(&turn, view->direction, view->direction);
+    transform_apply(&turn, view->right, view->right);
+    transform_apply(&turn, view->up, view->up);
     if (view->looks)
-        place_apply(&turn, view->sky, view->sky);
+        transform_apply(&turn, view->sky, view->sky);
     double slack = 1e-6 * length3(view->right) * length3(view->up);
     if (fabs(dot3(view->right, view->up)) > slack)
         import_note(reader->import, reader->words.word.line, "the camera is not sheared");
@@ -116,12 +116,12 @@ static bool camera_lens(PovReader *reader, PovView *view, bool *taken)
 
 static bool camera_word(PovReader *reader, PovView *view)
 {
-    bool  taken = false, moved = false;
-    Place place = place_identity();
-    if (!pov_release(reader) || !pov_place(reader, &place, &moved))
+    bool      taken = false, moved = false;
+    Transform transform = transform_identity();
+    if (!pov_release(reader) || !pov_transform(reader, &transform, &moved))
         return false;
     if (moved) {
-        move_camera(reader, view, &place);
+        move_camera(reader, view, &transform);
         return true;
     }
     PovCell *own = pov_take(reader, POV_CAMERA);
@@ -210,12 +210,12 @@ bool pov_camera(PovReader *reader, PovView *view)
     return word_expect(&reader->words, "}");
 }
 
-static bool light_word(PovReader *reader, PovLight *light, Place *place)
+static bool light_word(PovReader *reader, PovLight *light, Transform *transform)
 {
     bool taken = false;
     if (!pov_release(reader))
         return false;
-    if (!pov_place(reader, place, &taken) || taken)
+    if (!pov_transform(reader, transform, &taken) || taken)
         return taken;
     if (word_accept(&reader->words, ";") || word_accept(&reader->words, ","))
         return true;
@@ -238,9 +238,9 @@ static bool light_word(PovReader *reader, PovLight *light, Place *place)
 
 bool pov_light(PovReader *reader, PovLight *light)
 {
-    Place place = place_identity();
-    *light      = (PovLight){
-             .line = reader->words.word.line, .color = {1, 1, 1}, .full = 30, .falloff = 45};
+    Transform transform = transform_identity();
+    *light              = (PovLight){
+                     .line = reader->words.word.line, .color = {1, 1, 1}, .full = 30, .falloff = 45};
     words_advance(&reader->words);
     if (!word_expect(&reader->words, "{"))
         return false;
@@ -255,10 +255,10 @@ bool pov_light(PovReader *reader, PovLight *light)
             return false;
     }
     while (!word_is(&reader->words, "}"))
-        if (!light_word(reader, light, &place))
+        if (!light_word(reader, light, &transform))
             return false;
-    place_apply(&place, light->position, light->position);
-    place_apply(&place, light->target, light->target);
+    transform_apply(&transform, light->position, light->position);
+    transform_apply(&transform, light->target, light->target);
     if (!light->parallel)
         import_note(reader->import, light->line,
                     "lights grow weaker with distance; they are as bright as in POV-Ray where the "
@@ -294,15 +294,16 @@ bool pov_sky_look(PovReader *reader, PovLook *sky)
     if (!word_expect(&reader->words, "{"))
         return false;
     while (!word_is(&reader->words, "}")) {
-        bool     taken   = false;
-        Place    nowhere = place_identity();
-        PovCell *own     = pov_take(reader, POV_SKY);
+        bool      taken   = false;
+        Transform nowhere = transform_identity();
+        PovCell  *own     = pov_take(reader, POV_SKY);
         if (own) {
             *sky = own->look;
             continue;
         }
         PovLook layer = pov_usual_look();
-        if (!pov_look(reader, &layer, &taken) || (!taken && !pov_place(reader, &nowhere, &taken)) ||
+        if (!pov_look(reader, &layer, &taken) ||
+            (!taken && !pov_transform(reader, &nowhere, &taken)) ||
             (!taken && !pov_leave_out(reader, "of a `sky_sphere` is")))
             return false;
         if (layer.colored)

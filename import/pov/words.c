@@ -66,18 +66,18 @@ void pov_point(const double q[3], double p[3])
 }
 
 /* About x, then about y, then about z. */
-static Place turns(const double angles[3])
+static Transform turns(const double angles[3])
 {
-    Place place = place_identity();
+    Transform transform = transform_identity();
     for (int axis = 0; axis < 3; axis++) {
-        Place turn = place_rotate(axis, angles[axis] * DEGREE);
-        place      = place_chain(&place, &turn);
+        Transform turn = transform_rotate(axis, angles[axis] * DEGREE);
+        transform      = transform_chain(&transform, &turn);
     }
-    return place;
+    return transform;
 }
 
 /* Twelve numbers: where x, y, z and the origin go. */
-static bool read_matrix(PovReader *reader, Place *place)
+static bool read_matrix(PovReader *reader, Transform *transform)
 {
     if (!word_expect(&reader->words, "<"))
         return false;
@@ -86,21 +86,21 @@ static bool read_matrix(PovReader *reader, Place *place)
         if (!pov_number(reader, &number) || !word_expect(&reader->words, i < 11 ? "," : ">"))
             return false;
         if (i >= 9)
-            place->shift[i - 9] = number;
+            transform->shift[i - 9] = number;
         else
-            place->rows[i % 3][i / 3] = number;
+            transform->rows[i % 3][i / 3] = number;
     }
     return true;
 }
 
 /* `transform { ... }`, or the name of one. */
-static bool read_transform(PovReader *reader, Place *place)
+static bool read_transform(PovReader *reader, Transform *transform)
 {
-    PovCell *own     = pov_take(reader, POV_PLACE);
-    Place    next    = place_identity();
-    bool     inverts = false;
+    PovCell  *own     = pov_take(reader, POV_PLACE);
+    Transform next    = transform_identity();
+    bool      inverts = false;
     if (own) {
-        *place = place_chain(place, &own->place);
+        *transform = transform_chain(transform, &own->transform);
         return true;
     }
     if (!word_expect(&reader->words, "{"))
@@ -109,24 +109,24 @@ static bool read_transform(PovReader *reader, Place *place)
         bool taken = false;
         own        = pov_take(reader, POV_PLACE);
         if (own)
-            next = place_chain(&next, &own->place);
+            next = transform_chain(&next, &own->transform);
         else if (word_accept(&reader->words, "inverse"))
             inverts = true;
-        else if (!pov_place(reader, &next, &taken))
+        else if (!pov_transform(reader, &next, &taken))
             return false;
         else if (!taken)
             return word_refuse(&reader->words, "a transformation, or `}`");
     }
-    if (inverts && !place_invert(&next))
+    if (inverts && !transform_invert(&next))
         return import_refuse(reader->import, reader->words.word.line, "this has no inverse");
-    *place = place_chain(place, &next);
+    *transform = transform_chain(transform, &next);
     return word_expect(&reader->words, "}");
 }
 
-bool pov_place(PovReader *reader, Place *place, bool *taken)
+bool pov_transform(PovReader *reader, Transform *transform, bool *taken)
 {
     WordReader *words     = &reader->words;
-    Place       next      = place_identity();
+    Transform   next      = transform_identity();
     double      v[3]      = {0, 0, 0};
     bool        translate = word_is(words, "translate"), rotate = word_is(words, "rotate");
     if (!pov_release(reader))
@@ -140,7 +140,7 @@ bool pov_place(PovReader *reader, Place *place, bool *taken)
         return true;
     words_advance(words);
     if (declared)
-        return read_transform(reader, place);
+        return read_transform(reader, transform);
     if (matrix ? !read_matrix(reader, &next) : !pov_vector(reader, v))
         return false;
     if (scale && (v[0] == 0 || v[1] == 0 || v[2] == 0)) {
@@ -149,7 +149,7 @@ bool pov_place(PovReader *reader, Place *place, bool *taken)
             v[i] = v[i] == 0 ? 1 : v[i];
     }
     if (!matrix)
-        next = translate ? place_move(v) : rotate ? turns(v) : place_scale(v);
-    *place = place_chain(place, &next);
+        next = translate ? transform_move(v) : rotate ? turns(v) : transform_scale(v);
+    *transform = transform_chain(transform, &next);
     return true;
 }

@@ -118,7 +118,7 @@ Needs view_needs(const View *view)
                    .paths     = view->integrator > KRS_INTEGRATOR_PREVIEW,
                    .lens      = lens_of(&view->camera),
                    .zones     = room_for(view->zone_count),
-                   .points    = view->look == LOOK_SLOPE};
+                   .points    = view->shading == SHADING_SLOPE};
 }
 
 bool needs_are_equal(const Needs *a, const Needs *b)
@@ -152,8 +152,8 @@ void canvas_reduce(const Canvas *canvas, View *view)
     }
     if (view->zone_count > made->zones)
         view->zone_count = made->zones;
-    if (view->look == LOOK_SLOPE && !made->points)
-        view->look = LOOK_LIGHT;
+    if (view->shading == SHADING_SLOPE && !made->points)
+        view->shading = SHADING_LIGHT;
 }
 
 /* The cameras of a scene are served by its shaders from the beginning. */
@@ -256,7 +256,7 @@ static KrsStatus try_out(Canvas *canvas, const View *view)
         return status;
     canvas_set(canvas, view); /* values that are refused need no other shaders */
     status = canvas_add(canvas, FILM_COARSE, view, LEAST_SIDE, LEAST_SIDE, 1, true, NULL, NULL);
-    if (status != KRS_OK || view->look != LOOK_SLOPE)
+    if (status != KRS_OK || view->shading != SHADING_SLOPE)
         return status;
     const float point[1][3] = {{0, 0, 0}};
     float       distance;

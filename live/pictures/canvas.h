@@ -23,7 +23,7 @@ typedef struct View {
     uint32_t      samples;       /* how many make the picture complete */
     double        stops;         /* brighter than the scene's exposure */
     double        frame_seconds; /* between frames, for shutters; 0: they count as closed */
-    Look          look;
+    ShadingMode   shading;
 } View;
 
 /* A copy, which view_free frees; false: without memory. */

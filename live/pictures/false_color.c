@@ -5,10 +5,10 @@
 
 #include <math.h>
 
-const char *const look_names[LOOK_COUNT] = {
-#define LOOK(id, name, about) name,
-#include "live/pictures/looks.def"
-#undef LOOK
+const char *const shading_mode_names[SHADING_COUNT] = {
+#define SHADING_MODE(id, name, about) name,
+#include "live/pictures/shading_modes.def"
+#undef SHADING_MODE
 };
 
 /* The least and the greatest of what a picture shows; and the depth in the middle. */
@@ -61,20 +61,20 @@ static double middle_depth(const KrsPicture *picture)
 
 /* Of depths, a number that grows with them up to 1: a floor to the horizon leaves the differences of
    what is near. */
-static double value_at(const KrsPicture *picture, Look look, double middle, size_t at)
+static double value_at(const KrsPicture *picture, ShadingMode shading, double middle, size_t at)
 {
     const double depth = fmax(picture->depth[at], 0);
-    return look == LOOK_DEPTH    ? depth / (depth + middle)
-           : look == LOOK_LEVELS ? picture->level[at]
-                                 : picture->steps[at];
+    return shading == SHADING_DEPTH    ? depth / (depth + middle)
+           : shading == SHADING_LEVELS ? picture->level[at]
+                                       : picture->steps[at];
 }
 
-static Range find_range(const KrsPicture *picture, Look look)
+static Range find_range(const KrsPicture *picture, ShadingMode shading)
 {
-    Range        range = {INFINITY, -INFINITY, look == LOOK_DEPTH ? middle_depth(picture) : 1};
+    Range range = {INFINITY, -INFINITY, shading == SHADING_DEPTH ? middle_depth(picture) : 1};
     const size_t count = (size_t)picture->window.width * picture->window.height;
     for (size_t i = 0; i < count; i++) {
-        const double value = value_at(picture, look, range.middle, i);
+        const double value = value_at(picture, shading, range.middle, i);
         if (!isfinite(value))
             continue;
         range.low  = fmin(range.low, value);
@@ -92,33 +92,35 @@ static double shade_of(const KrsPicture *picture, size_t at)
     return 0.35 + 0.65 * fabs(z);
 }
 
-static void color_pixel(const KrsPicture *picture, Look look, Range range, size_t at, double slope,
-                        uint8_t *pixel)
+static void color_pixel(const KrsPicture *picture, ShadingMode shading, Range range, size_t at,
+                        double slope, uint8_t *pixel)
 {
     const float *n    = &picture->normal[3 * at];
     const double size = fmax(range.high - range.low, 1e-9);
-    const double part = (value_at(picture, look, range.middle, at) - range.low) / size;
-    if (look == LOOK_STEPS)
+    const double part = (value_at(picture, shading, range.middle, at) - range.low) / size;
+    if (shading == SHADING_STEPS)
         set_heat(pixel, part);
     else if (picture->component[at] == 0)
         set(pixel, 0.09, 0.095, 0.1);
-    else if (look == LOOK_DEPTH)
+    else if (shading == SHADING_DEPTH)
         set(pixel, 1 - 0.9 * part, 1 - 0.9 * part, 1 - 0.9 * part);
-    else if (look == LOOK_NORMALS)
+    else if (shading == SHADING_NORMALS)
         set(pixel, 0.5 + 0.5 * n[0], 0.5 + 0.5 * n[1], 0.5 + 0.5 * n[2]);
-    else if (look == LOOK_LEVELS)
+    else if (shading == SHADING_LEVELS)
         set_heat(pixel, part);
-    else if (look == LOOK_SLOPE)
+    else if (shading == SHADING_SLOPE)
         set_heat(pixel, slope);
     else
-        set_number(pixel, look == LOOK_COMPONENTS ? picture->component[at] : picture->instance[at],
+        set_number(pixel,
+                   shading == SHADING_COMPONENTS ? picture->component[at] : picture->instance[at],
                    shade_of(picture, at));
 }
 
-void false_color(const KrsPicture *picture, Look look, const float *slopes, uint8_t *pixels)
+void false_color(const KrsPicture *picture, ShadingMode shading, const float *slopes,
+                 uint8_t *pixels)
 {
-    const Range  range = find_range(picture, look);
+    const Range  range = find_range(picture, shading);
     const size_t count = (size_t)picture->window.width * picture->window.height;
     for (size_t i = 0; i < count; i++)
-        color_pixel(picture, look, range, i, slopes ? slopes[i] : 0, pixels + 4 * i);
+        color_pixel(picture, shading, range, i, slopes ? slopes[i] : 0, pixels + 4 * i);
 }

@@ -6,16 +6,17 @@
 
 #include "krs/vulkan.h"
 
-typedef enum Look {
-#define LOOK(id, name, about) LOOK_##id,
-#include "live/pictures/looks.def"
-#undef LOOK
-    LOOK_COUNT
-} Look;
-extern const char *const look_names[LOOK_COUNT];
+typedef enum ShadingMode {
+#define SHADING_MODE(id, name, about) SHADING_##id,
+#include "live/pictures/shading_modes.def"
+#undef SHADING_MODE
+    SHADING_COUNT
+} ShadingMode;
+extern const char *const shading_mode_names[SHADING_COUNT];
 
-/* Four bytes for each pixel of a picture with all planes; `look` is not LOOK_LIGHT.  `slopes` has a
-   number for each pixel, for LOOK_SLOPE alone. */
-void false_color(const KrsPicture *picture, Look look, const float *slopes, uint8_t *pixels);
+/* Four bytes for each pixel of a picture with all planes; `shading` is not SHADING_LIGHT.  `slopes` has a
+   number for each pixel, for SHADING_SLOPE alone. */
+void false_color(const KrsPicture *picture, ShadingMode shading, const float *slopes,
+                 uint8_t *pixels);
 
 #endif

@@ -202,13 +202,14 @@ static KrsStatus publish(Painter *painter, FilmKind kind, double ms)
         krs_picture_free(picture);
         return KRS_OUT_OF_MEMORY;
     }
-    if (painter->view.look == LOOK_LIGHT)
+    if (painter->view.shading == SHADING_LIGHT)
         krs_picture_to_srgb8(picture, version_scene(painter->view.version), painter->view.stops, 4,
                              shot.pixels);
     else {
-        float *slopes = painter->view.look == LOOK_SLOPE ? canvas_slopes(painter->canvas, picture)
-                                                         : NULL;
-        false_color(picture, painter->view.look, slopes, shot.pixels);
+        float *slopes = painter->view.shading == SHADING_SLOPE
+                            ? canvas_slopes(painter->canvas, picture)
+                            : NULL;
+        false_color(picture, painter->view.shading, slopes, shot.pixels);
         free(slopes);
     }
     pthread_mutex_lock(&painter->lock);
@@ -294,8 +295,8 @@ static KrsStatus show_view(Painter *painter)
         status = make(painter, FILM_FULL, view->width, view->height, 1, true);
     while (status == KRS_OK && !is_outdated(painter)) {
         const uint32_t samples = canvas_samples(painter->canvas, FILM_FULL);
-        if (samples >= view->samples || view->look != LOOK_LIGHT)
-            break; /* other looks are of the first sample */
+        if (samples >= view->samples || view->shading != SHADING_LIGHT)
+            break; /* other shading modes are of the first sample */
         status = make(painter, FILM_FULL, view->width, view->height,
                       choose_portion(painter, view->samples - samples), false);
     }

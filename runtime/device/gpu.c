@@ -13,7 +13,7 @@
 #define LEAST_TEXEL_LIMIT (1u << 16)
 #define LEAST_RANGE_LIMIT (1u << 27)
 
-static void read_properties(Gpu *gpu, unsigned pretence)
+static void read_properties(Gpu *gpu, unsigned emulation)
 {
     VkPhysicalDeviceSubgroupProperties subgroups = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES,
@@ -25,11 +25,11 @@ static void read_properties(Gpu *gpu, unsigned pretence)
     vkGetPhysicalDeviceProperties2(gpu->physical, &properties);
     gpu->properties                = properties.properties;
     VkPhysicalDeviceLimits *limits = &gpu->properties.limits;
-    if (pretence & KRS_PRETEND_LEAST_LIMITS) {
+    if (emulation & KRS_PRETEND_LEAST_LIMITS) {
         limits->maxTexelBufferElements = LEAST_TEXEL_LIMIT;
         limits->maxStorageBufferRange  = LEAST_RANGE_LIMIT;
     }
-    gpu->pretends_card = pretence & KRS_PRETEND_CARD;
+    gpu->emulates_card = emulation & KRS_PRETEND_CARD;
     gpu->texels        = devices_read_texels(limits);
     bool shuffles      = subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT &&
                     subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
@@ -130,9 +130,9 @@ failed:
     return false;
 }
 
-static bool device_create(Gpu *gpu, unsigned pretence)
+static bool device_create(Gpu *gpu, unsigned emulation)
 {
-    read_properties(gpu, pretence);
+    read_properties(gpu, emulation);
     vkGetPhysicalDeviceMemoryProperties(gpu->physical, &gpu->memory);
     return make_device(gpu) && make_commands(gpu);
 }
@@ -161,13 +161,13 @@ bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
     if (!options)
         options = &defaults;
     *gpu = (Gpu){
-        .allocator      = options->allocator,
-        .complaint      = options->complaint,
-        .working        = options->working,
-        .user           = options->user,
-        .compiling      = options->compiling,
-        .compiling_user = options->compiling_user,
-        .timeout        = options->patience > 0 ? options->patience : DEFAULT_TIMEOUT,
+        .allocator          = options->allocator,
+        .validation_message = options->complaint,
+        .working            = options->working,
+        .user               = options->user,
+        .compiling          = options->compiling,
+        .compiling_user     = options->compiling_user,
+        .timeout            = options->patience > 0 ? options->patience : DEFAULT_TIMEOUT,
     };
     cache_open(&gpu->cache, options->cache, options->allocator);
     if (instance_create(gpu, options->validation) && choose_device(gpu, options->device) &&

@@ -111,7 +111,7 @@ void gpu_name(Gpu *gpu, VkObjectType type, uint64_t handle, const char *name)
 
 bool gpu_is_cpu(const Gpu *gpu)
 {
-    return gpu->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && !gpu->pretends_card;
+    return gpu->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && !gpu->emulates_card;
 }
 
 uint64_t gpu_memory(const Gpu *gpu)

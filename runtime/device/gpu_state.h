@@ -36,7 +36,7 @@ typedef struct Gpu {
 
     VkPhysicalDeviceProperties       properties;
     VkPhysicalDeviceMemoryProperties memory;
-    bool     pretends_card; /* a device of type CPU is treated as a graphics card */
+    bool     emulates_card; /* a device of type CPU is treated as a graphics card */
     bool     texels;        /* shaders read what they only read as texels, not as buffers */
     bool     sums_lanes;    /* lanes of a subgroup can add up before they count */
     uint32_t refill_lanes;  /* of a group whose lanes exchange numbers: 8, or 4; 0: they cannot */
@@ -51,12 +51,12 @@ typedef struct Gpu {
 
     VkDebugUtilsMessengerEXT         messenger;
     PFN_vkSetDebugUtilsObjectNameEXT set_name; /* NULL without validation */
-    KrsValidationCallback           *complaint;
+    KrsValidationCallback           *validation_message;
     KrsWorkingCallback              *working;
     void                            *user;
     KrsCompilingCallback            *compiling;
     void                            *compiling_user;
-    uint64_t                         complaints;
+    uint64_t                         validation_messages;
 
     double timeout; /* seconds that a submission may take */
     bool   stuck;   /* one took longer */

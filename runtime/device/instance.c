@@ -8,7 +8,7 @@
 
 #define VALIDATION_LAYER "VK_LAYER_KHRONOS_validation"
 
-static VKAPI_ATTR VkBool32 VKAPI_CALL take_complaint(
+static VKAPI_ATTR VkBool32 VKAPI_CALL take_validation_message(
     VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtilsMessageTypeFlagsEXT type,
     const VkDebugUtilsMessengerCallbackDataEXT *data, void *user)
 {
@@ -18,13 +18,13 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL take_complaint(
     const char *message = data->pMessage ? data->pMessage : "";
     const char *name    = data->pMessageIdName ? data->pMessageIdName : "";
     char        text[8192];
-    gpu->complaints++;
+    gpu->validation_messages++;
     if (!strstr(message, name)) { /* some versions of the layers leave it out */
         snprintf(text, sizeof text, "%s: %s", name, message);
         message = text;
     }
-    if (gpu->complaint)
-        gpu->complaint(gpu->user, message);
+    if (gpu->validation_message)
+        gpu->validation_message(gpu->user, message);
     return VK_FALSE;
 }
 
@@ -54,7 +54,7 @@ static VkDebugUtilsMessengerCreateInfoEXT listener(Gpu *gpu)
         .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
                            VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
         .messageType     = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
-        .pfnUserCallback = take_complaint,
+        .pfnUserCallback = take_validation_message,
         .pUserData       = gpu,
     };
 }

@@ -158,16 +158,6 @@ Light find_light(uint number)
                  up.xyz, up.w);
 }
 
-// The part of its light that a light sends into a direction: 1, unless it shines to one side.
-float find_share(Light light, vec3 direction)
-{
-    bool  rectangle = (light.kind & LIGHT_RECTANGLE) != 0u, spot = (light.kind & LIGHT_SPOT) != 0u;
-    vec3  axis = cross(light.right, light.up);
-    float cosine = dot(axis, direction) * inversesqrt(max(dot(axis, axis), 1e-30));
-    float share = rectangle ? max(cosine, 0.0) : 1.0;
-    return spot ? share * smoothstep(light.outer, light.inner + 1e-6, cosine) : share;
-}
-
 // A row of the hit in a slot (hit_lists.glsl).
 vec4 load_hit(uint row, uint slot) { return load_hit_row(HIT_ROWS * slot + row); }
 

@@ -19,6 +19,7 @@
 #include "frame.glsl"
 #include "hit_lists.glsl"
 #include "shared.glsl"
+#include "light_types.glsl"
 #include "hemisphere.glsl"
 #include "occluders.glsl"
 #ifdef PATH_RAYS
@@ -141,11 +142,7 @@ void aim_at_light(vec3 normal, vec2 square, vec2 disc)
         vec3 right, up;
         vec2 point = radius * disc;
         find_frame(axis, right, up);
-        if ((light.kind & LIGHT_RECTANGLE) != 0u) {
-            point = 2.0 * square - 1.0;
-            right = light.right;
-            up = light.up;
-        }
+        place_on_light(light, square, point, right, up);
         toward += point.x * right + point.y * up;
         light_distance = length(toward);
         end = positional ? light_distance : end;

@@ -20,6 +20,7 @@
 #include "results.glsl"
 #include "planes.glsl"
 #include "sky_means.glsl"
+#include "light_types.glsl"
 #include "optics.glsl"
 #include "openness.glsl"
 #ifdef MIRRORS

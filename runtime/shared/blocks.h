@@ -395,15 +395,17 @@ struct Light {
     vec3  vector;   /* direction towards the light (unit), or its position */
     float softness; /* angular diameter in radians, or radius */
     vec3  color;
-    uint  kind;  /* the bits below */
-    vec3  right; /* of a light that shines to one side: half its width; of a spot a unit vector */
+    uint  kind;  /* the bits below, and its type (light_types.def) times LIGHT_FIRST_TYPE */
+    vec3  right; /* of a light that shines to one side, as long as its type says */
     float inner; /* of a spot: the cosine within which it has its full light, */
-    vec3  up;    /* likewise half its height; the cross product of both is where it shines */
+    vec3  up;    /* likewise; the cross product of both is where it shines */
     float outer; /* and the one outside of which it has none */
 };
 CONSTANT(LIGHT_ROWS, 4);
-CONSTANT(LIGHT_RECTANGLE, 4);
-CONSTANT(LIGHT_SPOT, 8);
+CONSTANT(LIGHT_POSITIONAL, 1);
+CONSTANT(LIGHT_CASTS_SHADOWS, 2);
+CONSTANT(LIGHT_SPOT, 4);
+CONSTANT(LIGHT_FIRST_TYPE, 8);
 /* Before the lights is albedo_table.def: ALBEDO_SIDE * ALBEDO_SIDE rows.  Behind that are balls,
    and then anisotropic_albedo_table.def: a row for each cosine, roughness and anisotropy. */
 CONSTANT(ALBEDO_SIDE, 64);
@@ -415,8 +417,6 @@ CONSTANT(WIDE_COSINES, 12);
 CONSTANT(WIDE_ROUGHNESSES, 16);
 CONSTANT(WIDE_ANISOTROPIES, 5);
 CONSTANT(LIGHTS_AT, 4096 + 2 * 32 + 12 * 16 * 5); /* the row of the first light */
-CONSTANT(LIGHT_POSITIONAL, 1);
-CONSTANT(LIGHT_CASTS_SHADOWS, 2);
 
 /* A ball around something that emits light (emissive.glsl). */
 struct EmissiveBall {

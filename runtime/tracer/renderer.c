@@ -196,7 +196,10 @@ KrsDevice krs_renderer_device(const KrsRenderer *renderer)
     return gpu_describe(renderer->gpu.physical);
 }
 
-uint64_t krs_renderer_complaints(const KrsRenderer *renderer) { return renderer->gpu.complaints; }
+uint64_t krs_renderer_complaints(const KrsRenderer *renderer)
+{
+    return renderer->gpu.validation_messages;
+}
 
 bool renderer_create_pixels(KrsRendering *rendering)
 {

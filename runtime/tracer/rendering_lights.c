@@ -67,20 +67,25 @@ static bool make_room(KrsRendering *rendering, size_t lights, size_t rays)
     return true;
 }
 
-static void aim_light(const KrsLight *light, LightBlock *block)
+/* Sets what a block has by the type of its light. */
+static void shape_light(const KrsLight *light, LightBlock *block)
 {
-    for (int k = 0; k < 3; k++) {
-        block->right[k] = (float)(light->right[k] * (light->rectangle ? 0.5 * light->size[0] : 1));
-        block->up[k]    = (float)(light->up[k] * (light->rectangle ? 0.5 * light->size[1] : 1));
+    double right = 1, up = 1, radius = light->softness;
+    switch (light->type) {
+#define LIGHT_TYPE(number, id, name, given, across, along, disc) \
+    case number:                                                 \
+        right = across, up = along, radius = disc;               \
+        break;
+#include "compiler/shape/light_types.def"
+    default: break;
     }
-    block->outer = (float)cos(0.5 * light->angle);
-    block->inner = (float)cos(0.5 * light->angle * (1 - light->edge));
-}
-
-/* The radius of a disc as large as a rectangle. */
-static double radius_of(const KrsLight *light)
-{
-    return light->rectangle ? sqrt(light->size[0] * light->size[1] / M_PI) : light->softness;
+    for (int k = 0; k < 3; k++) {
+        block->right[k] = (float)(light->right[k] * right);
+        block->up[k]    = (float)(light->up[k] * up);
+    }
+    block->softness = (float)radius;
+    block->outer    = (float)cos(0.5 * light->angle);
+    block->inner    = (float)cos(0.5 * light->angle * (1 - light->edge));
 }
 
 bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count,
@@ -92,11 +97,10 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
     for (size_t i = 0; i < count; i++) {
         const KrsLight *light  = &lights[i];
         const bool      shines = only == 0 || only == i + 1;
-        aim_light(light, &blocks[i]);
+        shape_light(light, &blocks[i]);
         blocks[i].kind = (light->positional ? LIGHT_POSITIONAL : 0) |
                          (light->shadow ? LIGHT_CASTS_SHADOWS : 0) |
-                         (light->rectangle ? LIGHT_RECTANGLE : 0) | (light->spot ? LIGHT_SPOT : 0);
-        blocks[i].softness = (float)radius_of(light);
+                         (light->spot ? LIGHT_SPOT : 0) | LIGHT_FIRST_TYPE * light->type;
         for (int k = 0; k < 3; k++) {
             blocks[i].vector[k] = (float)(light->vector[k] -
                                           (light->positional ? rebase_origin[k] : 0));

@@ -370,7 +370,7 @@ static void what_cannot_be_translated_is_said_with_its_line(void **state)
                    "faces = [[0,1,2],[0,3,1],[0,2,3],[1,4,2],[1,3,4],[2,4,3]]);",
                    "a.csg:1: a polyhedron that is not convex");
     assert_refused("a.csg", "multmatrix([[0,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) {cube();}",
-                   "a.csg:1: its place flattens");
+                   "a.csg:1: its transform flattens");
 }
 
 /* Of three parts two are left; the scene and the words about it name the third. */

@@ -25,12 +25,12 @@
 #include "tests/support/bench.h"
 #include "tests/support/device.h"
 
-static char complaint[2048]; /* the last */
+static char validation_message[2048]; /* the last */
 
-static void note_complaint(void *user, const char *message)
+static void note_validation_message(void *user, const char *message)
 {
     (void)user;
-    snprintf(complaint, sizeof complaint, "%s", message);
+    snprintf(validation_message, sizeof validation_message, "%s", message);
 }
 
 typedef struct Fixture {
@@ -74,12 +74,12 @@ static void add_tables(Bench *bench, Fixture *fixture, uint32_t rows)
     fixture->scene->program.table_cells = sizes.cells;
 }
 
-static Fixture open_scene(const char *text, unsigned pretence)
+static Fixture open_scene(const char *text, unsigned emulation)
 {
     KrsRendererOptions options = {.device     = tested_device(),
                                   .validation = true,
-                                  .complaint  = note_complaint,
-                                  .pretence   = pretence};
+                                  .complaint  = note_validation_message,
+                                  .pretence   = emulation};
     Fixture            fixture;
     if (krs_renderer_new(&options, &fixture.renderer) != KRS_OK)
         fail_msg("%s", krs_renderer_message(fixture.renderer));
@@ -89,9 +89,9 @@ static Fixture open_scene(const char *text, unsigned pretence)
     return fixture;
 }
 
-static Fixture open_fixture(Bench *bench, uint32_t rows, unsigned pretence)
+static Fixture open_fixture(Bench *bench, uint32_t rows, unsigned emulation)
 {
-    Fixture fixture = open_scene("show sphere(1);", pretence);
+    Fixture fixture = open_scene("show sphere(1);", emulation);
     add_tables(bench, &fixture, rows);
     return fixture;
 }
@@ -99,7 +99,7 @@ static Fixture open_fixture(Bench *bench, uint32_t rows, unsigned pretence)
 static void close_fixture(Fixture *fixture)
 {
     if (krs_renderer_complaints(fixture->renderer) != 0)
-        fail_msg("the validation layers complain: %s", complaint);
+        fail_msg("the validation layers complain: %s", validation_message);
     krs_frame_free(fixture->frame);
     krs_scene_free(fixture->scene);
     krs_renderer_free(fixture->renderer);
@@ -206,14 +206,14 @@ static void assert_frame_is_seen(Bench *bench, const Fixture *fixture, KrsRender
     }
 }
 
-static void rows_are_those_of_the_frame(Bench *bench, unsigned pretence)
+static void rows_are_those_of_the_frame(Bench *bench, unsigned emulation)
 {
     static const double frames[][2] = {{0, 0.5}, {0, 0.5},   {1.5, 0.5},
                                        {1.5, 2}, {-8, 1.25}, {0, 0.5}};
-    Fixture             fixture     = open_scene(moving, pretence);
+    Fixture             fixture     = open_scene(moving, emulation);
     KrsRendering       *rendering;
     assert_true(fixture.scene->program.rows_vary);
-    assert_int_equal(fixture.renderer->gpu.texels, pretence == 0);
+    assert_int_equal(fixture.renderer->gpu.texels, emulation == 0);
     assert_int_equal(krs_rendering_new(fixture.renderer, fixture.scene, &rendering), KRS_OK);
     for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
         bool same = i > 0 && frames[i][0] == frames[i - 1][0] && frames[i][1] == frames[i - 1][1];
@@ -274,9 +274,9 @@ static void pictures_are_those_of_the_frame(void **state)
 }
 
 /* A device with room for as much as the tables have, or for less. */
-static void compare_with_room(Bench *bench, unsigned pretence, bool enough)
+static void compare_with_room(Bench *bench, unsigned emulation, bool enough)
 {
-    Fixture                 fixture = open_fixture(bench, 2000, pretence);
+    Fixture                 fixture = open_fixture(bench, 2000, emulation);
     VkPhysicalDeviceLimits *limits  = &fixture.renderer->gpu.properties.limits;
     size_t                  rows    = krs_table_rows(fixture.scene) * 16;
     size_t                  cells   = krs_table_cells(fixture.scene) * 8;

@@ -39,26 +39,26 @@ static void a_planted_hazard_is_reported(void **state)
     Buffer     from, to;
     assert_true(gpu_open(&gpu, &(KrsRendererOptions){.device     = tested_device(),
                                                      .validation = true,
-                                                     .complaint  = note_complaint,
+                                                     .complaint  = note_validation_message,
                                                      .user       = &fixture}));
     assert_true(buffer_create(&gpu, &from, 1024, ON_DEVICE, "source"));
     assert_true(buffer_create(&gpu, &to, 1024, SHARED, "target"));
 
     copy_between(&gpu, &from, &to, true);
-    assert_int_equal(fixture.complaints, 0);
+    assert_int_equal(fixture.validation_messages, 0);
     assert_int_equal(((uint32_t *)to.bytes)[255], 7);
 
     copy_between(&gpu, &from, &to, false); /* reads what may not be written yet */
-    assert_true(fixture.complaints > 0);
-    assert_non_null(strstr(fixture.complaint, "SYNC-HAZARD-READ-AFTER-WRITE"));
+    assert_true(fixture.validation_messages > 0);
+    assert_non_null(strstr(fixture.validation_message, "SYNC-HAZARD-READ-AFTER-WRITE"));
 
-    unsigned before = fixture.complaints;
+    unsigned before = fixture.validation_messages;
     assert_true(gpu_begin(&gpu)); /* a copy beyond the end of the buffer */
     vkCmdCopyBuffer(gpu.commands, from.buffer, to.buffer, 1,
                     &(VkBufferCopy){.srcOffset = 4096, .size = 4});
-    assert_true(fixture.complaints > before);
-    assert_non_null(strstr(fixture.complaint, "VUID-vkCmdCopyBuffer"));
-    assert_int_equal(gpu.complaints, fixture.complaints);
+    assert_true(fixture.validation_messages > before);
+    assert_non_null(strstr(fixture.validation_message, "VUID-vkCmdCopyBuffer"));
+    assert_int_equal(gpu.validation_messages, fixture.validation_messages);
 
     buffer_destroy(&gpu, &from);
     buffer_destroy(&gpu, &to);

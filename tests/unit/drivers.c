@@ -20,12 +20,12 @@
 #include "krs/vulkan.h"
 #include "tests/support/device.h"
 
-static char complaint[2048]; /* the last */
+static char validation_message[2048]; /* the last */
 
-static void note_complaint(void *user, const char *message)
+static void note_validation_message(void *user, const char *message)
 {
     (void)user;
-    snprintf(complaint, sizeof complaint, "%s", message);
+    snprintf(validation_message, sizeof validation_message, "%s", message);
 }
 
 /* ---- A scene on a device ---- */
@@ -37,13 +37,13 @@ typedef struct Fixture {
     KrsRendering *rendering;
 } Fixture;
 
-static Fixture open_fixture(const char *text, unsigned pretence)
+static Fixture open_fixture(const char *text, unsigned emulation)
 {
     KrsRendererOptions options = {.device     = tested_device(),
                                   .validation = true,
-                                  .complaint  = note_complaint,
+                                  .complaint  = note_validation_message,
                                   .early_outs = KRS_EARLY_OUTS_OFF,
-                                  .pretence   = pretence};
+                                  .pretence   = emulation};
     Fixture            fixture;
     KrsStatus          status = krs_renderer_new(&options, &fixture.renderer);
     if (status != KRS_OK)
@@ -59,7 +59,7 @@ static Fixture open_fixture(const char *text, unsigned pretence)
 static void close_fixture(Fixture *fixture)
 {
     if (krs_renderer_complaints(fixture->renderer) != 0)
-        fail_msg("the validation layers complain: %s", complaint);
+        fail_msg("the validation layers complain: %s", validation_message);
     krs_rendering_free(fixture->rendering);
     krs_frame_free(fixture->frame);
     krs_scene_free(fixture->scene);
@@ -231,12 +231,12 @@ static const Case cases[] = {
 };
 
 /* Renders a case as the device is, and as it is taken for. */
-static size_t compare(const Case *test, unsigned pretence)
+static size_t compare(const Case *test, unsigned emulation)
 {
-    Fixture plain = open_fixture(test->text, 0), pretending = open_fixture(test->text, pretence);
+    Fixture plain = open_fixture(test->text, 0), pretending = open_fixture(test->text, emulation);
     KrsPicture *a = render(&plain, &test->options), *b = render(&pretending, &test->options);
-    size_t      differ = pretence & KRS_PRETEND_LEAST_LIMITS ? difference_of_shaders(a, b)
-                                                             : difference(a, b);
+    size_t      differ = emulation & KRS_PRETEND_LEAST_LIMITS ? difference_of_shaders(a, b)
+                                                              : difference(a, b);
     if (differ > 0)
         print_message("# %s: %zu bytes differ\n", test->name, differ);
     krs_picture_free(a);
@@ -246,11 +246,11 @@ static size_t compare(const Case *test, unsigned pretence)
     return differ;
 }
 
-static void compare_all(unsigned pretence)
+static void compare_all(unsigned emulation)
 {
     size_t wrong = 0;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
-        wrong += compare(&cases[i], pretence) > 0;
+        wrong += compare(&cases[i], emulation) > 0;
     assert_int_equal(wrong, 0);
 }
 
@@ -338,10 +338,10 @@ static void a_card_is_interrupted(void **state)
 
 enum { RAYS = 300 };
 
-static void ask(unsigned pretence, KrsHit hits[RAYS])
+static void ask(unsigned emulation, KrsHit hits[RAYS])
 {
     static double origins[RAYS][3], directions[RAYS][3];
-    Fixture       fixture = open_fixture(cases[0].text, pretence);
+    Fixture       fixture = open_fixture(cases[0].text, emulation);
     for (int i = 0; i < RAYS; i++) {
         origins[i][0]    = 4;
         origins[i][1]    = 3;
@@ -365,8 +365,8 @@ static void answers_are_the_same(void **state)
     for (int i = 0; i < RAYS; i++)
         hits += plain[i].hit;
     assert_true(hits > RAYS / 4);
-    for (unsigned pretence = 1; pretence < 4; pretence++) {
-        ask(pretence, others);
+    for (unsigned emulation = 1; emulation < 4; emulation++) {
+        ask(emulation, others);
         assert_memory_equal(plain, others, sizeof plain);
     }
 }

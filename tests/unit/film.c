@@ -94,17 +94,17 @@ static const KrsRenderOptions part = {.width   = WIDTH,
                                       .mattes  = true};
 
 /* On devices whose bands are small, or into which the host cannot look, as well. */
-static const unsigned pretences[] = {0, KRS_PRETEND_CARD, KRS_PRETEND_LEAST_LIMITS,
-                                     KRS_PRETEND_CARD | KRS_PRETEND_LEAST_LIMITS};
-enum { PRETENCES = sizeof pretences / sizeof pretences[0] };
+static const unsigned emulations[] = {0, KRS_PRETEND_CARD, KRS_PRETEND_LEAST_LIMITS,
+                                      KRS_PRETEND_CARD | KRS_PRETEND_LEAST_LIMITS};
+enum { EMULATIONS = sizeof emulations / sizeof emulations[0] };
 
 static void portions_are_the_whole(void **state)
 {
     static const uint32_t portions[][SAMPLES] = {{4}, {1, 3}, {2, 1, 1}, {1, 1, 1, 1}};
     (void)state;
-    for (size_t k = 0; k < PRETENCES; k++) {
+    for (size_t k = 0; k < EMULATIONS; k++) {
         Fixture fixture;
-        fixture_open_as(&fixture, film_text, pretences[k]);
+        fixture_open_as(&fixture, film_text, emulations[k]);
         for (size_t i = 0; i < sizeof portions / sizeof portions[0]; i++)
             for (int reads = 0; reads < 2; reads++) { /* in between */
                 KrsFilm *film = new_film(&fixture, &part);
@@ -125,9 +125,9 @@ static void bands_are_swapped(void **state)
 {
     const KrsRenderOptions large = {.width = 300, .height = 200, .samples = 3, .mattes = true};
     (void)state;
-    for (size_t k = 0; k < PRETENCES; k++) {
+    for (size_t k = 0; k < EMULATIONS; k++) {
         Fixture fixture;
-        fixture_open_as(&fixture, film_text, pretences[k]);
+        fixture_open_as(&fixture, film_text, emulations[k]);
         KrsFilm *film = new_film(&fixture, &large);
         for (int n = 0; n < 3; n++)
             add(&fixture, film, NULL, 1);
@@ -142,11 +142,11 @@ static void films_take_turns(void **state)
 {
     const KrsRenderOptions other = {.width = 70, .height = 90, .samples = 2, .camera = 1};
     (void)state;
-    for (size_t k = 0; k < PRETENCES; k++) {
+    for (size_t k = 0; k < EMULATIONS; k++) {
         const double point[1][3] = {{0, 5, 0}};
         KrsHit       hit;
         Fixture      fixture;
-        fixture_open_as(&fixture, film_text, pretences[k]);
+        fixture_open_as(&fixture, film_text, emulations[k]);
         KrsFilm *a = new_film(&fixture, &part), *b = new_film(&fixture, &other);
         add(&fixture, a, NULL, 1);
         add(&fixture, b, NULL, 1);
@@ -343,9 +343,9 @@ static void check_limits(Fixture *fixture, size_t camera)
 static void depths_end_rays(void **state)
 {
     (void)state;
-    for (size_t k = 0; k < PRETENCES; k += PRETENCES - 1) {
+    for (size_t k = 0; k < EMULATIONS; k += EMULATIONS - 1) {
         Fixture fixture;
-        fixture_open_as(&fixture, film_text, pretences[k]);
+        fixture_open_as(&fixture, film_text, emulations[k]);
         for (size_t camera = 0; camera < 3; camera++)
             check_limits(&fixture, camera);
         fixture_close_watched(&fixture);

@@ -102,7 +102,7 @@ static void depths_before_a_horizon_differ(void **state)
         depth[i]     = i < 10 ? 900 * (float)(i + 1) : i < 50 ? 5 : 7;
         component[i] = 1;
     }
-    false_color(&picture, LOOK_DEPTH, NULL, pixels);
+    false_color(&picture, SHADING_DEPTH, NULL, pixels);
     assert_true(pixels[4 * 10] > pixels[4 * 60] + 20);
     assert_true(pixels[4 * 60] > pixels[4 * 9] + 20);
     assert_int_equal(pixels[4 * 10], 255);

@@ -49,9 +49,9 @@ static int open_renderer(void **state)
 static int close_renderer(void **state)
 {
     (void)state;
-    uint64_t complaints = krs_renderer_complaints(renderer);
+    uint64_t validation_messages = krs_renderer_complaints(renderer);
     krs_renderer_free(renderer);
-    return complaints > 0;
+    return validation_messages > 0;
 }
 
 typedef struct Fixture {

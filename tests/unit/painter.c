@@ -304,7 +304,7 @@ static void slopes_that_are_not_used_are_seen(void **state)
     Fixture      fixture;
     const size_t middle = 4 * ((size_t)HEIGHT / 2 * WIDTH + WIDTH / 2);
     set_up(&fixture, one_ball);
-    fixture.view.look = LOOK_SLOPE;
+    fixture.view.shading = SHADING_SLOPE;
     await_hot(&fixture, 1, show(&fixture, 0), middle);
     edit(&fixture, "show box([2, 4, 0.2]).twist([0, 1, 0], 60deg);param r = 1;");
     Shot shot = take_whole(&fixture, 2, show(&fixture, 0));

@@ -76,7 +76,7 @@ static void dumps_say_what_was_found(void **state)
     line_with(text, "bush  30 operations\n");
     line_with(text, " operations of 20000\n");
     free(text);
-    text = dump(example, "facts", KRS_OK);
+    text = dump(example, "info", KRS_OK);
     line_with(text, "planes  yes\n");
     line_with(text, "march group 3  flops");
     free(text);

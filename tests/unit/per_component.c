@@ -85,7 +85,7 @@ static void print_diagnostic(void *user, const KrsDiagnostic *diagnostic)
     fprintf(stderr, "%s\n", diagnostic->text);
 }
 
-static void print_complaint(void *user, const char *message)
+static void print_validation_message(void *user, const char *message)
 {
     (void)user;
     fprintf(stderr, "the validation layers complain: %s\n", message);
@@ -95,7 +95,7 @@ static int open_scenes(void **state)
 {
     (void)state;
     KrsRendererOptions options = {
-        .device = tested_device(), .validation = true, .complaint = print_complaint};
+        .device = tested_device(), .validation = true, .complaint = print_validation_message};
     KrsOptions with    = {.diagnostic = print_diagnostic};
     KrsStatus  status  = krs_renderer_new(&options, &plain);
     options.early_outs = KRS_EARLY_OUTS_ON;
@@ -126,10 +126,10 @@ static int close_scenes(void **state)
         krs_frame_free(scenes[i].frame);
         krs_scene_free(scenes[i].scene);
     }
-    uint64_t complaints = krs_renderer_complaints(plain) + krs_renderer_complaints(early);
+    uint64_t validation_messages = krs_renderer_complaints(plain) + krs_renderer_complaints(early);
     krs_renderer_free(plain);
     krs_renderer_free(early);
-    return complaints > 0;
+    return validation_messages > 0;
 }
 
 static KrsPicture *render(const Scene *scene, bool with_early_outs, KrsRenderOptions options)

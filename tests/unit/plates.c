@@ -374,10 +374,10 @@ static void noise_and_groups_have_plates(void **state)
 /* Graphics cards chain their passes; with the least limits there are several bands, without texels. */
 static void every_device_finds_the_same(void **state)
 {
-    static const unsigned pretences[] = {KRS_PRETEND_CARD, KRS_PRETEND_LEAST_LIMITS,
-                                         KRS_PRETEND_CARD | KRS_PRETEND_LEAST_LIMITS};
-    Fixture              *plain       = *state;
-    KrsRenderOptions      options     = on_floor(0);
+    static const unsigned emulations[] = {KRS_PRETEND_CARD, KRS_PRETEND_LEAST_LIMITS,
+                                          KRS_PRETEND_CARD | KRS_PRETEND_LEAST_LIMITS};
+    Fixture              *plain        = *state;
+    KrsRenderOptions      options      = on_floor(0);
     make_floor(0);
     options.no_occlusion = false;
     options.samples      = 2;
@@ -388,9 +388,9 @@ static void every_device_finds_the_same(void **state)
         options.integrator = i ? KRS_INTEGRATOR_PATH : KRS_INTEGRATOR_PREVIEW;
         make_shiny(plain, &options);
         KrsPicture *expected = fixture_render(plain, options);
-        for (size_t k = 0; k < sizeof pretences / sizeof *pretences; k++) {
+        for (size_t k = 0; k < sizeof emulations / sizeof *emulations; k++) {
             Fixture fixture;
-            fixture_open_as(&fixture, ball_text, pretences[k]);
+            fixture_open_as(&fixture, ball_text, emulations[k]);
             set(&fixture, "day", 1);
             set(&fixture, "at_lamp", 1);
             set(&fixture, "at_sun", 0);

@@ -99,22 +99,22 @@ static const KrsRenderOptions kinds[] = {
 
 static void a_saved_film_goes_on(void **state)
 {
-    static const unsigned pretences[] = {0, KRS_PRETEND_CARD | KRS_PRETEND_LEAST_LIMITS};
-    static const uint32_t first[]     = {1, 17, SAMPLES};
+    static const unsigned emulations[] = {0, KRS_PRETEND_CARD | KRS_PRETEND_LEAST_LIMITS};
+    static const uint32_t first[]      = {1, 17, SAMPLES};
     static unsigned char  room[1 << 23];
     (void)state;
-    for (size_t k = 0; k < sizeof pretences / sizeof *pretences; k++)
+    for (size_t k = 0; k < sizeof emulations / sizeof *emulations; k++)
         for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
             Fixture one, other;
             Bytes   file = {room, sizeof room, 0};
-            fixture_open_as(&one, saved_text, pretences[k]);
+            fixture_open_as(&one, saved_text, emulations[k]);
             KrsFilm *film = film_with(&one, &kinds[i], first[(i + k) % 3]);
             assert_int_equal(krs_film_save(film, take, &file), KRS_OK);
             krs_film_free(film);
             fixture_close_watched(&one);
 
             KrsPicture *picture;
-            fixture_open_as(&other, saved_text, pretences[k]);
+            fixture_open_as(&other, saved_text, emulations[k]);
             film      = film_with(&other, &kinds[i], 2); /* what is replaced */
             file.size = file.at;
             file.at   = 0;

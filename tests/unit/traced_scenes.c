@@ -82,12 +82,12 @@ bool is_spared(const Scene *scene, KrsTrace trace)
 
 KrsRenderer *watched_renderer;
 
-static char complaint[2048]; /* the last */
+static char validation_message[2048]; /* the last */
 
-static void note_complaint(void *user, const char *message)
+static void note_validation_message(void *user, const char *message)
 {
     (void)user;
-    snprintf(complaint, sizeof complaint, "%s", message);
+    snprintf(validation_message, sizeof validation_message, "%s", message);
 }
 
 KrsStatus open_scene(Scene *scene)
@@ -119,7 +119,7 @@ int open_watched(void **state)
 {
     (void)state;
     KrsRendererOptions options = {
-        .device = tested_device(), .validation = true, .complaint = note_complaint};
+        .device = tested_device(), .validation = true, .complaint = note_validation_message};
     return tell_failure(krs_renderer_new(&options, &watched_renderer));
 }
 
@@ -151,7 +151,7 @@ int hear_layers(void **state)
 {
     (void)state;
     if (krs_renderer_complaints(watched_renderer) != 0)
-        fprintf(stderr, "the validation layers complain: %s\n", complaint);
+        fprintf(stderr, "the validation layers complain: %s\n", validation_message);
     return krs_renderer_complaints(watched_renderer) != 0;
 }
 

@@ -33,11 +33,11 @@ const char landscape_text[] = "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov
 
 const double CENTRE[3] = {0.3, 0.2, -0.1};
 
-void note_complaint(void *user, const char *message)
+void note_validation_message(void *user, const char *message)
 {
     Fixture *fixture = user;
-    fixture->complaints++;
-    snprintf(fixture->complaint, sizeof fixture->complaint, "%s", message);
+    fixture->validation_messages++;
+    snprintf(fixture->validation_message, sizeof fixture->validation_message, "%s", message);
 }
 
 static void print_diagnostic(void *user, const KrsDiagnostic *diagnostic)
@@ -51,7 +51,7 @@ static void open_with(Fixture *fixture, const char *text, KrsRendererOptions opt
     KrsOptions compiling = {.diagnostic = print_diagnostic};
     options.device       = tested_device();
     options.validation   = true;
-    options.complaint    = note_complaint;
+    options.complaint    = note_validation_message;
     options.user         = fixture;
     *fixture             = (Fixture){0};
     KrsStatus status     = krs_renderer_new(&options, &fixture->renderer);
@@ -72,9 +72,9 @@ void fixture_open(Fixture *fixture, const char *text, const KrsAllocator *alloca
     open_with(fixture, text, options);
 }
 
-void fixture_open_as(Fixture *fixture, const char *text, unsigned pretence)
+void fixture_open_as(Fixture *fixture, const char *text, unsigned emulation)
 {
-    open_with(fixture, text, (KrsRendererOptions){.pretence = pretence});
+    open_with(fixture, text, (KrsRendererOptions){.pretence = emulation});
 }
 
 void fixture_close(Fixture *fixture)
@@ -88,7 +88,7 @@ void fixture_close(Fixture *fixture)
 void fixture_close_watched(Fixture *fixture)
 {
     assert_int_equal(krs_renderer_complaints(fixture->renderer), 0);
-    assert_int_equal(fixture->complaints, 0);
+    assert_int_equal(fixture->validation_messages, 0);
     fixture_close(fixture);
 }
 
@@ -114,10 +114,10 @@ int fixture_set_up(void **state)
 
 int fixture_tear_down(void **state)
 {
-    Fixture *fixture    = *state;
-    uint64_t complaints = krs_renderer_complaints(fixture->renderer);
+    Fixture *fixture             = *state;
+    uint64_t validation_messages = krs_renderer_complaints(fixture->renderer);
     fixture_close(fixture);
-    if (complaints != 0 || fixture->complaints != 0)
-        fprintf(stderr, "the validation layers complain: %s\n", fixture->complaint);
-    return complaints != 0 || fixture->complaints != 0;
+    if (validation_messages != 0 || fixture->validation_messages != 0)
+        fprintf(stderr, "the validation layers complain: %s\n", fixture->validation_message);
+    return validation_messages != 0 || fixture->validation_messages != 0;
 }

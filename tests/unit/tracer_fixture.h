@@ -26,14 +26,14 @@ typedef struct Fixture {
     KrsScene     *scene;
     KrsFrame     *frame;
     KrsRendering *rendering;
-    unsigned      complaints;
-    char          complaint[2048]; /* the last */
+    unsigned      validation_messages;
+    char          validation_message[2048]; /* the last */
 } Fixture;
 
-void note_complaint(void *user, const char *message);
+void note_validation_message(void *user, const char *message);
 void fixture_open(Fixture *fixture, const char *text, const KrsAllocator *allocator);
 /* The same of another device, as far as that can be pretended: KRS_PRETEND_... */
-void fixture_open_as(Fixture *fixture, const char *text, unsigned pretence);
+void fixture_open_as(Fixture *fixture, const char *text, unsigned emulation);
 void fixture_close(Fixture *fixture);
 /* The same; the test fails if the layers have complained. */
 void        fixture_close_watched(Fixture *fixture);

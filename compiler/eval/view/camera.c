@@ -15,42 +15,9 @@ static void report(Elaboration *e, const Syntax *at, const char *words, const ch
 
 /* ---- kinds of camera.def ---- */
 
-/* A property that is read: `otherwise` is its value if it is not given. */
-typedef struct Asked {
-    Elaboration       *e;
-    const Environment *env;
-    const Syntax      *block;
-    const CameraNodes *before; /* the properties of rows before it */
-} Asked;
-
-static Node read_number(const Asked *a, const char *name, const double otherwise[4])
+static Node ask_angle(const Asked *a, const char *name, const double otherwise[4])
 {
-    return number_property(a->e, a->env, a->block, name, otherwise[0]);
-}
-
-static Node read_angle(const Asked *a, const char *name, const double otherwise[4])
-{
-    return read_number(a, name, otherwise);
-}
-
-static Node read_place(const Asked *a, const char *name, const double otherwise[4])
-{
-    return position_property(a->e, a->env, a->block, name, otherwise);
-}
-
-static Node read_axis(const Asked *a, const char *name, const double otherwise[4])
-{
-    return vector_property(a->e, a->env, a->block, name, otherwise);
-}
-
-static Node read_pair(const Asked *a, const char *name, const double otherwise[4])
-{
-    Elaboration  *e      = a->e;
-    const Syntax *syntax = find_property(a->block, name);
-    Node          node   = NODE_NONE;
-    if (syntax)
-        node = to_pair(e, evaluate(e, a->env, syntax), syntax, diag_text(e->diags, "`%s`", name));
-    return node == NODE_NONE ? graph_constant(e->graph, TYPE_VEC2, otherwise) : node;
+    return ask_number(a, name, otherwise);
 }
 
 /* The length along the view up to a point. */
@@ -62,7 +29,7 @@ static Node length_up_to(Graph *g, Node point, const CameraNodes *camera)
     return graph_op2(g, OP_dot, offset, view);
 }
 
-static Node read_focus(const Asked *a, const char *name, const double otherwise[4])
+static Node ask_focus(const Asked *a, const char *name, const double otherwise[4])
 {
     Elaboration  *e     = a->e;
     const Syntax *given = find_property(a->block, name);
@@ -80,12 +47,12 @@ static Node read_focus(const Asked *a, const char *name, const double otherwise[
     } else {
         Node point = to_vector(e, value, given, "`focus`");
         if (point != NODE_NONE)
-            found = length_up_to(g, point, a->before);
+            found = length_up_to(g, point, a->camera);
     }
     return found == NODE_NONE ? graph_number(g, otherwise[0]) : found;
 }
 
-static KrsProjection read_projection(const Asked *a)
+static KrsProjection ask_projection(const Asked *a)
 {
     static const char *const words[] = {
 #define KRS_PROJECTION(id, name) #name,
@@ -190,9 +157,9 @@ SceneCamera read_camera(Elaboration *e, const Environment *env, const Syntax *sy
           .name = syntax->name, .span = stands ? stands->span : syntax->span, .block = syntax->span};
     const Asked asked = {e, env, syntax, &camera.nodes};
 #define KRS_CAMERA(name, kind, part, positive, counts, ...) \
-    camera.nodes.name = read_##kind(&asked, #name, (const double[4]){__VA_ARGS__});
+    camera.nodes.name = ask_##kind(&asked, #name, (const double[4]){__VA_ARGS__});
 #include "krs/camera.def"
-    camera.projection = read_projection(&asked);
+    camera.projection = ask_projection(&asked);
     camera.blades     = (uint32_t)constant_property(e, env, syntax, "blades", 3, 64, 0);
     camera.lens       = find_property(syntax, "aperture") || find_property(syntax, "shift");
     return camera;

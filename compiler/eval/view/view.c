@@ -1,105 +1,13 @@
 /*
- * view.c: lights, sky, fog, image and zones, and defaults for those that a scene leaves out.
+ * view.c: fog, image and zones, and defaults for those that a scene leaves out.
  */
 #include "compiler/eval/view/view.h"
 
 #include <math.h>
 
-/* ---- lights, sky, fog, image ---- */
+/* ---- fog, image, zones ---- */
 
-static const double ORIGIN[3] = {0, 0, 0}, UP[3] = {0, 1, 0}, WHITE[3] = {1, 1, 1};
-
-/* Of numbers that seem to be in another unit. */
-static void warn_of_light(Elaboration *e, const Environment *env, const Syntax *light)
-{
-    const Syntax *color = find_property(light, "color"), *angle = find_property(light, "softness");
-    if (color)
-        warn_of_bright_colour(e, color, evaluate(e, env, color),
-                              "how bright a light is, is its `intensity`");
-    if (angle)
-        warn_of_revolutions(e, angle, evaluate(e, env, angle));
-}
-
-/* The sides of a light that is a rectangle. */
-static Node light_size(Elaboration *e, const Environment *env, const Syntax *syntax)
-{
-    const Syntax *size  = find_property(syntax, "size");
-    Value         value = size ? evaluate(e, env, size) : (Value){.type = VALUE_ERROR};
-    Node          sides[2];
-    bool          good = value.type == VALUE_LIST && value.list->count == 2;
-    for (int i = 0; good && i < 2; i++) {
-        good     = value_size(e, value.list->items[i]) == 1;
-        sides[i] = good ? value_node(e, value.list->items[i]) : NODE_NONE;
-        good     = good && node_range(e->builder, sides[i], 0).low >= 0;
-    }
-    if (good)
-        return graph_op3(e->graph, OP_vec3, sides[0], sides[1], graph_number(e->graph, 0));
-    if (value.type != VALUE_ERROR) {
-        Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, size->span,
-                              "`size` of a light must be two lengths that are not negative");
-        diag->help = "for example `size: [2, 1]`: how wide and how high it is";
-    }
-    return graph_constant(e->graph, TYPE_VEC3, ORIGIN);
-}
-
-/* What a light has that shines to one side. */
-static void aim_light(Elaboration *e, const Environment *env, const Syntax *syntax,
-                      SceneLight *light)
-{
-    static const char *const own[] = {"target", "size", "angle", "edge"};
-    const Syntax            *angle = find_property(syntax, "angle");
-    light->rectangle               = find_property(syntax, "size") != NULL;
-    light->spot                    = angle != NULL;
-    light->target                  = vector_property(e, env, syntax, "target", ORIGIN);
-    light->angle                   = number_property(e, env, syntax, "angle", 0);
-    light->edge                    = number_property(e, env, syntax, "edge", 0.2);
-    light->size                    = light_size(e, env, syntax);
-    if (angle)
-        warn_of_revolutions(e, angle, evaluate(e, env, angle));
-    for (size_t i = 0; !light->positional && i < sizeof own / sizeof *own; i++) {
-        const Syntax *given = find_property(syntax, own[i]);
-        if (!given)
-            continue;
-        Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, given->span,
-                              "a light of a `direction` has no `%s`", own[i]);
-        diag->help =
-            "a light at a `position` has: `light lamp { position: [0, 3, 0], angle: 40deg }`";
-    }
-}
-
-static void add_light(Elaboration *e, const Environment *env, const Syntax *syntax)
-{
-    const Syntax *direction = find_property(syntax, "direction");
-    const Syntax *position  = find_property(syntax, "position");
-    const Syntax *intensity = find_property(syntax, "intensity");
-    SceneLight    light = {.name = syntax->name, .positional = position != NULL, .shadow = true};
-    if (!direction == !position) {
-        Diag *diag = diag_add(e->diags, direction ? DIAG_TOO_MANY_ARGUMENTS : DIAG_MISSING_ARGUMENT,
-                              syntax->name_span,
-                              "a light has either a `direction` or a `position`");
-        diag->help = "for example `light sun { direction: [-1, 2, 1], intensity: 3 }`";
-        return;
-    }
-    light.span      = (intensity ? intensity : position ? position : direction)->span;
-    light.vector    = position ? position_property(e, env, syntax, "position", UP)
-                               : vector_property(e, env, syntax, "direction", UP);
-    Node color      = vector_property(e, env, syntax, "color", WHITE);
-    light.colored   = find_property(syntax, "color") != NULL;
-    light.intensity = number_property(e, env, syntax, "intensity", 1);
-    light.color     = graph_op2(e->graph, OP_scale, color, light.intensity);
-    light.softness  = number_property(e, env, syntax, position ? "radius" : "softness", 0);
-    warn_of_light(e, env, syntax);
-    aim_light(e, env, syntax, &light);
-    if (direction)
-        check_direction(e, light.vector, direction, "the direction of a light");
-    const Syntax *shadow = find_property(syntax, "shadow");
-    Value         value  = shadow ? evaluate(e, env, shadow) : value_boolean(true);
-    if (value.type == VALUE_BOOLEAN)
-        light.shadow = value.boolean;
-    else
-        type_error(e, shadow, value, "true or false");
-    array_push(e->arena, &e->scene->lights, light);
-}
+static const double ORIGIN[3] = {0, 0, 0};
 
 /* 1 over the height, unless that is 0: then the fog is as dense everywhere. */
 static Node fog_fall(Elaboration *e, const Environment *env, const Syntax *syntax)
@@ -256,7 +164,7 @@ void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax
     case SYNTAX_CAMERA: elaborate_camera(e, env, syntax); break;
     case SYNTAX_LIGHT:
         if (known) /* else what seems to be missing may have another name */
-            add_light(e, env, syntax);
+            elaborate_light(e, env, syntax);
         break;
     case SYNTAX_SKY: elaborate_sky(e, env, syntax); break;
     case SYNTAX_FOG: set_fog(e, env, syntax); break;
@@ -295,15 +203,10 @@ static void default_camera(Elaboration *e)
 
 static void default_sun(Elaboration *e)
 {
-    SceneLight sun = {.shadow    = true,
-                      .vector    = graph_vec3(e->graph, -0.5, 1, 0.6),
-                      .color     = graph_vec3(e->graph, 2.9, 2.75, 2.5),
-                      .intensity = graph_number(e->graph, 1),
-                      .softness  = graph_number(e->graph, 0.02),
-                      .target    = graph_constant(e->graph, TYPE_VEC3, ORIGIN),
-                      .angle     = graph_number(e->graph, 0),
-                      .edge      = graph_number(e->graph, 0),
-                      .size      = graph_constant(e->graph, TYPE_VEC3, ORIGIN)};
+    SceneLight sun     = read_light(e, NULL, &silent);
+    sun.nodes.vector   = graph_vec3(e->graph, -0.5, 1, 0.6);
+    sun.nodes.color    = graph_vec3(e->graph, 2.9, 2.75, 2.5);
+    sun.nodes.softness = graph_number(e->graph, 0.02);
     array_push(e->arena, &e->scene->lights, sun);
 }
 

@@ -1,5 +1,5 @@
 /*
- * facts.c: what the renderer has to know of a program: all fields of KrsProgram except the times
+ * program_info.c: what the renderer has to know of a program: all fields of KrsProgram except the times
  * and what the pass `emit` sets.
  *
  * They follow from the elaborated scene, the simplified graph with its tapes, and the decisions of
@@ -129,7 +129,7 @@ static void find_noises(Compilation *c)
 
 /* ---- the pass ---- */
 
-KrsStatus pass_facts(Compilation *c)
+KrsStatus pass_info(Compilation *c)
 {
     c->scene->program.parameter_slots = (uint32_t)c->scene->graph->parameters.count;
     find_boxes(c);
@@ -145,7 +145,7 @@ KrsStatus pass_facts(Compilation *c)
     return KRS_OK;
 }
 
-void validate_facts(const Compilation *c)
+void validate_info(const Compilation *c)
 {
     const KrsProgram *program = &c->scene->program;
     assert(program->parameter_slots > 0); /* slot 0 is the time */
@@ -182,7 +182,7 @@ static void print_flags(const KrsProgram *program, Text *out)
         text_format(out, "%s  %s\n", flags[i].name, flags[i].is ? "yes" : "no");
 }
 
-void print_facts(Compilation *c, Text *out)
+void print_info(Compilation *c, Text *out)
 {
     const KrsProgram *program = &c->scene->program;
     text_format(out, "parameter slots  %u\n", program->parameter_slots);

@@ -1,11 +1,11 @@
 /*
- * place.c: affine maps of imported files, as methods of the language.
+ * transform.c: affine maps of imported files, as methods of the language.
  *
  * Every matrix is a mirror or none, then a turn, a scaling along the axes, and
  * another turn (its singular value decomposition).  Files mostly have matrices
  * of which one or two of these suffice.
  */
-#include "import/common/place.h"
+#include "import/common/transform.h"
 
 #include <math.h>
 #include <string.h>
@@ -14,39 +14,42 @@
 
 static const double CLOSE = 1e-9; /* files have twelve digits at most */
 
-Place place_identity(void) { return (Place){{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}}; }
-
-Place place_move(const double by[3])
+Transform transform_identity(void)
 {
-    Place place = place_identity();
-    memcpy(place.shift, by, sizeof place.shift);
-    return place;
+    return (Transform){{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}};
 }
 
-Place place_scale(const double by[3])
+Transform transform_move(const double by[3])
 {
-    return (Place){{{by[0], 0, 0}, {0, by[1], 0}, {0, 0, by[2]}}, {0, 0, 0}};
+    Transform transform = transform_identity();
+    memcpy(transform.shift, by, sizeof transform.shift);
+    return transform;
 }
 
-Place place_rotate(int axis, double angle)
+Transform transform_scale(const double by[3])
 {
-    Place  place = place_identity();
-    int    a = (axis + 1) % 3, b = (axis + 2) % 3;
-    double quarters = angle / (acos(-1) / 2), whole = round(quarters);
-    bool   square    = fabs(quarters - whole) < 1e-12; /* right angles have no noise */
-    double c         = square ? round(cos(angle)) : cos(angle);
-    double s         = square ? round(sin(angle)) : sin(angle);
-    place.rows[a][a] = place.rows[b][b] = c;
-    place.rows[a][b]                    = -s;
-    place.rows[b][a]                    = s;
-    return place;
+    return (Transform){{{by[0], 0, 0}, {0, by[1], 0}, {0, 0, by[2]}}, {0, 0, 0}};
 }
 
-bool place_invert(Place *place)
+Transform transform_rotate(int axis, double angle)
 {
-    const double(*a)[3] = (const double(*)[3])place->rows;
-    Place  inverse      = place_identity();
-    double shift[3], determinant = 0;
+    Transform transform = transform_identity();
+    int       a = (axis + 1) % 3, b = (axis + 2) % 3;
+    double    quarters = angle / (acos(-1) / 2), whole = round(quarters);
+    bool      square     = fabs(quarters - whole) < 1e-12; /* right angles have no noise */
+    double    c          = square ? round(cos(angle)) : cos(angle);
+    double    s          = square ? round(sin(angle)) : sin(angle);
+    transform.rows[a][a] = transform.rows[b][b] = c;
+    transform.rows[a][b]                        = -s;
+    transform.rows[b][a]                        = s;
+    return transform;
+}
+
+bool transform_invert(Transform *transform)
+{
+    const double(*a)[3] = (const double(*)[3])transform->rows;
+    Transform inverse   = transform_identity();
+    double    shift[3], determinant = 0;
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) {
             int r = (k + 1) % 3, s = (k + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
@@ -58,62 +61,63 @@ bool place_invert(Place *place)
         return false;
     for (int i = 0; i < 9; i++)
         inverse.rows[i / 3][i % 3] /= determinant;
-    place_apply(&inverse, place->shift, shift);
+    transform_apply(&inverse, transform->shift, shift);
     for (int i = 0; i < 3; i++)
         inverse.shift[i] = -shift[i];
-    *place = inverse;
+    *transform = inverse;
     return true;
 }
 
-void place_apply(const Place *place, const double q[3], double to[3])
+void transform_apply(const Transform *transform, const double q[3], double to[3])
 {
     double moved[3];
     for (int i = 0; i < 3; i++)
-        moved[i] = dot3(place->rows[i], q) + place->shift[i];
+        moved[i] = dot3(transform->rows[i], q) + transform->shift[i];
     memcpy(to, moved, sizeof moved);
 }
 
-Place place_chain(const Place *first, const Place *then)
+Transform transform_chain(const Transform *first, const Transform *then)
 {
-    Place both;
+    Transform both;
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) {
             both.rows[i][k] = 0;
             for (int j = 0; j < 3; j++)
                 both.rows[i][k] += then->rows[i][j] * first->rows[j][k];
         }
-    place_apply(then, first->shift, both.shift);
+    transform_apply(then, first->shift, both.shift);
     return both;
 }
 
-Place place_mirrored(const Place *place)
+Transform transform_mirrored(const Transform *transform)
 {
-    Place mirror = place_scale((double[]){1, 1, -1}), half = place_chain(&mirror, place);
-    return place_chain(&half, &mirror);
+    Transform mirror = transform_scale((double[]){1, 1, -1}),
+              half   = transform_chain(&mirror, transform);
+    return transform_chain(&half, &mirror);
 }
 
 /* What lengths become: the matrix times its transpose the other way round. */
-static void gram(const Place *place, double g[3][3])
+static void gram(const Transform *transform, double g[3][3])
 {
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) {
             g[i][k] = 0;
             for (int j = 0; j < 3; j++)
-                g[i][k] += place->rows[j][i] * place->rows[j][k];
+                g[i][k] += transform->rows[j][i] * transform->rows[j][k];
         }
 }
 
-static double determinant(const Place *place)
+static double determinant(const Transform *transform)
 {
     double across[3];
-    cross3(place->rows[0], place->rows[1], across);
-    return dot3(across, place->rows[2]);
+    cross3(transform->rows[0], transform->rows[1], across);
+    return dot3(across, transform->rows[2]);
 }
 
-double place_factor(const Place *place)
+double transform_factor(const Transform *transform)
 {
     double g[3][3], size, slack;
-    gram(place, g);
+    gram(transform, g);
     size      = g[0][0];
     slack     = CLOSE * size;
     bool same = fabs(g[1][1] - size) <= slack && fabs(g[2][2] - size) <= slack &&
@@ -121,14 +125,14 @@ double place_factor(const Place *place)
     return same && size > 0 ? sqrt(size) : 0;
 }
 
-bool place_flatten(Place *place)
+bool transform_flatten(Transform *transform)
 {
-    double(*rows)[3] = place->rows;
+    double(*rows)[3] = transform->rows;
     if (rows[0][2] != 0 || rows[1][2] != 0 || rows[2][0] != 0 || rows[2][1] != 0)
         return false;
-    double area     = fabs(rows[0][0] * rows[1][1] - rows[0][1] * rows[1][0]);
-    rows[2][2]      = sqrt(area); /* a similarity of the plane is one of space */
-    place->shift[2] = 0;
+    double area         = fabs(rows[0][0] * rows[1][1] - rows[0][1] * rows[1][0]);
+    rows[2][2]          = sqrt(area); /* a similarity of the plane is one of space */
+    transform->shift[2] = 0;
     return area > 0;
 }
 
@@ -144,19 +148,19 @@ static void add_vector(Text *text, const char *method, const double v[3], const 
     text_add(text, end);
 }
 
-static void write_mirror(Text *text, Place *place)
+static void write_mirror(Text *text, Transform *transform)
 {
     int axis = 0, negative = 0;
     for (int i = 0; i < 3; i++)
-        if (place->rows[i][i] < 0) {
+        if (transform->rows[i][i] < 0) {
             axis = i;
             negative++;
         }
-    axis           = negative == 1 ? axis : 0;
-    double by[3]   = {axis == 0 ? -1 : 1, axis == 1 ? -1 : 1, axis == 2 ? -1 : 1};
-    double away[3] = {axis == 0, axis == 1, axis == 2};
-    Place  mirror  = place_scale(by);
-    *place         = place_chain(&mirror, place);
+    axis              = negative == 1 ? axis : 0;
+    double    by[3]   = {axis == 0 ? -1 : 1, axis == 1 ? -1 : 1, axis == 2 ? -1 : 1};
+    double    away[3] = {axis == 0, axis == 1, axis == 2};
+    Transform mirror  = transform_scale(by);
+    *transform        = transform_chain(&mirror, transform);
     add_vector(text, ".transform(reflect(plane(", away, ", 0)))");
 }
 
@@ -214,10 +218,10 @@ static void jacobi_rotate(double g[3][3], double v[3][3], int a, int b)
 
 /* Columns of v are the directions that a matrix stretches, by the square roots
  * of g's diagonal. */
-static bool write_stretch(Text *text, const Place *place)
+static bool write_stretch(Text *text, const Transform *transform)
 {
     double g[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, by[3], before[3][3], after[3][3];
-    gram(place, g);
+    gram(transform, g);
     for (int sweep = 0; sweep < 12; sweep++)
         for (int pair = 0; pair < 3; pair++)
             jacobi_rotate(g, v, pair == 2 ? 1 : 0, pair == 0 ? 1 : 2);
@@ -232,7 +236,7 @@ static bool write_stretch(Text *text, const Place *place)
             before[k][i] = v[i][k];
             after[i][k]  = 0;
             for (int j = 0; j < 3; j++)
-                after[i][k] += place->rows[i][j] * v[j][k] / by[k];
+                after[i][k] += transform->rows[i][j] * v[j][k] / by[k];
         }
     write_rotation(text, before);
     add_vector(text, ".scale(", by, ")");
@@ -240,15 +244,15 @@ static bool write_stretch(Text *text, const Place *place)
     return true;
 }
 
-bool place_write(Text *text, const Place *place)
+bool transform_write(Text *text, const Transform *transform)
 {
-    Place  plain  = *place;
-    double volume = determinant(place);
+    Transform plain  = *transform;
+    double    volume = determinant(transform);
     if (!isfinite(volume) || volume == 0)
         return false;
     if (volume < 0)
         write_mirror(text, &plain);
-    double factor = place_factor(&plain);
+    double factor = transform_factor(&plain);
     if (factor > 0) {
         if (fabs(factor - 1) > CLOSE) {
             text_add(text, ".scale(");
@@ -262,7 +266,7 @@ bool place_write(Text *text, const Place *place)
     } else if (!write_stretch(text, &plain)) {
         return false;
     }
-    if (place->shift[0] != 0 || place->shift[1] != 0 || place->shift[2] != 0)
-        add_vector(text, ".move(", place->shift, ")");
+    if (transform->shift[0] != 0 || transform->shift[1] != 0 || transform->shift[2] != 0)
+        add_vector(text, ".move(", transform->shift, ")");
     return true;
 }

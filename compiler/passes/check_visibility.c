@@ -1,5 +1,5 @@
 /*
- * look.c: warns of components that no camera has in its picture, of cameras inside of a solid, and of lights that
+ * check_visibility.c: warns of components that no camera has in its picture, of cameras inside of a solid, and of lights that
  * are too dim to be seen, or hidden.
  *
  * Only what holds for all parameters and times is said of components: their boxes do, and cameras
@@ -12,7 +12,7 @@
 #include "compiler/passes/compilation.h"
 
 /* Components that are looked up by their place at most: those of a short loop have the same one. */
-enum { MOST_LOOKED_UP = 100 };
+enum { MOST_FOUND = 100 };
 
 /* What a camera has in its picture: the points q with dot(normal, q) <= offset for all planes. */
 typedef struct Pyramid {
@@ -135,7 +135,7 @@ static void warn_of_unseen(Compilation *c, const Pyramid *pyramids, size_t count
 {
     const Scene *scene     = &c->elaborated;
     size_t       looked_up = 0;
-    for (size_t i = 0; i < scene->components.count && looked_up < MOST_LOOKED_UP; i++) {
+    for (size_t i = 0; i < scene->components.count && looked_up < MOST_FOUND; i++) {
         const Component *component = &scene->components.items[i];
         if (is_in_view(pyramids, count, component->shape->box))
             continue;
@@ -189,8 +189,8 @@ static void warn_of_dim_light(Compilation *c, KrsFrame *frame, const KrsView *vi
     const SceneLight *light = &c->elaborated.lights.items[index];
     const Graph      *graph = c->elaborated.graph;
     double            distance;
-    if (!light->positional || !graph_is_constant(graph, light->vector) ||
-        !graph_is_constant(graph, light->color) ||
+    if (!light->positional || !graph_is_constant(graph, light->nodes.vector) ||
+        !graph_is_constant(graph, light->nodes.color) ||
         krs_distance(frame, &view->lights[index].vector, 1, &distance) != KRS_OK ||
         !(distance > 0) || !isfinite(distance))
         return;
@@ -241,8 +241,9 @@ static void warn_of_hidden_light(Compilation *c, KrsFrame *frame, const KrsView 
     const SceneLight *light = &c->elaborated.lights.items[index];
     const KrsLight   *now   = &view->lights[index];
     const Graph      *graph = c->elaborated.graph;
-    if (!light->shadow || !graph_is_constant(graph, light->vector) ||
-        !graph_is_constant(graph, light->softness) || !graph_is_constant(graph, light->size))
+    if (!light->shadow || !graph_is_constant(graph, light->nodes.vector) ||
+        !graph_is_constant(graph, light->nodes.softness) ||
+        !graph_is_constant(graph, light->nodes.size))
         return;
     const Component *before = light->positional ? solid_around(c, frame, now)
                                                 : plane_before(c, now->vector);
@@ -271,7 +272,7 @@ static void warn_of_lights(Compilation *c, KrsFrame *frame)
     }
 }
 
-KrsStatus pass_look(Compilation *c)
+KrsStatus pass_visibility(Compilation *c)
 {
     Pyramid  *pyramids = arena_new_array(&c->scratch, Pyramid, c->elaborated.cameras.count + 1);
     KrsFrame *frame;
@@ -285,7 +286,7 @@ KrsStatus pass_look(Compilation *c)
     return KRS_OK;
 }
 
-void print_look(Compilation *c, Text *out)
+void print_visibility(Compilation *c, Text *out)
 {
     size_t before = out->length;
     for (size_t i = 0; i < c->diags.count; i++) {

@@ -1,5 +1,5 @@
 /*
- * look.c: what is warned of as out of view is hit by no ray of a picture, and what is far out of it is
+ * visibility.c: what is warned of as out of view is hit by no ray of a picture, and what is far out of it is
  * warned of.
  */
 #include <math.h>
