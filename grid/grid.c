@@ -185,7 +185,7 @@ static bool options_are_valid(const KrsGridOptions *options, const KrsScene *sce
 {
     return options->cell > 0 && isfinite(options->cell) && band_is_valid(options->band) &&
            options->error >= 0 && isfinite(options->error) &&
-           options->component <= scene->shown_count && !scene->program.sheets;
+           options->component <= scene->shown_count && !scene->program.open_surfaces;
 }
 
 static void take_band(KrsGrid *grid)

@@ -321,7 +321,7 @@ KrsStatus krs_assemble(KrsFrame *frame, const KrsMeshOptions *options, KrsAssemb
     Assembler                   a    = {
                              .frame = frame, .options = options ? options : &none, .from = &frame->scene->assembly};
     *assembly = NULL;
-    if (a.options->component > frame->scene->shown_count || frame->scene->program.sheets)
+    if (a.options->component > frame->scene->shown_count || frame->scene->program.open_surfaces)
         return KRS_BAD_ARGUMENT;
     if (!is_possible(frame, a.options))
         return stands_still(&a) ? KRS_BAD_SCENE : KRS_OK;

@@ -313,7 +313,7 @@ KrsStatus krs_mesh(KrsFrame *frame, const KrsMeshOptions *options, KrsMesh **mes
     bool           *wanted = number ? calloc(scene->component_count + 1, sizeof *wanted) : NULL;
     KrsStatus       status = KRS_OUT_OF_MEMORY;
     *mesh                  = NULL;
-    if (number > scene->shown_count || scene->program.sheets)
+    if (number > scene->shown_count || scene->program.open_surfaces)
         status = KRS_BAD_ARGUMENT;
     else if (solid.roots && (wanted || !number)) {
         if (wanted)

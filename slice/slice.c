@@ -114,7 +114,7 @@ KrsStatus krs_slicer_new(KrsFrame *frame, const KrsSliceOptions *options, KrsSli
     if (options && (options->component > scene->shown_count || !(options->error >= 0) ||
                     isinf(options->error)))
         return KRS_BAD_ARGUMENT;
-    if (scene->program.sheets)
+    if (scene->program.open_surfaces)
         return KRS_BAD_ARGUMENT;
     KrsSlicer *slicer = calloc(1, sizeof *slicer);
     if (!slicer)

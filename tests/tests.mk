@@ -26,8 +26,8 @@ ORACLES     := self distant patterns bumps primitives krs_expand folds trees map
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
                albedo furnace thin_film anisotropy tangents subsurface paths direct_glass enhanced emissive sky sky_means plate_light detail media cornell touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling closed_rooms \
-               occlusion curves sweeps corners hulls lofts boundaries nothing places underestimates bounds stencils light sides steep scales agree far sheets ray_lists specialize outlines glyphs drawings \
-               imports imports_csg imports_csg_sizes imports_pov imports_pov_looks imports_pov_sheets flat_meshes round_meshes slices grids measures meshes mesh_forms mesh_examples
+               occlusion curves sweeps corners hulls lofts boundaries nothing places underestimates bounds stencils light sides steep scales agree far open_surfaces ray_lists specialize outlines glyphs drawings \
+               imports imports_csg imports_csg_sizes imports_pov imports_pov_looks imports_pov_open_surfaces flat_meshes round_meshes slices grids measures meshes mesh_forms mesh_examples
 FUZZ        := sentences
 # On SwiftShader, unless another device is tested: what shows that drivers agree.
 DRIVERS     := tests/oracle/drivers
@@ -47,7 +47,7 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/watchdog unit/front unit/syno
                oracle/krs_expand oracle/folds oracle/bounds \
                oracle/cells oracle/maps oracle/operators oracle/moving \
                oracle/fractals oracle/metasurfaces oracle/normals oracle/tangents oracle/drawings oracle/imports \
-               oracle/imports_csg oracle/imports_csg_sizes oracle/imports_pov oracle/imports_pov_looks oracle/imports_pov_sheets fuzz/sentences)
+               oracle/imports_csg oracle/imports_csg_sizes oracle/imports_pov oracle/imports_pov_looks oracle/imports_pov_open_surfaces fuzz/sentences)
 BOTH        := $(addprefix tests/, property/lanes unit/mesh)
 PLAIN       := $(filter-out $(filter-out $(BOTH), $(SANITIZED)), $(PROGRAMS))
 # Scripts that run alone: events of a window, and measurements.  The others run beside programs, the longest first.
@@ -68,7 +68,7 @@ LONG        := $(addprefix tests/, examples.sh extend/extend.sh errors-sanitized
                $(addprefix property/, blends_of_many instances fillets iteration_boxes iterations) \
                $(addprefix oracle/, agree albedo algebraic area_shadows chain_pictures chains closed_rooms combinations cornell coverage \
                direct_glass distant emissive furnace light measures media meshes mesh_examples mesh_forms moebius occlusion paths plate_light \
-               ray_lists sheets sky soft_shadows specialize stencils upsampling))
+               ray_lists open_surfaces sky soft_shadows specialize stencils upsampling))
 # What a set has of scripts, of programs, and of programs under the sanitizers.
 scripts_short    = $(filter-out $(LONG), $(1))
 scripts_long     = $(filter $(LONG), $(1))
@@ -110,7 +110,7 @@ $(B)/tests/property/%: $(B)/tests/property/%.o $(B)/tests/property/property.a $(
 	@$(LINK)
 $(B)/tests/%: $(B)/tests/%.o $(LINKED)
 	@$(LINK)
-IMPORTS     := imports imports_csg imports_csg_sizes imports_pov imports_pov_looks imports_pov_sheets
+IMPORTS     := imports imports_csg imports_csg_sizes imports_pov imports_pov_looks imports_pov_open_surfaces
 $(IMPORTS:%=$(B)/tests/oracle/%): $(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/imported.o $(B)/tests/oracle/pov_trees.o \
         $(B)/import.a $(LINKED)
 	@$(LINK)

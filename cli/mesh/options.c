@@ -211,7 +211,7 @@ KrsStatus check_common_options(Meshing *meshing)
         memcpy(meshing->how.low, options->within.low, sizeof meshing->how.low);
         memcpy(meshing->how.high, options->within.high, sizeof meshing->how.high);
     }
-    if (krs_scene_program(meshing->scene)->sheets)
+    if (krs_scene_program(meshing->scene)->open_surfaces)
         return say_usage(options,
                          "`%s` has surfaces without thickness, which enclose nothing; .shell "
                          "makes a solid of them",

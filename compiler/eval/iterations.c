@@ -219,7 +219,7 @@ static bool is_like(const Shape *shape, const Shape *witness)
            shape->slope <= witness->slope * (1 + 1e-9) &&
            shape->derived <= witness->derived * (1 + 1e-9) && (shape->exact || !witness->exact) &&
            shape->levels == witness->levels && !shape->fields && !shape->estimate &&
-           !shape->per_frame && !shape->sheets && box_is_finite(shape->box);
+           !shape->per_frame && !shape->open_surfaces && box_is_finite(shape->box);
 }
 
 typedef struct Dependence {

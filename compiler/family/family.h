@@ -51,7 +51,8 @@ const Shape *make_rounded(ShapeBuilder *builder, const Shape *shape, const Shape
                           Span span);
 const Shape *make_shell(ShapeBuilder *builder, const Shape *shape, Node thickness, Span span);
 /* The surface alone; thick only where something needs a distance to it. */
-const Shape *make_sheet(ShapeBuilder *builder, const Shape *shape, Node thickness, Span span);
+const Shape *make_open_surface(ShapeBuilder *builder, const Shape *shape, Node thickness,
+                               Span span);
 const Shape *make_elongate(ShapeBuilder *builder, const Shape *shape, Node half, Span span);
 const Shape *make_extrude(ShapeBuilder *builder, const Shape *figure, Node height, Span span);
 const Shape *make_revolve(ShapeBuilder *builder, const Shape *figure, Node offset, Span span);

@@ -1,5 +1,5 @@
 /*
- * offset.c: shapes grown or shrunk by a distance, shells and sheets.
+ * offset.c: shapes grown or shrunk by a distance, shells and open surfaces.
  */
 #include "compiler/family/family.h"
 
@@ -45,7 +45,7 @@ const Shape *make_shell(ShapeBuilder *builder, const Shape *shape, Node thicknes
     return shell;
 }
 
-/* Whether normals follow from derivatives: differences see both sides of a sheet. */
+/* Whether normals follow from derivatives: differences see both sides of an open surface. */
 static bool is_derivable(ShapeBuilder *builder, const Shape *shape)
 {
     Node gradient, number = shape->formula != NODE_NONE ? shape->formula : shape->distance;
@@ -58,15 +58,15 @@ static bool is_derivable(ShapeBuilder *builder, const Shape *shape)
     return true;
 }
 
-const Shape *make_sheet(ShapeBuilder *builder, const Shape *shape, Node thickness, Span span)
+const Shape *make_open_surface(ShapeBuilder *builder, const Shape *shape, Node thickness, Span span)
 {
-    Shape *sheet  = arena_new(builder->arena, Shape);
-    *sheet        = *make_shell(builder, shape, thickness, span);
-    sheet->name   = "sheet";
-    sheet->open   = true;
-    sheet->sheet  = is_derivable(builder, shape);
-    sheet->sheets = sheet->sheets || sheet->sheet;
-    return sheet;
+    Shape *open_surface         = arena_new(builder->arena, Shape);
+    *open_surface               = *make_shell(builder, shape, thickness, span);
+    open_surface->name          = "sheet";
+    open_surface->open          = true;
+    open_surface->open_surface  = is_derivable(builder, shape);
+    open_surface->open_surfaces = open_surface->open_surfaces || open_surface->open_surface;
+    return open_surface;
 }
 
 /* ---- how it is lowered ---- */
@@ -80,8 +80,8 @@ Lowered lower_offset(Lowering *l, const Shape *shape, LowerContext context)
     return result;
 }
 
-/* What is nowhere negative.  A gradient is that of the solid: it does not turn at the sheet. */
-static Lowered thin_sheet(Lowering *l, Lowered solid)
+/* What is nowhere negative.  A gradient is that of the solid: it does not turn at the open surface. */
+static Lowered thin_open_surface(Lowering *l, Lowered solid)
 {
     Graph *g    = l->graph;
     Node   size = graph_op1(g, OP_abs, solid.distance);
@@ -130,7 +130,7 @@ static Node is_positive(Graph *g, Node number)
     return graph_op3(g, OP_select, graph_op2(g, OP_less, number, zero), zero, graph_number(g, 1));
 }
 
-/* Which side of a sheet without thickness is seen: the normal is on the side of the ray, the gradient of
+/* Which side of an open surface without thickness is seen: the normal is on the side of the ray, the gradient of
    the solid on its outside.  The solid itself is 0 there, and its sign rounding. */
 static Node front_of_thin(Lowering *l, const Shape *solid, LowerContext context)
 {
@@ -149,7 +149,7 @@ static Node front_of_thin(Lowering *l, const Shape *solid, LowerContext context)
     return is_positive(g, graph_op2(g, OP_dot, gradient, graph_leaf(g, OP_NORMAL)));
 }
 
-/* The front of a sheet is where the solid has its outside. */
+/* The front of an open surface is where the solid has its outside. */
 static void set_front(Lowering *l, const Shape *shape, LowerContext context, bool thin,
                       Lowered *solid)
 {
@@ -168,14 +168,14 @@ static void set_front(Lowering *l, const Shape *shape, LowerContext context, boo
 Lowered lower_shell(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph *g       = l->graph;
-    bool   thin    = l->thin && shape->sheet;
+    bool   thin    = l->thin && shape->open_surface;
     l->thin        = false;
     Lowered result = thin ? lower_shape(l, shape->children[0], context)
                           : lower_operand(l, shape->children[0],
                                           context_lipschitz_within(context, shape->reach));
     set_front(l, shape, context, thin, &result);
     if (result.distance == NODE_NONE || thin)
-        return thin && result.distance != NODE_NONE ? thin_sheet(l, result) : result;
+        return thin && result.distance != NODE_NONE ? thin_open_surface(l, result) : result;
     Node half       = graph_number(g, 0.5);
     half            = graph_op2(g, OP_mul, shape->values[0], half);
     Node size       = graph_op1(g, OP_abs, result.distance);

@@ -83,14 +83,14 @@ static bool rays_never(const Shape *shape)
     return false;
 }
 
-static bool rays_sheet(const Shape *shape) { return shape->sheet; }
+static bool rays_open_surface(const Shape *shape) { return shape->open_surface; }
 
 static bool rays_sharp(const Shape *shape) { return shape->blend.width == NODE_NONE; }
 
 static bool rays_difference(const Shape *shape)
 {
     for (uint32_t i = 1; i < shape->child_count; i++)
-        if (shape->children[i]->sheets)
+        if (shape->children[i]->open_surfaces)
             return false;
     return rays_sharp(shape);
 }

@@ -44,7 +44,7 @@ typedef struct Lowering {
     Arena      *scratch;
     bool        surfaces; /* lower the surface too, not the distance alone */
     AlongMethod method;   /* for ray_step.c and ray_images.c */
-    bool        thin;     /* rays_pass for all shapes above: sheets have no thickness */
+    bool        thin;     /* rays_pass for all shapes above: open surfaces have no thickness */
     bool        far;      /* without instance groups: distances to outlines are right everywhere */
     bool        guarded;  /* skip levels of sequences that are far away (guards.c) */
     Node        unit;     /* guarded: length, outside of all shapes, of 1 in this space */
@@ -65,7 +65,7 @@ typedef struct LowerContext {
     double
          reach; /* how far from the surface distances must be right; beyond it they may be any bound
                      that is no less */
-    bool fronts;    /* a material above asks which side of a sheet is seen */
+    bool fronts;    /* a material above asks which side of an open surface is seen */
     Node smoothing; /* width over which a mirror turns normals; NODE_NONE: mirrors are sharp */
 } LowerContext;
 

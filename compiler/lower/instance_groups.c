@@ -296,8 +296,8 @@ JoinedGroups find_joined_groups(Lowering *l, PartJoin *join, LowerContext contex
 {
     JoinedGroups found = {.count = 0};
     const bool   sharp = join->csg_node->blend.width == NODE_NONE;
-    if (!l->groups || join->count < least_of_csg(l->groups, sharp) || join->csg_node->sheets ||
-        l->overflow)
+    if (!l->groups || join->count < least_of_csg(l->groups, sharp) ||
+        join->csg_node->open_surfaces || l->overflow)
         return found;
     if (!l->groups->structures) {
         l->groups->structures = structures_new(l->graph, l->groups->arena);

@@ -40,7 +40,7 @@ static bool keeps_to_box(const Lowering *l, const Shape *shape)
     const bool sharp = shape->blend.width == NODE_NONE;
     if (shape->exact)
         return true;
-    if (!joins || shape->sheets ||
+    if (!joins || shape->open_surfaces ||
         (l->groups && shape->child_count >= least_of_csg(l->groups, sharp)) ||
         (!sharp && blend_info[shape->blend.kind].slope > 1))
         return false;

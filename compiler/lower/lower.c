@@ -113,12 +113,12 @@ bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near
                              scratch) != DERIVED_NOT;
 }
 
-bool has_thin_sheets(const Shape *shape)
+bool has_thin_open_surfaces(const Shape *shape)
 {
-    if (!shape->sheets || !rays_pass(shape))
+    if (!shape->open_surfaces || !rays_pass(shape))
         return false;
-    bool found = shape->sheet;
+    bool found = shape->open_surface;
     for (uint32_t i = 0; i < shape->child_count; i++)
-        found = found || has_thin_sheets(shape->children[i]);
+        found = found || has_thin_open_surfaces(shape->children[i]);
     return found;
 }

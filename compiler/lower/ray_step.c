@@ -16,9 +16,9 @@
  * Near a simple root this is almost Newton's step, but never too long.  The series is about the
  * current point, which keeps single precision accurate near roots (math.md, section 3).
  *
- * A sheet is where f changes its sign.  At each point of a ray it is looked for back to the
+ * An open surface is where f changes its sign.  At each point of a ray it is looked for back to the
  * previous point, at a distance of OP_FOOTPRINT.  All steps before were safe, up to the tolerance.
- * So a sheet needs no thickness, and has two sides.
+ * So an open surface needs no thickness, and has two sides.
  *
  * Unions, intersections and differences join these numbers like distances.  Affine maps leave them
  * unchanged, since t is a parameter of the original ray.  Other shapes contribute their distance.
@@ -36,7 +36,8 @@
 /* A ray in the space of a shape: point + t direction, with the same t everywhere. */
 typedef struct Ray {
     Node point, direction, speed; /* speed: the length of direction */
-    Node back; /* how far backwards sheets are looked for: to the previous point of the ray */
+    Node
+        back; /* how far backwards open surfaces are looked for: to the previous point of the ray */
 } Ray;
 
 /* By how much one term may decrease over the interval, in units of c0.  Of the values from 1 to 16,
@@ -308,30 +309,30 @@ static Node previous_point(Lowering *l, Ray ray)
     return sub(l->graph, ray.point, offset);
 }
 
-/* How far backwards sheets are looked for in an intersection.  `ahead` is the result of `along` for
-   its parts without sheets.  If the previous point is in these parts, too, the sheets are looked
+/* How far backwards open surfaces are looked for in an intersection.  `ahead` is the result of `along` for
+   its parts without open surfaces.  If the previous point is in these parts, too, the open surfaces are looked
    for back to it.  Else no farther than the parts certainly reach. */
 static Node back_within(Lowering *l, const Shape *shape, Ray ray, Node ahead)
 {
     Graph *g      = l->graph;
     Node   behind = previous_point(l, ray), before = NODE_NONE;
     for (uint32_t i = 0; i < shape->child_count; i++)
-        if (!shape->children[i]->sheets)
+        if (!shape->children[i]->open_surfaces)
             before = joined(l, OP_max, before, value_at(l, shape->children[i], behind));
     Node depth  = at_least(g, neg(g, ahead), 0);
     Node within = graph_op2(g, OP_less, before, graph_number(g, 0));
     return graph_op3(g, OP_select, within, ray.back, graph_op2(g, OP_min, ray.back, depth));
 }
 
-/* Parts with sheets come last, since their sheets are looked for inside of the others only. */
+/* Parts with open surfaces come last, since their open surfaces are looked for inside of the others only. */
 static Node along_intersection(Lowering *l, const Shape *shape, Ray ray)
 {
     Node all = NODE_NONE;
-    for (int sheets = 0; sheets < 2; sheets++) {
-        if (sheets && shape->sheets && all != NODE_NONE)
+    for (int open_surfaces = 0; open_surfaces < 2; open_surfaces++) {
+        if (open_surfaces && shape->open_surfaces && all != NODE_NONE)
             ray.back = back_within(l, shape, ray, all);
         for (uint32_t i = 0; i < shape->child_count; i++) {
-            if (shape->children[i]->sheets != (sheets == 1))
+            if (shape->children[i]->open_surfaces != (open_surfaces == 1))
                 continue;
             Node next = along(l, shape->children[i], ray);
             if (next == NODE_NONE)
@@ -386,7 +387,7 @@ static Node along_stretch(Lowering *l, const Shape *shape, Ray ray)
 }
 
 /* The t up to which the sign does not change; negative if it changed since the previous point. */
-static Node along_sheet(Lowering *l, const Shape *shape, Ray ray)
+static Node along_open_surface(Lowering *l, const Shape *shape, Ray ray)
 {
     Graph *g    = l->graph;
     Node   step = along(l, shape->children[0], ray);
@@ -422,7 +423,7 @@ static bool reaches_formula(const Shape *shape)
     return shape->formula != NODE_NONE && shape->field->degree > 0;
 }
 
-static bool reaches_sheet(const Shape *shape) { return shape->sheet; }
+static bool reaches_open_surface(const Shape *shape) { return shape->open_surface; }
 
 static bool reaches_in_part(const Shape *shape) { return reaches_polynomial(shape->children[0]); }
 
@@ -446,7 +447,8 @@ static const StepRule step_none         = {reaches_none, value_distance, along_d
 static const StepRule step_polynomial   = {reaches_formula, value_formula, along_polynomial};
 static const StepRule step_map          = {reaches_in_part, value_map, along_map};
 static const StepRule step_stretch      = {reaches_in_part, value_stretch, along_stretch};
-static const StepRule step_sheet        = {reaches_sheet, value_distance, along_sheet};
+static const StepRule step_open_surface = {reaches_open_surface, value_distance,
+                                           along_open_surface};
 static const StepRule step_union        = {reaches_in_sharp_parts, value_distance, along_union};
 static const StepRule step_intersection = {reaches_in_sharp_parts, value_distance,
                                            along_intersection};

@@ -46,9 +46,9 @@ typedef struct Request {
 typedef struct Additions {
     bool planes;          /* there are half-spaces, which rays meet without a march */
     bool camera_relative; /* points may be relative to the camera */
-    bool sheets;          /* there are surfaces without thickness */
+    bool open_surfaces;   /* there are surfaces without thickness */
     bool algebraic;       /* gradients by derivatives cost less than by differences */
-    bool gradients;       /* for `sheets`, for `algebraic`, or because the options ask for them */
+    bool gradients; /* for `open surfaces`, for `algebraic`, or because the options ask for them */
 } Additions;
 
 /* There are three lifetimes of memory.  scene->arena lives as long as the scene.  `work` has the

@@ -73,7 +73,7 @@ static void find_additions(Compilation *c)
     KrsProgram *program      = &c->scene->program;
     program->planes          = c->additions.planes;
     program->camera_relative = c->additions.camera_relative;
-    program->sheets          = c->additions.sheets;
+    program->open_surfaces   = c->additions.open_surfaces;
     program->algebraic       = c->additions.algebraic;
     program->gradients       = c->additions.gradients;
 }
@@ -152,8 +152,8 @@ void validate_info(const Compilation *c)
     assert(isfinite(program->flops) && program->flops >= 0);
     assert(program->march_group_count != 1 && program->march_group_count <= KRS_MOST_MARCH_GROUPS);
     assert(!program->per_component || program->march_group_count > 0);
-    assert(program->gradients || !(program->algebraic || program->sheets));
-    assert(!program->sheets || !program->camera_relative);
+    assert(program->gradients || !(program->algebraic || program->open_surfaces));
+    assert(!program->open_surfaces || !program->camera_relative);
     assert(program->scene_parts <= c->scene->component_count);
     (void)program;
 }
@@ -175,7 +175,7 @@ static void print_flags(const KrsProgram *program, Text *out)
         {"planes", program->planes},          {"camera-relative", program->camera_relative},
         {"gradients", program->gradients},    {"algebraic normals", program->algebraic},
         {"steps along rays", program->along}, {"maps that invert", program->inverts},
-        {"sheets", program->sheets},          {"no curved shapes", program->plain},
+        {"sheets", program->open_surfaces},   {"no curved shapes", program->plain},
         {"shadows", program->shadows},        {"mirrors", program->mirrors},
         {"layers", program->layers},          {"march groups pay", program->per_component}};
     for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)

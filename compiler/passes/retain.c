@@ -189,7 +189,7 @@ static void retain_tapes(Compilation *c)
     scene->guarded  = tape_with_zones(scene, roots_of(roots, ROOTS_GUARDED).items, true, arena,
                                       &c->scratch);
     scene->distance = tape_with_zones(scene, distances, false, arena, &c->scratch);
-    if (c->additions.sheets) {
+    if (c->additions.open_surfaces) {
         RootRange gradients = roots_of(roots, ROOTS_GRADIENT);
         gradients.count     = scene->component_count * NODES_OF(GradientRoots);
         scene->ahead        = tape_with_zones(scene, along_roots(roots, ALONG_EXACT), false, arena,

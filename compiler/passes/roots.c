@@ -107,7 +107,7 @@ static bool may_exceed_zero(const Graph *g, Node property, Arena *scratch)
 }
 
 /* Finds the components that may let light through.  Rays go on inside of them, so half-spaces are
-   marched like all else.  Sheets have no inside. */
+   marched like all else.  Open surfaces have no inside. */
 static void find_media(Compilation *c, const Graph *g)
 {
     const size_t count = c->elaborated.components.count;
@@ -118,12 +118,12 @@ static void find_media(Compilation *c, const Graph *g)
         if (!may_exceed_zero(g, transmission, &c->scratch))
             continue;
         component->plane_normal = component->plane_offset = NODE_NONE;
-        c->is_medium[i]                                   = !has_thin_sheets(component->shape);
+        c->is_medium[i] = !has_thin_open_surfaces(component->shape);
         c->scene->program.media |= c->is_medium[i];
     }
 }
 
-/* Finds the components below whose surface light may go on (krs_subsurface).  Sheets have no inside. */
+/* Finds the components below whose surface light may go on (krs_subsurface).  Open surfaces have no inside. */
 static void find_subsurface(Compilation *c, const Graph *g)
 {
     const size_t count = c->elaborated.components.count;
@@ -131,7 +131,7 @@ static void find_subsurface(Compilation *c, const Graph *g)
     for (size_t i = 0; i < count; i++) {
         Node weight         = surface_roots(&c->scene->roots, i)[ROOT_subsurface_weight];
         c->is_subsurface[i] = may_exceed_zero(g, weight, &c->scratch) &&
-                              !has_thin_sheets(c->elaborated.components.items[i].shape);
+                              !has_thin_open_surfaces(c->elaborated.components.items[i].shape);
         c->scene->program.subsurface |= c->is_subsurface[i];
     }
 }
@@ -220,11 +220,11 @@ static void lower_camera_relative(Compilation *c, Graph *g)
     arena_free(&c->scratch);
 }
 
-static bool any_thin_sheets(const Scene *s)
+static bool any_thin_open_surfaces(const Scene *s)
 {
     bool found = false;
     for (size_t i = 0; i < s->components.count; i++)
-        found = found || has_thin_sheets(s->components.items[i].shape);
+        found = found || has_thin_open_surfaces(s->components.items[i].shape);
     return found;
 }
 
@@ -241,8 +241,8 @@ KrsStatus pass_lower(Compilation *c)
     if (!lower_components(c, s->graph, groups))
         return KRS_BAD_SCENE;
     find_motions(c);
-    more->sheets          = any_thin_sheets(s);
-    more->camera_relative = !more->sheets &&
+    more->open_surfaces   = any_thin_open_surfaces(s);
+    more->camera_relative = !more->open_surfaces &&
                             may_need_rebase(s, s->graph, roots, c->options->pictures, &c->scratch);
     gather_view(s, roots);
     lower_marches(c, s->graph, groups);
@@ -251,7 +251,7 @@ KrsStatus pass_lower(Compilation *c)
     lower_planes(c, s->graph);
     arena_free(&c->scratch);
     more->algebraic = is_algebraic(s, roots);
-    more->gradients = more->algebraic || more->sheets || c->options->gradients;
+    more->gradients = more->algebraic || more->open_surfaces || c->options->gradients;
     lower_gradients(c, s->graph, groups);
     for (size_t i = 0; i < s->slopes.count; i++)
         roots_of(roots, ROOTS_SLOPE).items[i] = s->slopes.items[i].formula;

@@ -82,13 +82,13 @@ typedef struct KrsProgram {
     bool          gradients;                 /* there is krs_gradient, by derivatives */
     bool          algebraic;                 /* normals are by krs_gradient by default */
     bool          along;                     /* there is krs_along */
-    bool          sheets;  /* there are surfaces without thickness, where krs_distance is not
+    bool          open_surfaces; /* there are surfaces without thickness, where krs_distance is not
                                 negative: rays need krs_along, and normals krs_gradient */
-    bool          inverts; /* krs_along has methods for sequences with maps that invert */
-    bool          plain;   /* no component is curved (shape_is_curved) */
-    bool          shadows; /* a light casts shadows */
-    bool          emits;   /* a component may emit light */
-    bool          sky_map; /* the sky is a picture of all directions */
+    bool          inverts;       /* krs_along has methods for sequences with maps that invert */
+    bool          plain;         /* no component is curved (shape_is_curved) */
+    bool          shadows;       /* a light casts shadows */
+    bool          emits;         /* a component may emit light */
+    bool          sky_map;       /* the sky is a picture of all directions */
     bool          mirrors; /* a material is smooth enough to show images, or lets light through */
     bool          media;   /* a component may let light through: there are variants of KrsGlass */
     bool          layers;  /* a material has a coat, sheen, or a mirror other than usual */
@@ -123,7 +123,7 @@ char *krs_scene_text(const KrsScene *scene, const KrsVariant *variant, const Krs
 char *krs_scene_plain_text(const KrsScene *scene, const KrsAllocator *allocator);
 /* The functions that `krs compile` writes; returns how many.  They are krs_distance, krs_surface
    and, for devices with many threads, krs_distance_lod.  krs_gradient is added if the program has
-   gradients, and krs_along if it has sheets. */
+   gradients, and krs_along if it has open surfaces. */
 enum { KRS_MAX_ENTRY_POINTS = 5 };
 size_t krs_entry_points(const KrsScene *scene, bool many_threads,
                         KrsFunction entry_points[KRS_MAX_ENTRY_POINTS]);

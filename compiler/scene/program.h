@@ -171,13 +171,13 @@ struct KrsScene {
     Tape             distance; /* distances of all components, and zones */
     Tape             guarded;  /* distances with guards (ROOTS_GUARDED) of all components, and
     zones */
-    Tape             ahead;    /* if there are sheets: ALONG_EXACT of all components, and zones */
-    Tape             turned;   /* if there are sheets: gradients of all components */
-    Tape             surface;  /* all roots of all components, and zones */
-    Tape             places;   /* ROOTS_PLACE; empty if nobody asks for meshes */
-    Tape             view;     /* cameras, lights and sky */
-    Tape             rows;     /* numbers of tables that depend on the frame */
-    Tape             frame;    /* of all these, what does not depend on points */
+    Tape ahead;   /* if there are open surfaces: ALONG_EXACT of all components, and zones */
+    Tape turned;  /* if there are open surfaces: gradients of all components */
+    Tape surface; /* all roots of all components, and zones */
+    Tape places;  /* ROOTS_PLACE; empty if nobody asks for meshes */
+    Tape view;    /* cameras, lights and sky */
+    Tape rows;    /* numbers of tables that depend on the frame */
+    Tape frame;   /* of all these, what does not depend on points */
 };
 
 /* Those tapes of the scene that read tables, over the tables of a frame where these are its own. */

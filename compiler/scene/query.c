@@ -87,7 +87,7 @@ static Tape march_tape(const KrsFrame *frame, const Tape *tape)
     return march;
 }
 
-/* In a scene with sheets: how far a ray may go from a point.  `step` is the length from the
+/* In a scene with open surfaces: how far a ray may go from a point.  `step` is the length from the
    previous point to it. */
 static double step_ahead(KrsFrame *frame, const double point[3], const double direction[3],
                          double step)
@@ -148,13 +148,14 @@ KrsStatus krs_distance(KrsFrame *frame, const double (*points)[3], size_t count,
     return find_distances(frame, points, count, false, distances);
 }
 
-/* A normal by derivatives, in scenes with sheets: differences would mix both sides of a sheet.
+/* A normal by derivatives, in scenes with open surfaces: differences would mix both sides of an open surface.
    False if there is no derivative. */
 static bool derived_normal(KrsFrame *frame, const double point[3], double normal[3])
 {
     const KrsScene *scene   = frame->scene;
     uint32_t        nearest = 0;
-    if (!scene->program.sheets || distance_at(frame, point, &nearest) <= zone_depth(frame, point))
+    if (!scene->program.open_surfaces ||
+        distance_at(frame, point, &nearest) <= zone_depth(frame, point))
         return false;
     Node gradient = gradient_roots(&scene->roots, nearest - 1)->gradient;
     if (scene->graph->items[gradient].type != TYPE_VEC3)
@@ -191,7 +192,7 @@ KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count, d
     if (!are_finite(points, count))
         return KRS_BAD_ARGUMENT;
     frame_refresh_points(frame);
-    if (by_lanes(frame, count) && !frame->scene->program.sheets)
+    if (by_lanes(frame, count) && !frame->scene->program.open_surfaces)
         return points_normals(frame, points, count, normals);
     for (size_t i = 0; i < count; i++)
         normal_at(frame, points[i], normals[i]);
@@ -240,14 +241,14 @@ static void face(const double view[3], double normal[3])
         normal[k] = -normal[k];
 }
 
-/* `view` is the direction of the ray that sees the point, or NULL.  Materials of sheets have the normal
+/* `view` is the direction of the ray that sees the point, or NULL.  Materials of open surfaces have the normal
    that faces it. */
 static void probe(KrsFrame *frame, const double point[3], const double view[3], KrsHit *hit)
 {
     uint32_t nearest = 0;
     *hit             = hit_at(point);
     normal_at(frame, point, hit->normal);
-    if (view && frame->scene->program.sheets)
+    if (view && frame->scene->program.open_surfaces)
         face(view, hit->normal);
     hit->distance = distance_at(frame, point, &nearest);
     if (!nearest)
@@ -387,12 +388,12 @@ static double march_clearance(RayMarch *march, double t)
 {
     double point[3];
     march_point(march, t, point);
-    bool sheets = march->frame->scene->program.sheets;
+    bool open_surfaces = march->frame->scene->program.open_surfaces;
     /* Back to the previous point and a little farther, since rounding may put that point before a
-       sheet in one evaluation and behind it in the next. */
+       open surface in one evaluation and behind it in the next. */
     double back     = t > march->t ? t - march->t + 2 * rounding_at(march, t) : 0;
-    double distance = sheets ? step_ahead(march->frame, point, march->ray.direction, back)
-                             : clearance_at(march->frame, point);
+    double distance = open_surfaces ? step_ahead(march->frame, point, march->ray.direction, back)
+                                    : clearance_at(march->frame, point);
     return clearance_of(march, t, distance);
 }
 
@@ -446,9 +447,9 @@ static RayState march_step(RayMarch *march, double clearance)
         march->slope += 0.3 * (slope - march->slope);
         march->t         = at;
         march->clearance = clearance;
-        /* With sheets, the clearance is known only in the direction of the ray: there is no ball
+        /* With open surfaces, the clearance is known only in the direction of the ray: there is no ball
            that reaches backwards. */
-        double factor = march->frame->scene->program.sheets
+        double factor = march->frame->scene->program.open_surfaces
                             ? 1
                             : fmax(1, 2 / (1 - fmin(march->slope, 0.98)));
         march->step   = clearance * factor + permitted;
@@ -491,13 +492,13 @@ static void end_march(RayMarch *march, RayLimits limits, KrsHit *hit)
     hit->unresolved = march->state == MARCHING;
 }
 
-/* Whether clearances of rays are distances, which lanes tell.  Sheets have other ones, and guards and
+/* Whether clearances of rays are distances, which lanes tell.  Open surfaces have other ones, and guards and
    cells of instance groups make them shorter. */
 static bool march_by_lanes(const KrsFrame *frame)
 {
     const KrsScene *scene   = frame->scene;
     const Node     *guarded = roots_of(&scene->roots, ROOTS_GUARDED).items;
-    bool            lanes   = !scene->program.sheets && frame->tapes.distance.function_count == 0;
+    bool lanes = !scene->program.open_surfaces && frame->tapes.distance.function_count == 0;
     for (size_t i = 0; i < scene->component_count && lanes; i++)
         lanes = guarded[i] == distance_root(&scene->roots, i);
     return lanes;

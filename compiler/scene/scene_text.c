@@ -16,7 +16,7 @@ size_t krs_entry_points(const KrsScene *scene, bool many_threads,
         entry_points[count++] = KRS_FUNCTION_DISTANCE_LOD;
     if (scene->program.gradients)
         entry_points[count++] = KRS_FUNCTION_GRADIENT;
-    if (scene->program.sheets)
+    if (scene->program.open_surfaces)
         entry_points[count++] = KRS_FUNCTION_ALONG;
     return count;
 }

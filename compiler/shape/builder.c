@@ -66,21 +66,21 @@ bool shape_is_curved(const Shape *shape) { return shape_info[shape->kind].curved
 /* What a shape takes over from each of its parts, whatever its kind. */
 static void take_over(Shape *shape, const Shape *part)
 {
-    shape->slope        = fmax(shape->slope, part->slope);
-    shape->derived      = fmax(shape->derived, part->derived);
-    shape->exact        = shape->exact && part->exact;
-    shape->curved_child = shape->curved_child || shape_is_curved(part);
-    shape->estimate     = shape->estimate || part->estimate;
-    shape->per_frame    = shape->per_frame || part->per_frame;
-    shape->trapped      = shape->trapped || part->trapped;
-    shape->figure       = shape->figure || part->figure;
-    shape->nothing      = shape->nothing && part->nothing;
-    shape->fields       = shape->fields || part->fields;
-    shape->sheets       = shape->sheets || part->sheets;
-    shape->smooth       = shape->smooth || part->smooth;
-    shape->without_uv   = shape->without_uv ? shape->without_uv : part->without_uv;
-    shape->depth        = part->depth >= shape->depth ? part->depth + 1 : shape->depth;
-    shape->levels       = part->levels > shape->levels ? part->levels : shape->levels;
+    shape->slope         = fmax(shape->slope, part->slope);
+    shape->derived       = fmax(shape->derived, part->derived);
+    shape->exact         = shape->exact && part->exact;
+    shape->curved_child  = shape->curved_child || shape_is_curved(part);
+    shape->estimate      = shape->estimate || part->estimate;
+    shape->per_frame     = shape->per_frame || part->per_frame;
+    shape->trapped       = shape->trapped || part->trapped;
+    shape->figure        = shape->figure || part->figure;
+    shape->nothing       = shape->nothing && part->nothing;
+    shape->fields        = shape->fields || part->fields;
+    shape->open_surfaces = shape->open_surfaces || part->open_surfaces;
+    shape->smooth        = shape->smooth || part->smooth;
+    shape->without_uv    = shape->without_uv ? shape->without_uv : part->without_uv;
+    shape->depth         = part->depth >= shape->depth ? part->depth + 1 : shape->depth;
+    shape->levels        = part->levels > shape->levels ? part->levels : shape->levels;
     shape->inversions = part->inversions > shape->inversions ? part->inversions : shape->inversions;
 }
 

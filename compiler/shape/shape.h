@@ -180,12 +180,12 @@ struct Shape {
     bool     trapped;   /* in the tree is a fractal or a mirror: `orbit_trap` means something */
     bool     figure;    /* a plane figure in x and y */
     bool     nothing;   /* made of empty unions alone: a figure as well as a solid */
-    bool     open;      /* SHELL: a sheet, with two sides, whatever its thickness */
-    bool     sheet;  /* SHELL: has no thickness where rays can go from root to root (rays_pass) */
-    bool     sheets; /* in the tree are some */
-    bool     fields; /* in the tree is a field whose bound follows from a region */
-    bool     fronts; /* PAINT: its material asks for `front` */
-    bool     smooth; /* something in the tree turns normals: smooth mirrors, bumps */
+    bool     open;      /* SHELL: an open surface, with two sides, whatever its thickness */
+    bool open_surface; /* SHELL: has no thickness where rays can go from root to root (rays_pass) */
+    bool open_surfaces;  /* in the tree are some */
+    bool fields;         /* in the tree is a field whose bound follows from a region */
+    bool fronts;         /* PAINT: its material asks for `front` */
+    bool smooth;         /* something in the tree turns normals: smooth mirrors, bumps */
     double   instances;  /* copies of kernels that reflections make; 1 without a sequence */
     uint32_t levels;     /* reflections of the outermost sequence in it */
     uint32_t inversions; /* maps of that sequence that invert, or of `.transform` on the way */

@@ -134,7 +134,7 @@ static bool read_join(PovReader *reader, unsigned line, Part **part)
 {
     if (!read_items(reader, line, false, part))
         return false;
-    return !pov_is_sheet(*part) ||
+    return !pov_is_open_surface(*part) ||
            import_refuse(reader->import, line,
                          "what is clipped, open or flat has no inside: it is not translated in "
                          "`intersection` and `difference`");
@@ -275,7 +275,7 @@ static bool read_modifiers(PovReader *reader, const char *name, Part **part)
     part_move(*part, &transform);
     stretch_box(reader->import, *part);
     (*part)->look    = pov_look_text(reader, &look);
-    (*part)->outside = (*part)->outside != (inverted && !pov_is_sheet(*part));
+    (*part)->outside = (*part)->outside != (inverted && !pov_is_open_surface(*part));
     return true;
 }
 

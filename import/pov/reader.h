@@ -290,9 +290,9 @@ PovBuild pov_sphere, pov_box, pov_cylinder, pov_cone, pov_torus, pov_plane, pov_
    no area. */
 Part *pov_figure(PovReader *reader, unsigned line, double (*points)[3], size_t count);
 
-/* ---- surfaces that enclose nothing: sheets.c ---- */
+/* ---- surfaces that enclose nothing: open_surfaces.c ---- */
 
-bool pov_is_sheet(const Part *part);
+bool pov_is_open_surface(const Part *part);
 /* Cuts the surface of an object that has been placed so far in POV-Ray's space; the region is where
    scenes have it. */
 bool pov_clip(PovReader *reader, const Transform *transform, Part **part, unsigned line,

@@ -44,7 +44,7 @@ bool pov_sphere(PovReader *reader, unsigned line, Part **part)
     return true;
 }
 
-/* Sheets are no solids; a box with one length of 0 gets a little of it. */
+/* Open surfaces are no solids; a box with one length of 0 gets a little of it. */
 static bool thicken(PovReader *reader, unsigned line, double size[3])
 {
     double most = fmax(size[0], fmax(size[1], size[2]));

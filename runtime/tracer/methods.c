@@ -21,7 +21,8 @@ void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedul
     if (*trace == KRS_TRACE_DEFAULT)
         *trace = rendering->program->along ? KRS_TRACE_EXACT : KRS_TRACE_AUTO;
     /* Sheets have no thickness, so rays find them by roots alone. */
-    if (rendering->program->sheets && (*trace < KRS_TRACE_EXACT || *trace >= KRS_TRACE_DIRECTIONAL))
+    if (rendering->program->open_surfaces &&
+        (*trace < KRS_TRACE_EXACT || *trace >= KRS_TRACE_DIRECTIONAL))
         *trace = KRS_TRACE_EXACT;
     if (*schedule == KRS_SCHEDULE_DEFAULT)
         *schedule = !software   ? KRS_SCHEDULE_QUEUE
@@ -128,7 +129,7 @@ bool rendering_marches_packed(const KrsRendering *rendering, KrsComponents compo
 
 KrsNormals rendering_normals(const KrsRendering *rendering, KrsNormals normals)
 {
-    if (rendering->program->sheets)
+    if (rendering->program->open_surfaces)
         return KRS_NORMALS_ANALYTIC; /* differences see both sides of a sheet */
     if (normals != KRS_NORMALS_DEFAULT)
         return normals;
@@ -137,6 +138,6 @@ KrsNormals rendering_normals(const KrsRendering *rendering, KrsNormals normals)
 
 bool rendering_has_roots(const KrsRendering *rendering, KrsTrace trace)
 {
-    return (trace == KRS_TRACE_EXACT || rendering->program->sheets) && rendering->program->along &&
-           !rendering->camera_relative;
+    return (trace == KRS_TRACE_EXACT || rendering->program->open_surfaces) &&
+           rendering->program->along && !rendering->camera_relative;
 }

@@ -160,7 +160,7 @@ March primary_march_of_paths(const Job *job, Shader *shader)
 static bool add_even_hits(Job *job, Plan *plan)
 {
     KrsRendering *r = job->rendering;
-    if (job->options.even_hits == 0 || r->program->sheets)
+    if (job->options.even_hits == 0 || r->program->open_surfaces)
         return true;
     const Shader *shader = rendering_even_hits(r);
     plan_add(plan, (Pass){.kind      = PASS_ITEMS,

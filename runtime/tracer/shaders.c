@@ -115,7 +115,7 @@ Shader *rendering_normals_shader(KrsRendering *rendering, KrsNormals normals, ui
 static ShaderVariant variant_of_questions(const KrsRendering *rendering, KrsSchedule schedule)
 {
     return variant_of_query(rendering,
-                            rendering->program->sheets ? KRS_TRACE_EXACT : KRS_TRACE_AUTO,
+                            rendering->program->open_surfaces ? KRS_TRACE_EXACT : KRS_TRACE_AUTO,
                             schedule_of_shader(schedule));
 }
 

@@ -163,7 +163,7 @@ static ShaderVariant begin_variant(const KrsRendering *rendering, KrsTrace trace
            schedule == KRS_SCHEDULE_REFILL ? (int)gpu->refill_lanes : 0);
     define(&to, "%s%s%s%s", read_defines[variants_reads(gpu)],
            sums_lanes(gpu) ? "#define SUBGROUPS\n" : "", ray_defines[rendering->rays],
-           rendering->program->sheets ? "#define SHEETS\n" : "");
+           rendering->program->open_surfaces ? "#define SHEETS\n" : "");
     return to;
 }
 
@@ -369,7 +369,7 @@ ShaderVariant variant_of_point_query(const KrsRendering *rendering)
     ShaderVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     want(&to, KRS_FUNCTION_DISTANCE);
     want(&to, KRS_FUNCTION_SURFACE);
-    if (rendering->program->sheets)
+    if (rendering->program->open_surfaces)
         want(&to, KRS_FUNCTION_GRADIENT);
     define_choices(&to);
     return to;

@@ -265,8 +265,8 @@ static Value method_smooth_mirrors(Elaboration *e, const Shape *shape, Call *cal
     return value_shape(make_smooth(e->builder, shape, width, call->syntax->span));
 }
 
-/* Of a sheet where a distance to it is needed, unless it is given: it looks like a surface. */
-static Node sheet_thickness(Elaboration *e, const Shape *region, const Call *call)
+/* Of an open surface where a distance to it is needed, unless it is given: it looks like a surface. */
+static Node open_surface_thickness(Elaboration *e, const Shape *region, const Call *call)
 {
     if (is_given(call, 2))
         return want_number(e, call, 2, 0);
@@ -274,8 +274,8 @@ static Node sheet_thickness(Elaboration *e, const Shape *region, const Call *cal
 }
 
 /* The surface alone. */
-static const Shape *sheet_of(Elaboration *e, const Shape *shape, const Shape *region,
-                             Node thickness, const Call *call)
+static const Shape *open_surface_of(Elaboration *e, const Shape *shape, const Shape *region,
+                                    Node thickness, const Call *call)
 {
     if (!box_is_finite(region->box)) {
         Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[0].syntax->span,
@@ -283,7 +283,7 @@ static const Shape *sheet_of(Elaboration *e, const Shape *shape, const Shape *re
         diag->label = "endless";
         return NULL;
     }
-    return make_sheet(e->builder, shape, thickness, call->syntax->span);
+    return make_open_surface(e->builder, shape, thickness, call->syntax->span);
 }
 
 static Value method_within(Elaboration *e, const Shape *shape, Call *call)
@@ -296,17 +296,17 @@ static Value method_within(Elaboration *e, const Shape *shape, Call *call)
         return value_error();
     Box box = region->box;
     open    = open && !box_is_empty(box); /* nothing of a surface is nothing of its solid, too */
-    Node thickness = sheet_thickness(e, region, call);
+    Node thickness = open_surface_thickness(e, region, call);
     if (thickness == NODE_NONE ||
         (is_given(call, 2) &&
          !check_not_negative(e, thickness, call->arguments[2].syntax, "a thickness")))
         return value_error();
-    /* A field's solid ends at the sides of its box, where no sheet shall be. */
+    /* A field's solid ends at the sides of its box, where no open surface shall be. */
     if (open && box_is_finite(box))
         box = box_grow(
             box, 2 * fmax(node_range(e->builder, thickness, 0).high, 1e-3 * box_diagonal(box)));
     shape = restrict_shape(e->builder, shape, box, open);
-    if (open && !(shape = sheet_of(e, shape, region, thickness, call)))
+    if (open && !(shape = open_surface_of(e, shape, region, thickness, call)))
         return value_error();
     const Shape *both[] = {shape, region};
     return value_of_csg_node(

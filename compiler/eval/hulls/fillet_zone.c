@@ -38,7 +38,7 @@ static bool find_distances(Elaboration *e, const Shape *const parts[2], Distance
     Graph   *g = e->graph;
     Lowering l = {.graph = g, .scratch = e->scratch, .most = g->count + MOST_LOWERED};
     for (int k = 0; k < 2; k++) {
-        if (parts[k]->tree_shapes > MOST_TREE || parts[k]->sheets || parts[k]->per_frame)
+        if (parts[k]->tree_shapes > MOST_TREE || parts[k]->open_surfaces || parts[k]->per_frame)
             return false;
         distances->roots[k] =
             lower_shape(&l, parts[k], context_new(graph_leaf(g, OP_POINT), true)).distance;

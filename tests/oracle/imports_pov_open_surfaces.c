@@ -1,5 +1,5 @@
 /*
- * imports_pov_sheets.c: objects of POV-Ray that are clipped, open or flat: where rays meet them, against
+ * imports_pov_open_surfaces.c: objects of POV-Ray that are clipped, open or flat: where rays meet them, against
  * where the surfaces of what they are made of change from one side to the other.
  */
 #include <math.h>

@@ -1,5 +1,5 @@
 /*
- * sheets.c: surfaces without thickness, `.within(region, open: true)`, against exact roots.
+ * open_surfaces.c: surfaces without thickness, `.within(region, open: true)`, against exact roots.
  *
  * Each is looked at from a view of its own.  formulas.h finds, in long double precision, where the
  * ray of every pixel first changes the sign of the formula within the ball, and the picture must
@@ -38,13 +38,13 @@ static Real swell(const Real p[3]) { return expl(p[0]) + expl(2 * p[1]) + expl(-
 static Real cone(const Real p[3]) { return p[0] * p[0] + p[1] * p[1] - p[2] * p[2] - 0.1L; }
 static Real waves(const Real p[3]) { return p[1] - 0.3L * sinl(3 * p[0]) * cosl(2 * p[2]); }
 
-static const struct Sheet {
+static const struct OpenSurface {
     const char *name;
     const char *text; /* without its region; NULL: one of the library's surfaces */
     Formula    *formula;
     double      radius;
     Vec         eye; /* the direction that it is seen from */
-} sheets[] = {
+} open_surfaces[] = {
     {"clebsch", NULL, NULL, 0, {0.3, 0.5, 0.8}},
     {"cayley", NULL, NULL, 0, {-0.7, 0.2, 0.6}},
     {"ding_dong", NULL, NULL, 0, {0.9, 0.5, -0.2}},
@@ -63,26 +63,26 @@ static const struct Sheet {
     {"waves", "field(y - 0.3 * sin(3 * x) * cos(2 * z))", waves, 1.5, {0.4, 0.5, 0.9}},
     {"a hyperboloid", "algebraic(x^2 + y^2 == z^2 + 0.1)", cone, 1.3, {0.9, 0.2, 0.4}},
 };
-enum { SHEETS = sizeof sheets / sizeof sheets[0] };
+enum { OPEN_SURFACES = sizeof open_surfaces / sizeof open_surfaces[0] };
 
 #define SIDES "material sides { color: if front then [0.9, 0, 0] else [0, 0.9, 0] }\n"
 
 typedef struct Case {
     Formula    *formula;
     double      radius;
-    char        text[512]; /* the sheet */
+    char        text[512]; /* the open surface */
     const char *before;
 } Case;
 
-static Case case_of(const struct Sheet *sheet)
+static Case case_of(const struct OpenSurface *open_surface)
 {
-    Case c = {sheet->formula, sheet->radius, "", ""};
-    if (sheet->text) {
+    Case c = {open_surface->formula, open_surface->radius, "", ""};
+    if (open_surface->text) {
         snprintf(c.text, sizeof c.text, "%s.within(sphere(%g), open: true).paint(sides)",
-                 sheet->text, sheet->radius);
+                 open_surface->text, open_surface->radius);
         return c;
     }
-    const Surface *surface = surface_named(sheet->name);
+    const Surface *surface = surface_named(open_surface->name);
     c.formula              = surface->formula;
     c.radius               = surface->radius;
     c.before               = surface->before;
@@ -95,9 +95,9 @@ static Case case_of(const struct Sheet *sheet)
 static Line  rays[PIXELS];
 static Entry entries[PIXELS];
 
-static Vec look(const Case *c, const struct Sheet *sheet)
+static Vec look(const Case *c, const struct OpenSurface *open_surface)
 {
-    Vec  eye  = vec_scale(3.2 * c->radius, vec_unit(sheet->eye));
+    Vec  eye  = vec_scale(3.2 * c->radius, vec_unit(open_surface->eye));
     Lens lens = lens_make(eye, vec(0, 0, 0), tan(0.5 * FOV), false, WIDTH, HEIGHT);
     for (int k = 0; k < PIXELS; k++) {
         rays[k]    = lens_ray(&lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
@@ -209,43 +209,43 @@ static void judge_questions(const char *name, const Case *c, const Product *prod
     }
 }
 
-static void sheets_are_where_signs_change(void **state)
+static void open_surfaces_are_where_signs_change(void **state)
 {
-    const struct Sheet *sheet   = *state;
-    Case                c       = case_of(sheet);
-    Vec                 eye     = look(&c, sheet);
-    Product             product = product_format("use \"std/surfaces.krs\";\n" SIDES
-                                                 "%sshow %s;\ncamera { eye: [%.17g, "
-                                                             "%.17g, %.17g], target: [0, 0, 0], fov: 40deg }",
-                                                 c.before, c.text, eye.x, eye.y, eye.z);
-    judge_picture(sheet->name, &c, &product, KRS_TRACE_DEFAULT);
-    if (sheet == sheets)
+    const struct OpenSurface *open_surface = *state;
+    Case                      c            = case_of(open_surface);
+    Vec                       eye          = look(&c, open_surface);
+    Product                   product      = product_format("use \"std/surfaces.krs\";\n" SIDES
+                                                            "%sshow %s;\ncamera { eye: [%.17g, "
+                                                                                   "%.17g, %.17g], target: [0, 0, 0], fov: 40deg }",
+                                                            c.before, c.text, eye.x, eye.y, eye.z);
+    judge_picture(open_surface->name, &c, &product, KRS_TRACE_DEFAULT);
+    if (open_surface == open_surfaces)
         for (KrsTrace trace = KRS_TRACE_PLAIN; trace < KRS_TRACE_COUNT; trace++)
-            judge_picture(sheet->name, &c, &product, trace);
-    judge_questions(sheet->name, &c, &product);
+            judge_picture(open_surface->name, &c, &product, trace);
+    judge_questions(open_surface->name, &c, &product);
     product_free(&product);
 }
 
 /* ---- shadows ---- */
 
-static void sheets_cast_shadows(void **state)
+static void open_surfaces_cast_shadows(void **state)
 {
-    const struct Sheet *sheet = *state;
-    Case                c     = case_of(sheet);
-    const Vec           light = {-0.35, 1, 0.25};
-    double              up    = 1.2 * c.radius;
-    Vec                 eye = vec(0, 8 * c.radius, 8 * c.radius), target = vec(0, -up, 0);
-    Lens                lens    = lens_make(eye, target, 2 * c.radius, true, WIDTH, HEIGHT);
-    Product             product = product_format(
-                    "use \"std/surfaces.krs\";\n" SIDES
-                    "%slight red { direction: [-0.35, 1, 0.25], softness: 0, "
-                                "color: [1, 0, 0] }\n"
-                                "light green { direction: [-0.35, 1, 0.25], color: [0, 1, 0], shadow: false }\n"
-                                "sky { zenith: #000000, horizon: #000000, ground: #000000 }\nimage { tone_map: \"none\" }\n"
-                                "material white { color: [1, 1, 1], roughness: 1 }\n"
-                                "show plane([0, 1, 0], %.17g).paint(white);\nshow %s;\ncamera { eye: [0, %.17g, %.17g], "
-                                "target: [0, %.17g, 0], projection: \"orthographic\", height: %.17g }",
-                    c.before, -up, c.text, eye.y, eye.z, -up, 4 * c.radius);
+    const struct OpenSurface *open_surface = *state;
+    Case                      c            = case_of(open_surface);
+    const Vec                 light        = {-0.35, 1, 0.25};
+    double                    up           = 1.2 * c.radius;
+    Vec                       eye = vec(0, 8 * c.radius, 8 * c.radius), target = vec(0, -up, 0);
+    Lens                      lens    = lens_make(eye, target, 2 * c.radius, true, WIDTH, HEIGHT);
+    Product                   product = product_format(
+                          "use \"std/surfaces.krs\";\n" SIDES
+                          "%slight red { direction: [-0.35, 1, 0.25], softness: 0, "
+                                            "color: [1, 0, 0] }\n"
+                                            "light green { direction: [-0.35, 1, 0.25], color: [0, 1, 0], shadow: false }\n"
+                                            "sky { zenith: #000000, horizon: #000000, ground: #000000 }\nimage { tone_map: \"none\" }\n"
+                                            "material white { color: [1, 1, 1], roughness: 1 }\n"
+                                            "show plane([0, 1, 0], %.17g).paint(white);\nshow %s;\ncamera { eye: [0, %.17g, %.17g], "
+                                            "target: [0, %.17g, 0], projection: \"orthographic\", height: %.17g }",
+                          c.before, -up, c.text, eye.y, eye.z, -up, 4 * c.radius);
     KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1};
     KrsRendering    *rendering;
     KrsPicture      *picture = NULL;
@@ -270,8 +270,8 @@ static void sheets_cast_shadows(void **state)
             wrong += hidden != (color[0] < 0.5F * color[1]);
     }
     if (dark < 200 || wrong * 20 > edge)
-        fail_msg("%s: of %d pixels in its shadow, %d at an edge, %d are wrong", sheet->name, dark,
-                 edge, wrong);
+        fail_msg("%s: of %d pixels in its shadow, %d at an edge, %d are wrong", open_surface->name,
+                 dark, edge, wrong);
     krs_picture_free(picture);
     krs_rendering_free(rendering);
     product_free(&product);
@@ -279,24 +279,24 @@ static void sheets_cast_shadows(void **state)
 
 /* ---- sides ---- */
 
-/* A sheet that shines, above a mirror, seen in the mirror alone. */
+/* An open surface that shines, above a mirror, seen in the mirror alone. */
 static void mirrors_show_the_side(void **state)
 {
-    const struct Sheet *sheet   = *state;
-    Case                c       = case_of(sheet);
-    const char *const   names[] = {"preview", "direct", "path"};
-    double              down    = 1.5 * c.radius;
-    Vec                 eye     = vec(0.4 * c.radius, 1.2 * c.radius, 5 * c.radius);
-    Vec                 target  = vec(0, -down, 0.5 * c.radius);
-    Lens                lens    = lens_make(eye, target, tan(0.5 * FOV), false, WIDTH, HEIGHT);
-    Product             product = product_format(
-                    "use \"std/surfaces.krs\";\nmaterial sides { color: black, specular: 0, emission: if front "
-                                "then [1, 0, 0] else [0, 1, 0] }\n"
-                                "sky { zenith: #000000, horizon: #000000, ground: #000000 }\nimage { tone_map: \"none\" }\n"
-                                "material mirror { color: white, metallic: 1, roughness: 0 }\n"
-                                "%sshow plane([0, 1, 0], %.17g).paint(mirror);\nshow %s;\n"
-                                "camera { eye: [%.17g, %.17g, %.17g], target: [%.17g, %.17g, %.17g], fov: 40deg }",
-                    c.before, -down, c.text, eye.x, eye.y, eye.z, target.x, target.y, target.z);
+    const struct OpenSurface *open_surface = *state;
+    Case                      c            = case_of(open_surface);
+    const char *const         names[]      = {"preview", "direct", "path"};
+    double                    down         = 1.5 * c.radius;
+    Vec                       eye          = vec(0.4 * c.radius, 1.2 * c.radius, 5 * c.radius);
+    Vec                       target       = vec(0, -down, 0.5 * c.radius);
+    Lens                      lens = lens_make(eye, target, tan(0.5 * FOV), false, WIDTH, HEIGHT);
+    Product                   product = product_format(
+                          "use \"std/surfaces.krs\";\nmaterial sides { color: black, specular: 0, emission: if front "
+                                            "then [1, 0, 0] else [0, 1, 0] }\n"
+                                            "sky { zenith: #000000, horizon: #000000, ground: #000000 }\nimage { tone_map: \"none\" }\n"
+                                            "material mirror { color: white, metallic: 1, roughness: 0 }\n"
+                                            "%sshow plane([0, 1, 0], %.17g).paint(mirror);\nshow %s;\n"
+                                            "camera { eye: [%.17g, %.17g, %.17g], target: [%.17g, %.17g, %.17g], fov: 40deg }",
+                          c.before, -down, c.text, eye.x, eye.y, eye.z, target.x, target.y, target.z);
     for (KrsIntegrator integrator = 0; integrator < 3; integrator++) {
         KrsRenderOptions options = {
             .width = WIDTH, .height = HEIGHT, .samples = 1, .integrator = integrator};
@@ -327,7 +327,7 @@ static void mirrors_show_the_side(void **state)
             wrong += (color[0] > 0.3F) != (cosine < 0) || (color[1] > 0.3F) != (cosine > 0);
         }
         if (seen[0] + seen[1] < 200 || wrong * 50 > seen[0] + seen[1])
-            fail_msg("%s, %s: of %d and %d pixels of both sides, %d are wrong", sheet->name,
+            fail_msg("%s, %s: of %d and %d pixels of both sides, %d are wrong", open_surface->name,
                      names[integrator], seen[0], seen[1], wrong);
         krs_picture_free(picture);
         krs_rendering_free(rendering);
@@ -335,8 +335,8 @@ static void mirrors_show_the_side(void **state)
     product_free(&product);
 }
 
-/* The side is that of the sheet itself, however it is placed, mirrored, joined and painted. */
-static void sides_follow_the_sheet(void **state)
+/* The side is that of the open surface itself, however it is placed, mirrored, joined and painted. */
+static void sides_follow_the_open_surface(void **state)
 {
     static const struct {
         const char *scene;
@@ -438,7 +438,7 @@ static void sides_follow_the_sheet(void **state)
     }
 }
 
-/* Where a distance is needed, a sheet is as thick as its author says. */
+/* Where a distance is needed, an open surface is as thick as its author says. */
 static void thickness_is_given(void **state)
 {
     Product thin  = product_compile("show field(y).within(box([2, 2, 2]), open: true);");
@@ -457,23 +457,25 @@ static void thickness_is_given(void **state)
 
 int main(void)
 {
-    struct CMUnitTest tests[3 * SHEETS + 2];
-    static char       names[SHEETS][2][80];
+    struct CMUnitTest tests[3 * OPEN_SURFACES + 2];
+    static char       names[OPEN_SURFACES][2][80];
     size_t            count = 0;
-    for (size_t i = 0; i < SHEETS; i++) {
-        void *sheet    = (void *)(uintptr_t)&sheets[i];
-        tests[count++] = (struct CMUnitTest){sheets[i].name, sheets_are_where_signs_change, NULL,
-                                             NULL, sheet};
+    for (size_t i = 0; i < OPEN_SURFACES; i++) {
+        void *open_surface = (void *)(uintptr_t)&open_surfaces[i];
+        tests[count++]     = (struct CMUnitTest){
+                open_surfaces[i].name, open_surfaces_are_where_signs_change, NULL, NULL, open_surface};
         if (i % 4 != 1)
             continue;
-        snprintf(names[i][0], sizeof names[i][0], "the shadow of %s", sheets[i].name);
-        tests[count++] = (struct CMUnitTest){names[i][0], sheets_cast_shadows, NULL, NULL, sheet};
+        snprintf(names[i][0], sizeof names[i][0], "the shadow of %s", open_surfaces[i].name);
+        tests[count++] = (struct CMUnitTest){names[i][0], open_surfaces_cast_shadows, NULL, NULL,
+                                             open_surface};
         if (i % 8 != 1)
             continue;
-        snprintf(names[i][1], sizeof names[i][1], "the sides of %s", sheets[i].name);
-        tests[count++] = (struct CMUnitTest){names[i][1], mirrors_show_the_side, NULL, NULL, sheet};
+        snprintf(names[i][1], sizeof names[i][1], "the sides of %s", open_surfaces[i].name);
+        tests[count++] = (struct CMUnitTest){names[i][1], mirrors_show_the_side, NULL, NULL,
+                                             open_surface};
     }
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(thickness_is_given);
-    tests[count++] = (struct CMUnitTest)cmocka_unit_test(sides_follow_the_sheet);
+    tests[count++] = (struct CMUnitTest)cmocka_unit_test(sides_follow_the_open_surface);
     return _cmocka_run_group_tests("sheets", tests, count, renderer_open, renderer_close);
 }

@@ -1,5 +1,5 @@
 /*
- * sheets.c: surfaces of POV-Ray that enclose nothing: objects that are clipped, columns that
+ * open_surfaces.c: surfaces of POV-Ray that enclose nothing: objects that are clipped, columns that
  * are open, triangles and polygons.
  *
  * `clipped_by` cuts a surface where `intersection` cuts a solid: what is left has no cut faces, and both
@@ -15,22 +15,22 @@
 
 enum { MOST_POINTS = 10000, MOST_FIGURES = 500 };
 
-static const double FAR_AWAY = 1e5; /* sheets end somewhere */
+static const double FAR_AWAY = 1e5; /* open surfaces end somewhere */
 
-/* What is cut: `sheets` has them in the space of the whole object, and `region` is in that space. */
+/* What is cut: `open surfaces` has them in the space of the whole object, and `region` is in that space. */
 typedef struct Cut {
     Import     *import;
-    Part       *sheets;
+    Part       *open_surfaces;
     const char *name; /* of the object, for words about it */
     unsigned    line;
     bool        open; /* without the ends of columns */
 } Cut;
 
-bool pov_is_sheet(const Part *part)
+bool pov_is_open_surface(const Part *part)
 {
     bool found = part->join == PART_CLIP;
     for (size_t i = 0; i < part->parts.count && !found; i++)
-        found = pov_is_sheet(part->parts.items[i]);
+        found = pov_is_open_surface(part->parts.items[i]);
     return found;
 }
 
@@ -61,8 +61,8 @@ static Part *both(Import *import, PartJoin join, Part *a, Part *b)
 }
 
 /* `equation` as the language has it, within `own`, a region of the same space, if there is one. */
-static void add_sheet(Cut *cut, const Part *like, const Transform *transform, const char *look,
-                      Part *region, const char *equation, const char *own)
+static void add_open_surface(Cut *cut, const Part *like, const Transform *transform,
+                             const char *look, Part *region, const char *equation, const char *own)
 {
     Part *surface = part_shape(cut->import, like->line, "surface", "%s", equation);
     Part *part = part_new(cut->import, like->line, "sheet"), *extent = NULL;
@@ -76,7 +76,7 @@ static void add_sheet(Cut *cut, const Part *like, const Transform *transform, co
     part->look         = look;
     part_add(cut->import, part, surface);
     part_add(cut->import, part, both(cut->import, PART_INTERSECTION, extent, region));
-    part_add(cut->import, cut->sheets, part);
+    part_add(cut->import, cut->open_surfaces, part);
 }
 
 /* A normal times the point. */
@@ -118,14 +118,15 @@ static void cut_column(Cut *cut, const Part *part, const Transform *transform, c
                                    import_number_text(import, 1.01 * hypot(half, wide)),
                                    import_vector_text(import, n, 3), height,
                                    import_vector_text(import, back, 3), height);
-    add_sheet(cut, part, transform, look, region,
-              formatted(import, "algebraic(x^2 + y^2 + z^2 - (%s)^2 == (%s + %s * (%s))^2)", axis,
-                        import_number_text(import, (radii[0] + radii[1]) / 2),
-                        import_number_text(import, (radii[1] - radii[0]) / (2 * half)), axis),
-              slab);
+    add_open_surface(cut, part, transform, look, region,
+                     formatted(import, "algebraic(x^2 + y^2 + z^2 - (%s)^2 == (%s + %s * (%s))^2)",
+                               axis, import_number_text(import, (radii[0] + radii[1]) / 2),
+                               import_number_text(import, (radii[1] - radii[0]) / (2 * half)),
+                               axis),
+                     slab);
     for (int i = 0; i < 2 && !cut->open; i++)
         if (radii[i] > 0)
-            add_sheet(
+            add_open_surface(
                 cut, part, transform, look, region,
                 formatted(import, "algebraic(%s == %s)", axis, at[i]),
                 formatted(import, "sphere(%s)", import_number_text(import, hypot(half, radii[i]))));
@@ -138,10 +139,11 @@ static void cut_box(Cut *cut, const Part *part, const Transform *transform, cons
         double size[3];
         for (int k = 0; k < 3; k++)
             size[k] = (k == i ? 2.1 : 2) * part->inside.numbers[k];
-        add_sheet(cut, part, transform, look, region,
-                  formatted(cut->import, "algebraic(%c^2 == %s^2)", "xyz"[i],
-                            import_number_text(cut->import, part->inside.numbers[i])),
-                  formatted(cut->import, "box(%s)", import_vector_text(cut->import, size, 3)));
+        add_open_surface(
+            cut, part, transform, look, region,
+            formatted(cut->import, "algebraic(%c^2 == %s^2)", "xyz"[i],
+                      import_number_text(cut->import, part->inside.numbers[i])),
+            formatted(cut->import, "box(%s)", import_vector_text(cut->import, size, 3)));
     }
 }
 
@@ -154,28 +156,29 @@ static bool cut_shape(Cut *cut, const Part *part, const Transform *transform, co
     const char   *r      = import_number_text(import, n[0]);
     const char   *around = ends ? NULL : formatted(import, "sphere(%g)", FAR_AWAY);
     if (part->inside.kind == PART_BALL) {
-        add_sheet(cut, part, transform, look, region,
-                  formatted(import, "algebraic(x^2 + y^2 + z^2 == %s^2)", r),
-                  ends ? NULL
-                       : formatted(import, "sphere(%s)", import_number_text(import, 1.01 * n[0])));
+        add_open_surface(
+            cut, part, transform, look, region,
+            formatted(import, "algebraic(x^2 + y^2 + z^2 == %s^2)", r),
+            ends ? NULL : formatted(import, "sphere(%s)", import_number_text(import, 1.01 * n[0])));
     } else if (part->inside.kind == PART_RING) {
         double outer = 1.01 * (n[0] + n[1]);
-        add_sheet(cut, part, transform, look, region,
-                  formatted(import, "algebraic((x^2 + y^2 + z^2 + %s)^2 == 4 * %s^2 * (x^2 + z^2))",
-                            import_number_text(import, n[0] * n[0] - n[1] * n[1]), r),
-                  ends ? NULL : formatted(import, "sphere(%s)", import_number_text(import, outer)));
+        add_open_surface(
+            cut, part, transform, look, region,
+            formatted(import, "algebraic((x^2 + y^2 + z^2 + %s)^2 == 4 * %s^2 * (x^2 + z^2))",
+                      import_number_text(import, n[0] * n[0] - n[1] * n[1]), r),
+            ends ? NULL : formatted(import, "sphere(%s)", import_number_text(import, outer)));
     } else if (part->inside.kind == PART_ROUND) {
         cut_column(cut, part, transform, look, region);
     } else if (part->inside.kind == PART_BOX) {
         cut_box(cut, part, transform, look, region);
     } else if (part->inside.kind == PART_HALF_SPACE) {
-        add_sheet(cut, part, transform, look, region,
-                  formatted(import, "algebraic(%s == %s)", along(import, n),
-                            import_number_text(import, n[3])),
-                  around);
+        add_open_surface(cut, part, transform, look, region,
+                         formatted(import, "algebraic(%s == %s)", along(import, n),
+                                   import_number_text(import, n[3])),
+                         around);
     } else if (part->equation) {
-        add_sheet(cut, part, transform, look, region, part->equation,
-                  part->extent ? part->extent : around);
+        add_open_surface(cut, part, transform, look, region, part->equation,
+                         part->extent ? part->extent : around);
     } else {
         return import_refuse(import, cut->line, "`%s` of a %s is not translated", cut->name,
                              part->stem);
@@ -245,20 +248,20 @@ static bool cut_part(Cut *cut, Part *part, const Transform *outer, const char *l
 static Part *cut_whole(Import *import, Part *part, const char *name, unsigned line, bool open,
                        Part *region)
 {
-    Cut       cut  = {.import = import,
-                      .sheets = part_new(import, part->line, part->stem),
-                      .name   = name,
-                      .line   = line,
-                      .open   = open};
+    Cut       cut  = {.import        = import,
+                      .open_surfaces = part_new(import, part->line, part->stem),
+                      .name          = name,
+                      .line          = line,
+                      .open          = open};
     Transform here = transform_identity();
-    return cut_part(&cut, part, &here, NULL, region) ? cut.sheets : NULL;
+    return cut_part(&cut, part, &here, NULL, region) ? cut.open_surfaces : NULL;
 }
 
 bool pov_clip(PovReader *reader, const Transform *transform, Part **part, unsigned line,
               Part *region)
 {
     Transform back = transform_mirrored(transform);
-    if (pov_is_sheet(region))
+    if (pov_is_open_surface(region))
         return import_refuse(reader->import, line,
                              "`clipped_by` what is clipped is not translated");
     if (!transform_invert(&back))
