@@ -47,7 +47,7 @@ static PointPair changed(Search *s, const PointPair *pair)
 
 static void climb(Search *s, PointPair pair, int steps)
 {
-    for (int i = 0; i < steps && !is_settled(s); i++) {
+    for (int i = 0; i < steps && !is_decided(s); i++) {
         PointPair next = pair;
         if (s->steep && i % 4 == 0) {
             if (halve_pair(s, &next) && next.ratio >= pair.ratio)
@@ -146,7 +146,7 @@ static void search_batch(Search *s, uint64_t end)
     PointPair best[BEST];
     for (int i = 0; i < BEST; i++)
         best[i].ratio = -1;
-    for (int i = 0; i < BATCH && s->spent < end && !is_settled(s); i++) {
+    for (int i = 0; i < BATCH && s->spent < end && !is_decided(s); i++) {
         PointPair pair = s->guards.count > 0 && search_index(s, 2) ? best_past_guard(s)
                                                                    : best_pair(s);
         for (int k = 0; k < BEST; k++)
@@ -164,7 +164,7 @@ static void search_batch(Search *s, uint64_t end)
 void search_run(Search *search, uint64_t operations)
 {
     uint64_t end = search->spent + operations;
-    while (search->spent < end && !is_settled(search))
+    while (search->spent < end && !is_decided(search))
         search_batch(search, end);
 }
 
@@ -177,12 +177,12 @@ void search_from(Search *search, const double p[3], const double q[3], uint64_t 
     judge_pair(search, &pair);
     do
         climb(search, pair, CLIMB_STEPS);
-    while (search->spent < end && !is_settled(search));
+    while (search->spent < end && !is_decided(search));
 }
 
 bool search_refuted(const Search *search)
 {
-    return is_settled(search) || search->worst.ratio > 1 + RELATIVE;
+    return is_decided(search) || search->worst.ratio > 1 + RELATIVE;
 }
 
 bool search_surface(Search *search, const double p[3], double surface[3])

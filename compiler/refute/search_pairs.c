@@ -68,7 +68,7 @@ static void note(Search *s, Fault fault, double ratio, const double p[3], const 
     memcpy(s->worst.q, q, sizeof s->worst.q);
 }
 
-bool is_settled(const Search *s)
+bool is_decided(const Search *s)
 {
     return s->worst.fault == FAULT_NAN || s->worst.fault == FAULT_OUTSIDE ||
            s->worst.fault == FAULT_CLAIM;
@@ -85,13 +85,13 @@ double distance_at(Search *s, double p[3])
     s->spent += s->cost;
     s->evaluations++;
     double distance = s->values[s->distance].v[0];
-    if (isnan(distance) && !is_settled(s) && isfinite(length3(p)))
+    if (isnan(distance) && !is_decided(s) && isfinite(length3(p)))
         note(s, FAULT_NAN, INFINITY, p, p, distance, distance);
     else if (s->claim) {
-        if (distance > rounding_at(s, p) && !is_settled(s))
+        if (distance > rounding_at(s, p) && !is_decided(s))
             note(s, FAULT_CLAIM, INFINITY, p, p, distance, distance);
     } else if (s->side == s->distance && distance < -rounding_at(s, p) &&
-               outside(s, p) > 1e3 * rounding_at(s, p) && !is_settled(s))
+               outside(s, p) > 1e3 * rounding_at(s, p) && !is_decided(s))
         note(s, FAULT_OUTSIDE, INFINITY, p, p, distance, distance);
     return distance;
 }
@@ -126,7 +126,7 @@ static double ratio_of(const Search *s, const PointPair *pair)
 static void weigh(Search *s, PointPair *pair)
 {
     pair->ratio = ratio_of(s, pair);
-    if (!is_settled(s) && pair->ratio > s->worst.ratio)
+    if (!is_decided(s) && pair->ratio > s->worst.ratio)
         note(s, s->steep ? FAULT_STEEP : FAULT_LONG, pair->ratio, pair->p, pair->q, pair->at_p,
              pair->at_q);
 }

@@ -7,7 +7,7 @@
 #include "compiler/field/roots.h"
 #include "mesh/contour/batches.h"
 #include "mesh/contour/quadric.h"
-#include "mesh/contour/settle.h"
+#include "mesh/contour/snap.h"
 #include "mesh/contour/weights.h"
 
 /* Part of an edge at its ends where no vertex is, so that vertices of other edges are elsewhere. */
@@ -171,9 +171,9 @@ static void find_line(const Contour *contour, const MeshField *field, double mis
     memcpy(rows[0], a->normal, sizeof rows[0]);
     memcpy(rows[1], b->normal, sizeof rows[1]);
     double   right[3] = {dot3(rows[0], a->at), dot3(rows[1], b->at), dot3(rows[2], corners[0])};
-    Settling settling = {(const double(*)[3])corners, 3, rows[2], middle, missed, contour->error};
+    Snapping snapping = {(const double(*)[3])corners, 3, rows[2], middle, missed, contour->error};
     bool     meet     = solve3((const double(*)[3])rows, right, line->at);
-    line->bent        = settle_nearby(field, &settling, meet, line->at, &line->value);
+    line->bent        = snap_nearby(field, &snapping, meet, line->at, &line->value);
     line->off         = fabs(missed);
     if (line->bent) {
         const double *ends[2] = {a->at, b->at};
@@ -250,8 +250,8 @@ static void find_apex(const Contour *contour, const MeshField *field, const doub
     tets_corners(contour->tets, &contour->tets->list.items[patch->tet], corners);
     quadric_point((const double(*)[3])points, (const double(*)[3])normals, patch->corner_count,
                   patch->apex);
-    Settling settling = {(const double(*)[3])corners, 4, NULL, middle, missed, contour->error};
-    if (settle_nearby(field, &settling, true, patch->apex, &patch->value)) {
+    Snapping snapping = {(const double(*)[3])corners, 4, NULL, middle, missed, contour->error};
+    if (snap_nearby(field, &snapping, true, patch->apex, &patch->value)) {
         patch->fan = true;
     } else {
         memcpy(patch->apex, middle, 3 * sizeof *middle);

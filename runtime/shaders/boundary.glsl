@@ -35,20 +35,20 @@ float find_eta(float here, float beyond)
 // secondary.comp.
 const float START_OF_EVEN = 0.125, START = 0.5;
 
-// How high above the surface a ray starts.  Where hits are settled, that is by what rounding may be wrong
+// How high above the surface a ray starts.  Where hits are snapped, that is by what rounding may be wrong
 // by: of coordinates, and of the distance, which shows in differences around the hit.  These are large at
 // edges as well, so they count up to MOST_BEND alone.
 const float MOST_BEND = 0.04;
-float find_settled_height(HitPoint hit, float evenness)
+float find_snapped_height(HitPoint hit, float evenness)
 {
     float bend = sqrt(max(1.0 / max(evenness * evenness, 1e-6) - 1.0, 0.0));
-    return max(SETTLED_START * hit.rounding, 2.0 * find_reach(hit) * min(bend, MOST_BEND));
+    return max(SNAPPED_START * hit.rounding, 2.0 * find_reach(hit) * min(bend, MOST_BEND));
 }
 
 float find_height(HitPoint hit, float evenness, float distance)
 {
     float pixels = mix(START, START_OF_EVEN, smoothstep(0.9, 0.99, evenness));
-    return frame.settles != 0u ? find_settled_height(hit, evenness)
+    return frame.snaps != 0u ? find_snapped_height(hit, evenness)
                                : pixels * hit.near + 4.0 * hit.rounding;
 }
 #endif

@@ -70,12 +70,12 @@ void take_distance(float larger)
     march.state = march.t > end ? STATE_MISS : STATE_MARCHING;
 }
 #else
-// Settles a hit: takes steps of the secant method, each at most half as long as the last, until what is
+// Snaps a hit to the surface: takes steps of the secant method, each at most half as long as the last, until what is
 // left is small.  The step after that leaves about its square.  Behind the surface t stays before it, and the
 // chord from there is taken.  So what is found is the side of a thin wall that the ray has met, not the other.
 // A length to the next root is negative nowhere before it, and is followed while it shrinks.
 const float SMALL = 256.0; // roundings
-void settle(float at, float clearance, float rounded)
+void snap(float at, float clearance, float rounded)
 {
     float most = 0.5 * abs(march.step);
 #if defined(STEPS) || defined(ALONG)
@@ -88,13 +88,13 @@ void settle(float at, float clearance, float rounded)
                  : slope < 0.0 ? clamp(-clearance / slope, -most, most)
                                : sign(clearance) * most;
 #endif
-    bool settled = !(abs(next) > SMALL * rounded); // also where it is not a number
-    march.state = settled ? STATE_HIT : STATE_REFINING;
-    if (behind && !settled) {
+    bool snapped = !(abs(next) > SMALL * rounded); // also where it is not a number
+    march.state = snapped ? STATE_HIT : STATE_REFINING;
+    if (behind && !snapped) {
         march.step += next;
         return;
     }
-    march.t = settled ? at + next : at;
+    march.t = snapped ? at + next : at;
     march.clearance = clearance;
     march.step = next;
 }
@@ -109,7 +109,7 @@ void take_ball(float radius)
     radius = clamp(radius, 0.0, end);
     float square = radius * radius - (height - middle) * (height + middle);
     float half_chord = sqrt(max(square, 0.0)), free = middle + half_chord;
-    bool  touches = square > 0.0 && middle - half_chord <= SETTLED_START * ROUNDING * rounding;
+    bool  touches = square > 0.0 && middle - half_chord <= SNAPPED_START * ROUNDING * rounding;
     aside = vec3(0.0);
     march.steps++;
     if (touches && free > march.step) {
@@ -144,8 +144,8 @@ void take_distance(float distance)
     float unverified = march.step - march.clearance; // a surface may hide in such an interval
     float permitted = !is_ray ? 0.0 : leaves_surfaces() ? PERMITTED * at : frame.error * pixel;
     march.steps++;
-    if (is_ray && refining && settles()) {
-        settle(at, clearance, rounded);
+    if (is_ray && refining && snaps()) {
+        snap(at, clearance, rounded);
 #ifdef PACKED
         advance_to_next_part();
 #endif
@@ -166,7 +166,7 @@ void take_distance(float distance)
                     march.step - last_radius <= radius + 1.01 * tolerance;
     bool accurate = unverified <= 2.0 * tolerance || refining || !is_ray ||
                     BALLS == AUTOMATIC && -clearance <= SHALLOW * march.clearance;
-    accurate = accurate && !(is_ray && settles());
+    accurate = accurate && !(is_ray && snaps());
     float crossing = find_crossing(clearance);
     float last_slope = march.step > 0.0 ? (radius - last_radius) / march.step : 0.0;
     float slope = (1.0 - LEARNING) * march.slope + LEARNING * last_slope;

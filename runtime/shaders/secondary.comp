@@ -184,7 +184,7 @@ HitPoint hit_of_path(uint slot)
     enter_medium(surface.w);
     vec4  next = load_path(PATH_ORIGIN, index);
     float rounding = 2.0 * ROUNDING * largest(surface.xyz);
-    lift = max(SETTLED_START * rounding, length(next.xyz - surface.xyz));
+    lift = max(SNAPPED_START * rounding, length(next.xyz - surface.xyz));
     return HitPoint(slot, surface.xyz, vec3(0.0), next.w, next.w, rounding, sign(surface.w), 0u);
 }
 

@@ -189,8 +189,8 @@ vec2 find_width(float side)
     return vec2(half_diagonal * pixel_base, spread / max(stretch - 0.5 * spread, 0.1));
 }
 
-// Whether hits are settled as near to the surface as rounding permits (march_step.glsl).
-bool settles() { return frame.settles != 0u; }
+// Whether hits are snapped as near to the surface as rounding permits (march_step.glsl).
+bool snaps() { return frame.snaps != 0u; }
 
 // Whether a ray begins just above a surface and knows its normal.  If rounding puts it behind the surface,
 // that is no hit for a while: for LEAVING roundings, or a part of a pixel.  What may stay unverified, also
@@ -201,7 +201,7 @@ const float LEAVING = 192.0, LEAVING_IN_PIXELS = 0.03125, UNVERIFIED = 1.0 / 204
 bool leaves_surfaces()
 {
 #ifdef FOLLOWS_PATHS
-    return are_of_paths() && settles();
+    return are_of_paths() && snaps();
 #else
     return false;
 #endif
@@ -278,7 +278,7 @@ void begin_march(uint index, float start, bool is_ray)
 const float LESS = 0.1;
 void begin_above_plane(float cosine)
 {
-    march.step = (1.0 + cosine) * 2.0 * SETTLED_START * ROUNDING * rounding;
+    march.step = (1.0 + cosine) * 2.0 * SNAPPED_START * ROUNDING * rounding;
     march.slope = cosine - LESS - LEARNING / ((1.0 - LEARNING) * (1.0 + cosine));
 }
 

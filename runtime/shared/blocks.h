@@ -94,8 +94,8 @@ CONSTANT(SKY_ITSELF, 512 + 4 * 2048 + 8192 + 32768);
     /* occlusion; radius of the taps for a normal, in pixels; mean irradiance by the sky, which */     \
     /* paths use. */                                                                                   \
     FLOATS(13, error, occlusion_reach, normal_reach, sky_power)                                        \
-    /* Most steps of a ray; balls around what emits light; 1: hits are settled (march_step.glsl). */   \
-    UINTS(14, most_steps, emissive_count, settles, gap_a)                                              \
+    /* Most steps of a ray; balls around what emits light; 1: hits are snapped (march_step.glsl). */   \
+    UINTS(14, most_steps, emissive_count, snaps, gap_a)                                                \
     /* With LENS: the radius of the lens in `right` and in `up`, 1 / the distance of what is sharp, */ \
     /* corners of the aperture; 0: it is round. */                                                     \
     ONE(15, lens)                                                                                      \

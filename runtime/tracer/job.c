@@ -105,7 +105,7 @@ static bool prepare_frame_block(Job *job)
     job->frame.error        = (float)job->options.error;
     job->frame.most_steps   = job->options.most_steps;
     job->frame.normal_reach = normal_reach(&job->options);
-    job->frame.settles      = job->options.integrator != KRS_INTEGRATOR_PREVIEW;
+    job->frame.snaps        = job->options.integrator != KRS_INTEGRATOR_PREVIEW;
     return true;
 }
 

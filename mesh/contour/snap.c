@@ -1,35 +1,35 @@
-/* settle.c: vertices of faces and tetrahedra go to the surface. */
-#include "mesh/contour/settle.h"
+/* snap.c: vertices of faces and tetrahedra go to the surface. */
+#include "mesh/contour/snap.h"
 
 #include <string.h>
 
 #include "compiler/base/vec.h"
 #include "mesh/contour/weights.h"
 
-static void settling_weights(const Settling *settling, const double point[3], double weights[4])
+static void snapping_weights(const Snapping *snapping, const double point[3], double weights[4])
 {
-    if (settling->across)
-        face_weights(settling->corners, settling->across, point, weights);
+    if (snapping->across)
+        face_weights(snapping->corners, snapping->across, point, weights);
     else
-        tet_weights(settling->corners, point, weights);
+        tet_weights(snapping->corners, point, weights);
 }
 
-static void keep_settling(const Settling *settling, double point[3])
+static void keep_snapping(const Snapping *snapping, double point[3])
 {
     double weights[4], inner[4];
-    settling_weights(settling, point, weights);
-    settling_weights(settling, settling->middle, inner);
-    keep_inside(weights, inner, settling->count, point, settling->middle);
+    snapping_weights(snapping, point, weights);
+    snapping_weights(snapping, snapping->middle, inner);
+    keep_inside(weights, inner, snapping->count, point, snapping->middle);
 }
 
 /* Goes along the gradient, as far as it is in the face, to where the value is 0; *value is that at `at`.
    Where planes meet beyond a rounded edge this is a point of the edge. */
-static void settle(const MeshField *field, const Settling *settling, double at[3], double *value)
+static void snap(const MeshField *field, const Snapping *snapping, double at[3], double *value)
 {
     enum { TRIES = 2 };
     static const double NEAR_ENOUGH = 0.02; /* parts of the error */
-    const double        step        = 1e-3 * settling->error;
-    for (int i = 0; i < TRIES && fabs(*value) > NEAR_ENOUGH * settling->error; i++) {
+    const double        step        = 1e-3 * snapping->error;
+    for (int i = 0; i < TRIES && fabs(*value) > NEAR_ENOUGH * snapping->error; i++) {
         double points[4][3], values[4], gradient[3], next[3];
         for (int k = 0; k < 3; k++) {
             memcpy(points[k], at, sizeof points[k]);
@@ -38,13 +38,13 @@ static void settle(const MeshField *field, const Settling *settling, double at[3
         field_distances(field, (const double(*)[3])points, 3, values);
         for (int k = 0; k < 3; k++)
             gradient[k] = (values[k] - *value) / step;
-        if (settling->across)
-            add_scaled3(gradient, gradient, -dot3(gradient, settling->across), settling->across);
+        if (snapping->across)
+            add_scaled3(gradient, gradient, -dot3(gradient, snapping->across), snapping->across);
         double square = dot3(gradient, gradient);
         if (square < 1e-2)
             return;
         add_scaled3(next, at, -*value / square, gradient);
-        keep_settling(settling, next);
+        keep_snapping(snapping, next);
         double there = field_distance(field, next);
         if (!(fabs(there) < fabs(*value))) /* nor what is no number */
             return;
@@ -53,20 +53,20 @@ static void settle(const MeshField *field, const Settling *settling, double at[3
     }
 }
 
-bool settle_nearby(const MeshField *field, const Settling *settling, bool guess, double at[3],
-                   double *value)
+bool snap_nearby(const MeshField *field, const Snapping *snapping, bool guess, double at[3],
+                 double *value)
 {
-    const double enough = 0.5 * fabs(settling->missed);
+    const double enough = 0.5 * fabs(snapping->missed);
     if (guess) {
-        keep_settling(settling, at);
+        keep_snapping(snapping, at);
         *value = field_distance(field, at);
-        settle(field, settling, at, value);
+        snap(field, snapping, at, value);
         if (fabs(*value) < enough)
             return true;
     }
-    memcpy(at, settling->middle, 3 * sizeof *at);
-    *value = settling->missed;
-    settle(field, settling, at, value);
+    memcpy(at, snapping->middle, 3 * sizeof *at);
+    *value = snapping->missed;
+    snap(field, snapping, at, value);
     return fabs(*value) < enough;
 }
 
