@@ -178,20 +178,21 @@ static bool for_groups(Mesher *m, WorkOnGroup *work, double goal)
 
 /* Edges, in errors, of the smallest tetrahedra that are bisected since their mesh is not on the surface, where it is within the
    error of it. */
-static const double LEAST_ASTRAY = 1;
+static const double LEAST_OFF_SURFACE = 1;
 /* Parts of the error: a mesh whose middles are farther off goes through a tetrahedron or a face more often than their corners
    tell. */
-static const double ASTRAY = 0.15;
+static const double OFF_SURFACE = 0.15;
 
 /* Whether its mesh passes near the surface, or it is too small to be bisected for that. */
 static bool is_near_surface(const Mesher *m, const Tet *tet)
 {
     return tet->triangle_count == 0 ||
-           patch_off(&m->contour, &m->contour.patches.items[tet->patch]) <= ASTRAY * m->error ||
-           tets_longest_edge(&m->tets, tet) <= LEAST_ASTRAY * m->error;
+           patch_off(&m->contour, &m->contour.patches.items[tet->patch]) <=
+               OFF_SURFACE * m->error ||
+           tets_longest_edge(&m->tets, tet) <= LEAST_OFF_SURFACE * m->error;
 }
 
-/* By bounds; and those whose mesh is astray are refuted in any case. */
+/* By bounds; and those whose mesh is off the surface are refuted in any case. */
 static void judge_group(Mesher *m, Verifier *verifier, const Group *group)
 {
     bound_group(m, verifier, group);

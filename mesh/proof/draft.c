@@ -17,7 +17,7 @@ enum { PROBES = 5, STEPS = 3 };
    and so deep in a tetrahedron without triangles none is. */
 static const double ON_SURFACE = 0.1, OFF = 0.5, DEEP = 0.6;
 /* Edges, in errors, of the smallest that are bisected, with triangles and without. */
-static const double LEAST_ASTRAY = 1, LEAST_MISSED = 2;
+static const double LEAST_OFF_SURFACE = 1, LEAST_MISSED = 2;
 
 /* A point on the way to the surface. */
 typedef struct Probe {
@@ -177,7 +177,7 @@ static TetState draft_state(const Mesher *m, const MeshField *field, const Tet *
 {
     const Contour *contour = &m->contour;
     const Patch   *patch   = tet->triangle_count > 0 ? &contour->patches.items[tet->patch] : NULL;
-    double         least   = (patch ? LEAST_ASTRAY : LEAST_MISSED) * m->error;
+    double         least   = (patch ? LEAST_OFF_SURFACE : LEAST_MISSED) * m->error;
     TetState       fits    = patch ? TET_FITS : TET_EMPTY;
     if (verify_is_far(&m->tets, tet))
         return TET_EMPTY;

@@ -292,8 +292,8 @@ static void judge_point(const Surface *surface, Vec p, Vec normal, double error,
 {
     apart->points++;
     if (!is_near_surface(surface, p, normal, error, random)) {
-        apart->astray++;
-        apart->astray_at = p;
+        apart->off_surface++;
+        apart->off_surface_at = p;
     }
 }
 

@@ -20,11 +20,12 @@ typedef struct Surface {
 /* What was found. */
 typedef struct Apart {
     size_t hits, points; /* of the surface, where rays cross it; of triangles */
-    size_t lost, astray; /* those hits and points that are farther from the other than the error */
+    size_t lost,
+        off_surface;     /* those hits and points that are farther from the other than the error */
     size_t thick;        /* lost hits where neither solid nor void is thinner than the error */
     double farthest_hit; /* of all hits, as far as some errors were looked at; in errors */
-    Vec    lost_at, astray_at; /* one of them; a thick one, if there is */
-    size_t crossings[2];       /* how often rays enter the surface and leave it again */
+    Vec    lost_at, off_surface_at; /* one of them; a thick one, if there is */
+    size_t crossings[2];            /* how often rays enter the surface and leave it again */
 } Apart;
 
 /* Triangles by where they are. */

@@ -108,15 +108,15 @@ static void judge(const Row *row, const Example *e, const KrsMesh *mesh)
                   "|\n",
                   row->name, e->estimate ? ", an estimate" : "", box[0], box[1], box[2], box[3],
                   box[4], box[5], row->error, mesh->triangle_count, apart.hits, apart.farthest_hit,
-                  apart.lost, apart.points, apart.astray, mesh->unresolved, e->seconds);
+                  apart.lost, apart.points, apart.off_surface, mesh->unresolved, e->seconds);
     if (apart.lost > 0)
         print_message("# lost at (%.9g, %.9g, %.9g), %zu where nothing is thin\n", apart.lost_at.x,
                       apart.lost_at.y, apart.lost_at.z, apart.thick);
-    if (apart.astray > 0)
-        print_message("# astray at (%.9g, %.9g, %.9g)\n", apart.astray_at.x, apart.astray_at.y,
-                      apart.astray_at.z);
+    if (apart.off_surface > 0)
+        print_message("# off the surface at (%.9g, %.9g, %.9g)\n", apart.off_surface_at.x,
+                      apart.off_surface_at.y, apart.off_surface_at.z);
     assert_true(apart.hits > RAYS / 10 && mesh->triangle_count > 100);
-    assert_true(e->estimate || apart.astray == 0);
+    assert_true(e->estimate || apart.off_surface == 0);
     assert_true(e->estimate || apart.thick == 0);
     assert_true(e->estimate || mesh->unresolved > 0 || apart.lost == 0);
 }

@@ -48,17 +48,17 @@ typedef struct Tally {
     double farthest;
 } Tally;
 
-/* Where nothing is reported, nothing may be lost, and nowhere what is thick; points of a mesh are never astray. */
+/* Where nothing is reported, nothing may be lost, and nowhere what is thick; points of a mesh are never off the surface. */
 static void judge_mesh(const KrsMesh *mesh, const Surface *surface, double error, Random *random,
                        const char *text, Tally *tally)
 {
     check_closed(mesh);
     Apart apart = mesh_apart(mesh, surface, error, rays, points, random);
-    if (apart.astray > 0)
+    if (apart.off_surface > 0)
         fail_msg("%s\n%zu of %zu points of the mesh are farther than %g from the solid, as at "
                  "(%.9g, %.9g, %.9g)",
-                 text, apart.astray, apart.points, error, apart.astray_at.x, apart.astray_at.y,
-                 apart.astray_at.z);
+                 text, apart.off_surface, apart.points, error, apart.off_surface_at.x,
+                 apart.off_surface_at.y, apart.off_surface_at.z);
     if (apart.lost > 0 && mesh->unresolved == 0)
         fail_msg("%s\n%zu of %zu hits are farther than %g from the mesh, as at (%.9g, %.9g, %.9g)",
                  text, apart.lost, apart.hits, error, apart.lost_at.x, apart.lost_at.y,
@@ -172,7 +172,7 @@ static void nearly_all_of_a_draft_is_within_the_error(void **state)
         check_closed(mesh);
         Apart apart = mesh_apart(mesh, &surface, error, rays, 1000, &random);
         looked += apart.hits + apart.points;
-        far += apart.thick + apart.astray;
+        far += apart.thick + apart.off_surface;
         krs_mesh_free(mesh);
         product_free(&product);
         known_solid_free(solid);
@@ -263,16 +263,16 @@ static void what_is_farther_than_the_error_is_seen(void **state)
     Apart good = mesh_apart(mesh, &own, error, rays, points, &random);
     assert_true(good.hits > rays && good.points > points);
     assert_true(good.crossings[0] == good.crossings[1]);
-    assert_int_equal(good.lost + good.astray, 0);
+    assert_int_equal(good.lost + good.off_surface, 0);
     Apart without = mesh_apart(mesh, &both, error, rays, points, &random);
-    assert_true(without.lost > 5 && without.astray == 0);
+    assert_true(without.lost > 5 && without.off_surface == 0);
     assert_int_equal(without.thick, without.lost);
     Surface plate = {value_of_ring_and_plate, NULL, own.low, own.high};
     without       = mesh_apart(mesh, &plate, error, rays, points, &random);
     assert_true(without.lost > 5 && without.thick == 0);
     grow_ring(mesh, 1.5 * error);
     Apart grown = mesh_apart(mesh, &own, error, rays, points, &random);
-    assert_true(grown.lost > good.hits / 2 && grown.astray > good.points / 2);
+    assert_true(grown.lost > good.hits / 2 && grown.off_surface > good.points / 2);
     krs_mesh_free(mesh);
     product_free(&ring);
 }

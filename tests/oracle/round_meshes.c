@@ -323,12 +323,13 @@ static void random_solids_are_within_the_error(void **state)
         KrsMesh *mesh    = mesh_of_text(text.bytes, error);
         Surface  surface = {value_of_parts, &parts, vec(-3, -3, -3), vec(3, 3, 3)};
         Apart    apart   = mesh_apart(mesh, &surface, error, 120, 600, &random);
-        if (apart.astray > 0 || (apart.lost > 0 && mesh->unresolved == 0) || apart.thick > 0)
-            fail_msg("%zu points astray, as %.9g %.9g %.9g; %zu hits lost, as %.9g %.9g %.9g: "
-                     "error %.17g of %s",
-                     apart.astray, apart.astray_at.x, apart.astray_at.y, apart.astray_at.z,
-                     apart.lost, apart.lost_at.x, apart.lost_at.y, apart.lost_at.z, error,
-                     text.bytes);
+        if (apart.off_surface > 0 || (apart.lost > 0 && mesh->unresolved == 0) || apart.thick > 0)
+            fail_msg(
+                "%zu points off the surface, as %.9g %.9g %.9g; %zu hits lost, as %.9g %.9g %.9g: "
+                "error %.17g of %s",
+                apart.off_surface, apart.off_surface_at.x, apart.off_surface_at.y,
+                apart.off_surface_at.z, apart.lost, apart.lost_at.x, apart.lost_at.y,
+                apart.lost_at.z, error, text.bytes);
         largest = mesh->triangle_count > largest ? mesh->triangle_count : largest;
         reported += mesh->unresolved > 0;
         hits += apart.hits;
@@ -442,7 +443,7 @@ static void random_outlines_are_within_the_error(void **state)
         Apart     apart   = mesh_apart(mesh, &surface, error, 60, 300, &random);
         print_message("# error %.4f, %zu triangles, %zu unresolved: %s\n", error,
                       mesh->triangle_count, mesh->unresolved, solid);
-        assert_int_equal(apart.astray, 0);
+        assert_int_equal(apart.off_surface, 0);
         assert_true(apart.thick == 0 && (apart.lost == 0 || mesh->unresolved > 0));
         assert_true(mesh->unresolved > 0 || shape.euler == (star.height > 0 ? 2 : 0));
         hits += apart.hits;
