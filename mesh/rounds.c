@@ -198,7 +198,7 @@ static void judge_group(Mesher *m, Verifier *verifier, const Group *group)
     bound_group(m, verifier, group);
     for (uint32_t i = 0; i < group->count; i++) {
         Tet *tet = tet_of_group(m, group, i);
-        if ((tet->state == TET_FITS || tet->state == TET_ROUGH) && !is_near_surface(m, tet))
+        if ((tet->state == TET_FITS || tet->state == TET_UNPROVEN) && !is_near_surface(m, tet))
             tet->state = TET_REFUTED;
     }
 }
@@ -399,7 +399,7 @@ static bool prove(Mesher *m)
     m->has_proofs = true;
     judge_smooth(m);
     find_tree(m);
-    find_groups(m, TET_FITS, TET_ROUGH);
+    find_groups(m, TET_FITS, TET_UNPROVEN);
     double goal = fraction_by_cells(m);
     if (!for_groups(m, verify_group, goal))
         return false;

@@ -116,7 +116,7 @@ void tets_renew(Tets *tets, uint32_t point)
         uint32_t number = tets->links.items[at - 1].tet;
         Tet      tet    = tets->list.items[number];
         tet.replaced    = tet.replaced || tet.triangle_count > 0;
-        tet.state       = TET_ROUGH;
+        tet.state       = TET_UNPROVEN;
         tet.deviation   = INFINITY;
         tet.stale       = false;
 

@@ -32,7 +32,7 @@ typedef enum TetState {
     TET_NEW,
     TET_EMPTY,     /* no surface in it */
     TET_FITS,      /* its mesh is near to the surface */
-    TET_ROUGH,     /* nothing is known */
+    TET_UNPROVEN,  /* nothing is known */
     TET_PROVEN,    /* mesh and surface are near to each other in it */
     TET_REFUTED,   /* they are not */
     TET_UNRESOLVED /* it may hold what is thinner than the error */

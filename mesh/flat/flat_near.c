@@ -6,14 +6,14 @@
 #include "compiler/base/vec.h"
 
 enum {
-    MOST_THIN              = 100,
-    MANY                   = 8,
-    MOST_SEAMS             = 50,
-    MOST_HARD              = 10000,
-    MOST_LOOKS             = 600000,
-    MOST_LOOKS_WHERE_ROUGH = 100, /* for each box; all will be looked at again */
-    PATIENCE               = 256,
-    HALVINGS_OF_REGION     = 3
+    MOST_THIN                 = 100,
+    MANY                      = 8,
+    MOST_SEAMS                = 50,
+    MOST_HARD                 = 10000,
+    MOST_LOOKS                = 600000,
+    MOST_LOOKS_WHERE_UNPROVEN = 100, /* for each box; all will be looked at again */
+    PATIENCE                  = 256,
+    HALVINGS_OF_REGION        = 3
 };
 /* In errors: boxes that are not halved any more, first and after some have been left; and those in which ways may be shorter than
    the error. */
@@ -23,7 +23,7 @@ static const double SMALLEST = 0.02, SMALLEST_OF_MANY = 0.1, SMALL = 1.5, SHORT_
 typedef struct NearPart {
     FlatPieces pieces;
     FlatWork   work;
-    size_t     looks, hard, thin, seams, rough;
+    size_t     looks, hard, thin, seams, unproven;
     double     left_at[3]; /* where one is */
 } NearPart;
 
@@ -31,8 +31,8 @@ typedef struct NearWork {
     Mesher          *m;
     FlatRounds      *rounds;
     const FlatBoxes *boxes;
-    bool            *is_rough; /* of each box, whether planes are too rough somewhere in it */
-    Box             *rough;    /* and where that is */
+    bool            *is_unproven; /* of each box, whether planes are too rough somewhere in it */
+    Box             *unproven;    /* and where that is */
     double           error;
     NearPart        *parts;
 } NearWork;
@@ -62,7 +62,7 @@ static bool goes_on(Looking *l)
         !m->options->go_on(m->options->user, 0))
         atomic_store(&m->stopped, true);
     return !atomic_load(&m->stopped) && part->looks < MOST_LOOKS &&
-           (part->rough == 0 || part->looks < MOST_LOOKS_WHERE_ROUGH * l->w->boxes->count) &&
+           (part->unproven == 0 || part->looks < MOST_LOOKS_WHERE_UNPROVEN * l->w->boxes->count) &&
            part->hard < MOST_HARD && part->thin < MOST_THIN && part->seams < MOST_SEAMS;
 }
 
@@ -76,10 +76,10 @@ static void leave(Looking *l, FlatNearness nearness, Box box, double way)
 {
     NearPart *part = l->part;
     note_place(part, &box);
-    if (nearness == FLAT_ROUGH) {
-        l->w->is_rough[l->number] = true;
-        l->w->rough[l->number]    = wider_box(box, way);
-        part->rough++;
+    if (nearness == FLAT_UNPROVEN) {
+        l->w->is_unproven[l->number] = true;
+        l->w->unproven[l->number]    = wider_box(box, way);
+        part->unproven++;
     } else
         part->thin++;
     part->seams += nearness == FLAT_SEAM && !flat_rounds_has_curves(l->w->rounds);
@@ -87,7 +87,7 @@ static void leave(Looking *l, FlatNearness nearness, Box box, double way)
 
 static double smallest_of(const NearPart *part)
 {
-    return part->thin + part->rough < MANY ? SMALLEST : SMALLEST_OF_MANY;
+    return part->thin + part->unproven < MANY ? SMALLEST : SMALLEST_OF_MANY;
 }
 
 static void look(Looking *l, Box box, int halvings);
@@ -105,7 +105,7 @@ static void look(Looking *l, Box box, int halvings)
 {
     NearPart *part  = l->part;
     double    error = l->w->error;
-    if (l->w->is_rough[l->number])
+    if (l->w->is_unproven[l->number])
         return;
     Range range = field_range(l->field, box);
     if (range.low > 0 || range.high < 0)
@@ -152,10 +152,10 @@ static void blame(const NearWork *w, FlatBoxes *boxes)
     size_t     kept  = 0;
     w->rounds->blame = true;
     for (size_t i = 0; i < boxes->count; i++) {
-        if (!w->is_rough[i])
+        if (!w->is_unproven[i])
             continue;
-        field_focus(field, w->rough[i]);
-        flat_pieces(field, w->rough[i], w->m->side, w->rounds, FLAT_PROVING, &part->work,
+        field_focus(field, w->unproven[i]);
+        flat_pieces(field, w->unproven[i], w->m->side, w->rounds, FLAT_PROVING, &part->work,
                     &part->pieces);
         field_leave(field);
         boxes->items[kept++] = boxes->items[i];
@@ -175,13 +175,13 @@ static FlatVerdict judge(const NearWork *w, size_t parts)
     for (size_t i = 0; i < parts; i++) {
         const NearPart *part      = &w->parts[i];
         bool            cut_short = part->looks >= MOST_LOOKS || part->hard >= MOST_HARD;
-        size_t          left      = part->thin + part->rough + cut_short;
+        size_t          left      = part->thin + part->unproven + cut_short;
         in_vain |= part->thin >= MOST_THIN;
         by_seams |= part->seams >= MOST_SEAMS;
         m->unresolved += left;
         if (left > 0)
             memcpy(m->unresolved_at, part->left_at, sizeof m->unresolved_at);
-        if (part->rough > 0)
+        if (part->unproven > 0)
             verdict = FLAT_REFUTED;
     }
     if (in_vain)
@@ -193,13 +193,13 @@ FlatVerdict flat_near(Mesher *m, FlatRounds *rounds, FlatBoxes *boxes, double er
 {
     size_t    parts = parallel_parts();
     ArenaMark mark  = arena_mark(&m->arena);
-    NearWork  w     = {.m        = m,
-                       .rounds   = rounds,
-                       .boxes    = boxes,
-                       .rough    = arena_new_array(&m->arena, Box, boxes->count + 1),
-                       .is_rough = arena_new_array(&m->arena, bool, boxes->count + 1),
-                       .error    = error,
-                       .parts    = arena_new_array(&m->arena, NearPart, parts)};
+    NearWork  w     = {.m           = m,
+                       .rounds      = rounds,
+                       .boxes       = boxes,
+                       .unproven    = arena_new_array(&m->arena, Box, boxes->count + 1),
+                       .is_unproven = arena_new_array(&m->arena, bool, boxes->count + 1),
+                       .error       = error,
+                       .parts       = arena_new_array(&m->arena, NearPart, parts)};
     memset(w.parts, 0, parts * sizeof *w.parts);
     for (size_t i = 0; i < parts; i++) {
         w.parts[i].work = flat_work_new(&m->fields[i], &m->arena);

@@ -266,10 +266,10 @@ FlatNearness flat_nearness(const FlatPieces *pieces, const Box *box, double erro
     if (find_one_sheet(&now) == ONE_WAY && sets_have_ways(&now))
         return FLAT_HARD;
     if (all_have_one_way(&finer))
-        return FLAT_ROUGH;
+        return FLAT_UNPROVEN;
     OneWay sheet = find_one_sheet(&finer);
     if (sheet == ONE_WAY && sets_have_ways(&finer))
-        return FLAT_ROUGH;
+        return FLAT_UNPROVEN;
     return sheet == SEAM ? FLAT_SEAM : FLAT_THIN;
 }
 

@@ -20,10 +20,10 @@
 #include "mesh/flat/flat_pieces.h"
 
 typedef enum FlatNearness {
-    FLAT_NEAR,   /* faces and surface are within the error of each other */
-    FLAT_HARD,   /* they are, by more than one way */
-    FLAT_ROUGH,  /* they may not be: with planes that are nearer to what they stand for they are */
-    FLAT_THIN,   /* there is no such way, not even where planes are exact */
+    FLAT_NEAR,     /* faces and surface are within the error of each other */
+    FLAT_HARD,     /* they are, by more than one way */
+    FLAT_UNPROVEN, /* they may not be: with planes that are nearer to what they stand for they are */
+    FLAT_THIN,     /* there is no such way, not even where planes are exact */
     FLAT_SEAM,   /* nor may there be: which of two surfaces there is depends on what is not exact */
     FLAT_UNKNOWN /* there are too many planes */
 } FlatNearness;

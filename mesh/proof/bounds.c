@@ -84,7 +84,7 @@ TetState state_by_bounds(const Mesher *m, const Tet *tet)
         return TET_FITS;
     bool   parts_may = tet->deviation <= NEARLY * tet->slope * m->error;
     double by_cells  = parts_may || tet->deviation == INFINITY ? LEAST_KNOWN : LEAST_SMOOTH;
-    return tets_longest_edge(&m->tets, tet) > by_cells * m->error ? TET_REFUTED : TET_ROUGH;
+    return tets_longest_edge(&m->tets, tet) > by_cells * m->error ? TET_REFUTED : TET_UNPROVEN;
 }
 
 static void measure_in_cell(Mesher *m, const Verifier *verifier, const SmoothCell *cell,
@@ -106,7 +106,7 @@ static bool one_may_fit(Mesher *m, const SmoothCell *middle, double share, const
 {
     for (size_t i = 0; i < count; i++) {
         Tet tet = m->tets.list.items[placed[i].tet];
-        if ((tet.state == TET_REFUTED || tet.state == TET_ROUGH) && tet.deviation < INFINITY) {
+        if ((tet.state == TET_REFUTED || tet.state == TET_UNPROVEN) && tet.deviation < INFINITY) {
             smooth_measure(&m->contour, middle, &tet);
             if (tet.deviation <= share * tet.slope * proven_error(m))
                 return true;
@@ -216,7 +216,7 @@ void bound_group(Mesher *m, Verifier *verifier, const Group *group)
     for (uint32_t i = 0; i < group->count; i++) {
         Tet *tet = tet_of_group(m, group, i);
         if (tets_is_moved(&m->tets, tet)) {
-            tet->state     = TET_ROUGH;
+            tet->state     = TET_UNPROVEN;
             tet->deviation = INFINITY;
         } else if (verify_is_far(&m->tets, tet))
             tet->state = TET_EMPTY;

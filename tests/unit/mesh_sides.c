@@ -182,7 +182,7 @@ static void check_moved(const Tets *tets, const double center[3], double radius,
     }
     for (size_t i = 0; i < tets->list.count; i++)
         if (tets_is_moved(tets, &tets->list.items[i]))
-            assert_true(tets->list.items[i].fresh && tets->list.items[i].state == TET_ROUGH);
+            assert_true(tets->list.items[i].fresh && tets->list.items[i].state == TET_UNPROVEN);
 }
 
 /* What is shallow at an edge loses its hole where tetrahedra are small, and a crumb goes.  Holes in what is as thin on all sides, what is deep and what
