@@ -212,7 +212,7 @@ static void limit_untrusted(Limits *limits)
 }
 
 /* What no single option can see. */
-static KrsStatus check_together(Options *options)
+static KrsStatus check_combinations(Options *options)
 {
     const CommandInfo *info  = &command_table[options->command];
     size_t             files = options->files.count;
@@ -294,6 +294,6 @@ KrsStatus options_parse(Options *options, int argc, char **argv)
     if (options->untrusted)
         limit_untrusted(&options->limits);
     if (status == KRS_OK && !options->help)
-        status = check_together(options);
+        status = check_combinations(options);
     return status;
 }

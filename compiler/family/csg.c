@@ -16,7 +16,7 @@
 /* How many operands of a blend can act at one point.  One that is farther than the reach acts only as the
    least of all, alone; and no distance is less than that to the box (lower_operand).  Of pairs two act, and
    the solid that others are taken from. */
-static uint32_t acting_together(ShapeBuilder *builder, const Shape *csg_node)
+static uint32_t acting_at_once(ShapeBuilder *builder, const Shape *csg_node)
 {
     const BlendKind kind    = csg_node->blend.kind;
     const uint32_t  solid   = csg_node->kind == SHAPE_DIFFERENCE; /* acts in all of its inside */
@@ -55,7 +55,7 @@ const Shape *make_csg_node(ShapeBuilder *builder, ShapeKind kind, const Shape *c
            n of them is at most sqrt(n): for two operands the factor of the table.  What pairs of tools are
            to a solid is less: (1 + sqrt 2) / sqrt 2. */
         if (info->slope > 1)
-            csg_node->slope *= pow(info->slope, log2(acting_together(builder, csg_node)));
+            csg_node->slope *= pow(info->slope, log2(acting_at_once(builder, csg_node)));
     }
     return csg_node;
 }

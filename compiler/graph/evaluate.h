@@ -43,7 +43,7 @@ double tape_flops(const Tape *tape);
 /* The same of one of its nodes; of a call for a list of usual length. */
 double tape_node_flops(const Tape *tape, Node node);
 /* About that of a tape on which instances of groups are parts by themselves, and rows constants. */
-double tape_flops_apart(const Tape *tape);
+double tape_flops_separate(const Tape *tape);
 
 /* Iterations of the loops that its shaders have within operations and over instances of groups, at most. */
 uint32_t tape_loops(const Tape *tape);

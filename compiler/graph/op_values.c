@@ -322,7 +322,7 @@ static NodeValue evaluate_seeded_direction(const NodeValue *o, uint32_t size)
 /* ---- smooth minima (math.md, section 4); a width of 0 leaves min(a, b) ---- */
 
 /* Infinite distances are as near as equal ones. */
-static double widths_apart(double a, double b, double width)
+static double widths_between(double a, double b, double width)
 {
     return a == b ? 0 : fabs(a - b) / width;
 }
@@ -343,7 +343,7 @@ static BlendShares shares_of_eight(FindShares *sharers, const NodeValue *o)
         double a = o[0].v[0], b = o[1].v[0], k = o[2].v[0];                                      \
         if (!(k > 0))                                                                            \
             return number(fmin(a, b));                                                           \
-        double t = widths_apart(a, b, k), h = fmax(1 - t, 0);                                    \
+        double t = widths_between(a, b, k), h = fmax(1 - t, 0);                                  \
         double n = sizeof signature > sizeof "fff>f" ? o[3].v[0] : 0;                            \
         (void)h, (void)n;                                                                        \
         return number(value);                                                                    \

@@ -272,7 +272,7 @@ static double flops_of(const Tape *tape, bool apart)
 
 double tape_node_flops(const Tape *tape, Node node) { return node_flops(tape, node, false); }
 double tape_flops(const Tape *tape) { return flops_of(tape, false); }
-double tape_flops_apart(const Tape *tape) { return flops_of(tape, true); }
+double tape_flops_separate(const Tape *tape) { return flops_of(tape, true); }
 
 /* For the longest list. */
 static double call_loops(const Tape *tape, uint32_t function)

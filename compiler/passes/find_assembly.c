@@ -228,7 +228,7 @@ static bool is_rigid(const Shape *krs)
     return true;
 }
 
-static uint32_t take_apart(Finder *f, const Shape *shape)
+static uint32_t take_parts(Finder *f, const Shape *shape)
 {
     bool sharp = shape->blend.width == NODE_NONE;
     if ((shape->levels == 0 && !moves(f, shape)) || f->assembly->items.count >= MOST_ITEMS)
@@ -275,7 +275,7 @@ static uint32_t find_item(Finder *f, const Shape *shape)
         return known->item;
     const char *above = f->name;
     f->name           = shape->given ? shape->given : above;
-    uint32_t item     = take_apart(f, shape);
+    uint32_t item     = take_parts(f, shape);
     f->name           = above;
     array_push(f->work, &f->known, ((Known){shape, f->iteration, f->paint, item}));
     return item;

@@ -63,7 +63,7 @@ static Box box_of_point(const double point[3])
 
 static bool is_costly(const KrsScene *scene, int rays)
 {
-    return rays * tape_flops_apart(&scene->distance) > RAYS * FLOPS_OF_ALL_RAYS;
+    return rays * tape_flops_separate(&scene->distance) > RAYS * FLOPS_OF_ALL_RAYS;
 }
 
 /* The number of rays: a power of two, so that it has no factor in common with the strides of
@@ -221,7 +221,7 @@ static void reduce_cells(KrsFrame *frame, const Box *known, Cells *cells)
 }
 
 /* Leaves out the cells that are next to what has no end. */
-static void keep_apart(KrsFrame *frame, const Rays *rays, Cells *cells)
+static void keep_separate(KrsFrame *frame, const Rays *rays, Cells *cells)
 {
     size_t kept = 0;
     frame_refresh_points(frame);
@@ -246,7 +246,7 @@ static void find_cells(KrsFrame *frame, Box box, const Rays *rays, const Box *kn
         halve_cells(cells);
         reduce_cells(frame, known, cells);
         if (rays->apart)
-            keep_apart(frame, rays, cells);
+            keep_separate(frame, rays, cells);
     }
 }
 

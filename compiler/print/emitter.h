@@ -296,7 +296,7 @@ void need_along(Emitter *e);
 void need_probe(Emitter *e);
 void emit_along_of(Emitter *e, const ModuleFunction *function);
 void emit_along(Emitter *e);
-void emit_steps_apart(Emitter *e);
+void emit_separate_steps(Emitter *e);
 void emit_probe(Emitter *e);
 
 /* ---- module_print.c ---- */

@@ -148,7 +148,7 @@ void emit_along(Emitter *e)
 }
 
 /* Zones and media are lengths along the ray. */
-void emit_steps_apart(Emitter *e)
+void emit_separate_steps(Emitter *e)
 {
     const bool together = e->cuts || emit_has_media(e);
     emit_local(e, TYPE_FLOAT, "t", NOWHERE_TEXT);

@@ -22,7 +22,7 @@ static const struct {
     [KRS_FUNCTION_PLANE_T]             = {NULL, emit_plane_t},
     [KRS_FUNCTION_PLANE_COSINE]        = {NULL, emit_plane_cosine},
     [KRS_FUNCTION_ALONG]               = {need_along, emit_along},
-    [KRS_FUNCTION_STEPS]               = {need_along, emit_steps_apart},
+    [KRS_FUNCTION_STEPS]               = {need_along, emit_separate_steps},
     [KRS_FUNCTION_PROBE]               = {need_probe, emit_probe},
     [KRS_FUNCTION_DISTANCE_LOD]        = {need_lod, emit_lod},
     [KRS_FUNCTION_SCENE_PART_DISTANCE] = {need_scene_parts, emit_scene_part_distance},

@@ -93,8 +93,7 @@ static void emit_noises(Emitter *e, uint32_t rank, Op op)
         if (is_computed(e, n) && e->rank[n] == rank && e->graph->items[n].op == op)
             array_push(e->scratch, &noises, n);
     }
-    if (noises.count >= KRS_LEAST_NOISES_TOGETHER &&
-        noises.count <= MOST_ITERATIONS - e->iterations) {
+    if (noises.count >= KRS_LEAST_FUSED_NOISES && noises.count <= MOST_ITERATIONS - e->iterations) {
         e->iterations += (uint32_t)noises.count;
         emit_loop(e, &noises);
         return;

@@ -505,7 +505,7 @@ static bool march_by_lanes(const KrsFrame *frame)
 }
 
 /* The next step of each of some rays that are not at their end. */
-static KrsStatus step_together(KrsFrame *frame, RayMarch *const *marches, size_t count)
+static KrsStatus step_fused(KrsFrame *frame, RayMarch *const *marches, size_t count)
 {
     double points[LANES][3], distances[LANES];
     for (size_t i = 0; i < count; i++)
@@ -519,7 +519,7 @@ static KrsStatus step_together(KrsFrame *frame, RayMarch *const *marches, size_t
 }
 
 /* Marches up to LANES rays side by side: their answers are those of each by itself. */
-static KrsStatus march_together(KrsFrame *frame, RayMarch *rays, size_t count, RayLimits limits)
+static KrsStatus march_fused(KrsFrame *frame, RayMarch *rays, size_t count, RayLimits limits)
 {
     RayMarch *marches[LANES];
     KrsStatus status = KRS_OK;
@@ -531,7 +531,7 @@ static KrsStatus march_together(KrsFrame *frame, RayMarch *rays, size_t count, R
                 marches[left++] = &rays[i];
         if (left == 0)
             break;
-        status = step_together(frame, marches, left);
+        status = step_fused(frame, marches, left);
     }
     return status;
 }
@@ -549,7 +549,7 @@ static void march_alone(RayMarch *ray, RayLimits limits)
 static KrsStatus raycast(KrsFrame *frame, RayMarch *rays, size_t count, bool together,
                          RayLimits limits, KrsHit *hits)
 {
-    KrsStatus status = together ? march_together(frame, rays, count, limits) : KRS_OK;
+    KrsStatus status = together ? march_fused(frame, rays, count, limits) : KRS_OK;
     for (size_t i = 0; i < count && status == KRS_OK; i++) {
         if (!together)
             march_alone(&rays[i], limits);

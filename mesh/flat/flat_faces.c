@@ -6,7 +6,7 @@
 
 #include "compiler/base/minmax.h"
 #include "compiler/base/vec.h"
-#include "mesh/flat/flat_apart.h"
+#include "mesh/flat/flat_separate.h"
 #include "mesh/flat/flat_touches.h"
 
 #define WALL UINT32_MAX
@@ -770,5 +770,5 @@ bool flat_faces_finish(FlatFaces *faces, FlatVertices *vertices, Triangles *tria
     if (!cut_faces(&f, triangles))
         return false;
     number_vertices(&f, triangles);
-    return flat_take_apart(vertices, triangles, faces->arena);
+    return flat_separate(vertices, triangles, faces->arena);
 }

@@ -315,7 +315,7 @@ bool dispatch_run(Job *job, const Dispatch *dispatch)
     return add_to_chain(job, &chained);
 }
 
-bool dispatch_together(Job *job, const Dispatch *dispatches, size_t count)
+bool dispatch_fused(Job *job, const Dispatch *dispatches, size_t count)
 {
     KrsPhase phase   = dispatches[0].phase;
     double  *at_once = items_at_once(job, phase, dispatches[0].shader), items = 0, ms = 0;

@@ -22,7 +22,7 @@ Dispatch dispatch_of(const Job *job, KrsPhase phase, const Shader *shader, const
 bool dispatch_run(Job *job, const Dispatch *dispatch);
 /* Runs dispatches one after the other, in one submission where that is no longer than a slice.
    None may leave items over, or count what a later one reads. */
-bool dispatch_together(Job *job, const Dispatch *dispatches, size_t count);
+bool dispatch_fused(Job *job, const Dispatch *dispatches, size_t count);
 /* Runs all dispatches in the chain. */
 bool dispatch_finish(Job *job);
 

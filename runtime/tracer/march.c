@@ -93,7 +93,7 @@ static bool run_beams(Job *job, const March *march, const WorkBlock *work)
         beams[i] = dispatch_of(job, KRS_PHASE_BEAMS, march->beams, work, ITEMS_KNOWN(tiles),
                                budget);
     }
-    if (!dispatch_together(job, beams, 2))
+    if (!dispatch_fused(job, beams, 2))
         return false;
     control->starts_from = control->listed = 1;
     if (march->flops < FLOPS_WORTH_QUARTERS)

@@ -84,7 +84,7 @@ static bool prefers_few_shaders(const KrsRendering *rendering)
 bool rendering_gathers_noises(const KrsRendering *rendering)
 {
     return rendering->purpose == KRS_FOR_SMALL_PICTURES && gpu_is_cpu(&rendering->renderer->gpu) &&
-           rendering->program->noises >= KRS_LEAST_NOISES_TOGETHER;
+           rendering->program->noises >= KRS_LEAST_FUSED_NOISES;
 }
 
 /* By default only on devices of type CPU: others skip far components by branches. */

@@ -165,11 +165,11 @@ static bool run_rays(Job *job, const Pass *pass, const WorkBlock *work)
 static bool run_items(Job *job, const Pass *passes, size_t count, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    Dispatch      dispatches[MOST_TOGETHER];
+    Dispatch      dispatches[MOST_FUSED];
     control->source = ITEMS_FRESH;
     for (size_t i = 0; i < count; i++)
         dispatches[i] = dispatch_of_pass(job, &passes[i], work);
-    return count == 1 ? dispatch_run(job, dispatches) : dispatch_together(job, dispatches, count);
+    return count == 1 ? dispatch_run(job, dispatches) : dispatch_fused(job, dispatches, count);
 }
 
 static bool run_passes(Job *job, const Pass *passes, size_t count, const WorkBlock *work)
@@ -184,11 +184,11 @@ static bool run_passes(Job *job, const Pass *passes, size_t count, const WorkBlo
 }
 
 /* The number of passes from `first` on that may share a submission. */
-static size_t count_together(const Plan *plan, size_t first)
+static size_t count_fused(const Plan *plan, size_t first)
 {
     size_t count = 1;
     while (first + count < plan->count && plan->passes[first + count].with_previous &&
-           count < MOST_TOGETHER)
+           count < MOST_FUSED)
         count++;
     return count;
 }
@@ -238,7 +238,7 @@ bool plan_run(Job *job, const Plan *plan, WorkBlock *work, uint32_t index)
     begin_ray(job, plan, index);
     for (size_t i = 0, count; i < plan->count; i += count) {
         double weight = 0;
-        count         = count_together(plan, i);
+        count         = count_fused(plan, i);
         for (size_t k = 0; k < count; k++)
             weight += (double)plan->passes[i + k].weight;
         job->progress_done  = start + whole * done / plan->weight;

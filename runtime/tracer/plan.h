@@ -43,7 +43,7 @@ typedef struct Pass {
     PassConstants constants;
 } Pass;
 
-enum { MOST_TOGETHER = 1 + KRS_MOST_MARCH_GROUPS }; /* passes in one submission */
+enum { MOST_FUSED = 1 + KRS_MOST_MARCH_GROUPS }; /* passes in one submission */
 
 typedef struct Plan {
     Gpu     *gpu; /* whose allocator the passes come from */

@@ -220,7 +220,7 @@ static double blend_bend(uint16_t op)
 }
 
 /* The derivatives of a - b. */
-static LaneSlope slope_apart(const Run *run, uint32_t a, uint32_t b)
+static LaneSlope slope_of_difference(const Run *run, uint32_t a, uint32_t b)
 {
     const LaneSlope *slopes[2] = {slope_at(run, a), slope_at(run, b)};
     LaneSlope        apart     = {{{0, 0}, {0, 0}, {0, 0}}};
@@ -252,7 +252,7 @@ static LaneHessian hessian_of_mean(const Run *run, uint16_t op, const uint32_t *
     }
     for (uint32_t k = 0; k < count; k++)
         for (uint32_t l = k + 1; l < count; l++) {
-            LaneSlope apart = slope_apart(run, operands[k], operands[l]);
+            LaneSlope apart = slope_of_difference(run, operands[k], operands[l]);
             add_square(&sum, bend, &apart);
         }
     return sum;

@@ -26,7 +26,7 @@ typedef struct Weights {
 static Node width_above_zero(Blending *x) { return not_zero(x->derivation, x->width); }
 
 /* |a - b| / k */
-static Node widths_apart(Blending *x)
+static Node widths_between(Blending *x)
 {
     Graph *g          = x->graph;
     Node   difference = graph_op1(g, OP_abs, sub(g, x->a, x->b));
@@ -37,7 +37,7 @@ static Node widths_apart(Blending *x)
 static Node nearness(Blending *x)
 {
     Graph *g     = x->graph;
-    Node   apart = widths_apart(x);
+    Node   apart = widths_between(x);
     Node   near  = sub(g, graph_number(g, 1), apart);
     return graph_op2(g, OP_max, near, graph_number(g, 0));
 }

@@ -1,5 +1,5 @@
-/* flat_apart.c: each edge finds the one that goes back along it, and each vertex the triangles around it. */
-#include "mesh/flat/flat_apart.h"
+/* flat_separate.c: each edge finds the one that goes back along it, and each vertex the triangles around it. */
+#include "mesh/flat/flat_separate.h"
 
 #include <string.h>
 
@@ -188,7 +188,7 @@ static bool pair_edges(Edges *e, FlatVertices *vertices, Triangles *triangles, A
     return true;
 }
 
-bool flat_take_apart(FlatVertices *vertices, Triangles *triangles, Arena *arena)
+bool flat_separate(FlatVertices *vertices, Triangles *triangles, Arena *arena)
 {
     enum { ROUNDS = 8 };
     Edges e;
